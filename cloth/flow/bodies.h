@@ -39,16 +39,18 @@ static inline struct flow_table flow_table_in(const duite_call *call, const unsi
     return table;
 }
 
-/* x and v as the task of a block sees them: its own rows, and the halos of its neighbours. Without
- * velocities v is NULL. */
+/* x and v as the task of a block sees them: its own rows, the halos of its neighbours, the other
+ * ends of its ties. Without velocities v is NULL. */
 struct flow_view {
     const phys_vec *x, *v;
     const duite_param *halo_x, *halo_v;
+    const unsigned char *tie_table; /* NULL: the run has no ties */
+    const duite_param *tie_halo;    /* of each block that it shares ties with */
 };
-/* That of a body whose kernel declares x, v, and the neighbours' halos of both. */
+/* That of a body whose kernel declares x, v, the neighbours' halos of both, and ties. */
 #define FLOW_VIEW(on)                                                                              \
     {                                                                                              \
-        (on)->x, (on)->v, (on)->halo_x, (on)->halo_v                                               \
+        (on)->x, (on)->v, (on)->halo_x, (on)->halo_v, (on)->tie_table, (on)->tied_tie_halo         \
     }
 
 /* Notes in the status that this rank is asked to stop, if it is. */
@@ -77,6 +79,23 @@ static inline const phys_vec *flow_matrix_in(const duite_call *call, struct flow
     t->matrix.filter = filtered ? filter : NULL;
     return filtered ? filter + t->n : filter;
 }
+
+/* The values of ties, behind those of the matrix. */
+static inline const phys_vec *flow_tie_values(const struct flow_table *t, const void *values)
+{
+    return (const phys_vec *)values + flow_value_rows(t);
+}
+
+/* Ties of a block (step/ties.c). Adds their forces, N. Their part of the system of a step, as
+ * phys_springs_system has it; of the matrix alone where b is NULL. Their energy, J, half of it
+ * where the other end is in another block. */
+void flow_ties_force(const struct flow_view *view, phys_vec *f);
+void flow_ties_system(const struct flow_view *view, double h, double push, int full, phys_vec *b,
+                      phys_vec *value);
+double flow_ties_energy(const struct flow_view *view);
+/* Takes out of lost[3] what solve_lost cannot know: N dv of ties that lead to held ends. */
+void flow_ties_lost(const unsigned char *tie_table, const phys_vec *value, const phys_vec *dv,
+                    double lost[3]);
 
 /* Elements of a block (elements.c). What they see of a view; one at a time on a worker, until its
  * task ends. */
@@ -141,6 +160,7 @@ struct flow_solved {
     const void *value; /* of the matrix */
     const phys_vec *b, *dv, *r;
     const struct solve_scalars *scalars;
+    const unsigned char *tie_table; /* NULL: the run has no ties */
 };
 /* Notes it in the status: what it took, its error, the momentum that it lost, whether it failed. */
 void flow_note_solve(const duite_call *call, const struct flow_table *table,

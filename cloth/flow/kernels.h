@@ -8,7 +8,7 @@
 /* clang-format off */
 #define FLOW_KERNELS(X)                                                                            \
     X(table_make) X(table_keep)                                                                    \
-    X(initial) X(keep) X(restore) X(status)                                                        \
+    X(initial) X(keep) X(restore) X(status) X(tie) X(tie_show)                                     \
     X(force) X(force_free) X(prescribe_velocity) X(prescribe_position)                             \
     X(predict_contact) X(contact) X(constrain) X(collide)                                          \
     X(euler) X(euler_next) X(verlet_first) X(verlet_second) X(runge)                               \
@@ -16,7 +16,7 @@
     X(system) X(system_of_forces) X(matrix) X(factor)                                              \
     X(basis) X(basis_ghosts) X(couple) X(factor_coarse)                                            \
     X(cg_begin) X(cg_begin_coarse) X(cg_start) X(cg_start_preconditioned) X(cg_guess)              \
-    X(cg_pass) X(cg_pass_preconditioned)                                                           \
+    X(cg_pass) X(cg_pass_preconditioned) X(tie_pack) X(tie_pack_pass) X(tie_show_basis)            \
     X(cg_scalars) X(cg_scalars_of_parts) X(cg_scalars_coarse) X(piece_sums) X(piece_shift)         \
     X(stretch) X(energy) X(level) X(watch) X(probe) X(row) X(frame)                                \
     X(collect) X(seconds) X(broadcast) X(system_part) X(system_save)

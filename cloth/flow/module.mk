@@ -28,16 +28,20 @@ libduite_cloth_la_SOURCES += \
     cloth/flow/setup/warn.c \
     cloth/flow/setup/watched.c \
     cloth/flow/setup/welds.c \
+    cloth/flow/state/chosen.c \
     cloth/flow/state/fields.c \
     cloth/flow/state/fields.h \
     cloth/flow/state/flow.h \
     cloth/flow/state/forks.c \
     cloth/flow/state/kernel.h \
     cloth/flow/state/objects.c \
+    cloth/flow/state/room.h \
     cloth/flow/state/state.c \
     cloth/flow/state/state.h \
     cloth/flow/state/tables.c \
     cloth/flow/state/tables.h \
+    cloth/flow/state/ties.c \
+    cloth/flow/state/ties.h \
     cloth/flow/step/elements.c \
     cloth/flow/step/energy.c \
     cloth/flow/step/energy.h \
@@ -51,6 +55,7 @@ libduite_cloth_la_SOURCES += \
     cloth/flow/step/settle.c \
     cloth/flow/step/step.c \
     cloth/flow/step/step.h \
+    cloth/flow/step/ties.c \
     cloth/flow/step/varying.c \
     cloth/flow/integrators/euler.c \
     cloth/flow/integrators/explicit.h \
@@ -61,6 +66,7 @@ libduite_cloth_la_SOURCES += \
     cloth/flow/integrators/verlet.c \
     cloth/flow/solver/solve.h \
     cloth/flow/solver/solver.h \
+    cloth/flow/solver/ties.c \
     cloth/flow/solver/system.c \
     cloth/flow/solver/cg.c \
     cloth/flow/solver/pass.c \

@@ -200,6 +200,8 @@ static int run_steps(struct flow_state *state)
     const bool implicit = model_is_implicit(state->flow->model);
     int code = implicit ? flow_cg_record(state) : DUITE_OK;
     if (!code)
+        code = flow_ties_choose(state);
+    if (!code)
         code = flow_initialise(state);
     if (!code)
         code = flow_steps(state);

@@ -157,13 +157,21 @@ struct model_pairs {
     char *place;
 };
 
-/* A spring of the scene for each pair. It has no mass. */
+/* A spring of the scene for each pair. It has no mass. It acts in the steps that begin at `begin`
+ * or later, and before `end`. */
 enum { MODEL_START_LENGTH = -1 };
 struct model_joint {
     struct model_pairs pairs;
     double stiffness, damping; /* N/m, > 0; kg/s, along the joint */
     double length;             /* at rest, m; MODEL_START_LENGTH: the distance at the start */
+    double begin, end;         /* s, >= 0; end 0: never */
 };
+
+/* Whether it comes or goes while the run is on. */
+static inline bool model_is_timed(const struct model_joint *joint)
+{
+    return joint->begin > 0 || joint->end > 0;
+}
 
 /* Makes the two vertices of each pair one. */
 struct model_weld {

@@ -137,7 +137,23 @@ PHYS_INLINE void multiply(const struct solve_block *block, enum solve_format for
     }
 }
 
-/* The entries into other blocks, and the rows that waited for them. */
+/* Adds what ties make of p to q. */
+static void add_ties(const struct solve_ties *ties, const struct solve_rows *rows)
+{
+    const phys_vec *p = rows->p;
+    for (size_t i = 0; i < ties->n; i++) {
+        const uint32_t a = ties->end[i][0], b = ties->end[i][1];
+        const bool inner = i < ties->n_inner;
+        const phys_vec d = p[a] - (inner ? p[b] : ties->p_other[i - ties->n_inner]);
+        phys_vec y;
+        solve_spring_times(ties->value + i, &d, &y);
+        rows->q[a] += y;
+        if (inner)
+            rows->q[b] -= y;
+    }
+}
+
+/* The entries into other blocks, ties, and the rows that waited for them. */
 PHYS_INLINE void end_halo(const struct solve_block *block, enum solve_format format,
                           bool preconditioned, const struct solve_cut *cut,
                           const struct solve_values *values, const phys_vec *p_other,
@@ -151,6 +167,8 @@ PHYS_INLINE void end_halo(const struct solve_block *block, enum solve_format for
         solve_entry_times(format, values->entry, inner + i, &d, &y, &other);
         rows->q[a] += y;
     }
+    if (cut->ties)
+        add_ties(cut->ties, rows);
     for (size_t i = 0; i < cut->n_halo; i++) {
         const phys_vec total = rows->q[cut->halo[i]];
         end_row(block, format, preconditioned, values, cut->halo[i], &total, rows, sum);

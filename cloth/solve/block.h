@@ -48,13 +48,24 @@ PHYS_INLINE void solve_constrain(const phys_vec *normal, phys_vec *filter)
         *filter = (phys_vec){0};
 }
 
+/* Springs that join rows for some solves only. They add to the matrix what entries of SOLVE_SPRINGS
+ * do, in a block of any format: inner ones between two rows here, then those that end in another
+ * block, which both blocks know. */
+struct solve_ties {
+    size_t n_inner, n;
+    const uint32_t (*end)[2]; /* n: rows; of those into other blocks end 0 alone counts */
+    const phys_vec *value;    /* n */
+    const phys_vec *p_other;  /* n - n_inner: p at the other end of each */
+};
+
 /* Entries into other blocks, whose values follow those of the inner ones: `own` the row here,
- * `other` the row in an array of ghosts. The halo is the rows that they end at here. */
+ * `other` the row in an array of ghosts. The halo is the rows that they, and ties, end at here. */
 struct solve_cut {
     size_t n;
     const uint32_t (*end)[2]; /* n: own, other */
     size_t n_halo;
-    const uint32_t *halo; /* n_halo: ascending */
+    const uint32_t *halo;          /* n_halo: ascending */
+    const struct solve_ties *ties; /* NULL: none */
 };
 
 /* The vectors of a block, n rows each. z = M^-1 r and s = M^-1 q, M the preconditioner

@@ -35,7 +35,7 @@ static int euler_move(const duite_call *call, const struct flow_table *t,
 /* In place. */
 FLOW_KERNEL(euler, FLOW_VELOCITY, struct flow_args,
             (R(table), RW(x), RW(v), W(spare_halo_x), W(spare_halo_v), SUM(status),
-             NEIGHBOURS(halo_x), NEIGHBOURS(halo_v)))
+             NEIGHBOURS(halo_x), NEIGHBOURS(halo_v), IF_MADE(tie_table), TIED(tie_halo)))
 static int euler_body(const duite_call *call, const struct euler_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table);
@@ -53,7 +53,8 @@ static int euler_body(const duite_call *call, const struct euler_fields *on)
 /* Beside the state, which stays as it is. */
 FLOW_KERNEL(euler_next, FLOW_VELOCITY, struct flow_args,
             (R(table), R(x), R(v), W(kept_x), W(kept_v), W(spare_halo_x), W(spare_halo_v),
-             SUM(status), NEIGHBOURS(halo_x), NEIGHBOURS(halo_v)))
+             SUM(status), NEIGHBOURS(halo_x), NEIGHBOURS(halo_v), IF_MADE(tie_table),
+             TIED(tie_halo)))
 static int euler_next_body(const duite_call *call, const struct euler_next_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table);

@@ -77,6 +77,13 @@ static void sum_rows(size_t n, const phys_vec *r, double sum[3])
             sum[c] += r[a][c];
 }
 
+/* What a solve lost. */
+static void note_lost(const struct flow_table *t, const struct flow_solved *solved, double lost[3])
+{
+    solve_lost(&t->matrix, &t->held, solved->value, solved->b, solved->dv, lost);
+    flow_ties_lost(solved->tie_table, flow_tie_values(t, solved->value), solved->dv, lost);
+}
+
 void flow_note_solve(const duite_call *call, const struct flow_table *t,
                      const struct flow_solved *solved, double *status)
 {
@@ -84,7 +91,7 @@ void flow_note_solve(const duite_call *call, const struct flow_table *t,
     if (t->matrix.filter)
         sum_rows(t->n, solved->r, status + FLOW_LOST);
     else
-        solve_lost(&t->matrix, &t->held, solved->value, solved->b, solved->dv, status + FLOW_LOST);
+        note_lost(t, solved, status + FLOW_LOST);
     const struct solve_norms norms = solve_norms(t->n, t->matrix.diagonal, solved->dv, solved->r);
     status[FLOW_SIZE] = norms.size;
     status[FLOW_RESIDUAL] = norms.bound;
@@ -100,7 +107,8 @@ void flow_note_solve(const duite_call *call, const struct flow_table *t,
 /* v += dv, and what the solve took and lost of the momentum. A solve that failed in a step that
  * must not leaves no scalars: then this does not run. */
 FLOW_KERNEL(velocity_implicit, FLOW_VELOCITY, struct flow_args,
-            (R(table), R(f), R(a), R(dv), R(r), RW(v), W(halo_v), R(scalars), SUM(status)))
+            (R(table), R(f), R(a), R(dv), R(r), RW(v), W(halo_v), R(scalars), SUM(status),
+             IF_MADE(tie_table)))
 static int velocity_implicit_body(const duite_call *call, const struct velocity_implicit_fields *on)
 {
     struct flow_table table = flow_table_in(call, on->table), *t = &table;
@@ -108,7 +116,8 @@ static int velocity_implicit_body(const duite_call *call, const struct velocity_
                                        .b = on->f,
                                        .dv = on->dv,
                                        .r = on->r,
-                                       .scalars = on->scalars};
+                                       .scalars = on->scalars,
+                                       .tie_table = on->tie_table};
     flow_note_solve(call, t, &solved, on->status);
     phys_advance(t->n, 1, on->dv, on->v);
     flow_write_halo(t, on->v, on->halo_v);
@@ -208,7 +217,7 @@ static int search(struct flow_state *state, struct flow_args args, double first)
 /* The whole of dv. */
 FLOW_KERNEL(correct, FLOW_VELOCITY, struct flow_args,
             (R(table), R(f), R(a), R(dv), R(r), R(base_x), R(base_v), RW(v), W(x), W(halo_v),
-             W(halo_x), R(scalars), SUM(status)))
+             W(halo_x), R(scalars), SUM(status), IF_MADE(tie_table)))
 static int correct_body(const duite_call *call, const struct correct_fields *on)
 {
     struct flow_table table = flow_table_in(call, on->table), *t = &table;
@@ -216,7 +225,8 @@ static int correct_body(const duite_call *call, const struct correct_fields *on)
                                        .b = on->f,
                                        .dv = on->dv,
                                        .r = on->r,
-                                       .scalars = on->scalars};
+                                       .scalars = on->scalars,
+                                       .tie_table = on->tie_table};
     const struct newton_move move = {on->dv, on->base_x, on->v, on->x, on->halo_v, on->halo_x};
     flow_note_solve(call, t, &solved, on->status);
     on->status[FLOW_SLOPE] = phys_slope(t->n, t->free, on->dv, on->f);
@@ -343,7 +353,8 @@ static int predict_body(const duite_call *call, const struct predict_fields *on)
     return 0;
 }
 
-/* The first step, and one after contact or after a step of another length, is by implicit Euler. */
+/* The first step, and one after contact, after a tie came or went, or after a step of another
+ * length, is by implicit Euler. */
 static int bdf2_start(struct flow_state *state)
 {
     int code = flow_keep_as(state, FLOW_AS(FLOW_FOR(kept_x, last_x), FLOW_FOR(kept_v, last_v)));
@@ -356,7 +367,8 @@ static int bdf2_start(struct flow_state *state)
 
 bool flow_implicit_is_second(const struct flow_state *state)
 {
-    return state->flow->model->integrator == MODEL_BDF2 && state->smooth == state->attempt.length;
+    return state->flow->model->integrator == MODEL_BDF2 && state->smooth == state->attempt.length &&
+           !flow_ties_changed(state);
 }
 
 int flow_bdf2_end(struct flow_state *state)

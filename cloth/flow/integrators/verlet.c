@@ -5,7 +5,9 @@
 int flow_verlet_begin(struct flow_state *state)
 {
     struct flow_args args = flow_explicit_args(state, 0);
-    return state->settled_forces ? DUITE_OK : flow_fork_each(state, &flow_kernel_force_free, &args);
+    if (state->settled_forces && !flow_ties_changed(state))
+        return DUITE_OK;
+    return flow_fork_each(state, &flow_kernel_force_free, &args);
 }
 
 /* v becomes a guess of the velocity at the end of the step, for forces that depend on it. */
@@ -28,7 +30,7 @@ static int verlet_first_body(const duite_call *call, const struct verlet_first_f
 
 FLOW_KERNEL(verlet_second, FLOW_VELOCITY, struct flow_args,
             (R(table), R(x), RW(v), W(f), R(v0), W(spare_halo_v), SUM(status), NEIGHBOURS(halo_x),
-             NEIGHBOURS(halo_v)))
+             NEIGHBOURS(halo_v), IF_MADE(tie_table), TIED(tie_halo)))
 static int verlet_second_body(const duite_call *call, const struct verlet_second_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table), *t = &table;

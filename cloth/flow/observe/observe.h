@@ -23,7 +23,7 @@ int flow_frame_last(struct flow_state *state);
 
 /* Doubles that a block says of its system; forks what hands the system of the last step to the
  * program. */
-size_t flow_system_doubles(const struct flow_table *table);
+size_t flow_system_doubles(const struct flow_table *table, size_t room);
 int flow_system(struct flow_state *state);
 
 /* Fills the parts of the report that need the whole state, when no task runs. */

@@ -127,6 +127,8 @@ int flow_probes_row(struct flow_state *state)
                              .before =
                                  (state->length_before ? state->length_before : length) * tick};
     int code = steps ? duite_get(state->rt, state->run.token, &token) : DUITE_OK;
+    if (!code)
+        code = flow_ties_show(state);
     for (; args.block < state->flow->tables.n_blocks && !code; args.block++)
         if (state->flow->tables.block[args.block].n_watched)
             code = fork_probe(state, &args);

@@ -1,16 +1,18 @@
 /* The system of the last step, brought together on rank 0: each block says its part of it, in
  * numbers, and one task on rank 0 makes plain arrays of all parts. An entry between two blocks is
- * reported by both; the lower block's word counts. */
+ * reported by both; the lower block's word counts. Ties (cloth/flow/state/ties.h) are entries, too.
+ */
 #include "cloth/flow/bodies.h"
 #include "cloth/flow/observe/observe.h"
 #include "cloth/flow/step/step.h"
 
 #include "cloth/solve/system.h"
 
-/* A part: rows, entries, rows of the halo. Of a row: its vertex, mass, diagonal, free, then
- * vectors; of an entry: its row here, the block of its other end, or less than 0 where there is no
- * entry any more, and the row there (in another block: its place in the halo there), then its
- * values: those of a spring, or N by rows. */
+/* A part: rows, entries and room for ties, rows of the halo. Of a row: its vertex, mass, diagonal,
+ * free, then vectors; of an entry: its row here, the block of its other end, or less than 0 where
+ * there is no entry any more, and the row there (in another block: its place in the halo there, or
+ * that of a tie the number of rows in that halo more than the row), then its values: those of a
+ * spring, or N by rows. */
 enum { VERTEX, MASS, DIAGONAL, FREE, B, DV = B + 3, X = DV + 3, V = X + 3, ROW = V + 3 };
 enum { HERE, BLOCK, THERE, VALUE, SPRING = VALUE + 4, PAIR = VALUE + SOLVE_NINE };
 
@@ -24,9 +26,21 @@ static size_t entries_at(const struct flow_table *t)
     return (size_t)ROW * t->n;
 }
 
-static size_t halo_at(const struct flow_table *t)
+static size_t halo_at(const struct flow_table *t, size_t room)
 {
-    return entries_at(t) + entry_doubles(t) * (t->n_entries + t->n_cut_entries);
+    return entries_at(t) + entry_doubles(t) * (t->n_entries + t->n_cut_entries + room);
+}
+
+size_t flow_system_doubles(const struct flow_table *t, size_t room)
+{
+    return halo_at(t, room) + t->n_halo;
+}
+
+/* How many ties a part of so many numbers has room for. */
+static size_t room_of(const struct flow_table *t, size_t numbers)
+{
+    const size_t least = flow_system_doubles(t, 0);
+    return numbers > least ? (numbers - least) / entry_doubles(t) : 0;
 }
 
 static double *put_vector(double *to, const phys_vec *from)
@@ -37,7 +51,7 @@ static double *put_vector(double *to, const phys_vec *from)
 }
 
 FLOW_KERNEL(system_part, FLOW_NO_PART, struct flow_args,
-            (R(table), R(f), R(a), R(dv), R(x), R(v), W(saved)))
+            (R(table), R(f), R(a), R(dv), R(x), R(v), W(saved), IF_MADE(tie_table)))
 
 static void put_rows(const struct flow_table *t, const struct system_part_fields *on, double *to)
 {
@@ -51,18 +65,18 @@ static void put_rows(const struct flow_table *t, const struct system_part_fields
     }
 }
 
-/* Value i of an entry. */
-static double *put_value(const struct flow_table *t, const struct solve_values *values, size_t i,
-                         double *to)
+/* Value i of entries in a format, as the part of the block has them. */
+static double *put_value(const struct flow_table *t, enum solve_format format, const void *entry,
+                         size_t i, double *to)
 {
     struct solve_symmetric symmetric = {{0}, {0}};
     struct solve_columns n;
     phys_vec turn;
     if (t->format == SOLVE_SPRINGS) {
-        memcpy(to, (const phys_vec *)values->entry + i, sizeof(phys_vec));
+        memcpy(to, (const phys_vec *)entry + i, sizeof(phys_vec));
         return to + 4;
     }
-    solve_entry_of(t->format, values->entry, i, &symmetric, &turn);
+    solve_entry_of(format, entry, i, &symmetric, &turn);
     solve_entry_columns(&symmetric, &turn, &n);
     for (int r = 0; r < 3; r++)
         for (int c = 0; c < 3; c++)
@@ -70,12 +84,34 @@ static double *put_value(const struct flow_table *t, const struct solve_values *
     return to;
 }
 
-static double *put_entry(const struct flow_table *t, const struct solve_values *values, size_t i,
-                         const uint32_t place[3], double *to)
+static double *put_place(const uint32_t place[3], double *to)
 {
     for (int k = 0; k < 3; k++)
         *to++ = place[k];
-    return put_value(t, values, i, to);
+    return to;
+}
+
+static double *put_entry(const struct flow_table *t, const struct solve_values *values, size_t i,
+                         const uint32_t place[3], double *to)
+{
+    return put_value(t, t->format, values->entry, i, put_place(place, to));
+}
+
+static double *put_ties(const duite_call *call, const struct flow_table *t, uint32_t block,
+                        const struct flow_ties *ties, const phys_vec *value, double *to)
+{
+    const struct flow_table *tables = flow_of(call)->tables.block;
+    for (uint32_t i = 0, k = 0; i < ties->n; i++) {
+        uint32_t place[] = {ties->end[i][0], block, ties->end[i][1]};
+        while (i >= ties->n_inner && i - ties->n_inner >= ties->start[k + 1])
+            k++;
+        if (i >= ties->n_inner) {
+            place[1] = ties->other[k];
+            place[2] = tables[place[1]].n_halo + ties->far[i - ties->n_inner];
+        }
+        to = put_value(t, SOLVE_SPRINGS, value, i, put_place(place, to));
+    }
+    return to;
 }
 
 static double *put_entries(const struct flow_table *t, uint32_t block,
@@ -97,12 +133,15 @@ static double *put_entries(const struct flow_table *t, uint32_t block,
 static int system_part_body(const duite_call *call, const struct system_part_fields *on)
 {
     struct flow_table table = flow_table_in(call, on->table), *t = &table;
-    const struct solve_values values =
-        solve_values_of(t->format, t->n, flow_matrix_in(call, t, on->a));
+    const void *value = flow_matrix_in(call, t, on->a);
+    const struct solve_values values = solve_values_of(t->format, t->n, value);
+    const struct flow_ties ties = flow_ties_open(on->tie_table);
+    const size_t numbers = duite_count(call, FLOW_INDEX_OF(system_part, saved));
     double *part = on->saved, *to = part + entries_at(t);
     put_rows(t, on, part);
     to = put_entries(t, on->args->block, &values, to);
-    for (; to < part + halo_at(t); to += entry_doubles(t)) {
+    to = put_ties(call, t, on->args->block, &ties, flow_tie_values(t, value), to);
+    for (; to < part + halo_at(t, room_of(t, numbers)); to += entry_doubles(t)) {
         memset(to, 0, entry_doubles(t) * sizeof *to);
         to[BLOCK] = -1;
     }
@@ -136,19 +175,28 @@ static void take_rows(struct solve_system *system, const struct flow_table *t, c
     }
 }
 
+/* The row of another block at a place: in its halo, or behind that of a tie. */
+static double row_there(const struct flow_table *t, const duite_param *part, double place)
+{
+    const double *numbers = part->data;
+    return place < t->n_halo ? numbers[halo_at(t, room_of(t, part->count)) + (size_t)place]
+                             : place - t->n_halo;
+}
+
 /* Of block b, by the parts of all blocks. */
 static void take_entries(struct solve_system *system, const duite_call *call,
                          const duite_param *parts, uint32_t b)
 {
     const struct flow_table *tables = flow_of(call)->tables.block, *t = tables + b;
     const double *own = flow_numbers_of(parts, b), *entry = own + entries_at(t);
-    for (; entry < own + halo_at(t); entry += entry_doubles(t)) {
+    const double *end = own + halo_at(t, room_of(t, parts[b].count));
+    for (; entry < end; entry += entry_doubles(t)) {
         if (entry[BLOCK] < b)
             continue;
         const uint32_t other = (uint32_t)entry[BLOCK];
         const double *there = flow_numbers_of(parts, other);
         const double row =
-            other == b ? entry[THERE] : there[halo_at(tables + other) + (size_t)entry[THERE]];
+            other == b ? entry[THERE] : row_there(tables + other, parts + other, entry[THERE]);
         const size_t at = system->n_pairs++;
         system->end[at][0] = vertex_of(own, entry[HERE]);
         system->end[at][1] = vertex_of(there, row);
@@ -167,7 +215,8 @@ static int gather(const duite_call *call, const struct system_save_fields *on,
         flow->model->format == SOLVE_SPRINGS ? SOLVE_PAIRS_OF_SPRINGS : SOLVE_PAIRS_OF_BLOCKS;
     size_t entries = 0;
     for (uint32_t b = 0; b < flow->tables.n_blocks; b++)
-        entries += (size_t)flow->tables.block[b].n_entries + flow->tables.block[b].n_cut_entries;
+        entries += (size_t)flow->tables.block[b].n_entries + flow->tables.block[b].n_cut_entries +
+                   room_of(flow->tables.block + b, on->saved[b].count);
     const int code = solve_system_make(system, flow->n_vertices, entries, pairs, error);
     if (code)
         return code;
@@ -194,11 +243,6 @@ static int system_save_body(const duite_call *call, const struct system_save_fie
                       flow->trouble.text);
 }
 /* ---- The main program ---- */
-
-size_t flow_system_doubles(const struct flow_table *t)
-{
-    return halo_at(t) + t->n_halo;
-}
 
 int flow_system(struct flow_state *state)
 {

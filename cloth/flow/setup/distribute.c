@@ -43,6 +43,7 @@ static int broadcast_head(const duite_call *call)
     head->partition_hash = flow->partition_hash;
     head->n_vertices = flow->n_vertices;
     head->n_pieces = source->particles.n_pieces;
+    head->n_ties = source->springs.n_timed;
     head->n_triangles = flow->n_triangles;
     head->n_blocks = source->blocks.n_blocks;
     head->n_neighbours = source->neighbours.n_neighbours;
@@ -53,6 +54,7 @@ static int broadcast_head(const duite_call *call)
                          flow->model->n_sliders * sizeof *flow->model->sliders +
                          flow->model->n_curve_keys * sizeof *flow->model->curve_keys +
                          flow->model->n_curves * sizeof *flow->model->curves +
+                         head->n_ties * sizeof(struct flow_tie) +
                          head->n_blocks * (sizeof(struct shape) + sizeof(uint32_t)) +
                          (3 * (uint64_t)head->n_neighbours + head->n_ghosts) * sizeof(uint32_t);
     for (uint32_t b = 0; b < head->n_blocks; b++) {
@@ -89,6 +91,10 @@ static int broadcast_shared(const duite_call *call)
     to = put(to, model->curve_keys, model->n_curve_keys * sizeof *model->curve_keys);
     to = put(to, model->curves, model->n_curves * sizeof *model->curves);
     to = put(to, model->motions, model->n_motions * sizeof *model->motions);
+    for (uint32_t i = 0; i < source->springs.n_timed; i++) {
+        const struct flow_tie tie = flow_joints_tie(source, source->springs.timed + i);
+        to = put(to, &tie, sizeof tie);
+    }
     for (uint32_t b = 0; b < source->blocks.n_blocks; b++) {
         const struct flow_table *t = source->shape + b;
         struct shape shape = {.n = t->n,
@@ -145,6 +151,7 @@ int flow_share_head(struct flow_state *state)
     struct flow *flow = state->flow;
     const struct flow_head *head = &state->head;
     const int code = broadcast_all(state, &flow_broadcast_head, sizeof *head, &state->head);
+    flow->n_ties = code ? 0 : head->n_ties;
     if (code || duite_rank(state->rt) == 0)
         return code;
     flow->received = head->model;
@@ -182,7 +189,8 @@ static void unpack(struct flow_state *state)
     flow->received.curve_keys = (void *)(flow->received.sliders + flow->model->n_sliders);
     flow->received.curves = (void *)(flow->received.curve_keys + flow->model->n_curve_keys);
     flow->received.motions = (void *)(flow->received.curves + flow->model->n_curves);
-    const struct shape *shape = (const void *)(flow->received.motions + flow->model->n_motions);
+    flow->tie = (const void *)(flow->received.motions + flow->model->n_motions);
+    const struct shape *shape = (const void *)(flow->tie + flow->n_ties);
     const uint32_t *neighbour = (const void *)(shape + tables->n_blocks);
     const uint32_t *ghost_start = neighbour + state->head.n_neighbours;
     const uint32_t *ghost = ghost_start + state->head.n_neighbours + tables->n_blocks;

@@ -1,6 +1,8 @@
-/* Joints are springs between vertices of any cloths, as the scene names them. They come after the
- * springs of all cloths, in the scene's order. */
+/* Joints are springs between vertices of any cloths, as the scene names them. Those that are there
+ * in all steps come after the springs of all cloths, in the scene's order; those that come or go
+ * are ties (cloth/flow/state/ties.h). */
 #include "cloth/flow/setup/source.h"
+#include "cloth/flow/step/grid.h"
 
 #include "cloth/base/memory.h"
 
@@ -55,6 +57,33 @@ static int make_joint(struct flow_spring *spring, const struct flow_particles *p
     return CLOTH_OK;
 }
 
+/* The tick that is nearest to a time, s. */
+static uint64_t tick_of(const struct model *model, double time)
+{
+    const double tick = round(time / model->h * FLOW_TICKS);
+    return tick < 0x1p62 ? (uint64_t)tick : UINT64_C(1) << 62;
+}
+
+static int make_timed(struct flow_springs *springs, const struct flow_particles *particles,
+                      const struct model_joint *joint, const struct flow_pair *pair,
+                      struct cloth_error *error)
+{
+    struct flow_timed *timed = springs->timed + springs->n_timed++;
+    timed->begin = tick_of(springs->model, joint->begin);
+    timed->end = joint->end > 0 ? tick_of(springs->model, joint->end) : UINT64_MAX;
+    return make_joint(&timed->spring, particles, springs->model, joint, pair, error);
+}
+
+static int make_one(struct flow_springs *springs, const struct flow_particles *particles,
+                    const struct model_joint *joint, const struct flow_pair *pair,
+                    struct cloth_error *error)
+{
+    if (model_is_timed(joint))
+        return make_timed(springs, particles, joint, pair, error);
+    return make_joint(springs->joint + springs->n_joints++, particles, springs->model, joint, pair,
+                      error);
+}
+
 static int make_all(struct flow_springs *springs, const struct flow_particles *particles,
                     struct cloth_list *list, struct cloth_error *error)
 {
@@ -65,17 +94,20 @@ static int make_all(struct flow_springs *springs, const struct flow_particles *p
     if (code)
         return code;
     springs->joint = cloth_alloc(list->n, sizeof *springs->joint, error);
-    if (!springs->joint)
+    springs->timed = cloth_alloc(list->n, sizeof *springs->timed, error);
+    if (!springs->joint || !springs->timed)
         return CLOTH_E_MEMORY;
     struct flow_pair *pair = list->items;
     for (uint32_t j = 0, k = 0; j < model->n_joints; j++)
-        for (uint32_t i = 0; i < model->joints[j].pairs.end[0].n && !code; i++, k++)
-            code = make_joint(springs->joint + k, particles, model, model->joints + j, pair + k,
-                              error);
+        for (uint32_t i = 0; i < model->joints[j].pairs.end[0].n && !code; i++, k++) {
+            code = make_one(springs, particles, model->joints + j, pair + k, error);
+            if (!model_is_timed(model->joints + j)) /* of timed ones two may have several */
+                pair[springs->n_joints - 1] = pair[k];
+        }
+    list->n = springs->n_joints;
     for (size_t i = 0; i < list->n; i++) /* whichever names stand for them, vertices are the same */
         for (int end = 0; end < 2; end++)
             pair[i].vertex[end] = flow_root(&particles->welds, pair[i].vertex[end]);
-    springs->n_joints = (uint32_t)list->n;
     return code ? code : flow_pairs_once(list, model, "a joint", error);
 }
 
@@ -88,4 +120,23 @@ int flow_joints_make(struct flow_springs *springs, const struct flow_particles *
     const int code = make_all(springs, particles, &list, error);
     free(list.items);
     return code;
+}
+
+struct flow_tie flow_joints_tie(const struct flow_source *source, const struct flow_timed *timed)
+{
+    const struct mesh_blocks *blocks = &source->blocks;
+    const struct flow_spring *spring = &timed->spring;
+    const uint32_t vertex[2] = {spring->a, spring->b};
+    struct flow_tie tie = {.stiffness = spring->stiffness,
+                           .damping = spring->damping,
+                           .length = spring->length,
+                           .begin = timed->begin,
+                           .end = timed->end};
+    for (int end = 0; end < 2; end++) {
+        const uint32_t place = blocks->place[vertex[end]];
+        tie.block[end] = flow_source_block(blocks, place, 0);
+        tie.row[end] = place - blocks->start[tie.block[end]];
+        tie.held[end] = !source->particles.free[flow_root(&source->particles.welds, vertex[end])];
+    }
+    return tie;
 }

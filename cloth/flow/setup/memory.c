@@ -15,6 +15,11 @@ static size_t larger(size_t a, size_t b)
     return a > b ? a : b;
 }
 
+static size_t smaller(size_t a, size_t b)
+{
+    return a < b ? a : b;
+}
+
 /* What rank 0 gathers in: a frame, and a part of the state to be hashed. */
 static void take_room(struct flow_state *state)
 {
@@ -53,7 +58,9 @@ static void take(struct flow_state *state)
 {
     struct flow *flow = state->flow;
     const struct flow_head *head = &state->head;
-    const size_t refs = larger(head->n_blocks, 2 * (size_t)head->max_neighbours) + DUITE_MAX_ACCESS;
+    const size_t tied = smaller(head->n_blocks, head->n_ties); /* others of a block, at most */
+    const size_t refs =
+        larger(head->n_blocks, 2 * (size_t)head->max_neighbours) + 2 * tied + DUITE_MAX_ACCESS;
     flow->n_clocks = duite_threads(state->rt);
     flow->clock = aligned_alloc(sizeof *flow->clock, flow->n_clocks * sizeof *flow->clock);
     if (flow->clock)
@@ -81,6 +88,7 @@ static void take(struct flow_state *state)
     state->rows = cloth_alloc(larger(4 * (size_t)head->max_rows, head->max_neighbours),
                               sizeof *state->rows, &flow->trouble);
     flow_halo_take(state);
+    flow_ties_take(state);
     if (duite_rank(state->rt) == 0)
         take_room(state);
 }
@@ -130,6 +138,7 @@ void flow_memory_free(struct flow_state *state)
     free(state->refs);
     free(state->rows);
     flow_halo_free(state);
+    flow_ties_free(state);
     free(state->bytes);
     XXH64_freeState(state->hash);
     flow->clock = NULL;

@@ -4,6 +4,7 @@
 #include "cloth/base/memory.h"
 #include "cloth/element/cloths.h"
 #include "cloth/flow/state/tables.h"
+#include "cloth/flow/state/ties.h"
 #include "cloth/mesh/blocks.h"
 #include "cloth/mesh/lattice.h"
 #include "cloth/model/model.h"
@@ -163,13 +164,20 @@ struct flow_merged {
     double stiffness, damping;
     bool gone;
 };
+/* A joint that comes or goes while the run is on; it is a tie, and none of the springs. */
+struct flow_timed {
+    struct flow_spring spring;
+    uint64_t begin, end; /* ticks: steps that begin from .. to - 1 have it */
+};
 struct flow_springs {
     const struct model *model;
     struct mesh_lattice *lattice; /* a cloth; none of one that is made of triangles */
     struct mesh_regions *regions; /* a cloth; moduli NULL: none */
     const struct element_cloths *elements;
     uint32_t n_joints;
-    struct flow_spring *joint; /* the scene's joints; NULL: there are none */
+    struct flow_spring *joint; /* the scene's joints but for timed ones; NULL: there are none */
+    uint32_t n_timed;
+    struct flow_timed *timed; /* in the scene's order; NULL: there are none */
     const struct flow_welds *welds;
     size_t n_merged;
     struct flow_merged *merged; /* by number; NULL: none */
@@ -186,11 +194,15 @@ void flow_springs_free(struct flow_springs *springs);
 int flow_springs_merge(struct flow_springs *springs, uint32_t n_vertices,
                        struct cloth_error *error);
 
+struct flow_source;
+
 /* Adds the model's joints to the springs, which free them, when particles are there. Errors:
  * CLOTH_E_INPUT for two joints between the same vertices and one between a vertex and itself;
  * CLOTH_E_MEMORY. Local. */
 int flow_joints_make(struct flow_springs *springs, const struct flow_particles *particles,
                      struct cloth_error *error);
+/* A timed joint as a tie between rows of blocks, when these are there. Local. */
+struct flow_tie flow_joints_tie(const struct flow_source *source, const struct flow_timed *timed);
 /* Marks the vertices that joints use. used: by vertex of all cloths. Error: CLOTH_E_INPUT for one
  * outside its mesh. Local. */
 int flow_joints_use(const struct model *model, unsigned char *used, struct cloth_error *error);

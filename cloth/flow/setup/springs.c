@@ -235,6 +235,7 @@ void flow_springs_free(struct flow_springs *springs)
     free(springs->lattice);
     free(springs->regions);
     free(springs->joint);
+    free(springs->timed);
     free(springs->merged);
     *springs = (struct flow_springs){0};
 }

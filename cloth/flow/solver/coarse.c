@@ -226,8 +226,9 @@ int flow_coarse_start(struct flow_state *state, struct flow_args args)
 {
     if (!flow_is_coarse(state->flow))
         return DUITE_OK;
-    const int code =
-        model_is_filtered(state->flow->model) ? flow_coarse_initialise(state) : DUITE_OK;
+    int code = model_is_filtered(state->flow->model) ? flow_coarse_initialise(state) : DUITE_OK;
+    if (!code)
+        code = flow_ties_show_basis(state);
     return code ? code : fork_factor(state, args);
 }
 
@@ -273,6 +274,17 @@ void flow_coarse_advance_ghosts(const struct flow_preconditioner *m, uint32_t ne
                                     motion_of(m, t->neighbour[neighbour], k), z + (from - first),
                                     p + (from - first));
     }
+}
+
+void flow_coarse_advance_row(const struct flow_preconditioner *m, uint32_t block, uint32_t row,
+                             const phys_vec *basis, const struct solve_scalars *scalars,
+                             const double *s, phys_vec *z, phys_vec *p)
+{
+    const uint32_t here = 0;
+    const struct solve_patches patches =
+        solve_patches_of(m->flow->tables.block[block].n, m->flow->patches);
+    solve_advance_ghosts_coarse(1, scalars->alpha, scalars->beta, s, &here, basis,
+                                motion_of(m, block, solve_patch_of(&patches, row)), z, p);
 }
 
 /* ---- In the task of the scalars ---- */

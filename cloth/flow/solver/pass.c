@@ -22,6 +22,10 @@ struct pass {
     double *halo, *part;
     const duite_param *halos; /* of the neighbours */
     struct flow_preconditioner m;
+    struct flow_ties ties;
+    struct solve_ties joined;               /* that they make of the matrix */
+    phys_vec *z_ties, *p_ties;              /* of their other ends */
+    const duite_param *tied_q, *tied_basis; /* of the blocks of these; tied_basis: if coarse */
 };
 
 /* Shows the neighbours s of the new q, and sums what a preconditioner leaves of that. */
@@ -133,6 +137,38 @@ static void advance_ghosts(const struct pass *pass)
     }
 }
 
+/* The first half of a pass for the other ends of ties. */
+static void advance_ties(const struct pass *pass)
+{
+    const struct flow_ties *ties = &pass->ties;
+    const struct solve_scalars *now = pass->scalars;
+    for (uint32_t k = 0; k < ties->n_others; k++) {
+        const uint32_t from = ties->start[k], n = ties->start[k + 1] - from;
+        const double *s = flow_numbers_of(pass->tied_q, k) + 3 * (size_t)ties->place[k];
+        phys_vec *z = pass->z_ties + from, *p = pass->p_ties + from;
+        if (!pass->m.motion) {
+            solve_advance_ghosts(n, now->alpha, now->beta, s, ties->at, z, p);
+            continue;
+        }
+        const phys_vec *basis = flow_rows_of(pass->tied_basis, k) + ties->place[k];
+        for (uint32_t i = 0; i < n; i++)
+            flow_coarse_advance_row(&pass->m, ties->other[k], ties->far[from + i], basis + i, now,
+                                    s + 3 * (size_t)i, z + i, p + i);
+    }
+}
+
+/* The entries into other blocks, with the ties. */
+static struct solve_cut cut_of(const struct pass *pass)
+{
+    struct solve_cut cut = flow_table_cut_entries(&pass->table);
+    if (pass->ties.n) {
+        cut.n_halo = pass->ties.n_halo;
+        cut.halo = pass->ties.halo;
+        cut.ties = &pass->joined;
+    }
+    return cut;
+}
+
 /* Adds what stops by norms ask for to the dots of a pass. */
 static void add_norms(const struct pass *pass, double dots[SOLVE_DOTS])
 {
@@ -149,10 +185,11 @@ static void add_norms(const struct pass *pass, double dots[SOLVE_DOTS])
 static void iterate(struct pass *pass, double dots[SOLVE_DOTS])
 {
     const struct flow_table *t = &pass->table;
-    const struct solve_cut cut = flow_table_cut_entries(t);
+    const struct solve_cut cut = cut_of(pass);
     if (pass->m.motion)
         flow_coarse_prolong(&pass->m, pass->rows.s);
     advance_ghosts(pass);
+    advance_ties(pass);
     solve_pass(&t->matrix, &cut, pass->values, pass->p_ghosts, pass->scalars->alpha,
                pass->scalars->beta, &pass->rows, dots);
     show_product(pass, dots);
@@ -171,11 +208,16 @@ static double finish(const struct pass *pass)
 static void multiply(struct pass *pass, double dots[SOLVE_DOTS])
 {
     const struct flow_table *t = &pass->table;
-    const struct solve_cut cut = flow_table_cut_entries(t);
+    const struct flow_ties *ties = &pass->ties;
+    const struct solve_cut cut = cut_of(pass);
     phys_vec *shown = pass->p_ghosts;
     for (uint32_t s = 0; s < t->n_neighbours; s++)
         solve_unpack(t->ghost_start[s + 1] - t->ghost_start[s], halo_of(pass, s),
                      places_of(pass, s), shown + t->ghost_start[s]);
+    for (uint32_t k = 0; k < ties->n_others; k++)
+        solve_unpack(ties->start[k + 1] - ties->start[k],
+                     flow_numbers_of(pass->tied_q, k) + 3 * (size_t)ties->place[k], ties->at,
+                     pass->p_ties + ties->start[k]);
     if (pass->scalars->phase == SOLVE_OPEN)
         solve_open(&t->matrix, &cut, pass->values, shown, &pass->rows, dots);
     else
@@ -189,7 +231,8 @@ static void begin_again(struct pass *pass, double dots[SOLVE_DOTS])
     const struct solve_rows *rows = &pass->rows;
     finish(pass);
     solve_again(pass->table.n, rows->r, rows->p, rows->q);
-    memset(pass->z_ghosts, 0, 2 * (size_t)pass->table.n_ghosts * sizeof *pass->z_ghosts);
+    const size_t ghosts = (size_t)pass->table.n_ghosts + pass->ties.room;
+    memset(pass->z_ghosts, 0, 2 * ghosts * sizeof *pass->z_ghosts);
     if (pass->m.factor)
         memset(rows->z, 0, pass->table.n * sizeof *rows->z);
     show_product(pass, dots);
@@ -216,13 +259,14 @@ static void run_phase(struct pass *pass)
 
 FLOW_KERNEL(cg_pass, FLOW_CG, struct flow_args,
             (R(table), R(scalars), R(a), R(f), RW(dv), RW(r), RW(p), RW(q), RW(ghosts),
-             RW(halo_q_next), SUM(sums), NEIGHBOURS(halo_q)))
+             RW(halo_q_next), SUM(sums), NEIGHBOURS(halo_q), IF_MADE(tie_table), TIED(tie_q)))
 
 static void open_pass(const duite_call *call, const struct cg_pass_fields *on, struct pass *pass)
 {
     pass->call = call;
     pass->table = *flow_shape_of(call);
     flow_table_open(&pass->table, on->table);
+    pass->ties = flow_ties_open(on->tie_table);
     pass->scalars = on->scalars;
     pass->values = flow_matrix_in(call, &pass->table, on->a);
     pass->b = on->f;
@@ -234,6 +278,15 @@ static void open_pass(const duite_call *call, const struct cg_pass_fields *on, s
     pass->halos = on->halo_q;
     pass->m = (struct flow_preconditioner){
         .flow = flow_of(call), .table = &pass->table, .block = on->args->block};
+    pass->tied_q = on->tied_tie_q;
+    pass->tied_basis = NULL;
+    pass->z_ties = pass->p_ghosts + pass->table.n_ghosts;
+    pass->p_ties = pass->z_ties + pass->ties.room;
+    pass->joined = (struct solve_ties){.n_inner = pass->ties.n_inner,
+                                       .n = pass->ties.n,
+                                       .end = pass->ties.end,
+                                       .value = flow_tie_values(&pass->table, pass->values),
+                                       .p_other = pass->p_ties};
 }
 
 static int cg_pass_body(const duite_call *call, const struct cg_pass_fields *on)
@@ -247,7 +300,8 @@ static int cg_pass_body(const duite_call *call, const struct cg_pass_fields *on)
 FLOW_KERNEL(cg_pass_preconditioned, FLOW_CG, struct flow_args,
             (R(table), R(scalars), R(a), R(f), RW(dv), RW(r), RW(p), RW(q), RW(ghosts),
              RW(halo_q_next), RW(part), RW(z), RW(s), R(factor), NEIGHBOURS(halo_q), IF_MADE(basis),
-             IF_MADE(basis_ghosts), IF_MADE(motion)))
+             IF_MADE(basis_ghosts), IF_MADE(motion), IF_MADE(tie_table), TIED(tie_q),
+             TIED(tie_basis)))
 static int cg_pass_preconditioned_body(const duite_call *call,
                                        const struct cg_pass_preconditioned_fields *on)
 {
@@ -265,6 +319,8 @@ static int cg_pass_preconditioned_body(const duite_call *call,
         .halo_q_next = on->halo_q_next,
         .sums = on->part,
         .halo_q = on->halo_q,
+        .tie_table = on->tie_table,
+        .tied_tie_q = on->tied_tie_q,
     };
     struct pass pass;
     open_pass(call, &plain, &pass);
@@ -274,6 +330,7 @@ static int cg_pass_preconditioned_body(const duite_call *call,
     pass.m.basis = on->basis;
     pass.m.basis_ghosts = on->basis_ghosts;
     pass.m.motion = on->motion;
+    pass.tied_basis = on->tied_tie_basis;
     run_phase(&pass);
     return 0;
 }
@@ -285,7 +342,10 @@ int flow_pass_start(struct flow_state *state, const struct flow_args *args)
     const struct flow_kernel *start = flow_is_preconditioned(state->flow)
                                           ? &flow_kernel_cg_start_preconditioned
                                           : &flow_kernel_cg_start;
-    const int code = flow_fork_one(state, args->guess != 0 ? &flow_kernel_cg_guess : start, args);
+    const bool guess = args->guess != 0;
+    int code = flow_fork_one(state, guess ? &flow_kernel_cg_guess : start, args);
+    if (!code)
+        code = flow_ties_pack_start(state, args->block, guess);
     return code ? code : flow_halo_pack(state, args->block, 0);
 }
 
@@ -316,6 +376,8 @@ int flow_pass_fork(struct flow_state *state)
         code = fork_block(state, &args);
         if (!code)
             code = flow_halo_pack(state, args.block, 1 - (int)state->pass);
+        if (!code)
+            code = flow_ties_pack(state, args.block);
     }
     return code;
 }

@@ -8,7 +8,7 @@
 #include "cloth/flow/step/step.h"
 
 /* What is summed over a piece: the lost momentum, its turn, its D, kg, and how many of its rows
- * contact or the program's filter holds. */
+ * contact or the program's filter holds, or ties join with others. */
 enum { LOST, TURN = 3, MASS = 6, HELD };
 
 static bool is_held(const struct flow_table *t, uint32_t row)
@@ -19,7 +19,35 @@ static bool is_held(const struct flow_table *t, uint32_t row)
     return filter[0] != 0 || filter[1] != 0 || filter[2] != 0 || filter[3] != 1;
 }
 
-FLOW_KERNEL(piece_sums, FLOW_CG, struct flow_args, (R(table), R(f), R(a), R(dv), SUM(pieces)))
+FLOW_KERNEL(piece_sums, FLOW_CG, struct flow_args,
+            (R(table), R(f), R(a), R(dv), SUM(pieces), IF_MADE(tie_table)))
+
+/* The number of a row's piece, from 1; 0: none. */
+static uint32_t piece_of(const struct flow_table *t, uint32_t row)
+{
+    uint32_t low = 0, high = t->n_loose;
+    while (high - low > 1) {
+        const uint32_t middle = low + (high - low) / 2;
+        if (t->loose[middle][0] <= row)
+            low = middle;
+        else
+            high = middle;
+    }
+    return high && t->loose[low][0] == row ? t->loose[low][1] : 0;
+}
+
+/* A tie may pass momentum to another piece. */
+static void hold_tied(const struct flow_table *t, const unsigned char *tie_table, double *pieces)
+{
+    const struct flow_ties ties = flow_ties_open(tie_table);
+    for (uint32_t i = 0; i < ties.n; i++)
+        for (int end = 0; end < (i < ties.n_inner ? 2 : 1); end++) {
+            const uint32_t piece = piece_of(t, ties.end[i][end]);
+            if (piece)
+                pieces[FLOW_PIECE_SUMS * (size_t)(piece - 1) + HELD] += 1;
+        }
+}
+
 static int piece_sums_body(const duite_call *call, const struct piece_sums_fields *on)
 {
     struct flow_table table = flow_table_in(call, on->table), *t = &table;
@@ -40,6 +68,7 @@ static int piece_sums_body(const duite_call *call, const struct piece_sums_field
         sums[MASS] += t->matrix.diagonal[row];
         sums[HELD] += is_held(t, row);
     }
+    hold_tied(t, on->tie_table, on->pieces);
     return 0;
 }
 

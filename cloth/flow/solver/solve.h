@@ -9,7 +9,7 @@
 /* Forks what makes the system of a step of implicit Euler, linearised where it begins: its right
  * side f, its matrix a. */
 int flow_assemble(struct flow_state *state);
-/* Records a round of the solve; once a run, when its objects are made. */
+/* Records a round of the solve: when objects are made, and when ties ask for another. */
 int flow_cg_record(struct flow_state *state);
 /* Forks what a solve for dv begins with, which reads f and a; then its iterations; both, without a
  * guess. */

@@ -5,8 +5,8 @@
 
 /* What the files of the solver share. In reading order: system.c makes the system of a step; cg.c
  * solves it, in rounds of passes (pass.c), with a preconditioner (preconditioner.c, coarse.c) or
- * none; halo.c is what a pass reads of other blocks; pieces.c puts right what a solve leaves of the
- * momentum of free pieces.
+ * none; halo.c and ties.c are what a pass reads of other blocks; pieces.c puts right what a solve
+ * leaves of the momentum of free pieces.
  *
  * Patch k of block b has the number flow->patches * b + k. */
 
@@ -16,6 +16,13 @@
  * them; pass number state->pass of a recorded round on all blocks. (pass.c) */
 int flow_pass_start(struct flow_state *state, const struct flow_args *args);
 int flow_pass_fork(struct flow_state *state);
+
+/* Fork what shows a block's ends of ties, if it has any into other blocks: what the first pass of a
+ * solve reads, or after a pass of a recorded round the next one. What shows the coarse functions
+ * there, of all blocks, once a solve. (ties.c) */
+int flow_ties_pack_start(struct flow_state *state, uint32_t block, bool guess);
+int flow_ties_pack(struct flow_state *state, uint32_t block);
+int flow_ties_show_basis(struct flow_state *state);
 
 /* Fork what comes of a step's matrix before its solve: the coarse factor; the factor of a block.
  * Nothing where there is none. (coarse.c, preconditioner.c) */
@@ -54,6 +61,10 @@ void flow_coarse_prolong(const struct flow_preconditioner *m, phys_vec *s);
 void flow_coarse_advance_ghosts(const struct flow_preconditioner *m, uint32_t neighbour,
                                 const struct solve_scalars *scalars, const double *halo,
                                 const uint32_t *at, phys_vec *z, phys_vec *p);
+/* The same for one row of another block: with its basis. */
+void flow_coarse_advance_row(const struct flow_preconditioner *m, uint32_t block, uint32_t row,
+                             const phys_vec *basis, const struct solve_scalars *scalars,
+                             const double *s, phys_vec *z, phys_vec *p);
 /* P' q of each patch. */
 void flow_coarse_restrict(const struct flow_preconditioner *m, const phys_vec *q, double *right);
 

@@ -107,7 +107,7 @@ static void end_matrix(const struct making *m, const struct solve_cut *cut)
     const size_t n = solve_format_doubles(t->format, t->n, entries);
     double *value = m->values;
     solve_assembled(&t->matrix, cut, m->sums, value);
-    memset(value + n, 0, (flow_table_doubles(t) - n) * sizeof *value);
+    memset(value + n, 0, (4 * flow_value_rows(t) - n) * sizeof *value);
 }
 
 static void make(const struct making *m)
@@ -124,6 +124,9 @@ static void make(const struct making *m)
     if (sight.x)
         flow_elements_assemble(m->call, t, m->push, &sight, m->b, m->sums);
     all_springs(m);
+    if (m->view.tie_table)
+        flow_ties_system(&m->view, m->h, m->push, flow_of(m->call)->model->full_slope, m->b,
+                         (phys_vec *)m->values + flow_value_rows(m->t));
     if (m->sums)
         end_matrix(m, &cut);
 }
@@ -151,7 +154,8 @@ static void make_system(const duite_call *call, const struct flow_table *t, doub
 }
 
 FLOW_KERNEL(system, FLOW_MATRIX, struct flow_args,
-            (R(table), R(x), R(v), W(f), W(a), NEIGHBOURS(halo_x), NEIGHBOURS(halo_v)))
+            (R(table), R(x), R(v), W(f), W(a), NEIGHBOURS(halo_x), NEIGHBOURS(halo_v),
+             IF_MADE(tie_table), TIED(tie_halo)))
 static int system_body(const duite_call *call, const struct system_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table);
@@ -162,7 +166,8 @@ static int system_body(const duite_call *call, const struct system_fields *on)
 
 /* Where f has the forces. */
 FLOW_KERNEL(system_of_forces, FLOW_MATRIX, struct flow_args,
-            (R(table), R(x), R(v), RW(f), W(a), NEIGHBOURS(halo_x), NEIGHBOURS(halo_v)))
+            (R(table), R(x), R(v), RW(f), W(a), NEIGHBOURS(halo_x), NEIGHBOURS(halo_v),
+             IF_MADE(tie_table), TIED(tie_halo)))
 static int system_of_forces_body(const duite_call *call, const struct system_of_forces_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table);
@@ -172,11 +177,15 @@ static int system_of_forces_body(const duite_call *call, const struct system_of_
 }
 
 /* The matrix alone. */
-FLOW_KERNEL(matrix, FLOW_MATRIX, struct flow_args, (R(table), R(x), W(a), NEIGHBOURS(halo_x)))
+FLOW_KERNEL(matrix, FLOW_MATRIX, struct flow_args,
+            (R(table), R(x), W(a), NEIGHBOURS(halo_x), IF_MADE(tie_table), TIED(tie_halo)))
 static int matrix_body(const duite_call *call, const struct matrix_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table);
-    const struct flow_view view = {.x = on->x, .halo_x = on->halo_x};
+    const struct flow_view view = {.x = on->x,
+                                   .halo_x = on->halo_x,
+                                   .tie_table = on->tie_table,
+                                   .tie_halo = on->tied_tie_halo};
     make_system(call, &table, 0, &view, NULL, on->a);
     return 0;
 }

@@ -32,6 +32,21 @@ static size_t ghosts(const struct flow_state *state, uint32_t block)
     return table_of(state, block)->n_ghosts;
 }
 
+static size_t tie_room(const struct flow_state *state, uint32_t block)
+{
+    return state->tied.now.room ? state->tied.now.room[block] : 0;
+}
+
+static size_t ghosts_tied(const struct flow_state *state, uint32_t block)
+{
+    return ghosts(state, block) + tie_room(state, block);
+}
+
+static size_t tie_bytes(const struct flow_state *state, uint32_t block)
+{
+    return flow_ties_bytes(table_of(state, block)->n_halo, (uint32_t)tie_room(state, block));
+}
+
 static size_t watched(const struct flow_state *state, uint32_t block)
 {
     return table_of(state, block)->n_watched;
@@ -39,7 +54,7 @@ static size_t watched(const struct flow_state *state, uint32_t block)
 
 static size_t saved(const struct flow_state *state, uint32_t block)
 {
-    return flow_system_doubles(table_of(state, block));
+    return flow_system_doubles(table_of(state, block), tie_room(state, block));
 }
 
 static size_t table_bytes(const struct flow_state *state, uint32_t block)
@@ -47,12 +62,13 @@ static size_t table_bytes(const struct flow_state *state, uint32_t block)
     return flow_table_bytes(table_of(state, block));
 }
 
-/* The diagonal, the filter if there is one, the values of the entries: flow_matrix_in. */
+/* The diagonal, the filter if there is one, the values of the entries, those of ties:
+ * flow_matrix_in, flow_tie_values. */
 static size_t matrix(const struct flow_state *state, uint32_t block)
 {
     const struct flow_table *t = table_of(state, block);
     const size_t filter = model_is_filtered(state->flow->model) ? 4 * (size_t)t->n : 0;
-    return 4 * flow_diagonal_rows(t) + filter + flow_table_doubles(t);
+    return 4 * (flow_diagonal_rows(t) + flow_value_rows(t) + tie_room(state, block)) + filter;
 }
 
 static size_t factor(const struct flow_state *state, uint32_t block)
@@ -165,6 +181,22 @@ static bool coarse_run(const struct flow_state *state, uint32_t block)
 {
     (void)block;
     return flow_is_coarse(state->flow);
+}
+
+static bool may_be_tied(const struct flow_state *state, uint32_t block)
+{
+    (void)block;
+    return state->flow->n_ties > 0;
+}
+
+static bool solves_tied(const struct flow_state *state, uint32_t block)
+{
+    return may_be_tied(state, block) && implicit_run(state, block);
+}
+
+static bool coarse_tied(const struct flow_state *state, uint32_t block)
+{
+    return may_be_tied(state, block) && coarse_run(state, block);
 }
 
 static bool probed(const struct flow_state *state, uint32_t block)

@@ -3,7 +3,9 @@
 
 #include "cloth/flow/run.h"
 #include "cloth/flow/setup/source.h"
+#include "cloth/flow/state/fields.h"
 #include "cloth/flow/state/tables.h"
+#include "cloth/flow/state/ties.h"
 #include "cloth/solve/coarse.h"
 #include "cloth/solve/local.h"
 
@@ -61,7 +63,10 @@ struct flow {
     uint64_t n_steps, partition_hash;
     double inertia, release;   /* kg m^2, J: flow_source_inertia, flow_source_release */
     struct flow_tables tables; /* shapes */
-    void *shared; /* obstacles, key frames, neighbours and ghosts that the above point to */
+    void *
+        shared; /* obstacles, key frames, ties, neighbours and ghosts that what is here points to */
+    uint32_t n_ties;
+    const struct flow_tie *tie; /* n_ties */
 
     /* Rank 0 only. */
     char warning[10][512]; /* of all vertices, pinned ones, loaded ones, the solver, h, air, moduli,
@@ -76,6 +81,7 @@ struct flow {
     struct flow_filter filter; /* the program's; rows NULL: none */
 
     /* Of the run that is on. */
+    bool made[FLOW_FIELDS_OF_ALL];        /* which fields exist, in all blocks or in the first */
     const struct flow_progress *progress; /* tasks ask it whether to stop; NULL: nobody is asked */
     unsigned n_clocks;
     struct flow_clock *clock; /* a worker */

@@ -18,6 +18,7 @@ static duite_object *add_parameter(const struct flow_state *state, uint32_t bloc
 {
     const struct flow_tables *tables = &state->flow->tables;
     const struct flow_table *t = tables->block + block;
+    const struct flow_tied_blocks *tied = &state->tied.now;
     switch (whose) {
     case FLOW_OF_NEIGHBOURS:
         for (uint32_t s = 0; s < t->n_neighbours; s++)
@@ -27,6 +28,11 @@ static duite_object *add_parameter(const struct flow_state *state, uint32_t bloc
         for (uint32_t b = 0; b < tables->n_blocks; b++)
             if (flow_fields[field].exists(state, b))
                 *refs++ = flow_field_object(state, field, b);
+        return refs;
+    case FLOW_OF_TIED:
+        if (tied->first && flow_fields[field].exists(state, block))
+            for (uint32_t i = tied->first[block]; i < tied->first[block + 1]; i++)
+                *refs++ = flow_field_object(state, field, tied->other[i]);
         return refs;
     case FLOW_IF_MADE:
         if (!flow_fields[field].exists(state, block))
@@ -62,11 +68,20 @@ int flow_fork_one(struct flow_state *state, const struct flow_kernel *kernel, co
     return flow_fork_one_as(state, kernel, args, NULL);
 }
 
+/* Whether a kernel reads x and v at the other ends of ties. */
+static bool sees_ties(const struct flow_kernel *kernel)
+{
+    const struct flow_parameter *p = kernel->parameter;
+    while (p->whose != FLOW_NOBODY && (p->whose != FLOW_OF_TIED || p->field != FLOW_FIELD_tie_halo))
+        p++;
+    return p->whose == FLOW_OF_TIED;
+}
+
 int flow_fork_each_as(struct flow_state *state, const struct flow_kernel *kernel, void *args,
                       const struct flow_as *as)
 {
     uint32_t *block = args;
-    int code = DUITE_OK;
+    int code = sees_ties(kernel) ? flow_ties_show(state) : DUITE_OK;
     for (*block = 0; *block < state->flow->tables.n_blocks && !code; ++*block)
         code = flow_fork_one_as(state, kernel, args, as);
     return code;

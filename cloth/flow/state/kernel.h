@@ -25,12 +25,14 @@
  *     SUM MAX    contributes to it, added up, or the largest counts
  *     NEIGHBOURS reads this field of each neighbour, ascending by block
  *     ALL        reads this field of every block that has it; the last parameter of a kernel
- *     IF_MADE    reads it if it exists in the run; else the pointer is NULL. Either all fields of a
- *                kernel with this word exist or none
+ *     IF_MADE    reads it if it exists in the run, which it does in all blocks or in none; else the
+ *                pointer is NULL
+ *     TIED       reads this field of each block that ties (ties.h) join this one with, ascending,
+ * if it exists in the run; a member tied_field. IF_MADE(tie_table) comes before it
  *
- * Those of the last three kinds come behind the others, those with IF_MADE last. What a body finds
- * of NEIGHBOURS and ALL are parameters: flow_rows_of, flow_numbers_of. FLOW_INDEX_OF(velocity, v)
- * is the index of a parameter, for calls of the runtime that want one.
+ * Those of the last four kinds come behind the others, in this order. What a body finds of
+ * NEIGHBOURS, ALL and TIED are parameters: flow_rows_of, flow_numbers_of. FLOW_INDEX_OF(velocity,
+ * v) is the index of a parameter, for calls of the runtime that want one.
  *
  * The arguments are a struct whose first member is `uint32_t block`; `on->args` are those of the
  * task. A part of the step (enum flow_part) has the task's seconds; FLOW_NO_PART: none has. */
@@ -51,7 +53,14 @@
 /* ---- For the macros above ---- */
 
 /* Whose object a parameter is. */
-enum flow_whose { FLOW_NOBODY, FLOW_OWN, FLOW_OF_NEIGHBOURS, FLOW_OF_ALL, FLOW_IF_MADE };
+enum flow_whose {
+    FLOW_NOBODY,
+    FLOW_OWN,
+    FLOW_OF_NEIGHBOURS,
+    FLOW_OF_ALL,
+    FLOW_IF_MADE,
+    FLOW_OF_TIED
+};
 
 struct flow_parameter {
     enum flow_whose whose;
@@ -109,6 +118,7 @@ struct flow_kernel {
 #define FLOW_WORD_NEIGHBOURS(field) NEIGHBOURS, field
 #define FLOW_WORD_ALL(field)        ALL, field
 #define FLOW_WORD_IF_MADE(field)    IF_MADE, field
+#define FLOW_WORD_TIED(field)       TIED, field
 #define FLOW_SPREAD(f, ...)         f(__VA_ARGS__)
 
 /* name_at_field, of parameters that are always there. */
@@ -122,6 +132,7 @@ struct flow_kernel {
 #define FLOW_INDEX_NEIGHBOURS(k, field)
 #define FLOW_INDEX_ALL(k, field)
 #define FLOW_INDEX_IF_MADE(k, field)
+#define FLOW_INDEX_TIED(k, field)
 
 /* Members of struct name_fields. */
 #define FLOW_HAS(k, word)             FLOW_SPREAD(FLOW_HAS_WORD, k, FLOW_WORD_##word)
@@ -134,6 +145,7 @@ struct flow_kernel {
 #define FLOW_HAS_NEIGHBOURS(field)    const duite_param *field;
 #define FLOW_HAS_ALL(field)           const duite_param *field;
 #define FLOW_HAS_IF_MADE(field)       const flow_type_of_##field *field;
+#define FLOW_HAS_TIED(field)          const duite_param *tied_##field;
 
 /* Fills them. */
 #define FLOW_OPEN(k, word)             FLOW_SPREAD(FLOW_OPEN_WORD, k, FLOW_WORD_##word)
@@ -150,7 +162,10 @@ struct flow_kernel {
     on.field = call->param + next;                                                                 \
     next += flow_of(call)->tables.n_blocks;
 #define FLOW_OPEN_IF_MADE(k, field)                                                                \
-    on.field = next < call->n_params ? call->param[next++].data : NULL;
+    on.field = flow_of(call)->made[FLOW_FIELD_##field] ? call->param[next++].data : NULL;
+#define FLOW_OPEN_TIED(k, field)                                                                   \
+    on.tied_##field = call->param + next;                                                          \
+    next += flow_of(call)->made[FLOW_FIELD_##field] ? flow_ties_others(on.tie_table) : 0;
 
 /* Members of the runtime's kernel. */
 #define FLOW_MODE(k, word)             FLOW_SPREAD(FLOW_MODE_WORD, k, FLOW_WORD_##word)
@@ -163,6 +178,7 @@ struct flow_kernel {
 #define FLOW_MODE_NEIGHBOURS
 #define FLOW_MODE_ALL
 #define FLOW_MODE_IF_MADE
+#define FLOW_MODE_TIED
 #define FLOW_LAW(k, word)             FLOW_SPREAD(FLOW_LAW_WORD, k, FLOW_WORD_##word)
 #define FLOW_LAW_WORD(k, mode, field) FLOW_LAW_##mode
 #define FLOW_LAW_R                    NULL,
@@ -173,6 +189,7 @@ struct flow_kernel {
 #define FLOW_LAW_NEIGHBOURS
 #define FLOW_LAW_ALL
 #define FLOW_LAW_IF_MADE
+#define FLOW_LAW_TIED
 
 /* What the fork gives. */
 #define FLOW_GIVEN(k, word)               FLOW_SPREAD(FLOW_GIVEN_WORD, k, FLOW_WORD_##word)
@@ -185,6 +202,7 @@ struct flow_kernel {
 #define FLOW_WHOSE_NEIGHBOURS             FLOW_OF_NEIGHBOURS
 #define FLOW_WHOSE_ALL                    FLOW_OF_ALL
 #define FLOW_WHOSE_IF_MADE                FLOW_IF_MADE
+#define FLOW_WHOSE_TIED                   FLOW_OF_TIED
 #define FLOW_FURTHER(k, word)             FLOW_SPREAD(FLOW_FURTHER_WORD, k, FLOW_WORD_##word)
 #define FLOW_FURTHER_WORD(k, mode, field) || FLOW_WHOSE_##mode != FLOW_OWN
 
@@ -240,7 +258,8 @@ struct flow_as {
     ((const struct flow_as[]){__VA_ARGS__, {FLOW_FIELDS_OF_ALL, FLOW_FIELDS_OF_ALL}})
 
 /* Fork a kernel with the objects that it declares: on the block that the arguments name; on each
- * block, whose number they write into the arguments; on a rank. as: NULL, or FLOW_AS. Collective.
+ * block, whose number they write into the arguments, after what shows the ties if it reads
+ * TIED(tie_halo); on a rank. as: NULL, or FLOW_AS. Collective.
  * They return what the runtime does. */
 int flow_fork_one(struct flow_state *state, const struct flow_kernel *kernel, const void *args);
 int flow_fork_one_as(struct flow_state *state, const struct flow_kernel *kernel, const void *args,

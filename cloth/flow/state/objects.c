@@ -35,6 +35,8 @@ static void hint_block(struct flow_state *state, uint32_t b)
 void flow_objects_make(struct flow_state *state)
 {
     const uint32_t n_blocks = state->flow->tables.n_blocks;
+    for (int field = 0; field < FLOW_FIELDS_OF_ALL; field++)
+        state->flow->made[field] = flow_fields[field].exists(state, 0);
     for (uint32_t b = 0; b < n_blocks; b++)
         for (int field = 0; field < FLOW_FIELDS_OF_BLOCK; field++)
             make_field(state, (enum flow_field_id)field, b, state->block[b].of + field);
@@ -43,6 +45,27 @@ void flow_objects_make(struct flow_state *state)
     for (int field = 0; field < FLOW_FIELDS_OF_RUN; field++)
         make_field(state, (enum flow_field_id)(FLOW_FIELDS_OF_BLOCK + field), 0,
                    state->run.of + field);
+}
+
+/* Numbers of a field of a block; 0 where it does not exist. */
+static size_t numbers_made(const struct flow_state *state, enum flow_field_id field, uint32_t block)
+{
+    return flow_fields[field].exists(state, block) ? flow_field_numbers(state, field, block) : 0;
+}
+
+void flow_objects_fit(struct flow_state *state, uint32_t block, uint32_t room)
+{
+    duite_object *of = state->block[block].of;
+    size_t before[FLOW_FIELDS_OF_BLOCK];
+    for (int field = 0; field < FLOW_FIELDS_OF_BLOCK; field++)
+        before[field] = numbers_made(state, (enum flow_field_id)field, block);
+    state->tied.now.room[block] = room;
+    for (int field = 0; field < FLOW_FIELDS_OF_BLOCK; field++) {
+        if (before[field] == numbers_made(state, (enum flow_field_id)field, block))
+            continue;
+        duite_free(state->rt, of[field]);
+        make_field(state, (enum flow_field_id)field, block, of + field);
+    }
 }
 
 /* Frees what was made; the others are the zero object. Returns the first failure. */

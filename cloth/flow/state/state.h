@@ -79,7 +79,7 @@ struct flow_head {
     uint64_t shared_bytes;                                              /* of the next broadcast */
     uint32_t n_vertices, n_triangles, n_blocks, n_neighbours, n_ghosts; /* of all blocks */
     uint32_t max_rows, max_neighbours, max_halo, max_entries;           /* of any block */
-    uint32_t max_ghosts, n_pieces;
+    uint32_t max_ghosts, n_pieces, n_ties;
     uint64_t n_elements; /* of all blocks */
     struct model model;  /* pointers mean nothing elsewhere */
 };
@@ -95,6 +95,19 @@ struct flow_packed {
     size_t n_rows;
     int *home;        /* a block */
     uint32_t *number; /* room for the rows of any halo */
+};
+
+/* What ties ask of the blocks. Arrays are NULL where the run has no ties. */
+struct flow_tied_blocks {
+    uint32_t *room;  /* a block: for so many ties, a multiple of FLOW_TIE_CLASS */
+    uint32_t *first; /* a block, and one more: which of `other` are its */
+    uint32_t *other; /* blocks that it shares ties with, ascending in a block */
+};
+
+/* The ties that steps have now. */
+struct flow_tied {
+    uint64_t from, to; /* ticks: steps that begin there have these; to 0: none was chosen yet */
+    struct flow_tied_blocks now, next; /* next: while the next ones are chosen */
 };
 
 /* A step that is under way. */
@@ -121,6 +134,7 @@ struct flow_state {
     struct cloth_error *error;
     struct flow_objects *block;
     struct flow_packed packed;
+    struct flow_tied tied;
     duite_graph solve; /* a round of conjugate gradients */
     struct flow_run_objects run;
     unsigned pass; /* of a round that is recorded: 0 or 1; else 0 */
@@ -177,5 +191,19 @@ int flow_initialise(struct flow_state *state);
 int flow_keep(struct flow_state *state);
 int flow_keep_as(struct flow_state *state, const struct flow_as *as);
 int flow_restore(struct flow_state *state);
+
+/* ---- ties (chosen.c). Collective, but for what is local; they return what the runtime does ----
+ */
+
+/* Memory for what is chosen, a part of flow_memory_take. Local. */
+void flow_ties_take(struct flow_state *state);
+void flow_ties_free(struct flow_state *state);
+/* Makes the ties of the step under way those that its blocks have. */
+int flow_ties_choose(struct flow_state *state);
+/* Forks what shows x and v of their ends to the other blocks; what kernels with TIED(tie_halo) that
+ * are forked next read. */
+int flow_ties_show(struct flow_state *state);
+/* Whether a tie came or went since the step before, or at most FLOW_TICKS ago. Local. */
+bool flow_ties_changed(const struct flow_state *state);
 
 #endif

@@ -2,76 +2,62 @@
  * and where they lie follows from the shape alone. */
 #include "cloth/flow/state/tables.h"
 
+#include "cloth/flow/state/room.h"
+
 #include <string.h>
 
-enum { LINE = 64 };
-
-/* Where arrays go: base NULL only counts. */
-struct room {
-    char *base;
-    size_t used;
-};
-
-/* The next array of `bytes`; each begins on a line of its own. */
-static void *next(struct room *room, size_t bytes)
-{
-    char *here = room->base ? room->base + room->used : NULL;
-    room->used += (bytes + LINE - 1) / LINE * LINE;
-    return here;
-}
-
-static void lay_list(const struct flow_table *t, int i, struct room *room,
+static void lay_list(const struct flow_table *t, int i, struct flow_room *room,
                      struct element_list *list)
 {
     const struct element_kind *kind = element_kinds[i];
     const size_t n = t->n_elements[i], n_materials = n ? t->n_materials : 0;
     list->n = t->n_elements[i];
-    list->corner = next(room, n * sizeof *list->corner);
-    list->at = next(room, kind->pairs * n * sizeof *list->at);
-    list->vector = next(room, kind->vectors * n * sizeof *list->vector);
+    list->corner = flow_room_next(room, n * sizeof *list->corner);
+    list->at = flow_room_next(room, kind->pairs * n * sizeof *list->at);
+    list->vector = flow_room_next(room, kind->vectors * n * sizeof *list->vector);
     for (uint32_t k = 0; k < ELEMENT_NUMBERS; k++)
-        list->number[k] = next(room, k < kind->numbers ? n * sizeof(double) : 0);
-    list->material = next(room, n_materials * kind->material_bytes);
+        list->number[k] = flow_room_next(room, k < kind->numbers ? n * sizeof(double) : 0);
+    list->material = flow_room_next(room, n_materials * kind->material_bytes);
 }
 
-static void lay(const struct flow_table *t, struct room *room, struct flow_layout *layout)
+static void lay(const struct flow_table *t, struct flow_room *room, struct flow_layout *layout)
 {
     const size_t n = t->n, sides = (size_t)t->n_inner + t->n_cut;
     const size_t neighbours = (size_t)t->n_neighbours + 1;
-    layout->load = next(room, n * sizeof *layout->load);
-    layout->position = next(room, n * sizeof *layout->position);
-    layout->velocity = next(room, n * sizeof *layout->velocity);
-    layout->mass = next(room, n * sizeof *layout->mass);
-    layout->drag = next(room, n * sizeof *layout->drag);
-    layout->free = next(room, n * sizeof *layout->free);
-    layout->stiffness = next(room, sides * sizeof *layout->stiffness);
-    layout->damping = next(room, sides * sizeof *layout->damping);
-    layout->length = next(room, sides * sizeof *layout->length);
-    layout->end = next(room, sides * sizeof *layout->end);
-    layout->ghost_end = next(room, t->n_cut_entries * sizeof *layout->ghost_end);
-    layout->held = next(room, t->n_held * sizeof *layout->held);
-    layout->vertex = next(room, n * sizeof *layout->vertex);
-    layout->row = next(room, (n + 1) * sizeof *layout->row);
-    layout->column = next(room, t->n_entries * sizeof *layout->column);
-    layout->halo = next(room, t->n_halo * sizeof *layout->halo);
-    layout->cut = next(room, neighbours * sizeof *layout->cut);
-    layout->cut_entry = next(room, neighbours * sizeof *layout->cut_entry);
-    layout->at = next(room, t->format == SOLVE_SPRINGS ? 0 : sides * sizeof *layout->at);
-    layout->n_held = next(room, sizeof *layout->n_held);
-    layout->moved = next(room, t->n_moved * sizeof *layout->moved);
-    layout->sliding = next(room, t->n_sliding * sizeof *layout->sliding);
-    layout->loose = next(room, t->n_loose * sizeof *layout->loose);
-    layout->varying = next(room, t->n_varying * sizeof *layout->varying);
-    layout->varying_force = next(room, t->n_varying * sizeof *layout->varying_force);
-    layout->watched = next(room, t->n_watched * sizeof *layout->watched);
-    layout->stretch = next(room, sides);
+    layout->load = flow_room_next(room, n * sizeof *layout->load);
+    layout->position = flow_room_next(room, n * sizeof *layout->position);
+    layout->velocity = flow_room_next(room, n * sizeof *layout->velocity);
+    layout->mass = flow_room_next(room, n * sizeof *layout->mass);
+    layout->drag = flow_room_next(room, n * sizeof *layout->drag);
+    layout->free = flow_room_next(room, n * sizeof *layout->free);
+    layout->stiffness = flow_room_next(room, sides * sizeof *layout->stiffness);
+    layout->damping = flow_room_next(room, sides * sizeof *layout->damping);
+    layout->length = flow_room_next(room, sides * sizeof *layout->length);
+    layout->end = flow_room_next(room, sides * sizeof *layout->end);
+    layout->ghost_end = flow_room_next(room, t->n_cut_entries * sizeof *layout->ghost_end);
+    layout->held = flow_room_next(room, t->n_held * sizeof *layout->held);
+    layout->vertex = flow_room_next(room, n * sizeof *layout->vertex);
+    layout->row = flow_room_next(room, (n + 1) * sizeof *layout->row);
+    layout->column = flow_room_next(room, t->n_entries * sizeof *layout->column);
+    layout->halo = flow_room_next(room, t->n_halo * sizeof *layout->halo);
+    layout->cut = flow_room_next(room, neighbours * sizeof *layout->cut);
+    layout->cut_entry = flow_room_next(room, neighbours * sizeof *layout->cut_entry);
+    layout->at = flow_room_next(room, t->format == SOLVE_SPRINGS ? 0 : sides * sizeof *layout->at);
+    layout->n_held = flow_room_next(room, sizeof *layout->n_held);
+    layout->moved = flow_room_next(room, t->n_moved * sizeof *layout->moved);
+    layout->sliding = flow_room_next(room, t->n_sliding * sizeof *layout->sliding);
+    layout->loose = flow_room_next(room, t->n_loose * sizeof *layout->loose);
+    layout->varying = flow_room_next(room, t->n_varying * sizeof *layout->varying);
+    layout->varying_force = flow_room_next(room, t->n_varying * sizeof *layout->varying_force);
+    layout->watched = flow_room_next(room, t->n_watched * sizeof *layout->watched);
+    layout->stretch = flow_room_next(room, sides);
     for (int i = 0; i < ELEMENT_KINDS; i++)
         lay_list(t, i, room, layout->list + i);
 }
 
 size_t flow_table_bytes(const struct flow_table *table)
 {
-    struct room room = {0};
+    struct flow_room room = {0};
     struct flow_layout layout;
     lay(table, &room, &layout);
     return room.used;
@@ -79,7 +65,7 @@ size_t flow_table_bytes(const struct flow_table *table)
 
 struct flow_layout flow_table_layout(const struct flow_table *table, void *memory)
 {
-    struct room room = {.base = memory};
+    struct flow_room room = {.base = memory};
     struct flow_layout arrays;
     lay(table, &room, &arrays);
     return arrays;

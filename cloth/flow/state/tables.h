@@ -128,11 +128,16 @@ static inline struct phys_springs flow_table_cut(const struct flow_table *t, uin
 /* The cut entries, and the doubles of the values of all. */
 static inline struct solve_cut flow_table_cut_entries(const struct flow_table *t)
 {
-    return (struct solve_cut){t->cut_entry[t->n_neighbours], t->ghost_end, t->n_halo, t->halo};
+    return (struct solve_cut){t->cut_entry[t->n_neighbours], t->ghost_end, t->n_halo, t->halo,
+                              NULL};
 }
 static inline size_t flow_table_doubles(const struct flow_table *t)
 {
     return solve_format_doubles(t->format, t->n, (size_t)t->n_entries + t->n_cut_entries);
+}
+static inline size_t flow_value_rows(const struct flow_table *t)
+{
+    return (flow_table_doubles(t) + 3) / 4;
 }
 
 #endif

@@ -8,14 +8,18 @@
 #include "cloth/physics/particle.h"
 
 FLOW_KERNEL(energy, FLOW_NO_PART, struct flow_args,
-            (R(table), R(x), R(v), SUM(energies), NEIGHBOURS(halo_x)))
+            (R(table), R(x), R(v), SUM(energies), NEIGHBOURS(halo_x), IF_MADE(tie_table),
+             TIED(tie_halo)))
 static int energy_body(const duite_call *call, const struct energy_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table), *t = &table;
     const double *gravity = flow_of(call)->model->gravity;
     double *sums = on->energies, fastest = 0;
     struct phys_springs springs = flow_table_inner(t);
-    const struct flow_view view = {.x = on->x, .halo_x = on->halo_x};
+    const struct flow_view view = {.x = on->x,
+                                   .halo_x = on->halo_x,
+                                   .tie_table = on->tie_table,
+                                   .tie_halo = on->tied_tie_halo};
     sums[FLOW_ENERGY_MOTION] = phys_kinetic(t->n, t->mass, on->v, &fastest);
     sums[FLOW_ENERGY_GRAVITY] = phys_energy_weight(t->n, t->mass, gravity, on->x);
     sums[FLOW_ENERGY_LOADS] = phys_energy_load(t->n, t->mass, gravity, t->load, on->x) +
@@ -27,6 +31,8 @@ static int energy_body(const duite_call *call, const struct energy_fields *on)
         sums[FLOW_ENERGY_ELASTIC] +=
             0.5 * phys_energy_springs(&springs, on->x, flow_rows_of(on->halo_x, s));
     }
+    if (on->tie_table)
+        sums[FLOW_ENERGY_ELASTIC] += flow_ties_energy(&view);
     return 0;
 }
 

@@ -4,23 +4,29 @@
 
 #include "cloth/physics/particle.h"
 
-/* Adds the forces inside the cloth. */
-static void add_inner(const duite_call *call, const struct flow_table *t,
-                      const struct flow_view *view, phys_vec *f)
+static void add_springs(const struct flow_table *t, const struct flow_view *view, phys_vec *f)
 {
     struct phys_springs springs = flow_table_inner(t);
-    if (flow_has_elements(t)) {
-        const struct phys_sight sight = flow_elements_see(call, t, view);
-        flow_elements_force(call, t, &sight, f);
-    }
-    if (!t->n_stiff)
-        return;
     phys_springs_force(&springs, view->x, view->v, f);
     for (uint32_t s = 0; s < t->n_neighbours; s++) {
         springs = flow_table_cut(t, s);
         phys_springs_force_cut(&springs, view->x, view->v, flow_rows_of(view->halo_x, s),
                                flow_rows_of(view->halo_v, s), f);
     }
+}
+
+/* Adds the forces inside the cloth. */
+static void add_inner(const duite_call *call, const struct flow_table *t,
+                      const struct flow_view *view, phys_vec *f)
+{
+    if (flow_has_elements(t)) {
+        const struct phys_sight sight = flow_elements_see(call, t, view);
+        flow_elements_force(call, t, &sight, f);
+    }
+    if (t->n_stiff)
+        add_springs(t, view, f);
+    if (view->tie_table)
+        flow_ties_force(view, f);
 }
 
 void flow_forces(const duite_call *call, const struct flow_table *t, const struct flow_view *view,
@@ -40,7 +46,8 @@ void flow_forces_free(const duite_call *call, const struct flow_table *t,
 }
 
 FLOW_KERNEL(force, FLOW_FORCE, struct flow_args,
-            (R(table), R(x), R(v), W(f), NEIGHBOURS(halo_x), NEIGHBOURS(halo_v)))
+            (R(table), R(x), R(v), W(f), NEIGHBOURS(halo_x), NEIGHBOURS(halo_v), IF_MADE(tie_table),
+             TIED(tie_halo)))
 static int force_body(const duite_call *call, const struct force_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table);
@@ -51,7 +58,8 @@ static int force_body(const duite_call *call, const struct force_fields *on)
 
 /* Without the drag. */
 FLOW_KERNEL(force_free, FLOW_FORCE, struct flow_args,
-            (R(table), R(x), R(v), W(f), NEIGHBOURS(halo_x), NEIGHBOURS(halo_v)))
+            (R(table), R(x), R(v), W(f), NEIGHBOURS(halo_x), NEIGHBOURS(halo_v), IF_MADE(tie_table),
+             TIED(tie_halo)))
 static int force_free_body(const duite_call *call, const struct force_free_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table);

@@ -128,6 +128,12 @@ static int await(struct flow_state *state, double status[FLOW_STATUS], struct fl
     return DUITE_OK;
 }
 
+/* Whether contact had a part in the step, or a tie that came or went: then it may gain energy. */
+static bool is_disturbed(const struct flow_state *state, const double status[FLOW_STATUS])
+{
+    return status[FLOW_TOUCHED] > 0 || flow_ties_changed(state);
+}
+
 /* With its frames. */
 static int accept(struct flow_state *state, const double status[FLOW_STATUS],
                   const struct flow_verdict *verdict)
@@ -141,7 +147,7 @@ static int accept(struct flow_state *state, const double status[FLOW_STATUS],
     flow_grid_accept(&state->grid, flow_verdict_calm(verdict) &&
                                        attempt.begin + attempt.length >= state->guard.calm);
     note(state, status);
-    flow_energy_note(state, status[FLOW_TOUCHED] > 0);
+    flow_energy_note(state, is_disturbed(state, status));
     const int code = flow_watched(state);
     return code ? code : flow_frames(state, attempt.begin);
 }
@@ -156,7 +162,7 @@ static int settle_step(struct flow_state *state)
         return code;
     const bool refused = flow_verdict_refuses(&verdict), second = flow_implicit_is_second(state);
     const bool gained =
-        !refused && flow_energy_gained(state, status[FLOW_TOUCHED] > 0) && can_lose(state);
+        !refused && flow_energy_gained(state, is_disturbed(state, status)) && can_lose(state);
     flow_implicit_settle(state, !refused && !gained, status);
     state->attempt.forked = false;
     if (!refused && !gained)

@@ -115,6 +115,8 @@ int flow_step_begin(struct flow_state *state)
     int code = duite_trace_step(state->rt, state->attempt.begin / FLOW_TICKS);
     if (!code)
         code = duite_set(state->rt, flow_field_object(state, FLOW_FIELD_status, 0), nothing);
+    if (!code)
+        code = flow_ties_choose(state);
     return code ? code : fork_stages(state, PREDICT, SOLVE);
 }
 

@@ -245,6 +245,11 @@ static const struct scene_rule joint_keys[] = {
     {"length", SCENE_NUMBER_OR_WORD, "m", "start", .range = SCENE_NOT_NEGATIVE,
      INTO(struct model_joint, length), WORDS({"start", MODEL_START_LENGTH}),
      .about = "at rest; start: the distance of each pair at the start"},
+    {"begin", SCENE_NUMBER, "s", "0", .range = SCENE_NOT_NEGATIVE, INTO(struct model_joint, begin),
+     .about = "steps that begin from then on have the joint"},
+    {"end", SCENE_NUMBER_OR_WORD, "s", "never", .range = SCENE_POSITIVE,
+     INTO(struct model_joint, end), WORDS({"never", 0}),
+     .about = "steps that begin from then on have it no more"},
     {0}};
 static const struct scene_rule joint = {
     .type = SCENE_MAP, .inside = joint_keys, PLACE(struct model_joint, pairs.place)};

@@ -116,8 +116,42 @@ static void runge(struct session *s)
     run_of(s, MODEL_RK4);
 }
 
-static void (*const kinds[])(struct session *) = {plain, conditioned, guessed, newton,
-                                                  bdf2,  euler,       verlet,  runge};
+/* A joint across the sheet, and one inside a block, which end some time. */
+static void tie(struct session *s)
+{
+    static uint32_t from[] = {1, SIDE * SIDE - 2}, to[] = {SIDE * SIDE - 2, SIDE * SIDE - 3};
+    static struct model_joint joint;
+    joint = (struct model_joint){.pairs = {.end = {{0, 2, from}, {0, 2, to}}},
+                                 .stiffness = 30,
+                                 .damping = 0.01,
+                                 .length = 0.5,
+                                 .end = 100};
+    s->setup.model.joints = &joint;
+    s->setup.model.n_joints = 1;
+}
+
+static void tied(struct session *s)
+{
+    conditioned(s);
+    tie(s);
+}
+
+static void tied_plainly(struct session *s)
+{
+    guessed(s);
+    s->setup.model.preconditioner = MODEL_PLAIN;
+    tie(s);
+}
+
+static void tied_explicitly(struct session *s)
+{
+    euler(s);
+    tie(s);
+}
+
+static void (*const kinds[])(struct session *) = {plain, conditioned,  guessed,        newton,
+                                                  bdf2,  euler,        verlet,         runge,
+                                                  tied,  tied_plainly, tied_explicitly};
 enum { KINDS = sizeof kinds / sizeof *kinds };
 
 /* ---- What exists ---- */

@@ -101,7 +101,10 @@ static void build(void)
         }
         h->block = (struct solve_block){ROWS,      h->diagonal,   h->free, h->row,
                                         h->column, SOLVE_SPRINGS, NULL};
-        h->cut = (struct solve_cut){h->n_cut, (const uint32_t(*)[2])h->end, h->n_halo, h->halo};
+        h->cut = (struct solve_cut){.n = h->n_cut,
+                                    .end = (const uint32_t(*)[2])h->end,
+                                    .n_halo = h->n_halo,
+                                    .halo = h->halo};
         h->hold.at = (const uint32_t(*)[2])h->held;
     }
 }

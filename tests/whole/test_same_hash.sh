@@ -7,6 +7,21 @@ skip_unless tests/whole/same_hash
 scene=$srcdir/cloth/scenes/sheet.yaml
 # Gravity aside, or the first step of a flat sheet would end after as many iterations as there are masses: four.
 small='cloths[0].mesh.grid.nx=40 cloths[0].mesh.grid.ny=40 grain=100 time.end=0.001 gravity=[4,-9.81,2] solver.stop.relative=0.001'
+# 50 joints lead from the edge of one panel to that of the other, 50 across the blocks of one panel; all act from 0.1 s to 0.2 s.
+list() { awk -v from="$1" -v step="$2" 'BEGIN { for (i = 0; i < 50; i++) printf "%s%d", i ? ", " : "[", from + i * step; print "]" }'; }
+cat > "$scratch/panels.yaml" << END
+schema: 1
+gravity: [0.1, -9.81, 0.2]
+cloths:
+  - {name: front, mesh: {grid: {width: 1, height: 0.4, nx: 50, ny: 20}}, material: cloth, pins: [{vertices: [0, 49]}]}
+  - {name: back, mesh: {grid: {width: 1, height: 0.4, nx: 50, ny: 20}}, material: cloth, transform: {translate: [0, -0.02, 0.41]}}
+joints:
+  - {from: {cloth: front, vertices: $(list 950 1)}, to: {cloth: back, vertices: $(list 0 1)}, stiffness: 20, damping: 0.01, length: 0, begin: 0.1, end: 0.2}
+  - {from: {cloth: back, vertices: $(list 100 1)}, to: {cloth: back, vertices: $(list 150 16)}, stiffness: 5, begin: 0.1, end: 0.2}
+materials: {cloth: {density: 0.2, stretch: 3000, shear: 100, damping: {stiffness: 0.01}}}
+time: {h: 0.01, end: 0.25, fps: 4}
+grain: 150
+END
 
 plan_later
 if test "${DUITE_LONG:-}" = 1; then
@@ -57,6 +72,11 @@ else
         # shellcheck disable=SC2086 # every integrator's way; sliders turn, and some meet the floor
         ok "40 x 40, sliders, $more, few" ranks 4 tests/whole/same_hash "$scene" few 0 $small 'cloths[0].transform.translate=[0,0.0005,0]' 'cloths[0].velocity=[0,-1,0]' \
             'cloths[0].pins=[{box: [[-1, -1, -1], [-0.2, 1, 1]], to: line, direction: [3, -4, 0], motion: {times: [0, 1], rotate: [[1, 0, 0, 0], [0.8, 0, 0.6, 0]], about: [0.5, 0, 0]}}, {box: [[0.2, -1, -1], [1, 1, 0]], to: plane, normal: [1, 1, 1]}]' $more
+    done
+    ok "two panels with 100 joints for a tenth of a second, all pairs of choices" ranks 4 tests/whole/same_hash "$scratch/panels.yaml" pairs 4
+    for more in solver.preconditioner=none 'integrator=bdf2 newton.steps=2'; do
+        # shellcheck disable=SC2086
+        ok "two panels with 100 joints for a tenth of a second, $more, few" ranks 4 tests/whole/same_hash "$scratch/panels.yaml" few 0 $more
     done
     # shellcheck disable=SC2086
     ok "40 x 40, bdf2 with Newton steps and energies, few" ranks 4 tests/whole/same_hash "$scene" few 0 $small integrator=bdf2 newton.steps=3 energies=steps time.h=0.004 time.end=0.012

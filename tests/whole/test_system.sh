@@ -49,6 +49,17 @@ again() { same again run --threads 3 --scheduler fifo; }
 ok "the same files from three threads" again
 split() { run --save-system one --quiet --grain 10 && same two ranks 2 "$DUITE_CLOTH" scene.yaml --grain 10; }
 ok "the same files from two ranks" split
+joined() { # by joints inside blocks and between them
+    rm -r one && run --save-system one --quiet --grain 10 \
+        --set 'joints=[{from: {vertices: [9, 20, 33, 7]}, to: {vertices: [10, 60, 34, 64]}, stiffness: 300, length: 0.1, begin: 0.02, end: 1}]' && solved one 2e-10
+}
+ok "with timed joints" joined
+joined_half() {
+    rm -r one && run --save-system one --quiet --grain 10 --set solver.format=half \
+        --set 'joints=[{from: {vertices: [9, 20, 33, 7]}, to: {vertices: [10, 60, 34, 64]}, stiffness: 300, length: 0.1, begin: 0.02, end: 1}]' && solved one 2e-10
+}
+ok "with timed joints, in half storage" joined_half
+run --save-system one --quiet
 ok "with frames, too" run --save-system three --output frames --quiet
 formats() { # the same system but for rounding
     for format in half half_float; do

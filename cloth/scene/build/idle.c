@@ -246,6 +246,16 @@ static int warn_of_obstacle(const struct idle_scene *scene, int obstacle)
     return warn_of_motion(scene, scene_tree_pair(scene->tree, obstacle, 0).value);
 }
 
+/* Steps begin before the end of the run. */
+static int warn_of_joint(const struct idle_scene *scene, int joint)
+{
+    const double begin = scene_tree_number(scene->tree, joint, "begin");
+    if (begin < scene->model->end)
+        return CLOTH_OK;
+    return warn(scene, scene_tree_get(scene->tree, joint, "begin"),
+                "the joint begins at %g s, when the run is over", begin);
+}
+
 /* Of each entry of the list `key` of a map. */
 static int warn_of_list(const struct idle_scene *scene, int map, const char *key,
                         int (*warn_of)(const struct idle_scene *scene, int item))
@@ -270,5 +280,7 @@ int scene_build_idle(struct model *model, const struct scene_tree *tree, struct 
         if (!code)
             code = warn_of_list(&scene, cloth, "pins", warn_of_motion);
     }
+    if (!code)
+        code = warn_of_list(&scene, 1, "joints", warn_of_joint);
     return code ? code : warn_of_list(&scene, 1, "obstacles", warn_of_obstacle);
 }

@@ -73,14 +73,27 @@ static int build_pairs(struct model_pairs *pairs, const char *what, const struct
                            pairs->end[0].n, pairs->end[1].n);
 }
 
+static int check_times(const struct model_joint *joint, const struct scene_tree *tree, int node,
+                       struct cloth_error *error)
+{
+    if (!(joint->end > 0) || joint->end > joint->begin)
+        return CLOTH_OK;
+    return scene_tree_fail(tree, scene_tree_get(tree, node, "end"), error,
+                           "a joint ends at %g s; a time after its begin, %g s, is expected",
+                           joint->end, joint->begin);
+}
+
 int scene_build_joints(struct model *model, const struct scene_tree *tree,
                        struct cloth_error *error)
 {
     const int list = scene_tree_get(tree, 1, "joints");
     int code = CLOTH_OK;
-    for (size_t i = 0; !code && i < model->n_joints; i++)
-        code = build_pairs(&model->joints[i].pairs, "a joint", model, tree,
-                           scene_tree_item(tree, list, i), error);
+    for (size_t i = 0; !code && i < model->n_joints; i++) {
+        const int node = scene_tree_item(tree, list, i);
+        code = build_pairs(&model->joints[i].pairs, "a joint", model, tree, node, error);
+        if (!code)
+            code = check_times(model->joints + i, tree, node, error);
+    }
     return code;
 }
 

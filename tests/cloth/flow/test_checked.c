@@ -343,6 +343,25 @@ START_TEST(cloths)
 }
 END_TEST
 
+/* Joints that are there in the first step, that begin in the second one, and that end before it. */
+START_TEST(timed_joints)
+{
+    static const char *const joints =
+        "joints=[{from: {vertices: [1, 2, 3]}, to: {vertices: [34, 33, 2]}, stiffness: 5, damping: "
+        "0.01, end: 0.0015}, {from: {vertex: 5}, to: {vertex: 30}, stiffness: 5, begin: 0.001}, "
+        "{from: {vertex: 0}, to: {vertex: 35}, stiffness: 5, length: 0, end: 0.001}]";
+    for (size_t i = 0; i < INTEGRATORS; i++)
+        run(SETS(integrators[i], joints, i % 2 ? "cloths[0].pins=[]" : NULL));
+    for (size_t i = 0; i < LENGTH(formats); i++)
+        for (size_t k = 0; k < LENGTH(preconditioners); k++)
+            if (paired(i, LENGTH(formats), k, LENGTH(preconditioners)))
+                run(SETS(joints, formats[i], preconditioners[k], "contact=filter",
+                         k % 2 ? "solver.guess=previous" : "newton.steps=2"));
+    run_how(&(struct how){.system = true}, SETS(joints));
+    run_how(&(struct how){.system = true}, SETS(joints, "cloths[0].material=hinges"));
+}
+END_TEST
+
 /* What gives a step up, and begins it again with half the length. */
 START_TEST(halved_steps)
 {
@@ -419,6 +438,7 @@ int main(int argc, char **argv)
     tcase_add_test(cases, other_solves);
     tcase_add_test(cases, outside);
     tcase_add_test(cases, cloths);
+    tcase_add_test(cases, timed_joints);
     tcase_add_test(cases, halved_steps);
     tcase_add_test(cases, cut_newton_steps);
     tcase_add_test(cases, saved_systems);

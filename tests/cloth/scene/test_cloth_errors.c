@@ -418,9 +418,15 @@ START_TEST(joints_that_cannot_be_made)
          .error = ":12:17: joints[0].from has no vertex or vertices; one of them is expected"},
         {JOINT("from: {vertex: 1, cloth: shet}, to: {vertex: 3}, stiffness: 1"),
          .error = ":12:36: there is no cloth 'shet'; did you mean 'sheet'? Allowed: sheet"},
-        {JOINT("from: {vertex: 1}, to: {vertex: 3}, stiffness: 1, begin: 1"),
-         .error = ":12:61: begin is not a key of joints[0]; allowed: from, to, stiffness, damping, "
-                  "length"});
+        {JOINT("from: {vertex: 1}, to: {vertex: 3}, stiffness: 1, begin: -1"),
+         .error = ":12:68: joints[0].begin is -1; a finite number >= 0 (s) is expected"},
+        {JOINT("from: {vertex: 1}, to: {vertex: 3}, stiffness: 1, end: 0"),
+         .error = ":12:66: joints[0].end is 0; a finite number > 0 (s) or never is expected"},
+        {JOINT("from: {vertex: 1}, to: {vertex: 3}, stiffness: 1, begin: 0.2, end: 0.2"),
+         .error = ":12:78: a joint ends at 0.2 s; a time after its begin, 0.2 s, is expected"},
+        {JOINT("from: {vertex: 1}, to: {vertex: 3}, stiffness: 1, until: 1"),
+         .error = ":12:61: until is not a key of joints[0]; allowed: from, to, stiffness, damping, "
+                  "length, begin, end"});
 }
 END_TEST
 

@@ -1,0 +1,117 @@
+#!/bin/sh
+# Joints that begin and end while a run is on: the motion of two masses before, during and after, the same motion as by a joint that is
+# always there, what is recorded again, steps that are halved, and the same bits on any ranks and threads.
+. "${srcdir:-.}/tests/support/tap.sh"
+plan_later
+. "${srcdir:-.}/tests/support/probes.sh"
+
+# ---- Two masses, 0.5 m farther apart than a joint of 40 N/m and 0.1 kg/s is long, which acts from 0.1 s to 0.2 s ----
+cat > two.yaml << 'END'
+schema: 1
+gravity: [0, 0, 0]
+grain: 1
+cloths:
+  - {name: one, mesh: {inline: {vertices: [[0, 0, 0]]}}, mass_per_vertex: 0.1, material: m}
+  - {name: other, mesh: {inline: {vertices: [[5, 0, 0], [1, 0, 0]], edges: [[0, 1]]}}, mass_per_vertex: 0.3, material: m}
+joints: [{from: {cloth: other, vertices: [1]}, to: {cloth: one, vertex: 0}, stiffness: 40, damping: 0.1, length: 0.5, begin: 0.1, end: 0.2}]
+materials: {m: {ea: 1.0e-30}}
+time: {h: 0.001, end: 0.3, stretch_growth: 0}
+solver: {stop: {relative: 1.0e-12}}
+probes:
+  - {name: p, cloth: one, vertices: [0], values: [position, velocity]}
+  - {name: q, cloth: other, vertices: [1], values: [position, velocity]}
+END
+value() { sed -n "s/^ *\"$1\": \"*\([^\",]*\).*/\1/p" "${2:-one.json}"; }
+distance() { # its largest error over all rows, m
+    rows 'function swing(t) { return exp(-r * t) * (cos(w * t) + r / w * sin(w * t)) }
+        function rate(t) { return -exp(-r * t) * sin(w * t) * (w + r * r / w) }
+        { t = c("time") - 0.1; k = 40; damping = 0.1; mu = 0.1 * 0.3 / 0.4; r = damping / (2 * mu); w = sqrt(k / mu - r * r)
+        d = 0.5 + 0.5 * (t < 0 ? 1 : t < 0.1 ? swing(t) : swing(0.1) + rate(0.1) * (t - 0.1)) - (c("q.1.x") - c("p.0.x"))
+        if (d < 0) d = -d; if (d > most) most = d } END { printf "%.3g\n", most }'
+}
+momentum() { rows '{ p = 0.1 * c("p.0.vx") + 0.3 * c("q.1.vx"); if (p < 0) p = -p; if (p > most) most = p } END { printf "%.3g\n", most }'; }
+swings() { # INTEGRATOR H MOST
+    run two.yaml --set integrator="$1" --set time.h="$2" && below "$1: distance of two masses, m" "$(distance)" "$3" &&
+        below "$1: their momentum, of 1 kg m/s at most" "$(momentum)" 1e-14
+}
+ok "free, joined and free again by rk4" swings rk4 1e-3 1e-8
+ok "by velocity Verlet" swings verlet 1e-3 1e-4
+ok "by symplectic Euler" swings symplectic_euler 1e-4 2e-3
+ok "by implicit Euler" swings implicit_euler 1e-4 4e-3
+ok "by BDF2, which begins again where the joint does" swings bdf2 1e-4 1e-4
+ok "in one block" eval 'run two.yaml --set integrator=rk4 --set grain=9 && below "distance" "$(distance)" 1e-8'
+
+unjudged() { # 5 J come with the joint
+    run two.yaml --set integrator="$1" --report one.json && test "$(value steps_halved)" = 0 && test "$(value steps_retaken)" = 0 && test "$(value steps)" = 300
+}
+for integrator in implicit_euler bdf2; do
+    ok "energy that comes with a joint is no step's fault, $integrator" unjudged $integrator
+done
+
+# ---- Two panels, joined along an edge, over several blocks ----
+cat > panels.yaml << 'END'
+schema: 1
+grain: 20
+cloths:
+  - {name: front, mesh: {grid: {width: 0.7, height: 0.7, nx: 8, ny: 8}}, material: m, pins: [{vertices: [0, 7]}]}
+  - {name: back, mesh: {grid: {width: 0.7, height: 0.7, nx: 8, ny: 8}}, material: m, transform: {translate: [0, -0.1, 0.72]}}
+joints:
+  - {from: {cloth: front, vertices: [56, 57, 58, 59, 60, 61, 62, 63]}, to: {cloth: back, vertices: [0, 1, 2, 3, 4, 5, 6, 7]}, stiffness: 50, damping: 0.05, length: 0}
+materials: {m: {model: triangles, density: 0.2, stretch: 200, shear: 50, bending: {rigidity: 1.0e-4}}}
+time: {h: 0.002, end: 0.1}
+solver: {stop: {relative: 1.0e-12}}
+probes: [{name: p, cloth: front, vertices: [58, 60], values: [position, reaction]}, {name: q, cloth: back, vertices: [4], values: [position]}]
+END
+seen() { run panels.yaml "$@" --report one.json && last p.60.x p.60.y p.60.z q.4.x q.4.y q.4.z p.58.rx p.58.ry p.58.rz && value energy_kinetic && value energy_elastic; }
+apart() { # the largest relative difference of two lists of numbers
+    paste -d ' ' "$1" "$2" | awk '{ n = NF / 2; for (i = 1; i <= n; i++) { d = $i - $(n + i); d = d < 0 ? -d : d; s = $i < 0 ? -$i : $i; if (s > 0 && d / s > most) most = d / s } }
+        END { printf "%.3g\n", most }'
+}
+as_always() { # MOST SETTING...
+    most=$1
+    shift
+    for setting in "$@"; do set -- "$@" --set "$setting" && shift; done
+    seen "$@" > always && seen "$@" --set 'joints[0].end=100' > timed && test -s timed && below "a timed joint against one that is always there: $*" "$(apart always timed)" "$most"
+}
+for preconditioner in none jacobi ic0 coarse ic0_coarse; do
+    ok "a joint that ends after the run is as one that never does, $preconditioner" as_always 1e-8 solver.preconditioner=$preconditioner
+done
+ok "with springs, a guess and a pin at the joint" as_always 1e-8 materials.m.model=springs materials.m.damping.stiffness=0.01 solver.guess=previous 'cloths[0].pins[1]={vertices: [58]}'
+ok "by BDF2" as_always 1e-8 integrator=bdf2
+ok "by Newton steps with the whole slope" as_always 1e-6 newton.steps=4 solver.jacobian=full
+ok "with a floor in the solve" as_always 1e-8 contact=filter 'obstacles=[{plane: {point: [0, -0.11, 0], normal: [0, 1, 0]}}]'
+for integrator in explicit_euler symplectic_euler verlet rk4; do
+    ok "by $integrator" as_always 1e-8 integrator=$integrator time.h=2e-5 time.end=0.02
+done
+
+momentum_kept() { # of joints with held ends, what the solve lost is the residual, no more
+    run panels.yaml --set 'cloths[0].pins[0].vertices=[0,7,58]' --set 'joints[0].end=0.05' --report one.json && below "momentum lost, kg m/s" "$(value momentum_lost)" 1e-10
+}
+ok "momentum that pins take is not lost" momentum_kept
+
+recorded() { # TIMES SETTING...
+    times=$1
+    shift
+    run panels.yaml --report one.json "$@" && echo "recorded $(value graphs_recorded) times" && test "$(value graphs_recorded)" = "$times"
+}
+ok "the solve is recorded once where joints last" recorded 1
+ok "again where joints begin, and where they end" recorded 3 --set 'joints[0].begin=0.02' --set 'joints[0].end=0.05'
+again='{from: {cloth: front, vertices: [56, 57, 58, 59, 60, 61, 62, 63]}, to: {cloth: back, vertices: [0, 1, 2, 3, 4, 5, 6, 7]}, stiffness: 20, begin: 0.05, end: 0.08}'
+ok "not where others come between the same blocks" recorded 3 --set 'joints[0].begin=0.02' --set 'joints[0].end=0.05' --set "joints[1]=$again"
+
+# ---- The same bits ----
+alike() { # SETTING...
+    for setting in "$@"; do set -- "$@" --set "$setting" && shift; done
+    run panels.yaml "$@" --report one.json || return 1
+    for run in '1 2' '2 1' '3 2'; do
+        limited "$MPIRUN" -n "${run% *}" "$DUITE_CLOTH" panels.yaml --threads "${run#* }" --quiet --report many.json --set 'probes=[]' "$@" || return 1
+        test "$(value state_hash)" = "$(value state_hash many.json)" || { echo "another hash on $run"; return 1; }
+    done
+}
+ok "on any ranks and threads" alike 'joints[0].begin=0.02' 'joints[0].end=0.05' "joints[1]=$again"
+halves() { alike 'joints[0].begin=0.0205' 'joints[0].stiffness=5000' time.h=0.004 time.stretch_growth=0.02 && echo "$(value steps_halved) steps halved" && test "$(value steps_halved)" -gt 0; }
+ok "where steps are halved" halves
+rows16=$(awk 'BEGIN { for (i = 0; i < 256; i++) printf "%s%d", i ? ", " : "", i }')
+ok "more joints of two blocks than a class has room for" alike grain=200 'cloths[0].mesh.grid={width: 0.7, height: 0.7, nx: 16, ny: 16}' \
+    'cloths[1].mesh.grid={width: 0.7, height: 0.7, nx: 16, ny: 16}' "joints[0]={from: {cloth: front, vertices: [$rows16]}, to: {cloth: back, vertices: [$rows16]}, stiffness: 5, begin: 0.02, end: 0.05}" \
+    'cloths[0].pins=[{vertices: [0, 7]}]' 'joints[1]={from: {cloth: front, vertices: [1, 2]}, to: {cloth: back, vertices: [9, 9]}, stiffness: 5, begin: 0.01}' solver.stop.relative=1e-6

@@ -62,6 +62,7 @@ libduite_cloth_la_SOURCES += \
     cloth/flow/integrators/implicit.c \
     cloth/flow/integrators/integrator.c \
     cloth/flow/integrators/integrator.h \
+    cloth/flow/integrators/midpoint.c \
     cloth/flow/integrators/runge.c \
     cloth/flow/integrators/verlet.c \
     cloth/flow/solver/solve.h \

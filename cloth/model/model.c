@@ -88,6 +88,7 @@ const struct model_word model_integrators[] = {{"implicit_euler", MODEL_IMPLICIT
                                                {"explicit_euler", MODEL_EXPLICIT_EULER},
                                                {"symplectic_euler", MODEL_SYMPLECTIC_EULER},
                                                {"verlet", MODEL_VERLET},
+                                               {"midpoint", MODEL_MIDPOINT},
                                                {"rk4", MODEL_RK4},
                                                {"bdf2", MODEL_BDF2},
                                                {0}};

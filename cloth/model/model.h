@@ -198,6 +198,7 @@ enum model_integrator {
     MODEL_EXPLICIT_EULER,   /* x by the velocity before the step */
     MODEL_SYMPLECTIC_EULER, /* x by the velocity after it */
     MODEL_VERLET,           /* velocity Verlet, drag solved for in the first half step */
+    MODEL_MIDPOINT,         /* the explicit midpoint method */
     MODEL_RK4,              /* the classical Runge-Kutta method */
     MODEL_IMPLICIT_EULER,
     MODEL_BDF2 /* begins with implicit Euler, also after contact or a change of h */

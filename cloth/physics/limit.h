@@ -17,6 +17,11 @@ double phys_limit_symplectic(double omega, double a);
  * less where there is such damping. */
 double phys_limit_verlet(double omega, double a);
 
+/* The explicit midpoint method, for which an undamped mode is sqrt(1 + (h omega)^4 / 4) times as
+ * large after each step: 0 without damping, about 2 zeta^(1/3) / omega where there is little,
+ * 2 / omega where zeta = 1, less beyond: 2 over the faster rate. */
+double phys_limit_midpoint(double omega, double a);
+
 /* The classical Runge-Kutta method: 2.83 / omega, and 2.79 / a where damping rules. */
 double phys_limit_rk4(double omega, double a);
 

@@ -56,7 +56,7 @@ else
         'materials.cloth={model: triangles, density: 0.2, stretch: 3000, shear: 100, bending: {model: quadratic, rigidity: 1e-4}, damping: {stiffness: 1e-5}}'
     # shellcheck disable=SC2086
     ok "40 x 40, explicit, some" ranks 4 tests/whole/same_hash "$scene" some 3 $small integrator=explicit_euler
-    for kind in symplectic_euler verlet rk4; do
+    for kind in symplectic_euler verlet midpoint rk4; do
         # shellcheck disable=SC2086
         ok "40 x 40, $kind, few" ranks 4 tests/whole/same_hash "$scene" few 0 $small integrator=$kind obstacles=[] time.h=1e-5 time.end=5e-5 materials.cloth.damping.stiffness=1e-4
     done

@@ -43,7 +43,7 @@ one_hash() { # NAME SETTING...
 every_integrator() { # MODEL SETTING...
     model=$1
     shift
-    for integrator in explicit_euler symplectic_euler verlet rk4; do
+    for integrator in explicit_euler symplectic_euler verlet midpoint rk4; do
         one_hash "$model, $integrator" "$@" integrator=$integrator
     done
     set -- "$@" time.h=0.001 time.end=0.004

@@ -80,7 +80,7 @@ ok "with springs, a guess and a pin at the joint" as_always 1e-8 materials.m.mod
 ok "by BDF2" as_always 1e-8 integrator=bdf2
 ok "by Newton steps with the whole slope" as_always 1e-6 newton.steps=4 solver.jacobian=full
 ok "with a floor in the solve" as_always 1e-8 contact=filter 'obstacles=[{plane: {point: [0, -0.11, 0], normal: [0, 1, 0]}}]'
-for integrator in explicit_euler symplectic_euler verlet rk4; do
+for integrator in explicit_euler symplectic_euler verlet midpoint rk4; do
     ok "by $integrator" as_always 1e-8 integrator=$integrator time.h=2e-5 time.end=0.02
 done
 

@@ -19,7 +19,8 @@ struct flow_integrator {
 extern const struct flow_integrator flow_integrators[];
 
 /* Both ends of a step by implicit Euler or BDF2 (implicit.c), by either explicit Euler (euler.c),
- * velocity Verlet (verlet.c), RK4 (runge.c). They return what the runtime does. */
+ * velocity Verlet (verlet.c), the explicit midpoint method (midpoint.c), RK4 (runge.c). They return
+ * what the runtime does. */
 int flow_implicit_euler_begin(struct flow_state *state);
 int flow_implicit_euler_end(struct flow_state *state);
 int flow_bdf2_end(struct flow_state *state);
@@ -28,6 +29,7 @@ bool flow_euler_keeps(const struct model *model);
 void flow_euler_restore(struct flow_state *state);
 int flow_verlet_begin(struct flow_state *state);
 int flow_verlet_end(struct flow_state *state);
+int flow_midpoint_end(struct flow_state *state);
 int flow_runge_end(struct flow_state *state);
 
 /* Whether steps of a model do (keeps). Local. */

@@ -38,11 +38,11 @@
     /* before a step that may be given up */                                                       \
     X(kept_x,       ONE,     phys_vec,      4, rows,          kept,         is_work)               \
     X(kept_v,       ONE,     phys_vec,      4, rows,          kept,         is_work)               \
-    /* explicit integrators (explicit.h); v0: RK4's, or Verlet's of the half step */               \
+    /* explicit integrators (explicit.h); x0, v0: where a step began, or Verlet's half step */     \
     X(spare_halo_x, ONE,     phys_vec,      4, halo,          explicit_run, is_work)               \
     X(spare_halo_v, ONE,     phys_vec,      4, halo,          explicit_run, is_work)               \
     X(v0,           ONE,     phys_vec,      4, rows,          staged,       is_work)               \
-    X(x0,           ONE,     phys_vec,      4, rows,          runge,        is_work)               \
+    X(x0,           ONE,     phys_vec,      4, rows,          multistage,   is_work)               \
     X(sum_x,        ONE,     phys_vec,      4, rows,          runge,        is_work)               \
     X(sum_v,        ONE,     phys_vec,      4, rows,          runge,        is_work)               \
     /* implicit integrators: struct phys_states */                                                 \

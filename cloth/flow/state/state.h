@@ -22,7 +22,7 @@ struct flow_args {
     uint32_t last; /* not zero: what goes wrong in this step is an error of its body; else it is
                     * only counted, and the step is made again with half the length */
     uint64_t frame;
-    uint32_t stage;  /* of a step by RK4 */
+    uint32_t stage;  /* of a step by the midpoint method or RK4 */
     double h, begin; /* s: length of the step; FLOW_TICKS: when it begins */
     double time;     /* s: of a frame; else at the end of the step */
     double now;      /* s: of what varies, where forces and energies are */

@@ -181,10 +181,14 @@ static void run(const char *const sets[MAX_SETS])
 
 /* ---- Cases ---- */
 
-static const char *const integrators[] = {
-    "integrator=implicit_euler",   "integrator=bdf2",   "integrator=explicit_euler",
-    "integrator=symplectic_euler", "integrator=verlet", "integrator=rk4"};
-enum { INTEGRATORS = 6, IMPLICIT = 2 };
+static const char *const integrators[] = {"integrator=implicit_euler",
+                                          "integrator=bdf2",
+                                          "integrator=explicit_euler",
+                                          "integrator=symplectic_euler",
+                                          "integrator=verlet",
+                                          "integrator=midpoint",
+                                          "integrator=rk4"};
+enum { INTEGRATORS = 7, IMPLICIT = 2 };
 static const char *const preconditioners[] = {
     "solver.preconditioner=none", "solver.preconditioner=jacobi", "solver.preconditioner=ic0",
     "solver.preconditioner=coarse", "solver.preconditioner=ic0_coarse"};

@@ -111,6 +111,11 @@ static void verlet(struct session *s)
     run_of(s, MODEL_VERLET);
 }
 
+static void midpoint(struct session *s)
+{
+    run_of(s, MODEL_MIDPOINT);
+}
+
 static void runge(struct session *s)
 {
     run_of(s, MODEL_RK4);
@@ -149,9 +154,9 @@ static void tied_explicitly(struct session *s)
     tie(s);
 }
 
-static void (*const kinds[])(struct session *) = {plain, conditioned,  guessed,        newton,
-                                                  bdf2,  euler,        verlet,         runge,
-                                                  tied,  tied_plainly, tied_explicitly};
+static void (*const kinds[])(struct session *) = {
+    plain,  conditioned, guessed, newton, bdf2,         euler,
+    verlet, midpoint,    runge,   tied,   tied_plainly, tied_explicitly};
 enum { KINDS = sizeof kinds / sizeof *kinds };
 
 /* ---- What exists ---- */

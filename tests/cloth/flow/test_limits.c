@@ -99,16 +99,17 @@ START_TEST(bound_of_a_sheet)
 }
 END_TEST
 
-/* How far anything has moved along the chain after 2000 steps. */
-static double moved(enum model_integrator integrator, double h)
+/* How far anything has moved along the chain after 4000 steps. */
+static double moved(enum model_integrator integrator, double stiffness, double h)
 {
     struct setup setup;
     struct record record = {0};
     double max = 0;
     chain(&setup, 1e-6);
+    setup.material.damping_stiffness = stiffness;
     setup.model.integrator = integrator;
     setup.model.h = h;
-    setup.model.end = 2000 * h;
+    setup.model.end = 4000 * h;
     setup.model.fps = 1 / setup.model.end;
     record_run(&record, &setup.model);
     for (size_t v = 0; !record.code && v <= LINKS; v++)
@@ -124,15 +125,20 @@ START_TEST(limits_are_where_runs_break)
 {
     static const struct {
         enum model_integrator integrator;
-        double number;
-    } rows[] = {{MODEL_SYMPLECTIC_EULER, 2}, {MODEL_VERLET, 2}, {MODEL_RK4, 2.8284271247461903}};
+        double zeta, number;
+    } rows[] = {{MODEL_SYMPLECTIC_EULER, 0, 2},
+                {MODEL_VERLET, 0, 2},
+                {MODEL_MIDPOINT, 0.08856217223385233, 1}, /* (3 - sqrt 7) / 4 */
+                {MODEL_RK4, 0, 2.8284271247461903}};
     struct setup setup;
     chain(&setup, 0);
+    const double stiffness = 2 * rows[_i].zeta / limit_of(&setup).omega;
+    setup.material.damping_stiffness = stiffness;
     const struct flow_limit limit = limit_of(&setup);
     const double h = flow_limit_of(&limit, rows[_i].integrator);
     ck_assert_double_eq_tol(h, rows[_i].number / limit.omega, 1e-12);
-    ck_assert_double_lt(moved(rows[_i].integrator, 0.99 * h), 1e-6);
-    ck_assert_double_gt(moved(rows[_i].integrator, 1.02 * h), 1e-3);
+    ck_assert_double_lt(moved(rows[_i].integrator, stiffness, 0.99 * h), 1e-6);
+    ck_assert_double_gt(moved(rows[_i].integrator, stiffness, 1.02 * h), 1e-3);
     chain_free(&setup);
 }
 END_TEST
@@ -173,8 +179,13 @@ START_TEST(warnings)
     setup.model.h = 0.001;
     warning(&setup, text, sizeof text);
     ck_assert_ptr_nonnull(strstr(text, "no step is short enough for explicit_euler"));
-    ck_assert_ptr_nonnull(strstr(text, "can grow 1.0488")); /* sqrt(1.1) */
-    setup.material.damping_stiffness = 0.0011;              /* 2 zeta / omega */
+    ck_assert_ptr_nonnull(strstr(text, "can grow by 4.88088 %")); /* sqrt(1.1) - 1 */
+    setup.model.integrator = MODEL_MIDPOINT;
+    warning(&setup, text, sizeof text);
+    ck_assert_ptr_nonnull(strstr(text, "no step is short enough for midpoint"));
+    ck_assert_ptr_nonnull(strstr(text, "can grow by 0.124922 %")); /* sqrt(1.0025) - 1 */
+    setup.model.integrator = MODEL_EXPLICIT_EULER;
+    setup.material.damping_stiffness = 0.0011; /* 2 zeta / omega */
     warning(&setup, text, sizeof text);
     ck_assert_str_eq(text, "");
     setup.material.damping_stiffness = 0.0009;
@@ -223,7 +234,7 @@ int main(void)
     tcase_add_test(cases, bound_of_a_sheet);
     tcase_add_test(cases, warnings);
     tcase_add_test(cases, a_doubled_layer_has_a_scale_of_energy);
-    tcase_add_loop_test(cases, limits_are_where_runs_break, 0, 3);
+    tcase_add_loop_test(cases, limits_are_where_runs_break, 0, 4);
     suite_add_tcase(suite, cases);
     return unit_run(suite);
 }

@@ -75,22 +75,25 @@ START_TEST(each_fails_once_in_prepare)
 }
 END_TEST
 
-/* A sheet that bends, two of whose border edges are welded, with a joint across. */
+/* A sheet that bends, two of whose border edges are welded, with a joint across and a timed one. */
 START_TEST(each_fails_once_with_welds)
 {
     struct setup setup;
     uint32_t from[] = {0, 1}, to[] = {20, 21}, ends[] = {7, 17};
     struct model_weld weld = {.pairs = {{{0, 2, from}, {0, 2, to}}, NULL}, .tolerance = 2};
-    struct model_joint joint = {
+    const struct model_joint joint = {
         .pairs = {{{0, 1, ends}, {0, 1, ends + 1}}, NULL}, .stiffness = 1, .length = 0};
+    struct model_joint joints[] = {joint, joint};
+    joints[1].end = 1;
     setup_sheet(&setup, 5);
     setup.material.bending = MODEL_HINGES;
     setup.material.rigidity[0] = setup.material.rigidity[1] = 1e-3;
     setup.model.format = SOLVE_HALF;
     const long without = prepare_all(&setup.model);
-    setup.model.n_welds = setup.model.n_joints = 1;
+    setup.model.n_welds = 1;
+    setup.model.n_joints = 2;
     setup.model.welds = &weld;
-    setup.model.joints = &joint;
+    setup.model.joints = joints;
     ck_assert_int_gt(prepare_all(&setup.model), without + 10);
     setup_free(&setup);
 }

@@ -48,7 +48,7 @@ across() { # INTEGRATOR: how fast it is across the line
     run bead.yaml --output out --set integrator="$1" 2> /dev/null && last 'p.0.vx [m/s]' 'p.0.vy [m/s]' |
         awk '{ v = 0.8 * $1 + 0.6 * $2; print v; exit !(v < 1e-12 && v > -1e-12 && $1 > 2) }'
 }
-for integrator in verlet midpoint rk4 implicit_euler bdf2; do
+for integrator in explicit_euler symplectic_euler verlet midpoint rk4 implicit_euler bdf2; do
     ok "a line leaves no velocity across it, $integrator" across $integrator
 done
 

@@ -18,6 +18,7 @@ static int euler_move(const duite_call *call, const struct flow_table *t,
     flow_fetch_own(t, m->halo_v);
     flow_fetch_halos(t, view);
     flow_forces(call, t, view, f);
+    flow_sliders_filter(call, t, f);
     flow_part_ends(call, FLOW_FORCE);
     const int well = phys_euler(t->n, flow_args_of(call)->h, ahead, FLOW_BOUND, t->mass, t->free, f,
                                 m->from_x, m->from_v, m->x, m->v);

@@ -6,20 +6,6 @@
 
 enum { FROM = 0, TO = 3, RADIUS = 6 };
 
-/* A direction across the axis, for points on it: all are as short a way out. */
-static void find_aside(const phys_vec *axis, phys_vec *aside)
-{
-    const double square = phys_dot(axis, axis);
-    int least = 0;
-    for (int c = 1; c < 3; c++)
-        least = fabs((*axis)[c]) < fabs((*axis)[least]) ? c : least;
-    *aside = (phys_vec){0};
-    (*aside)[least] = 1;
-    if (square > CONTACT_TINY * CONTACT_TINY)
-        *aside -= (*axis)[least] / square * *axis;
-    *aside /= sqrt(phys_dot(aside, aside));
-}
-
 static void capsule_closest(const double *value, size_t n, const phys_vec *x,
                             struct contact_hit *hit)
 {
@@ -27,7 +13,7 @@ static void capsule_closest(const double *value, size_t n, const phys_vec *x,
     const phys_vec to = {value[TO], value[TO + 1], value[TO + 2], 0}, axis = to - from;
     const double square = phys_dot(&axis, &axis);
     phys_vec aside;
-    find_aside(&axis, &aside);
+    contact_aside(&axis, &aside);
     for (size_t i = 0; i < n; i++) {
         phys_vec away = x[i] - from;
         const double along = square > 0 ? phys_dot(&away, &axis) / square : 0;
@@ -38,24 +24,16 @@ static void capsule_closest(const double *value, size_t n, const phys_vec *x,
     }
 }
 
-/* The shortest rotation that takes the x axis to the capsule's. */
 static void capsule_around(const double *value, struct phys_pose *axes, double half[3])
 {
-    struct phys_key middle = {.rotate = {1, 0, 0, 0}};
-    double along[3], square = 0;
+    double middle[3], along[3], square = 0;
     for (int c = 0; c < 3; c++) {
-        middle.translate[c] = (value[FROM + c] + value[TO + c]) / 2;
+        middle[c] = (value[FROM + c] + value[TO + c]) / 2;
         along[c] = value[TO + c] - value[FROM + c];
         square += along[c] * along[c];
     }
-    const double length = sqrt(square);
-    if (along[0] > -length) {
-        middle.rotate[0] = length + along[0];
-        middle.rotate[2] = -along[2];
-        middle.rotate[3] = along[1];
-    }
-    phys_pose_at(1, &middle, (const double[3]){0}, 0, axes);
-    half[0] = length / 2 + value[RADIUS];
+    contact_axes(middle, along, axes);
+    half[0] = sqrt(square) / 2 + value[RADIUS];
     half[1] = half[2] = value[RADIUS];
 }
 

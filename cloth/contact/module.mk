@@ -2,6 +2,7 @@
 libduite_cloth_la_SOURCES += \
 	cloth/contact/box.c \
 	cloth/contact/capsule.c \
+	cloth/contact/cylinder.c \
 	cloth/contact/meet.c cloth/contact/meet.h \
 	cloth/contact/plane.c \
 	cloth/contact/shape.c cloth/contact/shape.h \

@@ -2,10 +2,12 @@
  * stands still is not touched on the way, so that its bits are those of its kind alone. */
 #include "cloth/contact/shape.h"
 
+#include <math.h>
+
 enum { AT_ONCE = 32 }; /* points, whose room is on the stack */
 
 const struct contact_kind *const contact_kinds[] = {&contact_plane, &contact_sphere, &contact_box,
-                                                    &contact_capsule};
+                                                    &contact_capsule, &contact_cylinder};
 const uint32_t contact_n_kinds = sizeof contact_kinds / sizeof *contact_kinds;
 
 size_t contact_role_size(enum contact_role role)
@@ -16,6 +18,36 @@ size_t contact_role_size(enum contact_role role)
                                   [CONTACT_LENGTHS] = 3,
                                   [CONTACT_ROTATION] = 4};
     return size[role];
+}
+
+void contact_aside(const phys_vec *axis, phys_vec *aside)
+{
+    const double square = phys_dot(axis, axis);
+    int least = 0;
+    for (int c = 1; c < 3; c++)
+        least = fabs((*axis)[c]) < fabs((*axis)[least]) ? c : least;
+    *aside = (phys_vec){0};
+    (*aside)[least] = 1;
+    if (square > CONTACT_TINY * CONTACT_TINY)
+        *aside -= (*axis)[least] / square * *axis;
+    *aside /= sqrt(phys_dot(aside, aside));
+}
+
+void contact_axes(const double point[3], const double along[3], struct phys_pose *axes)
+{
+    struct phys_key key = {.rotate = {1, 0, 0, 0}};
+    double square = 0;
+    for (int c = 0; c < 3; c++) {
+        key.translate[c] = point[c];
+        square += along[c] * along[c];
+    }
+    const double length = sqrt(square);
+    if (along[0] > -length) {
+        key.rotate[0] = length + along[0];
+        key.rotate[2] = -along[2];
+        key.rotate[3] = along[1];
+    }
+    phys_pose_at(1, &key, (const double[3]){0}, 0, axes);
 }
 
 void contact_pose_over(const struct contact_shape *shape, const struct phys_key *keys, double from,

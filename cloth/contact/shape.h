@@ -65,10 +65,18 @@ struct contact_kind {
     /* A box around it: its own axes and middle, half its size (m); the shape is star-shaped as seen
      * from there. NULL: the shape has no bounds. */
     void (*around)(const double *value, struct phys_pose *axes, double half[3]);
+    bool round; /* pictures take for that box the cylinder in it, along its first axis */
 };
-extern const struct contact_kind contact_plane, contact_sphere, contact_box, contact_capsule;
+extern const struct contact_kind contact_plane, contact_sphere, contact_box, contact_capsule,
+    contact_cylinder;
 extern const struct contact_kind *const contact_kinds[];
 extern const uint32_t contact_n_kinds;
+
+/* For kinds with an axis. A direction of length 1 across it, for points on it: all are as short a
+ * way out. Axes about a point, the first one by the shortest rotation along a vector, which is not
+ * zero or else leaves them as they are. */
+void contact_aside(const phys_vec *axis, phys_vec *aside);
+void contact_axes(const double point[3], const double along[3], struct phys_pose *axes);
 
 /* The pose of a shape over a step between two times, s. keys: of the scene. */
 void contact_pose_over(const struct contact_shape *shape, const struct phys_key *keys, double from,

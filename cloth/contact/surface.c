@@ -2,6 +2,7 @@
  * sides of a box stay flat, and any other shape is as smooth as the grid is fine. */
 #include "cloth/contact/surface.h"
 
+#include <math.h>
 #include <string.h>
 
 enum { HALVINGS = 52 };
@@ -30,6 +31,15 @@ static void find_exit(const struct contact_shape *shape, const struct phys_pose 
     }
 }
 
+/* Takes a point of the box, in its own axes, to the cylinder in it. */
+static void make_round(const double half[3], phys_vec *corner)
+{
+    const double u = (*corner)[1] / half[1], v = (*corner)[2] / half[2], far = sqrt(u * u + v * v);
+    const double part = far > 0 ? fmax(fabs(u), fabs(v)) / far : 0;
+    (*corner)[1] *= part;
+    (*corner)[2] *= part;
+}
+
 /* Side 0 to 2 is across an axis, 3 to 5 at its other end. */
 static void build_side(const struct contact_shape *shape, const struct phys_pose *axes,
                        const double half[3], uint32_t side, double (*vertex)[6])
@@ -41,6 +51,8 @@ static void build_side(const struct contact_shape *shape, const struct phys_pose
             corner[across] = side < 3 ? half[across] : -half[across];
             corner[u] = half[u] * (2.0 * i / N - 1) * (1 - INSIDE);
             corner[v] = half[v] * (2.0 * j / N - 1) * (1 - INSIDE);
+            if (contact_kinds[shape->kind]->round)
+                make_round(half, &corner);
             find_exit(shape, axes, &corner, vertex[j * (N + 1) + i]);
         }
 }

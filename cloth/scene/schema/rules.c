@@ -115,11 +115,23 @@ static const struct scene_rule capsule_keys[] = {
      .about = "around the line and its ends"},
     MOVES,
     {0}};
+static const struct scene_rule cylinder_keys[] = {
+    {"centre", SCENE_LIST, "m", .required = true, .length = 3, .inside = &number,
+     .about = "its middle"},
+    {"axis", SCENE_LIST, .required = true, .length = 3, .inside = &number,
+     .about = "from one end to the other, of any length but 0"},
+    {"radius", SCENE_NUMBER, "m", .required = true, .range = SCENE_POSITIVE,
+     .about = "around the axis"},
+    {"length", SCENE_NUMBER, "m", .required = true, .range = SCENE_POSITIVE,
+     .about = "from end to end; a short one is a disc"},
+    MOVES,
+    {0}};
 static const struct scene_rule obstacle_kinds[] = {
     {"plane", SCENE_MAP, .inside = plane_keys, .about = "a floor or wall"},
     {"sphere", SCENE_MAP, .inside = sphere_keys, .about = "a ball"},
     {"box", SCENE_MAP, .inside = box_keys, .about = "a block"},
     {"capsule", SCENE_MAP, .inside = capsule_keys, .about = "a rod with round ends"},
+    {"cylinder", SCENE_MAP, .inside = cylinder_keys, .about = "a rod with flat ends, or a disc"},
     {0}};
 static const struct scene_rule obstacle = {.type = SCENE_ONE_OF, .inside = obstacle_kinds};
 

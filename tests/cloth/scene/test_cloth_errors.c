@@ -76,6 +76,8 @@ START_TEST(obstacles)
         {plane, "capsule: {from: [0, -1, 0], to: [0, -1e160, 0], radius: 0.1}",
          .error = ":11:50: the to of a capsule is -1e+160 m; a magnitude of less than 1e+06 m is "
                   "expected"},
+        {plane, "cylinder: {centre: [0, -1, 0], axis: [0, 0, 0], radius: 1, length: 1}",
+         .error = ":11:51: the axis of a cylinder is zero; a direction is expected"},
         {plane, "sphere: {centre: [0, -1, 0], radius: 1e6}",
          .error = ":11:51: the radius of a sphere is 1e+06 m; a magnitude of less than 1e+06 m is "
                   "expected"},

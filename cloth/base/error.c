@@ -6,8 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A sentence that is too long, because of a path of thousands of letters say, loses its middle:
- * where it happened stands at the begin, why and what to do at the end. whole: longer than size. */
+/* A message may be too long, for example with a path of thousands of letters. Then it loses its
+ * middle: its begin says where it happened, its end says why and what to do. whole: longer than
+ * size. */
 static void cut_middle(const char *whole, char *text, size_t size)
 {
     static const char gap[] = " ... ";

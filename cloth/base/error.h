@@ -1,8 +1,8 @@
 #ifndef CLOTH_BASE_ERROR_H
 #define CLOTH_BASE_ERROR_H
 
-/* How every fallible function of the cloth reports: an int code, and one sentence for a person.
- * The first failure wins: cloth_fail does not overwrite an error that is already set. */
+/* How every function of the cloth that can fail reports: an int code, and one error message. The
+ * first failure wins: cloth_fail does not overwrite an error that is already set. */
 
 enum cloth_code {
     CLOTH_OK = 0,
@@ -19,7 +19,7 @@ struct cloth_error {
     char text[1024];
 };
 
-/* Sets code and sentence (printf form, no trailing newline; one that is too long loses its middle)
+/* Sets code and message (printf form, no trailing newline; one that is too long loses its middle)
  * unless an error is already set. Returns the code that is set, so that `return cloth_fail(...)`
  * reads well. `error` may be NULL. Local. */
 int cloth_fail(struct cloth_error *error, int code, const char *format, ...)

@@ -5,21 +5,21 @@
 
 #include <stddef.h>
 
-/* Memory whose failure is an error with a sentence. Everything is freed with free(). Local. */
+/* Memory whose failure is an error with a message. Everything is freed with free(). Local. */
 
 /* A zeroed array of n items; also for n = 0 a block that can be freed. NULL and CLOTH_E_MEMORY when
  * there is none. */
 void *cloth_alloc(size_t n, size_t size, struct cloth_error *error);
 
-/* A list that grows: zeroed at first, `items` is freed by who owns the list. */
+/* A list that grows. It is zeroed at first; the owner of the list frees `items`. */
 struct cloth_list {
     void *items;
     size_t n, capacity; /* items */
 };
 
-/* Room for `count` more items of `size` bytes at the end of the list, not initialised, counted in n
- * at once; valid until the next call. The same size on every call. NULL and CLOTH_E_MEMORY leave
- * the list as it was. */
+/* Makes room for `count` more items of `size` bytes at the end of the list, not initialised, and
+ * adds them to n at once. The pointer is valid until the next call. The size is the same on every
+ * call. NULL and CLOTH_E_MEMORY leave the list as it was. */
 void *cloth_list_add(struct cloth_list *list, size_t size, size_t count, struct cloth_error *error);
 
 #endif

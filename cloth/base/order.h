@@ -3,7 +3,7 @@
 
 #include <stdint.h>
 
-/* How two numbers are ordered, as qsort asks: below 0, 0 or above 0. Their difference is none. */
+/* Compares two numbers for qsort: below 0, 0 or above 0. Their difference might overflow. */
 static inline int cloth_compare_u32(uint32_t a, uint32_t b)
 {
     return (a > b) - (a < b);

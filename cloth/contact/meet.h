@@ -7,18 +7,20 @@
  * functions; nothing is allocated. */
 
 /* After a step: puts the vertices that are on or in a shape onto its surface, and gives those that
- * go into it the normal velocity of the surface; what is tangent stays. Returns how many it put
- * there. free: 1 for a vertex that moves, 0 for one that is held; x: m, v: m/s. */
+ * go into it the normal velocity of the surface. Tangential velocities do not change. Returns how
+ * many vertices it put there. free: 1 for a vertex that moves, 0 for one that is held; x: m, v:
+ * m/s. */
 size_t contact_project(const struct contact_shape *shape, const struct contact_pose *pose, size_t n,
                        const double *free, phys_vec *x, phys_vec *v);
 
-/* The same of one vertex that leaves the shape along a way with way.normal = 1; hit: that of
+/* The same for one vertex, which leaves the shape along `way` with way.normal = 1. hit: that of
  * contact_closest at x. */
 bool contact_leave(const struct contact_hit *hit, const phys_vec *way, phys_vec *x, phys_vec *v);
 
-/* Before a step, s: whether a vertex lies on the shape, or lands on it in the step by the velocity
- * that it has. hit: that of contact_ahead; *speed: of the vertex along the normal as the shape sees
- * it, m/s; *due: what it has to be for the step to end on the surface. */
+/* Before a step of h (s): finds whether a vertex lies on the shape, or lands on it in the step by
+ * the velocity that it has. hit: that of contact_ahead. *speed: the vertex's velocity along the
+ * normal relative to the shape, m/s. *due: the value of *speed with which the step ends on the
+ * surface. */
 enum contact_meeting { CONTACT_APART, CONTACT_LIES, CONTACT_LANDS };
 enum contact_meeting contact_meet(const struct contact_hit *hit, double h, const phys_vec *v,
                                   double *speed, double *due);

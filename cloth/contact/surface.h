@@ -11,9 +11,9 @@ enum {
     CONTACT_SURFACE_TRIANGLES = 12 * CONTACT_CELLS * CONTACT_CELLS
 };
 
-/* Of a shape with bounds, in the axes of its parameters. vertex: point (m) and normal of each, for
- * each side of the box around it its own; triangle: their numbers, counterclockwise from outside.
- */
+/* Makes the surface of a shape with bounds, in the axes of its parameters. vertex: point (m) and
+ * normal of each; each side of the box around the shape has vertices of its own. triangle: numbers
+ * of vertices, counterclockwise from outside. */
 void contact_surface(const struct contact_shape *shape, double (*vertex)[6],
                      uint32_t (*triangle)[3]);
 

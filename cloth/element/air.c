@@ -1,5 +1,5 @@
-/* Drag and wind on faces (cloth/physics/air.h). The matrix does not know of them, so steps have a
- * limit. Faces have nothing in their list but corners. */
+/* Drag and wind on faces (cloth/physics/air.h). They are not in the matrix, so steps have a limit.
+ * The list of faces has corners only. */
 #include "cloth/physics/air.h"
 #include "cloth/element/kind.h"
 
@@ -12,9 +12,9 @@ static bool air_has(const struct model *model, const struct model_cloth *cloth)
     return model_has_air(model);
 }
 
-/* The longest step, s, in which the air's push on a cloth does not turn its velocity round and
- * more: the slope of the drag over the mass, rho C |u| / density, times h is to be below 2. At the
- * speed, m/s, that the cloth starts with against the wind at its strongest. */
+/* The longest step, s, in which the drag of the air does not more than reverse the velocity of a
+ * cloth. The slope of the drag over the mass, rho C |u| / density, times h must be below 2. speed:
+ * |u| of the cloth's start against the strongest wind, m/s. */
 static double air_limit(const struct model *model, double density, double speed)
 {
     const struct phys_air *air = &model->air;

@@ -6,11 +6,11 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* The cut of the vertices into blocks of about `grain`: METIS' recursive bisection with a fixed
- * seed, so that blocks with near numbers are near in space and any rank may own a contiguous range;
- * balanced by vertices; inside a block ordered for locality (reverse Cuthill-McKee of the block's
- * own graph, ties by vertex number). Depends on the graph and the grain only, never on ranks or
- * threads.
+/* The cut of the vertices into blocks of about `grain`, balanced by vertices. METIS' recursive
+ * bisection has a fixed seed. Its blocks with near numbers are near in space, so any rank may own a
+ * contiguous range. Inside a block vertices are ordered for locality (reverse Cuthill-McKee of the
+ * block's own graph, ties by vertex number). The cut depends on the graph and the grain only, never
+ * on ranks or threads.
  *
  * A vertex has a place: places are numbered block after block. Vertices that are not used have
  * none. */
@@ -26,21 +26,21 @@ struct mesh_blocks {
     uint64_t hash;    /* XXH64 of n_blocks, start and vertex as little-endian 32-bit numbers */
 };
 
-/* Who is joined to whom by springs or elements, told pair by pair: `each` calls visit(to, a, b) for
- * every pair, the same pairs in the same order each time (any order, repeats allowed). So nobody
- * has to store them. */
+/* Which vertices springs or elements join, pair by pair: `each` calls visit(to, a, b) for every
+ * pair, the same pairs in the same order each time (any order, repeats allowed). So nobody has to
+ * store them. */
 struct mesh_pairs {
     const void *context;
     void (*each)(const void *context, void (*visit)(void *to, uint32_t a, uint32_t b), void *to);
 };
 
-/* used: one byte a vertex. grain >= 1; the number of blocks is ceil(used vertices / grain), from
- * MESH_MANY_BLOCKS on the nearest multiple of four (the larger of two; as long as there are so many
- * vertices), and no block is empty: where METIS leaves some empty, the largest others are split
- * along their inner order. Without any pairs, blocks are runs of vertices by number. Errors:
- * CLOTH_E_INPUT (grain 0, a pair with a vertex that is not used), CLOTH_E_LIBRARY (METIS failed),
- * CLOTH_E_MEMORY. Local, the same result everywhere. Not by two threads at once: METIS seeds and
- * draws from the C library's random numbers. */
+/* Cuts the used vertices into blocks. used: one byte a vertex; grain >= 1. The number of blocks is
+ * ceil(used vertices / grain). From MESH_MANY_BLOCKS on it is the nearest multiple of four (the
+ * larger of two), as long as there are so many vertices. No block is empty: where METIS leaves some
+ * empty, the largest others are split along their inner order. Without any pairs, blocks are runs
+ * of vertices by number. Errors: CLOTH_E_INPUT (grain 0, a pair with a vertex that is not used),
+ * CLOTH_E_LIBRARY (METIS failed), CLOTH_E_MEMORY. Local, the same result everywhere. Not by two
+ * threads at once: METIS seeds and draws from the C library's random numbers. */
 int mesh_blocks_cut(struct mesh_blocks *blocks, uint32_t n_vertices, const unsigned char *used,
                     const struct mesh_pairs *pairs, uint32_t grain, struct cloth_error *error);
 void mesh_blocks_free(struct mesh_blocks *blocks);

@@ -15,10 +15,10 @@ struct mesh_elastic {
  * centre of inversion, so a uniform strain moves it as it moves the corners of the cells, and the
  * sum over the springs of a cell is exact: C = sum of k l^2 t t t t / area, t the direction of a
  * spring (Born & Huang 1954). Without bend springs a sheet of any size with free edges has these
- * moduli; one whose cells are cut by turns but for a layer about a cell wide at its edges.
- * docs/physics.md has the closed forms. All NaN of a mesh that is no grid, and of mirrored cells
- * with one diagonal spring each: their quarters shear against each other when they are pulled, so
- * the sheet as a whole is not uniform. Pure. */
+ * moduli. With MESH_ALTERNATE cells it has them except in a layer about a cell wide at its edges.
+ * docs/physics.md has the closed forms. All are NaN for a mesh that is no grid. They are NaN, too,
+ * for mirrored cells with one diagonal spring each. The quarters of such a sheet shear against each
+ * other when they are pulled, so the sheet as a whole is not uniform. Pure. */
 struct mesh_elastic mesh_elastic_of(const struct mesh *mesh, const struct mesh_moduli *moduli);
 
 #endif

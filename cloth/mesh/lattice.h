@@ -3,16 +3,21 @@
 
 #include "cloth/mesh/mesh.h"
 
-/* The springs of a mesh, after the design's rules (docs/design.md):
- * grids: stretch along rows and columns, half of k on border edges; shear along both
- * diagonals of each cell or the one that cuts it; bend over two vertices along rows and columns,
- * half of k along the border; k is the modulus, N/m. other meshes: every edge of a triangle is
- * stretch with k = modulus
- * * area of its triangles / length^2; the vertices opposite an inner edge are joined by bend with k
- * = modulus * area of the two triangles / length^2; shear has none. lone edges that are no
- * triangle's: stretch with k = ea / length. Rest lengths are the distances in the mesh as
- * positioned. Springs with k = 0 are left out. Sorted by (a, b), a < b; two springs may join the
- * same vertices, stretch before bend then. */
+/* The springs of a mesh, after the design's rules (docs/design.md). The modulus is in N/m.
+ *
+ * Grids: k is the modulus. Stretch springs lie along rows and columns, shear springs along both
+ * diagonals of each cell or along the one that cuts it, bend springs over two vertices along rows
+ * and columns. Stretch and bend springs along the border have half of k.
+ *
+ * Other meshes: every edge of a triangle is a stretch spring with k = modulus * area of its
+ * triangles / length^2. A bend spring joins the vertices opposite an inner edge, with k = modulus *
+ * area of the two triangles / length^2. There are no shear springs.
+ *
+ * Lone edges that are no triangle's: stretch springs with k = ea / length.
+ *
+ * Rest lengths are the distances in the mesh as positioned. Springs with k = 0 are left out.
+ * Springs are sorted by (a, b), a < b; two springs may join the same vertices, then stretch comes
+ * before bend. */
 enum mesh_spring_kind { MESH_STRETCH, MESH_SHEAR, MESH_BEND };
 
 struct mesh_spring {
@@ -31,15 +36,16 @@ struct mesh_moduli {
     double ea;                          /* N, of lone edges: force / strain */
 };
 
-/* What joins vertices that are all in a region has the moduli of that; which diagonals there are
- * those of the mesh say. */
+/* A spring whose ends are in a region has the moduli of that region. The moduli of the mesh say
+ * which diagonals there are. */
 struct mesh_regions {
     const uint64_t *mask;             /* as mesh_region wants it */
     const struct mesh_moduli *moduli; /* by region */
 };
 
-/* To be gone through in order, as often as wanted. The springs of a grid are made as they are
- * visited, those of other meshes are stored. Mesh and regions must outlive it. */
+/* The springs of a mesh, which mesh_lattice_each visits in order, as often as wanted. Those of a
+ * grid are made as they are visited, those of other meshes are stored. Mesh and regions must
+ * outlive it. */
 struct mesh_lattice {
     const struct mesh *mesh;
     struct mesh_moduli moduli;

@@ -7,18 +7,18 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Which diagonal cuts the cells of a grid in two triangles. SAME: that from vertex (i, j) to
- * (i + 1, j + 1) in all; ALTERNATE: this one and the other by turns, as on a chessboard; MIRRORED:
- * this one in the first quarter of the sheet, of which the others are mirror images at the lines
- * through its middle. Where the number of cells along an axis is odd, those in the middle have no
- * image: along this row or column of cells the diagonals go by turns. EQUILATERAL: not cells but
- * equilateral triangles, see mesh_grid. */
+/* Which diagonal cuts the cells of a grid in two triangles. SAME: that from vertex (i, j) to (i +
+ * 1, j + 1) in all. ALTERNATE: this one and the other by turns, as on a chessboard. MIRRORED: this
+ * one in the first quarter of the sheet; the other quarters are mirror images of the first at the
+ * lines through the middle. Where the number of cells along an axis is odd, those in the middle
+ * have no image: along this row or column of cells the diagonals go by turns. EQUILATERAL: not
+ * cells but equilateral triangles, see mesh_grid. */
 enum mesh_cells { MESH_SAME, MESH_ALTERNATE, MESH_MIRRORED, MESH_EQUILATERAL };
 
 /* A mesh as it was given: vertices, polygons in the input's order and numbering, their triangles,
  * and edges that were given without triangles (chains). All arrays belong to the mesh. Of a grid
- * only the positions are stored: faces, triangles and uv are asked for with mesh_face, mesh_corners
- * and mesh_uv, which know every mesh. Local functions. */
+ * only the positions are stored: mesh_face, mesh_corners and mesh_uv give faces, triangles and uv
+ * of any mesh. Local functions. */
 struct mesh {
     uint32_t n_vertices;
     double *position; /* n_vertices x 3, metres */
@@ -42,15 +42,19 @@ struct mesh {
     enum mesh_cells grid_cells;
 };
 
-/* A flat sheet in the x-z plane (y = 0, +y its normal's side), width along x (u), height along z
- * (v), both in metres and centred on the origin; nx, ny >= 2 vertices, row-major, u fastest: vertex
- * j * nx + i. Two triangles a cell, cut along the diagonal that `cells` says; faces are
- * these triangles, wound so that normals are +y. uv in metres from vertex 0. MESH_EQUILATERAL: rows
- * by turns have nx and nx - 1 vertices, so all triangles are equilateral, both sides are ragged and
- * row j begins at vertex j * nx - j / 2; the height follows of the width, `height` is not read; to
- * all others such a mesh is no grid, its arrays are stored. Errors: CLOTH_E_INPUT
- * for sizes that are not positive and finite, fewer than 2 vertices a side, more than 2^31 corners;
- * CLOTH_E_MEMORY. After an error the mesh is empty, here and in the next two functions. */
+/* Makes a flat sheet in the x-z plane (y = 0, +y its normal's side), centred on the origin. width
+ * is along x (u), height along z (v), both in metres. nx, ny >= 2 vertices are row-major, u
+ * fastest: vertex j * nx + i. A cell has two triangles, cut along the diagonal that `cells` says;
+ * faces are these triangles, wound so that normals are +y. uv is in metres from vertex 0.
+ *
+ * MESH_EQUILATERAL: rows have nx and nx - 1 vertices by turns, so that all triangles are
+ * equilateral and both sides are ragged. Row j begins at vertex j * nx - j / 2. The height follows
+ * from the width; `height` is not read. For all other functions such a mesh is no grid: its arrays
+ * are stored.
+ *
+ * Errors: CLOTH_E_INPUT for sizes that are not positive and finite, fewer than 2 vertices a side,
+ * more than 2^31 corners; CLOTH_E_MEMORY. After an error the mesh is empty, as it is after one of
+ * mesh_read_obj and mesh_inline. */
 int mesh_grid(struct mesh *mesh, double width, double height, uint32_t nx, uint32_t ny,
               enum mesh_cells cells, struct cloth_error *error);
 
@@ -62,12 +66,12 @@ bool mesh_cell_turned(const struct mesh *mesh, uint32_t i, uint32_t j);
 
 /* Reads v (x y z, anything after them ignored), vt, f (any polygon; v, v/vt, v//vn, v/vt/vn;
  * negative indices) and l (lone edges) of a Wavefront OBJ file; all else is skipped. Errors name
- * file and line: no vertices, numbers that are not numbers or not finite, indices out of range,
- * faces with fewer than 3 or repeated corners, polygons of more than 3 without area or that cross
- * or touch themselves, an edge shared by more than two triangles (non-manifold, at the third face),
- * a lone edge that stands twice, files beyond 2^31 vertices or corners. A line ended by `\` goes on
- * in the next and counts as the first. Codes: CLOTH_E_INPUT, CLOTH_E_IO (cannot be read),
- * CLOTH_E_MEMORY. */
+ * file and line. They are: no vertices, numbers that are none or not finite, indices out of range,
+ * faces with fewer than 3 or repeated corners. A polygon of more than 3 corners may not be without
+ * area, nor cross or touch itself. More errors are: an edge shared by more than two triangles
+ * (non-manifold, at the third face), a lone edge that stands twice, files beyond 2^31 vertices or
+ * corners. A line ended by `\` goes on in the next and counts as the first. Codes: CLOTH_E_INPUT,
+ * CLOTH_E_IO (cannot be read), CLOTH_E_MEMORY. */
 int mesh_read_obj(struct mesh *mesh, const char *path, struct cloth_error *error);
 
 /* Takes copies of the arrays: vertices n x 3, edges n_edges x 2, triangles n_triangles x 3 (either
@@ -128,8 +132,8 @@ void mesh_add_mass(const struct mesh *mesh, double density, double *mass);
 void mesh_add_mass_of(const struct mesh *mesh, uint32_t triangle, double density, double *mass);
 /* The corner that triangle t lacks of the cell of a grid that it is in; UINT32_MAX: no grid. */
 uint32_t mesh_fourth(const struct mesh *mesh, uint32_t t);
-/* What a triangle gives to each of n vertices, kg: as the next but one, by_cell, or the last
- * function adds it. */
+/* What a triangle gives to each of n vertices, kg: by_cell, as mesh_add_cell_mass_of adds it, else
+ * as mesh_add_mass_of does. */
 struct mesh_share {
     uint32_t n, vertex[4];
     double mass;

@@ -17,14 +17,14 @@ struct mesh_polygon_fault {
     uint32_t side[2]; /* that cross: from these corners on to the next ones, from 0 */
 };
 
-/* Cuts a polygon into n - 2 triangles of its corners, wound as it is: fanned from its first corner
- * where all triangles of that fan lie in it, as those of any strictly convex polygon do; else ears
- * are clipped (Meisters 1975), the first one at or after each corner in turn. Looks at it along the
- * axis nearest to its normal (Newell's, as in Sutherland, Sproull & Schumacker 1974): for flat
- * polygons that is the polygon's own plane. position: x 3 of all vertices; corner: n >= 3 of these;
- * triangle: (n - 2) x 3. Angles below 1e-9 are taken for flat; ears with an angle below 1e-3
- * come last. Errors: CLOTH_E_INPUT, described in *fault, without a sentence; CLOTH_E_MEMORY. Local.
- */
+/* Cuts a polygon into n - 2 triangles of its corners, wound as it is. They are a fan from its first
+ * corner if all triangles of that fan lie in the polygon, as those of any strictly convex polygon
+ * do. Else ears are clipped (Meisters 1975), the first one at or after each corner in turn. The
+ * polygon is projected along the axis nearest to its normal (Newell's, as in Sutherland, Sproull &
+ * Schumacker 1974); for flat polygons that is its own plane. position: x 3 of all vertices; corner:
+ * n >= 3 of these; triangle: (n - 2) x 3. Angles below 1e-9 count as flat; ears with an angle below
+ * 1e-3 come last. Errors: CLOTH_E_INPUT, described in *fault, without a message; CLOTH_E_MEMORY.
+ * Local. */
 int mesh_polygon_cut(const double *position, uint32_t n, const uint32_t *corner, uint32_t *triangle,
                      struct mesh_polygon_fault *fault, struct cloth_error *error);
 

@@ -28,14 +28,14 @@ struct simulate_options {
 /* Exit codes of the program. After SIMULATE_LOST MPI may not be called any more. */
 enum { SIMULATE_OK = 0, SIMULATE_FAILED = 1, SIMULATE_BAD_INPUT = 2, SIMULATE_LOST = 3 };
 
-/* From now on SIGUSR1, on any rank, asks a run to finish its step, to write a frame of the state
- * after it and to stop, or not to begin; and SIGXFSZ is an error of the write, instead of ending
+/* From now on SIGUSR1, on any rank, ends a run: it finishes its step, writes a frame of the state
+ * after it and stops, or does not begin. SIGXFSZ becomes an error of the write, instead of ending
  * the process. Local. */
 void simulate_catch_signals(void);
 
-/* Reads, runs, reports. Every input error is found before anything is written, and printed by one
- * rank. MPI is initialised by the caller. Returns the exit code, the same on all ranks but for
- * SIMULATE_LOST, of which each rank tells by itself. Collective over MPI_COMM_WORLD. */
+/* Reads, runs, reports. It finds every input error before it writes anything, and one rank prints
+ * it. The caller initialises MPI. Returns the exit code, the same on all ranks but for
+ * SIMULATE_LOST, which each rank finds and reports by itself. Collective over MPI_COMM_WORLD. */
 int simulate(const struct simulate_options *options);
 
 #endif

@@ -1,8 +1,9 @@
-/* At any moment the folder holds whole frames: PC2's count tells how many, and it is rewritten only
+/* At any moment the folder holds whole frames. PC2's count says how many; it is rewritten only
  * after the floats and the line of the index that it counts are on the disk. Bytes beyond the
  * counted frames mean nothing; a frame that fails takes its own away again. When a folder is
- * opened, the cache of an earlier run goes first and the new one comes last, so that cache and mesh
- * always belong together. scene.json comes first: where it is not, a cloth.obj is not ours. */
+ * opened, the cache of an earlier run is removed first and the new one is made last. So cache and
+ * mesh always belong together. First of all scene.json is made: where there is none, a cloth.obj is
+ * not ours. */
 #include "cloth/output/files/files.h"
 #include "cloth/output/files/json.h"
 #include "cloth/output/files/obstacles.h"

@@ -32,9 +32,9 @@ struct output_setup {
     const struct phys_key *keys; /* of their motions */
 };
 
-/* Opens a folder for frames; files of an earlier run in it are replaced, a cloth.obj of anyone else
- * is not. Errors: CLOTH_E_INPUT
- * where the folder is one that cannot be written to, CLOTH_E_IO, CLOTH_E_MEMORY. */
+/* Opens a folder for frames. Files of an earlier run in it are replaced, a cloth.obj of anyone else
+ * is not. Errors: CLOTH_E_INPUT where the folder cannot be written to, CLOTH_E_IO, CLOTH_E_MEMORY.
+ */
 int output_open(struct output_frames **frames, const struct output_setup *setup,
                 struct cloth_error *error);
 
@@ -54,11 +54,11 @@ int output_close(struct output_frames **frames, struct cloth_error *error);
  * the folder. Local functions, on rank 0. */
 struct output_lock;
 
-/* Takes the lock, before anything else in the folder is touched; the folder is made if missing. A
- * lock of a process of this host that runs no more is replaced; then `note` says so (CLOTH_E_IO).
- * One process may take a folder twice. From the first lock on SIGTERM, SIGINT and SIGHUP remove the
- * locks before they end the process. Errors: CLOTH_E_INPUT where another run has the folder, as
- * the lock names it and the sentence does; else as of output_open. */
+/* Takes the lock before anything else in the folder changes; the folder is made if missing. A lock
+ * of a process of this host that runs no more is replaced; then `note` says so (CLOTH_E_IO). One
+ * process may take a folder twice. From the first lock on SIGTERM, SIGINT and SIGHUP remove the
+ * locks before they end the process. Errors: CLOTH_E_INPUT where another run has the folder, which
+ * the lock and the message name; else as of output_open. */
 int output_lock_take(struct output_lock **lock, const char *folder, struct cloth_error *note,
                      struct cloth_error *error);
 
@@ -103,9 +103,9 @@ int output_cache_frame(struct output_cache *cache, uint64_t frame, double *posit
 void output_cache_close(struct output_cache *cache);
 
 /* Writes a system for other solvers, in Matrix Market form (Boisvert, Pozo & Remington 1996), into
- * a folder that is there (output_lock_take): matrix.mtx (S A S + I - S: symmetric, its lower
- * triangle, one entry a place, column by column), and as arrays rhs.mtx (S b), solution.mtx (dv),
- * mass.mtx (of each unknown; 0 where held), position.mtx (after the step). Unknown 3 i + c is
+ * a folder that is there (output_lock_take). matrix.mtx is S A S + I - S: symmetric, its lower
+ * triangle, one entry a place, column by column. The others are arrays: rhs.mtx (S b), solution.mtx
+ * (dv), mass.mtx (of each unknown; 0 where held), position.mtx (after the step). Unknown 3 i + c is
  * component c of vertex i, both from 0. Files of these names are replaced. Errors as of
  * output_open. Local. */
 int output_system(const char *folder, const struct solve_system *system, struct cloth_error *error);
@@ -113,8 +113,8 @@ int output_system(const char *folder, const struct solve_system *system, struct 
 /* A flat JSON object, written whole or not at all (a temporary name, then renamed). Keys in the
  * order they are added; NaN and infinities become null. */
 struct output_report;
-/* Whether a report could be written to the path, as far as can be told without writing; made: a
- * folder that will be there by then, or NULL. CLOTH_E_INPUT with what is wrong, not the path. */
+/* Checks, without writing, whether a report can be written to the path. made: a folder that will be
+ * there by then, or NULL. CLOTH_E_INPUT with what is wrong, not the path. */
 int output_report_check(const char *path, const char *made, struct cloth_error *error);
 int output_report_new(struct output_report **report, struct cloth_error *error);
 void output_report_text(struct output_report *report, const char *key, const char *value);

@@ -3,14 +3,14 @@
 
 #include "cloth/physics/element.h"
 
-/* Drag and wind on triangles. With u the velocity of the wind against the mean of the corners', n
- * the unit normal and A the area of a triangle as it is now, the air pushes it by
+/* Drag and wind on triangles. Let u be the velocity of the wind minus the mean of the corners', n
+ * the unit normal and A the present area of a triangle. The air pushes the triangle by
  *
  *     F = density / 2  A  (normal |u_n| u_n + tangent |u_t| u_t),   u_n = (u . n) n,  u_t = u - u_n
  *
- * a third of it on each corner, or, where a fourth one is named, a quarter on each: dynamic
- * pressure by area and two coefficients, that of a plate across the stream (1.17 to 1.28 as
- * measured: Hoerner 1965) and that of friction along it. Both sides of a triangle are alike. Pure
+ * A third of it acts on each corner, or, where a fourth corner is named, a quarter on each. This is
+ * dynamic pressure by area and two coefficients: that of a plate across the stream (measured: 1.17
+ * to 1.28, Hoerner 1965) and that of friction along it. Both sides of a triangle are alike. Pure
  * functions; nothing is allocated. */
 struct phys_air {
     double density;         /* kg/m^3; 0: no air */
@@ -18,9 +18,9 @@ struct phys_air {
     double normal, tangent; /* coefficients, >= 0 */
 };
 
-/* Adds the forces (N) on the block's own corners to f. corner: of n triangles, and who else takes
- * part in their forces: the fourth corner of a cell, or PHYS_NO_CORNER. A triangle without area has
- * none. */
+/* Adds the forces (N) on the block's own corners to f. corner: of n triangles, and the fourth
+ * corner of the cell, which shares the force, or PHYS_NO_CORNER. There is no force on a triangle
+ * without area. */
 void phys_air_force(const struct phys_air *air, size_t n, const uint32_t (*corner)[4],
                     const struct phys_sight *sight, phys_vec *f);
 

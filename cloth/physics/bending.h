@@ -4,8 +4,9 @@
 #include "cloth/physics/element.h"
 
 /* Bending about the inner edges of a mesh. Corners 0 and 1 of an element are the ends of the edge,
- * 2 and 3 the vertices opposite in its two triangles, (0, 1, 2) and (1, 0, 3). With theta the angle
- * between their normals, |theta| < pi, above 0 where the edge is a ridge on their side:
+ * 2 and 3 the vertices opposite in its two triangles, (0, 1, 2) and (1, 0, 3). theta is the angle
+ * between their normals, |theta| < pi, above 0 where the edge is a ridge on their side. The
+ * energies are:
  *     hinge      W = k / 2 (s - s0)^2,  s = 2 sin(theta / 2),  s0 that of the rest shape     (J)
  *     quadratic  W = 1 / 2 |sum of w_i x_i|^2,  for a rest shape that is flat                (J)
  * (Grinspun, Hirani, Desbrun, Schroeder 2003; Bergou, Wardetzky, Harmon, Zorin, Grinspun 2006.) s
@@ -13,14 +14,15 @@
  * length L between triangles of areas A1 and A2 is
  *     k = D L^2 / (A1 + A2)                                                                   (N m)
  * with D the rigidity (N m) of the threads that cross the edge. So a regular mesh that is bent to a
- * cylinder has D / 2 times curvature squared for each area, along the edges of a right-angled grid
- * and in any direction of equilateral triangles; docs/physics.md says how far others miss it.
+ * cylinder has D / 2 times curvature squared for each area. This holds along the edges of a
+ * right-angled grid and in any direction of equilateral triangles; docs/physics.md says how far
+ * others miss it.
  *
- * Forces have neither sum nor torque. K of a hinge is k (ds/dx)(ds/dx)'; what bends the slope
- * itself is left out, which vanishes at rest, and is in `full`. That of the quadratic energy is
- * constant and whole; it has no damping, which would brake the turns of what is bent: a hinge
- * without stiffness has. A hinge whose triangle lost its area acts through the other alone. Pure
- * functions; nothing is allocated. */
+ * Forces have neither sum nor torque. K of a hinge is k (ds/dx)(ds/dx)'. It leaves out the second
+ * derivative of s, which vanishes at rest and is in `full`. K of the quadratic energy is constant
+ * and whole. The quadratic energy has no damping of its own, which would brake rotations of a bent
+ * cloth: a hinge without stiffness has the damping. A hinge whose triangle lost its area acts
+ * through the other alone. Pure functions; nothing is allocated. */
 
 struct phys_hinges {
     size_t n;

@@ -2,12 +2,12 @@
 #define CLOTH_PHYSICS_LIMIT_H
 
 /* How long explicit steps may be. A mode of vibration is s'' + a s' + omega^2 s = 0, omega in
- * rad/s, a in 1/s (2 zeta omega); every function gives the h, s, below which its steps do not let
- * it grow, by the trace and determinant of one step, or the polynomial of Runge and Kutta. Pure
- * functions. */
+ * rad/s, a in 1/s (2 zeta omega). Every function returns the h, s, below which its steps do not let
+ * the mode grow. It follows from the trace and determinant of one step, or from the polynomial of
+ * Runge and Kutta. Pure functions. */
 
-/* x by the old v: h = a / omega^2 = 2 zeta / omega, so 0 without damping, when each step makes the
- * mode sqrt(1 + h^2 omega^2) times as large; less where zeta > 1. */
+/* x by the old v: h = a / omega^2 = 2 zeta / omega, less where zeta > 1. Without damping it is 0:
+ * each step makes the mode sqrt(1 + h^2 omega^2) times as large. */
 double phys_limit_euler(double omega, double a);
 
 /* x by the new v: 2 / omega, less where there is damping. */
@@ -17,9 +17,9 @@ double phys_limit_symplectic(double omega, double a);
  * less where there is such damping. */
 double phys_limit_verlet(double omega, double a);
 
-/* The explicit midpoint method, for which an undamped mode is sqrt(1 + (h omega)^4 / 4) times as
- * large after each step: 0 without damping, about 2 zeta^(1/3) / omega where there is little,
- * 2 / omega where zeta = 1, less beyond: 2 over the faster rate. */
+/* The explicit midpoint method. Without damping it is 0: each step makes the mode sqrt(1 + (h
+ * omega)^4 / 4) times as large. With little damping it is about 2 zeta^(1/3) / omega. It is 2 /
+ * omega where zeta = 1, and less beyond: 2 over the faster rate. */
 double phys_limit_midpoint(double omega, double a);
 
 /* The classical Runge-Kutta method: 2.83 / omega, and 2.79 / a where damping rules. */

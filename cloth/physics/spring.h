@@ -6,16 +6,16 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Damped springs between particles. With l = |xb - xa| and u = (xb - xa) / l a spring pulls a by
+/* Damped springs between particles. With l = |xb - xa| and u = (xb - xa) / l, a spring pulls a by
  *     f = k (l - L) u + c (u . (vb - va)) u        and b by -f                      (N)
  * and its stiffness towards a difference of positions is
  *     K = k (u u' + t (I - u u')),  t = max(0, 1 - L / l)                           (N/m)
- * where the negative transverse term of a spring in compression is dropped, so that K is never
- * indefinite; PHYS_FULL keeps it, t = 1 - L / l: K is then the exact slope of the force;
- * PHYS_ABSOLUTE turns its sign, t = min(1, |1 - L / l|) (the eigenvalues' absolute values, after
- * Chen et al. 2024): a step pushes springs aside no further than their push is a slope for. Two
- * particles at one place have no direction: u = 0 there, and only t and its K remain defined, as
- * zero; absolute as t = 1. With an L just below 0 (for 0) t = 1 there, too, but not with PHYS_FULL.
+ * This drops the negative transverse term of a compressed spring, so that K is never indefinite.
+ * PHYS_FULL keeps it, t = 1 - L / l: K is then the exact slope of the force. PHYS_ABSOLUTE changes
+ * its sign, t = min(1, |1 - L / l|) (the eigenvalues' absolute values, after Chen et al. 2024). So
+ * a step moves compressed springs aside no further than the slope of their force holds. Two
+ * particles at one place have no direction: there u = 0 and t = 0, with PHYS_ABSOLUTE t = 1. With
+ * an L just below 0 (for 0) t = 1 there, too, but not with PHYS_FULL.
  *
  * Functions come in pairs. The plain one has both ends in the same arrays and writes both rows. The
  * one called `_cut` has end 1 in arrays of another block, and writes the rows of end 0 only; the
@@ -39,9 +39,9 @@ void phys_springs_force_cut(const struct phys_springs *springs, const phys_vec *
                             const phys_vec *v, const phys_vec *x_other, const phys_vec *v_other,
                             phys_vec *f);
 
-/* The springs' part of the matrix of an implicit step of h seconds, h c u u' + h^2 K = alpha I + w
- * w', for each spring as four doubles w0 w1 w2 alpha (value: n; kg). end 1 is looked up in x_other,
- * which is x where both ends are here. */
+/* Makes the springs' part of the matrix of an implicit step of h seconds, h c u u' + h^2 K = alpha
+ * I + w w'. Each spring has four doubles w0 w1 w2 alpha (value: n; kg). Its end 1 is a row of
+ * x_other, which is x where both ends are here. */
 void phys_springs_matrix(const struct phys_springs *springs, double h, const phys_vec *x,
                          const phys_vec *x_other, phys_vec *value);
 

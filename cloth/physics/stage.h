@@ -33,9 +33,9 @@ struct phys_runge {
     phys_vec *x0, *v0, *sum_x, *sum_v;
 };
 
-/* Ends stage 0, 1, 2 or 3 of a step of h seconds, whose slopes are v and the acceleration a at x,
- * v: keeps the slopes and moves x, v to where the next stage is, after stage 3 to the end of the
- * step. Stage 0 needs nothing of *runge. */
+/* Ends stage 0, 1, 2 or 3 of a step of h seconds. The slopes of the stage are v and the
+ * acceleration a at x, v. Keeps the slopes and moves x, v to the next stage, after stage 3 to the
+ * end of the step. Stage 0 needs nothing of *runge. */
 enum { PHYS_RUNGE_STAGES = 4 };
 void phys_runge_stage(size_t n, double h, int stage, const phys_vec *a,
                       const struct phys_runge *runge, phys_vec *x, phys_vec *v);

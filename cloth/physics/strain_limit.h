@@ -4,13 +4,13 @@
 #include "cloth/physics/element.h"
 
 /* Springs that act one way: an edge is pulled back where it is longer than a limit, and is free
- * where it is shorter. With l = |x1 - x0|, u = (x1 - x0) / l and the limit l0 = (1 + a) L, a the
- * strain from which on it acts and L the length at rest:
+ * where it is shorter. Let l = |x1 - x0|, u = (x1 - x0) / l and the limit l0 = (1 + a) L, with a
+ * the strain from which on it acts and L the length at rest. Then
  *     energy  W = k / 2 (l - l0)^2  where l > l0, else 0                                     (J)
  *     force   k (l - l0) u on corner 0, the opposite on corner 1                             (N)
  *     K = k (u u' + t (I - u u')),  t = 1 - l0 / l,  where l > l0, else 0                    (N/m)
- * That Provot (1995) moves the ends of such a spring until it is short enough is made an energy
- * here; force and K are its derivatives, as of any spring. W and the force are continuous, K is
+ * Provot (1995) moves the ends of such a spring until it is short enough. Here the limit is an
+ * energy; force and K are its derivatives, as of any spring. W and the force are continuous, K is
  * not. K is never indefinite, so nothing is left out of it. There is no damping. Pure functions;
  * nothing is allocated. */
 struct phys_strain_limits {
@@ -30,7 +30,8 @@ void phys_strain_limits_matrix(const struct phys_strain_limits *limits, size_t f
 double phys_strain_limits_energy(const struct phys_strain_limits *limits,
                                  const struct phys_sight *sight);
 
-/* The same matrix as if each edge had come to its limit as it lies: K = k u u' at least. */
+/* The same matrix as if each edge, where it is now, had just reached its limit: K = k u u' at
+ * least. */
 void phys_strain_limits_stiffest(const struct phys_strain_limits *limits, size_t from, size_t to,
                                  double h, const struct phys_sight *sight, struct phys_pair *pair);
 

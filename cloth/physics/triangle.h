@@ -4,9 +4,9 @@
 #include "cloth/physics/element.h"
 
 /* Triangles of an orthotropic membrane with corotated linear strain (Etzmuss, Keckeisen, Strasser
- * 2003) in plane stress. With the rest shape in material coordinates u (warp) and v (weft), F = dx
- * / d(u, v), 3 x 2, F = R S its polar decomposition (R with orthonormal columns, S symmetric, not
- * negative), J the quarter turn and C the moduli:
+ * 2003) in plane stress. The rest shape is in material coordinates u (warp) and v (weft). F = dx /
+ * d(u, v) is 3 x 2, and F = R S is its polar decomposition (R with orthonormal columns, S
+ * symmetric, not negative). J is the quarter turn and C are the moduli.
  *     energy  W = area / 2 (S - I) : C : (S - I)                                          (J)
  *     stress  T = C : (S - I + damping dS/dt)                                             (N/m)
  *     forces  f_i = -area P g_i,  P = R (T - c J),  c = (T : J S) / tr S                  (N)
@@ -14,14 +14,15 @@
  * that forces have no torque. The papers have P = R T (`uncorrected`): where moduli differ, a
  * torque -c (tr S) area about the normal is left (phys_triangles_torque).
  *
- * S comes by square roots alone: F'F = S^2, det S = |F_u x F_v|, tr S = sqrt(tr F'F + 2 det S), S =
+ * S needs square roots alone: F'F = S^2, det S = |F_u x F_v|, tr S = sqrt(tr F'F + 2 det S), S =
  * (F'F + det S) / tr S. A triangle without area has no normal: only forces along what is left of it
- * remain; one that is a point has none.
+ * remain. A triangle that is a point has no forces.
  *
- * K of a step is R k R' with k the stiffness at rest, and the parts of the stress that resist a
- * turn where they do: area ((S^-1 (T - c J))+ against moves along the normal, max(T : S, 0) against
- * spin in the plane. What compression gives, and how the strain depends on the turn, are left out:
- * K is never indefinite. `full` has them all. Pure functions; nothing is allocated. */
+ * K of a step is R k R' with k the stiffness at rest, and those parts of the stress that resist a
+ * rotation. They are, times the area, (S^-1 (T - c J))+ against moves along the normal and max(T :
+ * S, 0) against rotation in the plane. The parts of compression, and how the strain depends on the
+ * rotation, are left out: K is never indefinite. `full` has them all. Pure functions; nothing is
+ * allocated. */
 
 /* Plane stress: stresses (N/m) of strains. */
 struct phys_membrane {
@@ -30,9 +31,9 @@ struct phys_membrane {
     int uncorrected;  /* forces as the papers have them */
 };
 
-/* Moduli (N/m) along warp and weft and of shear, Poisson ratio nu12: how much a pull along the warp
- * narrows along the weft; nu21 = nu12 weft / warp. 0, or -1 unless moduli are finite and not
- * negative and nu12 nu21 < 1. */
+/* Makes a membrane of moduli (N/m) along warp and weft and of shear, and the Poisson ratio nu12:
+ * how much a pull along the warp narrows the weft; nu21 = nu12 weft / warp. Returns 0, or -1 unless
+ * moduli are finite and not negative and nu12 nu21 < 1. */
 int phys_membrane_make(double warp, double weft, double shear, double poisson, double damping,
                        struct phys_membrane *membrane);
 
@@ -44,9 +45,9 @@ struct phys_triangles {
     const struct phys_membrane *membrane; /* as many as corners name */
 };
 
-/* Coordinates along warp and weft of a triangle whose corners lie at x (m; x y z of each): its own
- * lengths, turned as the directions (u v of each corner, of any size) say; along its first edge
- * where they say nothing. local: u v of each corner, m, from corner 0. */
+/* Finds coordinates along warp and weft of a triangle whose corners lie at x (m; x y z of each).
+ * Lengths are the triangle's own. uv (u v of each corner, of any size) gives the directions;
+ * without any, warp lies along the first edge. local: u v of each corner, m, from corner 0. */
 void phys_triangle_local(const double x[9], const double uv[6], double local[6]);
 
 /* Rest shape of a triangle with corners at `uv` (m; u v of each): its gradient and area. 0, or -1
@@ -57,8 +58,8 @@ int phys_triangle_rest(const double uv[6], double gradient[4], double *area);
 void phys_triangles_force(const struct phys_triangles *triangles, const struct phys_sight *sight,
                           phys_vec *f);
 
-/* The triangles from .. to - 1: pairs (0, 1), (0, 2), (1, 2) of each, 3 (to - from) of them. at: of
- * each of these pairs, with bit 0 set where N' is wanted in place of N; NULL: nowhere. */
+/* Makes the pairs (0, 1), (0, 2), (1, 2) of the triangles from .. to - 1, 3 (to - from) pairs. at:
+ * of each pair, with bit 0 set where N' is wanted in place of N; NULL: nowhere. */
 void phys_triangles_matrix(const struct phys_triangles *triangles, size_t from, size_t to,
                            const struct phys_step *step, const struct phys_sight *sight,
                            const uint32_t *at, struct phys_pair *pair);

@@ -207,9 +207,9 @@ PHYS_INLINE void block_full(const struct phys_frame *f, const struct slope *slop
     block->antisymmetric = 0.5 * (uv - vu);
 }
 
-/* What blocks are turned into the world with: components 00 11 22, 01 12 20 of ru ru', rv rv', ru
- * rv' + rv ru'. n n' is the unit matrix without the first two; where there is no normal, nothing is
- * along it. ru rv' - rv ru' has the normal's components. */
+/* What rotates blocks into the world: components 00 11 22, 01 12 20 of ru ru', rv rv', ru rv' + rv
+ * ru'. The matrix n n' is the unit matrix minus the first two; without a normal nothing is along
+ * it. The matrix ru rv' - rv ru' has the normal's components. */
 struct world {
     phys_vec uu[6], vv[6], uv[6];
 };

@@ -144,8 +144,8 @@ static void span(const double n[3], double u[3], double v[3])
         v[k] = n[(k + 1) % 3] * u[(k + 2) % 3] - n[(k + 2) % 3] * u[(k + 1) % 3];
 }
 
-/* The sky's directions are about sqrt(2 pi / n) radians apart, so that the shadows that they throw
- * from a height are so much of it apart on the ground: blurred by 0.7 of that they melt into one.
+/* The sky's directions are about sqrt(2 pi / n) radians apart. So on the ground the shadows of a
+ * point are that fraction of its height apart. Blurred by 0.7 of this distance they melt into one.
  * In units of the lights' own blur. */
 static double ground_blur(const struct view_scene *scene, double height)
 {

@@ -4,9 +4,9 @@
 #include "cloth/model/model.h"
 #include "cloth/scene/yaml/tree.h"
 
-/* From a model that scene_check filled to one that is whole. They make what is no copy of a value
- * (meshes, motions, numbers of what is named), and check what a table cannot: names, sizes,
- * indices, files. What they allocate belongs to the model, also after an error. */
+/* These functions complete a model that scene_check filled. They make what is no copy of a value
+ * (meshes, motions, indices for names), and check what a table cannot: names, sizes, indices,
+ * files. What they allocate belongs to the model, also after an error. */
 
 /* All but the cloths. */
 int scene_build_world(struct model *model, const struct scene_tree *tree,
@@ -30,8 +30,8 @@ int scene_build_joints(struct model *model, const struct scene_tree *tree,
 int scene_build_welds(struct model *model, const struct scene_tree *tree,
                       struct cloth_error *error);
 
-/* The cloth, by number, that the key cloth of a map names; the only one where there is none. what:
- * whose key it is, in sentences: "a probe". */
+/* The cloth, by number, that the key cloth of a map names; the only cloth where the key is missing.
+ * what: whose key it is, in messages: "a probe". */
 int scene_build_cloth_of(uint32_t *cloth, const char *what, const struct model *model,
                          const struct scene_tree *tree, int node, struct cloth_error *error);
 
@@ -55,14 +55,14 @@ int scene_build_check_moduli(const struct model_cloth *cloth, const struct model
 /* That a map that picks vertices has no radius without nearest. */
 int scene_build_check_radius(const struct scene_tree *tree, int node, struct cloth_error *error);
 
-/* What picks vertices, as a map with one of the keys vertices, nearest, box filled it: that there
- * are such vertices; corners of a box are put in order. */
+/* Checks a pick that a map with one of the keys vertices, nearest, box filled: there are such
+ * vertices. Puts the corners of a box in order. */
 int scene_build_pick(struct model_pick *pick, const struct scene_tree *tree, int node,
                      const struct model_cloth *cloth, struct cloth_error *error);
 
-/* Refuses a vertex that stands twice in the list of the pick that the map `node` makes. seen: an
- * entry for each vertex of the mesh, the number of the last pick that named it; number: of this
- * one, from 1; what: "one load", and what to do. */
+/* Refuses a vertex that stands twice in the list of the pick that the map `node` makes. seen: for
+ * each vertex of the mesh, the number of the last pick that named it. number: of this pick, from 1.
+ * what: "one load", and what to do. */
 int scene_build_once(const struct model_pick *pick, const struct scene_tree *tree, int node,
                      uint32_t *seen, uint32_t number, const char *what, struct cloth_error *error);
 

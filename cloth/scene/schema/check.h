@@ -4,8 +4,8 @@
 #include "cloth/scene/schema/rules.h"
 #include "cloth/scene/yaml/tree.h"
 
-/* Checks a tree against the schema, adds the defaults and fills a zeroed model: afterwards every
- * key that has a default is there, every value is of its type and in its range, and stands in the
+/* Checks a tree against the schema, adds the defaults and fills a zeroed model. Afterwards every
+ * key that has a default is there. Every value is of its type and in its range, and stands in the
  * field that its rule names. What it allocates belongs to the model, also after an error. Errors
  * name the place and what is allowed. */
 int scene_check(struct model *model, struct scene_tree *tree, struct cloth_error *error);

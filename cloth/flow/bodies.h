@@ -86,6 +86,13 @@ static inline const phys_vec *flow_tie_values(const struct flow_table *t, const 
     return (const phys_vec *)values + flow_value_rows(t);
 }
 
+/* They as a solve sees them. p_other: p of their other ends, in a pass. */
+static inline struct solve_ties flow_ties_solved(const struct flow_ties *ties,
+                                                 const phys_vec *value, const phys_vec *p_other)
+{
+    return (struct solve_ties){ties->n_inner, ties->n, ties->end, value, p_other};
+}
+
 /* Ties of a block (step/ties.c). Adds their forces, N. Their part of the system of a step, as
  * phys_springs_system has it; of the matrix alone where b is NULL. Their energy, J, half of it
  * where the other end is in another block. */

@@ -4,9 +4,9 @@
 #include "cloth/solve/block.h"
 
 /* Preconditioners of one block of rows, made of B, the block's own part of S A S + (I - S): all
- * that its rows have on their diagonals, entries into other blocks and to held rows included, and
- * its inner entries between free rows. They are symmetric and positive definite, and leave held
- * rows at zero. Pure functions; nothing is allocated. */
+ * that its rows have on their diagonals, entries into other blocks and to held rows and ties
+ * included, and its inner entries between free rows. They are symmetric and positive definite, and
+ * leave held rows at zero. Pure functions; nothing is allocated. */
 enum solve_local {
     SOLVE_JACOBI, /* the inverses of the 3 x 3 blocks on the diagonal */
     SOLVE_IC0 /* (I + T') E (I + T), the incomplete Cholesky factorisation in 3 x 3 blocks on the

@@ -84,6 +84,17 @@ for integrator in explicit_euler symplectic_euler verlet midpoint rk4; do
     ok "by $integrator" as_always 1e-8 integrator=$integrator time.h=2e-5 time.end=0.02
 done
 
+# Preconditioners know of ties: else stiff ones take several times the iterations.
+iterations() { value cg_iterations_mean; }
+preconditioned() { # PRECONDITIONER
+    set -- --set solver.preconditioner="$1" --set solver.stop.relative=1e-6 --set 'joints[0].stiffness=50000' --set grain=12
+    run panels.yaml "$@" --report one.json && always=$(iterations) && run panels.yaml "$@" --set 'joints[0].end=100' --report one.json && timed=$(iterations) &&
+        echo "# $2 $always iterations a step, $timed where the joints are timed" >&3 && awk -v a="$always" -v b="$timed" 'BEGIN { exit !(a > 10 && b <= 1.3 * a) }'
+}
+for preconditioner in jacobi ic0 coarse ic0_coarse; do
+    ok "stiff timed joints take the iterations of others, $preconditioner" preconditioned $preconditioner
+done
+
 momentum_kept() { # of joints with held ends, what the solve lost is the residual, no more
     run panels.yaml --set 'cloths[0].pins[0].vertices=[0,7,58]' --set 'joints[0].end=0.05' --report one.json && below "momentum lost, kg m/s" "$(value momentum_lost)" 1e-10
 }

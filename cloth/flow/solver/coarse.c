@@ -42,10 +42,47 @@ static uint32_t *add_neighbours(const struct flow *flow, uint32_t b, uint32_t k,
     return to;
 }
 
+/* The patch of an end of a tie. */
+static uint32_t patch_of(const struct flow *flow, uint32_t block, uint32_t row)
+{
+    const struct solve_patches patches =
+        solve_patches_of(flow->tables.block[block].n, flow->patches);
+    return flow->patches * block + solve_patch_of(&patches, row);
+}
+
+/* Puts a patch among those from .. end - 1, which ascend, unless it is there. Returns the end. */
+static uint32_t *insert(uint32_t *from, uint32_t *end, uint32_t patch)
+{
+    uint32_t *at = from;
+    while (at < end && *at < patch)
+        at++;
+    if (at < end && *at == patch)
+        return end;
+    memmove(at + 1, at, (size_t)(end - at) * sizeof *at);
+    *at = patch;
+    return end + 1;
+}
+
+/* Adds to the neighbours of patch p of block b those that ties may join it with, at any time. */
+static uint32_t *insert_tied(const struct flow *flow, uint32_t b, uint32_t p, uint32_t *from,
+                             uint32_t *end)
+{
+    for (const struct flow_tie *tie = flow->tie; tie < flow->tie + flow->n_ties; tie++) {
+        if (tie->block[0] != b && tie->block[1] != b)
+            continue;
+        const uint32_t patch[] = {patch_of(flow, tie->block[0], tie->row[0]),
+                                  patch_of(flow, tie->block[1], tie->row[1])};
+        for (int k = 0; k < 2; k++)
+            if (patch[k] == p && patch[1 - k] != p)
+                end = insert(from, end, patch[1 - k]);
+    }
+    return end;
+}
+
 /* How many neighbours all patches can have. */
 static size_t max_patch_neighbours(const struct flow *flow)
 {
-    size_t neighbours = 0;
+    size_t neighbours = 2 * (size_t)flow->n_ties;
     for (uint32_t b = 0; b < flow->tables.n_blocks; b++)
         neighbours += 1 + (size_t)flow->tables.block[b].n_neighbours;
     return neighbours * flow->patches * flow->patches;
@@ -62,9 +99,11 @@ static void make_pattern(struct flow *flow)
         return;
     for (uint32_t b = 0; b < n_blocks; b++)
         for (uint32_t k = 0; k < flow->patches; k++) {
-            uint32_t *first = flow->patch_first + flow->patches * b + k;
-            first[1] = (uint32_t)(add_neighbours(flow, b, k, flow->patch_neighbour + *first) -
-                                  flow->patch_neighbour);
+            const uint32_t p = flow->patches * b + k;
+            uint32_t *from = flow->patch_neighbour + flow->patch_first[p];
+            uint32_t *end = add_neighbours(flow, b, k, from);
+            end = insert_tied(flow, b, p, from, end);
+            flow->patch_first[p + 1] = (uint32_t)(end - flow->patch_neighbour);
         }
     solve_pattern_make(&flow->pattern, n, flow->patch_first, flow->patch_neighbour, trouble);
 }
@@ -172,7 +211,57 @@ static struct solve_patches patches_of_neighbour(const struct flow *flow,
 }
 
 FLOW_KERNEL(couple, FLOW_CG, struct flow_args,
-            (R(table), R(a), R(basis), R(basis_ghosts), W(coupling)))
+            (R(table), R(a), R(basis), R(basis_ghosts), W(coupling), IF_MADE(tie_table),
+             TIED(tie_basis)))
+
+/* What is made of ties. */
+struct coupled_ties {
+    const struct flow *flow;
+    struct solve_block springs; /* the block, in the format of ties */
+    const phys_vec *value;
+    double *coupling;
+};
+
+static void add_to(const struct coupled_ties *m, uint32_t p, uint32_t q, const double *matrix)
+{
+    double *to = m->coupling + SOLVE_COUPLING * flow_coupling_at(m->flow, p, q);
+    for (int i = 0; i < SOLVE_COUPLING; i++)
+        to[i] += matrix[i];
+}
+
+/* Adds tie i as its row `row` of patch p sees it: on the diagonal, and beside it where the other
+ * end's patch q is the same or a later one. other: the basis there. */
+static void couple_tie(const struct coupled_ties *m, uint32_t i, uint32_t row, uint32_t p,
+                       uint32_t q, const phys_vec *basis, const phys_vec *other)
+{
+    const uint32_t end[1][2] = {{row, 0}};
+    double own[SOLVE_COUPLING] = {0}, off_diagonal[SOLVE_COUPLING] = {0};
+    solve_couple_cut(&m->springs, m->value, 1, &i, end, basis, other, own, off_diagonal);
+    add_to(m, p, p, own);
+    if (q >= p)
+        add_to(m, p, q, off_diagonal);
+}
+
+static void couple_ties(const struct coupled_ties *m, uint32_t block,
+                        const struct couple_fields *on)
+{
+    const struct flow_ties ties = flow_ties_open(on->tie_table);
+    const phys_vec *basis = on->basis;
+    for (uint32_t i = 0; i < ties.n_inner; i++) {
+        const uint32_t a = ties.end[i][0], b = ties.end[i][1];
+        const uint32_t p = patch_of(m->flow, block, a), q = patch_of(m->flow, block, b);
+        couple_tie(m, i, a, p, q, basis, basis + b);
+        couple_tie(m, i, b, q, p, basis, basis + a);
+    }
+    for (uint32_t k = 0; k < ties.n_others; k++)
+        for (uint32_t j = ties.start[k]; j < ties.start[k + 1]; j++) {
+            const uint32_t i = ties.n_inner + j, row = ties.end[i][0];
+            couple_tie(m, i, row, patch_of(m->flow, block, row),
+                       patch_of(m->flow, ties.other[k], ties.far[j]), basis,
+                       flow_rows_of(on->tied_tie_basis, k) + ties.place[k] + (j - ties.start[k]));
+        }
+}
+
 static int couple_body(const duite_call *call, const struct couple_fields *on)
 {
     const struct flow *flow = flow_of(call);
@@ -180,7 +269,11 @@ static int couple_body(const duite_call *call, const struct couple_fields *on)
     const phys_vec *values = flow_matrix_in(call, t, on->a);
     const struct solve_patches patches = solve_patches_of(t->n, flow->patches);
     const uint32_t block = on->args->block, first = patches.n * block;
+    struct coupled_ties tied = {flow, t->matrix, flow_tie_values(t, values), on->coupling};
     struct solve_couplings own, cut;
+    if (on->tie_table)
+        memset(on->coupling, 0,
+               duite_count(call, FLOW_INDEX_OF(couple, coupling)) * sizeof *on->coupling);
     solve_couple_patches(&t->matrix, &patches, values, on->basis, &own);
     for (uint32_t s = 0; s < t->n_neighbours; s++) {
         const uint32_t from = t->cut_entry[s], n = t->cut_entry[s + 1] - from;
@@ -196,6 +289,8 @@ static int couple_body(const duite_call *call, const struct couple_fields *on)
     for (uint32_t k = 0; k < patches.n; k++)
         for (uint32_t l = k; l < patches.n; l++)
             put(flow, first + k, first + l, own.matrix[k][l], on->coupling);
+    tied.springs.format = SOLVE_SPRINGS;
+    couple_ties(&tied, block, on);
     return 0;
 }
 

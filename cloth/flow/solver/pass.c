@@ -282,11 +282,8 @@ static void open_pass(const duite_call *call, const struct cg_pass_fields *on, s
     pass->tied_basis = NULL;
     pass->z_ties = pass->p_ghosts + pass->table.n_ghosts;
     pass->p_ties = pass->z_ties + pass->ties.room;
-    pass->joined = (struct solve_ties){.n_inner = pass->ties.n_inner,
-                                       .n = pass->ties.n,
-                                       .end = pass->ties.end,
-                                       .value = flow_tie_values(&pass->table, pass->values),
-                                       .p_other = pass->p_ties};
+    pass->joined =
+        flow_ties_solved(&pass->ties, flow_tie_values(&pass->table, pass->values), pass->p_ties);
 }
 
 static int cg_pass_body(const duite_call *call, const struct cg_pass_fields *on)

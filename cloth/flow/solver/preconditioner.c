@@ -44,13 +44,17 @@ void flow_preconditioner_free(struct flow *flow)
 
 /* ---- The factor of a block, of each step's matrix ---- */
 
-FLOW_KERNEL(factor, FLOW_CG, struct flow_args, (R(table), R(a), W(factor), SUM(status)))
+FLOW_KERNEL(factor, FLOW_CG, struct flow_args,
+            (R(table), R(a), W(factor), SUM(status), IF_MADE(tie_table)))
 static int factor_body(const duite_call *call, const struct factor_fields *on)
 {
     const enum solve_local local = flow_local(flow_of(call));
     struct flow_table table = flow_table_in(call, on->table), *t = &table;
     const phys_vec *values = flow_matrix_in(call, t, on->a);
-    const struct solve_cut cut = flow_table_cut_entries(t);
+    const struct flow_ties ties = flow_ties_open(on->tie_table);
+    const struct solve_ties solved = flow_ties_solved(&ties, flow_tie_values(t, values), NULL);
+    struct solve_cut cut = flow_table_cut_entries(t);
+    cut.ties = &solved;
     const int tried = solve_local_factor(&t->matrix, &cut, values, local, on->factor);
     /* The object has room for entries that are there twice, too (flow_table): zeros. */
     const size_t used = solve_local_doubles(t->n, t->matrix.row[t->n], local);

@@ -48,5 +48,5 @@ check_PROGRAMS += tests/whole/metis_cuts
 tests_whole_metis_cuts_SOURCES = tests/whole/metis_cuts.c
 tests_whole_metis_cuts_LDADD = $(METIS_LIBS)
 dist_check_SCRIPTS += tests/whole/test_golden.sh
-EXTRA_DIST += tests/whole/golden.txt
+EXTRA_DIST += tests/whole/golden.txt tests/whole/joints.sh
 TESTS += tests/whole/test_golden.sh

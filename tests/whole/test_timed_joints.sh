@@ -4,24 +4,10 @@
 . "${srcdir:-.}/tests/support/tap.sh"
 plan_later
 . "${srcdir:-.}/tests/support/probes.sh"
+. "${srcdir:-.}/tests/whole/joints.sh"
 
 # ---- Two masses, 0.5 m farther apart than a joint of 40 N/m and 0.1 kg/s is long, which acts from 0.1 s to 0.2 s ----
-cat > two.yaml << 'END'
-schema: 1
-gravity: [0, 0, 0]
-grain: 1
-cloths:
-  - {name: one, mesh: {inline: {vertices: [[0, 0, 0]]}}, mass_per_vertex: 0.1, material: m}
-  - {name: other, mesh: {inline: {vertices: [[5, 0, 0], [1, 0, 0]], edges: [[0, 1]]}}, mass_per_vertex: 0.3, material: m}
-joints: [{from: {cloth: other, vertices: [1]}, to: {cloth: one, vertex: 0}, stiffness: 40, damping: 0.1, length: 0.5, begin: 0.1, end: 0.2}]
-materials: {m: {ea: 1.0e-30}}
-time: {h: 0.001, end: 0.3, stretch_growth: 0}
-solver: {stop: {relative: 1.0e-12}}
-probes:
-  - {name: p, cloth: one, vertices: [0], values: [position, velocity]}
-  - {name: q, cloth: other, vertices: [1], values: [position, velocity]}
-END
-value() { sed -n "s/^ *\"$1\": \"*\([^\",]*\).*/\1/p" "${2:-one.json}"; }
+timed='--set joints[0].begin=0.1 --set joints[0].end=0.2'
 distance() { # its largest error over all rows, m
     rows 'function swing(t) { return exp(-r * t) * (cos(w * t) + r / w * sin(w * t)) }
         function rate(t) { return -exp(-r * t) * sin(w * t) * (w + r * r / w) }
@@ -29,39 +15,22 @@ distance() { # its largest error over all rows, m
         d = 0.5 + 0.5 * (t < 0 ? 1 : t < 0.1 ? swing(t) : swing(0.1) + rate(0.1) * (t - 0.1)) - (c("q.1.x") - c("p.0.x"))
         if (d < 0) d = -d; if (d > most) most = d } END { printf "%.3g\n", most }'
 }
-momentum() { rows '{ p = 0.1 * c("p.0.vx") + 0.3 * c("q.1.vx"); if (p < 0) p = -p; if (p > most) most = p } END { printf "%.3g\n", most }'; }
-swings() { # INTEGRATOR H MOST
-    run two.yaml --set integrator="$1" --set time.h="$2" && below "$1: distance of two masses, m" "$(distance)" "$3" &&
-        below "$1: their momentum, of 1 kg m/s at most" "$(momentum)" 1e-14
-}
 ok "free, joined and free again by rk4" swings rk4 1e-3 1e-8
 ok "by velocity Verlet" swings verlet 1e-3 1e-4
 ok "by symplectic Euler" swings symplectic_euler 1e-4 2e-3
 ok "by implicit Euler" swings implicit_euler 1e-4 4e-3
 ok "by BDF2, which begins again where the joint does" swings bdf2 1e-4 1e-4
-ok "in one block" eval 'run two.yaml --set integrator=rk4 --set grain=9 && below "distance" "$(distance)" 1e-8'
+ok "in one block" eval 'run two.yaml $timed --set integrator=rk4 --set grain=9 && below "distance" "$(distance)" 1e-8'
 
 unjudged() { # 5 J come with the joint
-    run two.yaml --set integrator="$1" --report one.json && test "$(value steps_halved)" = 0 && test "$(value steps_retaken)" = 0 && test "$(value steps)" = 300
+    # shellcheck disable=SC2086 # a list of settings
+    run two.yaml $timed --set integrator="$1" --report one.json && test "$(value steps_halved)" = 0 && test "$(value steps_retaken)" = 0 && test "$(value steps)" = 300
 }
 for integrator in implicit_euler bdf2; do
     ok "energy that comes with a joint is no step's fault, $integrator" unjudged $integrator
 done
 
 # ---- Two panels, joined along an edge, over several blocks ----
-cat > panels.yaml << 'END'
-schema: 1
-grain: 20
-cloths:
-  - {name: front, mesh: {grid: {width: 0.7, height: 0.7, nx: 8, ny: 8}}, material: m, pins: [{vertices: [0, 7]}]}
-  - {name: back, mesh: {grid: {width: 0.7, height: 0.7, nx: 8, ny: 8}}, material: m, transform: {translate: [0, -0.1, 0.72]}}
-joints:
-  - {from: {cloth: front, vertices: [56, 57, 58, 59, 60, 61, 62, 63]}, to: {cloth: back, vertices: [0, 1, 2, 3, 4, 5, 6, 7]}, stiffness: 50, damping: 0.05, length: 0}
-materials: {m: {model: triangles, density: 0.2, stretch: 200, shear: 50, bending: {rigidity: 1.0e-4}}}
-time: {h: 0.002, end: 0.1}
-solver: {stop: {relative: 1.0e-12}}
-probes: [{name: p, cloth: front, vertices: [58, 60], values: [position, reaction]}, {name: q, cloth: back, vertices: [4], values: [position]}]
-END
 seen() { run panels.yaml "$@" --report one.json && last p.60.x p.60.y p.60.z q.4.x q.4.y q.4.z p.58.rx p.58.ry p.58.rz && value energy_kinetic && value energy_elastic; }
 apart() { # the largest relative difference of two lists of numbers
     paste -d ' ' "$1" "$2" | awk '{ n = NF / 2; for (i = 1; i <= n; i++) { d = $i - $(n + i); d = d < 0 ? -d : d; s = $i < 0 ? -$i : $i; if (s > 0 && d / s > most) most = d / s } }

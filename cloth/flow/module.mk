@@ -73,6 +73,7 @@ libduite_cloth_la_SOURCES += \
     cloth/flow/solver/pass.c \
     cloth/flow/solver/preconditioner.c \
     cloth/flow/solver/coarse.c \
+    cloth/flow/solver/pattern.c \
     cloth/flow/solver/halo.c \
     cloth/flow/solver/pieces.c \
     cloth/flow/observe/finish.c \

@@ -34,7 +34,7 @@ int flow_preconditioner_factor(struct flow_state *state, const struct flow_args 
 int flow_pieces_fork(struct flow_state *state);
 
 /* The pattern of the coarse factor, in memory of the flow: all ranks agree on whether they have it.
- * (coarse.c) */
+ * (pattern.c) */
 int flow_coarse_prepare(struct flow_state *state);
 void flow_coarse_free(struct flow *flow);
 
@@ -88,6 +88,9 @@ static inline size_t flow_motion_doubles(const struct flow *flow)
 {
     return SOLVE_COARSE_STRIDE * (size_t)flow->pattern.n;
 }
+
+/* The patch of a row of a block. */
+uint32_t flow_patch_of(const struct flow *flow, uint32_t block, uint32_t row);
 
 /* Of patches p <= q: how many blocks of nine by nine are before theirs in the coupling of p's
  * block, which has for each patch its own and those of its neighbours behind it; q is one of these.

@@ -5,10 +5,10 @@
 #include "cloth/solve/block.h"
 
 /* The values of the half formats (cloth/solve/format.h), from any elements. Each entry is summed up
- * as a pair (cloth/physics/element.h), all in zero at first; an element of any number of vertices
- * adds its -A_ab to the entry of each two of them, in an order that the block's table gives: sums
- * of a cut entry are the same on both sides if both add in the same order. When all have been
- * added, the values are made of the sums. Pure functions. */
+ * as a pair (cloth/physics/element.h), which is zero at first. An element of any number of vertices
+ * adds its -A_ab to the entry of each two of them, in the order of the block's table. Sums of a cut
+ * entry are the same on both sides if both add in the same order. When all have been added, the
+ * values are made of the sums. Pure functions. */
 
 /* Adds N to an entry whose first row is that of N, or, transposed, whose second is. */
 static inline void solve_assemble(struct phys_pair *sum, bool transposed, const double n[3][3])
@@ -26,8 +26,8 @@ void solve_assemble_springs(size_t n, const uint32_t *at, const phys_vec *value,
                             struct phys_pair *sums);
 
 /* Adds n pairs of elements. at: of each pair twice its entry, and one more where the entry's first
- * row is the pair's second: such a pair stands there transposed, which its maker learns from the
- * same numbers; SOLVE_NO_ENTRY: none of the pair's rows is here. */
+ * row is the pair's second. Such a pair is transposed, which its maker sees from the same numbers.
+ * SOLVE_NO_ENTRY: none of the pair's rows is here. */
 #define SOLVE_NO_ENTRY 0xffffffffu
 void solve_assemble_pairs(size_t n, const uint32_t *at, const struct phys_pair *pair,
                           struct phys_pair *sums);

@@ -10,12 +10,12 @@ struct solve_scalars solve_scalars_start(double step, double phase)
         .phase = phase, .alpha = 1, .wanted = -1, .step = step, .stride = 1};
 }
 
-/* A residual is rubbish when its square is less than this part of the right side's: what is left is
- * rounding, of which r.z may be anything. */
-#define RUBBISH 1e-26
+/* A residual is noise when its square is less than this fraction of the right side's: only rounding
+ * is left, whose r.z may be anything. */
+#define NOISE 1e-26
 
-/* What is not a number is not small: then p.q is none either. The square of a small tolerance may
- * be zero: then nothing is small enough. */
+/* NaN never counts as converged. The square of a small tolerance may be zero: then nothing is small
+ * enough. */
 static bool small_enough(double square, double wanted)
 {
     return isfinite(square) && (square <= wanted || square < SOLVE_NOTHING);
@@ -27,10 +27,10 @@ static double wanted(const struct solve_stop *stop, double square)
     return stop->relative ? tolerance * square : tolerance;
 }
 
-/* Iterations that an error is reported of at least afterwards, and their share of all. */
+/* The delay of the error's estimate: at least so many iterations, and this share of all. */
 enum { WINDOW = 5, SHARE = 6 };
 
-/* Terms that do not fall tell nothing. */
+/* Terms that do not fall by this factor give no estimate. */
 #define FALLING 0.9
 
 double solve_scalars_error(const struct solve_scalars *scalars, double bound)
@@ -91,7 +91,7 @@ static int next_factors(const double dots[SOLVE_DOTS], struct solve_scalars *aft
         return SOLVE_OK;
     const double alpha = product / after->curvature;
     if (!isfinite(after->curvature) || !isfinite(product) || product <= 0 || !(alpha > 0)) {
-        const double rubbish = RUBBISH * after->first;
+        const double rubbish = NOISE * after->first;
         return isfinite(rubbish) && after->square <= rubbish ? SOLVE_OK : SOLVE_BREAKDOWN;
     }
     after->alpha = alpha;

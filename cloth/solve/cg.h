@@ -12,31 +12,31 @@
  *
  *     dv += alpha p,  r -= alpha q,  p = r + beta p,  q = S A p,  and the dots r.r, p.q, r.q, q.q
  *
- * From the dots come alpha = r.r / p.q and beta, before the next r is there, by its square
- * |r - alpha q|^2 = r.r - 2 alpha r.q + alpha^2 q.q. The recurrence that goes on from this number
- * is unstable (Saad 1985); here it serves one iteration, and the next pass has the true r.r
- * (Meurant 1987), so the residual is as good as that of the two-reduction form. What other ranks
- * need of a pass, rows of q and dots, is known at one time. */
+ * From the dots come alpha = r.r / p.q and beta. The next r is not there yet, so beta takes its
+ * square as |r - alpha q|^2 = r.r - 2 alpha r.q + alpha^2 q.q. A recurrence that goes on from this
+ * number is unstable (Saad 1985). Here the number serves one iteration, and the next pass has the
+ * true r.r (Meurant 1987). So the residual is as good as that of the form with two reductions. What
+ * other ranks need of a pass, rows of q and dots, is known at one time. */
 
 /* With a preconditioner M, symmetric and positive definite, the vectors z = M^-1 r and s = M^-1 q
  * are kept beside r and q:
  *
  *     dv += alpha p,  r -= alpha q,  z -= alpha s,  p = z + beta p,  q = S A p,  s = M^-1 q
  *
- * and alpha = r.z / p.q, beta = (r.z - 2 alpha z.q + alpha^2 q.s) / r.z: one reduction again, which
- * may carry what a coarse part of M^-1 needs of q. Without a preconditioner M is the identity: z is
- * r and s is q, the same vectors. */
+ * with alpha = r.z / p.q and beta = (r.z - 2 alpha z.q + alpha^2 q.s) / r.z. This is one reduction
+ * again, which may carry what a coarse part of M^-1 needs of q. Without a preconditioner M is the
+ * identity: z is r and s is q, the same vectors. */
 
-/* r is what the recurrence makes of the residual: rounding takes it away from S (b - A dv), and a
- * solve that ends by r alone may be wrong and not know. So who wants that confirmed (`confirm`) has
- * two passes more: one shows dv to the neighbours (SOLVE_SHOW), one has q = S A dv, and with it the
- * true residual, which takes the place of r (SOLVE_CHECK). Where that is not as small as it was
- * taken to be, the solve goes on from dv (SOLVE_AGAIN), some times, while that helps. */
+/* The recurrence gives r, which drifts from the residual S (b - A dv) by rounding. A solve that
+ * ends by r alone may be wrong without noticing it. So `confirm` adds two passes. The first shows
+ * dv to the neighbours (SOLVE_SHOW). The second has q = S A dv, and with it the true residual,
+ * which takes the place of r (SOLVE_CHECK). Where the true residual is too large, the solve goes on
+ * from dv (SOLVE_AGAIN), at most SOLVE_RESTARTS times, and only while that helps. */
 
-/* A solve may begin with a guess g instead of dv = 0, for a pass and a half more: it has q = S A g
- * first (SOLVE_OPEN), then begins again (SOLVE_AGAIN) from dv = alpha g with alpha = g.b / g.q, the
- * multiple of g that is nearest to the solution in the norm of A. So it is never farther from it
- * than dv = 0 is (Fischer 1998, of one vector). */
+/* A solve may begin with a guess g instead of dv = 0, for a pass and a half more. It makes q = S A
+ * g first (SOLVE_OPEN), then begins again (SOLVE_AGAIN) from dv = alpha g with alpha = g.b / g.q.
+ * This is the multiple of g that is nearest to the solution in the norm of A. So it is never
+ * farther from the solution than dv = 0 is (Fischer 1998, of one vector). */
 
 /* What a pass sums. RQ is z.q, QQ is q.s; SIZE and BOUND are those of solve_norms, which only
  * stops by norms need (mass_norm, normalised). DRIFT, in SOLVE_CHECK, is d.D^-1 d of the difference
@@ -60,21 +60,21 @@ struct solve_stop {
     uint32_t max; /* a solve that needs more iterations has failed */
 };
 
-/* A residual of no unit (Zara 2001 asks for one that is normalised by time step, masses and
- * distances): with D the masses, r.D^-1 r is the square of the velocity that r is, times the mass;
- * it is measured by unit = m (l/h)^2, m the mass of all free rows, l a distance of the mesh. So the
+/* A residual of no unit: Zara (2001) asks for one that is normalised by time step, masses and
+ * distances. With D the masses, r.D^-1 r is the mass times the square of the velocity that r stands
+ * for. Its unit is m (l/h)^2, with m the mass of all free rows and l a distance of the mesh. So the
  * root, e = (h / l) sqrt(r.D^-1 r / m), is how far r moves a row in the step, root mean square by
- * mass, against l; and as A >= D, dv errs by no more than that. */
+ * mass, against l. As A >= D, dv errs by no more than that. */
 
 /* The error of dv, and when it is small. The mass norm is |y|^2 = y.D y, D the diagonal that A has
  * besides springs: masses, kg, with h times the drag. A - D is positive semidefinite. So the error
- * is at most r.D^-1 r, which is far too much unless r is nearly nothing; and it is at most its norm
- * in A, which after k iterations is the sum over all j >= k of alpha_j r_j.z_j (Hestenes & Stiefel
- * 1952, theorem 6:1). What is known of this sum when there were m more iterations is S; it is
- * trusted as far as terms fall: with P, the m terms before, the whole is taken for the geometric
- * series S / (1 - S / P), if S is at most 0.9 P. m is a sixth of all iterations, at least 5, since
- * where conjugate gradients stagnate a fixed delay (Strakos & Tichy 2002) is deceived. So what is
- * estimated is the error of m iterations ago; dv has a smaller one. */
+ * is at most r.D^-1 r, which is far too much unless r is nearly zero. It is also at most its norm
+ * in A. After k iterations this norm is the sum over all j >= k of alpha_j r_j.z_j (Hestenes &
+ * Stiefel 1952, theorem 6:1). After m more iterations S, the first m terms of this sum, are known.
+ * They count as far as terms fall. With P the m terms before, the whole sum is estimated as the
+ * geometric series S / (1 - S / P), if S is at most 0.9 P. The delay m is a sixth of all
+ * iterations, at least 5: where conjugate gradients stagnate, a fixed delay (Strakos & Tichy 2002)
+ * fails. The estimate is of the error m iterations ago; that of dv is smaller. */
 
 /* What the next pass does. Numbers are doubles: the structure is a shared object. */
 enum {
@@ -112,9 +112,9 @@ enum { SOLVE_SCALARS = sizeof(struct solve_scalars) / sizeof(double) };
 /* Before the first pass, which is SOLVE_ON, or with a guess SOLVE_OPEN; `last` is zero. */
 struct solve_scalars solve_scalars_start(double step, double phase);
 
-/* From the dots of a pass, what the next one does. Returns SOLVE_OK; or why there is none: p.Ap is
- * not positive; so many iterations were not enough; or the true residual stays above what was asked
- * for. `after` says in any case with what numbers, and keeps the outcome. */
+/* Finds from the dots of a pass what the next one does. Returns SOLVE_OK, or why there is no next
+ * pass: p.Ap is not positive; so many iterations were not enough; or the true residual stays above
+ * what was asked for. `after` has the numbers in any case, and keeps the outcome. */
 enum { SOLVE_OK, SOLVE_BREAKDOWN, SOLVE_NOT_CONVERGED, SOLVE_STALLED };
 int solve_scalars_next(const struct solve_stop *stop, const double dots[SOLVE_DOTS],
                        const struct solve_scalars *before, struct solve_scalars *after);
@@ -143,8 +143,8 @@ struct solve_norms solve_norms(size_t n, const double *diagonal, const phys_vec 
 void solve_start(size_t n, const double *free, const phys_vec *b, phys_vec *dv, phys_vec *r,
                  phys_vec *p, phys_vec *q);
 
-/* z -= alpha s, p = z + beta p of one row: the recurrence of the first half of a pass. Whoever has
- * a row or a ghost takes it from here, so that all of them have the same bits. */
+/* z -= alpha s, p = z + beta p of one row: the recurrence of the first half of a pass. All code
+ * that advances a row or a ghost calls this function, so that all of them have the same bits. */
 PHYS_INLINE void solve_advance(double alpha, double beta, const phys_vec *s, phys_vec *z,
                                phys_vec *p)
 {
@@ -153,7 +153,7 @@ PHYS_INLINE void solve_advance(double alpha, double beta, const phys_vec *s, phy
     *p = left + beta * *p;
 }
 
-/* What is left to do in the last pass (SOLVE_LAST): dv += alpha p, r -= alpha q. Returns r.r. */
+/* The work of the last pass (SOLVE_LAST): dv += alpha p, r -= alpha q. Returns r.r. */
 double solve_finish(size_t n, double alpha, const phys_vec *q, const phys_vec *p, phys_vec *dv,
                     phys_vec *r);
 
@@ -166,8 +166,8 @@ void solve_renew(size_t n, const double *free, const double *diagonal, const phy
 void solve_start_guess(size_t n, const double *free, const phys_vec *filter, const phys_vec *b,
                        double part, phys_vec *dv, phys_vec *r, phys_vec *p, phys_vec *q);
 
-/* What begins a solve again from dv: with the true residual in r, vectors as solve_start leaves
- * them, but for dv. */
+/* Begins a solve again from dv, with the true residual in r: makes the vectors as solve_start does,
+ * except for dv. */
 void solve_again(size_t n, phys_vec *r, phys_vec *p, phys_vec *q);
 
 /* z and p of ghosts of another block's rows: n rows, row i has its s in s[3 at[i]] and the two

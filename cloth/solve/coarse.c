@@ -1,10 +1,11 @@
 /* The coarse factor in dense blocks of nine, by columns of blocks in the order of elimination. A
  * block is nine columns of twelve numbers, the last three zero. C = L L' is made in double; of a
  * diagonal block the entries on the diagonal are inverted, and zero for a column that was dropped.
- * A solve reads the factor once forth and once back, and while it does other workers wait. So where
- * the least pivot is large against a float's rounding it goes on as (I + T) E (I + T'), with the
- * inverses of E's blocks in double, which are one product, and T in float. The same T stands on
- * both sides, so what a solve does is symmetric and as definite as E, however T is rounded. */
+ * A solve reads the factor once forward and once backward, and meanwhile other workers wait. So
+ * where the least pivot is large against a float's rounding, the factor is kept as (I + T) E (I +
+ * T'). T is in float; E is kept by the inverses of its blocks, in double, each of them one product.
+ * The same T stands on both sides, so a solve is symmetric and as definite as E, however T is
+ * rounded. */
 #include "cloth/solve/coarse.h"
 
 #include "cloth/solve/matrix3.h"
@@ -28,9 +29,9 @@ struct rounded {
     float c[N][4 * WIDTH];
 };
 
-/* The diagonal of C, a stride a column of blocks, of which the first one says in number N whether
- * there is T in place of L; the diagonal blocks of all columns; the entries, which are rounded
- * where they lie. */
+/* The parts of a factor: the diagonal of C, a stride a column of blocks; the diagonal blocks of all
+ * columns; the entries, which are rounded where they lie. Number N of the first stride says whether
+ * there is T in place of L. */
 struct parts {
     double *whole;
     struct dense *diagonal, *entry;

@@ -4,30 +4,31 @@
 #include "cloth/base/error.h"
 #include "cloth/solve/block.h"
 
-/* The coarse part of a two-level preconditioner, P C^-1 P' (Nicolaides 1987): P has nine columns a
- * block, a uniform motion and motions that grow along u and v, two axes of the block as it was at
- * rest; zero in held rows, so that P' is of the filtered system and so is C = P' A P. What a block
- * adds to C are its diagonal 9 x 9 block and one for each later neighbour. C is kept in 9 x 9
- * blocks on its sparse pattern, factorised in an order of least degree. Columns that add nothing (a
- * block that is held, two vertices, vertices on a line) are dropped, so that the sum with another
- * preconditioner stays positive definite. Pure functions but for solve_pattern. */
+/* The coarse part of a two-level preconditioner, P C^-1 P' (Nicolaides 1987). P has nine columns a
+ * block: a uniform motion, and motions that grow along u and v, two axes of the block at rest. P is
+ * zero in held rows, so that P' and C = P' A P are of the filtered system. A block adds to C its
+ * diagonal 9 x 9 block and one for each later neighbour. C is kept in 9 x 9 blocks on its sparse
+ * pattern and factorised in an order of least degree. Columns that add nothing (a block that is
+ * held, two vertices, vertices on a line) are dropped. So the sum with another preconditioner
+ * remains positive definite. Pure functions but for solve_pattern. */
 enum { SOLVE_COARSE = 9, SOLVE_COUPLING = SOLVE_COARSE * SOLVE_COARSE };
 
 /* Row a of P: 1 u v 0 for each of x, y and z; zero where the row is held. */
 void solve_basis(size_t n, const double *free, const phys_vec *position, phys_vec *basis);
 
-/* Takes the axes out of the basis of n rows that their filters (cloth/solve/block.h) hold; where
- * these are not along axes, the rows. Lane 3 of a row says which: 1 for x, 2 for y, 4 for z. */
+/* Takes out of the basis of n rows the axes that their filters (cloth/solve/block.h) hold; where a
+ * filter is not along axes, the whole row. Lane 3 of a row says which: 1 for x, 2 for y, 4 for z.
+ */
 void solve_basis_filter(size_t n, const phys_vec *filter, phys_vec *basis);
 
-/* The diagonal block that rows from .. to - 1 and the entries among them make, row by row, own[3 k
- * + c][3 l + d]: function k along axis c. */
+/* Makes the diagonal block of rows from .. to - 1 and of the entries among them, row by row, own[3
+ * k + c][3 l + d]: function k along axis c. */
 void solve_couple(const struct solve_block *block, size_t from, size_t to, const void *values,
                   const phys_vec *basis, double own[SOLVE_COUPLING]);
 
-/* Adds n entries, numbers at[] of the values, from rows of one set of columns to those of another:
- * to `own`, of the former, and to off_diagonal, those rows by the latter's columns. end: own row,
- * row in other_basis. */
+/* Adds n entries, numbers at[] of the values, from rows of one set of columns to rows of another.
+ * They go to `own`, the diagonal block of the first set, and to off_diagonal, its rows by the
+ * columns of the other set. end: own row, row in other_basis. */
 void solve_couple_cut(const struct solve_block *block, const void *values, size_t n,
                       const uint32_t *at, const uint32_t (*end)[2], const phys_vec *basis,
                       const phys_vec *other_basis, double own[SOLVE_COUPLING],
@@ -37,8 +38,8 @@ void solve_couple_cut(const struct solve_block *block, const void *values, size_
 void solve_restrict(size_t n, const phys_vec *basis, const phys_vec *y, double x[SOLVE_COARSE]);
 void solve_prolong(size_t n, const phys_vec *basis, const double x[SOLVE_COARSE], phys_vec *y);
 
-/* solve_advance_ghosts (cloth/solve/cg.h) for s that lacks P x still: of ghosts of one other
- * block, whose x is given, to the bits that solve_prolong leaves there. */
+/* solve_advance_ghosts (cloth/solve/cg.h) for an s that still lacks P x: of ghosts of one other
+ * block, whose x is given. They get the bits that solve_prolong leaves there. */
 void solve_advance_ghosts_coarse(size_t n, double alpha, double beta, const double *s,
                                  const uint32_t *at, const phys_vec *basis,
                                  const double x[SOLVE_COARSE], phys_vec *z, phys_vec *p);
@@ -53,7 +54,7 @@ struct solve_pattern {
     uint32_t *row;   /* places, ascending in a column */
 };
 
-/* Blocks that more would make are too many for one factor. */
+/* More blocks are too many for one factor. */
 enum { SOLVE_MAX_BLOCKS = 4096 };
 
 /* From the neighbours of each block: those of block b are neighbour[first[b]] .. neighbour[first[b
@@ -65,9 +66,9 @@ void solve_pattern_free(struct solve_pattern *pattern);
 /* Doubles of a factor, aligned to 32 bytes. */
 size_t solve_coarse_doubles(const struct solve_pattern *pattern);
 
-/* Puts into the factor what block b adds: its diagonal block, then those beside it, one for each
- * neighbour with a higher number, ascending (first and neighbour as above). The factor is cleared
- * once before all blocks. */
+/* Puts into the factor what block b adds: its diagonal block, then one for each neighbour with a
+ * higher number, ascending (first and neighbour as above). solve_coarse_clear comes once, before
+ * all blocks. */
 void solve_coarse_clear(const struct solve_pattern *pattern, double *factor);
 void solve_coarse_fill(const struct solve_pattern *pattern, const uint32_t *first,
                        const uint32_t *neighbour, uint32_t b, const double *coupling,

@@ -1,7 +1,7 @@
-/* What one block adds to the coarse matrix. An entry of N = K + [w]x between a and b, K symmetric,
- * adds (phi_a - phi_b)(phi_a - phi_b)' times K, phi the rows of P, and (phi_b phi_a' - phi_a
- * phi_b') times [w]x, since those of a row come to nothing; the sums go over symmetric 3 x 3
- * blocks, six for one block, nine for two, and over vectors w, three and nine. */
+/* What one block adds to the coarse matrix. Let an entry between a and b be N = K + [w]x with K
+ * symmetric, and phi the rows of P. It adds (phi_a - phi_b)(phi_a - phi_b)' times K, and (phi_b
+ * phi_a' - phi_a phi_b') times [w]x, since the [w]x of a row sum to zero. The sums go over
+ * symmetric 3 x 3 blocks, six for one block, nine for two, and over vectors w, three and nine. */
 #include "cloth/base/axes.h"
 #include "cloth/solve/coarse.h"
 #include "cloth/solve/matrix3.h"

@@ -7,10 +7,10 @@
 #include <stdint.h>
 
 /* How the off-diagonal part of a matrix is kept. An entry joins two rows, a and b: with N = -A_ab
- * it adds N d, d = p_a - p_b, to row a and takes N' d from row b. So the diagonal is not kept:
- * block a of it is what the row has besides entries (its mass, h times its drag, kg) plus the sum
- * of N over the row's entries as they are rounded, and what moves as a whole feels the former
- * alone, in every format. */
+ * it adds N d, d = p_a - p_b, to row a and takes N' d from row b. So the diagonal is not kept.
+ * Block a of it is what the row has besides entries (its mass, h times its drag, kg) plus the sum
+ * of N over the row's entries as they are rounded. On a uniform motion the sum has no effect, in
+ * every format. */
 enum solve_format {
     SOLVE_SPRINGS,   /* N = alpha I + w w', four doubles an entry: w0 w1 w2 alpha */
     SOLVE_HALF,      /* any N, nine doubles an entry: n00 n11 n22, n01 n12 n20, n02 n10 n21 */
@@ -18,8 +18,9 @@ enum solve_format {
 };
 enum { SOLVE_NINE = 9 };
 
-/* The sum of N over a row is symmetric where elements are; rounded to float it is so but for a
- * vector w, (sum - sum') / 2 = [w]x, the turn of the row. Taken back, the matrix is symmetric. */
+/* The sum of N over a row is symmetric where elements are. Rounded to float it has an antisymmetric
+ * part, (sum - sum') / 2 = [w]x; the vector w is the turn of the row. Minus this part, the matrix
+ * is symmetric. */
 
 /* Doubles of the values of a block, aligned to 32 bytes. */
 static inline size_t solve_format_doubles(enum solve_format format, size_t rows, size_t entries)
@@ -49,7 +50,7 @@ PHYS_INLINE struct solve_values solve_values_of(enum solve_format format, size_t
 typedef double solve_four __attribute__((vector_size(32), aligned(8), may_alias));
 typedef float solve_four_floats __attribute__((vector_size(16), aligned(4), may_alias));
 
-/* One by one, which compilers make one conversion of: of __builtin_convertvector GCC 12 makes two
+/* One by one, which compilers turn into one conversion; GCC 12 makes two of __builtin_convertvector
  * and puts them together. */
 PHYS_INLINE void solve_widen(const float *from, phys_vec *to)
 {

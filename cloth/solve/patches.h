@@ -4,8 +4,8 @@
 #include "cloth/solve/coarse.h"
 
 /* The rows of a block may have several sets of columns of P (cloth/solve/coarse.h), one for each
- * patch: a run of rows, which the order of rows keeps together. What is said of blocks there goes
- * for patches. Pure functions. */
+ * patch. A patch is a run of rows, which the order of rows keeps together. There, what is said of
+ * blocks holds for patches. Pure functions. */
 enum { SOLVE_MAX_PATCHES = 4 };
 
 /* Patch k has rows start[k] .. start[k + 1] - 1; behind the last one start is `rows`. */
@@ -43,13 +43,14 @@ struct solve_couplings {
     double matrix[SOLVE_MAX_PATCHES][SOLVE_MAX_PATCHES][SOLVE_COUPLING];
 };
 
-/* What inner entries and the diagonal make: matrix[k][l] for k <= l. basis: of the block's rows. */
+/* Makes the couplings of inner entries and the diagonal: matrix[k][l] for k <= l. basis: of the
+ * block's rows. */
 void solve_couple_patches(const struct solve_block *block, const struct solve_patches *patches,
                           const void *values, const phys_vec *basis, struct solve_couplings *own);
 
-/* Adds n entries into one other block, at `from` among the values, to the diagonal of `own`, and
- * sets off_diagonal, this block's patches by the other's. end: own row, row in other_basis, of
- * which `other` are the patches. */
+/* Adds n entries into one other block, at `from` among the values, to the diagonal of `own`. Sets
+ * off_diagonal, this block's patches by the other's. end: own row, row in other_basis. other: the
+ * patches of the other block. */
 void solve_couple_patches_cut(const struct solve_block *block, const struct solve_patches *patches,
                               const void *values, size_t from, size_t n, const uint32_t (*end)[2],
                               const phys_vec *basis, const phys_vec *other_basis,

@@ -6,8 +6,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* The system of one implicit step in plain arrays, in the numbering of the input, for whoever wants
- * to look at it, keep it or solve it otherwise: S A S dv = S b with S = diag(free) and
+/* The system of one implicit step in plain arrays, in the numbering of the input, to look at, keep
+ * or solve in another way: S A S dv = S b with S = diag(free) and
  *
  *     A = diagonal + the sum over the pairs of their N (cloth/solve/format.h),
  *
@@ -35,7 +35,7 @@ int solve_system_make(struct solve_system *system, uint32_t n, size_t n_pairs,
 /* N of a pair, of either kind. Local. */
 void solve_system_pair(const struct solve_system *system, size_t i, double n[3][3]);
 
-/* Puts the ends of each pair, and the pairs, in order. Pairs of equal ends keep theirs. Error:
+/* Sorts the ends of each pair, and the pairs. Pairs of equal ends keep their order. Error:
  * CLOTH_E_MEMORY. Local. */
 int solve_system_sort(struct solve_system *system, struct cloth_error *error);
 

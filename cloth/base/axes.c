@@ -1,4 +1,4 @@
-/* The order of turns is fixed, so that all ranks find the same bits. */
+/* The order of rotations is fixed, so that all ranks find the same bits. */
 #include "cloth/base/axes.h"
 
 #include <math.h>

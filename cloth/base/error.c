@@ -1,4 +1,4 @@
-/* An error holds the first failure only: whoever notices first knows most about it. */
+/* An error keeps the first failure only: the code that notices first knows most about it. */
 #include "cloth/base/error.h"
 
 #include <stdarg.h>

@@ -1,5 +1,5 @@
-/* Rows of vertices by turns have nx and nx - 1, which stand in the middle between the others: so
- * every triangle is equilateral, and the sheet is its own mirror image. */
+/* Rows have nx and nx - 1 vertices by turns; those of shorter rows stand in the middle between
+ * those of longer ones. So every triangle is equilateral, and the sheet is its own mirror image. */
 #include "cloth/mesh/detail/equilateral.h"
 #include "cloth/base/memory.h"
 

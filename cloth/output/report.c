@@ -1,5 +1,5 @@
-/* The report's text grows in memory; a failure while it grows is remembered by the stream and told
- * by the write. */
+/* The report's text grows in memory. The stream keeps a failure while the text grows, and the write
+ * reports it. */
 #include "cloth/output/files/files.h"
 #include "cloth/output/files/json.h"
 

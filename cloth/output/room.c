@@ -1,4 +1,5 @@
-/* The folder may not be there yet: then its nearest parent that is tells the file system. */
+/* The folder may not be there yet: then its nearest parent that exists is on the same file system.
+ */
 #include "cloth/output/output.h"
 
 #include <math.h>

@@ -1,5 +1,5 @@
 /* Hinges are worked on in order, four at a time (detail/lanes.h). The slope of theta at corner 0 is
- * what the others leave, so that a hinge's forces sum to nothing but rounding. */
+ * minus the sum of the others, so that a hinge's forces sum to zero but for rounding. */
 #include "cloth/physics/bending.h"
 
 #include "cloth/physics/detail/hinge.h"

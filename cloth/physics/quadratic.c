@@ -1,5 +1,5 @@
-/* Elements are worked on in order. The force of corner 0 is what the others leave, so that those of
- * an element sum to nothing but rounding. */
+/* Elements are worked on in order. The force on corner 0 is minus the sum of the others, so that
+ * the forces of an element sum to zero but for rounding. */
 #include "cloth/physics/bending.h"
 
 #include "cloth/physics/detail/lanes.h"

@@ -1,4 +1,4 @@
-/* A row that is held has the acceleration and the velocity zero, and so stays where it is. */
+/* A held row has zero acceleration and velocity, so it does not move. */
 #include "cloth/physics/stage.h"
 
 PHYS_KERNEL_OF(int, phys_euler,

@@ -1,5 +1,5 @@
-/* Edges are worked on in order, four at a time (detail/lanes.h). Corner 1 has what corner 0 has
- * with a minus, so that the forces of an edge sum to nothing. */
+/* Edges are worked on in order, four at a time (detail/lanes.h). The force on corner 1 is minus
+ * that on corner 0, so that the forces of an edge sum to zero. */
 #include "cloth/physics/strain_limit.h"
 
 #include "cloth/physics/detail/lanes.h"

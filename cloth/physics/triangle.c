@@ -1,5 +1,5 @@
-/* Triangles are worked on in order, four at a time (detail/lanes.h). Corner 0 has what the two
- * others have with a minus, so that a triangle's forces sum to nothing but rounding. */
+/* Triangles are worked on in order, four at a time (detail/lanes.h). The force on corner 0 is minus
+ * the sum of the two others, so that a triangle's forces sum to zero but for rounding. */
 #include "cloth/physics/triangle.h"
 
 #include "cloth/physics/detail/membrane.h"

@@ -1,4 +1,4 @@
-/* Pairs are worked on one after the other: whoever has the same arrays gets the same bits. */
+/* Pairs are worked on one after the other: equal arrays give equal bits. */
 #include "cloth/solve/system.h"
 
 #include <stdlib.h>

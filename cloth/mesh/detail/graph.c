@@ -1,5 +1,5 @@
-/* Pairs are told twice: counted, then put behind their nodes. Springs come in order, so most rows
- * are ascending as they are; the others are sorted. */
+/* Pairs are visited twice: counted, then put behind their nodes. Springs come in order, so most
+ * rows are ascending as they are; the others are sorted. */
 #include "cloth/mesh/detail/graph.h"
 
 #include "cloth/base/memory.h"

@@ -1,4 +1,4 @@
-/* METIS is told everything that it could choose by itself, so that a graph has one cut only. */
+/* Every choice that METIS could make is set here, so that a graph has one cut only. */
 #include "cloth/base/memory.h"
 #include "cloth/mesh/detail/graph.h"
 

@@ -1,5 +1,5 @@
-/* What is filled in comes as defaults do: it is checked as if the scene said it. Nothing here minds
- * a tree of another shape; what is wrong with it the check finds. */
+/* Values of a fabric are filled in as defaults are, and checked as if the scene had them. A tree of
+ * another shape does no harm here: the check finds what is wrong with it. */
 #include "cloth/scene/schema/fabrics.h"
 
 #include "cloth/scene/schema/rules.h"

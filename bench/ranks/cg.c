@@ -87,7 +87,7 @@ static int solve(struct flow_state *state, struct sheet *sheet, uint32_t count, 
 static int begin(struct flow_state *state, struct sheet *sheet, uint32_t count)
 {
     double seconds;
-    struct flow_args args = {0};
+    struct flow_block_args args = {0};
     int code = flow_run_begin(state);
     for (; args.block < state->head.n_blocks && !code; args.block++)
         code = DUITE_FORK(state->rt, &sheet_wave_kernel, &args, state->block[args.block].table);

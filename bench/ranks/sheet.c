@@ -82,14 +82,14 @@ void sheet_wave(const struct flow_table *t, void *memory)
 static int wave(const duite_call *call)
 {
     const struct flow *flow = call->context;
-    const struct flow_args *args = call->args;
+    const struct flow_block_args *args = call->args;
     sheet_wave(flow->tables.block + args->block, duite_out(call, 0, char));
     return 0;
 }
 const duite_kernel sheet_wave_kernel = {.name = "sheet_wave",
                                         .body = wave,
                                         .access = {DUITE_RW},
-                                        .args_size = sizeof(struct flow_args)};
+                                        .args_size = sizeof(struct flow_block_args)};
 
 static size_t n_halo(const struct sheet *s)
 {

@@ -14,9 +14,12 @@ static inline struct flow *flow_of(const duite_call *call)
     return call->context;
 }
 
-static inline const struct flow_args *flow_args_of(const duite_call *call)
+/* The block of a task, with which the arguments of any kernel begin. Functions that bodies share
+ * are given what else they need, from `on->args`: what a kernel's arguments lack does not compile.
+ */
+static inline uint32_t flow_block_of(const duite_call *call)
 {
-    return call->args;
+    return *(const uint32_t *)call->args;
 }
 
 /* The number, counted from 1, of the step of length h that a tick is in. */
@@ -28,7 +31,7 @@ static inline double flow_step_number(double tick)
 /* The block of a task without its table. */
 static inline const struct flow_table *flow_shape_of(const duite_call *call)
 {
-    return flow_of(call)->tables.block + flow_args_of(call)->block;
+    return flow_of(call)->tables.block + flow_block_of(call);
 }
 
 /* The block with its table, the object of the field. */
@@ -59,8 +62,9 @@ void flow_note_stop(const duite_call *call, double *status);
 /* Fails if a row diverged, naming it by the input's number, or, where the step can be made again,
  * notes it in the status. Notes there, too, that a stop is asked for. what: "position"
  * or "velocity". */
-int flow_check(const duite_call *call, const struct flow_table *table, const phys_vec *y,
-               const char *what, double *status);
+int flow_check(const duite_call *call, const struct flow_table *table,
+               const struct flow_step_args *step, const phys_vec *y, const char *what,
+               double *status);
 
 /* The matrix of a step as its object has it: the diagonal, the filter if there is one, then the
  * values of the entries. */
@@ -109,31 +113,33 @@ void flow_ties_lost(const unsigned char *tie_table, const phys_vec *value, const
 bool flow_has_elements(const struct flow_table *t);
 struct phys_sight flow_elements_see(const duite_call *call, const struct flow_table *t,
                                     const struct flow_view *view);
-/* Adds their forces; those of kinds whose matrix does not come with the right side. */
-void flow_elements_force(const duite_call *call, const struct flow_table *t,
+/* Adds their forces at a time, s; those of kinds whose matrix does not come with the right side. */
+void flow_elements_force(const duite_call *call, const struct flow_table *t, double now,
                          const struct phys_sight *sight, phys_vec *f);
-void flow_elements_force_beside(const duite_call *call, const struct flow_table *t,
+void flow_elements_force_beside(const duite_call *call, const struct flow_table *t, double now,
                                 const struct phys_sight *sight, phys_vec *f);
 /* y -= scale K v of the same. */
 void flow_elements_stiffness(const duite_call *call, const struct flow_table *t, double scale,
                              const struct phys_sight *sight, phys_vec *y);
 /* Adds their part of the matrix to the sums of its entries and, unless b is NULL, what the other
  * kinds add to the right side with it (system in cloth/element/kind.h). */
-void flow_elements_assemble(const duite_call *call, const struct flow_table *t, double push,
-                            const struct phys_sight *sight, phys_vec *b, struct phys_pair *sums);
+void flow_elements_assemble(const duite_call *call, const struct flow_table *t, double h,
+                            double push, const struct phys_sight *sight, phys_vec *b,
+                            struct phys_pair *sums);
 /* Their energy, J, of those that count here, to whose uncorrected forces' torque, N m, it adds. */
 double flow_elements_energy(const duite_call *call, const struct flow_table *t,
                             const struct flow_view *view, double torque[3]);
 
-/* Loads that vary (varying.c), as they are at the time of the arguments: adds them (N) to f; their
- * energy (J) at x, zero at the origin. */
-void flow_varying_add(const duite_call *call, const struct flow_table *t, phys_vec *f);
-double flow_varying_energy(const duite_call *call, const struct flow_table *t, const phys_vec *x);
+/* Loads that vary (varying.c), as they are at a time, s: adds them (N) to f; their energy (J) at x,
+ * zero at the origin. */
+void flow_varying_add(const duite_call *call, const struct flow_table *t, double now, phys_vec *f);
+double flow_varying_energy(const duite_call *call, const struct flow_table *t, double now,
+                           const phys_vec *x);
 
-/* All forces on the block's rows, N; those without the drag. (forces.c) */
-void flow_forces(const duite_call *call, const struct flow_table *t, const struct flow_view *view,
-                 phys_vec *f);
-void flow_forces_free(const duite_call *call, const struct flow_table *t,
+/* All forces on the block's rows at a time, s, in N; those without the drag. (forces.c) */
+void flow_forces(const duite_call *call, const struct flow_table *t, double now,
+                 const struct flow_view *view, phys_vec *f);
+void flow_forces_free(const duite_call *call, const struct flow_table *t, double now,
                       const struct flow_view *view, phys_vec *f);
 
 /* Rows of the worker's own for these where no other task reads them; until the task ends. */

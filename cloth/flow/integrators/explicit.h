@@ -26,10 +26,19 @@ static inline void flow_swap_halos(struct flow_state *state)
     flow_swap_halos_v(state);
 }
 
+/* Arguments of a step that a block makes in stages, by a task each. */
+struct flow_stage_args {
+    union {
+        uint32_t block;
+        struct flow_step_args step;
+    };
+    uint32_t stage; /* from 0 */
+};
+
 /* Arguments of a task that finds forces when so much of the step is over. */
-static inline struct flow_args flow_explicit_args(const struct flow_state *state, double part)
+static inline struct flow_step_args flow_explicit_args(const struct flow_state *state, double part)
 {
-    struct flow_args args = flow_attempt_args(state);
+    struct flow_step_args args = flow_attempt_args(state);
     args.now = (args.begin + part * state->attempt.length) * state->flow->model->h / FLOW_TICKS;
     return args;
 }

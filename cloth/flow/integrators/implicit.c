@@ -21,40 +21,40 @@ static bool searches(const struct flow_state *state)
 
 /* ---- Parts of a step ---- */
 
-static int fork_force(struct flow_state *state, struct flow_args args)
+static int fork_force(struct flow_state *state, struct flow_step_args args)
 {
     return flow_fork_each(state, &flow_kernel_force, &args);
 }
 
 /* The matrix at x where f is the right side, and the solve's begin. */
-static int fork_system(struct flow_state *state, struct flow_args args)
+static int fork_system(struct flow_state *state, struct flow_step_args args)
 {
     int code = flow_fork_each(state, &flow_kernel_matrix, &args);
     if (!code && model_is_filtered(state->flow->model))
-        code = flow_contact_constrain(state, args);
+        code = flow_contact_constrain(state);
     return code ? code : flow_cg_start(state);
 }
 
 /* What the solves of a step are filtered by, from x, v and f. */
-static int fork_filter(struct flow_state *state, struct flow_args args)
+static int fork_filter(struct flow_state *state, struct flow_step_args args)
 {
     return model_is_filtered(state->flow->model) ? flow_contact_filter(state, args) : DUITE_OK;
 }
 
 /* The filter goes by the forces. */
-static int assemble_held(struct flow_state *state, struct flow_args args)
+static int assemble_held(struct flow_state *state, struct flow_step_args args)
 {
     int code = fork_force(state, args);
     if (!code)
         code = fork_filter(state, args);
     if (!code)
         code = flow_fork_each(state, &flow_kernel_system_of_forces, &args);
-    return code ? code : flow_contact_constrain(state, args);
+    return code ? code : flow_contact_constrain(state);
 }
 
 int flow_assemble(struct flow_state *state)
 {
-    struct flow_args args = flow_attempt_args(state);
+    struct flow_step_args args = flow_attempt_args(state);
     if (model_is_filtered(state->flow->model))
         return assemble_held(state, args);
     return flow_fork_each(state, &flow_kernel_system, &args);
@@ -96,7 +96,7 @@ void flow_note_solve(const duite_call *call, const struct flow_table *t,
     status[FLOW_SIZE] = norms.size;
     status[FLOW_RESIDUAL] = norms.bound;
     status[FLOW_FAILED] = scalars->outcome != SOLVE_OK;
-    if (flow_args_of(call)->block != 0)
+    if (flow_block_of(call) != 0)
         return;
     const double error = sqrt(solve_scalars_error(scalars, INFINITY)) + sqrt(scalars->drift);
     status[FLOW_ITERATIONS] = solve_scalars_iterations(scalars);
@@ -106,7 +106,7 @@ void flow_note_solve(const duite_call *call, const struct flow_table *t,
 
 /* v += dv, and what the solve took and lost of the momentum. A solve that failed in a step that
  * must not leaves no scalars: then this does not run. */
-FLOW_KERNEL(velocity_implicit, FLOW_VELOCITY, struct flow_args,
+FLOW_KERNEL(velocity_implicit, FLOW_VELOCITY, struct flow_step_args,
             (R(table), R(f), R(a), R(dv), R(r), RW(v), W(halo_v), R(scalars), SUM(status),
              IF_MADE(tie_table)))
 static int velocity_implicit_body(const duite_call *call, const struct velocity_implicit_fields *on)
@@ -121,22 +121,22 @@ static int velocity_implicit_body(const duite_call *call, const struct velocity_
     flow_note_solve(call, t, &solved, on->status);
     phys_advance(t->n, 1, on->dv, on->v);
     flow_write_halo(t, on->v, on->halo_v);
-    return flow_check(call, t, on->v, "velocity", on->status);
+    return flow_check(call, t, on->args, on->v, "velocity", on->status);
 }
 
-FLOW_KERNEL(position, FLOW_POSITION, struct flow_args,
+FLOW_KERNEL(position, FLOW_POSITION, struct flow_step_args,
             (R(table), R(v), RW(x), W(halo_x), SUM(status)))
 static int position_body(const duite_call *call, const struct position_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table), *t = &table;
     phys_advance(t->n, on->args->h, on->v, on->x);
     flow_write_halo(t, on->x, on->halo_x);
-    return flow_check(call, t, on->x, "position", on->status);
+    return flow_check(call, t, on->args, on->x, "position", on->status);
 }
 
 static int fork_move(struct flow_state *state)
 {
-    struct flow_args args = flow_attempt_args(state);
+    struct flow_step_args args = flow_attempt_args(state);
     int code = flow_cg_iterate(state);
     state->guessed = state->attempt.length;
     if (!code)
@@ -149,7 +149,7 @@ static int fork_move(struct flow_state *state)
  * They and steps by BDF2 have bases (cloth/physics/implicit.h); args.h is the t of the step. */
 
 /* f becomes the right side of the next Newton step. */
-FLOW_KERNEL(residual, FLOW_ACCELERATION, struct flow_args,
+FLOW_KERNEL(residual, FLOW_ACCELERATION, struct flow_step_args,
             (R(table), R(base_v), R(v), R(dv), RW(f), SUM(slope)))
 static int residual_body(const duite_call *call, const struct residual_fields *on)
 {
@@ -161,7 +161,7 @@ static int residual_body(const duite_call *call, const struct residual_fields *o
 
 /* The slope along dv where it has led, kg m^2/s^2, and with it the right side of a Newton step from
  * there. */
-static int get_slope(struct flow_state *state, struct flow_args args, double *slope)
+static int get_slope(struct flow_state *state, struct flow_step_args args, double *slope)
 {
     int code = fork_force(state, args);
     if (!code)
@@ -186,8 +186,13 @@ static void newton_move(const struct flow_table *t, double h, double part,
     flow_write_halo(t, m->x, m->halo_x);
 }
 
-/* args.part of dv more. */
-FLOW_KERNEL(shift, FLOW_VELOCITY, struct flow_args,
+struct shift_args {
+    uint32_t block;
+    double h, part;
+};
+
+/* A part of dv more. */
+FLOW_KERNEL(shift, FLOW_VELOCITY, struct shift_args,
             (R(table), R(dv), R(base_x), RW(v), W(x), W(halo_v), W(halo_x)))
 static int shift_body(const duite_call *call, const struct shift_fields *on)
 {
@@ -198,16 +203,17 @@ static int shift_body(const duite_call *call, const struct shift_fields *on)
 }
 
 /* A Newton step that ends where the slope along it is steep the other way is cut. */
-static int search(struct flow_state *state, struct flow_args args, double first)
+static int search(struct flow_state *state, struct flow_step_args args, double first)
 {
+    struct shift_args shift = {.h = args.h};
     double slope, length = 1;
     int code = get_slope(state, args, &slope);
     for (int i = 0; i < MAX_CUTS && !code && !(slope >= -OVERSHOT * first); i++) {
         double cut = first / (first - slope);
         cut = cut >= LEAST_CUT ? cut : LEAST_CUT; /* not a number: the same */
-        args.part = (cut - 1) * length;
+        shift.part = (cut - 1) * length;
         length *= cut;
-        code = flow_fork_each(state, &flow_kernel_shift, &args);
+        code = flow_fork_each(state, &flow_kernel_shift, &shift);
         if (!code)
             code = get_slope(state, args, &slope);
     }
@@ -215,7 +221,7 @@ static int search(struct flow_state *state, struct flow_args args, double first)
 }
 
 /* The whole of dv. */
-FLOW_KERNEL(correct, FLOW_VELOCITY, struct flow_args,
+FLOW_KERNEL(correct, FLOW_VELOCITY, struct flow_step_args,
             (R(table), R(f), R(a), R(dv), R(r), R(base_x), R(base_v), RW(v), W(x), W(halo_v),
              W(halo_x), R(scalars), SUM(status), IF_MADE(tie_table)))
 static int correct_body(const duite_call *call, const struct correct_fields *on)
@@ -233,20 +239,22 @@ static int correct_body(const duite_call *call, const struct correct_fields *on)
     newton_move(t, on->args->h, 1, &move);
     on->status[FLOW_CHANGE] = phys_distance(t->n, t->mass, on->dv, NULL);
     on->status[FLOW_WHOLE] = phys_distance(t->n, t->mass, on->v, on->base_v);
-    const int code = flow_check(call, t, on->v, "velocity", on->status);
-    return code ? code : flow_check(call, t, on->x, "position", on->status);
+    const int code = flow_check(call, t, on->args, on->v, "velocity", on->status);
+    return code ? code : flow_check(call, t, on->args, on->x, "position", on->status);
 }
 
 /* v and x by all of dv; what is reported of the solve goes to the status, or to one in its place.
  */
-static int fork_correct(struct flow_state *state, struct flow_args args, const struct flow_as *as)
+static int fork_correct(struct flow_state *state, struct flow_step_args args,
+                        const struct flow_as *as)
 {
     const int code = flow_cg_iterate(state);
     return code ? code : flow_fork_each_as(state, &flow_kernel_correct, &args, as);
 }
 
 /* One Newton step. *sums: what it reported. */
-static int newton_step(struct flow_state *state, struct flow_args args, double sums[FLOW_STATUS])
+static int newton_step(struct flow_state *state, struct flow_step_args args,
+                       double sums[FLOW_STATUS])
 {
     int code = duite_set(state->rt, state->run.trial, NULL);
     if (!code)
@@ -264,7 +272,7 @@ static void sum_up(double all[FLOW_STATUS], const double last[FLOW_STATUS])
 }
 
 /* Newton steps until the last one is small, or there were enough. The first system is made. */
-static int newton(struct flow_state *state, struct flow_args args)
+static int newton(struct flow_state *state, struct flow_step_args args)
 {
     const struct model *model = state->flow->model;
     const double small = model->newton_tolerance * model->newton_tolerance;
@@ -298,7 +306,7 @@ static int fork_bases(struct flow_state *state)
 }
 
 /* Ends a step whose first system is made. */
-static int finish(struct flow_state *state, struct flow_args args)
+static int finish(struct flow_state *state, struct flow_step_args args)
 {
     return searches(state) ? newton(state, args) : fork_correct(state, args, NULL);
 }
@@ -320,21 +328,21 @@ int flow_implicit_euler_end(struct flow_state *state)
 
 /* Along what a slider holds a row goes where its v says, as one that is held whole does. */
 static void constrain_bases(const duite_call *call, const struct flow_table *t,
-                            const struct phys_states *s)
+                            const struct flow_step_args *step, const struct phys_states *s)
 {
     struct flow_pins pins;
     struct flow_slider slider;
-    flow_pins_begin(call, t, &pins);
+    flow_pins_begin(call, t, step->time, &pins);
     for (uint32_t i = 0; i < t->n_sliding; i++) {
         const uint32_t row = t->sliding[i][0];
-        const phys_vec held = s->x[row] + flow_args_of(call)->h / 2 * s->v[row];
+        const phys_vec held = s->x[row] + step->h / 2 * s->v[row];
         flow_pins_slider(&pins, i, &slider);
         flow_slider_keep(&slider, &held, s->base_x + row);
     }
 }
 
 /* Its bases, and x where v would lead. */
-FLOW_KERNEL(predict, FLOW_POSITION, struct flow_args,
+FLOW_KERNEL(predict, FLOW_POSITION, struct flow_step_args,
             (R(table), RW(x), R(v), RW(last_x), RW(last_v), W(base_x), W(base_v), W(halo_x)))
 static int predict_body(const duite_call *call, const struct predict_fields *on)
 {
@@ -347,7 +355,7 @@ static int predict_body(const duite_call *call, const struct predict_fields *on)
                                        .base_x = on->base_x,
                                        .base_v = on->base_v};
     phys_bdf2_bases(t->n, h, t->free, &states);
-    constrain_bases(call, t, &states);
+    constrain_bases(call, t, on->args, &states);
     phys_place(t->n, h, states.base_x, states.v, on->x);
     flow_write_halo(t, on->x, on->halo_x);
     return 0;
@@ -373,7 +381,7 @@ bool flow_implicit_is_second(const struct flow_state *state)
 
 int flow_bdf2_end(struct flow_state *state)
 {
-    struct flow_args args = flow_attempt_args(state);
+    struct flow_step_args args = flow_attempt_args(state);
     double slope;
     if (!flow_implicit_is_second(state))
         return bdf2_start(state);

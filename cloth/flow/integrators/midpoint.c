@@ -7,10 +7,10 @@
 enum { MIDPOINT_STAGES = 2 };
 
 /* Stage 0 keeps where the step begins, in x0 and v0; the slopes are v and a at x, v. */
-static void midpoint_stage(const struct flow_table *t, const struct flow_args *args,
+static void midpoint_stage(const struct flow_table *t, const struct flow_stage_args *args,
                            const phys_vec *a, phys_vec *x0, phys_vec *v0, phys_vec *x, phys_vec *v)
 {
-    const double part = args->stage == 0 ? 0.5 * args->h : args->h;
+    const double part = args->stage == 0 ? 0.5 * args->step.h : args->step.h;
     if (args->stage == 0) {
         memcpy(x0, x, t->n * sizeof *x);
         memcpy(v0, v, t->n * sizeof *v);
@@ -21,27 +21,28 @@ static void midpoint_stage(const struct flow_table *t, const struct flow_args *a
     }
 }
 
-FLOW_KERNEL(midpoint, FLOW_POSITION, struct flow_args,
+FLOW_KERNEL(midpoint, FLOW_POSITION, struct flow_stage_args,
             (R(table), RW(x), RW(v), RW(x0), RW(v0), W(spare_halo_x), W(spare_halo_v), SUM(status),
              NEIGHBOURS(halo_x), NEIGHBOURS(halo_v), IF_MADE(tie_table), TIED(tie_halo)))
 static int midpoint_body(const duite_call *call, const struct midpoint_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table), *t = &table;
+    const struct flow_step_args *step = &on->args->step;
     const struct flow_view view = FLOW_VIEW(on);
     phys_vec *a = flow_force_room(call);
     flow_fetch_own(t, on->spare_halo_x);
     flow_fetch_own(t, on->spare_halo_v);
     flow_fetch_halos(t, &view);
-    flow_forces(call, t, &view, a);
+    flow_forces(call, t, step->now, &view, a);
     flow_part_ends(call, FLOW_FORCE);
     phys_accelerate(t->n, t->mass, t->free, a);
-    flow_sliders_filter(call, t, a);
+    flow_sliders_filter(call, t, step->time, a);
     flow_part_ends(call, FLOW_ACCELERATION);
     midpoint_stage(t, on->args, a, on->x0, on->v0, on->x, on->v);
     flow_write_halo(t, on->x, on->spare_halo_x);
     flow_write_halo(t, on->v, on->spare_halo_v);
-    const int code = flow_check(call, t, on->x, "position", on->status);
-    return code ? code : flow_check(call, t, on->v, "velocity", on->status);
+    const int code = flow_check(call, t, step, on->x, "position", on->status);
+    return code ? code : flow_check(call, t, step, on->v, "velocity", on->status);
 }
 
 int flow_midpoint_end(struct flow_state *state)
@@ -49,8 +50,8 @@ int flow_midpoint_end(struct flow_state *state)
     static const double when[MIDPOINT_STAGES] = {0, 0.5};
     int code = DUITE_OK;
     for (uint32_t stage = 0; stage < MIDPOINT_STAGES && !code; stage++) {
-        struct flow_args args = flow_explicit_args(state, when[stage]);
-        args.stage = stage;
+        struct flow_stage_args args = {.step = flow_explicit_args(state, when[stage]),
+                                       .stage = stage};
         code = flow_fork_each(state, &flow_kernel_midpoint, &args);
         flow_swap_halos(state);
     }

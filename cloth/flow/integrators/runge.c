@@ -1,13 +1,14 @@
 /* The classic Runge-Kutta method of four stages; each is a task a block. */
 #include "cloth/flow/integrators/explicit.h"
 
-FLOW_KERNEL(runge, FLOW_POSITION, struct flow_args,
+FLOW_KERNEL(runge, FLOW_POSITION, struct flow_stage_args,
             (R(table), RW(x), RW(v), RW(x0), RW(v0), RW(sum_x), RW(sum_v), W(spare_halo_x),
              W(spare_halo_v), SUM(status), NEIGHBOURS(halo_x), NEIGHBOURS(halo_v),
              IF_MADE(tie_table), TIED(tie_halo)))
 static int runge_body(const duite_call *call, const struct runge_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table), *t = &table;
+    const struct flow_step_args *step = &on->args->step;
     const struct flow_view view = FLOW_VIEW(on);
     const struct phys_runge runge = {
         .x0 = on->x0, .v0 = on->v0, .sum_x = on->sum_x, .sum_v = on->sum_v};
@@ -15,16 +16,16 @@ static int runge_body(const duite_call *call, const struct runge_fields *on)
     flow_fetch_own(t, on->spare_halo_x);
     flow_fetch_own(t, on->spare_halo_v);
     flow_fetch_halos(t, &view);
-    flow_forces(call, t, &view, a);
+    flow_forces(call, t, step->now, &view, a);
     flow_part_ends(call, FLOW_FORCE);
     phys_accelerate(t->n, t->mass, t->free, a);
-    flow_sliders_filter(call, t, a);
+    flow_sliders_filter(call, t, step->time, a);
     flow_part_ends(call, FLOW_ACCELERATION);
-    phys_runge_stage(t->n, on->args->h, (int)on->args->stage, a, &runge, on->x, on->v);
+    phys_runge_stage(t->n, step->h, (int)on->args->stage, a, &runge, on->x, on->v);
     flow_write_halo(t, on->x, on->spare_halo_x);
     flow_write_halo(t, on->v, on->spare_halo_v);
-    const int code = flow_check(call, t, on->x, "position", on->status);
-    return code ? code : flow_check(call, t, on->v, "velocity", on->status);
+    const int code = flow_check(call, t, step, on->x, "position", on->status);
+    return code ? code : flow_check(call, t, step, on->v, "velocity", on->status);
 }
 
 int flow_runge_end(struct flow_state *state)
@@ -32,8 +33,8 @@ int flow_runge_end(struct flow_state *state)
     static const double when[PHYS_RUNGE_STAGES] = {0, 0.5, 0.5, 1};
     int code = DUITE_OK;
     for (uint32_t stage = 0; stage < PHYS_RUNGE_STAGES && !code; stage++) {
-        struct flow_args args = flow_explicit_args(state, when[stage]);
-        args.stage = stage;
+        struct flow_stage_args args = {.step = flow_explicit_args(state, when[stage]),
+                                       .stage = stage};
         code = flow_fork_each(state, &flow_kernel_runge, &args);
         flow_swap_halos(state);
     }

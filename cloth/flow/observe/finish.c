@@ -14,7 +14,7 @@ static int largest_stretch(struct flow_state *state)
 }
 
 /* Runs when nothing else does. */
-FLOW_KERNEL(seconds, FLOW_NO_PART, struct flow_args, (SUM(seconds)))
+FLOW_KERNEL(seconds, FLOW_NO_PART, struct flow_block_args, (SUM(seconds)))
 static int seconds_body(const duite_call *call, const struct seconds_fields *on)
 {
     const struct flow *flow = flow_of(call);
@@ -32,7 +32,7 @@ static double some(double seconds)
 /* Seconds in bodies, of all ranks in rank order. No other task runs meanwhile. */
 static int sum_seconds(struct flow_state *state)
 {
-    const struct flow_args args = {0};
+    const struct flow_block_args args = {0};
     int code = duite_wait(state->rt);
     for (int rank = 0; rank < duite_ranks(state->rt) && !code; rank++)
         code = flow_fork_at(state, rank, &flow_kernel_seconds, &args, NULL);
@@ -94,7 +94,7 @@ static void place(const struct flow_state *state, uint32_t block, const struct p
 }
 
 /* A vector of a block without its fourth lane. */
-FLOW_KERNEL(collect, FLOW_NO_PART, struct flow_args, (R(x), W(gathered)))
+FLOW_KERNEL(collect, FLOW_NO_PART, struct flow_block_args, (R(x), W(gathered)))
 static int collect_body(const duite_call *call, const struct collect_fields *on)
 {
     const struct flow_table *t = flow_shape_of(call);
@@ -114,7 +114,7 @@ static int collect(struct flow_state *state, uint32_t n, const uint32_t *block,
     const struct flow_as as[] = {{FLOW_FIELD_x, vector}, {FLOW_FIELDS_OF_ALL, FLOW_FIELDS_OF_ALL}};
     int code = DUITE_OK;
     for (uint32_t k = 0; k < n && !code; k++) {
-        const struct flow_args args = {.block = block[k]};
+        const struct flow_block_args args = {.block = block[k]};
         code = flow_fork_one_as(state, &flow_kernel_collect, &args, as);
     }
     for (uint32_t k = 0; k < n && !code; k++) {
@@ -186,7 +186,7 @@ static int hash_state(struct flow_state *state)
     return code;
 }
 
-FLOW_KERNEL(broadcast, FLOW_NO_PART, struct flow_args, (W(broadcast)))
+FLOW_KERNEL(broadcast, FLOW_NO_PART, struct flow_block_args, (W(broadcast)))
 static int broadcast_body(const duite_call *call, const struct broadcast_fields *on)
 {
     on->broadcast[FLOW_BROADCAST_FRAMES] = flow_of(call)->frames;
@@ -196,7 +196,7 @@ static int broadcast_body(const duite_call *call, const struct broadcast_fields 
 
 static int broadcast_result(struct flow_state *state, uint64_t broadcast[FLOW_BROADCAST])
 {
-    const struct flow_args args = {0};
+    const struct flow_block_args args = {0};
     int code = flow_fork_at(state, 0, &flow_kernel_broadcast, &args, NULL);
     if (!code)
         code = duite_get(state->rt, state->run.broadcast, broadcast);

@@ -17,8 +17,14 @@ static void put_position(struct flow *flow, uint32_t vertex, const phys_vec *x)
         flow->room[3 * (size_t)vertex + (size_t)c] = (*x)[c];
 }
 
+struct frame_args {
+    uint32_t block; /* none */
+    uint64_t frame;
+    double time; /* s */
+};
+
 /* The vertices of all blocks, by all their names. */
-FLOW_KERNEL_WITH(frame, FLOW_OUTPUT, struct flow_args, (RW(token), ALL(x)), .side_effects = 1)
+FLOW_KERNEL_WITH(frame, FLOW_OUTPUT, struct frame_args, (RW(token), ALL(x)), .side_effects = 1)
 static int frame_body(const duite_call *call, const struct frame_fields *on)
 {
     struct flow *flow = flow_of(call);
@@ -42,8 +48,8 @@ static int frame_body(const duite_call *call, const struct frame_fields *on)
 static int fork_frame(struct flow_state *state, double tick, bool kept)
 {
     int64_t token;
-    const struct flow_args args = {.frame = state->next_frame++,
-                                   .time = tick * state->flow->model->h / FLOW_TICKS};
+    const struct frame_args args = {.frame = state->next_frame++,
+                                    .time = tick * state->flow->model->h / FLOW_TICKS};
     state->shown = tick;
     if (!flow_shows(state)) /* only counted */
         return DUITE_OK;

@@ -6,32 +6,38 @@
 
 /* ---- Of a block ---- */
 
+struct probe_args {
+    uint32_t block;
+    struct flow_two_steps steps; /* the last two */
+};
+
+FLOW_KERNEL(probe, FLOW_OUTPUT, struct probe_args,
+            (R(table), R(x), R(v), R(probe_force), W(probe_values)))
+
 /* m a - f of a row that is held, a the acceleration that its pin gives it. */
 static void reaction_of_held(const duite_call *call, const struct flow_table *t, uint32_t row,
-                             const phys_vec *force, phys_vec *pull)
+                             const struct probe_fields *on, phys_vec *pull)
 {
     phys_vec a = {0};
     for (uint32_t i = 0; i < t->n_moved; i++)
         if (t->moved[i][0] == row)
-            flow_due_acceleration(call, t->moved[i][1], t->position + row, &a);
-    *pull = t->mass[row] * a - *force;
+            flow_due_acceleration(call, &on->args->steps, t->moved[i][1], t->position + row, &a);
+    *pull = t->mass[row] * a - on->probe_force[row];
 }
-
-FLOW_KERNEL(probe, FLOW_OUTPUT, struct flow_args,
-            (R(table), R(x), R(v), R(probe_force), W(probe_values)))
 
 /* (I - S) (m a - f) of one that a slider leaves free in part; else nothing. */
 static void reaction_of_sliding(const duite_call *call, const struct flow_table *t, uint32_t row,
                                 const struct probe_fields *on, phys_vec *pull)
 {
     struct flow_pins pins;
-    flow_pins_begin(call, t, &pins);
+    flow_pins_begin(call, t, on->args->steps.end, &pins);
     const phys_vec *filter = flow_pins_filter(&pins, row);
     *pull = (phys_vec){0};
     if (!filter)
         return;
     phys_vec a, along;
-    flow_slider_acceleration(call, t->sliding[pins.next][1], on->x + row, on->v + row, &a);
+    flow_slider_acceleration(call, &on->args->steps, t->sliding[pins.next][1], on->x + row,
+                             on->v + row, &a);
     *pull = along = t->mass[row] * a - on->probe_force[row];
     solve_filter(filter, &along);
     *pull -= along;
@@ -47,7 +53,7 @@ static int probe_body(const duite_call *call, const struct probe_fields *on)
         if (t->free[row] != 0)
             reaction_of_sliding(call, t, row, on, &pull);
         else
-            reaction_of_held(call, t, row, on->probe_force + row, &pull);
+            reaction_of_held(call, t, row, on, &pull);
         for (int c = 0; c < 3; c++) {
             to[c] = on->x[row][c];
             to[3 + c] = on->v[row][c];
@@ -57,11 +63,15 @@ static int probe_body(const duite_call *call, const struct probe_fields *on)
     return 0;
 }
 
-static int fork_probe(struct flow_state *state, const struct flow_args *args)
+/* On a block. */
+static int fork_probe(struct flow_state *state, uint32_t block, const struct flow_two_steps *steps)
 {
+    const struct flow_step_args force = {
+        .block = block, .h = steps->h, .time = steps->end, .now = steps->end};
+    const struct probe_args probe = {block, *steps};
     const int code =
-        flow_fork_one_as(state, &flow_kernel_force, args, FLOW_AS(FLOW_FOR(f, probe_force)));
-    return code ? code : flow_fork_one(state, &flow_kernel_probe, args);
+        flow_fork_one_as(state, &flow_kernel_force, &force, FLOW_AS(FLOW_FOR(f, probe_force)));
+    return code ? code : flow_fork_one(state, &flow_kernel_probe, &probe);
 }
 
 /* ---- On rank 0 ---- */
@@ -91,7 +101,13 @@ static void fill_probes(const struct flow *flow, const double *probe_values, dou
     }
 }
 
-FLOW_KERNEL_WITH(row, FLOW_OUTPUT, struct flow_args,
+struct row_args {
+    uint32_t block; /* none */
+    uint64_t steps; /* made so far */
+    double time;    /* s */
+};
+
+FLOW_KERNEL_WITH(row, FLOW_OUTPUT, struct row_args,
                  (RW(token), R(status), R(peaks), R(energy), ALL(probe_values)), .side_effects = 1)
 static int row_body(const duite_call *call, const struct row_fields *on)
 {
@@ -107,7 +123,7 @@ static int row_body(const duite_call *call, const struct row_fields *on)
     to[FLOW_COLUMN_SHORTEST] = -on->peaks[FLOW_PEAK_SHORTEST];
     memcpy(to + FLOW_COLUMN_ENERGY, on->energy, FLOW_ENERGIES * sizeof *to);
     fill_probes(flow, flow->probe_values, to + FLOW_RUN_COLUMNS);
-    if (flow->output->row(flow->output->context, on->args->frame, on->args->time,
+    if (flow->output->row(flow->output->context, on->args->steps, on->args->time,
                           flow->watched.n_columns, flow->row, &flow->trouble))
         return duite_fail(call, FLOW_NOT_WRITTEN, "%s", flow->trouble.text);
     return 0;
@@ -117,21 +133,17 @@ static int row_body(const duite_call *call, const struct row_fields *on)
 int flow_probes_row(struct flow_state *state)
 {
     int64_t token;
-    const uint64_t steps = state->report->steps;
+    const struct row_args args = {.steps = state->report->steps, .time = flow_time(state)};
     const double tick = state->flow->model->h / FLOW_TICKS;
     const uint32_t length = state->length ? state->length : FLOW_TICKS;
-    struct flow_args args = {.frame = steps,
-                             .time = flow_time(state),
-                             .now = flow_time(state),
-                             .h = length * tick,
-                             .before =
-                                 (state->length_before ? state->length_before : length) * tick};
-    int code = steps ? duite_get(state->rt, state->run.token, &token) : DUITE_OK;
+    const uint32_t before = state->length_before ? state->length_before : length;
+    const struct flow_two_steps steps = {
+        .end = args.time, .h = length * tick, .before = before * tick};
+    int code = args.steps ? duite_get(state->rt, state->run.token, &token) : DUITE_OK;
     if (!code)
         code = flow_ties_show(state);
-    for (; args.block < state->flow->tables.n_blocks && !code; args.block++)
-        if (state->flow->tables.block[args.block].n_watched)
-            code = fork_probe(state, &args);
-    args.block = 0;
+    for (uint32_t b = 0; b < state->flow->tables.n_blocks && !code; b++)
+        if (state->flow->tables.block[b].n_watched)
+            code = fork_probe(state, b, &steps);
     return code ? code : flow_fork_at(state, 0, &flow_kernel_row, &args, NULL);
 }

@@ -50,7 +50,7 @@ static double *put_vector(double *to, const phys_vec *from)
     return to;
 }
 
-FLOW_KERNEL(system_part, FLOW_NO_PART, struct flow_args,
+FLOW_KERNEL(system_part, FLOW_NO_PART, struct flow_block_args,
             (R(table), R(f), R(a), R(dv), R(x), R(v), W(saved), IF_MADE(tie_table)))
 
 static void put_rows(const struct flow_table *t, const struct system_part_fields *on, double *to)
@@ -151,7 +151,12 @@ static int system_part_body(const duite_call *call, const struct system_part_fie
 }
 /* ---- On rank 0 ---- */
 
-FLOW_KERNEL_WITH(system_save, FLOW_NO_PART, struct flow_args, (RW(token), ALL(saved)),
+struct save_args {
+    uint32_t block; /* none */
+    double h;       /* s: length of the step */
+};
+
+FLOW_KERNEL_WITH(system_save, FLOW_NO_PART, struct save_args, (RW(token), ALL(saved)),
                  .side_effects = 1)
 
 static uint32_t vertex_of(const double *part, double row)
@@ -246,8 +251,8 @@ static int system_save_body(const duite_call *call, const struct system_save_fie
 
 int flow_system(struct flow_state *state)
 {
-    struct flow_args args = flow_attempt_args(state);
-    const int code = flow_fork_each(state, &flow_kernel_system_part, &args);
-    args.block = 0;
-    return code ? code : flow_fork_at(state, 0, &flow_kernel_system_save, &args, NULL);
+    struct flow_block_args each;
+    const struct save_args save = {.h = flow_attempt_args(state).h};
+    const int code = flow_fork_each(state, &flow_kernel_system_part, &each);
+    return code ? code : flow_fork_at(state, 0, &flow_kernel_system_save, &save, NULL);
 }

@@ -13,7 +13,7 @@ static bool may_rest(const struct flow_state *state)
     return state->flow->model->rest.speed > 0;
 }
 
-FLOW_KERNEL(watch, FLOW_OUTPUT, struct flow_args,
+FLOW_KERNEL(watch, FLOW_OUTPUT, struct flow_block_args,
             (R(table), R(x), R(v), MAX(peaks), NEIGHBOURS(halo_x)))
 static int watch_body(const duite_call *call, const struct watch_fields *on)
 {
@@ -38,7 +38,7 @@ int flow_watch(struct flow_state *state)
     if (!flow_writes_probes(state) && !may_rest(state))
         return DUITE_OK;
     const double none[FLOW_PEAKS] = {0, -INFINITY, -INFINITY};
-    struct flow_args args = flow_attempt_args(state);
+    struct flow_block_args args;
     int code = duite_set(state->rt, flow_field_object(state, FLOW_FIELD_peaks, 0), none);
     if (!code)
         code = flow_fork_each(state, &flow_kernel_watch, &args);

@@ -9,10 +9,9 @@
 #include <string.h>
 
 enum {
-    GROUPS = 4,  /* times that rank 0 goes through all springs, with the sides of as many blocks */
-    GROUP = 32,  /* blocks that a group has at least */
-    TRAVEL = 16, /* tables on their way */
-    KEYS = sizeof(struct flow_args)
+    GROUPS = 4, /* times that rank 0 goes through all springs, with the sides of as many blocks */
+    GROUP = 32, /* blocks that a group has at least */
+    TRAVEL = 16 /* tables on their way */
 };
 
 /* What is broadcast of a block; the neighbours of all blocks follow. */
@@ -70,7 +69,7 @@ static int broadcast_head(const duite_call *call)
     return 0;
 }
 const duite_kernel flow_broadcast_head = {
-    .name = "broadcast_head", .body = broadcast_head, .access = {DUITE_W}, .args_size = KEYS};
+    .name = "broadcast_head", .body = broadcast_head, .access = {DUITE_W}};
 
 static char *put(char *to, const void *from, size_t bytes)
 {
@@ -129,17 +128,16 @@ static int broadcast_shared(const duite_call *call)
     return 0;
 }
 const duite_kernel flow_broadcast_shared = {
-    .name = "broadcast_shared", .body = broadcast_shared, .access = {DUITE_W}, .args_size = KEYS};
+    .name = "broadcast_shared", .body = broadcast_shared, .access = {DUITE_W}};
 
 /* What a task on rank 0 writes into an object of so many bytes, to all ranks. */
 static int broadcast_all(struct flow_state *state, const duite_kernel *kernel, size_t bytes,
                          void *received)
 {
-    const struct flow_args args = {0};
     duite_object object;
     int code = duite_new(state->rt, DUITE_BYTE, bytes, &object);
     if (!code)
-        code = duite_fork_at(state->rt, 0, kernel, &args, 1, &object);
+        code = duite_fork_at(state->rt, 0, kernel, NULL, 1, &object);
     if (!code)
         code = duite_get(state->rt, object, received);
     const int freed = object.generation ? duite_free(state->rt, object) : DUITE_OK;
@@ -245,7 +243,7 @@ int flow_share(struct flow_state *state)
 
 /* ---- Dealing ---- */
 
-FLOW_KERNEL(table_make, FLOW_NO_PART, struct flow_args, (W(table)))
+FLOW_KERNEL(table_make, FLOW_NO_PART, struct flow_block_args, (W(table)))
 static int table_make_body(const duite_call *call, const struct table_make_fields *on)
 {
     const struct flow *flow = flow_of(call);
@@ -256,7 +254,7 @@ static int table_make_body(const duite_call *call, const struct table_make_field
 }
 
 /* Nothing is to be done but to have it: who writes an object last holds it. */
-FLOW_KERNEL(table_keep, FLOW_NO_PART, struct flow_args, (RW(table)))
+FLOW_KERNEL(table_keep, FLOW_NO_PART, struct flow_block_args, (RW(table)))
 static int table_keep_body(const duite_call *call, const struct table_keep_fields *on)
 {
     (void)call, (void)on;
@@ -265,7 +263,7 @@ static int table_keep_body(const duite_call *call, const struct table_keep_field
 
 static int distribute(struct flow_state *state, uint32_t from, uint32_t to)
 {
-    struct flow_args args = {.block = from};
+    struct flow_block_args args = {.block = from};
     int code = DUITE_OK;
     for (; args.block < to && !code; args.block++) {
         code = flow_fork_at(state, 0, &flow_kernel_table_make, &args, NULL);

@@ -100,17 +100,15 @@ static int ready(const duite_call *call)
                ? duite_fail(call, FLOW_NO_MEMORY, "rank %d: %s", call->rank, trouble->text)
                : 0;
 }
-const duite_kernel flow_ready = {
-    .name = "ready", .body = ready, .access = {DUITE_CW}, .args_size = sizeof(struct flow_args)};
+const duite_kernel flow_ready = {.name = "ready", .body = ready, .access = {DUITE_CW}};
 
 int flow_memory_agree(struct flow_state *state)
 {
-    const struct flow_args args = {0};
     duite_object all;
     int32_t nothing;
     int code = duite_new(state->rt, DUITE_I32, 1, &all);
     for (int rank = 0; rank < duite_ranks(state->rt) && !code; rank++)
-        code = duite_fork_at(state->rt, rank, &flow_ready, &args, 1, &all);
+        code = duite_fork_at(state->rt, rank, &flow_ready, NULL, 1, &all);
     if (!code)
         code = duite_get(state->rt, all, &nothing);
     const int freed = duite_free(state->rt, all);

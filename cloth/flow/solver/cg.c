@@ -24,25 +24,35 @@ static double guess_of(const struct flow_state *state)
     return wanted && state->guessed ? (double)state->attempt.length / state->guessed : 0;
 }
 
+/* Of the tasks that make the scalars before the first pass. */
+struct begin_args {
+    union {
+        uint32_t block;
+        struct flow_step_args step;
+    };
+    double phase; /* that the solve begins with */
+};
+
 /* The scalars before the first pass, and the coarse part of s that it begins with. */
-static int fork_begin(struct flow_state *state, const struct flow_args *args)
+static int fork_begin(struct flow_state *state, bool guess)
 {
-    const bool moves = flow_is_coarse(state->flow) && args->guess == 0;
-    return flow_fork_one(state, moves ? &flow_kernel_cg_begin_coarse : &flow_kernel_cg_begin, args);
+    const bool moves = flow_is_coarse(state->flow) && !guess;
+    const struct begin_args args = {.step = flow_attempt_args(state),
+                                    .phase = guess ? SOLVE_OPEN : SOLVE_ON};
+    return flow_fork_one(state, moves ? &flow_kernel_cg_begin_coarse : &flow_kernel_cg_begin,
+                         &args);
 }
 
 int flow_cg_start(struct flow_state *state)
 {
-    struct flow_args args = flow_attempt_args(state);
-    args.guess = guess_of(state);
-    int code = flow_coarse_start(state, args);
-    for (; args.block < state->flow->tables.n_blocks && !code; args.block++) {
-        code = flow_preconditioner_factor(state, &args);
+    const double guess = guess_of(state);
+    int code = flow_coarse_start(state);
+    for (uint32_t b = 0; b < state->flow->tables.n_blocks && !code; b++) {
+        code = flow_preconditioner_factor(state, b);
         if (!code)
-            code = flow_pass_start(state, &args);
+            code = flow_pass_start(state, b, guess);
     }
-    args.block = 0;
-    return code ? code : fork_begin(state, &args);
+    return code ? code : fork_begin(state, guess != 0);
 }
 
 int flow_cg_iterate(struct flow_state *state)
@@ -64,7 +74,7 @@ int flow_cg(struct flow_state *state)
 
 static int fork_scalars(struct flow_state *state)
 {
-    const struct flow_args args = {0};
+    const struct flow_block_args args = {0};
     const struct flow_kernel *kernel = &flow_kernel_cg_scalars;
     if (flow_is_coarse(state->flow))
         kernel = &flow_kernel_cg_scalars_coarse;
@@ -96,28 +106,27 @@ int flow_cg_record(struct flow_state *state)
 
 /* ---- The scalars, on every rank ---- */
 
-static struct solve_scalars scalars_before(const duite_call *call)
+static struct solve_scalars scalars_before(const struct flow *flow, const struct begin_args *args)
 {
-    const struct flow_args *args = flow_args_of(call);
-    struct solve_scalars scalars =
-        solve_scalars_start(args->begin, args->guess != 0 ? SOLVE_OPEN : SOLVE_ON);
-    scalars.last = args->last;
-    scalars.unit = flow_of(call)->inertia / (args->h * args->h);
+    const struct flow_step_args *step = &args->step;
+    struct solve_scalars scalars = solve_scalars_start(step->begin, args->phase);
+    scalars.last = step->last;
+    scalars.unit = flow->inertia / (step->h * step->h);
     return scalars;
 }
 
-FLOW_KERNEL_WITH(cg_begin, FLOW_NO_PART, struct flow_args, (W(scalars)), .replicated = 1)
+FLOW_KERNEL_WITH(cg_begin, FLOW_NO_PART, struct begin_args, (W(scalars)), .replicated = 1)
 static int cg_begin_body(const duite_call *call, const struct cg_begin_fields *on)
 {
-    *on->scalars = scalars_before(call);
+    *on->scalars = scalars_before(flow_of(call), on->args);
     return 0;
 }
 
-FLOW_KERNEL_WITH(cg_begin_coarse, FLOW_CG, struct flow_args,
+FLOW_KERNEL_WITH(cg_begin_coarse, FLOW_CG, struct begin_args,
                  (W(scalars), W(motion), R(coarse), ALL(part)), .replicated = 1)
 static int cg_begin_coarse_body(const duite_call *call, const struct cg_begin_coarse_fields *on)
 {
-    *on->scalars = scalars_before(call);
+    *on->scalars = scalars_before(flow_of(call), on->args);
     flow_coarse_motion(flow_of(call), on->coarse, on->part, on->motion);
     return 0;
 }
@@ -188,8 +197,8 @@ static int next_scalars(const duite_call *call, const double dots[SOLVE_DOTS],
     return outcome == SOLVE_BREAKDOWN ? broken_down(call, after) : 0;
 }
 
-FLOW_KERNEL_WITH(cg_scalars, FLOW_CG, struct flow_args, (W(scalars_next), R(scalars), R(sums)),
-                 .replicated = 1)
+FLOW_KERNEL_WITH(cg_scalars, FLOW_CG, struct flow_block_args,
+                 (W(scalars_next), R(scalars), R(sums)), .replicated = 1)
 static int cg_scalars_body(const duite_call *call, const struct cg_scalars_fields *on)
 {
     double dots[SOLVE_DOTS] = {0};
@@ -206,7 +215,7 @@ static void add_parts(const struct flow *flow, const duite_param *part, double d
             dots[i] += flow_numbers_of(part, b)[i];
 }
 
-FLOW_KERNEL_WITH(cg_scalars_of_parts, FLOW_CG, struct flow_args,
+FLOW_KERNEL_WITH(cg_scalars_of_parts, FLOW_CG, struct flow_block_args,
                  (W(scalars_next), R(scalars), ALL(part)), .replicated = 1)
 static int cg_scalars_of_parts_body(const duite_call *call,
                                     const struct cg_scalars_of_parts_fields *on)
@@ -217,7 +226,7 @@ static int cg_scalars_of_parts_body(const duite_call *call,
 }
 
 /* With a coarse part: the motion that belongs to the q of the pass, if that made a new one. */
-FLOW_KERNEL_WITH(cg_scalars_coarse, FLOW_CG, struct flow_args,
+FLOW_KERNEL_WITH(cg_scalars_coarse, FLOW_CG, struct flow_block_args,
                  (W(scalars_next), R(scalars), W(motion_next), R(coarse), ALL(part)),
                  .replicated = 1)
 static int cg_scalars_coarse_body(const duite_call *call, const struct cg_scalars_coarse_fields *on)

@@ -14,7 +14,7 @@
 
 /* ---- The space P ---- */
 
-FLOW_KERNEL(basis, FLOW_NO_PART, struct flow_args,
+FLOW_KERNEL(basis, FLOW_NO_PART, struct flow_block_args,
             (R(table), W(basis), W(halo_basis), IF_MADE(filter)))
 static int basis_body(const duite_call *call, const struct basis_fields *on)
 {
@@ -30,7 +30,7 @@ static int basis_body(const duite_call *call, const struct basis_fields *on)
     return 0;
 }
 
-FLOW_KERNEL(basis_ghosts, FLOW_NO_PART, struct flow_args,
+FLOW_KERNEL(basis_ghosts, FLOW_NO_PART, struct flow_block_args,
             (R(table), W(basis_ghosts), NEIGHBOURS(halo_basis)))
 static int basis_ghosts_body(const duite_call *call, const struct basis_ghosts_fields *on)
 {
@@ -46,7 +46,7 @@ static int basis_ghosts_body(const duite_call *call, const struct basis_ghosts_f
 
 int flow_coarse_initialise(struct flow_state *state)
 {
-    struct flow_args args = {0};
+    struct flow_block_args args;
     if (!flow_is_coarse(state->flow))
         return DUITE_OK;
     const int code = flow_fork_each(state, &flow_kernel_basis, &args);
@@ -83,7 +83,7 @@ static struct solve_patches patches_of_neighbour(const struct flow *flow,
     return patches;
 }
 
-FLOW_KERNEL(couple, FLOW_CG, struct flow_args,
+FLOW_KERNEL(couple, FLOW_CG, struct flow_block_args,
             (R(table), R(a), R(basis), R(basis_ghosts), W(coupling), IF_MADE(tie_table),
              TIED(tie_basis)))
 
@@ -167,7 +167,7 @@ static int couple_body(const duite_call *call, const struct couple_fields *on)
     return 0;
 }
 
-FLOW_KERNEL_WITH(factor_coarse, FLOW_CG, struct flow_args, (W(coarse), ALL(coupling)),
+FLOW_KERNEL_WITH(factor_coarse, FLOW_CG, struct flow_block_args, (W(coarse), ALL(coupling)),
                  .replicated = 1)
 static int factor_coarse_body(const duite_call *call, const struct factor_coarse_fields *on)
 {
@@ -183,21 +183,22 @@ static int factor_coarse_body(const duite_call *call, const struct factor_coarse
 }
 
 /* The factor is on its way while blocks factorise theirs. */
-static int fork_factor(struct flow_state *state, struct flow_args args)
+static int fork_factor(struct flow_state *state)
 {
+    struct flow_block_args args;
     const int code = flow_fork_each(state, &flow_kernel_couple, &args);
     args.block = 0;
     return code ? code : flow_fork_one(state, &flow_kernel_factor_coarse, &args);
 }
 
-int flow_coarse_start(struct flow_state *state, struct flow_args args)
+int flow_coarse_start(struct flow_state *state)
 {
     if (!flow_is_coarse(state->flow))
         return DUITE_OK;
     int code = model_is_filtered(state->flow->model) ? flow_coarse_initialise(state) : DUITE_OK;
     if (!code)
         code = flow_ties_show_basis(state);
-    return code ? code : fork_factor(state, args);
+    return code ? code : fork_factor(state);
 }
 
 /* ---- In a pass ---- */

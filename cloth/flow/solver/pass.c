@@ -57,7 +57,7 @@ static void begin(struct pass *pass, double *ghosts, size_t n_ghosts)
         memcpy(pass->part, dots, sizeof dots);
 }
 
-FLOW_KERNEL(cg_start, FLOW_CG, struct flow_args,
+FLOW_KERNEL(cg_start, FLOW_CG, struct flow_block_args,
             (R(table), R(f), W(dv), W(r), W(p), W(q), W(ghosts), W(halo_q)))
 static int cg_start_body(const duite_call *call, const struct cg_start_fields *on)
 {
@@ -70,7 +70,7 @@ static int cg_start_body(const duite_call *call, const struct cg_start_fields *o
     return 0;
 }
 
-FLOW_KERNEL(cg_start_preconditioned, FLOW_CG, struct flow_args,
+FLOW_KERNEL(cg_start_preconditioned, FLOW_CG, struct flow_block_args,
             (R(table), R(f), W(dv), W(r), W(p), W(q), W(ghosts), W(halo_q), W(part), W(z), W(s),
              R(factor), IF_MADE(basis)))
 static int cg_start_preconditioned_body(const duite_call *call,
@@ -92,8 +92,13 @@ static int cg_start_preconditioned_body(const duite_call *call,
     return 0;
 }
 
+struct guess_args {
+    uint32_t block;
+    double guess; /* times dv */
+};
+
 /* With a guess: the first pass multiplies by it, and a later one begins again. */
-FLOW_KERNEL(cg_guess, FLOW_CG, struct flow_args,
+FLOW_KERNEL(cg_guess, FLOW_CG, struct guess_args,
             (R(table), R(f), R(a), RW(dv), W(r), W(p), W(q), W(halo_q)))
 static int cg_guess_body(const duite_call *call, const struct cg_guess_fields *on)
 {
@@ -257,7 +262,7 @@ static void run_phase(struct pass *pass)
 
 /* ---- Its kernels ---- */
 
-FLOW_KERNEL(cg_pass, FLOW_CG, struct flow_args,
+FLOW_KERNEL(cg_pass, FLOW_CG, struct flow_block_args,
             (R(table), R(scalars), R(a), R(f), RW(dv), RW(r), RW(p), RW(q), RW(ghosts),
              RW(halo_q_next), SUM(sums), NEIGHBOURS(halo_q), IF_MADE(tie_table), TIED(tie_q)))
 
@@ -294,7 +299,7 @@ static int cg_pass_body(const duite_call *call, const struct cg_pass_fields *on)
     return 0;
 }
 
-FLOW_KERNEL(cg_pass_preconditioned, FLOW_CG, struct flow_args,
+FLOW_KERNEL(cg_pass_preconditioned, FLOW_CG, struct flow_block_args,
             (R(table), R(scalars), R(a), R(f), RW(dv), RW(r), RW(p), RW(q), RW(ghosts),
              RW(halo_q_next), RW(part), RW(z), RW(s), R(factor), NEIGHBOURS(halo_q), IF_MADE(basis),
              IF_MADE(basis_ghosts), IF_MADE(motion), IF_MADE(tie_table), TIED(tie_q),
@@ -334,20 +339,32 @@ static int cg_pass_preconditioned_body(const duite_call *call,
 
 /* ---- Forks ---- */
 
-int flow_pass_start(struct flow_state *state, const struct flow_args *args)
+/* The vectors of a block. */
+static int fork_start(struct flow_state *state, uint32_t block)
 {
-    const struct flow_kernel *start = flow_is_preconditioned(state->flow)
-                                          ? &flow_kernel_cg_start_preconditioned
-                                          : &flow_kernel_cg_start;
-    const bool guess = args->guess != 0;
-    int code = flow_fork_one(state, guess ? &flow_kernel_cg_guess : start, args);
+    const struct flow_block_args args = {block};
+    return flow_fork_one(state,
+                         flow_is_preconditioned(state->flow) ? &flow_kernel_cg_start_preconditioned
+                                                             : &flow_kernel_cg_start,
+                         &args);
+}
+
+static int fork_guess(struct flow_state *state, uint32_t block, double guess)
+{
+    const struct guess_args args = {block, guess};
+    return flow_fork_one(state, &flow_kernel_cg_guess, &args);
+}
+
+int flow_pass_start(struct flow_state *state, uint32_t block, double guess)
+{
+    int code = guess != 0 ? fork_guess(state, block, guess) : fork_start(state, block);
     if (!code)
-        code = flow_ties_pack_start(state, args->block, guess);
-    return code ? code : flow_halo_pack(state, args->block, 0);
+        code = flow_ties_pack_start(state, block, guess != 0);
+    return code ? code : flow_halo_pack(state, block, 0);
 }
 
 /* What it reads of the neighbours are their halos or packed ones (halo.c). */
-static int fork_block(struct flow_state *state, const struct flow_args *args)
+static int fork_block(struct flow_state *state, const struct flow_block_args *args)
 {
     const struct flow_table *t = state->flow->tables.block + args->block;
     const bool preconditioned = flow_is_preconditioned(state->flow);
@@ -366,7 +383,7 @@ static int fork_block(struct flow_state *state, const struct flow_args *args)
 int flow_pass_fork(struct flow_state *state)
 {
     const uint32_t n = state->flow->tables.n_blocks;
-    struct flow_args args = {0};
+    struct flow_block_args args;
     int code = DUITE_OK;
     for (uint32_t i = 0; i < n && !code; i++) {
         args.block = state->pass ? n - 1 - i : i;

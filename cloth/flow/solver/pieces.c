@@ -19,7 +19,7 @@ static bool is_held(const struct flow_table *t, uint32_t row)
     return filter[0] != 0 || filter[1] != 0 || filter[2] != 0 || filter[3] != 1;
 }
 
-FLOW_KERNEL(piece_sums, FLOW_CG, struct flow_args,
+FLOW_KERNEL(piece_sums, FLOW_CG, struct flow_block_args,
             (R(table), R(f), R(a), R(dv), SUM(pieces), IF_MADE(tie_table)))
 
 /* The number of a row's piece, from 1; 0: none. */
@@ -86,7 +86,8 @@ static void shift_of(const double *sums, phys_vec *shift)
         *shift = (phys_vec){0};
 }
 
-FLOW_KERNEL(piece_shift, FLOW_CG, struct flow_args, (R(table), R(a), R(pieces), RW(dv), RW(r)))
+FLOW_KERNEL(piece_shift, FLOW_CG, struct flow_block_args,
+            (R(table), R(a), R(pieces), RW(dv), RW(r)))
 static int piece_shift_body(const duite_call *call, const struct piece_shift_fields *on)
 {
     struct flow_table table = flow_table_in(call, on->table), *t = &table;
@@ -111,7 +112,7 @@ int flow_pieces_fork(struct flow_state *state)
 {
     if (!state->head.n_pieces)
         return DUITE_OK;
-    struct flow_args here = flow_attempt_args(state);
+    struct flow_block_args here;
     int code = duite_set(state->rt, state->run.pieces, NULL);
     for (here.block = 0; here.block < state->flow->tables.n_blocks && !code; here.block++)
         if (state->flow->tables.block[here.block].n_loose)

@@ -44,7 +44,7 @@ void flow_preconditioner_free(struct flow *flow)
 
 /* ---- The factor of a block, of each step's matrix ---- */
 
-FLOW_KERNEL(factor, FLOW_CG, struct flow_args,
+FLOW_KERNEL(factor, FLOW_CG, struct flow_block_args,
             (R(table), R(a), W(factor), SUM(status), IF_MADE(tie_table)))
 static int factor_body(const duite_call *call, const struct factor_fields *on)
 {
@@ -64,9 +64,10 @@ static int factor_body(const duite_call *call, const struct factor_fields *on)
     return 0;
 }
 
-int flow_preconditioner_factor(struct flow_state *state, const struct flow_args *args)
+int flow_preconditioner_factor(struct flow_state *state, uint32_t block)
 {
-    return flow_is_preconditioned(state->flow) ? flow_fork_one(state, &flow_kernel_factor, args)
+    const struct flow_block_args args = {block};
+    return flow_is_preconditioned(state->flow) ? flow_fork_one(state, &flow_kernel_factor, &args)
                                                : DUITE_OK;
 }
 

@@ -12,9 +12,10 @@
 
 /* ---- Tasks of a solve. Collective. They return 0 or what duite_fork returned ---- */
 
-/* Fork the vectors of a block, args->block, before the first pass, and what neighbours read of
- * them; pass number state->pass of a recorded round on all blocks. (pass.c) */
-int flow_pass_start(struct flow_state *state, const struct flow_args *args);
+/* Fork the vectors of a block before the first pass, which are made of `guess` times dv, or of
+ * nothing (0), and what neighbours read of them; pass number state->pass of a recorded round on all
+ * blocks. (pass.c) */
+int flow_pass_start(struct flow_state *state, uint32_t block, double guess);
 int flow_pass_fork(struct flow_state *state);
 
 /* Fork what shows a block's ends of ties, if it has any into other blocks: what the first pass of a
@@ -26,8 +27,8 @@ int flow_ties_show_basis(struct flow_state *state);
 
 /* Fork what comes of a step's matrix before its solve: the coarse factor; the factor of a block.
  * Nothing where there is none. (coarse.c, preconditioner.c) */
-int flow_coarse_start(struct flow_state *state, struct flow_args args);
-int flow_preconditioner_factor(struct flow_state *state, const struct flow_args *args);
+int flow_coarse_start(struct flow_state *state);
+int flow_preconditioner_factor(struct flow_state *state, uint32_t block);
 
 /* Fork what takes out of dv what a solve left of the momentum of free pieces, if there are any.
  * (pieces.c) */

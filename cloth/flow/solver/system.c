@@ -12,7 +12,7 @@
 struct making {
     const duite_call *call;
     const struct flow_table *t;
-    double h, push;
+    double h, now, push;    /* now, s: of the loads */
     struct flow_view view;  /* without v: the matrix alone */
     phys_vec *b;            /* NULL: the matrix alone */
     void *values;           /* of the entries */
@@ -21,9 +21,9 @@ struct making {
 
 /* Writes the diagonal of the matrix and a filter that lets all pass until the one of
  * the step comes (flow_contact_constrain); what follows is for the values. */
-static void *begin_matrix(const duite_call *call, const struct flow_table *t, phys_vec *matrix)
+static void *begin_matrix(const duite_call *call, const struct flow_table *t, double h,
+                          phys_vec *matrix)
 {
-    const double h = flow_args_of(call)->h;
     double *diagonal = (double *)matrix;
     phys_vec *value = matrix + flow_diagonal_rows(t);
     const bool filtered = model_is_filtered(flow_of(call)->model);
@@ -89,9 +89,9 @@ static void begin_right_side(const struct making *m, const struct phys_sight *si
     const struct flow_table *t = m->t;
     if (m->push > 0) {
         phys_outside(t->n, t->load, t->drag, m->view.v, m->b);
-        flow_varying_add(m->call, t, m->b);
+        flow_varying_add(m->call, t, m->now, m->b);
         if (sight->x)
-            flow_elements_force_beside(m->call, t, sight, m->b);
+            flow_elements_force_beside(m->call, t, m->now, sight, m->b);
     }
     for (uint32_t i = 0; i < t->n; i++)
         m->b[i] = m->h * m->b[i];
@@ -122,7 +122,7 @@ static void make(const struct making *m)
     if (m->b)
         begin_right_side(m, &sight);
     if (sight.x)
-        flow_elements_assemble(m->call, t, m->push, &sight, m->b, m->sums);
+        flow_elements_assemble(m->call, t, m->h, m->push, &sight, m->b, m->sums);
     all_springs(m);
     if (m->view.tie_table)
         flow_ties_system(&m->view, m->h, m->push, flow_of(m->call)->model->full_slope, m->b,
@@ -139,45 +139,47 @@ static struct phys_pair *sums_of(const duite_call *call, const struct flow_table
 }
 
 /* push: h, or 0 where the forces are in b. b: NULL, and push 0: the matrix alone. */
-static void make_system(const duite_call *call, const struct flow_table *t, double push,
+static void make_system(const duite_call *call, const struct flow_table *t,
+                        const struct flow_step_args *step, double push,
                         const struct flow_view *view, phys_vec *b, phys_vec *matrix)
 {
     const struct making making = {.call = call,
                                   .t = t,
-                                  .h = flow_args_of(call)->h,
+                                  .h = step->h,
+                                  .now = step->now,
                                   .push = push,
                                   .view = *view,
                                   .b = b,
-                                  .values = begin_matrix(call, t, matrix),
+                                  .values = begin_matrix(call, t, step->h, matrix),
                                   .sums = sums_of(call, t)};
     make(&making);
 }
 
-FLOW_KERNEL(system, FLOW_MATRIX, struct flow_args,
+FLOW_KERNEL(system, FLOW_MATRIX, struct flow_step_args,
             (R(table), R(x), R(v), W(f), W(a), NEIGHBOURS(halo_x), NEIGHBOURS(halo_v),
              IF_MADE(tie_table), TIED(tie_halo)))
 static int system_body(const duite_call *call, const struct system_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table);
     const struct flow_view view = FLOW_VIEW(on);
-    make_system(call, &table, on->args->h, &view, on->f, on->a);
+    make_system(call, &table, on->args, on->args->h, &view, on->f, on->a);
     return 0;
 }
 
 /* Where f has the forces. */
-FLOW_KERNEL(system_of_forces, FLOW_MATRIX, struct flow_args,
+FLOW_KERNEL(system_of_forces, FLOW_MATRIX, struct flow_step_args,
             (R(table), R(x), R(v), RW(f), W(a), NEIGHBOURS(halo_x), NEIGHBOURS(halo_v),
              IF_MADE(tie_table), TIED(tie_halo)))
 static int system_of_forces_body(const duite_call *call, const struct system_of_forces_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table);
     const struct flow_view view = FLOW_VIEW(on);
-    make_system(call, &table, 0, &view, on->f, on->a);
+    make_system(call, &table, on->args, 0, &view, on->f, on->a);
     return 0;
 }
 
 /* The matrix alone. */
-FLOW_KERNEL(matrix, FLOW_MATRIX, struct flow_args,
+FLOW_KERNEL(matrix, FLOW_MATRIX, struct flow_step_args,
             (R(table), R(x), W(a), NEIGHBOURS(halo_x), IF_MADE(tie_table), TIED(tie_halo)))
 static int matrix_body(const duite_call *call, const struct matrix_fields *on)
 {
@@ -186,6 +188,6 @@ static int matrix_body(const duite_call *call, const struct matrix_fields *on)
                                    .halo_x = on->halo_x,
                                    .tie_table = on->tie_table,
                                    .tie_halo = on->tied_tie_halo};
-    make_system(call, &table, 0, &view, NULL, on->a);
+    make_system(call, &table, on->args, 0, &view, NULL, on->a);
     return 0;
 }

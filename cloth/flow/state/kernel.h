@@ -6,7 +6,7 @@
 /* How a kernel is declared, and forked. A kernel names the fields (fields.h) that its task uses,
  * once, above its body:
  *
- *     FLOW_KERNEL(velocity, FLOW_VELOCITY, struct flow_args,
+ *     FLOW_KERNEL(velocity, FLOW_VELOCITY, struct flow_step_args,
  *                 (R(table), R(dv), RW(v), W(halo_v), SUM(status)))
  *     static int velocity_body(const duite_call *call, const struct velocity_fields *on)
  *     {
@@ -34,8 +34,12 @@
  * NEIGHBOURS, ALL and TIED are parameters: flow_rows_of, flow_numbers_of. FLOW_INDEX_OF(velocity,
  * v) is the index of a parameter, for calls of the runtime that want one.
  *
- * The arguments are a struct whose first member is `uint32_t block`; `on->args` are those of the
- * task. A part of the step (enum flow_part) has the task's seconds; FLOW_NO_PART: none has. */
+ * The arguments are a struct whose first member is `uint32_t block`: that alone (struct
+ * flow_block_args), those of a step (struct flow_step_args), or a kernel's own. `on->args` are
+ * those of the task. A function that several bodies call is given what it needs of them; of `call`
+ * it takes the block alone (flow_block_of). So a kernel that lacks it does not compile.
+ *
+ * A part of the step (enum flow_part) has the task's seconds; FLOW_NO_PART: none has. */
 #define FLOW_KERNEL(name, part, arguments, fields)                                                 \
     FLOW_KERNEL_WITH(name, part, arguments, fields, .side_effects = 0)
 
@@ -222,7 +226,8 @@ struct flow_kernel {
         return name##_body(call, &on);                                                             \
     }
 #define FLOW_KERNEL_DEFINE(k, arguments, fields, ...)                                              \
-    _Static_assert(FLOW_KERNEL_##k >= 0 && offsetof(arguments, block) == 0,                        \
+    _Static_assert(FLOW_KERNEL_##k >= 0 && offsetof(arguments, block) == 0 &&                      \
+                       _Generic(((arguments *)NULL)->block, uint32_t : 1, default : 0),            \
                    "a kernel is in the list, and its arguments begin with the block");             \
     const struct flow_kernel flow_kernel_##k = {                                                   \
         .task = {.name = #k,                                                                       \

@@ -16,19 +16,21 @@ struct flow_block_args {
     uint32_t block;
 };
 
-/* Those of the other kernels; what a kernel does not name is zero. */
-struct flow_args {
+/* Those of a kernel that has a part in a step. Other arguments are a structure of their own beside
+ * the kernel. If they are these and more, they begin with
+ *
+ *     union {
+ *         uint32_t block;
+ *         struct flow_step_args step;
+ *     };
+ */
+struct flow_step_args {
     uint32_t block;
-    uint32_t last; /* not zero: what goes wrong in this step is an error of its body; else it is
-                    * only counted, and the step is made again with half the length */
-    uint64_t frame;
-    uint32_t stage;  /* of a step by the midpoint method or RK4 */
+    uint32_t last;   /* not zero: what goes wrong in this step is an error of its body; else it is
+                      * only counted, and the step is made again with half the length */
     double h, begin; /* s: length of the step; FLOW_TICKS: when it begins */
-    double time;     /* s: of a frame; else at the end of the step */
+    double time;     /* s: at the end of the step */
     double now;      /* s: of what varies, where forces and energies are */
-    double before;   /* s: of a row of probes: length of the step before */
-    double part;     /* of dv */
-    double guess;    /* a solve begins with dv times this; 0: from nothing */
 };
 
 /* Indices into the status of a step, F64, zero before the step and summed by its tasks. */

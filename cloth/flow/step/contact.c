@@ -19,43 +19,44 @@ static bool can_leave(struct flow_pins *pins, uint32_t row, phys_vec *way)
 
 /* Gives rows the velocity that ends the step on the obstacle. */
 static void predict_obstacle(const duite_call *call, const struct flow_table *t,
+                             const struct flow_step_args *step,
                              const struct contact_shape *obstacle, const phys_vec *x, phys_vec *v)
 {
     struct contact_pose pose;
     struct flow_pins pins;
-    flow_obstacle_pose(call, obstacle, &pose);
-    flow_pins_begin(call, t, &pins);
+    flow_obstacle_pose(call, step, obstacle, &pose);
+    flow_pins_begin(call, t, step->time, &pins);
     for (uint32_t i = 0; i < t->n; i++) {
         struct contact_hit hit;
         double speed, due;
         contact_ahead(obstacle, &pose, x + i, &hit);
         phys_vec way = hit.normal;
-        if (can_leave(&pins, i, &way) &&
-            contact_meet(&hit, flow_args_of(call)->h, v + i, &speed, &due))
+        if (can_leave(&pins, i, &way) && contact_meet(&hit, step->h, v + i, &speed, &due))
             v[i] += (due - speed) * way;
     }
 }
 
-FLOW_KERNEL(predict_contact, FLOW_COLLIDE, struct flow_args, (R(table), R(x), RW(v), W(halo_v)))
+FLOW_KERNEL(predict_contact, FLOW_COLLIDE, struct flow_step_args,
+            (R(table), R(x), RW(v), W(halo_v)))
 static int predict_contact_body(const duite_call *call, const struct predict_contact_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table);
     const struct model *model = flow_of(call)->model;
     for (uint32_t p = 0; p < model->n_obstacles; p++)
-        predict_obstacle(call, &table, model->obstacles + p, on->x, on->v);
+        predict_obstacle(call, &table, on->args, model->obstacles + p, on->x, on->v);
     flow_write_halo(&table, on->v, on->halo_v);
     return 0;
 }
 
 int flow_contact_predict(struct flow_state *state)
 {
-    struct flow_args args = flow_attempt_args(state);
+    struct flow_step_args args = flow_attempt_args(state);
     return flow_fork_each(state, &flow_kernel_predict_contact, &args);
 }
 
 /* ---- The filter of the solve ---- */
 
-FLOW_KERNEL(contact, FLOW_COLLIDE, struct flow_args, (R(table), R(x), R(v), R(f), W(filter)))
+FLOW_KERNEL(contact, FLOW_COLLIDE, struct flow_step_args, (R(table), R(x), R(v), R(f), W(filter)))
 
 /* Holds the rows that an obstacle holds. */
 static void constrain_rows(const duite_call *call, const struct flow_table *t,
@@ -63,8 +64,8 @@ static void constrain_rows(const duite_call *call, const struct flow_table *t,
 {
     struct contact_pose pose;
     struct flow_pins pins;
-    flow_obstacle_pose(call, obstacle, &pose);
-    flow_pins_begin(call, t, &pins);
+    flow_obstacle_pose(call, on->args, obstacle, &pose);
+    flow_pins_begin(call, t, on->args->time, &pins);
     for (uint32_t i = 0; i < t->n; i++) {
         struct contact_hit hit;
         double speed, due;
@@ -72,8 +73,7 @@ static void constrain_rows(const duite_call *call, const struct flow_table *t,
         phys_vec way = hit.normal;
         if (!can_leave(&pins, i, &way))
             continue;
-        const enum contact_meeting how =
-            contact_meet(&hit, flow_args_of(call)->h, on->v + i, &speed, &due);
+        const enum contact_meeting how = contact_meet(&hit, on->args->h, on->v + i, &speed, &due);
         if (how == CONTACT_LANDS || (how == CONTACT_LIES && phys_dot(on->f + i, &way) <= 0))
             solve_constrain(&hit.normal, on->filter + i);
     }
@@ -106,7 +106,7 @@ static int contact_body(const duite_call *call, const struct contact_fields *on)
     phys_vec *filter = on->filter;
     struct flow_pins pins;
     struct flow_slider slider;
-    flow_pins_begin(call, t, &pins);
+    flow_pins_begin(call, t, on->args->time, &pins);
     for (uint32_t i = 0; i < t->n; i++)
         filter[i] = (phys_vec){0, 0, 0, 1};
     for (uint32_t i = 0; i < t->n_sliding; i++) {
@@ -118,13 +118,13 @@ static int contact_body(const duite_call *call, const struct contact_fields *on)
     return model->own_filter ? filter_own(call, t, on) : 0;
 }
 
-int flow_contact_filter(struct flow_state *state, struct flow_args args)
+int flow_contact_filter(struct flow_state *state, struct flow_step_args args)
 {
     return flow_fork_each(state, &flow_kernel_contact, &args);
 }
 
 /* Filters the right side, and gives the matrix its filter. */
-FLOW_KERNEL(constrain, FLOW_COLLIDE, struct flow_args, (R(table), R(filter), RW(f), RW(a)))
+FLOW_KERNEL(constrain, FLOW_COLLIDE, struct flow_block_args, (R(table), R(filter), RW(f), RW(a)))
 static int constrain_body(const duite_call *call, const struct constrain_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table), *t = &table;
@@ -136,8 +136,9 @@ static int constrain_body(const duite_call *call, const struct constrain_fields 
     return 0;
 }
 
-int flow_contact_constrain(struct flow_state *state, struct flow_args args)
+int flow_contact_constrain(struct flow_state *state)
 {
+    struct flow_block_args args;
     return flow_fork_each(state, &flow_kernel_constrain, &args);
 }
 
@@ -146,6 +147,7 @@ int flow_contact_constrain(struct flow_state *state, struct flow_args args)
 /* Rows that a slider holds leave an obstacle along it. Returns how many rows of the block met it.
  */
 static size_t obstacle_meets(const duite_call *call, const struct flow_table *t,
+                             const struct flow_step_args *step,
                              const struct contact_shape *obstacle, phys_vec *x, phys_vec *v)
 {
     struct contact_pose pose;
@@ -154,8 +156,8 @@ static size_t obstacle_meets(const duite_call *call, const struct flow_table *t,
     struct flow_slider slider;
     uint32_t from = 0;
     size_t touched = 0;
-    flow_obstacle_pose(call, obstacle, &pose);
-    flow_pins_begin(call, t, &pins);
+    flow_obstacle_pose(call, step, obstacle, &pose);
+    flow_pins_begin(call, t, step->time, &pins);
     for (uint32_t i = 0; i < t->n_sliding; i++) {
         const uint32_t row = t->sliding[i][0];
         touched += contact_project(obstacle, &pose, row - from, t->free + from, x + from, v + from);
@@ -170,7 +172,7 @@ static size_t obstacle_meets(const duite_call *call, const struct flow_table *t,
            contact_project(obstacle, &pose, t->n - from, t->free + from, x + from, v + from);
 }
 
-FLOW_KERNEL(collide, FLOW_COLLIDE, struct flow_args,
+FLOW_KERNEL(collide, FLOW_COLLIDE, struct flow_step_args,
             (R(table), RW(x), RW(v), W(halo_x), W(halo_v), SUM(status)))
 static int collide_body(const duite_call *call, const struct collide_fields *on)
 {
@@ -178,14 +180,14 @@ static int collide_body(const duite_call *call, const struct collide_fields *on)
     const struct model *model = flow_of(call)->model;
     for (uint32_t i = 0; i < model->n_obstacles; i++)
         on->status[FLOW_TOUCHED] +=
-            (double)obstacle_meets(call, t, model->obstacles + i, on->x, on->v);
+            (double)obstacle_meets(call, t, on->args, model->obstacles + i, on->x, on->v);
     flow_write_halo(t, on->x, on->halo_x);
     flow_write_halo(t, on->v, on->halo_v);
-    return flow_check(call, t, on->x, "position", on->status);
+    return flow_check(call, t, on->args, on->x, "position", on->status);
 }
 
 int flow_contact_project(struct flow_state *state)
 {
-    struct flow_args args = flow_attempt_args(state);
+    struct flow_step_args args = flow_attempt_args(state);
     return flow_fork_each(state, &flow_kernel_collide, &args);
 }

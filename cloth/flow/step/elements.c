@@ -46,25 +46,25 @@ static bool has_system(int kind)
 }
 
 /* Adds the forces of all kinds, or of those without a system. */
-static void add_forces(const duite_call *call, const struct flow_table *t, bool all,
+static void add_forces(const duite_call *call, const struct flow_table *t, double now, bool all,
                        const struct phys_sight *sight, phys_vec *f)
 {
-    const struct element_world world = {flow_of(call)->model, flow_args_of(call)->now};
+    const struct element_world world = {flow_of(call)->model, now};
     for (int kind = 0; kind < ELEMENT_KINDS; kind++)
         if (t->n_elements[kind] && (all || !has_system(kind)))
             element_kinds[kind]->force(t->list + kind, &world, sight, f);
 }
 
-void flow_elements_force(const duite_call *call, const struct flow_table *t,
+void flow_elements_force(const duite_call *call, const struct flow_table *t, double now,
                          const struct phys_sight *sight, phys_vec *f)
 {
-    add_forces(call, t, true, sight, f);
+    add_forces(call, t, now, true, sight, f);
 }
 
-void flow_elements_force_beside(const duite_call *call, const struct flow_table *t,
+void flow_elements_force_beside(const duite_call *call, const struct flow_table *t, double now,
                                 const struct phys_sight *sight, phys_vec *f)
 {
-    add_forces(call, t, false, sight, f);
+    add_forces(call, t, now, false, sight, f);
 }
 
 void flow_elements_stiffness(const duite_call *call, const struct flow_table *t, double scale,
@@ -93,12 +93,12 @@ double flow_elements_energy(const duite_call *call, const struct flow_table *t,
     return sum;
 }
 
-void flow_elements_assemble(const duite_call *call, const struct flow_table *t, double push,
-                            const struct phys_sight *sight, phys_vec *b, struct phys_pair *sums)
+void flow_elements_assemble(const duite_call *call, const struct flow_table *t, double h,
+                            double push, const struct phys_sight *sight, phys_vec *b,
+                            struct phys_pair *sums)
 {
     enum { AT_ONCE = 32 }; /* elements, whose pairs stay in the nearest cache */
-    const struct phys_step step = {flow_args_of(call)->h,
-                                   flow_of(call)->model->full_slope == PHYS_FULL};
+    const struct phys_step step = {h, flow_of(call)->model->full_slope == PHYS_FULL};
     struct phys_pair pair[AT_ONCE * ELEMENT_PAIRS];
     for (int i = 0; i < ELEMENT_KINDS; i++) {
         const struct element_kind *kind = element_kinds[i];

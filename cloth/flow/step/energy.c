@@ -7,7 +7,7 @@
 #include "cloth/physics/energy.h"
 #include "cloth/physics/particle.h"
 
-FLOW_KERNEL(energy, FLOW_NO_PART, struct flow_args,
+FLOW_KERNEL(energy, FLOW_NO_PART, struct flow_step_args,
             (R(table), R(x), R(v), SUM(energies), NEIGHBOURS(halo_x), IF_MADE(tie_table),
              TIED(tie_halo)))
 static int energy_body(const duite_call *call, const struct energy_fields *on)
@@ -23,7 +23,7 @@ static int energy_body(const duite_call *call, const struct energy_fields *on)
     sums[FLOW_ENERGY_MOTION] = phys_kinetic(t->n, t->mass, on->v, &fastest);
     sums[FLOW_ENERGY_GRAVITY] = phys_energy_weight(t->n, t->mass, gravity, on->x);
     sums[FLOW_ENERGY_LOADS] = phys_energy_load(t->n, t->mass, gravity, t->load, on->x) +
-                              flow_varying_energy(call, t, on->x);
+                              flow_varying_energy(call, t, on->args->now, on->x);
     sums[FLOW_ENERGY_ELASTIC] = flow_elements_energy(call, t, &view, sums + FLOW_TORQUE) +
                                 phys_energy_springs(&springs, on->x, on->x);
     for (uint32_t s = 0; s < t->n_neighbours; s++) {
@@ -38,12 +38,12 @@ static int energy_body(const duite_call *call, const struct energy_fields *on)
 
 /* f becomes v and half a kick more: the velocity where x is, of steps that hold them half a step
  * apart. */
-FLOW_KERNEL(level, FLOW_NO_PART, struct flow_args, (R(table), R(v), RW(f)))
+FLOW_KERNEL(level, FLOW_NO_PART, struct flow_step_args, (R(table), R(v), RW(f)))
 static int level_body(const duite_call *call, const struct level_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table), *t = &table;
     phys_accelerate(t->n, t->mass, t->free, on->f);
-    flow_sliders_filter(call, t, on->f);
+    flow_sliders_filter(call, t, on->args->time, on->f);
     for (uint32_t i = 0; i < t->n; i++)
         on->f[i] = on->v[i] + 0.5 * on->args->h * on->f[i];
     return 0;
@@ -51,13 +51,13 @@ static int level_body(const duite_call *call, const struct level_fields *on)
 
 /* By symplectic Euler x moved with v: it is the velocity half a step before. With that at x the
  * energy is off by the square of h only. */
-static int fork_level(struct flow_state *state, struct flow_args args)
+static int fork_level(struct flow_state *state, struct flow_step_args args)
 {
     const int code = flow_fork_each(state, &flow_kernel_force, &args);
     return code ? code : flow_fork_each(state, &flow_kernel_level, &args);
 }
 
-int flow_energies(struct flow_state *state, struct flow_args args, enum flow_field_id sums)
+int flow_energies(struct flow_state *state, struct flow_step_args args, enum flow_field_id sums)
 {
     const bool apart = state->flow->model->integrator == MODEL_SYMPLECTIC_EULER;
     const struct flow_as as[] = {{FLOW_FIELD_v, apart ? FLOW_FIELD_f : FLOW_FIELD_v},
@@ -149,7 +149,7 @@ static void begin(struct flow_state *state)
 int flow_energy_get(struct flow_state *state, struct flow_energy *energy)
 {
     double sums[FLOW_SUMS];
-    struct flow_args args = flow_attempt_args(state);
+    struct flow_step_args args = flow_attempt_args(state);
     args.h = args.h > 0 ? args.h : state->flow->model->h; /* before the first step */
     int code = flow_energies(state, args, FLOW_FIELD_energy);
     if (!code)

@@ -10,7 +10,7 @@
  * alike on every rank, and return 0 or what duite returned. */
 
 struct flow_state;
-struct flow_args;
+struct flow_step_args;
 
 /* What a run that is guarded (model_is_guarded) knows of its energies, J. */
 struct flow_guard {
@@ -24,7 +24,7 @@ struct flow_guard {
 
 /* Forks what adds up the energies of the present state in a field: `energies` or `energy`. args:
  * those of the step that ends there. */
-int flow_energies(struct flow_state *state, struct flow_args args, enum flow_field_id sums);
+int flow_energies(struct flow_state *state, struct flow_step_args args, enum flow_field_id sums);
 
 /* The energies of the present state. Waits for it. */
 int flow_energy_get(struct flow_state *state, struct flow_energy *energy);

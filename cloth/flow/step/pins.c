@@ -9,10 +9,10 @@
 
 #include "cloth/physics/motion.h"
 
-void flow_pins_begin(const duite_call *call, const struct flow_table *t, struct flow_pins *pins)
+void flow_pins_begin(const duite_call *call, const struct flow_table *t, double time,
+                     struct flow_pins *pins)
 {
-    *pins = (struct flow_pins){
-        .model = flow_of(call)->model, .table = t, .time = flow_args_of(call)->time};
+    *pins = (struct flow_pins){.model = flow_of(call)->model, .table = t, .time = time};
 }
 
 /* The pose of a motion, by number from 1, at the time of the pins. */
@@ -51,23 +51,24 @@ const phys_vec *flow_pins_filter(struct flow_pins *pins, uint32_t row)
     return &pins->slider.filter;
 }
 
-void flow_sliders_filter(const duite_call *call, const struct flow_table *t, phys_vec *y)
+void flow_sliders_filter(const duite_call *call, const struct flow_table *t, double time,
+                         phys_vec *y)
 {
     struct flow_pins pins;
     struct flow_slider slider;
-    flow_pins_begin(call, t, &pins);
+    flow_pins_begin(call, t, time, &pins);
     for (uint32_t i = 0; i < t->n_sliding; i++) {
         flow_pins_slider(&pins, i, &slider);
         solve_filter(&slider.filter, y + t->sliding[i][0]);
     }
 }
 
-void flow_sliders_keep(const duite_call *call, const struct flow_table *t, const phys_vec *before,
-                       phys_vec *y)
+void flow_sliders_keep(const duite_call *call, const struct flow_table *t, double time,
+                       const phys_vec *before, phys_vec *y)
 {
     struct flow_pins pins;
     struct flow_slider slider;
-    flow_pins_begin(call, t, &pins);
+    flow_pins_begin(call, t, time, &pins);
     for (uint32_t i = 0; i < t->n_sliding; i++) {
         const uint32_t row = t->sliding[i][0];
         flow_pins_slider(&pins, i, &slider);
@@ -80,7 +81,7 @@ void flow_sliders_keep(const duite_call *call, const struct flow_table *t, const
 /* On the blocks that have such pins. */
 static int fork_moved(struct flow_state *state, const struct flow_kernel *kernel)
 {
-    struct flow_args args = flow_attempt_args(state);
+    struct flow_step_args args = flow_attempt_args(state);
     int code = DUITE_OK;
     for (; args.block < state->flow->tables.n_blocks && !code; args.block++) {
         const struct flow_table *t = state->flow->tables.block + args.block;
@@ -90,7 +91,8 @@ static int fork_moved(struct flow_state *state, const struct flow_kernel *kernel
     return code;
 }
 
-FLOW_KERNEL(prescribe_velocity, FLOW_VELOCITY, struct flow_args, (R(table), R(x), RW(v), W(halo_v)))
+FLOW_KERNEL(prescribe_velocity, FLOW_VELOCITY, struct flow_step_args,
+            (R(table), R(x), RW(v), W(halo_v)))
 static int prescribe_velocity_body(const duite_call *call,
                                    const struct prescribe_velocity_fields *on)
 {
@@ -100,7 +102,7 @@ static int prescribe_velocity_body(const duite_call *call,
     phys_vec *v = on->v;
     struct flow_pins pins;
     struct flow_slider slider;
-    flow_pins_begin(call, t, &pins);
+    flow_pins_begin(call, t, on->args->time, &pins);
     for (uint32_t i = 0; i < t->n_moved; i++) {
         const uint32_t row = t->moved[i][0];
         phys_vec to;
@@ -122,7 +124,7 @@ int flow_pins_prescribe_velocity(struct flow_state *state)
     return fork_moved(state, &flow_kernel_prescribe_velocity);
 }
 
-FLOW_KERNEL(prescribe_position, FLOW_POSITION, struct flow_args, (R(table), RW(x), W(halo_x)))
+FLOW_KERNEL(prescribe_position, FLOW_POSITION, struct flow_step_args, (R(table), RW(x), W(halo_x)))
 static int prescribe_position_body(const duite_call *call,
                                    const struct prescribe_position_fields *on)
 {
@@ -130,7 +132,7 @@ static int prescribe_position_body(const duite_call *call,
     phys_vec *x = on->x;
     struct flow_pins pins;
     struct flow_slider slider;
-    flow_pins_begin(call, t, &pins);
+    flow_pins_begin(call, t, on->args->time, &pins);
     for (uint32_t i = 0; i < t->n_moved; i++) {
         const uint32_t row = t->moved[i][0];
         phys_pose_point(pose_of(&pins, t->moved[i][1]), t->position + row, x + row);
@@ -150,41 +152,39 @@ int flow_pins_prescribe_position(struct flow_state *state)
 
 /* ---- Accelerations, for reactions ---- */
 
-/* Poses of a motion at the end of a step, at its begin and at that of the step before. */
-static void poses_of(const struct model *model, uint32_t motion, const struct flow_args *args,
+/* Poses of a motion at the end of the later step, at its begin and at that of the step before. */
+static void poses_of(const struct model *model, uint32_t motion, const struct flow_two_steps *steps,
                      struct phys_pose pose[3])
 {
-    const double back[3] = {0, args->h, args->h + args->before};
+    const double back[3] = {0, steps->h, steps->h + steps->before};
     for (int i = 0; i < 3; i++) {
-        struct flow_pins pins = {.model = model, .time = args->time - back[i]};
+        struct flow_pins pins = {.model = model, .time = steps->end - back[i]};
         pose[i] = *pose_of(&pins, motion);
     }
 }
 
 /* Of what was at x[2], x[1], x[0] in turn. */
-static void second_difference(const struct flow_args *args, const phys_vec x[3], phys_vec *a)
+static void second_difference(const struct flow_two_steps *steps, const phys_vec x[3], phys_vec *a)
 {
-    *a = ((x[0] - x[1]) / args->h - (x[1] - x[2]) / args->before) / args->h;
+    *a = ((x[0] - x[1]) / steps->h - (x[1] - x[2]) / steps->before) / steps->h;
 }
 
-void flow_due_acceleration(const duite_call *call, uint32_t motion, const phys_vec *start,
-                           phys_vec *a)
+void flow_due_acceleration(const duite_call *call, const struct flow_two_steps *steps,
+                           uint32_t motion, const phys_vec *start, phys_vec *a)
 {
-    const struct flow_args *args = flow_args_of(call);
     struct phys_pose pose[3];
     phys_vec x[3];
-    poses_of(flow_of(call)->model, motion, args, pose);
+    poses_of(flow_of(call)->model, motion, steps, pose);
     for (int i = 0; i < 3; i++)
         phys_pose_point(pose + i, start, x + i);
-    second_difference(args, x, a);
+    second_difference(steps, x, a);
 }
 
 /* With R the slider's rotation: of the point of the slider where the vertex is, and twice dR/dt RT
  * on its velocity along the slider (Coriolis). */
-void flow_slider_acceleration(const duite_call *call, uint32_t slider, const phys_vec *x,
-                              const phys_vec *v, phys_vec *a)
+void flow_slider_acceleration(const duite_call *call, const struct flow_two_steps *steps,
+                              uint32_t slider, const phys_vec *x, const phys_vec *v, phys_vec *a)
 {
-    const struct flow_args *args = flow_args_of(call);
     const struct model *model = flow_of(call)->model;
     const uint32_t motion = model->sliders[slider - 1].motion;
     struct phys_pose pose[3];
@@ -192,14 +192,14 @@ void flow_slider_acceleration(const duite_call *call, uint32_t slider, const phy
     *a = (phys_vec){0};
     if (!motion)
         return;
-    poses_of(model, motion, args, pose);
+    poses_of(model, motion, steps, pose);
     phys_pose_back(pose, x, &own);
     for (int i = 0; i < 3; i++)
         phys_pose_point(pose + i, &own, at + i);
-    second_difference(args, at, a);
-    const phys_vec slip = *v - (at[0] - at[1]) / args->h;
+    second_difference(steps, at, a);
+    const phys_vec slip = *v - (at[0] - at[1]) / steps->h;
     phys_pose_direction_back(pose, &slip, &along);
     for (int i = 0; i < 2; i++)
         phys_pose_direction(pose + i, &along, turned + i);
-    *a += 2 * (turned[0] - turned[1]) / args->h;
+    *a += 2 * (turned[0] - turned[1]) / steps->h;
 }

@@ -51,7 +51,7 @@ static void note(struct flow_state *state, const double status[FLOW_STATUS])
 /* No step is short enough. */
 static int give_up(struct flow_state *state, const struct flow_verdict *verdict)
 {
-    const struct flow_args args = flow_attempt_args(state);
+    const struct flow_step_args args = flow_attempt_args(state);
     const bool above = verdict->max > 0 && verdict->after > verdict->max;
     snprintf(state->reason, sizeof state->reason,
              "step %llu: in %g s the largest stretch of an edge grows from %g to %g times its "

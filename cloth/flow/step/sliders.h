@@ -43,34 +43,40 @@ struct flow_pins {
     uint32_t next; /* sliding row */
     struct flow_slider slider;
 };
-/* At the end of the task's step. */
-void flow_pins_begin(const duite_call *call, const struct flow_table *t, struct flow_pins *pins);
+/* At a time, s: in a step its end. */
+void flow_pins_begin(const duite_call *call, const struct flow_table *t, double time,
+                     struct flow_pins *pins);
 /* That of sliding row i. */
 void flow_pins_slider(struct flow_pins *pins, uint32_t i, struct flow_slider *slider);
 /* The part of S of a row, NULL where no slider is; for rows in ascending order. Good until the next
  * call. */
 const phys_vec *flow_pins_filter(struct flow_pins *pins, uint32_t row);
 
-/* An obstacle in the task's step. */
-static inline void flow_obstacle_pose(const duite_call *call, const struct contact_shape *obstacle,
+/* An obstacle in a step. */
+static inline void flow_obstacle_pose(const duite_call *call, const struct flow_step_args *step,
+                                      const struct contact_shape *obstacle,
                                       struct contact_pose *pose)
 {
     const struct model *model = flow_of(call)->model;
-    const struct flow_args *args = flow_args_of(call);
-    contact_pose_over(obstacle, model->keys, args->begin * model->h / FLOW_TICKS, args->time, pose);
+    contact_pose_over(obstacle, model->keys, step->begin * model->h / FLOW_TICKS, step->time, pose);
 }
 
-/* y = S y of the sliding rows; y = before + S (y - before) of them. */
-void flow_sliders_filter(const duite_call *call, const struct flow_table *t, phys_vec *y);
-void flow_sliders_keep(const duite_call *call, const struct flow_table *t, const phys_vec *before,
-                       phys_vec *y);
+/* y = S y of the sliding rows; y = before + S (y - before) of them. S is that of a time, s. */
+void flow_sliders_filter(const duite_call *call, const struct flow_table *t, double time,
+                         phys_vec *y);
+void flow_sliders_keep(const duite_call *call, const struct flow_table *t, double time,
+                       const phys_vec *before, phys_vec *y);
 
+/* Two steps, s: when the later one ends, its length, and the length of the one before it. */
+struct flow_two_steps {
+    double end, h, before;
+};
 /* The acceleration that a motion gives a vertex that starts there: the change of its mean velocity
- * from the step before to this one over the length of this one. */
-void flow_due_acceleration(const duite_call *call, uint32_t motion, const phys_vec *start,
-                           phys_vec *a);
+ * from the step before to the later one over the length of the later one. */
+void flow_due_acceleration(const duite_call *call, const struct flow_two_steps *steps,
+                           uint32_t motion, const phys_vec *start, phys_vec *a);
 /* That which a slider gives a vertex at x, v; only its part that S takes away means anything. */
-void flow_slider_acceleration(const duite_call *call, uint32_t slider, const phys_vec *x,
-                              const phys_vec *v, phys_vec *a);
+void flow_slider_acceleration(const duite_call *call, const struct flow_two_steps *steps,
+                              uint32_t slider, const phys_vec *x, const phys_vec *v, phys_vec *a);
 
 #endif

@@ -12,20 +12,20 @@ void flow_note_stop(const duite_call *call, double *status)
         status[FLOW_STOP] = 1;
 }
 
-int flow_check(const duite_call *call, const struct flow_table *t, const phys_vec *y,
-               const char *what, double *status)
+int flow_check(const duite_call *call, const struct flow_table *t,
+               const struct flow_step_args *step, const phys_vec *y, const char *what,
+               double *status)
 {
     const size_t bad = phys_diverged(t->n, FLOW_BOUND, y);
-    const struct flow_args *args = flow_args_of(call);
     flow_note_stop(call, status);
     if (bad < t->n)
         status[FLOW_BEYOND] = 1;
-    if (bad == t->n || !args->last)
+    if (bad == t->n || !step->last)
         return 0;
     return duite_fail(
         call, FLOW_DIVERGED,
         "step %.0f: the %s of vertex %u in block %u is (%g, %g, %g): the run diverged",
-        flow_step_number(args->begin), what, t->vertex[bad], args->block, y[bad][0], y[bad][1],
+        flow_step_number(step->begin), what, t->vertex[bad], step->block, y[bad][0], y[bad][1],
         y[bad][2]);
 }
 

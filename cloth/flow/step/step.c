@@ -6,16 +6,16 @@
 #include "cloth/flow/observe/observe.h"
 #include "cloth/flow/state/state.h"
 
-struct flow_args flow_attempt_args(const struct flow_state *state)
+struct flow_step_args flow_attempt_args(const struct flow_state *state)
 {
     const struct model *model = state->flow->model;
     const struct flow_attempt *attempt = &state->attempt;
     const double end = (double)(attempt->begin + attempt->length) * model->h / FLOW_TICKS;
-    return (struct flow_args){.last = !model->halving || attempt->length == 1,
-                              .h = model->h * attempt->length / FLOW_TICKS,
-                              .begin = (double)attempt->begin,
-                              .time = end,
-                              .now = end};
+    return (struct flow_step_args){.last = !model->halving || attempt->length == 1,
+                                   .h = model->h * attempt->length / FLOW_TICKS,
+                                   .begin = (double)attempt->begin,
+                                   .time = end,
+                                   .now = end};
 }
 
 /* ---- When there is a stage ---- */

@@ -6,7 +6,7 @@
 /* A step: its stages, and what settles it. Collective; they return what the runtime does. */
 
 /* Arguments of tasks of the step under way. */
-struct flow_args flow_attempt_args(const struct flow_state *state);
+struct flow_step_args flow_attempt_args(const struct flow_state *state);
 /* Steps are judged by their stretch. */
 static inline bool flow_is_judged(const struct model *model)
 {
@@ -33,8 +33,8 @@ int flow_pins_prescribe_position(struct flow_state *state);
  * the solves of a step are filtered by, from x, v and f; the filter on the right side and in the
  * matrix; after the step, what puts vertices out of obstacles. */
 int flow_contact_predict(struct flow_state *state);
-int flow_contact_filter(struct flow_state *state, struct flow_args args);
-int flow_contact_constrain(struct flow_state *state, struct flow_args args);
+int flow_contact_filter(struct flow_state *state, struct flow_step_args args);
+int flow_contact_constrain(struct flow_state *state);
 int flow_contact_project(struct flow_state *state);
 
 #endif

@@ -28,3 +28,6 @@ ok "arguments that do not begin with the block do not" wrong 5 'begin with the b
 ok "a write to what is read only does not" wrong 6 'read-only|const-qualified'
 ok "a field that is not declared does not" wrong 7 "no member named .dv"
 ok "a field as another type does not" wrong 8 'incompatible pointer'
+ok "arguments whose block is of another type do not" wrong 9 'begin with the block'
+ok "a shared function that asks for arguments of a step does not, where there are none" wrong 10 'incompatible pointer'
+ok "a member of them does not" wrong 11 "no member named .now"

@@ -54,11 +54,8 @@ bool ranks_on_hosts(void)
 /* Those of the cloth, and the one that waves the sheet. */
 static const duite_kernel *const *kernels(void)
 {
-    enum { MOST = 64 };
-    static const duite_kernel *all[MOST + 1] = {&sheet_wave_kernel};
-    const duite_kernel *const *cloth = flow_kernels();
-    for (size_t i = 0; cloth[i] && i + 1 < MOST; i++)
-        all[i + 1] = cloth[i];
+    static const duite_kernel *all[1 + FLOW_KERNELS_LISTED + 1] = {&sheet_wave_kernel};
+    memcpy(all + 1, flow_kernels(), FLOW_KERNELS_LISTED * sizeof *all);
     return all;
 }
 

@@ -34,4 +34,6 @@ extern const duite_kernel
 extern const duite_kernel flow_ready; /* cw ready: fails if this rank cannot begin */
 extern const duite_kernel flow_pack;  /* r halo of s, w packed halo */
 
+enum { FLOW_KERNELS_LISTED = FLOW_KERNELS_OF_ALL + 4 }; /* by flow_kernels (run.h) */
+
 #endif

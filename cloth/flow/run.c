@@ -25,9 +25,9 @@ double flow_now(void)
 const duite_kernel *const *flow_kernels(void)
 {
 #define TASK(name) &flow_kernel_##name.task,
-    static const duite_kernel *const all[] = {FLOW_KERNELS(TASK) & flow_broadcast_head,
-                                              &flow_broadcast_shared, &flow_ready, &flow_pack,
-                                              NULL};
+    static const duite_kernel *const all[FLOW_KERNELS_LISTED + 1] = {
+        FLOW_KERNELS(TASK) & flow_broadcast_head, &flow_broadcast_shared, &flow_ready, &flow_pack,
+        NULL};
     return all;
 }
 

@@ -1,10 +1,9 @@
-/* A factor is, for each row, the inverse of a 3 x 3 block (struct solve_symmetric), and behind them
- * for IC(0), for each inner entry, its block of T, transposed: what a row gives to those behind it
- * are multiples of columns of T', by its own three numbers, and what it takes from them is summed
- * up over its entries before lanes are. The same T stands on both sides of E, so M is exactly
- * symmetric and as definite as E. It is made in double and kept in float, in the first half of its
- * memory: a solve reads it from far more often than it is made, and half the bytes are read in less
- * time. */
+/* A factor has for each row the inverse of a 3 x 3 block (struct solve_symmetric). Behind them
+ * IC(0) has for each inner entry its block of T, transposed. A row gives to later rows multiples of
+ * columns of T', by its own three numbers. What it takes from them is summed over its entries
+ * first, over lanes at the end. The same T stands on both sides of E, so M is exactly symmetric and
+ * as definite as E. T is made in double and kept in float, in the first half of its memory. A solve
+ * reads T far more often than it is made, and half the bytes take less time. */
 #include "cloth/solve/local.h"
 #include "cloth/solve/matrix3.h"
 
@@ -14,7 +13,7 @@
 /* A pivot below this part of its row's diagonal is rounding. */
 #define LEAST 1e-9
 
-/* Those of B are not below its masses; what IC(0) leaves so far below is as good as nothing. */
+/* Pivots of B are not below its masses; a pivot of IC(0) so far below them is as good as zero. */
 #define LEAST_OF_MASS 1e-3
 
 struct rounded {

@@ -3,9 +3,9 @@
 
 #include "cloth/solve/block.h"
 
-/* Preconditioners of one block of rows, made of B, the block's own part of S A S + (I - S): all
- * that its rows have on their diagonals, entries into other blocks and to held rows and ties
- * included, and its inner entries between free rows. They are symmetric and positive definite, and
+/* Preconditioners of one block of rows, made of B, the block's own part of S A S + (I - S). B has
+ * the inner entries between free rows and the whole diagonals of the rows, to which entries into
+ * other blocks, entries to held rows and ties add. They are symmetric and positive definite, and
  * leave held rows at zero. Pure functions; nothing is allocated. */
 enum solve_local {
     SOLVE_JACOBI, /* the inverses of the 3 x 3 blocks on the diagonal */
@@ -14,13 +14,13 @@ enum solve_local {
                * T in float */
 };
 
-/* Doubles that a factor takes, of so many rows and inner entries. */
+/* How many doubles the factor of so many rows and inner entries has. */
 size_t solve_local_doubles(size_t n, size_t entries, enum solve_local kind);
 
 /* Makes the factor of a block, aligned to 32 bytes. A pivot of IC(0) may fail where B itself is
- * positive definite; then it is tried again with the diagonal of B times 1.01, 1.05, 1.2 and 2
- * (Manteuffel 1980), and where all fail the factor is that of SSOR, which cannot. Returns how often
- * it was tried again: 0 .. SOLVE_SSOR. */
+ * positive definite. Then IC(0) is tried again with the diagonal of B times 1.01, 1.05, 1.2 and 2
+ * (Manteuffel 1980). Where all fail the factor is that of SSOR, which cannot fail. Returns how
+ * often it was tried again: 0 .. SOLVE_SSOR. */
 enum { SOLVE_SSOR = 5 };
 int solve_local_factor(const struct solve_block *block, const struct solve_cut *cut,
                        const void *values, enum solve_local kind, double *factor);

@@ -79,8 +79,10 @@ case_of "not for so long" ranks 2 $stuck 2 0 0.5 0.5 get
 ok "tells nothing" quiet
 
 DUITE_STUCK_SECONDS=0.001
-ok "looked at all the time, one rank" limited tests/runtime/nested_programs --seed 400000 --programs 100
-ok "looked at all the time, three ranks" ranks 3 tests/runtime/random_programs --base 400000 --programs 100
+programs=100
+if quick; then programs=20; fi
+ok "looked at all the time, one rank" limited tests/runtime/nested_programs --seed 400000 --programs $programs
+ok "looked at all the time, three ranks" ranks 3 tests/runtime/random_programs --base 400000 --programs $programs
 
 DUITE_STUCK_SECONDS=soon
 exits 3 "seconds that are none" limited $stuck 1 0 0 0 get

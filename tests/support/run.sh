@@ -7,13 +7,16 @@ case $1 in
     # AddressSanitizer's slow unwinder, which sees through Open MPI, waits for itself in the loader of llvmpipe's code.
     *tests/cloth/view/*) unset ASAN_OPTIONS ;;
     # Without Open MPI the fast unwinder sees enough, and takes a tenth of the time.
-    *tests/cloth/base/* | *tests/cloth/mesh/* | *tests/cloth/physics/* | *tests/cloth/solve/*)
+    *tests/cloth/base/* | *tests/cloth/mesh/* | *tests/cloth/contact/* | *tests/cloth/physics/* | *tests/cloth/solve/* | *tests/model/*)
         export ASAN_OPTIONS="$ASAN_OPTIONS:fast_unwind_on_malloc=1" ;;
-    # The tests of runs take memory millions of times, and with it the slow unwinder ten times as long as without. These look for leaks,
-    # which only the slow one can tell from those of Open MPI; the others do not.
+    # With the slow unwinder a rank takes six times as long to start, and a run, which takes memory millions of times, up to ten times as
+    # long. Only the slow one can tell leaks from those of Open MPI. These look for them: what runs, what it reads and writes, how it
+    # fails; the tests of the runtime, of scenes and output, which stand below, likewise. The others do not.
     *tests/cloth/flow/test_run | *tests/cloth/flow/test_failures | *tests/cloth/flow/test_memory | *tests/cloth/flow/test_ranks*.sh) ;;
-    *tests/whole/test_input.sh | *tests/whole/test_world.sh | *tests/whole/test_lock.sh | *tests/whole/test_signals.sh) ;;
-    *tests/cloth/flow/* | *tests/whole/*) export ASAN_OPTIONS="$ASAN_OPTIONS:fast_unwind_on_malloc=1:detect_leaks=0" ;;
+    *tests/whole/test_input.sh | *tests/whole/test_lock.sh | *tests/whole/test_signals.sh) ;;
+    *tests/cloth/flow/* | *tests/whole/* | *tests/examples/* | *tests/negative/test_environment.sh | *tests/negative/test_lost*.sh | \
+        *tests/runtime/test_exit.sh | *tests/runtime/test_stuck.sh | *tests/runtime/test_loaded.sh | *tests/runtime/test_watchdog.sh)
+        export ASAN_OPTIONS="$ASAN_OPTIONS:fast_unwind_on_malloc=1:detect_leaks=0" ;;
 esac
 folder=$(mktemp -d "${TMPDIR:-/tmp}/duite.XXXXXX") || exit 99
 trap 'rm -rf "$folder"' EXIT

@@ -9,7 +9,8 @@
 # and the plan and the exit status follow at its end. What COMMAND prints is kept in $scratch/output, and shown as
 # TAP comments when the case fails. Also:
 #     ranks N COMMAND...               COMMAND under mpirun on N ranks, at most $DUITE_TIMEOUT seconds (default 1800): an
-#                                      end for what hangs, far above what any command takes on a busy machine
+#                                      end for what hangs, far above what any command takes on a busy machine. Leaks are
+#                                      looked for on at most two ranks
 #     limited COMMAND...               COMMAND with the same time limit
 #     awaits PID COMMAND...            waits until COMMAND passes, as long as the process lives: no time limit of its own
 #     quick                            whether only the quick subset is wanted (DUITE_QUICK=1)
@@ -116,6 +117,10 @@ awaits() {
 ranks() {
     tap_n=$1
     shift
+    case "$tap_n ${SANITIZER:-}" in
+        [12]\ *) ;;
+        *address*) set -- env ASAN_OPTIONS="${ASAN_OPTIONS:-}:fast_unwind_on_malloc=1:detect_leaks=0" "$@" ;; # as in run.sh
+    esac
     limited "${MPIRUN:-mpirun}" --oversubscribe --bind-to none -n "$tap_n" "$@"
 }
 

@@ -48,7 +48,7 @@ ok "the manual page has all options" documented
 
 # ---- Wrong command lines
 
-wrong() { # SENTENCE ARGUMENT...: status 2, the sentence once, nothing on standard output; on one rank and on two
+wrong() { # SENTENCE ARGUMENT...: status 2, the sentence once, nothing on standard output; on one rank and, but for the quick subset, on two
     wrong_what=$1
     shift
     for wrong_run in run "ranks 2 $DUITE_CLOTH"; do
@@ -58,6 +58,7 @@ wrong() { # SENTENCE ARGUMENT...: status 2, the sentence once, nothing on standa
         echo "exit status $status"
         cat complained
         test $status = 2 && test ! -s printed && test "$(grep -c -F -e "$wrong_what" complained)" = 1 || return 1
+        ! quick || break
     done
 }
 ok "no scene" wrong "duite-cloth: a scene file is expected; see duite-cloth --help"

@@ -207,7 +207,7 @@ static int show_frame(struct output_cache *cache, const struct options *options,
                         .used = malloc(n),
                         .position = malloc(3 * n * sizeof(double))};
     code = view_obstacles_make(&show.obstacles, cache->n_obstacles, cache->obstacles, cache->keys,
-                               error);
+                               &cache->bodies, error);
     if (!code && !(show.used && show.position))
         code = cloth_fail(error, CLOTH_E_MEMORY, "no memory for %zu vertices", n);
     if (!code) {

@@ -147,7 +147,8 @@ static int open_output(struct run *run, struct cloth_error *error)
                                            .fps = model->fps,
                                            .n_obstacles = model->n_obstacles,
                                            .obstacles = model->obstacles,
-                                           .keys = model->keys};
+                                           .keys = model->keys,
+                                           .bodies = &model->bodies};
         code = output_open(&run->frames, &setup, error);
     } else {
         cloth_fail(error, code, "out of memory before the first frame");

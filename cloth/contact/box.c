@@ -38,8 +38,10 @@ static void box_closest_own(const double half[3], const phys_vec *x, struct cont
     }
 }
 
-static void box_closest(const double *value, size_t n, const phys_vec *x, struct contact_hit *hit)
+static void box_closest(const double *value, const struct contact_body *body, size_t n,
+                        const phys_vec *x, struct contact_hit *hit)
 {
+    (void)body;
     struct phys_pose axes;
     double half[3];
     box_around(value, &axes, half);

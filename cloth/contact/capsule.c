@@ -6,9 +6,10 @@
 
 enum { FROM = 0, TO = 3, RADIUS = 6 };
 
-static void capsule_closest(const double *value, size_t n, const phys_vec *x,
-                            struct contact_hit *hit)
+static void capsule_closest(const double *value, const struct contact_body *body, size_t n,
+                            const phys_vec *x, struct contact_hit *hit)
 {
+    (void)body;
     const phys_vec from = {value[FROM], value[FROM + 1], value[FROM + 2], 0};
     const phys_vec to = {value[TO], value[TO + 1], value[TO + 2], 0}, axis = to - from;
     const double square = phys_dot(&axis, &axis);

@@ -7,9 +7,10 @@
 
 enum { CENTRE = 0, AXIS = 3, RADIUS = 6, LENGTH = 7 };
 
-static void cylinder_closest(const double *value, size_t n, const phys_vec *x,
-                             struct contact_hit *hit)
+static void cylinder_closest(const double *value, const struct contact_body *body, size_t n,
+                             const phys_vec *x, struct contact_hit *hit)
 {
+    (void)body;
     const phys_vec centre = {value[CENTRE], value[CENTRE + 1], value[CENTRE + 2], 0};
     const phys_vec axis = {value[AXIS], value[AXIS + 1], value[AXIS + 2], 0};
     phys_vec aside;

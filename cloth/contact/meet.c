@@ -18,12 +18,17 @@ bool contact_leave(const struct contact_hit *hit, const phys_vec *way, phys_vec 
     return true;
 }
 
-/* Whether none of the points is on or in the shape, if that is known at little cost. */
+/* Whether none of at most AT_ONCE points is on or in the shape, if that is known at little cost. */
 static bool are_apart(const struct contact_shape *shape, const struct contact_pose *pose, size_t n,
                       const phys_vec *x)
 {
     const struct contact_kind *kind = contact_kinds[shape->kind];
-    return !pose->moves && kind->apart && kind->apart(shape->value, n, x);
+    phys_vec own[AT_ONCE];
+    if (!kind->apart)
+        return false;
+    for (size_t i = 0; i < n && pose->moves; i++)
+        phys_pose_back(&pose->to, x + i, own + i);
+    return kind->apart(shape->value, pose->body, n, pose->moves ? own : x);
 }
 
 size_t contact_project(const struct contact_shape *shape, const struct contact_pose *pose, size_t n,

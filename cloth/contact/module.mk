@@ -1,5 +1,8 @@
 # Shapes that cloth meets, one file a kind. Pure.
 libduite_cloth_la_SOURCES += \
+	cloth/contact/body.c cloth/contact/body.h \
+	cloth/contact/body_make.c \
+	cloth/contact/body_tree.c \
 	cloth/contact/box.c \
 	cloth/contact/capsule.c \
 	cloth/contact/cylinder.c \

@@ -3,8 +3,10 @@
 
 enum { POINT = 0, NORMAL = 3 };
 
-static void plane_closest(const double *value, size_t n, const phys_vec *x, struct contact_hit *hit)
+static void plane_closest(const double *value, const struct contact_body *body, size_t n,
+                          const phys_vec *x, struct contact_hit *hit)
 {
+    (void)body;
     const phys_vec origin = {value[POINT], value[POINT + 1], value[POINT + 2], 0};
     const phys_vec up = {value[NORMAL], value[NORMAL + 1], value[NORMAL + 2], 0};
     for (size_t i = 0; i < n; i++) {
@@ -14,8 +16,10 @@ static void plane_closest(const double *value, size_t n, const phys_vec *x, stru
     }
 }
 
-static bool plane_apart(const double *value, size_t n, const phys_vec *x)
+static bool plane_apart(const double *value, const struct contact_body *body, size_t n,
+                        const phys_vec *x)
 {
+    (void)body;
     const phys_vec origin = {value[POINT], value[POINT + 1], value[POINT + 2], 0};
     const phys_vec up = {value[NORMAL], value[NORMAL + 1], value[NORMAL + 2], 0};
     size_t above = 0;

@@ -6,8 +6,9 @@
 
 enum { AT_ONCE = 32 }; /* points, whose room is on the stack */
 
-const struct contact_kind *const contact_kinds[] = {&contact_plane, &contact_sphere, &contact_box,
-                                                    &contact_capsule, &contact_cylinder};
+const struct contact_kind *const contact_kinds[] = {&contact_plane,    &contact_sphere,
+                                                    &contact_box,      &contact_capsule,
+                                                    &contact_cylinder, &contact_body_kind};
 const uint32_t contact_n_kinds = sizeof contact_kinds / sizeof *contact_kinds;
 
 size_t contact_role_size(enum contact_role role)
@@ -50,20 +51,23 @@ void contact_axes(const double point[3], const double along[3], struct phys_pose
     phys_pose_at(1, &key, (const double[3]){0}, 0, axes);
 }
 
-void contact_pose_over(const struct contact_shape *shape, const struct phys_key *keys, double from,
-                       double to, struct contact_pose *pose)
+void contact_pose_over(const struct contact_shape *shape, const struct phys_key *keys,
+                       const struct contact_bodies *bodies, double from, double to,
+                       struct contact_pose *pose)
 {
-    *pose = (struct contact_pose){.moves = shape->n > 0, .rate = to > from ? 1 / (to - from) : 0};
+    *pose = (struct contact_pose){.body = contact_bodies_at(bodies, shape->body),
+                                  .moves = shape->n > 0,
+                                  .rate = to > from ? 1 / (to - from) : 0};
     if (!pose->moves)
         return;
     phys_pose_at(shape->n, keys + shape->first, shape->about, from, &pose->from);
     phys_pose_at(shape->n, keys + shape->first, shape->about, to, &pose->to);
 }
 
-static void closest_still(const struct contact_shape *shape, size_t n, const phys_vec *x,
-                          struct contact_hit *hit)
+static void closest_still(const struct contact_shape *shape, const struct contact_pose *pose,
+                          size_t n, const phys_vec *x, struct contact_hit *hit)
 {
-    contact_kinds[shape->kind]->closest(shape->value, n, x, hit);
+    contact_kinds[shape->kind]->closest(shape->value, pose->body, n, x, hit);
     for (size_t i = 0; i < n; i++)
         hit[i].velocity = (phys_vec){0};
 }
@@ -74,7 +78,7 @@ static void closest_moving(const struct contact_shape *shape, const struct conta
     phys_vec own[AT_ONCE], was, is;
     for (size_t i = 0; i < n; i++)
         phys_pose_back(&pose->to, x + i, own + i);
-    contact_kinds[shape->kind]->closest(shape->value, n, own, hit);
+    contact_kinds[shape->kind]->closest(shape->value, pose->body, n, own, hit);
     for (size_t i = 0; i < n; i++) {
         const phys_vec surface = own[i] - hit[i].gap * hit[i].normal;
         phys_pose_point(&pose->from, &surface, &was);
@@ -92,7 +96,7 @@ void contact_closest(const struct contact_shape *shape, const struct contact_pos
         if (pose->moves)
             closest_moving(shape, pose, some, x + i, hit + i);
         else
-            closest_still(shape, some, x + i, hit + i);
+            closest_still(shape, pose, some, x + i, hit + i);
     }
 }
 
@@ -101,11 +105,11 @@ void contact_ahead(const struct contact_shape *shape, const struct contact_pose 
 {
     phys_vec own, is;
     if (!pose->moves) {
-        closest_still(shape, 1, x, hit);
+        closest_still(shape, pose, 1, x, hit);
         return;
     }
     phys_pose_back(&pose->from, x, &own);
-    contact_kinds[shape->kind]->closest(shape->value, 1, &own, hit);
+    contact_kinds[shape->kind]->closest(shape->value, pose->body, 1, &own, hit);
     phys_pose_point(&pose->to, &own, &is);
     hit->velocity = pose->rate * (is - *x);
     phys_pose_direction(&pose->to, &hit->normal, &hit->normal);

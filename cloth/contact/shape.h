@@ -1,6 +1,7 @@
 #ifndef CLOTH_CONTACT_SHAPE_H
 #define CLOTH_CONTACT_SHAPE_H
 
+#include "cloth/contact/body.h"
 #include "cloth/physics/motion.h"
 #include "cloth/physics/vec.h"
 
@@ -9,8 +10,8 @@
 #include <stdint.h>
 
 /* Rigid shapes that cloth meets, still or moving by key frames. A shape is a row of a table of
- * kinds and the parameters that its kind has. Pure functions of + - * / and sqrt; nothing is
- * allocated. */
+ * kinds and the parameters that its kind has, or a body. Pure functions of + - * / and sqrt;
+ * nothing is allocated. */
 
 enum { CONTACT_VALUES = 12 };
 
@@ -20,12 +21,14 @@ enum { CONTACT_VALUES = 12 };
 struct contact_shape {
     uint32_t kind;     /* row of contact_kinds */
     uint32_t first, n; /* key frames of its motion, among those of the scene; n 0: it is still */
-    double about[3];   /* m: the point that its motion rotates about */
+    uint32_t body;   /* number of a body of the scene, from 1; 0: its parameters are all there is */
+    double about[3]; /* m: the point that its motion rotates about */
     double value[CONTACT_VALUES]; /* its parameters, one after the other as its kind lists them */
 };
 
-/* Where a shape is at the begin and at the end of a step. */
+/* Where a shape is at the begin and at the end of a step, and the body that it is. */
 struct contact_pose {
+    const struct contact_body *body; /* NULL: it is none */
     bool moves; /* else the poses mean nothing: the shape is where its parameters say */
     struct phys_pose from, to;
     double rate; /* 1/s: 1 over the length of the step; 0: it has none */
@@ -57,18 +60,21 @@ struct contact_parameter {
 struct contact_kind {
     const char *name;                          /* in scenes and in scene.json */
     const struct contact_parameter *parameter; /* ended by a name that is NULL */
-    /* Fills gap and normal of n points (m), in the axes that the parameters are in. */
-    void (*closest)(const double *value, size_t n, const phys_vec *x, struct contact_hit *hit);
+    /* Fills gap and normal of n points (m), in the axes that the parameters are in. body: NULL but
+     * for bodies. */
+    void (*closest)(const double *value, const struct contact_body *body, size_t n,
+                    const phys_vec *x, struct contact_hit *hit);
     /* Whether the gaps of n points are all above 0: most rows of a cloth touch nothing, and this
      * says so at less cost. NULL: there is no cheaper way. */
-    bool (*apart)(const double *value, size_t n, const phys_vec *x);
+    bool (*apart)(const double *value, const struct contact_body *body, size_t n,
+                  const phys_vec *x);
     /* A box around it: its own axes and middle, half its size (m); the shape is star-shaped as seen
-     * from there. NULL: the shape has no bounds. */
+     * from there. NULL: the shape has no bounds, or is a body. */
     void (*around)(const double *value, struct phys_pose *axes, double half[3]);
     bool round; /* pictures take for that box the cylinder in it, along its first axis */
 };
 extern const struct contact_kind contact_plane, contact_sphere, contact_box, contact_capsule,
-    contact_cylinder;
+    contact_cylinder, contact_body_kind;
 extern const struct contact_kind *const contact_kinds[];
 extern const uint32_t contact_n_kinds;
 
@@ -78,9 +84,10 @@ extern const uint32_t contact_n_kinds;
 void contact_aside(const phys_vec *axis, phys_vec *aside);
 void contact_axes(const double point[3], const double along[3], struct phys_pose *axes);
 
-/* The pose of a shape over a step between two times, s. keys: of the scene. */
-void contact_pose_over(const struct contact_shape *shape, const struct phys_key *keys, double from,
-                       double to, struct contact_pose *pose);
+/* The pose of a shape over a step between two times, s. keys, bodies: of the scene. */
+void contact_pose_over(const struct contact_shape *shape, const struct phys_key *keys,
+                       const struct contact_bodies *bodies, double from, double to,
+                       struct contact_pose *pose);
 
 /* Of n points (m) at the end of the step. */
 void contact_closest(const struct contact_shape *shape, const struct contact_pose *pose, size_t n,

@@ -5,9 +5,10 @@
 
 enum { CENTRE = 0, RADIUS = 3 };
 
-static void sphere_closest(const double *value, size_t n, const phys_vec *x,
-                           struct contact_hit *hit)
+static void sphere_closest(const double *value, const struct contact_body *body, size_t n,
+                           const phys_vec *x, struct contact_hit *hit)
 {
+    (void)body;
     const phys_vec centre = {value[CENTRE], value[CENTRE + 1], value[CENTRE + 2], 0};
     const phys_vec up = {0, 1, 0, 0}; /* all ways out of the centre are as short */
     for (size_t i = 0; i < n; i++) {

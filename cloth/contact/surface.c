@@ -10,6 +10,7 @@ static const uint32_t N = CONTACT_CELLS;
 /* A point on an edge of a box has no one normal: those of its sides keep so far inside, in parts of
  * its half size. */
 static const double INSIDE = 1e-6;
+static const double ROUND = 0.7; /* cosine between a body's triangle and the normal of its corner */
 
 /* Where the way from the middle of the shape to a point of the box around it leaves the shape. */
 static void find_exit(const struct contact_shape *shape, const struct phys_pose *axes,
@@ -22,7 +23,7 @@ static void find_exit(const struct contact_shape *shape, const struct phys_pose 
         const double part = (in + out) / 2;
         const phys_vec own = part * *corner;
         phys_pose_point(axes, &own, &x);
-        contact_kinds[shape->kind]->closest(shape->value, 1, &x, &hit);
+        contact_kinds[shape->kind]->closest(shape->value, NULL, 1, &x, &hit);
         *(hit.gap > 0 ? &out : &in) = part;
     }
     for (int c = 0; c < 3; c++) {
@@ -68,12 +69,43 @@ static void join_side(uint32_t side, uint32_t first, uint32_t (*triangle)[3])
         }
 }
 
-void contact_surface(const struct contact_shape *shape, double (*vertex)[6],
-                     uint32_t (*triangle)[3])
+/* Corners are drawn round where the body bends little, else as the edges that they are. */
+static void build_body(const struct contact_body *body, double (*vertex)[6],
+                       uint32_t (*triangle)[3])
+{
+    const struct contact_facet *facet = contact_body_facets(body);
+    const phys_vec *at = contact_body_vertices(body), *round = contact_body_normals(body);
+    for (uint32_t f = 0; f < body->n_triangles; f++)
+        for (uint32_t k = 0; k < 3; k++) {
+            const uint32_t corner = facet[f].corner[k], number = 3 * facet[f].number + k;
+            const phys_vec *flat = contact_facet_normals(body) + f;
+            const phys_vec *normal = phys_dot(flat, round + corner) > ROUND ? round + corner : flat;
+            triangle[facet[f].number][k] = number;
+            for (int c = 0; c < 3; c++) {
+                vertex[number][c] = at[corner][c];
+                vertex[number][3 + c] = (*normal)[c];
+            }
+        }
+}
+
+void contact_surface_count(const struct contact_shape *shape, const struct contact_body *body,
+                           uint32_t *n_vertices, uint32_t *n_triangles)
+{
+    const bool bounded = contact_kinds[shape->kind]->around;
+    *n_vertices = body ? 3 * body->n_triangles : bounded ? CONTACT_SURFACE_VERTICES : 0;
+    *n_triangles = body ? body->n_triangles : bounded ? CONTACT_SURFACE_TRIANGLES : 0;
+}
+
+void contact_surface(const struct contact_shape *shape, const struct contact_body *body,
+                     double (*vertex)[6], uint32_t (*triangle)[3])
 {
     enum { VERTICES = CONTACT_SURFACE_VERTICES / 6, TRIANGLES = CONTACT_SURFACE_TRIANGLES / 6 };
     struct phys_pose axes;
     double half[3];
+    if (body) {
+        build_body(body, vertex, triangle);
+        return;
+    }
     contact_kinds[shape->kind]->around(shape->value, &axes, half);
     for (uint32_t side = 0; side < 6; side++) {
         build_side(shape, &axes, half, side, vertex + side * VERTICES);

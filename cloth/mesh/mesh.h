@@ -74,6 +74,10 @@ bool mesh_cell_turned(const struct mesh *mesh, uint32_t i, uint32_t j);
  * CLOTH_E_IO (cannot be read), CLOTH_E_MEMORY. */
 int mesh_read_obj(struct mesh *mesh, const char *path, struct cloth_error *error);
 
+/* The same of a surface that nothing is folded or cut along: polygons that cross or touch
+ * themselves are fanned from their first corner, since modellers leave twisted ones in bodies. */
+int mesh_read_surface(struct mesh *mesh, const char *path, struct cloth_error *error);
+
 /* Takes copies of the arrays: vertices n x 3, edges n_edges x 2, triangles n_triangles x 3 (either
  * may be absent). Checks indices, repeated corners, finite positions, non-manifold edges and edges
  * that stand twice as mesh_read_obj does, naming the entry

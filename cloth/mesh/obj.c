@@ -13,6 +13,7 @@
 #define NO_UV 0xffffffffu
 
 struct obj {
+    bool fans; /* finish.h */
     struct mesh_lines lines;
     struct cloth_error *error;
     locale_t c;                     /* numbers have points, whatever the program's locale */
@@ -260,7 +261,8 @@ static int make_mesh(struct obj *obj, struct mesh *mesh)
     mesh->lone_edge = hand_over(&obj->edge, 2 * sizeof(uint32_t), obj->error);
     if (!mesh->lone_edge)
         return CLOTH_E_MEMORY;
-    struct mesh_source source = {obj->lines.path, obj->face_line.items, obj->edge_line.items};
+    struct mesh_source source = {obj->lines.path, obj->face_line.items, obj->edge_line.items,
+                                 obj->fans};
     int code = mesh_finish(mesh, &source, obj->error);
     return code ? code : make_uv(obj, mesh);
 }
@@ -279,9 +281,9 @@ static void free_obj(struct obj *obj)
         freelocale(obj->c);
 }
 
-int mesh_read_obj(struct mesh *mesh, const char *path, struct cloth_error *error)
+static int read_obj(struct mesh *mesh, const char *path, bool fans, struct cloth_error *error)
 {
-    struct obj obj = {.error = error, .c = newlocale(LC_ALL_MASK, "C", (locale_t)0)};
+    struct obj obj = {.fans = fans, .error = error, .c = newlocale(LC_ALL_MASK, "C", (locale_t)0)};
     *mesh = (struct mesh){0};
     int code =
         obj.c ? CLOTH_OK : cloth_fail(error, CLOTH_E_MEMORY, "out of memory for the C locale");
@@ -295,4 +297,14 @@ int mesh_read_obj(struct mesh *mesh, const char *path, struct cloth_error *error
         mesh_free(mesh);
     free_obj(&obj);
     return code;
+}
+
+int mesh_read_obj(struct mesh *mesh, const char *path, struct cloth_error *error)
+{
+    return read_obj(mesh, path, false, error);
+}
+
+int mesh_read_surface(struct mesh *mesh, const char *path, struct cloth_error *error)
+{
+    return read_obj(mesh, path, true, error);
 }

@@ -75,6 +75,7 @@ void model_free(struct model *model)
     free(model->materials);
     free(model->cloths);
     free(model->obstacles);
+    free(model->bodies.memory);
     for (uint32_t i = 0; i < model->n_warnings; i++)
         free(model->warnings[i]);
     free(model->warnings);

@@ -235,6 +235,7 @@ struct model {
     struct model_material *materials;
     struct model_cloth *cloths;
     struct contact_shape *obstacles;
+    struct contact_bodies bodies; /* of the obstacles that are bodies */
     struct model_probe *probes;
     uint32_t n_joints, n_welds;
     struct model_joint *joints;

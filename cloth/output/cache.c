@@ -142,6 +142,35 @@ static int read_mesh(struct output_cache *cache, const char *path, struct cloth_
     return code ? error->code : CLOTH_OK;
 }
 
+static int read_body(struct output_cache *cache, const char *path, struct cloth_error *error)
+{
+    struct cloth_error inner = {0};
+    struct mesh mesh = {0};
+    bool turned;
+    int code = mesh_read_obj(&mesh, path, error);
+    if (code == CLOTH_E_IO)
+        code = error->code = CLOTH_E_INPUT;
+    if (!code && contact_bodies_add(&cache->bodies, &mesh, &turned, &inner))
+        code = cloth_fail(error, inner.code, "%s: %s", path, inner.text);
+    mesh_free(&mesh);
+    return code;
+}
+
+/* Those that scene.json names. */
+static int read_bodies(struct output_cache *cache, const char *folder, struct cloth_error *error)
+{
+    int code = 0;
+    for (uint32_t i = 1; i <= cache->n_bodies && !code; i++) {
+        char name[OUTPUT_BODY_NAME];
+        output_body_name(name, i, "");
+        char *path = output_path(folder, name, "");
+        code = path ? read_body(cache, path, error)
+                    : cloth_fail(error, CLOTH_E_MEMORY, "no memory for paths");
+        free(path);
+    }
+    return code;
+}
+
 int output_cache_open(struct output_cache *cache, const char *folder, struct cloth_error *error)
 {
     static const struct {
@@ -162,6 +191,7 @@ int output_cache_open(struct output_cache *cache, const char *folder, struct clo
                     : cloth_fail(error, CLOTH_E_MEMORY, "no memory for paths");
         free(path);
     }
+    code = code ? code : read_bodies(cache, folder, error);
     if (code)
         output_cache_close(cache);
     return code;
@@ -199,6 +229,7 @@ void output_cache_close(struct output_cache *cache)
     mesh_free(&cache->mesh);
     free(cache->time);
     free(cache->obstacles);
+    free(cache->bodies.memory);
     free(cache->keys);
     if (cache->pc2)
         fclose(cache->pc2);

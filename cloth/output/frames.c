@@ -65,12 +65,76 @@ static int write_part(const struct output_frames *frames, enum part part, const 
     return output_write_file(path, fill[part], what, error);
 }
 
-static int replace_parts(const struct output_frames *frames, char *const fresh[N_PARTS],
-                         struct cloth_error *error)
+/* ---- The meshes of bodies ---- */
+
+static uint32_t count_bodies(const struct output_setup *setup)
 {
+    return setup->bodies ? setup->bodies->n : 0;
+}
+
+/* The path of a body's file, by number from 1. NULL: out of memory. */
+static char *body_path(const struct output_frames *frames, uint32_t number, const char *suffix)
+{
+    char name[OUTPUT_BODY_NAME];
+    output_body_name(name, number, "");
+    return output_path(frames->folder, name, suffix);
+}
+
+static int write_body(const struct output_frames *frames, const struct contact_bodies *bodies,
+                      uint32_t number, struct cloth_error *error)
+{
+    struct mesh mesh = {0};
+    char *path = body_path(frames, number, ".part");
+    int code = path ? contact_body_mesh(contact_bodies_at(bodies, number), &mesh, error)
+                    : cloth_fail(error, CLOTH_E_MEMORY, "no memory for paths");
+    if (!code) {
+        const struct output_setup alone = {.n_meshes = 1,
+                                           .meshes = (const struct mesh *const[]){&mesh},
+                                           .names = (const char *const[]){"body"}};
+        code = output_write_file(path, output_fill_obj, &alone, error);
+    }
+    mesh_free(&mesh);
+    free(path);
+    return code;
+}
+
+static int rename_body(const struct output_frames *frames, uint32_t number,
+                       struct cloth_error *error)
+{
+    char *from = body_path(frames, number, ".part"), *to = body_path(frames, number, "");
+    int code = 0;
+    if (!from || !to)
+        code = cloth_fail(error, CLOTH_E_MEMORY, "no memory for paths");
+    else if (rename(from, to) != 0)
+        code = output_refuse(error, "replace", to);
+    free(from);
+    free(to);
+    return code;
+}
+
+static void remove_bodies(const struct output_frames *frames, const struct output_setup *setup)
+{
+    for (uint32_t i = 1; i <= count_bodies(setup); i++) {
+        char *path = body_path(frames, i, ".part");
+        if (path)
+            unlink(path);
+        free(path);
+    }
+}
+
+/* ---- Beginning ---- */
+
+static int replace_parts(const struct output_frames *frames, char *const fresh[N_PARTS],
+                         const struct output_setup *setup, struct cloth_error *error)
+{
+    int code = 0;
     if (unlink(frames->path[PART_CACHE]) != 0 && errno != ENOENT)
         return output_refuse(error, "replace", frames->path[PART_CACHE]);
     output_sync_folder(frames->folder);
+    for (uint32_t i = 1; i <= count_bodies(setup) && !code; i++)
+        code = rename_body(frames, i, error);
+    if (code)
+        return code;
     for (int i = 0; i < N_PARTS; i++)
         if (rename(fresh[i], frames->path[i]) != 0)
             return output_refuse(error, "replace", frames->path[i]);
@@ -88,7 +152,11 @@ static int start_files(const struct output_frames *frames, const struct output_s
         code = fresh[i] ? write_part(frames, (enum part)i, fresh[i], setup, error)
                         : cloth_fail(error, CLOTH_E_MEMORY, "no memory for paths");
     }
-    code = code ? code : replace_parts(frames, fresh, error);
+    for (uint32_t i = 1; i <= count_bodies(setup) && !code; i++)
+        code = write_body(frames, setup->bodies, i, error);
+    code = code ? code : replace_parts(frames, fresh, setup, error);
+    if (code)
+        remove_bodies(frames, setup);
     for (int i = 0; i < N_PARTS; i++) {
         if (code && fresh[i])
             unlink(fresh[i]);
@@ -98,15 +166,29 @@ static int start_files(const struct output_frames *frames, const struct output_s
 }
 
 /* A mesh of the user's must not be taken for one of an earlier run. */
-static int check_ours(const struct output_frames *frames, struct cloth_error *error)
+static int check_path(const struct output_frames *frames, const char *path,
+                      struct cloth_error *error)
 {
     struct stat status;
-    if (stat(frames->path[PART_SCENE], &status) == 0 || lstat(frames->path[PART_OBJ], &status) != 0)
+    if (stat(frames->path[PART_SCENE], &status) == 0 || lstat(path, &status) != 0)
         return 0;
     return cloth_fail(error, CLOTH_E_INPUT,
                       "%s would be replaced, but is not of an earlier run: there is no scene.json "
                       "beside it; give another folder, or move the file away",
-                      frames->path[PART_OBJ]);
+                      path);
+}
+
+static int check_ours(const struct output_frames *frames, const struct output_setup *setup,
+                      struct cloth_error *error)
+{
+    int code = check_path(frames, frames->path[PART_OBJ], error);
+    for (uint32_t i = 1; i <= count_bodies(setup) && !code; i++) {
+        char *path = body_path(frames, i, "");
+        code = path ? check_path(frames, path, error)
+                    : cloth_fail(error, CLOTH_E_MEMORY, "no memory for paths");
+        free(path);
+    }
+    return code;
 }
 
 static int open_part(const struct output_frames *frames, enum part part, int *file,
@@ -160,7 +242,7 @@ int output_open(struct output_frames **frames, const struct output_setup *setup,
     int code = count_points(setup, &made->n_points, error);
     code = code ? code : allocate(made, setup->folder, error);
     code = code ? code : output_make_folder(setup->folder, error);
-    code = code ? code : check_ours(made, error);
+    code = code ? code : check_ours(made, setup, error);
     code = code ? code : start_files(made, setup, error);
     code = code ? code : open_part(made, PART_INDEX, &made->index, error);
     code = code ? code : open_part(made, PART_CACHE, &made->cache, error);

@@ -14,10 +14,11 @@
  *   cloth.obj      the start, with the input's polygons, one `o` per cloth
  *   cloth.pc2      PC2 point cache: header, then one float x y z a vertex and frame
  *   frames.csv     frame,time: the true time of each frame
- *   scene.json     what a viewer needs: {"fps", "obstacles": [{KIND: {its parameters}}]}; one that
- *                  moves also has "about" and "keys": [{"time", "translate", "rotate"}]
- * PC2's count of frames is rewritten after each frame and the file synced, so that a run that is
- * killed leaves whole files up to the last finished frame. */
+ *   body-K.obj     the bodies among the obstacles, K from 0, without their motion
+ *   scene.json     what a viewer needs: {"fps", "obstacles": [{KIND: {its parameters}}]}, of a
+ *                  body {"obj": its file}; one that moves also has "about" and "keys": [{"time",
+ * "translate", "rotate"}] PC2's count of frames is rewritten after each frame and the file synced,
+ * so that a run that is killed leaves whole files up to the last finished frame. */
 struct output_frames;
 
 struct output_setup {
@@ -29,7 +30,8 @@ struct output_setup {
     double fps;
     size_t n_obstacles;
     const struct contact_shape *obstacles;
-    const struct phys_key *keys; /* of their motions */
+    const struct phys_key *keys;         /* of their motions */
+    const struct contact_bodies *bodies; /* that they name; NULL: none */
 };
 
 /* Opens a folder for frames. Files of an earlier run in it are replaced, a cloth.obj of anyone else
@@ -94,6 +96,8 @@ struct output_cache {
     uint32_t n_obstacles, n_keys;
     struct contact_shape *obstacles;
     struct phys_key *keys; /* of their motions */
+    uint32_t n_bodies;
+    struct contact_bodies bodies; /* n_bodies */
     FILE *pc2;
 };
 int output_cache_open(struct output_cache *cache, const char *folder, struct cloth_error *error);

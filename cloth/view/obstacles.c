@@ -6,39 +6,53 @@
 #include <stdlib.h>
 #include <string.h>
 
-static size_t count_bounded(size_t n, const struct contact_shape *shape)
+/* Of the surface of obstacle i; none: it is a plane. */
+static void count_surface(const struct view_obstacles *obstacles, size_t i, uint32_t *n_vertices,
+                          uint32_t *n_triangles)
 {
-    size_t bounded = 0;
-    for (size_t i = 0; i < n; i++)
-        bounded += contact_kinds[shape[i].kind]->around != NULL;
-    return bounded;
+    const struct contact_shape *shape = obstacles->shape + i;
+    contact_surface_count(shape, contact_bodies_at(obstacles->bodies, shape->body), n_vertices,
+                          n_triangles);
+}
+
+static int take_room(struct view_obstacles *obstacles, struct cloth_error *error)
+{
+    uint64_t n_vertices = 0, n_triangles = 0;
+    for (size_t i = 0; i < obstacles->n; i++) {
+        uint32_t vertices, triangles;
+        count_surface(obstacles, i, &vertices, &triangles);
+        n_vertices += vertices;
+        n_triangles += triangles;
+    }
+    obstacles->plane = calloc(obstacles->n + 1, sizeof *obstacles->plane);
+    obstacles->own = calloc(n_vertices + 1, sizeof *obstacles->own);
+    obstacles->vertex = calloc(n_vertices + 1, sizeof *obstacles->vertex);
+    obstacles->triangle = calloc(n_triangles + 1, sizeof *obstacles->triangle);
+    if (n_vertices > UINT32_MAX || !obstacles->plane || !obstacles->own || !obstacles->vertex ||
+        !obstacles->triangle)
+        return cloth_fail(error, CLOTH_E_MEMORY, "no memory to show %zu obstacles", obstacles->n);
+    obstacles->n_vertices = (uint32_t)n_vertices;
+    obstacles->n_triangles = (uint32_t)n_triangles;
+    return 0;
 }
 
 int view_obstacles_make(struct view_obstacles *obstacles, size_t n,
                         const struct contact_shape *shape, const struct phys_key *keys,
-                        struct cloth_error *error)
+                        const struct contact_bodies *bodies, struct cloth_error *error)
 {
-    const size_t bounded = count_bounded(n, shape);
-    *obstacles = (struct view_obstacles){.n = n, .shape = shape, .keys = keys};
-    obstacles->plane = calloc(n - bounded + 1, sizeof *obstacles->plane);
-    obstacles->own = calloc(bounded * CONTACT_SURFACE_VERTICES + 1, sizeof *obstacles->own);
-    obstacles->vertex = calloc(bounded * CONTACT_SURFACE_VERTICES + 1, sizeof *obstacles->vertex);
-    obstacles->triangle =
-        calloc(bounded * CONTACT_SURFACE_TRIANGLES + 1, sizeof *obstacles->triangle);
-    if (!obstacles->plane || !obstacles->own || !obstacles->vertex || !obstacles->triangle)
-        return cloth_fail(error, CLOTH_E_MEMORY, "no memory to show %zu obstacles", n);
-    obstacles->n_vertices = (uint32_t)(bounded * CONTACT_SURFACE_VERTICES);
-    obstacles->n_triangles = (uint32_t)(bounded * CONTACT_SURFACE_TRIANGLES);
-    size_t at = 0;
-    for (size_t i = 0; i < n; i++) {
-        if (!contact_kinds[shape[i].kind]->around)
-            continue;
-        uint32_t(*triangle)[3] = obstacles->triangle + at * CONTACT_SURFACE_TRIANGLES;
-        contact_surface(shape + i, obstacles->own + at * CONTACT_SURFACE_VERTICES, triangle);
-        for (size_t t = 0; t < CONTACT_SURFACE_TRIANGLES; t++)
+    *obstacles = (struct view_obstacles){.n = n, .shape = shape, .keys = keys, .bodies = bodies};
+    if (take_room(obstacles, error))
+        return CLOTH_E_MEMORY;
+    uint32_t first = 0, vertices, triangles;
+    uint32_t(*triangle)[3] = obstacles->triangle;
+    for (size_t i = 0; i < n; i++, first += vertices, triangle += triangles) {
+        count_surface(obstacles, i, &vertices, &triangles);
+        if (vertices)
+            contact_surface(shape + i, contact_bodies_at(bodies, shape[i].body),
+                            obstacles->own + first, triangle);
+        for (uint32_t t = 0; t < triangles; t++)
             for (int k = 0; k < 3; k++)
-                triangle[t][k] += (uint32_t)(at * CONTACT_SURFACE_VERTICES);
-        at++;
+                triangle[t][k] += first;
     }
     view_obstacles_at(obstacles, 0);
     return 0;
@@ -65,12 +79,12 @@ void view_obstacles_at(struct view_obstacles *obstacles, double time)
     for (size_t i = 0; i < obstacles->n; i++) {
         const struct contact_shape *shape = obstacles->shape + i;
         struct contact_pose pose;
-        contact_pose_over(shape, obstacles->keys, time, time, &pose);
-        if (!contact_kinds[shape->kind]->around) {
+        uint32_t vertices, triangles;
+        contact_pose_over(shape, obstacles->keys, obstacles->bodies, time, time, &pose);
+        count_surface(obstacles, i, &vertices, &triangles);
+        if (!vertices)
             move(&pose, shape->value, obstacles->plane[obstacles->n_planes++]);
-            continue;
-        }
-        for (size_t v = 0; v < CONTACT_SURFACE_VERTICES; v++, at++)
+        for (uint32_t v = 0; v < vertices; v++, at++)
             move(&pose, obstacles->own[at], obstacles->vertex[at]);
     }
 }

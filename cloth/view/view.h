@@ -17,16 +17,17 @@ struct view_obstacles {
     size_t n, n_planes;
     const struct contact_shape *shape; /* n */
     const struct phys_key *keys;
+    const struct contact_bodies *bodies;
     double (*plane)[6]; /* n_planes: point, normal; at the time, */
     uint32_t n_vertices, n_triangles;
     double (*own)[6], (*vertex)[6]; /* n_vertices: point, normal; without motion, and at the time */
     uint32_t (*triangle)[3];
 };
-/* What is drawn of n obstacles, at time 0 (s). shape, keys: stay the caller's, and outlive it. To
- * be freed in any case. Error: CLOTH_E_MEMORY. */
+/* What is drawn of n obstacles, at time 0 (s). shape, keys, bodies: stay the caller's, and outlive
+ * it. To be freed in any case. Error: CLOTH_E_MEMORY. */
 int view_obstacles_make(struct view_obstacles *obstacles, size_t n,
                         const struct contact_shape *shape, const struct phys_key *keys,
-                        struct cloth_error *error);
+                        const struct contact_bodies *bodies, struct cloth_error *error);
 void view_obstacles_at(struct view_obstacles *obstacles, double time);
 void view_obstacles_free(struct view_obstacles *obstacles);
 

@@ -47,7 +47,8 @@ static int broadcast_head(const duite_call *call)
     head->n_blocks = source->blocks.n_blocks;
     head->n_neighbours = source->neighbours.n_neighbours;
     head->n_ghosts = source->neighbours.n_ghosts;
-    head->shared_bytes = flow->model->n_obstacles * sizeof *flow->model->obstacles +
+    head->shared_bytes = flow->model->bodies.bytes +
+                         flow->model->n_obstacles * sizeof *flow->model->obstacles +
                          flow->model->n_keys * sizeof *flow->model->keys +
                          flow->model->n_motions * sizeof *flow->model->motions +
                          flow->model->n_sliders * sizeof *flow->model->sliders +
@@ -84,6 +85,7 @@ static int broadcast_shared(const duite_call *call)
     const struct flow_source *source = &flow->source;
     char *to = duite_out(call, 0, char);
     const struct model *model = flow->model;
+    to = put(to, model->bodies.memory, model->bodies.bytes); /* first, as it is aligned */
     to = put(to, model->obstacles, model->n_obstacles * sizeof *model->obstacles);
     to = put(to, model->keys, model->n_keys * sizeof *model->keys);
     to = put(to, model->sliders, model->n_sliders * sizeof *model->sliders);
@@ -159,6 +161,7 @@ int flow_share_head(struct flow_state *state)
     flow->received.materials = NULL;
     flow->received.cloths = NULL;
     flow->received.obstacles = NULL;
+    flow->received.bodies.memory = NULL;
     flow->received.joints = NULL;
     flow->received.welds = NULL;
     flow->received.probes = NULL;
@@ -181,7 +184,8 @@ static void unpack(struct flow_state *state)
 {
     struct flow *flow = state->flow;
     struct flow_tables *tables = &flow->tables;
-    flow->received.obstacles = flow->shared;
+    flow->received.bodies.memory = flow->shared;
+    flow->received.obstacles = (void *)((char *)flow->shared + flow->model->bodies.bytes);
     flow->received.keys = (void *)(flow->received.obstacles + flow->model->n_obstacles);
     flow->received.sliders = (void *)(flow->received.keys + flow->model->n_keys);
     flow->received.curve_keys = (void *)(flow->received.sliders + flow->model->n_sliders);

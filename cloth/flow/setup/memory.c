@@ -80,7 +80,10 @@ static void take(struct flow_state *state)
     flow->n_forces = 2 * ((size_t)head->max_rows / 2 + 1); /* whole cache lines */
     if (!model_is_implicit(flow->model))
         take_forces(flow);
-    flow->shared = cloth_alloc(head->shared_bytes, 1, &flow->trouble);
+    flow->shared =
+        aligned_alloc(CONTACT_ALIGN, (head->shared_bytes / CONTACT_ALIGN + 1) * CONTACT_ALIGN);
+    if (!flow->shared)
+        cloth_fail(&flow->trouble, CLOTH_E_MEMORY, "out of memory for what all ranks share");
     flow->tables.block = cloth_alloc(head->n_blocks, sizeof *flow->tables.block, &flow->trouble);
     flow->tables.n_blocks = head->n_blocks;
     state->block = cloth_alloc(head->n_blocks, sizeof *state->block, &flow->trouble);

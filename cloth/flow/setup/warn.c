@@ -138,7 +138,7 @@ static double find_deepest(const struct flow *flow, const struct contact_shape *
     const struct flow_particles *particles = &flow->source.particles;
     struct contact_pose pose;
     double gap = INFINITY;
-    contact_pose_over(shape, flow->model->keys, 0, 0, &pose);
+    contact_pose_over(shape, flow->model->keys, &flow->model->bodies, 0, 0, &pose);
     for (uint32_t i = 0; i < cloth->mesh.n_vertices; i++) {
         const double *start =
             particles->start ? particles->start[first + i] : cloth->mesh.position + 3 * (size_t)i;

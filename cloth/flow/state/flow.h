@@ -63,8 +63,8 @@ struct flow {
     uint64_t n_steps, partition_hash;
     double inertia, release;   /* kg m^2, J: flow_source_inertia, flow_source_release */
     struct flow_tables tables; /* shapes */
-    void *
-        shared; /* obstacles, key frames, ties, neighbours and ghosts that what is here points to */
+    void *shared; /* bodies, obstacles, key frames, ties, neighbours and ghosts that what is here
+                     points to */
     uint32_t n_ties;
     const struct flow_tie *tie; /* n_ties */
 

@@ -58,7 +58,8 @@ static inline void flow_obstacle_pose(const duite_call *call, const struct flow_
                                       struct contact_pose *pose)
 {
     const struct model *model = flow_of(call)->model;
-    contact_pose_over(obstacle, model->keys, step->begin * model->h / FLOW_TICKS, step->time, pose);
+    contact_pose_over(obstacle, model->keys, &model->bodies, step->begin * model->h / FLOW_TICKS,
+                      step->time, pose);
 }
 
 /* y = S y of the sliding rows; y = before + S (y - before) of them. S is that of a time, s. */

@@ -125,7 +125,11 @@ static int cut_faces(struct mesh *mesh, const struct mesh_source *source, struct
         const uint32_t *corner = mesh->face_corner + mesh->face_start[f];
         const uint32_t n_corners = mesh->face_start[f + 1] - mesh->face_start[f];
         struct mesh_polygon_fault fault;
-        const int code = mesh_polygon_cut(mesh->position, n_corners, corner, to, &fault, error);
+        int code = mesh_polygon_cut(mesh->position, n_corners, corner, to, &fault, error);
+        if (code == CLOTH_E_INPUT && source->fans && fault.kind == MESH_POLYGON_CROSSES) {
+            mesh_polygon_fan(n_corners, corner, to);
+            code = CLOTH_OK;
+        }
         if (code == CLOTH_E_INPUT)
             return refuse_polygon(mesh, source, f, &fault, error);
         if (code)

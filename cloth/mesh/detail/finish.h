@@ -8,6 +8,7 @@ struct mesh_source {
     const char *path;        /* NULL: arrays of a caller, whose entries are counted from 0 */
     const size_t *face_line; /* with a path: the line of each face, */
     const size_t *edge_line; /* and of each lone edge */
+    bool fans;               /* faces that cross or touch themselves are fanned */
 };
 
 #define MESH_MAX 0x80000000u /* vertices and corners a mesh may have at most */

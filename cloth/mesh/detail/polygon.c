@@ -108,12 +108,12 @@ static bool fans(const struct polygon *p)
     return true;
 }
 
-static void fan(const struct polygon *p, uint32_t *triangle)
+void mesh_polygon_fan(uint32_t n, const uint32_t *corner, uint32_t *triangle)
 {
-    for (uint32_t i = 2; i < p->n; i++, triangle += 3) {
-        triangle[0] = p->corner[0];
-        triangle[1] = p->corner[i - 1];
-        triangle[2] = p->corner[i];
+    for (uint32_t i = 2; i < n; i++, triangle += 3) {
+        triangle[0] = corner[0];
+        triangle[1] = corner[i - 1];
+        triangle[2] = corner[i];
     }
 }
 
@@ -218,7 +218,7 @@ int mesh_polygon_cut(const double *position, uint32_t n, const uint32_t *corner,
     struct polygon p = {.position = position, .corner = corner, .n = n};
     *fault = (struct mesh_polygon_fault){.kind = MESH_POLYGON_NO_AREA};
     if (n == 3) {
-        fan(&p, triangle);
+        mesh_polygon_fan(n, corner, triangle);
         return CLOTH_OK;
     }
     if (!look(&p))
@@ -231,7 +231,7 @@ int mesh_polygon_cut(const double *position, uint32_t n, const uint32_t *corner,
     if (!convex && !is_simple(&p, fault->side))
         return CLOTH_E_INPUT;
     if (convex || fans(&p)) {
-        fan(&p, triangle);
+        mesh_polygon_fan(n, corner, triangle);
         return CLOTH_OK;
     }
     uint32_t *left = cloth_alloc(n, sizeof *left, error);

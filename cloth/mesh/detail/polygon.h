@@ -28,4 +28,7 @@ struct mesh_polygon_fault {
 int mesh_polygon_cut(const double *position, uint32_t n, const uint32_t *corner, uint32_t *triangle,
                      struct mesh_polygon_fault *fault, struct cloth_error *error);
 
+/* The n - 2 triangles that its first corner makes with its sides, whatever its shape. */
+void mesh_polygon_fan(uint32_t n, const uint32_t *corner, uint32_t *triangle);
+
 #endif

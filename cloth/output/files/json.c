@@ -96,15 +96,20 @@ bool output_json_expect(struct output_json *json, char c)
     return false;
 }
 
-bool output_json_key(struct output_json *json, const char *name)
+bool output_json_word(struct output_json *json, const char *word)
 {
     skip_space(json);
-    size_t n = strlen(name);
-    if (json->failed || json->next[0] != '"' || strncmp(json->next + 1, name, n) != 0 ||
+    size_t n = strlen(word);
+    if (json->failed || json->next[0] != '"' || strncmp(json->next + 1, word, n) != 0 ||
         json->next[n + 1] != '"')
         return false;
     json->next += n + 2;
-    return output_json_expect(json, ':');
+    return true;
+}
+
+bool output_json_key(struct output_json *json, const char *name)
+{
+    return output_json_word(json, name) && output_json_expect(json, ':');
 }
 
 double output_json_double(struct output_json *json)

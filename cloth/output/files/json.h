@@ -29,6 +29,8 @@ bool output_json_take(struct output_json *json, char c);
 bool output_json_expect(struct output_json *json, char c);
 /* Takes "name" and the colon after it, if they come next. */
 bool output_json_key(struct output_json *json, const char *name);
+/* Takes "word", if it comes next. */
+bool output_json_word(struct output_json *json, const char *word);
 double output_json_double(struct output_json *json);
 /* Fails with "expected WHAT". */
 void output_json_fail(struct output_json *json, const char *what);

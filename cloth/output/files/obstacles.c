@@ -13,6 +13,11 @@ static void put_numbers(FILE *file, const char *name, size_t n, const double *va
     fputs(n == 1 ? "" : "]", file);
 }
 
+void output_body_name(char name[OUTPUT_BODY_NAME], uint32_t number, const char *suffix)
+{
+    snprintf(name, OUTPUT_BODY_NAME, "body-%u.obj%s", number - 1, suffix);
+}
+
 static void put_shape(FILE *file, const struct contact_shape *shape)
 {
     const struct contact_kind *kind = contact_kinds[shape->kind];
@@ -23,6 +28,11 @@ static void put_shape(FILE *file, const struct contact_shape *shape)
         fputs(p == kind->parameter ? "" : ", ", file);
         put_numbers(file, p->name, n, value);
         value += n;
+    }
+    if (shape->body) {
+        char name[OUTPUT_BODY_NAME];
+        output_body_name(name, shape->body, "");
+        fprintf(file, "\"obj\": \"%s\"", name);
     }
     fputc('}', file);
 }
@@ -96,7 +106,21 @@ static void check_role(struct output_json *json, const struct contact_parameter 
         output_json_fail(json, what);
 }
 
-static void take_shape(struct output_json *json, struct contact_shape *shape)
+/* The name of the next body's file. */
+static void take_body(struct output_cache *cache, struct output_json *json,
+                      struct contact_shape *shape)
+{
+    char name[OUTPUT_BODY_NAME];
+    shape->body = ++cache->n_bodies;
+    output_body_name(name, shape->body, "");
+    if (!output_json_key(json, "obj"))
+        output_json_fail(json, "\"obj\"");
+    else if (!output_json_word(json, name))
+        output_json_fail(json, "the file of the next body: \"body-K.obj\", K from 0");
+}
+
+static void take_shape(struct output_cache *cache, struct output_json *json,
+                       struct contact_shape *shape)
 {
     *shape = (struct contact_shape){0};
     output_json_expect(json, '{');
@@ -118,6 +142,8 @@ static void take_shape(struct output_json *json, struct contact_shape *shape)
         check_role(json, p, value);
         value += contact_role_size(p->role);
     }
+    if (kind == &contact_body_kind)
+        take_body(cache, json, shape);
     output_json_expect(json, '}');
 }
 
@@ -173,7 +199,7 @@ void output_obstacles_read(struct output_cache *cache, struct output_json *json)
         }
         cache->obstacles = grown;
         struct contact_shape *shape = grown + cache->n_obstacles++;
-        take_shape(json, shape);
+        take_shape(cache, json, shape);
         if (output_json_take(json, ','))
             take_motion(cache, json, shape);
         output_json_expect(json, '}');

@@ -9,13 +9,11 @@
  * files. What they allocate belongs to the model, also after an error. */
 
 /* All but the cloths. */
-int scene_build_world(struct model *model, const struct scene_tree *tree,
-                      struct cloth_error *error);
+int scene_build_world(struct model *model, struct scene_tree *tree, struct cloth_error *error);
 
 /* The obstacles; and, when there are cloths, that no two obstacles exclude each other around one.
  */
-int scene_build_obstacles(struct model *model, const struct scene_tree *tree,
-                          struct cloth_error *error);
+int scene_build_obstacles(struct model *model, struct scene_tree *tree, struct cloth_error *error);
 int scene_build_check_obstacles(const struct model *model, const struct scene_tree *tree,
                                 struct cloth_error *error);
 
@@ -111,6 +109,17 @@ int scene_build_no_such(const char *what, const char *name, const char *const *n
 /* The mesh of a cloth, transformed. */
 int scene_build_mesh(struct mesh *mesh, struct scene_tree *tree, int cloth,
                      struct cloth_error *error);
+
+/* The mesh of the OBJ file that a node names, relative to the scene's folder, by mesh_read_obj or
+ * mesh_read_surface. What is wrong with the file is in `inner`, without the place in the scene. */
+typedef int scene_obj_reader(struct mesh *mesh, const char *path, struct cloth_error *error);
+int scene_build_obj(struct mesh *mesh, scene_obj_reader *reads, const struct scene_tree *tree,
+                    int node, struct cloth_error *error, struct cloth_error *inner);
+
+/* Adds the warning "place: sentence" of a node to the model's. */
+int scene_build_warn(struct model *model, const struct scene_tree *tree, int node,
+                     struct cloth_error *error, const char *format, ...)
+    __attribute__((format(printf, 5, 6)));
 
 /* n zeroed entries (at least one), or NULL with an error. */
 void *scene_build_array(size_t n, size_t size, struct cloth_error *error);

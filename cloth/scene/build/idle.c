@@ -20,31 +20,40 @@ static bool is_given(const struct scene_tree *tree, int node)
     return node && scene_tree_node(tree, node)->start_mark.index != SCENE_BY_DEFAULT;
 }
 
-/* The warning "place: sentence" of a node. */
-static int warn(const struct idle_scene *scene, int node, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
-
-static int warn(const struct idle_scene *scene, int node, const char *format, ...)
+int scene_build_warn(struct model *model, const struct scene_tree *tree, int node,
+                     struct cloth_error *error, const char *format, ...)
 {
-    struct model *model = scene->model;
-    char text[500], *place = scene_build_place(scene->tree, node, scene->error);
+    char text[500], *place = scene_build_place(tree, node, error);
     va_list list;
     va_start(list, format);
     vsnprintf(text, sizeof text, format, list);
     va_end(list);
     const size_t size = place ? strlen(place) + strlen(text) + 3 : 0;
-    char *warning = place ? scene_build_array(size, 1, scene->error) : NULL;
+    char *warning = place ? scene_build_array(size, 1, error) : NULL;
     char **all = realloc(model->warnings, (model->n_warnings + 1) * sizeof *all);
     model->warnings = all ? all : model->warnings;
     if (warning && all) {
         snprintf(warning, size, "%s: %s", place, text);
         all[model->n_warnings++] = warning;
     } else {
-        cloth_fail(scene->error, CLOTH_E_MEMORY, "out of memory while the scene is read");
+        cloth_fail(error, CLOTH_E_MEMORY, "out of memory while the scene is read");
         free(warning);
     }
     free(place);
-    return scene->error->code;
+    return error->code;
+}
+
+static int warn(const struct idle_scene *scene, int node, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+static int warn(const struct idle_scene *scene, int node, const char *format, ...)
+{
+    char text[500];
+    va_list list;
+    va_start(list, format);
+    vsnprintf(text, sizeof text, format, list);
+    va_end(list);
+    return scene_build_warn(scene->model, scene->tree, node, scene->error, "%s", text);
 }
 
 static bool is_explicit(const struct model *model)

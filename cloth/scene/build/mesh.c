@@ -78,13 +78,13 @@ static char *path_beside(const char *scene, const char *name, struct cloth_error
     return path;
 }
 
-static int build_file(struct mesh *mesh, const struct scene_tree *tree, int node,
-                      struct cloth_error *error, struct cloth_error *inner)
+int scene_build_obj(struct mesh *mesh, scene_obj_reader *reads, const struct scene_tree *tree,
+                    int node, struct cloth_error *error, struct cloth_error *inner)
 {
     char *path = path_beside(tree->path, scene_tree_scalar(tree, node), error);
     if (!path)
         return error->code;
-    int code = mesh_read_obj(mesh, path, inner);
+    int code = reads(mesh, path, inner);
     free(path);
     return code == CLOTH_E_IO ? CLOTH_E_INPUT : code; /* a scene that names no readable file */
 }
@@ -132,7 +132,7 @@ int scene_build_mesh(struct mesh *mesh, struct scene_tree *tree, int cloth,
     if (!strcmp(name, "grid"))
         code = build_grid(mesh, tree, kind.value, error, &inner);
     else if (!strcmp(name, "file"))
-        code = build_file(mesh, tree, kind.value, error, &inner);
+        code = scene_build_obj(mesh, mesh_read_obj, tree, kind.value, error, &inner);
     else
         code = build_inline(mesh, tree, kind.value, error, &inner);
     if (inner.code == CLOTH_E_MEMORY)

@@ -1,5 +1,6 @@
 /* Obstacles, and whether they leave the cloths any room. */
 #include "cloth/scene/build/build.h"
+#include "cloth/scene/schema/check.h"
 #include "cloth/scene/yaml/scalar.h"
 
 #include <math.h>
@@ -68,8 +69,54 @@ static int build_shape_motion(struct model *model, struct contact_shape *shape,
     return CLOTH_OK;
 }
 
-static int build_shape(struct model *model, struct contact_shape *shape,
-                       const struct scene_tree *tree, int obstacle, struct cloth_error *error)
+/* A mesh that a body is made of, where it starts. */
+static int build_body_mesh(struct mesh *mesh, struct scene_tree *tree, int node,
+                           struct cloth_error *error)
+{
+    struct cloth_error inner = {0};
+    struct mesh_transform transform = {0};
+    const int file = scene_tree_get(tree, node, "obj");
+    int code = scene_fill(&transform, &scene_body, tree, node, error);
+    if (!code)
+        code = scene_build_check_turn(&transform, tree, node, error);
+    if (code)
+        return code;
+    code = scene_build_obj(mesh, mesh_read_surface, tree, file, error, &inner);
+    if (inner.code == CLOTH_E_MEMORY)
+        return cloth_fail(error, inner.code, "%s: %s", tree->path, inner.text);
+    if (inner.code)
+        return scene_tree_fail(tree, file, error, "body: %s", inner.text);
+    if (!code)
+        mesh_apply(mesh, &transform);
+    return code;
+}
+
+static int build_body(struct model *model, struct contact_shape *shape, struct scene_tree *tree,
+                      int node, struct cloth_error *error)
+{
+    struct cloth_error inner = {0};
+    struct mesh mesh = {0};
+    const int file = scene_tree_get(tree, node, "obj");
+    bool turned = false;
+    int code = build_body_mesh(&mesh, tree, node, error);
+    if (!code)
+        code = contact_bodies_add(&model->bodies, &mesh, &turned, &inner);
+    if (inner.code)
+        code = inner.code == CLOTH_E_MEMORY
+                   ? cloth_fail(error, inner.code, "%s: %s", tree->path, inner.text)
+                   : scene_tree_fail(tree, file, error, "body: %.200s: %s",
+                                     scene_tree_scalar(tree, file), inner.text);
+    if (!code && turned)
+        code = scene_build_warn(model, tree, file, error,
+                                "the mesh of a body is inside out: its triangles are clockwise as "
+                                "seen from outside; they are turned round");
+    shape->body = model->bodies.n;
+    mesh_free(&mesh);
+    return code;
+}
+
+static int build_shape(struct model *model, struct contact_shape *shape, struct scene_tree *tree,
+                       int obstacle, struct cloth_error *error)
 {
     int node = 0, code = CLOTH_OK;
     while (!(node = scene_tree_get(tree, obstacle, contact_kinds[shape->kind]->name)))
@@ -80,12 +127,13 @@ static int build_shape(struct model *model, struct contact_shape *shape,
         code = build_parameter(value, kind, p, tree, scene_tree_get(tree, node, p->name), error);
         value += contact_role_size(p->role);
     }
+    if (!code && kind == &contact_body_kind)
+        code = build_body(model, shape, tree, node, error);
     const int motion = scene_tree_get(tree, node, "motion");
     return code || !motion ? code : build_shape_motion(model, shape, tree, motion, error);
 }
 
-int scene_build_obstacles(struct model *model, const struct scene_tree *tree,
-                          struct cloth_error *error)
+int scene_build_obstacles(struct model *model, struct scene_tree *tree, struct cloth_error *error)
 {
     int list = scene_tree_get(tree, 1, "obstacles");
     size_t n = scene_tree_length(tree, list);

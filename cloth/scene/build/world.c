@@ -149,7 +149,7 @@ static void build_count(struct model *model, const struct scene_tree *tree)
         model->max_iterations = scene_tree_integer(tree, stop, "count");
 }
 
-int scene_build_world(struct model *model, const struct scene_tree *tree, struct cloth_error *error)
+int scene_build_world(struct model *model, struct scene_tree *tree, struct cloth_error *error)
 {
     build_count(model, tree);
     int code = build_name(model, tree, error);

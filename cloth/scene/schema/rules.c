@@ -126,12 +126,26 @@ static const struct scene_rule cylinder_keys[] = {
      .about = "from end to end; a short one is a disc"},
     MOVES,
     {0}};
+static const struct scene_rule body_keys[] = {
+    {"obj", SCENE_TEXT, .required = true,
+     .about = "an OBJ file of a closed mesh, relative to the scene's folder"},
+    {"scale", SCENE_NUMBER_OR_LIST, .fallback = "1", .range = SCENE_POSITIVE, .length = 3,
+     .inside = &positive, INTO(struct mesh_transform, scale),
+     .about = "first: a factor, or one for each axis"},
+    {"rotate", SCENE_LIST, .fallback = "[1, 0, 0, 0]", .length = 4, .inside = &number,
+     INTO(struct mesh_transform, rotate), .about = "then: a quaternion [w, x, y, z]"},
+    {"translate", SCENE_LIST, "m", .fallback = "[0, 0, 0]", .length = 3, .inside = &number,
+     INTO(struct mesh_transform, translate), .about = "last: a shift"},
+    MOVES,
+    {0}};
+const struct scene_rule scene_body = {.type = SCENE_MAP, .inside = body_keys};
 static const struct scene_rule obstacle_kinds[] = {
     {"plane", SCENE_MAP, .inside = plane_keys, .about = "a floor or wall"},
     {"sphere", SCENE_MAP, .inside = sphere_keys, .about = "a ball"},
     {"box", SCENE_MAP, .inside = box_keys, .about = "a block"},
     {"capsule", SCENE_MAP, .inside = capsule_keys, .about = "a rod with round ends"},
     {"cylinder", SCENE_MAP, .inside = cylinder_keys, .about = "a rod with flat ends, or a disc"},
+    {"body", SCENE_MAP, .inside = body_keys, .apart = true, .about = "a closed mesh"},
     {0}};
 static const struct scene_rule obstacle = {.type = SCENE_ONE_OF, .inside = obstacle_kinds};
 

@@ -79,6 +79,7 @@ struct scene_inline {
 extern const struct scene_rule scene_grid, scene_inline;
 extern const struct scene_rule scene_transform; /* a struct mesh_transform */
 extern const struct scene_rule scene_region;    /* a struct model_pick */
+extern const struct scene_rule scene_body;      /* a struct mesh_transform */
 
 /* Words of choices that no field takes as they are. */
 enum scene_constraint { SCENE_POINT, SCENE_LINE, SCENE_PLANE };

@@ -183,7 +183,7 @@ START_TEST(nearest_of_all)
         struct contact_pose pose;
         size_t n = 0;
         make((uint32_t)_i, &shape, keys);
-        contact_pose_over(&shape, keys, 1.2, uniform(1.2, 2), &pose);
+        contact_pose_over(&shape, keys, NULL, 1.2, uniform(1.2, 2), &pose);
         for (int i = 0; i < SAMPLES; i++)
             n += surface_point(&shape, &pose, surface + n);
         ck_assert_uint_gt(n, SAMPLES / 4);
@@ -218,7 +218,7 @@ START_TEST(the_slope_is_the_normal)
         struct phys_key keys[2];
         struct contact_pose pose;
         make((uint32_t)_i, &shape, keys);
-        contact_pose_over(&shape, keys, 1.2, 1.7, &pose);
+        contact_pose_over(&shape, keys, NULL, 1.2, 1.7, &pose);
         for (int i = 0; i < POINTS; i++) {
             phys_vec x;
             pick_point(2, &x);
@@ -255,8 +255,8 @@ START_TEST(the_surface_has_its_velocity)
         struct phys_key keys[2];
         struct contact_pose pose, before;
         make((uint32_t)_i, &shape, keys);
-        contact_pose_over(&shape, keys, from, to, &pose);
-        contact_pose_over(&shape, keys, from, from, &before);
+        contact_pose_over(&shape, keys, NULL, from, to, &pose);
+        contact_pose_over(&shape, keys, NULL, from, from, &before);
         for (int i = 0; i < POINTS; i++) {
             phys_vec x;
             pick_point(2, &x);
@@ -291,7 +291,7 @@ START_TEST(keys_say_the_velocity)
     for (int when = 0; when < 3; when++) {
         struct contact_pose pose;
         struct contact_hit hit;
-        contact_pose_over(&shape, keys, when * 1.5, when * 1.5 + 0.5, &pose);
+        contact_pose_over(&shape, keys, NULL, when * 1.5, when * 1.5 + 0.5, &pose);
         contact_closest(&shape, &pose, 1, &x, &hit);
         for (int c = 0; c < 3; c++)
             ck_assert_double_eq_tol(hit.velocity[c], when == 1 ? keys[1].translate[c] / 2 : 0,
@@ -312,12 +312,12 @@ START_TEST(apart)
         make((uint32_t)_i, &shape, keys);
         for (int k = 0; k < 3; k++)
             pick_point(2, x + k);
-        contact_kinds[_i]->closest(shape.value, 3, x, hit);
-        const bool is = contact_kinds[_i]->apart(shape.value, 3, x);
+        contact_kinds[_i]->closest(shape.value, NULL, 3, x, hit);
+        const bool is = contact_kinds[_i]->apart(shape.value, NULL, 3, x);
         ck_assert(is == (hit[0].gap > 0 && hit[1].gap > 0 && hit[2].gap > 0));
         n_apart += is;
         x[1][0] = NAN;
-        ck_assert(!contact_kinds[_i]->apart(shape.value, 3, x));
+        ck_assert(!contact_kinds[_i]->apart(shape.value, NULL, 3, x));
     }
     ck_assert(!contact_kinds[_i]->apart || (n_apart > 0 && n_apart < POINTS));
 }
@@ -334,7 +334,7 @@ START_TEST(normals_in_the_middle)
     for (double away = 1; away > 0; away /= 8) {
         struct contact_hit hit;
         const phys_vec x = {0, away, away / 2, 0};
-        contact_kinds[_i]->closest(shape.value, 1, &x, &hit);
+        contact_kinds[_i]->closest(shape.value, NULL, 1, &x, &hit);
         if (contact_kinds[_i] != &contact_plane && contact_kinds[_i] != &contact_box)
             ck_assert_double_eq_tol(length(&hit.normal), 1, 1e-12);
     }
@@ -352,7 +352,7 @@ START_TEST(surfaces)
     uint32_t(*triangle)[3] = malloc(CONTACT_SURFACE_TRIANGLES * sizeof *triangle);
     ck_assert(vertex && triangle);
     make((uint32_t)_i, &shape, keys);
-    contact_surface(&shape, vertex, triangle);
+    contact_surface(&shape, NULL, vertex, triangle);
     for (size_t t = 0; t < CONTACT_SURFACE_TRIANGLES; t++) {
         phys_vec x[3], normal;
         for (int k = 0; k < 3; k++) {
@@ -360,7 +360,7 @@ START_TEST(surfaces)
             struct contact_hit hit;
             x[k] = (phys_vec){p[0], p[1], p[2], 0};
             normal = (phys_vec){p[3], p[4], p[5], 0};
-            contact_kinds[_i]->closest(shape.value, 1, x + k, &hit);
+            contact_kinds[_i]->closest(shape.value, NULL, 1, x + k, &hit);
             ck_assert_double_eq_tol(hit.gap, 0, 1e-12);
         }
         const phys_vec a = x[1] - x[0], b = x[2] - x[0];
@@ -377,7 +377,7 @@ int main(void)
 {
     Suite *suite = suite_create("shape");
     TCase *cases = tcase_create("shape");
-    const int n = (int)contact_n_kinds;
+    const int n = (int)contact_n_kinds - 1; /* the last are bodies: test_body.c */
     tcase_set_timeout(cases, 60);
     tcase_add_loop_test(cases, nearest_of_all, 0, n);
     tcase_add_loop_test(cases, the_slope_is_the_normal, 0, n);

@@ -1,19 +1,23 @@
-/* Obstacles that move, against closed forms: a row of masses that a floor, a ball or a box carries
- * up, by each way of contact and each integrator; halved steps. */
+/* Obstacles that move, against closed forms: a row of masses that a floor, a ball, a box or a body
+ * carries up, by each way of contact and each integrator; halved steps. Bodies against the shapes
+ * that they are nearly, and the real one where it is beside the source tree. */
+#include "tests/cloth/contact/bodies.h"
 #include "tests/cloth/flow/models.h"
 #include "tests/support/unit.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum { MASSES = 4 };
 static const double MASS = 0.1, EA = 40, GAP = 0.5, SPEED = 0.25, G = 9.81;
 
-/* A plane, the top of a ball and the top of a box, all at y = 0. */
+/* A plane, the top of a ball, and the tops of a box and of a body like it, all at y = 0. */
 static const struct contact_shape SHAPES[] = {
     {.kind = 0, .value = {0, 0, 0, 0, 1, 0}},
     {.kind = 1, .value = {0, -0.3, 0, 0.3}},
     {.kind = 2, .value = {0, -0.2, 0, 1, 0.4, 1, 1, 0, 0, 0}},
+    {.kind = 5, .body = 1},
 };
 enum { N_SHAPES = sizeof SHAPES / sizeof *SHAPES };
 
@@ -21,6 +25,33 @@ struct row {
     struct setup setup;
     struct phys_key keys[2];
 };
+
+/* The only body of a model, at a place. */
+static void body_make(struct model *model, struct mesh *mesh, const struct mesh_transform *place)
+{
+    struct cloth_error error = {0};
+    bool turned;
+    mesh_apply(mesh, place);
+    ck_assert_msg(contact_bodies_add(&model->bodies, mesh, &turned, &error) == 0, "%s", error.text);
+    mesh_free(mesh);
+}
+
+static void box_make(struct model *model)
+{
+    static struct surface box;
+    struct mesh mesh;
+    struct mesh_transform place = mesh_identity;
+    surface_box(&box, 0.5, 0.2, 0.5);
+    surface_mesh(&box, &mesh);
+    place.translate[1] = -0.2;
+    body_make(model, &mesh, &place);
+}
+
+static void free_all(struct setup *setup)
+{
+    free(setup->model.bodies.memory);
+    setup_free(setup);
+}
 
 /* A row of masses upright on a shape, GAP apart at rest, joined by springs, on no pin. The shape
  * rises with SPEED from time 0 on. */
@@ -41,6 +72,8 @@ static void row_make(struct row *row, int shape)
     row->keys[0] = (struct phys_key){0, {0, 0, 0}, {1, 0, 0, 0}};
     row->keys[1] = (struct phys_key){10, {0, 10 * SPEED, 0}, {1, 0, 0, 0}};
     s->plane = SHAPES[shape];
+    if (s->plane.body)
+        box_make(&s->model);
     s->plane.n = 2;
     s->model.keys = row->keys;
     s->model.n_keys = 2;
@@ -115,7 +148,7 @@ START_TEST(carries_a_row)
     ck_assert_double_eq_tol(record_at(&record, last, 0, 1), SPEED * record.time[last], 1e-9);
     ck_assert_double_eq_tol(record_at(&record, last, 0, 0), 0, 1e-12);
     record_free(&record);
-    setup_free(&row.setup);
+    free_all(&row.setup);
 }
 END_TEST
 
@@ -143,7 +176,7 @@ START_TEST(gives_momentum)
             ck_assert_double_eq_tol(MASS * speed_of(&record, frame, 0), MASS * SPEED, 1e-9);
         ck_assert_double_eq_tol(speed_of(&record, record.frames - 1, 1), 0, 1e-9);
         record_free(&record);
-        setup_free(&row.setup);
+        free_all(&row.setup);
     }
 }
 END_TEST
@@ -170,7 +203,7 @@ START_TEST(halved_steps_see_their_time)
         ck_assert_double_eq_tol(off, 0, 1e-12);
     }
     record_free(&record);
-    setup_free(&row.setup);
+    free_all(&row.setup);
 }
 END_TEST
 
@@ -194,7 +227,7 @@ START_TEST(waits_for_a_shape)
     ck_assert_double_gt(record.report.rest_seconds, 0.3);
     ck_assert_double_lt(record.report.rest_seconds, 3);
     record_free(&record);
-    setup_free(&row.setup);
+    free_all(&row.setup);
 }
 END_TEST
 
@@ -236,7 +269,119 @@ START_TEST(pushes_a_sheet)
     const size_t middle = 220;
     ck_assert_double_gt(record_at(&record, record.frames - 1, middle, 1), 0.3);
     record_free(&record);
-    setup_free(&s);
+    free_all(&s);
+}
+END_TEST
+
+/* A sheet of n x n vertices that falls onto something, 0.2 s in 50 steps. */
+static void sheet_make(struct setup *s, uint32_t n, const struct contact_shape *shape)
+{
+    setup_sheet(s, n);
+    s->material.stretch = 500;
+    s->material.shear = 200;
+    s->material.damping_viscous = 1e-3;
+    s->plane = *shape;
+    s->model.n_obstacles = 1;
+    s->model.h = 0.004;
+    s->model.fps = 250;
+    s->model.end = 0.2;
+    s->model.contact = MODEL_CONTACT_PROJECT;
+}
+
+/* A ball of 1,280 triangles is a ball but for what its triangles are less: a sheet lies as on the
+ * other, so much nearer to its middle. */
+START_TEST(a_ball_of_triangles)
+{
+    static struct surface ball;
+    const double radius = 0.3, less = 0.003;
+    struct record on[2] = {0};
+    for (int i = 0; i < 2; i++) {
+        const struct contact_shape shape[2] = {{.kind = 1, .value = {0, -0.31, 0, radius}},
+                                               {.kind = 5, .body = 1}};
+        struct setup s;
+        sheet_make(&s, 21, shape + i);
+        s.model.contact = _i ? MODEL_CONTACT_FILTER : MODEL_CONTACT_PROJECT;
+        if (i) {
+            struct mesh mesh;
+            struct mesh_transform place = mesh_identity;
+            surface_ball(&ball, radius, 3);
+            surface_mesh(&ball, &mesh);
+            place.translate[1] = -0.31;
+            body_make(&s.model, &mesh, &place);
+        }
+        runs(on + i, &s.model);
+        free_all(&s);
+    }
+    size_t lies = 0;
+    double sum = 0;
+    for (size_t v = 0; v < on[0].vertices; v++) {
+        double far[2], square = 0;
+        for (int i = 0; i < 2; i++) {
+            double from[3];
+            for (size_t c = 0; c < 3; c++)
+                from[c] = record_at(on + i, on->frames - 1, v, c) + (c == 1 ? 0.31 : 0);
+            far[i] = sqrt(from[0] * from[0] + from[1] * from[1] + from[2] * from[2]);
+        }
+        for (size_t c = 0; c < 3; c++) {
+            const double apart =
+                record_at(on, on->frames - 1, v, c) - record_at(on + 1, on->frames - 1, v, c);
+            square += apart * apart;
+        }
+        ck_assert_double_gt(far[1], radius - less);
+        ck_assert_double_lt(sqrt(square), 5 * less); /* where it swings */
+        sum += sqrt(square);
+        lies += far[0] < radius + 1e-9 && far[1] < radius + 1e-9;
+    }
+    ck_assert_double_lt(sum / (double)on[0].vertices, less);
+    ck_assert_uint_gt(lies, 8);
+    record_free(on);
+    record_free(on + 1);
+}
+END_TEST
+
+static const char *real_path(void)
+{
+    static char path[4096];
+    const char *top = getenv("srcdir");
+    snprintf(path, sizeof path, "%s/../shared/data/body/female_generic.obj", top ? top : ".");
+    return path;
+}
+
+/* No vertex of a sheet that falls onto the head and the shoulders of a body is in it after any
+ * step.
+ */
+START_TEST(a_real_body)
+{
+    struct cloth_error error = {0};
+    struct setup s;
+    struct record record = {0};
+    struct mesh mesh;
+    FILE *file = fopen(real_path(), "r");
+    if (!file)
+        return;
+    fclose(file);
+    sheet_make(&s, 41, &(const struct contact_shape){.kind = 5, .body = 1});
+    struct mesh_transform place = {{0.1, 0.1, 0.1}, {1, 0, 0, 0}, {0, -0.8, 0}};
+    ck_assert_msg(mesh_read_surface(&mesh, real_path(), &error) == 0, "%s", error.text);
+    body_make(&s.model, &mesh, &place);
+    s.model.contact = _i ? MODEL_CONTACT_FILTER : MODEL_CONTACT_PROJECT;
+    runs(&record, &s.model);
+    struct contact_pose pose;
+    size_t touched = 0;
+    contact_pose_over(&s.plane, NULL, &s.model.bodies, 0, 0, &pose);
+    for (size_t frame = 1; frame < record.frames; frame++)
+        for (size_t v = 0; v < record.vertices; v++) {
+            struct contact_hit hit;
+            phys_vec x = {0};
+            for (size_t c = 0; c < 3; c++)
+                x[c] = record_at(&record, frame, v, c);
+            contact_closest(&s.plane, &pose, 1, &x, &hit);
+            ck_assert_double_gt(hit.gap, -1e-9);
+            touched += hit.gap < 1e-7;
+        }
+    ck_assert_uint_gt(touched, 100);
+    record_free(&record);
+    free_all(&s);
 }
 END_TEST
 
@@ -250,6 +395,8 @@ int main(void)
     tcase_add_loop_test(cases, halved_steps_see_their_time, 0, 2);
     tcase_add_test(cases, waits_for_a_shape);
     tcase_add_loop_test(cases, pushes_a_sheet, 0, 2);
+    tcase_add_loop_test(cases, a_ball_of_triangles, 0, 2);
+    tcase_add_loop_test(cases, a_real_body, 0, 2);
     suite_add_tcase(suite, cases);
     return unit_run(suite);
 }

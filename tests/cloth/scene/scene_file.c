@@ -23,7 +23,7 @@ const char *const scene_right = "schema: 1\n"
                                 "time: {h: 0.001, end: 0.1}\n";
 
 static char folder[64];
-static char written[8][128];
+static char written[16][128];
 static size_t n_written;
 static pid_t owner;
 
@@ -55,7 +55,7 @@ void scene_write_file(const char *name, const char *bytes, size_t size)
     size_t i = 0;
     while (i < n_written && strcmp(written[i], path) != 0)
         i++;
-    ck_assert_uint_lt(i, 8);
+    ck_assert_uint_lt(i, sizeof written / sizeof *written);
     if (i == n_written)
         strcpy(written[n_written++], path);
     FILE *file = fopen(path, "wb");

@@ -54,6 +54,93 @@ START_TEST(values_out_of_range)
 }
 END_TEST
 
+/* Corners of a tetrahedron. */
+#define CORNERS "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n"
+static void write_body(const char *name, const char *faces)
+{
+    char text[200];
+    snprintf(text, sizeof text, "%s%s", CORNERS, faces);
+    scene_write_file(name, text, strlen(text));
+}
+
+START_TEST(bodies)
+{
+    static const char plane[] = "plane: {point: [0, -1, 0], normal: [0, 3, 4]}";
+    struct cloth_error error = {0};
+    struct model model;
+    write_body("whole.obj", "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
+    write_body("open.obj", "f 1 3 2\nf 1 2 4\nf 1 4 3\n");
+    write_body("third.obj", "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\nf 2 3 1\n");
+    write_body("against.obj", "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 4 3\n");
+    write_body("flat.obj", "v 2 0 0\nf 1 3 2\nf 1 2 5\n");
+    write_body("none.obj", "");
+    write_body("out.obj", "f 1 2 3\nf 1 4 2\nf 1 3 4\nf 2 4 3\n");
+    EXPECT(
+        {plane, "body: {scale: 2}",
+         .error = ":11:20: obstacles[0].body.obj is missing; a text is expected"},
+        {plane, "body: {obj: open.obj}",
+         .error = ":11:26: body: open.obj: the mesh is not closed: the edge between vertices 2 and "
+                  "3 has 1 triangle where 2 are expected, as 3 edges have in all (vertices count "
+                  "from 1); fill the holes, or join the parts"},
+        {plane, "body: {obj: against.obj}",
+         .error =
+             ":11:26: body: against.obj: triangles 1 and 4, at the edge between vertices 2 and "
+             "3, are wound against each other (triangles and vertices count from 1); turn one "
+             "round"},
+        {plane, "body: {obj: flat.obj}",
+         .error = ":11:26: body: flat.obj: triangle 2, of vertices 1, 2 and 5, has no area; remove "
+                  "it, or move a vertex (triangles and vertices count from 1)"},
+        {plane, "body: {obj: none.obj}",
+         .error = ":11:26: body: none.obj: the mesh has no triangles; a closed surface is "
+                  "expected"},
+        {plane, "body: {obj: whole.obj, scale: 0}",
+         .error = ":11:44: obstacles[0].body.scale is 0; ..."},
+        {plane, "body: {obj: whole.obj, rotate: [0, 0, 0, 0]}",
+         .error =
+             ":11:45: the quaternion [w, x, y, z] has no direction; its length must be neither "
+             "zero nor huge"},
+        {plane, "body: {obj: whole.obj, translate: [0, 2e6, 0]}",
+         .error =
+             ":11:26: body: whole.obj: vertex 1 is 2e+06 m from the origin along an axis; less "
+             "than 1e+06 m is expected (vertices count from 1)"},
+        {plane, "body: {obj: whole.obj, size: 1}",
+         .error = ":11:37: size is not a key of obstacles[0].body; allowed: obj, ..."});
+    static const char *const unread[][2] = {
+        {"nowhere.obj", "nowhere.obj: cannot be opened: No such file"},
+        {"third.obj", "third.obj:9: this face is the third"}};
+    for (int i = 0; i < 2; i++) {
+        char body[80];
+        snprintf(body, sizeof body, "body: {obj: %s}", unread[i][0]);
+        char *text = scene_changed(scene_right, plane, body);
+        memset(&error, 0, sizeof error);
+        ck_assert_int_eq(scene_read_text(&model, text, 0, NULL, &error), CLOTH_E_INPUT);
+        ck_assert_ptr_nonnull(strstr(error.text, ":11:26: body: "));
+        ck_assert_msg(strstr(error.text, unread[i][1]) != NULL, "%s", error.text);
+        model_free(&model);
+        free(text);
+    }
+    /* Inside out it is turned round. */
+    for (int i = 0; i < 2; i++) {
+        char *text =
+            scene_changed(scene_right, plane,
+                          i ? "body: {obj: out.obj, scale: [1, 2, 3], translate: [5, 0, 0], "
+                              "motion: {times: [1], translate: [[0, 1, 0]]}}"
+                            : "body: {obj: whole.obj}");
+        model = scene_read_right(text, 0, NULL);
+        ck_assert_uint_eq(model.n_warnings, (uint32_t)i);
+        const char *warning = ":11:26: the mesh of a body is inside out: its triangles are "
+                              "clockwise as seen from outside; they are turned round";
+        ck_assert(!i || strstr(model.warnings[0], warning));
+        const struct contact_body *body = contact_bodies_at(&model.bodies, model.obstacles->body);
+        ck_assert(body->n_triangles == 4 && model.obstacles->n == (uint32_t)i);
+        ck_assert(body->low[0] == 5 * i && body->high[0] == 5 * i + 1);
+        ck_assert(body->high[1] == 1 + i && body->high[2] == 1 + 2 * i);
+        model_free(&model);
+        free(text);
+    }
+}
+END_TEST
+
 #define SPHERE "sphere: {centre: [0, -1, 0], radius: 0.5, motion: "
 START_TEST(obstacles)
 {
@@ -484,6 +571,7 @@ int main(void)
     TCase *cases = tcase_create("errors");
     tcase_add_test(cases, values_out_of_range);
     tcase_add_test(cases, obstacles);
+    tcase_add_test(cases, bodies);
     tcase_add_test(cases, triangles_out_of_range);
     tcase_add_test(cases, grids_larger_than_the_machine);
     tcase_add_test(cases, names_and_indices);

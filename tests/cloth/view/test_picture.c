@@ -44,7 +44,7 @@ static void make_sheet(void)
 static void draw_beside(double elevation, size_t n, const struct contact_shape *beside)
 {
     struct cloth_error error = {0};
-    ck_assert_int_eq(view_obstacles_make(&obstacles, n, beside, NULL, &error), 0);
+    ck_assert_int_eq(view_obstacles_make(&obstacles, n, beside, NULL, NULL, &error), 0);
     struct view_shape shape = {.n_vertices = N * N,
                                .n_triangles = 2 * (N - 1) * (N - 1),
                                .triangle = triangle,

@@ -1,0 +1,425 @@
+/* Bodies: gaps against brute force over all triangles, signs against the winding number, normals of
+ * edges and corners, what is apart, what is refused; the real body where it is beside the source
+ * tree. */
+#include "cloth/contact/shape.h"
+#include "tests/cloth/contact/bodies.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+enum { N_MADE = 4, POINTS = 600 };
+
+static struct surface made;
+static struct contact_bodies bodies;
+static struct mesh mesh;
+static uint64_t seed = 1;
+
+/* Between two numbers, the same on every machine. */
+static double uniform(double from, double to)
+{
+    seed = seed * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
+    return from + (to - from) * ((double)(seed >> 11) / 9007199254740992.0);
+}
+
+static void start(void)
+{
+    bodies = (struct contact_bodies){0};
+    mesh = (struct mesh){0};
+}
+
+static void end(void)
+{
+    free(bodies.memory);
+    mesh_free(&mesh);
+}
+
+/* A mesh anywhere, of any size and turn. */
+static void make(int which)
+{
+    struct mesh_transform pose = mesh_identity;
+    if (which == 0)
+        surface_box(&made, 0.3, 0.2, 0.5);
+    else if (which == 1)
+        surface_torus(&made, 0.5, 0.2, 24, 12);
+    else
+        surface_ball(&made, 0.5, which == 2 ? 1 : 3);
+    surface_mesh(&made, &mesh);
+    pose.scale[0] = uniform(0.3, 3);
+    pose.scale[1] = uniform(0.3, 3);
+    for (int c = 0; c < 3; c++)
+        pose.translate[c] = uniform(-2, 2);
+    for (int c = 0; c < 4; c++)
+        pose.rotate[c] = uniform(-1, 1);
+    mesh_apply(&mesh, &pose);
+}
+
+static const struct contact_body *body_of(void)
+{
+    struct cloth_error error = {0};
+    bool turned = true;
+    ck_assert_msg(contact_bodies_add(&bodies, &mesh, &turned, &error) == 0, "%s", error.text);
+    ck_assert(!turned);
+    return contact_bodies_at(&bodies, bodies.n);
+}
+
+static void find(const struct contact_body *body, size_t n, const phys_vec *x,
+                 struct contact_hit *hit)
+{
+    contact_body_kind.closest(NULL, body, n, x, hit);
+}
+
+/* ---- Another way to the same ---- */
+
+static void corner_of(uint32_t t, int i, double x[3])
+{
+    memcpy(x, mesh.position + 3 * (size_t)mesh.triangle[3 * (size_t)t + (size_t)i], 3 * sizeof *x);
+}
+
+static double dot(const double a[3], const double b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static void take(const double a[3], const double b[3], double difference[3])
+{
+    for (int c = 0; c < 3; c++)
+        difference[c] = a[c] - b[c];
+}
+
+static void across(const double a[3], const double b[3], double product[3])
+{
+    for (int c = 0; c < 3; c++)
+        product[c] = a[(c + 1) % 3] * b[(c + 2) % 3] - a[(c + 2) % 3] * b[(c + 1) % 3];
+}
+
+static double segment_distance(const double a[3], const double b[3], const double x[3])
+{
+    double ab[3], ax[3], rest[3];
+    take(b, a, ab);
+    take(x, a, ax);
+    const double part = fmin(1, fmax(0, dot(ab, ax) / dot(ab, ab)));
+    for (int c = 0; c < 3; c++)
+        rest[c] = ax[c] - part * ab[c];
+    return sqrt(dot(rest, rest));
+}
+
+/* By the plane where the point is above the inside of the triangle, else by the edges. */
+static double triangle_distance(uint32_t t, const double x[3])
+{
+    double p[3][3], ab[3], ac[3], normal[3], away[3], least = INFINITY;
+    bool above = true;
+    for (int i = 0; i < 3; i++)
+        corner_of(t, i, p[i]);
+    take(p[1], p[0], ab);
+    take(p[2], p[0], ac);
+    across(ab, ac, normal);
+    for (int i = 0; i < 3; i++) {
+        double edge[3], side[3];
+        take(p[(i + 1) % 3], p[i], edge);
+        take(x, p[i], away);
+        across(normal, edge, side);
+        above = above && dot(side, away) >= 0;
+        least = fmin(least, segment_distance(p[i], p[(i + 1) % 3], x));
+    }
+    return above ? fabs(dot(normal, away)) / sqrt(dot(normal, normal)) : least;
+}
+
+static double brute_distance(const double x[3])
+{
+    double least = INFINITY;
+    for (uint32_t t = 0; t < mesh.n_triangles; t++)
+        least = fmin(least, triangle_distance(t, x));
+    return least;
+}
+
+/* The winding number: the solid angles of all triangles (van Oosterom & Strackee 1983). */
+static bool is_inside(const double x[3])
+{
+    double sum = 0;
+    for (uint32_t t = 0; t < mesh.n_triangles; t++) {
+        double a[3], b[3], c[3], bc[3];
+        corner_of(t, 0, a);
+        corner_of(t, 1, b);
+        corner_of(t, 2, c);
+        take(a, x, a);
+        take(b, x, b);
+        take(c, x, c);
+        across(b, c, bc);
+        const double la = sqrt(dot(a, a)), lb = sqrt(dot(b, b)), lc = sqrt(dot(c, c));
+        sum +=
+            2 * atan2(dot(a, bc), la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb);
+    }
+    return fabs(sum) > 2 * acos(-1);
+}
+
+/* ---- Tests ---- */
+
+/* Anywhere in a box somewhat larger than the body; every other one near to a triangle. */
+static void pick_point(int i, phys_vec *x)
+{
+    const uint32_t t = (uint32_t)uniform(0, mesh.n_triangles);
+    const double u = uniform(0, 1), v = uniform(0, 1 - u), off = i % 4 == 1 ? 1e-3 : 0.3;
+    double p[3][3];
+    *x = (phys_vec){0};
+    for (int k = 0; k < 3; k++)
+        corner_of(i % 2 ? t : (uint32_t)uniform(0, mesh.n_triangles), k, p[k]);
+    for (int c = 0; c < 3; c++)
+        (*x)[c] = p[0][c] + u * (p[1][c] - p[0][c]) + v * (p[2][c] - p[0][c]) + uniform(-off, off);
+}
+
+/* The gap, and that the way along the normal ends on the surface. */
+static void check_hit(const phys_vec *x, const struct contact_hit *hit)
+{
+    const double at[3] = {(*x)[0], (*x)[1], (*x)[2]};
+    const phys_vec foot = *x - hit->gap * hit->normal;
+    const double on[3] = {foot[0], foot[1], foot[2]};
+    ck_assert_double_eq_tol(fabs(hit->gap), brute_distance(at), 1e-12);
+    ck_assert_double_eq_tol(brute_distance(on), 0, 1e-12);
+    ck_assert_double_eq_tol(phys_dot(&hit->normal, &hit->normal), 1, 1e-12);
+    if (fabs(hit->gap) > 1e-9)
+        ck_assert_int_eq(hit->gap < 0, is_inside(at));
+}
+
+START_TEST(nearest_of_all)
+{
+    static phys_vec x[POINTS];
+    static struct contact_hit hit[POINTS], alone;
+    size_t inside = 0;
+    for (int round = 0; round < 3; round++) {
+        seed = (uint64_t)(10 * _i + round);
+        make(_i);
+        const struct contact_body *body = body_of();
+        const int n = mesh.n_triangles > 1000 ? POINTS / 4 : POINTS;
+        for (int i = 0; i < n; i++)
+            pick_point(i, x + i);
+        find(body, (size_t)n, x, hit);
+        for (int i = 0; i < n; i++) {
+            check_hit(x + i, hit + i);
+            inside += hit[i].gap < 0;
+            find(body, 1, x + i, &alone); /* whatever came before it */
+            ck_assert(alone.gap == hit[i].gap);
+            ck_assert_mem_eq(&alone.normal, &hit[i].normal, sizeof alone.normal);
+        }
+        mesh_free(&mesh);
+    }
+    ck_assert_uint_gt(inside, 100);
+}
+END_TEST
+
+/* A copy of the memory elsewhere is the same bodies; a second body leaves the first as it was. */
+START_TEST(lies_anywhere)
+{
+    struct contact_bodies copy;
+    struct contact_hit here[2], there[2];
+    const phys_vec x = {0.1, 0.9, 0.2, 0};
+    make(1);
+    find(body_of(), 1, &x, here);
+    mesh_free(&mesh);
+    make(2);
+    find(body_of(), 1, &x, here + 1);
+    copy = bodies;
+    copy.memory = aligned_alloc(CONTACT_ALIGN, bodies.bytes);
+    ck_assert_ptr_nonnull(copy.memory);
+    memcpy(copy.memory, bodies.memory, bodies.bytes);
+    memset(bodies.memory, 0xff, bodies.bytes);
+    for (uint32_t i = 0; i < 2; i++) {
+        find(contact_bodies_at(&copy, i + 1), 1, &x, there + i);
+        ck_assert(there[i].gap == here[i].gap);
+        ck_assert_mem_eq(&there[i].normal, &here[i].normal, sizeof here[i].normal);
+    }
+    ck_assert_ptr_null(contact_bodies_at(&copy, 0));
+    free(copy.memory);
+}
+END_TEST
+
+static void check_normal(const struct contact_body *body, double x, double y, double z, double to_x,
+                         double to_y, double to_z)
+{
+    const phys_vec at = {x, y, z, 0};
+    const double length = sqrt(to_x * to_x + to_y * to_y + to_z * to_z);
+    struct contact_hit hit;
+    find(body, 1, &at, &hit);
+    ck_assert_double_eq_tol(hit.normal[0], to_x / length, 1e-12);
+    ck_assert_double_eq_tol(hit.normal[1], to_y / length, 1e-12);
+    ck_assert_double_eq_tol(hit.normal[2], to_z / length, 1e-12);
+}
+
+/* On edges and corners normals are in their middle, however many triangles a side has there. Of
+ * nearest triangles that are as near the first counts: side x < 0 at the centre of a cube. */
+START_TEST(pseudo_normals)
+{
+    surface_box(&made, 1, 1, 1);
+    surface_mesh(&made, &mesh);
+    const struct contact_body *body = body_of();
+    for (int i = 0; i < 8; i++) {
+        const double x = i & 1 ? 1 : -1, y = i & 2 ? 1 : -1, z = i & 4 ? 1 : -1;
+        check_normal(body, x, y, z, x, y, z);
+        check_normal(body, x, y, 0.3, x, y, 0);
+        check_normal(body, x, -0.1, 0.3, 1 * x, 0, 0);
+        check_normal(body, 2 * x, 3 * y, 3 * z, x, 2 * y, 2 * z);
+        check_normal(body, 0.2 * x, 3 * y, 2 * z, 0, 2 * y, z);
+    }
+    check_normal(body, 0, 0, 0, -1, 0, 0);
+    const phys_vec wrong[] = {{NAN, 0, 0, 0}, {0, INFINITY, 0, 0}};
+    struct contact_hit hit[2];
+    find(body, 2, wrong, hit);
+    ck_assert(isnan(hit[0].gap) && !(hit[1].gap <= 0));
+}
+END_TEST
+
+START_TEST(apart)
+{
+    size_t n_apart = 0, n_free = 0;
+    seed = 7;
+    make(_i);
+    const struct contact_body *body = body_of();
+    for (int i = 0; i < POINTS; i++) {
+        phys_vec x[3], wrong[3];
+        struct contact_hit hit[3];
+        pick_point(i, x);
+        for (int k = 1; k < 3; k++)
+            x[k] =
+                x[0] + (phys_vec){uniform(-0.03, 0.03), uniform(-0.03, 0.03), uniform(-0.03, 0.03)};
+        find(body, 3, x, hit);
+        const bool is = contact_body_kind.apart(NULL, body, 3, x);
+        const bool free = hit[0].gap > 0 && hit[1].gap > 0 && hit[2].gap > 0;
+        ck_assert(!is || free);
+        n_apart += is;
+        n_free += free;
+        memcpy(wrong, x, sizeof x);
+        wrong[i % 3][0] = NAN;
+        ck_assert(!contact_body_kind.apart(NULL, body, 3, wrong));
+    }
+    ck_assert_uint_gt(n_apart, n_free / 4);
+    ck_assert_uint_lt(n_free, POINTS);
+}
+END_TEST
+
+static void expect(const char *text)
+{
+    struct cloth_error error = {0};
+    bool turned;
+    const struct contact_bodies before = bodies;
+    ck_assert_int_eq(contact_bodies_add(&bodies, &mesh, &turned, &error), CLOTH_E_INPUT);
+    ck_assert_ptr_nonnull(strstr(error.text, text));
+    ck_assert_mem_eq(&before, &bodies, sizeof bodies);
+    mesh_free(&mesh);
+}
+
+static void swap(uint32_t *a, uint32_t *b)
+{
+    const uint32_t c = *a;
+    *a = *b;
+    *b = c;
+}
+
+START_TEST(refused)
+{
+    struct cloth_error error = {0};
+    bool turned = false;
+    surface_box(&made, 1, 1, 1);
+    made.n_triangles--;
+    surface_mesh(&made, &mesh);
+    expect("the mesh is not closed: the edge between vertices 5 and 7 has 1 triangle where 2 are "
+           "expected, as 3 edges have in all");
+    surface_box(&made, 1, 1, 1);
+    swap(made.triangle[4], made.triangle[4] + 1);
+    surface_mesh(&made, &mesh);
+    expect(
+        "triangles 5 and 10, at the edge between vertices 1 and 2, are wound against each other");
+    surface_box(&made, 1, 1, 0);
+    surface_mesh(&made, &mesh);
+    expect("triangle 1, of vertices 1, 5 and 7, has no area");
+    surface_box(&made, 1, 1, 1);
+    made.x[3][1] = 1e6;
+    surface_mesh(&made, &mesh);
+    expect("vertex 4 is 1e+06 m from the origin");
+    made.n_triangles = 0;
+    made.x[3][1] = 1;
+    surface_mesh(&made, &mesh);
+    expect("the mesh has no triangles");
+    /* Both sides of one triangle. */
+    made = (struct surface){.n = 3, .x = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}};
+    surface_add(&made, 0, 1, 2);
+    surface_add(&made, 0, 2, 1);
+    surface_mesh(&made, &mesh);
+    expect("the mesh holds no room");
+    /* Inside out it is turned round. */
+    surface_box(&made, 1, 1, 1);
+    for (uint32_t t = 0; t < made.n_triangles; t++)
+        swap(made.triangle[t], made.triangle[t] + 2);
+    surface_mesh(&made, &mesh);
+    ck_assert_int_eq(contact_bodies_add(&bodies, &mesh, &turned, &error), 0);
+    ck_assert(turned);
+    check_normal(contact_bodies_at(&bodies, 1), 1, 1, 1, 1, 1, 1);
+    check_normal(contact_bodies_at(&bodies, 1), 1, 1, 0.2, 1, 1, 0);
+}
+END_TEST
+
+static const char *real_path(void)
+{
+    static char path[4096];
+    const char *top = getenv("srcdir");
+    snprintf(path, sizeof path, "%s/../shared/data/body/female_generic.obj", top ? top : ".");
+    return path;
+}
+
+/* With its time a point near to the surface. */
+START_TEST(real)
+{
+    enum { N = 30000 };
+    struct cloth_error error = {0};
+    struct mesh_transform metres = mesh_identity;
+    FILE *file = fopen(real_path(), "r");
+    if (!file)
+        return;
+    fclose(file);
+    for (int c = 0; c < 3; c++)
+        metres.scale[c] = 0.1;
+    ck_assert_msg(mesh_read_surface(&mesh, real_path(), &error) == 0, "%s", error.text);
+    mesh_apply(&mesh, &metres);
+    struct timespec begin, middle, stop;
+    clock_gettime(CLOCK_MONOTONIC, &begin);
+    const struct contact_body *body = body_of();
+    phys_vec *x = aligned_alloc(CONTACT_ALIGN, N * sizeof *x);
+    struct contact_hit *hit = aligned_alloc(CONTACT_ALIGN, N * sizeof *hit);
+    ck_assert(x && hit);
+    for (uint32_t i = 0; i < N; i++) { /* one after the other, as rows of a cloth are */
+        double p[3];
+        corner_of((uint32_t)((uint64_t)i * mesh.n_triangles / N), (int)(i % 3), p);
+        x[i] = (phys_vec){p[0], p[1], p[2]};
+        for (int c = 0; c < 3; c++)
+            x[i][c] += uniform(-2e-3, 2e-3);
+    }
+    clock_gettime(CLOCK_MONOTONIC, &middle);
+    find(body, N, x, hit);
+    clock_gettime(CLOCK_MONOTONIC, &stop);
+    printf("# %u triangles: made in %.0f ms, %.0f ns a point\n", mesh.n_triangles,
+           1e3 * (double)(middle.tv_sec - begin.tv_sec) +
+               1e-6 * (double)(middle.tv_nsec - begin.tv_nsec),
+           (1e9 * (double)(stop.tv_sec - middle.tv_sec) + (double)(stop.tv_nsec - middle.tv_nsec)) /
+               N);
+    for (uint32_t i = 0; i < N; i += 200)
+        check_hit(x + i, hit + i);
+    free(x);
+    free(hit);
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("body");
+    TCase *cases = tcase_create("body");
+    tcase_add_checked_fixture(cases, start, end);
+    tcase_set_timeout(cases, 120);
+    tcase_add_loop_test(cases, nearest_of_all, 0, N_MADE);
+    tcase_add_test(cases, lies_anywhere);
+    tcase_add_test(cases, pseudo_normals);
+    tcase_add_loop_test(cases, apart, 0, N_MADE);
+    tcase_add_test(cases, refused);
+    tcase_add_test(cases, real);
+    suite_add_tcase(suite, cases);
+    return unit_run(suite);
+}

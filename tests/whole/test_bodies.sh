@@ -1,0 +1,55 @@
+#!/bin/sh
+# Bodies as a user meets them: one state_hash over ranks, threads and the rest; the folder of frames has the mesh, and the viewer draws
+# it from there; what is wrong with a body is said before any work.
+. "${srcdir:-.}/tests/support/tap.sh"
+skip_unless "$DUITE_CLOTH"
+skip_unless tests/whole/same_hash
+plan_later
+
+# A ring around the y axis, of 24 x 12 vertices, in quads.
+awk 'BEGIN { t = atan2(0, -1) / 12
+    for (i = 0; i < 24; i++) for (j = 0; j < 12; j++) {
+        far = 0.3 + 0.1 * cos(2 * t * j); printf "v %.9f %.9f %.9f\n", far * cos(t * i), 0.1 * sin(2 * t * j), far * sin(t * i) }
+    for (i = 0; i < 24; i++) for (j = 0; j < 12; j++) {
+        k = (i + 1) % 24; l = (j + 1) % 12; print "f", 12 * i + j + 1, 12 * i + l + 1, 12 * k + l + 1, 12 * k + j + 1 } }' > "$scratch/ring.obj"
+cat > "$scratch/ring.yaml" << 'END'
+schema: 1
+cloths: [{mesh: {grid: {width: 1, height: 1, nx: 30, ny: 30}}, material: cloth}]
+obstacles:
+  - body: {obj: ring.obj, scale: 1.1, translate: [0, -0.115, 0.01], motion: {times: [0, 1], translate: [[0, 0, 0], [0.1, 0.2, 0]], rotate: [[1, 0, 0, 0], [1, 0.2, 0.1, 0]]}}
+  - body: {obj: ring.obj, scale: 0.5, rotate: [1, 1, 0, 0], translate: [0, -0.3, 0]}
+materials: {cloth: {density: 0.2, stretch: 1000, shear: 100, damping: {stiffness: 0.01}}}
+time: {h: 0.005, end: 0.1, fps: 20}
+grain: 100
+END
+for contact in project filter; do
+    ok "one hash, contact $contact" ranks 4 tests/whole/same_hash "$scratch/ring.yaml" some 0 contact=$contact
+done
+
+frames() {
+    limited "$DUITE_CLOTH" "$scratch/ring.yaml" --output "$scratch/out" --quiet || return 1
+    grep '{"body": {"obj": "body-1.obj"}}' "$scratch/out/scene.json" || return 1
+    test "$(grep -c '^v ' "$scratch/out/body-0.obj")" = 288 && test "$(grep -c '^f ' "$scratch/out/body-1.obj")" = 576 || return 1
+    # A body of the folder is the same body again, without the turn and scale.
+    sed 's/obj: ring.obj, scale: 1.1, translate: .0, -0.115, 0.01./obj: out\/body-0.obj/; s/obj: ring.obj, scale: 0.5.*]}/obj: out\/body-1.obj}/' \
+        "$scratch/ring.yaml" > "$scratch/again.yaml"
+    limited "$DUITE_CLOTH" "$scratch/again.yaml" --report "$scratch/again.json" --quiet || return 1
+    limited "$DUITE_CLOTH" "$scratch/ring.yaml" --report "$scratch/ring.json" --quiet || return 1
+    grep state_hash "$scratch/ring.json" "$scratch/again.json"
+    test "$(grep state_hash "$scratch/ring.json")" = "$(grep state_hash "$scratch/again.json")"
+}
+ok "frames have the meshes" frames
+if test -x "$DUITE_VIEW" && "$DUITE_VIEW" "$scratch/out" --png "$scratch/picture.png" > /dev/null 2>&1; then
+    mv "$scratch/out/body-1.obj" "$scratch/body-1.obj"
+    exits 2 "a mesh of the folder is gone" "$DUITE_VIEW" "$scratch/out" --png "$scratch/picture.png"
+else
+    skip "a mesh of the folder is gone" "no pictures here"
+fi
+
+refused() { # what is open is said, with its place, before there is a folder
+    sed '$d' "$scratch/ring.obj" > "$scratch/open.obj"
+    sed 's/ring.obj/open.obj/' "$scratch/ring.yaml" > "$scratch/open.yaml"
+    limited "$DUITE_CLOTH" "$scratch/open.yaml" --output "$scratch/none" > "$scratch/said" 2>&1
+    test $? = 2 && grep 'open.yaml:4:17: body: open.obj: the mesh is not closed' "$scratch/said" && ! test -e "$scratch/none"
+}
+ok "a body with a hole" refused

@@ -72,10 +72,12 @@ struct flow_ties flow_ties_open(const void *memory);
 /* How many blocks it shares ties with. */
 uint32_t flow_ties_others(const void *memory);
 
-/* Ties from .. to - 1 as springs. */
+/* Ties from .. to - 1 as springs. Where there are none there may be no arrays to point into. */
 static inline struct phys_springs flow_ties_springs(const struct flow_ties *ties, uint32_t from,
                                                     uint32_t to)
 {
+    if (from == to)
+        return (struct phys_springs){0};
     return (struct phys_springs){to - from,
                                  ties->end + from,
                                  ties->stiffness + from,

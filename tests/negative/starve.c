@@ -64,7 +64,9 @@ static int chosen(const char *variable)
 
 static long stride_of(int ranks)
 {
-    return !chosen("DUITE_LONG") && (ranks > 2 || chosen("DUITE_QUICK")) ? 3 : 1;
+    if (chosen("DUITE_LONG"))
+        return 1;
+    return chosen("DUITE_QUICK") ? 7 : ranks > 2 ? 3 : 1;
 }
 
 /* The allocations of one rank fail, one a run. */

@@ -7,9 +7,11 @@ ok "out of memory on 1 rank" ranks 1 tests/negative/ranks_memory
 ok "out of memory on 1 rank with graphs" ranks 1 tests/negative/ranks_memory_graphs
 ok "the system refuses on 1 rank" ranks 1 tests/negative/ranks_system
 for n in 2 3; do
-    ok "out of memory on $n ranks" ranks $n tests/negative/ranks_memory
-    ok "out of memory on $n ranks with graphs" ranks $n tests/negative/ranks_memory_graphs
-    ok "out of memory on $n ranks while objects move" ranks $n tests/negative/ranks_memory_graphs wander
+    if test $n = 2 || ! quick; then
+        ok "out of memory on $n ranks" ranks $n tests/negative/ranks_memory
+        ok "out of memory on $n ranks with graphs" ranks $n tests/negative/ranks_memory_graphs
+        ok "out of memory on $n ranks while objects move" ranks $n tests/negative/ranks_memory_graphs wander
+    fi
     ok "the system refuses on one of $n ranks" ranks $n tests/negative/ranks_system
     ok "failures on $n ranks" ranks $n tests/negative/ranks_failures
     ok "different programs on $n ranks" ranks $n tests/negative/ranks_different

@@ -229,7 +229,7 @@ materials: {m: {model: triangles, density: 1, stretch: 1, bending: {rigidity: 1}
 time: {h: 0.01, end: 0.01}
 END
     limited "$DUITE_CLOTH" folded.yaml --quiet > said 2>&1
-    test $? -eq 2 && cat said && grep -qF "welds make vertices 0 and 3 of cloth 'cloth1' one, which a fold joins; it needs them apart" said
+    test $? -eq 2 && cat said && grep -qF "welds make vertices 0 and 3 of cloth 'cloth1' one, which a hinge joins; it needs them apart" said
 }
 ok "both vertices opposite an edge that bends" folded
 ok "but not of an edge that does not" run folded.yaml --set 'materials.m={model: triangles, density: 1, stretch: 1, shear: 1}' --set gravity='[0, 0, 0]' --set time.halving=off

@@ -146,7 +146,7 @@ int flow_welds_check(const struct flow_welds *welds, const struct element_cloths
         const bool bends = element_parts(model, model->cloths + c) & 1u << ELEMENT_HINGES;
         for (uint32_t e = 0; e < edges->n && bends && !code; e++)
             if (element_is_hinge(edges->edge + e))
-                code = check_apart(model, c, root, edges->edge[e].opposite, 2, "a fold", error);
+                code = check_apart(model, c, root, edges->edge[e].opposite, 2, "a hinge", error);
         root += model->cloths[c].mesh.n_vertices;
     }
     return code;

@@ -264,7 +264,7 @@ struct model {
     double stretch_limit;  /* or that ends with a larger one; 0: no limit */
     double energy_growth;  /* part of flow_source_release or the largest energy of motion and strain
                               so far: where that is guarded, a step that ends so much above an
-                              earlier energy is taken again, by BDF2 by implicit Euler, else shorter;
+                              earlier energy is made again, by BDF2 by implicit Euler, else shorter;
                               0: by any */
     struct model_rest rest;
     enum model_integrator integrator;
@@ -340,9 +340,9 @@ static inline int model_stops_by_norms(const struct model *model)
     return model->stop == MODEL_STOP_MASS_NORM || model->stop == MODEL_STOP_NORMALISED;
 }
 
-/* Whether its solves have a coarse space, and how many patches a block has in it: without a number
- * of the model's own, as many as leave the coarse system, which is solved by one after the blocks,
- * small against their work. */
+/* Whether its solves have a coarse space, and how many patches a block has in it. Without a number
+ * of the model's own these are as many as keep the coarse system small against the blocks' work:
+ * one task solves it after theirs. */
 bool model_is_coarse(const struct model *model);
 uint32_t model_patches(const struct model *model, uint32_t n_blocks);
 

@@ -1,6 +1,6 @@
 /* The order of every sum is given by the block: rows ascending, in the dots with q those of the
- * halo last. The fourth lane of q carries rubbish between a row's first entry and its end, and is
- * zero in every result.
+ * halo last. The fourth lane of q carries undefined values between a row's first entry and its end,
+ * and is zero in every result.
  *
  * A pass is one sweep: its first half is as far before the product as the product's entries reach,
  * so that both work in the nearest cache. While the product computes, the rows and entries of the

@@ -1,6 +1,6 @@
 /* The schema 1 of scenes: cloths stand in rules_cloth.c. These tables alone know keys, words,
- * units, ranges, defaults and fields: files are checked against them, defaults are taken from them,
- * they fill the model, and the list of keys is printed from them. docs/scene.md describes them. */
+ * units, ranges, defaults and fields. Files are checked against them, defaults come from them, they
+ * fill the model, and --keys prints them. docs/scene.md describes them. */
 #include "cloth/scene/schema/tables.h"
 
 #include "cloth/scene/schema/fabrics.h"

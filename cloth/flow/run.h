@@ -106,9 +106,9 @@ const duite_kernel *const *flow_kernels(void);
 struct flow; /* a model made ready, or room for one */
 
 /* A program's own filter of the solves of implicit steps (the filter function of Keckeisen &
- * Blochinger 2004; Baraff & Witkin 1998, section 5): in each step, before the solve, it is shown
- * the vertices of one block after the other, and says along which directions of each its velocity
- * must not change in the step. */
+ * Blochinger 2004; Baraff & Witkin 1998, section 5). Before the solve of each step it gets the
+ * vertices of one block after the other. It says along which directions the velocity of each must
+ * not change in the step. */
 struct flow_rows {
     size_t n;               /* vertices of the block */
     const uint32_t *vertex; /* n: in the numbering of the input meshes, cloth after cloth; of a
@@ -146,11 +146,14 @@ int flow_join(struct flow **flow, struct cloth_error *error);
 /* Runs it to the end on a runtime that was started with flow_kernels() and `flow` as its context;
  * `output` is given on all ranks or on none. First the tables of the blocks go to the ranks that
  * keep them: a flow runs once. Collective, the same result on every rank. On failure `report` still
- * says how many steps were done and which frame was written last. Errors: CLOTH_E_RUN (diverged; a
- * matrix that is not positive definite; a solve that needs more than max_iterations; a cloth that
- * stretches too far; where steps are halved, in one of h/1024), CLOTH_E_IO (a
- * frame was not written), CLOTH_E_MEMORY (of any rank), CLOTH_E_LIBRARY; CLOTH_E_LOST, which other
- * ranks need not get: MPI may not be called any more. */
+ * says how many steps were done and which frame was written last. Errors:
+ *
+ * - CLOTH_E_RUN: the run diverged, a matrix is not positive definite, a solve needs more than
+ *   max_iterations, or a cloth stretches too far; where steps are halved, in one of h/1024
+ * - CLOTH_E_IO: a frame was not written
+ * - CLOTH_E_MEMORY: of any rank
+ * - CLOTH_E_LIBRARY
+ * - CLOTH_E_LOST: MPI may not be called any more; other ranks need not get this one */
 int flow_run(struct flow *flow, duite *rt, const struct flow_output *output,
              const struct flow_progress *progress, struct flow_report *report,
              struct cloth_error *error);

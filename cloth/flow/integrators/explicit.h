@@ -9,10 +9,9 @@
 
 /* What explicit integrators share: they solve nothing (cloth/physics/stage.h). Each step begins and
  * ends with x, v and their halos; what else an integrator keeps from step to step is said with it.
- * A task that finds forces reads its neighbours' halos and moves its own rows at once: what the
- * neighbours are to read next goes to spare halos, which are the halos when all such tasks are
- * forked. So no block waits for its neighbours to have seen it, and forces do not leave the
- * caches. */
+ * A task that finds forces reads its neighbours' halos and moves its own rows at once. It writes
+ * its next rows to spare halos. These become the halos when all such tasks are forked. So no block
+ * waits for its neighbours to have seen it, and forces do not leave the caches. */
 
 /* What a task wrote to the spare halos is what neighbours read next: when all tasks are forked. */
 static inline void flow_swap_halos_v(struct flow_state *state)

@@ -141,7 +141,7 @@ static int collect_part(struct flow_state *state, enum flow_field_id vector,
         code = collect(state, n, some, vector, part);
         n = 0;
     }
-    const int failed = duite_wait(state->rt); /* nobody runs ahead of rank 0 with its parcels */
+    const int failed = duite_wait(state->rt); /* nobody runs ahead of rank 0 with its messages */
     return code ? code : failed;
 }
 

@@ -3,8 +3,8 @@
 
 #include "cloth/flow/state/state.h"
 
-/* What is seen of a run: nothing here changes the state. Collective; they return what the runtime
- * does. */
+/* The observation of a run: nothing here changes the state. Collective; they return what the
+ * runtime does. */
 
 /* Forks what is watched of the state at the end of the step under way, or at the start. */
 int flow_watch(struct flow_state *state);

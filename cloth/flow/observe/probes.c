@@ -1,5 +1,5 @@
-/* The table of probes. When a step is accepted, blocks that probes look at find the force on their
- * rows and what is reported of them; rank 0 writes a row, one after the other as frames are: each
+/* The table of probes. When a step is accepted, the blocks that probes name compute the forces on
+ * their rows and report the values. Rank 0 writes one row after the other, as it does frames: each
  * row's task holds the token. */
 #include "cloth/flow/observe/observe.h"
 #include "cloth/flow/step/sliders.h"

@@ -1,18 +1,18 @@
-/* The system of the last step, brought together on rank 0: each block says its part of it, in
+/* The system of the last step, brought together on rank 0: each block reports its part of it, in
  * numbers, and one task on rank 0 makes plain arrays of all parts. An entry between two blocks is
- * reported by both; the lower block's word counts. Ties (cloth/flow/state/ties.h) are entries, too.
- */
+ * reported by both; the report of the lower block counts. Ties (cloth/flow/state/ties.h) are
+ * entries, too. */
 #include "cloth/flow/bodies.h"
 #include "cloth/flow/observe/observe.h"
 #include "cloth/flow/step/step.h"
 
 #include "cloth/solve/system.h"
 
-/* A part: rows, entries and room for ties, rows of the halo. Of a row: its vertex, mass, diagonal,
- * free, then vectors; of an entry: its row here, the block of its other end, or less than 0 where
- * there is no entry any more, and the row there (in another block: its place in the halo there, or
- * that of a tie the number of rows in that halo more than the row), then its values: those of a
- * spring, or N by rows. */
+/* A part: rows, entries and room for ties, rows of the halo. A row has its vertex, mass, diagonal
+ * and free, then vectors. An entry has its row here, the block of its other end and the row there,
+ * then its values: those of a spring, or N by rows. A block less than 0: there is no entry any
+ * more. In another block the row is its place in the halo there. For a tie it is the row's number
+ * plus the number of rows in that halo. */
 enum { VERTEX, MASS, DIAGONAL, FREE, B, DV = B + 3, X = DV + 3, V = X + 3, ROW = V + 3 };
 enum { HERE, BLOCK, THERE, VALUE, SPRING = VALUE + 4, PAIR = VALUE + SOLVE_NINE };
 

@@ -1,6 +1,6 @@
 /* Rank 0 alone knows the model. It broadcasts to all ranks the little that all need, and
- * distributes the tables of the blocks to the ranks that keep them: each is made when its turn
- * comes, and is gone from rank 0 when a task where its block lives has taken it over. A few are on
+ * distributes the tables of the blocks to the ranks that keep them. Rank 0 makes each table when
+ * its turn comes. A task where the block lives takes it over, and rank 0 frees it. A few are on
  * their way at any time, so that rank 0 never holds more than its own and those. */
 #include "cloth/flow/bodies.h"
 #include "cloth/flow/observe/observe.h"

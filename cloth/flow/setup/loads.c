@@ -1,5 +1,5 @@
-/* Loads add up vertex by vertex, with the weights; those that vary in time are kept one by one, in
- * the order of the scene, so that each vertex has the same sums whatever the blocks. */
+/* Loads add up vertex by vertex, with the weights. Loads that vary in time are kept one by one, in
+ * the order of the scene. So each vertex has the same sums for any blocks. */
 #include "cloth/flow/setup/source.h"
 
 #include "cloth/base/memory.h"

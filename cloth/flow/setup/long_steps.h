@@ -5,9 +5,9 @@
 
 struct flow;
 
-/* Warns, before a run, of steps that are too long for what they are to follow: for the fastest
- * vibration of an explicit run; for the solves of an implicit one; for the push of the air. To
- * flow->warning, on rank 0, when the source is made. Error: CLOTH_E_MEMORY. Local. */
+/* Warns, before a run, of steps that are too long: for the fastest vibration (explicit), for the
+ * solve (implicit), or for the push of the air. To flow->warning, on rank 0, when the source is
+ * made. Error: CLOTH_E_MEMORY. Local. */
 int flow_warn_of_steps(struct flow *flow, struct cloth_error *error);
 
 #endif

@@ -1,9 +1,8 @@
-/* A pass of a solve reads q of its block's neighbours: their halos as they are where the neighbour
- * lives on the same rank; else a packed halo, one for each block and rank that reads it, with the
- * rows that any block there needs: so a message holds nothing else. A task of its own packs it,
- * since the neighbours' passes still read its other half. Which it is depends on the homes that the
- * blocks have when a run begins and changes no result. All ranks know the rows of all packed halos.
- */
+/* A pass reads q of neighbours on the same rank from their halos. For each other rank a block has
+ * one packed halo, with the rows that blocks there need. So a message holds nothing else. A task of
+ * its own packs it, since the neighbours' passes still read its other half. Which it is depends on
+ * the homes that the blocks have when a run begins and changes no result. All ranks know the rows
+ * of all packed halos. */
 #include "cloth/flow/bodies.h"
 #include "cloth/flow/solver/solve.h"
 

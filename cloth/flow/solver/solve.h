@@ -17,9 +17,10 @@ int flow_cg_start(struct flow_state *state);
 int flow_cg_iterate(struct flow_state *state);
 int flow_cg(struct flow_state *state);
 
-/* What a solve reads of neighbours: memory, a part of flow_memory_take; which objects these are,
- * when the others are made (a failure is returned by the next get); forks of the tasks that pack
- * the packed halos of a block, for even passes or odd ones. */
+/* What a solve reads of neighbours. The first two take and free its memory, as parts of
+ * flow_memory_take and flow_memory_free. The third finds the objects and makes packed halos, when
+ * the other objects are made; the next get returns a failure. The last forks the tasks that pack
+ * the packed halos of a block, for even passes (0) or odd ones (1). */
 void flow_halo_take(struct flow_state *state);
 void flow_halo_free(struct flow_state *state);
 void flow_halo_make(struct flow_state *state); /* flow_run_begin does */

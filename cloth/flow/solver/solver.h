@@ -3,18 +3,18 @@
 
 #include "cloth/flow/bodies.h"
 
-/* What the files of the solver share. In reading order: system.c makes the system of a step; cg.c
+/* What the files of the solver share. In reading order: system.c makes the system of a step. cg.c
  * solves it, in rounds of passes (pass.c), with a preconditioner (preconditioner.c, coarse.c) or
- * none; halo.c and ties.c are what a pass reads of other blocks; pieces.c puts right what a solve
- * leaves of the momentum of free pieces.
+ * none. halo.c and ties.c are what a pass reads of other blocks. pieces.c corrects the momentum of
+ * free pieces after a solve.
  *
  * Patch k of block b has the number flow->patches * b + k. */
 
 /* ---- Tasks of a solve. Collective. They return 0 or what duite_fork returned ---- */
 
-/* Fork the vectors of a block before the first pass, which are made of `guess` times dv, or of
- * nothing (0), and what neighbours read of them; pass number state->pass of a recorded round on all
- * blocks. (pass.c) */
+/* The first forks the vectors of a block before the first pass, and what neighbours read of them.
+ * They are made of `guess` times dv, or of nothing (0). The second forks pass number state->pass of
+ * a recorded round on all blocks. (pass.c) */
 int flow_pass_start(struct flow_state *state, uint32_t block, double guess);
 int flow_pass_fork(struct flow_state *state);
 
@@ -93,9 +93,8 @@ static inline size_t flow_motion_doubles(const struct flow *flow)
 /* The patch of a row of a block. */
 uint32_t flow_patch_of(const struct flow *flow, uint32_t block, uint32_t row);
 
-/* Of patches p <= q: how many blocks of nine by nine are before theirs in the coupling of p's
- * block, which has for each patch its own and those of its neighbours behind it; q is one of these.
- */
+/* For patches p <= q: the number of 9 x 9 blocks before theirs in the coupling of p's block. That
+ * has for each patch its own block and those with its neighbours behind it, of which q is one. */
 size_t flow_coupling_at(const struct flow *flow, uint32_t p, uint32_t q);
 
 #endif

@@ -1,9 +1,9 @@
 /* Slider constraints and contact in the solve. A row that a slider holds is filtered by it. A
  * vertex that lies on an obstacle, or comes to it in the step by the velocity it has, is held along
- * the normal by the filter of the solve. Before the forces its velocity along the normal is made
- * the one that ends the step on the surface, so that they and the right side see it (b - A z of
- * Ascher & Boxerman 2003, with the change z made beforehand, as for pins). One that lies there is
- * let go when the forces on it pull it off. */
+ * the normal by the filter of the solve. Before the forces the vertex gets, along the normal, the
+ * velocity that ends the step on the surface. Forces and the right side see it (b - A z of Ascher &
+ * Boxerman 2003, with the change z made beforehand, as for pins). A vertex that lies there is
+ * released when the forces on it pull it off. */
 #include "cloth/contact/meet.h"
 #include "cloth/flow/step/sliders.h"
 #include "cloth/flow/step/step.h"

@@ -31,8 +31,9 @@ int flow_energy_get(struct flow_state *state, struct flow_energy *energy);
 /* Those before the first step go into the report and to the guard. Waits. */
 int flow_energy_begin(struct flow_state *state);
 
-/* If a run looks at them after each step: forks that of the step under way; when its status is
- * known, waits for them; when it is accepted, notes them. touched: something did in that step. */
+/* Where a run checks energies after each step, the first function forks those of the step under
+ * way. The second waits for them when the step's status is known. The third notes them when it is
+ * accepted. touched: something did work in that step, contact or a tie that changed. */
 int flow_energy_fork(struct flow_state *state);
 int flow_energy_wait(struct flow_state *state);
 void flow_energy_note(struct flow_state *state, bool touched);

@@ -4,9 +4,9 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* The time grid of a run. Time is an integer count of ticks, h/1024 each; a step is 1024, 512, ...
- * or 1 of them and begins at a multiple of its own length, so all steps of length h begin where
- * they do in a run without shorter ones. Pure functions. */
+/* The time grid of a run. Time is an integer count of ticks, h/1024 each. A step has 1024, 512, ...
+ * or 1 ticks and begins at a multiple of its length. So steps of length h begin where they do in a
+ * run without shorter ones. Pure functions. */
 enum { FLOW_TICKS = 1024 };
 
 struct flow_grid {

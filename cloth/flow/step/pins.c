@@ -1,9 +1,9 @@
-/* Pins that move, and those that leave their vertices free along sliders: lines or planes. Before a
- * step the vertices get, as far as they are held, the velocity that brings them, in the step, to
- * where they are due: forces and the solve then see it as that of any other vertex, and a row that
- * is held keeps it (b - A z of Ascher & Boxerman 2003, with the change z made beforehand). After
- * the step they are put exactly there, so that nothing adds up. In the step a slider is where it is
- * at its end. */
+/* Pins that move, and those that leave their vertices free along sliders: lines or planes. Before
+ * the forces the vertices get, as far as they are held, the velocity that ends the step at their
+ * prescribed place. Forces and solve see it as that of any other vertex. A row that is held keeps
+ * it (b - A z of Ascher & Boxerman 2003, with the change z made beforehand). After the step they
+ * are put exactly there, so that nothing adds up. In the step a slider is where it is at its end.
+ */
 #include "cloth/flow/step/sliders.h"
 #include "cloth/flow/step/step.h"
 

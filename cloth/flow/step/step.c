@@ -1,6 +1,6 @@
-/* A step is a list of stages, which are forked in order. It is forked whole while the one before it
- * may still run: what only reads the state comes first (its begin), then the main program looks at
- * the status of the step before (settle.c), then what changes the state is forked. */
+/* A step is a list of stages, which are forked in order. It is forked whole while the last may
+ * still run. First come stages that only read the state (its begin). Then the main program looks at
+ * the status of the last step (settle.c). Then come stages that change the state. */
 #include "cloth/flow/step/step.h"
 #include "cloth/flow/integrators/integrator.h"
 #include "cloth/flow/observe/observe.h"

@@ -6,11 +6,14 @@
 #include "cloth/contact/shape.h"
 
 #include <math.h>
+#include <string.h>
 
 enum { STACK = 64 }; /* nodes: three more for each of at most 15 levels */
 /* A box whose square of a distance is larger than the nearest one by so much of it holds nothing
- * nearer, however both were rounded. */
+ * nearer, however both were rounded or lost two bits. */
 static const double MORE = 1 + 1e-12;
+/* m^2: from farther away a body is a point, and products of differences may be infinite. */
+static const double FAR = 1e60;
 
 typedef float float_lanes __attribute__((vector_size(16)));
 typedef int64_t lane_mask __attribute__((vector_size(32)));
@@ -109,20 +112,35 @@ struct visit {
     uint32_t child;
 };
 
-/* Puts those parts of a node that may hold something nearer on the stack, the nearest on top. */
+PHYS_INLINE void sort_pair(uint64_t *a, uint64_t *b)
+{
+    const uint64_t less = *a < *b ? *a : *b, more = *a < *b ? *b : *a;
+    *a = more;
+    *b = less;
+}
+
+/* Puts those parts of a node that may hold something nearer on the stack, the nearest on top. No
+ * branch depends on which they are: squares are sorted as the whole numbers that their bits are,
+ * with the number of the part in place of the last two. */
 PHYS_INLINE uint32_t push_parts(const struct contact_node *node, const phys_vec *square,
                                 double bound, struct visit *stack, uint32_t n)
 {
-    const uint32_t bottom = n;
+    uint64_t key[4];
+    memcpy(key, square, sizeof key);
     PHYS_UNROLL
-    for (int i = 0; i < 4; i++) {
-        const double own = (*square)[i];
-        if (!(own <= bound))
-            continue;
-        uint32_t at = n++;
-        for (; at > bottom && stack[at - 1].square < own; at--)
-            stack[at] = stack[at - 1];
-        stack[at] = (struct visit){own, node->child[i]};
+    for (uint32_t i = 0; i < 4; i++)
+        key[i] = (key[i] & ~UINT64_C(3)) | i;
+    sort_pair(key, key + 1);
+    sort_pair(key + 2, key + 3);
+    sort_pair(key, key + 2);
+    sort_pair(key + 1, key + 3);
+    sort_pair(key + 1, key + 2);
+    PHYS_UNROLL
+    for (uint32_t i = 0; i < 4; i++) {
+        const uint64_t bits = key[i] & ~UINT64_C(3);
+        memcpy(&stack[n].square, &bits, sizeof bits);
+        stack[n].child = node->child[key[i] & 3];
+        n += stack[n].square <= bound;
     }
     return n;
 }
@@ -189,8 +207,8 @@ PHYS_KERNEL(contact_body_closest,
     for (size_t i = 0; i < n; i++) {
         const double far = phys_dot(x + i, x + i);
         struct nearest nearest = {.square = INFINITY, .number = UINT32_MAX};
-        if (!(far < INFINITY)) { /* so is NaN */
-            hit[i].gap = far;
+        if (!(far < FAR)) { /* so is NaN */
+            hit[i].gap = sqrt(far);
             hit[i].normal = (phys_vec){0, 1, 0, 0};
             continue;
         }

@@ -9,4 +9,10 @@ static inline int cloth_compare_u32(uint32_t a, uint32_t b)
     return (a > b) - (a < b);
 }
 
+/* The same of two of an array, for qsort. */
+static inline int cloth_compare_items_u32(const void *a, const void *b)
+{
+    return cloth_compare_u32(*(const uint32_t *)a, *(const uint32_t *)b);
+}
+
 #endif

@@ -198,9 +198,9 @@ int flow_run_begin(struct flow_state *state)
 static int run_steps(struct flow_state *state)
 {
     const bool implicit = model_is_implicit(state->flow->model);
-    int code = implicit ? flow_cg_record(state) : DUITE_OK;
-    if (!code)
-        code = flow_ties_choose(state);
+    int code = flow_ties_choose(state);
+    if (!code && implicit && !state->solve.generation)
+        code = flow_cg_record(state);
     if (!code)
         code = flow_initialise(state);
     if (!code)

@@ -30,6 +30,24 @@ for integrator in implicit_euler bdf2; do
     ok "energy that comes with a joint is no step's fault, $integrator" unjudged $integrator
 done
 
+# The reaction of a pin at one end is m a of the other end in each row; the row at a change is of the step that ends there.
+pulls() { # SETTING...
+    # shellcheck disable=SC2086 # a list of settings
+    run two.yaml $timed --set 'cloths[0].pins=[{vertices: [0]}]' --set 'probes[0].values=[reaction]' --set joints[0].damping=0 "$@" &&
+        below "reaction against the spring's length, N" "$(rows '{ t = c("time"); acts = t > 0.1001 && t < 0.2001; d = c("q.1.x") - 0.5; r = c("p.0.rx") + (acts ? 40 * d : 0)
+            if (r < 0) r = -r; if (r > most) most = r } END { printf "%.3g\n", most }')" 1e-9
+}
+for integrator in implicit_euler verlet rk4 symplectic_euler explicit_euler; do
+    ok "the reaction of a pin is that of the step's joints, $integrator" pulls --set integrator=$integrator
+done
+ok "also where steps do not overlap" pulls --set 'cloths[1].pins=[{vertices: [0], motion: {times: [0, 1], translate: [[0, 0, 0], [1, 0, 0]]}}]'
+
+wakes() { # a run that rests waits for joints that are to come
+    # shellcheck disable=SC2086
+    run two.yaml $timed --set 'time.rest={speed: 0.001, hold: 0.05}' --set integrator="$1" --report one.json && grep rest_seconds one.json && test "$(value steps)" = 300
+}
+ok "a run does not rest before a joint begins" wakes rk4
+
 # ---- Two panels, joined along an edge, over several blocks ----
 seen() { run panels.yaml "$@" --report one.json && last p.60.x p.60.y p.60.z q.4.x q.4.y q.4.z p.58.rx p.58.ry p.58.rz && value energy_kinetic && value energy_elastic; }
 apart() { # the largest relative difference of two lists of numbers
@@ -64,6 +82,14 @@ for preconditioner in jacobi ic0 coarse ic0_coarse; do
     ok "stiff timed joints take the iterations of others, $preconditioner" preconditioned $preconditioner
 done
 
+as_patched() { as_always 1e-8 solver.patches=4 grain=64 'cloths[0].mesh.grid={width: 0.7, height: 0.7, nx: 8, ny: 20}' solver.preconditioner="$1" time.end=0.02; }
+ok "with patches, coarse" as_patched coarse
+ok "with patches, ic0_coarse" as_patched ic0_coarse
+free_panels() { # two free panels that joints join: momentum as by joints that are always there
+    run panels.yaml --set 'cloths[0].pins=[]' --set 'probes=[]' --set 'joints[0].end=0.05' --set solver.stop.relative=1e-3 --report one.json && below "momentum lost, kg m/s" "$(value momentum_lost)" 1e-13
+}
+ok "free panels that are joined keep their momentum to rounding" free_panels
+
 momentum_kept() { # of joints with held ends, what the solve lost is the residual, no more
     run panels.yaml --set 'cloths[0].pins[0].vertices=[0,7,58]' --set 'joints[0].end=0.05' --report one.json && below "momentum lost, kg m/s" "$(value momentum_lost)" 1e-10
 }
@@ -75,6 +101,7 @@ recorded() { # TIMES SETTING...
     run panels.yaml --report one.json "$@" && echo "recorded $(value graphs_recorded) times" && test "$(value graphs_recorded)" = "$times"
 }
 ok "the solve is recorded once where joints last" recorded 1
+ok "also where they are there from the start" recorded 1 --set 'joints[0].end=100'
 ok "again where joints begin, and where they end" recorded 3 --set 'joints[0].begin=0.02' --set 'joints[0].end=0.05'
 again='{from: {cloth: front, vertices: [56, 57, 58, 59, 60, 61, 62, 63]}, to: {cloth: back, vertices: [0, 1, 2, 3, 4, 5, 6, 7]}, stiffness: 20, begin: 0.05, end: 0.08}'
 ok "not where others come between the same blocks" recorded 3 --set 'joints[0].begin=0.02' --set 'joints[0].end=0.05' --set "joints[1]=$again"

@@ -63,6 +63,8 @@ static int find_rest(struct flow_state *state)
     for (uint32_t curve = 1; curve <= model->n_curves; curve++)
         if (model_curve_end(model, curve) > time)
             state->moved = time; /* a load will vary yet */
+    if (flow_ties_will_change(state))
+        state->moved = time;
     if (!(sqrt(peaks[FLOW_PEAK_SPEED]) <= model->rest.speed))
         state->moved = time;
     state->resting = state->grid.now > 0 && time - state->moved >= model->rest.hold;

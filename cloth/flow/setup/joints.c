@@ -122,9 +122,16 @@ int flow_joints_make(struct flow_springs *springs, const struct flow_particles *
     return code;
 }
 
+bool flow_joints_act(const struct model *model, const struct flow_timed *timed)
+{
+    const uint64_t first = (timed->begin + FLOW_TICKS - 1) / FLOW_TICKS * FLOW_TICKS;
+    return first < timed->end && first < tick_of(model, model->end);
+}
+
 struct flow_tie flow_joints_tie(const struct flow_source *source, const struct flow_timed *timed)
 {
     const struct mesh_blocks *blocks = &source->blocks;
+    const struct flow_particles *particles = &source->particles;
     const struct flow_spring *spring = &timed->spring;
     const uint32_t vertex[2] = {spring->a, spring->b};
     struct flow_tie tie = {.stiffness = spring->stiffness,
@@ -136,7 +143,9 @@ struct flow_tie flow_joints_tie(const struct flow_source *source, const struct f
         const uint32_t place = blocks->place[vertex[end]];
         tie.block[end] = flow_source_block(blocks, place, 0);
         tie.row[end] = place - blocks->start[tie.block[end]];
-        tie.held[end] = !source->particles.free[flow_root(&source->particles.welds, vertex[end])];
+        const uint32_t root = flow_root(&particles->welds, vertex[end]);
+        tie.held[end] = !particles->free[root];
+        tie.piece[end] = particles->piece ? particles->piece[root] : 0;
     }
     return tie;
 }

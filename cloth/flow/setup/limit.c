@@ -169,7 +169,8 @@ int flow_limit_find(const struct flow_source *source, struct flow_limit *limit,
     if (there) {
         flow_springs_each(&source->springs, visit, &visitor);
         for (uint32_t i = 0; i < source->springs.n_timed; i++)
-            visit(&visitor, &source->springs.timed[i].spring);
+            if (flow_joints_act(source->model, source->springs.timed + i))
+                visit(&visitor, &source->springs.timed[i].spring);
         element_each(&source->elements, visit_element, &visitor);
         find(&visitor, limit);
     }

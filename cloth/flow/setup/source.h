@@ -201,6 +201,8 @@ struct flow_source;
  * CLOTH_E_MEMORY. Local. */
 int flow_joints_make(struct flow_springs *springs, const struct flow_particles *particles,
                      struct cloth_error *error);
+/* Whether a step of the model's h has a timed joint. Local. */
+bool flow_joints_act(const struct model *model, const struct flow_timed *timed);
 /* A timed joint as a tie between rows of blocks, when these are there. Local. */
 struct flow_tie flow_joints_tie(const struct flow_source *source, const struct flow_timed *timed);
 /* Marks the vertices that joints use. used: by vertex of all cloths. Error: CLOTH_E_INPUT for one

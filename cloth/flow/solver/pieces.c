@@ -8,7 +8,7 @@
 #include "cloth/flow/step/step.h"
 
 /* What is summed over a piece: the lost momentum, its turn, its D, kg, and how many of its rows
- * contact or the program's filter holds, or ties join with others. */
+ * contact or the program's filter holds. */
 enum { LOST, TURN = 3, MASS = 6, HELD };
 
 static bool is_held(const struct flow_table *t, uint32_t row)
@@ -20,32 +20,13 @@ static bool is_held(const struct flow_table *t, uint32_t row)
 }
 
 FLOW_KERNEL(piece_sums, FLOW_CG, struct flow_block_args,
-            (R(table), R(f), R(a), R(dv), SUM(pieces), IF_MADE(tie_table)))
+            (R(table), R(f), R(a), R(dv), SUM(pieces), IF_MADE(groups)))
 
-/* The number of a row's piece, from 1; 0: none. */
-static uint32_t piece_of(const struct flow_table *t, uint32_t row)
+/* The sums that a piece takes part in, from 1: pieces that ties join are one. 0: none, for what a
+ * pin holds. */
+static uint64_t group_of(const uint64_t *groups, uint32_t piece)
 {
-    uint32_t low = 0, high = t->n_loose;
-    while (high - low > 1) {
-        const uint32_t middle = low + (high - low) / 2;
-        if (t->loose[middle][0] <= row)
-            low = middle;
-        else
-            high = middle;
-    }
-    return high && t->loose[low][0] == row ? t->loose[low][1] : 0;
-}
-
-/* A tie may pass momentum to another piece. */
-static void hold_tied(const struct flow_table *t, const unsigned char *tie_table, double *pieces)
-{
-    const struct flow_ties ties = flow_ties_open(tie_table);
-    for (uint32_t i = 0; i < ties.n; i++)
-        for (int end = 0; end < (i < ties.n_inner ? 2 : 1); end++) {
-            const uint32_t piece = piece_of(t, ties.end[i][end]);
-            if (piece)
-                pieces[FLOW_PIECE_SUMS * (size_t)(piece - 1) + HELD] += 1;
-        }
+    return groups ? groups[piece - 1] : piece;
 }
 
 static int piece_sums_body(const duite_call *call, const struct piece_sums_fields *on)
@@ -56,8 +37,11 @@ static int piece_sums_body(const duite_call *call, const struct piece_sums_field
     const struct solve_values values = solve_values_of(t->format, t->n, value);
     for (uint32_t i = 0; i < t->n_loose; i++) {
         const uint32_t row = t->loose[i][0];
-        double *sums = on->pieces + FLOW_PIECE_SUMS * (size_t)(t->loose[i][1] - 1);
+        const uint64_t group = group_of(on->groups, t->loose[i][1]);
         phys_vec turned = {0};
+        if (!group)
+            continue;
+        double *sums = on->pieces + FLOW_PIECE_SUMS * (group - 1);
         if (values.turn)
             solve_cross(values.turn + row, dv + row, &turned);
         const phys_vec lost = b[row] - t->matrix.diagonal[row] * dv[row] - turned;
@@ -68,7 +52,6 @@ static int piece_sums_body(const duite_call *call, const struct piece_sums_field
         sums[MASS] += t->matrix.diagonal[row];
         sums[HELD] += is_held(t, row);
     }
-    hold_tied(t, on->tie_table, on->pieces);
     return 0;
 }
 
@@ -87,18 +70,22 @@ static void shift_of(const double *sums, phys_vec *shift)
 }
 
 FLOW_KERNEL(piece_shift, FLOW_CG, struct flow_block_args,
-            (R(table), R(a), R(pieces), RW(dv), RW(r)))
+            (R(table), R(a), R(pieces), RW(dv), RW(r), IF_MADE(groups)))
 static int piece_shift_body(const duite_call *call, const struct piece_shift_fields *on)
 {
     struct flow_table table = flow_table_in(call, on->table), *t = &table;
     const void *value = flow_matrix_in(call, t, on->a);
     const struct solve_values values = solve_values_of(t->format, t->n, value);
     phys_vec shift = {0};
-    for (uint32_t i = 0, last = 0; i < t->n_loose; i++) {
-        const uint32_t row = t->loose[i][0], piece = t->loose[i][1];
-        if (piece != last)
-            shift_of(on->pieces + FLOW_PIECE_SUMS * (size_t)(piece - 1), &shift);
-        last = piece;
+    uint64_t last = 0;
+    for (uint32_t i = 0; i < t->n_loose; i++) {
+        const uint32_t row = t->loose[i][0];
+        const uint64_t group = group_of(on->groups, t->loose[i][1]);
+        if (!group)
+            continue;
+        if (group != last)
+            shift_of(on->pieces + FLOW_PIECE_SUMS * (group - 1), &shift);
+        last = group;
         phys_vec turned = {0};
         if (values.turn)
             solve_cross(values.turn + row, &shift, &turned);

@@ -26,6 +26,10 @@ void flow_ties_take(struct flow_state *state)
     const struct flow_head *head = &state->head;
     if (!head->n_ties)
         return;
+    state->tied.parent =
+        cloth_alloc((size_t)head->n_pieces + 1, sizeof *state->tied.parent, &state->flow->trouble);
+    state->tied.group =
+        cloth_alloc(head->n_pieces, sizeof *state->tied.group, &state->flow->trouble);
     take(&state->tied.now, head->n_blocks, head->n_ties, &state->flow->trouble);
     take(&state->tied.next, head->n_blocks, head->n_ties, &state->flow->trouble);
 }
@@ -39,6 +43,8 @@ static void drop(struct flow_tied_blocks *blocks)
 
 void flow_ties_free(struct flow_state *state)
 {
+    free(state->tied.parent);
+    free(state->tied.group);
     drop(&state->tied.now);
     drop(&state->tied.next);
     state->tied = (struct flow_tied){0};
@@ -64,11 +70,6 @@ static void find_room(const struct flow *flow, uint64_t tick, uint32_t *room)
         room[b] = (room[b] + FLOW_TIE_CLASS - 1) / FLOW_TIE_CLASS * FLOW_TIE_CLASS;
 }
 
-static int compare(const void *a, const void *b)
-{
-    return cloth_compare_u32(*(const uint32_t *)a, *(const uint32_t *)b);
-}
-
 /* Sorts the others of each block and keeps each once. first: where those of each block end; then,
  * where they begin. */
 static void keep_once(uint32_t n_blocks, struct flow_tied_blocks *to)
@@ -76,7 +77,7 @@ static void keep_once(uint32_t n_blocks, struct flow_tied_blocks *to)
     uint32_t from = 0, kept = 0;
     for (uint32_t b = 0; b < n_blocks; b++) {
         const uint32_t end = to->first[b], first = kept;
-        qsort(to->other + from, end - from, sizeof *to->other, compare);
+        qsort(to->other + from, end - from, sizeof *to->other, cloth_compare_items_u32);
         for (; from < end; from++)
             if (kept == first || to->other[kept - 1] != to->other[from])
                 to->other[kept++] = to->other[from];
@@ -144,6 +145,40 @@ static void fit(struct flow_state *state, bool *recorded)
     *next = before;
 }
 
+/* ---- What ties make of free pieces ---- */
+
+static uint32_t root_of(const uint32_t *parent, uint32_t piece)
+{
+    while (parent[piece] != piece)
+        piece = parent[piece];
+    return piece;
+}
+
+/* Unites what ties join: piece k is number k of the parents, 0 is what a pin holds. The lowest
+ * number of each group is its root. */
+static void unite(const struct flow *flow, uint64_t tick, uint32_t *parent)
+{
+    for (const struct flow_tie *tie = flow->tie; tie < flow->tie + flow->n_ties; tie++) {
+        const uint32_t a = root_of(parent, tie->piece[0]), b = root_of(parent, tie->piece[1]);
+        if (flow_tie_acts(tie, tick))
+            parent[a > b ? a : b] = a > b ? b : a;
+    }
+}
+
+static int set_groups(struct flow_state *state)
+{
+    struct flow_tied *tied = &state->tied;
+    const uint32_t n = state->head.n_pieces;
+    if (!n)
+        return DUITE_OK;
+    for (uint32_t piece = 0; piece <= n; piece++)
+        tied->parent[piece] = piece;
+    unite(state->flow, state->attempt.begin, tied->parent);
+    for (uint32_t piece = 0; piece < n; piece++)
+        tied->group[piece] = root_of(tied->parent, piece + 1);
+    return duite_set(state->rt, state->run.groups, tied->group);
+}
+
 /* ---- The tables of the blocks ---- */
 
 struct tie_args {
@@ -167,29 +202,40 @@ static int tie_body(const duite_call *call, const struct tie_fields *on)
     return 0;
 }
 
-static int fork_tables(struct flow_state *state)
+/* Of all blocks at first, then of those that have ties or had some. */
+static int fork_tables(struct flow_state *state, bool all)
 {
+    const struct flow_tied *tied = &state->tied; /* next: what was before */
     struct tie_args args = {.tick = state->attempt.begin};
     int code = DUITE_OK;
     for (; args.block < state->flow->tables.n_blocks && !code; args.block++) {
-        args.room = state->tied.now.room[args.block];
-        code = flow_fork_one(state, &flow_kernel_tie, &args);
+        args.room = tied->now.room[args.block];
+        if (all || args.room || tied->next.room[args.block])
+            code = flow_fork_one(state, &flow_kernel_tie, &args);
     }
     return code;
+}
+
+bool flow_ties_stay(const struct flow_state *state, uint64_t tick)
+{
+    return !state->flow->n_ties || (state->tied.from <= tick && tick < state->tied.to);
 }
 
 int flow_ties_choose(struct flow_state *state)
 {
     struct flow_tied *tied = &state->tied;
     const uint64_t tick = state->attempt.begin;
+    const bool first = !tied->to;
     bool recorded;
-    if (!state->flow->n_ties || (tied->from <= tick && tick < tied->to))
+    if (flow_ties_stay(state, tick))
         return DUITE_OK;
     find_interval(state->flow, tick, tied);
     find_room(state->flow, tick, tied->next.room);
     find_others(state->flow, tick, &tied->next);
     fit(state, &recorded);
-    const int code = fork_tables(state);
+    int code = set_groups(state);
+    if (!code)
+        code = fork_tables(state, first);
     if (code || recorded || !model_is_implicit(state->flow->model))
         return code;
     return flow_cg_record(state);
@@ -204,6 +250,18 @@ bool flow_ties_changed(const struct flow_state *state)
         return false;
     find_interval(flow, tick, &then);
     return then.from > 0 && tick - then.from < FLOW_TICKS;
+}
+
+bool flow_ties_will_change(const struct flow_state *state)
+{
+    const uint64_t now = state->grid.now;
+    bool will = false;
+    for (uint32_t i = 0; i < state->flow->n_ties; i++) {
+        const struct flow_tie *tie = state->flow->tie + i;
+        will = will || (tie->begin > now && tie->begin < state->grid.end) ||
+               (tie->end > now && tie->end < state->grid.end);
+    }
+    return will;
 }
 
 /* ---- What others see of them ---- */

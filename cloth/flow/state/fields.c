@@ -220,6 +220,11 @@ static bool in_pieces(const struct flow_state *state, uint32_t block)
     return state->head.n_pieces;
 }
 
+static bool tied_pieces(const struct flow_state *state, uint32_t block)
+{
+    return in_pieces(state, block) && may_be_tied(state, block);
+}
+
 /* ---- What it is between two steps ---- */
 
 static enum flow_life is_state(const struct model *model)

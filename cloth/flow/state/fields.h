@@ -94,6 +94,9 @@
     X(coarse,       ONE,     double,        1, coarse_factor, coarse_run,   is_work)               \
     X(motion,       BY_PASS, double,        1, motion,        coarse_run,   is_work)               \
     X(pieces,       ONE,     double,        FLOW_PIECE_SUMS, pieces,        in_pieces,    is_work) \
+    /* a piece: the lowest one that ties join it with, counted from 1; 0: they join it with what a  \
+     * pin holds */                                                                                \
+    X(groups,       ONE,     uint64_t,      1, pieces,        tied_pieces,  is_derived)            \
     /* reports; who holds the token writes a frame or a row */                                     \
     X(token,        ONE,     int64_t,       1, one,           always,       is_work)               \
     X(seconds,      ONE,     double,        FLOW_PARTS, one,           always,       is_work)      \

@@ -28,11 +28,11 @@
  *     IF_MADE    reads it if it exists in the run, which it does in all blocks or in none; else the
  *                pointer is NULL
  *     TIED       reads this field of each block that ties (ties.h) join this one with, ascending,
- * if it exists in the run; a member tied_field. IF_MADE(tie_table) comes before it
+ *                if it exists in the run; a member tied_field. IF_MADE(tie_table) comes before it
  *
- * Those of the last four kinds come behind the others, in this order. What a body finds of
- * NEIGHBOURS, ALL and TIED are parameters: flow_rows_of, flow_numbers_of. FLOW_INDEX_OF(velocity,
- * v) is the index of a parameter, for calls of the runtime that want one.
+ * NEIGHBOURS, IF_MADE and TIED come behind the others, in this order; ALL comes last. What a body
+ * finds of NEIGHBOURS, ALL and TIED are parameters: flow_rows_of, flow_numbers_of.
+ * FLOW_INDEX_OF(velocity, v) is the index of a parameter, for calls of the runtime that want one.
  *
  * The arguments are a struct whose first member is `uint32_t block`: that alone (struct
  * flow_block_args), those of a step (struct flow_step_args), or a kernel's own. `on->args` are

@@ -110,6 +110,8 @@ struct flow_tied_blocks {
 struct flow_tied {
     uint64_t from, to; /* ticks: steps that begin there have these; to 0: none was chosen yet */
     struct flow_tied_blocks now, next; /* next: while the next ones are chosen */
+    uint32_t *parent;                  /* a piece: room to unite them */
+    uint64_t *group;                   /* a piece: what is set into the field `groups` */
 };
 
 /* A step that is under way. */
@@ -205,7 +207,10 @@ int flow_ties_choose(struct flow_state *state);
 /* Forks what shows x and v of their ends to the other blocks; what kernels with TIED(tie_halo) that
  * are forked next read. */
 int flow_ties_show(struct flow_state *state);
-/* Whether a tie came or went since the step before, or at most FLOW_TICKS ago. Local. */
+/* Whether a tie came or went since the step before, or at most FLOW_TICKS ago; whether a step that
+ * begins at a tick has the ties of now; whether one will come or go before the run ends. Local. */
 bool flow_ties_changed(const struct flow_state *state);
+bool flow_ties_stay(const struct flow_state *state, uint64_t tick);
+bool flow_ties_will_change(const struct flow_state *state);
 
 #endif

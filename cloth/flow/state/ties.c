@@ -79,54 +79,50 @@ static void append(const struct flow_tie *tie, int here, uint32_t second, struct
     to->length[i] = tie->length;
 }
 
-/* The lowest block above `last` (none: UINT32_MAX) that shares a tie with this one. */
-static bool next_other(const struct flow_ties_of *of, uint32_t last, uint32_t *other)
-{
-    bool found = false;
-    for (uint32_t i = 0; i < of->n; i++) {
-        const struct flow_tie *tie = of->tie + i;
-        if (!is_of(tie, of) || is_inner(tie))
-            continue;
-        const uint32_t block = tie->block[1 - end_in(tie, of->block)];
-        if ((last == UINT32_MAX || block > last) && (!found || block < *other)) {
-            *other = block;
-            found = true;
-        }
-    }
-    return found;
-}
-
-/* How many ties the other block shares with blocks before this one. */
-static uint32_t count_before(const struct flow_ties_of *of, uint32_t other)
+/* Lists the ties of the block, for a while, where `at` is. Returns how many there are. */
+static uint32_t list_own(const struct flow_ties_of *of, uint32_t *at)
 {
     uint32_t n = 0;
-    for (uint32_t i = 0; i < of->n; i++) {
-        const struct flow_tie *tie = of->tie + i;
-        const bool shared = tie->block[0] == other || tie->block[1] == other;
-        if (shared && !is_inner(tie) && flow_tie_acts(tie, of->tick))
-            n += tie->block[1 - end_in(tie, other)] < of->block;
-    }
+    for (uint32_t i = 0; i < of->n; i++)
+        if (is_of(of->tie + i, of))
+            at[n++] = i;
     return n;
 }
 
-static void append_inner(const struct flow_ties_of *of, struct arrays *to)
+/* The lowest block from `least` on that shares a tie with this one; UINT32_MAX: there is none. */
+static uint32_t next_other(const struct flow_ties_of *of, const struct arrays *to, uint32_t n_own,
+                           uint32_t least)
 {
-    for (uint32_t i = 0; i < of->n; i++)
-        if (is_inner(of->tie + i) && is_of(of->tie + i, of))
-            append(of->tie + i, 0, of->tie[i].row[1], to);
+    uint32_t other = UINT32_MAX;
+    for (uint32_t i = 0; i < n_own; i++) {
+        const struct flow_tie *tie = of->tie + to->at[i];
+        const uint32_t block = tie->block[1 - end_in(tie, of->block)];
+        if (!is_inner(tie) && block >= least && block < other)
+            other = block;
+    }
+    return other;
+}
+
+static void append_inner(const struct flow_ties_of *of, uint32_t n_own, struct arrays *to)
+{
+    for (uint32_t i = 0; i < n_own; i++) {
+        const struct flow_tie *tie = of->tie + to->at[i];
+        if (is_inner(tie))
+            append(tie, 0, tie->row[1], to);
+    }
     to->head->n_inner = to->head->n;
 }
 
-static void append_shared(const struct flow_ties_of *of, uint32_t other, struct arrays *to)
+static void append_shared(const struct flow_ties_of *of, uint32_t n_own, uint32_t other,
+                          struct arrays *to)
 {
     struct head *head = to->head;
     const uint32_t first = head->n;
     to->other[head->n_others] = other;
-    to->place[head->n_others] = count_before(of, other);
-    for (uint32_t i = 0; i < of->n; i++) {
-        const struct flow_tie *tie = of->tie + i;
+    for (uint32_t i = 0; i < n_own; i++) {
+        const struct flow_tie *tie = of->tie + to->at[i];
         const int here = end_in(tie, of->block);
-        if (is_inner(tie) || !is_of(tie, of) || tie->block[1 - here] != other)
+        if (is_inner(tie) || tie->block[1 - here] != other)
             continue;
         to->far[head->n - head->n_inner] = tie->row[1 - here];
         append(tie, here, head->n - first, to);
@@ -134,9 +130,32 @@ static void append_shared(const struct flow_ties_of *of, uint32_t other, struct 
     to->start[++head->n_others] = head->n - head->n_inner;
 }
 
-static int compare(const void *a, const void *b)
+/* Where a block stands among the others; n_others: it is none. */
+static uint32_t number_of(const struct arrays *to, uint32_t block)
 {
-    return cloth_compare_u32(*(const uint32_t *)a, *(const uint32_t *)b);
+    uint32_t low = 0, high = to->head->n_others;
+    while (low < high) {
+        const uint32_t middle = low + (high - low) / 2;
+        if (to->other[middle] < block)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < to->head->n_others && to->other[low] == block ? low : to->head->n_others;
+}
+
+/* Of each other block, how many ties it shares with blocks before this one: it shows them first. */
+static void find_places(const struct flow_ties_of *of, struct arrays *to)
+{
+    for (const struct flow_tie *tie = of->tie; tie < of->tie + of->n; tie++) {
+        if (is_inner(tie) || !flow_tie_acts(tie, of->tick))
+            continue;
+        for (int end = 0; end < 2; end++) {
+            const uint32_t number = number_of(to, tie->block[end]);
+            if (number < to->head->n_others && tie->block[1 - end] < of->block)
+                to->place[number]++;
+        }
+    }
 }
 
 /* The rows of the block's halo and of its ties, each once. */
@@ -149,7 +168,7 @@ static void make_halo(const struct flow_ties_of *of, struct arrays *to)
     for (uint32_t i = 0; i < head->n; i++)
         for (int end = 0; end < (i < head->n_inner ? 2 : 1); end++)
             to->halo[n++] = to->end[i][end];
-    qsort(to->halo, n, sizeof *to->halo, compare);
+    qsort(to->halo, n, sizeof *to->halo, cloth_compare_items_u32);
     for (uint32_t i = 0; i < n; i++)
         if (!kept || to->halo[i] != to->halo[kept - 1])
             to->halo[kept++] = to->halo[i];
@@ -159,16 +178,17 @@ static void make_halo(const struct flow_ties_of *of, struct arrays *to)
 void flow_ties_make(const struct flow_ties_of *of, void *memory)
 {
     struct arrays to = {0};
-    uint32_t other = UINT32_MAX;
     memset(memory, 0, flow_ties_bytes(of->n_halo, of->room));
     lay(of->n_halo, of->room, memory, &to);
     to.head->room = of->room;
     to.head->block_halo = of->n_halo;
     if (!of->room)
         return;
-    append_inner(of, &to);
-    while (next_other(of, other, &other))
-        append_shared(of, other, &to);
+    const uint32_t n_own = list_own(of, to.at);
+    append_inner(of, n_own, &to);
+    for (uint32_t other = 0; (other = next_other(of, &to, n_own, other)) != UINT32_MAX; other++)
+        append_shared(of, n_own, other, &to);
+    find_places(of, &to);
     make_halo(of, &to);
     for (uint32_t i = 0; i < of->room; i++)
         to.at[i] = i;

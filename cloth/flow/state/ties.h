@@ -26,6 +26,7 @@ enum { FLOW_TIE_CLASS = 128 };
 struct flow_tie {
     uint32_t block[2], row[2];
     unsigned char held[2];             /* a pin holds that end */
+    uint32_t piece[2];                 /* of free pieces, from 1; 0: none (flow_particles) */
     double stiffness, damping, length; /* N/m, kg/s, m: those of a spring */
     uint64_t begin, end;               /* ticks: steps that begin from .. to - 1 have it */
 };

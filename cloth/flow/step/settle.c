@@ -182,14 +182,16 @@ static struct flow_attempt next_attempt(const struct flow_state *state)
 }
 
 /* Settles what is under way while `next` begins. A step that follows a shorter one does not begin
- * before: its length is not known. *begun: next has begun and follows what was accepted. */
+ * before: its length is not known. Neither does one that has other ties: what is reported of the
+ * step before is by its own. *begun: next has begun and follows what was accepted. */
 static int settle_overlapped(struct flow_state *state, bool *begun)
 {
     const struct flow_attempt before = state->attempt;
     const struct flow_attempt next = next_attempt(state);
     int code = DUITE_OK;
-    *begun = !before.forked || (before.length == FLOW_TICKS && !state->stopping &&
-                                !state->resting && !flow_step_is_driven(state->flow->model));
+    *begun = !before.forked ||
+             (before.length == FLOW_TICKS && !state->stopping && !state->resting &&
+              !flow_step_is_driven(state->flow->model) && flow_ties_stay(state, next.begin));
     *begun = *begun && next.begin < state->grid.end;
     if (*begun) {
         state->attempt = next;

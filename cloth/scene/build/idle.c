@@ -3,6 +3,7 @@
 #include "cloth/scene/build/build.h"
 #include "cloth/scene/yaml/scalar.h"
 
+#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -255,14 +256,25 @@ static int warn_of_obstacle(const struct idle_scene *scene, int obstacle)
     return warn_of_motion(scene, scene_tree_pair(scene->tree, obstacle, 0).value);
 }
 
-/* Steps begin before the end of the run. */
+/* A joint acts in the steps that begin within its time, to a tick of h / 1024. */
 static int warn_of_joint(const struct idle_scene *scene, int joint)
 {
-    const double begin = scene_tree_number(scene->tree, joint, "begin");
-    if (begin < scene->model->end)
-        return CLOTH_OK;
-    return warn(scene, scene_tree_get(scene->tree, joint, "begin"),
-                "the joint begins at %g s, when the run is over", begin);
+    const double h = scene->model->h, begin = scene_tree_number(scene->tree, joint, "begin");
+    const int end_node = scene_tree_get(scene->tree, joint, "end");
+    const bool ends = strcmp(scene_tree_scalar(scene->tree, end_node), "never") != 0;
+    const double end = ends ? scene_tree_number(scene->tree, joint, "end") : INFINITY;
+    const double tick = h / 1024, first = ceil((begin - tick / 2) / h) * h;
+    const int node = scene_tree_get(scene->tree, joint, "begin");
+    if (begin >= scene->model->end)
+        return warn(scene, node, "the joint begins at %g s, when the run is over", begin);
+    if (first > scene->model->end - tick / 2)
+        return warn(scene, node, "the joint begins at %g s, after the last step has begun", begin);
+    if (first > end - tick / 2)
+        return warn(scene, node,
+                    "the joint acts from %g s to %g s, when no step of %g s begins; only shorter "
+                    "ones can have it",
+                    begin, end, h);
+    return CLOTH_OK;
 }
 
 /* Of each entry of the list `key` of a map. */

@@ -224,8 +224,8 @@ END_TEST
 /* Every field exists in some kind of run, or is of what these runs do not have. */
 START_TEST(every_field_has_a_run)
 {
-    static const char *const others[] = {"filter", "probe_force", "probe_values", "pieces",
-                                         "saved"};
+    static const char *const others[] = {"filter", "probe_force", "probe_values",
+                                         "pieces", "saved",       "groups"};
     bool exists[FLOW_FIELDS_OF_ALL] = {false};
     for (int kind = 0; kind < KINDS; kind++) {
         struct session s;

@@ -4,7 +4,7 @@
 #include "cloth/flow/state/kernel.h"
 
 /* All kernels that declare their fields (state/kernel.h), in the order of a run: set-up, state,
- * forces and pins, contact, integrators, the solver, what is seen of a run. */
+ * forces and pins, contact, integrators, the solver, observation of a run. */
 /* clang-format off */
 #define FLOW_KERNELS(X)                                                                            \
     X(table_make) X(table_keep)                                                                    \

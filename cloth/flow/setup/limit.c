@@ -1,10 +1,10 @@
 /* The fastest vibration of a model where it starts. For one spring between a and b, |u.(xa - xb)|^2
- * <= 2 |u.xa|^2 + 2 |u.xb|^2; so K is at most the sum over all vertices of twice the 3 x 3 blocks
- * that springs put on their diagonal (once, for a spring to a held end), and the largest eigenvalue
- * of M^-1 K is at most the largest of these blocks over their masses. That is Gershgorin's bound by
- * blocks, but for 2 |Kaa| in place of |Kaa| + sum of |Kab|, which does not feel that springs have
- * directions. A chain of equal springs and masses reaches it as it gets longer. Of an element with
- * n corners that are free, K is at most n times its blocks on the diagonal, likewise. */
+ * <= 2 |u.xa|^2 + 2 |u.xb|^2. So K is at most the sum over all vertices of twice the 3 x 3 blocks
+ * that springs put on their diagonal (once, for a spring to a held end). The largest eigenvalue of
+ * M^-1 K is at most the largest of these blocks over their masses. That is Gershgorin's bound by
+ * blocks, but for 2 |Kaa| in place of |Kaa| + sum of |Kab|, which ignores the directions of
+ * springs. A chain of equal springs and masses reaches it as it gets longer. Of an element with n
+ * corners that are free, K is at most n times its blocks on the diagonal, likewise. */
 #include "cloth/flow/setup/source.h"
 
 #include "cloth/base/memory.h"

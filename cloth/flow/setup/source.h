@@ -321,9 +321,9 @@ double flow_limit_of(const struct flow_limit *limit, enum model_integrator integ
  * the mean length at rest of all edges that can be stretched; 0 where there are none. Local. */
 double flow_source_inertia(const struct flow_source *source);
 
-/* A scale of the energy that will be in play, J: what the weights and the constant loads of the
- * vertices that no pin holds do where each vertex moves to the centre of its cloth and on; twice
- * the sum of |force| times distance where the run starts. 0 without weights and loads. Local. */
+/* A scale of the energy, J: twice the sum of |force| times distance from the cloth's centre at the
+ * start, over weights and constant loads of free vertices. These forces do no more work where each
+ * vertex moves to the centre and as far on. 0 without weights and loads. Local. */
 double flow_source_release(const struct flow_source *source);
 
 /* Orders the loads that vary by place, when blocks are there; those of unused vertices are dropped.

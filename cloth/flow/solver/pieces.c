@@ -1,14 +1,14 @@
 /* What a solve leaves of a free piece's momentum. A solve ends with a residual r = b - A dv, and
  * the sum of r over the rows of a piece that nothing holds is momentum that the step lost. The
  * entries of A cancel in that sum, so that it is of the rows alone: b - D dv - w x dv, D the
- * diagonal besides entries, w the turn (cloth/solve/format.h). A row of what moves as a whole by c
- * feels D c - w x c alone, and w cancels over a piece: the c that takes the sum away is exact, and
- * needs no iteration. */
+ * diagonal besides entries, w the antisymmetric part (cloth/solve/format.h). On a uniform motion c
+ * a row of A gives D c - w x c, and w cancels over a piece. So the c that takes the sum away is
+ * exact, and needs no iteration. */
 #include "cloth/flow/solver/solver.h"
 #include "cloth/flow/step/step.h"
 
-/* What is summed over a piece: the lost momentum, its turn, its D, kg, and how many of its rows
- * contact or the program's filter holds. */
+/* What is summed over a piece: the lost momentum, its antisymmetric part, its D, kg, and how many
+ * of its rows contact or the program's filter holds. */
 enum { LOST, TURN = 3, MASS = 6, HELD };
 
 static bool is_held(const struct flow_table *t, uint32_t row)

@@ -1,5 +1,5 @@
-/* Which ties the steps have: a question of the tick at which a step begins alone, so that every
- * rank has the same answer, and a step that is made again has the ties that it had.
+/* The tick at which a step begins decides which ties it has. So every rank has the same ties, and a
+ * repeated step has them again.
  *
  * In reading order: memory, what ties ask of the blocks, the choice, the tables of the blocks, what
  * others see of them. */

@@ -10,12 +10,12 @@
 #include <stdint.h>
 
 /* The fields of a run: every shared object that lives as long as the run, in one list. A row says
- * of a field its name, how many objects it has, the type of its numbers in C, numbers a row, how
- * many rows (at least one is made), when it exists, and what becomes of it between two steps
- * (enum flow_life). The words in the last three columns are functions of fields.c. Objects are
- * made, freed and colocated by loops over the list (objects.c), and kernels name them (kernel.h).
- * The last column says what a checkpoint must have; test_fields.c holds runs to it. A new field is
- * one row.
+ * of a field what it holds: its name, how many objects it has, the type of its numbers in C,
+ * numbers a row, how many rows (at least one is made). It also says when the field exists, and what
+ * becomes of it between two steps (enum flow_life). The words in the last three columns are
+ * functions of fields.c. Objects are made, freed and colocated by loops over the list (objects.c),
+ * and kernels name them (kernel.h). The last column says what a checkpoint must have; test_fields.c
+ * holds runs to it. A new field is one row.
  *
  * ONE: one object. SIZED: one that changes its size, up to this many rows. BY_STEP, BY_PASS: two
  * objects that take turns, name and name_next. By step, `name` is that of the step under way; by

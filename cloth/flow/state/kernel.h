@@ -15,11 +15,11 @@
  *         ...
  *     }
  *
- * The rest follows: the struct of pointers that the body is given (of the type that the field's row
- * says, const under R; a field that is not declared or misspelt does not compile), the parameters'
- * modes, and the objects at the fork, `flow_fork_each(state, &flow_kernel_velocity, &args)`. A
- * kernel stands once more in the list of kernels.h, or it does not compile. Its name in traces is
- * its name here.
+ * The rest follows: the struct of pointers that the body is given, the parameters' modes, and the
+ * objects at the fork, `flow_fork_each(state, &flow_kernel_velocity, &args)`. A pointer has the
+ * type that the field's row says, const under R. A field that is not declared or misspelt does not
+ * compile. A kernel stands once more in the list of kernels.h, or it does not compile. Its name in
+ * traces is its name here.
  *
  *     R W RW     reads, overwrites, changes: a field of the task's block or of the run
  *     SUM MAX    contributes to it, added up, or the largest counts
@@ -262,10 +262,10 @@ struct flow_as {
 #define FLOW_AS(...)                                                                               \
     ((const struct flow_as[]){__VA_ARGS__, {FLOW_FIELDS_OF_ALL, FLOW_FIELDS_OF_ALL}})
 
-/* Fork a kernel with the objects that it declares: on the block that the arguments name; on each
- * block, whose number they write into the arguments, after what shows the ties if it reads
- * TIED(tie_halo); on a rank. as: NULL, or FLOW_AS. Collective.
- * They return what the runtime does. */
+/* Fork a kernel with the objects that it declares: on the block that the arguments name, on each
+ * block, or on a rank. On each block they write its number into the arguments. Before a kernel that
+ * reads TIED(tie_halo) they fork what shows the ties. as: NULL, or FLOW_AS. Collective. They return
+ * what the runtime does. */
 int flow_fork_one(struct flow_state *state, const struct flow_kernel *kernel, const void *args);
 int flow_fork_one_as(struct flow_state *state, const struct flow_kernel *kernel, const void *args,
                      const struct flow_as *as);

@@ -207,8 +207,9 @@ int flow_ties_choose(struct flow_state *state);
 /* Forks what shows x and v of their ends to the other blocks; what kernels with TIED(tie_halo) that
  * are forked next read. */
 int flow_ties_show(struct flow_state *state);
-/* Whether a tie came or went since the step before, or at most FLOW_TICKS ago; whether a step that
- * begins at a tick has the ties of now; whether one will come or go before the run ends. Local. */
+/* Whether a tie came or went since the step before, or at most FLOW_TICKS ago. Whether a step that
+ * begins at a tick has the ties of now. Whether a tie will come or go before the run ends. Local.
+ */
 bool flow_ties_changed(const struct flow_state *state);
 bool flow_ties_stay(const struct flow_state *state, uint64_t tick);
 bool flow_ties_will_change(const struct flow_state *state);

@@ -10,16 +10,15 @@
 
 /* Ties: what joins rows for some steps only, springs of the scene that come or go while the run is
  * on. They are in no table of a block, and so in no partition, halo or matrix that the run began
- * with. Every rank knows all ties. Before a step begins, the main program looks which of them it
- * has (flow_ties_choose); where that changes, each block makes a table of its own ties. A tie
+ * with. Every rank knows all ties. Before a step begins, the main program finds the ties of the
+ * step (flow_ties_choose). Where they change, each block makes a table of its own ties. A tie
  * between two blocks is known to both, and each computes its own end.
  *
- * What a block needs for its ties it keeps in room for a multiple of FLOW_TIE_CLASS of them: values
- * behind those of its matrix, z and p of the other ends behind those of its ghosts, and two objects
- * that the others read: x and v of its ends, and s of the solve. Where the class of a block
- * changes, these objects are made again; where it does, or where other blocks share ties than
- * before, the round of the solve is recorded again. While both stay, ties may be others in every
- * step. */
+ * A block has room for a multiple of FLOW_TIE_CLASS ties. Values lie behind those of its matrix, z
+ * and p of the other ends behind those of its ghosts. Others read two objects: x and v of its ends,
+ * and s of the solve. Where the room of a block changes, these objects are made again. Where it
+ * does, or where other blocks share ties than before, the round of the solve is recorded again.
+ * Otherwise ties may change in every step. */
 enum { FLOW_TIE_CLASS = 128 };
 
 /* A tie, as every rank knows it. */

@@ -11,7 +11,7 @@
 
 /* A step that gains energy in so many ticks is not made shorter still. */
 enum { LEAST_GUARDED = FLOW_TICKS / 16 };
-/* For so many ticks after one was halved for energy, steps do not grow back: longer steps strain
+/* For so many ticks after one was halved for energy, steps do not grow back. Longer steps strain
  * the edges more, and the first long one would gain again what the short ones before it released.
  */
 enum { CALM_AFTER_GAIN = 8 * FLOW_TICKS };
@@ -88,8 +88,9 @@ static int refuse(struct flow_state *state, const double status[FLOW_STATUS],
     return flow_restore(state);
 }
 
-/* The same for a step that gained too much energy and can do with less: one by BDF2 by implicit
- * Euler, which has the state restored and nothing to go on from, others with half the length. */
+/* Whether a step that gained too much energy can be made again with less. One by BDF2 is made again
+ * by implicit Euler, which goes on from the restored state alone. Others are made again with half
+ * the length. */
 static bool can_lose(const struct flow_state *state)
 {
     return flow_implicit_is_second(state) ||

@@ -9,6 +9,7 @@
 
 static const double TOUCH = 1e-9; /* m: planes that overlap by less touch */
 static const double BOUND = 1e6;  /* m: beyond it there is no cloth either */
+static const double LEAST_EXTENT = 0.01, MAX_EXTENT = 10; /* m: of a figure, or furniture */
 
 /* Whether the numbers of a list, or a number, are those of a scene. what: "the radius of a sphere".
  */
@@ -91,6 +92,29 @@ static int build_body_mesh(struct mesh *mesh, struct scene_tree *tree, int node,
     return code;
 }
 
+/* Warns of a body of another size than cloth is worn on: files are often in other units. */
+static int warn_of_body(struct model *model, const struct scene_tree *tree, int file, bool turned,
+                        struct cloth_error *error)
+{
+    const struct contact_body *body = contact_bodies_at(&model->bodies, model->bodies.n);
+    double extent = 0;
+    int code = CLOTH_OK;
+    for (int c = 0; c < 3; c++)
+        extent = fmax(extent, body->high[c] - body->low[c]);
+    if (turned)
+        code = scene_build_warn(model, tree, file, error,
+                                "the mesh of a body is inside out: its triangles are clockwise as "
+                                "seen from outside; they are turned round");
+    if (code || (extent >= LEAST_EXTENT && extent <= MAX_EXTENT))
+        return code;
+    return scene_build_warn(
+        model, tree, file, error,
+        "the body is %g m long in its largest extent, %s than %g m: is its mesh "
+        "in metres? scale changes that (0.01 for centimetres)",
+        extent, extent > MAX_EXTENT ? "more" : "less",
+        extent > MAX_EXTENT ? MAX_EXTENT : LEAST_EXTENT);
+}
+
 static int build_body(struct model *model, struct contact_shape *shape, struct scene_tree *tree,
                       int node, struct cloth_error *error)
 {
@@ -106,10 +130,8 @@ static int build_body(struct model *model, struct contact_shape *shape, struct s
                    ? cloth_fail(error, inner.code, "%s: %s", tree->path, inner.text)
                    : scene_tree_fail(tree, file, error, "body: %.200s: %s",
                                      scene_tree_scalar(tree, file), inner.text);
-    if (!code && turned)
-        code = scene_build_warn(model, tree, file, error,
-                                "the mesh of a body is inside out: its triangles are clockwise as "
-                                "seen from outside; they are turned round");
+    if (!code)
+        code = warn_of_body(model, tree, file, turned, error);
     shape->body = model->bodies.n;
     mesh_free(&mesh);
     return code;

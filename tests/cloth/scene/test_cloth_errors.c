@@ -119,6 +119,15 @@ START_TEST(bodies)
         model_free(&model);
         free(text);
     }
+    /* In centimetres. */
+    char *large = scene_changed(scene_right, plane, "body: {obj: whole.obj, scale: 12.5}");
+    model = scene_read_right(large, 0, NULL);
+    ck_assert_uint_eq(model.n_warnings, 1);
+    ck_assert_ptr_nonnull(strstr(model.warnings[0],
+                                 ":11:26: the body is 12.5 m long in its largest extent, more than "
+                                 "10 m: is its mesh in metres?"));
+    model_free(&model);
+    free(large);
     /* Inside out it is turned round. */
     for (int i = 0; i < 2; i++) {
         char *text =

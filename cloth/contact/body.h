@@ -75,15 +75,16 @@ PHYS_INLINE const struct contact_node *contact_body_nodes(const struct contact_b
  * one has none. */
 struct contact_bodies {
     void *memory;
-    uint64_t bytes;
+    uint64_t bytes, room; /* of what is there; there is room for */
     uint32_t n;
 };
 
 /* Appends a body of the triangles of a mesh, m; its other parts are not read. *turned: the mesh was
  * inside out, so that the body has its triangles the other way round. Errors: CLOTH_E_INPUT for
- * a mesh without triangles, with one that has no area, that is not closed or not oriented, or holds
- * no room; they name vertices and triangles from 1, as OBJ files do. CLOTH_E_MEMORY. After an error
- * the bodies are as they were. Local. */
+ * a mesh without triangles, with one that has no area or two that lie on each other, that is not
+ * closed or not oriented, holds no room, or has a part that is inside out and no hole; they name
+ * vertices and triangles from 1, as OBJ files do. CLOTH_E_MEMORY. After an error the bodies are as
+ * they were. Local. */
 int contact_bodies_add(struct contact_bodies *bodies, const struct mesh *mesh, bool *turned,
                        struct cloth_error *error);
 

@@ -1,6 +1,7 @@
 # Shapes that cloth meets, one file a kind. Pure.
 libduite_cloth_la_SOURCES += \
 	cloth/contact/body.c cloth/contact/body.h \
+	cloth/contact/body_check.c cloth/contact/making.h \
 	cloth/contact/body_make.c \
 	cloth/contact/body_tree.c \
 	cloth/contact/box.c \

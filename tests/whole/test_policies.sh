@@ -51,7 +51,7 @@ cat > "$scratch/hangs.c" << 'EOF'
 static unsigned place(void *state, const duite_ready *task)
 {
     (void)task;
-    for (++*(int *)state; *(int *)state > 50 && access(getenv("NAMED"), F_OK);)
+    for (++*(int *)state; *(int *)state > 5 && access(getenv("NAMED"), F_OK);)
         usleep(1000);
     return DUITE_SHARED_QUEUE;
 }

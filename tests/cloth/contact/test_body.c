@@ -381,7 +381,7 @@ START_TEST(refused)
     surface_add(&made, 0, 1, 2);
     surface_add(&made, 0, 2, 1);
     surface_mesh(&made, &mesh);
-    expect("the mesh holds no room");
+    expect("triangles 1 and 2 lie on each other, at the edge between vertices 1 and 2");
     /* Inside out it is turned round. */
     surface_box(&made, 1, 1, 1);
     for (uint32_t t = 0; t < made.n_triangles; t++)
@@ -391,6 +391,49 @@ START_TEST(refused)
     ck_assert(turned);
     check_normal(contact_bodies_at(&bodies, 1), 1, 1, 1, 1, 1, 1);
     check_normal(contact_bodies_at(&bodies, 1), 1, 1, 0.2, 1, 1, 0);
+}
+END_TEST
+
+/* A box of edge 2, and a smaller one that is so far away along x, inside out. */
+static void make_two(double away, double half)
+{
+    static struct surface other;
+    surface_box(&made, 1, 1, 1);
+    surface_box(&other, half, half, half);
+    for (uint32_t v = 0; v < other.n; v++)
+        memcpy(made.x[made.n + v], (double[3]){other.x[v][0] + away, other.x[v][1], other.x[v][2]},
+               sizeof *made.x);
+    for (uint32_t t = 0; t < other.n_triangles; t++)
+        surface_add(&made, made.n + other.triangle[t][2], made.n + other.triangle[t][1],
+                    made.n + other.triangle[t][0]);
+    made.n += other.n;
+    surface_mesh(&made, &mesh);
+}
+
+/* A part that is inside out is a hole, or an error; both ways round. */
+START_TEST(parts)
+{
+    static const phys_vec inside[] = {{0}, {0.9, 0, 0}, {2, 0, 0}};
+    struct cloth_error error = {0};
+    struct contact_hit hit[3];
+    bool turned = true;
+    make_two(3, 0.5);
+    expect("the part of the mesh that has vertex 15 is inside out, and is no hole in another part");
+    make_two(1.5 + 1e-9, 0.5);
+    expect("inside out, and is no hole");
+    make_two(0.25, 0.5);
+    ck_assert_int_eq(contact_bodies_add(&bodies, &mesh, &turned, &error), 0);
+    ck_assert(!turned);
+    contact_body_kind.closest(NULL, contact_bodies_at(&bodies, 1), 3, inside, hit);
+    ck_assert(hit[0].gap > 0 && hit[1].gap < 0 && hit[2].gap > 0);
+    for (uint32_t t = 0; t < mesh.n_triangles; t++)
+        swap(made.triangle[t], made.triangle[t] + 2);
+    mesh_free(&mesh);
+    surface_mesh(&made, &mesh);
+    ck_assert_int_eq(contact_bodies_add(&bodies, &mesh, &turned, &error), 0);
+    ck_assert(turned);
+    contact_body_kind.closest(NULL, contact_bodies_at(&bodies, 2), 3, inside, hit);
+    ck_assert(hit[0].gap > 0 && hit[1].gap < 0 && hit[2].gap > 0);
 }
 END_TEST
 
@@ -456,6 +499,7 @@ int main(void)
     tcase_add_test(cases, pseudo_normals);
     tcase_add_loop_test(cases, apart, 0, N_MADE);
     tcase_add_test(cases, refused);
+    tcase_add_test(cases, parts);
     tcase_add_test(cases, real);
     suite_add_tcase(suite, cases);
     return unit_run(suite);

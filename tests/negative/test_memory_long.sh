@@ -1,5 +1,5 @@
 #!/bin/sh
-# Each allocation on each of 3 ranks fails once; test_ranks.sh has each third.
+# Each allocation on each of 3 ranks fails once; test_ranks.sh has each third, on one rank and on two.
 . "${srcdir:-.}/tests/support/tap.sh"
 plan_later
 DUITE_LONG=1

@@ -7,7 +7,7 @@ ok "out of memory on 1 rank" ranks 1 tests/negative/ranks_memory
 ok "out of memory on 1 rank with graphs" ranks 1 tests/negative/ranks_memory_graphs
 ok "the system refuses on 1 rank" ranks 1 tests/negative/ranks_system
 for n in 2 3; do
-    if test $n = 2 || ! quick; then
+    if test $n = 2; then # 3: test_memory_long.sh
         ok "out of memory on $n ranks" ranks $n tests/negative/ranks_memory
         ok "out of memory on $n ranks with graphs" ranks $n tests/negative/ranks_memory_graphs
         ok "out of memory on $n ranks while objects move" ranks $n tests/negative/ranks_memory_graphs wander

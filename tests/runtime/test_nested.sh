@@ -4,7 +4,7 @@
 . "${srcdir:-.}/tests/support/tap.sh"
 plan_later
 
-programs=400
+programs=300
 if quick; then programs=100; fi
 ok "$programs random trees of tasks" limited tests/runtime/nested_programs --programs $programs
 ok "random trees of tasks on 2 ranks" ranks 2 tests/runtime/nested_programs --seed 100000 --programs $((programs / 4))

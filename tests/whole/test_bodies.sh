@@ -23,7 +23,7 @@ time: {h: 0.005, end: 0.1, fps: 20}
 grain: 100
 END
 for contact in project filter; do
-    ok "one hash, contact $contact" ranks 4 tests/whole/same_hash "$scratch/ring.yaml" some 0 contact=$contact
+    ok "one hash, contact $contact" ranks 4 tests/whole/same_hash "$scratch/ring.yaml" few 0 contact=$contact
 done
 
 frames() {

@@ -129,13 +129,7 @@ static const struct scene_rule cylinder_keys[] = {
 static const struct scene_rule body_keys[] = {
     {"obj", SCENE_TEXT, .required = true,
      .about = "an OBJ file of a closed mesh, relative to the scene's folder"},
-    {"scale", SCENE_NUMBER_OR_LIST, .fallback = "1", .range = SCENE_POSITIVE, .length = 3,
-     .inside = &positive, INTO(struct mesh_transform, scale),
-     .about = "first: a factor, or one for each axis"},
-    {"rotate", SCENE_LIST, .fallback = "[1, 0, 0, 0]", .length = 4, .inside = &number,
-     INTO(struct mesh_transform, rotate), .about = "then: a quaternion [w, x, y, z]"},
-    {"translate", SCENE_LIST, "m", .fallback = "[0, 0, 0]", .length = 3, .inside = &number,
-     INTO(struct mesh_transform, translate), .about = "last: a shift"},
+    TRANSFORM(struct mesh_transform, ),
     MOVES,
     {0}};
 const struct scene_rule scene_body = {.type = SCENE_MAP, .inside = body_keys};

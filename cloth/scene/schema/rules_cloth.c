@@ -49,13 +49,7 @@ static const struct scene_rule mesh_kinds[] = {
     {0}};
 
 static const struct scene_rule transform_keys[] = {
-    {"scale", SCENE_NUMBER_OR_LIST, .fallback = "1", .range = SCENE_POSITIVE, .length = 3,
-     .inside = &positive, INTO(struct mesh_transform, scale),
-     .about = "first: a factor, or one for each axis"},
-    {"rotate", SCENE_LIST, .fallback = "[1, 0, 0, 0]", .length = 4, .inside = &number,
-     INTO(struct mesh_transform, rotate), .about = "then: a quaternion [w, x, y, z]"},
-    {"translate", SCENE_LIST, "m", .fallback = "[0, 0, 0]", .length = 3, .inside = &number,
-     INTO(struct mesh_transform, translate), .about = "last: a shift"},
+    TRANSFORM(struct mesh_transform, ),
     {0}};
 
 const struct model_word scene_rests[] = {{"position", false}, {"uv", true}, {0}};
@@ -172,13 +166,7 @@ static const struct scene_rule wave_keys[] = {
 
 static const struct scene_rule start_keys[] = {
     PICK(struct model_start),
-    {"scale", SCENE_NUMBER_OR_LIST, .fallback = "1", .range = SCENE_POSITIVE, .length = 3,
-     .inside = &positive, INTO(struct model_start, transform.scale),
-     .about = "first: a factor, or one for each axis"},
-    {"rotate", SCENE_LIST, .fallback = "[1, 0, 0, 0]", .length = 4, .inside = &number,
-     INTO(struct model_start, transform.rotate), .about = "then: a quaternion [w, x, y, z]"},
-    {"translate", SCENE_LIST, "m", .fallback = "[0, 0, 0]", .length = 3, .inside = &number,
-     INTO(struct model_start, transform.translate), .about = "last: a shift"},
+    TRANSFORM(struct model_start, transform.),
     {"about", SCENE_LIST, "m", .fallback = "[0, 0, 0]", .length = 3, .inside = &number,
      INTO(struct model_start, about), .about = "the point that is scaled, rotated and spun about"},
     {"velocity", SCENE_LIST, "m/s", .length = 3, .inside = &number,

@@ -17,6 +17,15 @@
 #define MEANS(type, member, is) .kind = FIELD(type, member), .value = (is)
 #define WORDS(...) .words = (const struct model_word[]){__VA_ARGS__, {0}}
 #define ITEM(type) .field = {.width = sizeof(type)}
+/* Keys of the struct mesh_transform `within` the type; number and positive are the file's own. */
+#define TRANSFORM(type, within) \
+    {"scale", SCENE_NUMBER_OR_LIST, .fallback = "1", .range = SCENE_POSITIVE, .length = 3, \
+     .inside = &positive, INTO(type, within scale), \
+     .about = "first: a factor, or one for each axis"}, \
+    {"rotate", SCENE_LIST, .fallback = "[1, 0, 0, 0]", .length = 4, .inside = &number, \
+     INTO(type, within rotate), .about = "then: a quaternion [w, x, y, z]"}, \
+    {"translate", SCENE_LIST, "m", .fallback = "[0, 0, 0]", .length = 3, .inside = &number, \
+     INTO(type, within translate), .about = "last: a shift"}
 /* clang-format on */
 
 /* Shared by the tables. */

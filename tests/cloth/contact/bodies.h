@@ -5,6 +5,8 @@
 #include "tests/support/unit.h"
 
 #include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
 
 /* Closed meshes for tests, centred on the origin, oriented outwards. */
 enum { BODY_VERTICES = 2600, BODY_TRIANGLES = 5200 };
@@ -132,6 +134,16 @@ static inline void surface_box(struct surface *s, double x, double y, double z)
         surface_add(s, side[i][0], side[i][1], side[i][2]);
         surface_add(s, side[i][0], side[i][2], side[i][3]);
     }
+}
+
+/* A body of others, in decimetres, upright along y. It may be missing: tests of it are added where
+ * the file is there. */
+static inline const char *real_body_path(void)
+{
+    static char path[4096];
+    const char *top = getenv("srcdir");
+    snprintf(path, sizeof path, "%s/../shared/data/body/female_generic.obj", top ? top : ".");
+    return path;
 }
 
 #endif

@@ -1,6 +1,7 @@
 #ifndef TESTS_CLOTH_CONTACT_BODIES_H
 #define TESTS_CLOTH_CONTACT_BODIES_H
 
+#include "cloth/contact/shape.h"
 #include "cloth/mesh/mesh.h"
 #include "tests/support/unit.h"
 
@@ -134,6 +135,19 @@ static inline void surface_box(struct surface *s, double x, double y, double z)
         surface_add(s, side[i][0], side[i][1], side[i][2]);
         surface_add(s, side[i][0], side[i][2], side[i][3]);
     }
+}
+
+/* The normal at the place (x, y, z) is along (to_x, to_y, to_z), of any length. */
+static inline void body_check_normal(const struct contact_body *body, double x, double y, double z,
+                                     double to_x, double to_y, double to_z)
+{
+    const phys_vec at = {x, y, z, 0};
+    const double length = sqrt(to_x * to_x + to_y * to_y + to_z * to_z);
+    struct contact_hit hit;
+    contact_body_kind.closest(NULL, body, 1, &at, &hit);
+    ck_assert_double_eq_tol(hit.normal[0], to_x / length, 1e-12);
+    ck_assert_double_eq_tol(hit.normal[1], to_y / length, 1e-12);
+    ck_assert_double_eq_tol(hit.normal[2], to_z / length, 1e-12);
 }
 
 /* A body of others, in decimetres, upright along y. It may be missing: tests of it are added where

@@ -1,10 +1,12 @@
 if HAVE_CHECK
-check_PROGRAMS += tests/cloth/contact/test_body tests/cloth/contact/test_meet tests/cloth/contact/test_shape
+check_PROGRAMS += tests/cloth/contact/test_body tests/cloth/contact/test_body_refused tests/cloth/contact/test_meet tests/cloth/contact/test_shape
 tests_cloth_contact_test_body_SOURCES = tests/cloth/contact/test_body.c tests/cloth/contact/bodies.h
 tests_cloth_contact_test_body_LDADD = $(CLOTH_TEST_LIBS)
+tests_cloth_contact_test_body_refused_SOURCES = tests/cloth/contact/test_body_refused.c tests/cloth/contact/bodies.h
+tests_cloth_contact_test_body_refused_LDADD = $(CLOTH_TEST_LIBS)
 tests_cloth_contact_test_meet_SOURCES = tests/cloth/contact/test_meet.c
 tests_cloth_contact_test_meet_LDADD = $(CLOTH_TEST_LIBS)
 tests_cloth_contact_test_shape_SOURCES = tests/cloth/contact/test_shape.c
 tests_cloth_contact_test_shape_LDADD = $(CLOTH_TEST_LIBS)
-TESTS += tests/cloth/contact/test_body tests/cloth/contact/test_meet tests/cloth/contact/test_shape
+TESTS += tests/cloth/contact/test_body tests/cloth/contact/test_body_refused tests/cloth/contact/test_meet tests/cloth/contact/test_shape
 endif

@@ -1,6 +1,5 @@
 /* Bodies: gaps against brute force over all triangles, signs against the winding number, normals of
- * edges and corners, what is apart, what is refused; the real body where it is beside the source
- * tree. */
+ * edges and corners, what is apart; the real body where it is beside the source tree. */
 #include "cloth/contact/shape.h"
 #include "tests/cloth/contact/bodies.h"
 
@@ -269,18 +268,6 @@ START_TEST(boxes)
 }
 END_TEST
 
-static void check_normal(const struct contact_body *body, double x, double y, double z, double to_x,
-                         double to_y, double to_z)
-{
-    const phys_vec at = {x, y, z, 0};
-    const double length = sqrt(to_x * to_x + to_y * to_y + to_z * to_z);
-    struct contact_hit hit;
-    find(body, 1, &at, &hit);
-    ck_assert_double_eq_tol(hit.normal[0], to_x / length, 1e-12);
-    ck_assert_double_eq_tol(hit.normal[1], to_y / length, 1e-12);
-    ck_assert_double_eq_tol(hit.normal[2], to_z / length, 1e-12);
-}
-
 /* On edges and corners normals are in their middle, however many triangles a side has there. Of
  * nearest triangles that are as near the first counts: side x < 0 at the centre of a cube. */
 START_TEST(pseudo_normals)
@@ -290,13 +277,13 @@ START_TEST(pseudo_normals)
     const struct contact_body *body = body_of();
     for (int i = 0; i < 8; i++) {
         const double x = i & 1 ? 1 : -1, y = i & 2 ? 1 : -1, z = i & 4 ? 1 : -1;
-        check_normal(body, x, y, z, x, y, z);
-        check_normal(body, x, y, 0.3, x, y, 0);
-        check_normal(body, x, -0.1, 0.3, 1 * x, 0, 0);
-        check_normal(body, 2 * x, 3 * y, 3 * z, x, 2 * y, 2 * z);
-        check_normal(body, 0.2 * x, 3 * y, 2 * z, 0, 2 * y, z);
+        body_check_normal(body, x, y, z, x, y, z);
+        body_check_normal(body, x, y, 0.3, x, y, 0);
+        body_check_normal(body, x, -0.1, 0.3, 1 * x, 0, 0);
+        body_check_normal(body, 2 * x, 3 * y, 3 * z, x, 2 * y, 2 * z);
+        body_check_normal(body, 0.2 * x, 3 * y, 2 * z, 0, 2 * y, z);
     }
-    check_normal(body, 0, 0, 0, -1, 0, 0);
+    body_check_normal(body, 0, 0, 0, -1, 0, 0);
     const phys_vec wrong[] = {{NAN, 0, 0, 0}, {0, INFINITY, 0, 0}, {-1e153, 1e152, 0, 0}};
     struct contact_hit hit[3];
     find(body, 3, wrong, hit);
@@ -329,110 +316,6 @@ START_TEST(apart)
     }
     ck_assert_uint_gt(n_apart, n_free / 4);
     ck_assert_uint_lt(n_free, POINTS);
-}
-END_TEST
-
-static void expect(const char *text)
-{
-    struct cloth_error error = {0};
-    bool turned;
-    const struct contact_bodies before = bodies;
-    ck_assert_int_eq(contact_bodies_add(&bodies, &mesh, &turned, &error), CLOTH_E_INPUT);
-    ck_assert_ptr_nonnull(strstr(error.text, text));
-    ck_assert_mem_eq(&before, &bodies, sizeof bodies);
-    mesh_free(&mesh);
-}
-
-static void swap(uint32_t *a, uint32_t *b)
-{
-    const uint32_t c = *a;
-    *a = *b;
-    *b = c;
-}
-
-START_TEST(refused)
-{
-    struct cloth_error error = {0};
-    bool turned = false;
-    surface_box(&made, 1, 1, 1);
-    made.n_triangles--;
-    surface_mesh(&made, &mesh);
-    expect("the mesh is not closed: the edge between vertices 5 and 7 has 1 triangle where 2 are "
-           "expected, as 3 edges have in all");
-    surface_box(&made, 1, 1, 1);
-    swap(made.triangle[4], made.triangle[4] + 1);
-    surface_mesh(&made, &mesh);
-    expect(
-        "triangles 5 and 10, at the edge between vertices 1 and 2, are wound against each other");
-    surface_box(&made, 1, 1, 0);
-    surface_mesh(&made, &mesh);
-    expect("triangle 1, of vertices 1, 5 and 7, has no area");
-    surface_box(&made, 1, 1, 1);
-    made.x[3][1] = 1e6;
-    surface_mesh(&made, &mesh);
-    expect("vertex 4 is 1e+06 m from the origin");
-    made.n_triangles = 0;
-    made.x[3][1] = 1;
-    surface_mesh(&made, &mesh);
-    expect("the mesh has no triangles");
-    /* Both sides of one triangle. */
-    made = (struct surface){.n = 3, .x = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}};
-    surface_add(&made, 0, 1, 2);
-    surface_add(&made, 0, 2, 1);
-    surface_mesh(&made, &mesh);
-    expect("triangles 1 and 2 lie on each other, at the edge between vertices 1 and 2");
-    /* Inside out it is turned round. */
-    surface_box(&made, 1, 1, 1);
-    for (uint32_t t = 0; t < made.n_triangles; t++)
-        swap(made.triangle[t], made.triangle[t] + 2);
-    surface_mesh(&made, &mesh);
-    ck_assert_int_eq(contact_bodies_add(&bodies, &mesh, &turned, &error), 0);
-    ck_assert(turned);
-    check_normal(contact_bodies_at(&bodies, 1), 1, 1, 1, 1, 1, 1);
-    check_normal(contact_bodies_at(&bodies, 1), 1, 1, 0.2, 1, 1, 0);
-}
-END_TEST
-
-/* A box of edge 2, and a smaller one that is so far away along x, inside out. */
-static void make_two(double away, double half)
-{
-    static struct surface other;
-    surface_box(&made, 1, 1, 1);
-    surface_box(&other, half, half, half);
-    for (uint32_t v = 0; v < other.n; v++)
-        memcpy(made.x[made.n + v], (double[3]){other.x[v][0] + away, other.x[v][1], other.x[v][2]},
-               sizeof *made.x);
-    for (uint32_t t = 0; t < other.n_triangles; t++)
-        surface_add(&made, made.n + other.triangle[t][2], made.n + other.triangle[t][1],
-                    made.n + other.triangle[t][0]);
-    made.n += other.n;
-    surface_mesh(&made, &mesh);
-}
-
-/* A part that is inside out is a hole, or an error; both ways round. */
-START_TEST(parts)
-{
-    static const phys_vec inside[] = {{0}, {0.9, 0, 0}, {2, 0, 0}};
-    struct cloth_error error = {0};
-    struct contact_hit hit[3];
-    bool turned = true;
-    make_two(3, 0.5);
-    expect("the part of the mesh that has vertex 15 is inside out, and is no hole in another part");
-    make_two(1.5 + 1e-9, 0.5);
-    expect("inside out, and is no hole");
-    make_two(0.25, 0.5);
-    ck_assert_int_eq(contact_bodies_add(&bodies, &mesh, &turned, &error), 0);
-    ck_assert(!turned);
-    contact_body_kind.closest(NULL, contact_bodies_at(&bodies, 1), 3, inside, hit);
-    ck_assert(hit[0].gap > 0 && hit[1].gap < 0 && hit[2].gap > 0);
-    for (uint32_t t = 0; t < mesh.n_triangles; t++)
-        swap(made.triangle[t], made.triangle[t] + 2);
-    mesh_free(&mesh);
-    surface_mesh(&made, &mesh);
-    ck_assert_int_eq(contact_bodies_add(&bodies, &mesh, &turned, &error), 0);
-    ck_assert(turned);
-    contact_body_kind.closest(NULL, contact_bodies_at(&bodies, 2), 3, inside, hit);
-    ck_assert(hit[0].gap > 0 && hit[1].gap < 0 && hit[2].gap > 0);
 }
 END_TEST
 
@@ -475,8 +358,6 @@ int main(void)
     tcase_add_loop_test(cases, boxes, 0, N_MADE);
     tcase_add_test(cases, pseudo_normals);
     tcase_add_loop_test(cases, apart, 0, N_MADE);
-    tcase_add_test(cases, refused);
-    tcase_add_test(cases, parts);
     if (access(real_body_path(), R_OK) == 0)
         tcase_add_test(cases, a_real_body);
     suite_add_tcase(suite, cases);

@@ -1,0 +1,187 @@
+/* Obstacles that cannot be made, their motions and the files of bodies: each has its own sentence,
+ * as in test_errors.c. Bodies that draw a warning. */
+#include "tests/cloth/scene/scene_file.h"
+#include "tests/support/unit.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* What the scene that is right has, and the tests replace. */
+#define PLANE "plane: {point: [0, -1, 0], normal: [0, 3, 4]}"
+
+START_TEST(shapes)
+{
+    EXPECT(
+        {PLANE, "sphere: {centre: [0, -1, 0], radius: 0}",
+         .error = ":11:51: obstacles[0].sphere.radius is 0; a finite number > 0 (m) is expected"},
+        {PLANE, "sphere: {centre: [0, -1, 0]}",
+         .error =
+             ":11:22: obstacles[0].sphere.radius is missing; a finite number > 0 (m) is expected"},
+        {PLANE, "sphere: {centre: [0, -1, 0], radius: 1, size: [1, 1, 1]}",
+         .error = ":11:54: size is not a key of obstacles[0].sphere; allowed: centre, ..."},
+        {PLANE, "box: {centre: [0, -1, 0], size: [1, -2, 1]}",
+         .error = ":11:50: obstacles[0].box.size[1] is -2; a finite number > 0 (m) is expected"},
+        {PLANE, "box: {centre: [0, -1, 0], size: [1, 2, 1], rotate: [0, 0, 0, 0]}",
+         .error = ":11:65: the rotate of a box is zero; a quaternion [w, x, y, z] that is not is "
+                  "expected"},
+        {PLANE, "ball: {centre: [0, -1, 0], radius: 1}",
+         .error = ":11:14: ball is not a key of obstacles[0]; allowed: plane, ..."},
+        {PLANE, "capsule: {from: [0, -1, 0], to: [0, -1e160, 0], radius: 0.1}",
+         .error = ":11:50: the to of a capsule is -1e+160 m; a magnitude of less than 1e+06 m is "
+                  "expected"},
+        {PLANE, "cylinder: {centre: [0, -1, 0], axis: [0, 0, 0], radius: 1, length: 1}",
+         .error = ":11:51: the axis of a cylinder is zero; a direction is expected"},
+        {PLANE, "sphere: {centre: [0, -1, 0], radius: 1e6}",
+         .error = ":11:51: the radius of a sphere is 1e+06 m; a magnitude of less than 1e+06 m is "
+                  "expected"});
+}
+END_TEST
+
+#define SPHERE "sphere: {centre: [0, -1, 0], radius: 0.5, motion: "
+START_TEST(motions)
+{
+    EXPECT(
+        {PLANE, SPHERE "{times: [0, 1], translate: [[0, 0, 0], [0, 1e99, 0]]}}",
+         .error = ":11:107: a translate of a motion is 1e+99 m; a magnitude of less than 1e+06 m "
+                  "is expected"},
+        {PLANE, SPHERE "{times: [0], translate: [[0, 0, 0]], about: [0, 0, 1e7]}}",
+         .error = ":11:115: the about of a motion is 1e+07 m; a magnitude of less than 1e+06 m is "
+                  "expected"},
+        {PLANE, SPHERE "{times: [0, 1, 1], translate: [[0, 0, 0], [0, 1, 0], [0, 2, 0]]}}",
+         .error = ":11:79: motion.times[2] is 1, which does not come after 1, the one before it; "
+                  "times in ascending order are expected"},
+        {PLANE, SPHERE "{times: [0, 1], translate: [[0, 0, 0]]}}",
+         .error = ":11:91: translate of a motion has 1 entries, but there are 2 times; as many are "
+                  "expected"},
+        {PLANE, SPHERE "{times: [0], rotate: [[0, 0, 0, 0]]}}",
+         .error =
+             ":11:86: a rotation of a motion is zero; a quaternion [w, x, y, z] that is not is "
+             "expected"});
+}
+END_TEST
+
+/* Corners and faces of a tetrahedron. */
+#define CORNERS "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n"
+#define WHOLE   "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
+static void write_body(const char *name, const char *faces)
+{
+    char text[200];
+    snprintf(text, sizeof text, "%s%s", CORNERS, faces);
+    scene_write_file(name, text, strlen(text));
+}
+
+START_TEST(bodies)
+{
+    write_body("whole.obj", WHOLE);
+    write_body("open.obj", "f 1 3 2\nf 1 2 4\nf 1 4 3\n");
+    write_body("against.obj", "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 4 3\n");
+    write_body("flat.obj", "v 2 0 0\nf 1 3 2\nf 1 2 5\n");
+    write_body("none.obj", "");
+    EXPECT(
+        {PLANE, "body: {scale: 2}",
+         .error = ":11:20: obstacles[0].body.obj is missing; a text is expected"},
+        {PLANE, "body: {obj: open.obj}",
+         .error = ":11:26: body: open.obj: the mesh is not closed: the edge between vertices 2 and "
+                  "3 has 1 triangle where 2 are expected, as 3 edges have in all (vertices count "
+                  "from 1); fill the holes, or join the parts"},
+        {PLANE, "body: {obj: against.obj}",
+         .error =
+             ":11:26: body: against.obj: triangles 1 and 4, at the edge between vertices 2 and "
+             "3, are wound against each other (triangles and vertices count from 1); turn one "
+             "round"},
+        {PLANE, "body: {obj: flat.obj}",
+         .error = ":11:26: body: flat.obj: triangle 2, of vertices 1, 2 and 5, has no area; remove "
+                  "it, or move a vertex (triangles and vertices count from 1)"},
+        {PLANE, "body: {obj: none.obj}",
+         .error = ":11:26: body: none.obj: the mesh has no triangles; a closed surface is "
+                  "expected"},
+        {PLANE, "body: {obj: whole.obj, scale: 0}",
+         .error = ":11:44: obstacles[0].body.scale is 0; ..."},
+        {PLANE, "body: {obj: whole.obj, rotate: [0, 0, 0, 0]}",
+         .error =
+             ":11:45: the quaternion [w, x, y, z] has no direction; its length must be neither "
+             "zero nor huge"},
+        {PLANE, "body: {obj: whole.obj, translate: [0, 2e6, 0]}",
+         .error =
+             ":11:26: body: whole.obj: vertex 1 is 2e+06 m from the origin along an axis; less "
+             "than 1e+06 m is expected (vertices count from 1)"},
+        {PLANE, "body: {obj: whole.obj, size: 1}",
+         .error = ":11:37: size is not a key of obstacles[0].body; allowed: obj, ..."});
+}
+END_TEST
+
+START_TEST(bodies_that_cannot_be_read)
+{
+    struct cloth_error error = {0};
+    struct model model;
+    write_body("third.obj", "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\nf 2 3 1\n");
+    static const char *const unread[][2] = {
+        {"nowhere.obj", "nowhere.obj: cannot be opened: No such file"},
+        {"third.obj", "third.obj:9: this face is the third"}};
+    for (int i = 0; i < 2; i++) {
+        char body[80];
+        snprintf(body, sizeof body, "body: {obj: %s}", unread[i][0]);
+        char *text = scene_changed(scene_right, PLANE, body);
+        memset(&error, 0, sizeof error);
+        ck_assert_int_eq(scene_read_text(&model, text, 0, NULL, &error), CLOTH_E_INPUT);
+        ck_assert_ptr_nonnull(strstr(error.text, ":11:26: body: "));
+        ck_assert_msg(strstr(error.text, unread[i][1]) != NULL, "%s", error.text);
+        model_free(&model);
+        free(text);
+    }
+}
+END_TEST
+
+START_TEST(a_body_in_centimetres)
+{
+    write_body("whole.obj", WHOLE);
+    char *large = scene_changed(scene_right, PLANE, "body: {obj: whole.obj, scale: 12.5}");
+    struct model model = scene_read_right(large, 0, NULL);
+    ck_assert_uint_eq(model.n_warnings, 1);
+    ck_assert_ptr_nonnull(strstr(model.warnings[0],
+                                 ":11:26: the body is 12.5 m long in its largest extent, more than "
+                                 "10 m: is its mesh in metres?"));
+    model_free(&model);
+    free(large);
+}
+END_TEST
+
+START_TEST(a_body_that_is_inside_out)
+{
+    write_body("whole.obj", WHOLE);
+    write_body("out.obj", "f 1 2 3\nf 1 4 2\nf 1 3 4\nf 2 4 3\n");
+    for (int i = 0; i < 2; i++) {
+        char *text =
+            scene_changed(scene_right, PLANE,
+                          i ? "body: {obj: out.obj, scale: [1, 2, 3], translate: [5, 0, 0], "
+                              "motion: {times: [1], translate: [[0, 1, 0]]}}"
+                            : "body: {obj: whole.obj}");
+        struct model model = scene_read_right(text, 0, NULL);
+        ck_assert_uint_eq(model.n_warnings, (uint32_t)i);
+        const char *warning = ":11:26: the mesh of a body is inside out: its triangles are "
+                              "clockwise as seen from outside; they are turned round";
+        ck_assert(!i || strstr(model.warnings[0], warning));
+        const struct contact_body *body = contact_bodies_at(&model.bodies, model.obstacles->body);
+        ck_assert(body->n_triangles == 4 && model.obstacles->n == (uint32_t)i);
+        ck_assert(body->low[0] == 5 * i && body->high[0] == 5 * i + 1);
+        ck_assert(body->high[1] == 1 + i && body->high[2] == 1 + 2 * i);
+        model_free(&model);
+        free(text);
+    }
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("obstacle errors");
+    TCase *cases = tcase_create("errors");
+    tcase_add_test(cases, shapes);
+    tcase_add_test(cases, motions);
+    tcase_add_test(cases, bodies);
+    tcase_add_test(cases, bodies_that_cannot_be_read);
+    tcase_add_test(cases, a_body_in_centimetres);
+    tcase_add_test(cases, a_body_that_is_inside_out);
+    suite_add_tcase(suite, cases);
+    return unit_run(suite);
+}

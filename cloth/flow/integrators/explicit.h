@@ -62,4 +62,42 @@ static inline void flow_fetch_halos(const struct flow_table *t, const struct flo
     }
 }
 
+/* What a stage has moved: the block's rows, and their halo beside the one that neighbours still
+ * read; status: where it says that a row has gone too far. */
+struct flow_moved {
+    phys_vec *x, *v, *halo_x, *halo_v;
+    double *status;
+};
+#define FLOW_MOVED(on)                                                                             \
+    ((struct flow_moved){(on)->x, (on)->v, (on)->spare_halo_x, (on)->spare_halo_v, (on)->status})
+
+/* A stage begins: the accelerations of the block's rows where they are, in room of the worker's;
+ * what slides keeps to its way. */
+static inline phys_vec *flow_stage_slopes(const duite_call *call, const struct flow_table *t,
+                                          const struct flow_step_args *step,
+                                          const struct flow_view *view, const phys_vec *halo_x,
+                                          const phys_vec *halo_v)
+{
+    phys_vec *a = flow_force_room(call);
+    flow_fetch_own(t, halo_x);
+    flow_fetch_own(t, halo_v);
+    flow_fetch_halos(t, view);
+    flow_forces(call, t, step->now, view, a);
+    flow_part_ends(call, FLOW_FORCE);
+    phys_accelerate(t->n, t->mass, t->free, a);
+    flow_sliders_filter(call, t, step->time, a);
+    flow_part_ends(call, FLOW_ACCELERATION);
+    return a;
+}
+
+/* It ends: the halo of what has moved, which is checked. Returns the body's code. */
+static inline int flow_stage_end(const duite_call *call, const struct flow_table *t,
+                                 const struct flow_step_args *step, struct flow_moved moved)
+{
+    flow_write_halo(t, moved.x, moved.halo_x);
+    flow_write_halo(t, moved.v, moved.halo_v);
+    const int code = flow_check(call, t, step, moved.x, "position", moved.status);
+    return code ? code : flow_check(call, t, step, moved.v, "velocity", moved.status);
+}
+
 #endif

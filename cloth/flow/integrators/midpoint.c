@@ -29,20 +29,9 @@ static int midpoint_body(const duite_call *call, const struct midpoint_fields *o
     const struct flow_table table = flow_table_in(call, on->table), *t = &table;
     const struct flow_step_args *step = &on->args->step;
     const struct flow_view view = FLOW_VIEW(on);
-    phys_vec *a = flow_force_room(call);
-    flow_fetch_own(t, on->spare_halo_x);
-    flow_fetch_own(t, on->spare_halo_v);
-    flow_fetch_halos(t, &view);
-    flow_forces(call, t, step->now, &view, a);
-    flow_part_ends(call, FLOW_FORCE);
-    phys_accelerate(t->n, t->mass, t->free, a);
-    flow_sliders_filter(call, t, step->time, a);
-    flow_part_ends(call, FLOW_ACCELERATION);
+    const phys_vec *a = flow_stage_slopes(call, t, step, &view, on->spare_halo_x, on->spare_halo_v);
     midpoint_stage(t, on->args, a, on->x0, on->v0, on->x, on->v);
-    flow_write_halo(t, on->x, on->spare_halo_x);
-    flow_write_halo(t, on->v, on->spare_halo_v);
-    const int code = flow_check(call, t, step, on->x, "position", on->status);
-    return code ? code : flow_check(call, t, step, on->v, "velocity", on->status);
+    return flow_stage_end(call, t, step, FLOW_MOVED(on));
 }
 
 int flow_midpoint_end(struct flow_state *state)

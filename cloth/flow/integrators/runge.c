@@ -12,20 +12,9 @@ static int runge_body(const duite_call *call, const struct runge_fields *on)
     const struct flow_view view = FLOW_VIEW(on);
     const struct phys_runge runge = {
         .x0 = on->x0, .v0 = on->v0, .sum_x = on->sum_x, .sum_v = on->sum_v};
-    phys_vec *a = flow_force_room(call);
-    flow_fetch_own(t, on->spare_halo_x);
-    flow_fetch_own(t, on->spare_halo_v);
-    flow_fetch_halos(t, &view);
-    flow_forces(call, t, step->now, &view, a);
-    flow_part_ends(call, FLOW_FORCE);
-    phys_accelerate(t->n, t->mass, t->free, a);
-    flow_sliders_filter(call, t, step->time, a);
-    flow_part_ends(call, FLOW_ACCELERATION);
+    const phys_vec *a = flow_stage_slopes(call, t, step, &view, on->spare_halo_x, on->spare_halo_v);
     phys_runge_stage(t->n, step->h, (int)on->args->stage, a, &runge, on->x, on->v);
-    flow_write_halo(t, on->x, on->spare_halo_x);
-    flow_write_halo(t, on->v, on->spare_halo_v);
-    const int code = flow_check(call, t, step, on->x, "position", on->status);
-    return code ? code : flow_check(call, t, step, on->v, "velocity", on->status);
+    return flow_stage_end(call, t, step, FLOW_MOVED(on));
 }
 
 int flow_runge_end(struct flow_state *state)

@@ -6,8 +6,10 @@ libduite_cloth_la_SOURCES += \
 	cloth/contact/body_tree.c \
 	cloth/contact/box.c \
 	cloth/contact/capsule.c \
+	cloth/contact/certificate.c cloth/contact/certificate.h cloth/contact/direction.h \
 	cloth/contact/cylinder.c \
 	cloth/contact/meet.c cloth/contact/meet.h \
+	cloth/contact/pair.c cloth/contact/pair.h \
 	cloth/contact/plane.c \
 	cloth/contact/shape.c cloth/contact/shape.h \
 	cloth/contact/sphere.c \

@@ -6,6 +6,7 @@ include cloth/base/module.mk
 include cloth/mesh/module.mk
 include cloth/physics/module.mk
 include cloth/contact/module.mk
+include cloth/verify/module.mk
 include cloth/solve/module.mk
 include cloth/model/module.mk
 include cloth/element/module.mk

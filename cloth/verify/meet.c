@@ -1,0 +1,157 @@
+/* Two triangles that have a point in common have one on an edge of one of them. Of two that share a
+ * corner, what is common is convex and has this corner: if it has more, it ends at the edge of one
+ * that is opposite to the corner. Every decision follows from signs of verify/orient.h alone. */
+#include "cloth/verify/orient.h"
+#include "cloth/verify/verify.h"
+
+/* ---- In a plane ---- */
+
+/* Whether two lines between points meet as seen along an axis: i and j are the others. */
+static bool lines_meet_seen(const double *p, const double *q, const double *a, const double *b,
+                            int i, int j)
+{
+    const int of_a = verify_orient_seen(p, q, a, i, j), of_b = verify_orient_seen(p, q, b, i, j);
+    const int of_p = verify_orient_seen(a, b, p, i, j), of_q = verify_orient_seen(a, b, q, i, j);
+    return of_a * of_b <= 0 && of_p * of_q <= 0;
+}
+
+static bool spans_meet(double p, double q, double a, double b)
+{
+    const double low = p < q ? p : q, high = p < q ? q : p;
+    return (a >= low || b >= low) && (a <= high || b <= high);
+}
+
+/* In a plane they meet if they seem to along all three axes, for along one of them the plane is
+ * seen from its front. On one line the spans of coordinates tell. */
+static bool lines_meet(const double *p, const double *q, const double *a, const double *b)
+{
+    bool meet = true;
+    for (int c = 0; c < 3 && meet; c++)
+        meet = spans_meet(p[c], q[c], a[c], b[c]);
+    meet = meet && verify_orient(p, q, a, b) == 0;
+    for (int c = 0; c < 3 && meet; c++)
+        meet = lines_meet_seen(p, q, a, b, (c + 1) % 3, (c + 2) % 3);
+    return meet;
+}
+
+/* A point in the plane of a triangle that has an area, else false. */
+static bool is_inside(const double *p, const double *a, const double *b, const double *c)
+{
+    for (int k = 0; k < 3; k++) {
+        const int i = (k + 1) % 3, j = (k + 2) % 3, side = verify_orient_seen(a, b, c, i, j);
+        if (side)
+            return side * verify_orient_seen(a, b, p, i, j) >= 0 &&
+                   side * verify_orient_seen(b, c, p, i, j) >= 0 &&
+                   side * verify_orient_seen(c, a, p, i, j) >= 0;
+    }
+    return false;
+}
+
+/* ---- Edges and triangles ---- */
+
+/* Whether the edge p q meets the triangle a b c; side: of p and q from its plane. */
+static bool edge_meets(const double *p, const double *q, const int side[2], const double *a,
+                       const double *b, const double *c)
+{
+    if (side[0] * side[1] > 0)
+        return false;
+    if (!side[0] && !side[1])
+        return is_inside(p, a, b, c) || lines_meet(p, q, a, b) || lines_meet(p, q, b, c) ||
+               lines_meet(p, q, c, a);
+    const int ab = verify_orient(p, q, a, b), bc = verify_orient(p, q, b, c);
+    if (ab * bc < 0)
+        return false;
+    const int ca = verify_orient(p, q, c, a);
+    return ab * ca >= 0 && bc * ca >= 0;
+}
+
+/* A pair of triangles: corners and the box of each, and which corner of it the other one has, or
+ * -1. */
+struct side {
+    const double *x[3];
+    double low[3], high[3];
+    int shared;
+};
+
+static void take_side(const double (*x)[3], const uint32_t corner[3], int shared, struct side *to)
+{
+    to->shared = shared;
+    for (int i = 0; i < 3; i++)
+        to->x[i] = x[corner[i]];
+    for (int c = 0; c < 3; c++) {
+        const double u = to->x[0][c], v = to->x[1][c], w = to->x[2][c];
+        const double low = u < v ? u : v, high = u < v ? v : u;
+        to->low[c] = low < w ? low : w;
+        to->high[c] = high < w ? w : high;
+    }
+}
+
+/* Which edges may meet the other triangle: edge i begins at corner i. Those at a shared corner do
+ * not count; boxes, whose comparison is exact, leave few of the others. */
+static int find_edges(const struct side *of, const struct side *other, bool edge[3])
+{
+    int n = 0;
+    for (int i = 0; i < 3; i++) {
+        const double *p = of->x[i], *q = of->x[(i + 1) % 3];
+        edge[i] = of->shared < 0 || of->shared == (i + 2) % 3;
+        for (int c = 0; c < 3 && edge[i]; c++)
+            edge[i] = spans_meet(p[c], q[c], other->low[c], other->high[c]);
+        n += edge[i];
+    }
+    return n;
+}
+
+/* Sides of the corners of a triangle from the plane of another; false if all but a shared one are
+ * on one side of it. */
+static bool find_sides(const struct side *of, const struct side *plane, int side[3])
+{
+    int sum = 0, n = 0;
+    for (int i = 0; i < 3; i++) {
+        side[i] =
+            i == of->shared ? 0 : verify_orient(plane->x[0], plane->x[1], plane->x[2], of->x[i]);
+        sum += side[i];
+        n += i != of->shared;
+    }
+    return sum < n && sum > -n;
+}
+
+static bool edges_meet(const struct side *of, const struct side *other, const bool edge[3],
+                       const int side[3])
+{
+    bool meet = false;
+    for (int i = 0; i < 3 && !meet; i++) {
+        const int j = (i + 1) % 3, ends[2] = {side[i], side[j]};
+        meet =
+            edge[i] && edge_meets(of->x[i], of->x[j], ends, other->x[0], other->x[1], other->x[2]);
+    }
+    return meet;
+}
+
+/* How many corners they share; of[]: the last of them in each. */
+static int count_shared(const uint32_t a[3], const uint32_t b[3], int of[2])
+{
+    int n = 0;
+    of[0] = of[1] = -1;
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            if (a[i] == b[j]) {
+                of[0] = i;
+                of[1] = j;
+                n++;
+            }
+    return n;
+}
+
+bool verify_meet(const double (*x)[3], const uint32_t a[3], const uint32_t b[3])
+{
+    int shared[2], side_a[3], side_b[3];
+    struct side of_a, of_b;
+    bool edge_a[3], edge_b[3];
+    if (count_shared(a, b, shared) > 1)
+        return false;
+    take_side(x, a, shared[0], &of_a);
+    take_side(x, b, shared[1], &of_b);
+    const int n_a = find_edges(&of_a, &of_b, edge_a), n_b = find_edges(&of_b, &of_a, edge_b);
+    return n_a + n_b && find_sides(&of_b, &of_a, side_b) && find_sides(&of_a, &of_b, side_a) &&
+           (edges_meet(&of_b, &of_a, edge_b, side_b) || edges_meet(&of_a, &of_b, edge_a, side_a));
+}

@@ -1,0 +1,238 @@
+/* Boxes of triangles are put in strips along one axis, in each that they meet, and every strip is
+ * swept along another axis: boxes whose spans meet there are compared. A pair that is in several
+ * strips counts in the first of them. Strips are as wide as boxes are on average, so that a box is
+ * in three of them on average at most. */
+#include "cloth/verify/orient.h"
+#include "cloth/verify/verify.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct box {
+    double low[3], high[3];
+    uint32_t strip[2]; /* the first and the last */
+};
+
+struct start {
+    double low;
+    uint32_t triangle;
+};
+
+struct sweep {
+    const struct verify_soup *soup;
+    double (*x)[3];
+    struct box *box;
+    struct start *order; /* by their begin along the axis that is swept */
+    uint32_t n_strips;
+    uint64_t *first;          /* n_strips + 1: of the triangles of a strip, in `member` */
+    uint32_t *member;         /* in that order */
+    int along, across, third; /* axes: swept, cut in strips, the last */
+    struct cloth_list *pairs;
+    struct cloth_error *error;
+};
+
+/* ---- Boxes ---- */
+
+static int take_points(struct sweep *sweep)
+{
+    const struct verify_soup *soup = sweep->soup;
+    for (uint32_t p = 0; p < soup->n_points; p++)
+        for (int c = 0; c < 3; c++) {
+            const double x = soup->x[p][c];
+            if (!(fabs(x) <= VERIFY_MOST))
+                return cloth_fail(sweep->error, CLOTH_E_RUN,
+                                  "intersections: point %u has no place that can be checked", p);
+            sweep->x[p][c] = fabs(x) < VERIFY_LEAST ? 0 : x;
+        }
+    return CLOTH_OK;
+}
+
+static void take_boxes(struct sweep *sweep)
+{
+    for (uint32_t t = 0; t < sweep->soup->n_triangles; t++) {
+        const uint32_t *corner = sweep->soup->corner[t];
+        struct box *box = sweep->box + t;
+        for (int c = 0; c < 3; c++) {
+            const double u = sweep->x[corner[0]][c], v = sweep->x[corner[1]][c];
+            const double w = sweep->x[corner[2]][c];
+            box->low[c] = fmin(u, fmin(v, w));
+            box->high[c] = fmax(u, fmax(v, w));
+        }
+    }
+}
+
+/* What all boxes span along an axis, and their mean extent. */
+struct span {
+    double low, size, mean;
+};
+
+static void find_span(const struct sweep *sweep, int axis, struct span *span)
+{
+    const uint32_t n = sweep->soup->n_triangles;
+    double low = INFINITY, high = -INFINITY, sum = 0;
+    for (uint32_t t = 0; t < n; t++) {
+        low = fmin(low, sweep->box[t].low[axis]);
+        high = fmax(high, sweep->box[t].high[axis]);
+        sum += sweep->box[t].high[axis] - sweep->box[t].low[axis];
+    }
+    *span = (struct span){low, high - low, sum / n};
+}
+
+/* ---- Strips ---- */
+
+/* Monotonous in x, which is all that matters. */
+static uint32_t strip_of(const struct sweep *sweep, const struct span *span, double x)
+{
+    const double at = span->size > 0 ? (x - span->low) / span->size * sweep->n_strips : 0;
+    return at < sweep->n_strips ? (uint32_t)at : sweep->n_strips - 1;
+}
+
+/* The two axes along which boxes are smallest against all of them. */
+static void choose_axes(struct sweep *sweep, struct span *across)
+{
+    struct span span[3];
+    double part[3];
+    for (int c = 0; c < 3; c++) {
+        find_span(sweep, c, span + c);
+        part[c] = span[c].size > 0 ? span[c].mean / span[c].size : 1;
+    }
+    for (int c = 0; c < 3; c++) {
+        sweep->along = part[c] < part[sweep->along] ? c : sweep->along;
+        sweep->third = part[c] >= part[sweep->third] ? c : sweep->third;
+    }
+    sweep->across = 3 - sweep->along - sweep->third;
+    *across = span[sweep->across];
+    const double n = sweep->soup->n_triangles, strips = 1 / part[sweep->across];
+    sweep->n_strips = strips < n ? (uint32_t)fmax(strips, 1) : (uint32_t)n;
+}
+
+static int by_low(const void *left, const void *right)
+{
+    const struct start *a = left, *b = right;
+    if (a->low < b->low || a->low > b->low)
+        return a->low < b->low ? -1 : 1;
+    return (a->triangle > b->triangle) - (a->triangle < b->triangle);
+}
+
+static void sort_starts(struct sweep *sweep)
+{
+    const uint32_t n = sweep->soup->n_triangles;
+    for (uint32_t t = 0; t < n; t++)
+        sweep->order[t] = (struct start){sweep->box[t].low[sweep->along], t};
+    qsort(sweep->order, n, sizeof *sweep->order, by_low);
+}
+
+static int fill_strips(struct sweep *sweep, const struct span *across)
+{
+    const uint32_t n = sweep->soup->n_triangles;
+    sweep->first = cloth_alloc((size_t)sweep->n_strips + 2, sizeof *sweep->first, sweep->error);
+    if (!sweep->first)
+        return CLOTH_E_MEMORY;
+    uint64_t *end = sweep->first + 1; /* of a strip, so far */
+    for (uint32_t t = 0; t < n; t++) {
+        struct box *box = sweep->box + t;
+        box->strip[0] = strip_of(sweep, across, box->low[sweep->across]);
+        box->strip[1] = strip_of(sweep, across, box->high[sweep->across]);
+        for (uint32_t s = box->strip[0]; s <= box->strip[1]; s++)
+            end[s + 1]++;
+    }
+    for (uint32_t s = 0; s < sweep->n_strips; s++)
+        end[s + 1] += end[s];
+    sweep->member = cloth_alloc(end[sweep->n_strips], sizeof *sweep->member, sweep->error);
+    if (!sweep->member)
+        return CLOTH_E_MEMORY;
+    for (uint32_t i = 0; i < n; i++) {
+        const uint32_t t = sweep->order[i].triangle;
+        for (uint32_t s = sweep->box[t].strip[0]; s <= sweep->box[t].strip[1]; s++)
+            sweep->member[end[s]++] = t;
+    }
+    return CLOTH_OK;
+}
+
+/* ---- Pairs ---- */
+
+/* Whether two boxes meet along the axes that are not swept, in a strip that is the first with both,
+ * and are of interest. */
+static bool boxes_meet(const struct sweep *sweep, uint32_t a, uint32_t b, uint32_t strip)
+{
+    const struct box *p = sweep->box + a, *q = sweep->box + b;
+    const int i = sweep->across, j = sweep->third;
+    return p->low[i] <= q->high[i] && q->low[i] <= p->high[i] && p->low[j] <= q->high[j] &&
+           q->low[j] <= p->high[j] && (p->strip[0] == strip || q->strip[0] == strip) &&
+           (a < sweep->soup->n_first || b < sweep->soup->n_first);
+}
+
+static int try_pair(struct sweep *sweep, uint32_t a, uint32_t b)
+{
+    const uint32_t(*corner)[3] = sweep->soup->corner;
+    if (!verify_meet((const double(*)[3])sweep->x, corner[a], corner[b]))
+        return CLOTH_OK;
+    struct verify_pair *pair = cloth_list_add(sweep->pairs, sizeof *pair, 1, sweep->error);
+    if (!pair)
+        return CLOTH_E_MEMORY;
+    *pair = a < b ? (struct verify_pair){{a, b}} : (struct verify_pair){{b, a}};
+    return CLOTH_OK;
+}
+
+static int sweep_strip(struct sweep *sweep, uint32_t strip)
+{
+    const uint32_t *member = sweep->member;
+    const int along = sweep->along;
+    for (uint64_t i = sweep->first[strip]; i < sweep->first[strip + 1]; i++) {
+        const double high = sweep->box[member[i]].high[along];
+        for (uint64_t j = i + 1; j < sweep->first[strip + 1]; j++) {
+            if (sweep->box[member[j]].low[along] > high)
+                break;
+            if (boxes_meet(sweep, member[i], member[j], strip) &&
+                try_pair(sweep, member[i], member[j]))
+                return CLOTH_E_MEMORY;
+        }
+    }
+    return CLOTH_OK;
+}
+
+static int by_triangles(const void *left, const void *right)
+{
+    const struct verify_pair *a = left, *b = right;
+    const int k = a->triangle[0] == b->triangle[0];
+    return (a->triangle[k] > b->triangle[k]) - (a->triangle[k] < b->triangle[k]);
+}
+
+static int sweep_all(struct sweep *sweep)
+{
+    struct span across;
+    const size_t before = sweep->pairs->n;
+    int code = take_points(sweep);
+    if (code)
+        return code;
+    take_boxes(sweep);
+    choose_axes(sweep, &across);
+    sort_starts(sweep);
+    code = fill_strips(sweep, &across);
+    for (uint32_t s = 0; s < sweep->n_strips && !code; s++)
+        code = sweep_strip(sweep, s);
+    struct verify_pair *found = sweep->pairs->items;
+    if (sweep->pairs->n > before)
+        qsort(found + before, sweep->pairs->n - before, sizeof *found, by_triangles);
+    return code;
+}
+
+int verify_pairs(const struct verify_soup *soup, struct cloth_list *pairs,
+                 struct cloth_error *error)
+{
+    struct sweep sweep = {.soup = soup, .pairs = pairs, .error = error};
+    int code = CLOTH_OK;
+    if (!soup->n_triangles)
+        return code;
+    sweep.x = cloth_alloc(soup->n_points, sizeof *sweep.x, error);
+    sweep.box = cloth_alloc(soup->n_triangles, sizeof *sweep.box, error);
+    sweep.order = cloth_alloc(soup->n_triangles, sizeof *sweep.order, error);
+    code = sweep.x && sweep.box && sweep.order ? sweep_all(&sweep) : CLOTH_E_MEMORY;
+    free(sweep.x);
+    free(sweep.box);
+    free(sweep.order);
+    free(sweep.first);
+    free(sweep.member);
+    return code;
+}

@@ -1,0 +1,39 @@
+#ifndef CLOTH_VERIFY_VERIFY_H
+#define CLOTH_VERIFY_VERIFY_H
+
+#include "cloth/base/error.h"
+#include "cloth/base/memory.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+/* Whether surfaces go through each other, said exactly and by no code that contact has: a second
+ * opinion on states and frames. Local functions. */
+
+/* Triangles in space. Those that share a corner have its number. */
+struct verify_soup {
+    uint32_t n_points, n_triangles;
+    uint32_t n_first;     /* pairs are sought among the first ones, and of these with the others */
+    const double (*x)[3]; /* n_points, m */
+    const uint32_t (*corner)[3]; /* n_triangles */
+};
+
+/* Two triangles that intersect, the lower number first. */
+struct verify_pair {
+    uint32_t triangle[2];
+};
+
+/* Whether two triangles have a point in common: an edge of one meets the other, which has its
+ * boundary; triangles in one plane, and those without area, are no exception. Of two that share one
+ * corner this does not count, nor edges that begin there: the opposite edges tell whether they meet
+ * elsewhere. Two that share an edge do not intersect. Coordinates as of verify_orient. */
+bool verify_meet(const double (*x)[3], const uint32_t a[3], const uint32_t b[3]);
+
+/* Appends all pairs that meet to a list of struct verify_pair, sorted. Of coordinates smaller than
+ * VERIFY_LEAST 0 is taken. Errors: CLOTH_E_RUN for one that is larger than VERIFY_MOST or no
+ * number, CLOTH_E_MEMORY. Takes n log n and a step for each pair of boxes that meet, or overlap
+ * along two axes and are near each other along a third. */
+int verify_pairs(const struct verify_soup *soup, struct cloth_list *pairs,
+                 struct cloth_error *error);
+
+#endif

@@ -1,0 +1,148 @@
+/* The sweep finds the pairs that all pairs, tried one by one, have. */
+#include "cloth/verify/verify.h"
+#include "tests/support/unit.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { TRIANGLES = 400, POINTS = 3 * TRIANGLES };
+
+struct soup {
+    double x[POINTS][3];
+    uint32_t corner[TRIANGLES][3];
+    struct verify_soup made;
+};
+
+static uint64_t seed = 1;
+static double uniform(double low, double high)
+{
+    seed = seed * 6364136223846793005u + 1442695040888963407u;
+    return low + (high - low) * (double)(seed >> 11) * 0x1p-53;
+}
+
+/* Triangles of a size in a box, some of them `giant`; shared: each has a corner of the one before.
+ */
+static struct verify_soup *make(struct soup *soup, const double box[3], double size, double giant,
+                                bool shared)
+{
+    for (uint32_t t = 0; t < TRIANGLES; t++) {
+        double middle[3];
+        const double reach = t % 50 == 7 && giant > 0 ? giant : size;
+        for (int c = 0; c < 3; c++)
+            middle[c] = uniform(-box[c], box[c]);
+        for (uint32_t i = 0; i < 3; i++) {
+            soup->corner[t][i] = 3 * t + i;
+            for (int c = 0; c < 3; c++)
+                soup->x[3 * t + i][c] = middle[c] + uniform(-reach, reach) * (box[c] > 0);
+        }
+        if (shared && t % 3)
+            soup->corner[t][0] = soup->corner[t - 1][2];
+    }
+    soup->made = (struct verify_soup){.n_points = POINTS,
+                                      .n_triangles = TRIANGLES,
+                                      .n_first = TRIANGLES,
+                                      .x = (const double(*)[3])soup->x,
+                                      .corner = (const uint32_t(*)[3])soup->corner};
+    return &soup->made;
+}
+
+/* Returns how many pairs there are. */
+static size_t check_soup(const struct verify_soup *soup)
+{
+    struct cloth_list list = {0};
+    struct cloth_error error = {0};
+    ck_assert_msg(verify_pairs(soup, &list, &error) == 0, "%s", error.text);
+    const struct verify_pair *pair = list.items;
+    size_t n = 0;
+    for (uint32_t a = 0; a < soup->n_first; a++)
+        for (uint32_t b = a + 1; b < soup->n_triangles; b++) {
+            if (!verify_meet(soup->x, soup->corner[a], soup->corner[b]))
+                continue;
+            ck_assert_msg(n < list.n && pair[n].triangle[0] == a && pair[n].triangle[1] == b,
+                          "the pair %u %u is not pair %zu of %zu", a, b, n, list.n);
+            n++;
+        }
+    ck_assert_uint_eq(n, list.n);
+    free(list.items);
+    return n;
+}
+
+START_TEST(soups)
+{
+    static struct soup soup;
+    static const double boxes[][3] = {{1, 1, 1}, {1, 1, 0.01},   {0.01, 3, 0.01}, {1, 0, 1},
+                                      {0, 0, 0}, {1e-3, 1e3, 1}, {0, 5, 0}};
+    size_t least = SIZE_MAX, n;
+    for (size_t b = 0; b < sizeof boxes / sizeof *boxes; b++)
+        for (int k = 0; k < 12; k++) {
+            struct verify_soup *made =
+                make(&soup, boxes[b], k % 3 ? 0.1 : 0.3, k % 4 ? 0 : 2, k & 1);
+            made->n_first = k % 5 ? TRIANGLES : TRIANGLES / 3;
+            n = check_soup(made);
+            least = b == 0 && n < least ? n : least;
+        }
+    ck_assert_uint_gt(least, 0);
+}
+END_TEST
+
+START_TEST(far_away)
+{
+    static struct soup soup;
+    struct verify_soup *made = make(&soup, (const double[3]){1, 1, 1}, 0.1, 0, false);
+    for (int p = 0; p < 30; p++)
+        soup.x[p][p % 3] = 1e6;
+    ck_assert_uint_gt(check_soup(made), 0);
+}
+END_TEST
+
+START_TEST(few)
+{
+    static struct soup soup;
+    struct verify_soup *made = make(&soup, (const double[3]){1, 1, 1}, 1, 0, false);
+    for (uint32_t n = 0; n < 5; n++) {
+        made->n_triangles = made->n_first = n;
+        check_soup(made);
+    }
+    made->n_triangles = 5;
+    made->n_first = 0;
+    ck_assert_uint_eq(check_soup(made), 0);
+}
+END_TEST
+
+/* What no exact answer exists for is refused; what is smaller than it can have is 0. */
+START_TEST(bounds)
+{
+    static struct soup soup;
+    static const double wrong[] = {NAN, INFINITY, -INFINITY, 1e61};
+    struct cloth_list list = {0};
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        struct cloth_error error = {0};
+        struct verify_soup *made = make(&soup, (const double[3]){1, 1, 1}, 0.1, 0, false);
+        soup.x[77][1] = wrong[i];
+        ck_assert_int_eq(verify_pairs(made, &list, &error), CLOTH_E_RUN);
+        ck_assert_ptr_nonnull(strstr(error.text, "point 77"));
+    }
+    struct cloth_error error = {0};
+    struct verify_soup *made = make(&soup, (const double[3]){1, 1, 1}, 0.1, 0, false);
+    const double x[6][3] = {{0, 0, 0},        {1, 0, 0},   {0, 0, 1},
+                            {.2, 1e-300, .2}, {.2, 1, .2}, {.3, 1, .2}};
+    memcpy(soup.x, x, sizeof x);
+    made->n_triangles = made->n_first = 2;
+    ck_assert_int_eq(verify_pairs(made, &list, &error), CLOTH_OK);
+    ck_assert_uint_eq(list.n, 1);
+    free(list.items);
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("verify sweep");
+    TCase *sweep = tcase_create("sweep");
+    tcase_add_test(sweep, soups);
+    tcase_add_test(sweep, far_away);
+    tcase_add_test(sweep, few);
+    tcase_add_test(sweep, bounds);
+    suite_add_tcase(suite, sweep);
+    return unit_run(suite);
+}

@@ -6,3 +6,11 @@ tests_cloth_verify_test_sweep_SOURCES = tests/cloth/verify/test_sweep.c
 tests_cloth_verify_test_sweep_LDADD = $(CLOTH_TEST_LIBS)
 TESTS += tests/cloth/verify/test_meet tests/cloth/verify/test_sweep
 endif
+if HAVE_CHECK
+if HAVE_GMP
+check_PROGRAMS += tests/cloth/verify/test_exact
+tests_cloth_verify_test_exact_SOURCES = tests/cloth/verify/test_exact.c
+tests_cloth_verify_test_exact_LDADD = $(CLOTH_TEST_LIBS) $(GMP_LIBS)
+TESTS += tests/cloth/verify/test_exact
+endif
+endif

@@ -90,20 +90,44 @@ static inline const phys_vec *flow_tie_values(const struct flow_table *t, const 
     return (const phys_vec *)values + flow_value_rows(t);
 }
 
-/* They as a solve sees them. p_other: p of their other ends, in a pass. */
+/* They as a solve sees them. p_other: p of their ghosts, in a pass. */
 static inline struct solve_ties flow_ties_solved(const struct flow_ties *ties,
                                                  const phys_vec *value, const phys_vec *p_other)
 {
-    return (struct solve_ties){ties->n_inner, ties->n, ties->end, value, p_other};
+    return (struct solve_ties){ties->n, ties->corner, ties->weight, value, p_other};
 }
 
-/* Ties of a block (step/ties.c). Adds their forces, N. Their part of the system of a step, as
- * phys_springs_system has it; of the matrix alone where b is NULL. Their energy, J, half of it
- * where the other end is in another block. */
-void flow_ties_force(const struct flow_view *view, phys_vec *f);
-void flow_ties_system(const struct flow_view *view, double h, double push, int full, phys_vec *b,
-                      phys_vec *value);
-double flow_ties_energy(const struct flow_view *view);
+/* A corner of a tie: a row of the block's own, or of what the blocks that it shares ties with show
+ * it. shown: TIED of a field whose rows are those shown, once (part 0) or twice (0, 1). */
+static inline const phys_vec *flow_tie_row(const struct flow_ties *ties, uint32_t corner,
+                                           const phys_vec *own, const duite_param *shown, int part)
+{
+    if (corner < ties->n_rows)
+        return own + corner;
+    const uint32_t ghost = corner - ties->n_rows, k = ties->ghost_other[ghost];
+    const size_t half = part ? shown[k].count / 8 : 0; /* numbers of two rows */
+    return flow_rows_of(shown, k) + half + ties->place[k] + (ghost - ties->start[k]);
+}
+
+/* x and v of a corner. */
+static inline const phys_vec *flow_tie_x(const struct flow_ties *ties, const struct flow_view *view,
+                                         uint32_t corner)
+{
+    return flow_tie_row(ties, corner, view->x, view->tie_halo, 0);
+}
+static inline const phys_vec *flow_tie_v(const struct flow_ties *ties, const struct flow_view *view,
+                                         uint32_t corner)
+{
+    return flow_tie_row(ties, corner, view->v, view->tie_halo, 1);
+}
+
+/* Timed joints of a block (step/ties.c). Adds their forces, N. Their part of the system of a step,
+ * as phys_springs_system has it; of the matrix alone where b is NULL; values of other ties become
+ * zero. Their energy, J, half of it where an end is in another block. */
+void flow_ties_force(const struct flow *flow, const struct flow_view *view, phys_vec *f);
+void flow_ties_system(const struct flow *flow, const struct flow_view *view, double h, double push,
+                      phys_vec *b, phys_vec *value);
+double flow_ties_energy(const struct flow *flow, const struct flow_view *view);
 /* Takes out of lost[3] what solve_lost cannot know: N dv of ties that lead to held ends. */
 void flow_ties_lost(const unsigned char *tie_table, const phys_vec *value, const phys_vec *dv,
                     double lost[3]);

@@ -28,6 +28,7 @@ libduite_cloth_la_SOURCES += \
     cloth/flow/setup/warn.c \
     cloth/flow/setup/watched.c \
     cloth/flow/setup/welds.c \
+    cloth/flow/state/adopted.c \
     cloth/flow/state/chosen.c \
     cloth/flow/state/fields.c \
     cloth/flow/state/fields.h \

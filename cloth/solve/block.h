@@ -48,14 +48,16 @@ PHYS_INLINE void solve_constrain(const phys_vec *normal, phys_vec *filter)
         *filter = (phys_vec){0};
 }
 
-/* Springs that join rows for some solves only. They add to the matrix what entries of SOLVE_SPRINGS
- * do, in a block of any format: inner ones between two rows here, then those that end in another
- * block, which both blocks know. */
+/* What joins rows for some solves only, in a block of any format. A tie has up to four corners with
+ * weights w_k. It adds w_i w_k N to row i and column k, N a value of SOLVE_SPRINGS: with u the sum
+ * of w_k p_k it adds w_i N u to row i. Every block with a corner knows the whole tie. */
+enum { SOLVE_TIE_CORNERS = 4 };
 struct solve_ties {
-    size_t n_inner, n;
-    const uint32_t (*end)[2]; /* n: rows; of those into other blocks end 0 alone counts */
-    const phys_vec *value;    /* n */
-    const phys_vec *p_other;  /* n - n_inner: p at the other end of each */
+    size_t n;
+    const uint32_t (*corner)[SOLVE_TIE_CORNERS]; /* n: rows; those behind the block's are ghosts */
+    const double (*weight)[SOLVE_TIE_CORNERS];   /* n: 0: it has no such corner */
+    const phys_vec *value;                       /* n */
+    const phys_vec *p_other;                     /* p of the ghosts */
 };
 
 /* Entries into other blocks, whose values follow those of the inner ones: `own` the row here,

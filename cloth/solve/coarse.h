@@ -34,6 +34,17 @@ void solve_couple_cut(const struct solve_block *block, const void *values, size_
                       const phys_vec *other_basis, double own[SOLVE_COUPLING],
                       double off_diagonal[SOLVE_COUPLING]);
 
+/* P' of one row with a weight: of function k along axis c, [3 k + c]. Of some rows it is the sum.
+ */
+struct solve_lifted {
+    double c[SOLVE_COARSE];
+};
+void solve_lift_corner(double weight, const phys_vec *basis, struct solve_lifted *sum);
+
+/* Adds a N b', N a value of SOLVE_SPRINGS, to a block of C. */
+void solve_couple_lifted(const phys_vec *value, const struct solve_lifted *a,
+                         const struct solve_lifted *b, double block[SOLVE_COUPLING]);
+
 /* P' y of a block; y += P x of a block. */
 void solve_restrict(size_t n, const phys_vec *basis, const phys_vec *y, double x[SOLVE_COARSE]);
 void solve_prolong(size_t n, const phys_vec *basis, const double x[SOLVE_COARSE], phys_vec *y);

@@ -82,14 +82,17 @@ PHYS_INLINE void filter_diagonal(const phys_vec *filter, struct solve_symmetric 
         (phys_vec){columns.c[1][0], columns.c[2][1], columns.c[0][2], 0} - along * d * SOLVE_YZX(d);
 }
 
-static void gather_ties(const struct solve_ties *ties, struct solve_symmetric *sum)
+static void gather_ties(size_t n_rows, const struct solve_ties *ties, struct solve_symmetric *sum)
 {
     for (size_t i = 0; i < ties->n; i++) {
         struct solve_symmetric m = {{0}, {0}};
         solve_spring(ties->value + i, &m);
-        add(sum + ties->end[i][0], &m);
-        if (i < ties->n_inner)
-            add(sum + ties->end[i][1], &m);
+        for (int k = 0; k < SOLVE_TIE_CORNERS; k++) {
+            const double square = ties->weight[i][k] * ties->weight[i][k];
+            const struct solve_symmetric share = {square * m.diagonal, square * m.off_diagonal};
+            if (square > 0 && ties->corner[i][k] < n_rows)
+                add(sum + ties->corner[i][k], &share);
+        }
     }
 }
 
@@ -116,7 +119,7 @@ PHYS_INLINE void gather(const struct solve_block *block, const struct solve_cut 
         add(sum + cut->end[i][0], &m);
     }
     if (cut->ties)
-        gather_ties(cut->ties, sum);
+        gather_ties(block->n, cut->ties, sum);
     for (size_t a = 0; a < block->n; a++)
         if (block->free[a] == 0)
             sum[a] = (struct solve_symmetric){{1, 1, 1, 0}, {0}};

@@ -1,20 +1,22 @@
 /* The system of the last step, brought together on rank 0: each block reports its part of it, in
  * numbers, and one task on rank 0 makes plain arrays of all parts. An entry between two blocks is
  * reported by both; the report of the lower block counts. Ties (cloth/flow/state/ties.h) are
- * entries, too. */
+ * reported by all blocks that they have corners in, and become a pair for each two corners. */
 #include "cloth/flow/bodies.h"
 #include "cloth/flow/observe/observe.h"
 #include "cloth/flow/step/step.h"
 
 #include "cloth/solve/system.h"
 
-/* A part: rows, entries and room for ties, rows of the halo. A row has its vertex, mass, diagonal
- * and free, then vectors. An entry has its row here, the block of its other end and the row there,
- * then its values: those of a spring, or N by rows. A block less than 0: there is no entry any
- * more. In another block the row is its place in the halo there. For a tie it is the row's number
- * plus the number of rows in that halo. */
+/* A part: rows, entries, room for ties, rows of the halo. A row has its vertex, mass, diagonal and
+ * free, then vectors. An entry has its row here, the block of its other end and the row there, then
+ * its values: those of a spring, or N by rows. A block less than 0: there is no entry any more. In
+ * another block the row is its place in the halo there. A tie has of each corner block, row and
+ * weight, or zeros, then the value of a spring. */
 enum { VERTEX, MASS, DIAGONAL, FREE, B, DV = B + 3, X = DV + 3, V = X + 3, ROW = V + 3 };
 enum { HERE, BLOCK, THERE, VALUE, SPRING = VALUE + 4, PAIR = VALUE + SOLVE_NINE };
+enum { CORNER_BLOCK, CORNER_ROW, CORNER_WEIGHT, CORNER };
+enum { TIE_VALUE = SOLVE_TIE_CORNERS * CORNER, TIE = TIE_VALUE + 4 };
 
 static size_t entry_doubles(const struct flow_table *t)
 {
@@ -26,9 +28,14 @@ static size_t entries_at(const struct flow_table *t)
     return (size_t)ROW * t->n;
 }
 
+static size_t ties_at(const struct flow_table *t)
+{
+    return entries_at(t) + entry_doubles(t) * ((size_t)t->n_entries + t->n_cut_entries);
+}
+
 static size_t halo_at(const struct flow_table *t, size_t room)
 {
-    return entries_at(t) + entry_doubles(t) * (t->n_entries + t->n_cut_entries + room);
+    return ties_at(t) + TIE * room;
 }
 
 size_t flow_system_doubles(const struct flow_table *t, size_t room)
@@ -40,7 +47,7 @@ size_t flow_system_doubles(const struct flow_table *t, size_t room)
 static size_t room_of(const struct flow_table *t, size_t numbers)
 {
     const size_t least = flow_system_doubles(t, 0);
-    return numbers > least ? (numbers - least) / entry_doubles(t) : 0;
+    return numbers > least ? (numbers - least) / TIE : 0;
 }
 
 static double *put_vector(double *to, const phys_vec *from)
@@ -65,9 +72,8 @@ static void put_rows(const struct flow_table *t, const struct system_part_fields
     }
 }
 
-/* Value i of entries in a format, as the part of the block has them. */
-static double *put_value(const struct flow_table *t, enum solve_format format, const void *entry,
-                         size_t i, double *to)
+/* Value i of the entries. */
+static double *put_value(const struct flow_table *t, const void *entry, size_t i, double *to)
 {
     struct solve_symmetric symmetric = {{0}, {0}};
     struct solve_columns n;
@@ -76,7 +82,7 @@ static double *put_value(const struct flow_table *t, enum solve_format format, c
         memcpy(to, (const phys_vec *)entry + i, sizeof(phys_vec));
         return to + 4;
     }
-    solve_entry_of(format, entry, i, &symmetric, &turn);
+    solve_entry_of(t->format, entry, i, &symmetric, &turn);
     solve_entry_columns(&symmetric, &turn, &n);
     for (int r = 0; r < 3; r++)
         for (int c = 0; c < 3; c++)
@@ -94,24 +100,29 @@ static double *put_place(const uint32_t place[3], double *to)
 static double *put_entry(const struct flow_table *t, const struct solve_values *values, size_t i,
                          const uint32_t place[3], double *to)
 {
-    return put_value(t, t->format, values->entry, i, put_place(place, to));
+    return put_value(t, values->entry, i, put_place(place, to));
 }
 
-static double *put_ties(const duite_call *call, const struct flow_table *t, uint32_t block,
-                        const struct flow_ties *ties, const phys_vec *value, double *to)
+static void put_corner(uint32_t block, const struct flow_ties *ties, uint32_t corner, double weight,
+                       double to[CORNER])
 {
-    const struct flow_table *tables = flow_of(call)->tables.block;
-    for (uint32_t i = 0, k = 0; i < ties->n; i++) {
-        uint32_t place[] = {ties->end[i][0], block, ties->end[i][1]};
-        while (i >= ties->n_inner && i - ties->n_inner >= ties->start[k + 1])
-            k++;
-        if (i >= ties->n_inner) {
-            place[1] = ties->other[k];
-            place[2] = tables[place[1]].n_halo + ties->far[i - ties->n_inner];
-        }
-        to = put_value(t, SOLVE_SPRINGS, value, i, put_place(place, to));
+    const uint32_t ghost = corner - ties->n_rows;
+    const bool own = corner < ties->n_rows;
+    to[CORNER_BLOCK] = own ? block : ties->other[ties->ghost_other[ghost]];
+    to[CORNER_ROW] = own ? corner : ties->ghost_row[ghost];
+    to[CORNER_WEIGHT] = weight;
+}
+
+static void put_ties(uint32_t block, const struct flow_ties *ties, const phys_vec *value,
+                     double *to)
+{
+    memset(to, 0, TIE * (size_t)ties->room.ties * sizeof *to);
+    for (uint32_t i = 0; i < ties->n; i++, to += TIE) {
+        for (int k = 0; k < SOLVE_TIE_CORNERS; k++)
+            if (ties->weight[i][k] != 0)
+                put_corner(block, ties, ties->corner[i][k], ties->weight[i][k], to + CORNER * k);
+        memcpy(to + TIE_VALUE, value + i, sizeof *value);
     }
-    return to;
 }
 
 static double *put_entries(const struct flow_table *t, uint32_t block,
@@ -136,15 +147,15 @@ static int system_part_body(const duite_call *call, const struct system_part_fie
     const void *value = flow_matrix_in(call, t, on->a);
     const struct solve_values values = solve_values_of(t->format, t->n, value);
     const struct flow_ties ties = flow_ties_open(on->tie_table);
-    const size_t numbers = duite_count(call, FLOW_INDEX_OF(system_part, saved));
     double *part = on->saved, *to = part + entries_at(t);
     put_rows(t, on, part);
     to = put_entries(t, on->args->block, &values, to);
-    to = put_ties(call, t, on->args->block, &ties, flow_tie_values(t, value), to);
-    for (; to < part + halo_at(t, room_of(t, numbers)); to += entry_doubles(t)) {
+    for (; to < part + ties_at(t); to += entry_doubles(t)) {
         memset(to, 0, entry_doubles(t) * sizeof *to);
         to[BLOCK] = -1;
     }
+    put_ties(on->args->block, &ties, flow_tie_values(t, value), to);
+    to = part + halo_at(t, ties.room.ties);
     for (uint32_t i = 0; i < t->n_halo; i++)
         *to++ = t->halo[i];
     return 0;
@@ -180,12 +191,19 @@ static void take_rows(struct solve_system *system, const struct flow_table *t, c
     }
 }
 
-/* The row of another block at a place: in its halo, or behind that of a tie. */
+/* The row of another block at a place in its halo. */
 static double row_there(const struct flow_table *t, const duite_param *part, double place)
 {
     const double *numbers = part->data;
-    return place < t->n_halo ? numbers[halo_at(t, room_of(t, part->count)) + (size_t)place]
-                             : place - t->n_halo;
+    return numbers[halo_at(t, room_of(t, part->count)) + (size_t)place];
+}
+
+/* N = scale (w w' + alpha I), by rows. */
+static void nine_of(double scale, const double value[4], double nine[SOLVE_NINE])
+{
+    for (int c = 0; c < 3; c++)
+        for (int d = 0; d < 3; d++)
+            nine[3 * c + d] = scale * (value[c] * value[d] + (c == d ? value[3] : 0));
 }
 
 /* Of block b, by the parts of all blocks. */
@@ -194,7 +212,7 @@ static void take_entries(struct solve_system *system, const duite_call *call,
 {
     const struct flow_table *tables = flow_of(call)->tables.block, *t = tables + b;
     const double *own = flow_numbers_of(parts, b), *entry = own + entries_at(t);
-    const double *end = own + halo_at(t, room_of(t, parts[b].count));
+    const double *end = own + ties_at(t);
     for (; entry < end; entry += entry_doubles(t)) {
         if (entry[BLOCK] < b)
             continue;
@@ -205,10 +223,109 @@ static void take_entries(struct solve_system *system, const duite_call *call,
         const size_t at = system->n_pairs++;
         system->end[at][0] = vertex_of(own, entry[HERE]);
         system->end[at][1] = vertex_of(there, row);
-        if (system->block)
-            memcpy(system->block[at], entry + VALUE, sizeof *system->block);
-        else
+        if (!system->block)
             memcpy(system->value[at], entry + VALUE, sizeof *system->value);
+        else if (t->format == SOLVE_SPRINGS)
+            nine_of(1, entry + VALUE, system->block[at]);
+        else
+            memcpy(system->block[at], entry + VALUE, sizeof *system->block);
+    }
+}
+
+/* ---- Ties on rank 0: all weights w_k of a tie and the value N are pairs with -w_k w_l N, and one
+ * with the ground, a held vertex behind all others, for what the weights do not add up to zero ----
+ */
+
+/* What the ties of all parts come to. */
+struct tied_pairs {
+    size_t n;
+    bool springs; /* each is a spring */
+    bool ground;  /* some are with the ground */
+};
+
+/* Whether there is a tie, and this is its lowest block. */
+static bool counts(const double *tie, uint32_t b)
+{
+    bool lowest = false;
+    for (int k = 0; k < SOLVE_TIE_CORNERS; k++) {
+        const double *corner = tie + CORNER * k;
+        if (corner[CORNER_WEIGHT] != 0 && corner[CORNER_BLOCK] < b)
+            return false;
+        lowest = lowest || corner[CORNER_WEIGHT] != 0;
+    }
+    return lowest;
+}
+
+/* What the weights add up to; as good as nothing is nothing. */
+static double sum_of_weights(const double *tie)
+{
+    double sum = 0;
+    for (int k = 0; k < SOLVE_TIE_CORNERS; k++)
+        sum += tie[CORNER * k + CORNER_WEIGHT];
+    return fabs(sum) > 1e-12 ? sum : 0;
+}
+
+static void count_tie(const double *tie, struct tied_pairs *pairs)
+{
+    const bool ground = sum_of_weights(tie) != 0;
+    for (int k = 0; k < SOLVE_TIE_CORNERS; k++) {
+        const double weight = tie[CORNER * k + CORNER_WEIGHT];
+        pairs->n += weight != 0 && ground;
+        for (int l = 0; l < k && weight != 0; l++) {
+            const double other = tie[CORNER * l + CORNER_WEIGHT];
+            pairs->n += other != 0;
+            pairs->springs = pairs->springs && (other == 0 || weight * other == -1);
+        }
+    }
+    pairs->springs = pairs->springs && !ground;
+    pairs->ground = pairs->ground || ground;
+}
+
+static void add_pair(struct solve_system *system, uint32_t a, uint32_t b, double scale,
+                     const double *tie)
+{
+    const size_t at = system->n_pairs++;
+    system->end[at][0] = a;
+    system->end[at][1] = b;
+    if (system->block)
+        nine_of(scale, tie + TIE_VALUE, system->block[at]);
+    else
+        memcpy(system->value[at], tie + TIE_VALUE, sizeof *system->value);
+}
+
+static void add_tie(struct solve_system *system, uint32_t ground, const duite_param *parts,
+                    const double *tie)
+{
+    const double sum = sum_of_weights(tie);
+    uint32_t vertex[SOLVE_TIE_CORNERS] = {0};
+    for (int k = 0; k < SOLVE_TIE_CORNERS; k++) {
+        const double *corner = tie + CORNER * k, weight = corner[CORNER_WEIGHT];
+        if (weight == 0)
+            continue;
+        vertex[k] =
+            vertex_of(flow_numbers_of(parts, (size_t)corner[CORNER_BLOCK]), corner[CORNER_ROW]);
+        if (sum != 0)
+            add_pair(system, vertex[k], ground, weight * sum, tie);
+        for (int l = 0; l < k; l++)
+            if (tie[CORNER * l + CORNER_WEIGHT] != 0)
+                add_pair(system, vertex[l], vertex[k], -weight * tie[CORNER * l + CORNER_WEIGHT],
+                         tie);
+    }
+}
+
+/* Counts the ties of all parts or, where there is a system, adds them. */
+static void each_tie(const struct flow *flow, const duite_param *parts, struct tied_pairs *pairs,
+                     struct solve_system *system)
+{
+    for (uint32_t b = 0; b < flow->tables.n_blocks; b++) {
+        const struct flow_table *t = flow->tables.block + b;
+        const double *tie = flow_numbers_of(parts, b) + ties_at(t);
+        const double *end = tie + TIE * room_of(t, parts[b].count);
+        for (; tie < end; tie += TIE)
+            if (counts(tie, b) && system)
+                add_tie(system, flow->n_vertices, parts, tie);
+            else if (counts(tie, b))
+                count_tie(tie, pairs);
     }
 }
 
@@ -216,13 +333,14 @@ static int gather(const duite_call *call, const struct system_save_fields *on,
                   struct solve_system *system, struct cloth_error *error)
 {
     const struct flow *flow = flow_of(call);
-    const enum solve_pairs pairs =
-        flow->model->format == SOLVE_SPRINGS ? SOLVE_PAIRS_OF_SPRINGS : SOLVE_PAIRS_OF_BLOCKS;
-    size_t entries = 0;
+    struct tied_pairs tied = {.springs = flow->model->format == SOLVE_SPRINGS};
+    each_tie(flow, on->saved, &tied, NULL);
+    size_t entries = tied.n;
     for (uint32_t b = 0; b < flow->tables.n_blocks; b++)
-        entries += (size_t)flow->tables.block[b].n_entries + flow->tables.block[b].n_cut_entries +
-                   room_of(flow->tables.block + b, on->saved[b].count);
-    const int code = solve_system_make(system, flow->n_vertices, entries, pairs, error);
+        entries += (size_t)flow->tables.block[b].n_entries + flow->tables.block[b].n_cut_entries;
+    const enum solve_pairs pairs = tied.springs ? SOLVE_PAIRS_OF_SPRINGS : SOLVE_PAIRS_OF_BLOCKS;
+    const int code =
+        solve_system_make(system, flow->n_vertices + tied.ground, entries, pairs, error);
     if (code)
         return code;
     system->h = on->args->h;
@@ -231,6 +349,7 @@ static int gather(const duite_call *call, const struct system_save_fields *on,
         take_rows(system, flow->tables.block + b, flow_numbers_of(on->saved, b));
         take_entries(system, call, on->saved, b);
     }
+    each_tie(flow, on->saved, NULL, system);
     return solve_system_sort(system, error);
 }
 

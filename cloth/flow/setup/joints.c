@@ -134,17 +134,19 @@ struct flow_tie flow_joints_tie(const struct flow_source *source, const struct f
     const struct flow_particles *particles = &source->particles;
     const struct flow_spring *spring = &timed->spring;
     const uint32_t vertex[2] = {spring->a, spring->b};
-    struct flow_tie tie = {.stiffness = spring->stiffness,
+    struct flow_tie tie = {.at = {.n = 2, .weight = {1, -1}},
+                           .stiffness = spring->stiffness,
                            .damping = spring->damping,
                            .length = spring->length,
                            .begin = timed->begin,
                            .end = timed->end};
     for (int end = 0; end < 2; end++) {
         const uint32_t place = blocks->place[vertex[end]];
-        tie.block[end] = flow_source_block(blocks, place, 0);
-        tie.row[end] = place - blocks->start[tie.block[end]];
+        tie.at.block[end] = flow_source_block(blocks, place, 0);
+        tie.at.row[end] = place - blocks->start[tie.at.block[end]];
         const uint32_t root = flow_root(&particles->welds, vertex[end]);
-        tie.held[end] = !particles->free[root];
+        if (!particles->free[root])
+            tie.at.held |= (unsigned char)(1 << end);
         tie.piece[end] = particles->piece ? particles->piece[root] : 0;
     }
     return tie;

@@ -60,10 +60,7 @@ int flow_coarse_initialise(struct flow_state *state)
 static void put(const struct flow *flow, uint32_t p, uint32_t q, const double *matrix,
                 double *coupling)
 {
-    bool joined = p == q;
-    for (uint32_t i = flow->patch_first[p]; i < flow->patch_first[p + 1]; i++)
-        joined = joined || flow->patch_neighbour[i] == q;
-    if (joined)
+    if (flow_patches_joined(flow, p, q))
         memcpy(coupling + SOLVE_COUPLING * flow_coupling_at(flow, p, q), matrix,
                SOLVE_COUPLING * sizeof *matrix);
 }
@@ -87,52 +84,73 @@ FLOW_KERNEL(couple, FLOW_CG, struct flow_block_args,
             (R(table), R(a), R(basis), R(basis_ghosts), W(coupling), IF_MADE(tie_table),
              TIED(tie_basis)))
 
-/* What is made of ties. */
-struct coupled_ties {
-    const struct flow *flow;
-    struct solve_block springs; /* the block, in the format of ties */
-    const phys_vec *value;
-    double *coupling;
+/* A tie as the coarse space sees it: of each patch that it has corners in, P' of its weights. */
+struct coupled_tie {
+    uint32_t n, patch[SOLVE_TIE_CORNERS];
+    struct solve_lifted lifted[SOLVE_TIE_CORNERS];
 };
 
-static void add_to(const struct coupled_ties *m, uint32_t p, uint32_t q, const double *matrix)
+static uint32_t patch_of_corner(const struct flow *flow, const struct flow_ties *ties,
+                                uint32_t block, uint32_t corner)
 {
-    double *to = m->coupling + SOLVE_COUPLING * flow_coupling_at(m->flow, p, q);
-    for (int i = 0; i < SOLVE_COUPLING; i++)
-        to[i] += matrix[i];
+    if (corner < ties->n_rows)
+        return flow_patch_of(flow, block, corner);
+    const uint32_t ghost = corner - ties->n_rows;
+    return flow_patch_of(flow, ties->other[ties->ghost_other[ghost]], ties->ghost_row[ghost]);
 }
 
-/* Adds tie i as its row `row` of patch p sees it: on the diagonal, and beside it where the other
- * end's patch q is the same or a later one. other: the basis there. */
-static void couple_tie(const struct coupled_ties *m, uint32_t i, uint32_t row, uint32_t p,
-                       uint32_t q, const phys_vec *basis, const phys_vec *other)
+static void see_tie(const struct flow *flow, const struct flow_ties *ties, uint32_t i,
+                    const struct couple_fields *on, struct coupled_tie *tie)
 {
-    const uint32_t end[1][2] = {{row, 0}};
-    double own[SOLVE_COUPLING] = {0}, off_diagonal[SOLVE_COUPLING] = {0};
-    solve_couple_cut(&m->springs, m->value, 1, &i, end, basis, other, own, off_diagonal);
-    add_to(m, p, p, own);
-    if (q >= p)
-        add_to(m, p, q, off_diagonal);
+    tie->n = 0;
+    for (int k = 0; k < SOLVE_TIE_CORNERS; k++) {
+        const uint32_t corner = ties->corner[i][k];
+        uint32_t at = 0;
+        if (ties->weight[i][k] == 0)
+            continue;
+        const uint32_t patch = patch_of_corner(flow, ties, on->args->block, corner);
+        while (at < tie->n && tie->patch[at] != patch)
+            at++;
+        if (at == tie->n) {
+            tie->patch[tie->n++] = patch;
+            tie->lifted[at] = (struct solve_lifted){{0}};
+        }
+        solve_lift_corner(ties->weight[i][k],
+                          flow_tie_row(ties, corner, on->basis, on->tied_tie_basis, 0),
+                          tie->lifted + at);
+    }
 }
 
-static void couple_ties(const struct coupled_ties *m, uint32_t block,
+/* Whether the pattern has room for what couples all patches of the tie. */
+static bool fits(const struct flow *flow, const struct coupled_tie *tie)
+{
+    bool all = true;
+    for (uint32_t k = 0; k < tie->n; k++)
+        for (uint32_t l = 0; l < k; l++)
+            all = all && flow_patches_joined(flow, tie->patch[k], tie->patch[l]);
+    return all;
+}
+
+/* Adds what ties make of C: each block that of its own patches, as rows. A tie that leads to
+ * patches beyond the pattern adds what it has on the diagonal alone, so that C stays definite. */
+static void couple_ties(const struct flow *flow, const phys_vec *value,
                         const struct couple_fields *on)
 {
     const struct flow_ties ties = flow_ties_open(on->tie_table);
-    const phys_vec *basis = on->basis;
-    for (uint32_t i = 0; i < ties.n_inner; i++) {
-        const uint32_t a = ties.end[i][0], b = ties.end[i][1];
-        const uint32_t p = flow_patch_of(m->flow, block, a), q = flow_patch_of(m->flow, block, b);
-        couple_tie(m, i, a, p, q, basis, basis + b);
-        couple_tie(m, i, b, q, p, basis, basis + a);
-    }
-    for (uint32_t k = 0; k < ties.n_others; k++)
-        for (uint32_t j = ties.start[k]; j < ties.start[k + 1]; j++) {
-            const uint32_t i = ties.n_inner + j, row = ties.end[i][0];
-            couple_tie(m, i, row, flow_patch_of(m->flow, block, row),
-                       flow_patch_of(m->flow, ties.other[k], ties.far[j]), basis,
-                       flow_rows_of(on->tied_tie_basis, k) + ties.place[k] + (j - ties.start[k]));
+    const uint32_t first = flow->patches * on->args->block;
+    for (uint32_t i = 0; i < ties.n; i++) {
+        struct coupled_tie tie;
+        see_tie(flow, &ties, i, on, &tie);
+        const bool whole = fits(flow, &tie);
+        for (uint32_t k = 0; k < tie.n; k++) {
+            const uint32_t p = tie.patch[k];
+            for (uint32_t l = 0; l < tie.n && p >= first && p < first + flow->patches; l++)
+                if (l == k || (whole && tie.patch[l] > p))
+                    solve_couple_lifted(value + i, tie.lifted + k, tie.lifted + l,
+                                        on->coupling + SOLVE_COUPLING *
+                                                           flow_coupling_at(flow, p, tie.patch[l]));
         }
+    }
 }
 
 static int couple_body(const duite_call *call, const struct couple_fields *on)
@@ -142,7 +160,6 @@ static int couple_body(const duite_call *call, const struct couple_fields *on)
     const phys_vec *values = flow_matrix_in(call, t, on->a);
     const struct solve_patches patches = solve_patches_of(t->n, flow->patches);
     const uint32_t block = on->args->block, first = patches.n * block;
-    struct coupled_ties tied = {flow, t->matrix, flow_tie_values(t, values), on->coupling};
     struct solve_couplings own, cut;
     if (on->tie_table)
         memset(on->coupling, 0,
@@ -162,8 +179,7 @@ static int couple_body(const duite_call *call, const struct couple_fields *on)
     for (uint32_t k = 0; k < patches.n; k++)
         for (uint32_t l = k; l < patches.n; l++)
             put(flow, first + k, first + l, own.matrix[k][l], on->coupling);
-    tied.springs.format = SOLVE_SPRINGS;
-    couple_ties(&tied, block, on);
+    couple_ties(flow, flow_tie_values(t, values), on);
     return 0;
 }
 
@@ -245,13 +261,21 @@ void flow_coarse_advance_ghosts(const struct flow_preconditioner *m, uint32_t ne
     }
 }
 
-void flow_coarse_advance_row(const struct flow_preconditioner *m, uint32_t block, uint32_t row,
-                             const phys_vec *basis, const struct solve_scalars *scalars,
-                             const double *s, phys_vec *z, phys_vec *p)
+void flow_coarse_advance_ties(const struct flow_preconditioner *m, const struct flow_ties *ties,
+                              uint32_t k, const struct solve_scalars *scalars, const double *s,
+                              const phys_vec *basis, phys_vec *z, phys_vec *p)
 {
-    const uint32_t here = 0, patch = flow_patch_of(m->flow, block, row);
-    solve_advance_ghosts_coarse(1, scalars->alpha, scalars->beta, s, &here, basis,
-                                m->motion + solve_coarse_at(&m->flow->pattern, patch), z, p);
+    const uint32_t block = ties->other[k], n = ties->start[k + 1] - ties->start[k];
+    const uint32_t *row = ties->ghost_row + ties->start[k];
+    const struct solve_patches patches =
+        solve_patches_of(m->flow->tables.block[block].n, m->flow->patches);
+    for (uint32_t patch = 0, i = 0; patch < patches.n; patch++) {
+        const uint32_t from = i;
+        while (i < n && row[i] < patches.start[patch + 1])
+            i++;
+        solve_advance_ghosts_coarse(i - from, scalars->alpha, scalars->beta, s, ties->at + from,
+                                    basis + from, motion_of(m, block, patch), z + from, p + from);
+    }
 }
 
 /* ---- In the task of the scalars ---- */

@@ -24,7 +24,7 @@ struct pass {
     struct flow_preconditioner m;
     struct flow_ties ties;
     struct solve_ties joined;               /* that they make of the matrix */
-    phys_vec *z_ties, *p_ties;              /* of their other ends */
+    phys_vec *z_ties, *p_ties;              /* of their ghosts */
     const duite_param *tied_q, *tied_basis; /* of the blocks of these; tied_basis: if coarse */
 };
 
@@ -142,7 +142,7 @@ static void advance_ghosts(const struct pass *pass)
     }
 }
 
-/* The first half of a pass for the other ends of ties. */
+/* The first half of a pass for the ghosts of ties. */
 static void advance_ties(const struct pass *pass)
 {
     const struct flow_ties *ties = &pass->ties;
@@ -151,14 +151,11 @@ static void advance_ties(const struct pass *pass)
         const uint32_t from = ties->start[k], n = ties->start[k + 1] - from;
         const double *s = flow_numbers_of(pass->tied_q, k) + 3 * (size_t)ties->place[k];
         phys_vec *z = pass->z_ties + from, *p = pass->p_ties + from;
-        if (!pass->m.motion) {
+        if (pass->m.motion)
+            flow_coarse_advance_ties(&pass->m, ties, k, now, s,
+                                     flow_rows_of(pass->tied_basis, k) + ties->place[k], z, p);
+        else
             solve_advance_ghosts(n, now->alpha, now->beta, s, ties->at, z, p);
-            continue;
-        }
-        const phys_vec *basis = flow_rows_of(pass->tied_basis, k) + ties->place[k];
-        for (uint32_t i = 0; i < n; i++)
-            flow_coarse_advance_row(&pass->m, ties->other[k], ties->far[from + i], basis + i, now,
-                                    s + 3 * (size_t)i, z + i, p + i);
     }
 }
 
@@ -236,7 +233,7 @@ static void begin_again(struct pass *pass, double dots[SOLVE_DOTS])
     const struct solve_rows *rows = &pass->rows;
     finish(pass);
     solve_again(pass->table.n, rows->r, rows->p, rows->q);
-    const size_t ghosts = (size_t)pass->table.n_ghosts + pass->ties.room;
+    const size_t ghosts = (size_t)pass->table.n_ghosts + pass->ties.room.rows;
     memset(pass->z_ghosts, 0, 2 * ghosts * sizeof *pass->z_ghosts);
     if (pass->m.factor)
         memset(rows->z, 0, pass->table.n * sizeof *rows->z);
@@ -286,7 +283,7 @@ static void open_pass(const duite_call *call, const struct cg_pass_fields *on, s
     pass->tied_q = on->tied_tie_q;
     pass->tied_basis = NULL;
     pass->z_ties = pass->p_ghosts + pass->table.n_ghosts;
-    pass->p_ties = pass->z_ties + pass->ties.room;
+    pass->p_ties = pass->z_ties + pass->ties.room.rows;
     pass->joined =
         flow_ties_solved(&pass->ties, flow_tie_values(&pass->table, pass->values), pass->p_ties);
 }

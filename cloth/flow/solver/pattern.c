@@ -57,10 +57,11 @@ static uint32_t *insert_tied(const struct flow *flow, uint32_t b, uint32_t p, ui
                              uint32_t *end)
 {
     for (const struct flow_tie *tie = flow->tie; tie < flow->tie + flow->n_ties; tie++) {
-        if (tie->block[0] != b && tie->block[1] != b)
+        const struct flow_tie_corners *at = &tie->at;
+        if (at->block[0] != b && at->block[1] != b)
             continue;
-        const uint32_t patch[] = {flow_patch_of(flow, tie->block[0], tie->row[0]),
-                                  flow_patch_of(flow, tie->block[1], tie->row[1])};
+        const uint32_t patch[] = {flow_patch_of(flow, at->block[0], at->row[0]),
+                                  flow_patch_of(flow, at->block[1], at->row[1])};
         for (int k = 0; k < 2; k++)
             if (patch[k] == p && patch[1 - k] != p)
                 end = insert(from, end, patch[1 - k]);
@@ -104,6 +105,14 @@ static size_t count_later(const struct flow *flow, uint32_t p, uint32_t end)
     for (uint32_t i = flow->patch_first[p]; i < flow->patch_first[p + 1]; i++)
         count += flow->patch_neighbour[i] > p && flow->patch_neighbour[i] < end;
     return count;
+}
+
+bool flow_patches_joined(const struct flow *flow, uint32_t p, uint32_t q)
+{
+    uint32_t i = flow->patch_first[p];
+    while (i < flow->patch_first[p + 1] && flow->patch_neighbour[i] != q)
+        i++;
+    return p == q || i < flow->patch_first[p + 1];
 }
 
 size_t flow_coupling_at(const struct flow *flow, uint32_t p, uint32_t q)

@@ -18,9 +18,9 @@
 int flow_pass_start(struct flow_state *state, uint32_t block, double guess);
 int flow_pass_fork(struct flow_state *state);
 
-/* Fork what shows a block's ends of ties, if it has any into other blocks: what the first pass of a
- * solve reads, or after a pass of a recorded round the next one. What shows the coarse functions
- * there, of all blocks, once a solve. (ties.c) */
+/* Fork what shows a block's corners of ties, if it has any into other blocks: what the first pass
+ * of a solve reads, or after a pass of a recorded round the next one. What shows the coarse
+ * functions there, of all blocks, once a solve. (ties.c) */
 int flow_ties_pack_start(struct flow_state *state, uint32_t block, bool guess);
 int flow_ties_pack(struct flow_state *state, uint32_t block);
 int flow_ties_show_basis(struct flow_state *state);
@@ -62,10 +62,10 @@ void flow_coarse_prolong(const struct flow_preconditioner *m, phys_vec *s);
 void flow_coarse_advance_ghosts(const struct flow_preconditioner *m, uint32_t neighbour,
                                 const struct solve_scalars *scalars, const double *halo,
                                 const uint32_t *at, phys_vec *z, phys_vec *p);
-/* The same for one row of another block: with its basis. */
-void flow_coarse_advance_row(const struct flow_preconditioner *m, uint32_t block, uint32_t row,
-                             const phys_vec *basis, const struct solve_scalars *scalars,
-                             const double *s, phys_vec *z, phys_vec *p);
+/* The same for the ghosts of ties of the k-th other block, s and basis there. */
+void flow_coarse_advance_ties(const struct flow_preconditioner *m, const struct flow_ties *ties,
+                              uint32_t k, const struct solve_scalars *scalars, const double *s,
+                              const phys_vec *basis, phys_vec *z, phys_vec *p);
 /* P' q of each patch. */
 void flow_coarse_restrict(const struct flow_preconditioner *m, const phys_vec *q, double *right);
 
@@ -92,6 +92,9 @@ static inline size_t flow_motion_doubles(const struct flow *flow)
 
 /* The patch of a row of a block. */
 uint32_t flow_patch_of(const struct flow *flow, uint32_t block, uint32_t row);
+
+/* Whether the pattern has room for what couples two patches, or a patch with itself. */
+bool flow_patches_joined(const struct flow *flow, uint32_t p, uint32_t q);
 
 /* For patches p <= q: the number of 9 x 9 blocks before theirs in the coupling of p's block. That
  * has for each patch its own block and those with its neighbours behind it, of which q is one. */

@@ -125,7 +125,7 @@ static void make(const struct making *m)
         flow_elements_assemble(m->call, t, m->h, m->push, &sight, m->b, m->sums);
     all_springs(m);
     if (m->view.tie_table)
-        flow_ties_system(&m->view, m->h, m->push, flow_of(m->call)->model->full_slope, m->b,
+        flow_ties_system(flow_of(m->call), &m->view, m->h, m->push, m->b,
                          (phys_vec *)m->values + flow_value_rows(m->t));
     if (m->sums)
         end_matrix(m, &cut);

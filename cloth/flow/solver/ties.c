@@ -1,13 +1,13 @@
-/* What a solve shows of the ends of ties (cloth/flow/state/ties.h): rows of s to the blocks that
+/* What a solve shows of the corners of ties (cloth/flow/state/ties.h): rows of s to the blocks that
  * they lead to, after each pass, and once a solve the coarse functions there. */
 #include "cloth/flow/solver/solver.h"
 
-/* Rows of the ends that others see; zero where there are none. */
+/* Rows that others see; zero where there are none. */
 static void pack(const struct flow_ties *ties, const phys_vec *y, double *to)
 {
-    memset(to, 0, 3 * (size_t)ties->room * sizeof *to);
-    for (uint32_t i = ties->n_inner; i < ties->n; i++, to += 3)
-        memcpy(to, y + ties->end[i][0], 3 * sizeof *to);
+    solve_pack(ties->n_shown, ties->shown, y, to);
+    memset(to + 3 * (size_t)ties->n_shown, 0,
+           3 * (size_t)(ties->room.rows - ties->n_shown) * sizeof *to);
 }
 
 /* What the first pass of a solve reads; q: what the fork gives for it. */
@@ -36,9 +36,9 @@ static int tie_show_basis_body(const duite_call *call, const struct tie_show_bas
 {
     const struct flow_ties ties = flow_ties_open(on->tie_table);
     (void)call;
-    memset(on->tie_basis, 0, ties.room * sizeof *on->tie_basis);
-    for (uint32_t i = ties.n_inner; i < ties.n; i++)
-        on->tie_basis[i - ties.n_inner] = on->basis[ties.end[i][0]];
+    memset(on->tie_basis, 0, ties.room.rows * sizeof *on->tie_basis);
+    for (uint32_t i = 0; i < ties.n_shown; i++)
+        on->tie_basis[i] = on->basis[ties.shown[i]];
     return 0;
 }
 

@@ -1,109 +1,42 @@
-/* The tick at which a step begins decides which ties it has. So every rank has the same ties, and a
- * repeated step has them again.
+/* The tick at which a step begins decides which timed joints it has. So every rank has the same
+ * joints, and a repeated step has them again.
  *
- * In reading order: memory, what ties ask of the blocks, the choice, the tables of the blocks, what
- * others see of them. */
+ * In reading order: what blocks have of the joints of a step, the choice, the tables of the blocks,
+ * what others see of them. */
 #include "cloth/flow/bodies.h"
 #include "cloth/flow/solver/solve.h"
 
-#include "cloth/base/memory.h"
-#include "cloth/base/order.h"
+/* ---- The joints of a step ---- */
 
-#include <stdlib.h>
-
-/* ---- Memory ---- */
-
-static void take(struct flow_tied_blocks *blocks, size_t n_blocks, size_t n_ties,
-                 struct cloth_error *trouble)
+static struct flow_tie_list joints_at(const struct flow *flow, uint64_t tick)
 {
-    blocks->room = cloth_alloc(n_blocks, sizeof *blocks->room, trouble);
-    blocks->first = cloth_alloc(n_blocks + 1, sizeof *blocks->first, trouble);
-    blocks->other = cloth_alloc(2 * n_ties, sizeof *blocks->other, trouble);
+    return (struct flow_tie_list){.n_joints = flow->n_ties, .joint = flow->tie, .tick = tick};
 }
 
-void flow_ties_take(struct flow_state *state)
+/* Marks the blocks that have any of those that act. */
+static void mark_tied(const struct flow *flow, uint64_t tick, struct flow_tie_record *record)
 {
-    const struct flow_head *head = &state->head;
-    if (!head->n_ties)
-        return;
-    state->tied.parent =
-        cloth_alloc((size_t)head->n_pieces + 1, sizeof *state->tied.parent, &state->flow->trouble);
-    state->tied.group =
-        cloth_alloc(head->n_pieces, sizeof *state->tied.group, &state->flow->trouble);
-    take(&state->tied.now, head->n_blocks, head->n_ties, &state->flow->trouble);
-    take(&state->tied.next, head->n_blocks, head->n_ties, &state->flow->trouble);
+    memset(record, 0, flow->tables.n_blocks * sizeof *record);
+    for (const struct flow_tie *tie = flow->tie; tie < flow->tie + flow->n_ties; tie++)
+        for (uint32_t k = 0; k < tie->at.n && flow_tie_acts(tie, tick); k++)
+            record[tie->at.block[k]].n_ties = 1;
 }
 
-static void drop(struct flow_tied_blocks *blocks)
+/* What blocks say of the joints that act. */
+static void say_joints(const struct flow *flow, uint64_t tick, struct flow_tied *tied)
 {
-    free(blocks->room);
-    free(blocks->first);
-    free(blocks->other);
-}
-
-void flow_ties_free(struct flow_state *state)
-{
-    free(state->tied.parent);
-    free(state->tied.group);
-    drop(&state->tied.now);
-    drop(&state->tied.next);
-    state->tied = (struct flow_tied){0};
-}
-
-/* ---- What ties ask of the blocks ---- */
-
-static bool is_shared(const struct flow_tie *tie, uint64_t tick)
-{
-    return flow_tie_acts(tie, tick) && tie->block[0] != tie->block[1];
-}
-
-/* How many ties each block has, in whole classes. */
-static void find_room(const struct flow *flow, uint64_t tick, uint32_t *room)
-{
-    const uint32_t n_blocks = flow->tables.n_blocks;
-    memset(room, 0, n_blocks * sizeof *room);
-    for (const struct flow_tie *tie = flow->tie; tie < flow->tie + flow->n_ties; tie++) {
-        room[tie->block[0]] += flow_tie_acts(tie, tick);
-        room[tie->block[1]] += is_shared(tie, tick);
+    const struct flow_tie_list list = joints_at(flow, tick);
+    struct flow_tie_records *said = &tied->said;
+    uint32_t n = 0;
+    mark_tied(flow, tick, said->of);
+    for (uint32_t b = 0; b < flow->tables.n_blocks; b++) {
+        said->first[b] = n;
+        if (said->of[b].n_ties) /* there is room for all links */
+            flow_ties_count(&list, b, tied->scratch, said->max_links - n, said->of + b,
+                            said->link + n);
+        n += said->of[b].n_links;
     }
-    for (uint32_t b = 0; b < n_blocks; b++)
-        room[b] = (room[b] + FLOW_TIE_CLASS - 1) / FLOW_TIE_CLASS * FLOW_TIE_CLASS;
-}
-
-/* Sorts the others of each block and keeps each once. first: where those of each block end; then,
- * where they begin. */
-static void keep_once(uint32_t n_blocks, struct flow_tied_blocks *to)
-{
-    uint32_t from = 0, kept = 0;
-    for (uint32_t b = 0; b < n_blocks; b++) {
-        const uint32_t end = to->first[b], first = kept;
-        qsort(to->other + from, end - from, sizeof *to->other, cloth_compare_items_u32);
-        for (; from < end; from++)
-            if (kept == first || to->other[kept - 1] != to->other[from])
-                to->other[kept++] = to->other[from];
-        to->first[b] = first;
-    }
-    to->first[n_blocks] = kept;
-}
-
-/* Who shares ties with whom. */
-static void find_others(const struct flow *flow, uint64_t tick, struct flow_tied_blocks *to)
-{
-    const uint32_t n_blocks = flow->tables.n_blocks;
-    uint32_t sum = 0;
-    memset(to->first, 0, ((size_t)n_blocks + 1) * sizeof *to->first);
-    for (uint32_t i = 0; i < flow->n_ties; i++)
-        for (int end = 0; end < 2; end++)
-            to->first[flow->tie[i].block[end]] += is_shared(flow->tie + i, tick);
-    for (uint32_t b = 0; b < n_blocks; b++) {
-        const uint32_t n = to->first[b];
-        to->first[b] = sum;
-        sum += n;
-    }
-    for (uint32_t i = 0; i < flow->n_ties; i++)
-        for (int end = 0; end < 2 && is_shared(flow->tie + i, tick); end++)
-            to->other[to->first[flow->tie[i].block[end]]++] = flow->tie[i].block[1 - end];
-    keep_once(n_blocks, to);
+    said->first[flow->tables.n_blocks] = n;
 }
 
 /* ---- The choice ---- */
@@ -122,27 +55,6 @@ static void find_interval(const struct flow *flow, uint64_t tick, struct flow_ti
                 tied->to = events[i];
         }
     }
-}
-
-/* Makes the next ones those that count. *recorded: the recorded round still serves. */
-static void fit(struct flow_state *state, bool *recorded)
-{
-    struct flow_tied *tied = &state->tied;
-    struct flow_tied_blocks *now = &tied->now, *next = &tied->next;
-    const size_t n_blocks = state->flow->tables.n_blocks;
-    *recorded = !memcmp(now->room, next->room, n_blocks * sizeof *now->room) &&
-                !memcmp(now->first, next->first, (n_blocks + 1) * sizeof *now->first) &&
-                !memcmp(now->other, next->other, now->first[n_blocks] * sizeof *now->other);
-    if (!*recorded && state->solve.generation) {
-        duite_graph_free(state->rt, state->solve); /* a failure is returned by the next fork */
-        state->solve = (duite_graph){0};
-    }
-    for (uint32_t b = 0; b < n_blocks; b++)
-        if (now->room[b] != next->room[b])
-            flow_objects_fit(state, b, next->room[b]);
-    const struct flow_tied_blocks before = *now;
-    *now = *next;
-    *next = before;
 }
 
 /* ---- What ties make of free pieces ---- */
@@ -182,24 +94,32 @@ static int set_groups(struct flow_state *state)
 /* ---- The tables of the blocks ---- */
 
 struct tie_args {
-    uint32_t block, room;
+    uint32_t block;
+    struct flow_tie_room room;
     uint64_t tick;
 };
 
-FLOW_KERNEL(tie, FLOW_NO_PART, struct tie_args, (R(table), W(tie_table)))
+FLOW_KERNEL(tie, FLOW_NO_PART, struct tie_args, (R(table), R(tie_links), W(tie_table)))
 static int tie_body(const duite_call *call, const struct tie_fields *on)
 {
-    const struct flow *flow = flow_of(call);
     const struct flow_table table = flow_table_in(call, on->table);
+    const struct flow_tie_list list = joints_at(flow_of(call), on->args->tick);
+    const uint32_t(*links)[2] = (const uint32_t(*)[2])on->tie_links;
     const struct flow_ties_of of = {.block = on->args->block,
-                                    .room = on->args->room,
-                                    .tick = on->args->tick,
-                                    .n = flow->n_ties,
+                                    .n_rows = table.n,
                                     .n_halo = table.n_halo,
-                                    .tie = flow->tie,
-                                    .halo = table.halo};
-    flow_ties_make(&of, on->tie_table);
+                                    .n_others = links[0][0],
+                                    .halo = table.halo,
+                                    .others = links + 1,
+                                    .list = &list,
+                                    .room = on->args->room};
+    flow_ties_make(&of, on->tie_table); /* the room is for them */
     return 0;
+}
+
+static bool is_empty(const struct flow_tie_room *room)
+{
+    return !room->ties && !room->others;
 }
 
 /* Of all blocks at first, then of those that have ties or had some. */
@@ -210,7 +130,7 @@ static int fork_tables(struct flow_state *state, bool all)
     int code = DUITE_OK;
     for (; args.block < state->flow->tables.n_blocks && !code; args.block++) {
         args.room = tied->now.room[args.block];
-        if (all || args.room || tied->next.room[args.block])
+        if (all || !is_empty(&args.room) || !is_empty(tied->next.room + args.block))
             code = flow_fork_one(state, &flow_kernel_tie, &args);
     }
     return code;
@@ -226,19 +146,14 @@ int flow_ties_choose(struct flow_state *state)
     struct flow_tied *tied = &state->tied;
     const uint64_t tick = state->attempt.begin;
     const bool first = !tied->to;
-    bool recorded;
     if (flow_ties_stay(state, tick))
         return DUITE_OK;
     find_interval(state->flow, tick, tied);
-    find_room(state->flow, tick, tied->next.room);
-    find_others(state->flow, tick, &tied->next);
-    fit(state, &recorded);
-    int code = set_groups(state);
+    say_joints(state->flow, tick, tied);
+    int code = flow_ties_adopt(state);
     if (!code)
-        code = fork_tables(state, first);
-    if (code || recorded || !model_is_implicit(state->flow->model))
-        return code;
-    return flow_cg_record(state);
+        code = set_groups(state);
+    return code ? code : fork_tables(state, first);
 }
 
 bool flow_ties_changed(const struct flow_state *state)
@@ -271,10 +186,10 @@ static int tie_show_body(const duite_call *call, const struct tie_show_fields *o
 {
     const struct flow_ties ties = flow_ties_open(on->tie_table);
     (void)call;
-    memset(on->tie_halo, 0, 2 * (size_t)ties.room * sizeof *on->tie_halo);
-    for (uint32_t i = ties.n_inner; i < ties.n; i++) {
-        on->tie_halo[i - ties.n_inner] = on->x[ties.end[i][0]];
-        on->tie_halo[ties.room + i - ties.n_inner] = on->v[ties.end[i][0]];
+    memset(on->tie_halo, 0, 2 * (size_t)ties.room.rows * sizeof *on->tie_halo);
+    for (uint32_t i = 0; i < ties.n_shown; i++) {
+        on->tie_halo[i] = on->x[ties.shown[i]];
+        on->tie_halo[ties.room.rows + i] = on->v[ties.shown[i]];
     }
     return 0;
 }

@@ -32,19 +32,31 @@ static size_t ghosts(const struct flow_state *state, uint32_t block)
     return table_of(state, block)->n_ghosts;
 }
 
-static size_t tie_room(const struct flow_state *state, uint32_t block)
+static struct flow_tie_room tie_room(const struct flow_state *state, uint32_t block)
 {
-    return state->tied.now.room ? state->tied.now.room[block] : 0;
+    return state->tied.now.room ? state->tied.now.room[block] : (struct flow_tie_room){0};
+}
+
+static size_t tie_rows(const struct flow_state *state, uint32_t block)
+{
+    return tie_room(state, block).rows;
+}
+
+/* The first says how many. */
+static size_t tie_links(const struct flow_state *state, uint32_t block)
+{
+    return 1 + (size_t)tie_room(state, block).others;
 }
 
 static size_t ghosts_tied(const struct flow_state *state, uint32_t block)
 {
-    return ghosts(state, block) + tie_room(state, block);
+    return ghosts(state, block) + tie_rows(state, block);
 }
 
 static size_t tie_bytes(const struct flow_state *state, uint32_t block)
 {
-    return flow_ties_bytes(table_of(state, block)->n_halo, (uint32_t)tie_room(state, block));
+    const struct flow_tie_room room = tie_room(state, block);
+    return flow_ties_bytes(table_of(state, block)->n, &room);
 }
 
 static size_t watched(const struct flow_state *state, uint32_t block)
@@ -54,7 +66,7 @@ static size_t watched(const struct flow_state *state, uint32_t block)
 
 static size_t saved(const struct flow_state *state, uint32_t block)
 {
-    return flow_system_doubles(table_of(state, block), tie_room(state, block));
+    return flow_system_doubles(table_of(state, block), tie_room(state, block).ties);
 }
 
 static size_t table_bytes(const struct flow_state *state, uint32_t block)
@@ -68,7 +80,7 @@ static size_t matrix(const struct flow_state *state, uint32_t block)
 {
     const struct flow_table *t = table_of(state, block);
     const size_t filter = model_is_filtered(state->flow->model) ? 4 * (size_t)t->n : 0;
-    return 4 * (flow_diagonal_rows(t) + flow_value_rows(t) + tie_room(state, block)) + filter;
+    return 4 * (flow_diagonal_rows(t) + flow_value_rows(t) + tie_room(state, block).ties) + filter;
 }
 
 static size_t factor(const struct flow_state *state, uint32_t block)
@@ -270,7 +282,8 @@ static enum flow_life is_state_of_guess(const struct model *model)
 
 #define TYPE_OF(type)                                                                              \
     _Generic((type *)0, unsigned char *                                                            \
-             : DUITE_BYTE, int64_t *                                                               \
+             : DUITE_BYTE, uint32_t *                                                              \
+             : DUITE_I32, int64_t *                                                                \
              : DUITE_I64, uint64_t *                                                               \
              : DUITE_I64, default                                                                  \
              : DUITE_F64)

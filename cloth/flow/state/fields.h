@@ -31,10 +31,12 @@
     X(halo_x,       ONE,     phys_vec,      4, halo,          always,       is_derived)            \
     X(halo_v,       ONE,     phys_vec,      4, halo,          always,       is_derived)            \
     X(table,        ONE,     unsigned char, 1, table_bytes,   always,       is_derived)            \
-    /* its ties (ties.h); x, then v of their ends here, and what coarse motions are there */       \
+    /* its ties (ties.h). tie_links: how many blocks it shares ties with, then each with the place  \
+     * of its ghosts there. x, then v of the rows shown, and what coarse motions are there */      \
+    X(tie_links,    ONE,     uint32_t,      2, tie_links,     may_be_tied,  is_derived)            \
     X(tie_table,    ONE,     unsigned char, 1, tie_bytes,     may_be_tied,  is_derived)            \
-    X(tie_halo,     ONE,     phys_vec,      8, tie_room,      may_be_tied,  is_work)               \
-    X(tie_basis,    ONE,     phys_vec,      4, tie_room,      coarse_tied,  is_work)               \
+    X(tie_halo,     ONE,     phys_vec,      8, tie_rows,      may_be_tied,  is_work)               \
+    X(tie_basis,    ONE,     phys_vec,      4, tie_rows,      coarse_tied,  is_work)               \
     /* before a step that may be given up */                                                       \
     X(kept_x,       ONE,     phys_vec,      4, rows,          kept,         is_work)               \
     X(kept_v,       ONE,     phys_vec,      4, rows,          kept,         is_work)               \
@@ -57,11 +59,11 @@
     X(r,            ONE,     phys_vec,      4, rows,          implicit_run, is_work)               \
     X(p,            ONE,     phys_vec,      4, rows,          implicit_run, is_work)               \
     X(q,            ONE,     phys_vec,      4, rows,          implicit_run, is_work)               \
-    /* r (with a preconditioner z) of the ghosts, then p, then both of the other ends of ties;     \
+    /* r (with a preconditioner z) of the ghosts, then p, then both of the ghosts of ties;         \
      * what neighbours read of q (of s), what others do that ties join */                          \
     X(ghosts,       ONE,     phys_vec,      8, ghosts_tied,   implicit_run, is_work)               \
     X(halo_q,       BY_PASS, double,        3, halo,          implicit_run, is_work)               \
-    X(tie_q,        BY_PASS, double,        3, tie_room,      solves_tied,  is_work)               \
+    X(tie_q,        BY_PASS, double,        3, tie_rows,      solves_tied,  is_work)               \
     /* a preconditioner; part: sums of a pass and the coarse right side */                         \
     X(z,            ONE,     phys_vec,      4, rows,          conditioned,  is_work)               \
     X(s,            ONE,     phys_vec,      4, rows,          conditioned,  is_work)               \
@@ -183,8 +185,9 @@ void flow_fields_swap(struct flow_state *state, enum flow_field_id a, enum flow_
 
 /* All objects that exist. A failure is returned by the next get. */
 void flow_objects_make(struct flow_state *state);
-/* Gives a block room for so many ties: makes those of its objects again that get another size. */
-void flow_objects_fit(struct flow_state *state, uint32_t block, uint32_t room);
+struct flow_tie_room;
+/* Gives a block room for ties: makes those of its objects again that get another size. */
+void flow_objects_fit(struct flow_state *state, uint32_t block, const struct flow_tie_room *room);
 /* Frees those that were made, packed halos and the recorded solve as well. */
 int flow_objects_free(struct flow_state *state);
 

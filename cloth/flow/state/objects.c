@@ -53,13 +53,13 @@ static size_t numbers_made(const struct flow_state *state, enum flow_field_id fi
     return flow_fields[field].exists(state, block) ? flow_field_numbers(state, field, block) : 0;
 }
 
-void flow_objects_fit(struct flow_state *state, uint32_t block, uint32_t room)
+void flow_objects_fit(struct flow_state *state, uint32_t block, const struct flow_tie_room *room)
 {
     duite_object *of = state->block[block].of;
     size_t before[FLOW_FIELDS_OF_BLOCK];
     for (int field = 0; field < FLOW_FIELDS_OF_BLOCK; field++)
         before[field] = numbers_made(state, (enum flow_field_id)field, block);
-    state->tied.now.room[block] = room;
+    state->tied.now.room[block] = *room;
     for (int field = 0; field < FLOW_FIELDS_OF_BLOCK; field++) {
         if (before[field] == numbers_made(state, (enum flow_field_id)field, block))
             continue;

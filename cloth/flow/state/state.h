@@ -101,17 +101,30 @@ struct flow_packed {
 
 /* What ties ask of the blocks. Arrays are NULL where the run has no ties. */
 struct flow_tied_blocks {
-    uint32_t *room;  /* a block: for so many ties, a multiple of FLOW_TIE_CLASS */
-    uint32_t *first; /* a block, and one more: which of `other` are its */
-    uint32_t *other; /* blocks that it shares ties with, ascending in a block */
+    struct flow_tie_room *room; /* a block */
+    uint32_t *first;            /* a block, and one more: which of `other` are its */
+    uint32_t *other;            /* blocks that it shares ties with, ascending in a block, */
+    uint32_t *place;            /* and where each shows the first row for it (flow_ties) */
+};
+
+/* What the blocks say of their ties. */
+struct flow_tie_records {
+    struct flow_tie_record *of; /* a block */
+    uint32_t *first;            /* a block, and one more: which links are its */
+    struct flow_tie_link *link; /* at most max_links */
+    uint32_t max_links;
 };
 
 /* The ties that steps have now. */
 struct flow_tied {
     uint64_t from, to; /* ticks: steps that begin there have these; to 0: none was chosen yet */
-    struct flow_tied_blocks now, next; /* next: while the next ones are chosen */
-    uint32_t *parent;                  /* a piece: room to unite them */
-    uint64_t *group;                   /* a piece: what is set into the field `groups` */
+    struct flow_tied_blocks now,
+        next;                     /* next: what was before; while they are chosen, what will be */
+    struct flow_tie_records said; /* for flow_ties_adopt */
+    uint64_t *scratch;            /* to make the records of joints */
+    uint32_t (*links)[2];         /* what is set into the field `tie_links` of a block */
+    uint32_t *parent;             /* a piece: room to unite them */
+    uint64_t *group;              /* a piece: what is set into the field `groups` */
 };
 
 /* A step that is under way. */
@@ -196,16 +209,23 @@ int flow_keep(struct flow_state *state);
 int flow_keep_as(struct flow_state *state, const struct flow_as *as);
 int flow_restore(struct flow_state *state);
 
-/* ---- ties (chosen.c). Collective, but for what is local; they return what the runtime does ----
- */
+/* ---- ties (adopted.c, chosen.c). Collective, but for what is local; they return what the runtime
+ * does ---- */
 
 /* Memory for what is chosen, a part of flow_memory_take. Local. */
 void flow_ties_take(struct flow_state *state);
 void flow_ties_free(struct flow_state *state);
-/* Makes the ties of the step under way those that its blocks have. */
+/* Takes the records of all blocks, state->tied.said, the same on every rank: finds rooms, who
+ * shares ties with whom, and where each shows what. Makes objects again where their room changes,
+ * sets the fields `tie_links`, and records the round of the solve again where that changed. What a
+ * block had more of stays while more than half of it is used. Then every block that has ties or had
+ * some makes its table (flow_ties_make), before anything reads TIED. The main thread; no task that
+ * was forked before reads what changes. */
+int flow_ties_adopt(struct flow_state *state);
+/* Makes the joints of the step under way those that its blocks have. */
 int flow_ties_choose(struct flow_state *state);
-/* Forks what shows x and v of their ends to the other blocks; what kernels with TIED(tie_halo) that
- * are forked next read. */
+/* Forks what shows x and v of their corners to the other blocks; what kernels with TIED(tie_halo)
+ * that are forked next read. */
 int flow_ties_show(struct flow_state *state);
 /* Whether a tie came or went since the step before, or at most FLOW_TICKS ago. Whether a step that
  * begins at a tick has the ties of now. Whether a tie will come or go before the run ends. Local.

@@ -1,200 +1,376 @@
-/* A table of ties is one piece of memory: five numbers, then arrays whose places follow from two of
- * them. */
+/* A table of ties is one piece of memory: what it has room for, then arrays whose places follow
+ * from that. Rows of other blocks, and rows shown to them, are keys that are sorted by block and
+ * row: both sides of a pair of blocks sort the same rows.
+ *
+ * In reading order: memory, keys, records, making a table, reading it. */
 #include "cloth/flow/state/ties.h"
 
-#include "cloth/base/order.h"
 #include "cloth/flow/state/room.h"
 
-#include <stdlib.h>
 #include <string.h>
+
+/* ---- Memory ---- */
 
 /* What a table begins with. */
 struct head {
-    uint32_t n_inner, n, n_others, n_halo;
-    uint32_t room, block_halo; /* places follow from these: rows of the block's halo */
+    uint32_t n_inner, n, n_rows, n_ghosts, n_shown, n_others, n_halo;
+    struct flow_tie_room room;
 };
 
 /* The arrays, for who makes them. */
 struct arrays {
     struct head *head;
-    uint32_t *other, *start, *place, (*end)[2], *far, *at, *halo;
+    uint32_t *other, *start, *place, *shown_start;
+    uint32_t *of, (*corner)[SOLVE_TIE_CORNERS], *ghost_other, *ghost_row, *shown, *halo, *at;
+    double (*weight)[SOLVE_TIE_CORNERS];
     unsigned char *held;
-    double *stiffness, *damping, *length;
+    /* While it is made: counts of groups, and a bit for each row. */
+    uint32_t *count;
+    uint64_t *scratch, *marks;
 };
 
-static size_t lay(uint32_t block_halo, size_t room, void *memory, struct arrays *to)
+static size_t marks_of(size_t n_rows)
+{
+    return (n_rows + 63) / 64;
+}
+
+static size_t lay(size_t n_rows, const struct flow_tie_room *room, void *memory, struct arrays *to)
 {
     struct flow_room rest = {.base = memory};
     to->head = flow_room_next(&rest, sizeof *to->head);
-    if (!room)
+    to->other = flow_room_next(&rest, room->others * sizeof *to->other);
+    to->start = flow_room_next(&rest, ((size_t)room->others + 1) * sizeof *to->start);
+    to->place = flow_room_next(&rest, room->others * sizeof *to->place);
+    to->shown_start = flow_room_next(&rest, ((size_t)room->others + 1) * sizeof *to->shown_start);
+    to->ghost_other = flow_room_next(&rest, room->rows * sizeof *to->ghost_other);
+    to->ghost_row = flow_room_next(&rest, room->rows * sizeof *to->ghost_row);
+    to->shown = flow_room_next(&rest, room->rows * sizeof *to->shown);
+    to->at = flow_room_next(&rest, room->rows * sizeof *to->at);
+    if (!room->ties)
         return rest.used;
-    to->other = flow_room_next(&rest, room * sizeof *to->other);
-    to->start = flow_room_next(&rest, (room + 1) * sizeof *to->start);
-    to->place = flow_room_next(&rest, room * sizeof *to->place);
-    to->end = flow_room_next(&rest, room * sizeof *to->end);
-    to->far = flow_room_next(&rest, room * sizeof *to->far);
-    to->at = flow_room_next(&rest, room * sizeof *to->at);
-    to->halo = flow_room_next(&rest, (block_halo + 2 * room) * sizeof *to->halo);
-    to->held = flow_room_next(&rest, room);
-    to->stiffness = flow_room_next(&rest, room * sizeof *to->stiffness);
-    to->damping = flow_room_next(&rest, room * sizeof *to->damping);
-    to->length = flow_room_next(&rest, room * sizeof *to->length);
+    to->of = flow_room_next(&rest, room->ties * sizeof *to->of);
+    to->corner = flow_room_next(&rest, room->ties * sizeof *to->corner);
+    to->weight = flow_room_next(&rest, room->ties * sizeof *to->weight);
+    to->held = flow_room_next(&rest, room->ties);
+    to->halo = flow_room_next(&rest, n_rows * sizeof *to->halo);
+    to->count = flow_room_next(&rest, ((size_t)room->others + 2) * sizeof *to->count);
+    to->marks = flow_room_next(&rest, marks_of(n_rows) * sizeof *to->marks);
+    to->scratch = flow_room_next(&rest, flow_ties_scratch(room->ties) * sizeof *to->scratch);
     return rest.used;
 }
 
-size_t flow_ties_bytes(uint32_t n_halo, uint32_t room)
+size_t flow_ties_bytes(uint32_t n_rows, const struct flow_tie_room *room)
 {
     struct arrays arrays = {0};
-    return lay(n_halo, room, NULL, &arrays);
+    return lay(n_rows, room, NULL, &arrays);
 }
 
-/* ---- Making ---- */
+/* ---- Keys ---- */
 
-/* Which end of a tie is in the block; of an inner one end 0. */
-static int end_in(const struct flow_tie *tie, uint32_t block)
+/* Those of a block's ties, by their numbers in a list, with room for their keys. */
+struct own {
+    const struct flow_tie_list *list;
+    uint32_t block, n;
+    uint32_t *of;
+    uint64_t *key, *spare; /* SOLVE_TIE_CORNERS each */
+};
+
+/* At most as many as the room is for. */
+static struct own own_in(const struct flow_tie_list *list, uint32_t block, uint64_t *scratch,
+                         size_t room)
 {
-    return tie->block[0] != block;
+    uint64_t *key = scratch + room;
+    return (struct own){.list = list,
+                        .block = block,
+                        .of = (uint32_t *)(void *)scratch,
+                        .key = key,
+                        .spare = key + SOLVE_TIE_CORNERS * room};
 }
 
-static bool is_of(const struct flow_tie *tie, const struct flow_ties_of *of)
+static const struct flow_tie_corners *corners_of(const struct flow_tie_list *list, uint32_t number)
 {
-    return flow_tie_acts(tie, of->tick) &&
-           (tie->block[0] == of->block || tie->block[1] == of->block);
+    static const struct flow_tie_corners none = {0};
+    if (number >= list->n_joints)
+        return list->corners + (number - list->n_joints);
+    const struct flow_tie *joint = list->joint + number;
+    return flow_tie_acts(joint, list->tick) ? &joint->at : &none;
 }
 
-static bool is_inner(const struct flow_tie *tie)
+static bool is_in(const struct flow_tie_corners *tie, uint32_t block)
 {
-    return tie->block[0] == tie->block[1];
+    bool in = false;
+    for (uint32_t k = 0; k < tie->n; k++)
+        in = in || tie->block[k] == block;
+    return in;
 }
 
-/* Appends a tie as the end of it that is in the block sees it. second: end 1 of the list's. */
-static void append(const struct flow_tie *tie, int here, uint32_t second, struct arrays *to)
+/* Lists the ties of the block. Returns false if they are more than there is room for. */
+static bool list_own(struct own *own, uint32_t room)
 {
-    const uint32_t i = to->head->n++;
-    to->end[i][0] = tie->row[here];
-    to->end[i][1] = second;
-    to->held[i] = (unsigned char)(tie->held[here] | tie->held[1 - here] << 1);
-    to->stiffness[i] = tie->stiffness;
-    to->damping[i] = tie->damping;
-    to->length[i] = tie->length;
-}
-
-/* Lists the ties of the block, for a while, where `at` is. Returns how many there are. */
-static uint32_t list_own(const struct flow_ties_of *of, uint32_t *at)
-{
-    uint32_t n = 0;
-    for (uint32_t i = 0; i < of->n; i++)
-        if (is_of(of->tie + i, of))
-            at[n++] = i;
-    return n;
-}
-
-/* The lowest block from `least` on that shares a tie with this one; UINT32_MAX: there is none. */
-static uint32_t next_other(const struct flow_ties_of *of, const struct arrays *to, uint32_t n_own,
-                           uint32_t least)
-{
-    uint32_t other = UINT32_MAX;
-    for (uint32_t i = 0; i < n_own; i++) {
-        const struct flow_tie *tie = of->tie + to->at[i];
-        const uint32_t block = tie->block[1 - end_in(tie, of->block)];
-        if (!is_inner(tie) && block >= least && block < other)
-            other = block;
-    }
-    return other;
-}
-
-static void append_inner(const struct flow_ties_of *of, uint32_t n_own, struct arrays *to)
-{
-    for (uint32_t i = 0; i < n_own; i++) {
-        const struct flow_tie *tie = of->tie + to->at[i];
-        if (is_inner(tie))
-            append(tie, 0, tie->row[1], to);
-    }
-    to->head->n_inner = to->head->n;
-}
-
-static void append_shared(const struct flow_ties_of *of, uint32_t n_own, uint32_t other,
-                          struct arrays *to)
-{
-    struct head *head = to->head;
-    const uint32_t first = head->n;
-    to->other[head->n_others] = other;
-    for (uint32_t i = 0; i < n_own; i++) {
-        const struct flow_tie *tie = of->tie + to->at[i];
-        const int here = end_in(tie, of->block);
-        if (is_inner(tie) || tie->block[1 - here] != other)
+    for (uint32_t i = 0; i < own->list->n_joints + own->list->n; i++) {
+        if (!is_in(corners_of(own->list, i), own->block))
             continue;
-        to->far[head->n - head->n_inner] = tie->row[1 - here];
-        append(tie, here, head->n - first, to);
+        if (own->n == room)
+            return false;
+        own->of[own->n++] = i;
     }
-    to->start[++head->n_others] = head->n - head->n_inner;
+    return true;
 }
 
-/* Where a block stands among the others; n_others: it is none. */
+static uint64_t key_of(uint32_t block, uint32_t row)
+{
+    return (uint64_t)block << 32 | row;
+}
+
+/* One pass by eight bits: from key to spare. */
+static void sort_by(unsigned shift, size_t n, const uint64_t *key, uint64_t *to)
+{
+    size_t start[257] = {0};
+    for (size_t i = 0; i < n; i++)
+        start[1 + (key[i] >> shift & 255)]++;
+    for (int digit = 0; digit < 256; digit++)
+        start[digit + 1] += start[digit];
+    for (size_t i = 0; i < n; i++)
+        to[start[key[i] >> shift & 255]++] = key[i];
+}
+
+/* Sorts the keys and keeps each once. Returns how many there are. */
+static uint32_t sort_once(uint64_t *key, uint64_t *spare, size_t n)
+{
+    uint64_t differ = 0, *from = key, *to = spare;
+    uint32_t kept = 0;
+    for (size_t i = 1; i < n; i++)
+        differ |= key[i] ^ key[0];
+    for (unsigned shift = 0; shift < 64; shift += 8) {
+        if (!(differ >> shift & 255))
+            continue;
+        sort_by(shift, n, from, to);
+        uint64_t *const sorted = to;
+        to = from;
+        from = sorted;
+    }
+    for (size_t i = 0; i < n; i++) /* a key is read before anything is written there */
+        if (!i || from[i] != from[i - 1])
+            spare[kept++] = from[i];
+    memcpy(key, spare, kept * sizeof *key);
+    return kept;
+}
+
+/* The rows of other blocks that the ties end at. */
+static uint32_t find_ghosts(struct own *own)
+{
+    size_t n = 0;
+    for (uint32_t i = 0; i < own->n; i++) {
+        const struct flow_tie_corners *tie = corners_of(own->list, own->of[i]);
+        for (uint32_t k = 0; k < tie->n; k++)
+            if (tie->block[k] != own->block)
+                own->key[n++] = key_of(tie->block[k], tie->row[k]);
+    }
+    return sort_once(own->key, own->spare, n);
+}
+
+/* The rows of the block that others see: (block that sees it, row). */
+static uint32_t find_shown(struct own *own)
+{
+    size_t n = 0;
+    for (uint32_t i = 0; i < own->n; i++) {
+        const struct flow_tie_corners *tie = corners_of(own->list, own->of[i]);
+        for (uint32_t k = 0; k < tie->n; k++)
+            for (uint32_t l = 0; l < tie->n && tie->block[k] == own->block; l++)
+                if (tie->block[l] != own->block)
+                    own->key[n++] = key_of(tie->block[l], tie->row[k]);
+    }
+    return sort_once(own->key, own->spare, n);
+}
+
+/* ---- Records ---- */
+
+bool flow_ties_count(const struct flow_tie_list *list, uint32_t block, uint64_t *scratch,
+                     uint32_t max_links, struct flow_tie_record *record, struct flow_tie_link *link)
+{
+    const uint32_t room = list->n_joints + list->n;
+    struct own own = own_in(list, block, scratch, room);
+    *record = (struct flow_tie_record){0};
+    list_own(&own, room);
+    record->n_ties = own.n;
+    record->n_ghosts = find_ghosts(&own);
+    record->n_shown = find_shown(&own);
+    for (uint32_t i = 0; i < record->n_shown; i++) {
+        const uint32_t other = (uint32_t)(own.key[i] >> 32);
+        if (!record->n_links || link[record->n_links - 1].block != other) {
+            if (record->n_links == max_links)
+                return false;
+            link[record->n_links++] = (struct flow_tie_link){other, 0};
+        }
+        link[record->n_links - 1].rows++;
+    }
+    return true;
+}
+
+/* ---- Making a table ---- */
+
+/* Deals keys out to the others: start gets where those of each begin. Returns false if a key is of
+ * another block. */
+static bool deal(const struct arrays *to, const uint64_t *key, uint32_t n, uint32_t *start)
+{
+    const uint32_t n_others = to->head->n_others;
+    uint32_t i = 0;
+    for (uint32_t k = 0; k < n_others; k++) {
+        start[k] = i;
+        while (i < n && key[i] >> 32 == to->other[k])
+            i++;
+    }
+    start[n_others] = i;
+    return i == n;
+}
+
+static bool put_ghosts(struct own *own, struct arrays *to)
+{
+    const uint32_t n = find_ghosts(own);
+    if (n > to->head->room.rows || !deal(to, own->key, n, to->start))
+        return false;
+    for (uint32_t k = 0; k < to->head->n_others; k++)
+        for (uint32_t i = to->start[k]; i < to->start[k + 1]; i++) {
+            to->ghost_other[i] = k;
+            to->ghost_row[i] = (uint32_t)own->key[i];
+        }
+    to->head->n_ghosts = n;
+    return true;
+}
+
+static bool put_shown(struct own *own, struct arrays *to)
+{
+    const uint32_t n = find_shown(own);
+    if (n > to->head->room.rows || !deal(to, own->key, n, to->shown_start))
+        return false;
+    for (uint32_t i = 0; i < n; i++)
+        to->shown[i] = (uint32_t)own->key[i];
+    to->head->n_shown = n;
+    return true;
+}
+
+/* Where a block stands among the others, of which it is one. */
 static uint32_t number_of(const struct arrays *to, uint32_t block)
 {
     uint32_t low = 0, high = to->head->n_others;
-    while (low < high) {
+    while (high - low > 1) {
         const uint32_t middle = low + (high - low) / 2;
-        if (to->other[middle] < block)
-            low = middle + 1;
+        if (to->other[middle] <= block)
+            low = middle;
         else
             high = middle;
     }
-    return low < to->head->n_others && to->other[low] == block ? low : to->head->n_others;
+    return low;
 }
 
-/* Of each other block, how many ties it shares with blocks before this one: it shows them first. */
-static void find_places(const struct flow_ties_of *of, struct arrays *to)
+/* The number of a corner: a row, or a ghost, which is there. */
+static uint32_t corner_of(const struct arrays *to, uint32_t own, uint32_t block, uint32_t row)
 {
-    for (const struct flow_tie *tie = of->tie; tie < of->tie + of->n; tie++) {
-        if (is_inner(tie) || !flow_tie_acts(tie, of->tick))
-            continue;
-        for (int end = 0; end < 2; end++) {
-            const uint32_t number = number_of(to, tie->block[end]);
-            if (number < to->head->n_others && tie->block[1 - end] < of->block)
-                to->place[number]++;
+    if (block == own)
+        return row;
+    const uint32_t k = number_of(to, block);
+    uint32_t low = to->start[k], high = to->start[k + 1];
+    while (high - low > 1) {
+        const uint32_t middle = low + (high - low) / 2;
+        if (to->ghost_row[middle] <= row)
+            low = middle;
+        else
+            high = middle;
+    }
+    return to->head->n_rows + low;
+}
+
+/* Which ties come first: 0: inner ones; then by the lowest other block, from 1. */
+static uint32_t group_of(const struct arrays *to, const struct flow_tie_corners *tie, uint32_t own)
+{
+    uint32_t lowest = UINT32_MAX;
+    for (uint32_t k = 0; k < tie->n; k++)
+        if (tie->block[k] != own && tie->block[k] < lowest)
+            lowest = tie->block[k];
+    return lowest == UINT32_MAX ? 0 : 1 + number_of(to, lowest);
+}
+
+/* Sorts the ties by group. */
+static void put_order(const struct own *own, struct arrays *to)
+{
+    const uint32_t n_groups = to->head->n_others + 1;
+    uint32_t *at = to->count;
+    for (uint32_t i = 0; i < own->n; i++)
+        at[1 + group_of(to, corners_of(own->list, own->of[i]), own->block)]++;
+    to->head->n_inner = at[1];
+    for (uint32_t group = 0; group < n_groups; group++)
+        at[group + 1] += at[group];
+    for (uint32_t i = 0; i < own->n; i++)
+        to->of[at[group_of(to, corners_of(own->list, own->of[i]), own->block)]++] = own->of[i];
+    to->head->n = own->n;
+}
+
+static void put_corners(const struct own *own, struct arrays *to)
+{
+    for (uint32_t i = 0; i < own->n; i++) {
+        const struct flow_tie_corners *tie = corners_of(own->list, to->of[i]);
+        to->held[i] = tie->held;
+        for (uint32_t k = 0; k < tie->n; k++) {
+            to->corner[i][k] = corner_of(to, own->block, tie->block[k], tie->row[k]);
+            to->weight[i][k] = tie->weight[k];
         }
     }
 }
 
 /* The rows of the block's halo and of its ties, each once. */
-static void make_halo(const struct flow_ties_of *of, struct arrays *to)
+static void put_halo(const struct flow_ties_of *of, struct arrays *to)
 {
     struct head *head = to->head;
-    uint32_t n = of->n_halo, kept = 0;
-    if (n)
-        memcpy(to->halo, of->halo, n * sizeof *to->halo);
+    for (uint32_t i = 0; i < of->n_halo; i++)
+        to->marks[of->halo[i] / 64] |= UINT64_C(1) << of->halo[i] % 64;
     for (uint32_t i = 0; i < head->n; i++)
-        for (int end = 0; end < (i < head->n_inner ? 2 : 1); end++)
-            to->halo[n++] = to->end[i][end];
-    qsort(to->halo, n, sizeof *to->halo, cloth_compare_items_u32);
-    for (uint32_t i = 0; i < n; i++)
-        if (!kept || to->halo[i] != to->halo[kept - 1])
-            to->halo[kept++] = to->halo[i];
-    head->n_halo = kept;
+        for (int k = 0; k < SOLVE_TIE_CORNERS; k++)
+            if (to->corner[i][k] < of->n_rows && to->weight[i][k] != 0)
+                to->marks[to->corner[i][k] / 64] |= UINT64_C(1) << to->corner[i][k] % 64;
+    for (uint32_t row = 0; row < of->n_rows; row++)
+        if (to->marks[row / 64] >> row % 64 & 1)
+            to->halo[head->n_halo++] = row;
 }
 
-void flow_ties_make(const struct flow_ties_of *of, void *memory)
+static bool fill(const struct flow_ties_of *of, struct arrays *to)
+{
+    const struct flow_tie_room *room = &of->room;
+    if (of->n_others > room->others)
+        return false;
+    to->head->n_others = of->n_others;
+    for (uint32_t k = 0; k < of->n_others; k++) {
+        to->other[k] = of->others[k][0];
+        to->place[k] = of->others[k][1];
+    }
+    struct own own = own_in(of->list, of->block, to->scratch, room->ties);
+    if (!list_own(&own, room->ties))
+        return false;
+    if (!own.n)
+        return true;
+    if (!put_ghosts(&own, to) || !put_shown(&own, to))
+        return false;
+    put_order(&own, to);
+    put_corners(&own, to);
+    put_halo(of, to);
+    return true;
+}
+
+bool flow_ties_make(const struct flow_ties_of *of, void *memory)
 {
     struct arrays to = {0};
-    memset(memory, 0, flow_ties_bytes(of->n_halo, of->room));
-    lay(of->n_halo, of->room, memory, &to);
+    memset(memory, 0, flow_ties_bytes(of->n_rows, &of->room));
+    lay(of->n_rows, &of->room, memory, &to);
+    to.head->n_rows = of->n_rows;
     to.head->room = of->room;
-    to.head->block_halo = of->n_halo;
-    if (!of->room)
-        return;
-    const uint32_t n_own = list_own(of, to.at);
-    append_inner(of, n_own, &to);
-    for (uint32_t other = 0; (other = next_other(of, &to, n_own, other)) != UINT32_MAX; other++)
-        append_shared(of, n_own, other, &to);
-    find_places(of, &to);
-    make_halo(of, &to);
-    for (uint32_t i = 0; i < of->room; i++)
+    for (uint32_t i = 0; i < of->room.rows; i++)
         to.at[i] = i;
+    const bool made = fill(of, &to);
+    if (!made)
+        *to.head = (struct head){.n_rows = of->n_rows, .room = of->room};
+    return made;
 }
 
-/* ---- Reading ---- */
+/* ---- Reading it ---- */
 
 uint32_t flow_ties_others(const void *memory)
 {
@@ -208,21 +384,26 @@ struct flow_ties flow_ties_open(const void *memory)
     struct arrays arrays = {0};
     if (!head)
         return (struct flow_ties){0};
-    lay(head->block_halo, head->room, (void *)memory, &arrays); /* it is only read */
+    lay(head->n_rows, &head->room, (void *)memory, &arrays); /* it is only read */
     return (struct flow_ties){.n_inner = head->n_inner,
                               .n = head->n,
+                              .n_rows = head->n_rows,
+                              .n_ghosts = head->n_ghosts,
+                              .n_shown = head->n_shown,
                               .n_others = head->n_others,
                               .n_halo = head->n_halo,
                               .room = head->room,
+                              .of = arrays.of,
+                              .corner = (const uint32_t(*)[SOLVE_TIE_CORNERS])arrays.corner,
+                              .weight = (const double(*)[SOLVE_TIE_CORNERS])arrays.weight,
+                              .held = arrays.held,
                               .other = arrays.other,
                               .start = arrays.start,
                               .place = arrays.place,
-                              .end = (const uint32_t(*)[2])arrays.end,
-                              .far = arrays.far,
-                              .at = arrays.at,
+                              .shown_start = arrays.shown_start,
+                              .ghost_other = arrays.ghost_other,
+                              .ghost_row = arrays.ghost_row,
+                              .shown = arrays.shown,
                               .halo = arrays.halo,
-                              .held = arrays.held,
-                              .stiffness = arrays.stiffness,
-                              .damping = arrays.damping,
-                              .length = arrays.length};
+                              .at = arrays.at};
 }

@@ -1,30 +1,42 @@
 #ifndef CLOTH_FLOW_STATE_TIES_H
 #define CLOTH_FLOW_STATE_TIES_H
 
-#include "cloth/physics/spring.h"
 #include "cloth/solve/block.h"
 
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
-/* Ties: what joins rows for some steps only, springs of the scene that come or go while the run is
- * on. They are in no table of a block, and so in no partition, halo or matrix that the run began
- * with. Every rank knows all ties. Before a step begins, the main program finds the ties of the
- * step (flow_ties_choose). Where they change, each block makes a table of its own ties. A tie
- * between two blocks is known to both, and each computes its own end.
+/* Ties: what joins rows for some steps only. They are in no table of a block, and so in no
+ * partition, halo or matrix that the run began with. A tie has up to four corners, rows with
+ * weights, in up to four blocks. Every block with a corner knows the whole tie, and computes its
+ * own corners. Timed joints are ties of two corners with the weights 1 and -1. Every rank knows
+ * them all.
  *
- * A block has room for a multiple of FLOW_TIE_CLASS ties. Values lie behind those of its matrix, z
- * and p of the other ends behind those of its ghosts. Others read two objects: x and v of its ends,
- * and s of the solve. Where the room of a block changes, these objects are made again. Where it
- * does, or where other blocks share ties than before, the round of the solve is recorded again.
- * Otherwise ties may change in every step. */
-enum { FLOW_TIE_CLASS = 128 };
+ * Before a step begins, the main program has a small record of each block: how many ties it has,
+ * and how many rows it shows to which other blocks. From the records of all blocks it finds what
+ * room each block needs and where each finds what others show (flow_ties_adopt). Then each block
+ * makes a table of its own ties.
+ *
+ * A block has room for a multiple of FLOW_TIE_CLASS ties, and as many rows that it shows or that
+ * others show it. Values lie behind those of its matrix, z and p of the ghosts behind those of its
+ * other ghosts. Others read two objects: x and v of the rows shown, and s of the solve. Where the
+ * room of a block changes, these objects are made again. Where it does, or where other blocks share
+ * ties than before, the round of the solve is recorded again. Otherwise ties may change in every
+ * step. */
+enum { FLOW_TIE_CLASS = 128, FLOW_TIE_OTHERS = 8 };
 
-/* A tie, as every rank knows it. */
+/* What a tie joins: its corners, each a row of a block. */
+struct flow_tie_corners {
+    uint32_t n; /* 1 .. SOLVE_TIE_CORNERS; 0: there is no tie */
+    uint32_t block[SOLVE_TIE_CORNERS], row[SOLVE_TIE_CORNERS];
+    unsigned char held; /* bit k: a pin holds corner k */
+    double weight[SOLVE_TIE_CORNERS];
+};
+
+/* A timed joint, a spring of the scene that comes or goes while the run is on. */
 struct flow_tie {
-    uint32_t block[2], row[2];
-    unsigned char held[2];             /* a pin holds that end */
+    struct flow_tie_corners at;        /* two, with the weights 1 and -1 */
     uint32_t piece[2];                 /* of free pieces, from 1; 0: none (flow_particles) */
     double stiffness, damping, length; /* N/m, kg/s, m: those of a spring */
     uint64_t begin, end;               /* ticks: steps that begin from .. to - 1 have it */
@@ -35,62 +47,92 @@ static inline bool flow_tie_acts(const struct flow_tie *tie, uint64_t tick)
     return tie->begin <= tick && tick < tie->end;
 }
 
-/* The ties of one block: inner ones, then those that end in other blocks, block after block; in
- * both the order of all ties. Where both ends of a tie list it, they find the other's row in its
- * place among those that the two share. Arrays lie in the memory of the table. */
-struct flow_ties {
-    uint32_t n_inner, n, n_others, n_halo;
-    uint32_t room;             /* for so many */
-    const uint32_t *other;     /* n_others: blocks, ascending */
-    const uint32_t *start;     /* n_others + 1: those into block k are n_inner + start[k] .. */
-    const uint32_t *place;     /* n_others: where that block shows the first of their other ends */
-    const uint32_t (*end)[2];  /* n: rows; of those into other blocks: row, number in the block */
-    const uint32_t *far;       /* n - n_inner: the row there */
-    const uint32_t *at;        /* room: 0, 1, .. */
-    const uint32_t *halo;      /* n_halo: rows of the block's halo and those of ties, ascending */
-    const unsigned char *held; /* n: bit k: a pin holds end k */
-    const double *stiffness, *damping, *length;
-};
-
-/* Bytes of the table of a block with so many rows in its halo, and room for so many ties. */
-size_t flow_ties_bytes(uint32_t n_halo, uint32_t room);
-
-/* Makes the table of a block, of those of n ties that act at the tick. halo: that of the block.
- * Writes every byte. Local. */
-struct flow_ties_of {
-    uint32_t block, room;
+/* A list of ties in which those of one block are: n_joints joints, of which those count that act at
+ * the tick, then n others. A tie's number in the list is its place among all of them. */
+struct flow_tie_list {
+    uint32_t n_joints, n;
+    const struct flow_tie *joint; /* n_joints */
     uint64_t tick;
-    uint32_t n, n_halo;
-    const struct flow_tie *tie; /* n */
-    const uint32_t *halo;       /* n_halo */
+    const struct flow_tie_corners *corners; /* n */
 };
-void flow_ties_make(const struct flow_ties_of *of, void *memory);
+
+/* ---- Records ---- */
+
+/* What a block says of its ties: how many it has, how many rows of others they end at, how many
+ * rows it shows, and how many links follow. */
+struct flow_tie_record {
+    uint32_t n_ties, n_ghosts, n_shown, n_links;
+};
+
+/* How many rows the block shows to another one. Where a block has a link to another, that has one
+ * to this; both may show none. */
+struct flow_tie_link {
+    uint32_t block, rows;
+};
+
+/* Room that a record takes while it is made of a list of so many ties: numbers of eight bytes. */
+static inline size_t flow_ties_scratch(size_t ties)
+{
+    return 9 * ties;
+}
+
+/* Makes the record of a block, with its links, ascending. scratch: for as many ties as the list
+ * has. Returns false if there are more than max_links. Local. */
+bool flow_ties_count(const struct flow_tie_list *list, uint32_t block, uint64_t *scratch,
+                     uint32_t max_links, struct flow_tie_record *record,
+                     struct flow_tie_link *link);
+
+/* ---- The table of a block ---- */
+
+/* What it has room for. */
+struct flow_tie_room {
+    uint32_t ties, rows, others; /* rows: of ghosts, and of rows shown */
+};
+
+/* The ties of one block: inner ones, whose corners are all in the block, then those that end in
+ * other blocks, by the lowest of these; in all the order of the list. Corners are rows of the block
+ * or, from n_rows on, ghosts: rows of other blocks, each once, by block and row. Corners that a tie
+ * does not have are row 0 with the weight 0. To each other block the block shows the rows that are
+ * corners of ties that both have, ascending: they are the ghosts there, in this order. Arrays lie
+ * in the memory of the table. */
+struct flow_ties {
+    uint32_t n_inner, n, n_rows, n_ghosts, n_shown, n_others, n_halo;
+    struct flow_tie_room room;
+    const uint32_t *of;                          /* n: numbers in the list */
+    const uint32_t (*corner)[SOLVE_TIE_CORNERS]; /* n */
+    const double (*weight)[SOLVE_TIE_CORNERS];   /* n */
+    const unsigned char *held;                   /* n: bit k: a pin holds corner k */
+    const uint32_t *other;                       /* n_others: blocks, ascending */
+    const uint32_t *start;       /* n_others + 1: ghosts of block k are start[k] .. */
+    const uint32_t *place;       /* n_others: where that block shows the first of them */
+    const uint32_t *shown_start; /* n_others + 1: rows shown to block k are shown_start[k] .. */
+    const uint32_t *ghost_other; /* n_ghosts: which of the others a ghost is of, */
+    const uint32_t *ghost_row;   /* n_ghosts: its row there */
+    const uint32_t *shown;       /* n_shown: rows that others see, block after block */
+    const uint32_t *halo;        /* n_halo: rows of the block's halo and of ties, ascending */
+    const uint32_t *at;          /* room.rows: 0, 1, .. */
+};
+
+/* What a table is made of. */
+struct flow_ties_of {
+    uint32_t block, n_rows, n_halo, n_others;
+    const uint32_t *halo;        /* n_halo: that of the block, ascending */
+    const uint32_t (*others)[2]; /* n_others: block, ascending; place (flow_ties) */
+    const struct flow_tie_list *list;
+    struct flow_tie_room room;
+};
+
+/* Bytes of the table of a block of so many rows. */
+size_t flow_ties_bytes(uint32_t n_rows, const struct flow_tie_room *room);
+
+/* Makes the table. Writes every byte. Returns false if the room does not do, or if a tie leads to a
+ * block that is none of the others: the table has no ties then. Local. */
+bool flow_ties_make(const struct flow_ties_of *of, void *memory);
 
 /* Finds the arrays of a table. NULL: there are no ties. */
 struct flow_ties flow_ties_open(const void *memory);
 
 /* How many blocks it shares ties with. */
 uint32_t flow_ties_others(const void *memory);
-
-/* Ties from .. to - 1 as springs. Where there are none there may be no arrays to point into. */
-static inline struct phys_springs flow_ties_springs(const struct flow_ties *ties, uint32_t from,
-                                                    uint32_t to)
-{
-    if (from == to)
-        return (struct phys_springs){0};
-    return (struct phys_springs){to - from,
-                                 ties->end + from,
-                                 ties->stiffness + from,
-                                 ties->damping + from,
-                                 ties->length + from,
-                                 0};
-}
-
-/* Those into the k-th other block. */
-static inline struct phys_springs flow_ties_into(const struct flow_ties *ties, uint32_t k)
-{
-    return flow_ties_springs(ties, ties->n_inner + ties->start[k],
-                             ties->n_inner + ties->start[k + 1]);
-}
 
 #endif

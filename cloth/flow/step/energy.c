@@ -32,7 +32,7 @@ static int energy_body(const duite_call *call, const struct energy_fields *on)
             0.5 * phys_energy_springs(&springs, on->x, flow_rows_of(on->halo_x, s));
     }
     if (on->tie_table)
-        sums[FLOW_ENERGY_ELASTIC] += flow_ties_energy(&view);
+        sums[FLOW_ENERGY_ELASTIC] += flow_ties_energy(flow_of(call), &view);
     return 0;
 }
 

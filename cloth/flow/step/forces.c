@@ -26,7 +26,7 @@ static void add_inner(const duite_call *call, const struct flow_table *t, double
     if (t->n_stiff)
         add_springs(t, view, f);
     if (view->tie_table)
-        flow_ties_force(view, f);
+        flow_ties_force(flow_of(call), view, f);
 }
 
 void flow_forces(const duite_call *call, const struct flow_table *t, double now,

@@ -1,98 +1,135 @@
-/* Forces, matrix and energy of ties: of springs that are in no table of a block
- * (cloth/flow/state/ties.h). */
+/* Forces, matrix and energy of timed joints: of springs that are in no table of a block
+ * (cloth/flow/state/ties.h). Both blocks of a joint compute it from end 0 to end 1, to the same
+ * bits. */
 #include "cloth/flow/bodies.h"
 
 #include "cloth/physics/energy.h"
 
-/* x and v of the other ends of ties into the k-th other block. */
-static const phys_vec *x_there(const struct flow_ties *ties, const struct flow_view *view,
-                               uint32_t k)
+/* Some joints as springs from rows of x[0] to the same rows of x[1]. */
+enum { AT_ONCE = 32 };
+struct some_joints {
+    uint32_t n, next;      /* how many; the tie behind them */
+    uint32_t tie[AT_ONCE]; /* their numbers in the table */
+    uint32_t end[AT_ONCE][2];
+    double stiffness[AT_ONCE], damping[AT_ONCE], length[AT_ONCE];
+    phys_vec x[2][AT_ONCE], v[2][AT_ONCE];
+};
+
+static struct phys_springs springs_of(const struct some_joints *some, int full)
 {
-    return flow_rows_of(view->tie_halo, k) + ties->place[k];
+    return (struct phys_springs){some->n,         (const uint32_t(*)[2])some->end,
+                                 some->stiffness, some->damping,
+                                 some->length,    full};
 }
 
-static const phys_vec *v_there(const struct flow_ties *ties, const struct flow_view *view,
-                               uint32_t k)
+static void append(const struct flow_ties *ties, const struct flow_view *view, uint32_t i,
+                   const struct flow_tie *joint, struct some_joints *some)
 {
-    const size_t rows = view->tie_halo[k].count / 4;
-    return x_there(ties, view, k) + rows / 2;
+    const uint32_t at = some->n++;
+    some->tie[at] = i;
+    some->end[at][0] = some->end[at][1] = at;
+    some->stiffness[at] = joint->stiffness;
+    some->damping[at] = joint->damping;
+    some->length[at] = joint->length;
+    for (int end = 0; end < 2; end++) {
+        some->x[end][at] = *flow_tie_x(ties, view, ties->corner[i][end]);
+        if (view->v)
+            some->v[end][at] = *flow_tie_v(ties, view, ties->corner[i][end]);
+    }
 }
 
-void flow_ties_force(const struct flow_view *view, phys_vec *f)
+/* Takes the next joints among the ties before `to`. Returns whether there are any. */
+static bool take(const struct flow *flow, const struct flow_ties *ties,
+                 const struct flow_view *view, uint32_t to, struct some_joints *some)
+{
+    uint32_t i = some->next;
+    some->n = 0;
+    for (; i < to && some->n < AT_ONCE; i++)
+        if (ties->of[i] < flow->n_ties)
+            append(ties, view, i, flow->tie + ties->of[i], some);
+    some->next = i;
+    return some->n > 0;
+}
+
+/* Adds what springs do to end 0 to the rows of the block, and takes it from those of end 1. */
+static void scatter(const struct flow_ties *ties, const struct some_joints *some,
+                    const phys_vec *add, phys_vec *y)
+{
+    for (uint32_t i = 0; i < some->n; i++) {
+        const uint32_t *corner = ties->corner[some->tie[i]];
+        if (corner[0] < ties->n_rows)
+            y[corner[0]] += add[i];
+        if (corner[1] < ties->n_rows)
+            y[corner[1]] -= add[i];
+    }
+}
+
+void flow_ties_force(const struct flow *flow, const struct flow_view *view, phys_vec *f)
 {
     const struct flow_ties ties = flow_ties_open(view->tie_table);
-    const struct phys_springs inner = flow_ties_springs(&ties, 0, ties.n_inner);
-    phys_springs_force(&inner, view->x, view->v, f);
-    for (uint32_t k = 0; k < ties.n_others; k++) {
-        const struct phys_springs into = flow_ties_into(&ties, k);
-        phys_springs_force_cut(&into, view->x, view->v, x_there(&ties, view, k),
-                               v_there(&ties, view, k), f);
+    struct some_joints some = {0};
+    while (take(flow, &ties, view, ties.n, &some)) {
+        const struct phys_springs springs = springs_of(&some, 0);
+        phys_vec add[AT_ONCE] = {{0}};
+        phys_springs_force_cut(&springs, some.x[0], some.v[0], some.x[1], some.v[1], add);
+        scatter(&ties, &some, add, f);
     }
 }
 
-static void add_matrix(const struct flow_ties *ties, const struct flow_view *view, double h,
-                       int full, phys_vec *value)
-{
-    struct phys_springs springs = flow_ties_springs(ties, 0, ties->n_inner);
-    springs.full = full;
-    phys_springs_matrix(&springs, h, view->x, view->x, value);
-    for (uint32_t k = 0; k < ties->n_others; k++) {
-        springs = flow_ties_into(ties, k);
-        springs.full = full;
-        phys_springs_matrix(&springs, h, view->x, x_there(ties, view, k),
-                            value + ties->n_inner + ties->start[k]);
-    }
-}
-
-static void add_system(const struct flow_ties *ties, const struct flow_view *view, double h,
-                       double push, int full, phys_vec *b, phys_vec *value)
-{
-    struct phys_springs springs = flow_ties_springs(ties, 0, ties->n_inner);
-    springs.full = full;
-    phys_springs_system(&springs, h, push, view->x, view->v, b, value);
-    for (uint32_t k = 0; k < ties->n_others; k++) {
-        springs = flow_ties_into(ties, k);
-        springs.full = full;
-        phys_springs_system_cut(&springs, h, push, view->x, view->v, x_there(ties, view, k),
-                                v_there(ties, view, k), b, value + ties->n_inner + ties->start[k]);
-    }
-}
-
-void flow_ties_system(const struct flow_view *view, double h, double push, int full, phys_vec *b,
-                      phys_vec *value)
+void flow_ties_system(const struct flow *flow, const struct flow_view *view, double h, double push,
+                      phys_vec *b, phys_vec *value)
 {
     const struct flow_ties ties = flow_ties_open(view->tie_table);
-    memset(value, 0, ties.room * sizeof *value);
-    if (b)
-        add_system(&ties, view, h, push, full, b, value);
-    else
-        add_matrix(&ties, view, h, full, value);
+    struct some_joints some = {0};
+    memset(value, 0, ties.room.ties * sizeof *value);
+    while (take(flow, &ties, view, ties.n, &some)) {
+        const struct phys_springs springs = springs_of(&some, flow->model->full_slope);
+        phys_vec add[AT_ONCE] = {{0}}, made[AT_ONCE];
+        if (b)
+            phys_springs_system_cut(&springs, h, push, some.x[0], some.v[0], some.x[1], some.v[1],
+                                    add, made);
+        else
+            phys_springs_matrix(&springs, h, some.x[0], some.x[1], made);
+        if (b)
+            scatter(&ties, &some, add, b);
+        for (uint32_t i = 0; i < some.n; i++)
+            value[some.tie[i]] = made[i];
+    }
 }
 
-double flow_ties_energy(const struct flow_view *view)
+double flow_ties_energy(const struct flow *flow, const struct flow_view *view)
 {
     const struct flow_ties ties = flow_ties_open(view->tie_table);
-    struct phys_springs springs = flow_ties_springs(&ties, 0, ties.n_inner);
-    double sum = phys_energy_springs(&springs, view->x, view->x);
-    for (uint32_t k = 0; k < ties.n_others; k++) {
-        springs = flow_ties_into(&ties, k);
-        sum += 0.5 * phys_energy_springs(&springs, view->x, x_there(&ties, view, k));
-    }
+    const uint32_t end[] = {ties.n_inner, ties.n};
+    struct some_joints some = {0};
+    double sum = 0;
+    for (int cut = 0; cut < 2; cut++)
+        while (take(flow, &ties, view, end[cut], &some)) {
+            const struct phys_springs springs = springs_of(&some, 0);
+            const double all = phys_energy_springs(&springs, some.x[0], some.x[1]);
+            sum += cut ? 0.5 * all : all;
+        }
     return sum;
 }
 
-/* dv of what is held is zero. Of a tie between free rows the two N dv cancel. */
+/* dv of what is held is zero. Of a tie between free rows whose weights come to nothing all N dv
+ * cancel. */
 void flow_ties_lost(const unsigned char *tie_table, const phys_vec *value, const phys_vec *dv,
                     double lost[3])
 {
     const struct flow_ties ties = flow_ties_open(tie_table);
     for (uint32_t i = 0; i < ties.n; i++) {
-        const int here = i < ties.n_inner && ties.held[i] == 1; /* the end that is free */
-        phys_vec y;
-        if (ties.held[i] != 2 && !here)
-            continue;
-        solve_spring_times(value + i, dv + ties.end[i][here], &y);
-        for (int c = 0; c < 3; c++)
-            lost[c] -= y[c];
+        double free = 0;
+        for (int k = 0; k < SOLVE_TIE_CORNERS; k++)
+            free += ties.held[i] >> k & 1 ? 0 : ties.weight[i][k];
+        for (int k = 0; k < SOLVE_TIE_CORNERS && free != 0; k++) {
+            const uint32_t row = ties.corner[i][k];
+            phys_vec y;
+            if (ties.weight[i][k] == 0 || row >= ties.n_rows || ties.held[i] >> k & 1)
+                continue;
+            solve_spring_times(value + i, dv + row, &y);
+            for (int c = 0; c < 3; c++)
+                lost[c] -= free * ties.weight[i][k] * y[c];
+        }
     }
 }

@@ -111,8 +111,7 @@ static int open_system(struct run *run, struct cloth_error *error)
     if (model_is_filtered(model))
         return cloth_fail(
             error, CLOTH_E_INPUT,
-            "--save-system: the files know held vertices only, no contact: filter and "
-            "no pins to lines or planes");
+            "--save-system: the files know held vertices only, no pins to lines or planes");
     if (model->end / model->h + 0.5 < 1)
         return cloth_fail(error, CLOTH_E_INPUT,
                           "--save-system: the scene ends before its first step");

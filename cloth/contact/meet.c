@@ -1,10 +1,7 @@
 /* Each row is computed from itself alone: no order of rows matters. */
 #include "cloth/contact/meet.h"
 
-enum { AT_ONCE = 32 };             /* rows, whose hits are on the stack */
-static const double ON = 1e-7;     /* m: so near a vertex lies on a surface */
-static const double SAME = 1e-12;  /* of the surface's speed: a difference of rounding */
-static const double SLOWER = 1e-9; /* of the speed due: so much rounding may take of it */
+enum { AT_ONCE = 32 }; /* rows, whose hits are on the stack */
 
 bool contact_leave(const struct contact_hit *hit, const phys_vec *way, phys_vec *x, phys_vec *v)
 {
@@ -46,19 +43,4 @@ size_t contact_project(const struct contact_shape *shape, const struct contact_p
                 touched += contact_leave(hit + i, &hit[i].normal, x + from + i, v + from + i);
     }
     return touched;
-}
-
-enum contact_meeting contact_meet(const struct contact_hit *hit, double h, const phys_vec *v,
-                                  double *speed, double *due)
-{
-    const phys_vec relative = *v - hit->velocity;
-    *speed = phys_dot(&relative, &hit->normal);
-    *due = 0;
-    if (hit->gap <= ON) {
-        const double own = phys_dot(&hit->velocity, &hit->normal);
-        return *speed <= SAME * (own < 0 ? -own : own) ? CONTACT_LIES : CONTACT_APART;
-    }
-    *due = -hit->gap / h;
-    /* What lands was given just this speed. */
-    return *speed <= *due * (1 - SLOWER) ? CONTACT_LANDS : CONTACT_APART;
 }

@@ -17,12 +17,4 @@ size_t contact_project(const struct contact_shape *shape, const struct contact_p
  * contact_closest at x. */
 bool contact_leave(const struct contact_hit *hit, const phys_vec *way, phys_vec *x, phys_vec *v);
 
-/* Before a step of h (s): finds whether a vertex lies on the shape, or lands on it in the step by
- * the velocity that it has. hit: that of contact_ahead. *speed: the vertex's velocity along the
- * normal relative to the shape, m/s. *due: the value of *speed with which the step ends on the
- * surface. */
-enum contact_meeting { CONTACT_APART, CONTACT_LIES, CONTACT_LANDS };
-enum contact_meeting contact_meet(const struct contact_hit *hit, double h, const phys_vec *v,
-                                  double *speed, double *due);
-
 #endif

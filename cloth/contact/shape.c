@@ -99,18 +99,3 @@ void contact_closest(const struct contact_shape *shape, const struct contact_pos
             closest_still(shape, pose, some, x + i, hit + i);
     }
 }
-
-void contact_ahead(const struct contact_shape *shape, const struct contact_pose *pose,
-                   const phys_vec *x, struct contact_hit *hit)
-{
-    phys_vec own, is;
-    if (!pose->moves) {
-        closest_still(shape, pose, 1, x, hit);
-        return;
-    }
-    phys_pose_back(&pose->from, x, &own);
-    contact_kinds[shape->kind]->closest(shape->value, pose->body, 1, &own, hit);
-    phys_pose_point(&pose->to, &own, &is);
-    hit->velocity = pose->rate * (is - *x);
-    phys_pose_direction(&pose->to, &hit->normal, &hit->normal);
-}

@@ -23,6 +23,7 @@ struct contact_shape {
     uint32_t first, n; /* key frames of its motion, among those of the scene; n 0: it is still */
     uint32_t body;   /* number of a body of the scene, from 1; 0: its parameters are all there is */
     double about[3]; /* m: the point that its motion rotates about */
+    double friction; /* coefficient, >= 0: of contact that is certified */
     double value[CONTACT_VALUES]; /* its parameters, one after the other as its kind lists them */
 };
 
@@ -92,10 +93,5 @@ void contact_pose_over(const struct contact_shape *shape, const struct phys_key 
 /* Of n points (m) at the end of the step. */
 void contact_closest(const struct contact_shape *shape, const struct contact_pose *pose, size_t n,
                      const phys_vec *x, struct contact_hit *hit);
-
-/* Of a point (m) at the begin of the step: its gap there, the normal that this becomes until the
- * end, and the velocity that would carry the point along with the shape. */
-void contact_ahead(const struct contact_shape *shape, const struct contact_pose *pose,
-                   const phys_vec *x, struct contact_hit *hit);
 
 #endif

@@ -10,7 +10,7 @@
     X(table_make) X(table_keep)                                                                    \
     X(initial) X(keep) X(restore) X(status) X(tie) X(tie_show)                                     \
     X(force) X(force_free) X(prescribe_velocity) X(prescribe_position)                             \
-    X(predict_contact) X(contact) X(constrain) X(collide)                                          \
+    X(filter) X(constrain) X(collide)                                          \
     X(euler) X(euler_next) X(verlet_first) X(verlet_second) X(midpoint) X(runge)                   \
     X(velocity_implicit) X(position) X(predict) X(correct) X(shift) X(residual)                    \
     X(system) X(system_of_forces) X(matrix) X(factor)                                              \

@@ -22,6 +22,7 @@ libduite_cloth_la_SOURCES += \
     cloth/flow/setup/seams.c \
     cloth/flow/setup/sides.c \
     cloth/flow/setup/source.c \
+    cloth/flow/setup/thickness.c \
     cloth/flow/setup/source.h \
     cloth/flow/setup/springs.c \
     cloth/flow/setup/starts.c \

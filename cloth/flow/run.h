@@ -115,9 +115,9 @@ struct flow_rows {
                              * welded vertex its lowest number */
     const phys_vec *x, *v;  /* n: m, m/s, lanes 0 to 2; where the step begins */
     double time, h;         /* s: when the step ends; its length */
-    phys_vec *filter; /* n: S of each row (solve_filter in cloth/solve/block.h), as contact and
-                       * sliders of pins have it; solve_constrain holds a row along a normal more;
-                       * at a point: all 0. Rows of pins are held in any case. */
+    phys_vec *filter;       /* n: S of each row (solve_filter in cloth/solve/block.h), as sliders of
+                             * pins have it; solve_constrain holds a row along a normal more;
+                             * at a point: all 0. Rows of pins are held in any case. */
 };
 struct flow_filter {
     void *context;

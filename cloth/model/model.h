@@ -36,6 +36,7 @@ struct model_material {
     double ea;                /* N, >= 0: force / strain of an edge without triangles */
     double limit_strain;      /* >= 0: edges stretched beyond it are pulled back, */
     double limit_stiffness;   /* by so many N/m, >= 0; 0: they are not */
+    double friction;          /* coefficient, >= 0: of contact that is certified */
     int both_diagonals;       /* grids: shear springs along both diagonals of a cell */
 };
 
@@ -204,9 +205,16 @@ enum model_integrator {
     MODEL_BDF2 /* begins with implicit Euler, also after contact or a change of h */
 };
 enum { MODEL_INTEGRATORS = MODEL_BDF2 + 1 };
-enum model_contact {
-    MODEL_CONTACT_PROJECT, /* vertices in an obstacle are put onto it after the step */
-    MODEL_CONTACT_FILTER   /* the solve of implicit Euler keeps them there; so, what is left */
+enum model_contact_mode {
+    MODEL_CONTACT_PROJECT,  /* vertices in an obstacle are put onto it after the step */
+    MODEL_CONTACT_CERTIFIED /* the solve knows of contacts; a step ends where all are certified */
+};
+struct model_contact {
+    enum model_contact_mode mode;
+    bool self;        /* cloths touch themselves and each other */
+    double thickness; /* m, > 0: of cloth that touches something, half of it on each side */
+    double friction;  /* coefficient, >= 0, of materials and obstacles that have none of their own;
+                         sides a and b rub on each other by sqrt(a b) */
 };
 enum model_stop {
     MODEL_STOP_RELATIVE,
@@ -252,7 +260,7 @@ struct model {
     double gravity[3];                 /* m/s^2 */
     struct phys_air air;
     uint32_t wind_curve; /* that the wind is multiplied by, from 1; 0: it is constant */
-    enum model_contact contact;
+    struct model_contact contact;
 
     double h;                  /* s; time is an integer count of h/1024 */
     char *h_place, *fps_place; /* where fps is the default: that of end */
@@ -299,18 +307,16 @@ static inline int model_is_implicit(const struct model *model)
     return model->integrator >= MODEL_IMPLICIT_EULER;
 }
 
-/* Whether its solves know of obstacles. */
-static inline int model_solves_contact(const struct model *model)
+/* Whether its steps end where all contacts are certified. */
+static inline bool model_certifies(const struct model *model)
 {
-    return model->integrator == MODEL_IMPLICIT_EULER && model->newton_steps <= 1 &&
-           model->contact == MODEL_CONTACT_FILTER && model->n_obstacles;
+    return model_is_implicit(model) && model->contact.mode == MODEL_CONTACT_CERTIFIED;
 }
 
-/* Whether its solves are filtered by more than points: by contact, sliders or the program. */
+/* Whether its solves are filtered by more than points: by sliders or the program. */
 static inline int model_is_filtered(const struct model *model)
 {
-    return model_solves_contact(model) ||
-           (model_is_implicit(model) && (model->n_sliders || model->own_filter));
+    return model_is_implicit(model) && (model->n_sliders || model->own_filter);
 }
 
 /* Whether an obstacle moves: two key frames of it differ. */

@@ -26,6 +26,7 @@ libduite_cloth_la_SOURCES += \
 	cloth/scene/build/mesh.c \
 	cloth/scene/build/moduli.c \
 	cloth/scene/build/cloth.c \
+	cloth/scene/build/contact.c \
 	cloth/scene/build/curve.c \
 	cloth/scene/build/idle.c \
 	cloth/scene/build/joint.c \

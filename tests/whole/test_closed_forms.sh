@@ -192,7 +192,6 @@ slides() { # NAME, KEY=VALUE, what it slides more: in g sin 0.5 h t
         below "and off it" "$3" 1e-13
 }
 ok "a sheet slides down a slope, verlet" slides verlet integrator=verlet 0
-ok "a sheet slides down a slope, contact in the solve" slides filter contact=filter 0.5
 
 # A pin that shakes a damped weight, x = A sin W t by 96 keys a turn: in the end it answers with amplitude and phase of
 # (k + i W c) / (k - m W^2 + i W c), but for the straight lines between keys: A (sin(pi / 96) / (pi / 96))^2.

@@ -48,7 +48,6 @@ every_integrator() { # MODEL SETTING...
     done
     set -- "$@" time.h=0.001 time.end=0.004
     one_hash "$model, implicit_euler" "$@"
-    one_hash "$model, implicit_euler, contact in the solve" "$@" contact=filter
     one_hash "$model, implicit_euler, Newton, whole slope" "$@" newton.steps=4 solver.jacobian=full energies=steps
     one_hash "$model, bdf2" "$@" integrator=bdf2 solver.format=half_float
     one_hash "$model, bdf2, Newton" "$@" integrator=bdf2 newton.steps=4

@@ -35,13 +35,13 @@ static int fork_system(struct flow_state *state, struct flow_step_args args)
     return code ? code : flow_cg_start(state);
 }
 
-/* What the solves of a step are filtered by, from x, v and f. */
+/* What the solves of a step are filtered by, from x and v. */
 static int fork_filter(struct flow_state *state, struct flow_step_args args)
 {
     return model_is_filtered(state->flow->model) ? flow_contact_filter(state, args) : DUITE_OK;
 }
 
-/* The filter goes by the forces. */
+/* Of a filtered solve: forces, filter and matrix are tasks of their own. */
 static int assemble_held(struct flow_state *state, struct flow_step_args args)
 {
     int code = fork_force(state, args);
@@ -69,7 +69,7 @@ static int linearise(struct flow_state *state)
 
 /* ---- One linear step: v += dv, x += h v ---- */
 
-/* What a filtered solve lost: entries to held rows and rows in contact do not cancel. */
+/* What a filtered solve lost: entries to held rows and to filtered ones do not cancel. */
 static void sum_rows(size_t n, const phys_vec *r, double sum[3])
 {
     for (size_t a = 0; a < n; a++)

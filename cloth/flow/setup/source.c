@@ -149,7 +149,9 @@ int flow_source_make(struct flow_source *source, const struct model *model, int 
                      struct cloth_error *error)
 {
     *source = (struct flow_source){.model = model};
-    int code = flow_particles_make(&source->particles, model, error);
+    int code = model_certifies(model) ? flow_thickness_check(model, error) : CLOTH_OK;
+    if (!code)
+        code = flow_particles_make(&source->particles, model, error);
     if (!code)
         code = element_cloths_make(&source->elements, model, error);
     if (!code)

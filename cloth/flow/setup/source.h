@@ -317,6 +317,10 @@ int flow_limit_find(const struct flow_source *source, struct flow_limit *limit,
 /* The longest step, s, in which an integrator does not let it grow; infinite for implicit ones. */
 double flow_limit_of(const struct flow_limit *limit, enum model_integrator integrator);
 
+/* Of a model whose contact is certified: that no triangle has an edge that is shorter at rest than
+ * the thickness. Error: CLOTH_E_INPUT. Local. */
+int flow_thickness_check(const struct model *model, struct cloth_error *error);
+
 /* What measures residuals, kg m^2: the mass of all vertices that no pin holds times the square of
  * the mean length at rest of all edges that can be stretched; 0 where there are none. Local. */
 double flow_source_inertia(const struct flow_source *source);

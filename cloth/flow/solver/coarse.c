@@ -4,9 +4,9 @@
  * solves for the motion of all patches. The next pass adds P times it to its own rows and to its
  * ghosts alike.
  *
- * In reading order: the space P, once a run or, with contact in the solve, in each step; C and its
- * factor, in each step; what a pass and its scalars do with them. Its pattern is made once a run
- * (pattern.c). */
+ * In reading order: the space P, once a run or, where the solve is filtered, in each step; C and
+ * its factor, in each step; what a pass and its scalars do with them. Its pattern is made once a
+ * run (pattern.c). */
 #include "cloth/flow/solver/solve.h"
 #include "cloth/flow/solver/solver.h"
 

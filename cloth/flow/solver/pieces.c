@@ -8,7 +8,7 @@
 #include "cloth/flow/step/step.h"
 
 /* What is summed over a piece: the lost momentum, its antisymmetric part, its D, kg, and how many
- * of its rows contact or the program's filter holds. */
+ * of its rows a slider or the program's filter holds. */
 enum { LOST, TURN = 3, MASS = 6, HELD };
 
 static bool is_held(const struct flow_table *t, uint32_t row)

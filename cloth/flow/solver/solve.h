@@ -33,8 +33,8 @@ void flow_preconditioner_choose(struct flow *flow, uint32_t n_blocks);
 int flow_preconditioner_prepare(struct flow_state *state);
 /* Local. */
 void flow_preconditioner_free(struct flow *flow);
-/* Forks what the coarse space is, if there is one: once a run, or with contact in the solve in each
- * step. */
+/* Forks what the coarse space is, if there is one: once a run, or where the solve is filtered in
+ * each step. */
 int flow_coarse_initialise(struct flow_state *state);
 
 #endif

@@ -257,7 +257,8 @@ static enum flow_life is_work(const struct model *model)
     return FLOW_WORK;
 }
 
-/* With contact in the solve the filter, and so the basis, is another in each step. */
+/* With sliders that move, or of a program, the filter, and so the basis, is another in each step.
+ */
 static enum flow_life is_derived_once(const struct model *model)
 {
     return model_is_filtered(model) ? FLOW_WORK : FLOW_DERIVED;

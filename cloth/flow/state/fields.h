@@ -52,7 +52,7 @@
     X(base_v,       ONE,     phys_vec,      4, rows,          based,        is_work)               \
     X(last_x,       ONE,     phys_vec,      4, rows,          bdf2,         is_state)              \
     X(last_v,       ONE,     phys_vec,      4, rows,          bdf2,         is_state)              \
-    /* the system of a step: matrix (flow_matrix_in), its filter with contact; its solve */        \
+    /* the system of a step: matrix (flow_matrix_in), its filter if any; its solve */        \
     X(a,            ONE,     phys_vec,      1, matrix,        implicit_run, is_work)               \
     X(filter,       ONE,     phys_vec,      4, rows,          filtered,     is_work)               \
     X(dv,           ONE,     phys_vec,      4, rows,          implicit_run, is_state_of_guess)     \

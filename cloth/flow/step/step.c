@@ -31,11 +31,6 @@ static bool is_driven(const struct model *model)
     return model_is_driven(model);
 }
 
-static bool is_touched(const struct model *model)
-{
-    return model_solves_contact(model);
-}
-
 static bool meets_obstacles(const struct model *model)
 {
     return model->n_obstacles > 0;
@@ -85,7 +80,6 @@ struct stage {
 static const struct stage stages[] = {
     {"keep", PREDICT, keeps_first, flow_keep},
     {"prescribe velocities", PREDICT, is_driven, flow_pins_prescribe_velocity},
-    {"predict contact", PREDICT, is_touched, flow_contact_predict},
     {"begin", SOLVE, always, fork_begin},
     {"keep", CORRECT, keeps_late, flow_keep},
     {"integrate", CORRECT, always, fork_end},

@@ -29,11 +29,9 @@ int flow_status_fork(struct flow_state *state);
 int flow_pins_prescribe_velocity(struct flow_state *state);
 int flow_pins_prescribe_position(struct flow_state *state);
 
-/* Fork contact (contact.c). The first gives vertices, before the forces, velocities that end the
- * step on an obstacle. The second makes the filter of a step's solves from x, v and f. The third
+/* Fork contact (contact.c). The first makes the filter of a step's solves from x and v. The second
  * puts the filter on the right side and in the matrix. The last puts vertices out of obstacles
  * after the step. */
-int flow_contact_predict(struct flow_state *state);
 int flow_contact_filter(struct flow_state *state, struct flow_step_args args);
 int flow_contact_constrain(struct flow_state *state);
 int flow_contact_project(struct flow_state *state);

@@ -17,6 +17,11 @@ int scene_build_obstacles(struct model *model, struct scene_tree *tree, struct c
 int scene_build_check_obstacles(const struct model *model, const struct scene_tree *tree,
                                 struct cloth_error *error);
 
+/* What can be had of contact: by the integrator, and how thin it may be where these cloths are.
+ * After the cloths. */
+int scene_build_check_contact(const struct model *model, const struct scene_tree *tree,
+                              struct cloth_error *error);
+
 /* The cloths; after the world, since they name materials. */
 int scene_build_cloths(struct model *model, struct scene_tree *tree, struct cloth_error *error);
 

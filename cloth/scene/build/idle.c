@@ -62,16 +62,9 @@ static bool is_explicit(const struct model *model)
     return !model_is_implicit(model);
 }
 
-/* Steps of other kinds project. */
-static bool filters_nothing(const struct model *model)
+static bool certifies_nothing(const struct model *model)
 {
-    return model->contact == MODEL_CONTACT_FILTER && model->n_obstacles &&
-           !model_solves_contact(model);
-}
-
-static bool meets_nothing(const struct model *model)
-{
-    return model->contact == MODEL_CONTACT_FILTER && !model->n_obstacles;
+    return !model_certifies(model);
 }
 
 static bool takes_one_newton_step(const struct model *model)
@@ -139,16 +132,17 @@ static bool has_no_wind(const struct model *model)
              wind[2] > 0);
 }
 
+#define IS_CERTIFIED "means nothing: it is of contact.mode certified"
+
 /* A key of the scene, or of a map of it, and when it does nothing. */
 static const struct {
     const char *map, *key; /* map NULL: the scene */
     bool (*idle)(const struct model *model);
     const char *what; /* the rest of the sentence */
 } idle_keys[] = {
-    {NULL, "contact", filters_nothing,
-     "filter is of implicit_euler in one linear step (newton.steps: 1); these steps meet obstacles "
-     "as project does"},
-    {NULL, "contact", meets_nothing, "filter says how obstacles are met; there are none"},
+    {"contact", "self", certifies_nothing, IS_CERTIFIED},
+    {"contact", "thickness", certifies_nothing, IS_CERTIFIED},
+    {"contact", "friction", certifies_nothing, IS_CERTIFIED},
     {NULL, "solver", is_explicit, "means nothing: explicit steps solve no system"},
     {NULL, "newton", is_explicit, "means nothing: explicit steps solve no system"},
     {NULL, "air", blows_nothing, "means nothing: it blows on triangles, and no cloth has any"},
@@ -173,13 +167,14 @@ static const struct {
     {"time", "rest", never_rests, "means nothing: a load or wind with a sine never ends"},
 };
 
-/* A bound of 0 asks for nothing, so nothing of it is missed. */
+/* A bound of 0, or no contact, asks for nothing, so nothing of it is missed. */
 static bool is_off(const struct scene_tree *tree, int node, const char *key)
 {
+    const char *text = scene_tree_scalar(tree, node);
     double value = 1;
-    if (!strcmp(key, "stretch_growth"))
-        scene_scalar_number(scene_tree_scalar(tree, node), &value);
-    return value <= 0;
+    if (!strcmp(key, "stretch_growth") || !strcmp(key, "friction"))
+        scene_scalar_number(text, &value);
+    return value <= 0 || (!strcmp(key, "self") && !strcmp(text, "off"));
 }
 
 static int warn_of_keys(const struct idle_scene *scene)
@@ -251,9 +246,29 @@ static int warn_of_motion(const struct idle_scene *scene, int owner)
     return CLOTH_OK;
 }
 
+/* That of a material or an obstacle. */
+static int warn_of_friction(const struct idle_scene *scene, int owner)
+{
+    const int node = scene_tree_get(scene->tree, owner, "friction");
+    if (!node || !certifies_nothing(scene->model) || is_off(scene->tree, node, "friction"))
+        return CLOTH_OK;
+    return warn(scene, node, "friction " IS_CERTIFIED);
+}
+
+static int warn_of_materials(const struct idle_scene *scene)
+{
+    const int map = scene_tree_get(scene->tree, 1, "materials");
+    int code = CLOTH_OK;
+    for (size_t i = 0; i < scene_tree_length(scene->tree, map) && !code; i++)
+        code = warn_of_friction(scene, scene_tree_pair(scene->tree, map, i).value);
+    return code;
+}
+
 static int warn_of_obstacle(const struct idle_scene *scene, int obstacle)
 {
-    return warn_of_motion(scene, scene_tree_pair(scene->tree, obstacle, 0).value);
+    const int shape = scene_tree_pair(scene->tree, obstacle, 0).value;
+    const int code = warn_of_friction(scene, shape);
+    return code ? code : warn_of_motion(scene, shape);
 }
 
 /* A joint acts in the steps that begin within its time, to a tick of h / 1024. */
@@ -293,6 +308,8 @@ int scene_build_idle(struct model *model, const struct scene_tree *tree, struct 
     const struct idle_scene scene = {model, tree, error};
     const int cloths = scene_tree_get(tree, 1, "cloths");
     int code = warn_of_keys(&scene);
+    if (!code)
+        code = warn_of_materials(&scene);
     if (!code)
         code = warn_of_format(&scene);
     for (uint32_t i = 0; i < model->n_cloths && !code; i++) {

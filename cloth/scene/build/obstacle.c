@@ -149,6 +149,9 @@ static int build_shape(struct model *model, struct contact_shape *shape, struct 
         code = build_parameter(value, kind, p, tree, scene_tree_get(tree, node, p->name), error);
         value += contact_role_size(p->role);
     }
+    shape->friction = scene_tree_get(tree, node, "friction")
+                          ? scene_tree_number(tree, node, "friction")
+                          : model->contact.friction;
     if (!code && kind == &contact_body_kind)
         code = build_body(model, shape, tree, node, error);
     const int motion = scene_tree_get(tree, node, "motion");

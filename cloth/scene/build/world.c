@@ -80,10 +80,12 @@ static int check_membrane(const struct model_material *material, const struct sc
 }
 
 /* What the fields have as the scene says it becomes what the model means by them. */
-static int build_material(struct model_material *material, const struct scene_tree *tree, int node,
-                          struct cloth_error *error)
+static int build_material(const struct model *model, struct model_material *material,
+                          const struct scene_tree *tree, int node, struct cloth_error *error)
 {
     const int damping = scene_tree_get(tree, node, "damping");
+    if (!scene_tree_get(tree, node, "friction"))
+        material->friction = model->contact.friction;
     if (scene_tree_get(tree, node, "stretch"))
         material->weft_excess -= material->stretch;
     if (scene_tree_get(tree, damping, "bending"))
@@ -98,8 +100,8 @@ static int build_materials(struct model *model, const struct scene_tree *tree,
     const int map = scene_tree_get(tree, 1, "materials");
     int code = CLOTH_OK;
     for (uint32_t i = 0; !code && i < model->n_materials; i++)
-        code =
-            build_material(&model->materials[i], tree, scene_tree_pair(tree, map, i).value, error);
+        code = build_material(model, &model->materials[i], tree,
+                              scene_tree_pair(tree, map, i).value, error);
     return code;
 }
 

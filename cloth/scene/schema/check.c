@@ -60,13 +60,32 @@ static const char *found(const struct walk *walk, int node, char *text, size_t s
     return text;
 }
 
+/* Values that were, and what is in their place. key: that had them. */
+static const struct {
+    const char *key, *value, *now;
+} outdated[] = {
+    {"contact", "project", "write contact: {mode: project}"},
+    {"contact", "filter", "it is gone; contact: {mode: certified} or {mode: project} is there"},
+    {"mode", "filter", "it is gone; certified knows of contact in the solve, too"}};
+
+static const char *outdated_of(const struct walk *walk, const struct place *at, int node)
+{
+    const char *value = scene_tree_scalar(walk->tree, node);
+    for (size_t i = 0; at->key && value && i < sizeof outdated / sizeof *outdated; i++)
+        if (!strcmp(outdated[i].key, at->key) && !strcmp(outdated[i].value, value))
+            return outdated[i].now;
+    return NULL;
+}
+
 static int wrong(struct walk *walk, const struct place *at, const struct scene_rule *rule, int node)
 {
     char path[200], is[100], expected[300];
+    const char *now = outdated_of(walk, at, node);
     path_of(at, path, sizeof path);
-    return scene_tree_fail(walk->tree, node, walk->error, "%s is %s; %s is expected", path,
+    return scene_tree_fail(walk->tree, node, walk->error, "%s is %s; %s is expected%s%s", path,
                            found(walk, node, is, sizeof is),
-                           scene_rule_expected(rule, expected, sizeof expected));
+                           scene_rule_expected(rule, expected, sizeof expected), now ? ": " : "",
+                           now ? now : "");
 }
 
 static const struct scene_rule *rule_of(const struct scene_rule *keys, const char *name)

@@ -74,6 +74,8 @@ static const struct scene_rule material_keys[] = {
     {"strain_limit", SCENE_MAP, .inside = limit_keys,
      .about = "springs that pull edges back which are stretched too far"},
     {"damping", SCENE_MAP, .fallback = "{}", .inside = damping_keys, .about = "of motion"},
+    {"friction", SCENE_NUMBER, .range = SCENE_NOT_NEGATIVE, INTO(struct model_material, friction),
+     .about = "coefficient of certified contact; else that of contact"},
     {"diagonals", SCENE_CHOICE, .fallback = "both", INTO(struct model_material, both_diagonals),
      WORDS({"both", true}, {"one", false}), .about = "shear springs in a cell of a grid"},
     {0}};
@@ -81,6 +83,8 @@ static const struct scene_rule material = {.type = SCENE_MAP, .inside = material
 
 /* What every obstacle may have. */
 #define MOVES \
+    {"friction", SCENE_NUMBER, .range = SCENE_NOT_NEGATIVE, \
+     .about = "coefficient of certified contact; else that of contact"}, \
     {"motion", SCENE_MAP, .inside = scene_motion_keys, \
      .about = "from where the other keys say, by key frames; it need not begin there"}
 
@@ -226,6 +230,20 @@ static const struct scene_rule solver_keys[] = {
      INTO(struct model, max_iterations), .about = "a solve that needs more fails"},
     {0}};
 
+static const struct scene_rule contact_keys[] = {
+    {"mode", SCENE_CHOICE, .fallback = "project", INTO(struct model_contact, mode),
+     WORDS({"certified", MODEL_CONTACT_CERTIFIED}, {"project", MODEL_CONTACT_PROJECT}),
+     .about = "certified: in the solve, and no step ends where a contact is not proven; project: "
+              "vertices in obstacles are put out after the step"},
+    {"self", SCENE_CHOICE, .fallback = "off", INTO(struct model_contact, self),
+     WORDS({"on", true}, {"off", false}), .about = "certified: cloths touch themselves and others"},
+    {"thickness", SCENE_NUMBER, "m", "0.001", .range = SCENE_POSITIVE,
+     INTO(struct model_contact, thickness), .about = "certified: how near to each other what touches is"},
+    {"friction", SCENE_NUMBER, .fallback = "0", .range = SCENE_NOT_NEGATIVE,
+     INTO(struct model_contact, friction),
+     .about = "coefficient of materials and obstacles that give none; sides a and b: sqrt(a b)"},
+    {0}};
+
 static const struct scene_rule newton_keys[] = {
     {"steps", SCENE_INTEGER, .fallback = "1", .min = 1, .max = 100,
      INTO(struct model, newton_steps), .about = "at most; 1: one linear step"},
@@ -289,9 +307,8 @@ static const struct scene_rule scene_keys[] = {
      .about = "NAME is yours; rib_knit, silk, denim and polycotton are there"},
     {"obstacles", SCENE_LIST, .fallback = "[]", .inside = &obstacle,
      .about = "what the cloth meets, still or moving by key frames"},
-    {"contact", SCENE_CHOICE, .fallback = "project", INTO(struct model, contact),
-     WORDS({"project", MODEL_CONTACT_PROJECT}, {"filter", MODEL_CONTACT_FILTER}),
-     .about = "how obstacles are met"},
+    {"contact", SCENE_MAP, .fallback = "{}", .inside = contact_keys, INTO(struct model, contact),
+     .about = "how obstacles are met, and cloth"},
     {"time", SCENE_MAP, .required = true, .inside = time_keys, .about = "of the simulation"},
     {"integrator", SCENE_CHOICE, .fallback = "implicit_euler", INTO(struct model, integrator),
      .words = model_integrators, .about = "how a step is made"},

@@ -266,15 +266,6 @@ START_TEST(the_surface_has_its_velocity)
                            back = foot - (to - from) * hit.velocity;
             contact_closest(&shape, &before, 1, &back, &was);
             ck_assert_double_eq_tol(was.gap, 0, 1e-12);
-            /* What is carried along keeps its gap, and has the normal of the end. */
-            struct contact_hit ahead, end;
-            contact_ahead(&shape, &pose, &x, &ahead);
-            const phys_vec carried = x + (to - from) * ahead.velocity,
-                           turn = length(&ahead.normal) * ahead.normal;
-            contact_closest(&shape, &pose, 1, &carried, &end);
-            ck_assert_double_eq_tol(end.gap, ahead.gap, 1e-12);
-            const phys_vec off = turn - end.normal;
-            ck_assert_double_lt(length(&off), 1e-9);
         }
     }
 }

@@ -102,6 +102,21 @@ START_TEST(a_solve_that_does_not_converge)
 }
 END_TEST
 
+START_TEST(a_thickness_beyond_edges)
+{
+    struct setup setup;
+    struct record record = {0};
+    setup_sheet(&setup, 6);
+    setup.cloth.name = (char *)(uintptr_t) "sheet";
+    setup.model.contact = (struct model_contact){MODEL_CONTACT_CERTIFIED, .thickness = 0.21};
+    record_run(&record, &setup.model);
+    says(&record, CLOTH_E_INPUT, "cloth 'sheet': the edge between vertices");
+    says(&record, CLOTH_E_INPUT, "0.2 m long at rest, shorter than contact.thickness, 0.21 m");
+    record_free(&record);
+    setup_free(&setup);
+}
+END_TEST
+
 START_TEST(a_frame_that_cannot_be_written)
 {
     struct setup setup;
@@ -368,6 +383,7 @@ int main(void)
     tcase_add_test(cases, a_run_that_leaves_the_world);
     tcase_add_test(cases, a_load_beyond_all_measure);
     tcase_add_test(cases, a_solve_that_does_not_converge);
+    tcase_add_test(cases, a_thickness_beyond_edges);
     tcase_add_test(cases, a_frame_that_cannot_be_written);
     tcase_add_test(cases, pins_and_loads_outside);
     tcase_add_test(cases, pins_by_place);

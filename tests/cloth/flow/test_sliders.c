@@ -152,15 +152,11 @@ END_TEST
 /* The side of the sheet that is on the floor cannot go on along its lines, the others do. */
 START_TEST(sliders_meet_the_floor)
 {
-    for (int i = 0; i <= MODEL_INTEGRATORS; i++) {
+    for (int i = 0; i < MODEL_INTEGRATORS; i++) {
         struct sliding g;
         struct record record = {0};
         setup_sliding(&g, MODEL_LINE, 0.6, -0.8, 0);
         g.setup.model.integrator = (enum model_integrator)i;
-        if (i == MODEL_INTEGRATORS) {
-            g.setup.model.integrator = MODEL_IMPLICIT_EULER;
-            g.setup.model.contact = MODEL_CONTACT_FILTER;
-        }
         g.setup.model.n_obstacles = 1;
         g.setup.plane = PLANE(0.5, 0, 0, -0.8, 0.6, 0);
         g.setup.cloth.velocity[1] = -1; /* of which the lines leave 0.8 m/s */

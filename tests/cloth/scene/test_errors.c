@@ -78,8 +78,29 @@ START_TEST(wrong_kinds)
         {"gravity: [0, -9.81, 0]", "integrator: rk5",
          .error = ":2:13: integrator is rk5; implicit_euler or explicit_euler or "
                   "symplectic_euler or verlet or midpoint or rk4 or bdf2 is expected"},
-        {"gravity: [0, -9.81, 0]", "contact: filtre",
-         .error = ":2:10: contact is filtre; project or filter is expected"},
+        {"gravity: [0, -9.81, 0]", "contact: {mode: projekt}",
+         .error = ":2:17: contact.mode is projekt; certified or project is expected"},
+        {"gravity: [0, -9.81, 0]", "contact: project",
+         .error = ":2:10: contact is project; a map of mode, self, thickness, friction is "
+                  "expected: write contact: {mode: project}"},
+        {"gravity: [0, -9.81, 0]", "contact: filter",
+         .error = ":2:10: contact is filter; a map of mode, self, thickness, friction is "
+                  "expected: it is gone; contact: {mode: certified} or {mode: project} is there"},
+        {"gravity: [0, -9.81, 0]", "contact: {mode: filter}",
+         .error = ":2:17: contact.mode is filter; certified or project is expected: it is gone; "
+                  "certified knows of contact in the solve, too"},
+        {"gravity: [0, -9.81, 0]", "contact: {friction: -0.1}",
+         .error = ":2:21: contact.friction is -0.1; a finite number >= 0 is expected"},
+        {"gravity: [0, -9.81, 0]", "contact: {thickness: 0}",
+         .error = ":2:22: contact.thickness is 0; a finite number > 0 (m) is expected"},
+        {"gravity: [0, -9.81, 0]", "contact: {mode: certified}\nintegrator: verlet",
+         .error = ":2:17: contact.mode is certified, which implicit_euler and bdf2 can do: "
+                  "explicit steps (integrator: verlet) ..."},
+        {"gravity: [0, -9.81, 0]", "contact: {mode: certified, thickness: 1e-8}",
+         .error = ":2:39: contact.thickness is 1e-08 m; at least ..."},
+        {"gravity: [0, -9.81, 0]", "contact: {mode: certified}",
+         .error = ":2:17: contact.mode is certified, which steps cannot do yet; project is "
+                  "expected"},
         {"[{vertices: [0, 3]}]", "[]\n    loads: []",
          .error = ":9:5: loads is twice in cloths[0]; each key is allowed once"},
         {"pins: [{vertices: [0, 3]}]", "pins: [{}]",

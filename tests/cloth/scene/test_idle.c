@@ -14,14 +14,14 @@ enum { MAX_SETS = 4 };
 static const struct {
     const char *set[MAX_SETS], *warning;
 } cases[] = {
-    {{"contact=filter"}, NULL},
-    {{"contact=project", "integrator=bdf2"}, NULL},
-    {{"integrator=bdf2", "contact=filter"},
-     "contact filter is of implicit_euler in one linear step"},
-    {{"newton.steps=2", "contact=filter"},
-     "contact filter is of implicit_euler in one linear step"},
-    {{"integrator=verlet", "contact=filter"}, "contact filter is of implicit_euler in one"},
-    {{"obstacles=[]", "contact=filter"}, "contact filter says how obstacles are met"},
+    {{"contact.mode=project"}, NULL},
+    {{"contact.self=on"}, "contact.self means nothing: it is of contact.mode certified"},
+    {{"contact.self=off"}, NULL},
+    {{"contact.thickness=0.002"}, "contact.thickness means nothing"},
+    {{"contact.friction=0.3"}, "contact.friction means nothing"},
+    {{"contact.friction=0"}, NULL},
+    {{"materials.cotton.friction=0.3"}, "friction means nothing"},
+    {{"obstacles[0].plane.friction=0.3"}, "friction means nothing"},
     {{"solver.stop.count=3"}, NULL},
     {{"integrator=rk4", "solver.stop.count=3"}, "solver means nothing: explicit steps"},
     {{"integrator=rk4", "newton.steps=3"}, "newton means nothing: explicit steps"},
@@ -110,13 +110,12 @@ END_TEST
 /* In the file the place is that of the value. */
 START_TEST(places_in_files)
 {
-    char *text = scene_changed(scene_right, "gravity:", "contact: filter\ngravity:");
-    struct model model =
-        scene_read_right(text, 1, &(struct scene_set){.text = "integrator=explicit_euler"});
+    char *text = scene_changed(scene_right, "gravity:", "contact: {self: on}\ngravity:");
+    struct model model = scene_read_right(text, 0, NULL);
     const size_t path = strlen(scene_path());
     ck_assert_uint_eq(model.n_warnings, 1);
     ck_assert_msg(!strncmp(model.warnings[0], scene_path(), path), "%s", model.warnings[0]);
-    ck_assert_msg(!strncmp(model.warnings[0] + path, ":2:10: contact", 14), "%s",
+    ck_assert_msg(!strncmp(model.warnings[0] + path, ":2:17: contact", 14), "%s",
                   model.warnings[0]);
     model_free(&model);
     free(text);

@@ -212,12 +212,17 @@ START_TEST(every_other_key)
                      "  silk: &silk {density: 1, stretch: 2, shear: 3, bend: 4, diagonals: one,\n"
                      "               damping: {viscous: 5, mass: 6, stiffness: 7}}\n"
                      "  cotton: *silk\n"
-                     "name: more\ngrain: 7\nintegrator: explicit_euler\ncontact: project\n"
+                     "name: more\ngrain: 7\nintegrator: explicit_euler\n"
+                     "contact: {mode: project, self: on, thickness: 0.002, friction: 0.25}\n"
                      "energies: steps\nnewton: {steps: 5, tolerance: 1e-7}\n"
                      "solver: {stop: {absolute: 1e-9}, max_iterations: 12}\n");
     ck_assert_str_eq(model.name, "more");
     ck_assert_uint_eq(model.grain, 7);
     ck_assert_int_eq(model.integrator, MODEL_EXPLICIT_EULER);
+    ck_assert_int_eq(model.contact.mode, MODEL_CONTACT_PROJECT);
+    ck_assert(model.contact.self);
+    ck_assert_double_eq(model.contact.thickness, 0.002);
+    ck_assert_double_eq(model.contact.friction, 0.25);
     ck_assert_int_eq(model.energy_steps, 1);
     ck_assert_uint_eq(model.newton_steps, 5);
     ck_assert_double_eq(model.newton_tolerance, 1e-7);
@@ -235,6 +240,27 @@ START_TEST(every_other_key)
         ck_assert_double_eq(material->damping_stiffness, 7);
         ck_assert_int_eq(material->both_diagonals, 0);
     }
+    model_free(&model);
+}
+END_TEST
+
+/* What gives no coefficient has that of contact. */
+START_TEST(frictions)
+{
+    struct model model =
+        read_changed("  cotton: {density: 0.2, stretch: 50, damping: {mass: 0.1}}\n",
+                     "  linen: {density: 1, stretch: 2, friction: 0}\n"
+                     "  cotton: {density: 0.2, stretch: 50}\n"
+                     "contact: {friction: 0.25}\n");
+    ck_assert_double_eq(model.contact.thickness, 0.001);
+    ck_assert(!model.contact.self && !model_certifies(&model));
+    ck_assert_double_eq(model.materials[0].friction, 0);
+    ck_assert_double_eq(model.materials[1].friction, 0.25);
+    ck_assert_double_eq(model.obstacles[0].friction, 0.25);
+    model_free(&model);
+    model = scene_read_set("obstacles[0].plane.friction=0.5");
+    ck_assert_double_eq(model.obstacles[0].friction, 0.5);
+    ck_assert_double_eq(model.materials[0].friction, 0);
     model_free(&model);
 }
 END_TEST
@@ -439,6 +465,7 @@ int main(void)
     tcase_add_test(cases, named_fabrics);
     tcase_add_test(cases, mass_without_density);
     tcase_add_test(cases, every_other_key);
+    tcase_add_test(cases, frictions);
     tcase_add_test(cases, slopes);
     tcase_add_test(cases, triangles_and_bending);
     tcase_add_test(cases, cloths_of_every_mesh);

@@ -12,5 +12,9 @@ libduite_cloth_la_SOURCES += \
 	cloth/contact/pair.c cloth/contact/pair.h \
 	cloth/contact/plane.c \
 	cloth/contact/shape.c cloth/contact/shape.h \
+	cloth/contact/skin.h cloth/contact/skin_table.h \
+	cloth/contact/skin_make.c \
+	cloth/contact/skin_query.c \
+	cloth/contact/skin_refit.c \
 	cloth/contact/sphere.c \
 	cloth/contact/surface.c cloth/contact/surface.h

@@ -9,4 +9,9 @@ tests_cloth_contact_test_meet_LDADD = $(CLOTH_TEST_LIBS)
 tests_cloth_contact_test_shape_SOURCES = tests/cloth/contact/test_shape.c
 tests_cloth_contact_test_shape_LDADD = $(CLOTH_TEST_LIBS)
 TESTS += tests/cloth/contact/test_body tests/cloth/contact/test_body_refused tests/cloth/contact/test_meet tests/cloth/contact/test_shape
+TESTS += tests/cloth/contact/test_body tests/cloth/contact/test_meet tests/cloth/contact/test_shape
+check_PROGRAMS += tests/cloth/contact/test_skin
+tests_cloth_contact_test_skin_SOURCES = tests/cloth/contact/test_skin.c
+tests_cloth_contact_test_skin_LDADD = $(CLOTH_TEST_LIBS)
+TESTS += tests/cloth/contact/test_skin
 endif

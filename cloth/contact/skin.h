@@ -1,0 +1,98 @@
+#ifndef CLOTH_CONTACT_SKIN_H
+#define CLOTH_CONTACT_SKIN_H
+
+#include "cloth/base/error.h"
+#include "cloth/contact/pair.h"
+#include "cloth/physics/vec.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+/* Skins: the triangles of a block of cloth, with a tree of boxes. What never changes is a table,
+ * one block of memory without pointers, as a body is. What changes in every step is another: the
+ * boxes, over the whole step, of all that moves straight from x to y.
+ *
+ * The whole cloth has one skin a block. Each triangle is in one of them. Each vertex and each edge
+ * of the whole cloth is a *feature* of one skin that has a triangle with it, so that each pair of
+ * a vertex and a triangle, and of two edges, is met in one pair of skins. Points are those that
+ * corners of the skin's triangles are at; all positions are by point. The same vertex has the same
+ * id in all skins. All functions are local. */
+
+/* A table opened; it points into the table. Of one that is only measured, the first four. */
+struct contact_skin {
+    uint32_t n_points, n_triangles;
+    uint32_t n_edges, n_vertices; /* features */
+    const uint32_t (*corner)[3];  /* n_triangles: points */
+    const uint32_t (*edge)[2];    /* n_edges: points */
+    const uint32_t *vertex;       /* n_vertices: points */
+    const uint32_t *id;           /* n_points */
+    uint32_t n_nodes, n_leaves;
+    const uint32_t (*child)[4]; /* n_nodes: a node, or CONTACT_IS_LEAF with a leaf */
+    const struct contact_leaf *leaf;
+};
+
+/* What a skin is made of. x (m) says which triangles are near to each other, now and later: the
+ * positions that the cloth begins with. stands: by triangle, bit k: this skin has the vertex at
+ * corner k as a feature, by this triangle; bit 3 + k: the edge from corner k to the next one. */
+struct contact_skin_source {
+    uint32_t n_points, n_triangles;
+    const uint32_t (*corner)[3]; /* n_triangles */
+    const unsigned char *stands; /* n_triangles */
+    const uint32_t *id;          /* n_points */
+    const phys_vec *x;           /* n_points */
+};
+
+/* Bytes of a table, and of what changes in a step; both follow of the four counts alone. The memory
+ * is aligned to CONTACT_ALIGN. */
+size_t contact_skin_bytes(const struct contact_skin *skin);
+size_t contact_boxes_bytes(const struct contact_skin *skin);
+
+/* Makes a table, whose features are those that `stands` says: writes every byte of it. Error:
+ * CLOTH_E_MEMORY. */
+int contact_skin_make(const struct contact_skin_source *from, void *table,
+                      struct cloth_error *error);
+struct contact_skin contact_skin_open(const void *table);
+
+/* Makes the boxes of a step in which points move straight from x to y (m, finite, by point), in a
+ * frame that itself moves by `way` (m): that of the skin's own mean is as good as any. Writes every
+ * byte. */
+void contact_refit(const struct contact_skin *skin, const phys_vec *x, const phys_vec *y,
+                   const phys_vec *way, void *boxes);
+
+/* The box around x and y of all points, in the room, m; low > high: there are no points. */
+void contact_boxes_root(const void *boxes, double low[3], double high[3]);
+
+/* Two features that may be near to each other, by their numbers in their skins. kind: CONTACT_VT: a
+ * vertex of the first skin, a triangle of the second; CONTACT_TV: a triangle of the first, a vertex
+ * of the second; CONTACT_EE. */
+enum { CONTACT_TV = CONTACT_EE + 1 };
+struct contact_candidate {
+    uint32_t kind, of[2];
+};
+
+/* One of two skins that are met, its positions by point. */
+struct contact_side {
+    const struct contact_skin *skin;
+    const void *boxes; /* of x and y */
+    const phys_vec *x, *y;
+};
+
+/* Takes n candidates, at most CONTACT_BATCH of them. */
+enum { CONTACT_BATCH = 256 };
+typedef void contact_visit(void *to, uint32_t n, const struct contact_candidate *candidate);
+
+/* Visits all pairs of features that are nearer than reach (m) at any time of the step, and others
+ * whose boxes are. Pairs that share an id are none. Each pair comes once. Their order follows of
+ * tables, boxes and reach alone. A side with itself (a and b have the same skin): pairs within it,
+ * of the kinds CONTACT_VT and CONTACT_EE. */
+void contact_query(const struct contact_side *a, const struct contact_side *b, double reach,
+                   contact_visit *visit, void *to);
+
+/* The four points of a candidate of two skins, in the order of enum contact_pair, which is
+ * returned. side[k]: 0 or 1, which of the two skins point[k] is of. */
+enum contact_pair contact_candidate_corners(const struct contact_skin *a,
+                                            const struct contact_skin *b,
+                                            const struct contact_candidate *candidate,
+                                            uint32_t point[4], unsigned char side[4]);
+
+#endif

@@ -1,0 +1,223 @@
+/* A skin has its triangles in the order of the tree, and features in the order of the triangles
+ * that they are of. Sizes follow of the counts alone, as the shape of the tree does, so that who
+ * has not seen the triangles knows how much room a skin takes. */
+#include "cloth/base/memory.h"
+#include "cloth/contact/skin_table.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static uint64_t whole_lines(uint64_t bytes)
+{
+    return (bytes + CONTACT_ALIGN - 1) / CONTACT_ALIGN * CONTACT_ALIGN;
+}
+
+/* ---- Sizes ---- */
+
+/* Of n nodes, with those that hold nothing: each node but the first is a child. */
+static uint32_t leaves_of(uint32_t n_nodes)
+{
+    return 3 * n_nodes + 1;
+}
+
+void contact_skin_lay(const struct contact_skin *skin, struct contact_skin_head *head)
+{
+    const uint32_t n_nodes = contact_tree_nodes(skin->n_triangles);
+    *head = (struct contact_skin_head){.n_points = skin->n_points,
+                                       .n_triangles = skin->n_triangles,
+                                       .n_edges = skin->n_edges,
+                                       .n_vertices = skin->n_vertices,
+                                       .n_nodes = n_nodes,
+                                       .n_leaves = leaves_of(n_nodes)};
+    head->corner = whole_lines(sizeof *head);
+    head->edge = head->corner + whole_lines(head->n_triangles * sizeof *skin->corner);
+    head->vertex = head->edge + whole_lines(head->n_edges * sizeof *skin->edge);
+    head->id = head->vertex + whole_lines(head->n_vertices * sizeof *skin->vertex);
+    head->child = head->id + whole_lines(head->n_points * sizeof *skin->id);
+    head->leaf = head->child + whole_lines(head->n_nodes * sizeof *skin->child);
+    head->bytes = head->leaf + whole_lines(head->n_leaves * sizeof *skin->leaf);
+}
+
+size_t contact_skin_bytes(const struct contact_skin *skin)
+{
+    struct contact_skin_head head;
+    contact_skin_lay(skin, &head);
+    return head.bytes;
+}
+
+/* Of the features of a leaf, a group of each kind may not be full. */
+void contact_boxes_lay(const struct contact_skin *skin, struct contact_boxes_head *head)
+{
+    const uint32_t n_nodes = contact_tree_nodes(skin->n_triangles);
+    const uint64_t n_groups = 3 * (uint64_t)leaves_of(n_nodes) + contact_groups(skin->n_vertices) +
+                              contact_groups(skin->n_edges);
+    *head = (struct contact_boxes_head){.nodes = whole_lines(sizeof *head)};
+    head->groups = head->nodes + n_nodes * sizeof(struct contact_boxes);
+    head->points = head->groups + n_groups * sizeof(struct contact_boxes);
+    head->bytes = whole_lines(head->points + skin->n_points * sizeof(struct contact_point_box));
+}
+
+size_t contact_boxes_bytes(const struct contact_skin *skin)
+{
+    struct contact_boxes_head head;
+    contact_boxes_lay(skin, &head);
+    return head.bytes;
+}
+
+/* ---- Making ---- */
+
+struct making {
+    const struct contact_skin_source *from;
+    struct contact_node *node;
+    phys_vec *low, *high; /* of triangles */
+    uint32_t *order;
+    uint32_t (*corner)[3], (*edge)[2], *vertex, (*child)[4];
+    struct contact_leaf *leaf;
+    uint32_t n_vertices, n_edges, n_leaves, n_groups; /* so far */
+};
+
+static void bound_triangles(struct making *making)
+{
+    const struct contact_skin_source *from = making->from;
+    for (uint32_t t = 0; t < from->n_triangles; t++) {
+        phys_vec low = from->x[from->corner[t][0]], high = low;
+        for (int k = 1; k < 3; k++) {
+            const phys_vec x = from->x[from->corner[t][k]];
+            for (int c = 0; c < 3; c++) {
+                low[c] = x[c] < low[c] ? x[c] : low[c];
+                high[c] = x[c] > high[c] ? x[c] : high[c];
+            }
+        }
+        making->low[t] = low;
+        making->high[t] = high;
+    }
+}
+
+/* The features that a triangle stands for are the next ones. */
+static void add_features(struct making *making, uint32_t triangle, struct contact_leaf *leaf)
+{
+    const uint32_t *corner = making->from->corner[triangle];
+    const unsigned stands = making->from->stands[triangle];
+    for (int k = 0; k < 3; k++) {
+        if (stands >> k & 1) {
+            making->vertex[making->n_vertices++] = corner[k];
+            leaf->n_vertices++;
+        }
+        if (stands >> (3 + k) & 1) {
+            uint32_t *edge = making->edge[making->n_edges++];
+            edge[0] = corner[k];
+            edge[1] = corner[(k + 1) % 3];
+            leaf->n_edges++;
+        }
+    }
+}
+
+/* Triangles first .. first + n - 1 in the order of the tree. Returns the number of the leaf. */
+static uint32_t add_leaf(struct making *making, uint32_t first, uint32_t n)
+{
+    struct contact_leaf *leaf = making->leaf + making->n_leaves;
+    *leaf = (struct contact_leaf){.triangle = first,
+                                  .n_triangles = n,
+                                  .vertex = making->n_vertices,
+                                  .edge = making->n_edges,
+                                  .group = making->n_groups};
+    for (uint32_t t = first; t < first + n; t++) {
+        memcpy(making->corner[t], making->from->corner[making->order[t]], sizeof making->corner[t]);
+        add_features(making, making->order[t], leaf);
+    }
+    making->n_groups = contact_edge_group(leaf) + contact_groups(leaf->n_edges);
+    return making->n_leaves++;
+}
+
+/* A leaf of the tree without triangles has a box that is empty. */
+static void add_nodes(struct making *making, uint32_t n_nodes)
+{
+    for (uint32_t i = 0; i < n_nodes; i++)
+        for (int k = 0; k < 4; k++) {
+            const struct contact_node *node = making->node + i;
+            const uint32_t child = node->child[k];
+            const bool full = node->low[0][k] <= node->high[0][k];
+            making->child[i][k] =
+                child & CONTACT_IS_LEAF
+                    ? CONTACT_IS_LEAF | add_leaf(making, contact_leaf_first(child),
+                                                 full ? contact_leaf_n(child) : 0)
+                    : child;
+        }
+}
+
+static void count_features(const struct contact_skin_source *from, struct contact_skin *skin)
+{
+    *skin = (struct contact_skin){.n_points = from->n_points, .n_triangles = from->n_triangles};
+    for (uint32_t t = 0; t < from->n_triangles; t++)
+        for (int k = 0; k < 3; k++) {
+            skin->n_vertices += from->stands[t] >> k & 1;
+            skin->n_edges += from->stands[t] >> (3 + k) & 1;
+        }
+}
+
+static int make_scratch(struct making *making, uint32_t n_nodes, struct cloth_error *error)
+{
+    const uint32_t n = making->from->n_triangles;
+    const size_t bytes = n_nodes * sizeof *making->node + 2 * (size_t)n * sizeof *making->low;
+    making->order = cloth_alloc(n, sizeof *making->order, error);
+    making->node = aligned_alloc(CONTACT_ALIGN, whole_lines(bytes));
+    if (!making->node || !making->order)
+        return cloth_fail(error, CLOTH_E_MEMORY, "no memory for a skin of %u triangles", n);
+    making->low = (void *)(making->node + n_nodes);
+    making->high = making->low + n;
+    return CLOTH_OK;
+}
+
+static void put_skin(struct making *making, const struct contact_skin_head *head, char *table)
+{
+    const struct contact_skin_source *from = making->from;
+    memset(table, 0, head->bytes);
+    memcpy(table, head, sizeof *head);
+    if (from->n_points)
+        memcpy(table + head->id, from->id, from->n_points * sizeof *from->id);
+    making->corner = (void *)(table + head->corner);
+    making->edge = (void *)(table + head->edge);
+    making->vertex = (void *)(table + head->vertex);
+    making->child = (void *)(table + head->child);
+    making->leaf = (void *)(table + head->leaf);
+    add_nodes(making, head->n_nodes);
+}
+
+int contact_skin_make(const struct contact_skin_source *from, void *table,
+                      struct cloth_error *error)
+{
+    struct making making = {.from = from};
+    struct contact_skin_head head;
+    struct contact_skin skin;
+    count_features(from, &skin);
+    contact_skin_lay(&skin, &head);
+    int code = make_scratch(&making, head.n_nodes, error);
+    if (!code) {
+        bound_triangles(&making);
+        code = contact_tree_build(from->n_triangles, making.order, making.low, making.high,
+                                  making.node, error);
+    }
+    if (!code)
+        put_skin(&making, &head, table);
+    free(making.order);
+    free(making.node);
+    return code;
+}
+
+struct contact_skin contact_skin_open(const void *table)
+{
+    const struct contact_skin_head *head = table;
+    const char *at = table;
+    return (struct contact_skin){.n_points = head->n_points,
+                                 .n_triangles = head->n_triangles,
+                                 .n_edges = head->n_edges,
+                                 .n_vertices = head->n_vertices,
+                                 .corner = (const uint32_t(*)[3])(const void *)(at + head->corner),
+                                 .edge = (const uint32_t(*)[2])(const void *)(at + head->edge),
+                                 .vertex = (const void *)(at + head->vertex),
+                                 .id = (const void *)(at + head->id),
+                                 .n_nodes = head->n_nodes,
+                                 .n_leaves = head->n_leaves,
+                                 .child = (const uint32_t(*)[4])(const void *)(at + head->child),
+                                 .leaf = (const void *)(at + head->leaf)};
+}

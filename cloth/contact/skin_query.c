@@ -1,0 +1,271 @@
+/* A query walks two trees at once, or one with itself, and compares a box with four. Boxes of the
+ * second skin stay as they are. Those of the first are widened by the reach, by what the first
+ * frame moves more than the second, and by what rounding may take: x of a and b at a part s of the
+ * step differ by what they do in their frames, and s (way of a - way of b). */
+#include "cloth/contact/skin_table.h"
+
+#include <math.h>
+
+/* m: what positions in a moving frame, m, may lose by rounding. */
+static const double ROUNDING = 1e-9;
+/* The part of a length that sums of floats may lose. */
+static const double FLOATS = 1e-6;
+
+typedef int32_t float_mask __attribute__((vector_size(16)));
+
+struct query {
+    const struct contact_skin *skin[2];
+    const struct contact_boxes *node[2], *group[2];
+    contact_lanes below[3], above[3]; /* m: what boxes of the first are widened by */
+    bool self;
+    contact_visit *visit;
+    void *to;
+    uint32_t n;
+    struct contact_candidate candidate[CONTACT_BATCH];
+};
+
+/* A child of a node. */
+struct part {
+    uint32_t node, lane;
+};
+
+/* ---- Boxes ---- */
+
+/* Bit k: lane k is true. */
+PHYS_INLINE unsigned bits_of(const float_mask *is)
+{
+#if defined(__SSE__)
+    return (unsigned)__builtin_ia32_movmskps((contact_lanes)*is);
+#else
+    unsigned bits = 0;
+    PHYS_UNROLL
+    for (int k = 0; k < 4; k++)
+        bits |= (*is)[k] ? 1u << k : 0;
+    return bits;
+#endif
+}
+
+/* One of four boxes of the first skin, widened, in all lanes. */
+PHYS_INLINE void widen(const struct query *query, const struct contact_boxes *boxes, uint32_t lane,
+                       struct contact_boxes *wide)
+{
+    PHYS_UNROLL
+    for (int c = 0; c < 3; c++) {
+        const float low = boxes->low[c][lane], high = boxes->high[c][lane];
+        wide->low[c] = (contact_lanes){low, low, low, low} - query->below[c];
+        wide->high[c] = (contact_lanes){high, high, high, high} + query->above[c];
+    }
+}
+
+/* Which of four boxes meet a wide one. */
+PHYS_INLINE unsigned meeting(const struct contact_boxes *wide, const struct contact_boxes *boxes)
+{
+    float_mask is = (wide->low[0] <= boxes->high[0]) & (wide->high[0] >= boxes->low[0]);
+    is &= (wide->low[1] <= boxes->high[1]) & (wide->high[1] >= boxes->low[1]);
+    is &= (wide->low[2] <= boxes->high[2]) & (wide->high[2] >= boxes->low[2]);
+    return bits_of(&is);
+}
+
+/* ---- Features ---- */
+
+static void add(struct query *query, uint32_t kind, uint32_t a, uint32_t b)
+{
+    if (query->n == CONTACT_BATCH) {
+        query->visit(query->to, query->n, query->candidate);
+        query->n = 0;
+    }
+    query->candidate[query->n++] = (struct contact_candidate){kind, {a, b}};
+}
+
+/* A vertex of skin k with a triangle of the other. */
+static void add_vertex(struct query *query, int k, uint32_t vertex, uint32_t triangle)
+{
+    const struct contact_skin *of = query->skin[k], *other = query->skin[!k];
+    const uint32_t id = of->id[of->vertex[vertex]], *corner = other->corner[triangle];
+    if (id == other->id[corner[0]] || id == other->id[corner[1]] || id == other->id[corner[2]])
+        return;
+    if (k && !query->self)
+        add(query, CONTACT_TV, triangle, vertex);
+    else
+        add(query, CONTACT_VT, vertex, triangle);
+}
+
+static void add_edges(struct query *query, uint32_t a, uint32_t b)
+{
+    const uint32_t *const *id = (const uint32_t *const[]){query->skin[0]->id, query->skin[1]->id};
+    const uint32_t *of = query->skin[0]->edge[a], *with = query->skin[1]->edge[b];
+    const uint32_t a0 = id[0][of[0]], a1 = id[0][of[1]], b0 = id[1][with[0]], b1 = id[1][with[1]];
+    if (a0 != b0 && a0 != b1 && a1 != b0 && a1 != b1)
+        add(query, CONTACT_EE, a, b);
+}
+
+/* Vertices of the first leaf with the triangles of the second. */
+static void meet_vertices(struct query *query, const struct contact_leaf *a,
+                          const struct contact_leaf *b)
+{
+    for (uint32_t i = 0; i < a->n_vertices; i++) {
+        struct contact_boxes wide;
+        widen(query, query->group[0] + contact_vertex_group(a) + i / 4, i % 4, &wide);
+        unsigned bits = meeting(&wide, query->group[1] + b->group);
+        for (; bits; bits &= bits - 1)
+            add_vertex(query, 0, a->vertex + i, b->triangle + (uint32_t)__builtin_ctz(bits));
+    }
+}
+
+/* Triangles of the first leaf with the vertices of the second. */
+static void meet_triangles(struct query *query, const struct contact_leaf *a,
+                           const struct contact_leaf *b)
+{
+    for (uint32_t i = 0; i < a->n_triangles; i++) {
+        struct contact_boxes wide;
+        widen(query, query->group[0] + a->group, i, &wide);
+        for (uint32_t k = 0; k < b->n_vertices; k += 4) {
+            unsigned bits = meeting(&wide, query->group[1] + contact_vertex_group(b) + k / 4);
+            for (; bits; bits &= bits - 1)
+                add_vertex(query, 1, b->vertex + k + (uint32_t)__builtin_ctz(bits),
+                           a->triangle + i);
+        }
+    }
+}
+
+/* Edges of two leaves; of one with itself, each pair once. */
+static void meet_edges(struct query *query, const struct contact_leaf *a,
+                       const struct contact_leaf *b)
+{
+    for (uint32_t i = 0; i < a->n_edges; i++) {
+        struct contact_boxes wide;
+        widen(query, query->group[0] + contact_edge_group(a) + i / 4, i % 4, &wide);
+        for (uint32_t k = a == b ? i / 4 * 4 : 0; k < b->n_edges; k += 4) {
+            unsigned bits = meeting(&wide, query->group[1] + contact_edge_group(b) + k / 4);
+            if (a == b && k <= i)
+                bits &= ~1u << i % 4;
+            for (; bits; bits &= bits - 1)
+                add_edges(query, a->edge + i, b->edge + k + (uint32_t)__builtin_ctz(bits));
+        }
+    }
+}
+
+/* ---- Trees ---- */
+
+static bool is_leaf(uint32_t child)
+{
+    return child & CONTACT_IS_LEAF;
+}
+
+static void meet_leaves(struct query *query, uint32_t child_a, uint32_t child_b)
+{
+    const struct contact_leaf *a = query->skin[0]->leaf + (child_a & ~CONTACT_IS_LEAF);
+    const struct contact_leaf *b = query->skin[1]->leaf + (child_b & ~CONTACT_IS_LEAF);
+    meet_vertices(query, a, b);
+    meet_triangles(query, a, b);
+    meet_edges(query, a, b);
+}
+
+/* Two parts whose boxes meet. */
+static void meet(struct query *query, struct part a, struct part b)
+{
+    const uint32_t of_a = query->skin[0]->child[a.node][a.lane];
+    const uint32_t of_b = query->skin[1]->child[b.node][b.lane];
+    const bool descend_a = !is_leaf(of_a), descend_b = !is_leaf(of_b);
+    if (!descend_a && !descend_b) {
+        meet_leaves(query, of_a, of_b);
+        return;
+    }
+    for (uint32_t i = descend_a ? 0 : a.lane; i < (descend_a ? 4 : a.lane + 1); i++) {
+        const struct part down_a = {descend_a ? of_a : a.node, i};
+        const uint32_t node_b = descend_b ? of_b : b.node;
+        struct contact_boxes wide;
+        widen(query, query->node[0] + down_a.node, i, &wide);
+        unsigned bits = meeting(&wide, query->node[1] + node_b) & (descend_b ? 15 : 1u << b.lane);
+        for (; bits; bits &= bits - 1)
+            meet(query, down_a, (struct part){node_b, (uint32_t)__builtin_ctz(bits)});
+    }
+}
+
+static void meet_self(struct query *query, uint32_t node)
+{
+    for (uint32_t i = 0; i < 4; i++) {
+        const uint32_t child = query->skin[0]->child[node][i];
+        const struct contact_leaf *leaf = query->skin[0]->leaf + (child & ~CONTACT_IS_LEAF);
+        struct contact_boxes wide;
+        if (!is_leaf(child)) {
+            meet_self(query, child);
+        } else if (leaf->n_triangles) {
+            meet_vertices(query, leaf, leaf);
+            meet_edges(query, leaf, leaf);
+        }
+        widen(query, query->node[0] + node, i, &wide);
+        unsigned bits = meeting(&wide, query->node[0] + node) & ~1u << i;
+        for (; bits; bits &= bits - 1)
+            meet(query, (struct part){node, i}, (struct part){node, (uint32_t)__builtin_ctz(bits)});
+    }
+}
+
+static void meet_roots(struct query *query)
+{
+    for (uint32_t i = 0; i < 4; i++) {
+        struct contact_boxes wide;
+        widen(query, query->node[0], i, &wide);
+        unsigned bits = meeting(&wide, query->node[1]);
+        for (; bits; bits &= bits - 1)
+            meet(query, (struct part){0, i}, (struct part){0, (uint32_t)__builtin_ctz(bits)});
+    }
+}
+
+/* ---- The query ---- */
+
+static void set_reach(struct query *query, const struct contact_side *a,
+                      const struct contact_side *b, double reach)
+{
+    const struct contact_boxes_head *of = a->boxes, *other = b->boxes;
+    for (int c = 0; c < 3; c++) {
+        const double more = of->way[c] - other->way[c];
+        const double out = (reach + fabs(more)) * FLOATS + ROUNDING + reach;
+        const float below = (float)(out - fmin(more, 0)), above = (float)(out + fmax(more, 0));
+        query->below[c] = (contact_lanes){below, below, below, below};
+        query->above[c] = (contact_lanes){above, above, above, above};
+    }
+}
+
+void contact_query(const struct contact_side *a, const struct contact_side *b, double reach,
+                   contact_visit *visit, void *to)
+{
+    struct query query;
+    query.skin[0] = a->skin;
+    query.skin[1] = b->skin;
+    query.node[0] = contact_boxes_nodes(a->boxes);
+    query.node[1] = contact_boxes_nodes(b->boxes);
+    query.group[0] = contact_boxes_groups(a->boxes);
+    query.group[1] = contact_boxes_groups(b->boxes);
+    query.self = a->skin == b->skin;
+    query.visit = visit;
+    query.to = to;
+    query.n = 0;
+    set_reach(&query, a, b, reach);
+    if (query.self)
+        meet_self(&query, 0);
+    else
+        meet_roots(&query);
+    if (query.n)
+        visit(to, query.n, query.candidate);
+}
+
+enum contact_pair contact_candidate_corners(const struct contact_skin *a,
+                                            const struct contact_skin *b,
+                                            const struct contact_candidate *candidate,
+                                            uint32_t point[4], unsigned char side[4])
+{
+    const bool swapped = candidate->kind == CONTACT_TV;
+    const struct contact_skin *of = swapped ? b : a, *other = swapped ? a : b;
+    const uint32_t first = candidate->of[swapped], second = candidate->of[!swapped];
+    const bool edges = candidate->kind == CONTACT_EE;
+    for (uint32_t k = 0; k < 4; k++) {
+        const bool is_first = k < (edges ? 2u : 1u);
+        side[k] = is_first == swapped;
+        if (edges)
+            point[k] = is_first ? of->edge[first][k] : other->edge[second][k - 2];
+        else
+            point[k] = is_first ? of->vertex[first] : other->corner[second][k - 1];
+    }
+    return edges ? CONTACT_EE : CONTACT_VT;
+}

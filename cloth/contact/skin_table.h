@@ -1,0 +1,75 @@
+#ifndef CLOTH_CONTACT_SKIN_TABLE_H
+#define CLOTH_CONTACT_SKIN_TABLE_H
+
+#include "cloth/contact/body.h"
+#include "cloth/contact/skin.h"
+
+/* What the files of skins share: how tables and boxes lie in memory. Boxes are floats, rounded
+ * outwards, four at a time, one a lane. */
+
+typedef float contact_lanes __attribute__((vector_size(16)));
+
+/* m; low > high in lanes that hold nothing. */
+struct contact_boxes {
+    contact_lanes low[3], high[3];
+};
+
+/* A leaf of the tree: triangles, and those of their features that the skin has. Each list begins at
+ * the number given. Its boxes are in groups of four, from `group` on: the triangles, then the
+ * vertices, then the edges, each kind in groups of its own. */
+struct contact_leaf {
+    uint32_t triangle, vertex, edge, group;
+    uint32_t n_triangles, n_vertices, n_edges;
+};
+
+/* Groups of four that n boxes take. */
+PHYS_INLINE uint32_t contact_groups(uint32_t n)
+{
+    return (n + 3) / 4;
+}
+
+/* Those of the vertices and of the edges of a leaf begin there. */
+PHYS_INLINE uint32_t contact_vertex_group(const struct contact_leaf *leaf)
+{
+    return leaf->group + contact_groups(leaf->n_triangles);
+}
+PHYS_INLINE uint32_t contact_edge_group(const struct contact_leaf *leaf)
+{
+    return contact_vertex_group(leaf) + contact_groups(leaf->n_vertices);
+}
+
+/* A table begins with this; its arrays follow, each at so many bytes from here. */
+struct contact_skin_head {
+    uint64_t bytes;
+    uint32_t n_points, n_triangles, n_edges, n_vertices, n_nodes, n_leaves;
+    uint64_t corner, edge, vertex, id, child, leaf;
+};
+/* Places of a skin of these counts. */
+void contact_skin_lay(const struct contact_skin *skin, struct contact_skin_head *head);
+
+/* What changes in a step begins with this. */
+struct contact_boxes_head {
+    double low[3], high[3]; /* m, in the room */
+    double way[3];          /* m, of the frame */
+    uint64_t bytes, nodes, groups, points;
+};
+void contact_boxes_lay(const struct contact_skin *skin, struct contact_boxes_head *head);
+
+/* A box of one point, for who makes those of others. */
+struct contact_point_box {
+    contact_lanes low, high;
+};
+
+/* Of the four children of each node; of features, by group. */
+PHYS_INLINE const struct contact_boxes *contact_boxes_nodes(const void *boxes)
+{
+    const struct contact_boxes_head *head = boxes;
+    return (const void *)((const char *)boxes + head->nodes);
+}
+PHYS_INLINE const struct contact_boxes *contact_boxes_groups(const void *boxes)
+{
+    const struct contact_boxes_head *head = boxes;
+    return (const void *)((const char *)boxes + head->groups);
+}
+
+#endif

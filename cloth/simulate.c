@@ -75,16 +75,17 @@ static int agree(const struct run *run, const struct cloth_error *error)
 }
 
 /* Found before the run, so that what is written after it, or as it runs, is not lost. */
-static int check_file(const struct simulate_options *options, const char *option, const char *path,
+static int check_file(const struct run *run, const char *option, const char *path,
                       struct cloth_error *error)
 {
     struct cloth_error inner = {0};
-    struct stat file, scene;
-    if (stat(path, &file) == 0 && stat(options->scene, &scene) == 0 &&
-        file.st_dev == scene.st_dev && file.st_ino == scene.st_ino)
-        return cloth_fail(error, CLOTH_E_INPUT,
-                          "%s %s: this is the scene itself, which would be lost", option, path);
-    const int code = output_report_check(path, options->output, &inner);
+    struct stat file, read;
+    for (uint32_t i = 0; i < run->model.n_files && stat(path, &file) == 0; i++)
+        if (stat(run->model.files[i], &read) == 0 && file.st_dev == read.st_dev &&
+            file.st_ino == read.st_ino)
+            return cloth_fail(error, CLOTH_E_INPUT, "%s %s: this is %s, which would be lost",
+                              option, path, i ? "a file that the scene reads" : "the scene itself");
+    const int code = output_report_check(path, run->options->output, &inner);
     return code ? cloth_fail(error, code, "%s %s: %s", option, path, inner.text) : code;
 }
 
@@ -147,7 +148,9 @@ static int open_output(struct run *run, struct cloth_error *error)
                                            .n_obstacles = model->n_obstacles,
                                            .obstacles = model->obstacles,
                                            .keys = model->keys,
-                                           .bodies = &model->bodies};
+                                           .bodies = &model->bodies,
+                                           .n_inputs = model->n_files,
+                                           .inputs = (const char *const *)model->files};
         code = output_open(&run->frames, &setup, error);
     } else {
         cloth_fail(error, code, "out of memory before the first frame");
@@ -199,9 +202,9 @@ static int read_and_cut(struct run *run, struct cloth_error *error)
     if (!code)
         code = find_elastic(run, error);
     if (!code && options->report)
-        code = check_file(options, "--report", options->report, error);
+        code = check_file(run, "--report", options->report, error);
     if (!code && options->trace)
-        code = check_file(options, "--trace (or DUITE_TRACE)", options->trace, error);
+        code = check_file(run, "--trace (or DUITE_TRACE)", options->trace, error);
     return code;
 }
 

@@ -76,6 +76,9 @@ void model_free(struct model *model)
     free(model->cloths);
     free(model->obstacles);
     free(model->bodies.memory);
+    for (uint32_t i = 0; i < model->n_files; i++)
+        free(model->files[i]);
+    free(model->files);
     for (uint32_t i = 0; i < model->n_warnings; i++)
         free(model->warnings[i]);
     free(model->warnings);

@@ -297,6 +297,8 @@ struct model {
 
     uint32_t grain; /* vertices a block */
 
+    uint32_t n_files;
+    char **files; /* that were read, by the paths they were opened by; the first is the scene */
     uint32_t n_warnings;
     char **warnings; /* what is unusual about the scene but no error, each with its place */
 };

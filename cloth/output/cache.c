@@ -71,6 +71,18 @@ static int read_scene(struct output_cache *cache, const char *path, struct cloth
     return code;
 }
 
+uint32_t output_bodies_before(const char *folder)
+{
+    struct cloth_error ignored = {0};
+    struct output_cache cache = {0};
+    char *path = output_path(folder, "scene.json", "");
+    const int code = path ? read_scene(&cache, path, &ignored) : CLOTH_E_MEMORY;
+    const uint32_t n = code ? 0 : cache.n_bodies;
+    output_cache_close(&cache);
+    free(path);
+    return n;
+}
+
 static int read_cache(struct output_cache *cache, const char *path, struct cloth_error *error)
 {
     cache->pc2 = fopen(path, "rbe");

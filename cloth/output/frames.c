@@ -4,6 +4,7 @@
  * opened, the cache of an earlier run is removed first and the new one is made last. So cache and
  * mesh always belong together. First of all scene.json is made: where there is none, a cloth.obj is
  * not ours. */
+#include "cloth/output/files/bodies.h"
 #include "cloth/output/files/files.h"
 #include "cloth/output/files/json.h"
 #include "cloth/output/files/obstacles.h"
@@ -26,8 +27,9 @@ struct output_frames {
     char *path[N_PARTS];
     int index, cache; /* open files, -1: none */
     uint32_t n_points, n_frames;
-    uint64_t index_size;  /* bytes of the index that belong to whole frames */
-    unsigned char *bytes; /* of one frame */
+    uint32_t n_bodies_before; /* of the earlier run that is replaced */
+    uint64_t index_size;      /* bytes of the index that belong to whole frames */
+    unsigned char *bytes;     /* of one frame */
 };
 
 static int fill_scene(FILE *file, const void *what)
@@ -65,61 +67,97 @@ static int write_part(const struct output_frames *frames, enum part part, const 
     return output_write_file(path, fill[part], what, error);
 }
 
-/* ---- The meshes of bodies ---- */
-
 static uint32_t count_bodies(const struct output_setup *setup)
 {
     return setup->bodies ? setup->bodies->n : 0;
 }
 
-/* The path of a body's file, by number from 1. NULL: out of memory. */
-static char *body_path(const struct output_frames *frames, uint32_t number, const char *suffix)
+/* ---- What may be replaced ---- */
+
+/* A file that the run reads, by what it is, not by its path. */
+struct input {
+    bool is_there;
+    dev_t device;
+    ino_t number;
+};
+
+static struct input *find_inputs(const struct output_setup *setup)
 {
-    char name[OUTPUT_BODY_NAME];
-    output_body_name(name, number, "");
-    return output_path(frames->folder, name, suffix);
+    struct input *inputs = calloc(setup->n_inputs + 1, sizeof *inputs);
+    for (size_t i = 0; inputs && i < setup->n_inputs; i++) {
+        struct stat status;
+        if (stat(setup->inputs[i], &status) == 0)
+            inputs[i] = (struct input){true, status.st_dev, status.st_ino};
+    }
+    return inputs;
 }
 
-static int write_body(const struct output_frames *frames, const struct contact_bodies *bodies,
-                      uint32_t number, struct cloth_error *error)
+/* What stands where a file goes can be replaced, and the run does not read it. */
+static int check_target(const char *path, const struct output_setup *setup,
+                        const struct input *inputs, struct cloth_error *error)
 {
-    struct mesh mesh = {0};
-    char *path = body_path(frames, number, ".part");
-    int code = path ? contact_body_mesh(contact_bodies_at(bodies, number), &mesh, error)
-                    : cloth_fail(error, CLOTH_E_MEMORY, "no memory for paths");
-    if (!code) {
-        const struct output_setup alone = {.n_meshes = 1,
-                                           .meshes = (const struct mesh *const[]){&mesh},
-                                           .names = (const char *const[]){"body"}};
-        code = output_write_file(path, output_fill_obj, &alone, error);
+    struct stat status;
+    if (stat(path, &status) != 0)
+        return 0;
+    if (S_ISDIR(status.st_mode)) {
+        errno = EISDIR;
+        return output_refuse(error, "replace", path);
     }
-    mesh_free(&mesh);
+    for (size_t i = 0; i < setup->n_inputs; i++)
+        if (inputs[i].is_there && inputs[i].device == status.st_dev &&
+            inputs[i].number == status.st_ino)
+            return cloth_fail(error, CLOTH_E_INPUT,
+                              "%.300s would be replaced, but this run reads it, as %.300s; give "
+                              "another folder, or move the file away",
+                              path, setup->inputs[i]);
+    return 0;
+}
+
+/* A mesh of the user's must not be taken for one of an earlier run. */
+static int check_mesh(const struct output_frames *frames, const char *path,
+                      struct cloth_error *error)
+{
+    struct stat status;
+    if (stat(frames->path[PART_SCENE], &status) == 0 || lstat(path, &status) != 0)
+        return 0;
+    return cloth_fail(error, CLOTH_E_INPUT,
+                      "%s would be replaced, but is not of an earlier run: there is no scene.json "
+                      "beside it; give another folder, or move the file away",
+                      path);
+}
+
+/* A file of the folder, and what is written beside it first. */
+static int check_file(const struct output_frames *frames, const char *name, bool is_mesh,
+                      const struct output_setup *setup, const struct input *inputs,
+                      struct cloth_error *error)
+{
+    char *path = output_path(frames->folder, name, "");
+    char *fresh = output_path(frames->folder, name, ".part");
+    int code = path && fresh ? check_target(path, setup, inputs, error)
+                             : cloth_fail(error, CLOTH_E_MEMORY, "no memory for paths");
+    code = code ? code : check_target(fresh, setup, inputs, error);
+    if (!code && is_mesh)
+        code = check_mesh(frames, path, error);
     free(path);
+    free(fresh);
     return code;
 }
 
-static int rename_body(const struct output_frames *frames, uint32_t number,
-                       struct cloth_error *error)
+static int check_ours(const struct output_frames *frames, const struct output_setup *setup,
+                      struct cloth_error *error)
 {
-    char *from = body_path(frames, number, ".part"), *to = body_path(frames, number, "");
-    int code = 0;
-    if (!from || !to)
-        code = cloth_fail(error, CLOTH_E_MEMORY, "no memory for paths");
-    else if (rename(from, to) != 0)
-        code = output_refuse(error, "replace", to);
-    free(from);
-    free(to);
-    return code;
-}
-
-static void remove_bodies(const struct output_frames *frames, const struct output_setup *setup)
-{
-    for (uint32_t i = 1; i <= count_bodies(setup); i++) {
-        char *path = body_path(frames, i, ".part");
-        if (path)
-            unlink(path);
-        free(path);
+    const uint32_t n = count_bodies(setup), before = frames->n_bodies_before;
+    struct input *inputs = find_inputs(setup);
+    int code = inputs ? 0 : cloth_fail(error, CLOTH_E_MEMORY, "no memory for the files read");
+    for (int i = 0; i < N_PARTS && !code; i++)
+        code = check_file(frames, PART_NAME[i], i == PART_OBJ, setup, inputs, error);
+    for (uint32_t i = 1; i <= (n > before ? n : before) && !code; i++) {
+        char name[OUTPUT_BODY_NAME];
+        output_body_name(name, i, "");
+        code = check_file(frames, name, true, setup, inputs, error);
     }
+    free(inputs);
+    return code;
 }
 
 /* ---- Beginning ---- */
@@ -131,8 +169,8 @@ static int replace_parts(const struct output_frames *frames, char *const fresh[N
     if (unlink(frames->path[PART_CACHE]) != 0 && errno != ENOENT)
         return output_refuse(error, "replace", frames->path[PART_CACHE]);
     output_sync_folder(frames->folder);
-    for (uint32_t i = 1; i <= count_bodies(setup) && !code; i++)
-        code = rename_body(frames, i, error);
+    code =
+        output_bodies_replace(frames->folder, count_bodies(setup), frames->n_bodies_before, error);
     if (code)
         return code;
     for (int i = 0; i < N_PARTS; i++)
@@ -152,41 +190,15 @@ static int start_files(const struct output_frames *frames, const struct output_s
         code = fresh[i] ? write_part(frames, (enum part)i, fresh[i], setup, error)
                         : cloth_fail(error, CLOTH_E_MEMORY, "no memory for paths");
     }
-    for (uint32_t i = 1; i <= count_bodies(setup) && !code; i++)
-        code = write_body(frames, setup->bodies, i, error);
+    if (!code && setup->bodies)
+        code = output_bodies_write(frames->folder, setup->bodies, error);
     code = code ? code : replace_parts(frames, fresh, setup, error);
     if (code)
-        remove_bodies(frames, setup);
+        output_bodies_drop(frames->folder, count_bodies(setup));
     for (int i = 0; i < N_PARTS; i++) {
         if (code && fresh[i])
             unlink(fresh[i]);
         free(fresh[i]);
-    }
-    return code;
-}
-
-/* A mesh of the user's must not be taken for one of an earlier run. */
-static int check_path(const struct output_frames *frames, const char *path,
-                      struct cloth_error *error)
-{
-    struct stat status;
-    if (stat(frames->path[PART_SCENE], &status) == 0 || lstat(path, &status) != 0)
-        return 0;
-    return cloth_fail(error, CLOTH_E_INPUT,
-                      "%s would be replaced, but is not of an earlier run: there is no scene.json "
-                      "beside it; give another folder, or move the file away",
-                      path);
-}
-
-static int check_ours(const struct output_frames *frames, const struct output_setup *setup,
-                      struct cloth_error *error)
-{
-    int code = check_path(frames, frames->path[PART_OBJ], error);
-    for (uint32_t i = 1; i <= count_bodies(setup) && !code; i++) {
-        char *path = body_path(frames, i, "");
-        code = path ? check_path(frames, path, error)
-                    : cloth_fail(error, CLOTH_E_MEMORY, "no memory for paths");
-        free(path);
     }
     return code;
 }
@@ -242,6 +254,7 @@ int output_open(struct output_frames **frames, const struct output_setup *setup,
     int code = count_points(setup, &made->n_points, error);
     code = code ? code : allocate(made, setup->folder, error);
     code = code ? code : output_make_folder(setup->folder, error);
+    made->n_bodies_before = output_bodies_before(setup->folder);
     code = code ? code : check_ours(made, setup, error);
     code = code ? code : start_files(made, setup, error);
     code = code ? code : open_part(made, PART_INDEX, &made->index, error);

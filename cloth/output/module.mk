@@ -6,6 +6,8 @@ libduite_cloth_la_SOURCES += \
 	cloth/output/cache.c \
 	cloth/output/report.c \
 	cloth/output/room.c \
+	cloth/output/files/bodies.c \
+	cloth/output/files/bodies.h \
 	cloth/output/files/files.h \
 	cloth/output/files/files.c \
 	cloth/output/files/json.h \

@@ -16,9 +16,11 @@
  *   frames.csv     frame,time: the true time of each frame
  *   body-K.obj     the bodies among the obstacles, K from 0, without their motion
  *   scene.json     what a viewer needs: {"fps", "obstacles": [{KIND: {its parameters}}]}, of a
- *                  body {"obj": its file}; one that moves also has "about" and "keys": [{"time",
- * "translate", "rotate"}] PC2's count of frames is rewritten after each frame and the file synced,
- * so that a run that is killed leaves whole files up to the last finished frame. */
+ *                  body {"obj": its file}; one that moves also has "about" and
+ *                  "keys": [{"time", "translate", "rotate"}]
+ *
+ * PC2's count of frames is rewritten after each frame and the file synced, so that a run that is
+ * killed leaves whole files up to the last finished frame. */
 struct output_frames;
 
 struct output_setup {
@@ -32,11 +34,13 @@ struct output_setup {
     const struct contact_shape *obstacles;
     const struct phys_key *keys;         /* of their motions */
     const struct contact_bodies *bodies; /* that they name; NULL: none */
+    size_t n_inputs;
+    const char *const *inputs; /* paths of what the run reads, which is not replaced */
 };
 
-/* Opens a folder for frames. Files of an earlier run in it are replaced, a cloth.obj of anyone else
- * is not. Errors: CLOTH_E_INPUT where the folder cannot be written to, CLOTH_E_IO, CLOTH_E_MEMORY.
- */
+/* Opens a folder for frames. Files of an earlier run in it are replaced. A cloth.obj or body-K.obj
+ * of anyone else is not, nor an input: CLOTH_E_INPUT, before anything changes. Further errors:
+ * CLOTH_E_INPUT where the folder cannot be written to, CLOTH_E_IO, CLOTH_E_MEMORY. */
 int output_open(struct output_frames **frames, const struct output_setup *setup,
                 struct cloth_error *error);
 

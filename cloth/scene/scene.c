@@ -22,6 +22,8 @@ int scene_read(struct model *model, const char *path, size_t n_sets, const struc
     if (!code)
         code = scene_check(model, &tree, &own);
     if (!code)
+        code = scene_build_file(model, path, &own);
+    if (!code)
         code = scene_build_world(model, &tree, &own);
     if (!code)
         code = scene_build_cloths(model, &tree, &own);

@@ -44,6 +44,20 @@ else
     skip "a mesh of the folder is gone" "no pictures here"
 fi
 
+reads_itself() { # a mesh in the folder of frames would be replaced while the scene names it
+    cp "$scratch/out/body-0.obj" "$scratch/before.obj"
+    for key in 'obj: ring.obj, scale: 1.1' 'grid: {width: 1, height: 1, nx: 30, ny: 30}'; do
+        case $key in obj*) file=body-0.obj with=obj ;; *) file=cloth.obj with=file ;; esac
+        sed "s/$key/$with: out\\/$file/" "$scratch/ring.yaml" > "$scratch/itself.yaml"
+        limited "$DUITE_CLOTH" "$scratch/itself.yaml" --end 0.01 --output "$scratch/out" > "$scratch/said" 2>&1
+        test $? = 2 && grep -F "$scratch/out/$file would be replaced, but this run reads it, as $scratch/out/$file; " "$scratch/said" || return 1
+        cmp "$scratch/out/body-0.obj" "$scratch/before.obj" || return 1
+        limited "$DUITE_CLOTH" "$scratch/itself.yaml" --end 0.01 --report "$scratch/out/$file" > "$scratch/said" 2>&1
+        test $? = 2 && grep -F -e "--report $scratch/out/$file: this is a file that the scene reads, which would be lost" "$scratch/said" || return 1
+    done
+}
+ok "a scene that reads the frames' own mesh" reads_itself
+
 refused() { # what is open is said, with its place, before there is a folder
     sed '$d' "$scratch/ring.obj" > "$scratch/open.obj"
     sed 's/ring.obj/open.obj/' "$scratch/ring.yaml" > "$scratch/open.yaml"

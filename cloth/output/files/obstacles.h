@@ -19,4 +19,7 @@ void output_obstacles(FILE *file, size_t n, const struct contact_shape *obstacle
 /* Reads it but for the bodies; what it allocates belongs to the cache, also after a failure. */
 void output_obstacles_read(struct output_cache *cache, struct output_json *json);
 
+/* How many bodies the scene.json of a folder names; 0 where there is none that can be read. */
+uint32_t output_bodies_before(const char *folder);
+
 #endif

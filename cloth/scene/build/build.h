@@ -111,15 +111,20 @@ int scene_build_direction(double direction[3], const char *what, const struct sc
 int scene_build_no_such(const char *what, const char *name, const char *const *names, size_t n,
                         const struct scene_tree *tree, int node, struct cloth_error *error);
 
-/* The mesh of a cloth, transformed. */
-int scene_build_mesh(struct mesh *mesh, struct scene_tree *tree, int cloth,
+/* Adds the path of a file that is read to the model's. */
+int scene_build_file(struct model *model, const char *path, struct cloth_error *error);
+
+/* The mesh of a cloth, transformed; its file is added to the model's. */
+int scene_build_mesh(struct model *model, struct mesh *mesh, struct scene_tree *tree, int cloth,
                      struct cloth_error *error);
 
 /* The mesh of the OBJ file that a node names, relative to the scene's folder, by mesh_read_obj or
- * mesh_read_surface. What is wrong with the file is in `inner`, without the place in the scene. */
+ * mesh_read_surface; the file is added to the model's. What is wrong with the file is in `inner`,
+ * without the place in the scene. */
 typedef int scene_obj_reader(struct mesh *mesh, const char *path, struct cloth_error *error);
-int scene_build_obj(struct mesh *mesh, scene_obj_reader *reads, const struct scene_tree *tree,
-                    int node, struct cloth_error *error, struct cloth_error *inner);
+int scene_build_obj(struct model *model, struct mesh *mesh, scene_obj_reader *reads,
+                    const struct scene_tree *tree, int node, struct cloth_error *error,
+                    struct cloth_error *inner);
 
 /* Adds the warning "place: sentence" of a node to the model's. */
 int scene_build_warn(struct model *model, const struct scene_tree *tree, int node,

@@ -78,13 +78,27 @@ static char *path_beside(const char *scene, const char *name, struct cloth_error
     return path;
 }
 
-int scene_build_obj(struct mesh *mesh, scene_obj_reader *reads, const struct scene_tree *tree,
-                    int node, struct cloth_error *error, struct cloth_error *inner)
+int scene_build_file(struct model *model, const char *path, struct cloth_error *error)
+{
+    char *copy = scene_build_copy(path, error);
+    char **all = copy ? realloc(model->files, (model->n_files + 1) * sizeof *all) : NULL;
+    if (!all) {
+        free(copy);
+        return cloth_fail(error, CLOTH_E_MEMORY, "out of memory while the scene is read");
+    }
+    model->files = all;
+    all[model->n_files++] = copy;
+    return CLOTH_OK;
+}
+
+int scene_build_obj(struct model *model, struct mesh *mesh, scene_obj_reader *reads,
+                    const struct scene_tree *tree, int node, struct cloth_error *error,
+                    struct cloth_error *inner)
 {
     char *path = path_beside(tree->path, scene_tree_scalar(tree, node), error);
-    if (!path)
-        return error->code;
-    int code = reads(mesh, path, inner);
+    int code = path ? scene_build_file(model, path, error) : error->code;
+    if (!code)
+        code = reads(mesh, path, inner);
     free(path);
     return code == CLOTH_E_IO ? CLOTH_E_INPUT : code; /* a scene that names no readable file */
 }
@@ -116,7 +130,7 @@ int scene_build_check_turn(const struct mesh_transform *transform, const struct 
     return CLOTH_OK;
 }
 
-int scene_build_mesh(struct mesh *mesh, struct scene_tree *tree, int cloth,
+int scene_build_mesh(struct model *model, struct mesh *mesh, struct scene_tree *tree, int cloth,
                      struct cloth_error *error)
 {
     struct cloth_error inner = {0};
@@ -132,7 +146,7 @@ int scene_build_mesh(struct mesh *mesh, struct scene_tree *tree, int cloth,
     if (!strcmp(name, "grid"))
         code = build_grid(mesh, tree, kind.value, error, &inner);
     else if (!strcmp(name, "file"))
-        code = scene_build_obj(mesh, mesh_read_obj, tree, kind.value, error, &inner);
+        code = scene_build_obj(model, mesh, mesh_read_obj, tree, kind.value, error, &inner);
     else
         code = build_inline(mesh, tree, kind.value, error, &inner);
     if (inner.code == CLOTH_E_MEMORY)

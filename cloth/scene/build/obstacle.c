@@ -71,8 +71,8 @@ static int build_shape_motion(struct model *model, struct contact_shape *shape,
 }
 
 /* A mesh that a body is made of, where it starts. */
-static int build_body_mesh(struct mesh *mesh, struct scene_tree *tree, int node,
-                           struct cloth_error *error)
+static int build_body_mesh(struct model *model, struct mesh *mesh, struct scene_tree *tree,
+                           int node, struct cloth_error *error)
 {
     struct cloth_error inner = {0};
     struct mesh_transform transform = {0};
@@ -82,7 +82,7 @@ static int build_body_mesh(struct mesh *mesh, struct scene_tree *tree, int node,
         code = scene_build_check_turn(&transform, tree, node, error);
     if (code)
         return code;
-    code = scene_build_obj(mesh, mesh_read_surface, tree, file, error, &inner);
+    code = scene_build_obj(model, mesh, mesh_read_surface, tree, file, error, &inner);
     if (inner.code == CLOTH_E_MEMORY)
         return cloth_fail(error, inner.code, "%s: %s", tree->path, inner.text);
     if (inner.code)
@@ -122,7 +122,7 @@ static int build_body(struct model *model, struct contact_shape *shape, struct s
     struct mesh mesh = {0};
     const int file = scene_tree_get(tree, node, "obj");
     bool turned = false;
-    int code = build_body_mesh(&mesh, tree, node, error);
+    int code = build_body_mesh(model, &mesh, tree, node, error);
     if (!code)
         code = contact_bodies_add(&model->bodies, &mesh, &turned, &inner);
     if (inner.code)

@@ -4,7 +4,6 @@
 #include "tests/support/unit.h"
 
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 static struct sample sample;
@@ -135,64 +134,6 @@ START_TEST(refuses_bad_frames)
 }
 END_TEST
 
-START_TEST(folder_in_the_way)
-{
-    struct cloth_error error = {0};
-    struct output_frames *frames = NULL;
-    char file[96], below[112];
-    snprintf(file, sizeof file, "%s/file", sample.folder);
-    snprintf(below, sizeof below, "%s/frames", file);
-    sample_write(file, "mine", 4);
-    sample.setup.folder = file;
-    ck_assert_int_eq(output_open(&frames, &sample.setup, &error), CLOTH_E_INPUT);
-    ck_assert_ptr_nonnull(strstr(error.text, file));
-    ck_assert_ptr_nonnull(strstr(error.text, "Not a directory"));
-    error.code = 0;
-    sample.setup.folder = below;
-    ck_assert_int_eq(output_open(&frames, &sample.setup, &error), CLOTH_E_INPUT);
-    ck_assert_ptr_nonnull(strstr(error.text, "Not a directory"));
-    ck_assert_ptr_null(frames);
-    char text[8];
-    sample_read(file, text, sizeof text);
-    ck_assert_str_eq(text, "mine");
-}
-END_TEST
-
-/* Something else stands where a file of the folder goes. */
-START_TEST(file_in_the_way)
-{
-    static const char *const name[] = {"cloth.obj", "cloth.pc2", "frames.csv.part"};
-    for (size_t i = 0; i < sizeof name / sizeof *name; i++) {
-        struct cloth_error error = {0};
-        struct output_frames *frames = NULL;
-        sample_run(&sample, 1, 1);
-        unlink(sample_path(&sample, name[i]));
-        ck_assert_int_eq(mkdir(sample_path(&sample, name[i]), 0777), 0);
-        ck_assert_int_eq(output_open(&frames, &sample.setup, &error), CLOTH_E_INPUT);
-        ck_assert_msg(strstr(error.text, sample_path(&sample, name[i])) != NULL, "%s", error.text);
-        ck_assert_ptr_null(frames);
-        ck_assert_int_eq(rmdir(sample_path(&sample, name[i])), 0);
-    }
-}
-END_TEST
-
-/* A mesh that the user keeps in the folder stays; what an earlier run left goes. */
-START_TEST(mesh_of_the_user)
-{
-    struct cloth_error error = {0};
-    struct output_frames *frames = NULL;
-    char text[8];
-    ck_assert_int_eq(mkdir(sample.frames, 0777), 0);
-    sample_write(sample_path(&sample, "cloth.obj"), "mine", 4);
-    ck_assert_int_eq(output_open(&frames, &sample.setup, &error), CLOTH_E_INPUT);
-    ck_assert_ptr_null(frames);
-    ck_assert_msg(strstr(error.text, sample_path(&sample, "cloth.obj")) != NULL, "%s", error.text);
-    sample_read(sample_path(&sample, "cloth.obj"), text, sizeof text);
-    ck_assert_str_eq(text, "mine");
-    ck_assert_int_ne(access(sample_path(&sample, "cloth.obj.part"), F_OK), 0);
-}
-END_TEST
-
 START_TEST(taken_away_while_it_runs)
 {
     static const char *const name[] = {"cloth.pc2", "frames.csv"};
@@ -305,9 +246,6 @@ int main(void)
     tcase_add_test(c, replaces_an_earlier_run);
     tcase_add_test(c, interrupted_frame_is_ignored);
     tcase_add_test(c, refuses_bad_frames);
-    tcase_add_test(c, folder_in_the_way);
-    tcase_add_test(c, file_in_the_way);
-    tcase_add_test(c, mesh_of_the_user);
     tcase_add_test(c, taken_away_while_it_runs);
     tcase_add_test(c, makes_parents);
     tcase_add_loop_test(c, refuses_damage, 0, sizeof DAMAGES / sizeof *DAMAGES);

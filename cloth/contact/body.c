@@ -286,6 +286,22 @@ static bool body_apart(const double *value, const struct contact_body *body, siz
     return hit.gap > 0;
 }
 
+static void body_core(const double *value, const struct contact_body *body,
+                      struct contact_core *core)
+{
+    struct phys_key middle = {.rotate = {1, 0, 0, 0}};
+    (void)value;
+    *core = (struct contact_core){0};
+    for (int c = 0; c < 3; c++) {
+        middle.translate[c] = (body->low[c] + body->high[c]) / 2;
+        core->half[c] = (body->high[c] - body->low[c]) / 2;
+    }
+    phys_pose_at(1, &middle, (const double[3]){0}, 0, &core->axes);
+}
+
 static const struct contact_parameter parameters[] = {{NULL, 0}};
-const struct contact_kind contact_body_kind = {
-    .name = "body", .parameter = parameters, .closest = body_closest, .apart = body_apart};
+const struct contact_kind contact_body_kind = {.name = "body",
+                                               .parameter = parameters,
+                                               .closest = body_closest,
+                                               .apart = body_apart,
+                                               .core = body_core};

@@ -53,7 +53,18 @@ static void box_closest(const double *value, const struct contact_body *body, si
     }
 }
 
+static void box_core(const double *value, const struct contact_body *body,
+                     struct contact_core *core)
+{
+    (void)body;
+    *core = (struct contact_core){0};
+    box_around(value, &core->axes, core->half);
+}
+
 static const struct contact_parameter parameters[] = {
     {"centre", CONTACT_POINT}, {"size", CONTACT_LENGTHS}, {"rotate", CONTACT_ROTATION}, {NULL, 0}};
-const struct contact_kind contact_box = {
-    .name = "box", .parameter = parameters, .closest = box_closest, .around = box_around};
+const struct contact_kind contact_box = {.name = "box",
+                                         .parameter = parameters,
+                                         .closest = box_closest,
+                                         .around = box_around,
+                                         .core = box_core};

@@ -38,9 +38,21 @@ static void capsule_around(const double *value, struct phys_pose *axes, double h
     half[1] = half[2] = value[RADIUS];
 }
 
+/* Its line, and all around it. */
+static void capsule_core(const double *value, const struct contact_body *body,
+                         struct contact_core *core)
+{
+    (void)body;
+    *core = (struct contact_core){.radius = value[RADIUS]};
+    capsule_around(value, &core->axes, core->half);
+    core->half[0] -= value[RADIUS];
+    core->half[1] = core->half[2] = 0;
+}
+
 static const struct contact_parameter parameters[] = {
     {"from", CONTACT_POINT}, {"to", CONTACT_POINT}, {"radius", CONTACT_LENGTH}, {NULL, 0}};
 const struct contact_kind contact_capsule = {.name = "capsule",
                                              .parameter = parameters,
                                              .closest = capsule_closest,
-                                             .around = capsule_around};
+                                             .around = capsule_around,
+                                             .core = capsule_core};

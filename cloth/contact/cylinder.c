@@ -37,6 +37,14 @@ static void cylinder_around(const double *value, struct phys_pose *axes, double 
     half[1] = half[2] = value[RADIUS];
 }
 
+static void cylinder_core(const double *value, const struct contact_body *body,
+                          struct contact_core *core)
+{
+    (void)body;
+    *core = (struct contact_core){.round = true};
+    cylinder_around(value, &core->axes, core->half);
+}
+
 static const struct contact_parameter parameters[] = {{"centre", CONTACT_POINT},
                                                       {"axis", CONTACT_DIRECTION},
                                                       {"radius", CONTACT_LENGTH},
@@ -46,4 +54,5 @@ const struct contact_kind contact_cylinder = {.name = "cylinder",
                                               .parameter = parameters,
                                               .closest = cylinder_closest,
                                               .around = cylinder_around,
+                                              .core = cylinder_core,
                                               .round = true};

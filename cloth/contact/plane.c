@@ -30,7 +30,18 @@ static bool plane_apart(const double *value, const struct contact_body *body, si
     return above == n;
 }
 
+static void plane_core(const double *value, const struct contact_body *body,
+                       struct contact_core *core)
+{
+    (void)body;
+    *core = (struct contact_core){.endless = true};
+    contact_axes(value + POINT, value + NORMAL, &core->axes);
+}
+
 static const struct contact_parameter parameters[] = {
     {"point", CONTACT_POINT}, {"normal", CONTACT_DIRECTION}, {NULL, 0}};
-const struct contact_kind contact_plane = {
-    .name = "plane", .parameter = parameters, .closest = plane_closest, .apart = plane_apart};
+const struct contact_kind contact_plane = {.name = "plane",
+                                           .parameter = parameters,
+                                           .closest = plane_closest,
+                                           .apart = plane_apart,
+                                           .core = plane_core};

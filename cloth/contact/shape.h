@@ -57,6 +57,15 @@ struct contact_parameter {
     enum contact_role role;
 };
 
+/* A convex shape as distances and certificates take it: all points within a radius of its core. */
+struct contact_core {
+    struct phys_pose axes; /* of the core, its middle at their origin */
+    double half[3];        /* m: half the size of the box that is the core, each 0 or more */
+    double radius;         /* m */
+    bool round;            /* the core is the cylinder in that box, along its first axis */
+    bool endless;          /* the shape is all that is below the middle along the first axis */
+};
+
 /* A kind of shape: a file of this folder. */
 struct contact_kind {
     const char *name;                          /* in scenes and in scene.json */
@@ -72,6 +81,8 @@ struct contact_kind {
     /* A box around it: its own axes and middle, half its size (m); the shape is star-shaped as seen
      * from there. NULL: the shape has no bounds, or is a body. */
     void (*around)(const double *value, struct phys_pose *axes, double half[3]);
+    /* The shape itself, of a body the box around it; in the axes that the parameters are in. */
+    void (*core)(const double *value, const struct contact_body *body, struct contact_core *core);
     bool round; /* pictures take for that box the cylinder in it, along its first axis */
 };
 extern const struct contact_kind contact_plane, contact_sphere, contact_box, contact_capsule,

@@ -27,7 +27,20 @@ static void sphere_around(const double *value, struct phys_pose *axes, double ha
     half[0] = half[1] = half[2] = value[RADIUS];
 }
 
+/* Its centre, and all around it. */
+static void sphere_core(const double *value, const struct contact_body *body,
+                        struct contact_core *core)
+{
+    double half[3];
+    (void)body;
+    *core = (struct contact_core){.radius = value[RADIUS]};
+    sphere_around(value, &core->axes, half);
+}
+
 static const struct contact_parameter parameters[] = {
     {"centre", CONTACT_POINT}, {"radius", CONTACT_LENGTH}, {NULL, 0}};
-const struct contact_kind contact_sphere = {
-    .name = "sphere", .parameter = parameters, .closest = sphere_closest, .around = sphere_around};
+const struct contact_kind contact_sphere = {.name = "sphere",
+                                            .parameter = parameters,
+                                            .closest = sphere_closest,
+                                            .around = sphere_around,
+                                            .core = sphere_core};

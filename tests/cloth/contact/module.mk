@@ -1,5 +1,5 @@
 if HAVE_CHECK
-check_PROGRAMS += tests/cloth/contact/test_body tests/cloth/contact/test_body_refused tests/cloth/contact/test_meet tests/cloth/contact/test_shape
+check_PROGRAMS += tests/cloth/contact/test_body tests/cloth/contact/test_body_refused tests/cloth/contact/test_meet tests/cloth/contact/test_shape tests/cloth/contact/test_solid
 tests_cloth_contact_test_body_SOURCES = tests/cloth/contact/test_body.c tests/cloth/contact/bodies.h
 tests_cloth_contact_test_body_LDADD = $(CLOTH_TEST_LIBS)
 tests_cloth_contact_test_body_refused_SOURCES = tests/cloth/contact/test_body_refused.c tests/cloth/contact/bodies.h
@@ -8,10 +8,11 @@ tests_cloth_contact_test_meet_SOURCES = tests/cloth/contact/test_meet.c
 tests_cloth_contact_test_meet_LDADD = $(CLOTH_TEST_LIBS)
 tests_cloth_contact_test_shape_SOURCES = tests/cloth/contact/test_shape.c
 tests_cloth_contact_test_shape_LDADD = $(CLOTH_TEST_LIBS)
-TESTS += tests/cloth/contact/test_body tests/cloth/contact/test_body_refused tests/cloth/contact/test_meet tests/cloth/contact/test_shape
-TESTS += tests/cloth/contact/test_body tests/cloth/contact/test_meet tests/cloth/contact/test_shape
 check_PROGRAMS += tests/cloth/contact/test_skin
 tests_cloth_contact_test_skin_SOURCES = tests/cloth/contact/test_skin.c
 tests_cloth_contact_test_skin_LDADD = $(CLOTH_TEST_LIBS)
 TESTS += tests/cloth/contact/test_skin
+TESTS += tests/cloth/contact/test_body tests/cloth/contact/test_body_refused tests/cloth/contact/test_meet tests/cloth/contact/test_shape tests/cloth/contact/test_solid
+tests_cloth_contact_test_solid_SOURCES = tests/cloth/contact/test_solid.c
+tests_cloth_contact_test_solid_LDADD = $(CLOTH_TEST_LIBS)
 endif

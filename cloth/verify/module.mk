@@ -1,5 +1,7 @@
 # Whether surfaces go through each other, exactly; nothing of it is used by contact, nor uses it. Pure.
 libduite_cloth_la_SOURCES += \
+	cloth/verify/enter.c \
+	cloth/verify/inside.c \
 	cloth/verify/meet.c cloth/verify/verify.h \
 	cloth/verify/orient.c cloth/verify/orient.h \
 	cloth/verify/sweep.c

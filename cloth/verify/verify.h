@@ -3,6 +3,7 @@
 
 #include "cloth/base/error.h"
 #include "cloth/base/memory.h"
+#include "cloth/contact/shape.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -35,5 +36,17 @@ bool verify_meet(const double (*x)[3], const uint32_t a[3], const uint32_t b[3])
  * along two axes and are near each other along a third. */
 int verify_pairs(const struct verify_soup *soup, struct cloth_list *pairs,
                  struct cloth_error *error);
+
+/* Appends the numbers (uint32_t, ascending) of those of the first triangles that have a point
+ * deeper in a convex shape, any but a body, than `depth` (m, > 0); which of those are found that
+ * are deeper than `depth` and not than twice that is open. Errors: CLOTH_E_MEMORY. */
+int verify_enter(const struct verify_soup *soup, const struct contact_shape *shape,
+                 const struct contact_pose *pose, double depth, struct cloth_list *triangles,
+                 struct cloth_error *error);
+
+/* Whether a point is inside a closed surface: those triangles of the soup from the first to the
+ * one before the end. On it: either. Coordinates as of verify_pairs. */
+bool verify_inside(const struct verify_soup *soup, uint32_t first, uint32_t end,
+                   const double at[3]);
 
 #endif

@@ -1,0 +1,27 @@
+#ifndef CLOTH_CONTACT_BODY_SKIN_H
+#define CLOTH_CONTACT_BODY_SKIN_H
+
+#include "cloth/contact/shape.h"
+#include "cloth/contact/skin.h"
+
+/* A body as blocks of cloth are met: a skin whose points are the body's vertices, with all of its
+ * triangles, edges and vertices as features. Over a step each point moves straight from its place
+ * by the pose at the begin to that by the pose at the end, so that a motion has no jump from step
+ * to step; none can be cut. The certificates of cloth hold for it as they are. Local. */
+
+/* Room for its table, in bytes, aligned to CONTACT_ALIGN. */
+size_t contact_body_skin_bytes(const struct contact_body *body);
+
+/* Makes the table, once for all steps: writes every byte of that room. Vertex v has the id
+ * first_id + v. No vertex of a cloth, nor one of another body, may have such an id: pairs that
+ * share one are left out. Error: CLOTH_E_MEMORY. */
+int contact_body_skin_make(const struct contact_body *body, uint32_t first_id, void *table,
+                           struct cloth_error *error);
+
+/* Fills x and y (m), by vertex, at the begin and at the end of a step, and the way of its middle
+ * from one to the other, in whose frame contact_refit makes small boxes. Of a body that stands
+ * still they are the same in every step. */
+void contact_body_ends(const struct contact_body *body, const struct contact_pose *pose,
+                       phys_vec *x, phys_vec *y, phys_vec *way);
+
+#endif

@@ -58,6 +58,16 @@ struct mesh {
 int mesh_grid(struct mesh *mesh, double width, double height, uint32_t nx, uint32_t ny,
               enum mesh_cells cells, struct cloth_error *error);
 
+/* Makes a flat disc in the x-z plane, centred on the origin, +y its normal's side: a vertex in the
+ * middle, then `rings` rings, of which the k-th has 6 k vertices and the radius radius k / rings
+ * (m). Ring k begins with vertex 1 + 3 k (k - 1), on +x, and goes on towards +z. Edges are 1
+ * to 1.45 times radius / rings long; no triangle has less than 3/4 of the area of another. uv is in
+ * metres. Such a mesh is no grid: its arrays are
+ * stored. Errors: CLOTH_E_INPUT for a radius that is not positive and finite, and for less than one
+ * ring or more than MESH_DISC_RINGS; CLOTH_E_MEMORY. */
+enum { MESH_DISC_RINGS = 10000 };
+int mesh_disc(struct mesh *mesh, double radius, uint32_t rings, struct cloth_error *error);
+
 /* How far the rows of a sheet of equilateral triangles are from each other, m. */
 double mesh_row_distance(double width, uint32_t nx);
 

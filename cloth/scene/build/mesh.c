@@ -40,26 +40,47 @@ static int grid_height(struct scene_grid *grid, const struct scene_tree *tree, i
         grid->height, grid->ny, follows);
 }
 
+/* That this machine may have room for a mesh of n vertices. node: the key that asks for so many;
+ * what: "nx times ny is". */
+static int check_memory(uint64_t n, const char *what, const struct scene_tree *tree, int node,
+                        struct cloth_error *error)
+{
+    const double need = LEAST_BYTES * (double)n, memory = memory_bytes();
+    if (need <= memory)
+        return CLOTH_OK;
+    return scene_tree_fail(tree, node, error,
+                           "%s %llu vertices, which take %.0f GB of memory or more; this machine "
+                           "has %.0f GB",
+                           what, (unsigned long long)n, need / 1e9, memory / 1e9);
+}
+
+static int build_disc(struct mesh *mesh, struct scene_tree *tree, int node,
+                      struct cloth_error *error, struct cloth_error *inner)
+{
+    struct scene_disc disc = {0};
+    int code = scene_fill(&disc, &scene_disc, tree, node, error);
+    const uint64_t n = 1 + 3 * (uint64_t)disc.rings * (disc.rings + 1);
+    if (!code)
+        code =
+            check_memory(n, "so many rings have", tree, scene_tree_get(tree, node, "rings"), error);
+    return code ? code : mesh_disc(mesh, disc.radius, disc.rings, inner);
+}
+
 static int build_grid(struct mesh *mesh, struct scene_tree *tree, int node,
                       struct cloth_error *error, struct cloth_error *inner)
 {
     struct scene_grid grid = {0};
     int code = scene_fill(&grid, &scene_grid, tree, node, error);
     const uint64_t n = (uint64_t)grid.nx * grid.ny;
-    const double need = LEAST_BYTES * (double)n, memory = memory_bytes();
     if (code)
         return code;
     if (n > UINT32_C(1) << 31)
         return scene_tree_fail(tree, scene_tree_get(tree, node, "nx"), error,
                                "nx times ny is %llu; at most 2^31 vertices are possible",
                                (unsigned long long)n);
-    if (need > memory)
-        return scene_tree_fail(
-            tree, scene_tree_get(tree, node, "nx"), error,
-            "nx times ny is %llu vertices, which take %.0f GB of memory or more; "
-            "this machine has %.0f GB",
-            (unsigned long long)n, need / 1e9, memory / 1e9);
-    code = grid_height(&grid, tree, node, error);
+    code = check_memory(n, "nx times ny is", tree, scene_tree_get(tree, node, "nx"), error);
+    if (!code)
+        code = grid_height(&grid, tree, node, error);
     return code ? code
                 : mesh_grid(mesh, grid.width, grid.height, grid.nx, grid.ny, grid.cells, inner);
 }
@@ -145,6 +166,8 @@ int scene_build_mesh(struct model *model, struct mesh *mesh, struct scene_tree *
         return code;
     if (!strcmp(name, "grid"))
         code = build_grid(mesh, tree, kind.value, error, &inner);
+    else if (!strcmp(name, "disc"))
+        code = build_disc(mesh, tree, kind.value, error, &inner);
     else if (!strcmp(name, "file"))
         code = scene_build_obj(model, mesh, mesh_read_obj, tree, kind.value, error, &inner);
     else

@@ -71,12 +71,16 @@ struct scene_grid {
     uint32_t nx, ny;
     enum mesh_cells cells;
 };
+struct scene_disc {
+    double radius; /* m */
+    uint32_t rings;
+};
 struct scene_inline {
     uint32_t n_vertices, n_edges, n_triangles;
     double (*vertices)[3];
     uint32_t (*edges)[2], (*triangles)[3];
 };
-extern const struct scene_rule scene_grid, scene_inline;
+extern const struct scene_rule scene_grid, scene_disc, scene_inline;
 extern const struct scene_rule scene_transform; /* a struct mesh_transform */
 extern const struct scene_rule scene_region;    /* a struct model_pick */
 extern const struct scene_rule scene_body;      /* a struct mesh_transform */

@@ -29,6 +29,13 @@ static const struct scene_rule grid_keys[] = {
               "alike; or equilateral triangles"},
     {0}};
 
+static const struct scene_rule disc_keys[] = {
+    {"radius", SCENE_NUMBER, "m", .required = true, .range = SCENE_POSITIVE,
+     INTO(struct scene_disc, radius), .about = "from the middle to the border"},
+    {"rings", SCENE_INTEGER, .required = true, .min = 1, .max = MESH_DISC_RINGS,
+     INTO(struct scene_disc, rings), .about = "of vertices around the one in the middle"},
+    {0}};
+
 static const struct scene_rule inline_keys[] = {
     {"vertices", SCENE_LIST, "m", .required = true, .filled = true, .inside = &point,
      ARRAY(struct scene_inline, vertices, n_vertices), .about = "positions [x, y, z]"},
@@ -43,6 +50,8 @@ static const struct scene_rule inline_keys[] = {
 static const struct scene_rule mesh_kinds[] = {
     {"grid", SCENE_MAP, .inside = grid_keys, .apart = true, MESH_PLACE,
      .about = "a flat sheet in the x-z plane"},
+    {"disc", SCENE_MAP, .inside = disc_keys, .apart = true, MESH_PLACE,
+     .about = "a round sheet in the x-z plane"},
     {"file", SCENE_TEXT, MESH_PLACE, .about = "an OBJ file, relative to the scene's folder"},
     {"inline", SCENE_MAP, .inside = inline_keys, .apart = true, MESH_PLACE,
      .about = "a mesh written out"},
@@ -220,5 +229,6 @@ const struct scene_rule scene_cloth = {
 /* clang-format on */
 
 const struct scene_rule scene_grid = {.type = SCENE_MAP, .inside = grid_keys};
+const struct scene_rule scene_disc = {.type = SCENE_MAP, .inside = disc_keys};
 const struct scene_rule scene_inline = {.type = SCENE_MAP, .inside = inline_keys};
 const struct scene_rule scene_transform = {.type = SCENE_MAP, .inside = transform_keys};

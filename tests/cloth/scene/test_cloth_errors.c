@@ -103,6 +103,16 @@ START_TEST(grids_larger_than_the_machine)
 }
 END_TEST
 
+START_TEST(discs)
+{
+    EXPECT(
+        {"grid: {width: 1, height: 2, nx: 4, ny: 3}", "disc: {radius: 1, rings: 0}",
+         .error = ":5:37: cloths[0].mesh.disc.rings is 0; a whole number from 1 to 10000 is ..."},
+        {"grid: {width: 1, height: 2, nx: 4, ny: 3}", "disc: {radius: 1}",
+         .error = ":5:18: cloths[0].mesh.disc.rings is missing; a whole number ..."});
+}
+END_TEST
+
 START_TEST(names_and_indices)
 {
     EXPECT(
@@ -439,6 +449,7 @@ int main(void)
     tcase_add_test(cases, values_out_of_range);
     tcase_add_test(cases, triangles_out_of_range);
     tcase_add_test(cases, grids_larger_than_the_machine);
+    tcase_add_test(cases, discs);
     tcase_add_test(cases, names_and_indices);
     tcase_add_test(cases, loads_that_cannot_be_made);
     tcase_add_test(cases, curves_that_cannot_be_made);

@@ -327,10 +327,11 @@ START_TEST(cloths_of_every_mesh)
         "  - {mesh: {inline: {vertices: [[0, 0, 0], [1, 0, 0], [0, 0, 1]], triangles: [[2, 1, "
         "0]]}},\n"
         "     material: cotton, transform: {scale: 2}}\n"
+        "  - {mesh: {disc: {radius: 0.5, rings: 2}}, material: cotton}\n"
         "materials:\n  wire: {density: 1, ea: 7}\n");
     scene_write_file("a.obj", triangle, strlen(triangle));
     struct model model = scene_read_right(text, 0, NULL);
-    ck_assert_uint_eq(model.n_cloths, 4);
+    ck_assert_uint_eq(model.n_cloths, 5);
     ck_assert_str_eq(model.cloths[1].name, "cloth2");
     ck_assert_uint_eq(model.cloths[1].mesh.n_triangles, 1);
     ck_assert_double_eq(model.cloths[1].mass_per_vertex, 0.5);
@@ -346,6 +347,8 @@ START_TEST(cloths_of_every_mesh)
     same_vector(chain->pins[1].pick.box[1], 1, 1, 9);
     ck_assert_uint_eq(model.cloths[3].mesh.triangle[0], 2);
     same_vector(model.cloths[3].mesh.position + 6, 0, 0, 2);
+    ck_assert_uint_eq(model.cloths[4].mesh.n_vertices, 19);
+    same_vector(model.cloths[4].mesh.position + 21, 0.5, 0, 0);
     model_free(&model);
     free(text);
 }

@@ -25,7 +25,11 @@ struct contact_skin {
     const uint32_t (*corner)[3];  /* n_triangles: points */
     const uint32_t (*edge)[2];    /* n_edges: points */
     const uint32_t *vertex;       /* n_vertices: points */
+    const uint32_t *number;       /* n_triangles: which one of the source's it is */
     const uint32_t *id;           /* n_points */
+    const uint32_t *block, *row;  /* n_points: whose row each is, */
+    const uint32_t *cloth;        /* of which cloth; of several the lowest vertex says it, */
+    const unsigned char *held;    /* 1: a pin holds it, where it is or as it moves it */
     uint32_t n_nodes, n_leaves;
     const uint32_t (*child)[4]; /* n_nodes: a node, or CONTACT_IS_LEAF with a leaf */
     const struct contact_leaf *leaf;
@@ -36,10 +40,11 @@ struct contact_skin {
  * corner k as a feature, by this triangle; bit 3 + k: the edge from corner k to the next one. */
 struct contact_skin_source {
     uint32_t n_points, n_triangles;
-    const uint32_t (*corner)[3]; /* n_triangles */
-    const unsigned char *stands; /* n_triangles */
-    const uint32_t *id;          /* n_points */
-    const phys_vec *x;           /* n_points */
+    const uint32_t (*corner)[3];              /* n_triangles */
+    const unsigned char *stands;              /* n_triangles */
+    const uint32_t *id, *block, *row, *cloth; /* n_points */
+    const unsigned char *held;                /* n_points */
+    const phys_vec *x;                        /* n_points */
 };
 
 /* Bytes of a table, and of what changes in a step; both follow of the four counts alone. The memory

@@ -32,8 +32,14 @@ void contact_skin_lay(const struct contact_skin *skin, struct contact_skin_head 
     head->corner = whole_lines(sizeof *head);
     head->edge = head->corner + whole_lines(head->n_triangles * sizeof *skin->corner);
     head->vertex = head->edge + whole_lines(head->n_edges * sizeof *skin->edge);
-    head->id = head->vertex + whole_lines(head->n_vertices * sizeof *skin->vertex);
-    head->child = head->id + whole_lines(head->n_points * sizeof *skin->id);
+    const uint64_t by_point = whole_lines(head->n_points * sizeof *skin->id);
+    head->number = head->vertex + whole_lines(head->n_vertices * sizeof *skin->vertex);
+    head->id = head->number + whole_lines(head->n_triangles * sizeof *skin->number);
+    head->block = head->id + by_point;
+    head->row = head->block + by_point;
+    head->cloth = head->row + by_point;
+    head->held = head->cloth + by_point;
+    head->child = head->held + whole_lines(head->n_points);
     head->leaf = head->child + whole_lines(head->n_nodes * sizeof *skin->child);
     head->bytes = head->leaf + whole_lines(head->n_leaves * sizeof *skin->leaf);
 }
@@ -71,7 +77,7 @@ struct making {
     struct contact_node *node;
     phys_vec *low, *high; /* of triangles */
     uint32_t *order;
-    uint32_t (*corner)[3], (*edge)[2], *vertex, (*child)[4];
+    uint32_t (*corner)[3], (*edge)[2], *vertex, *number, (*child)[4];
     struct contact_leaf *leaf;
     uint32_t n_vertices, n_edges, n_leaves, n_groups; /* so far */
 };
@@ -123,6 +129,7 @@ static uint32_t add_leaf(struct making *making, uint32_t first, uint32_t n)
                                   .group = making->n_groups};
     for (uint32_t t = first; t < first + n; t++) {
         memcpy(making->corner[t], making->from->corner[making->order[t]], sizeof making->corner[t]);
+        making->number[t] = making->order[t];
         add_features(making, making->order[t], leaf);
     }
     making->n_groups = contact_edge_group(leaf) + contact_groups(leaf->n_edges);
@@ -168,16 +175,29 @@ static int make_scratch(struct making *making, uint32_t n_nodes, struct cloth_er
     return CLOTH_OK;
 }
 
+static void put_points(const struct contact_skin_source *from, const struct contact_skin_head *head,
+                       char *table)
+{
+    const size_t n = from->n_points;
+    if (!n)
+        return;
+    memcpy(table + head->id, from->id, n * sizeof *from->id);
+    memcpy(table + head->block, from->block, n * sizeof *from->block);
+    memcpy(table + head->row, from->row, n * sizeof *from->row);
+    memcpy(table + head->cloth, from->cloth, n * sizeof *from->cloth);
+    memcpy(table + head->held, from->held, n);
+}
+
 static void put_skin(struct making *making, const struct contact_skin_head *head, char *table)
 {
     const struct contact_skin_source *from = making->from;
     memset(table, 0, head->bytes);
     memcpy(table, head, sizeof *head);
-    if (from->n_points)
-        memcpy(table + head->id, from->id, from->n_points * sizeof *from->id);
+    put_points(from, head, table);
     making->corner = (void *)(table + head->corner);
     making->edge = (void *)(table + head->edge);
     making->vertex = (void *)(table + head->vertex);
+    making->number = (void *)(table + head->number);
     making->child = (void *)(table + head->child);
     making->leaf = (void *)(table + head->leaf);
     add_nodes(making, head->n_nodes);
@@ -215,7 +235,12 @@ struct contact_skin contact_skin_open(const void *table)
                                  .corner = (const uint32_t(*)[3])(const void *)(at + head->corner),
                                  .edge = (const uint32_t(*)[2])(const void *)(at + head->edge),
                                  .vertex = (const void *)(at + head->vertex),
+                                 .number = (const void *)(at + head->number),
                                  .id = (const void *)(at + head->id),
+                                 .block = (const void *)(at + head->block),
+                                 .row = (const void *)(at + head->row),
+                                 .cloth = (const void *)(at + head->cloth),
+                                 .held = (const void *)(at + head->held),
                                  .n_nodes = head->n_nodes,
                                  .n_leaves = head->n_leaves,
                                  .child = (const uint32_t(*)[4])(const void *)(at + head->child),

@@ -7,9 +7,10 @@
  * forces and pins, contact, integrators, the solver, observation of a run. */
 /* clang-format off */
 #define FLOW_KERNELS(X)                                                                            \
-    X(table_make) X(table_keep)                                                                    \
+    X(table_make) X(table_keep) X(skin_make) X(skin_keep)                                          \
     X(initial) X(keep) X(restore) X(status) X(tie) X(tie_show)                                     \
     X(force) X(force_free) X(prescribe_velocity) X(prescribe_position)                             \
+    X(keep_halo) X(skin_refit)                                                                     \
     X(filter) X(constrain) X(collide)                                          \
     X(euler) X(euler_next) X(verlet_first) X(verlet_second) X(midpoint) X(runge)                   \
     X(velocity_implicit) X(position) X(predict) X(correct) X(shift) X(residual)                    \

@@ -2,6 +2,8 @@
 # seen of it.
 libduite_cloth_la_SOURCES += \
     cloth/flow/bodies.h \
+    cloth/flow/contact/skins.c \
+    cloth/flow/contact/skins.h \
     cloth/flow/kernels.h \
     cloth/flow/run.c \
     cloth/flow/run.h \
@@ -21,6 +23,7 @@ libduite_cloth_la_SOURCES += \
     cloth/flow/setup/setup.h \
     cloth/flow/setup/seams.c \
     cloth/flow/setup/sides.c \
+    cloth/flow/setup/skins.c \
     cloth/flow/setup/source.c \
     cloth/flow/setup/thickness.c \
     cloth/flow/setup/source.h \
@@ -38,6 +41,8 @@ libduite_cloth_la_SOURCES += \
     cloth/flow/state/kernel.h \
     cloth/flow/state/objects.c \
     cloth/flow/state/room.h \
+    cloth/flow/state/skin.c \
+    cloth/flow/state/skin.h \
     cloth/flow/state/state.c \
     cloth/flow/state/state.h \
     cloth/flow/state/tables.c \

@@ -17,6 +17,7 @@ enum {
 /* What is broadcast of a block; the neighbours of all blocks follow. */
 struct shape {
     uint32_t n, n_inner, n_cut, n_entries, n_cut_entries, n_halo, n_held, lowest, highest;
+    struct flow_skin_size skin;
     uint32_t joined, halo_start[SOLVE_MAX_PATCHES + 1];
     uint32_t n_watched, n_moved, n_sliding, n_loose, n_varying, n_neighbours, n_ghosts, n_stiff,
         n_elements[ELEMENT_KINDS], n_materials;
@@ -116,6 +117,7 @@ static int broadcast_shared(const duite_call *call)
                               .n_ghosts = t->n_ghosts,
                               .n_stiff = t->n_stiff,
                               .n_materials = t->n_materials,
+                              .skin = t->skin,
                               .joined = t->joined};
         memcpy(shape.n_elements, t->n_elements, sizeof shape.n_elements);
         memcpy(shape.halo_start, t->halo_start, sizeof shape.halo_start);
@@ -221,6 +223,7 @@ static void unpack(struct flow_state *state)
                                                .n_ghosts = shape->n_ghosts,
                                                .n_stiff = shape->n_stiff,
                                                .n_materials = shape->n_materials,
+                                               .skin = shape->skin,
                                                .joined = shape->joined,
                                                .joins = joins,
                                                .neighbour = neighbour,
@@ -265,14 +268,35 @@ static int table_keep_body(const duite_call *call, const struct table_keep_field
     return 0;
 }
 
+FLOW_KERNEL(skin_make, FLOW_NO_PART, struct flow_block_args, (W(skin)))
+static int skin_make_body(const duite_call *call, const struct skin_make_fields *on)
+{
+    struct cloth_error error = {0};
+    if (flow_source_skin(&flow_of(call)->source, on->args->block, on->skin, &error))
+        return duite_fail(call, FLOW_NO_MEMORY, "rank %d: %s", call->rank, error.text);
+    return 0;
+}
+
+FLOW_KERNEL(skin_keep, FLOW_NO_PART, struct flow_block_args, (RW(skin)))
+static int skin_keep_body(const duite_call *call, const struct skin_keep_fields *on)
+{
+    (void)call, (void)on;
+    return 0;
+}
+
 static int distribute(struct flow_state *state, uint32_t from, uint32_t to)
 {
+    const bool skins = model_certifies(state->flow->model);
     struct flow_block_args args = {.block = from};
     int code = DUITE_OK;
     for (; args.block < to && !code; args.block++) {
         code = flow_fork_at(state, 0, &flow_kernel_table_make, &args, NULL);
         if (!code)
             code = flow_fork_one(state, &flow_kernel_table_keep, &args);
+        if (!code && skins)
+            code = flow_fork_at(state, 0, &flow_kernel_skin_make, &args, NULL);
+        if (!code && skins)
+            code = flow_fork_one(state, &flow_kernel_skin_keep, &args);
     }
     const int failed = duite_wait(state->rt);
     return code ? code : failed;

@@ -173,6 +173,8 @@ int flow_source_make(struct flow_source *source, const struct model *model, int 
         code = flow_watched_make(&source->watched, source, error);
     if (!code)
         code = find_shapes(source, error);
+    if (!code && model_certifies(model))
+        code = flow_skins_make(source, error);
     if (code)
         flow_source_free(source);
     return code;
@@ -186,6 +188,7 @@ void flow_source_free(struct flow_source *source)
     free(source->neighbours.ghost);
     free(source->neighbours.joins);
     flow_watched_free(&source->watched);
+    flow_skins_free(&source->skins);
     free(source->names.name);
     free(source->shape);
     free(source->halo);

@@ -239,6 +239,14 @@ struct flow_watched {
     size_t n_columns;
 };
 
+/* The triangles of skins (skins.c), block after block: numbers among those of all cloths. */
+struct flow_skins {
+    uint32_t *start; /* a block, and one more: its triangles; NULL: there are no skins */
+    uint32_t *triangle;
+    unsigned char *stands; /* a triangle of this list: for which vertices and edges it stands, as
+                            * contact_skin_source has it */
+};
+
 /* The sides of a block's springs, while its table is due. */
 struct flow_side;
 
@@ -253,6 +261,7 @@ struct flow_source {
     uint32_t *halo;   /* by place: its number in the halo of its block */
     struct flow_neighbours neighbours;
     struct flow_watched watched;
+    struct flow_skins skins;  /* of a model whose contact is certified */
     struct flow_table *shape; /* a block: shapes, which point into the neighbours */
     uint32_t from;            /* the group of blocks whose sides are gathered begins there */
     struct flow_side *side;   /* all of the group; NULL: none are gathered */
@@ -285,6 +294,14 @@ void flow_source_forget(struct flow_source *source);
 /* Makes the table of a block of the group: writes every byte of its memory. Of different blocks by
  * several threads at once. Local. */
 void flow_source_table(const struct flow_source *source, uint32_t block, void *memory);
+
+/* Finds whose triangles are, and adds the sizes of skins to the shapes, when these are there; the
+ * skin of a block, as the field `skin` has it: writes every byte of it. Errors: CLOTH_E_MEMORY.
+ * Local. */
+int flow_skins_make(struct flow_source *source, struct cloth_error *error);
+void flow_skins_free(struct flow_skins *skins);
+int flow_source_skin(const struct flow_source *source, uint32_t block, void *memory,
+                     struct cloth_error *error);
 
 /* Finds the neighbours, and the numbers of rows in halos (source->halo), when blocks and springs
  * are there. Adds both to the shapes. Error: CLOTH_E_MEMORY. Local. */

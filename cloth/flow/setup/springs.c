@@ -138,6 +138,31 @@ static void link_cells(const struct visitor *visitor, const struct mesh *mesh)
         }
 }
 
+/* Whether a cloth of springs may lack those between corners of its triangles: springs of 0 N/m are
+ * none. */
+static bool lacks_springs(const struct model *model, const struct model_cloth *cloth)
+{
+    bool lacks = false;
+    for (uint32_t i = 0; i <= cloth->n_regions; i++) {
+        const struct mesh_moduli moduli = model_moduli(i ? model->materials + cloth->region[i - 1]
+                                                         : model_material(model, cloth, 0));
+        const bool shears = moduli.shear != 0 || !model_rest(cloth)->grid_nx;
+        lacks = lacks || moduli.stretch == 0 || moduli.stretch + moduli.weft_excess == 0 || !shears;
+    }
+    return lacks;
+}
+
+/* Between all corners of each triangle, for contact (skins.c). */
+static void link_triangles(const struct visitor *visitor, const struct mesh *mesh)
+{
+    for (uint32_t t = 0; t < mesh->n_triangles; t++) {
+        uint32_t corner[3];
+        mesh_corners(mesh, t, corner);
+        for (int k = 0; k < 3; k++)
+            link_pair(visitor, mesh, corner[k], corner[(k + 1) % 3], 0, 0);
+    }
+}
+
 /* What the elements of a cloth join, and its edges without triangles, which are springs as in any
  * cloth. */
 static void each_link(const struct flow_springs *springs, uint32_t c, const struct visitor *visitor)
@@ -159,6 +184,8 @@ static void each_link(const struct flow_springs *springs, uint32_t c, const stru
     }
     if (parts & 1u << ELEMENT_FACES && model_has_cells(model, cloth))
         link_cells(visitor, mesh);
+    if (model_certifies(model) && !triangles && lacks_springs(model, cloth))
+        link_triangles(visitor, mesh);
 }
 
 static void each_of_cloths(const struct flow_springs *springs,

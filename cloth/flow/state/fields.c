@@ -3,6 +3,7 @@
 
 #include "cloth/flow/observe/observe.h"
 #include "cloth/flow/solver/solver.h"
+#include "cloth/flow/state/skin.h"
 
 /* ---- How many rows ---- */
 
@@ -74,6 +75,22 @@ static size_t table_bytes(const struct flow_state *state, uint32_t block)
     return flow_table_bytes(table_of(state, block));
 }
 
+static size_t skin_bytes(const struct flow_state *state, uint32_t block)
+{
+    return flow_skin_bytes(table_of(state, block));
+}
+
+static size_t skin_points(const struct flow_state *state, uint32_t block)
+{
+    return 2 * (size_t)table_of(state, block)->skin.n_points;
+}
+
+static size_t skin_boxes(const struct flow_state *state, uint32_t block)
+{
+    const struct contact_skin skin = flow_skin_counts(table_of(state, block));
+    return contact_boxes_bytes(&skin);
+}
+
 /* The diagonal, the filter if there is one, the values of the entries, those of ties:
  * flow_matrix_in, flow_tie_values. */
 static size_t matrix(const struct flow_state *state, uint32_t block)
@@ -143,6 +160,12 @@ static bool implicit_run(const struct flow_state *state, uint32_t block)
 {
     (void)block;
     return model_is_implicit(state->flow->model);
+}
+
+static bool certified(const struct flow_state *state, uint32_t block)
+{
+    (void)block;
+    return model_certifies(state->flow->model);
 }
 
 static bool explicit_run(const struct flow_state *state, uint32_t block)

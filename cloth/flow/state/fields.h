@@ -40,6 +40,12 @@
     /* before a step that may be given up */                                                       \
     X(kept_x,       ONE,     phys_vec,      4, rows,          kept,         is_work)               \
     X(kept_v,       ONE,     phys_vec,      4, rows,          kept,         is_work)               \
+    /* contact that is certified: skins (skin.h); before the step, and x of skins before and after  \
+     * it, and their boxes */                                                                      \
+    X(skin,         ONE,     unsigned char, 1, skin_bytes,    certified,    is_derived)            \
+    X(kept_halo_x,  ONE,     phys_vec,      4, halo,          certified,    is_work)               \
+    X(skin_x,       ONE,     phys_vec,      4, skin_points,   certified,    is_work)               \
+    X(skin_boxes,   ONE,     unsigned char, 1, skin_boxes,    certified,    is_work)               \
     /* explicit integrators (explicit.h); x0, v0: where a step began, or Verlet's half step */     \
     X(spare_halo_x, ONE,     phys_vec,      4, halo,          explicit_run, is_work)               \
     X(spare_halo_v, ONE,     phys_vec,      4, halo,          explicit_run, is_work)               \

@@ -15,6 +15,11 @@
  * with them, and a run that comes to them diverged. */
 #define FLOW_BOUND 1e6
 
+/* How large the skin of a block is (skin.h); zero but where contact is certified. */
+struct flow_skin_size {
+    uint32_t n_points, n_triangles, n_edges, n_vertices;
+};
+
 /* One block. Its springs: first the inner ones, sorted by (lower row, higher row), then those cut
  * by its border, neighbour after neighbour. A cut spring is known to both blocks. The entries of
  * its matrix (cloth/solve/format.h) are in that order, too: the springs themselves or, in half
@@ -38,7 +43,8 @@ struct flow_table {
     uint32_t lowest, highest; /* of its vertices */
     uint32_t n_neighbours;    /* blocks that it is joined to */
     uint32_t n_ghosts;        /* rows that the cut springs end at, neighbour after neighbour */
-    uint32_t joined;          /* which of its patches are (cloth/solve/patches.h) */
+    struct flow_skin_size skin;
+    uint32_t joined; /* which of its patches are (cloth/solve/patches.h) */
     uint32_t halo_start[SOLVE_MAX_PATCHES + 1]; /* places in the halo where patches begin */
     /* Not owned: */
     const uint32_t *neighbour;   /* n_neighbours: blocks, ascending */

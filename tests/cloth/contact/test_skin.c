@@ -148,9 +148,15 @@ static uint32_t point_of(struct skin *skin, uint32_t *n, uint32_t vertex)
 static void make_skin(struct skin *skin, uint32_t part)
 {
     static uint32_t local[TRIANGLES][3];
-    static unsigned char stands[TRIANGLES];
-    struct contact_skin_source from = {
-        .corner = (const uint32_t(*)[3])local, .stands = stands, .id = skin->point, .x = skin->x};
+    static unsigned char stands[TRIANGLES], held[N];
+    struct contact_skin_source from = {.corner = (const uint32_t(*)[3])local,
+                                       .stands = stands,
+                                       .id = skin->point,
+                                       .block = skin->point,
+                                       .row = skin->point,
+                                       .cloth = skin->point,
+                                       .held = held,
+                                       .x = skin->x};
     struct contact_skin sizes = {0};
     for (uint32_t t = 0; t < TRIANGLES; t++) {
         if (part_of_triangle(t) != part)

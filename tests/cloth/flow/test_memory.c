@@ -89,6 +89,8 @@ START_TEST(each_fails_once_with_welds)
     setup.material.bending = MODEL_HINGES;
     setup.material.rigidity[0] = setup.material.rigidity[1] = 1e-3;
     setup.model.format = SOLVE_HALF;
+    setup.model.contact.mode = MODEL_CONTACT_CERTIFIED;
+    setup.model.contact.thickness = 1e-3;
     const long without = prepare_all(&setup.model);
     setup.model.n_welds = 1;
     setup.model.n_joints = 2;

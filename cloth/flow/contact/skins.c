@@ -1,0 +1,60 @@
+/* The points of a skin are rows of the block and of halos. Begin and end of the step are kept_x and
+ * x. The frame of the boxes moves as the mean of the points does, added up in their order. */
+#include "cloth/flow/contact/skins.h"
+
+#include "cloth/flow/bodies.h"
+#include "cloth/flow/state/skin.h"
+
+FLOW_KERNEL(keep_halo, FLOW_COLLIDE, struct flow_block_args, (R(halo_x), W(kept_halo_x)))
+static int keep_halo_body(const duite_call *call, const struct keep_halo_fields *on)
+{
+    const size_t bytes = duite_count(call, FLOW_INDEX_OF(keep_halo, halo_x)) * sizeof(double);
+    memcpy(on->kept_halo_x, on->halo_x, bytes);
+    return 0;
+}
+
+int flow_skins_keep(struct flow_state *state)
+{
+    struct flow_block_args args;
+    return flow_fork_each(state, &flow_kernel_keep_halo, &args);
+}
+
+/* The rows of the points. */
+static void gather(const struct flow_skin *skin, uint32_t n_neighbours, const phys_vec *own,
+                   const duite_param *halo, phys_vec *to)
+{
+    for (uint32_t i = 0; i < skin->skin.n_points; i++) {
+        const uint32_t s = skin->from[i];
+        to[i] = s == n_neighbours ? own[skin->at[i]] : flow_rows_of(halo, s)[skin->at[i]];
+    }
+}
+
+static void mean_way(uint32_t n, const phys_vec *x, const phys_vec *y, phys_vec *way)
+{
+    phys_vec sum = {0};
+    for (uint32_t i = 0; i < n; i++)
+        sum += y[i] - x[i];
+    *way = n ? sum / n : sum;
+}
+
+FLOW_KERNEL(skin_refit, FLOW_COLLIDE, struct flow_block_args,
+            (R(skin), R(kept_x), R(x), NEIGHBOURS(kept_halo_x), NEIGHBOURS(halo_x), W(skin_x),
+             W(skin_boxes)))
+static int skin_refit_body(const duite_call *call, const struct skin_refit_fields *on)
+{
+    const uint32_t n_neighbours = flow_shape_of(call)->n_neighbours;
+    const struct flow_skin skin = flow_skin_open(on->skin);
+    const uint32_t n = skin.skin.n_points;
+    phys_vec *y = on->skin_x + n, way;
+    gather(&skin, n_neighbours, on->kept_x, on->kept_halo_x, on->skin_x);
+    gather(&skin, n_neighbours, on->x, on->halo_x, y);
+    mean_way(n, on->skin_x, y, &way);
+    contact_refit(&skin.skin, on->skin_x, y, &way, on->skin_boxes);
+    return 0;
+}
+
+int flow_skins_refit(struct flow_state *state)
+{
+    struct flow_block_args args;
+    return flow_fork_each(state, &flow_kernel_skin_refit, &args);
+}

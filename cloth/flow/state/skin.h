@@ -1,0 +1,33 @@
+#ifndef CLOTH_FLOW_STATE_SKIN_H
+#define CLOTH_FLOW_STATE_SKIN_H
+
+#include "cloth/contact/skin.h"
+#include "cloth/flow/state/tables.h"
+
+/* The skin of a block, the field `skin`: its contact_skin, with which the object begins, and where
+ * the block finds its points. A triangle of the whole cloth belongs to the block of that of its
+ * corners whose place is the lowest; ids are places. Points are in the order of their places, so
+ * the block's own rows come first; others are in the halo of a neighbour. */
+struct flow_skin {
+    struct contact_skin skin;
+    const uint32_t
+        *from;          /* n_points: the number of the neighbour; n_neighbours: the block itself */
+    const uint32_t *at; /* n_points: place in its halo; row */
+};
+
+/* Bytes of the object, which follow of the block's shape. */
+size_t flow_skin_bytes(const struct flow_table *table);
+
+/* memory: aligned to 64 bytes. */
+struct flow_skin flow_skin_open(const void *memory);
+
+/* What does not change in a run is written there. from, at: as above. */
+struct flow_skin_arrays {
+    uint32_t *from, *at;
+};
+struct flow_skin_arrays flow_skin_places(const struct flow_table *table, void *memory);
+
+/* Of the shape of a block, its skin with its counts alone, to measure by. */
+struct contact_skin flow_skin_counts(const struct flow_table *table);
+
+#endif

@@ -58,13 +58,14 @@ static uint32_t *insert_tied(const struct flow *flow, uint32_t b, uint32_t p, ui
 {
     for (const struct flow_tie *tie = flow->tie; tie < flow->tie + flow->n_ties; tie++) {
         const struct flow_tie_corners *at = &tie->at;
-        if (at->block[0] != b && at->block[1] != b)
-            continue;
-        const uint32_t patch[] = {flow_patch_of(flow, at->block[0], at->row[0]),
-                                  flow_patch_of(flow, at->block[1], at->row[1])};
-        for (int k = 0; k < 2; k++)
-            if (patch[k] == p && patch[1 - k] != p)
-                end = insert(from, end, patch[1 - k]);
+        bool has = false;
+        for (uint32_t k = 0; k < at->n; k++)
+            has = has || (at->block[k] == b && flow_patch_of(flow, b, at->row[k]) == p);
+        for (uint32_t k = 0; k < at->n && has; k++) {
+            const uint32_t patch = flow_patch_of(flow, at->block[k], at->row[k]);
+            if (patch != p)
+                end = insert(from, end, patch);
+        }
     }
     return end;
 }
@@ -72,7 +73,9 @@ static uint32_t *insert_tied(const struct flow *flow, uint32_t b, uint32_t p, ui
 /* How many neighbours all patches can have. */
 static size_t max_patch_neighbours(const struct flow *flow)
 {
-    size_t neighbours = 2 * (size_t)flow->n_ties;
+    size_t neighbours = 0;
+    for (uint32_t i = 0; i < flow->n_ties; i++)
+        neighbours += (size_t)flow->tie[i].at.n * (flow->tie[i].at.n - 1);
     for (uint32_t b = 0; b < flow->tables.n_blocks; b++)
         neighbours += 1 + (size_t)flow->tables.block[b].n_neighbours;
     return neighbours * flow->patches * flow->patches;

@@ -119,23 +119,29 @@ static void find_places(const struct flow_tie_records *said, uint32_t n_blocks,
         }
 }
 
-/* So many, in whole classes; what was there before while more than half of it is used. */
-static uint32_t room_for(uint32_t n, uint32_t class, uint32_t before)
+/* So many, in whole classes. What was there before stays while about half of it is used, half a
+ * class lies between growing and shrinking, and the last class stays while any block has ties. */
+static uint32_t room_for(uint32_t n, uint32_t class, uint32_t before, bool any)
 {
     const uint32_t least = (n + class - 1) / class * class;
-    return least <= before && n > before / 2 ? before : least;
+    if (least <= before && n + class / 2 > before / 2)
+        return before;
+    return !least && before && any ? class : least;
 }
 
 static void find_rooms(const struct flow_tied *tied, uint32_t n_blocks, struct flow_tied_blocks *to)
 {
+    bool any = false;
+    for (uint32_t b = 0; b < n_blocks; b++)
+        any = any || tied->said.of[b].n_ties;
     for (uint32_t b = 0; b < n_blocks; b++) {
         const struct flow_tie_record *said = tied->said.of + b;
         const struct flow_tie_room *now = tied->now.room + b;
         const uint32_t rows = said->n_ghosts > said->n_shown ? said->n_ghosts : said->n_shown;
-        to->room[b] = (struct flow_tie_room){
-            room_for(said->n_ties, FLOW_TIE_CLASS, now->ties),
-            room_for(rows, FLOW_TIE_CLASS, now->rows),
-            room_for(to->first[b + 1] - to->first[b], FLOW_TIE_OTHERS, now->others)};
+        const uint32_t others = to->first[b + 1] - to->first[b];
+        to->room[b] = (struct flow_tie_room){room_for(said->n_ties, FLOW_TIE_CLASS, now->ties, any),
+                                             room_for(rows, FLOW_TIE_CLASS, now->rows, any),
+                                             room_for(others, FLOW_TIE_OTHERS, now->others, any)};
     }
 }
 

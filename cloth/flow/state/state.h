@@ -218,9 +218,9 @@ void flow_ties_free(struct flow_state *state);
 /* Takes the records of all blocks, state->tied.said, the same on every rank: finds rooms, who
  * shares ties with whom, and where each shows what. Makes objects again where their room changes,
  * sets the fields `tie_links`, and records the round of the solve again where that changed. What a
- * block had more of stays while more than half of it is used. Then every block that has ties or had
- * some makes its table (flow_ties_make), before anything reads TIED. The main thread; no task that
- * was forked before reads what changes. */
+ * block had more of stays while about half of it is used, the last of it while any block has ties.
+ * Then every block that has ties or had some makes its table (flow_ties_make), before anything
+ * reads TIED. */
 int flow_ties_adopt(struct flow_state *state);
 /* Makes the joints of the step under way those that its blocks have. */
 int flow_ties_choose(struct flow_state *state);

@@ -36,7 +36,7 @@ struct flow_tie_corners {
 
 /* A timed joint, a spring of the scene that comes or goes while the run is on. */
 struct flow_tie {
-    struct flow_tie_corners at;        /* two, with the weights 1 and -1 */
+    struct flow_tie_corners at;        /* of the scene's: two, with the weights 1 and -1 */
     uint32_t piece[2];                 /* of free pieces, from 1; 0: none (flow_particles) */
     double stiffness, damping, length; /* N/m, kg/s, m: those of a spring */
     uint64_t begin, end;               /* ticks: steps that begin from .. to - 1 have it */

@@ -1,11 +1,11 @@
 /* Forces, matrix and energy of timed joints: of springs that are in no table of a block
- * (cloth/flow/state/ties.h). Both blocks of a joint compute it from end 0 to end 1, to the same
- * bits. */
+ * (cloth/flow/state/ties.h). A joint is a spring from the point of its corners with positive
+ * weights to that of the others. All its blocks compute it in this direction, to the same bits. */
 #include "cloth/flow/bodies.h"
 
 #include "cloth/physics/energy.h"
 
-/* Some joints as springs from rows of x[0] to the same rows of x[1]. */
+/* Some joints as springs from points x[0] to x[1]. */
 enum { AT_ONCE = 32 };
 struct some_joints {
     uint32_t n, next;      /* how many; the tie behind them */
@@ -31,10 +31,16 @@ static void append(const struct flow_ties *ties, const struct flow_view *view, u
     some->stiffness[at] = joint->stiffness;
     some->damping[at] = joint->damping;
     some->length[at] = joint->length;
-    for (int end = 0; end < 2; end++) {
-        some->x[end][at] = *flow_tie_x(ties, view, ties->corner[i][end]);
+    for (int end = 0; end < 2; end++)
+        some->x[end][at] = some->v[end][at] = (phys_vec){0};
+    for (int k = 0; k < SOLVE_TIE_CORNERS; k++) {
+        const double weight = ties->weight[i][k], share = weight < 0 ? -weight : weight;
+        const int end = weight < 0;
+        if (weight == 0)
+            continue;
+        some->x[end][at] += share * *flow_tie_x(ties, view, ties->corner[i][k]);
         if (view->v)
-            some->v[end][at] = *flow_tie_v(ties, view, ties->corner[i][end]);
+            some->v[end][at] += share * *flow_tie_v(ties, view, ties->corner[i][k]);
     }
 }
 
@@ -51,16 +57,16 @@ static bool take(const struct flow *flow, const struct flow_ties *ties,
     return some->n > 0;
 }
 
-/* Adds what springs do to end 0 to the rows of the block, and takes it from those of end 1. */
+/* Adds what springs do to their first points to the rows of the block, by their weights. */
 static void scatter(const struct flow_ties *ties, const struct some_joints *some,
                     const phys_vec *add, phys_vec *y)
 {
     for (uint32_t i = 0; i < some->n; i++) {
         const uint32_t *corner = ties->corner[some->tie[i]];
-        if (corner[0] < ties->n_rows)
-            y[corner[0]] += add[i];
-        if (corner[1] < ties->n_rows)
-            y[corner[1]] -= add[i];
+        const double *weight = ties->weight[some->tie[i]];
+        for (int k = 0; k < SOLVE_TIE_CORNERS; k++)
+            if (weight[k] != 0 && corner[k] < ties->n_rows)
+                y[corner[k]] += weight[k] * add[i];
     }
 }
 
@@ -97,17 +103,30 @@ void flow_ties_system(const struct flow *flow, const struct flow_view *view, dou
     }
 }
 
+/* Which part of a tie's corners the block has. */
+static double share_of(const struct flow_ties *ties, uint32_t i)
+{
+    double own = 0, all = 0;
+    for (int k = 0; k < SOLVE_TIE_CORNERS; k++) {
+        all += ties->weight[i][k] != 0;
+        own += ties->weight[i][k] != 0 && ties->corner[i][k] < ties->n_rows;
+    }
+    return own / all;
+}
+
 double flow_ties_energy(const struct flow *flow, const struct flow_view *view)
 {
     const struct flow_ties ties = flow_ties_open(view->tie_table);
-    const uint32_t end[] = {ties.n_inner, ties.n};
     struct some_joints some = {0};
     double sum = 0;
-    for (int cut = 0; cut < 2; cut++)
-        while (take(flow, &ties, view, end[cut], &some)) {
-            const struct phys_springs springs = springs_of(&some, 0);
-            const double all = phys_energy_springs(&springs, some.x[0], some.x[1]);
-            sum += cut ? 0.5 * all : all;
+    while (take(flow, &ties, view, ties.n, &some))
+        for (uint32_t i = 0; i < some.n; i++) {
+            struct phys_springs one = springs_of(&some, 0);
+            one.n = 1;
+            one.end += i;
+            one.stiffness += i;
+            one.length += i;
+            sum += share_of(&ties, some.tie[i]) * phys_energy_springs(&one, some.x[0], some.x[1]);
         }
     return sum;
 }

@@ -76,10 +76,12 @@ check_PROGRAMS += tests/cloth/flow/test_warnings
 tests_cloth_flow_test_warnings_SOURCES = tests/cloth/flow/test_warnings.c $(FLOW_TEST_MODELS)
 tests_cloth_flow_test_warnings_LDADD = $(CLOTH_TEST_LIBS)
 TESTS += tests/cloth/flow/test_warnings
-check_PROGRAMS += tests/cloth/flow/test_fields
+check_PROGRAMS += tests/cloth/flow/test_fields tests/cloth/flow/test_ties
+tests_cloth_flow_test_ties_SOURCES = tests/cloth/flow/test_ties.c $(FLOW_TEST_MODELS)
+tests_cloth_flow_test_ties_LDADD = $(CLOTH_TEST_LIBS)
 tests_cloth_flow_test_fields_SOURCES = tests/cloth/flow/test_fields.c $(FLOW_TEST_MODELS)
 tests_cloth_flow_test_fields_LDADD = $(CLOTH_TEST_LIBS)
-TESTS += tests/cloth/flow/test_fields
+TESTS += tests/cloth/flow/test_fields tests/cloth/flow/test_ties
 endif
 dist_check_SCRIPTS += tests/cloth/flow/test_kernels.sh
 TESTS += tests/cloth/flow/test_kernels.sh

@@ -1,0 +1,723 @@
+/* Ties of up to four weighted corners in up to four blocks: records and tables against the list
+ * that they are made of, what blocks make of them against a dense matrix, rooms from step to step,
+ * and runs with joints between weighted points. */
+#include "cloth/flow/bodies.h"
+#include "cloth/flow/kernels.h"
+#include "cloth/flow/setup/setup.h"
+#include "cloth/flow/solver/solve.h"
+#include "cloth/flow/step/step.h"
+#include "cloth/solve/coarse.h"
+#include "cloth/solve/local.h"
+#include "tests/cloth/flow/models.h"
+#include "tests/support/unit.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- Random ties ---- */
+
+enum { BLOCKS = 6, ROWS = 40, TIES = 300, ALL = 3 * BLOCKS * ROWS };
+
+static const uint32_t n_rows[BLOCKS] = {7, 40, 1, 12, 33, 20};
+static struct flow_tie joints[3];
+static struct flow_tie_corners ties[TIES];
+static struct flow_tie_list list;
+static phys_vec values[3 + TIES], p[BLOCKS][ROWS];
+static double diagonal[BLOCKS][ROWS], dense[ALL][ALL];
+
+static struct flow_tie_record record[BLOCKS];
+static struct flow_tie_link link[BLOCKS][BLOCKS];
+static void *table[BLOCKS];
+
+static double draw(void)
+{
+    return 2.0 * rand() / RAND_MAX - 1;
+}
+
+static uint32_t below(uint32_t n)
+{
+    return (uint32_t)rand() % n;
+}
+
+/* n corners, some without weight; where they may repeat, some twice. */
+static bool repeats;
+static struct flow_tie_corners draw_corners(uint32_t n)
+{
+    struct flow_tie_corners tie = {.n = n};
+    for (uint32_t k = 0; k < n; k++) {
+        tie.block[k] = below(BLOCKS - 1); /* the last one has none */
+        tie.row[k] = below(n_rows[tie.block[k]]);
+        for (uint32_t l = 0; l < k; l++)
+            if (!repeats && tie.block[l] == tie.block[k] && tie.row[l] == tie.row[k]) {
+                k--;
+                break;
+            }
+    }
+    for (uint32_t k = 0; k < n; k++) {
+        tie.weight[k] = below(10) ? draw() : 0;
+        tie.held |= (unsigned char)(below(5) ? 0 : 1 << k);
+    }
+    return tie;
+}
+
+static const struct flow_tie_corners *corners(uint32_t i)
+{
+    return i < 3 ? &joints[i].at : ties + i - 3;
+}
+
+static bool is_listed(uint32_t i)
+{
+    return i >= 3 || flow_tie_acts(joints + i, list.tick);
+}
+
+static uint32_t place(uint32_t block, uint32_t row, int c)
+{
+    return 3 * (ROWS * block + row) + (uint32_t)c;
+}
+
+static void add_dense(uint32_t i)
+{
+    const struct flow_tie_corners *tie = corners(i);
+    for (uint32_t k = 0; k < tie->n; k++)
+        for (uint32_t l = 0; l < tie->n; l++)
+            for (int c = 0; c < 3; c++)
+                for (int d = 0; d < 3; d++)
+                    dense[place(tie->block[k], tie->row[k], c)]
+                         [place(tie->block[l], tie->row[l], d)] +=
+                        tie->weight[k] * tie->weight[l] *
+                        (values[i][c] * values[i][d] + (c == d ? values[i][3] : 0));
+}
+
+static void draw_all(unsigned seed)
+{
+    srand(seed);
+    memset(dense, 0, sizeof dense);
+    for (uint32_t i = 0; i < 3; i++)
+        joints[i] = (struct flow_tie){.at = draw_corners(2), .begin = 10 * i, .end = 10 * i + 15};
+    for (uint32_t i = 0; i < TIES; i++)
+        ties[i] = draw_corners(below(SOLVE_TIE_CORNERS + 1));
+    list = (struct flow_tie_list){3, TIES, joints, 12, ties};
+    for (uint32_t i = 0; i < 3 + TIES; i++) {
+        values[i] = (phys_vec){draw(), draw(), draw(), 1 + draw()};
+        if (is_listed(i))
+            add_dense(i);
+    }
+    for (uint32_t b = 0; b < BLOCKS; b++)
+        for (uint32_t row = 0; row < n_rows[b]; row++) {
+            p[b][row] = (phys_vec){draw(), draw(), draw(), 0};
+            diagonal[b][row] = 2 + draw();
+            for (int c = 0; c < 3; c++)
+                dense[place(b, row, c)][place(b, row, c)] += diagonal[b][row];
+        }
+}
+
+static void count_all(void)
+{
+    uint64_t *scratch = calloc(flow_ties_scratch(3 + TIES), sizeof *scratch);
+    ck_assert_ptr_nonnull(scratch);
+    for (uint32_t b = 0; b < BLOCKS; b++)
+        ck_assert(flow_ties_count(&list, b, scratch, BLOCKS, record + b, link[b]));
+    ck_assert(!flow_ties_count(&list, 1, scratch, 3, record + 1, link[1]));
+    ck_assert(flow_ties_count(&list, 1, scratch, 4, record + 1, link[1]));
+    free(scratch);
+}
+
+/* What block b shows before the rows for `other`. */
+static uint32_t shown_before(uint32_t b, uint32_t other)
+{
+    uint32_t rows = 0;
+    for (uint32_t i = 0; i < record[b].n_links && link[b][i].block < other; i++)
+        rows += link[b][i].rows;
+    return rows;
+}
+
+static const uint32_t halo[] = {0};
+
+/* Where `also` is a block, it is one of the others, too. */
+static struct flow_ties_of table_of(uint32_t b, uint32_t also, uint32_t others[][2])
+{
+    struct flow_ties_of of = {.block = b,
+                              .n_rows = n_rows[b],
+                              .n_halo = 1,
+                              .halo = halo,
+                              .list = &list,
+                              .room = {record[b].n_ties, record[b].n_shown, BLOCKS}};
+    if (record[b].n_ghosts > of.room.rows)
+        of.room.rows = record[b].n_ghosts;
+    for (uint32_t other = 0; other < BLOCKS; other++) {
+        bool has = other == also;
+        for (uint32_t i = 0; i < record[b].n_links; i++)
+            has = has || link[b][i].block == other;
+        if (!has)
+            continue;
+        others[of.n_others][0] = other;
+        others[of.n_others++][1] = shown_before(other, b);
+    }
+    of.others = (const uint32_t(*)[2])others;
+    return of;
+}
+
+static void make_all(unsigned seed)
+{
+    draw_all(seed);
+    count_all();
+    for (uint32_t b = 0; b < BLOCKS; b++) {
+        uint32_t others[BLOCKS][2];
+        const struct flow_ties_of of = table_of(b, BLOCKS, others);
+        const size_t bytes = flow_ties_bytes(of.n_rows, &of.room);
+        table[b] = aligned_alloc(64, bytes);
+        ck_assert_ptr_nonnull(table[b]);
+        memset(table[b], 0xff, bytes);
+        ck_assert(flow_ties_make(&of, table[b]));
+    }
+}
+
+static void free_all(void)
+{
+    for (uint32_t b = 0; b < BLOCKS; b++)
+        free(table[b]);
+}
+
+/* ---- Tables ---- */
+
+static bool has_corner(uint32_t i, uint32_t block)
+{
+    const struct flow_tie_corners *tie = corners(i);
+    bool has = false;
+    for (uint32_t k = 0; k < tie->n; k++)
+        has = has || tie->block[k] == block;
+    return has && is_listed(i);
+}
+
+/* Of tie i of a table: the corners are those of the list. Returns whether all are in the block. */
+static bool check_corners(const struct flow_ties *t, uint32_t b, uint32_t i)
+{
+    const struct flow_tie_corners *tie = corners(t->of[i]);
+    bool inner = true;
+    ck_assert_uint_eq(t->held[i], tie->held);
+    for (uint32_t k = 0; k < SOLVE_TIE_CORNERS; k++) {
+        if (k >= tie->n) {
+            ck_assert(t->weight[i][k] == 0 && t->corner[i][k] == 0);
+            continue;
+        }
+        uint32_t block = b, row = t->corner[i][k];
+        if (row >= t->n_rows) {
+            const uint32_t ghost = row - t->n_rows;
+            ck_assert_uint_lt(ghost, t->n_ghosts);
+            block = t->other[t->ghost_other[ghost]];
+            row = t->ghost_row[ghost];
+            inner = false;
+        }
+        ck_assert(block == tie->block[k] && row == tie->row[k]);
+        ck_assert(t->weight[i][k] == tie->weight[k]);
+    }
+    return inner;
+}
+
+static uint32_t lowest_other(uint32_t i, uint32_t b)
+{
+    const struct flow_tie_corners *tie = corners(i);
+    uint32_t lowest = UINT32_MAX;
+    for (uint32_t k = 0; k < tie->n; k++)
+        if (tie->block[k] != b && tie->block[k] < lowest)
+            lowest = tie->block[k];
+    return lowest;
+}
+
+/* All ties of the block, each once, in their order. */
+static void check_ties(const struct flow_ties *t, uint32_t b)
+{
+    uint32_t n = 0;
+    for (uint32_t i = 0; i < 3 + TIES; i++)
+        n += has_corner(i, b);
+    ck_assert_uint_eq(t->n, n);
+    ck_assert_uint_eq(record[b].n_ties, n);
+    for (uint32_t i = 0; i < t->n; i++) {
+        ck_assert(has_corner(t->of[i], b));
+        ck_assert(check_corners(t, b, i) == (i < t->n_inner));
+        if (i == t->n_inner || i == 0)
+            continue;
+        const uint32_t before = lowest_other(t->of[i - 1], b), now = lowest_other(t->of[i], b);
+        ck_assert(i < t->n_inner || before <= now);
+        ck_assert((before == now) ? t->of[i - 1] < t->of[i] : true);
+    }
+}
+
+/* Ghosts are what their block shows, where it shows them. */
+static void check_ghosts(const struct flow_ties *t, uint32_t b)
+{
+    ck_assert_uint_eq(t->n_ghosts, record[b].n_ghosts);
+    ck_assert_uint_eq(t->n_shown, record[b].n_shown);
+    for (uint32_t k = 0; k < t->n_others; k++) {
+        const struct flow_ties there = flow_ties_open(table[t->other[k]]);
+        uint32_t l = 0;
+        while (there.other[l] != b)
+            l++;
+        ck_assert_uint_eq(t->place[k], there.shown_start[l]);
+        ck_assert_uint_eq(t->start[k + 1] - t->start[k],
+                          there.shown_start[l + 1] - there.shown_start[l]);
+        for (uint32_t i = t->start[k]; i < t->start[k + 1]; i++) {
+            ck_assert_uint_eq(t->ghost_other[i], k);
+            ck_assert_uint_eq(t->ghost_row[i], there.shown[t->place[k] + i - t->start[k]]);
+            ck_assert(i == t->start[k] || t->ghost_row[i - 1] < t->ghost_row[i]);
+        }
+    }
+}
+
+static void check_halo(const struct flow_ties *t)
+{
+    bool has[ROWS] = {true};
+    uint32_t n = 0;
+    for (uint32_t i = 0; i < t->n; i++)
+        for (int k = 0; k < SOLVE_TIE_CORNERS; k++)
+            if (t->weight[i][k] != 0 && t->corner[i][k] < t->n_rows)
+                has[t->corner[i][k]] = true;
+    for (uint32_t row = 0; row < t->n_rows && t->n; row++)
+        if (has[row])
+            ck_assert_uint_eq(t->halo[n++], row);
+    ck_assert_uint_eq(t->n_halo, n);
+}
+
+START_TEST(tables_have_the_ties_of_their_blocks)
+{
+    make_all((unsigned)_i + 1);
+    for (uint32_t b = 0; b < BLOCKS; b++) {
+        const struct flow_ties t = flow_ties_open(table[b]);
+        check_ties(&t, b);
+        check_ghosts(&t, b);
+        check_halo(&t);
+    }
+    ck_assert_uint_eq(record[BLOCKS - 1].n_ties, 0);
+    free_all();
+}
+END_TEST
+
+START_TEST(room_that_does_not_do)
+{
+    uint32_t others[BLOCKS][2];
+    make_all(1);
+    for (int lacks = 0; lacks < 5; lacks++) {
+        struct flow_ties_of of = table_of(1, BLOCKS, others);
+        of.room.ties -= lacks == 1;
+        of.room.rows -= lacks == 2;
+        of.room.others = lacks == 3 ? of.n_others - 1 : BLOCKS;
+        of.n_others -= lacks == 4;
+        void *memory = aligned_alloc(64, flow_ties_bytes(of.n_rows, &of.room));
+        ck_assert_ptr_nonnull(memory);
+        ck_assert(flow_ties_make(&of, memory) == !lacks);
+        ck_assert(lacks == 0 || (!flow_ties_open(memory).n && !flow_ties_others(memory)));
+        free(memory);
+    }
+    free_all();
+}
+END_TEST
+
+/* Blocks may be among the others of each other though they share no tie. */
+START_TEST(others_that_show_nothing)
+{
+    uint32_t others[BLOCKS][2];
+    make_all(2);
+    const struct flow_ties_of of = table_of(1, BLOCKS - 1, others);
+    void *memory = aligned_alloc(64, flow_ties_bytes(of.n_rows, &of.room));
+    ck_assert_ptr_nonnull(memory);
+    ck_assert(flow_ties_make(&of, memory));
+    const struct flow_ties t = flow_ties_open(memory);
+    const uint32_t last = flow_ties_others(memory) - 1;
+    ck_assert_uint_eq(t.other[last], BLOCKS - 1);
+    ck_assert_uint_eq(t.start[last], t.start[last + 1]);
+    check_ties(&t, 1);
+    free(memory);
+    free_all();
+}
+END_TEST
+
+/* ---- What a block makes of them ---- */
+
+/* A block without entries, as a solve sees it. */
+struct seen {
+    struct flow_ties ties;
+    struct solve_block block;
+    struct solve_ties solved;
+    struct solve_cut cut;
+    double free[ROWS];
+    uint32_t row[ROWS + 1];
+    phys_vec value[3 + TIES], ghosts[BLOCKS * ROWS];
+};
+
+static void see(uint32_t b, enum solve_format format, struct seen *s)
+{
+    memset(s, 0, sizeof *s);
+    s->ties = flow_ties_open(table[b]);
+    for (uint32_t row = 0; row < n_rows[b]; row++)
+        s->free[row] = 1;
+    s->block = (struct solve_block){n_rows[b], diagonal[b], s->free, s->row, NULL, format, NULL};
+    for (uint32_t i = 0; i < s->ties.n; i++)
+        s->value[i] = values[s->ties.of[i]];
+    for (uint32_t g = 0; g < s->ties.n_ghosts; g++)
+        s->ghosts[g] = p[s->ties.other[s->ties.ghost_other[g]]][s->ties.ghost_row[g]];
+    s->solved = flow_ties_solved(&s->ties, s->value, s->ghosts);
+    s->cut = (struct solve_cut){0, NULL, s->ties.n_halo, s->ties.halo, &s->solved};
+}
+
+static double dense_times(uint32_t b, uint32_t row, int c)
+{
+    double y = 0;
+    for (uint32_t o = 0; o < BLOCKS; o++)
+        for (uint32_t r = 0; r < n_rows[o]; r++)
+            for (int d = 0; d < 3; d++)
+                y += dense[place(b, row, c)][place(o, r, d)] * p[o][r][d];
+    return y;
+}
+
+START_TEST(product)
+{
+    static const phys_vec none[2 * ROWS]; /* turns, too */
+    repeats = _i > 2;
+    make_all((unsigned)_i + 1);
+    for (uint32_t b = 0; b < BLOCKS; b++) {
+        phys_vec dv[ROWS], r[ROWS] = {{0}}, was[ROWS], q[ROWS] = {{0}};
+        double dots[SOLVE_DOTS];
+        struct seen s;
+        see(b, (enum solve_format)(_i % 3), &s);
+        memcpy(dv, p[b], sizeof dv);
+        const struct solve_rows rows = solve_rows_plain(dv, r, was, q);
+        memset(was, 0, sizeof was);
+        solve_residual(&s.block, &s.cut, none, none, NULL, &rows, dots);
+        for (uint32_t row = 0; row < n_rows[b]; row++)
+            for (int c = 0; c < 3; c++)
+                ck_assert_double_eq_tol(q[row][c], dense_times(b, row, c), 1e-10);
+    }
+    free_all();
+}
+END_TEST
+
+START_TEST(local_preconditioners_have_the_diagonal)
+{
+    static const phys_vec none[2 * ROWS];
+    static _Alignas(32) double factor[8 * ROWS];
+    make_all((unsigned)_i + 1);
+    for (uint32_t b = 0; b < BLOCKS; b++) {
+        phys_vec s[ROWS];
+        struct seen seen;
+        see(b, SOLVE_SPRINGS, &seen);
+        const enum solve_local kind = _i % 2 ? SOLVE_IC0 : SOLVE_JACOBI;
+        ck_assert_int_eq(solve_local_factor(&seen.block, &seen.cut, none, kind, factor), 0);
+        solve_local_apply(&seen.block, kind, factor, p[b], s);
+        for (uint32_t row = 0; row < n_rows[b]; row++)
+            for (int c = 0; c < 3; c++) {
+                double y = 0;
+                for (int d = 0; d < 3; d++)
+                    y += dense[place(b, row, c)][place(b, row, d)] * s[row][d];
+                ck_assert_double_eq_tol(y, p[b][row][c], 1e-9);
+            }
+    }
+    free_all();
+}
+END_TEST
+
+/* P' N P of rows with weights, some without axes. */
+START_TEST(coarse_block)
+{
+    enum { N = 4 };
+    srand(5);
+    for (int trial = 0; trial < 100; trial++) {
+        double block[SOLVE_COUPLING] = {0};
+        struct solve_lifted a = {{0}}, b = {{0}};
+        const phys_vec value = {draw(), draw(), draw(), 1 + draw()};
+        phys_vec basis[N];
+        double weight[N];
+        for (int i = 0; i < N; i++) {
+            basis[i] = (phys_vec){1, draw(), draw(), (double)below(8)};
+            weight[i] = draw();
+            solve_lift_corner(weight[i], basis + i, i < 2 ? &a : &b);
+        }
+        solve_couple_lifted(&value, &a, &b, block);
+        for (int at = 0; at < SOLVE_COUPLING; at++) {
+            const int k = at / 9 / 3, c = at / 9 % 3, l = at % 9 / 3, d = at % 3;
+            double sum = 0;
+            for (int i = 0; i < 2; i++)
+                for (int j = 2; j < N; j++)
+                    sum += weight[i] * basis[i][k] * !((int)basis[i][3] >> c & 1) * weight[j] *
+                           basis[j][l] * !((int)basis[j][3] >> d & 1);
+            sum *= value[c] * value[d] + (c == d ? value[3] : 0);
+            ck_assert_double_eq_tol(block[at], sum, 1e-13);
+        }
+    }
+}
+END_TEST
+
+/* ---- Runs ---- */
+
+enum { SIDE = 6, STEPS = 5 };
+
+struct session {
+    struct setup setup;
+    struct flow *flow;
+    duite *rt;
+    struct flow_report report;
+    struct flow_state state;
+    struct cloth_error error;
+};
+
+static void start(struct session *s)
+{
+    duite_options options = duite_options_default();
+    int rank, ranks;
+    record_mpi(&rank, &ranks);
+    ck_assert_int_eq(flow_prepare(&s->flow, &s->setup.model, 1, &s->error), 0);
+    options.kernels = flow_kernels();
+    options.context = s->flow;
+    options.threads = 1;
+    options.bind = 0;
+    ck_assert_int_eq(duite_start(&s->rt, &options), 0);
+    s->state =
+        (struct flow_state){.flow = s->flow, .rt = s->rt, .report = &s->report, .error = &s->error};
+    ck_assert_int_eq(flow_run_begin(&s->state), 0);
+}
+
+static void end(struct session *s)
+{
+    ck_assert_int_eq(duite_wait(s->rt), 0);
+    flow_objects_free(&s->state);
+    flow_memory_free(&s->state);
+    ck_assert_int_eq(duite_stop(&s->rt), 0);
+    flow_free(s->flow);
+    setup_free(&s->setup);
+}
+
+/* A sheet that falls, in four blocks and more, with joints across it. */
+static void tied_sheet(struct session *s, enum model_preconditioner preconditioner, uint32_t grain)
+{
+    static uint32_t from[] = {1, SIDE * SIDE - 2, 3, 14}, to[] = {SIDE * SIDE - 2, SIDE, 30, 15};
+    static struct model_joint joint;
+    *s = (struct session){0};
+    joint = (struct model_joint){.pairs = {.end = {{0, 4, from}, {0, 4, to}}},
+                                 .stiffness = 1e5,
+                                 .damping = 0.01,
+                                 .length = 0.5,
+                                 .end = 100};
+    setup_sheet(&s->setup, SIDE);
+    s->setup.model.grain = grain;
+    s->setup.model.tolerance = 1e-12;
+    s->setup.model.preconditioner = preconditioner;
+    s->setup.model.joints = &joint;
+    s->setup.model.n_joints = 1;
+    start(s);
+}
+
+/* The positions by vertex after some steps. Joint 0 becomes `tie`, the others are none. */
+static void run(struct session *s, const struct flow_tie_corners *tie, double position[][3])
+{
+    struct flow_tie *made = (struct flow_tie *)(uintptr_t)s->flow->tie;
+    if (tie)
+        made[0].at = *tie;
+    for (uint32_t i = 1; i < s->flow->n_ties; i++)
+        made[i].at.n = 0;
+    ck_assert_int_eq(flow_cg_record(&s->state), 0);
+    ck_assert_int_eq(flow_initialise(&s->state), 0);
+    for (int step = 0; step < STEPS; step++)
+        ck_assert_int_eq(flow_step(&s->state), 0);
+    for (uint32_t b = 0; b < s->flow->tables.n_blocks; b++) {
+        const struct flow_table *t = s->flow->tables.block + b;
+        ck_assert_int_eq(duite_get(s->rt, s->state.block[b].x, s->state.rows), 0);
+        for (uint32_t i = 0; i < t->n; i++)
+            memcpy(position[s->flow->vertex[t->first + i]], s->state.rows + 4 * i,
+                   sizeof *position);
+    }
+}
+
+/* Of the last step. */
+static double iterations(struct session *s)
+{
+    double status[FLOW_STATUS];
+    const duite_object object = s->state.run.status[s->state.attempt.parity];
+    ck_assert_int_eq(duite_get(s->rt, object, status), 0);
+    return status[FLOW_ITERATIONS];
+}
+
+static double apart(double a[][3], double b[][3])
+{
+    double most = 0;
+    for (int v = 0; v < SIDE * SIDE; v++)
+        for (int c = 0; c < 3; c++)
+            most = fmax(most, fabs(a[v][c] - b[v][c]));
+    return most;
+}
+
+/* Of end e of joint j. */
+static void put_corner(const struct flow *flow, struct flow_tie_corners *to, uint32_t j, int e,
+                       double weight)
+{
+    to->block[to->n] = flow->tie[j].at.block[e];
+    to->row[to->n] = flow->tie[j].at.row[e];
+    to->weight[to->n++] = weight;
+}
+
+static const enum model_preconditioner preconditioners[] = {MODEL_PLAIN, MODEL_JACOBI, MODEL_IC0,
+                                                            MODEL_COARSE, MODEL_IC0_COARSE};
+
+/* A joint whose ends are two corners each, at one place, is a joint. */
+START_TEST(corners_at_one_place)
+{
+    static double once[SIDE * SIDE][3], twice[SIDE * SIDE][3];
+    struct flow_tie_corners tie = {0};
+    struct session s;
+    tied_sheet(&s, preconditioners[_i], 9);
+    run(&s, NULL, once);
+    end(&s);
+    tied_sheet(&s, preconditioners[_i], 9);
+    put_corner(s.flow, &tie, 0, 0, 0.3);
+    put_corner(s.flow, &tie, 0, 1, -0.6);
+    put_corner(s.flow, &tie, 0, 0, 0.7);
+    put_corner(s.flow, &tie, 0, 1, -0.4);
+    run(&s, &tie, twice);
+    end(&s);
+    ck_assert_double_le(apart(once, twice), 1e-10);
+}
+END_TEST
+
+/* Between points of four blocks: as where all are one block. */
+START_TEST(corners_in_four_blocks)
+{
+    static double many[SIDE * SIDE][3], one[SIDE * SIDE][3], free[SIDE * SIDE][3];
+    static const uint32_t grain[] = {4, SIDE * SIDE + 1};
+    struct session s;
+    for (int i = 0; i < 2; i++) {
+        struct flow_tie_corners tie = {0};
+        tied_sheet(&s, preconditioners[_i], grain[i]);
+        put_corner(s.flow, &tie, 0, 0, 0.8);
+        put_corner(s.flow, &tie, 1, 1, 0.2);
+        put_corner(s.flow, &tie, 2, 0, -0.4);
+        put_corner(s.flow, &tie, 2, 1, -0.6);
+        if (i == 0)
+            ck_assert(tie.block[0] != tie.block[1] && tie.block[0] != tie.block[2] &&
+                      tie.block[0] != tie.block[3] && tie.block[2] != tie.block[3]);
+        run(&s, &tie, i ? one : many);
+        /* Not more for what the pattern of the coarse matrix lacks. */
+        if (i == 0 && _i >= 3)
+            ck_assert_double_le(iterations(&s), 22);
+        end(&s);
+    }
+    ck_assert_double_le(apart(one, many), 1e-11);
+    tied_sheet(&s, preconditioners[_i], 9);
+    run(&s, &(struct flow_tie_corners){0}, free);
+    end(&s);
+    ck_assert_double_ge(apart(one, free), 1e-4);
+}
+END_TEST
+
+/* ---- Rooms ---- */
+
+/* Blocks k and k + 1 share so many ties, and show each other as many rows: of n pairs. */
+static void say(struct session *s, uint32_t n, const uint32_t *shared)
+{
+    struct flow_tie_records *said = &s->state.tied.said;
+    uint32_t links = 0;
+    for (uint32_t b = 0; b < s->flow->tables.n_blocks; b++) {
+        const uint32_t before = b > 0 && b - 1 < n ? shared[b - 1] : 0,
+                       behind = b < n ? shared[b] : 0;
+        said->first[b] = links;
+        said->of[b] =
+            (struct flow_tie_record){before + behind, before + behind, before + behind, 0};
+        if (before)
+            said->link[links++] = (struct flow_tie_link){b - 1, before};
+        if (behind)
+            said->link[links++] = (struct flow_tie_link){b + 1, behind};
+        said->of[b].n_links = links - said->first[b];
+    }
+    said->first[s->flow->tables.n_blocks] = links;
+}
+
+/* Whether the round was recorded again. */
+static bool adopt(struct session *s, uint32_t n, const uint32_t *shared)
+{
+    const duite_graph before = s->state.solve;
+    say(s, n, shared);
+    ck_assert_int_eq(flow_ties_adopt(&s->state), 0);
+    return memcmp(&before, &s->state.solve, sizeof before) != 0;
+}
+
+static void check_room(const struct session *s, uint32_t b, uint32_t ties_and_rows, uint32_t others)
+{
+    const struct flow_tied_blocks *now = &s->state.tied.now;
+    size_t count;
+    ck_assert_uint_eq(now->room[b].ties, ties_and_rows);
+    ck_assert_uint_eq(now->room[b].rows, ties_and_rows);
+    ck_assert_uint_eq(now->first[b + 1] - now->first[b], others);
+    ck_assert_int_eq(duite_get_count(s->rt, s->state.block[b].tie_halo, &count), 0);
+    ck_assert_uint_eq(count, 8 * (ties_and_rows ? ties_and_rows : 1));
+}
+
+static void check_links(const struct session *s, uint32_t b, uint32_t n, const uint32_t (*links)[2])
+{
+    uint32_t is[1 + FLOW_TIE_OTHERS][2];
+    ck_assert_int_eq(duite_get(s->rt, s->state.block[b].tie_links, is), 0);
+    ck_assert_uint_eq(is[0][0], n);
+    ck_assert_int_eq(memcmp(is + 1, links, n * sizeof *links), 0);
+}
+
+START_TEST(rooms_grow_and_shrink)
+{
+    struct session s;
+    tied_sheet(&s, MODEL_IC0_COARSE, 9);
+    ck_assert_uint_gt(s.flow->tables.n_blocks, 3);
+    ck_assert(adopt(&s, 1, (const uint32_t[]){128}));
+    check_room(&s, 0, 128, 1);
+    check_room(&s, 2, 0, 0);
+    ck_assert(!adopt(&s, 1, (const uint32_t[]){1}));
+    check_room(&s, 0, 128, 1);
+    ck_assert(adopt(&s, 1, (const uint32_t[]){129}));
+    check_room(&s, 1, 256, 1);
+    ck_assert(!adopt(&s, 1, (const uint32_t[]){128}));
+    ck_assert(!adopt(&s, 1, (const uint32_t[]){65}));
+    ck_assert(adopt(&s, 1, (const uint32_t[]){64}));
+    check_room(&s, 1, 128, 1);
+    ck_assert(adopt(&s, 0, NULL));
+    check_room(&s, 0, 0, 0);
+    end(&s);
+}
+END_TEST
+
+START_TEST(others_stay_for_a_while)
+{
+    struct session s;
+    tied_sheet(&s, MODEL_IC0, 9);
+    adopt(&s, 2, (const uint32_t[]){10, 20});
+    check_links(&s, 0, 1, (const uint32_t[][2]){{1, 0}});
+    check_links(&s, 1, 2, (const uint32_t[][2]){{0, 0}, {2, 0}});
+    check_links(&s, 2, 1, (const uint32_t[][2]){{1, 10}});
+    ck_assert(!adopt(&s, 2, (const uint32_t[]){11, 0}));
+    check_links(&s, 1, 2, (const uint32_t[][2]){{0, 0}, {2, 0}});
+    check_links(&s, 2, 1, (const uint32_t[][2]){{1, 0}});
+    ck_assert(!adopt(&s, 2, (const uint32_t[]){0, 12}));
+    check_links(&s, 2, 1, (const uint32_t[][2]){{1, 0}});
+    ck_assert(
+        adopt(&s, 3, (const uint32_t[]){0, 0, 13})); /* with all others less than half is used */
+    check_links(&s, 1, 0, NULL);
+    check_links(&s, 3, 1, (const uint32_t[][2]){{2, 0}});
+    end(&s);
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("ties");
+    TCase *tables = tcase_create("tables"), *blocks = tcase_create("blocks");
+    TCase *runs = tcase_create("runs");
+    const int kinds = sizeof preconditioners / sizeof *preconditioners;
+    tcase_add_loop_test(tables, tables_have_the_ties_of_their_blocks, 0, 8);
+    tcase_add_test(tables, room_that_does_not_do);
+    tcase_add_test(tables, others_that_show_nothing);
+    tcase_add_loop_test(blocks, product, 0, 6);
+    tcase_add_loop_test(blocks, local_preconditioners_have_the_diagonal, 0, 4);
+    tcase_add_test(blocks, coarse_block);
+    tcase_add_loop_test(runs, corners_at_one_place, 0, kinds);
+    tcase_add_loop_test(runs, corners_in_four_blocks, 0, kinds);
+    tcase_add_test(runs, rooms_grow_and_shrink);
+    tcase_add_test(runs, others_stay_for_a_while);
+    suite_add_tcase(suite, tables);
+    suite_add_tcase(suite, blocks);
+    suite_add_tcase(suite, runs);
+    return unit_run(suite);
+}

@@ -18,6 +18,7 @@ enum {
     KEYS,
     MAPPING,
     BALANCE,
+    CHECK_INTERSECTIONS,
     OUTPUT,
     QUIET,
     REPORT,
@@ -46,6 +47,10 @@ static const struct argp_option OPTIONS[] = {
     {"trace-steps", TRACE_STEPS, "A:B", 0,
      "trace only from step A up to, not including, step B; the first step is 0; either may be left "
      "out",
+     1},
+    {"check-intersections", CHECK_INTERSECTIONS, NULL, 0,
+     "look in each frame, exactly, for triangles of cloth that go through each other or through "
+     "obstacles",
      1},
     {"quiet", QUIET, NULL, 0, "neither progress nor summary", 1},
     {"end", END, "SECONDS", 0, "simulated time, instead of the scene's time.end", 2},
@@ -253,6 +258,9 @@ static error_t parse(int key, char *value, struct argp_state *state)
         return parse_name(state, "--trace", value, &command->run.trace);
     case TRACE_STEPS:
         return parse_steps(command, state, value);
+    case CHECK_INTERSECTIONS:
+        command->run.check_intersections = true;
+        return 0;
     case QUIET:
         command->run.quiet = true;
         return 0;
@@ -287,13 +295,13 @@ static const struct argp ARGP = {
     .options = OPTIONS,
     .parser = parse,
     .args_doc = "SCENE.yaml",
-    .doc =
-        "Simulates the cloths of a scene file. Run it under mpirun for several ranks; the "
-        "result is the same, to the "
-        "last bit.\v"
-        "Exit codes: 0 done (or stopped by SIGUSR1), 1 the run failed or "
-        "its files could not be written, 2 the input or the command line is wrong, 3 another "
-        "rank was lost, or MPI failed. Scene files are described in docs/scene.md and by --keys."};
+    .doc = "Simulates the cloths of a scene file. Run it under mpirun for several ranks; the "
+           "result is the same, to the "
+           "last bit.\v"
+           "Exit codes: 0 done (or stopped by SIGUSR1), 1 the run failed or "
+           "its files could not be written, 2 the input or the command line is wrong, 3 another "
+           "rank was lost, or MPI failed, 4 done, but --check-intersections found intersections. "
+           "Scene files are described in docs/scene.md and by --keys."};
 
 /* Returns an exit code. */
 static int command_line(struct command *command, int argc, char **argv)

@@ -19,8 +19,8 @@ bin_PROGRAMS += duite-cloth
 dist_man_MANS += cloth/duite-cloth.1
 duite_cloth_SOURCES = \
 	cloth/duite-cloth.c \
-	cloth/room.h cloth/simulate.h \
-	cloth/room.c cloth/simulate.c \
+	cloth/intersections.h cloth/room.h cloth/simulate.h \
+	cloth/intersections.c cloth/intersections_model.c cloth/room.c cloth/simulate.c \
 	cloth/summary.h \
 	cloth/summary.c
 duite_cloth_LDADD = libduite_cloth.la libduite_core.la

@@ -2,6 +2,7 @@
  * here about errors, so that all of them leave by the same way and one of them prints. */
 #include "cloth/simulate.h"
 
+#include "cloth/intersections.h"
 #include "cloth/output/output.h"
 #include "cloth/room.h"
 #include "cloth/summary.h"
@@ -23,13 +24,16 @@ struct run {
     unsigned threads;
     struct model model;
     struct flow *flow;
-    struct output_lock *locks[2]; /* rank 0: of the folders of frames and of the system */
-    struct output_frames *frames; /* then, when frames are wanted */
-    struct output_probes *probes; /* then, if the scene has any */
+    struct output_lock *locks[2];        /* rank 0: of the folders of frames and of the system */
+    struct output_frames *frames;        /* then, when frames are wanted */
+    struct output_probes *probes;        /* then, if the scene has any */
+    struct intersections *intersections; /* rank 0: if they are looked for */
+    struct intersections_found found;    /* then, at the end */
     struct summary_progress progress;
     struct flow_report report;
     struct mesh_elastic *elastic; /* rank 0: of each material */
     struct cloth_error untraced;  /* why the trace is not whole */
+    bool intersects;              /* some were found; the same on all ranks */
     bool stopped_before;          /* asked to stop before it began */
 };
 
@@ -244,6 +248,8 @@ static int prepare(struct run *run)
                         "the folder of --output; there is none\n");
     if (run->rank == 0 && options->output)
         room_check(&run->model, run->flow, options->output, &error);
+    if (!error.code && run->rank == 0 && options->check_intersections)
+        intersections_of(&run->intersections, &run->model, &error);
     if (!error.code && run->rank == 0 && options->save_system)
         open_system(run, &error);
     if (!error.code && run->rank == 0 && options->output)
@@ -286,11 +292,26 @@ static int save_system(void *context, const struct solve_system *system, struct 
     return output_system(run->options->save_system, system, error);
 }
 
-static int write_frame(void *context, uint64_t frame, double time, const double *position,
+/* What is looked at as written is looked at once it is. */
+static int check_frame(const struct run *run, uint64_t frame, double time, const double *position,
                        struct cloth_error *error)
 {
+    const int code = intersections_frame(run->intersections, frame, time, position, false, error);
+    if (code || !run->frames)
+        return code;
+    return intersections_frame(run->intersections, frame, time, position, true, error);
+}
+
+static int take_frame(void *context, uint64_t frame, double time, const double *position,
+                      struct cloth_error *error)
+{
     const struct run *run = context;
-    return output_frame(run->frames, frame, time, position, error);
+    int code = CLOTH_OK;
+    if (run->frames)
+        code = output_frame(run->frames, frame, time, position, error);
+    if (!code && run->intersections)
+        code = check_frame(run, frame, time, position, error);
+    return code;
 }
 
 static int write_row(void *context, uint64_t step, double time, size_t n, const double *values,
@@ -303,14 +324,15 @@ static int write_row(void *context, uint64_t step, double time, size_t n, const 
 static void run_flow(struct run *run, duite *rt, struct cloth_error *error)
 {
     const struct simulate_options *options = run->options;
+    const bool frames = options->output || options->check_intersections;
     const struct flow_output output = {.context = run,
-                                       .frame = options->output ? write_frame : NULL,
+                                       .frame = frames ? take_frame : NULL,
                                        .row = options->output ? write_row : NULL,
                                        .system = options->save_system ? save_system : NULL};
     const struct flow_progress progress = {run, forget_meshes, show_step, stop_wanted};
     run->threads = duite_threads(rt);
     summary_progress_begin(&run->progress);
-    flow_run(run->flow, rt, options->output || options->save_system ? &output : NULL, &progress,
+    flow_run(run->flow, rt, frames || options->save_system ? &output : NULL, &progress,
              &run->report, error);
     summary_progress_end(&run->progress);
 }
@@ -353,7 +375,30 @@ static void say_stopped(const struct run *run)
     fputc('\n', stderr);
 }
 
-static int conclude(const struct run *run)
+/* Collective. */
+static void count_intersections(struct run *run)
+{
+    int intersects = 0;
+    if (run->intersections) {
+        run->found = intersections_found(run->intersections);
+        intersects = run->found.bad > 0;
+    }
+    MPI_Bcast(&intersects, 1, MPI_INT, 0, MPI_COMM_WORLD);
+    run->intersects = intersects;
+}
+
+static void say_intersections(const struct intersections_found *found)
+{
+    if (found->bad)
+        fprintf(stderr,
+                "duite-cloth: triangles intersect in %llu of %llu frames, from frame %llu on: at "
+                "most %llu pairs of cloth, and %llu with obstacles\n",
+                (unsigned long long)found->bad, (unsigned long long)found->frames,
+                (unsigned long long)found->first, (unsigned long long)found->pairs,
+                (unsigned long long)found->with_shapes);
+}
+
+static int conclude(struct run *run)
 {
     struct cloth_error error = {0};
     struct rusage usage = {0};
@@ -362,6 +407,7 @@ static int conclude(const struct run *run)
     MPI_Allreduce(MPI_IN_PLACE, &workers, 1, MPI_UINT64_T, MPI_SUM, MPI_COMM_WORLD);
     MPI_Allreduce(MPI_IN_PLACE, &peak, 1, MPI_UINT64_T, MPI_MAX, MPI_COMM_WORLD);
     double path = NAN, bound = NAN;
+    count_intersections(run);
     if (run->rank == 0 && run->options->trace)
         duite_trace_bounds(run->options->trace, &path, &bound); /* else it has none */
     if (run->rank == 0) {
@@ -369,6 +415,7 @@ static int conclude(const struct run *run)
                                         .model = &run->model,
                                         .report = &run->report,
                                         .elastic = run->elastic,
+                                        .intersections = run->intersections ? &run->found : NULL,
                                         .ranks = run->ranks,
                                         .threads = run->threads,
                                         .workers = workers,
@@ -377,6 +424,7 @@ static int conclude(const struct run *run)
                                         .lower_bound = bound};
         if (run->report.stopped)
             say_stopped(run);
+        say_intersections(&run->found);
         if (run->model.rest.speed > 0 && !run->report.stopped && isnan(run->report.rest_seconds))
             fprintf(stderr,
                     "duite-cloth: warning: the cloth is not at rest at time.end, %g s: some vertex "
@@ -407,11 +455,13 @@ int simulate(const struct simulate_options *options)
         failure = execute(&run);
         if (!failure)
             failure = conclude(&run);
-        code = failure == CLOTH_E_LOST ? SIMULATE_LOST : failure ? SIMULATE_FAILED : SIMULATE_OK;
+        const int done = run.intersects ? SIMULATE_INTERSECTS : SIMULATE_OK;
+        code = failure == CLOTH_E_LOST ? SIMULATE_LOST : failure ? SIMULATE_FAILED : done;
     }
     struct cloth_error ignored = {0};
     output_probes_close(&run.probes, &ignored);
     output_close(&run.frames, &ignored);
+    intersections_close(&run.intersections);
     output_lock_free(run.locks);
     output_lock_free(run.locks + 1);
     flow_free(run.flow);

@@ -22,11 +22,18 @@ struct simulate_options {
     const char *scheduler_name, *mapping_name, *balance_name;
     unsigned threads; /* 0: the rank's share of the cores */
     uint64_t seed;
-    bool quiet; /* neither progress nor summary */
+    bool check_intersections; /* of each frame */
+    bool quiet;               /* neither progress nor summary */
 };
 
 /* Exit codes of the program. After SIMULATE_LOST MPI may not be called any more. */
-enum { SIMULATE_OK = 0, SIMULATE_FAILED = 1, SIMULATE_BAD_INPUT = 2, SIMULATE_LOST = 3 };
+enum {
+    SIMULATE_OK = 0,
+    SIMULATE_FAILED = 1,
+    SIMULATE_BAD_INPUT = 2,
+    SIMULATE_LOST = 3,
+    SIMULATE_INTERSECTS = 4 /* it is done, but a check that was asked for found intersections */
+};
 
 /* From now on SIGUSR1, on any rank, ends a run: it finishes its step, writes a frame of the state
  * after it and stops, or does not begin. SIGXFSZ becomes an error of the write, instead of ending

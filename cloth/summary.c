@@ -94,6 +94,18 @@ static void print_halved(FILE *file, const struct summary *summary)
     fputc('\n', file);
 }
 
+static void print_intersections(FILE *file, const struct intersections_found *found)
+{
+    fprintf(file, "  intersections    ");
+    if (found->bad)
+        fprintf(file,
+                "in %" PRIu64 " of %" PRIu64 " frames, from frame %" PRIu64 " on; at most %" PRIu64
+                " of cloth, %" PRIu64 " with obstacles\n",
+                found->bad, found->frames, found->first, found->pairs, found->with_shapes);
+    else
+        fprintf(file, "none in %" PRIu64 " frames\n", found->frames);
+}
+
 void summary_print(FILE *file, const struct summary *summary)
 {
     const struct flow_report *report = summary->report;
@@ -143,6 +155,8 @@ void summary_print(FILE *file, const struct summary *summary)
                 summary->options->output);
     else
         fprintf(file, "  frames           not written (--output DIR)\n");
+    if (summary->intersections)
+        print_intersections(file, summary->intersections);
 }
 
 static void add_hash(struct output_report *json, const char *key, uint64_t hash)
@@ -284,6 +298,15 @@ static void add_runtime(struct output_report *json, const struct summary *summar
     output_report_integer(json, "peak_memory_bytes", summary->memory_bytes);
 }
 
+static void add_intersections(struct output_report *json, const struct intersections_found *found)
+{
+    const double none = NAN;
+    output_report_number(json, "intersections", found ? (double)found->pairs : none);
+    output_report_number(json, "intersections_shapes", found ? (double)found->with_shapes : none);
+    output_report_number(json, "intersections_frame",
+                         found && found->bad ? (double)found->first : none);
+}
+
 int summary_write(const struct summary *summary, const char *path, struct cloth_error *error)
 {
     struct output_report *json = NULL;
@@ -298,6 +321,7 @@ int summary_write(const struct summary *summary, const char *path, struct cloth_
     code = add_materials(json, summary, error);
     output_report_number(json, "max_stretch", summary->report->max_stretch);
     output_report_number(json, "stretch_highest", summary->report->stretch_highest);
+    add_intersections(json, summary->intersections);
     add_hash(json, "state_hash", summary->report->state_hash);
     if (!code)
         code = output_report_write(json, path, error);

@@ -2,6 +2,7 @@
 #define CLOTH_SUMMARY_H
 
 #include "cloth/flow/run.h"
+#include "cloth/intersections.h"
 #include "cloth/simulate.h"
 
 #include <stdio.h>
@@ -11,7 +12,8 @@ struct summary {
     const struct simulate_options *options;
     const struct model *model;
     const struct flow_report *report;
-    const struct mesh_elastic *elastic; /* of each material of the model */
+    const struct mesh_elastic *elastic;              /* of each material of the model */
+    const struct intersections_found *intersections; /* NULL: they were not looked for */
     int ranks;
     unsigned threads;                  /* of rank 0 */
     uint64_t workers;                  /* of all ranks together */

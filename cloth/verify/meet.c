@@ -34,34 +34,66 @@ static bool lines_meet(const double *p, const double *q, const double *a, const 
     return meet;
 }
 
-/* A point in the plane of a triangle that has an area, else false. */
-static bool is_inside(const double *p, const double *a, const double *b, const double *c)
+/* Whether a line keeps an edge and a triangle apart that lie in one plane, as seen along an axis:
+ * one of the triangle, which looks as if it had an area of that sign, or the edge's. No other needs
+ * to be tried. */
+static bool are_apart(const double *p, const double *q, const double *const x[3], int side, int i,
+                      int j)
 {
     for (int k = 0; k < 3; k++) {
-        const int i = (k + 1) % 3, j = (k + 2) % 3, side = verify_orient_seen(a, b, c, i, j);
-        if (side)
-            return side * verify_orient_seen(a, b, p, i, j) >= 0 &&
-                   side * verify_orient_seen(b, c, p, i, j) >= 0 &&
-                   side * verify_orient_seen(c, a, p, i, j) >= 0;
+        const double *a = x[k], *b = x[(k + 1) % 3];
+        if (side * verify_orient_seen(a, b, p, i, j) < 0 &&
+            side * verify_orient_seen(a, b, q, i, j) < 0)
+            return true;
     }
-    return false;
+    const int of_a = verify_orient_seen(p, q, x[0], i, j);
+    return of_a && verify_orient_seen(p, q, x[1], i, j) == of_a &&
+           verify_orient_seen(p, q, x[2], i, j) == of_a;
+}
+
+/* The axis along which a triangle looks largest, or nearly so. */
+static int find_front(const double *a, const double *b, const double *c)
+{
+    double most = -1;
+    int front = 0;
+    for (int k = 0; k < 3; k++) {
+        const int i = (k + 1) % 3, j = (k + 2) % 3;
+        const double area = (b[i] - a[i]) * (c[j] - a[j]) - (b[j] - a[j]) * (c[i] - a[i]);
+        const double size = area < 0 ? -area : area;
+        front = size > most ? k : front;
+        most = size > most ? size : most;
+    }
+    return front;
+}
+
+/* An edge and a triangle in one plane, or a triangle without area. */
+static bool edge_meets_flat(const double *p, const double *q, const double *const x[3])
+{
+    const int front = find_front(x[0], x[1], x[2]);
+    for (int n = 0; n < 3; n++) {
+        const int k = (front + n) % 3, i = (k + 1) % 3, j = (k + 2) % 3;
+        const int side = verify_orient_seen(x[0], x[1], x[2], i, j);
+        if (side)
+            return !are_apart(p, q, x, side, i, j);
+    }
+    return lines_meet(p, q, x[0], x[1]) || lines_meet(p, q, x[1], x[2]) ||
+           lines_meet(p, q, x[2], x[0]);
 }
 
 /* ---- Edges and triangles ---- */
 
-/* Whether the edge p q meets the triangle a b c; side: of p and q from its plane. */
-static bool edge_meets(const double *p, const double *q, const int side[2], const double *a,
-                       const double *b, const double *c)
+/* Whether the edge p q meets the triangle; side: of p and q from its plane. */
+static bool edge_meets(const double *p, const double *q, const int side[2],
+                       const double *const x[3])
 {
     if (side[0] * side[1] > 0)
         return false;
     if (!side[0] && !side[1])
-        return is_inside(p, a, b, c) || lines_meet(p, q, a, b) || lines_meet(p, q, b, c) ||
-               lines_meet(p, q, c, a);
-    const int ab = verify_orient(p, q, a, b), bc = verify_orient(p, q, b, c);
+        return edge_meets_flat(p, q, x);
+    const int ab = verify_orient(p, q, x[0], x[1]), bc = verify_orient(p, q, x[1], x[2]);
     if (ab * bc < 0)
         return false;
-    const int ca = verify_orient(p, q, c, a);
+    const int ca = verify_orient(p, q, x[2], x[0]);
     return ab * ca >= 0 && bc * ca >= 0;
 }
 
@@ -121,8 +153,7 @@ static bool edges_meet(const struct side *of, const struct side *other, const bo
     bool meet = false;
     for (int i = 0; i < 3 && !meet; i++) {
         const int j = (i + 1) % 3, ends[2] = {side[i], side[j]};
-        meet =
-            edge[i] && edge_meets(of->x[i], of->x[j], ends, other->x[0], other->x[1], other->x[2]);
+        meet = edge[i] && edge_meets(of->x[i], of->x[j], ends, other->x);
     }
     return meet;
 }

@@ -7,6 +7,12 @@
 #define VERIFY_LEAST 0x1p-200
 #define VERIFY_MOST  0x1p200
 
+/* A coordinate that is too small becomes 0. */
+static inline double verify_coordinate(double x)
+{
+    return x > -VERIFY_LEAST && x < VERIFY_LEAST ? 0 : x;
+}
+
 /* The sign of det [a - d, b - d, c - d]: above 0 where a, b, c are clockwise as seen from d, 0
  * where the four points lie in a plane. -1, 0 or 1. */
 int verify_orient(const double a[3], const double b[3], const double c[3], const double d[3]);

@@ -43,7 +43,7 @@ static int take_points(struct sweep *sweep)
             if (!(fabs(x) <= VERIFY_MOST))
                 return cloth_fail(sweep->error, CLOTH_E_RUN,
                                   "intersections: point %u has no place that can be checked", p);
-            sweep->x[p][c] = fabs(x) < VERIFY_LEAST ? 0 : x;
+            sweep->x[p][c] = verify_coordinate(x);
         }
     return CLOTH_OK;
 }

@@ -45,7 +45,7 @@ int verify_enter(const struct verify_soup *soup, const struct contact_shape *sha
                  struct cloth_error *error);
 
 /* Whether a point is inside a closed surface: those triangles of the soup from the first to the
- * one before the end. On it: either. Coordinates as of verify_pairs. */
+ * one before the end. On it: either. Coordinates as of verify_orient. */
 bool verify_inside(const struct verify_soup *soup, uint32_t first, uint32_t end,
                    const double at[3]);
 

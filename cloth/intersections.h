@@ -1,0 +1,66 @@
+#ifndef CLOTH_INTERSECTIONS_H
+#define CLOTH_INTERSECTIONS_H
+
+#include "cloth/base/error.h"
+#include "cloth/contact/shape.h"
+#include "cloth/mesh/mesh.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* Frame by frame, which triangles of cloth go through each other and through obstacles, by
+ * cloth/verify. Local functions, on one rank. */
+struct intersections;
+
+/* The arrays are read by intersections_open alone; shapes, keys and bodies outlive it all. */
+struct intersections_setup {
+    const char *program; /* that messages begin with */
+    size_t n_meshes;
+    const struct mesh *const *meshes;
+    const char *const *names; /* of the cloths that the meshes are; NULL: they are not known */
+    const uint32_t *same; /* of each vertex of all cloths together: the lowest that it is one with;
+                             NULL: none is welded */
+    size_t n_obstacles;
+    const struct contact_shape *obstacles;
+    const struct phys_key *keys; /* of their motions */
+    const struct contact_bodies *bodies;
+};
+
+/* Of all frames so far. */
+struct intersections_found {
+    uint64_t frames;      /* that were checked */
+    uint64_t bad;         /* frames with anything of what follows */
+    uint64_t first;       /* the number of the first of these, if there is one */
+    uint64_t pairs;       /* most in a frame: pairs of triangles of cloth that intersect */
+    uint64_t with_shapes; /* most in a frame: triangles of cloth in a convex shape, by each of
+                             these; their pairs with triangles of bodies that intersect; and parts
+                             of cloth that are inside of a body */
+};
+
+/* Triangles count that are deeper than this in a convex shape, m: of the state, whose positions
+ * are doubles, and of frames as they are written, in floats. */
+#define INTERSECTIONS_DEPTH       1e-9
+#define INTERSECTIONS_DEPTH_FLOAT 1e-6
+
+/* Error: CLOTH_E_MEMORY. */
+int intersections_open(struct intersections **intersections,
+                       const struct intersections_setup *setup, struct cloth_error *error);
+
+/* The same for a model, while it has its meshes; it outlives it all. */
+struct model;
+int intersections_of(struct intersections **intersections, const struct model *model,
+                     struct cloth_error *error);
+
+/* Checks a frame: position as of flow_output.frame; written: as floats, else as doubles. A frame
+ * may be checked both ways, one after the other. Prints the first few of what is found first, on
+ * standard error. Errors: as of verify_pairs. */
+int intersections_frame(struct intersections *intersections, uint64_t frame, double time,
+                        const double *position, bool written, struct cloth_error *error);
+
+struct intersections_found intersections_found(const struct intersections *intersections);
+
+/* *intersections becomes NULL; nothing is done if it is. */
+void intersections_close(struct intersections **intersections);
+
+#endif

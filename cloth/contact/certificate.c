@@ -6,39 +6,29 @@
 
 #include <math.h>
 
-/* ---- Certify ---- */
+/* ---- What is certain ---- */
 
 /* What rounding may take from f, see the header. */
-static const double ROUNDING = 0x1p-50;
+#define ROUNDING 0x1p-50
 
 /* At the start, and at least: rounding of a direction must not lose a pair that a step before has
  * left at the margin. */
-static const double LEAST = CONTACT_MARGIN / 2;
+#define LEAST (CONTACT_MARGIN / 2)
 
-PHYS_INLINE double lanes_size(const struct contact_lanes *x)
+PHYS_INLINE double lanes_size(const struct contact_lanes *x, const struct contact_lanes *y)
 {
+    const contact_mask sign = {INT64_MAX, INT64_MAX, INT64_MAX, INT64_MAX};
     phys_vec sum = {0};
     PHYS_UNROLL
-    for (int c = 0; c < 3; c++) {
-        const contact_mask sign = {INT64_MAX, INT64_MAX, INT64_MAX, INT64_MAX};
-        sum += (phys_vec)((contact_mask)x->c[c] & sign);
-    }
+    for (int c = 0; c < 3; c++)
+        sum += (phys_vec)((contact_mask)x->c[c] & sign) + (phys_vec)((contact_mask)y->c[c] & sign);
     return phys_lanes(&sum);
 }
 
-/* The corners at both ends, and what their rounding may come to. */
+/* The corners at both ends, against the first. */
 struct ends {
     struct contact_lanes x, y;
-    double off_x, off_y; /* m */
 };
-
-PHYS_INLINE void ends_of(const phys_vec x[4], const phys_vec y[4], struct ends *to)
-{
-    contact_lanes_of(x, x, &to->x);
-    contact_lanes_of(y, y, &to->y);
-    to->off_x = ROUNDING * lanes_size(&to->x);
-    to->off_y = ROUNDING * lanes_size(&to->y);
-}
 
 /* What f(1) must be at least, m. */
 PHYS_INLINE double least_after(double before, double thickness)
@@ -47,16 +37,143 @@ PHYS_INLINE double least_after(double before, double thickness)
     return half < part ? half : part;
 }
 
-/* before, after: f(0), f(1) times the length of a direction. gap: the f(0), m, that must not shrink
- * too much. Comparisons are such that a NaN fails them. */
-PHYS_INLINE bool ends_apart(const struct ends *ends, double length, double before, double after,
-                            double gap, double thickness)
+/* A direction: f(0) and f(1) along it, all times its length. */
+struct along {
+    double length, before, after;
+};
+
+PHYS_INLINE void along_measure(enum contact_pair pair, const struct ends *ends, const phys_vec *n,
+                               struct along *to)
 {
-    const double least = least_after(gap, thickness), margin = CONTACT_MARGIN + ends->off_y;
-    const bool certain = (length > CONTACT_TINY) & (before > length * (LEAST + ends->off_x)) &
-                         (after > length * (LEAST + ends->off_y));
-    const bool enough = (after >= length * least) & (after >= length * margin);
-    return certain & (enough | (after >= length * gap));
+    phys_vec before, after;
+    contact_along(&ends->x, n, &before);
+    contact_along(&ends->y, n, &after);
+    to->before = contact_apart(pair, &before);
+    to->after = contact_apart(pair, &after);
+    to->length = sqrt(phys_dot(n, n));
+}
+
+PHYS_INLINE double along_gap(const struct along *a)
+{
+    return a->length > CONTACT_TINY ? a->before / a->length : 0;
+}
+
+PHYS_INLINE double along_wider(const struct along *a, double gap)
+{
+    const double own = along_gap(a);
+    return own > gap ? own : gap;
+}
+
+/* The proof, and whether f(1) is enough after a gap, m. What is not a number fails. */
+PHYS_INLINE bool along_enough(const struct along *a, double gap, double thickness, double off)
+{
+    const double least = least_after(gap, thickness), margin = CONTACT_MARGIN + off;
+    const double certain = a->length * (LEAST + off), asked = least > margin ? least : margin;
+    const bool is_proof = (a->length > CONTACT_TINY) & (a->before > certain) & (a->after > certain);
+    return is_proof & (a->after >= a->length * (asked < gap ? asked : gap));
+}
+
+/* ---- Certify ---- */
+
+/* Across both features, the mean of the start and the end: this proves most pairs. It is turned as
+ * the features lie at each. Works for both kinds without a branch. */
+PHYS_INLINE void quick_direction(bool is_edges, const phys_vec x[4], const phys_vec y[4],
+                                 phys_vec *n)
+{
+    const phys_vec *const ends[2] = {x, y};
+    *n = (phys_vec){0};
+    PHYS_UNROLL
+    for (int i = 0; i < 2; i++) {
+        const phys_vec *p = ends[i];
+        const phys_vec a = p[2 - is_edges] - p[1 - is_edges], b = p[3] - p[1 + is_edges];
+        const phys_vec way = p[0] - p[1 + is_edges];
+        phys_vec across;
+        contact_product(&a, &b, &across);
+        *n += __builtin_copysign(1, phys_dot(&across, &way)) * across;
+    }
+}
+
+/* contact_apart of either kind. */
+PHYS_INLINE double quick_apart(bool is_edges, const phys_vec *along)
+{
+    static const double NEVER[2] = {0, INFINITY};
+    const double a = (*along)[0], b = (*along)[1], c = (*along)[2], d = (*along)[3];
+    const double of_first = b + NEVER[!is_edges], of_second = b - NEVER[is_edges];
+    const double last = c > d ? c : d;
+    return (a < of_first ? a : of_first) - (last > of_second ? last : of_second);
+}
+
+/* Whether no difference comes to 2 m, nor is one no number: the bits of all of them together are no
+ * less than those of each. */
+PHYS_INLINE bool quick_small(const struct ends *ends)
+{
+    contact_mask bits = {0};
+    PHYS_UNROLL
+    for (int c = 0; c < 3; c++)
+        bits |= (contact_mask)ends->x.c[c] | (contact_mask)ends->y.c[c];
+    bits |= CONTACT_PICK(bits, bits, 2, 3, 0, 1);
+    return (uint64_t)(bits[0] | bits[1]) << 1 < UINT64_C(0x4000000000000000) << 1; /* 2.0 */
+}
+
+/* Whether the direction proves the pair, and f(1) is enough after any gap. Small, so that most
+ * calls do nothing else. */
+PHYS_INLINE bool certify_quickly(bool is_edges, const phys_vec x[4], const phys_vec y[4],
+                                 double thickness, const struct ends *ends)
+{
+    static const double OFF = 36 * ROUNDING; /* m: of 18 differences below 2 m */
+    const double part = 0.1 * thickness;
+    const double least = part > CONTACT_MARGIN + OFF ? part : CONTACT_MARGIN + OFF;
+    phys_vec n, along_x, along_y;
+    quick_direction(is_edges, x, y, &n);
+    contact_along(&ends->x, &n, &along_x);
+    contact_along(&ends->y, &n, &along_y);
+    const double length = sqrt(phys_dot(&n, &n));
+    const double before = quick_apart(is_edges, &along_x), after = quick_apart(is_edges, &along_y);
+    return (before > CONTACT_TINY) & (before > length * (LEAST + OFF)) & (after >= length * least) &
+           quick_small(ends);
+}
+
+/* The two directions that features may be closest in, of their corners p, which `at` are against
+ * the first. Returns whether they are so near that those may be but rounding. */
+PHYS_INLINE bool find_directions(enum contact_pair pair, const phys_vec p[4],
+                                 const struct contact_lanes *at, phys_vec n[2])
+{
+    contact_across(pair, p, at, n);
+    const double square = contact_between(pair, at, n + 1);
+    return !(square > CONTACT_NEAR * CONTACT_NEAR * contact_square(at));
+}
+
+/* The closest directions at the start and at the end; then the best ones of features that are very
+ * near. */
+PHYS_INLINE bool certify_slowly(enum contact_pair pair, const phys_vec x[4], const phys_vec y[4],
+                                double thickness, const struct ends *ends)
+{
+    struct along along[6];
+    phys_vec n[6];
+    double gap = 0;
+    bool enough = false;
+    const double off = ROUNDING * lanes_size(&ends->x, &ends->y);
+    const bool near_x = find_directions(pair, x, &ends->x, n);
+    const bool near_y = find_directions(pair, y, &ends->y, n + 2);
+    PHYS_UNROLL
+    for (int i = 0; i < 4; i++)
+        along_measure(pair, ends, n + i, along + i);
+    gap = along_wider(along, along_wider(along + 1, 0));
+    if (near_x) {
+        contact_direction_best(pair, x, n + 4);
+        along_measure(pair, ends, n + 4, along + 4);
+        gap = along_wider(along + 4, gap);
+        enough = along_enough(along + 4, gap, thickness, off);
+    }
+    if (near_y) {
+        contact_direction_best(pair, y, n + 5);
+        along_measure(pair, ends, n + 5, along + 5);
+        enough |= along_enough(along + 5, gap, thickness, off);
+    }
+    PHYS_UNROLL
+    for (int i = 0; i < 4; i++)
+        enough |= along_enough(along + i, gap, thickness, off);
+    return enough;
 }
 
 PHYS_KERNEL_OF(bool, contact_certify,
@@ -64,19 +181,13 @@ PHYS_KERNEL_OF(bool, contact_certify,
                (pair, x, y, thickness))
 {
     struct ends ends;
-    double n[3];
-    phys_vec along;
-    ends_of(x, y, &ends);
-    const double before = contact_direction(pair, x, &ends.x, n);
-    double length = sqrt(contact_dot(n, n));
-    contact_along(&ends.y, n, &along);
-    const double gap = before / length;
-    if (ends_apart(&ends, length, before, contact_apart(pair, &along), gap, thickness))
+    contact_lanes_of(x, x, &ends.x);
+    contact_lanes_of(y, y, &ends.y);
+    if (certify_quickly(pair == CONTACT_EE, x, y, thickness, &ends))
         return true;
-    const double after = contact_direction(pair, y, &ends.y, n);
-    length = sqrt(contact_dot(n, n));
-    contact_along(&ends.x, n, &along);
-    return ends_apart(&ends, length, contact_apart(pair, &along), after, gap, thickness);
+    if (pair == CONTACT_VT)
+        return certify_slowly(CONTACT_VT, x, y, thickness, &ends);
+    return certify_slowly(CONTACT_EE, x, y, thickness, &ends);
 }
 
 /* ---- Cut ---- */
@@ -113,7 +224,7 @@ static double cut_rounding(const phys_vec x[4], const phys_vec y[4],
             size += fabs(x[k][c]) + fabs(y[k][c]);
         most = fmax(most, size);
     }
-    return 0x1p-50 * most + 0x1p-49 * (lanes_size(begin) + lanes_size(end));
+    return 0x1p-50 * most + 0x1p-49 * lanes_size(begin, end);
 }
 
 /* Where the plane may lie: each corner that is cut has room at x and each held one at y. */
@@ -172,6 +283,29 @@ static bool cut_all(const struct cut *cut, const phys_vec x[4], const phys_vec y
     return true;
 }
 
+/* The direction that parts the features most at x, of those that contact_certify tries; returns by
+ * how much, m. */
+static double cut_direction(enum contact_pair pair, const phys_vec x[4], phys_vec *best)
+{
+    struct ends ends;
+    struct along along;
+    phys_vec n[3];
+    double gap = 0;
+    contact_lanes_of(x, x, &ends.x);
+    ends.y = ends.x;
+    const bool is_near = find_directions(pair, x, &ends.x, n);
+    if (is_near)
+        contact_direction_best(pair, x, n + 2);
+    for (int i = 0; i < 2 + is_near; i++) {
+        along_measure(pair, &ends, n + i, &along);
+        if (!(along_gap(&along) > gap))
+            continue;
+        gap = along_gap(&along);
+        *best = n[i] / along.length;
+    }
+    return gap;
+}
+
 bool contact_cut(enum contact_pair pair, const phys_vec x[4], const phys_vec y[4], double thickness,
                  unsigned held, double t[4])
 {
@@ -179,19 +313,16 @@ bool contact_cut(enum contact_pair pair, const phys_vec x[4], const phys_vec y[4
     static const double MORE = 1.1;
     struct cut cut = {.pair = pair, .held = held};
     struct contact_lanes begin, end;
-    double n[3];
+    phys_vec n = {0};
+    const double gap = cut_direction(pair, x, &n), least = least_after(gap, thickness);
     contact_lanes_of(x, x, &begin);
     contact_lanes_of(x, y, &end);
-    const double apart = contact_direction(pair, x, &begin, n), length = sqrt(contact_dot(n, n));
-    const double gap = apart / length, least = least_after(gap, thickness);
     cut.off = cut_rounding(x, y, &begin, &end);
     cut.half = 0.5 * MORE * (CONTACT_MARGIN > least ? CONTACT_MARGIN : least) + cut.off;
     if (!isfinite(cut.half))
         return false;
-    for (int c = 0; c < 3; c++)
-        n[c] /= length;
-    contact_along(&begin, n, &cut.begin);
-    contact_along(&end, n, &cut.end);
+    contact_along(&begin, &n, &cut.begin);
+    contact_along(&end, &n, &cut.end);
     cut_bounds(&cut);
     if (!(gap > LEAST + cut.off) || !(cut.low <= cut.high))
         return cut_all(&cut, x, y, thickness, t);

@@ -6,13 +6,14 @@
 
 #include <stdbool.h>
 
-/* What pair.c and certificate.c share: the closest direction of a pair. Four corners lie side by
- * side, lane k is corner k, as differences against corner 0.
+/* What pair.c and certificate.c share: the directions that a pair may be closest in. Four corners
+ * lie side by side, lane k is corner k, as differences against corner 0.
  *
  * Two features are closest inside both (the foot of the vertex in the triangle, the feet of the
  * common perpendicular on both edges), and then across both; or else at a vertex of one and a point
  * of an edge of the other: of the three edges of a triangle, of the two ends of either edge. Those
- * are four lanes of the same computation. */
+ * are four lanes of the same computation. The closest direction of all is the one that parts the
+ * corners most, so that what parts them less need not be told from what is not closest. */
 
 struct contact_lanes {
     phys_vec c[3]; /* by coordinate */
@@ -41,9 +42,9 @@ PHYS_INLINE void contact_lanes_of(const phys_vec *origin, const phys_vec x[4],
 }
 
 /* n.x of the corners. */
-PHYS_INLINE void contact_along(const struct contact_lanes *x, const double n[3], phys_vec *along)
+PHYS_INLINE void contact_along(const struct contact_lanes *x, const phys_vec *n, phys_vec *along)
 {
-    *along = (n[0] * x->c[0] + n[1] * x->c[1]) + n[2] * x->c[2];
+    *along = ((*n)[0] * x->c[0] + (*n)[1] * x->c[1]) + (*n)[2] * x->c[2];
 }
 
 /* The least of the first feature less the largest of the second. */
@@ -58,73 +59,38 @@ PHYS_INLINE double contact_apart(enum contact_pair pair, const phys_vec *along)
 
 /* ---- Across both features ---- */
 
-/* The place of the second feature's begin (of VT: of the vertex) in the axes d1, d2 and their
- * product n: u, v and height times n.n. */
-struct contact_across {
-    double n[3], square, u, v, height;
-    bool flat; /* d1 and d2 are too near to parallel for n to mean much, or one is nothing */
-};
-
-PHYS_INLINE void contact_product(const double a[3], const double b[3], double product[3])
+PHYS_INLINE void contact_product(const phys_vec *a, const phys_vec *b, phys_vec *product)
 {
-    product[0] = a[1] * b[2] - a[2] * b[1];
-    product[1] = a[2] * b[0] - a[0] * b[2];
-    product[2] = a[0] * b[1] - a[1] * b[0];
+    const phys_vec turned_a = CONTACT_PICK(*a, *a, 1, 2, 0, 3);
+    const phys_vec turned_b = CONTACT_PICK(*b, *b, 1, 2, 0, 3);
+    const phys_vec turned = *a * turned_b - turned_a * *b;
+    *product = CONTACT_PICK(turned, turned, 1, 2, 0, 3);
 }
 
-PHYS_INLINE double contact_dot(const double a[3], const double b[3])
+/* Two ways along the features; of VT, of the triangle's sides. */
+PHYS_INLINE void contact_ways(enum contact_pair pair, const phys_vec x[4], phys_vec *a, phys_vec *b)
 {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    *a = pair == CONTACT_VT ? x[2] - x[1] : x[1] - x[0];
+    *b = pair == CONTACT_VT ? x[3] - x[1] : x[3] - x[2];
 }
 
-PHYS_INLINE void contact_way(const phys_vec *from, const phys_vec *to, double way[3])
+/* Across both, from the second feature to the first. at: x against x[0]. */
+PHYS_INLINE void contact_across(enum contact_pair pair, const phys_vec x[4],
+                                const struct contact_lanes *at, phys_vec *n)
 {
-    const phys_vec difference = *to - *from;
-    PHYS_UNROLL
-    for (int c = 0; c < 3; c++)
-        way[c] = difference[c];
-}
-
-PHYS_INLINE void contact_across_of(enum contact_pair pair, const phys_vec x[4],
-                                   struct contact_across *to)
-{
-    static const double SINE = 1e-12; /* its square */
-    double d1[3], d2[3], w[3], other[3];
-    contact_way(x + (pair == CONTACT_VT), x + (pair == CONTACT_VT ? 2 : 1), d1);
-    contact_way(x + (pair == CONTACT_VT ? 1 : 2), x + 3, d2);
-    contact_way(x + (pair == CONTACT_VT), x + (pair == CONTACT_VT ? 0 : 2), w);
-    contact_product(d1, d2, to->n);
-    to->square = contact_dot(to->n, to->n);
-    to->flat = !(to->square > SINE * (contact_dot(d1, d1) * contact_dot(d2, d2)));
-    contact_product(w, d2, other);
-    to->u = contact_dot(other, to->n);
-    contact_product(d1, w, other);
-    to->v = contact_dot(other, to->n);
-    to->height = contact_dot(w, to->n);
-}
-
-/* Whether the feet lie inside: u and v in parts of the square. */
-PHYS_INLINE bool contact_inside(enum contact_pair pair, const struct contact_across *a)
-{
-    if (pair == CONTACT_VT)
-        return !a->flat & (a->u > 0) & (a->v > 0) & (a->u + a->v < a->square);
-    return !a->flat & (a->u > 0) & (a->u < a->square) & (a->v < 0) & (-a->v < a->square);
-}
-
-/* From the second feature to the first. */
-PHYS_INLINE void contact_turn(enum contact_pair pair, const struct contact_across *a, double n[3])
-{
-    const bool turned = (a->height < 0) == (pair == CONTACT_VT);
-    PHYS_UNROLL
-    for (int c = 0; c < 3; c++)
-        n[c] = turned ? -a->n[c] : a->n[c];
+    phys_vec a, b, along;
+    contact_ways(pair, x, &a, &b);
+    contact_product(&a, &b, n);
+    contact_along(at, n, &along);
+    const double second = pair == CONTACT_VT ? along[1] : along[2];
+    *n *= __builtin_copysign(1, along[0] - second);
 }
 
 /* ---- A vertex of one and an edge of the other ---- */
 
 /* Lanes: VT: the edges 1 2, 2 3, 3 1 (and 1 2 again); EE: the vertices 0 to 3. */
 struct contact_ends {
-    struct contact_lanes edge, way; /* way: to the vertex from the closest point */
+    struct contact_lanes edge, way; /* way: from the second feature to the first */
     phys_vec part;                  /* of the edge, to that point */
     phys_vec square;                /* of the way */
 };
@@ -135,10 +101,18 @@ PHYS_INLINE void contact_choose(const contact_mask *which, const phys_vec *a, co
     *to = (phys_vec)((*which & (contact_mask)*a) | (~*which & (contact_mask)*b));
 }
 
-PHYS_INLINE void contact_lanes_square(const struct contact_lanes *a, const struct contact_lanes *b,
-                                      phys_vec *to)
+PHYS_INLINE void contact_lanes_dot(const struct contact_lanes *a, const struct contact_lanes *b,
+                                   phys_vec *to)
 {
     *to = (a->c[0] * b->c[0] + a->c[1] * b->c[1]) + a->c[2] * b->c[2];
+}
+
+/* The sum of the squares of all. */
+PHYS_INLINE double contact_square(const struct contact_lanes *x)
+{
+    phys_vec square;
+    contact_lanes_dot(x, x, &square);
+    return phys_lanes(&square);
 }
 
 PHYS_INLINE void contact_ends_of(enum contact_pair pair, const struct contact_lanes *x,
@@ -156,17 +130,18 @@ PHYS_INLINE void contact_ends_of(enum contact_pair pair, const struct contact_la
         to->edge.c[c] = end - begin;
         to->way.c[c] = (pair == CONTACT_VT ? nothing : v) - begin;
     }
-    contact_lanes_square(&to->way, &to->edge, &dot);
-    contact_lanes_square(&to->edge, &to->edge, &square);
+    contact_lanes_dot(&to->way, &to->edge, &dot);
+    contact_lanes_dot(&to->edge, &to->edge, &square);
     const contact_mask ahead = dot > nothing;
     contact_choose(&ahead, &dot, &nothing, &dot);
     to->part = dot / (square + tiny);
     const contact_mask on = to->part < one;
     contact_choose(&on, &to->part, &one, &to->part);
+    const phys_vec sign = pair == CONTACT_VT ? one : (phys_vec){1, 1, -1, -1};
     PHYS_UNROLL
     for (int c = 0; c < 3; c++)
-        to->way.c[c] -= to->part * to->edge.c[c];
-    contact_lanes_square(&to->way, &to->way, &to->square);
+        to->way.c[c] = sign * (to->way.c[c] - to->part * to->edge.c[c]);
+    contact_lanes_dot(&to->way, &to->way, &to->square);
 }
 
 /* The lane with the shortest way, of equal ones the first. */
@@ -178,45 +153,28 @@ PHYS_INLINE int contact_ends_least(const struct contact_ends *ends)
     return least_b < least_a ? b : a;
 }
 
-/* A lane's way, from the second feature to the first. */
-PHYS_INLINE void contact_ends_way(enum contact_pair pair, const struct contact_ends *ends, int lane,
-                                  double n[3])
+PHYS_INLINE void contact_lanes_get(const struct contact_lanes *lanes, int lane, phys_vec *x)
 {
-    const double sign = pair == CONTACT_EE && lane > 1 ? -1 : 1;
-    PHYS_UNROLL
-    for (int c = 0; c < 3; c++)
-        n[c] = sign * ends->way.c[c][lane];
+    *x = (phys_vec){lanes->c[0][lane], lanes->c[1][lane], lanes->c[2][lane], 0};
 }
 
-/* ---- The closest direction ---- */
+/* The shortest way between a vertex of one and an edge of the other; returns its square. */
+PHYS_INLINE double contact_between(enum contact_pair pair, const struct contact_lanes *x,
+                                   phys_vec *n)
+{
+    struct contact_ends ends;
+    contact_ends_of(pair, x, &ends);
+    const int lane = contact_ends_least(&ends);
+    contact_lanes_get(&ends.way, lane, n);
+    return ends.square[lane];
+}
+
+/* Ways that are shorter than so much of the corners' size are taken to be but rounding. */
+#define CONTACT_NEAR 1e-6
 
 /* For features that are nearly parallel, degenerate, or so near that a direction between points is
- * but rounding: the direction of all that could be meant which parts the corners most; of length 1,
- * or 0 if there is none. Returns f times that length. x: as contact_nearest_of has it. */
-double contact_direction_best(enum contact_pair pair, const phys_vec x[4], double n[3]);
-
-/* The direction from the second feature to the first, of any length, and f times that length.
- * lanes: of x against x[0]. */
-PHYS_INLINE double contact_direction(enum contact_pair pair, const phys_vec x[4],
-                                     const struct contact_lanes *lanes, double n[3])
-{
-    static const double NEARLY = 0.99; /* of the gap; the rest is rounding, or another feature */
-    struct contact_across across;
-    double expected;
-    phys_vec along;
-    contact_across_of(pair, x, &across);
-    if (contact_inside(pair, &across)) {
-        contact_turn(pair, &across, n);
-        expected = across.height < 0 ? -across.height : across.height;
-    } else {
-        struct contact_ends ends;
-        contact_ends_of(pair, lanes, &ends);
-        contact_ends_way(pair, &ends, contact_ends_least(&ends), n);
-        expected = contact_dot(n, n);
-    }
-    contact_along(lanes, n, &along);
-    const double apart = contact_apart(pair, &along);
-    return apart >= NEARLY * expected ? apart : contact_direction_best(pair, x, n);
-}
+ * but rounding: of all directions that could be meant, that which parts the corners most; of length
+ * 1, or 0 if there is none. x: as contact_nearest_of has it. */
+void contact_direction_best(enum contact_pair pair, const phys_vec x[4], phys_vec *n);
 
 #endif

@@ -5,13 +5,12 @@
 #include <math.h>
 
 /* Makes it 1 long; false for nothing, or what is too short for that. */
-static bool make_unit(double n[3])
+PHYS_INLINE bool make_unit(phys_vec *n)
 {
-    const double length = sqrt(contact_dot(n, n));
+    const double length = sqrt(phys_dot(n, n));
     if (!(length > CONTACT_TINY) || isinf(length))
         return false;
-    for (int c = 0; c < 3; c++)
-        n[c] /= length;
+    *n /= length;
     return true;
 }
 
@@ -19,70 +18,83 @@ static bool make_unit(double n[3])
 
 struct best {
     enum contact_pair pair;
-    const struct contact_lanes *lanes;
-    double apart, n[3];
+    struct contact_lanes lanes;
+    double apart;
+    phys_vec n;
 };
 
-static void best_try(struct best *best, const double n[3])
+static void best_try(struct best *best, const phys_vec *n)
 {
-    double unit[3] = {n[0], n[1], n[2]};
-    phys_vec along;
-    if (!make_unit(unit))
+    phys_vec unit = *n, along;
+    if (!make_unit(&unit))
         return;
-    contact_along(best->lanes, unit, &along);
+    contact_along(&best->lanes, &unit, &along);
     const double apart = contact_apart(best->pair, &along);
     if (!(apart > best->apart))
         return;
     best->apart = apart;
-    for (int c = 0; c < 3; c++)
-        best->n[c] = unit[c];
+    best->n = unit;
 }
 
 /* Takes out of a direction what it has along an edge: where the way is short, the rounding of its
  * ends. */
 static void best_try_across(struct best *best, const struct contact_ends *ends, int lane)
 {
-    double edge[3], n[3];
-    for (int c = 0; c < 3; c++)
-        edge[c] = ends->edge.c[c][lane];
-    contact_ends_way(best->pair, ends, lane, n);
-    if (!make_unit(n) || !make_unit(edge))
+    phys_vec edge, n;
+    contact_lanes_get(&ends->edge, lane, &edge);
+    contact_lanes_get(&ends->way, lane, &n);
+    if (!make_unit(&n) || !make_unit(&edge))
         return;
-    const double slope = contact_dot(n, edge);
-    for (int c = 0; c < 3; c++)
-        n[c] -= slope * edge[c];
-    best_try(best, n);
+    n -= phys_dot(&n, &edge) * edge;
+    best_try(best, &n);
 }
 
-double contact_direction_best(enum contact_pair pair, const phys_vec x[4], double n[3])
+void contact_direction_best(enum contact_pair pair, const phys_vec x[4], phys_vec *n)
 {
-    struct contact_lanes lanes;
-    struct contact_across across;
     struct contact_ends ends;
-    struct best best = {.pair = pair, .lanes = &lanes, .apart = -INFINITY};
-    double way[3];
-    contact_lanes_of(x, x, &lanes);
-    contact_across_of(pair, x, &across);
-    contact_ends_of(pair, &lanes, &ends);
-    contact_turn(pair, &across, way);
-    best_try(&best, way);
+    struct best best = {.pair = pair, .apart = -INFINITY};
+    phys_vec way;
+    contact_lanes_of(x, x, &best.lanes);
+    contact_across(pair, x, &best.lanes, &way);
+    best_try(&best, &way);
+    contact_ends_of(pair, &best.lanes, &ends);
     for (int lane = 0; lane < 4; lane++) {
-        contact_ends_way(pair, &ends, lane, way);
-        best_try(&best, way);
+        contact_lanes_get(&ends.way, lane, &way);
+        best_try(&best, &way);
         best_try_across(&best, &ends, lane);
     }
-    for (int c = 0; c < 3; c++)
-        n[c] = best.n[c];
-    return best.apart > -INFINITY ? best.apart : 0;
+    *n = best.n;
 }
 
 /* ---- The closest points ---- */
 
-static void weigh_inside(enum contact_pair pair, const struct contact_across *a,
-                         struct contact_nearest *to)
+/* Whether the ways along the features are so nearly parallel that their product n means little. */
+PHYS_INLINE bool is_flat(const phys_vec *a, const phys_vec *b, const phys_vec *n)
 {
-    const double u = a->u / a->square, v = a->v / a->square;
-    double *weight = to->weight;
+    static const double SINE = 1e-12; /* its square */
+    return !(phys_dot(n, n) > SINE * (phys_dot(a, a) * phys_dot(b, b)));
+}
+
+/* The feet of the perpendicular: corner 0 of VT, or the begin of the second edge of EE, lies from
+ * the begin of the other feature by u a + v b, where a and b are the ways along them, and something
+ * across both. Returns whether both feet lie inside. */
+PHYS_INLINE bool find_feet(enum contact_pair pair, const phys_vec x[4], double *u, double *v)
+{
+    phys_vec a, b, n, across_a, across_b;
+    contact_ways(pair, x, &a, &b);
+    contact_product(&a, &b, &n);
+    contact_product(&b, &n, &across_b);
+    contact_product(&n, &a, &across_a);
+    const phys_vec way = pair == CONTACT_VT ? x[0] - x[1] : x[2] - x[0];
+    const double square = phys_dot(&n, &n), other = phys_dot(&way, &across_a) / square;
+    *u = phys_dot(&way, &across_b) / square;
+    *v = pair == CONTACT_VT ? other : -other;
+    const double most = pair == CONTACT_VT ? *u + *v : *u > *v ? *u : *v;
+    return (*u > 0) & (*v > 0) & (most < 1) & !is_flat(&a, &b, &n);
+}
+
+static void weigh_inside(enum contact_pair pair, double u, double v, double weight[4])
+{
     if (pair == CONTACT_VT) {
         weight[0] = 1;
         weight[1] = -fmax(1 - u - v, 0);
@@ -92,76 +104,99 @@ static void weigh_inside(enum contact_pair pair, const struct contact_across *a,
     }
     weight[0] = 1 - u;
     weight[1] = u;
-    weight[2] = -(1 + v);
-    weight[3] = v;
+    weight[2] = -(1 - v);
+    weight[3] = -v;
 }
 
 /* Of VT, lane k is the edge from corner 1 + k to the next; of EE it is vertex k, against the edge
  * that it is not of. */
-static void weigh_end(enum contact_pair pair, double part, int lane, struct contact_nearest *to)
+static void weigh_end(enum contact_pair pair, double part, int lane, double weight[4])
 {
-    double *weight = to->weight;
+    const double sign = pair == CONTACT_VT || lane < 2 ? 1 : -1;
+    const int begin = pair == CONTACT_VT ? 1 + lane % 3 : lane < 2 ? 2 : 0;
+    const int end = pair == CONTACT_VT ? 1 + (lane + 1) % 3 : begin + 1;
     for (int k = 0; k < 4; k++)
         weight[k] = 0;
-    if (pair == CONTACT_VT) {
-        weight[0] = 1;
-        weight[1 + lane % 3] = -(1 - part);
-        weight[1 + (lane + 1) % 3] = -part;
-        return;
-    }
-    const double sign = lane < 2 ? 1 : -1;
-    const int edge = lane < 2 ? 2 : 0;
-    weight[lane] = sign;
-    weight[edge] = -sign * (1 - part);
-    weight[edge + 1] = -sign * part;
+    weight[pair == CONTACT_VT ? 0 : lane] = sign;
+    weight[begin] = -sign * (1 - part);
+    weight[end] = -sign * part;
 }
 
-/* A direction across both features where they touch. */
-static void find_normal(enum contact_pair pair, const struct contact_across *across,
-                        const struct contact_ends *ends, int lane, double n[3])
+/* A direction across both features where they touch at the edge. */
+static void find_normal(enum contact_pair pair, const phys_vec x[4], const phys_vec *edge,
+                        phys_vec *n)
 {
-    double edge[3];
-    contact_turn(pair, across, n);
-    if (!across->flat && make_unit(n))
+    phys_vec a, b, axis = {0};
+    contact_ways(pair, x, &a, &b);
+    contact_product(&a, &b, n);
+    if (!is_flat(&a, &b, n) && make_unit(n))
         return;
     int least = 0;
-    for (int c = 0; c < 3; c++)
-        edge[c] = ends->edge.c[c][lane];
     for (int c = 1; c < 3; c++)
-        if (fabs(edge[c]) < fabs(edge[least]))
+        if (fabs((*edge)[c]) < fabs((*edge)[least]))
             least = c;
-    const double axis[3] = {least == 0, least == 1, least == 2};
-    contact_product(axis, edge, n);
-    if (make_unit(n))
-        return;
-    for (int c = 0; c < 3; c++)
-        n[c] = axis[c];
+    axis[least] = 1;
+    contact_product(&axis, edge, n);
+    if (!make_unit(n))
+        *n = axis;
 }
 
-void contact_nearest_of(enum contact_pair pair, const phys_vec x[4], struct contact_nearest *to)
+/* Of features that are so near that the way between their points is but rounding: the normal is
+ * what parts them most. */
+static void nearest_close(enum contact_pair pair, const phys_vec x[4],
+                          const struct contact_lanes *lanes, const phys_vec *edge,
+                          struct contact_nearest *to)
 {
-    static const double ROUNDING = 1e-14; /* of the size: what differences of points are off */
-    struct contact_lanes lanes;
-    struct contact_across across;
+    const phys_vec way = to->normal;
+    phys_vec along;
+    contact_direction_best(pair, x, &to->normal);
+    contact_along(lanes, &to->normal, &along);
+    if (!(contact_apart(pair, &along) > 0))
+        find_normal(pair, x, edge, &to->normal);
+    to->gap = fmax(phys_dot(&to->normal, &way), 0);
+}
+
+PHYS_INLINE void nearest_end(enum contact_pair pair, const phys_vec x[4],
+                             const struct contact_lanes *lanes, struct contact_nearest *to)
+{
     struct contact_ends ends;
-    double n[3];
-    contact_lanes_of(x, x, &lanes);
-    contact_across_of(pair, x, &across);
-    contact_ends_of(pair, &lanes, &ends);
+    phys_vec edge;
+    contact_ends_of(pair, lanes, &ends);
     const int lane = contact_ends_least(&ends);
-    if (contact_inside(pair, &across)) {
-        weigh_inside(pair, &across, to);
-        contact_turn(pair, &across, n);
-        to->gap = fabs(across.height) / sqrt(across.square);
-        make_unit(n);
-    } else {
-        weigh_end(pair, ends.part[lane], lane, to);
-        contact_ends_way(pair, &ends, lane, n);
-        to->gap = sqrt(contact_dot(n, n));
-        const phys_vec size =
-            lanes.c[0] * lanes.c[0] + lanes.c[1] * lanes.c[1] + lanes.c[2] * lanes.c[2];
-        if (!(to->gap > ROUNDING * sqrt(phys_lanes(&size))) || !make_unit(n))
-            find_normal(pair, &across, &ends, lane, n);
+    contact_lanes_get(&ends.way, lane, &to->normal);
+    weigh_end(pair, ends.part[lane], lane, to->weight);
+    to->gap = sqrt(ends.square[lane]);
+    if (ends.square[lane] > CONTACT_NEAR * CONTACT_NEAR * contact_square(lanes)) {
+        to->normal /= to->gap;
+        return;
     }
-    to->normal = (phys_vec){n[0], n[1], n[2], 0};
+    contact_lanes_get(&ends.edge, lane, &edge);
+    nearest_close(pair, x, lanes, &edge, to);
+}
+
+PHYS_INLINE void nearest(enum contact_pair pair, const phys_vec x[4], struct contact_nearest *to)
+{
+    struct contact_lanes lanes;
+    phys_vec n;
+    double u, v;
+    contact_lanes_of(x, x, &lanes);
+    if (!find_feet(pair, x, &u, &v)) {
+        nearest_end(pair, x, &lanes, to);
+        return;
+    }
+    const phys_vec way = x[0] - x[pair == CONTACT_VT ? 1 : 2];
+    weigh_inside(pair, u, v, to->weight);
+    contact_across(pair, x, &lanes, &n);
+    to->normal = n / sqrt(phys_dot(&n, &n));
+    to->gap = fabs(phys_dot(&to->normal, &way));
+}
+
+PHYS_KERNEL(contact_nearest_of,
+            (enum contact_pair pair, const phys_vec x[4], struct contact_nearest *to),
+            (pair, x, to))
+{
+    if (pair == CONTACT_VT)
+        nearest(CONTACT_VT, x, to);
+    else
+        nearest(CONTACT_EE, x, to);
 }

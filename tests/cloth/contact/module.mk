@@ -19,4 +19,18 @@ check_PROGRAMS += tests/cloth/contact/test_body_skin
 tests_cloth_contact_test_body_skin_SOURCES = tests/cloth/contact/test_body_skin.c tests/cloth/contact/bodies.h
 tests_cloth_contact_test_body_skin_LDADD = $(CLOTH_TEST_LIBS)
 TESTS += tests/cloth/contact/test_body_skin
+check_PROGRAMS += tests/cloth/contact/test_certificate tests/cloth/contact/test_pair
+tests_cloth_contact_test_certificate_SOURCES = tests/cloth/contact/test_certificate.c tests/cloth/contact/pairs.h
+tests_cloth_contact_test_certificate_LDADD = $(CLOTH_TEST_LIBS)
+tests_cloth_contact_test_pair_SOURCES = tests/cloth/contact/test_pair.c tests/cloth/contact/pairs.h
+tests_cloth_contact_test_pair_LDADD = $(CLOTH_TEST_LIBS)
+TESTS += tests/cloth/contact/test_certificate tests/cloth/contact/test_pair
+if HAVE_GMP
+check_PROGRAMS += tests/cloth/contact/test_certificate_exact
+tests_cloth_contact_test_certificate_exact_SOURCES = tests/cloth/contact/test_certificate_exact.c tests/cloth/contact/pairs.h
+tests_cloth_contact_test_certificate_exact_LDADD = $(CLOTH_TEST_LIBS) $(GMP_LIBS)
+TESTS += tests/cloth/contact/test_certificate_exact
+endif
+dist_check_SCRIPTS += tests/cloth/contact/test_certificate_long.sh
+LONG_TESTS += tests/cloth/contact/test_certificate_long.sh
 endif

@@ -1,0 +1,95 @@
+#ifndef TESTS_CLOTH_CONTACT_PAIRS_H
+#define TESTS_CLOTH_CONTACT_PAIRS_H
+
+/* Random pairs of features that move, of several sorts. */
+#include "cloth/contact/pair.h"
+
+#include <check.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct pairs_sort {
+    const char *name;
+    double size;   /* m: corners lie in a cube of that side */
+    double way;    /* m: own way of a corner along each axis, at most */
+    double common; /* m: of all corners along each axis, at most */
+    double offset; /* m: of the pair from the origin along each axis, at most */
+    double gap;    /* m: the features start so far apart; 0: as it falls */
+    double flat;   /* how much of the triangle's or the edges' angle is left; 0: all */
+};
+
+static const struct pairs_sort PAIRS_SORTS[] = {
+    {"as the bench has them", 0.01, 0.002, 0.002, 1, 0, 0},
+    {"fast ones", 0.01, 0.02, 0.01, 1, 0, 0},
+    {"a large common velocity", 0.01, 0.002, 100, 1, 0, 0},
+    {"gaps of 1e-6 m", 0.01, 1e-6, 0.001, 1, 1e-6, 0},
+    {"gaps of 1e-6 m, a large common velocity, far away", 0.01, 2e-6, 1000, 1e6, 1e-6, 0},
+    {"gaps of 2e-9 m", 0.01, 1e-9, 1e-3, 1, 2e-9, 0},
+    {"far away", 0.01, 0.002, 0.002, 1e6, 0, 0},
+    {"nearly parallel edges, needles", 0.01, 0.002, 0.002, 1, 0, 1e-7},
+    {"nearly parallel edges and needles at 1e-6 m", 0.01, 2e-6, 0.002, 1, 1e-6, 1e-9},
+};
+enum { PAIRS_SORTS_N = sizeof PAIRS_SORTS / sizeof *PAIRS_SORTS };
+
+static uint64_t pairs_seed = 1;
+
+static inline double pairs_uniform(double low, double high)
+{
+    pairs_seed = pairs_seed * 6364136223846793005u + 1442695040888963407u;
+    return low + (high - low) * (double)(pairs_seed >> 11) * 0x1p-53;
+}
+
+static inline void pairs_vector(double reach, phys_vec *x)
+{
+    *x = (phys_vec){pairs_uniform(-reach, reach), pairs_uniform(-reach, reach),
+                    pairs_uniform(-reach, reach), 0};
+}
+
+/* Draws corners, which lie together: the first feature's begin, then the second's. */
+static inline void pairs_corners(enum contact_pair pair, const struct pairs_sort *sort,
+                                 phys_vec x[4])
+{
+    for (int k = 0; k < 4; k++)
+        pairs_vector(0.5 * sort->size, x + k);
+    if (sort->flat > 0 && pair == CONTACT_VT)
+        x[3] = x[1] + pairs_uniform(0, 2) * (x[2] - x[1]) + sort->flat * x[3];
+    if (sort->flat > 0 && pair == CONTACT_EE)
+        x[3] = x[2] + pairs_uniform(-2, 2) * (x[1] - x[0]) + sort->flat * x[3];
+}
+
+static inline void pairs_draw(enum contact_pair pair, const struct pairs_sort *sort, phys_vec x[4],
+                              phys_vec y[4])
+{
+    struct contact_nearest nearest;
+    phys_vec common, offset, way;
+    pairs_corners(pair, sort, x);
+    contact_nearest_of(pair, x, &nearest);
+    for (int k = 0; k < (pair == CONTACT_VT ? 1 : 2) && sort->gap > 0; k++)
+        x[k] -= (nearest.gap - sort->gap) * nearest.normal;
+    pairs_vector(sort->common, &common);
+    pairs_vector(sort->offset, &offset);
+    for (int k = 0; k < 4; k++) {
+        pairs_vector(sort->way, &way);
+        x[k] += offset;
+        y[k] = x[k] + common + way;
+    }
+}
+
+/* How many pairs of a kind: quick, DUITE_LONG=1 for the full number, or that of make check. */
+static inline int pairs_count(void)
+{
+    const char *is_long = getenv("DUITE_LONG"), *is_quick = getenv("DUITE_QUICK");
+    if (is_long && !strcmp(is_long, "1"))
+        return 1000000;
+    return is_quick && !strcmp(is_quick, "1") ? 1000 : 10000;
+}
+
+/* As ck_assert, which writes to a file each time. */
+#define PAIRS_CHECK(what)                                                                          \
+    do {                                                                                           \
+        if (!(what))                                                                               \
+            ck_abort_msg("%s", #what);                                                             \
+    } while (0)
+
+#endif

@@ -1,0 +1,208 @@
+/* What a certificate must say, by cases that are known; and that a cut makes it hold, also where
+ * corners are cut further. Whether what is certain is true, test_certificate_exact.c says. */
+#include "cloth/contact/certificate.h"
+#include "tests/cloth/contact/pairs.h"
+#include "tests/support/unit.h"
+
+#include <math.h>
+#include <stdio.h>
+
+static const enum contact_pair KINDS[2] = {CONTACT_VT, CONTACT_EE};
+static const double THICKNESS = 0.001;
+
+/* ---- Known cases ---- */
+
+/* A vertex over a triangle, or an edge over one that it crosses, so high; each goes down by so
+ * much. */
+static void lay(enum contact_pair pair, double height, double first_down, double second_down,
+                phys_vec x[4], phys_vec y[4])
+{
+    static const double CORNER[2][4][3] = {{{1, 1, 0}, {0, 0, 0}, {4, 0, 0}, {0, 4, 0}},
+                                           {{-1, 0, 0}, {3, 0, 0}, {0, -1, 0}, {0, 1, 0}}};
+    const int n_first = pair == CONTACT_VT ? 1 : 2;
+    for (int k = 0; k < 4; k++) {
+        const double *c = CORNER[pair == CONTACT_EE][k];
+        x[k] = (phys_vec){0.005 * c[0], 0.005 * c[1], k < n_first ? height : 0, 0};
+        y[k] = x[k] - (phys_vec){0, 0, k < n_first ? first_down : second_down, 0};
+    }
+}
+
+static bool certain(enum contact_pair pair, double height, double first_down, double second_down)
+{
+    phys_vec x[4], y[4];
+    lay(pair, height, first_down, second_down, x, y);
+    return contact_certify(pair, x, y, THICKNESS);
+}
+
+START_TEST(known)
+{
+    for (int i = 0; i < 2; i++) {
+        const enum contact_pair pair = KINDS[i];
+        ck_assert(certain(pair, 1e-3, 0, 0));
+        ck_assert(certain(pair, 1e-3, 0.9e-3 - 1e-9, 0)); /* a tenth of the thickness is left */
+        ck_assert(!certain(pair, 1e-3, 0.9e-3 + 1e-9, 0));
+        ck_assert(!certain(pair, 1e-3, 1e-3, 0));
+        ck_assert(!certain(pair, 1e-3, 2e-3, 0)); /* through */
+        ck_assert(!certain(pair, 1e-3, 5, 0));
+        ck_assert(certain(pair, 1e-3, 5, 5)); /* together */
+        ck_assert(certain(pair, 1e-3, 5, 6));
+        ck_assert(certain(pair, 1e-4, 0.49e-4, 0)); /* half of a small gap is left */
+        ck_assert(!certain(pair, 1e-4, 0.51e-4, 0));
+        ck_assert(certain(pair, 1e-9, 0, 0));
+        ck_assert(certain(pair, 0.6e-9, -1e-10, 0)); /* opens */
+        ck_assert(!certain(pair, 1.5e-9, 0.6e-9, 0));
+        ck_assert(!certain(pair, 0, 0, 0));
+        ck_assert(!certain(pair, 0, -1, 0)); /* touches at the start */
+    }
+}
+END_TEST
+
+START_TEST(not_finite)
+{
+    const double value[] = {NAN, INFINITY, -INFINITY};
+    for (int i = 0; i < 2; i++)
+        for (int k = 0; k < 8; k++)
+            for (int j = 0; j < 3; j++) {
+                phys_vec x[4], y[4];
+                double t[4] = {1, 1, 1, 1};
+                lay(KINDS[i], 1e-3, 0, 0, x, y);
+                *(k < 4 ? x + k : y + k - 4) = (phys_vec){0, 0, value[j], 0};
+                ck_assert(!contact_certify(KINDS[i], x, y, THICKNESS));
+                ck_assert(!contact_cut(KINDS[i], x, y, THICKNESS, 0, t));
+            }
+}
+END_TEST
+
+/* ---- Cuts ---- */
+
+static void end_of(const phys_vec x[4], const phys_vec y[4], unsigned held, const double t[4],
+                   phys_vec end[4])
+{
+    for (int k = 0; k < 4; k++)
+        end[k] = held >> k & 1 ? y[k] : x[k] + t[k] * (y[k] - x[k]);
+}
+
+/* What the cut says holds, also if other pairs cut the same corners further, now or in a later
+ * round. */
+static void check_cut(enum contact_pair pair, const phys_vec x[4], const phys_vec y[4],
+                      unsigned held, const double t[4])
+{
+    phys_vec end[4], further[4];
+    double less[4];
+    end_of(x, y, held, t, end);
+    PAIRS_CHECK(contact_certify(pair, x, end, THICKNESS));
+    for (int i = 0; i < 4; i++) {
+        for (int k = 0; k < 4; k++)
+            less[k] = i == k ? 0 : pairs_uniform(0, 1) * (i % 2 ? t[k] : 1);
+        end_of(x, i % 2 ? y : end, held, less, further);
+        PAIRS_CHECK(contact_certify(pair, x, further, THICKNESS));
+    }
+}
+
+/* Pairs that hold at the start, so that a cut must be possible where no corner is held. */
+static bool starts(enum contact_pair pair, const phys_vec x[4])
+{
+    return contact_certify(pair, x, x, THICKNESS);
+}
+
+START_TEST(cuts)
+{
+    const struct pairs_sort *sort = PAIRS_SORTS + _i;
+    int uncut = 0, cut = 0, refused = 0, n = pairs_count();
+    for (int i = 0; i < n; i++) {
+        const enum contact_pair pair = KINDS[i & 1];
+        const unsigned held = i % 3 ? 0 : (unsigned)pairs_uniform(0, 16);
+        double t[4] = {1, 1, 1, 1};
+        phys_vec x[4], y[4];
+        pairs_draw(pair, sort, x, y);
+        if (contact_certify(pair, x, y, THICKNESS)) {
+            uncut++;
+            continue;
+        }
+        if (!contact_cut(pair, x, y, THICKNESS, held, t)) {
+            PAIRS_CHECK(held || !starts(pair, x));
+            refused++;
+            continue;
+        }
+        for (int k = 0; k < 4; k++)
+            PAIRS_CHECK(t[k] >= 0 && t[k] <= 1 && (t[k] == 1 || !(held >> k & 1)));
+        check_cut(pair, x, y, held, t);
+        cut++;
+    }
+    printf("# %s: %d of %d uncut, %d cut, %d refused\n", sort->name, uncut, n, cut, refused);
+}
+END_TEST
+
+/* Steps towards each other without end: each is certified after its cut, and the gap stays. */
+START_TEST(again_and_again)
+{
+    for (int i = 0; i < 2; i++) {
+        double height = 1e-3;
+        for (int step = 0; step < 100; step++) {
+            double t[4] = {1, 1, 1, 1};
+            phys_vec x[4], y[4], end[4];
+            lay(KINDS[i], height, 1e-2, -1e-3, x, y);
+            ck_assert(contact_cut(KINDS[i], x, y, THICKNESS, 0, t));
+            end_of(x, y, 0, t, end);
+            ck_assert(contact_certify(KINDS[i], x, end, THICKNESS));
+            height = end[0][2] - end[3][2];
+        }
+        ck_assert(height >= CONTACT_MARGIN);
+    }
+}
+END_TEST
+
+/* t as other pairs left it is only lowered; of a side that does not move nothing is taken. */
+START_TEST(lowered)
+{
+    for (int i = 0; i < 2; i++) {
+        double t[4] = {0.01, 0.01, 1, 1};
+        phys_vec x[4], y[4];
+        lay(KINDS[i], 1e-3, 1e-2, 0, x, y);
+        if (KINDS[i] == CONTACT_VT)
+            t[1] = 1;
+        ck_assert(contact_cut(KINDS[i], x, y, THICKNESS, 0, t));
+        ck_assert(t[0] == 0.01 && t[2] == 1 && t[3] == 1);
+        for (int k = 0; k < 4; k++)
+            t[k] = 1;
+        ck_assert(contact_cut(KINDS[i], x, y, THICKNESS, 0, t));
+        ck_assert(t[0] > 0.08 && t[0] < 0.09 &&
+                  t[3] == 1); /* 0.1 of the way to the plane is left */
+    }
+}
+END_TEST
+
+/* An obstacle that comes pushes the plane as far as there is room; into the cloth it is refused. */
+START_TEST(pushed)
+{
+    for (int i = 0; i < 2; i++) {
+        const enum contact_pair pair = KINDS[i];
+        const unsigned below = pair == CONTACT_VT ? 0xe : 0xc;
+        for (double rise = 0; rise < 2e-3; rise += 1e-4) {
+            double t[4] = {1, 1, 1, 1};
+            phys_vec x[4], y[4];
+            lay(pair, 1e-3, 1e-2, -rise, x, y);
+            const bool is_cut = contact_cut(pair, x, y, THICKNESS, below, t);
+            ck_assert(is_cut == (rise < 0.9e-3 - 1e-9));
+            ck_assert(t[3] == 1);
+            if (is_cut)
+                check_cut(pair, x, y, below, t);
+        }
+    }
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("certificate");
+    TCase *cases = tcase_create("known"), *cut_cases = tcase_create("cut");
+    tcase_add_test(cases, known);
+    tcase_add_test(cases, not_finite);
+    tcase_add_loop_test(cut_cases, cuts, 0, PAIRS_SORTS_N);
+    tcase_add_test(cut_cases, again_and_again);
+    tcase_add_test(cut_cases, lowered);
+    tcase_add_test(cut_cases, pushed);
+    suite_add_tcase(suite, cases);
+    suite_add_tcase(suite, cut_cases);
+    return unit_run(suite);
+}

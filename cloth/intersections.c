@@ -336,15 +336,6 @@ struct intersections_found intersections_found(const struct intersections *inter
     return intersections->found;
 }
 
-void intersections_say(const struct intersections_found *found, const char *program)
-{
-    if (found->bad)
-        fprintf(stderr,
-                "%s: triangles intersect in %" PRIu64 " of %" PRIu64 " frames, from frame %" PRIu64
-                " on: at most %" PRIu64 " pairs of cloth, and %" PRIu64 " with obstacles\n",
-                program, found->bad, found->frames, found->first, found->pairs, found->with_shapes);
-}
-
 /* ---- Beginning and end ---- */
 
 static int take_arrays(struct intersections *all, struct cloth_error *error)

@@ -80,7 +80,8 @@ static void print_halved(FILE *file, const struct summary *summary)
         [FLOW_CAUSE_SOLVE] = "for a solve that failed",
         [FLOW_CAUSE_BOUNDS] = "for what left all bounds",
         [FLOW_CAUSE_STRETCH] = "for stretch (time.stretch_growth, time.stretch_limit)",
-        [FLOW_CAUSE_ENERGY] = "for energy gained (time.energy_growth)"};
+        [FLOW_CAUSE_ENERGY] = "for energy gained (time.energy_growth)",
+        [FLOW_CAUSE_CONTACT] = "for ways that contact cut (contact)"};
     const struct flow_report *report = summary->report;
     fprintf(file, "  shorter steps    down to h / %.0f; halved %" PRIu64 " times",
             summary->model->h / report->shortest_step, report->steps_halved);
@@ -271,6 +272,10 @@ static void add_halved(struct output_report *json, const struct flow_report *rep
     output_report_integer(json, "steps_halved_bounds", by[FLOW_CAUSE_BOUNDS]);
     output_report_integer(json, "steps_halved_stretch", by[FLOW_CAUSE_STRETCH]);
     output_report_integer(json, "steps_halved_energy", by[FLOW_CAUSE_ENERGY]);
+    output_report_integer(json, "steps_halved_contact", by[FLOW_CAUSE_CONTACT]);
+    output_report_integer(json, "contacts", report->contacts);
+    output_report_integer(json, "contact_solves", report->contact_solves);
+    output_report_integer(json, "contact_cuts", report->contact_cuts);
 }
 
 static void add_runtime(struct output_report *json, const struct summary *summary)

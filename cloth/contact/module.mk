@@ -12,12 +12,13 @@ libduite_cloth_la_SOURCES += \
 	cloth/contact/meet.c cloth/contact/meet.h \
 	cloth/contact/pair.c cloth/contact/pair.h \
 	cloth/contact/plane.c \
+	cloth/contact/row.h \
 	cloth/contact/shape.c cloth/contact/shape.h \
 	cloth/contact/skin.h cloth/contact/skin_table.h \
 	cloth/contact/skin_make.c \
 	cloth/contact/skin_query.c \
 	cloth/contact/skin_refit.c \
-	cloth/contact/solid.c cloth/contact/solid.h cloth/contact/solid_core.h \
+	cloth/contact/solid.c cloth/contact/solid.h \
 	cloth/contact/solid_nearest.c \
 	cloth/contact/sphere.c \
 	cloth/contact/surface.c cloth/contact/surface.h

@@ -47,13 +47,15 @@ static inline struct flow_table flow_table_in(const duite_call *call, const unsi
 struct flow_view {
     const phys_vec *x, *v;
     const duite_param *halo_x, *halo_v;
-    const unsigned char *tie_table; /* NULL: the run has no ties */
-    const duite_param *tie_halo;    /* of each block that it shares ties with */
+    const unsigned char *tie_table;         /* NULL: the run has no ties */
+    const duite_param *tie_halo;            /* of each block that it shares ties with */
+    const struct contact_row *contact_rows; /* of those ties that are contacts; NULL: none is asked
+                                             * for */
 };
 /* That of a body whose kernel declares x, v, the neighbours' halos of both, and ties. */
 #define FLOW_VIEW(on)                                                                              \
     {                                                                                              \
-        (on)->x, (on)->v, (on)->halo_x, (on)->halo_v, (on)->tie_table, (on)->tied_tie_halo         \
+        (on)->x, (on)->v, (on)->halo_x, (on)->halo_v, (on)->tie_table, (on)->tied_tie_halo, NULL   \
     }
 
 /* Notes in the status that this rank is asked to stop, if it is. */
@@ -128,6 +130,12 @@ void flow_ties_force(const struct flow *flow, const struct flow_view *view, phys
 void flow_ties_system(const struct flow *flow, const struct flow_view *view, double h, double push,
                       phys_vec *b, phys_vec *value);
 double flow_ties_energy(const struct flow *flow, const struct flow_view *view);
+/* Contacts of a block (contact/rows.c). Adds their forces where x is, N. Their part of a system:
+ * where h v leads if push is h; where x is, with - h^2 K v on the right side, if it is 0; the
+ * matrix alone where b is NULL. */
+void flow_contact_force(const struct flow *flow, const struct flow_view *view, phys_vec *f);
+void flow_contact_system(const struct flow *flow, const struct flow_view *view, double h,
+                         double push, phys_vec *b, phys_vec *value);
 /* Takes out of lost[3] what solve_lost cannot know: N dv of ties that lead to held ends. */
 void flow_ties_lost(const unsigned char *tie_table, const phys_vec *value, const phys_vec *dv,
                     double lost[3]);

@@ -10,8 +10,7 @@
     X(table_make) X(table_keep) X(skin_make) X(skin_keep)                                          \
     X(initial) X(keep) X(restore) X(status) X(tie) X(tie_show)                                     \
     X(force) X(force_free) X(prescribe_velocity) X(prescribe_position)                             \
-    X(keep_halo) X(skin_refit)                                                                     \
-    X(filter) X(constrain) X(collide)                                          \
+    X(keep_halo) X(skin_refit) X(root) X(roots) X(tie_say) X(filter) X(constrain) X(collide)        \
     X(euler) X(euler_next) X(verlet_first) X(verlet_second) X(midpoint) X(runge)                   \
     X(velocity_implicit) X(position) X(predict) X(correct) X(shift) X(residual)                    \
     X(system) X(system_of_forces) X(matrix) X(factor)                                              \
@@ -35,6 +34,10 @@ extern const duite_kernel
 extern const duite_kernel flow_ready; /* cw ready: fails if this rank cannot begin */
 extern const duite_kernel flow_pack;  /* r halo of s, w packed halo */
 
-enum { FLOW_KERNELS_LISTED = FLOW_KERNELS_OF_ALL + 4 }; /* by flow_kernels (run.h) */
+/* Of sides that meet: contact/contact.h. */
+extern const duite_kernel flow_meet, flow_meet_shape, flow_touch, flow_cut_ways, flow_count_ties,
+    flow_tie_contacts;
+
+enum { FLOW_KERNELS_LISTED = FLOW_KERNELS_OF_ALL + 10 }; /* by flow_kernels (run.h) */
 
 #endif

@@ -2,8 +2,18 @@
 # seen of it.
 libduite_cloth_la_SOURCES += \
     cloth/flow/bodies.h \
+    cloth/flow/contact/certify.c \
+    cloth/flow/contact/certify.h \
+    cloth/flow/contact/contact.h \
+    cloth/flow/contact/cut.c \
+    cloth/flow/contact/meet.c \
+    cloth/flow/contact/meet_shape.c \
+    cloth/flow/contact/memory.c \
+    cloth/flow/contact/pairs.c \
+    cloth/flow/contact/rows.c \
     cloth/flow/contact/skins.c \
     cloth/flow/contact/skins.h \
+    cloth/flow/contact/touch.c \
     cloth/flow/kernels.h \
     cloth/flow/run.c \
     cloth/flow/run.h \
@@ -29,6 +39,7 @@ libduite_cloth_la_SOURCES += \
     cloth/flow/setup/source.h \
     cloth/flow/setup/springs.c \
     cloth/flow/setup/starts.c \
+    cloth/flow/setup/stiffness.c \
     cloth/flow/setup/warn.c \
     cloth/flow/setup/watched.c \
     cloth/flow/setup/welds.c \

@@ -3,6 +3,7 @@
 #include "cloth/flow/run.h"
 
 #include "cloth/base/memory.h"
+#include "cloth/flow/contact/certify.h"
 #include "cloth/flow/observe/observe.h"
 #include "cloth/flow/setup/setup.h"
 #include "cloth/flow/solver/solve.h"
@@ -25,9 +26,18 @@ double flow_now(void)
 const duite_kernel *const *flow_kernels(void)
 {
 #define TASK(name) &flow_kernel_##name.task,
-    static const duite_kernel *const all[FLOW_KERNELS_LISTED + 1] = {
-        FLOW_KERNELS(TASK) & flow_broadcast_head, &flow_broadcast_shared, &flow_ready, &flow_pack,
-        NULL};
+    static const duite_kernel *const all[FLOW_KERNELS_LISTED + 1] = {FLOW_KERNELS(TASK) &
+                                                                         flow_broadcast_head,
+                                                                     &flow_broadcast_shared,
+                                                                     &flow_ready,
+                                                                     &flow_pack,
+                                                                     &flow_meet,
+                                                                     &flow_meet_shape,
+                                                                     &flow_touch,
+                                                                     &flow_cut_ways,
+                                                                     &flow_count_ties,
+                                                                     &flow_tie_contacts,
+                                                                     NULL};
     return all;
 }
 
@@ -67,6 +77,8 @@ static int build(struct flow *flow, int ranks, struct cloth_error *error)
     flow->partition_hash = flow->source.blocks.hash;
     flow->inertia = flow_source_inertia(&flow->source);
     flow->release = flow_source_release(&flow->source);
+    flow->contact_stiffness = flow_source_stiffness(&flow->source);
+    flow->vertex_mass = flow_source_mass(&flow->source);
     flow_preconditioner_choose(flow, flow->source.blocks.n_blocks);
     if (flow_watched_header(&flow->source.watched, flow->model, &flow->header, error) ||
         flow_warn(flow, error))
@@ -203,6 +215,8 @@ static int run_steps(struct flow_state *state)
         code = flow_cg_record(state);
     if (!code)
         code = flow_initialise(state);
+    if (!code && model_certifies(state->flow->model))
+        code = flow_contact_start(state);
     if (!code)
         code = flow_steps(state);
     if (!code && implicit && state->report->steps && state->output && state->output->system)
@@ -237,7 +251,7 @@ static const char *reason(const struct flow_state *state, int code)
 {
     if (code == FLOW_NOT_WRITTEN && state->flow->trouble.code)
         return state->flow->trouble.text;
-    if (code == FLOW_STRETCHED)
+    if (code == FLOW_STRETCHED || code == FLOW_TANGLED)
         return state->reason;
     return code > 0 ? own_sentence(duite_message(), code) : duite_message();
 }
@@ -281,8 +295,9 @@ int flow_run(struct flow *flow, duite *rt, const struct flow_output *output,
     if (!code)
         code = flow_finish(&state);
     int failed = code ? explain(&state, code) : CLOTH_OK;
+    const int contacts = flow_contact_free_objects(&state);
     const int objects = flow_objects_free(&state);
-    if (!failed && objects)
+    if (!failed && (objects || contacts))
         failed = cloth_fail(error, CLOTH_E_LIBRARY, "%s", duite_message());
     duite_wait(rt);
     if (flow->model) {

@@ -17,13 +17,14 @@ struct flow_energy {
 };
 
 /* Why a step is begun again with half its length: its solve failed; a position, velocity or edge is
- * beyond all bounds or no number; an edge is stretched too far; it gained energy. The first that
- * holds. */
+ * beyond all bounds or no number; an edge is stretched too far; it gained energy; contact cuts too
+ * much of it. The first that holds. */
 enum flow_cause {
     FLOW_CAUSE_SOLVE,
     FLOW_CAUSE_BOUNDS,
     FLOW_CAUSE_STRETCH,
     FLOW_CAUSE_ENERGY,
+    FLOW_CAUSE_CONTACT,
     FLOW_CAUSES
 };
 
@@ -36,6 +37,9 @@ struct flow_report {
                                                   was not small enough; 0 where there is but one */
     uint64_t steps_halved; /* how often a step was given up and begun again with half the length, */
     uint64_t halved_by[FLOW_CAUSES]; /* and why */
+    uint64_t contacts;               /* certified contact: the most at a time; */
+    uint64_t contact_solves;         /* solves of steps beyond their first; */
+    uint64_t contact_cuts;           /* how often a vertex's way was cut */
     uint64_t steps_retaken; /* how often one by BDF2 gained energy and was made again by implicit
                                Euler */
     uint64_t frames, cg_iterations_total, cg_iterations_max; /* iterations: of the steps made */

@@ -339,7 +339,8 @@ bool model_is_guarded(const struct model *model);
 /* Whether a step may be made again, from a copy of the state before it. */
 static inline bool model_keeps(const struct model *model)
 {
-    return model->halving || (model->integrator == MODEL_BDF2 && model_is_guarded(model));
+    return model->halving || model_certifies(model) ||
+           (model->integrator == MODEL_BDF2 && model_is_guarded(model));
 }
 
 /* Whether its solves stop by norms of the masses. */

@@ -38,8 +38,8 @@ static void mean_way(uint32_t n, const phys_vec *x, const phys_vec *y, phys_vec 
 }
 
 FLOW_KERNEL(skin_refit, FLOW_COLLIDE, struct flow_block_args,
-            (R(skin), R(kept_x), R(x), NEIGHBOURS(kept_halo_x), NEIGHBOURS(halo_x), W(skin_x),
-             W(skin_boxes)))
+            (R(skin), R(kept_x), R(x), W(skin_x), W(skin_boxes), NEIGHBOURS(kept_halo_x),
+             NEIGHBOURS(halo_x)))
 static int skin_refit_body(const duite_call *call, const struct skin_refit_fields *on)
 {
     const uint32_t n_neighbours = flow_shape_of(call)->n_neighbours;

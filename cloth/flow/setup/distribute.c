@@ -40,6 +40,8 @@ static int broadcast_head(const duite_call *call)
     head->n_steps = flow->n_steps;
     head->inertia = flow->inertia;
     head->release = flow->release;
+    head->contact_stiffness = flow->contact_stiffness;
+    head->vertex_mass = flow->vertex_mass;
     head->partition_hash = flow->partition_hash;
     head->n_vertices = flow->n_vertices;
     head->n_pieces = source->particles.n_pieces;
@@ -176,6 +178,8 @@ int flow_share_head(struct flow_state *state)
     flow->n_steps = head->n_steps;
     flow->inertia = head->inertia;
     flow->release = head->release;
+    flow->contact_stiffness = head->contact_stiffness;
+    flow->vertex_mass = head->vertex_mass;
     flow->partition_hash = head->partition_hash;
     flow->n_vertices = head->n_vertices;
     flow->n_triangles = head->n_triangles;

@@ -1,6 +1,7 @@
 /* What can fail on one rank alone is had before the first task of a run. A rank that lacks it does
  * not leave: it says so in a task, and all ranks leave together. */
 #include "cloth/flow/bodies.h"
+#include "cloth/flow/contact/certify.h"
 #include "cloth/flow/observe/observe.h"
 #include "cloth/flow/setup/setup.h"
 #include "cloth/flow/solver/solve.h"
@@ -58,7 +59,9 @@ static void take(struct flow_state *state)
 {
     struct flow *flow = state->flow;
     const struct flow_head *head = &state->head;
-    const size_t tied = smaller(head->n_blocks, head->n_ties); /* others of a block, at most */
+    const size_t tied = model_certifies(flow->model) /* others of a block, at most */
+                            ? head->n_blocks
+                            : smaller(head->n_blocks, head->n_ties);
     const size_t refs =
         larger(head->n_blocks, 2 * (size_t)head->max_neighbours) + 2 * tied + DUITE_MAX_ACCESS;
     flow->n_clocks = duite_threads(state->rt);
@@ -92,6 +95,7 @@ static void take(struct flow_state *state)
                               sizeof *state->rows, &flow->trouble);
     flow_halo_take(state);
     flow_ties_take(state);
+    flow_contact_take(state);
     if (duite_rank(state->rt) == 0)
         take_room(state);
 }
@@ -140,6 +144,7 @@ void flow_memory_free(struct flow_state *state)
     free(state->rows);
     flow_halo_free(state);
     flow_ties_free(state);
+    flow_contact_free(state);
     free(state->bytes);
     XXH64_freeState(state->hash);
     flow->clock = NULL;

@@ -347,6 +347,11 @@ double flow_source_inertia(const struct flow_source *source);
  * vertex moves to the centre and as far on. 0 without weights and loads. Local. */
 double flow_source_release(const struct flow_source *source);
 
+/* What contacts are measured by (stiffness.c): N/m, of a contact; kg, of a vertex, the mean. Local.
+ */
+double flow_source_stiffness(const struct flow_source *source);
+double flow_source_mass(const struct flow_source *source);
+
 /* Orders the loads that vary by place, when blocks are there; those of unused vertices are dropped.
  * Then: the first of them at or after a place. Local. */
 void flow_varying_settle(struct flow_source *source);

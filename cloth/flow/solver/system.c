@@ -127,6 +127,9 @@ static void make(const struct making *m)
     if (m->view.tie_table)
         flow_ties_system(flow_of(m->call), &m->view, m->h, m->push, m->b,
                          (phys_vec *)m->values + flow_value_rows(m->t));
+    if (m->view.contact_rows)
+        flow_contact_system(flow_of(m->call), &m->view, m->h, m->push, m->b,
+                            (phys_vec *)m->values + flow_value_rows(m->t));
     if (m->sums)
         end_matrix(m, &cut);
 }
@@ -157,11 +160,12 @@ static void make_system(const duite_call *call, const struct flow_table *t,
 
 FLOW_KERNEL(system, FLOW_MATRIX, struct flow_step_args,
             (R(table), R(x), R(v), W(f), W(a), NEIGHBOURS(halo_x), NEIGHBOURS(halo_v),
-             IF_MADE(tie_table), TIED(tie_halo)))
+             IF_MADE(tie_table), IF_MADE(contact_rows), TIED(tie_halo)))
 static int system_body(const duite_call *call, const struct system_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table);
-    const struct flow_view view = FLOW_VIEW(on);
+    struct flow_view view = FLOW_VIEW(on);
+    view.contact_rows = on->contact_rows;
     make_system(call, &table, on->args, on->args->h, &view, on->f, on->a);
     return 0;
 }
@@ -169,25 +173,28 @@ static int system_body(const duite_call *call, const struct system_fields *on)
 /* Where f has the forces. */
 FLOW_KERNEL(system_of_forces, FLOW_MATRIX, struct flow_step_args,
             (R(table), R(x), R(v), RW(f), W(a), NEIGHBOURS(halo_x), NEIGHBOURS(halo_v),
-             IF_MADE(tie_table), TIED(tie_halo)))
+             IF_MADE(tie_table), IF_MADE(contact_rows), TIED(tie_halo)))
 static int system_of_forces_body(const duite_call *call, const struct system_of_forces_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table);
-    const struct flow_view view = FLOW_VIEW(on);
+    struct flow_view view = FLOW_VIEW(on);
+    view.contact_rows = on->contact_rows;
     make_system(call, &table, on->args, 0, &view, on->f, on->a);
     return 0;
 }
 
 /* The matrix alone. */
 FLOW_KERNEL(matrix, FLOW_MATRIX, struct flow_step_args,
-            (R(table), R(x), W(a), NEIGHBOURS(halo_x), IF_MADE(tie_table), TIED(tie_halo)))
+            (R(table), R(x), W(a), NEIGHBOURS(halo_x), IF_MADE(tie_table), IF_MADE(contact_rows),
+             TIED(tie_halo)))
 static int matrix_body(const duite_call *call, const struct matrix_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table);
     const struct flow_view view = {.x = on->x,
                                    .halo_x = on->halo_x,
                                    .tie_table = on->tie_table,
-                                   .tie_halo = on->tied_tie_halo};
+                                   .tie_halo = on->tied_tie_halo,
+                                   .contact_rows = on->contact_rows};
     make_system(call, &table, on->args, 0, &view, NULL, on->a);
     return 0;
 }

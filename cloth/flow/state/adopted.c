@@ -10,11 +10,12 @@
 /* ---- Memory ---- */
 
 /* How many pairs (block, other block) there are at most: those of now, and of before. */
-static size_t max_others(const struct flow_head *head)
+static size_t max_others(const struct flow_state *state)
 {
+    const struct flow_head *head = &state->head;
     const size_t joints = 4 * (size_t)head->n_ties;
     const size_t all = (size_t)head->n_blocks * head->n_blocks;
-    return joints < all ? joints : all;
+    return joints < all && !model_certifies(state->flow->model) ? joints : all;
 }
 
 static void take(struct flow_tied_blocks *blocks, size_t n_blocks, size_t n_others,
@@ -31,8 +32,8 @@ void flow_ties_take(struct flow_state *state)
     const struct flow_head *head = &state->head;
     struct flow_tied *tied = &state->tied;
     struct cloth_error *trouble = &state->flow->trouble;
-    const size_t others = max_others(head);
-    if (!head->n_ties)
+    const size_t others = max_others(state);
+    if (!head->n_ties && !model_certifies(state->flow->model))
         return;
     tied->parent = cloth_alloc((size_t)head->n_pieces + 1, sizeof *tied->parent, trouble);
     tied->group = cloth_alloc(head->n_pieces, sizeof *tied->group, trouble);

@@ -60,6 +60,28 @@ static size_t tie_bytes(const struct flow_state *state, uint32_t block)
     return flow_ties_bytes(table_of(state, block)->n, &room);
 }
 
+static size_t blocks(const struct flow_state *state, uint32_t block)
+{
+    (void)block;
+    return state->flow->tables.n_blocks;
+}
+
+/* What a block says of its ties: there may be links to all blocks. */
+static size_t record_bytes(const struct flow_state *state, uint32_t block)
+{
+    return sizeof(struct flow_tie_record) + blocks(state, block) * sizeof(struct flow_tie_link);
+}
+
+static size_t records_bytes(const struct flow_state *state, uint32_t block)
+{
+    return blocks(state, block) * record_bytes(state, block);
+}
+
+static size_t tie_count(const struct flow_state *state, uint32_t block)
+{
+    return tie_room(state, block).ties;
+}
+
 static size_t watched(const struct flow_state *state, uint32_t block)
 {
     return table_of(state, block)->n_watched;
@@ -225,8 +247,7 @@ static bool coarse_run(const struct flow_state *state, uint32_t block)
 
 static bool may_be_tied(const struct flow_state *state, uint32_t block)
 {
-    (void)block;
-    return state->flow->n_ties > 0;
+    return state->flow->n_ties > 0 || certified(state, block);
 }
 
 static bool solves_tied(const struct flow_state *state, uint32_t block)

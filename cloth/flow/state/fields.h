@@ -1,6 +1,7 @@
 #ifndef CLOTH_FLOW_STATE_FIELDS_H
 #define CLOTH_FLOW_STATE_FIELDS_H
 
+#include "cloth/contact/row.h"
 #include "cloth/physics/vec.h"
 #include "cloth/solve/cg.h"
 
@@ -22,6 +23,9 @@
  * pass, that of the pass under way (flow_state.pass). */
 
 /* Of each block; they live where its x lives. */
+/* Numbers of a row of a contact. */
+enum { FLOW_ROW_NUMBERS = sizeof(struct contact_row) / sizeof(double) };
+
 /* clang-format off */
 #define FLOW_BLOCK_FIELDS(X)                                                                       \
     /* the state, and what neighbours read of it */                                                \
@@ -58,6 +62,11 @@
     X(base_v,       ONE,     phys_vec,      4, rows,          based,        is_work)               \
     X(last_x,       ONE,     phys_vec,      4, rows,          bdf2,         is_state)              \
     X(last_v,       ONE,     phys_vec,      4, rows,          bdf2,         is_state)              \
+    /* certified contact: the box around the skin of the block over the step (pairs.c). What it says \
+     * of its ties; what its contacts are in the step under way: struct contact_row (rows.c) */    \
+    X(root,         ONE,     double,        FLOW_ROOT, one,       certified,    is_work)               \
+    X(tie_record,   SIZED,   unsigned char, 1, record_bytes,  certified,    is_work)               \
+    X(contact_rows, ONE,     struct contact_row, FLOW_ROW_NUMBERS, tie_count, certified, is_work)  \
     /* the system of a step: matrix (flow_matrix_in), its filter if any; its solve */        \
     X(a,            ONE,     phys_vec,      1, matrix,        implicit_run, is_work)               \
     X(filter,       ONE,     phys_vec,      4, rows,          filtered,     is_work)               \
@@ -96,6 +105,9 @@
     X(energies,     BY_STEP, double,        FLOW_SUMS, one,           always,       is_work)       \
     X(trial,        ONE,     double,        FLOW_STATUS, one,           implicit_run, is_work)     \
     X(slope,        ONE,     double,        1, one,           implicit_run, is_work)               \
+    X(roots,        ONE,     double,        FLOW_ROOT, blocks,    certified,    is_work)               \
+    X(tie_said,     SIZED,   unsigned char, 1, records_bytes, certified,    is_work)               \
+    X(cut_counts,   ONE,     double,        FLOW_CUT_COUNTS, one, certified,    is_work)               \
     /* a solve; pieces: what it left of free pieces; coarse, motion: factor, and its part of s */  \
     X(sums,         BY_PASS, double,        1, dots,          plain_solve,  is_work)               \
     X(scalars,      BY_PASS, struct solve_scalars, SOLVE_SCALARS, one,           implicit_run, is_work) \

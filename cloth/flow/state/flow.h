@@ -40,7 +40,8 @@ enum {
     FLOW_NO_MEMORY,
     FLOW_NOT_CONVERGED,
     FLOW_STRETCHED,
-    FLOW_NO_FILTER
+    FLOW_NO_FILTER,
+    FLOW_TANGLED
 };
 
 /* Rows of a block's halo that blocks on one other rank read. */
@@ -61,8 +62,9 @@ struct flow {
     struct model received;     /* without names, materials, cloths */
     uint32_t n_vertices, n_triangles;
     uint64_t n_steps, partition_hash;
-    double inertia, release;   /* kg m^2, J: flow_source_inertia, flow_source_release */
-    struct flow_tables tables; /* shapes */
+    double inertia, release;               /* kg m^2, J: flow_source_inertia, flow_source_release */
+    double contact_stiffness, vertex_mass; /* N/m, kg: flow_source_stiffness, flow_source_mass */
+    struct flow_tables tables;             /* shapes */
     void *shared; /* bodies, obstacles, key frames, ties, neighbours and ghosts that what is here
                      points to */
     uint32_t n_ties;

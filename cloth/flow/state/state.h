@@ -68,6 +68,10 @@ enum {
     FLOW_TORQUE = FLOW_ENERGIES,
     FLOW_SUMS = FLOW_TORQUE + 3
 };
+/* Numbers of a box: low and high corner. */
+enum { FLOW_ROOT = 6 };
+/* What is counted of ways that are cut: rows; those that lose more than half. */
+enum { FLOW_CUT_ROWS, FLOW_CUT_HALVED, FLOW_CUT_COUNTS };
 /* Indices into what rank 0 broadcasts, I64 x 2. */
 enum { FLOW_BROADCAST_FRAMES, FLOW_BROADCAST_HASH, FLOW_BROADCAST };
 
@@ -77,7 +81,7 @@ enum { FLOW_VERTEX_BYTES = 24 };
 /* What rank 0 broadcasts before anything else. */
 struct flow_head {
     uint64_t n_steps, partition_hash;
-    double inertia, release;
+    double inertia, release, contact_stiffness, vertex_mass;
     uint64_t shared_bytes;                                              /* of the next broadcast */
     uint32_t n_vertices, n_triangles, n_blocks, n_neighbours, n_ghosts; /* of all blocks */
     uint32_t max_rows, max_neighbours, max_halo, max_entries;           /* of any block */
@@ -127,6 +131,45 @@ struct flow_tied {
     uint64_t *group;              /* a piece: what is set into the field `groups` */
 };
 
+/* Two sides whose features may come near each other (cloth/flow/contact/contact.h). */
+struct flow_meeting {
+    uint32_t side[2];  /* ascending, or the same */
+    uint32_t room;     /* its list has room for so many items */
+    duite_object near; /* its list */
+};
+/* All of them, by their sides. */
+struct flow_meetings {
+    uint32_t n, room;
+    struct flow_meeting *all;
+    duite_object counts; /* what their tasks count, and */
+    double *count;       /* what that was when it was looked at last */
+};
+
+/* The contacts of a block: lists of struct flow_contact, for so many. They take turns. */
+enum { FLOW_CONTACT_LISTS = 3 };
+struct flow_kept_contacts {
+    duite_object list[FLOW_CONTACT_LISTS];
+    uint32_t room[FLOW_CONTACT_LISTS], n[FLOW_CONTACT_LISTS]; /* n: at most so many are there */
+};
+
+/* Certified contact as the main program sees it. */
+struct flow_contact_state {
+    struct flow_meetings meetings;
+    struct flow_kept_contacts *kept; /* a block */
+    unsigned begin, now; /* which lists are those where the step began, and of the next solve */
+    struct contact_solid *solid; /* an obstacle: where it is over the step */
+    double *root;        /* a block: the box around its skin over the step, low and high, m */
+    uint32_t *found;     /* a block: contacts that the last look found */
+    unsigned char *mark; /* a block: room */
+    unsigned char *said; /* what all blocks said of their ties */
+    duite_object *refs;  /* room for the objects of any task */
+    size_t n_refs;
+    bool touched; /* something is near something else */
+    uint64_t cut; /* how often a way was cut in the step */
+    bool failed;  /* no cut ends the step: it is to be made again with half the length */
+    double iterations, restarts; /* of the solves of this step but the last */
+};
+
 /* A step that is under way. */
 struct flow_attempt {
     uint64_t begin;  /* tick */
@@ -152,6 +195,7 @@ struct flow_state {
     struct flow_objects *block;
     struct flow_packed packed;
     struct flow_tied tied;
+    struct flow_contact_state contact;
     duite_graph solve; /* a round of conjugate gradients */
     struct flow_run_objects run;
     unsigned pass; /* of a round that is recorded: 0 or 1; else 0 */

@@ -27,6 +27,8 @@ static void add_inner(const duite_call *call, const struct flow_table *t, double
         add_springs(t, view, f);
     if (view->tie_table)
         flow_ties_force(flow_of(call), view, f);
+    if (view->contact_rows)
+        flow_contact_force(flow_of(call), view, f);
 }
 
 void flow_forces(const duite_call *call, const struct flow_table *t, double now,
@@ -47,11 +49,12 @@ void flow_forces_free(const duite_call *call, const struct flow_table *t, double
 
 FLOW_KERNEL(force, FLOW_FORCE, struct flow_step_args,
             (R(table), R(x), R(v), W(f), NEIGHBOURS(halo_x), NEIGHBOURS(halo_v), IF_MADE(tie_table),
-             TIED(tie_halo)))
+             IF_MADE(contact_rows), TIED(tie_halo)))
 static int force_body(const duite_call *call, const struct force_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table);
-    const struct flow_view view = FLOW_VIEW(on);
+    struct flow_view view = FLOW_VIEW(on);
+    view.contact_rows = on->contact_rows;
     flow_forces(call, &table, on->args->now, &view, on->f);
     return 0;
 }

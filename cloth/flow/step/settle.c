@@ -1,6 +1,7 @@
 /* The steps of a run: each begins while the one before it is settled, that is, accepted or refused
  * by what all blocks noted in its status. What is decided follows from values that all ranks get
  * alike. */
+#include "cloth/flow/contact/certify.h"
 #include "cloth/flow/integrators/integrator.h"
 #include "cloth/flow/observe/observe.h"
 #include "cloth/flow/state/state.h"
@@ -71,11 +72,13 @@ static bool halve(struct flow_state *state, enum flow_cause cause)
 }
 
 /* Why a verdict refuses a step. */
-static enum flow_cause cause_of(const double status[FLOW_STATUS],
+static enum flow_cause cause_of(const struct flow_state *state, const double status[FLOW_STATUS],
                                 const struct flow_verdict *verdict)
 {
     if (status[FLOW_FAILED] > 0)
         return FLOW_CAUSE_SOLVE;
+    if (state->contact.failed)
+        return FLOW_CAUSE_CONTACT;
     return verdict->failed || !isfinite(verdict->after) ? FLOW_CAUSE_BOUNDS : FLOW_CAUSE_STRETCH;
 }
 
@@ -83,7 +86,7 @@ static enum flow_cause cause_of(const double status[FLOW_STATUS],
 static int refuse(struct flow_state *state, const double status[FLOW_STATUS],
                   const struct flow_verdict *verdict)
 {
-    if (!state->flow->model->halving || !halve(state, cause_of(status, verdict)))
+    if (!state->flow->model->halving || !halve(state, cause_of(state, status, verdict)))
         return give_up(state, verdict);
     return flow_restore(state);
 }
@@ -125,14 +128,15 @@ static int await(struct flow_state *state, double status[FLOW_STATUS], struct fl
     if (code)
         return code;
     flow_implicit_status(state, status);
-    verdict->failed = status[FLOW_FAILED] + status[FLOW_BEYOND] > 0;
+    flow_contact_status(state, status);
+    verdict->failed = status[FLOW_FAILED] + status[FLOW_BEYOND] > 0 || state->contact.failed;
     return DUITE_OK;
 }
 
 /* Whether contact had a part in the step, or a tie that came or went: then it may gain energy. */
 static bool is_disturbed(const struct flow_state *state, const double status[FLOW_STATUS])
 {
-    return status[FLOW_TOUCHED] > 0 || flow_ties_changed(state);
+    return status[FLOW_TOUCHED] > 0 || state->contact.touched || flow_ties_changed(state);
 }
 
 /* With its frames. */
@@ -165,6 +169,7 @@ static int settle_step(struct flow_state *state)
     const bool gained =
         !refused && flow_energy_gained(state, is_disturbed(state, status)) && can_lose(state);
     flow_implicit_settle(state, !refused && !gained, status);
+    flow_contact_settled(state, !refused && !gained);
     state->attempt.forked = false;
     if (!refused && !gained)
         return accept(state, status, &verdict);

@@ -2,6 +2,7 @@
  * still run. First come stages that only read the state (its begin). Then the main program looks at
  * the status of the last step (settle.c). Then come stages that change the state. */
 #include "cloth/flow/step/step.h"
+#include "cloth/flow/contact/certify.h"
 #include "cloth/flow/integrators/integrator.h"
 #include "cloth/flow/observe/observe.h"
 #include "cloth/flow/state/state.h"
@@ -20,6 +21,11 @@ struct flow_step_args flow_attempt_args(const struct flow_state *state)
 
 /* ---- When there is a stage ---- */
 
+static bool certifies(const struct model *model)
+{
+    return model_certifies(model);
+}
+
 static bool always(const struct model *model)
 {
     (void)model;
@@ -31,9 +37,9 @@ static bool is_driven(const struct model *model)
     return model_is_driven(model);
 }
 
-static bool meets_obstacles(const struct model *model)
+static bool projects(const struct model *model)
 {
-    return model->n_obstacles > 0;
+    return model->n_obstacles > 0 && !model_certifies(model);
 }
 
 /* Velocities change before the forces: the copy is made before that. */
@@ -49,7 +55,7 @@ static bool keeps_late(const struct model *model)
 
 bool flow_step_is_driven(const struct model *model)
 {
-    return model_is_driven(model) || model_is_filtered(model);
+    return model_is_driven(model) || model_is_filtered(model) || model_certifies(model);
 }
 
 /* ---- Stages ---- */
@@ -67,7 +73,7 @@ static int fork_end(struct flow_state *state)
 
 /* What a stage is for. PREDICT, SOLVE: a step's begin, which leaves x and v as they are,
  * unless velocities change first (flow_step_is_driven). */
-enum stage_part { PREDICT, SOLVE, CORRECT, OBSERVE };
+enum stage_part { PREDICT, SOLVE, CORRECT, CERTIFY, OBSERVE };
 
 struct stage {
     const char *name;
@@ -84,7 +90,8 @@ static const struct stage stages[] = {
     {"keep", CORRECT, keeps_late, flow_keep},
     {"integrate", CORRECT, always, fork_end},
     {"prescribe positions", CORRECT, is_driven, flow_pins_prescribe_position},
-    {"project", CORRECT, meets_obstacles, flow_contact_project},
+    {"project", CORRECT, projects, flow_contact_project},
+    {"certify", CERTIFY, certifies, flow_contact_settle},
     {"stretch", OBSERVE, flow_is_judged, flow_stretch_fork},
     {"watch", OBSERVE, always, flow_watch},
     {"energy", OBSERVE, always, flow_energy_fork},
@@ -111,7 +118,14 @@ int flow_step_begin(struct flow_state *state)
         code = duite_set(state->rt, flow_field_object(state, FLOW_FIELD_status, 0), nothing);
     if (!code)
         code = flow_ties_choose(state);
+    if (!code && model_certifies(state->flow->model))
+        code = flow_contact_begin(state);
     return code ? code : fork_stages(state, PREDICT, SOLVE);
+}
+
+int flow_step_again(struct flow_state *state)
+{
+    return fork_stages(state, PREDICT, CORRECT);
 }
 
 int flow_step_end(struct flow_state *state)

@@ -16,6 +16,9 @@ static inline bool flow_is_judged(const struct model *model)
  * unless velocities change before the forces; the rest. */
 int flow_step_begin(struct flow_state *state);
 int flow_step_end(struct flow_state *state);
+/* Forks the stages of the step under way up to the one that certifies it, from the state that was
+ * restored. */
+int flow_step_again(struct flow_state *state);
 /* Whether they do: such a step does not begin before the one before it is accepted. */
 bool flow_step_is_driven(const struct model *model);
 /* Forks a step of length h whole, which nobody judges and whose solve has no guess. */

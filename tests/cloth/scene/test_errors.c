@@ -98,9 +98,6 @@ START_TEST(wrong_kinds)
                   "explicit steps (integrator: verlet) ..."},
         {"gravity: [0, -9.81, 0]", "contact: {mode: certified, thickness: 1e-8}",
          .error = ":2:39: contact.thickness is 1e-08 m; at least ..."},
-        {"gravity: [0, -9.81, 0]", "contact: {mode: certified}",
-         .error = ":2:17: contact.mode is certified, which steps cannot do yet; project is "
-                  "expected"},
         {"[{vertices: [0, 3]}]", "[]\n    loads: []",
          .error = ":9:5: loads is twice in cloths[0]; each key is allowed once"},
         {"pins: [{vertices: [0, 3]}]", "pins: [{}]",

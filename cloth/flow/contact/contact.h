@@ -1,0 +1,103 @@
+#ifndef CLOTH_FLOW_CONTACT_CONTACT_H
+#define CLOTH_FLOW_CONTACT_CONTACT_H
+
+#include "cloth/flow/bodies.h"
+
+#include "cloth/contact/row.h"
+#include "cloth/contact/skin.h"
+
+/* Certified contact of a step, as its main program drives it. In reading order: certify.c is the
+ * step: solve, look, solve again or cut. pairs.c finds which sides are near each other. meet.c is
+ * the task of two of them: it certifies what may touch and lists what is near. touch.c makes of
+ * that the contacts of a block, which are state. rows.c brings contacts to the blocks that have
+ * their corners, and into the system of the step. cut.c cuts ways.
+ *
+ * A side is a block of cloth or an obstacle. Sides have numbers: blocks, then obstacles. */
+
+/* Two features that are near each other, as the first one's block keeps it. */
+struct flow_contact {
+    uint32_t side[2];    /* the block that keeps it; what it meets */
+    uint32_t kind;       /* enum contact_pair, or FLOW_CONTACT_SHAPE */
+    uint32_t feature[2]; /* of the skin of each side */
+    uint32_t point[4];   /* corners in the skins, as enum contact_pair orders them */
+    uint32_t first;      /* so many of them are of the first side */
+    struct flow_tie_corners at;
+    struct contact_row row;
+};
+/* With a shape the second feature is where on the cloth the contact is. */
+enum { FLOW_CONTACT_SHAPE = 8, FLOW_ON_VERTEX = 0, FLOW_ON_TRIANGLE };
+
+/* What two sides found: a contact to be, or a pair whose certificate fails in this step. */
+struct flow_near {
+    struct flow_contact contact;
+    bool fails;
+    double part[4]; /* then: how far each corner may go */
+};
+
+/* A list in an object of bytes that changes its size: the head, then the items. */
+struct flow_list {
+    uint64_t n;
+    uint32_t side[2];  /* of a meeting */
+    uint64_t spare[6]; /* the items begin a cache line of their own */
+};
+static inline size_t flow_list_bytes(size_t n, size_t item)
+{
+    return sizeof(struct flow_list) + n * item;
+}
+
+/* Numbers that a task of two sides adds to the counts, at 4 times its number: pairs that fail;
+ * items of its list, there or not; those that the first side keeps; the second. */
+enum { FLOW_COUNT_FAILS, FLOW_COUNT_ALL, FLOW_COUNT_FIRST, FLOW_COUNT_SECOND, FLOW_COUNTS };
+
+/* Functions of the main program. Collective; they return what the runtime does. */
+
+/* Arguments of the task of two sides. */
+struct flow_meet_args {
+    uint32_t side[2], number; /* among all meetings */
+    uint32_t room;            /* for so many items in its list */
+    double from, to;          /* s: of the step */
+};
+
+/* Room for so many meetings on every rank; frees those there are. (memory.c) */
+int flow_contact_room(struct flow_state *state, uint32_t n);
+void flow_contact_part(struct flow_state *state);
+
+/* What a look at the step found. */
+struct flow_seen {
+    uint64_t fails, contacts;
+};
+/* Looks at the way from kept_x to x: all pairs are certified, the near ones are listed. (pairs.c)
+ */
+int flow_contact_look(struct flow_state *state, struct flow_seen *seen);
+/* The lists of meetings whose features may have corners in a block, put into `to`; the blocks that
+ * may keep contacts with corners in it, marked. They return how many. Local. (pairs.c) */
+uint32_t flow_contact_lists(const struct flow_state *state, uint32_t block, duite_object *to);
+uint32_t flow_contact_keepers(const struct flow_state *state, uint32_t block, unsigned char *keeps);
+/* Forks what makes the contacts of all blocks: those of the solve, pressed, and the pairs that
+ * fail; or, at the end of a step, those that are near. (touch.c) */
+int flow_contact_none(struct flow_state *state); /* there are none yet */
+int flow_contact_again(struct flow_state *state);
+int flow_contact_accept(struct flow_state *state);
+/* Forks what makes ties of the contacts, for the next solve. (rows.c) */
+int flow_contact_tie(struct flow_state *state);
+/* Cuts the ways of the corners of pairs that fail. (cut.c) */
+struct flow_cut {
+    uint64_t rows, halved; /* that were cut; by more than half of a way that counts */
+};
+int flow_contact_cut(struct flow_state *state, struct flow_cut *cut);
+
+/* A contact with a shape, where the shape is in a step between two times (s): row begins as that of
+ * the contact. Others stay as they are. Local. (meet_shape.c) */
+void flow_contact_ahead(const struct flow *flow, double from, double to,
+                        const struct flow_contact *contact, struct contact_row *row);
+
+/* N/m: the k of contact_row.h in a step of h. */
+double flow_contact_stiffness(const struct flow *flow, double h);
+
+/* m: nearer features are contacts. */
+static inline double flow_contact_reach(const struct model *model)
+{
+    return 1.3 * model->contact.thickness;
+}
+
+#endif

@@ -1,0 +1,108 @@
+/* Ways are cut where solving again does not help: each corner of a pair that fails goes only as far
+ * as divides the pair. Of several pairs the shortest way counts, so their order does not matter. A
+ * row that is cut has the velocity of the way that is left. */
+#include "cloth/flow/contact/contact.h"
+#include "cloth/flow/step/step.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+struct cut_args {
+    union {
+        uint32_t block;
+        struct flow_step_args step;
+    };
+};
+
+/* Parameters: of fields, then the lists of meetings that may have corners in the block. */
+enum { AT_TABLE, AT_KEPT_X, AT_X, AT_V, AT_HALO_X, AT_HALO_V, AT_COUNTS, AT_LISTS };
+
+/* The part of its way that each row may go, of all pairs that fail. */
+static void find_parts(const duite_call *call, uint32_t block, double *part)
+{
+    for (size_t at = AT_LISTS; at < call->n_params; at++) {
+        const struct flow_list *list = duite_in(call, at, struct flow_list);
+        const struct flow_near *near = (const struct flow_near *)(list + 1);
+        for (uint64_t i = 0; i < list->n; i++)
+            for (uint32_t k = 0; near[i].fails && k < near[i].contact.at.n; k++) {
+                const struct flow_tie_corners *corners = &near[i].contact.at;
+                if (corners->block[k] == block && !(near[i].part[k] >= part[corners->row[k]]))
+                    part[corners->row[k]] = near[i].part[k];
+            }
+    }
+}
+
+/* Where a row goes to: the same sum as where certificates are made. */
+static void cut_row(const struct flow_step_args *step, double part, double thickness,
+                    const phys_vec *from, phys_vec *x, phys_vec *v, double *counts)
+{
+    const phys_vec way = *x - *from;
+    const double length = sqrt(phys_dot(&way, &way));
+    *x = *from + part * way;
+    *v = (1 / step->h) * (*x - *from);
+    counts[FLOW_CUT_ROWS]++;
+    counts[FLOW_CUT_HALVED] += part < 0.5 && (1 - part) * length > 0.1 * thickness;
+}
+
+static int cut(const duite_call *call)
+{
+    const struct cut_args *args = call->args;
+    const struct flow_table table = flow_table_in(call, duite_in(call, AT_TABLE, unsigned char));
+    const double thickness = flow_of(call)->model->contact.thickness;
+    phys_vec *x = duite_out(call, AT_X, phys_vec), *v = duite_out(call, AT_V, phys_vec);
+    double *part = malloc((table.n + 1) * sizeof *part);
+    if (!part)
+        return duite_fail(call, FLOW_NO_MEMORY, "out of memory for the ways of a block");
+    for (uint32_t i = 0; i < table.n; i++)
+        part[i] = 1;
+    find_parts(call, args->block, part);
+    for (uint32_t i = 0; i < table.n; i++)
+        if (!(part[i] >= 1))
+            cut_row(&args->step, part[i] > 0 ? part[i] : 0, thickness,
+                    duite_in(call, AT_KEPT_X, phys_vec) + i, x + i, v + i,
+                    duite_out(call, AT_COUNTS, double));
+    flow_write_halo(&table, x, duite_out(call, AT_HALO_X, phys_vec));
+    flow_write_halo(&table, v, duite_out(call, AT_HALO_V, phys_vec));
+    free(part);
+    return 0;
+}
+
+static int cut_timed(const duite_call *call)
+{
+    return flow_timed(call, cut, FLOW_COLLIDE);
+}
+const duite_kernel flow_cut_ways = {
+    .name = "cut",
+    .body = cut_timed,
+    .access = {DUITE_R, DUITE_R, DUITE_RW, DUITE_RW, DUITE_W, DUITE_W, DUITE_CW},
+    .law = {[AT_COUNTS] = &duite_sum},
+    .variadic = DUITE_R,
+    .args_size = sizeof(struct cut_args)};
+
+static int fork_block(struct flow_state *state, const struct cut_args *args)
+{
+    const struct flow_objects *of = state->block + args->block;
+    duite_object *refs = state->contact.refs;
+    refs[AT_TABLE] = of->table;
+    refs[AT_KEPT_X] = of->kept_x;
+    refs[AT_X] = of->x;
+    refs[AT_V] = of->v;
+    refs[AT_HALO_X] = of->halo_x;
+    refs[AT_HALO_V] = of->halo_v;
+    refs[AT_COUNTS] = state->run.cut_counts;
+    const uint32_t n = flow_contact_lists(state, args->block, refs + AT_LISTS);
+    return duite_fork(state->rt, &flow_cut_ways, args, AT_LISTS + (size_t)n, refs);
+}
+
+int flow_contact_cut(struct flow_state *state, struct flow_cut *cut)
+{
+    struct cut_args args = {{.step = flow_attempt_args(state)}};
+    double counts[FLOW_CUT_COUNTS] = {0};
+    int code = duite_set(state->rt, state->run.cut_counts, NULL);
+    for (args.block = 0; args.block < state->flow->tables.n_blocks && !code; args.block++)
+        code = fork_block(state, &args);
+    if (!code)
+        code = duite_get(state->rt, state->run.cut_counts, counts);
+    *cut = (struct flow_cut){(uint64_t)counts[FLOW_CUT_ROWS], (uint64_t)counts[FLOW_CUT_HALVED]};
+    return code;
+}

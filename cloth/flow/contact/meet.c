@@ -1,0 +1,162 @@
+/* Two sides meet: every pair of their features that may come near each other in the step is
+ * certified. Those that are near at its end are listed, and those whose certificate fails. A block
+ * may meet itself. The order of the list is that of the query, so it is the same for every mapping.
+ */
+#include "cloth/flow/contact/contact.h"
+#include "cloth/flow/state/skin.h"
+
+#include "cloth/contact/certificate.h"
+
+/* What the visits of a query work on. */
+struct meeting {
+    const struct model *model;
+    const struct flow_meet_args *args;
+    struct contact_skin skin[2];
+    struct contact_side side[2]; /* of a block that meets itself: both */
+    struct flow_near *near;
+    size_t n, room; /* found; there is room for */
+    double *counts;
+};
+
+/* Of two features: their corners, and where these are. */
+struct corners {
+    enum contact_pair pair;
+    uint32_t point[4];
+    unsigned char side[4];
+    phys_vec x[4], y[4];
+    unsigned held; /* bit k: corner k cannot be cut */
+};
+
+static void find_corners(const struct meeting *m, const struct contact_candidate *candidate,
+                         struct corners *to)
+{
+    to->pair = contact_candidate_corners(m->skin, m->skin + 1, candidate, to->point, to->side);
+    to->held = 0;
+    for (unsigned k = 0; k < 4; k++) {
+        const struct contact_side *side = m->side + to->side[k];
+        to->x[k] = side->x[to->point[k]];
+        to->y[k] = side->y[to->point[k]];
+        to->held |= (unsigned)(side->skin->held[to->point[k]] != 0) << k;
+    }
+}
+
+/* What is kept of them, in memory that is zero. places: of the corners, where its row begins. */
+static void describe(const struct meeting *m, const struct contact_candidate *candidate,
+                     const struct corners *corners, const phys_vec places[4],
+                     struct flow_contact *to)
+{
+    struct contact_nearest nearest;
+    const int first = corners->side[0]; /* 1: of a triangle of the first side and a vertex */
+    contact_nearest_of(corners->pair, places, &nearest);
+    to->kind = corners->pair;
+    to->first = corners->pair == CONTACT_VT ? 1 : 2;
+    to->at.n = 4;
+    to->at.held = (unsigned char)corners->held;
+    to->row.normal = nearest.normal;
+    to->row.gap = nearest.gap;
+    to->row.thickness = m->model->contact.thickness;
+    to->row.friction = m->model->contact.friction;
+    for (int k = 0; k < 2; k++) {
+        to->side[k] = m->args->side[k ^ first];
+        to->feature[k] = candidate->of[k ^ first];
+    }
+    for (int k = 0; k < 4; k++) {
+        const struct contact_skin *skin = m->skin + corners->side[k];
+        to->point[k] = corners->point[k];
+        to->at.block[k] = skin->block[corners->point[k]];
+        to->at.row[k] = skin->row[corners->point[k]];
+        to->at.weight[k] = nearest.weight[k];
+        to->row.origin += nearest.weight[k] * places[k];
+    }
+}
+
+static void append(struct meeting *m, const struct flow_near *near)
+{
+    const bool first = near->contact.side[0] == m->args->side[0];
+    if (m->n < m->room)
+        m->near[m->n] = *near;
+    m->n++;
+    m->counts[FLOW_COUNT_FAILS] += near->fails;
+    m->counts[first ? FLOW_COUNT_FIRST : FLOW_COUNT_SECOND]++;
+}
+
+static void look_at(struct meeting *m, const struct contact_candidate *candidate)
+{
+    const double thickness = m->model->contact.thickness;
+    struct flow_near near;
+    struct corners corners;
+    memset(&near, 0, sizeof near); /* padding, too: lists are compared byte by byte */
+    find_corners(m, candidate, &corners);
+    near.fails = !contact_certify(corners.pair, corners.x, corners.y, thickness);
+    describe(m, candidate, &corners, near.fails ? corners.x : corners.y, &near.contact);
+    for (int k = 0; k < 4; k++)
+        near.part[k] = 1;
+    if (near.fails)
+        contact_cut(corners.pair, corners.x, corners.y, thickness, corners.held, near.part);
+    if (near.fails || near.contact.row.gap < flow_contact_reach(m->model))
+        append(m, &near);
+}
+
+/* Whether a cloth that does not meet itself is on both sides. */
+static bool is_left_out(const struct meeting *m, const struct contact_candidate *candidate)
+{
+    uint32_t point[4];
+    unsigned char side[4];
+    if (m->model->contact.self)
+        return false;
+    contact_candidate_corners(m->skin, m->skin + 1, candidate, point, side);
+    return m->skin[side[0]].cloth[point[0]] == m->skin[side[3]].cloth[point[3]];
+}
+
+static void visit(void *to, uint32_t n, const struct contact_candidate *candidate)
+{
+    struct meeting *m = to;
+    for (uint32_t i = 0; i < n; i++)
+        if (!is_left_out(m, candidate + i))
+            look_at(m, candidate + i);
+}
+
+/* Parameters: w the list, cw the counts, then of each block its skin, its points, its boxes. */
+enum { AT_LIST, AT_COUNTS, AT_BLOCKS, EACH_BLOCK = 3 };
+
+static void open_side(const duite_call *call, size_t at, struct contact_skin *skin,
+                      struct contact_side *side)
+{
+    *skin = flow_skin_open(duite_in(call, at, unsigned char)).skin;
+    const phys_vec *points = duite_in(call, at + 1, phys_vec);
+    *side = (struct contact_side){.skin = skin,
+                                  .boxes = duite_in(call, at + 2, unsigned char),
+                                  .x = points,
+                                  .y = points + skin->n_points};
+}
+
+static int meet(const duite_call *call)
+{
+    const struct flow_meet_args *args = call->args;
+    struct flow_list *list = duite_out(call, AT_LIST, struct flow_list);
+    struct meeting m = {.model = flow_of(call)->model,
+                        .args = args,
+                        .near = (struct flow_near *)(list + 1),
+                        .room = args->room,
+                        .counts = duite_out(call, AT_COUNTS, double) +
+                                  (size_t)FLOW_COUNTS * args->number};
+    const bool alone = args->side[0] == args->side[1];
+    for (int k = 0; k < 2; k++)
+        open_side(call, AT_BLOCKS + (alone ? 0 : EACH_BLOCK * (size_t)k), m.skin + k, m.side + k);
+    contact_query(m.side, alone ? m.side : m.side + 1, flow_contact_reach(m.model), visit, &m);
+    m.counts[FLOW_COUNT_ALL] = (double)m.n;
+    *list = (struct flow_list){.n = m.n < m.room ? m.n : m.room,
+                               .side = {args->side[0], args->side[1]}};
+    return duite_resize(call, AT_LIST, flow_list_bytes(list->n, sizeof *m.near));
+}
+
+static int meet_timed(const duite_call *call)
+{
+    return flow_timed(call, meet, FLOW_COLLIDE);
+}
+const duite_kernel flow_meet = {.name = "meet",
+                                .body = meet_timed,
+                                .access = {DUITE_W, DUITE_CW},
+                                .law = {NULL, &duite_sum},
+                                .variadic = DUITE_R,
+                                .args_size = sizeof(struct flow_meet_args)};

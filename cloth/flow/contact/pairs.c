@@ -1,0 +1,284 @@
+/* Which sides are near each other. A meeting is two sides whose boxes over the step came near at
+ * some time; its object is the list of what they found. Meetings stay while boxes are near with
+ * something to spare, so that the set changes seldom. Every rank has the same meetings, since all
+ * get the same boxes.
+ *
+ * In reading order: boxes of all blocks, meetings, who needs which, their tasks. */
+#include "cloth/flow/contact/contact.h"
+#include "cloth/flow/contact/skins.h"
+#include "cloth/flow/step/step.h"
+
+#include "cloth/contact/solid.h"
+
+/* m: boxes so much farther apart than a contact reaches still meet. */
+static const double SPARE = 0.02;
+enum { LEAST_ROOM = 256, FLOW_MEET_OBJECTS = 3 };
+
+/* ---- Boxes ---- */
+
+FLOW_KERNEL(root, FLOW_COLLIDE, struct flow_block_args, (R(skin_boxes), W(root)))
+static int root_body(const duite_call *call, const struct root_fields *on)
+{
+    (void)call;
+    contact_boxes_root(on->skin_boxes, on->root, on->root + 3);
+    return 0;
+}
+
+/* On every rank. */
+FLOW_KERNEL_WITH(roots, FLOW_COLLIDE, struct flow_block_args, (W(roots), ALL(root)),
+                 .replicated = 1)
+static int roots_body(const duite_call *call, const struct roots_fields *on)
+{
+    const uint32_t n_blocks = flow_of(call)->tables.n_blocks;
+    for (uint32_t b = 0; b < n_blocks; b++)
+        memcpy(on->roots + FLOW_ROOT * (size_t)b, flow_numbers_of(on->root, b),
+               FLOW_ROOT * sizeof *on->roots);
+    return 0;
+}
+
+static int get_roots(struct flow_state *state)
+{
+    struct flow_block_args args;
+    int code = flow_skins_refit(state);
+    if (!code)
+        code = flow_fork_each(state, &flow_kernel_root, &args);
+    args.block = 0;
+    if (!code)
+        code = flow_fork_one(state, &flow_kernel_roots, &args);
+    return code ? code : duite_get(state->rt, state->run.roots, state->contact.root);
+}
+
+/* Whether two boxes are nearer than so much. */
+static bool is_near(const double *a, const double *b, double reach)
+{
+    bool near = true;
+    for (int c = 0; c < 3; c++)
+        near = near && a[c] - b[c + 3] < reach && b[c] - a[c + 3] < reach;
+    return near;
+}
+
+/* ---- Meetings ---- */
+
+/* Block a and any side: at some time of the step. */
+static bool sides_are_near(const struct flow_state *state, uint32_t a, uint32_t b, double reach)
+{
+    const double *root = state->contact.root, *own = root + FLOW_ROOT * (size_t)a;
+    const uint32_t n_blocks = state->flow->tables.n_blocks;
+    return b < n_blocks
+               ? is_near(own, root + FLOW_ROOT * (size_t)b, reach)
+               : !contact_solid_apart(state->contact.solid + (b - n_blocks), own, own + 3, reach);
+}
+
+static uint32_t count_sides(const struct flow_state *state)
+{
+    return state->flow->tables.n_blocks + state->flow->model->n_obstacles;
+}
+
+/* Whether each two sides that are near have a meeting. */
+static bool all_meet(const struct flow_state *state)
+{
+    const struct flow_meetings *meetings = &state->contact.meetings;
+    const uint32_t n_blocks = state->flow->tables.n_blocks, n_sides = count_sides(state);
+    const double reach = flow_contact_reach(state->flow->model);
+    uint32_t at = 0;
+    for (uint32_t a = 0; a < n_blocks; a++)
+        for (uint32_t b = a; b < n_sides; b++) {
+            const bool met = at < meetings->n && meetings->all[at].side[0] == a &&
+                             meetings->all[at].side[1] == b;
+            if (!met && sides_are_near(state, a, b, reach))
+                return false;
+            at += met;
+        }
+    return true;
+}
+
+static uint32_t count_near(const struct flow_state *state, double reach)
+{
+    const uint32_t n_blocks = state->flow->tables.n_blocks, n_sides = count_sides(state);
+    uint32_t n = 0;
+    for (uint32_t a = 0; a < n_blocks; a++)
+        for (uint32_t b = a; b < n_sides; b++)
+            n += sides_are_near(state, a, b, reach);
+    return n;
+}
+
+/* The object of a list lives with the first side where the sum of both is even, else with the
+ * second: so neighbours share the work. */
+static void make_list(struct flow_state *state, struct flow_meeting *meeting)
+{
+    const uint32_t *side = meeting->side;
+    const bool second = (side[0] + side[1]) % 2 && side[1] < state->flow->tables.n_blocks;
+    const uint32_t owner = side[second];
+    duite_new_sized(state->rt, DUITE_BYTE, 0,
+                    flow_list_bytes(meeting->room, sizeof(struct flow_near)), &meeting->near);
+    duite_colocate(state->rt, meeting->near, state->block[owner].x);
+}
+
+static int make_meetings(struct flow_state *state)
+{
+    struct flow_meetings *meetings = &state->contact.meetings;
+    const uint32_t n_blocks = state->flow->tables.n_blocks, n_sides = count_sides(state);
+    const double reach = flow_contact_reach(state->flow->model) + SPARE;
+    flow_contact_part(state);
+    const int code = flow_contact_room(state, count_near(state, reach));
+    if (code)
+        return code;
+    for (uint32_t a = 0; a < n_blocks; a++)
+        for (uint32_t b = a; b < n_sides; b++) {
+            if (!sides_are_near(state, a, b, reach))
+                continue;
+            struct flow_meeting *meeting = meetings->all + meetings->n++;
+            *meeting = (struct flow_meeting){.side = {a, b}, .room = LEAST_ROOM};
+            make_list(state, meeting);
+        }
+    return duite_new(state->rt, DUITE_F64, FLOW_COUNTS * (size_t)(meetings->n ? meetings->n : 1),
+                     &meetings->counts);
+}
+
+/* ---- Who needs which ---- */
+
+/* Whether a block may have a corner of what a side keeps: it is that side or a neighbour of it. */
+static bool has_corners(const struct flow_state *state, uint32_t block, uint32_t side)
+{
+    if (side >= state->flow->tables.n_blocks)
+        return false;
+    const struct flow_table *t = state->flow->tables.block + side;
+    bool has = side == block;
+    for (uint32_t s = 0; s < t->n_neighbours; s++)
+        has = has || t->neighbour[s] == block;
+    return has;
+}
+
+static bool concerns(const struct flow_state *state, const struct flow_meeting *meeting,
+                     uint32_t block)
+{
+    return has_corners(state, block, meeting->side[0]) ||
+           has_corners(state, block, meeting->side[1]);
+}
+
+uint32_t flow_contact_lists(const struct flow_state *state, uint32_t block, duite_object *to)
+{
+    const struct flow_meetings *meetings = &state->contact.meetings;
+    uint32_t n = 0;
+    for (uint32_t i = 0; i < meetings->n; i++)
+        if (concerns(state, meetings->all + i, block))
+            to[n++] = meetings->all[i].near;
+    return n;
+}
+
+uint32_t flow_contact_keepers(const struct flow_state *state, uint32_t block, unsigned char *keeps)
+{
+    const struct flow_meetings *meetings = &state->contact.meetings;
+    const uint32_t n_blocks = state->flow->tables.n_blocks;
+    uint32_t n = 0;
+    memset(keeps, 0, n_blocks);
+    for (uint32_t i = 0; i < meetings->n; i++)
+        for (int k = 0; k < 2 && concerns(state, meetings->all + i, block); k++)
+            if (meetings->all[i].side[k] < n_blocks)
+                keeps[meetings->all[i].side[k]] = 1;
+    for (uint32_t b = 0; b < n_blocks; b++)
+        n += keeps[b];
+    return n;
+}
+
+/* ---- Their tasks ---- */
+
+/* The objects of a block that a meeting reads. Returns the end. */
+static duite_object *add_block(const struct flow_state *state, uint32_t block, duite_object *refs)
+{
+    *refs++ = state->block[block].skin;
+    *refs++ = state->block[block].skin_x;
+    *refs++ = state->block[block].skin_boxes;
+    return refs; /* FLOW_MEET_OBJECTS more */
+}
+
+static int fork_meeting(struct flow_state *state, uint32_t number)
+{
+    const struct flow_meeting *meeting = state->contact.meetings.all + number;
+    const uint32_t *side = meeting->side;
+    const bool shape = side[1] >= state->flow->tables.n_blocks;
+    const struct flow_step_args step = flow_attempt_args(state);
+    const struct flow_meet_args args = {.side = {side[0], side[1]},
+                                        .number = number,
+                                        .room = meeting->room,
+                                        .from = step.time - step.h,
+                                        .to = step.time};
+    duite_object refs[2 + 2 * FLOW_MEET_OBJECTS] = {meeting->near, state->contact.meetings.counts};
+    duite_object *end = add_block(state, side[0], refs + 2);
+    if (side[0] != side[1] && !shape)
+        end = add_block(state, side[1], end);
+    return duite_fork(state->rt, shape ? &flow_meet_shape : &flow_meet, &args, (size_t)(end - refs),
+                      refs);
+}
+
+/* All of them, and their counts. */
+static int meet(struct flow_state *state)
+{
+    struct flow_meetings *meetings = &state->contact.meetings;
+    int code = duite_set(state->rt, meetings->counts, NULL);
+    for (uint32_t i = 0; i < meetings->n && !code; i++)
+        code = fork_meeting(state, i);
+    return code ? code : duite_get(state->rt, meetings->counts, meetings->count);
+}
+
+/* Makes the lists that were full again, with room for what they are to hold. Whether any was. */
+static bool make_longer(struct flow_state *state)
+{
+    struct flow_meetings *meetings = &state->contact.meetings;
+    bool any = false;
+    for (uint32_t i = 0; i < meetings->n; i++) {
+        struct flow_meeting *meeting = meetings->all + i;
+        const uint32_t found = (uint32_t)meetings->count[FLOW_COUNTS * (size_t)i + FLOW_COUNT_ALL];
+        if (found <= meeting->room)
+            continue;
+        while (meeting->room < found)
+            meeting->room *= 2;
+        duite_free(state->rt, meeting->near);
+        make_list(state, meeting);
+        any = true;
+    }
+    return any;
+}
+
+/* What the counts say of all sides, and how many contacts each block is to keep. */
+static void sum_up(struct flow_state *state, struct flow_seen *seen)
+{
+    const struct flow_meetings *meetings = &state->contact.meetings;
+    uint32_t *found = state->contact.found;
+    memset(found, 0, state->flow->tables.n_blocks * sizeof *found);
+    *seen = (struct flow_seen){0};
+    for (uint32_t i = 0; i < meetings->n; i++) {
+        const double *count = meetings->count + FLOW_COUNTS * (size_t)i;
+        seen->fails += (uint64_t)count[FLOW_COUNT_FAILS];
+        seen->contacts += (uint64_t)count[FLOW_COUNT_ALL];
+        found[meetings->all[i].side[0]] += (uint32_t)count[FLOW_COUNT_FIRST];
+        if (count[FLOW_COUNT_SECOND] > 0)
+            found[meetings->all[i].side[1]] += (uint32_t)count[FLOW_COUNT_SECOND];
+    }
+}
+
+/* Where the shapes are over the step. */
+static void place_shapes(struct flow_state *state)
+{
+    const struct model *model = state->flow->model;
+    const struct flow_step_args step = flow_attempt_args(state);
+    for (uint32_t i = 0; i < model->n_obstacles; i++) {
+        struct contact_pose pose;
+        contact_pose_over(model->obstacles + i, model->keys, &model->bodies, step.time - step.h,
+                          step.time, &pose);
+        contact_solid_make(model->obstacles + i, &pose, state->contact.solid + i);
+    }
+}
+
+int flow_contact_look(struct flow_state *state, struct flow_seen *seen)
+{
+    int code = get_roots(state);
+    place_shapes(state);
+    if (!code && !all_meet(state))
+        code = make_meetings(state);
+    do
+        code = code ? code : meet(state);
+    while (!code && make_longer(state));
+    sum_up(state, seen);
+    return code;
+}

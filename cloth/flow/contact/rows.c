@@ -1,0 +1,335 @@
+/* Contacts become ties of the blocks that have their corners (cloth/flow/state/ties.h). Each of
+ * these blocks computes a whole contact from its own rows and what the others show it, as elements
+ * are. A block finds its contacts in the lists of those that may keep one. First it says how many
+ * there are and whom it shares them with. When all ranks know that and have made room, it makes its
+ * table.
+ *
+ * In reading order: finding them, what a block says, its table, their part of a system. */
+#include "cloth/flow/contact/contact.h"
+#include "cloth/flow/solver/solve.h"
+#include "cloth/flow/step/step.h"
+
+#include <stdlib.h>
+
+/* ---- Finding them ---- */
+
+/* The contacts of lists that have a corner in a block, in the order of the lists. */
+struct found {
+    size_t n;
+    const struct flow_contact **contact;
+    struct flow_tie_corners *corners;
+};
+
+static bool is_in(const struct flow_contact *contact, uint32_t block)
+{
+    bool in = false;
+    for (uint32_t k = 0; k < contact->at.n; k++)
+        in = in || contact->at.block[k] == block;
+    return in;
+}
+
+/* From the parameters `at` on. Returns false without memory. */
+static bool find(const duite_call *call, size_t at, uint32_t block, struct found *to)
+{
+    size_t n = 0;
+    for (size_t i = at; i < call->n_params; i++)
+        n += duite_in(call, i, struct flow_list)->n;
+    *to = (struct found){.contact = malloc((n + 1) * sizeof *to->contact),
+                         .corners = malloc((n + 1) * sizeof *to->corners)};
+    if (!to->contact || !to->corners)
+        return false;
+    for (size_t i = at; i < call->n_params; i++) {
+        const struct flow_list *list = duite_in(call, i, struct flow_list);
+        const struct flow_contact *contact = (const struct flow_contact *)(list + 1);
+        for (const struct flow_contact *end = contact + list->n; contact < end; contact++)
+            if (is_in(contact, block)) {
+                to->contact[to->n] = contact;
+                to->corners[to->n++] = contact->at;
+            }
+    }
+    return true;
+}
+
+static void forget(struct found *found)
+{
+    free(found->contact);
+    free(found->corners);
+}
+
+static int no_memory(const duite_call *call)
+{
+    return duite_fail(call, FLOW_NO_MEMORY, "out of memory for the contacts of a block");
+}
+
+/* All ties of a block: the joints of the step, then its contacts. */
+static struct flow_tie_list ties_of(const struct flow *flow, const struct flow_step_args *step,
+                                    const struct found *found)
+{
+    return (struct flow_tie_list){.n_joints = flow->n_ties,
+                                  .n = (uint32_t)found->n,
+                                  .joint = flow->tie,
+                                  .tick = (uint64_t)step->begin,
+                                  .corners = found->corners};
+}
+
+struct row_args {
+    union {
+        uint32_t block;
+        struct flow_step_args step;
+    };
+    struct flow_tie_room room; /* of its table */
+};
+
+/* ---- What a block says ---- */
+
+enum { AT_RECORD, AT_RECORD_LISTS };
+
+static int count(const duite_call *call)
+{
+    const struct row_args *args = call->args;
+    const struct flow *flow = flow_of(call);
+    const uint32_t max_links = flow->tables.n_blocks;
+    struct flow_tie_record *record = duite_out(call, AT_RECORD, struct flow_tie_record);
+    struct flow_tie_link *link = (struct flow_tie_link *)(record + 1);
+    struct found found;
+    uint64_t *scratch = NULL;
+    int code = find(call, AT_RECORD_LISTS, args->block, &found) ? 0 : no_memory(call);
+    const struct flow_tie_list list = ties_of(flow, &args->step, &found);
+    if (!code)
+        scratch = malloc((flow_ties_scratch(list.n_joints + found.n) + 1) * sizeof *scratch);
+    if (!code && !scratch)
+        code = no_memory(call);
+    if (!code) /* links fit: there is room for all blocks */
+        flow_ties_count(&list, args->block, scratch, max_links, record, link);
+    free(scratch);
+    forget(&found);
+    return code ? code
+                : duite_resize(call, AT_RECORD, sizeof *record + record->n_links * sizeof *link);
+}
+
+static int count_timed(const duite_call *call)
+{
+    return flow_timed(call, count, FLOW_COLLIDE);
+}
+const duite_kernel flow_count_ties = {.name = "tie_count",
+                                      .body = count_timed,
+                                      .access = {DUITE_W},
+                                      .variadic = DUITE_R,
+                                      .args_size = sizeof(struct row_args)};
+
+/* What all blocks say, one after the other; on every rank. */
+FLOW_KERNEL_WITH(tie_say, FLOW_COLLIDE, struct flow_block_args, (W(tie_said), ALL(tie_record)),
+                 .replicated = 1)
+static int tie_say_body(const duite_call *call, const struct tie_say_fields *on)
+{
+    const uint32_t n_blocks = flow_of(call)->tables.n_blocks;
+    size_t bytes = 0;
+    for (uint32_t b = 0; b < n_blocks; b++) {
+        memcpy(on->tie_said + bytes, on->tie_record[b].data, on->tie_record[b].count);
+        bytes += on->tie_record[b].count;
+    }
+    return duite_resize(call, FLOW_INDEX_OF(tie_say, tie_said), bytes);
+}
+
+/* Takes it apart for flow_ties_adopt. */
+static void hear(struct flow_state *state)
+{
+    struct flow_tie_records *said = &state->tied.said;
+    const unsigned char *from = state->contact.said;
+    uint32_t n = 0;
+    for (uint32_t b = 0; b < state->flow->tables.n_blocks; b++) {
+        said->first[b] = n;
+        memcpy(said->of + b, from, sizeof said->of[b]);
+        from += sizeof said->of[b];
+        memcpy(said->link + n, from, said->of[b].n_links * sizeof *said->link);
+        from += said->of[b].n_links * sizeof *said->link;
+        n += said->of[b].n_links;
+    }
+    said->first[state->flow->tables.n_blocks] = n;
+}
+
+/* The lists of all blocks that may keep contacts with corners in one. Returns the end. */
+static duite_object *add_lists(const struct flow_state *state, uint32_t block, duite_object *refs)
+{
+    const struct flow_contact_state *contact = &state->contact;
+    flow_contact_keepers(state, block, contact->mark);
+    for (uint32_t b = 0; b < state->flow->tables.n_blocks; b++)
+        if (contact->mark[b])
+            *refs++ = contact->kept[b].list[contact->now];
+    return refs;
+}
+
+static int fork_count(struct flow_state *state, const struct row_args *args)
+{
+    duite_object *refs = state->contact.refs;
+    refs[AT_RECORD] = state->block[args->block].tie_record;
+    const duite_object *end = add_lists(state, args->block, refs + AT_RECORD_LISTS);
+    return duite_fork(state->rt, &flow_count_ties, args, (size_t)(end - refs), refs);
+}
+
+static int say(struct flow_state *state, struct row_args *args)
+{
+    const struct flow_block_args all = {0};
+    int code = DUITE_OK;
+    for (args->block = 0; args->block < state->flow->tables.n_blocks && !code; args->block++)
+        code = fork_count(state, args);
+    if (!code)
+        code = flow_fork_one(state, &flow_kernel_tie_say, &all);
+    if (!code)
+        code = duite_get(state->rt, state->run.tie_said, state->contact.said);
+    if (!code)
+        hear(state);
+    return code;
+}
+
+/* ---- Its table ---- */
+
+enum { AT_TABLE, AT_LINKS, AT_TIES, AT_ROWS, AT_TABLE_LISTS };
+
+/* Every byte: rows that are not there as well. */
+static void write_rows(const struct flow *flow, const struct flow_step_args *step,
+                       const struct found *found, const struct flow_ties *ties,
+                       struct contact_row *row)
+{
+    memset(row, 0, ties->room.ties * sizeof *row);
+    for (uint32_t i = 0; i < ties->n; i++) {
+        if (ties->of[i] < flow->n_ties)
+            continue;
+        const struct flow_contact *contact = found->contact[ties->of[i] - flow->n_ties];
+        row[i] = contact->row;
+        row[i].stiffness = flow_contact_stiffness(flow, step->h);
+        flow_contact_ahead(flow, step->time - step->h, step->time, contact, row + i);
+    }
+}
+
+static int make_table(const duite_call *call)
+{
+    const struct row_args *args = call->args;
+    const struct flow *flow = flow_of(call);
+    const struct flow_table table = flow_table_in(call, duite_in(call, AT_TABLE, unsigned char));
+    const uint32_t(*links)[2] = (const uint32_t(*)[2])duite_in(call, AT_LINKS, uint32_t);
+    struct found found;
+    int code = find(call, AT_TABLE_LISTS, args->block, &found) ? 0 : no_memory(call);
+    const struct flow_tie_list list = ties_of(flow, &args->step, &found);
+    const struct flow_ties_of of = {.block = args->block,
+                                    .n_rows = table.n,
+                                    .n_halo = table.n_halo,
+                                    .n_others = links[0][0],
+                                    .halo = table.halo,
+                                    .others = links + 1,
+                                    .list = &list,
+                                    .room = args->room};
+    if (!code) {
+        flow_ties_make(&of, call->param[AT_TIES].data); /* the room is for them */
+        const struct flow_ties ties = flow_ties_open(call->param[AT_TIES].data);
+        write_rows(flow, &args->step, &found, &ties, duite_out(call, AT_ROWS, struct contact_row));
+    }
+    forget(&found);
+    return code;
+}
+
+static int make_table_timed(const duite_call *call)
+{
+    return flow_timed(call, make_table, FLOW_COLLIDE);
+}
+const duite_kernel flow_tie_contacts = {.name = "tie_contacts",
+                                        .body = make_table_timed,
+                                        .access = {DUITE_R, DUITE_R, DUITE_W, DUITE_W},
+                                        .variadic = DUITE_R,
+                                        .args_size = sizeof(struct row_args)};
+
+static int fork_table(struct flow_state *state, struct row_args *args)
+{
+    const struct flow_objects *of = state->block + args->block;
+    duite_object *refs = state->contact.refs;
+    args->room = state->tied.now.room[args->block];
+    refs[AT_TABLE] = of->table;
+    refs[AT_LINKS] = of->tie_links;
+    refs[AT_TIES] = of->tie_table;
+    refs[AT_ROWS] = of->contact_rows;
+    const duite_object *end = add_lists(state, args->block, refs + AT_TABLE_LISTS);
+    return duite_fork(state->rt, &flow_tie_contacts, args, (size_t)(end - refs), refs);
+}
+
+int flow_contact_tie(struct flow_state *state)
+{
+    struct row_args args;
+    memset(&args, 0, sizeof args);
+    args.step = flow_attempt_args(state);
+    int code = say(state, &args);
+    if (!code)
+        code = flow_ties_adopt(state);
+    for (args.block = 0; args.block < state->flow->tables.n_blocks && !code; args.block++)
+        code = fork_table(state, &args);
+    return code;
+}
+
+/* ---- Their part of a system ---- */
+
+/* The point of a contact (contact_row.h) where corners are after `ahead` seconds at their
+ * velocities. */
+static void find_point(const struct flow_ties *ties, const struct flow_view *view, double ahead,
+                       uint32_t i, phys_vec *point)
+{
+    *point = (phys_vec){0};
+    for (int k = 0; k < SOLVE_TIE_CORNERS; k++) {
+        const uint32_t corner = ties->corner[i][k];
+        phys_vec x = *flow_tie_x(ties, view, corner);
+        if (ahead > 0)
+            x += ahead * *flow_tie_v(ties, view, corner);
+        *point += ties->weight[i][k] * x;
+    }
+}
+
+/* Adds a force on the point, times `scale`, to the rows that are here. */
+static void spread(const struct flow_ties *ties, uint32_t i, double scale, const phys_vec *force,
+                   phys_vec *y)
+{
+    for (int k = 0; k < SOLVE_TIE_CORNERS; k++)
+        if (ties->corner[i][k] < ties->n_rows)
+            y[ties->corner[i][k]] += scale * ties->weight[i][k] * *force;
+}
+
+void flow_contact_force(const struct flow *flow, const struct flow_view *view, phys_vec *f)
+{
+    const struct flow_ties ties = flow_ties_open(view->tie_table);
+    for (uint32_t i = 0; i < ties.n; i++) {
+        phys_vec point, force, value;
+        if (ties.of[i] < flow->n_ties)
+            continue;
+        find_point(&ties, view, 0, i, &point);
+        contact_row_linearise(view->contact_rows + i, &point, &force, &value);
+        spread(&ties, i, 1, &force, f);
+    }
+}
+
+/* The right side of a step whose forces are there already: what they lose while it moves. */
+static void resist(const struct flow_ties *ties, const struct flow_view *view, double h, uint32_t i,
+                   const phys_vec *value, phys_vec *b)
+{
+    const phys_vec three = {1, 1, 1, 0};
+    phys_vec speed = {0}, lost;
+    for (int k = 0; k < SOLVE_TIE_CORNERS; k++)
+        speed += ties->weight[i][k] * *flow_tie_v(ties, view, ties->corner[i][k]);
+    solve_spring_times(value, &speed, &lost);
+    lost *= three;
+    spread(ties, i, -h * h, &lost, b);
+}
+
+void flow_contact_system(const struct flow *flow, const struct flow_view *view, double h,
+                         double push, phys_vec *b, phys_vec *value)
+{
+    const struct flow_ties ties = flow_ties_open(view->tie_table);
+    for (uint32_t i = 0; i < ties.n; i++) {
+        phys_vec point, force;
+        if (ties.of[i] < flow->n_ties)
+            continue;
+        find_point(&ties, view, b ? push : 0, i, &point);
+        contact_row_linearise(view->contact_rows + i, &point, &force, value + i);
+        if (b && push > 0)
+            spread(&ties, i, h, &force, b);
+        else if (b)
+            resist(&ties, view, h, i, value + i, b);
+        value[i] *= (phys_vec){h, h, h, h * h}; /* h^2 N: of w w' each w takes h */
+    }
+}

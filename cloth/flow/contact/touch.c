@@ -1,0 +1,356 @@
+/* The contacts of a block: those whose first feature its skin stands for. They are state, from one
+ * step to the next: what presses and what sticks is handed over to the pair of features that comes
+ * after. A list has the order of its keys, so that it does not depend on who found what first. */
+#include "cloth/flow/contact/contact.h"
+#include "cloth/flow/step/step.h"
+
+#include <stdlib.h>
+
+struct touch_args {
+    uint32_t block, room;
+    uint32_t accept; /* not zero: the step is over, what is near are the contacts; else they are
+                      * those there are, pressed, and what fails */
+    double stiffness;
+    double from, to; /* s: of the step */
+};
+
+/* Parameters: r the contacts there are, w those to be, r the block's own points; then of each
+ * meeting its list and, if another block is in it, the points of that. */
+enum { AT_BEFORE, AT_AFTER, AT_POINTS, AT_MEETINGS };
+
+/* What the body works on. */
+struct touching {
+    const duite_call *call;
+    const struct touch_args *args;
+    const struct flow_contact *before;
+    size_t n_before;
+    struct flow_contact *after;
+    size_t n;
+    unsigned char *used; /* n_before, then n: those before that live on; those after that have a
+                          * multiplier of their own */
+};
+
+/* ---- Order ---- */
+
+static int compare_u32(uint32_t a, uint32_t b)
+{
+    return (a > b) - (a < b);
+}
+
+/* By what the first side knows, then by the second. */
+static int compare_first(const struct flow_contact *a, const struct flow_contact *b)
+{
+    const int kind = compare_u32(a->kind, b->kind);
+    return kind ? kind : compare_u32(a->feature[0], b->feature[0]);
+}
+
+static int compare(const void *left, const void *right)
+{
+    const struct flow_contact *a = left, *b = right;
+    const int first = compare_first(a, b);
+    const int side = compare_u32(a->side[1], b->side[1]);
+    if (first)
+        return first;
+    return side ? side : compare_u32(a->feature[1], b->feature[1]);
+}
+
+/* The first contact of a list that is not before this one. */
+static size_t lower_bound(const struct flow_contact *list, size_t n,
+                          const struct flow_contact *contact)
+{
+    size_t low = 0, high = n;
+    while (low < high) {
+        const size_t middle = low + (high - low) / 2;
+        if (compare(list + middle, contact) < 0)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+/* ---- Where its corners are ---- */
+
+/* The points of a side at the end of the step: the block's own, or those in a parameter. */
+static const phys_vec *ends_in(const duite_call *call, size_t at)
+{
+    const size_t n = duite_count(call, at) / 8; /* begin and end of each, four numbers */
+    return duite_in(call, at, phys_vec) + n;
+}
+
+/* Whether a meeting is of two blocks: the points of the other one follow its list. */
+static bool is_between_blocks(const duite_call *call, const struct flow_list *list)
+{
+    return list->side[0] != list->side[1] && list->side[1] < flow_of(call)->tables.n_blocks;
+}
+
+/* Those of the block that a contact meets, or of its own. */
+static const phys_vec *ends_of(const struct touching *t, uint32_t side)
+{
+    const duite_call *call = t->call;
+    if (side == t->args->block)
+        return ends_in(call, AT_POINTS);
+    for (size_t at = AT_MEETINGS; at < call->n_params; at++) {
+        const struct flow_list *list = duite_in(call, at, struct flow_list);
+        const bool points = is_between_blocks(call, list);
+        if (points && (list->side[0] == side || list->side[1] == side))
+            return ends_in(call, at + 1);
+        at += points;
+    }
+    return NULL;
+}
+
+/* Where the step puts the point of a contact (contact_row.h). Returns false where the two blocks
+ * have parted: they have no meeting any more. */
+static bool find_point(const struct touching *t, const struct flow_contact *contact,
+                       phys_vec *point)
+{
+    const phys_vec *y[2] = {ends_in(t->call, AT_POINTS), NULL};
+    *point = (phys_vec){0};
+    if (contact->kind != FLOW_CONTACT_SHAPE && !(y[1] = ends_of(t, contact->side[1])))
+        return false;
+    for (uint32_t k = 0; k < contact->at.n; k++)
+        *point += contact->at.weight[k] * y[k >= contact->first][contact->point[k]];
+    return true;
+}
+
+/* The row of a contact as the solve of the step had it. */
+static void find_row(const struct touching *t, const struct flow_contact *contact,
+                     struct contact_row *row)
+{
+    *row = contact->row;
+    row->stiffness = t->args->stiffness;
+    flow_contact_ahead(flow_of(t->call), t->args->from, t->args->to, contact, row);
+}
+
+/* ---- To be solved once more ---- */
+
+static void press(const struct touching *t, struct flow_contact *contact)
+{
+    struct contact_row row;
+    phys_vec point;
+    find_row(t, contact, &row);
+    if (!find_point(t, contact, &point))
+        return;
+    contact_row_press(&row, &point);
+    contact->row.load = row.load;
+}
+
+/* Whether a contact is there already. */
+static bool is_before(const struct touching *t, const struct flow_contact *contact)
+{
+    const size_t at = lower_bound(t->before, t->n_before, contact);
+    return at < t->n_before && !compare(t->before + at, contact);
+}
+
+static void add_failing(struct touching *t, const struct flow_near *near)
+{
+    if (near->fails && !is_before(t, &near->contact))
+        t->after[t->n++] = near->contact;
+}
+
+static void end_again(struct touching *t)
+{
+    if (t->n_before)
+        memcpy(t->after + t->n, t->before, t->n_before * sizeof *t->before);
+    t->n += t->n_before;
+    for (size_t i = 0; i < t->n; i++)
+        press(t, t->after + i);
+    qsort(t->after, t->n, sizeof *t->after, compare);
+}
+
+/* ---- The end of a step ---- */
+
+static void accept(struct touching *t, const struct flow_near *near)
+{
+    if (!near->fails)
+        t->after[t->n++] = near->contact;
+}
+
+/* What presses and what sticks goes on. */
+static void hand_over(const struct touching *t, size_t from, size_t to)
+{
+    const struct flow_contact *before = t->before + from;
+    struct contact_row row, *after = &t->after[to].row;
+    phys_vec point;
+    if (!find_point(t, before, &point))
+        return;
+    find_row(t, before, &row);
+    contact_row_press(&row, &point);
+    contact_row_slide(&row, &point, after);
+    t->used[from] = t->used[t->n_before + to] = 1;
+}
+
+/* The pair that a contact slid on to: of the same first feature, on much the same side, and new.
+ * Returns n if there is none. */
+static size_t successor(const struct touching *t, const struct flow_contact *before)
+{
+    struct flow_contact least = *before;
+    least.side[1] = least.feature[1] = 0;
+    for (size_t i = lower_bound(t->after, t->n, &least); i < t->n; i++) {
+        const struct flow_contact *after = t->after + i;
+        if (compare_first(after, before))
+            break;
+        if (!t->used[t->n_before + i] && phys_dot(&after->row.normal, &before->row.normal) > 0.7)
+            return i;
+    }
+    return t->n;
+}
+
+static void end_accept(struct touching *t)
+{
+    qsort(t->after, t->n, sizeof *t->after, compare);
+    for (size_t i = 0; i < t->n; i++) {
+        const size_t at = lower_bound(t->before, t->n_before, t->after + i);
+        if (at < t->n_before && !compare(t->before + at, t->after + i))
+            hand_over(t, at, i);
+    }
+    for (size_t i = 0; i < t->n_before; i++) {
+        const size_t next = t->used[i] ? t->n : successor(t, t->before + i);
+        if (next < t->n)
+            hand_over(t, i, next);
+    }
+}
+
+/* ---- Both ---- */
+
+/* Takes up what the meetings of the block listed for it. */
+static void take_lists(struct touching *t)
+{
+    const duite_call *call = t->call;
+    for (size_t at = AT_MEETINGS; at < call->n_params; at++) {
+        const struct flow_list *list = duite_in(call, at, struct flow_list);
+        const struct flow_near *near = (const struct flow_near *)(list + 1);
+        for (uint64_t i = 0; i < list->n; i++) {
+            if (near[i].contact.side[0] != t->args->block)
+                continue;
+            if (t->args->accept)
+                accept(t, near + i);
+            else
+                add_failing(t, near + i);
+        }
+        at += is_between_blocks(call, list);
+    }
+}
+
+static int touch(const duite_call *call)
+{
+    const struct touch_args *args = call->args;
+    const struct flow_list *before = duite_in(call, AT_BEFORE, struct flow_list);
+    struct flow_list *after = duite_out(call, AT_AFTER, struct flow_list);
+    struct touching t = {.call = call,
+                         .args = args,
+                         .before = (const struct flow_contact *)(before + 1),
+                         .n_before = before->n,
+                         .after = (struct flow_contact *)(after + 1)};
+    t.used = calloc(t.n_before + args->room + 1, 1);
+    if (!t.used)
+        return duite_fail(call, FLOW_NO_MEMORY, "out of memory for contacts");
+    take_lists(&t);
+    if (args->accept)
+        end_accept(&t);
+    else
+        end_again(&t);
+    free(t.used);
+    *after = (struct flow_list){.n = t.n};
+    return duite_resize(call, AT_AFTER, flow_list_bytes(t.n, sizeof *t.after));
+}
+
+static int touch_timed(const duite_call *call)
+{
+    return flow_timed(call, touch, FLOW_COLLIDE);
+}
+const duite_kernel flow_touch = {.name = "touch",
+                                 .body = touch_timed,
+                                 .access = {DUITE_R, DUITE_W, DUITE_R},
+                                 .variadic = DUITE_R,
+                                 .args_size = sizeof(struct touch_args)};
+
+/* ---- Forks ---- */
+
+/* A list for so many contacts of a block. */
+static void make_list(struct flow_state *state, uint32_t block, unsigned which, uint32_t room)
+{
+    struct flow_kept_contacts *kept = state->contact.kept + block;
+    if (kept->list[which].generation && kept->room[which] >= room)
+        return;
+    if (kept->list[which].generation)
+        duite_free(state->rt, kept->list[which]); /* a failure is returned by the next fork */
+    while (kept->room[which] < room)
+        kept->room[which] = kept->room[which] ? 2 * kept->room[which] : FLOW_TIE_CLASS;
+    duite_new_sized(state->rt, DUITE_BYTE, 0,
+                    flow_list_bytes(kept->room[which], sizeof(struct flow_contact)),
+                    &kept->list[which]);
+    duite_colocate(state->rt, kept->list[which], state->block[block].x);
+}
+
+int flow_contact_none(struct flow_state *state)
+{
+    const struct flow_list none = {0};
+    int code = DUITE_OK;
+    for (uint32_t b = 0; b < state->flow->tables.n_blocks && !code; b++) {
+        make_list(state, b, state->contact.now, 1);
+        code = duite_set_sized(state->rt, state->contact.kept[b].list[state->contact.now], &none,
+                               sizeof none);
+    }
+    return code;
+}
+
+/* The meetings of a block and what they are about. Returns the end. */
+static duite_object *add_meetings(const struct flow_state *state, uint32_t block,
+                                  duite_object *refs)
+{
+    const struct flow_meetings *meetings = &state->contact.meetings;
+    for (uint32_t i = 0; i < meetings->n; i++) {
+        const uint32_t *side = meetings->all[i].side;
+        if (side[0] != block && side[1] != block)
+            continue;
+        *refs++ = meetings->all[i].near;
+        if (side[0] != side[1] && side[1] < state->flow->tables.n_blocks)
+            *refs++ = state->block[side[side[0] == block]].skin_x;
+    }
+    return refs;
+}
+
+static int fork_block(struct flow_state *state, struct touch_args *args, unsigned to)
+{
+    struct flow_contact_state *contact = &state->contact;
+    struct flow_kept_contacts *kept = contact->kept + args->block;
+    const uint32_t found = contact->found[args->block];
+    kept->n[to] = args->accept ? found : kept->n[contact->now] + found;
+    make_list(state, args->block, to, kept->n[to]);
+    args->room = kept->room[to];
+    contact->refs[AT_BEFORE] = kept->list[contact->now];
+    contact->refs[AT_AFTER] = kept->list[to];
+    contact->refs[AT_POINTS] = state->block[args->block].skin_x;
+    const duite_object *end = add_meetings(state, args->block, contact->refs + AT_MEETINGS);
+    return duite_fork(state->rt, &flow_touch, args, (size_t)(end - contact->refs), contact->refs);
+}
+
+/* The list that is written is neither that of the step's begin nor the one that is read. */
+static int fork_blocks(struct flow_state *state, bool accept)
+{
+    struct flow_contact_state *contact = &state->contact;
+    const unsigned to = contact->begin != contact->now ? 3 - contact->begin - contact->now
+                                                       : (contact->now + 1) % FLOW_CONTACT_LISTS;
+    const struct flow_step_args step = flow_attempt_args(state);
+    struct touch_args args = {.accept = accept,
+                              .stiffness = flow_contact_stiffness(state->flow, step.h),
+                              .from = step.time - step.h,
+                              .to = step.time};
+    int code = DUITE_OK;
+    for (; args.block < state->flow->tables.n_blocks && !code; args.block++)
+        code = fork_block(state, &args, to);
+    contact->now = to;
+    return code;
+}
+
+int flow_contact_again(struct flow_state *state)
+{
+    return fork_blocks(state, false);
+}
+
+int flow_contact_accept(struct flow_state *state)
+{
+    return fork_blocks(state, true);
+}

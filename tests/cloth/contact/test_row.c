@@ -1,0 +1,160 @@
+/* The force of a contact, by a mass on a tilted plane in linear implicit steps, as solves make
+ * them: it rests, sticks up to the angle of Coulomb's law, slides with its acceleration beyond, and
+ * stops. */
+#include "cloth/contact/row.h"
+#include "tests/support/unit.h"
+
+#include <string.h>
+
+static const double G = 9.81, THICKNESS = 1e-3, DEGREE = 0.017453292519943295;
+
+struct mass {
+    double kg, k, h;
+    phys_vec x, v, down; /* m, m/s, m/s^2 */
+    struct contact_row row;
+};
+
+/* On a plane through the origin with the slope tan = rise / run. */
+static struct mass make(double angle, double friction)
+{
+    struct mass mass = {.kg = 1e-5, .k = 30, .h = 0.004};
+    mass.row.normal = (phys_vec){-sin(angle), cos(angle), 0, 0};
+    mass.row.thickness = THICKNESS;
+    mass.row.friction = friction;
+    mass.row.stiffness = mass.k;
+    mass.x = THICKNESS * mass.row.normal;
+    mass.down = (phys_vec){0, -G, 0, 0};
+    return mass;
+}
+
+/* Solves (m + h^2 (alpha + w w')) dv = b: by the formula of Sherman and Morrison. */
+static void solve(double m, double h, const phys_vec *value, const phys_vec *b, phys_vec *dv)
+{
+    const phys_vec three = {1, 1, 1, 0}, w = *value * three;
+    const double d = m + h * h * (*value)[3], ww = h * h * phys_dot(&w, &w);
+    *dv = 1 / d * (*b - h * h * phys_dot(&w, b) / (d + ww) * w);
+}
+
+static void step(struct mass *mass)
+{
+    struct contact_row *row = &mass->row;
+    phys_vec force, value, dv;
+    row->origin = mass->x;
+    row->gap = phys_dot(&row->normal, &mass->x);
+    const phys_vec point = mass->x + mass->h * mass->v;
+    contact_row_linearise(row, &point, &force, &value);
+    const phys_vec b = mass->h * (force + mass->kg * mass->down);
+    solve(mass->kg, mass->h, &value, &b, &dv);
+    mass->v += dv;
+    mass->x += mass->h * mass->v;
+    contact_row_press(row, &mass->x);
+    const struct contact_row before = *row;
+    contact_row_slide(&before, &mass->x, row);
+}
+
+static void run(struct mass *mass, double seconds)
+{
+    for (int i = 0; i < (int)(seconds / mass->h + 0.5); i++)
+        step(mass);
+}
+
+START_TEST(rests)
+{
+    struct mass mass = make(0, 0);
+    mass.x += (phys_vec){0, 0.01, 0, 0};
+    run(&mass, 2);
+    ck_assert_double_eq_tol(mass.row.load, mass.kg * G, 1e-6 * mass.kg * G);
+    ck_assert_double_eq_tol(mass.x[1], THICKNESS, 1e-9);
+    ck_assert_double_eq_tol(mass.v[1], 0, 1e-9);
+}
+END_TEST
+
+/* Half a degree below the angle it is where it was, half a degree above it slides. */
+START_TEST(sticks_and_slips)
+{
+    const double friction = 0.4, limit = atan(friction), half = 0.5 * DEGREE;
+    struct mass below = make(limit - half, friction), above = make(limit + half, friction);
+    const phys_vec up = {cos(limit - half), sin(limit - half), 0, 0};
+    run(&below, 1);
+    const phys_vec then = below.x;
+    run(&below, 9);
+    const phys_vec way = below.x - then;
+    ck_assert_double_lt(sqrt(phys_dot(&way, &way)), 1e-9);
+    ck_assert_double_lt(fabs(phys_dot(&below.x, &up)), 3e-3); /* before its load is there */
+    run(&above, 10);
+    ck_assert_double_gt(sqrt(phys_dot(&above.v, &above.v)), 0.1);
+}
+END_TEST
+
+START_TEST(slides_as_coulomb_says)
+{
+    for (int degrees = 20; degrees < 80; degrees += 10) {
+        const double angle = degrees * DEGREE, friction = 0.3;
+        struct mass mass = make(angle, friction);
+        run(&mass, 1);
+        const phys_vec before = mass.v;
+        run(&mass, 1);
+        const phys_vec gained = mass.v - before;
+        const double expected = G * (sin(angle) - friction * cos(angle));
+        if (expected > 0)
+            ck_assert_double_eq_tol(sqrt(phys_dot(&gained, &gained)), expected, 0.01 * expected);
+    }
+}
+END_TEST
+
+/* On level ground it stops after v^2 / (2 friction G), and stays. */
+START_TEST(stops)
+{
+    struct mass mass = make(0, 0.2);
+    mass.h = 0.001;
+    run(&mass, 0.1); /* the load is there */
+    mass.v = (phys_vec){0.6, 0, 0.8, 0};
+    const phys_vec from = mass.x;
+    run(&mass, 2);
+    const phys_vec way = mass.x - from;
+    ck_assert_double_eq_tol(sqrt(phys_dot(&way, &way)), 1 / (2 * 0.2 * G), 0.01 / (2 * 0.2 * G));
+    ck_assert_double_lt(sqrt(phys_dot(&mass.v, &mass.v)), 1e-9);
+    const phys_vec then = mass.x;
+    run(&mass, 8);
+    const phys_vec crept = mass.x - then;
+    ck_assert_double_lt(sqrt(phys_dot(&crept, &crept)), 1e-9);
+}
+END_TEST
+
+/* The matrix is the derivative of the force where it does not turn over. */
+START_TEST(derivative)
+{
+    struct mass mass = make(0.3, 0.5);
+    struct contact_row *row = &mass.row;
+    phys_vec point = mass.x - 1e-5 * row->normal + (phys_vec){1e-8, 0, 2e-8, 0}, force, value,
+             other, unused;
+    row->origin = mass.x;
+    row->gap = THICKNESS;
+    row->load = 1e-4;
+    contact_row_linearise(row, &point, &force, &value);
+    ck_assert_double_gt(value[3], 0);
+    for (int c = 0; c < 3; c++) {
+        const phys_vec three = {1, 1, 1, 0}, w = value * three;
+        phys_vec d = {0}, expected;
+        d[c] = 1e-8;
+        const phys_vec moved = point + d;
+        contact_row_linearise(row, &moved, &other, &unused);
+        expected = value[3] * d + phys_dot(&w, &d) * w;
+        const phys_vec error = (force - other) - expected;
+        ck_assert_double_lt(sqrt(phys_dot(&error, &error)), 1e-6 * 30 * 1e-8);
+    }
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("contact row");
+    TCase *tests = tcase_create("rows");
+    tcase_add_test(tests, rests);
+    tcase_add_test(tests, sticks_and_slips);
+    tcase_add_test(tests, slides_as_coulomb_says);
+    tcase_add_test(tests, stops);
+    tcase_add_test(tests, derivative);
+    suite_add_tcase(suite, tests);
+    return unit_run(suite);
+}

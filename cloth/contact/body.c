@@ -186,6 +186,22 @@ PHYS_INLINE void feature_normal(const struct contact_body *body, const struct ne
     }
 }
 
+/* Of the nearest point of a body with frames: what its corners have, by its weights. */
+static void feature_velocity(const struct contact_body *body, const struct nearest *nearest,
+                             phys_vec *velocity)
+{
+    const uint32_t *corner = contact_body_facets(body)[nearest->facet].corner;
+    const phys_vec *x = contact_body_vertices(body), *v = contact_body_velocities(body);
+    const phys_vec ab = x[corner[1]] - x[corner[0]], ac = x[corner[2]] - x[corner[0]];
+    const phys_vec to = nearest->at - x[corner[0]];
+    const double bb = phys_dot(&ab, &ab), bc = phys_dot(&ab, &ac), cc = phys_dot(&ac, &ac);
+    const double pb = phys_dot(&to, &ab), pc = phys_dot(&to, &ac), area = bb * cc - bc * bc;
+    const double b = area > 0 ? (cc * pb - bc * pc) / area : 0;
+    const double c = area > 0 ? (bb * pc - bc * pb) / area : 0;
+    *velocity =
+        v[corner[0]] + b * (v[corner[1]] - v[corner[0]]) + c * (v[corner[2]] - v[corner[0]]);
+}
+
 PHYS_INLINE void nearest_hit(const struct contact_body *body, const struct nearest *nearest,
                              const phys_vec *x, struct contact_hit *hit)
 {
@@ -196,6 +212,8 @@ PHYS_INLINE void nearest_hit(const struct contact_body *body, const struct neare
     const double out = phys_dot(&away, &normal);
     hit->gap = nearest->feature == FACE ? out : out < 0 ? -length : length;
     hit->normal = nearest->feature == FACE || length <= body->near ? normal : away / hit->gap;
+    if (body->n_frames)
+        feature_velocity(body, nearest, &hit->velocity);
 }
 
 /* Points that follow each other are near to each other: the facet of one bounds the next. */

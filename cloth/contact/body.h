@@ -22,9 +22,19 @@ enum { CONTACT_ALIGN = 64, CONTACT_LEAF = 4 };
 struct contact_body {
     uint64_t bytes; /* of all of it, a multiple of CONTACT_ALIGN */
     uint32_t n_vertices, n_triangles, n_nodes;
-    uint64_t vertices, vertex_normals, facets, facet_normals, nodes;
+    uint32_t n_frames; /* 0: it keeps its shape, and has neither velocities nor frames */
+    uint64_t vertices, vertex_normals, facets, facet_normals, nodes, velocities, frames;
     double low[3], high[3]; /* m: the box around it */
     double near;            /* m: nearer than this a direction to its surface is but rounding */
+    double first, rate;     /* s, frames a second: frame k is at first + k / rate */
+};
+
+/* The places of a body's n_vertices in each of n frames, m: what changes its shape. Between frames
+ * vertices move straight; before the first and after the last one they rest. */
+struct contact_frames {
+    uint32_t n;
+    double first, rate;       /* as of a body */
+    const double (*place)[3]; /* n x n_vertices */
 };
 
 /* A triangle, in the order of the tree: counterclockwise as seen from outside. */
@@ -66,6 +76,11 @@ PHYS_INLINE const phys_vec *contact_facet_normals(const struct contact_body *bod
 {
     return (const void *)((const char *)body + body->facet_normals);
 }
+/* m/s, of the vertices of a body with frames. */
+PHYS_INLINE const phys_vec *contact_body_velocities(const struct contact_body *body)
+{
+    return (const void *)((const char *)body + body->velocities);
+}
 PHYS_INLINE const struct contact_node *contact_body_nodes(const struct contact_body *body)
 {
     return (const void *)((const char *)body + body->nodes);
@@ -88,6 +103,21 @@ struct contact_bodies {
 int contact_bodies_add(struct contact_bodies *bodies, const struct mesh *mesh, bool *turned,
                        struct cloth_error *error);
 
+/* The same of a body with frames, of which the mesh says how its triangles join; it is where the
+ * frames are at time 0. CLOTH_E_INPUT, too, for a vertex of a frame that is nowhere. */
+int contact_bodies_add_frames(struct contact_bodies *bodies, const struct mesh *mesh,
+                              const struct contact_frames *frames, bool *turned,
+                              struct cloth_error *error);
+
+/* Before the tasks of a step between two times, s: those with frames are where the step ends, with
+ * the velocities of its chords. Nobody may use the bodies meanwhile. */
+void contact_bodies_move(const struct contact_bodies *bodies, double from, double to);
+
+/* The places, m, of the vertices of a body with frames at a time, s. Whether a body, or NULL, has
+ * frames that are not over by then. */
+void contact_body_places(const struct contact_body *body, double time, phys_vec *x);
+bool contact_body_moves_after(const struct contact_body *body, double time);
+
 /* That of a number, from 1; NULL for 0. */
 const struct contact_body *contact_bodies_at(const struct contact_bodies *bodies, uint32_t number);
 
@@ -102,5 +132,8 @@ int contact_body_mesh(const struct contact_body *body, struct mesh *mesh,
 uint32_t contact_tree_nodes(uint32_t n_triangles);
 int contact_tree_build(uint32_t n, uint32_t *order, const phys_vec *low, const phys_vec *high,
                        struct contact_node *nodes, struct cloth_error *error);
+/* Fits its boxes to triangles that moved. x: of vertices, m. */
+void contact_tree_refit(uint32_t n_nodes, const struct contact_facet *facet, const phys_vec *x,
+                        struct contact_node *nodes);
 
 #endif

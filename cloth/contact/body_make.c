@@ -9,9 +9,8 @@
 
 /* ---- Pseudo-normals ---- */
 
-/* The angle between two vectors of any length, rad, of + - * / and sqrt alone, so that its bits are
- * the same everywhere: three times halved, then the series of the arc tangent. */
-static double angle_between(const phys_vec *a, const phys_vec *b)
+/* Three times halved, then the series of the arc tangent. */
+double contact_angle(const phys_vec *a, const phys_vec *b)
 {
     phys_vec product;
     contact_cross(a, b, &product);
@@ -38,7 +37,7 @@ static void add_normals(const struct contact_making *making, phys_vec *normal)
             contact_load(making, corner[i], x + i);
         for (int i = 0; i < 3; i++) {
             const phys_vec a = x[(i + 1) % 3] - x[i], b = x[(i + 2) % 3] - x[i];
-            normal[corner[i]] += angle_between(&a, &b) * making->normal[t];
+            normal[corner[i]] += contact_angle(&a, &b) * making->normal[t];
         }
     }
     for (uint32_t v = 0; v < making->mesh->n_vertices; v++) {
@@ -55,6 +54,12 @@ static uint64_t whole_lines(uint64_t bytes)
     return (bytes + CONTACT_ALIGN - 1) / CONTACT_ALIGN * CONTACT_ALIGN;
 }
 
+static uint64_t frames_bytes(const struct contact_making *making)
+{
+    const uint64_t places = (uint64_t)making->frames->n * making->mesh->n_vertices;
+    return whole_lines(places * sizeof *making->frames->place);
+}
+
 static void lay_out(const struct contact_making *making, struct contact_body *body)
 {
     *body = (struct contact_body){.n_vertices = making->mesh->n_vertices,
@@ -67,6 +72,14 @@ static void lay_out(const struct contact_making *making, struct contact_body *bo
         body->facets + whole_lines(body->n_triangles * sizeof(struct contact_facet));
     body->nodes = body->facet_normals + whole_lines(body->n_triangles * sizeof(phys_vec));
     body->bytes = body->nodes + body->n_nodes * sizeof(struct contact_node);
+    if (!making->frames)
+        return;
+    body->n_frames = making->frames->n;
+    body->first = making->frames->first;
+    body->rate = making->frames->rate;
+    body->velocities = body->bytes;
+    body->frames = body->velocities + whole_lines(body->n_vertices * sizeof(phys_vec));
+    body->bytes = body->frames + frames_bytes(making);
 }
 
 static void put_vertices(const struct contact_making *making, struct contact_body *body)
@@ -113,6 +126,9 @@ static int put_body(struct contact_making *making, struct contact_body *body)
         return code;
     put_vertices(making, body);
     put_facets(making, body);
+    if (making->frames)
+        memcpy((char *)body + body->frames, making->frames->place,
+               (size_t)body->n_frames * body->n_vertices * sizeof *making->frames->place);
     return CLOTH_OK;
 }
 
@@ -181,16 +197,44 @@ static void free_room(struct contact_making *making)
     free(making->normal);
 }
 
+/* That all vertices of all frames are where those of a mesh may be. */
+static int check_frames(const struct contact_making *making)
+{
+    const uint32_t n = making->mesh->n_vertices;
+    for (uint32_t k = 0; k < making->frames->n; k++)
+        for (uint32_t v = 0; v < n; v++)
+            for (int c = 0; c < 3; c++)
+                if (!(fabs(making->frames->place[(size_t)k * n + v][c]) < CONTACT_BODY_BOUND))
+                    return cloth_fail(making->error, CLOTH_E_INPUT,
+                                      "vertex %u of frame %u is %g m from the origin along an "
+                                      "axis; less than %g m is expected",
+                                      v + 1, k + 1, making->frames->place[(size_t)k * n + v][c],
+                                      CONTACT_BODY_BOUND);
+    return CLOTH_OK;
+}
+
 int contact_bodies_add(struct contact_bodies *bodies, const struct mesh *mesh, bool *turned,
                        struct cloth_error *error)
 {
+    return contact_bodies_add_frames(bodies, mesh, NULL, turned, error);
+}
+
+int contact_bodies_add_frames(struct contact_bodies *bodies, const struct mesh *mesh,
+                              const struct contact_frames *frames, bool *turned,
+                              struct cloth_error *error)
+{
     struct cloth_error own = {0};
-    struct contact_making making = {.mesh = mesh, .n = mesh->n_triangles, .error = &own};
+    struct contact_making making = {
+        .mesh = mesh, .frames = frames, .n = mesh->n_triangles, .error = &own};
     int code = contact_body_check_vertices(&making);
+    if (!code && frames)
+        code = check_frames(&making);
     code = code ? code : take_room(&making);
     code = code ? code : contact_body_check(&making, turned);
     code = code ? code : append(bodies, &making);
     free_room(&making);
+    if (!code && frames)
+        contact_bodies_move(bodies, 0, 0);
     return code ? cloth_fail(error, code, "%s", own.text) : CLOTH_OK;
 }
 

@@ -74,12 +74,14 @@ int contact_body_skin_make(const struct contact_body *body, uint32_t first_id, v
     int code = make_source(body, &source, error);
     if (!code) {
         put_source(body, first_id, &source);
+        memset(source.seen, 1, body->n_vertices); /* none can be cut */
         const struct contact_skin_source from = {
             .n_points = body->n_vertices,
             .n_triangles = body->n_triangles,
             .corner = (const uint32_t(*)[3])(const void *)source.corner,
             .stands = source.stands,
             .id = source.id,
+            .held = source.seen,
             .x = contact_body_vertices(body)};
         memset(table, 0, contact_body_skin_bytes(body));
         code = contact_skin_make(&from, table, error);
@@ -100,6 +102,13 @@ void contact_body_ends(const struct contact_body *body, const struct contact_pos
     const phys_vec *vertex = contact_body_vertices(body);
     phys_vec middle = {0}, was, is;
     *way = (phys_vec){0};
+    if (body->n_frames) {
+        contact_body_places(body, pose->begin, x);
+        contact_body_places(body, pose->end, y);
+        for (uint32_t v = 0; v < body->n_vertices; v++)
+            *way += (y[v] - x[v]) / body->n_vertices;
+        return;
+    }
     if (!pose->moves) {
         memcpy(x, vertex, body->n_vertices * sizeof *x);
         memcpy(y, vertex, body->n_vertices * sizeof *y);

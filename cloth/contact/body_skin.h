@@ -6,8 +6,9 @@
 
 /* A body as blocks of cloth are met: a skin whose points are the body's vertices, with all of its
  * triangles, edges and vertices as features. Over a step each point moves straight from its place
- * by the pose at the begin to that by the pose at the end, so that a motion has no jump from step
- * to step; none can be cut. The certificates of cloth hold for it as they are. Local. */
+ * by the pose at the begin to that by the pose at the end, or from where its frames have it to
+ * where they have it then, so that a motion has no jump from step to step; none can be cut. The
+ * certificates of cloth hold for it as they are. Local. */
 
 /* Room for its table, in bytes, aligned to CONTACT_ALIGN. */
 size_t contact_body_skin_bytes(const struct contact_body *body);

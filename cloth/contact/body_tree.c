@@ -89,6 +89,40 @@ static void put_box(const struct tree *tree, struct contact_node *node, int part
     }
 }
 
+/* Boxes around what a part of a node has: its facets, or the boxes of its node, which is already
+ * fit. */
+static void refit_part(const struct contact_facet *facet, const phys_vec *x,
+                       struct contact_node *nodes, struct contact_node *node, int part)
+{
+    const uint32_t child = node->child[part];
+    const bool leaf = child & CONTACT_IS_LEAF;
+    for (int c = 0; c < 3; c++) {
+        double low = INFINITY, high = -INFINITY;
+        for (uint32_t i = 0; leaf && i < contact_leaf_n(child); i++)
+            for (int k = 0; k < 3; k++) {
+                const double at = x[facet[contact_leaf_first(child) + i].corner[k]][c];
+                low = fmin(low, at);
+                high = fmax(high, at);
+            }
+        for (int i = 0; !leaf && i < 4; i++) {
+            low = fmin(low, (double)nodes[child].low[c][i]);
+            high = fmax(high, (double)nodes[child].high[c][i]);
+        }
+        node->low[c][part] = round_down(low);
+        node->high[c][part] = -round_down(-high);
+    }
+}
+
+/* A node has a lower number than those below it. */
+void contact_tree_refit(uint32_t n_nodes, const struct contact_facet *facet, const phys_vec *x,
+                        struct contact_node *nodes)
+{
+    for (uint32_t n = n_nodes; n > 0; n--)
+        for (int part = 0; part < 4; part++)
+            if (nodes[n - 1].low[0][part] <= nodes[n - 1].high[0][part])
+                refit_part(facet, x, nodes, nodes + n - 1, part);
+}
+
 /* Returns the number of the node that has these. */
 static uint32_t build_node(struct tree *tree, uint32_t from, uint32_t to)
 {

@@ -16,6 +16,7 @@ struct contact_side {
 /* A body that is being made. By number of the triangle: corners, normals, boxes, neighbours. */
 struct contact_making {
     const struct mesh *mesh;
+    const struct contact_frames *frames; /* NULL: none */
     uint32_t n;
     uint32_t (*corner)[3], (*neighbour)[3];
     phys_vec *normal, *low, *high;
@@ -36,6 +37,10 @@ static inline void contact_cross(const phys_vec *a, const phys_vec *b, phys_vec 
     *product = (phys_vec){u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2],
                           u[0] * v[1] - u[1] * v[0], 0};
 }
+
+/* The angle between two vectors of any length, rad, of + - * / and sqrt alone, so that its bits are
+ * the same everywhere. */
+double contact_angle(const phys_vec *a, const phys_vec *b);
 
 /* Whether there are triangles, not too many, and no vertex is too far away; before there is room.
  */

@@ -57,6 +57,8 @@ void contact_pose_over(const struct contact_shape *shape, const struct phys_key 
 {
     *pose = (struct contact_pose){.body = contact_bodies_at(bodies, shape->body),
                                   .moves = shape->n > 0,
+                                  .begin = from,
+                                  .end = to,
                                   .rate = to > from ? 1 / (to - from) : 0};
     if (!pose->moves)
         return;
@@ -67,9 +69,9 @@ void contact_pose_over(const struct contact_shape *shape, const struct phys_key 
 static void closest_still(const struct contact_shape *shape, const struct contact_pose *pose,
                           size_t n, const phys_vec *x, struct contact_hit *hit)
 {
-    contact_kinds[shape->kind]->closest(shape->value, pose->body, n, x, hit);
     for (size_t i = 0; i < n; i++)
         hit[i].velocity = (phys_vec){0};
+    contact_kinds[shape->kind]->closest(shape->value, pose->body, n, x, hit);
 }
 
 static void closest_moving(const struct contact_shape *shape, const struct contact_pose *pose,

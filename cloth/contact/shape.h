@@ -32,7 +32,8 @@ struct contact_pose {
     const struct contact_body *body; /* NULL: it is none */
     bool moves; /* else the poses mean nothing: the shape is where its parameters say */
     struct phys_pose from, to;
-    double rate; /* 1/s: 1 over the length of the step; 0: it has none */
+    double begin, end; /* s: of the step */
+    double rate;       /* 1/s: 1 over the length of the step; 0: it has none */
 };
 
 /* The point of a surface that is nearest to a given one. */
@@ -70,8 +71,8 @@ struct contact_core {
 struct contact_kind {
     const char *name;                          /* in scenes and in scene.json */
     const struct contact_parameter *parameter; /* ended by a name that is NULL */
-    /* Fills gap and normal of n points (m), in the axes that the parameters are in. body: NULL but
-     * for bodies. */
+    /* Fills gap and normal of n points (m), in the axes that the parameters are in; of bodies with
+     * frames the velocity, too. body: NULL but for bodies. */
     void (*closest)(const double *value, const struct contact_body *body, size_t n,
                     const phys_vec *x, struct contact_hit *hit);
     /* Whether the gaps of n points are all above 0: most rows of a cloth touch nothing, and this

@@ -40,11 +40,12 @@ struct contact_skin {
  * corner k as a feature, by this triangle; bit 3 + k: the edge from corner k to the next one. */
 struct contact_skin_source {
     uint32_t n_points, n_triangles;
-    const uint32_t (*corner)[3];              /* n_triangles */
-    const unsigned char *stands;              /* n_triangles */
-    const uint32_t *id, *block, *row, *cloth; /* n_points */
-    const unsigned char *held;                /* n_points */
-    const phys_vec *x;                        /* n_points */
+    const uint32_t (*corner)[3];         /* n_triangles */
+    const unsigned char *stands;         /* n_triangles */
+    const uint32_t *id;                  /* n_points */
+    const uint32_t *block, *row, *cloth; /* n_points; of bodies NULL: all 0 */
+    const unsigned char *held;           /* n_points */
+    const phys_vec *x;                   /* n_points */
 };
 
 /* Bytes of a table, and of what changes in a step; both follow of the four counts alone. The memory

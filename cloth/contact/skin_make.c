@@ -182,10 +182,12 @@ static void put_points(const struct contact_skin_source *from, const struct cont
     if (!n)
         return;
     memcpy(table + head->id, from->id, n * sizeof *from->id);
+    memcpy(table + head->held, from->held, n);
+    if (!from->block)
+        return;
     memcpy(table + head->block, from->block, n * sizeof *from->block);
     memcpy(table + head->row, from->row, n * sizeof *from->row);
     memcpy(table + head->cloth, from->cloth, n * sizeof *from->cloth);
-    memcpy(table + head->held, from->held, n);
 }
 
 static void put_skin(struct making *making, const struct contact_skin_head *head, char *table)

@@ -185,7 +185,9 @@ static bool obstacles_move_after(const struct model *model, double time)
 {
     bool moves = false;
     for (uint32_t i = 0; i < model->n_obstacles; i++)
-        moves = moves || keys_move(model, model->obstacles[i].first, model->obstacles[i].n, time);
+        moves = moves || keys_move(model, model->obstacles[i].first, model->obstacles[i].n, time) ||
+                contact_body_moves_after(
+                    contact_bodies_at(&model->bodies, model->obstacles[i].body), time);
     return moves;
 }
 

@@ -113,8 +113,11 @@ static int collide_body(const duite_call *call, const struct collide_fields *on)
     return flow_check(call, t, on->args, on->x, "position", on->status);
 }
 
+/* Bodies with frames move here: tasks of the step before are done, since it has been settled. */
 int flow_contact_project(struct flow_state *state)
 {
     struct flow_step_args args = flow_attempt_args(state);
+    const struct model *model = state->flow->model;
+    contact_bodies_move(&model->bodies, args.begin * model->h / FLOW_TICKS, args.time);
     return flow_fork_each(state, &flow_kernel_collide, &args);
 }

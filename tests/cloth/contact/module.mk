@@ -40,4 +40,8 @@ TESTS += tests/cloth/contact/test_certificate_exact
 endif
 dist_check_SCRIPTS += tests/cloth/contact/test_certificate_long.sh
 LONG_TESTS += tests/cloth/contact/test_certificate_long.sh
+check_PROGRAMS += tests/cloth/contact/test_body_frames
+tests_cloth_contact_test_body_frames_SOURCES = tests/cloth/contact/test_body_frames.c tests/cloth/contact/bodies.h
+tests_cloth_contact_test_body_frames_LDADD = $(CLOTH_TEST_LIBS)
+TESTS += tests/cloth/contact/test_body_frames
 endif

@@ -212,8 +212,14 @@ START_TEST(pairs_with_a_cloth)
     struct found found = {.capacity = 1000000};
     make_cloth(corner, id, x[0], y[0]);
     memset(stands, 63, sizeof stands);
-    const struct contact_skin_source from = {3 * CLOTH, CLOTH, (const uint32_t(*)[3])corner,
-                                             stands,    id,    x[0]};
+    static unsigned char held[3 * CLOTH];
+    const struct contact_skin_source from = {.n_points = 3 * CLOTH,
+                                             .n_triangles = CLOTH,
+                                             .corner = (const uint32_t(*)[3])corner,
+                                             .stands = stands,
+                                             .id = id,
+                                             .held = held,
+                                             .x = x[0]};
     const struct contact_skin counts = {
         .n_points = 3 * CLOTH, .n_triangles = CLOTH, .n_edges = 3 * CLOTH, .n_vertices = 3 * CLOTH};
     table[0] = take(contact_skin_bytes(&counts), 0);

@@ -63,7 +63,7 @@ static void take(struct flow_state *state)
                             ? head->n_blocks
                             : smaller(head->n_blocks, head->n_ties);
     const size_t refs =
-        larger(head->n_blocks, 2 * (size_t)head->max_neighbours) + 2 * tied + DUITE_MAX_ACCESS;
+        larger(head->n_blocks, 2 * (size_t)head->max_neighbours) + 4 * tied + DUITE_MAX_ACCESS;
     flow->n_clocks = duite_threads(state->rt);
     flow->clock = aligned_alloc(sizeof *flow->clock, flow->n_clocks * sizeof *flow->clock);
     if (flow->clock)

@@ -90,25 +90,40 @@ struct coupled_tie {
     struct solve_lifted lifted[SOLVE_TIE_CORNERS];
 };
 
-static uint32_t patch_of_corner(const struct flow *flow, const struct flow_ties *ties,
-                                uint32_t block, uint32_t corner)
+/* What is looked up once for ties that follow each other. */
+struct coupled_ties {
+    const struct flow *flow;
+    const struct couple_fields *on;
+    struct flow_ties ties;
+    struct solve_patches own, there; /* there: of the other block with this number */
+    uint32_t other;
+    uint32_t n, patch[SOLVE_TIE_CORNERS];             /* between patches of one tie: */
+    double *to[SOLVE_TIE_CORNERS][SOLVE_TIE_CORNERS]; /* NULL: another block adds it, or none */
+};
+
+static uint32_t patch_of_corner(struct coupled_ties *m, uint32_t corner)
 {
-    if (corner < ties->n_rows)
-        return flow_patch_of(flow, block, corner);
-    const uint32_t ghost = corner - ties->n_rows;
-    return flow_patch_of(flow, ties->other[ties->ghost_other[ghost]], ties->ghost_row[ghost]);
+    const uint32_t own = m->on->args->block;
+    if (corner < m->ties.n_rows)
+        return m->own.n * own + solve_patch_of(&m->own, corner);
+    const uint32_t ghost = corner - m->ties.n_rows, other = m->ties.ghost_other[ghost];
+    const uint32_t block = m->ties.other[other];
+    if (other != m->other)
+        m->there = solve_patches_of(m->flow->tables.block[block].n, m->flow->patches);
+    m->other = other;
+    return m->there.n * block + solve_patch_of(&m->there, m->ties.ghost_row[ghost]);
 }
 
-static void see_tie(const struct flow *flow, const struct flow_ties *ties, uint32_t i,
-                    const struct couple_fields *on, struct coupled_tie *tie)
+static void see_tie(struct coupled_ties *m, uint32_t i, struct coupled_tie *tie)
 {
+    const struct flow_ties *ties = &m->ties;
     tie->n = 0;
     for (int k = 0; k < SOLVE_TIE_CORNERS; k++) {
         const uint32_t corner = ties->corner[i][k];
         uint32_t at = 0;
         if (ties->weight[i][k] == 0)
             continue;
-        const uint32_t patch = patch_of_corner(flow, ties, on->args->block, corner);
+        const uint32_t patch = patch_of_corner(m, corner);
         while (at < tie->n && tie->patch[at] != patch)
             at++;
         if (at == tie->n) {
@@ -116,40 +131,50 @@ static void see_tie(const struct flow *flow, const struct flow_ties *ties, uint3
             tie->lifted[at] = (struct solve_lifted){{0}};
         }
         solve_lift_corner(ties->weight[i][k],
-                          flow_tie_row(ties, corner, on->basis, on->tied_tie_basis, 0),
+                          flow_tie_row(ties, corner, m->on->basis, m->on->tied_tie_basis, 0),
                           tie->lifted + at);
     }
 }
 
-/* Whether the pattern has room for what couples all patches of the tie. */
-static bool fits(const struct flow *flow, const struct coupled_tie *tie)
+/* Finds where a tie between these patches adds: each block has its own patches as rows. One that
+ * leads to patches beyond the pattern adds what it has on the diagonal alone, so that C stays
+ * definite. */
+static void find_targets(struct coupled_ties *m, const struct coupled_tie *tie)
 {
-    bool all = true;
+    const uint32_t first = m->flow->patches * m->on->args->block;
+    bool whole = true;
+    if (tie->n == m->n && !memcmp(tie->patch, m->patch, tie->n * sizeof *tie->patch))
+        return;
+    m->n = tie->n;
+    memcpy(m->patch, tie->patch, tie->n * sizeof *tie->patch);
     for (uint32_t k = 0; k < tie->n; k++)
         for (uint32_t l = 0; l < k; l++)
-            all = all && flow_patches_joined(flow, tie->patch[k], tie->patch[l]);
-    return all;
+            whole = whole && flow_patches_joined(m->flow, tie->patch[k], tie->patch[l]);
+    for (uint32_t k = 0; k < tie->n; k++)
+        for (uint32_t l = 0; l < tie->n; l++) {
+            const uint32_t p = tie->patch[k], q = tie->patch[l];
+            const bool own = p >= first && p < first + m->flow->patches;
+            m->to[k][l] = NULL;
+            if (own && (p == q || (whole && q > p)))
+                m->to[k][l] = m->on->coupling + SOLVE_COUPLING * flow_coupling_at(m->flow, p, q);
+        }
 }
 
-/* Adds what ties make of C: each block that of its own patches, as rows. A tie that leads to
- * patches beyond the pattern adds what it has on the diagonal alone, so that C stays definite. */
+/* Adds what ties make of C. */
 static void couple_ties(const struct flow *flow, const phys_vec *value,
                         const struct couple_fields *on)
 {
-    const struct flow_ties ties = flow_ties_open(on->tie_table);
-    const uint32_t first = flow->patches * on->args->block;
-    for (uint32_t i = 0; i < ties.n; i++) {
+    struct coupled_ties m = {
+        .flow = flow, .on = on, .ties = flow_ties_open(on->tie_table), .other = UINT32_MAX};
+    m.own = solve_patches_of(m.ties.n_rows, flow->patches);
+    for (uint32_t i = 0; i < m.ties.n; i++) {
         struct coupled_tie tie;
-        see_tie(flow, &ties, i, on, &tie);
-        const bool whole = fits(flow, &tie);
-        for (uint32_t k = 0; k < tie.n; k++) {
-            const uint32_t p = tie.patch[k];
-            for (uint32_t l = 0; l < tie.n && p >= first && p < first + flow->patches; l++)
-                if (l == k || (whole && tie.patch[l] > p))
-                    solve_couple_lifted(value + i, tie.lifted + k, tie.lifted + l,
-                                        on->coupling + SOLVE_COUPLING *
-                                                           flow_coupling_at(flow, p, tie.patch[l]));
-        }
+        see_tie(&m, i, &tie);
+        find_targets(&m, &tie);
+        for (uint32_t k = 0; k < tie.n; k++)
+            for (uint32_t l = 0; l < tie.n; l++)
+                if (m.to[k][l])
+                    solve_couple_lifted(value + i, tie.lifted + k, tie.lifted + l, m.to[k][l]);
     }
 }
 

@@ -75,22 +75,15 @@ PHYS_INLINE bool along_enough(const struct along *a, double gap, double thicknes
 
 /* ---- Certify ---- */
 
-/* Across both features, the mean of the start and the end: this proves most pairs. It is turned as
- * the features lie at each. Works for both kinds without a branch. */
-PHYS_INLINE void quick_direction(bool is_edges, const phys_vec x[4], const phys_vec y[4],
-                                 phys_vec *n)
+/* Across both features, turned as they lie, with lanes z x y. Works for both kinds without a
+ * branch.
+ */
+PHYS_INLINE void quick_across(bool is_edges, const phys_vec p[4], phys_vec *n)
 {
-    const phys_vec *const ends[2] = {x, y};
-    *n = (phys_vec){0};
-    PHYS_UNROLL
-    for (int i = 0; i < 2; i++) {
-        const phys_vec *p = ends[i];
-        const phys_vec a = p[2 - is_edges] - p[1 - is_edges], b = p[3] - p[1 + is_edges];
-        const phys_vec way = p[0] - p[1 + is_edges];
-        phys_vec across;
-        contact_product(&a, &b, &across);
-        *n += __builtin_copysign(1, phys_dot(&across, &way)) * across;
-    }
+    const phys_vec a = p[2 - is_edges] - p[1 - is_edges], b = p[3] - p[1 + is_edges];
+    const phys_vec way = p[0] - p[1 + is_edges], turned = CONTACT_PICK(way, way, 2, 0, 1, 3);
+    contact_product_turned(&a, &b, n);
+    *n *= __builtin_copysign(1, phys_dot(n, &turned));
 }
 
 /* contact_apart of either kind. */
@@ -115,24 +108,6 @@ PHYS_INLINE bool quick_small(const struct ends *ends)
     return (uint64_t)(bits[0] | bits[1]) << 1 < UINT64_C(0x4000000000000000) << 1; /* 2.0 */
 }
 
-/* Whether the direction proves the pair, and f(1) is enough after any gap. Small, so that most
- * calls do nothing else. */
-PHYS_INLINE bool certify_quickly(bool is_edges, const phys_vec x[4], const phys_vec y[4],
-                                 double thickness, const struct ends *ends)
-{
-    static const double OFF = 36 * ROUNDING; /* m: of 18 differences below 2 m */
-    const double part = 0.1 * thickness;
-    const double least = part > CONTACT_MARGIN + OFF ? part : CONTACT_MARGIN + OFF;
-    phys_vec n, along_x, along_y;
-    quick_direction(is_edges, x, y, &n);
-    contact_along(&ends->x, &n, &along_x);
-    contact_along(&ends->y, &n, &along_y);
-    const double length = sqrt(phys_dot(&n, &n));
-    const double before = quick_apart(is_edges, &along_x), after = quick_apart(is_edges, &along_y);
-    return (before > CONTACT_TINY) & (before > length * (LEAST + OFF)) & (after >= length * least) &
-           quick_small(ends);
-}
-
 /* The two directions that features may be closest in, of their corners p, which `at` are against
  * the first. Returns whether they are so near that those may be but rounding. */
 PHYS_INLINE bool find_directions(enum contact_pair pair, const phys_vec p[4],
@@ -145,29 +120,32 @@ PHYS_INLINE bool find_directions(enum contact_pair pair, const phys_vec p[4],
 
 /* The closest directions at the start and at the end; then the best ones of features that are very
  * near. */
-PHYS_INLINE bool certify_slowly(enum contact_pair pair, const phys_vec x[4], const phys_vec y[4],
-                                double thickness, const struct ends *ends)
+PHYS_INLINE bool certify(enum contact_pair pair, const phys_vec x[4], const phys_vec y[4],
+                         double thickness)
 {
+    struct ends ends;
     struct along along[6];
     phys_vec n[6];
     double gap = 0;
     bool enough = false;
-    const double off = ROUNDING * lanes_size(&ends->x, &ends->y);
-    const bool near_x = find_directions(pair, x, &ends->x, n);
-    const bool near_y = find_directions(pair, y, &ends->y, n + 2);
+    contact_lanes_of(x, x, &ends.x);
+    contact_lanes_of(y, y, &ends.y);
+    const double off = ROUNDING * lanes_size(&ends.x, &ends.y);
+    const bool near_x = find_directions(pair, x, &ends.x, n);
+    const bool near_y = find_directions(pair, y, &ends.y, n + 2);
     PHYS_UNROLL
     for (int i = 0; i < 4; i++)
-        along_measure(pair, ends, n + i, along + i);
+        along_measure(pair, &ends, n + i, along + i);
     gap = along_wider(along, along_wider(along + 1, 0));
     if (near_x) {
         contact_direction_best(pair, x, n + 4);
-        along_measure(pair, ends, n + 4, along + 4);
+        along_measure(pair, &ends, n + 4, along + 4);
         gap = along_wider(along + 4, gap);
         enough = along_enough(along + 4, gap, thickness, off);
     }
     if (near_y) {
         contact_direction_best(pair, y, n + 5);
-        along_measure(pair, ends, n + 5, along + 5);
+        along_measure(pair, &ends, n + 5, along + 5);
         enough |= along_enough(along + 5, gap, thickness, off);
     }
     PHYS_UNROLL
@@ -176,18 +154,46 @@ PHYS_INLINE bool certify_slowly(enum contact_pair pair, const phys_vec x[4], con
     return enough;
 }
 
+PHYS_KERNEL_OF(bool, contact_certify_closely,
+               (enum contact_pair pair, const phys_vec x[4], const phys_vec y[4], double thickness),
+               (pair, x, y, thickness))
+{
+    if (pair == CONTACT_VT)
+        return certify(CONTACT_VT, x, y, thickness);
+    return certify(CONTACT_EE, x, y, thickness);
+}
+
+/* Whether the sum of what lies across both features at the start and at the end proves the pair,
+ * and f(1) is enough after any gap. Most calls do nothing else. */
+PHYS_INLINE bool certify_quickly(bool is_edges, const phys_vec x[4], const phys_vec y[4],
+                                 double thickness)
+{
+    static const double OFF = 36 * ROUNDING; /* m: of 18 differences below 2 m */
+    const double part = 0.1 * thickness;
+    const double least = part > CONTACT_MARGIN + OFF ? part : CONTACT_MARGIN + OFF;
+    struct ends ends;
+    phys_vec n, m, along_x, along_y;
+    contact_lanes_of(x, x, &ends.x);
+    contact_lanes_of(y, y, &ends.y);
+    quick_across(is_edges, x, &n);
+    quick_across(is_edges, y, &m);
+    n += m;
+    const double square = phys_dot(&n, &n);
+    n = CONTACT_PICK(n, n, 1, 2, 0, 3);
+    contact_along(&ends.x, &n, &along_x);
+    contact_along(&ends.y, &n, &along_y);
+    const double before = quick_apart(is_edges, &along_x), after = quick_apart(is_edges, &along_y);
+    return (before > CONTACT_TINY) & (before * before > square * ((LEAST + OFF) * (LEAST + OFF))) &
+           (after > 0) & (after * after >= square * (least * least)) & quick_small(&ends);
+}
+
 PHYS_KERNEL_OF(bool, contact_certify,
                (enum contact_pair pair, const phys_vec x[4], const phys_vec y[4], double thickness),
                (pair, x, y, thickness))
 {
-    struct ends ends;
-    contact_lanes_of(x, x, &ends.x);
-    contact_lanes_of(y, y, &ends.y);
-    if (certify_quickly(pair == CONTACT_EE, x, y, thickness, &ends))
+    if (certify_quickly(pair == CONTACT_EE, x, y, thickness))
         return true;
-    if (pair == CONTACT_VT)
-        return certify_slowly(CONTACT_VT, x, y, thickness, &ends);
-    return certify_slowly(CONTACT_EE, x, y, thickness, &ends);
+    return contact_certify_closely(pair, x, y, thickness);
 }
 
 /* ---- Cut ---- */

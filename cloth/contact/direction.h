@@ -59,11 +59,18 @@ PHYS_INLINE double contact_apart(enum contact_pair pair, const phys_vec *along)
 
 /* ---- Across both features ---- */
 
-PHYS_INLINE void contact_product(const phys_vec *a, const phys_vec *b, phys_vec *product)
+/* The product with its lanes turned: z x y. */
+PHYS_INLINE void contact_product_turned(const phys_vec *a, const phys_vec *b, phys_vec *product)
 {
     const phys_vec turned_a = CONTACT_PICK(*a, *a, 1, 2, 0, 3);
     const phys_vec turned_b = CONTACT_PICK(*b, *b, 1, 2, 0, 3);
-    const phys_vec turned = *a * turned_b - turned_a * *b;
+    *product = *a * turned_b - turned_a * *b;
+}
+
+PHYS_INLINE void contact_product(const phys_vec *a, const phys_vec *b, phys_vec *product)
+{
+    phys_vec turned;
+    contact_product_turned(a, b, &turned);
     *product = CONTACT_PICK(turned, turned, 1, 2, 0, 3);
 }
 
@@ -91,8 +98,9 @@ PHYS_INLINE void contact_across(enum contact_pair pair, const phys_vec x[4],
 /* Lanes: VT: the edges 1 2, 2 3, 3 1 (and 1 2 again); EE: the vertices 0 to 3. */
 struct contact_ends {
     struct contact_lanes edge, way; /* way: from the second feature to the first */
-    phys_vec part;                  /* of the edge, to that point */
-    phys_vec square;                /* of the way */
+    phys_vec dot, length; /* of the edge with the way from its begin to the vertex; its square */
+    phys_vec part;        /* of the edge, to that point */
+    phys_vec square;      /* of the way */
 };
 
 PHYS_INLINE void contact_choose(const contact_mask *which, const phys_vec *a, const phys_vec *b,
@@ -119,7 +127,7 @@ PHYS_INLINE void contact_ends_of(enum contact_pair pair, const struct contact_la
                                  struct contact_ends *to)
 {
     const phys_vec nothing = {0}, one = {1, 1, 1, 1}, tiny = {1e-300, 1e-300, 1e-300, 1e-300};
-    phys_vec dot, square;
+    phys_vec ahead;
     PHYS_UNROLL
     for (int c = 0; c < 3; c++) {
         const phys_vec v = x->c[c];
@@ -130,11 +138,11 @@ PHYS_INLINE void contact_ends_of(enum contact_pair pair, const struct contact_la
         to->edge.c[c] = end - begin;
         to->way.c[c] = (pair == CONTACT_VT ? nothing : v) - begin;
     }
-    contact_lanes_dot(&to->way, &to->edge, &dot);
-    contact_lanes_dot(&to->edge, &to->edge, &square);
-    const contact_mask ahead = dot > nothing;
-    contact_choose(&ahead, &dot, &nothing, &dot);
-    to->part = dot / (square + tiny);
+    contact_lanes_dot(&to->way, &to->edge, &to->dot);
+    contact_lanes_dot(&to->edge, &to->edge, &to->length);
+    const contact_mask is_ahead = to->dot > nothing;
+    contact_choose(&is_ahead, &to->dot, &nothing, &ahead);
+    to->part = ahead / (to->length + tiny);
     const contact_mask on = to->part < one;
     contact_choose(&on, &to->part, &one, &to->part);
     const phys_vec sign = pair == CONTACT_VT ? one : (phys_vec){1, 1, -1, -1};
@@ -176,5 +184,10 @@ PHYS_INLINE double contact_between(enum contact_pair pair, const struct contact_
  * but rounding: of all directions that could be meant, that which parts the corners most; of length
  * 1, or 0 if there is none. x: as contact_nearest_of has it. */
 void contact_direction_best(enum contact_pair pair, const phys_vec x[4], phys_vec *n);
+
+/* contact_certify by the closest directions alone: a function of its own, so that what most calls
+ * need is small. */
+bool contact_certify_closely(enum contact_pair pair, const phys_vec x[4], const phys_vec y[4],
+                             double thickness);
 
 #endif

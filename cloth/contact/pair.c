@@ -75,10 +75,17 @@ PHYS_INLINE bool is_flat(const phys_vec *a, const phys_vec *b, const phys_vec *n
     return !(phys_dot(n, n) > SINE * (phys_dot(a, a) * phys_dot(b, b)));
 }
 
-/* The feet of the perpendicular: corner 0 of VT, or the begin of the second edge of EE, lies from
- * the begin of the other feature by u a + v b, where a and b are the ways along them, and something
- * across both. Returns whether both feet lie inside. */
-PHYS_INLINE bool find_feet(enum contact_pair pair, const phys_vec x[4], double *u, double *v)
+/* Feet of a perpendicular at u and v, in parts of the whole of their features. */
+PHYS_INLINE bool is_inside(enum contact_pair pair, double u, double v, double whole)
+{
+    const double most = pair == CONTACT_VT ? u + v : u > v ? u : v;
+    return (u > 0) & (v > 0) & (most < whole);
+}
+
+/* Where they are: corner 0 of VT lies from corner 1 by u a + v b and something across both, of the
+ * sides a and b; the begin of the second edge of EE lies so by u a - v b from that of the first.
+ * Returns whether both feet lie inside. */
+static bool find_feet(enum contact_pair pair, const phys_vec x[4], double *u, double *v)
 {
     phys_vec a, b, n, across_a, across_b;
     contact_ways(pair, x, &a, &b);
@@ -89,15 +96,36 @@ PHYS_INLINE bool find_feet(enum contact_pair pair, const phys_vec x[4], double *
     const double square = phys_dot(&n, &n), other = phys_dot(&way, &across_a) / square;
     *u = phys_dot(&way, &across_b) / square;
     *v = pair == CONTACT_VT ? other : -other;
-    const double most = pair == CONTACT_VT ? *u + *v : *u > *v ? *u : *v;
-    return (*u > 0) & (*v > 0) & (most < 1) & !is_flat(&a, &b, &n);
+    return is_inside(pair, *u, *v, 1) && !is_flat(&a, &b, &n);
 }
 
-static void weigh_inside(enum contact_pair pair, double u, double v, double weight[4])
+/* The same from what is known of the ends. That loses digits where angles are small. */
+PHYS_INLINE bool find_feet_quickly(enum contact_pair pair, const phys_vec x[4],
+                                   const struct contact_ends *ends, double *u, double *v)
+{
+    static const double SINE = 1e-6; /* its square */
+    const bool is_vt = pair == CONTACT_VT;
+    const double aa = is_vt ? ends->length[0] : ends->length[2];
+    const double bb = is_vt ? ends->length[2] : ends->length[0];
+    const double ab = is_vt ? 0.5 * ((aa + bb) - ends->length[1]) : ends->dot[1] - ends->dot[0];
+    const double wa = is_vt ? ends->dot[0] : ends->dot[2];
+    const double wb = is_vt ? bb - ends->dot[2] : ends->dot[0];
+    const double square = aa * bb - ab * ab;
+    if (!(square > SINE * (aa * bb)))
+        return find_feet(pair, x, u, v);
+    *u = is_vt ? wa * bb - wb * ab : wa * bb + wb * ab;
+    *v = is_vt ? wb * aa - wa * ab : wb * aa + wa * ab;
+    const bool inside = is_inside(pair, *u, *v, square);
+    *u /= square;
+    *v /= square;
+    return inside;
+}
+
+PHYS_INLINE void weigh_inside(enum contact_pair pair, double u, double v, double weight[4])
 {
     if (pair == CONTACT_VT) {
         weight[0] = 1;
-        weight[1] = -fmax(1 - u - v, 0);
+        weight[1] = 1 - u - v > 0 ? -(1 - u - v) : 0;
         weight[2] = -u;
         weight[3] = -v;
         return;
@@ -110,16 +138,19 @@ static void weigh_inside(enum contact_pair pair, double u, double v, double weig
 
 /* Of VT, lane k is the edge from corner 1 + k to the next; of EE it is vertex k, against the edge
  * that it is not of. */
-static void weigh_end(enum contact_pair pair, double part, int lane, double weight[4])
+PHYS_INLINE void weigh_end(enum contact_pair pair, double part, int lane, double weight[4])
 {
-    const double sign = pair == CONTACT_VT || lane < 2 ? 1 : -1;
-    const int begin = pair == CONTACT_VT ? 1 + lane % 3 : lane < 2 ? 2 : 0;
-    const int end = pair == CONTACT_VT ? 1 + (lane + 1) % 3 : begin + 1;
+    static const unsigned char VERTEX[2][4] = {{0, 0, 0, 0}, {0, 1, 2, 3}};
+    static const unsigned char BEGIN[2][4] = {{1, 2, 3, 1}, {2, 2, 0, 0}};
+    static const unsigned char END[2][4] = {{2, 3, 1, 2}, {3, 3, 1, 1}};
+    static const double SIGN[2][4] = {{1, 1, 1, 1}, {1, 1, -1, -1}};
+    const int kind = pair == CONTACT_EE;
+    const double sign = SIGN[kind][lane];
     for (int k = 0; k < 4; k++)
         weight[k] = 0;
-    weight[pair == CONTACT_VT ? 0 : lane] = sign;
-    weight[begin] = -sign * (1 - part);
-    weight[end] = -sign * part;
+    weight[VERTEX[kind][lane]] = sign;
+    weight[BEGIN[kind][lane]] = -sign * (1 - part);
+    weight[END[kind][lane]] = -sign * part;
 }
 
 /* A direction across both features where they touch at the edge. */
@@ -157,31 +188,32 @@ static void nearest_close(enum contact_pair pair, const phys_vec x[4],
 }
 
 PHYS_INLINE void nearest_end(enum contact_pair pair, const phys_vec x[4],
-                             const struct contact_lanes *lanes, struct contact_nearest *to)
+                             const struct contact_lanes *lanes, const struct contact_ends *ends,
+                             struct contact_nearest *to)
 {
-    struct contact_ends ends;
+    const int lane = contact_ends_least(ends);
     phys_vec edge;
-    contact_ends_of(pair, lanes, &ends);
-    const int lane = contact_ends_least(&ends);
-    contact_lanes_get(&ends.way, lane, &to->normal);
-    weigh_end(pair, ends.part[lane], lane, to->weight);
-    to->gap = sqrt(ends.square[lane]);
-    if (ends.square[lane] > CONTACT_NEAR * CONTACT_NEAR * contact_square(lanes)) {
+    contact_lanes_get(&ends->way, lane, &to->normal);
+    weigh_end(pair, ends->part[lane], lane, to->weight);
+    to->gap = sqrt(ends->square[lane]);
+    if (ends->square[lane] > CONTACT_NEAR * CONTACT_NEAR * contact_square(lanes)) {
         to->normal /= to->gap;
         return;
     }
-    contact_lanes_get(&ends.edge, lane, &edge);
+    contact_lanes_get(&ends->edge, lane, &edge);
     nearest_close(pair, x, lanes, &edge, to);
 }
 
 PHYS_INLINE void nearest(enum contact_pair pair, const phys_vec x[4], struct contact_nearest *to)
 {
     struct contact_lanes lanes;
+    struct contact_ends ends;
     phys_vec n;
     double u, v;
     contact_lanes_of(x, x, &lanes);
-    if (!find_feet(pair, x, &u, &v)) {
-        nearest_end(pair, x, &lanes, to);
+    contact_ends_of(pair, &lanes, &ends);
+    if (!find_feet_quickly(pair, x, &ends, &u, &v)) {
+        nearest_end(pair, x, &lanes, &ends, to);
         return;
     }
     const phys_vec way = x[0] - x[pair == CONTACT_VT ? 1 : 2];

@@ -273,7 +273,7 @@ static int explain(struct flow_state *state, int code)
         return cloth_fail(state->error, why.code, "%s", why.text);
     if (!state->begun || flow_last_frame(state) || !state->report->frames)
         return cloth_fail(state->error, why.code, "%.900s; no frame was written", why.text);
-    return cloth_fail(state->error, why.code, "%.900s; the last frame written is %llu", why.text,
+    return cloth_fail(state->error, why.code, "%.900s; the last frame is %llu", why.text,
                       (unsigned long long)state->report->last_frame);
 }
 

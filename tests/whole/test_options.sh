@@ -201,7 +201,7 @@ fails() { # a step that is much too long for an explicit run
     cat complained
     test $status = 1 && test "$(grep -c '^duite-cloth: ' complained)" = 2 &&
         grep -q '^duite-cloth: warning: --set time.h=0.1: steps of 0.1 s are beyond the limit of explicit_euler' complained &&
-        grep -q '^duite-cloth: step [0-9]*: .* block [0-9]* .*; the last frame written is [0-9]*$' complained
+        grep -q '^duite-cloth: step [0-9]*: .* block [0-9]* .*; the last frame is [0-9]*$' complained
 }
 ok "a run that diverges names step, block and last frame" fails
 
@@ -212,7 +212,7 @@ too_large() { # each file may have 10 MB: the frames before are whole, and the m
         --output large --report large.json || status=$?
     echo "exit status $status"
     cat complained
-    frame=$(sed -n 's|^duite-cloth: cannot write a frame to large/cloth.pc2: File too large; the last frame written is ||p' \
+    frame=$(sed -n 's|^duite-cloth: cannot write a frame to large/cloth.pc2: File too large; the last frame is ||p' \
         complained)
     test $status = 1 && test "$(grep -vc ': warning: ' complained)" = 1 && test "$(wc -c < large/cloth.pc2)" -eq $((32 + 120000 * (frame + 1))) &&
         test "$(tail -n 1 large/frames.csv | cut -d , -f 1)" = "$frame" && test ! -e large.json && ! ls large/*.part

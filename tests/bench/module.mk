@@ -17,7 +17,7 @@ TESTS += tests/bench/test_load tests/bench/test_problem tests/bench/test_sheet t
 endif
 EXTRA_DIST += tests/bench/bench.sh
 dist_check_SCRIPTS += tests/bench/test_bench.sh tests/bench/test_cg.sh tests/bench/test_compare.sh tests/bench/test_experiments.sh tests/bench/test_physics.sh tests/bench/test_ranks.sh
-TESTS += tests/bench/test_bench.sh tests/bench/test_cg.sh tests/bench/test_compare.sh tests/bench/test_experiments.sh tests/bench/test_physics.sh tests/bench/test_ranks.sh
+TESTS += tests/bench/test_compare.sh tests/bench/test_bench.sh tests/bench/test_cg.sh tests/bench/test_experiments.sh tests/bench/test_physics.sh tests/bench/test_ranks.sh
 dist_check_SCRIPTS += tests/bench/test_experiments_long.sh
 LONG_TESTS += tests/bench/test_experiments_long.sh
 dist_check_SCRIPTS += tests/bench/test_predict.sh

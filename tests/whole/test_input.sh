@@ -42,13 +42,19 @@ says() {
     test "$says_ranks" != 1 || test "$(grep -vc '^==[0-9]*==' said.err)" -eq 1
 }
 
-# refused NAME SENTENCE ARGUMENT...: on one rank and on two. likewise: the same of an input that is found where another one was before
-# it; with the quick subset on one rank.
+# refused NAME SENTENCE ARGUMENT...: on one rank and on two, where the quick subset, too, looks for leaks (tests/support/run.sh).
+# likewise: the same of an input that is found where another one was before it; with the quick subset on one rank.
+leaks=${ASAN_OPTIONS:-}
+fast=$leaks
+if quick; then fast=$leaks:fast_unwind_on_malloc=1:detect_leaks=0; fi
+export ASAN_OPTIONS="$fast"
 refused() {
     refused_name=$1
     shift
+    ASAN_OPTIONS=$leaks
     ok "$refused_name" says 1 "$@"
     ok "$refused_name, 2 ranks" says 2 "$@"
+    ASAN_OPTIONS=$fast
 }
 likewise() {
     if quick; then

@@ -18,12 +18,16 @@
  * corners of the skin's triangles are at; all positions are by point. The same vertex has the same
  * id in all skins. All functions are local. */
 
+#define CONTACT_NO_POINT UINT32_MAX
+
 /* A table opened; it points into the table. Of one that is only measured, the first four. */
 struct contact_skin {
     uint32_t n_points, n_triangles;
     uint32_t n_edges, n_vertices; /* features */
     const uint32_t (*corner)[3];  /* n_triangles: points */
     const uint32_t (*edge)[2];    /* n_edges: points */
+    const uint32_t (*beside)[2];  /* n_edges: the third points of triangles with the edge, as far as
+                                   * they are in the skin; CONTACT_NO_POINT: there is no such one */
     const uint32_t *vertex;       /* n_vertices: points */
     const uint32_t *number;       /* n_triangles: which one of the source's it is */
     const uint32_t *id;           /* n_points */

@@ -31,7 +31,8 @@ void contact_skin_lay(const struct contact_skin *skin, struct contact_skin_head 
                                        .n_leaves = leaves_of(n_nodes)};
     head->corner = whole_lines(sizeof *head);
     head->edge = head->corner + whole_lines(head->n_triangles * sizeof *skin->corner);
-    head->vertex = head->edge + whole_lines(head->n_edges * sizeof *skin->edge);
+    head->beside = head->edge + whole_lines(head->n_edges * sizeof *skin->edge);
+    head->vertex = head->beside + whole_lines(head->n_edges * sizeof *skin->beside);
     const uint64_t by_point = whole_lines(head->n_points * sizeof *skin->id);
     head->number = head->vertex + whole_lines(head->n_vertices * sizeof *skin->vertex);
     head->id = head->number + whole_lines(head->n_triangles * sizeof *skin->number);
@@ -77,10 +78,42 @@ struct making {
     struct contact_node *node;
     phys_vec *low, *high; /* of triangles */
     uint32_t *order;
-    uint32_t (*corner)[3], (*edge)[2], *vertex, *number, (*child)[4];
+    struct third *third; /* of the three edges of each triangle, by edge */
+    uint32_t (*corner)[3], (*edge)[2], (*beside)[2], *vertex, *number, (*child)[4];
     struct contact_leaf *leaf;
     uint32_t n_vertices, n_edges, n_leaves, n_groups; /* so far */
 };
+
+/* An edge of a triangle, the lower point first, and the third point. */
+struct third {
+    uint64_t edge;
+    uint32_t point;
+};
+
+static struct third third_of(uint32_t a, uint32_t b, uint32_t point)
+{
+    const uint64_t low = a < b ? a : b, high = a < b ? b : a;
+    return (struct third){low << 32 | high, point};
+}
+
+static int compare_thirds(const void *left, const void *right)
+{
+    const struct third *a = left, *b = right;
+    const int edge = (a->edge > b->edge) - (a->edge < b->edge);
+    return edge ? edge : (a->point > b->point) - (a->point < b->point);
+}
+
+static void list_thirds(struct making *making)
+{
+    const struct contact_skin_source *from = making->from;
+    struct third *to = making->third;
+    for (uint32_t t = 0; t < from->n_triangles; t++)
+        for (int k = 0; k < 3; k++) {
+            const uint32_t *corner = from->corner[t];
+            *to++ = third_of(corner[k], corner[(k + 1) % 3], corner[(k + 2) % 3]);
+        }
+    qsort(making->third, (size_t)(to - making->third), sizeof *to, compare_thirds);
+}
 
 static void bound_triangles(struct making *making)
 {
@@ -99,6 +132,24 @@ static void bound_triangles(struct making *making)
     }
 }
 
+/* The points beside an edge, of which there may be more than two: the first two. */
+static void find_beside(const struct making *making, const uint32_t edge[2], uint32_t beside[2])
+{
+    const struct third key = third_of(edge[0], edge[1], 0);
+    size_t low = 0, high = 3 * (size_t)making->from->n_triangles;
+    while (low < high) {
+        const size_t middle = low + (high - low) / 2;
+        if (compare_thirds(making->third + middle, &key) < 0)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    beside[0] = beside[1] = CONTACT_NO_POINT;
+    for (int k = 0; k < 2 && low < 3 * (size_t)making->from->n_triangles; k++, low++)
+        if (making->third[low].edge == key.edge)
+            beside[k] = making->third[low].point;
+}
+
 /* The features that a triangle stands for are the next ones. */
 static void add_features(struct making *making, uint32_t triangle, struct contact_leaf *leaf)
 {
@@ -110,9 +161,10 @@ static void add_features(struct making *making, uint32_t triangle, struct contac
             leaf->n_vertices++;
         }
         if (stands >> (3 + k) & 1) {
-            uint32_t *edge = making->edge[making->n_edges++];
+            uint32_t *edge = making->edge[making->n_edges];
             edge[0] = corner[k];
             edge[1] = corner[(k + 1) % 3];
+            find_beside(making, edge, making->beside[making->n_edges++]);
             leaf->n_edges++;
         }
     }
@@ -167,8 +219,9 @@ static int make_scratch(struct making *making, uint32_t n_nodes, struct cloth_er
     const uint32_t n = making->from->n_triangles;
     const size_t bytes = n_nodes * sizeof *making->node + 2 * (size_t)n * sizeof *making->low;
     making->order = cloth_alloc(n, sizeof *making->order, error);
+    making->third = cloth_alloc(3 * (size_t)n, sizeof *making->third, error);
     making->node = aligned_alloc(CONTACT_ALIGN, whole_lines(bytes));
-    if (!making->node || !making->order)
+    if (!making->node || !making->order || !making->third)
         return cloth_fail(error, CLOTH_E_MEMORY, "no memory for a skin of %u triangles", n);
     making->low = (void *)(making->node + n_nodes);
     making->high = making->low + n;
@@ -198,6 +251,7 @@ static void put_skin(struct making *making, const struct contact_skin_head *head
     put_points(from, head, table);
     making->corner = (void *)(table + head->corner);
     making->edge = (void *)(table + head->edge);
+    making->beside = (void *)(table + head->beside);
     making->vertex = (void *)(table + head->vertex);
     making->number = (void *)(table + head->number);
     making->child = (void *)(table + head->child);
@@ -216,6 +270,7 @@ int contact_skin_make(const struct contact_skin_source *from, void *table,
     int code = make_scratch(&making, head.n_nodes, error);
     if (!code) {
         bound_triangles(&making);
+        list_thirds(&making);
         code = contact_tree_build(from->n_triangles, making.order, making.low, making.high,
                                   making.node, error);
     }
@@ -223,6 +278,7 @@ int contact_skin_make(const struct contact_skin_source *from, void *table,
         put_skin(&making, &head, table);
     free(making.order);
     free(making.node);
+    free(making.third);
     return code;
 }
 
@@ -236,6 +292,7 @@ struct contact_skin contact_skin_open(const void *table)
                                  .n_vertices = head->n_vertices,
                                  .corner = (const uint32_t(*)[3])(const void *)(at + head->corner),
                                  .edge = (const uint32_t(*)[2])(const void *)(at + head->edge),
+                                 .beside = (const uint32_t(*)[2])(const void *)(at + head->beside),
                                  .vertex = (const void *)(at + head->vertex),
                                  .number = (const void *)(at + head->number),
                                  .id = (const void *)(at + head->id),

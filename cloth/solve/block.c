@@ -137,13 +137,21 @@ PHYS_INLINE void multiply(const struct solve_block *block, enum solve_format for
     }
 }
 
-/* Adds what ties make of p to q. */
-static void add_ties(size_t n_rows, const struct solve_ties *ties, const struct solve_rows *rows)
+PHYS_INLINE bool is_nothing(const phys_vec *value)
+{
+    return (*value)[0] == 0 && (*value)[1] == 0 && (*value)[2] == 0 && (*value)[3] == 0;
+}
+
+/* Adds what ties make of p to q. Contacts that do not press are there, with the value 0. */
+PHYS_INLINE void add_ties(size_t n_rows, const struct solve_ties *ties,
+                          const struct solve_rows *rows)
 {
     for (size_t i = 0; i < ties->n; i++) {
         const uint32_t *corner = ties->corner[i];
         const double *weight = ties->weight[i];
         phys_vec u = {0}, y;
+        if (is_nothing(ties->value + i))
+            continue;
         for (int k = 0; k < SOLVE_TIE_CORNERS; k++)
             if (weight[k] != 0)
                 u += weight[k] *

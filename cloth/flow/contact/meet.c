@@ -7,6 +7,8 @@
 
 #include "cloth/contact/certificate.h"
 
+#include <math.h>
+
 /* What the visits of a query work on. */
 struct meeting {
     const struct model *model;
@@ -80,6 +82,40 @@ static void append(struct meeting *m, const struct flow_near *near)
     m->counts[first ? FLOW_COUNT_FIRST : FLOW_COUNT_SECOND]++;
 }
 
+/* Whether a surface has a ridge at an edge, towards what is nearest to it: on a flat or hollow one
+ * vertices and triangles are nearer than the edge is, and a contact of their own is enough. At a
+ * border of the cloth, or of what the skin knows, there is one triangle or none: a flat one counts.
+ * sign: 1 where the normal points away from what is nearest, else -1. */
+static bool is_ridge(const struct meeting *m, int side, uint32_t edge, const phys_vec *normal,
+                     double sign)
+{
+    static const double FLAT = 0.05; /* sine of an angle */
+    const struct contact_skin *skin = m->skin + side;
+    const phys_vec *y = m->side[side].y, *from = y + skin->edge[edge][0];
+    const phys_vec along = y[skin->edge[edge][1]] - *from;
+    const double square = phys_dot(&along, &along);
+    const bool border = skin->beside[edge][1] == CONTACT_NO_POINT;
+    bool ridge = true;
+    for (int k = 0; k < 2 && skin->beside[edge][k] != CONTACT_NO_POINT; k++) {
+        const phys_vec to = y[skin->beside[edge][k]] - *from;
+        const phys_vec across = to - phys_dot(&to, &along) / square * along;
+        const double up = sign * phys_dot(&across, normal);
+        ridge = ridge && up > (border ? -FLAT : FLAT) * sqrt(phys_dot(&across, &across));
+    }
+    return ridge;
+}
+
+/* Whether two features that are near are a contact. */
+static bool presses(const struct meeting *m, const struct contact_candidate *candidate,
+                    const struct flow_contact *contact)
+{
+    if (!(contact->row.gap < flow_contact_reach(m->model)))
+        return false;
+    return contact->kind != CONTACT_EE ||
+           (is_ridge(m, 0, candidate->of[0], &contact->row.normal, 1) &&
+            is_ridge(m, 1, candidate->of[1], &contact->row.normal, -1));
+}
+
 static void look_at(struct meeting *m, const struct contact_candidate *candidate)
 {
     const double thickness = m->model->contact.thickness;
@@ -93,7 +129,7 @@ static void look_at(struct meeting *m, const struct contact_candidate *candidate
         near.part[k] = 1;
     if (near.fails)
         contact_cut(corners.pair, corners.x, corners.y, thickness, corners.held, near.part);
-    if (near.fails || near.contact.row.gap < flow_contact_reach(m->model))
+    if (near.fails || presses(m, candidate, &near.contact))
         append(m, &near);
 }
 

@@ -45,17 +45,15 @@ static void find_corners(const struct meeting *m, const struct contact_candidate
 /* What is kept of them, in memory that is zero. places: of the corners, where its row begins. */
 static void describe(const struct meeting *m, const struct contact_candidate *candidate,
                      const struct corners *corners, const phys_vec places[4],
-                     struct flow_contact *to)
+                     const struct contact_nearest *nearest, struct flow_contact *to)
 {
-    struct contact_nearest nearest;
     const int first = corners->side[0]; /* 1: of a triangle of the first side and a vertex */
-    contact_nearest_of(corners->pair, places, &nearest);
     to->kind = corners->pair;
     to->first = corners->pair == CONTACT_VT ? 1 : 2;
     to->at.n = 4;
     to->at.held = (unsigned char)corners->held;
-    to->row.normal = nearest.normal;
-    to->row.gap = nearest.gap;
+    to->row.normal = nearest->normal;
+    to->row.gap = nearest->gap;
     to->row.thickness = m->model->contact.thickness;
     to->row.friction = m->model->contact.friction;
     for (int k = 0; k < 2; k++) {
@@ -67,8 +65,8 @@ static void describe(const struct meeting *m, const struct contact_candidate *ca
         to->point[k] = corners->point[k];
         to->at.block[k] = skin->block[corners->point[k]];
         to->at.row[k] = skin->row[corners->point[k]];
-        to->at.weight[k] = nearest.weight[k];
-        to->row.origin += nearest.weight[k] * places[k];
+        to->at.weight[k] = nearest->weight[k];
+        to->row.origin += nearest->weight[k] * places[k];
     }
 }
 
@@ -105,32 +103,46 @@ static bool is_ridge(const struct meeting *m, int side, uint32_t edge, const phy
     return ridge;
 }
 
-/* Whether two features that are near are a contact. */
+/* Whether two features are a contact at the end of the step. */
 static bool presses(const struct meeting *m, const struct contact_candidate *candidate,
-                    const struct flow_contact *contact)
+                    const struct contact_nearest *nearest)
 {
-    if (!(contact->row.gap < flow_contact_reach(m->model)))
+    if (!(nearest->gap < flow_contact_reach(m->model)))
         return false;
-    return contact->kind != CONTACT_EE ||
-           (is_ridge(m, 0, candidate->of[0], &contact->row.normal, 1) &&
-            is_ridge(m, 1, candidate->of[1], &contact->row.normal, -1));
+    return candidate->kind != CONTACT_EE ||
+           (is_ridge(m, 0, candidate->of[0], &nearest->normal, 1) &&
+            is_ridge(m, 1, candidate->of[1], &nearest->normal, -1));
+}
+
+static void list(struct meeting *m, const struct contact_candidate *candidate,
+                 const struct corners *corners, const phys_vec places[4],
+                 const struct contact_nearest *nearest, bool fails)
+{
+    struct flow_near near;
+    memset(&near, 0, sizeof near); /* padding, too: lists are compared byte by byte */
+    near.fails = fails;
+    describe(m, candidate, corners, places, nearest, &near.contact);
+    for (int k = 0; k < 4; k++)
+        near.part[k] = 1;
+    if (fails)
+        contact_cut(corners->pair, corners->x, corners->y, m->model->contact.thickness,
+                    corners->held, near.part);
+    append(m, &near);
 }
 
 static void look_at(struct meeting *m, const struct contact_candidate *candidate)
 {
-    const double thickness = m->model->contact.thickness;
-    struct flow_near near;
+    struct contact_nearest nearest;
     struct corners corners;
-    memset(&near, 0, sizeof near); /* padding, too: lists are compared byte by byte */
     find_corners(m, candidate, &corners);
-    near.fails = !contact_certify(corners.pair, corners.x, corners.y, thickness);
-    describe(m, candidate, &corners, near.fails ? corners.x : corners.y, &near.contact);
-    for (int k = 0; k < 4; k++)
-        near.part[k] = 1;
-    if (near.fails)
-        contact_cut(corners.pair, corners.x, corners.y, thickness, corners.held, near.part);
-    if (near.fails || presses(m, candidate, &near.contact))
-        append(m, &near);
+    if (!contact_certify(corners.pair, corners.x, corners.y, m->model->contact.thickness)) {
+        contact_nearest_of(corners.pair, corners.x, &nearest);
+        list(m, candidate, &corners, corners.x, &nearest, true);
+        return;
+    }
+    contact_nearest_of(corners.pair, corners.y, &nearest);
+    if (presses(m, candidate, &nearest))
+        list(m, candidate, &corners, corners.y, &nearest, false);
 }
 
 /* Whether a cloth that does not meet itself is on both sides. */

@@ -1,6 +1,7 @@
 /* The command line of the viewer: reads what is asked for, hands it on, says what failed. */
 #include "config.h"
 
+#include "cloth/intersections.h"
 #include "cloth/output/output.h"
 #include "cloth/view/view.h"
 
@@ -13,12 +14,14 @@
 const char *argp_program_version = "duite-view " PACKAGE_VERSION;
 
 enum { LAST_FRAME = -1, FITTED_FRAMES = 100 };
+enum { EXIT_INTERSECTS = 4 }; /* as duite-cloth has it */
 
 struct options {
     const char *folder, *png;
     long long frame; /* LAST_FRAME: the last */
     int width, height;
     double azimuth, elevation, zoom;
+    bool check_intersections;
 };
 
 static const struct argp_option OPTIONS[] = {
@@ -27,6 +30,9 @@ static const struct argp_option OPTIONS[] = {
     {"size", 's', "WxH", 0, "Pixels of the picture (1280x720)", 0},
     {"camera", 'c', "AZIMUTH,ELEVATION[,ZOOM]", 0,
      "Where to look from, in degrees: 0,0 is from +z, 90,0 from +x (32,20,1)", 0},
+    {"check-intersections", 'i', NULL, 0,
+     "Look in all frames, exactly, for triangles that go through each other or through obstacles",
+     0},
     {0}};
 
 static int parse_frame(const char *text, struct options *options)
@@ -83,6 +89,9 @@ static error_t parse(int key, char *arg, struct argp_state *state)
                        "the zoom above 0 and up to 1000, not `%s'",
                        arg);
         return 0;
+    case 'i':
+        options->check_intersections = true;
+        return 0;
     case ARGP_KEY_ARG:
         if (options->folder)
             argp_error(state, "one folder at a time: `%s' is one too many", arg);
@@ -91,7 +100,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     case ARGP_KEY_END:
         if (!options->folder)
             argp_error(state, "say which folder of frames to show");
-        if (!options->png)
+        if (!options->png && !options->check_intersections)
             argp_error(state, "say where the picture goes: --png FILE");
         return 0;
     default:
@@ -226,16 +235,30 @@ static int show_frame(struct output_cache *cache, const struct options *options,
     return code;
 }
 
+/* The exit code if nothing failed. */
+static int check_frames(struct output_cache *cache, int *exit_code, struct cloth_error *error)
+{
+    struct intersections_found found = {0};
+    const int code = intersections_of_folder(cache, "duite-view", &found, error);
+    if (code)
+        return code;
+    if (!found.bad)
+        printf("no intersections in %ju frames\n", (uintmax_t)found.frames);
+    intersections_say(&found, "duite-view");
+    *exit_code = found.bad ? EXIT_INTERSECTS : 0;
+    return CLOTH_OK;
+}
+
 int main(int argc, char **argv)
 {
-    static const struct argp argp = {
-        OPTIONS,
-        parse,
-        "DIR",
-        "Makes a picture of a frame of a simulated cloth; DIR is what duite-cloth --output wrote.",
-        NULL,
-        NULL,
-        NULL};
+    static const struct argp argp = {OPTIONS,
+                                     parse,
+                                     "DIR",
+                                     "Makes a picture of a frame of a simulated cloth, or checks "
+                                     "all frames; DIR is what duite-cloth --output wrote.",
+                                     NULL,
+                                     NULL,
+                                     NULL};
     struct options options = {.frame = LAST_FRAME,
                               .width = 1280,
                               .height = 720,
@@ -246,10 +269,14 @@ int main(int argc, char **argv)
     argp_parse(&argp, argc, argv, 0, NULL, &options);
     struct cloth_error error = {0};
     struct output_cache cache;
+    int exit_code = 0;
     int code = output_cache_open(&cache, options.folder, &error);
-    code = code ? code : show_frame(&cache, &options, &error);
+    if (!code && options.png)
+        code = show_frame(&cache, &options, &error);
+    if (!code && options.check_intersections)
+        code = check_frames(&cache, &exit_code, &error);
     output_cache_close(&cache);
     if (code)
         fprintf(stderr, "duite-view: %s\n", error.text);
-    return code == CLOTH_E_INPUT ? 2 : code != 0;
+    return code ? code == CLOTH_E_INPUT ? 2 : 1 : exit_code;
 }

@@ -28,6 +28,7 @@ struct intersections {
     const struct phys_key *keys;
     const struct contact_bodies *bodies;
     size_t n_cloths, n_obstacles;
+    phys_vec *place;                  /* room for the vertices of a body */
     struct surface *cloth, *obstacle; /* n_cloths + 1; n_obstacles + 1: empty but of bodies */
     uint32_t *part; /* a vertex of each part of the cloths whose triangles are joined */
     uint32_t n_parts;
@@ -224,27 +225,37 @@ static void say_inside(struct look *look, uint32_t point, size_t obstacle)
 
 /* ---- A frame ---- */
 
-static void place_points(struct look *look, const double *position)
+static void place_body(const struct look *look, size_t obstacle)
 {
-    struct intersections *all = look->all;
+    const struct intersections *all = look->all;
+    const struct contact_shape *shape = all->obstacles + obstacle;
+    const struct contact_body *body = contact_bodies_at(all->bodies, shape->body);
+    const phys_vec *from = body ? contact_body_vertices(body) : NULL;
+    struct contact_pose pose;
+    contact_pose_over(shape, all->keys, all->bodies, look->time, look->time, &pose);
+    if (body && body->n_frames) {
+        contact_body_places(body, look->time, all->place);
+        from = all->place;
+    }
+    for (uint32_t v = 0; body && v < body->n_vertices; v++) {
+        phys_vec x = from[v];
+        if (pose.moves)
+            phys_pose_point(&pose.to, &x, &x);
+        for (int c = 0; c < 3; c++)
+            all->x[all->obstacle[obstacle].point + v][c] = verify_coordinate(x[c]);
+    }
+}
+
+static void place_points(const struct look *look, const double *position)
+{
+    const struct intersections *all = look->all;
     for (uint32_t v = 0; v < all->cloth[all->n_cloths].point; v++)
         for (int c = 0; c < 3; c++) {
             const double x = position[3 * (size_t)v + (size_t)c];
             all->x[v][c] = verify_coordinate(look->written ? (double)(float)x : x);
         }
-    for (size_t i = 0; i < all->n_obstacles; i++) {
-        const struct contact_body *body = contact_bodies_at(all->bodies, all->obstacles[i].body);
-        struct contact_pose pose;
-        contact_pose_over(all->obstacles + i, all->keys, all->bodies, look->time, look->time,
-                          &pose);
-        for (uint32_t v = 0; body && v < body->n_vertices; v++) {
-            phys_vec x = contact_body_vertices(body)[v];
-            if (pose.moves)
-                phys_pose_point(&pose.to, &x, &x);
-            for (int c = 0; c < 3; c++)
-                all->x[all->obstacle[i].point + v][c] = verify_coordinate(x[c]);
-        }
-    }
+    for (size_t i = 0; i < all->n_obstacles; i++)
+        place_body(look, i);
 }
 
 static int look_at_pairs(struct look *look, uint64_t *pairs, uint64_t *with_bodies,
@@ -336,6 +347,15 @@ struct intersections_found intersections_found(const struct intersections *inter
     return intersections->found;
 }
 
+void intersections_say(const struct intersections_found *found, const char *program)
+{
+    if (found->bad)
+        fprintf(stderr,
+                "%s: triangles intersect in %" PRIu64 " of %" PRIu64 " frames, from frame %" PRIu64
+                " on: at most %" PRIu64 " pairs of cloth, and %" PRIu64 " with obstacles\n",
+                program, found->bad, found->frames, found->first, found->pairs, found->with_shapes);
+}
+
 /* ---- Beginning and end ---- */
 
 static int take_arrays(struct intersections *all, struct cloth_error *error)
@@ -345,6 +365,10 @@ static int take_arrays(struct intersections *all, struct cloth_error *error)
     all->joined = cloth_alloc(all->soup.n_triangles, sizeof *all->joined, error);
     if (!all->x || !all->corner || !all->joined)
         return CLOTH_E_MEMORY;
+    const uint64_t in_bodies = all->soup.n_points - all->cloth[all->n_cloths].point;
+    all->place = aligned_alloc(sizeof *all->place, (in_bodies + 1) * sizeof *all->place);
+    if (!all->place)
+        return cloth_fail(error, CLOTH_E_MEMORY, "no memory for the vertices of bodies");
     all->soup.x = (const double(*)[3])all->x;
     all->soup.corner = (const uint32_t(*)[3])all->joined;
     return CLOTH_OK;
@@ -404,6 +428,7 @@ void intersections_close(struct intersections **intersections)
     free(all->obstacle);
     free(all->part);
     free(all->x);
+    free(all->place);
     free(all->corner);
     free(all->joined);
     free(all->pairs.items);

@@ -60,6 +60,15 @@ int intersections_frame(struct intersections *intersections, uint64_t frame, dou
 
 struct intersections_found intersections_found(const struct intersections *intersections);
 
+/* Checks all frames of a folder, as they are written. Vertices that are in the same place in each
+ * frame count as one: welds. Errors: of output_cache_frame, too. */
+struct output_cache;
+int intersections_of_folder(struct output_cache *cache, const char *program,
+                            struct intersections_found *found, struct cloth_error *error);
+
+/* A sentence about what was found, on standard error, if anything was. */
+void intersections_say(const struct intersections_found *found, const char *program);
+
 /* *intersections becomes NULL; nothing is done if it is. */
 void intersections_close(struct intersections **intersections);
 

@@ -387,17 +387,6 @@ static void count_intersections(struct run *run)
     run->intersects = intersects;
 }
 
-static void say_intersections(const struct intersections_found *found)
-{
-    if (found->bad)
-        fprintf(stderr,
-                "duite-cloth: triangles intersect in %llu of %llu frames, from frame %llu on: at "
-                "most %llu pairs of cloth, and %llu with obstacles\n",
-                (unsigned long long)found->bad, (unsigned long long)found->frames,
-                (unsigned long long)found->first, (unsigned long long)found->pairs,
-                (unsigned long long)found->with_shapes);
-}
-
 static int conclude(struct run *run)
 {
     struct cloth_error error = {0};
@@ -424,7 +413,7 @@ static int conclude(struct run *run)
                                         .lower_bound = bound};
         if (run->report.stopped)
             say_stopped(run);
-        say_intersections(&run->found);
+        intersections_say(&run->found, "duite-cloth");
         if (run->model.rest.speed > 0 && !run->report.stopped && isnan(run->report.rest_seconds))
             fprintf(stderr,
                     "duite-cloth: warning: the cloth is not at rest at time.end, %g s: some vertex "

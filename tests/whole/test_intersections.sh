@@ -111,5 +111,26 @@ folding() { # from the frame that is said, by as many as ranks and threads say
         grep -q '^duite-cloth: triangles intersect in ' said && test ! -s printed
 }
 ok "a sheet that folds onto itself, on one rank and on two" folding
+certified() { # what folds does not go through itself then
+    check 0 fold --set time.end=0.4 --set contact.mode=certified --set contact.self=on --output out && reports 0 0 null
+}
+ok "the same, where contact is certified" certified
+again() { # STATUS: the folder of the run before, by the viewer
+    limited "$DUITE_VIEW" out --check-intersections > printed 2> said
+    again_got=$?
+    cat printed said
+    test $again_got = "$1"
+}
+folder() {
+    check 4 fold --set time.end=0.4 --output out && again 4 && grep -q "at most $(value intersections) pairs of cloth, and 0 with obstacles" said &&
+        grep -q '^duite-view: frame [0-9]* as written, at 0.[0-9]* s: triangle [0-9 ]* and triangle [0-9 ]* intersect (vertices count from 1)$' said &&
+        check 0 welded --output out && again 0 && grep -qx 'no intersections in 3 frames' printed && test ! -s said &&
+        check 4 ball --output out && again 4 && check 4 inside --output out && again 4 && grep -q '^duite-view: frame 0 as written, at 0 s: vertex 1 is inside obstacles\[0\]' said
+}
+if test -x "$DUITE_VIEW"; then
+    ok "frames of earlier runs" folder
+else
+    skip "frames of earlier runs" "duite-view was not built"
+fi
 unasked() { limited "$DUITE_CLOTH" cross.yaml --report report.json --quiet > said 2>&1 && reports null null null && test ! -s said; }
 ok "nothing is looked for unasked" unasked

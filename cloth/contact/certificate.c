@@ -198,12 +198,14 @@ PHYS_KERNEL_OF(bool, contact_certify,
 
 /* ---- Cut ---- */
 
-/* A direction of length 1, the heights along it above corner 0 at x, and for the plane that divides
- * the features at the end: how near to it a corner may come, and where it may lie. */
+/* Along a direction of length 1: heights above corner 0 at x, those at the end less what all
+ * corners share; and for the plane that divides the features at the end, how near to it a corner
+ * may come and where it may lie. */
 struct cut {
     enum contact_pair pair;
     unsigned held;
     phys_vec begin, end; /* m, by corner */
+    double shared;       /* m */
     double half, off;    /* m: the least distance that is left; what rounding of the ends is */
     double low, high;    /* of the plane, m */
 };
@@ -231,6 +233,21 @@ static double cut_rounding(const phys_vec x[4], const phys_vec y[4],
         most = fmax(most, size);
     }
     return 0x1p-50 * most + 0x1p-49 * lanes_size(begin, end);
+}
+
+/* The plane moves with the slowest corner where all go the same way, and far. Those in front are
+ * then not cut, since they do not come nearer to it. */
+static void cut_share(struct cut *cut, double far)
+{
+    const phys_vec way = cut->end - cut->begin;
+    double least = INFINITY, most = -INFINITY;
+    for (int k = 0; k < 4; k++) {
+        least = fmin(least, way[k]);
+        most = fmax(most, way[k]);
+    }
+    cut->shared = least > far ? least : most < -far ? most : 0;
+    for (int k = 0; k < 4; k++)
+        cut->end[k] -= cut->shared;
 }
 
 /* Where the plane may lie: each corner that is cut has room at x and each held one at y. */
@@ -268,9 +285,9 @@ static void cut_corners(const struct cut *cut, double plane, double t[4])
     for (int k = 0; k < 4; k++) {
         const double side = is_first(cut, k) ? 1 : -1;
         const double from = side * (cut->begin[k] - plane), to = side * (cut->end[k] - plane);
-        const double least = fmax(cut->half, 0.1 * from);
+        const double least = fmax(cut->half, 0.1 * from), all = from - side * cut->shared;
         if (!is_held(cut, k) && to < least - 0.5 * cut->off)
-            t[k] = fmin(t[k], fmax((from - least) / (from - to), 0));
+            t[k] = fmin(t[k], fmax((all - least) / (all - to), 0));
     }
 }
 
@@ -317,6 +334,7 @@ bool contact_cut(enum contact_pair pair, const phys_vec x[4], const phys_vec y[4
 {
     /* Somewhat more than contact_certify asks, so that a cut that is cut again still passes. */
     static const double MORE = 1.1;
+    static const double FAR = 2; /* thicknesses */
     struct cut cut = {.pair = pair, .held = held};
     struct contact_lanes begin, end;
     phys_vec n = {0};
@@ -329,6 +347,7 @@ bool contact_cut(enum contact_pair pair, const phys_vec x[4], const phys_vec y[4
         return false;
     contact_along(&begin, &n, &cut.begin);
     contact_along(&end, &n, &cut.end);
+    cut_share(&cut, FAR * thickness);
     cut_bounds(&cut);
     if (!(gap > LEAST + cut.off) || !(cut.low <= cut.high))
         return cut_all(&cut, x, y, thickness, t);

@@ -31,15 +31,19 @@ bool contact_certify(enum contact_pair pair, const phys_vec x[4], const phys_vec
 
 /* For a pair that contact_certify does not pass: lowers t[4] so that it passes with the ends
  *
- *     x + t (y - x)       by corner, rounded as it may be; exactly x where t is 0
+ *     x + t (y - x)       by corner, rounded as it may be; exactly x where t is 0.
  *
- * and with every smaller t of any corner, too, so that the least t of several pairs does for all of
- * them: a plane divides the features which stands still, or which held corners push, and each
- * corner stops at 0.9 of its way to it. t: parts of the way, 0 to 1, as other pairs with the same y
- * have left it.
- * held: bit k: corner k goes to y whatever happens (an obstacle's, a driven pin's); its t stays as
- * it is. Returns false, with t as it was, if that is not possible: not even where all other corners
- * stay, or x itself is not certain. */
+ * A plane divides the features, and each corner stops at 0.9 of its way to it. The plane stands
+ * still, or held corners push it. Then the pair passes with every smaller t of any corner, too: the
+ * least t of several pairs does for all of them. Where all corners go the same way across the
+ * plane, by more than twice the thickness, it moves with the slowest, and only those behind are
+ * cut: features that fly together lose no more than what they come nearer. If another pair then
+ * cuts those in front, this one is to be looked at again.
+ *
+ * t: parts of the way, 0 to 1, as other pairs with the same y have left it. held: bit k: corner k
+ * goes to y whatever happens (an obstacle's, a driven pin's); its t stays as it is. Returns false,
+ * with t as it was, if that is not possible: not even where all other corners stay, or x itself is
+ * not certain. */
 bool contact_cut(enum contact_pair pair, const phys_vec x[4], const phys_vec y[4], double thickness,
                  unsigned held, double t[4]);
 

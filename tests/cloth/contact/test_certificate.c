@@ -82,20 +82,38 @@ static void end_of(const phys_vec x[4], const phys_vec y[4], unsigned held, cons
         end[k] = held >> k & 1 ? y[k] : x[k] + t[k] * (y[k] - x[k]);
 }
 
+/* Whether the plane of a cut may move. */
+static bool flies(const phys_vec x[4], const phys_vec y[4])
+{
+    double least = INFINITY;
+    for (int k = 0; k < 4; k++) {
+        const phys_vec way = y[k] - x[k];
+        least = fmin(least, sqrt(phys_dot(&way, &way)));
+    }
+    return least > 2 * THICKNESS;
+}
+
 /* What the cut says holds, also if other pairs cut the same corners further, now or in a later
- * round. */
+ * round; where the plane may have moved with corners that are then cut, once it is cut again. */
 static void check_cut(enum contact_pair pair, const phys_vec x[4], const phys_vec y[4],
                       unsigned held, const double t[4])
 {
     phys_vec end[4], further[4];
-    double less[4];
+    double less[4], again[4] = {1, 1, 1, 1};
     end_of(x, y, held, t, end);
     PAIRS_CHECK(contact_certify(pair, x, end, THICKNESS));
     for (int i = 0; i < 4; i++) {
         for (int k = 0; k < 4; k++)
             less[k] = i == k ? 0 : pairs_uniform(0, 1) * (i % 2 ? t[k] : 1);
         end_of(x, i % 2 ? y : end, held, less, further);
-        PAIRS_CHECK(contact_certify(pair, x, further, THICKNESS));
+        if (contact_certify(pair, x, further, THICKNESS))
+            continue;
+        PAIRS_CHECK(flies(x, y));
+        if (held)
+            continue;
+        PAIRS_CHECK(contact_cut(pair, x, further, THICKNESS, held, again));
+        end_of(x, further, held, again, end);
+        PAIRS_CHECK(contact_certify(pair, x, end, THICKNESS));
     }
 }
 
@@ -172,6 +190,24 @@ START_TEST(lowered)
 }
 END_TEST
 
+/* Features that fly together lose but what they come nearer, and those in front nothing. */
+START_TEST(flown)
+{
+    for (int i = 0; i < 2; i++)
+        for (int down = 0; down < 2; down++) {
+            const double fall = down ? 0.1 : -0.1, closing = 2e-3;
+            double t[4] = {1, 1, 1, 1};
+            phys_vec x[4], y[4];
+            lay(KINDS[i], 1e-3, fall + (down ? closing : 0), fall - (down ? 0 : closing), x, y);
+            ck_assert(contact_cut(KINDS[i], x, y, THICKNESS, 0, t));
+            const int behind = down ? 0 : 3, before = 3 - behind;
+            ck_assert(t[before] == 1);
+            ck_assert(t[behind] < 1 && (1 - t[behind]) * 0.1 < closing);
+            check_cut(KINDS[i], x, y, 0, t);
+        }
+}
+END_TEST
+
 /* An obstacle that comes pushes the plane as far as there is room; into the cloth it is refused. */
 START_TEST(pushed)
 {
@@ -201,6 +237,7 @@ int main(void)
     tcase_add_loop_test(cut_cases, cuts, 0, PAIRS_SORTS_N);
     tcase_add_test(cut_cases, again_and_again);
     tcase_add_test(cut_cases, lowered);
+    tcase_add_test(cut_cases, flown);
     tcase_add_test(cut_cases, pushed);
     suite_add_tcase(suite, cases);
     suite_add_tcase(suite, cut_cases);

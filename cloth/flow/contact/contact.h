@@ -49,6 +49,13 @@ static inline size_t flow_list_bytes(size_t n, size_t item)
  * items of its list, there or not; those that the first side keeps; the second. */
 enum { FLOW_COUNT_FAILS, FLOW_COUNT_ALL, FLOW_COUNT_FIRST, FLOW_COUNT_SECOND, FLOW_COUNTS };
 
+/* The coefficient of the cloth that a point of a skin is of. */
+static inline double flow_friction_of(const struct flow *flow, const struct contact_skin *skin,
+                                      uint32_t point)
+{
+    return flow->friction[skin->cloth[point]];
+}
+
 /* Functions of the main program. Collective; they return what the runtime does. */
 
 /* Arguments of the task of two sides. */

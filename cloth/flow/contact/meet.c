@@ -6,11 +6,13 @@
 #include "cloth/flow/state/skin.h"
 
 #include "cloth/contact/certificate.h"
+#include <math.h>
 
 #include <math.h>
 
 /* What the visits of a query work on. */
 struct meeting {
+    const struct flow *flow;
     const struct model *model;
     const struct flow_meet_args *args;
     struct contact_skin skin[2];
@@ -42,6 +44,15 @@ static void find_corners(const struct meeting *m, const struct contact_candidate
     }
 }
 
+/* Of the two features. */
+static double friction_of(const struct meeting *m, const struct corners *corners)
+{
+    double product = 1;
+    for (int k = 0; k < 4; k += 3) /* a corner of each */
+        product *= flow_friction_of(m->flow, m->skin + corners->side[k], corners->point[k]);
+    return sqrt(product);
+}
+
 /* What is kept of them, in memory that is zero. places: of the corners, where its row begins. */
 static void describe(const struct meeting *m, const struct contact_candidate *candidate,
                      const struct corners *corners, const phys_vec places[4],
@@ -55,7 +66,7 @@ static void describe(const struct meeting *m, const struct contact_candidate *ca
     to->row.normal = nearest->normal;
     to->row.gap = nearest->gap;
     to->row.thickness = m->model->contact.thickness;
-    to->row.friction = m->model->contact.friction;
+    to->row.friction = friction_of(m, corners);
     for (int k = 0; k < 2; k++) {
         to->side[k] = m->args->side[k ^ first];
         to->feature[k] = candidate->of[k ^ first];
@@ -182,7 +193,8 @@ static int meet(const duite_call *call)
 {
     const struct flow_meet_args *args = call->args;
     struct flow_list *list = duite_out(call, AT_LIST, struct flow_list);
-    struct meeting m = {.model = flow_of(call)->model,
+    struct meeting m = {.flow = flow_of(call),
+                        .model = flow_of(call)->model,
                         .args = args,
                         .near = (struct flow_near *)(list + 1),
                         .room = args->room,

@@ -10,6 +10,7 @@
 #include <math.h>
 
 struct meeting {
+    const struct flow *flow;
     const struct model *model;
     const struct flow_meet_args *args;
     struct contact_solid solid;
@@ -42,7 +43,7 @@ static void describe(const struct meeting *m, uint32_t n, const uint32_t *point,
     to->row.normal = on->normal;
     to->row.gap = on->gap;
     to->row.thickness = m->model->contact.thickness;
-    to->row.friction = sqrt(m->friction * m->model->contact.friction);
+    to->row.friction = sqrt(m->friction * flow_friction_of(m->flow, &m->skin, point[0]));
     for (int k = 0; k < 2; k++)
         to->side[k] = m->args->side[k];
     for (uint32_t k = 0; k < n; k++) {
@@ -149,7 +150,8 @@ static int meet(const duite_call *call)
     struct flow_list *list = duite_out(call, AT_LIST, struct flow_list);
     struct contact_pose pose;
     contact_pose_over(shape, flow->model->keys, &flow->model->bodies, args->from, args->to, &pose);
-    struct meeting m = {.model = flow->model,
+    struct meeting m = {.flow = flow,
+                        .model = flow->model,
                         .args = args,
                         .friction = shape->friction,
                         .near = (struct flow_near *)(list + 1),

@@ -54,6 +54,7 @@ static int broadcast_head(const duite_call *call)
                          flow->model->n_obstacles * sizeof *flow->model->obstacles +
                          flow->model->n_keys * sizeof *flow->model->keys +
                          flow->model->n_motions * sizeof *flow->model->motions +
+                         flow->model->n_cloths * sizeof *flow->friction +
                          flow->model->n_sliders * sizeof *flow->model->sliders +
                          flow->model->n_curve_keys * sizeof *flow->model->curve_keys +
                          flow->model->n_curves * sizeof *flow->model->curves +
@@ -95,6 +96,8 @@ static int broadcast_shared(const duite_call *call)
     to = put(to, model->curve_keys, model->n_curve_keys * sizeof *model->curve_keys);
     to = put(to, model->curves, model->n_curves * sizeof *model->curves);
     to = put(to, model->motions, model->n_motions * sizeof *model->motions);
+    for (uint32_t c = 0; c < model->n_cloths; c++)
+        to = put(to, &model->materials[model->cloths[c].material].friction, sizeof(double));
     for (uint32_t i = 0; i < source->springs.n_timed; i++) {
         const struct flow_tie tie = flow_joints_tie(source, source->springs.timed + i);
         to = put(to, &tie, sizeof tie);
@@ -197,7 +200,8 @@ static void unpack(struct flow_state *state)
     flow->received.curve_keys = (void *)(flow->received.sliders + flow->model->n_sliders);
     flow->received.curves = (void *)(flow->received.curve_keys + flow->model->n_curve_keys);
     flow->received.motions = (void *)(flow->received.curves + flow->model->n_curves);
-    flow->tie = (const void *)(flow->received.motions + flow->model->n_motions);
+    flow->friction = (const void *)(flow->received.motions + flow->model->n_motions);
+    flow->tie = (const void *)(flow->friction + state->head.model.n_cloths);
     const struct shape *shape = (const void *)(flow->tie + flow->n_ties);
     const uint32_t *neighbour = (const void *)(shape + tables->n_blocks);
     const uint32_t *ghost_start = neighbour + state->head.n_neighbours;

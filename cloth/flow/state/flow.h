@@ -65,8 +65,9 @@ struct flow {
     double inertia, release;               /* kg m^2, J: flow_source_inertia, flow_source_release */
     double contact_stiffness, vertex_mass; /* N/m, kg: flow_source_stiffness, flow_source_mass */
     struct flow_tables tables;             /* shapes */
-    void *shared; /* bodies, obstacles, key frames, ties, neighbours and ghosts that what is here
-                     points to */
+    void *shared; /* bodies, obstacles, key frames, frictions, ties, neighbours and ghosts that what
+                     is here points to */
+    const double *friction; /* by cloth: its material's coefficient */
     uint32_t n_ties;
     const struct flow_tie *tie; /* n_ties */
 

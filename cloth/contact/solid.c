@@ -1,9 +1,7 @@
 /* Certificates of triangles against convex shapes: three numbers for a pair of directions, as
  * solid.h derives them. All is told in the core's own axes at either end of the step, where neither
  * a common velocity nor the room's origin costs digits. */
-#include "cloth/contact/solid.h"
-
-#include <math.h>
+#include "cloth/contact/solid_core.h"
 
 /* Operations on numbers of one size, with what they may lose together. */
 static const double ROUNDING = 64 * 0x1p-53;
@@ -18,12 +16,14 @@ static void put_place(const struct contact_core *core, const struct phys_pose *p
     phys_pose_point(&core->axes, &origin, &place->at);
     if (pose)
         phys_pose_point(pose, &place->at, &place->at);
-    for (int c = 0; c < 3; c++) {
+    for (int i = 0; i < 3; i++) {
         phys_vec along = {0};
-        along[c] = 1;
-        phys_pose_direction(&core->axes, &along, place->axis + c);
+        along[i] = 1;
+        phys_pose_direction(&core->axes, &along, &along);
         if (pose)
-            phys_pose_direction(pose, place->axis + c, place->axis + c);
+            phys_pose_direction(pose, &along, &along);
+        for (int c = 0; c < 3; c++)
+            place->axis[i][c] = along[c];
     }
 }
 
@@ -60,120 +60,191 @@ void contact_solid_make(const struct contact_shape *shape, const struct contact_
 
 /* A triangle in the core's axes: its begin and its end as each end of the step sees them. */
 struct solid_triangle {
-    phys_vec from[3]; /* x, from the begin */
-    phys_vec to[3];   /* y, from the end */
-    double rounding;  /* m: what numbers of this triangle may be off */
+    struct contact_lanes from, to;
+    double rounding; /* m: what numbers of this triangle may be off; not finite where it is not */
 };
 
-static double most_of(const phys_vec *x)
+PHYS_INLINE double lanes_size(const struct contact_lanes *own)
 {
-    return fabs((*x)[0]) + fabs((*x)[1]) + fabs((*x)[2]);
-}
-
-static void put_triangle(const struct contact_solid *solid, const phys_vec x[3],
-                         const phys_vec y[3], struct solid_triangle *triangle)
-{
-    double most = 0;
+    phys_vec sum = {0};
     PHYS_UNROLL
-    for (int k = 0; k < 3; k++) {
-        contact_place_own(solid->place + CONTACT_BEGIN, x + k, triangle->from + k);
-        contact_place_own(solid->place + CONTACT_END, y + k, triangle->to + k);
-        const double here = most_of(x + k) + most_of(y + k);
-        most = here > most || here != here ? here : most;
+    for (int c = 0; c < 3; c++) {
+        const contact_mask sign = {INT64_MAX, INT64_MAX, INT64_MAX, INT64_MAX};
+        sum += (phys_vec)((contact_mask)own->c[c] & sign);
     }
-    triangle->rounding = ROUNDING * (most + solid->size);
+    return phys_lanes(&sum);
 }
 
-/* Directions of length 1 at the begin (0) and at the end (1) of the step, as both ends see them,
- * and how far the shape reaches along them: the support functions of solid.h. */
+PHYS_INLINE void triangle_of(const struct contact_solid *solid, const phys_vec x[3],
+                             const phys_vec y[3], struct solid_triangle *triangle)
+{
+    contact_core_lanes(solid->place + CONTACT_BEGIN, x, &triangle->from);
+    contact_core_lanes(solid->place + CONTACT_END, y, &triangle->to);
+    triangle->rounding =
+        ROUNDING * (lanes_size(&triangle->from) + lanes_size(&triangle->to) + solid->size);
+}
+
+/* Directions n0 of the begin (early) and n1 of the end (late), in the core's axes at the begin [0]
+ * and at the end [1], and how far the shape reaches along them: the support functions of solid.h.
+ */
 struct solid_divide {
-    phys_vec at_begin[2], at_end[2];
+    double early[2][3], late[2][3];
     double reach[3];
 };
 
-static void put_divide(const struct contact_solid *solid, const phys_vec *early,
-                       const phys_vec *late, struct solid_divide *divide)
+/* A direction of one end in the core's axes, as the other end sees it. */
+PHYS_INLINE void other_end(const struct contact_solid *solid, enum contact_end end,
+                           const double way[3], double there[3])
 {
-    const struct contact_place *begin = solid->place + CONTACT_BEGIN,
-                               *end = solid->place + CONTACT_END;
-    contact_place_direction(begin, early, divide->at_begin);
-    contact_place_direction(begin, late, divide->at_begin + 1);
-    contact_place_direction(end, early, divide->at_end);
-    contact_place_direction(end, late, divide->at_end + 1);
-    const phys_vec both = divide->at_end[0] + divide->at_begin[1];
-    divide->reach[0] = contact_core_support(solid, divide->at_begin) + solid->radius;
-    divide->reach[1] = contact_core_support(solid, &both) / 2 + solid->radius;
-    divide->reach[2] = contact_core_support(solid, divide->at_end + 1) + solid->radius;
+    double out[3] = {way[0], way[1], way[2]};
+    if (solid->moves)
+        contact_way_out(solid->place + end, way, out);
+    for (int c = 0; c < 3; c++)
+        there[c] = solid->moves ? contact_inner(solid->place[!end].axis[c], out) : out[c];
 }
 
-/* The three numbers of a corner that goes from one place to another. */
-PHYS_INLINE void corner_numbers(const struct solid_divide *divide, const phys_vec *from,
-                                const phys_vec *to, double number[3])
+/* Of a direction in the core's axes at the begin and one at the end. */
+PHYS_INLINE void divide_by(const struct contact_solid *solid, const double early[3],
+                           const double late[3], struct solid_divide *divide)
 {
-    number[0] = phys_dot(divide->at_begin, from) - divide->reach[0];
-    number[1] = (phys_dot(divide->at_end, to) + phys_dot(divide->at_begin + 1, from)) / 2 -
-                divide->reach[1];
-    number[2] = phys_dot(divide->at_end + 1, to) - divide->reach[2];
+    double both[3];
+    other_end(solid, CONTACT_BEGIN, early, divide->early[1]);
+    other_end(solid, CONTACT_END, late, divide->late[0]);
+    for (int c = 0; c < 3; c++) {
+        divide->early[0][c] = early[c];
+        divide->late[1][c] = late[c];
+        both[c] = divide->early[1][c] + divide->late[0][c];
+    }
+    divide->reach[0] = contact_core_support(solid, early) + solid->radius;
+    divide->reach[1] = contact_core_support(solid, both) / 2 + solid->radius;
+    divide->reach[2] = contact_core_support(solid, late) + solid->radius;
+}
+
+/* The three numbers of each corner, by lanes. */
+PHYS_INLINE void corner_numbers(const struct solid_divide *divide, const struct contact_lanes *from,
+                                const struct contact_lanes *to, phys_vec number[3])
+{
+    phys_vec before, after;
+    contact_heights(from, divide->early[0], number);
+    contact_heights(from, divide->late[0], &before);
+    contact_heights(to, divide->early[1], &after);
+    contact_heights(to, divide->late[1], number + 2);
+    number[0] -= divide->reach[0];
+    number[1] = (before + after) / 2 - divide->reach[1];
+    number[2] -= divide->reach[2];
 }
 
 /* What each of the numbers has to be: certificate.h has the rule. gap: that at the begin. */
-static void numbers_due(double gap, double thickness, double rounding, double due[3])
+PHYS_INLINE void numbers_due(double gap, double thickness, double rounding, double due[3])
 {
-    const double least = CONTACT_MARGIN / 2 + rounding, keep = fmin(gap / 2, 0.1 * thickness);
+    const double least = CONTACT_MARGIN / 2 + rounding, margin = CONTACT_MARGIN + rounding;
+    const double keep = gap / 2 < 0.1 * thickness ? gap / 2 : 0.1 * thickness;
+    const double enough = keep > margin ? keep : margin, opens = gap > least ? gap : least;
     due[0] = due[1] = least;
-    due[2] = fmin(fmax(CONTACT_MARGIN + rounding, keep), fmax(least, gap));
+    due[2] = enough < opens ? enough : opens;
 }
 
-static bool is_divided(const struct solid_divide *divide, const struct solid_triangle *triangle,
-                       const double due[3])
+/* What is not finite makes what is due so. */
+PHYS_INLINE bool is_divided(const struct solid_divide *divide,
+                            const struct solid_triangle *triangle, const double due[3])
 {
-    double least[3] = {INFINITY, INFINITY, INFINITY};
-    for (int k = 0; k < 3; k++) {
-        double number[3];
-        corner_numbers(divide, triangle->from + k, triangle->to + k, number);
-        for (int i = 0; i < 3; i++) /* what is not a number stays */
-            least[i] = number[i] < least[i] || number[i] != number[i] ? number[i] : least[i];
-    }
-    return least[0] >= due[0] && least[1] >= due[1] && least[2] >= due[2];
+    phys_vec number[3];
+    corner_numbers(divide, &triangle->from, &triangle->to, number);
+    return contact_least(number) >= due[0] && contact_least(number + 1) >= due[1] &&
+           contact_least(number + 2) >= due[2];
 }
 
 /* ---- The certificate ---- */
 
-/* Along it the triangle is farther from the shape than along any other; returns how far, m. */
-static double nearest_way(const struct contact_solid *solid, enum contact_end end,
-                          const phys_vec own[3], phys_vec *way)
+/* Along it, in the core's axes, a triangle is farther from the shape than along any other; returns
+ * how far, m. */
+static double nearest_way(const struct contact_solid *solid, const struct contact_lanes *own,
+                          double way[3])
 {
     struct contact_solid_point point;
     contact_core_nearest(solid, own, &point);
-    contact_place_out(solid->place + end, &point.normal, way);
+    for (int c = 0; c < 3; c++)
+        way[c] = point.normal[c];
     return point.gap;
+}
+
+/* By the best directions of both ends. */
+static bool certify_near(const struct contact_solid *solid, const struct solid_triangle *triangle,
+                         double thickness)
+{
+    struct solid_divide divide;
+    double begin[3], end[3], there[3], due[3];
+    const double gap = nearest_way(solid, &triangle->from, begin);
+    numbers_due(gap, thickness, triangle->rounding, due);
+    other_end(solid, CONTACT_BEGIN, begin, there);
+    divide_by(solid, begin, there, &divide);
+    if (!solid->endless && is_divided(&divide, triangle, due))
+        return true;
+    nearest_way(solid, &triangle->to, end);
+    other_end(solid, CONTACT_END, end, there);
+    divide_by(solid, there, end, &divide);
+    if (!solid->endless && is_divided(&divide, triangle, due))
+        return true;
+    divide_by(solid, begin, end, &divide);
+    return is_divided(&divide, triangle, due);
+}
+
+/* The three numbers of the direction to the middle of the triangle at the begin, which does for
+ * most; false: there is none. */
+PHYS_INLINE bool middle_numbers(const struct contact_solid *solid,
+                                const struct solid_triangle *triangle, double least[3])
+{
+    const phys_vec *c = triangle->from.c;
+    const double middle[3] = {c[0][3], c[1][3], c[2][3]};
+    double way[3] = {1, 0, 0}, there[3];
+    struct solid_divide divide;
+    phys_vec number[3];
+    if (!solid->endless) {
+        contact_core_away(solid, middle, way);
+        const double length = sqrt(contact_inner(way, way));
+        if (!(length > CONTACT_MARGIN))
+            return false;
+        for (int k = 0; k < 3; k++)
+            way[k] /= length;
+    }
+    other_end(solid, CONTACT_BEGIN, way, there);
+    divide_by(solid, way, solid->endless ? way : there, &divide);
+    corner_numbers(&divide, &triangle->from, &triangle->to, number);
+    for (int i = 0; i < 3; i++)
+        least[i] = contact_least(number + i);
+    return true;
+}
+
+/* However near the triangle began, what is enough far from there is enough. */
+PHYS_KERNEL_OF(enum contact_passing, contact_solid_pass,
+               (const struct contact_solid *solid, const phys_vec x[3], const phys_vec y[3],
+                double thickness, double reach),
+               (solid, x, y, thickness, reach))
+{
+    struct solid_triangle triangle;
+    double least[3], due[3];
+    triangle_of(solid, x, y, &triangle);
+    if (middle_numbers(solid, &triangle, least)) {
+        const double far = reach + triangle.rounding;
+        if (least[0] > far && least[1] > far && least[2] > far)
+            return CONTACT_PASSES_BY;
+        numbers_due(INFINITY, thickness, triangle.rounding, due);
+        if (least[0] >= due[0] && least[1] >= due[1] && least[2] >= due[2])
+            return CONTACT_PASSES;
+    }
+    return certify_near(solid, &triangle, thickness) ? CONTACT_PASSES : CONTACT_MAY_TOUCH;
 }
 
 bool contact_solid_certify(const struct contact_solid *solid, const phys_vec x[3],
                            const phys_vec y[3], double thickness)
 {
-    struct solid_triangle triangle;
-    struct solid_divide divide;
-    phys_vec begin, end;
-    double due[3];
-    put_triangle(solid, x, y, &triangle);
-    numbers_due(nearest_way(solid, CONTACT_BEGIN, triangle.from, &begin), thickness,
-                triangle.rounding, due);
-    put_divide(solid, &begin, &begin, &divide);
-    if (!solid->endless && is_divided(&divide, &triangle, due))
-        return true;
-    nearest_way(solid, CONTACT_END, triangle.to, &end);
-    put_divide(solid, &end, &end, &divide);
-    if (!solid->endless && is_divided(&divide, &triangle, due))
-        return true;
-    put_divide(solid, &begin, &end, &divide);
-    return is_divided(&divide, &triangle, due);
+    return contact_solid_pass(solid, x, y, thickness, INFINITY) != CONTACT_MAY_TOUCH;
 }
 
 /* ---- The cut ---- */
 
-/* The part of its way that a corner may go, at most t; below 0: none will do. number: at the begin
- * and at the end of that way. */
+/* The part of its way that a corner may go, at most t; below 0: none will do. Numbers of a corner
+ * that stays and of one that goes all its way. */
 static double corner_part(const double stays[3], const double goes[3], const double due[3],
                           double rounding, double t, bool held)
 {
@@ -189,21 +260,31 @@ static double corner_part(const double stays[3], const double goes[3], const dou
     return part;
 }
 
-/* Cuts by two directions. stays: the end of a triangle that does not go. */
+/* A triangle that is cut, as its begin, its end without a cut, and its end without a way see it. */
+struct solid_cut {
+    struct solid_triangle goes;
+    struct contact_lanes stays;
+    double due[3];
+    unsigned held;
+};
+
+/* Cuts by two directions. */
 enum cut { CUT_FAILS, CUT_HOLDS, CUT_HOLDS_BELOW }; /* the last: and so does all that goes less */
-static enum cut cut_by(const struct solid_divide *divide, const struct solid_triangle *triangle,
-                       const phys_vec stays[3], const double due[3], unsigned held,
+static enum cut cut_by(const struct solid_divide *divide, const struct solid_cut *cut,
                        const double t[3], double part[3])
 {
+    const double *due = cut->due;
+    phys_vec still[3], goes[3];
     bool below = true;
+    corner_numbers(divide, &cut->goes.from, &cut->stays, still);
+    corner_numbers(divide, &cut->goes.from, &cut->goes.to, goes);
     for (int k = 0; k < 3; k++) {
-        double still[3], goes[3];
-        corner_numbers(divide, triangle->from + k, stays + k, still);
-        corner_numbers(divide, triangle->from + k, triangle->to + k, goes);
-        part[k] = corner_part(still, goes, due, triangle->rounding, t[k], held >> k & 1);
-        if (!(part[k] >= 0 && still[0] >= due[0]))
+        part[k] = corner_part((const double[3]){still[0][k], still[1][k], still[2][k]},
+                              (const double[3]){goes[0][k], goes[1][k], goes[2][k]}, due,
+                              cut->goes.rounding, t[k], cut->held >> k & 1);
+        if (!(part[k] >= 0 && still[0][k] >= due[0]))
             return CUT_FAILS;
-        below = below && still[1] >= due[1] && still[2] >= due[2];
+        below = below && still[1][k] >= due[1] && still[2][k] >= due[2];
     }
     return below ? CUT_HOLDS_BELOW : CUT_HOLDS;
 }
@@ -214,10 +295,42 @@ static void put_cut(const phys_vec x[3], const phys_vec y[3], const double t[3],
         end[k] = x[k] + t[k] * (y[k] - x[k]);
 }
 
-/* Directions that may divide: the nearest at the begin; at the end, of the triangle as t has it; at
- * the end, of one that stays. */
+/* Directions that may divide, in the core's axes: the nearest at the begin; at the end, of the
+ * triangle as t has it; at the end, of one that stays. */
 enum { WAYS = 3, PAIRS = 5 };
 static const int PAIR[PAIRS][2] = {{0, 0}, {1, 1}, {0, 1}, {2, 2}, {0, 2}};
+
+static void divide_pair(const struct contact_solid *solid, const double way[WAYS][3],
+                        const int pair[2], struct solid_divide *divide)
+{
+    double early[3], late[3];
+    for (int c = 0; c < 3; c++) {
+        early[c] = way[pair[0]][c];
+        late[c] = way[pair[1]][c];
+    }
+    if (pair[0] > 0)
+        other_end(solid, CONTACT_END, late, early);
+    else if (pair[1] == 0)
+        other_end(solid, CONTACT_BEGIN, early, late);
+    divide_by(solid, early, late, divide);
+}
+
+static void prepare_cut(const struct contact_solid *solid, const phys_vec x[3], const phys_vec y[3],
+                        const phys_vec end[3], double thickness, struct solid_cut *cut,
+                        double way[WAYS][3])
+{
+    struct contact_lanes at;
+    contact_core_lanes(solid->place + CONTACT_END, end, &at);
+    nearest_way(solid, &at, way[1]);
+    triangle_of(solid, x, y, &cut->goes);
+    for (int k = 0; k < 3; k++) /* of ends as they are told in the room */
+        for (int c = 0; c < 3; c++)
+            cut->goes.rounding += ROUNDING * (fabs(x[k][c]) + fabs(y[k][c]));
+    contact_core_lanes(solid->place + CONTACT_END, x, &cut->stays);
+    nearest_way(solid, &cut->stays, way[2]);
+    const double gap = nearest_way(solid, &cut->goes.from, way[0]);
+    numbers_due(gap, thickness, cut->goes.rounding, cut->due);
+}
 
 /* The first pair of directions, that of the begin, is taken if it holds below, for every later look
  * finds it again; else that pair which cuts least. */
@@ -225,32 +338,26 @@ bool contact_solid_cut(const struct contact_solid *solid, const phys_vec x[3], c
                        double thickness, unsigned held, double t[3])
 {
     const int first = solid->endless ? 2 : 0;
-    struct solid_triangle triangle, still;
-    phys_vec way[WAYS], at[3];
-    double most = -1, best[3] = {t[0], t[1], t[2]}, due[3];
+    struct solid_cut cut = {.held = held};
+    phys_vec at[3];
+    double most = -1, best[3] = {t[0], t[1], t[2]}, way[WAYS][3];
     put_cut(x, y, t, at);
     if (contact_solid_certify(solid, x, at, thickness))
         return true;
-    put_triangle(solid, x, at, &triangle);
-    nearest_way(solid, CONTACT_END, triangle.to, way + 1);
-    put_triangle(solid, x, x, &still);
-    nearest_way(solid, CONTACT_END, still.to, way + 2);
-    put_triangle(solid, x, y, &triangle);
-    numbers_due(nearest_way(solid, CONTACT_BEGIN, triangle.from, way), thickness, triangle.rounding,
-                due);
+    prepare_cut(solid, x, y, at, thickness, &cut, way);
     for (int i = first; i < PAIRS; i++) {
         struct solid_divide divide;
-        double part[3];
-        put_divide(solid, way + PAIR[i][0], way + PAIR[i][1], &divide);
-        const enum cut cut = cut_by(&divide, &triangle, still.to, due, held, t, part);
+        double part[3] = {0};
+        divide_pair(solid, (const double(*)[3])way, PAIR[i], &divide);
+        const enum cut how = cut_by(&divide, &cut, t, part);
         const double sum = part[0] + part[1] + part[2];
         put_cut(x, y, part, at);
-        if (cut == CUT_FAILS || sum <= most || !contact_solid_certify(solid, x, at, thickness))
+        if (how == CUT_FAILS || sum <= most || !contact_solid_certify(solid, x, at, thickness))
             continue;
         most = sum;
         for (int k = 0; k < 3; k++)
             best[k] = part[k];
-        if (i == first && cut == CUT_HOLDS_BELOW)
+        if (i == first && how == CUT_HOLDS_BELOW)
             break;
     }
     for (int k = 0; k < 3; k++)
@@ -260,62 +367,72 @@ bool contact_solid_cut(const struct contact_solid *solid, const phys_vec x[3], c
 
 /* ---- Apart ---- */
 
-/* The direction from a shape to the point of a box that is nearest to it, or nearly. */
+/* The direction, in the core's axes, from a shape to the point of a box that is nearest to it, or
+ * nearly. */
 static void box_way(const struct contact_solid *solid, enum contact_end end, const double low[3],
-                    const double high[3], phys_vec *way)
+                    const double high[3], double way[3])
 {
     const struct contact_place *place = solid->place + end;
-    phys_vec at = place->at, own[3];
-    for (int i = 0; i < APPROACHES; i++) {
-        for (int c = 0; c < 3; c++)
+    phys_vec at = place->at;
+    for (int i = 0;; i++) {
+        double own[3], out[3];
+        for (int c = 0; c < 3; c++) {
             at[c] = at[c] < low[c] ? low[c] : at[c] > high[c] ? high[c] : at[c];
-        contact_place_own(place, &at, own);
-        own[1] = own[2] = own[0];
-        if (i + 1 == APPROACHES)
+            out[c] = at[c] - place->at[c];
+        }
+        contact_way_in(place, out, own);
+        contact_core_away(solid, own, way);
+        if (i == APPROACHES)
             break;
-        contact_core_clamp(solid, own, &at);
-        contact_place_out(place, &at, &at);
-        at += place->at;
+        contact_way_out(place, way, out);
+        at -= (phys_vec){out[0], out[1], out[2], 0};
     }
-    nearest_way(solid, end, own, way);
+    const double length = sqrt(contact_inner(way, way));
+    for (int c = 0; c < 3; c++)
+        way[c] = solid->endless ? c == 0 : length > CONTACT_TINY ? way[c] / length : 0;
 }
 
 /* Whether two directions divide a box that stays from the shape, by so much. */
-static bool box_divided(const struct contact_solid *solid, const phys_vec *middle,
-                        const phys_vec *half, const phys_vec *early, const phys_vec *late,
+static bool box_divided(const struct contact_solid *solid, const double low[3],
+                        const double high[3], const double early[3], const double late[3],
                         double reach)
 {
-    const phys_vec x[3] = {*middle, *middle, *middle};
     struct solid_triangle triangle;
     struct solid_divide divide;
-    double number[3], wide[3] = {0};
-    put_triangle(solid, x, x, &triangle);
-    put_divide(solid, early, late, &divide);
-    corner_numbers(&divide, triangle.from, triangle.to, number);
+    phys_vec middle = {0}, number[3];
+    double out[2][3], wide[3] = {0};
+    for (int c = 0; c < 3; c++)
+        middle[c] = (low[c] + high[c]) / 2;
+    const phys_vec x[3] = {middle, middle, middle};
+    triangle_of(solid, x, x, &triangle);
+    divide_by(solid, early, late, &divide);
+    corner_numbers(&divide, &triangle.from, &triangle.to, number);
+    contact_way_out(solid->place + CONTACT_BEGIN, early, out[0]);
+    contact_way_out(solid->place + CONTACT_END, late, out[1]);
     for (int c = 0; c < 3; c++) {
-        wide[0] += fabs((*early)[c]) * (*half)[c];
-        wide[1] += fabs((*early)[c] + (*late)[c]) / 2 * (*half)[c];
-        wide[2] += fabs((*late)[c]) * (*half)[c];
+        const double half = (high[c] - low[c]) / 2;
+        wide[0] += fabs(out[0][c]) * half;
+        wide[1] += fabs(out[0][c] + out[1][c]) / 2 * half;
+        wide[2] += fabs(out[1][c]) * half;
     }
-    const double due = reach + CONTACT_MARGIN + triangle.rounding;
-    return number[0] - wide[0] > due && number[1] - wide[1] > due && number[2] - wide[2] > due;
+    const double due = reach + CONTACT_MARGIN + triangle.rounding + ROUNDING * wide[0];
+    return number[0][0] - wide[0] > due && number[1][0] - wide[1] > due &&
+           number[2][0] - wide[2] > due;
 }
 
 bool contact_solid_apart(const struct contact_solid *solid, const double low[3],
                          const double high[3], double reach)
 {
-    phys_vec middle = {0}, half = {0}, begin, end;
-    for (int c = 0; c < 3; c++) {
-        middle[c] = (low[c] + high[c]) / 2;
-        half[c] = (high[c] - low[c]) / 2;
-    }
-    box_way(solid, CONTACT_BEGIN, low, high, &begin);
-    if (!solid->endless && box_divided(solid, &middle, &half, &begin, &begin, reach))
+    double begin[3], end[3], there[3];
+    box_way(solid, CONTACT_BEGIN, low, high, begin);
+    other_end(solid, CONTACT_BEGIN, begin, there);
+    if (!solid->endless && box_divided(solid, low, high, begin, there, reach))
         return true;
     if (!solid->moves && !solid->endless)
         return false;
-    box_way(solid, CONTACT_END, low, high, &end);
-    if (!solid->endless && box_divided(solid, &middle, &half, &end, &end, reach))
+    box_way(solid, CONTACT_END, low, high, end);
+    other_end(solid, CONTACT_END, end, there);
+    if (!solid->endless && box_divided(solid, low, high, there, end, reach))
         return true;
-    return box_divided(solid, &middle, &half, &begin, &end, reach);
+    return box_divided(solid, low, high, begin, end, reach);
 }

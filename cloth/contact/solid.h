@@ -28,7 +28,8 @@
 
 /* A convex shape over a step, as the functions below take it. */
 struct contact_place {
-    phys_vec axis[3], at; /* of the core; at: its middle, m */
+    double axis[3][3]; /* of the core, by the room's */
+    phys_vec at;       /* m: the core's middle */
 };
 struct contact_solid {
     struct contact_place place[2]; /* at the begin and at the end of the step */
@@ -56,7 +57,7 @@ struct contact_solid_point {
     uint32_t feature;  /* where on the triangle */
 };
 /* Finds it for a triangle x (m) that is there at that end. To rounding, where the triangle does not
- * meet the core; exact for planes and balls. Of points that are as near it is one. Where the
+ * meet the core. Of points that are as near it is one. Where the
  * triangle meets the core, normal and gap are those of a way out that is short but need not be the
  * shortest. */
 void contact_solid_nearest(const struct contact_solid *solid, enum contact_end end,
@@ -66,6 +67,12 @@ void contact_solid_nearest(const struct contact_solid *solid, enum contact_end e
  * step. thickness: m. Not a number: false. */
 bool contact_solid_certify(const struct contact_solid *solid, const phys_vec x[3],
                            const phys_vec y[3], double thickness);
+
+/* The same; and whether it is surely farther than reach (m, 0 or more) from the shape at all times
+ * of the step, which this says at no more cost of most triangles that are. */
+enum contact_passing { CONTACT_PASSES_BY, CONTACT_PASSES, CONTACT_MAY_TOUCH };
+enum contact_passing contact_solid_pass(const struct contact_solid *solid, const phys_vec x[3],
+                                        const phys_vec y[3], double thickness, double reach);
 
 /* Lowers t, the parts (0 to 1) of their ways that the corners go, so that the triangle from x to
  * x + t (y - x) is certified; they stay where it is already. Smaller parts do, too, where the shape
@@ -79,35 +86,5 @@ bool contact_solid_cut(const struct contact_solid *solid, const phys_vec x[3], c
  * moves the box holds both ends of its way. False: it may be. */
 bool contact_solid_apart(const struct contact_solid *solid, const double low[3],
                          const double high[3], double reach);
-
-/* ---- What the files of this topic share ---- */
-
-/* Points and directions in the axes of the core at one end. */
-PHYS_INLINE void contact_place_direction(const struct contact_place *place, const phys_vec *way,
-                                         phys_vec *own)
-{
-    *own = (phys_vec){phys_dot(place->axis, way), phys_dot(place->axis + 1, way),
-                      phys_dot(place->axis + 2, way), 0};
-}
-PHYS_INLINE void contact_place_own(const struct contact_place *place, const phys_vec *x,
-                                   phys_vec *own)
-{
-    const phys_vec from = *x - place->at;
-    contact_place_direction(place, &from, own);
-}
-PHYS_INLINE void contact_place_out(const struct contact_place *place, const phys_vec *own,
-                                   phys_vec *way)
-{
-    *way = (*own)[0] * place->axis[0] + (*own)[1] * place->axis[1] + (*own)[2] * place->axis[2];
-}
-
-/* Weights, normal and gap, all in the axes of the core, of a triangle given there. */
-void contact_core_nearest(const struct contact_solid *solid, const phys_vec own[3],
-                          struct contact_solid_point *to);
-
-/* The point of the core that is nearest to one given in its axes; its support function along a
- * direction of any length. */
-void contact_core_clamp(const struct contact_solid *solid, const phys_vec *own, phys_vec *nearest);
-double contact_core_support(const struct contact_solid *solid, const phys_vec *way);
 
 #endif

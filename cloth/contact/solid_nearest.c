@@ -1,370 +1,363 @@
-/* The point of a triangle that is nearest to a convex core, in the core's axes, by the algorithm of
- * Gilbert, Johnson & Keerthi (A Fast Procedure for Computing the Distance Between Complex Objects
- * in Three-Dimensional Space, 1988): ever nearer points of the differences triangle - core, each
- * that of the hull of at most four of them. It begins with the corner that is nearest, where it
- * often ends at once. A bounded number of rounds; what is left then costs the best of a force
- * alone, for certificates measure along whatever direction this finds. */
-#include "cloth/contact/solid.h"
+/* The point of a triangle that is nearest to a convex core, in the core's axes. Half the square of
+ * the distance is a convex function F of the point; its gradient is the way r from the core, and
+ * the core bends r by what the metric below says. So F is a quadratic function, about, whose least
+ * on the triangle is the next point: Newton's method with a search along the line. For a ball the
+ * first is the last, for a box a few are, for a cylinder some more. Rounds are bounded; what is
+ * left then costs the best of a force alone, for certificates measure along whatever this finds. */
+#include "cloth/contact/solid_core.h"
 
-#include <math.h>
-
-enum { ROUNDS = 32 };
+enum { ROUNDS = 24, SEARCHES = 6 };
 /* Parts of a squared distance, and of its size, by which another round has to shorten it. */
-static const double ENOUGH = 1e-13, NOISE = 16 * 0x1p-53;
+static const double ENOUGH = 1e-13, NOISE = 32 * 0x1p-53;
+/* Of a metric: below it the triangle has a direction along which F is straight. */
+static const double FLAT = 1e-10;
 
-/* ---- The core ---- */
-
-PHYS_INLINE double clamp(double value, double half)
-{
-    return value < -half ? -half : value > half ? half : value;
-}
-
-void contact_core_clamp(const struct contact_solid *solid, const phys_vec *own, phys_vec *nearest)
-{
-    const phys_vec x = *own;
-    const double *half = solid->half;
-    phys_vec at = {clamp(x[0], half[0]), 0, 0, 0};
-    if (solid->round) {
-        const double far = sqrt(x[1] * x[1] + x[2] * x[2]),
-                     part = far > half[1] ? half[1] / far : 1;
-        at[1] = part * x[1];
-        at[2] = part * x[2];
-    } else {
-        at[1] = clamp(x[1], half[1]);
-        at[2] = clamp(x[2], half[2]);
-    }
-    *nearest = at;
-}
-
-double contact_core_support(const struct contact_solid *solid, const phys_vec *way)
-{
-    const phys_vec n = *way;
-    const double *half = solid->half;
-    const double along = fabs(n[0]) * half[0];
-    if (solid->round)
-        return along + half[1] * sqrt(n[1] * n[1] + n[2] * n[2]);
-    return along + fabs(n[1]) * half[1] + fabs(n[2]) * half[2];
-}
-
-/* The point of the core that is farthest along a direction. */
-static void core_farthest(const struct contact_solid *solid, const phys_vec *way, phys_vec *at)
-{
-    const phys_vec n = *way;
-    const double *half = solid->half, across = sqrt(n[1] * n[1] + n[2] * n[2]);
-    *at = (phys_vec){copysign(half[0], n[0]), copysign(half[1], n[1]), copysign(half[2], n[2]), 0};
-    if (!solid->round)
-        return;
-    (*at)[1] = across > 0 ? half[1] * (n[1] / across) : half[1];
-    (*at)[2] = across > 0 ? half[1] * (n[2] / across) : 0;
-}
-
-/* ---- The hull of up to four points ---- */
-
-struct simplex {
-    int n;
-    phys_vec point[4]; /* corner - point of the core */
-    int corner[4];
-    double weight[4];
+/* A point of the triangle. */
+struct core_point {
+    double weight[3];
+    double x[3], away[3]; /* m; from the core */
+    double square;        /* m^2: of the distance */
 };
 
-static void keep_one(const struct simplex *from, int a, struct simplex *to)
+PHYS_INLINE void point_of(const struct contact_solid *solid, const struct contact_lanes *own,
+                          struct core_point *point)
 {
-    *to = (struct simplex){.n = 1, .weight = {1}};
-    to->point[0] = from->point[a];
-    to->corner[0] = from->corner[a];
+    const double *w = point->weight;
+    for (int c = 0; c < 3; c++)
+        point->x[c] = w[0] * own->c[c][0] + w[1] * own->c[c][1] + w[2] * own->c[c][2];
+    contact_core_away(solid, point->x, point->away);
+    point->square = contact_inner(point->away, point->away);
 }
 
-static void keep_two(const struct simplex *from, int a, int b, double part, struct simplex *to)
-{
-    *to = (struct simplex){.n = 2, .weight = {1 - part, part}};
-    to->point[0] = from->point[a];
-    to->point[1] = from->point[b];
-    to->corner[0] = from->corner[a];
-    to->corner[1] = from->corner[b];
-}
+/* ---- The quadratic function ---- */
 
-static void simplex_at(const struct simplex *simplex, phys_vec *at)
+/* What the way from the core becomes where the point goes along e. */
+PHYS_INLINE void bend(const struct contact_solid *solid, const struct core_point *at,
+                      const double e[3], double bent[3])
 {
-    *at = (phys_vec){0};
-    for (int i = 0; i < simplex->n; i++)
-        *at += simplex->weight[i] * simplex->point[i];
-}
-
-/* The point that is nearest to the origin on the edge from a to b. */
-static void edge_nearest(const struct simplex *from, int a, int b, struct simplex *to)
-{
-    const phys_vec ab = from->point[b] - from->point[a];
-    const double along = -phys_dot(&ab, from->point + a), square = phys_dot(&ab, &ab);
-    if (!(along > 0))
-        keep_one(from, a, to);
-    else if (along >= square)
-        keep_one(from, b, to);
-    else
-        keep_two(from, a, b, along / square, to);
-}
-
-static void nearer_edge(const struct simplex *from, int a, int b, int c, struct simplex *to)
-{
-    const int edge[3][2] = {{a, b}, {b, c}, {c, a}};
-    double least = INFINITY;
-    keep_one(from, a, to);
-    for (int i = 0; i < 3; i++) {
-        struct simplex one;
-        phys_vec at;
-        edge_nearest(from, edge[i][0], edge[i][1], &one);
-        simplex_at(&one, &at);
-        const double square = phys_dot(&at, &at);
-        if (square < least) {
-            least = square;
-            *to = one;
-        }
-    }
-}
-
-PHYS_INLINE void cross(const phys_vec *left, const phys_vec *right, phys_vec *product)
-{
-    const phys_vec u = *left, v = *right;
-    *product = (phys_vec){u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2],
-                          u[0] * v[1] - u[1] * v[0], 0};
-}
-
-/* On the triangle of a, b and c: inside, where its three parts as seen from the foot of the origin
- * are all turned alike, else on an edge. */
-static void face_nearest(const struct simplex *from, int a, int b, int c, struct simplex *to)
-{
-    const phys_vec *p = from->point, ab = p[b] - p[a], ac = p[c] - p[a];
-    phys_vec normal, bc, ca;
-    cross(&ab, &ac, &normal);
-    cross(p + b, p + c, &bc);
-    cross(p + c, p + a, &ca);
-    const double square = phys_dot(&normal, &normal), of_a = phys_dot(&bc, &normal) / square,
-                 of_b = phys_dot(&ca, &normal) / square, of_c = 1 - of_a - of_b;
-    if (!(of_a > 0 && of_b > 0 && of_c > 0)) {
-        nearer_edge(from, a, b, c, to);
+    const double *x = at->x, *half = solid->half;
+    bent[0] = fabs(x[0]) > half[0] ? e[0] : 0;
+    if (solid->round) {
+        const double square = x[1] * x[1] + x[2] * x[2], far = sqrt(square);
+        const bool out = far > half[1];
+        const double part = out ? half[1] / far : 0, along = (x[1] * e[1] + x[2] * e[2]) / square;
+        bent[1] = out ? (1 - part) * e[1] + part * along * x[1] : 0;
+        bent[2] = out ? (1 - part) * e[2] + part * along * x[2] : 0;
         return;
     }
-    *to = (struct simplex){.n = 3, .weight = {of_a, of_b, of_c}};
-    const int kept[3] = {a, b, c};
-    for (int i = 0; i < 3; i++) {
-        to->point[i] = from->point[kept[i]];
-        to->corner[i] = from->corner[kept[i]];
+    bent[1] = fabs(x[1]) > half[1] ? e[1] : 0;
+    bent[2] = fabs(x[2]) > half[2] ? e[2] : 0;
+}
+
+/* b.z + z.A z / 2, z from where it is made, along the edges from corner 0. */
+struct quadratic {
+    double a11, a12, a22, b1, b2;
+    double u, v; /* that point's own */
+};
+
+PHYS_INLINE double quadratic_at(const struct quadratic *q, double u, double v)
+{
+    const double du = u - q->u, dv = v - q->v;
+    return q->b1 * du + q->b2 * dv + (q->a11 * du * du + q->a22 * dv * dv) / 2 + q->a12 * du * dv;
+}
+
+PHYS_INLINE void quadratic_of(const struct contact_solid *solid, const struct contact_lanes *own,
+                              const struct core_point *at, struct quadratic *q)
+{
+    double e[2][3], bent[2][3];
+    for (int c = 0; c < 3; c++) {
+        e[0][c] = own->c[c][1] - own->c[c][0];
+        e[1][c] = own->c[c][2] - own->c[c][0];
     }
+    bend(solid, at, e[0], bent[0]);
+    bend(solid, at, e[1], bent[1]);
+    *q = (struct quadratic){contact_inner(e[0], bent[0]),
+                            contact_inner(e[0], bent[1]),
+                            contact_inner(e[1], bent[1]),
+                            contact_inner(e[0], at->away),
+                            contact_inner(e[1], at->away),
+                            at->weight[1],
+                            at->weight[2]};
+    /* Where F is straight it goes on to the end of the triangle. */
+    const double flat = FLAT * (contact_inner(e[0], e[0]) + contact_inner(e[1], e[1]));
+    q->a11 += flat;
+    q->a22 += flat;
 }
 
-/* Whether the origin lies on the same side of a face as the fourth point. */
-static bool same_side(const phys_vec *p, int a, int b, int c, int d)
-{
-    const phys_vec ab = p[b] - p[a], ac = p[c] - p[a], ad = p[d] - p[a];
-    phys_vec normal;
-    cross(&ab, &ac, &normal);
-    return -phys_dot(&normal, p + a) * phys_dot(&normal, &ad) > 0;
-}
-
-/* Of all four; false: the origin is inside. */
-static bool solid_nearest(const struct simplex *from, struct simplex *to)
-{
-    static const int face[4][4] = {{0, 1, 2, 3}, {0, 1, 3, 2}, {0, 2, 3, 1}, {1, 2, 3, 0}};
-    double least = INFINITY;
-    bool inside = true;
-    keep_one(from, 0, to);
-    for (int i = 0; i < 4; i++) {
-        const int *f = face[i];
-        struct simplex one;
-        phys_vec at;
-        inside = inside && same_side(from->point, f[0], f[1], f[2], f[3]);
-        face_nearest(from, f[0], f[1], f[2], &one);
-        simplex_at(&one, &at);
-        const double square = phys_dot(&at, &at);
-        if (square < least) {
-            least = square;
-            *to = one;
-        }
-    }
-    return !inside && least < INFINITY;
-}
-
-static bool simplex_nearest(const struct simplex *from, struct simplex *to)
-{
-    if (from->n == 4)
-        return solid_nearest(from, to);
-    if (from->n == 3)
-        face_nearest(from, 0, 1, 2, to);
-    else
-        edge_nearest(from, 0, 1, to);
-    return true;
-}
-
-/* ---- The nearest point ---- */
-
-/* The corner whose distance from the core is least, the first of equals. */
-static void begin_simplex(const struct contact_solid *solid, const phys_vec own[3],
-                          struct simplex *simplex)
-{
-    double least = INFINITY;
-    *simplex = (struct simplex){.n = 1, .weight = {1}};
-    for (int k = 0; k < 3; k++) {
-        phys_vec at;
-        contact_core_clamp(solid, own + k, &at);
-        const phys_vec away = own[k] - at;
-        const double square = phys_dot(&away, &away);
-        if (square < least) {
-            least = square;
-            simplex->point[0] = away;
-            simplex->corner[0] = k;
-        }
-    }
-}
-
-/* Adds the difference that is farthest against a direction; false: it is no nearer to the origin
- * along it than the direction's own end is. */
-static bool add_point(const struct contact_solid *solid, const phys_vec own[3], const phys_vec *way,
-                      double size, struct simplex *simplex)
-{
-    const double square = phys_dot(way, way);
-    phys_vec at;
-    int corner = 0;
-    double least = INFINITY;
-    for (int k = 0; k < 3; k++) {
-        const double along = phys_dot(way, own + k);
-        corner = along < least ? k : corner;
-        least = fmin(along, least);
-    }
-    if (!(square - (least - contact_core_support(solid, way)) >
-          ENOUGH * square + NOISE * size * sqrt(square)))
-        return false;
-    core_farthest(solid, way, &at);
-    simplex->point[simplex->n] = own[corner] - at;
-    simplex->corner[simplex->n] = corner;
-    simplex->n++;
-    return true;
-}
-
-/* Fills the weights; false: the triangle meets the core. */
-static bool nearest_weights(const struct contact_solid *solid, const phys_vec own[3], double size,
+/* Its least on the edge between two corners, given by weights of corners 1 and 2. */
+PHYS_INLINE void edge_least(const struct quadratic *q, int from, int to, double *least,
                             double weight[3])
 {
-    struct simplex simplex;
-    phys_vec way;
-    bool apart = true;
-    begin_simplex(solid, own, &simplex);
-    simplex_at(&simplex, &way);
-    for (int i = 0; i < ROUNDS && apart; i++) {
-        struct simplex next, more = simplex;
-        phys_vec shorter;
-        if (!add_point(solid, own, &way, size, &more))
-            break;
-        apart = simplex_nearest(&more, &next);
-        if (!apart)
-            break;
-        simplex_at(&next, &shorter);
-        if (!(phys_dot(&shorter, &shorter) < phys_dot(&way, &way)))
-            break;
-        simplex = next;
-        way = shorter;
+    const double u = from == 1, v = from == 2, du = (to == 1) - u, dv = (to == 2) - v;
+    const double g1 = q->b1 + q->a11 * (u - q->u) + q->a12 * (v - q->v);
+    const double g2 = q->b2 + q->a12 * (u - q->u) + q->a22 * (v - q->v);
+    const double slope = g1 * du + g2 * dv;
+    const double bend = q->a11 * du * du + q->a22 * dv * dv + 2 * q->a12 * du * dv;
+    const double part = slope >= 0 ? 0 : bend > -slope ? -slope / bend : 1;
+    const double value = quadratic_at(q, u + part * du, v + part * dv);
+    if (value < *least) {
+        *least = value;
+        weight[0] = weight[1] = weight[2] = 0;
+        weight[from] = 1 - part;
+        weight[to] = part;
     }
+}
+
+PHYS_INLINE void quadratic_least(const struct quadratic *q, double weight[3])
+{
+    const double det = q->a11 * q->a22 - q->a12 * q->a12;
+    const double u = q->u + (q->a12 * q->b2 - q->a22 * q->b1) / det;
+    const double v = q->v + (q->a12 * q->b1 - q->a11 * q->b2) / det;
+    if (det > 0 && u > 0 && v > 0 && u + v < 1) {
+        weight[0] = 1 - u - v;
+        weight[1] = u;
+        weight[2] = v;
+        return;
+    }
+    double least = INFINITY;
+    edge_least(q, 0, 1, &least, weight);
+    edge_least(q, 1, 2, &least, weight);
+    edge_least(q, 2, 0, &least, weight);
+}
+
+/* ---- Rounds ---- */
+
+/* A line from a point, and where on it F stops to fall: between low and high. */
+struct core_line {
+    double way[3], from[3], weight[2][3]; /* weights of both ends */
+    double low, high, falls, rises;       /* parts of the line; slopes of F there */
+};
+
+PHYS_INLINE double line_slope(const struct contact_solid *solid, const struct core_line *line,
+                              double part)
+{
+    double x[3], away[3];
+    for (int c = 0; c < 3; c++)
+        x[c] = line->from[c] + part * line->way[c];
+    contact_core_away(solid, x, away);
+    return contact_inner(away, line->way);
+}
+
+/* Looks at a part of the line that may lie outside, or be none. */
+PHYS_INLINE void line_look(const struct contact_solid *solid, struct core_line *line, double part)
+{
+    if (!(part > line->low && part < line->high))
+        return;
+    const double slope = line_slope(solid, line, part);
+    if (slope > 0) {
+        line->high = part;
+        line->rises = slope;
+    } else {
+        line->low = part;
+        line->falls = slope;
+    }
+}
+
+/* Where the line enters or leaves what the faces bound; between, F is smooth, of a box quadratic.
+ */
+PHYS_INLINE void line_faces(const struct contact_solid *solid, struct core_line *line)
+{
+    const double *x = line->from, *way = line->way, *half = solid->half;
+    for (int c = 0; c < (solid->round ? 1 : 3); c++) {
+        line_look(solid, line, (half[c] - x[c]) / way[c]);
+        line_look(solid, line, (-half[c] - x[c]) / way[c]);
+    }
+    if (!solid->round)
+        return;
+    const double a = way[1] * way[1] + way[2] * way[2], b = way[1] * x[1] + way[2] * x[2],
+                 c = x[1] * x[1] + x[2] * x[2] - half[1] * half[1];
+    const double root = sqrt(b * b - a * c); /* may be none */
+    line_look(solid, line, (-b - root) / a);
+    line_look(solid, line, (-b + root) / a);
+}
+
+PHYS_INLINE void line_point(const struct contact_solid *solid, const struct contact_lanes *own,
+                            const struct core_line *line, double part, struct core_point *to)
+{
     for (int k = 0; k < 3; k++)
-        weight[k] = 0;
-    for (int i = 0; i < simplex.n; i++)
-        weight[simplex.corner[i]] += simplex.weight[i];
-    return apart;
+        to->weight[k] = (1 - part) * line->weight[0][k] + part * line->weight[1][k];
+    point_of(solid, own, to);
+}
+
+/* From a point to the next one: where F falls no more on the line to it. */
+PHYS_INLINE void line_search(const struct contact_solid *solid, const struct contact_lanes *own,
+                             const struct core_point *from, struct core_point *to)
+{
+    struct core_line line = {.high = 1};
+    for (int c = 0; c < 3; c++) {
+        line.from[c] = from->x[c];
+        line.way[c] = to->x[c] - from->x[c];
+        line.weight[0][c] = from->weight[c];
+        line.weight[1][c] = to->weight[c];
+    }
+    line.falls = contact_inner(from->away, line.way);
+    line.rises = contact_inner(to->away, line.way);
+    if (!(line.rises > 0 && line.falls < 0))
+        return;
+    line_faces(solid, &line);
+    for (int i = 0; i < (solid->round ? SEARCHES : 0); i++) {
+        const double part = line.falls / (line.falls - line.rises);
+        line_look(solid, &line, line.low + part * (line.high - line.low));
+    }
+    const double part = line.falls / (line.falls - line.rises);
+    line_point(solid, own, &line, line.low + part * (line.high - line.low), to);
+    if (!(to->square < from->square))
+        line_point(solid, own, &line, line.low, to);
+}
+
+/* The corner that is nearest as seen from the middle. */
+PHYS_INLINE void first_point(const struct contact_solid *solid, const struct contact_lanes *own,
+                             struct core_point *point)
+{
+    const double middle[3] = {own->c[0][3], own->c[1][3], own->c[2][3]};
+    double way[3];
+    phys_vec along;
+    contact_core_away(solid, middle, way);
+    contact_heights(own, way, &along);
+    const double least = contact_least(&along);
+    const int corner = along[0] <= least ? 0 : along[1] <= least ? 1 : 2;
+    for (int k = 0; k < 3; k++)
+        point->weight[k] = k == corner;
+    point_of(solid, own, point);
+}
+
+/* m^2: by how much rounding may be off in a product of a way from the core and one in the triangle;
+ * noise: m, of a coordinate. */
+PHYS_INLINE double product_noise(const struct contact_lanes *own, double noise, double length)
+{
+    double edges = 0;
+    for (int c = 0; c < 3; c++)
+        edges += fabs(own->c[c][1] - own->c[c][0]) + fabs(own->c[c][2] - own->c[c][0]);
+    return noise * (edges + length);
+}
+
+PHYS_INLINE void nearest_point(const struct contact_solid *solid, const struct contact_lanes *own,
+                               double noise, struct core_point *point)
+{
+    first_point(solid, own, point);
+    for (int i = 0; i < ROUNDS; i++) {
+        const double length = sqrt(point->square);
+        struct core_point next;
+        struct quadratic quadratic;
+        phys_vec along;
+        contact_heights(own, point->away, &along);
+        const double gains = contact_inner(point->away, point->x) - contact_least(&along);
+        if (!(gains > ENOUGH * point->square + product_noise(own, noise, length)))
+            break;
+        quadratic_of(solid, own, point, &quadratic);
+        quadratic_least(&quadratic, next.weight);
+        point_of(solid, own, &next);
+        line_search(solid, own, point, &next);
+        if (!(next.square <= point->square + noise * length))
+            break;
+        *point = next;
+    }
 }
 
 /* ---- Inside ---- */
 
-struct way_out {
-    phys_vec normal;
-    double gap;
-    int corner;
-};
-
-static void try_way(const struct contact_solid *solid, const phys_vec own[3], const phys_vec *way,
-                    struct way_out *best)
+static void try_way(const struct contact_solid *solid, const struct contact_lanes *own,
+                    const double way[3], struct contact_solid_point *best)
 {
-    const double square = phys_dot(way, way);
+    const double square = contact_inner(way, way);
+    phys_vec along;
+    double normal[3];
     if (!(square > CONTACT_TINY))
         return;
-    const phys_vec normal = *way / sqrt(square);
-    int corner = 0;
-    double least = INFINITY;
-    for (int k = 0; k < 3; k++) {
-        const double along = phys_dot(&normal, own + k);
-        corner = along < least ? k : corner;
-        least = fmin(along, least);
-    }
-    const double gap = least - contact_core_support(solid, &normal) - solid->radius;
-    if (gap > best->gap)
-        *best = (struct way_out){normal, gap, corner};
+    for (int c = 0; c < 3; c++)
+        normal[c] = way[c] / sqrt(square);
+    contact_heights(own, normal, &along);
+    const double least = contact_least(&along);
+    const double gap = least - contact_core_support(solid, normal) - solid->radius;
+    if (!(gap > best->gap))
+        return;
+    const int corner = along[0] <= least ? 0 : along[1] <= least ? 1 : 2;
+    best->gap = gap;
+    best->normal = (phys_vec){normal[0], normal[1], normal[2], 0};
+    for (int k = 0; k < 3; k++)
+        best->weight[k] = k == corner;
 }
 
-/* The shortest way out of those along the axes, the triangle's normal and, of what is round, along
- * the radius of each corner. */
-static void nearest_inside(const struct contact_solid *solid, const phys_vec own[3],
+/* The shortest way out of those along the axes, the triangle's normal and the radius of each
+ * corner. */
+static void nearest_inside(const struct contact_solid *solid, const struct contact_lanes *own,
                            struct contact_solid_point *to)
 {
-    const phys_vec ab = own[1] - own[0], ac = own[2] - own[0];
-    struct way_out best = {.normal = {1, 0, 0, 0}, .gap = -INFINITY};
-    phys_vec way;
-    cross(&ab, &ac, &way);
-    try_way(solid, own, &way, &best);
-    way = -way;
-    try_way(solid, own, &way, &best);
-    for (int c = 0; c < 3; c++) {
-        way = (phys_vec){0};
-        way[c] = 1;
-        try_way(solid, own, &way, &best);
-        way[c] = -1;
-        try_way(solid, own, &way, &best);
-        way = (phys_vec){0, own[c][1], own[c][2], 0};
-        try_way(solid, own, &way, &best);
+    const phys_vec *c = own->c;
+    const double ab[3] = {c[0][1] - c[0][0], c[1][1] - c[1][0], c[2][1] - c[2][0]},
+                 ac[3] = {c[0][2] - c[0][0], c[1][2] - c[1][0], c[2][2] - c[2][0]};
+    double across[3];
+    *to =
+        (struct contact_solid_point){.weight = {1, 0, 0}, .normal = {1, 0, 0, 0}, .gap = -INFINITY};
+    for (int i = 0; i < 3; i++)
+        across[i] = ab[(i + 1) % 3] * ac[(i + 2) % 3] - ab[(i + 2) % 3] * ac[(i + 1) % 3];
+    for (int side = -1; side <= 1; side += 2) {
+        double way[3];
+        for (int k = 0; k < 3; k++)
+            way[k] = side * across[k];
+        try_way(solid, own, way, to);
+        for (int k = 0; k < 3; k++) {
+            way[0] = way[1] = way[2] = 0;
+            way[k] = side;
+            try_way(solid, own, way, to);
+        }
     }
-    to->normal = best.normal;
-    to->gap = best.gap;
     for (int k = 0; k < 3; k++)
-        to->weight[k] = k == best.corner;
+        try_way(solid, own, (const double[3]){0, c[1][k], c[2][k]}, to);
 }
 
-static void nearest_to_plane(const phys_vec own[3], struct contact_solid_point *to)
+/* ---- In all ---- */
+
+PHYS_INLINE double lanes_size(const struct contact_lanes *own)
 {
-    int lowest = 0;
-    for (int k = 1; k < 3; k++)
-        lowest = own[k][0] < own[lowest][0] ? k : lowest;
-    to->normal = (phys_vec){1, 0, 0, 0};
-    to->gap = own[lowest][0];
-    for (int k = 0; k < 3; k++)
-        to->weight[k] = k == lowest;
+    double size = 0;
+    for (int c = 0; c < 3; c++)
+        size += fabs(own->c[c][0]) + fabs(own->c[c][1]) + fabs(own->c[c][2]);
+    return size;
 }
 
-void contact_core_nearest(const struct contact_solid *solid, const phys_vec own[3],
-                          struct contact_solid_point *to)
+PHYS_INLINE void nearest_to_plane(const struct contact_lanes *own, struct contact_solid_point *to)
+{
+    const phys_vec height = own->c[0];
+    to->gap = contact_least(&height);
+    const int corner = height[0] <= to->gap ? 0 : height[1] <= to->gap ? 1 : 2;
+    to->normal = (phys_vec){1, 0, 0, 0};
+    for (int k = 0; k < 3; k++)
+        to->weight[k] = k == corner;
+}
+
+PHYS_INLINE void core_nearest(const struct contact_solid *solid, const struct contact_lanes *own,
+                              struct contact_solid_point *to)
 {
     if (solid->endless) {
         nearest_to_plane(own, to);
         return;
     }
-    double size = solid->half[0] + solid->half[1] + solid->half[2];
-    for (int c = 0; c < 3; c++)
-        size += fabs(own[0][c]) + fabs(own[1][c]) + fabs(own[2][c]);
-    if (!nearest_weights(solid, own, size, to->weight)) {
-        nearest_inside(solid, own, to);
-        return;
-    }
-    phys_vec at = {0}, foot;
-    for (int k = 0; k < 3; k++)
-        at += to->weight[k] * own[k];
-    contact_core_clamp(solid, &at, &foot);
-    const phys_vec away = at - foot;
-    const double length = sqrt(phys_dot(&away, &away));
+    const double size = lanes_size(own) + solid->half[0] + solid->half[1] + solid->half[2];
+    struct core_point point;
+    nearest_point(solid, own, NOISE * size, &point);
+    const double length = sqrt(point.square);
     if (!(length > NOISE * size)) {
         nearest_inside(solid, own, to);
         return;
     }
-    to->normal = away / length;
+    to->normal = (phys_vec){point.away[0], point.away[1], point.away[2], 0} / length;
     to->gap = length - solid->radius;
+    for (int k = 0; k < 3; k++)
+        to->weight[k] = point.weight[k];
+}
+
+PHYS_KERNEL(contact_core_nearest,
+            (const struct contact_solid *solid, const struct contact_lanes *own,
+             struct contact_solid_point *to),
+            (solid, own, to))
+{
+    core_nearest(solid, own, to);
 }
 
 /* ---- In the room ---- */
 
-static uint32_t feature_of(const double weight[3])
+PHYS_INLINE uint32_t feature_of(const double weight[3])
 {
     uint32_t n = 0, last = 0, without = 0;
     for (uint32_t k = 0; k < 3; k++) {
@@ -377,21 +370,36 @@ static uint32_t feature_of(const double weight[3])
                     : CONTACT_ON_CORNER + last;
 }
 
-void contact_solid_nearest(const struct contact_solid *solid, enum contact_end end,
-                           const phys_vec x[3], struct contact_solid_point *to)
+/* Of a point of the shape, in the core's axes: its way in the step. */
+PHYS_INLINE void shape_way(const struct contact_solid *solid, const double own[3], phys_vec *way)
 {
     const struct contact_place *begin = solid->place + CONTACT_BEGIN,
-                               *last = solid->place + CONTACT_END;
-    phys_vec own[3], at = {0}, was, is;
-    for (int k = 0; k < 3; k++)
-        contact_place_own(solid->place + end, x + k, own + k);
-    contact_core_nearest(solid, own, to);
+                               *end = solid->place + CONTACT_END;
+    double was[3], is[3];
+    contact_way_out(begin, own, was);
+    contact_way_out(end, own, is);
+    *way = (phys_vec){is[0] - was[0], is[1] - was[1], is[2] - was[2], 0} + (end->at - begin->at);
+}
+
+PHYS_KERNEL(contact_solid_nearest,
+            (const struct contact_solid *solid, enum contact_end end, const phys_vec x[3],
+             struct contact_solid_point *to),
+            (solid, end, x, to))
+{
+    struct contact_lanes own;
+    double at[3], normal[3], out[3];
+    contact_core_lanes(solid->place + end, x, &own);
+    core_nearest(solid, &own, to);
     to->feature = feature_of(to->weight);
-    for (int k = 0; k < 3; k++)
-        at += to->weight[k] * own[k];
-    at -= to->gap * to->normal;
-    contact_place_out(begin, &at, &was);
-    contact_place_out(last, &at, &is);
-    to->velocity = solid->rate * ((is - was) + (last->at - begin->at));
-    contact_place_out(solid->place + end, &to->normal, &to->normal);
+    for (int c = 0; c < 3; c++) {
+        const double *w = to->weight;
+        normal[c] = to->normal[c];
+        at[c] = w[0] * own.c[c][0] + w[1] * own.c[c][1] + w[2] * own.c[c][2] - to->gap * normal[c];
+    }
+    contact_way_out(solid->place + end, normal, out);
+    to->normal = (phys_vec){out[0], out[1], out[2], 0};
+    to->velocity = (phys_vec){0};
+    if (solid->moves)
+        shape_way(solid, at, &to->velocity);
+    to->velocity *= solid->rate;
 }

@@ -89,31 +89,16 @@ static void list_triangle(struct meeting *m, uint32_t triangle, const phys_vec y
     append(m, &near);
 }
 
-/* Whether all of the way of a triangle is out of reach. */
-static bool is_apart(const struct meeting *m, const phys_vec x[3], const phys_vec y[3])
-{
-    double low[3], high[3];
-    for (int c = 0; c < 3; c++) {
-        low[c] = high[c] = x[0][c];
-        for (int k = 0; k < 6; k++) {
-            const double at = k < 3 ? x[k][c] : y[k - 3][c];
-            low[c] = at < low[c] ? at : low[c];
-            high[c] = at > high[c] ? at : high[c];
-        }
-    }
-    return contact_solid_apart(&m->solid, low, high, flow_contact_reach(m->model));
-}
-
 static void look_at_triangle(struct meeting *m, uint32_t triangle)
 {
     const uint32_t *point = m->skin.corner[triangle];
     const phys_vec x[3] = {m->x[point[0]], m->x[point[1]], m->x[point[2]]};
     const phys_vec y[3] = {m->y[point[0]], m->y[point[1]], m->y[point[2]]};
-    if (is_apart(m, x, y))
-        return;
-    if (contact_solid_certify(&m->solid, x, y, m->model->contact.thickness))
+    const enum contact_passing passing = contact_solid_pass(
+        &m->solid, x, y, m->model->contact.thickness, flow_contact_reach(m->model));
+    if (passing == CONTACT_PASSES)
         list_triangle(m, triangle, y);
-    else
+    else if (passing == CONTACT_MAY_TOUCH)
         fail(m, triangle, x, y);
 }
 

@@ -483,6 +483,29 @@ START_TEST(apart)
 }
 END_TEST
 
+/* What passes by is at no time within the reach; far triangles do pass by. */
+START_TEST(passing_by)
+{
+    int by = 0, far = 0;
+    for (int i = 0; i < MANY; i++) {
+        struct meeting m;
+        struct contact_solid_point begin, end;
+        const double reach = any_size(1e-4, 1e-1), gap = any_size(0.1, 10) * reach;
+        make_shape((uint32_t)_i, 0.3, any_size(1e-3, 0.3), &m);
+        place_triangle(gap, 0.1 * gap, true, 0.1 * gap, &m);
+        const enum contact_passing is = contact_solid_pass(&m.solid, m.x, m.y, THICKNESS, reach);
+        ck_assert((is != CONTACT_MAY_TOUCH) ==
+                  contact_solid_certify(&m.solid, m.x, m.y, THICKNESS));
+        contact_solid_nearest(&m.solid, CONTACT_BEGIN, m.x, &begin);
+        contact_solid_nearest(&m.solid, CONTACT_END, m.y, &end);
+        ck_assert(is != CONTACT_PASSES_BY || (begin.gap > reach && end.gap > reach));
+        by += is == CONTACT_PASSES_BY;
+        far += gap > 2 * reach;
+    }
+    ck_assert_int_gt(by, far / 4);
+}
+END_TEST
+
 START_TEST(what_is_not_a_number_is_not_certified)
 {
     for (int k = 0; k < 18; k++) {
@@ -509,6 +532,7 @@ int main(void)
     tcase_add_loop_test(cases, what_is_cut_is_certified, 0, n);
     tcase_add_loop_test(cases, held_corners_stay, 0, n);
     tcase_add_loop_test(cases, apart, 0, n);
+    tcase_add_loop_test(cases, passing_by, 0, n);
     tcase_add_loop_test(cases, what_is_not_a_number_is_not_certified, 0, n);
     suite_add_tcase(suite, cases);
     return unit_run(suite);

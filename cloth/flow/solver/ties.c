@@ -7,7 +7,7 @@ static void pack(const struct flow_ties *ties, const phys_vec *y, double *to)
 {
     solve_pack(ties->n_shown, ties->shown, y, to);
     memset(to + 3 * (size_t)ties->n_shown, 0,
-           3 * (size_t)(ties->room.rows - ties->n_shown) * sizeof *to);
+           3 * (flow_ties_rows(ties) - ties->n_shown) * sizeof *to);
 }
 
 /* What the first pass of a solve reads; q: what the fork gives for it. */
@@ -36,7 +36,7 @@ static int tie_show_basis_body(const duite_call *call, const struct tie_show_bas
 {
     const struct flow_ties ties = flow_ties_open(on->tie_table);
     (void)call;
-    memset(on->tie_basis, 0, ties.room.rows * sizeof *on->tie_basis);
+    memset(on->tie_basis, 0, flow_ties_rows(&ties) * sizeof *on->tie_basis);
     for (uint32_t i = 0; i < ties.n_shown; i++)
         on->tie_basis[i] = on->basis[ties.shown[i]];
     return 0;

@@ -188,7 +188,7 @@ static int tie_show_body(const duite_call *call, const struct tie_show_fields *o
 {
     const struct flow_ties ties = flow_ties_open(on->tie_table);
     (void)call;
-    memset(on->tie_halo, 0, 2 * (size_t)ties.room.rows * sizeof *on->tie_halo);
+    memset(on->tie_halo, 0, 2 * flow_ties_rows(&ties) * sizeof *on->tie_halo);
     for (uint32_t i = 0; i < ties.n_shown; i++) {
         on->tie_halo[i] = on->x[ties.shown[i]];
         on->tie_halo[ties.room.rows + i] = on->v[ties.shown[i]];

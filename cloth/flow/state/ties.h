@@ -129,6 +129,12 @@ size_t flow_ties_bytes(uint32_t n_rows, const struct flow_tie_room *room);
  * block that is none of the others: the table has no ties then. Local. */
 bool flow_ties_make(const struct flow_ties_of *of, void *memory);
 
+/* Rows of an object that has the rows shown: at least one. */
+static inline size_t flow_ties_rows(const struct flow_ties *ties)
+{
+    return ties->room.rows ? ties->room.rows : 1;
+}
+
 /* Finds the arrays of a table. NULL: there are no ties. */
 struct flow_ties flow_ties_open(const void *memory);
 

@@ -130,6 +130,7 @@ int contact_body_mesh(const struct contact_body *body, struct mesh *mesh,
  * nodes as contact_tree_nodes says. low, high: the boxes of the triangles by number. Medians of the
  * middles of boxes along the longest axis, of equal ones the lower number first. */
 uint32_t contact_tree_nodes(uint32_t n_triangles);
+uint32_t contact_tree_part(uint32_t n_triangles, int i); /* where part i of a node begins; 4: n */
 int contact_tree_build(uint32_t n, uint32_t *order, const phys_vec *low, const phys_vec *high,
                        struct contact_node *nodes, struct cloth_error *error);
 /* Fits its boxes to triangles that moved. x: of vertices, m. */

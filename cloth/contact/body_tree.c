@@ -20,7 +20,7 @@ struct tree {
 };
 
 /* Parts of n things: i to i + 1 of four. */
-static uint32_t part_begin(uint32_t n, int i)
+uint32_t contact_tree_part(uint32_t n, int i)
 {
     const uint32_t half = n / 2;
     const uint32_t begin[5] = {0, half / 2, half, half + (n - half) / 2, n};
@@ -31,7 +31,8 @@ uint32_t contact_tree_nodes(uint32_t n_triangles)
 {
     uint32_t n = 1;
     for (int i = 0; i < 4; i++) {
-        const uint32_t part = part_begin(n_triangles, i + 1) - part_begin(n_triangles, i);
+        const uint32_t part =
+            contact_tree_part(n_triangles, i + 1) - contact_tree_part(n_triangles, i);
         n += part > CONTACT_LEAF ? contact_tree_nodes(part) : 0;
     }
     return n;
@@ -129,10 +130,11 @@ static uint32_t build_node(struct tree *tree, uint32_t from, uint32_t to)
     const uint32_t n = to - from, number = tree->n_nodes++;
     struct contact_node *node = tree->nodes + number;
     sort_range(tree, from, to);
-    sort_range(tree, from, from + part_begin(n, 2));
-    sort_range(tree, from + part_begin(n, 2), to);
+    sort_range(tree, from, from + contact_tree_part(n, 2));
+    sort_range(tree, from + contact_tree_part(n, 2), to);
     for (int i = 0; i < 4; i++) {
-        const uint32_t begin = from + part_begin(n, i), end = from + part_begin(n, i + 1);
+        const uint32_t begin = from + contact_tree_part(n, i),
+                       end = from + contact_tree_part(n, i + 1);
         put_box(tree, node, i, begin, end);
         node->child[i] = end - begin > CONTACT_LEAF
                              ? build_node(tree, begin, end)

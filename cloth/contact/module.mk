@@ -16,6 +16,8 @@ libduite_cloth_la_SOURCES += \
 	cloth/contact/row.h \
 	cloth/contact/shape.c cloth/contact/shape.h \
 	cloth/contact/skin.h cloth/contact/skin_table.h \
+	cloth/contact/skin_flat.c \
+	cloth/contact/skin_loops.c \
 	cloth/contact/skin_make.c \
 	cloth/contact/skin_query.c \
 	cloth/contact/skin_refit.c \

@@ -37,6 +37,8 @@ struct contact_skin {
     uint32_t n_nodes, n_leaves;
     const uint32_t (*child)[4]; /* n_nodes: a node, or CONTACT_IS_LEAF with a leaf */
     const struct contact_leaf *leaf;
+    const struct contact_loop *loop; /* 4 n_nodes + 1: of the children of nodes; of all */
+    const uint32_t *along;           /* points of loops */
 };
 
 /* What a skin is made of. x (m) says which triangles are near to each other, now and later: the

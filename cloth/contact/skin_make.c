@@ -12,6 +12,11 @@ static uint64_t whole_lines(uint64_t bytes)
     return (bytes + CONTACT_ALIGN - 1) / CONTACT_ALIGN * CONTACT_ALIGN;
 }
 
+enum {
+    CONTACT_SKIN_LEAF = 8, /* triangles at most */
+    ALONG = 2              /* points of loops for each triangle */
+};
+
 /* ---- Sizes ---- */
 
 /* Of n nodes, with those that hold nothing: each node but the first is a child. */
@@ -20,9 +25,21 @@ static uint32_t leaves_of(uint32_t n_nodes)
     return 3 * n_nodes + 1;
 }
 
+/* Parts of a node that are small enough are leaves. */
+static uint32_t count_nodes(uint32_t n_triangles)
+{
+    uint32_t n = 1;
+    for (int i = 0; i < 4; i++) {
+        const uint32_t part =
+            contact_tree_part(n_triangles, i + 1) - contact_tree_part(n_triangles, i);
+        n += part > CONTACT_SKIN_LEAF ? count_nodes(part) : 0;
+    }
+    return n;
+}
+
 void contact_skin_lay(const struct contact_skin *skin, struct contact_skin_head *head)
 {
-    const uint32_t n_nodes = contact_tree_nodes(skin->n_triangles);
+    const uint32_t n_nodes = count_nodes(skin->n_triangles);
     *head = (struct contact_skin_head){.n_points = skin->n_points,
                                        .n_triangles = skin->n_triangles,
                                        .n_edges = skin->n_edges,
@@ -42,7 +59,10 @@ void contact_skin_lay(const struct contact_skin *skin, struct contact_skin_head 
     head->held = head->cloth + by_point;
     head->child = head->held + whole_lines(head->n_points);
     head->leaf = head->child + whole_lines(head->n_nodes * sizeof *skin->child);
-    head->bytes = head->leaf + whole_lines(head->n_leaves * sizeof *skin->leaf);
+    head->loop = head->leaf + whole_lines(head->n_leaves * sizeof *skin->leaf);
+    head->along = head->loop + whole_lines((4 * (uint64_t)n_nodes + 1) * sizeof *skin->loop);
+    head->n_along = ALONG * (uint64_t)head->n_triangles;
+    head->bytes = head->along + whole_lines(head->n_along * sizeof *skin->along);
 }
 
 size_t contact_skin_bytes(const struct contact_skin *skin)
@@ -55,11 +75,12 @@ size_t contact_skin_bytes(const struct contact_skin *skin)
 /* Of the features of a leaf, a group of each kind may not be full. */
 void contact_boxes_lay(const struct contact_skin *skin, struct contact_boxes_head *head)
 {
-    const uint32_t n_nodes = contact_tree_nodes(skin->n_triangles);
-    const uint64_t n_groups = 3 * (uint64_t)leaves_of(n_nodes) + contact_groups(skin->n_vertices) +
-                              contact_groups(skin->n_edges);
+    const uint32_t n_nodes = count_nodes(skin->n_triangles);
+    const uint64_t n_groups = 3 * (uint64_t)leaves_of(n_nodes) + contact_groups(skin->n_triangles) +
+                              contact_groups(skin->n_vertices) + contact_groups(skin->n_edges);
     *head = (struct contact_boxes_head){.nodes = whole_lines(sizeof *head)};
-    head->groups = head->nodes + n_nodes * sizeof(struct contact_boxes);
+    head->slopes = head->nodes + n_nodes * sizeof(struct contact_boxes);
+    head->groups = head->slopes + n_nodes * sizeof(struct contact_slopes);
     head->points = head->groups + n_groups * sizeof(struct contact_boxes);
     head->bytes = whole_lines(head->points + skin->n_points * sizeof(struct contact_point_box));
 }
@@ -81,7 +102,7 @@ struct making {
     struct third *third; /* of the three edges of each triangle, by edge */
     uint32_t (*corner)[3], (*edge)[2], (*beside)[2], *vertex, *number, (*child)[4];
     struct contact_leaf *leaf;
-    uint32_t n_vertices, n_edges, n_leaves, n_groups; /* so far */
+    uint32_t n_vertices, n_edges, n_nodes, n_leaves, n_groups; /* so far */
 };
 
 /* An edge of a triangle, the lower point first, and the third point. */
@@ -188,20 +209,19 @@ static uint32_t add_leaf(struct making *making, uint32_t first, uint32_t n)
     return making->n_leaves++;
 }
 
-/* A leaf of the tree without triangles has a box that is empty. */
-static void add_nodes(struct making *making, uint32_t n_nodes)
+/* Those of a node of the tree that has n triangles from `from` on, in the order of their triangles.
+ * Returns its number here. */
+static uint32_t add_node(struct making *making, uint32_t of, uint32_t from, uint32_t n)
 {
-    for (uint32_t i = 0; i < n_nodes; i++)
-        for (int k = 0; k < 4; k++) {
-            const struct contact_node *node = making->node + i;
-            const uint32_t child = node->child[k];
-            const bool full = node->low[0][k] <= node->high[0][k];
-            making->child[i][k] =
-                child & CONTACT_IS_LEAF
-                    ? CONTACT_IS_LEAF | add_leaf(making, contact_leaf_first(child),
-                                                 full ? contact_leaf_n(child) : 0)
-                    : child;
-        }
+    const uint32_t number = making->n_nodes++;
+    for (int k = 0; k < 4; k++) {
+        const uint32_t begin = from + contact_tree_part(n, k);
+        const uint32_t size = from + contact_tree_part(n, k + 1) - begin;
+        making->child[number][k] = size > CONTACT_SKIN_LEAF
+                                       ? add_node(making, making->node[of].child[k], begin, size)
+                                       : CONTACT_IS_LEAF | add_leaf(making, begin, size);
+    }
+    return number;
 }
 
 static void count_features(const struct contact_skin_source *from, struct contact_skin *skin)
@@ -214,9 +234,9 @@ static void count_features(const struct contact_skin_source *from, struct contac
         }
 }
 
-static int make_scratch(struct making *making, uint32_t n_nodes, struct cloth_error *error)
+static int make_scratch(struct making *making, struct cloth_error *error)
 {
-    const uint32_t n = making->from->n_triangles;
+    const uint32_t n = making->from->n_triangles, n_nodes = contact_tree_nodes(n);
     const size_t bytes = n_nodes * sizeof *making->node + 2 * (size_t)n * sizeof *making->low;
     making->order = cloth_alloc(n, sizeof *making->order, error);
     making->third = cloth_alloc(3 * (size_t)n, sizeof *making->third, error);
@@ -243,7 +263,8 @@ static void put_points(const struct contact_skin_source *from, const struct cont
     memcpy(table + head->cloth, from->cloth, n * sizeof *from->cloth);
 }
 
-static void put_skin(struct making *making, const struct contact_skin_head *head, char *table)
+static int put_skin(struct making *making, const struct contact_skin_head *head, char *table,
+                    struct cloth_error *error)
 {
     const struct contact_skin_source *from = making->from;
     memset(table, 0, head->bytes);
@@ -256,7 +277,10 @@ static void put_skin(struct making *making, const struct contact_skin_head *head
     making->number = (void *)(table + head->number);
     making->child = (void *)(table + head->child);
     making->leaf = (void *)(table + head->leaf);
-    add_nodes(making, head->n_nodes);
+    add_node(making, 0, 0, from->n_triangles);
+    const struct contact_skin skin = contact_skin_open(table);
+    return contact_loops_make(&skin, head->n_along, (void *)(table + head->loop),
+                              (void *)(table + head->along), error);
 }
 
 int contact_skin_make(const struct contact_skin_source *from, void *table,
@@ -267,7 +291,7 @@ int contact_skin_make(const struct contact_skin_source *from, void *table,
     struct contact_skin skin;
     count_features(from, &skin);
     contact_skin_lay(&skin, &head);
-    int code = make_scratch(&making, head.n_nodes, error);
+    int code = make_scratch(&making, error);
     if (!code) {
         bound_triangles(&making);
         list_thirds(&making);
@@ -275,7 +299,7 @@ int contact_skin_make(const struct contact_skin_source *from, void *table,
                                   making.node, error);
     }
     if (!code)
-        put_skin(&making, &head, table);
+        code = put_skin(&making, &head, table, error);
     free(making.order);
     free(making.node);
     free(making.third);
@@ -303,5 +327,7 @@ struct contact_skin contact_skin_open(const void *table)
                                  .n_nodes = head->n_nodes,
                                  .n_leaves = head->n_leaves,
                                  .child = (const uint32_t(*)[4])(const void *)(at + head->child),
-                                 .leaf = (const void *)(at + head->leaf)};
+                                 .leaf = (const void *)(at + head->leaf),
+                                 .loop = (const void *)(at + head->loop),
+                                 .along = (const void *)(at + head->along)};
 }

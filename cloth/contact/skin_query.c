@@ -14,7 +14,9 @@ static const double FLOATS = 1e-6;
 typedef int32_t float_mask __attribute__((vector_size(16)));
 
 struct query {
+    const struct contact_side *side[2];
     const struct contact_skin *skin[2];
+    double reach;
     const struct contact_boxes *node[2], *group[2];
     contact_lanes below[3], above[3]; /* m: what boxes of the first are widened by */
     bool self;
@@ -24,7 +26,8 @@ struct query {
     struct contact_candidate candidate[CONTACT_BATCH];
 };
 
-/* A child of a node. */
+/* A child of a node; of node ALL, all triangles. */
+enum { ALL = INT32_MAX };
 struct part {
     uint32_t node, lane;
 };
@@ -64,6 +67,50 @@ PHYS_INLINE unsigned meeting(const struct contact_boxes *wide, const struct cont
     is &= (wide->low[1] <= boxes->high[1]) & (wide->high[1] >= boxes->low[1]);
     is &= (wide->low[2] <= boxes->high[2]) & (wide->high[2] >= boxes->low[2]);
     return bits_of(&is);
+}
+
+/* ---- Flat parts ---- */
+
+static void find_patch(const struct query *query, int k, struct part part,
+                       struct contact_patch *patch)
+{
+    const struct contact_skin *skin = query->skin[k];
+    const bool all = part.node == ALL;
+    const struct contact_slopes *slopes =
+        contact_boxes_slopes(query->side[k]->boxes) + (all ? 0 : part.node);
+    *patch =
+        (struct contact_patch){.side = query->side[k],
+                               .loop = skin->loop + contact_loop_at(skin, part.node, part.lane),
+                               .altitude = slopes->altitude[all ? 0 : part.lane]};
+    for (int c = 0; c < 3; c++) {
+        const contact_lanes low = slopes->normal.low[c], high = slopes->normal.high[c];
+        patch->normal.low[c] = low[all ? 0 : part.lane];
+        patch->normal.high[c] = high[all ? 0 : part.lane];
+        for (int i = 1; i < 4 && all; i++) {
+            patch->normal.low[c] = low[i] < patch->normal.low[c] ? low[i] : patch->normal.low[c];
+            patch->normal.high[c] =
+                high[i] > patch->normal.high[c] ? high[i] : patch->normal.high[c];
+        }
+    }
+    for (int i = 1; i < 4 && all; i++)
+        patch->altitude =
+            slopes->altitude[i] < patch->altitude ? slopes->altitude[i] : patch->altitude;
+}
+
+static bool part_is_flat(const struct query *query, struct part part)
+{
+    struct contact_patch patch;
+    find_patch(query, 0, part, &patch);
+    return contact_patches_flat(&patch, NULL, query->reach);
+}
+
+/* Both as one. */
+static bool parts_are_flat(const struct query *query, struct part a, struct part b)
+{
+    struct contact_patch of_a, of_b;
+    find_patch(query, 0, a, &of_a);
+    find_patch(query, 1, b, &of_b);
+    return contact_patches_flat(&of_a, &of_b, query->reach);
 }
 
 /* ---- Features ---- */
@@ -106,9 +153,12 @@ static void meet_vertices(struct query *query, const struct contact_leaf *a,
     for (uint32_t i = 0; i < a->n_vertices; i++) {
         struct contact_boxes wide;
         widen(query, query->group[0] + contact_vertex_group(a) + i / 4, i % 4, &wide);
-        unsigned bits = meeting(&wide, query->group[1] + b->group);
-        for (; bits; bits &= bits - 1)
-            add_vertex(query, 0, a->vertex + i, b->triangle + (uint32_t)__builtin_ctz(bits));
+        for (uint32_t k = 0; k < b->n_triangles; k += 4) {
+            unsigned bits = meeting(&wide, query->group[1] + b->group + k / 4);
+            for (; bits; bits &= bits - 1)
+                add_vertex(query, 0, a->vertex + i,
+                           b->triangle + k + (uint32_t)__builtin_ctz(bits));
+        }
     }
 }
 
@@ -118,7 +168,7 @@ static void meet_triangles(struct query *query, const struct contact_leaf *a,
 {
     for (uint32_t i = 0; i < a->n_triangles; i++) {
         struct contact_boxes wide;
-        widen(query, query->group[0] + a->group, i, &wide);
+        widen(query, query->group[0] + a->group + i / 4, i % 4, &wide);
         for (uint32_t k = 0; k < b->n_vertices; k += 4) {
             unsigned bits = meeting(&wide, query->group[1] + contact_vertex_group(b) + k / 4);
             for (; bits; bits &= bits - 1)
@@ -171,6 +221,8 @@ static void meet(struct query *query, struct part a, struct part b)
         meet_leaves(query, of_a, of_b);
         return;
     }
+    if (descend_a && descend_b && parts_are_flat(query, a, b))
+        return;
     for (uint32_t i = descend_a ? 0 : a.lane; i < (descend_a ? 4 : a.lane + 1); i++) {
         const struct part down_a = {descend_a ? of_a : a.node, i};
         const uint32_t node_b = descend_b ? of_b : b.node;
@@ -189,7 +241,8 @@ static void meet_self(struct query *query, uint32_t node)
         const struct contact_leaf *leaf = query->skin[0]->leaf + (child & ~CONTACT_IS_LEAF);
         struct contact_boxes wide;
         if (!is_leaf(child)) {
-            meet_self(query, child);
+            if (!part_is_flat(query, (struct part){node, i}))
+                meet_self(query, child);
         } else if (leaf->n_triangles) {
             meet_vertices(query, leaf, leaf);
             meet_edges(query, leaf, leaf);
@@ -230,7 +283,11 @@ static void set_reach(struct query *query, const struct contact_side *a,
 void contact_query(const struct contact_side *a, const struct contact_side *b, double reach,
                    contact_visit *visit, void *to)
 {
+    const struct part whole = {ALL, 0};
     struct query query;
+    query.side[0] = a;
+    query.side[1] = b;
+    query.reach = reach;
     query.skin[0] = a->skin;
     query.skin[1] = b->skin;
     query.node[0] = contact_boxes_nodes(a->boxes);
@@ -242,9 +299,9 @@ void contact_query(const struct contact_side *a, const struct contact_side *b, d
     query.to = to;
     query.n = 0;
     set_reach(&query, a, b, reach);
-    if (query.self)
+    if (query.self && !part_is_flat(&query, whole))
         meet_self(&query, 0);
-    else
+    if (!query.self && !parts_are_flat(&query, whole, whole))
         meet_roots(&query);
     if (query.n)
         visit(to, query.n, query.candidate);

@@ -1,93 +1,100 @@
 /* Boxes of a step, from the points up: each is of all positions between x and y, as seen from a
  * frame that moves by `way` meanwhile. A point moves straight in it, too, so its box is that of its
- * two ends. Rounding to floats outwards takes more than the roundings of a query may take back. */
+ * two ends. Rounding to floats outwards takes more than the roundings of a query may take back.
+ *
+ * Of a triangle that moves so, twice the area as a vector is a polynomial of the time with three
+ * coefficients in Bernstein's form: at x, at y, and between. So its direction is always in the hull
+ * of theirs, and it is at least as long along any direction as the shortest of them in the hull is.
+ */
 #include "cloth/contact/skin_table.h"
 
 #include <math.h>
 #include <string.h>
 
-typedef int64_t lane_mask __attribute__((vector_size(32)));
 typedef int32_t float_mask __attribute__((vector_size(16)));
+
+/* The least sine between edges of a triangle whose normal, in floats, is a normal. */
+static const float SHARP = 1e-3f;
 
 static const contact_lanes NOTHING = {INFINITY, INFINITY, INFINITY, INFINITY};
 
-PHYS_INLINE void lower(const phys_vec *a, phys_vec *least)
+/* ---- Lanes ---- */
+
+PHYS_INLINE void choose(const float_mask *is, const contact_lanes *a, contact_lanes *b)
 {
-    const lane_mask is = *a < *least;
-    *least = (phys_vec)(((lane_mask)*a & is) | ((lane_mask)*least & ~is));
+    *b = (contact_lanes)(((float_mask)*a & *is) | ((float_mask)*b & ~*is));
 }
 
-PHYS_INLINE void upper(const phys_vec *a, phys_vec *most)
+PHYS_INLINE void lower(const contact_lanes *a, contact_lanes *least)
 {
-    const lane_mask is = *a > *most;
-    *most = (phys_vec)(((lane_mask)*a & is) | ((lane_mask)*most & ~is));
+#if defined(__SSE__)
+    *least = __builtin_ia32_minps(*a, *least);
+#else
+    const float_mask is = *a < *least;
+    choose(&is, a, least);
+#endif
+}
+
+PHYS_INLINE void upper(const contact_lanes *a, contact_lanes *most)
+{
+#if defined(__SSE__)
+    *most = __builtin_ia32_maxps(*a, *most);
+#else
+    const float_mask is = *a > *most;
+    choose(&is, a, most);
+#endif
+}
+
+PHYS_INLINE void root_lanes(const contact_lanes *of, contact_lanes *to)
+{
+#if defined(__SSE__)
+    *to = __builtin_ia32_sqrtps(*of);
+#else
+    for (int k = 0; k < 4; k++)
+        (*to)[k] = sqrtf((*of)[k]);
+#endif
 }
 
 PHYS_INLINE void join(const struct contact_point_box *a, struct contact_point_box *whole)
 {
-    const float_mask below = a->low<whole->low, above = a->high> whole->high;
-    whole->low = (contact_lanes)(((float_mask)a->low & below) | ((float_mask)whole->low & ~below));
-    whole->high =
-        (contact_lanes)(((float_mask)a->high & above) | ((float_mask)whole->high & ~above));
+    lower(&a->low, &whole->low);
+    upper(&a->high, &whole->high);
 }
 
-/* Takes two to four units in the last place more than rounding to the nearest may. */
-PHYS_INLINE void round_out(const phys_vec *low, const phys_vec *high, struct contact_point_box *box)
+#if defined(__clang__)
+#define SHUFFLE(a, b, i, j, k, l) __builtin_shufflevector(a, b, i, j, k, l)
+#else
+#define SHUFFLE(a, b, i, j, k, l) __builtin_shuffle(a, b, (float_mask){i, j, k, l})
+#endif
+
+/* Components 0 to 2 of four vectors, a lane each. */
+PHYS_INLINE void turn(const contact_lanes from[4], contact_lanes to[3])
 {
-    const contact_lanes near_low = __builtin_convertvector(*low, contact_lanes);
-    const contact_lanes near_high = __builtin_convertvector(*high, contact_lanes);
-    const float_mask size = {INT32_MAX, INT32_MAX, INT32_MAX, INT32_MAX};
-    box->low = near_low - (contact_lanes)((float_mask)near_low & size) * 0x1p-22f;
-    box->high = near_high + (contact_lanes)((float_mask)near_high & size) * 0x1p-22f;
+    const contact_lanes xy01 = SHUFFLE(from[0], from[1], 0, 4, 1, 5);
+    const contact_lanes xy23 = SHUFFLE(from[2], from[3], 0, 4, 1, 5);
+    const contact_lanes z01 = SHUFFLE(from[0], from[1], 2, 6, 3, 7);
+    const contact_lanes z23 = SHUFFLE(from[2], from[3], 2, 6, 3, 7);
+    to[0] = SHUFFLE(xy01, xy23, 0, 1, 4, 5);
+    to[1] = SHUFFLE(xy01, xy23, 2, 3, 6, 7);
+    to[2] = SHUFFLE(z01, z23, 0, 1, 4, 5);
 }
 
-/* Puts four boxes, one after the other, into the lanes of as many as there are; n <= 4. */
+/* Four boxes, one after the other, into lanes. */
 PHYS_INLINE void put_lanes(const struct contact_point_box box[4], struct contact_boxes *to)
 {
+    const contact_lanes low[4] = {box[0].low, box[1].low, box[2].low, box[3].low};
+    const contact_lanes high[4] = {box[0].high, box[1].high, box[2].high, box[3].high};
+    turn(low, to->low);
+    turn(high, to->high);
+}
+
+/* The box around four. */
+PHYS_INLINE void lanes_whole(const struct contact_boxes *boxes, struct contact_point_box *whole)
+{
+    *whole = (struct contact_point_box){{0}, {0}};
     PHYS_UNROLL
     for (int c = 0; c < 3; c++) {
-        to->low[c] = (contact_lanes){box[0].low[c], box[1].low[c], box[2].low[c], box[3].low[c]};
-        to->high[c] =
-            (contact_lanes){box[0].high[c], box[1].high[c], box[2].high[c], box[3].high[c]};
-    }
-}
-
-/* Groups of the boxes of n features, each of so many points. */
-PHYS_INLINE void put_features(uint32_t n, uint32_t points, const uint32_t *point,
-                              const struct contact_point_box *of, struct contact_boxes *to,
-                              struct contact_point_box *whole)
-{
-    for (uint32_t i = 0; i < n; i += 4) {
-        struct contact_point_box box[4];
-        for (uint32_t k = 0; k < 4; k++) {
-            box[k] = (struct contact_point_box){NOTHING, -NOTHING};
-            for (uint32_t j = 0; j < points && i + k < n; j++)
-                join(of + point[points * (i + k) + j], box + k);
-            join(box + k, whole);
-        }
-        put_lanes(box, to + i / 4);
-    }
-}
-
-PHYS_INLINE void refit_leaf(const struct contact_skin *skin, const struct contact_leaf *leaf,
-                            const struct contact_point_box *of, struct contact_boxes *groups,
-                            struct contact_point_box *whole)
-{
-    *whole = (struct contact_point_box){NOTHING, -NOTHING};
-    put_features(leaf->n_triangles, 3, skin->corner[leaf->triangle], of, groups + leaf->group,
-                 whole);
-    put_features(leaf->n_vertices, 1, skin->vertex + leaf->vertex, of,
-                 groups + contact_vertex_group(leaf), whole);
-    put_features(leaf->n_edges, 2, skin->edge[leaf->edge], of, groups + contact_edge_group(leaf),
-                 whole);
-}
-
-/* The box around the four of a node. */
-PHYS_INLINE void node_whole(const struct contact_boxes *node, struct contact_point_box *whole)
-{
-    PHYS_UNROLL
-    for (int c = 0; c < 3; c++) {
-        const contact_lanes low = node->low[c], high = node->high[c];
+        const contact_lanes low = boxes->low[c], high = boxes->high[c];
         const float low01 = low[0] < low[1] ? low[0] : low[1];
         const float low23 = low[2] < low[3] ? low[2] : low[3];
         const float high01 = high[0] > high[1] ? high[0] : high[1];
@@ -95,49 +102,232 @@ PHYS_INLINE void node_whole(const struct contact_boxes *node, struct contact_poi
         whole->low[c] = low01 < low23 ? low01 : low23;
         whole->high[c] = high01 > high23 ? high01 : high23;
     }
-    whole->low[3] = whole->high[3] = 0;
 }
 
-/* Children have higher numbers than their node. */
-PHYS_INLINE void refit_nodes(const struct contact_skin *skin, const struct contact_point_box *of,
-                             struct contact_boxes *groups, struct contact_boxes *nodes)
+/* ---- Boxes ---- */
+
+/* Takes two to four units in the last place more than rounding to the nearest may. */
+PHYS_INLINE void round_out(struct contact_point_box *box)
 {
-    for (uint32_t i = skin->n_nodes; i-- > 0;) {
+    const float_mask size = {INT32_MAX, INT32_MAX, INT32_MAX, INT32_MAX};
+    box->low -= (contact_lanes)((float_mask)box->low & size) * 0x1p-22f;
+    box->high += (contact_lanes)((float_mask)box->high & size) * 0x1p-22f;
+}
+
+/* Groups of the boxes of n features, each of so many points; lanes behind them hold nothing. */
+PHYS_INLINE void put_features(uint32_t n, uint32_t points, const uint32_t *point,
+                              const struct contact_point_box *of, struct contact_boxes *to)
+{
+    for (uint32_t i = 0; i < n; i += 4) {
         struct contact_point_box box[4];
-        for (int k = 0; k < 4; k++) {
-            const uint32_t child = skin->child[i][k];
-            if (child & CONTACT_IS_LEAF)
-                refit_leaf(skin, skin->leaf + (child & ~CONTACT_IS_LEAF), of, groups, box + k);
-            else
-                node_whole(nodes + child, box + k);
+        PHYS_UNROLL
+        for (uint32_t k = 0; k < 4; k++) {
+            const uint32_t *at = point + (size_t)points * (i + k < n ? i + k : i);
+            box[k] = of[at[0]];
+            PHYS_UNROLL
+            for (uint32_t j = 1; j < points; j++)
+                join(of + at[j], box + k);
+            if (i + k >= n)
+                box[k] = (struct contact_point_box){NOTHING, -NOTHING};
         }
-        put_lanes(box, nodes + i);
+        put_lanes(box, to + i / 4);
     }
 }
 
-PHYS_INLINE void refit_points(const struct contact_skin *skin, const phys_vec *x, const phys_vec *y,
-                              const phys_vec *way, struct contact_boxes_head *head,
-                              struct contact_point_box *of)
+/* ---- Slopes ---- */
+
+/* Of four triangles: from corner 0 to corner k + 1. */
+struct edges {
+    contact_lanes e[2][3];
+};
+
+PHYS_INLINE void put_edges(const uint32_t *const corner[4], const phys_vec *x, struct edges *to)
 {
-    const double far = (double)INFINITY;
-    phys_vec least = {far, far, far, far}, most = {-far, -far, -far, -far};
-    for (uint32_t i = 0; i < skin->n_points; i++) {
-        const phys_vec end = y[i] - *way;
-        phys_vec low = x[i], high = x[i];
-        lower(y + i, &least);
-        upper(y + i, &most);
-        lower(x + i, &least);
-        upper(x + i, &most);
-        lower(&end, &low);
-        upper(&end, &high);
-        round_out(&low, &high, of + i);
+    PHYS_UNROLL
+    for (int i = 0; i < 2; i++) {
+        contact_lanes along[4];
+        PHYS_UNROLL
+        for (int k = 0; k < 4; k++) {
+            const phys_vec edge = x[corner[k][i + 1]] - x[corner[k][0]];
+            along[k] = __builtin_convertvector(edge, contact_lanes);
+        }
+        turn(along, to->e[i]);
     }
+}
+
+PHYS_INLINE void square(const contact_lanes of[3], contact_lanes *to)
+{
+    *to = of[0] * of[0] + of[1] * of[1] + of[2] * of[2];
+}
+
+/* The square of the longest edge becomes at least that of these. */
+PHYS_INLINE void longest_edge(const struct edges *edges, contact_lanes *most)
+{
+    contact_lanes third[3], length;
+    PHYS_UNROLL
+    for (int c = 0; c < 3; c++)
+        third[c] = edges->e[1][c] - edges->e[0][c];
+    square(edges->e[0], &length);
+    upper(&length, most);
+    square(edges->e[1], &length);
+    upper(&length, most);
+    square(third, &length);
+    upper(&length, most);
+}
+
+PHYS_INLINE void cross(const contact_lanes a[3], const contact_lanes b[3], contact_lanes to[3])
+{
+    PHYS_UNROLL
+    for (int c = 0; c < 3; c++)
+        to[c] = a[(c + 1) % 3] * b[(c + 2) % 3] - a[(c + 2) % 3] * b[(c + 1) % 3];
+}
+
+/* Adds the direction of a coefficient to the hull, its square to the least. */
+PHYS_INLINE void add_normal(const contact_lanes area[3], struct contact_boxes *hull,
+                            contact_lanes *least)
+{
+    contact_lanes size, root;
+    square(area, &size);
+    root_lanes(&size, &root);
+    lower(&size, least);
+    const contact_lanes part = 1 / root;
     PHYS_UNROLL
     for (int c = 0; c < 3; c++) {
-        head->low[c] = least[c];
-        head->high[c] = most[c];
-        head->way[c] = (*way)[c];
+        const contact_lanes normal = area[c] * part;
+        lower(&normal, hull->low + c);
+        upper(&normal, hull->high + c);
     }
+}
+
+/* The slopes of four triangles. */
+PHYS_INLINE void find_slopes(const uint32_t *const corner[4], const phys_vec *x, const phys_vec *y,
+                             struct contact_slopes *to)
+{
+    struct edges begin, end;
+    contact_lanes area[3], other[3], least = NOTHING, most = {0}, altitude;
+    *to =
+        (struct contact_slopes){{{NOTHING, NOTHING, NOTHING}, {-NOTHING, -NOTHING, -NOTHING}}, {0}};
+    put_edges(corner, x, &begin);
+    put_edges(corner, y, &end);
+    longest_edge(&begin, &most);
+    longest_edge(&end, &most);
+    cross(begin.e[0], begin.e[1], area);
+    add_normal(area, &to->normal, &least);
+    cross(end.e[0], end.e[1], area);
+    add_normal(area, &to->normal, &least);
+    cross(begin.e[0], end.e[1], area);
+    cross(end.e[0], begin.e[1], other);
+    PHYS_UNROLL
+    for (int c = 0; c < 3; c++)
+        area[c] = 0.5f * (area[c] + other[c]);
+    add_normal(area, &to->normal, &least);
+    const float_mask known = least > SHARP * SHARP * most * most;
+    const contact_lanes ratio = least / most;
+    root_lanes(&ratio, &altitude);
+    choose(&known, &altitude, &to->altitude);
+}
+
+/* Those of a leaf as the slopes of one part. */
+PHYS_INLINE void leaf_slopes(const struct contact_skin *skin, const struct contact_leaf *leaf,
+                             const phys_vec *x, const phys_vec *y, struct contact_point_box *normal,
+                             float *altitude)
+{
+    *normal = (struct contact_point_box){NOTHING, -NOTHING};
+    *altitude = INFINITY;
+    for (uint32_t i = 0; i < leaf->n_triangles; i += 4) {
+        const uint32_t *corner[4];
+        struct contact_slopes slopes;
+        struct contact_point_box hull;
+        PHYS_UNROLL
+        for (uint32_t k = 0; k < 4; k++)
+            corner[k] = skin->corner[leaf->triangle + (i + k < leaf->n_triangles ? i + k : i)];
+        find_slopes(corner, x, y, &slopes);
+        lanes_whole(&slopes.normal, &hull);
+        join(&hull, normal);
+        for (int k = 0; k < 4; k++)
+            *altitude = slopes.altitude[k] < *altitude ? slopes.altitude[k] : *altitude;
+    }
+}
+
+/* ---- The tree ---- */
+
+struct refit {
+    const struct contact_skin *skin;
+    const phys_vec *x, *y;
+    const struct contact_point_box *of; /* points */
+    struct contact_boxes *nodes, *groups;
+    struct contact_slopes *slopes;
+};
+
+PHYS_INLINE void refit_leaf(const struct refit *refit, const struct contact_leaf *leaf,
+                            struct contact_point_box *whole)
+{
+    const struct contact_skin *skin = refit->skin;
+    struct contact_boxes *groups = refit->groups;
+    *whole = (struct contact_point_box){NOTHING, -NOTHING};
+    put_features(leaf->n_triangles, 3, skin->corner[leaf->triangle], refit->of,
+                 groups + leaf->group);
+    put_features(leaf->n_vertices, 1, skin->vertex + leaf->vertex, refit->of,
+                 groups + contact_vertex_group(leaf));
+    put_features(leaf->n_edges, 2, skin->edge[leaf->edge], refit->of,
+                 groups + contact_edge_group(leaf));
+    for (uint32_t i = 0; i < contact_groups(leaf->n_triangles); i++) {
+        struct contact_point_box part;
+        lanes_whole(groups + leaf->group + i, &part);
+        join(&part, whole);
+    }
+}
+
+PHYS_INLINE void refit_node(const struct refit *refit, uint32_t node)
+{
+    struct contact_point_box box[4], normal[4];
+    contact_lanes altitude;
+    for (int k = 0; k < 4; k++) {
+        const uint32_t child = refit->skin->child[node][k];
+        float least;
+        if (child & CONTACT_IS_LEAF) {
+            const struct contact_leaf *leaf = refit->skin->leaf + (child & ~CONTACT_IS_LEAF);
+            refit_leaf(refit, leaf, box + k);
+            leaf_slopes(refit->skin, leaf, refit->x, refit->y, normal + k, &least);
+        } else {
+            const struct contact_slopes *slopes = refit->slopes + child;
+            const contact_lanes of = slopes->altitude;
+            lanes_whole(refit->nodes + child, box + k);
+            lanes_whole(&slopes->normal, normal + k);
+            least = of[0] < of[1] ? of[0] : of[1];
+            least = of[2] < least ? of[2] : least;
+            least = of[3] < least ? of[3] : least;
+        }
+        altitude[k] = least;
+    }
+    put_lanes(box, refit->nodes + node);
+    put_lanes(normal, &refit->slopes[node].normal);
+    refit->slopes[node].altitude = altitude;
+}
+
+PHYS_INLINE void refit_points(const struct refit *refit, const phys_vec *way,
+                              struct contact_boxes_head *head, struct contact_point_box *of)
+{
+    const double far = (double)INFINITY;
+    double least[3] = {far, far, far}, most[3] = {-far, -far, -far};
+    for (uint32_t i = 0; i < refit->skin->n_points; i++) {
+        const phys_vec x = refit->x[i], y = refit->y[i], end = y - *way;
+        const contact_lanes near = __builtin_convertvector(end, contact_lanes);
+        of[i].low = of[i].high = __builtin_convertvector(x, contact_lanes);
+        lower(&near, &of[i].low);
+        upper(&near, &of[i].high);
+        round_out(of + i);
+        PHYS_UNROLL
+        for (int c = 0; c < 3; c++) {
+            const double low = x[c] < y[c] ? x[c] : y[c], high = x[c] > y[c] ? x[c] : y[c];
+            least[c] = low < least[c] ? low : least[c];
+            most[c] = high > most[c] ? high : most[c];
+        }
+    }
+    memcpy(head->low, least, sizeof least);
+    memcpy(head->high, most, sizeof most);
+    for (int c = 0; c < 3; c++)
+        head->way[c] = (*way)[c];
 }
 
 /* There is room for more groups than there are, and behind the points. */
@@ -152,6 +342,7 @@ PHYS_INLINE void clear_rest(const struct contact_skin *skin, const struct contac
     memset(at + of_points, 0, head->bytes - of_points);
 }
 
+/* Children have higher numbers than their node. */
 PHYS_KERNEL(contact_refit,
             (const struct contact_skin *skin, const phys_vec *x, const phys_vec *y,
              const phys_vec *way, void *boxes),
@@ -161,10 +352,18 @@ PHYS_KERNEL(contact_refit,
     char *at = boxes;
     contact_boxes_lay(skin, &head);
     struct contact_point_box *of = (void *)(at + head.points);
-    refit_points(skin, x, y, way, &head, of);
+    const struct refit refit = {.skin = skin,
+                                .x = x,
+                                .y = y,
+                                .of = of,
+                                .nodes = (void *)(at + head.nodes),
+                                .groups = (void *)(at + head.groups),
+                                .slopes = (void *)(at + head.slopes)};
+    refit_points(&refit, way, &head, of);
     memset(boxes, 0, head.nodes);
     memcpy(boxes, &head, sizeof head);
-    refit_nodes(skin, of, (void *)(at + head.groups), (void *)(at + head.nodes));
+    for (uint32_t i = skin->n_nodes; i-- > 0;)
+        refit_node(&refit, i);
     clear_rest(skin, &head, at);
 }
 

@@ -22,6 +22,19 @@ struct contact_leaf {
     uint32_t n_triangles, n_vertices, n_edges;
 };
 
+/* The border of the triangles of a part, where it is one closed line that comes to no point twice:
+ * points, in the sense in which triangles have their corners. n 0: it is no such line, or there is
+ * no room for it, or the part is a leaf. */
+struct contact_loop {
+    uint32_t first, n;
+};
+
+/* Where the loop of a child is; that of all triangles. */
+PHYS_INLINE uint32_t contact_loop_at(const struct contact_skin *skin, uint32_t node, uint32_t lane)
+{
+    return node < skin->n_nodes ? 4 * node + lane : 4 * skin->n_nodes;
+}
+
 /* Groups of four that n boxes take. */
 PHYS_INLINE uint32_t contact_groups(uint32_t n)
 {
@@ -43,6 +56,7 @@ struct contact_skin_head {
     uint64_t bytes;
     uint32_t n_points, n_triangles, n_edges, n_vertices, n_nodes, n_leaves;
     uint64_t corner, edge, beside, vertex, number, id, block, row, cloth, held, child, leaf;
+    uint64_t loop, along, n_along; /* n_along: there is room for */
 };
 /* Places of a skin of these counts. */
 void contact_skin_lay(const struct contact_skin *skin, struct contact_skin_head *head);
@@ -51,9 +65,16 @@ void contact_skin_lay(const struct contact_skin *skin, struct contact_skin_head 
 struct contact_boxes_head {
     double low[3], high[3]; /* m, in the room */
     double way[3];          /* m, of the frame */
-    uint64_t bytes, nodes, groups, points;
+    uint64_t bytes, nodes, slopes, groups, points;
 };
 void contact_boxes_lay(const struct contact_skin *skin, struct contact_boxes_head *head);
+
+/* Of the triangles of four parts, over the step: the hull of their normals of length 1, and the
+ * least altitude (m), as three times of the step bound them (skin_refit.c); 0: it is not known. */
+struct contact_slopes {
+    struct contact_boxes normal;
+    contact_lanes altitude;
+};
 
 /* A box of one point, for who makes those of others. */
 struct contact_point_box {
@@ -66,10 +87,32 @@ PHYS_INLINE const struct contact_boxes *contact_boxes_nodes(const void *boxes)
     const struct contact_boxes_head *head = boxes;
     return (const void *)((const char *)boxes + head->nodes);
 }
+PHYS_INLINE const struct contact_slopes *contact_boxes_slopes(const void *boxes)
+{
+    const struct contact_boxes_head *head = boxes;
+    return (const void *)((const char *)boxes + head->slopes);
+}
 PHYS_INLINE const struct contact_boxes *contact_boxes_groups(const void *boxes)
 {
     const struct contact_boxes_head *head = boxes;
     return (const void *)((const char *)boxes + head->groups);
 }
+
+/* Fills loops and points along them of a table whose nodes, leaves and corners are there. Error:
+ * CLOTH_E_MEMORY. */
+int contact_loops_make(const struct contact_skin *skin, uint64_t room, struct contact_loop *loop,
+                       uint32_t *along, struct cloth_error *error);
+
+/* A part of a skin in a step. */
+struct contact_patch {
+    const struct contact_side *side;
+    const struct contact_loop *loop;
+    struct contact_point_box normal; /* hull of normals */
+    float altitude;
+};
+/* Whether no two features of a patch, or of two (b may be NULL), that share no point are nearer
+ * than reach (m) at any time of the step, proven by normals and border (skin_flat.c). */
+bool contact_patches_flat(const struct contact_patch *a, const struct contact_patch *b,
+                          double reach);
 
 #endif

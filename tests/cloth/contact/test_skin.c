@@ -15,7 +15,7 @@ enum {
     EDGES = 3 * SIDE * SIDE,
     TIMES = 4,
     PARTS = 6,
-    SHAPES = 7
+    SHAPES = 10
 };
 static const double EDGE = 5e-3; /* m, at rest */
 static double longest;           /* m, of an edge in the step */
@@ -63,6 +63,13 @@ static void make_triangles(void)
         }
 }
 
+/* A part of a ring, of so many degrees, that rises by a millimetre. */
+static void ring(double degrees, double u, double v, phys_vec *at)
+{
+    const double part = u / ((SIDE - 1) * EDGE), turn = (part - 0.5) * degrees * acos(-1) / 180;
+    *at = (phys_vec){(0.03 + v) * cos(turn), 1e-3 * part, (0.03 + v) * sin(turn), 0};
+}
+
 static void place(int shape, double u, double v, phys_vec *at)
 {
     const double width = (SIDE - 1) * EDGE, pi = acos(-1);
@@ -80,18 +87,36 @@ static void place(int shape, double u, double v, phys_vec *at)
     } else if (shape == 6) { /* a roll */
         const double turn = u / width * 6 * pi, radius = 2e-3 + 2e-3 * turn / pi;
         *at = (phys_vec){radius * cos(turn), radius * sin(turn), v, 0};
+    } else if (shape == 7) { /* a winding stair: all normals are up, and it lies above itself */
+        const double turn = u / width * 4 * pi, radius = 0.01 + v;
+        *at = (phys_vec){radius * cos(turn), 1.2e-3 * turn / (2 * pi), radius * sin(turn), 0};
+    } else if (shape == 9) {
+        ring(350, u, v, at);
     }
+}
+
+/* Two that are flat when the step begins: one folds, the other's border comes to cross itself. */
+static void move(int shape, double u, double v, phys_vec *to)
+{
+    const double middle = 0.5 * (SIDE - 1) * EDGE, over = u - middle;
+    if (shape == 8 && over > 0)
+        *to = (phys_vec){middle - over, 1e-3, v, 0};
+    if (shape == 9)
+        ring(374, u, v, to);
 }
 
 /* Some are far away, some fast; every vertex has a motion of its own. */
 static void make_sheet(int shape)
 {
-    const double fast = shape >= 4 ? 0.2 : 0, own = shape == 3 ? 5e-3 : 5e-4;
+    const double fast = shape >= 4 && shape <= 7 ? 0.2 : 0, own = shape == 3   ? 5e-3
+                                                                  : shape == 9 ? 1e-5
+                                                                               : 5e-4;
     const phys_vec way = {fast, -2 * fast, fast, 0}, far = {0, fast > 0 ? 100 : 0, 0, 0};
     for (uint32_t i = 0; i < N; i++) {
         place(shape, EDGE * (i % SIDE), EDGE * (i / SIDE), x + i);
         x[i] += far;
         y[i] = x[i] + way;
+        move(shape, EDGE * (i % SIDE), EDGE * (i / SIDE), y + i);
         for (int c = 0; c < 3; c++)
             y[i][c] += uniform(-own, own);
     }
@@ -424,6 +449,8 @@ START_TEST(meets_all)
         ck_assert(n_seen == seen && order == first);
         ck_assert_uint_le(near, seen);
         ck_assert_uint_lt(seen, 100 * near + 20 * N);
+        if (shape == 0 && i == 0)
+            ck_assert_uint_lt(seen, parts[_i % 3] == 1 ? 1 : N); /* flat parts are left out */
         if (shape == 2 || shape == 3 || shape >= 5)
             ck_assert_uint_gt(near, N / 4);
     }

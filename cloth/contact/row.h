@@ -23,7 +23,7 @@ struct contact_row {
     double stiffness; /* k */
     double slid;  /* how far the spring was stretched at the end of the step before, uncut, and */
     double grows; /* by what factor that grew in it; 0: as 1 */
-    double spare;
+    double firm;  /* how many times as stiff as others it is; 0: as stiff */
 };
 
 /* The gap at a point. */
@@ -72,6 +72,18 @@ PHYS_INLINE void contact_row_press(struct contact_row *row, const phys_vec *poin
     row->load = push > 0 ? push : 0;
 }
 
+/* A contact whose pair fails again takes more than others can give: it is made stiffer while that
+ * lasts, and softer from step to step after it. */
+PHYS_INLINE double contact_row_firm(const struct contact_row *row)
+{
+    return row->firm > 1 ? row->firm : 1;
+}
+PHYS_INLINE void contact_row_stiffen(struct contact_row *row)
+{
+    const double firm = 4 * contact_row_firm(row);
+    row->firm = firm < 256 ? firm : 256;
+}
+
 /* The step ended at this point, and the row was pressed: the slip that is left, in the row of the
  * next step. What friction cannot hold has slid. */
 PHYS_INLINE void contact_row_slide(const struct contact_row *row, const phys_vec *point,
@@ -87,6 +99,7 @@ PHYS_INLINE void contact_row_slide(const struct contact_row *row, const phys_vec
     next->slip = pull <= most ? stretch : most / pull * stretch;
     next->slip -= phys_dot(&next->normal, &next->slip) * next->normal;
     next->load = row->load;
+    next->firm = 0.5 * row->firm;
 }
 
 #endif

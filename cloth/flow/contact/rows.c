@@ -197,7 +197,7 @@ static void write_rows(const struct flow *flow, const struct flow_step_args *ste
             continue;
         const struct flow_contact *contact = found->contact[ties->of[i] - flow->n_ties];
         row[i] = contact->row;
-        row[i].stiffness = flow_contact_stiffness(flow, step->h);
+        row[i].stiffness = flow_contact_stiffness(flow, step->h) * contact_row_firm(&contact->row);
         flow_contact_ahead(flow, step->time - step->h, step->time, contact, row + i);
     }
 }

@@ -119,7 +119,7 @@ static void find_row(const struct touching *t, const struct flow_contact *contac
                      struct contact_row *row)
 {
     *row = contact->row;
-    row->stiffness = t->args->stiffness;
+    row->stiffness = t->args->stiffness * contact_row_firm(row);
     flow_contact_ahead(flow_of(t->call), t->args->from, t->args->to, contact, row);
 }
 
@@ -136,24 +136,31 @@ static void press(const struct touching *t, struct flow_contact *contact)
     contact->row.load = row.load;
 }
 
-/* Whether a contact is there already. */
-static bool is_before(const struct touching *t, const struct flow_contact *contact)
+/* The contact of before that is this one; n_before: there is none. */
+static size_t find_before(const struct touching *t, const struct flow_contact *contact)
 {
     const size_t at = lower_bound(t->before, t->n_before, contact);
-    return at < t->n_before && !compare(t->before + at, contact);
+    return at < t->n_before && !compare(t->before + at, contact) ? at : t->n_before;
 }
 
+/* Contacts that fail although they are there are marked. */
 static void add_failing(struct touching *t, const struct flow_near *near)
 {
-    if (near->fails && !is_before(t, &near->contact))
+    const size_t at = find_before(t, &near->contact);
+    if (near->fails && at == t->n_before)
         t->after[t->n++] = near->contact;
+    else if (near->fails)
+        t->used[at] = 1;
 }
 
 static void end_again(struct touching *t)
 {
-    if (t->n_before)
-        memcpy(t->after + t->n, t->before, t->n_before * sizeof *t->before);
-    t->n += t->n_before;
+    for (size_t i = 0; i < t->n_before; i++) {
+        struct flow_contact *contact = t->after + t->n++;
+        *contact = t->before[i];
+        if (t->used[i])
+            contact_row_stiffen(&contact->row);
+    }
     for (size_t i = 0; i < t->n; i++)
         press(t, t->after + i);
     qsort(t->after, t->n, sizeof *t->after, compare);
@@ -201,8 +208,8 @@ static void end_accept(struct touching *t)
 {
     qsort(t->after, t->n, sizeof *t->after, compare);
     for (size_t i = 0; i < t->n; i++) {
-        const size_t at = lower_bound(t->before, t->n_before, t->after + i);
-        if (at < t->n_before && !compare(t->before + at, t->after + i))
+        const size_t at = find_before(t, t->after + i);
+        if (at < t->n_before)
             hand_over(t, at, i);
     }
     for (size_t i = 0; i < t->n_before; i++) {

@@ -143,23 +143,25 @@ PHYS_INLINE bool is_nothing(const phys_vec *value)
 }
 
 /* Adds what ties make of p to q. Contacts that do not press are there, with the value 0. */
-PHYS_INLINE void add_ties(size_t n_rows, const struct solve_ties *ties,
-                          const struct solve_rows *rows)
+PHYS_INLINE void add_ties(size_t n_rows, const struct solve_ties *ties, const phys_vec *restrict p,
+                          phys_vec *restrict q)
 {
+    const phys_vec *p_other = ties->p_other;
     for (size_t i = 0; i < ties->n; i++) {
         const uint32_t *corner = ties->corner[i];
         const double *weight = ties->weight[i];
         phys_vec u = {0}, y;
         if (is_nothing(ties->value + i))
             continue;
+        PHYS_UNROLL
         for (int k = 0; k < SOLVE_TIE_CORNERS; k++)
             if (weight[k] != 0)
-                u += weight[k] *
-                     (corner[k] < n_rows ? rows->p[corner[k]] : ties->p_other[corner[k] - n_rows]);
+                u += weight[k] * (corner[k] < n_rows ? p[corner[k]] : p_other[corner[k] - n_rows]);
         solve_spring_times(ties->value + i, &u, &y);
+        PHYS_UNROLL
         for (int k = 0; k < SOLVE_TIE_CORNERS; k++)
             if (weight[k] != 0 && corner[k] < n_rows)
-                rows->q[corner[k]] += weight[k] * y;
+                q[corner[k]] += weight[k] * y;
     }
 }
 
@@ -178,7 +180,7 @@ PHYS_INLINE void end_halo(const struct solve_block *block, enum solve_format for
         rows->q[a] += y;
     }
     if (cut->ties)
-        add_ties(block->n, cut->ties, rows);
+        add_ties(block->n, cut->ties, rows->p, rows->q);
     for (size_t i = 0; i < cut->n_halo; i++) {
         const phys_vec total = rows->q[cut->halo[i]];
         end_row(block, format, preconditioned, values, cut->halo[i], &total, rows, sum);

@@ -300,16 +300,18 @@ void solve_lift_corner(double weight, const phys_vec *basis, struct solve_lifted
             sum->c[3 * k + c] += weight * (*basis)[k] * has(basis, c);
 }
 
-void solve_couple_lifted(const phys_vec *value, const struct solve_lifted *a,
-                         const struct solve_lifted *b, double block[SOLVE_COUPLING])
+PHYS_KERNEL(solve_couple_lifted,
+            (const phys_vec *value, const struct solve_lifted *a, const struct solve_lifted *b,
+             double block[SOLVE_COUPLING]),
+            (value, a, b, block))
 {
-    double n[3][3];
+    double n[3][SOLVE_COARSE]; /* rows of N, as often as there are functions */
     for (int c = 0; c < 3; c++)
-        for (int d = 0; d < 3; d++)
-            n[c][d] = (*value)[c] * (*value)[d] + (c == d ? (*value)[3] : 0);
+        for (int column = 0; column < SOLVE_COARSE; column++)
+            n[c][column] = (*value)[c] * (*value)[column % 3] + (c == column % 3 ? (*value)[3] : 0);
     for (int row = 0; row < SOLVE_COARSE; row++)
         for (int column = 0; column < SOLVE_COARSE; column++)
-            block[SOLVE_COARSE * row + column] += a->c[row] * b->c[column] * n[row % 3][column % 3];
+            block[SOLVE_COARSE * row + column] += a->c[row] * b->c[column] * n[row % 3][column];
 }
 
 /* ---- Between the levels ---- */

@@ -82,11 +82,13 @@ PHYS_INLINE void filter_diagonal(const phys_vec *filter, struct solve_symmetric 
         (phys_vec){columns.c[1][0], columns.c[2][1], columns.c[0][2], 0} - along * d * SOLVE_YZX(d);
 }
 
-static void gather_ties(size_t n_rows, const struct solve_ties *ties, struct solve_symmetric *sum)
+PHYS_INLINE void gather_ties(size_t n_rows, const struct solve_ties *ties,
+                             struct solve_symmetric *sum)
 {
     for (size_t i = 0; i < ties->n; i++) {
         struct solve_symmetric m = {{0}, {0}};
         solve_spring(ties->value + i, &m);
+        PHYS_UNROLL
         for (int k = 0; k < SOLVE_TIE_CORNERS; k++) {
             const double square = ties->weight[i][k] * ties->weight[i][k];
             const struct solve_symmetric share = {square * m.diagonal, square * m.off_diagonal};

@@ -113,8 +113,9 @@ static int tie_body(const duite_call *call, const struct tie_fields *on)
                                     .others = links + 1,
                                     .list = &list,
                                     .room = on->args->room};
-    flow_ties_make(&of, on->tie_table); /* the room is for them */
-    return 0;
+    return flow_ties_make(&of, on->tie_table)
+               ? 0
+               : duite_fail(call, FLOW_NO_MEMORY, "block %u has no room for its ties", of.block);
 }
 
 static bool is_empty(const struct flow_tie_room *room)

@@ -53,7 +53,7 @@ static size_t lay(size_t n_rows, const struct flow_tie_room *room, void *memory,
     to->weight = flow_room_next(&rest, room->ties * sizeof *to->weight);
     to->held = flow_room_next(&rest, room->ties);
     to->halo = flow_room_next(&rest, n_rows * sizeof *to->halo);
-    to->count = flow_room_next(&rest, ((size_t)room->others + 2) * sizeof *to->count);
+    to->count = flow_room_next(&rest, ((size_t)room->others + 3) * sizeof *to->count);
     to->marks = flow_room_next(&rest, marks_of(n_rows) * sizeof *to->marks);
     to->scratch = flow_room_next(&rest, flow_ties_scratch(room->ties) * sizeof *to->scratch);
     return rest.used;
@@ -122,38 +122,59 @@ static uint64_t key_of(uint32_t block, uint32_t row)
     return (uint64_t)block << 32 | row;
 }
 
-/* One pass by eight bits: from key to spare. */
+/* One pass by some bits: from key to spare. */
+enum { DIGIT = 11, DIGITS = 1 << DIGIT };
 static void sort_by(unsigned shift, size_t n, const uint64_t *key, uint64_t *to)
 {
-    size_t start[257] = {0};
+    uint32_t start[DIGITS + 1] = {0};
     for (size_t i = 0; i < n; i++)
-        start[1 + (key[i] >> shift & 255)]++;
-    for (int digit = 0; digit < 256; digit++)
+        start[1 + (key[i] >> shift & (DIGITS - 1))]++;
+    for (int digit = 0; digit < DIGITS; digit++)
         start[digit + 1] += start[digit];
     for (size_t i = 0; i < n; i++)
-        to[start[key[i] >> shift & 255]++] = key[i];
+        to[start[key[i] >> shift & (DIGITS - 1)]++] = key[i];
 }
 
-/* Sorts the keys and keeps each once. Returns how many there are. */
-static uint32_t sort_once(uint64_t *key, uint64_t *spare, size_t n)
+/* Sorts n keys by their bits from `low` on, leaving equal ones in order. Returns where they are: in
+ * one of the two arrays. */
+static uint64_t *sort(struct own *own, unsigned low, size_t n)
 {
-    uint64_t differ = 0, *from = key, *to = spare;
-    uint32_t kept = 0;
+    uint64_t differ = 0, *from = own->key, *to = own->spare;
     for (size_t i = 1; i < n; i++)
-        differ |= key[i] ^ key[0];
-    for (unsigned shift = 0; shift < 64; shift += 8) {
-        if (!(differ >> shift & 255))
+        differ |= from[i] ^ from[0];
+    for (unsigned shift = low; shift < 64; shift += DIGIT) {
+        if (!(differ >> shift & (DIGITS - 1)))
             continue;
         sort_by(shift, n, from, to);
         uint64_t *const sorted = to;
         to = from;
         from = sorted;
     }
-    for (size_t i = 0; i < n; i++) /* a key is read before anything is written there */
-        if (!i || from[i] != from[i - 1])
-            spare[kept++] = from[i];
-    memcpy(key, spare, kept * sizeof *key);
+    return from;
+}
+
+/* Sorts the keys and keeps each once, in own->key. Returns how many there are. */
+static uint32_t sort_once(struct own *own, size_t n)
+{
+    const uint64_t *sorted = sort(own, 0, n);
+    uint64_t last = 0;
+    uint32_t kept = 0;
+    for (size_t i = 0; i < n; i++) { /* a key is read before anything is written there */
+        const uint64_t key = sorted[i];
+        if (!i || key != last)
+            own->key[kept++] = key;
+        last = key;
+    }
     return kept;
+}
+
+/* Whether an earlier corner of the tie is in the same block as corner l. */
+static bool is_again(const struct flow_tie_corners *tie, uint32_t l)
+{
+    bool again = false;
+    for (uint32_t k = 0; k < l; k++)
+        again = again || tie->block[k] == tie->block[l];
+    return again;
 }
 
 /* The rows of other blocks that the ties end at. */
@@ -166,7 +187,7 @@ static uint32_t find_ghosts(struct own *own)
             if (tie->block[k] != own->block)
                 own->key[n++] = key_of(tie->block[k], tie->row[k]);
     }
-    return sort_once(own->key, own->spare, n);
+    return sort_once(own, n);
 }
 
 /* The rows of the block that others see: (block that sees it, row). */
@@ -175,12 +196,15 @@ static uint32_t find_shown(struct own *own)
     size_t n = 0;
     for (uint32_t i = 0; i < own->n; i++) {
         const struct flow_tie_corners *tie = corners_of(own->list, own->of[i]);
-        for (uint32_t k = 0; k < tie->n; k++)
-            for (uint32_t l = 0; l < tie->n && tie->block[k] == own->block; l++)
-                if (tie->block[l] != own->block)
+        for (uint32_t l = 0; l < tie->n; l++) {
+            if (tie->block[l] == own->block || is_again(tie, l))
+                continue;
+            for (uint32_t k = 0; k < tie->n; k++)
+                if (tie->block[k] == own->block)
                     own->key[n++] = key_of(tie->block[l], tie->row[k]);
+        }
     }
-    return sort_once(own->key, own->spare, n);
+    return sort_once(own, n);
 }
 
 /* ---- Records ---- */
@@ -209,75 +233,18 @@ bool flow_ties_count(const struct flow_tie_list *list, uint32_t block, uint64_t 
 
 /* ---- Making a table ---- */
 
-/* Deals keys out to the others: start gets where those of each begin. Returns false if a key is of
- * another block. */
-static bool deal(const struct arrays *to, const uint64_t *key, uint32_t n, uint32_t *start)
-{
-    const uint32_t n_others = to->head->n_others;
-    uint32_t i = 0;
-    for (uint32_t k = 0; k < n_others; k++) {
-        start[k] = i;
-        while (i < n && key[i] >> 32 == to->other[k])
-            i++;
-    }
-    start[n_others] = i;
-    return i == n;
-}
-
-static bool put_ghosts(struct own *own, struct arrays *to)
-{
-    const uint32_t n = find_ghosts(own);
-    if (n > to->head->room.rows || !deal(to, own->key, n, to->start))
-        return false;
-    for (uint32_t k = 0; k < to->head->n_others; k++)
-        for (uint32_t i = to->start[k]; i < to->start[k + 1]; i++) {
-            to->ghost_other[i] = k;
-            to->ghost_row[i] = (uint32_t)own->key[i];
-        }
-    to->head->n_ghosts = n;
-    return true;
-}
-
-static bool put_shown(struct own *own, struct arrays *to)
-{
-    const uint32_t n = find_shown(own);
-    if (n > to->head->room.rows || !deal(to, own->key, n, to->shown_start))
-        return false;
-    for (uint32_t i = 0; i < n; i++)
-        to->shown[i] = (uint32_t)own->key[i];
-    to->head->n_shown = n;
-    return true;
-}
-
-/* Where a block stands among the others, of which it is one. */
+/* Where a block stands among the others; n_others: it is none. */
 static uint32_t number_of(const struct arrays *to, uint32_t block)
 {
     uint32_t low = 0, high = to->head->n_others;
-    while (high - low > 1) {
+    while (low < high) {
         const uint32_t middle = low + (high - low) / 2;
-        if (to->other[middle] <= block)
-            low = middle;
+        if (to->other[middle] < block)
+            low = middle + 1;
         else
             high = middle;
     }
-    return low;
-}
-
-/* The number of a corner: a row, or a ghost, which is there. */
-static uint32_t corner_of(const struct arrays *to, uint32_t own, uint32_t block, uint32_t row)
-{
-    if (block == own)
-        return row;
-    const uint32_t k = number_of(to, block);
-    uint32_t low = to->start[k], high = to->start[k + 1];
-    while (high - low > 1) {
-        const uint32_t middle = low + (high - low) / 2;
-        if (to->ghost_row[middle] <= row)
-            low = middle;
-        else
-            high = middle;
-    }
-    return to->head->n_rows + low;
+    return low < to->head->n_others && to->other[low] == block ? low : to->head->n_others;
 }
 
 /* Which ties come first: 0: inner ones; then by the lowest other block, from 1. */
@@ -293,7 +260,7 @@ static uint32_t group_of(const struct arrays *to, const struct flow_tie_corners 
 /* Sorts the ties by group. */
 static void put_order(const struct own *own, struct arrays *to)
 {
-    const uint32_t n_groups = to->head->n_others + 1;
+    const uint32_t n_groups = to->head->n_others + 2; /* one for what is of no other */
     uint32_t *at = to->count;
     for (uint32_t i = 0; i < own->n; i++)
         at[1 + group_of(to, corners_of(own->list, own->of[i]), own->block)]++;
@@ -305,16 +272,68 @@ static void put_order(const struct own *own, struct arrays *to)
     to->head->n = own->n;
 }
 
-static void put_corners(const struct own *own, struct arrays *to)
+/* Keys of corners elsewhere: number of the other block, row there, place among the corners here. */
+enum { ROW_AT = 24, OTHER_AT = 48, MOST = 1 << 24, MOST_OTHERS = 1 << 16 };
+
+/* Writes the corners; those elsewhere are keys until put_ghosts. Returns how many these are. */
+static size_t put_corners(const struct own *own, struct arrays *to)
 {
+    size_t n = 0;
     for (uint32_t i = 0; i < own->n; i++) {
         const struct flow_tie_corners *tie = corners_of(own->list, to->of[i]);
         to->held[i] = tie->held;
         for (uint32_t k = 0; k < tie->n; k++) {
-            to->corner[i][k] = corner_of(to, own->block, tie->block[k], tie->row[k]);
+            to->corner[i][k] = tie->row[k];
             to->weight[i][k] = tie->weight[k];
+            if (tie->block[k] != own->block)
+                own->key[n++] = (uint64_t)number_of(to, tie->block[k]) << OTHER_AT |
+                                (uint64_t)tie->row[k] << ROW_AT | (SOLVE_TIE_CORNERS * i + k);
         }
     }
+    return n;
+}
+
+/* Numbers the ghosts, of which there are n keys, and gives the corners there their numbers. Returns
+ * false if there is no room, or no such other block. */
+static bool put_ghosts(struct own *own, size_t n, struct arrays *to)
+{
+    struct head *head = to->head;
+    const uint64_t *key = sort(own, ROW_AT, n);
+    uint32_t others = 0;
+    for (size_t i = 0; i < n; i++) {
+        const uint32_t other = (uint32_t)(key[i] >> OTHER_AT), at = key[i] & (MOST - 1);
+        if (!i || key[i] >> ROW_AT != key[i - 1] >> ROW_AT) {
+            if (other == head->n_others || head->n_ghosts == head->room.rows)
+                return false;
+            for (; others <= other; others++)
+                to->start[others] = head->n_ghosts;
+            to->ghost_other[head->n_ghosts] = other;
+            to->ghost_row[head->n_ghosts++] = key[i] >> ROW_AT & (MOST - 1);
+        }
+        to->corner[at / SOLVE_TIE_CORNERS][at % SOLVE_TIE_CORNERS] =
+            head->n_rows + head->n_ghosts - 1;
+    }
+    for (; others <= head->n_others; others++)
+        to->start[others] = head->n_ghosts;
+    return true;
+}
+
+/* Lists the rows that others see: they are those that have ghosts here. */
+static bool put_shown(struct own *own, struct arrays *to)
+{
+    const uint32_t n = find_shown(own);
+    uint32_t others = 0;
+    if (n > to->head->room.rows)
+        return false;
+    for (uint32_t i = 0; i < n; i++) {
+        for (; to->other[others] < own->key[i] >> 32; others++)
+            to->shown_start[others + 1] = i;
+        to->shown[i] = (uint32_t)own->key[i];
+    }
+    for (; others < to->head->n_others; others++)
+        to->shown_start[others + 1] = n;
+    to->head->n_shown = n;
+    return true;
 }
 
 /* The rows of the block's halo and of its ties, each once. */
@@ -335,7 +354,8 @@ static void put_halo(const struct flow_ties_of *of, struct arrays *to)
 static bool fill(const struct flow_ties_of *of, struct arrays *to)
 {
     const struct flow_tie_room *room = &of->room;
-    if (of->n_others > room->others)
+    if (of->n_others > room->others || of->n_others >= MOST_OTHERS || of->n_rows > MOST ||
+        room->ties > MOST / SOLVE_TIE_CORNERS)
         return false;
     to->head->n_others = of->n_others;
     for (uint32_t k = 0; k < of->n_others; k++) {
@@ -347,10 +367,9 @@ static bool fill(const struct flow_ties_of *of, struct arrays *to)
         return false;
     if (!own.n)
         return true;
-    if (!put_ghosts(&own, to) || !put_shown(&own, to))
-        return false;
     put_order(&own, to);
-    put_corners(&own, to);
+    if (!put_ghosts(&own, put_corners(&own, to), to) || !put_shown(&own, to))
+        return false;
     put_halo(of, to);
     return true;
 }

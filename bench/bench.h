@@ -37,6 +37,7 @@ struct bench {
     void (*finish)(void); /* at the end, also of a run that failed; NULL: there is nothing to do */
 };
 
-extern const struct bench bench_tasks, bench_ranks, bench_cg, bench_physics, bench_compare;
+extern const struct bench bench_tasks, bench_ranks, bench_cg, bench_physics, bench_contact,
+    bench_compare;
 
 #endif

@@ -13,8 +13,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const struct bench *const BENCHES[] = {&bench_tasks, &bench_ranks, &bench_cg, &bench_physics,
-                                              &bench_compare};
+static const struct bench *const BENCHES[] = {&bench_tasks,   &bench_ranks,   &bench_cg,
+                                              &bench_physics, &bench_contact, &bench_compare};
 enum { N_BENCHES = sizeof BENCHES / sizeof *BENCHES, MOST_ONLY = 32 };
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || !defined(__OPTIMIZE__)

@@ -1,0 +1,39 @@
+/* The bench "contact": its cases and its targets. */
+#include "bench/contact/contact.h"
+
+static void plan_certify(struct measure *measure, const struct bench_options *options)
+{
+    const struct subject_shape ours = {"duite", 0, options->threads};
+    const struct measure_series *time =
+        measure_series(measure, ours, "certify pairs=%d", options->quick ? 1000 : 200000);
+    const struct measure_series *uncut =
+        measure_series(measure, ours, "uncut pairs=%d", options->quick ? 1000 : 1000000);
+    measure_value(measure, time, 1e9, "ns", "certify_ns_per_pair");
+    measure_value(measure, uncut, 1, "share", "certified_uncut");
+}
+
+static const struct bench_case CERTIFY = {
+    "certify",
+    "whether a moving pair of features never touches, of random pairs: corners in a cube of 10 mm, "
+    "ways of up to 2 mm together and 2 mm each along each axis, thickness 1 mm; one thread",
+    plan_certify, contact_certify_runs, 0};
+
+static const struct bench_case *const CASES[] = {&CERTIFY, NULL};
+
+/* For two threads and the full sizes. */
+static const struct measure_target TARGETS[] = {
+    {"certify_ns_per_pair", 35, false}, {"certified_uncut", 0.85, true}, {0}};
+enum { TARGET_THREADS = 2 };
+
+static int serve_contact(const struct bench *bench)
+{
+    const struct serve_run *const runs[] = {contact_certify_runs, NULL};
+    (void)bench;
+    return serve("the cloth's kernels of contact", runs, NULL);
+}
+
+const struct bench bench_contact = {
+    "contact",      "finding contacts and certifying that nothing goes through",
+    CASES,          TARGETS,
+    TARGET_THREADS, serve_contact,
+    NULL,           NULL};

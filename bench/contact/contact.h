@@ -1,0 +1,14 @@
+#ifndef BENCH_CONTACT_CONTACT_H
+#define BENCH_CONTACT_CONTACT_H
+
+#include "bench/bench.h"
+
+/* The bench "contact": what finding and certifying contacts costs. bench.c has the plans; a file a
+ * case has what our process runs for it. */
+
+/* certify pairs=: seconds a pair of contact_certify. uncut pairs=: the share of them that passes.
+ * Pairs are drawn: half of each kind, mixed; corners in a cube of 10 mm; they move by up to 2 mm
+ * along each axis together and by up to 2 mm each. The thickness is 1 mm. */
+extern const struct serve_run contact_certify_runs[];
+
+#endif

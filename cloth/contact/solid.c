@@ -168,25 +168,76 @@ static double nearest_way(const struct contact_solid *solid, const struct contac
     return point.gap;
 }
 
+/* Pairs of directions that may divide, of the nearest ones at both ends, in the core's axes: either
+ * of them, fixed in the room; the one, then the other; their mean, fixed in the room; either of
+ * them, and their mean, as the shape carries it along. A plane has the third alone; for a shape
+ * that stands still the last three are no others. */
+enum { DIVIDES = 7, DIVIDES_STILL = 4, DIVIDES_BOTH = 2 };
+
+static void put_mean(const double a[3], const double b[3], double mean[3])
+{
+    double length = 0;
+    for (int c = 0; c < 3; c++) {
+        mean[c] = a[c] + b[c];
+        length += mean[c] * mean[c];
+    }
+    length = sqrt(length);
+    for (int c = 0; c < 3; c++) /* of two that are opposite it is neither */
+        mean[c] = length > CONTACT_MARGIN ? mean[c] / length : a[c];
+}
+
+static void divide_pair(const struct contact_solid *solid, int i, const double begin[3],
+                        const double end[3], struct solid_divide *divide)
+{
+    const double *early = i == 4 ? end : begin, *late = i == 5 ? begin : end;
+    double there[3], mean[3];
+    if (i == 0) {
+        other_end(solid, CONTACT_BEGIN, begin, there);
+        late = there;
+    } else if (i == 1) {
+        other_end(solid, CONTACT_END, end, there);
+        early = there;
+    } else if (i == 3) {
+        other_end(solid, CONTACT_END, end, there);
+        put_mean(begin, there, mean);
+        other_end(solid, CONTACT_BEGIN, mean, there);
+        early = mean;
+        late = there;
+    } else if (i == 6) {
+        put_mean(begin, end, mean);
+        early = late = mean;
+    }
+    divide_by(solid, early, late, divide);
+}
+
+PHYS_INLINE int first_divide(const struct contact_solid *solid)
+{
+    return solid->endless ? DIVIDES_BOTH : 0;
+}
+
+PHYS_INLINE int last_divide(const struct contact_solid *solid)
+{
+    return solid->endless ? DIVIDES_BOTH : (solid->moves ? DIVIDES : DIVIDES_STILL) - 1;
+}
+
 /* By the best directions of both ends. */
 static bool certify_near(const struct contact_solid *solid, const struct solid_triangle *triangle,
                          double thickness)
 {
     struct solid_divide divide;
-    double begin[3], end[3], there[3], due[3];
+    double begin[3], end[3], due[3];
     const double gap = nearest_way(solid, &triangle->from, begin);
     numbers_due(gap, thickness, triangle->rounding, due);
-    other_end(solid, CONTACT_BEGIN, begin, there);
-    divide_by(solid, begin, there, &divide);
+    divide_pair(solid, 0, begin, begin, &divide);
     if (!solid->endless && is_divided(&divide, triangle, due))
         return true;
     nearest_way(solid, &triangle->to, end);
-    other_end(solid, CONTACT_END, end, there);
-    divide_by(solid, there, end, &divide);
-    if (!solid->endless && is_divided(&divide, triangle, due))
-        return true;
-    divide_by(solid, begin, end, &divide);
-    return is_divided(&divide, triangle, due);
+    for (int i = first_divide(solid) + !solid->endless; i <= last_divide(solid); i++) {
+        divide_pair(solid, i, begin, end, &divide);
+        if (is_divided(&divide, triangle, due))
+            return true;
+    }
+    return false;
 }
 
 /* The three numbers of the direction to the middle of the triangle at the begin, which does for
@@ -262,6 +313,8 @@ static double corner_part(const double stays[3], const double goes[3], const dou
 
 /* A triangle that is cut, as its begin, its end without a cut, and its end without a way see it. */
 struct solid_cut {
+    const phys_vec *x, *y;
+    double thickness;
     struct solid_triangle goes;
     struct contact_lanes stays;
     double due[3];
@@ -295,74 +348,69 @@ static void put_cut(const phys_vec x[3], const phys_vec y[3], const double t[3],
         end[k] = x[k] + t[k] * (y[k] - x[k]);
 }
 
-/* Directions that may divide, in the core's axes: the nearest at the begin; at the end, of the
- * triangle as t has it; at the end, of one that stays. */
-enum { WAYS = 3, PAIRS = 5 };
-static const int PAIR[PAIRS][2] = {{0, 0}, {1, 1}, {0, 1}, {2, 2}, {0, 2}};
+/* The nearest directions, in the core's axes: at the begin; at the end, of the triangle as t has
+ * it; at the end, of one that stays. */
+enum { WAYS = 3 };
 
-static void divide_pair(const struct contact_solid *solid, const double way[WAYS][3],
-                        const int pair[2], struct solid_divide *divide)
-{
-    double early[3], late[3];
-    for (int c = 0; c < 3; c++) {
-        early[c] = way[pair[0]][c];
-        late[c] = way[pair[1]][c];
-    }
-    if (pair[0] > 0)
-        other_end(solid, CONTACT_END, late, early);
-    else if (pair[1] == 0)
-        other_end(solid, CONTACT_BEGIN, early, late);
-    divide_by(solid, early, late, divide);
-}
-
-static void prepare_cut(const struct contact_solid *solid, const phys_vec x[3], const phys_vec y[3],
-                        const phys_vec end[3], double thickness, struct solid_cut *cut,
-                        double way[WAYS][3])
+/* end: of the triangle as t has it. */
+static void prepare_cut(const struct contact_solid *solid, const phys_vec end[3],
+                        struct solid_cut *cut, double way[WAYS][3])
 {
     struct contact_lanes at;
     contact_core_lanes(solid->place + CONTACT_END, end, &at);
     nearest_way(solid, &at, way[1]);
-    triangle_of(solid, x, y, &cut->goes);
+    triangle_of(solid, cut->x, cut->y, &cut->goes);
     for (int k = 0; k < 3; k++) /* of ends as they are told in the room */
         for (int c = 0; c < 3; c++)
-            cut->goes.rounding += ROUNDING * (fabs(x[k][c]) + fabs(y[k][c]));
-    contact_core_lanes(solid->place + CONTACT_END, x, &cut->stays);
+            cut->goes.rounding += ROUNDING * (fabs(cut->x[k][c]) + fabs(cut->y[k][c]));
+    contact_core_lanes(solid->place + CONTACT_END, cut->x, &cut->stays);
     nearest_way(solid, &cut->stays, way[2]);
     const double gap = nearest_way(solid, &cut->goes.from, way[0]);
-    numbers_due(gap, thickness, cut->goes.rounding, cut->due);
+    numbers_due(gap, cut->thickness, cut->goes.rounding, cut->due);
 }
 
 /* The first pair of directions, that of the begin, is taken if it holds below, for every later look
  * finds it again; else that pair which cuts least. */
-bool contact_solid_cut(const struct contact_solid *solid, const phys_vec x[3], const phys_vec y[3],
-                       double thickness, unsigned held, double t[3])
+static bool take_cut(const struct contact_solid *solid, const struct solid_cut *cut,
+                     const double t[3], const double way[WAYS][3], double best[3])
 {
-    const int first = solid->endless ? 2 : 0;
-    struct solid_cut cut = {.held = held};
-    phys_vec at[3];
-    double most = -1, best[3] = {t[0], t[1], t[2]}, way[WAYS][3];
-    put_cut(x, y, t, at);
-    if (contact_solid_certify(solid, x, at, thickness))
-        return true;
-    prepare_cut(solid, x, y, at, thickness, &cut, way);
-    for (int i = first; i < PAIRS; i++) {
+    const int first = first_divide(solid), n = last_divide(solid) + 1 - first;
+    double most = -1;
+    for (int i = 0; i < 2 * n; i++) {
         struct solid_divide divide;
         double part[3] = {0};
-        divide_pair(solid, (const double(*)[3])way, PAIR[i], &divide);
-        const enum cut how = cut_by(&divide, &cut, t, part);
+        phys_vec at[3];
+        divide_pair(solid, first + i % n, way[0], way[i < n ? 1 : 2], &divide);
+        const enum cut how = cut_by(&divide, cut, t, part);
         const double sum = part[0] + part[1] + part[2];
-        put_cut(x, y, part, at);
-        if (how == CUT_FAILS || sum <= most || !contact_solid_certify(solid, x, at, thickness))
+        put_cut(cut->x, cut->y, part, at);
+        if (how == CUT_FAILS || sum <= most ||
+            !contact_solid_certify(solid, cut->x, at, cut->thickness))
             continue;
         most = sum;
         for (int k = 0; k < 3; k++)
             best[k] = part[k];
-        if (i == first && how == CUT_HOLDS_BELOW)
+        if (i == 0 && how == CUT_HOLDS_BELOW)
             break;
     }
+    return most >= 0;
+}
+
+bool contact_solid_cut(const struct contact_solid *solid, const phys_vec x[3], const phys_vec y[3],
+                       double thickness, unsigned held, double t[3])
+{
+    struct solid_cut cut = {.x = x, .y = y, .thickness = thickness, .held = held};
+    phys_vec at[3];
+    double best[3] = {t[0], t[1], t[2]}, way[WAYS][3];
+    put_cut(x, y, t, at);
+    if (contact_solid_certify(solid, x, at, thickness))
+        return true;
+    prepare_cut(solid, at, &cut, way);
+    if (!take_cut(solid, &cut, t, (const double(*)[3])way, best))
+        return false;
     for (int k = 0; k < 3; k++)
         t[k] = best[k];
-    return most >= 0;
+    return true;
 }
 
 /* ---- Apart ---- */

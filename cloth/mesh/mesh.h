@@ -88,6 +88,13 @@ int mesh_read_obj(struct mesh *mesh, const char *path, struct cloth_error *error
  * themselves are fanned from their first corner, since modellers leave twisted ones in bodies. */
 int mesh_read_surface(struct mesh *mesh, const char *path, struct cloth_error *error);
 
+/* Reads the frames of a PC2 file of version 1, which have n_vertices each. *place: n_frames x
+ * n_vertices x 3 (as they are in the file, also those that are not finite), to be freed; NULL after
+ * an error. Codes: CLOTH_E_INPUT for another file, for frames of another size, for a file without
+ * frames or one that ends early; CLOTH_E_IO, CLOTH_E_MEMORY. */
+int mesh_read_pc2(const char *path, uint32_t n_vertices, uint32_t *n_frames, double **place,
+                  struct cloth_error *error);
+
 /* Takes copies of the arrays: vertices n x 3, edges n_edges x 2, triangles n_triangles x 3 (either
  * may be absent). Checks indices, repeated corners, finite positions, non-manifold edges and edges
  * that stand twice as mesh_read_obj does, naming the entry

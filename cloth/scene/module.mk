@@ -28,6 +28,7 @@ libduite_cloth_la_SOURCES += \
 	cloth/scene/build/cloth.c \
 	cloth/scene/build/contact.c \
 	cloth/scene/build/curve.c \
+	cloth/scene/build/frames.c \
 	cloth/scene/build/idle.c \
 	cloth/scene/build/joint.c \
 	cloth/scene/build/load.c \

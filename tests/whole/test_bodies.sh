@@ -24,6 +24,25 @@ grain: 100
 END
 ok "one hash" ranks 4 tests/whole/same_hash "$scratch/ring.yaml" few 0
 
+# By frames: the ring is drawn out and goes up, in three files. Frames that only shift it do what a motion does.
+deform() { awk -v x="$1" -v y="$2" -v wide="$3" '/^v/ { printf "v %.9f %.9f %.9f\n", $2 * wide + x, $3 + y, $4; next } { print }' "$scratch/ring.obj"; }
+deform 0 0.01 1.1 > "$scratch/second.obj"
+deform 0.02 0.03 1.2 > "$scratch/third.obj"
+deform 0.1 0.2 1 > "$scratch/shifted.obj"
+sed 's/obj: ring.obj, scale: 1.1\(.*\), motion: .*/obj: ring.obj, scale: 1.1\1, frames: {obj: [ring.obj, second.obj, third.obj], fps: 20}}/' "$scratch/ring.yaml" > "$scratch/frames.yaml"
+ok "one hash, by frames" ranks 4 tests/whole/same_hash "$scratch/frames.yaml" few 0
+frames_of_a_motion() {
+    for way in 'motion: {times: [0, 1], translate: [[0, 0, 0], [0.1, 0.2, 0]]}' 'frames: {obj: [ring.obj, shifted.obj], fps: 1}'; do
+        sed "s/scale: 1.1, \\(.*\\), motion: .*/\\1, $way}/" "$scratch/ring.yaml" > "$scratch/way.yaml"
+        echo 'probes: [{name: p, vertices: [100, 465, 700], values: [position, velocity]}]' >> "$scratch/way.yaml"
+        limited "$DUITE_CLOTH" "$scratch/way.yaml" --output "$scratch/way" --quiet --set solver.stop.relative=1e-12 || return 1
+        tail -n 1 "$scratch/way/probes.csv" >> "$scratch/rows" || return 1
+    done
+    awk -F, 'NR == 1 { split($0, a) } NR == 2 { for (i = 10; i <= NF; i++) { d = $i - a[i]; if (d < 0) d = -d; if (d > most) most = d } }
+        END { print "off by", most; exit !(NR == 2 && most < 1e-9) }' "$scratch/rows"
+}
+ok "frames that shift a body are a motion" frames_of_a_motion
+
 frames() {
     limited "$DUITE_CLOTH" "$scratch/ring.yaml" --output "$scratch/out" --quiet || return 1
     grep '{"body": {"obj": "body-1.obj"}}' "$scratch/out/scene.json" || return 1

@@ -118,6 +118,17 @@ int scene_build_file(struct model *model, const char *path, struct cloth_error *
 int scene_build_mesh(struct model *model, struct mesh *mesh, struct scene_tree *tree, int cloth,
                      struct cloth_error *error);
 
+/* The path of the file that a node names, relative to the scene's folder; the file is added to the
+ * model's. NULL: out of memory. */
+char *scene_build_path(struct model *model, const struct scene_tree *tree, int node,
+                       struct cloth_error *error);
+
+/* The frames that the key of a body says; n 0: it has none. mesh: that of the body, transformed, as
+ * frames are. *place: what they point to, to be freed in any case. */
+int scene_build_frames(struct model *model, struct contact_frames *frames, double **place,
+                       const struct mesh *mesh, const struct mesh_transform *transform,
+                       const struct scene_tree *tree, int body, struct cloth_error *error);
+
 /* The mesh of the OBJ file that a node names, relative to the scene's folder, by mesh_read_obj or
  * mesh_read_surface; the file is added to the model's. What is wrong with the file is in `inner`,
  * without the place in the scene. */

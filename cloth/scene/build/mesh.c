@@ -112,14 +112,23 @@ int scene_build_file(struct model *model, const char *path, struct cloth_error *
     return CLOTH_OK;
 }
 
+char *scene_build_path(struct model *model, const struct scene_tree *tree, int node,
+                       struct cloth_error *error)
+{
+    char *path = path_beside(tree->path, scene_tree_scalar(tree, node), error);
+    if (path && scene_build_file(model, path, error)) {
+        free(path);
+        path = NULL;
+    }
+    return path;
+}
+
 int scene_build_obj(struct model *model, struct mesh *mesh, scene_obj_reader *reads,
                     const struct scene_tree *tree, int node, struct cloth_error *error,
                     struct cloth_error *inner)
 {
-    char *path = path_beside(tree->path, scene_tree_scalar(tree, node), error);
-    int code = path ? scene_build_file(model, path, error) : error->code;
-    if (!code)
-        code = reads(mesh, path, inner);
+    char *path = scene_build_path(model, tree, node, error);
+    const int code = path ? reads(mesh, path, inner) : error->code;
     free(path);
     return code == CLOTH_E_IO ? CLOTH_E_INPUT : code; /* a scene that names no readable file */
 }

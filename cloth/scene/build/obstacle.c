@@ -5,6 +5,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 static const double TOUCH = 1e-9; /* m: planes that overlap by less touch */
@@ -71,15 +72,14 @@ static int build_shape_motion(struct model *model, struct contact_shape *shape,
 }
 
 /* A mesh that a body is made of, where it starts. */
-static int build_body_mesh(struct model *model, struct mesh *mesh, struct scene_tree *tree,
-                           int node, struct cloth_error *error)
+static int build_body_mesh(struct model *model, struct mesh *mesh, struct mesh_transform *transform,
+                           struct scene_tree *tree, int node, struct cloth_error *error)
 {
     struct cloth_error inner = {0};
-    struct mesh_transform transform = {0};
     const int file = scene_tree_get(tree, node, "obj");
-    int code = scene_fill(&transform, &scene_body, tree, node, error);
+    int code = scene_fill(transform, &scene_body, tree, node, error);
     if (!code)
-        code = scene_build_check_turn(&transform, tree, node, error);
+        code = scene_build_check_turn(transform, tree, node, error);
     if (code)
         return code;
     code = scene_build_obj(model, mesh, mesh_read_surface, tree, file, error, &inner);
@@ -88,7 +88,7 @@ static int build_body_mesh(struct model *model, struct mesh *mesh, struct scene_
     if (inner.code)
         return scene_tree_fail(tree, file, error, "body: %s", inner.text);
     if (!code)
-        mesh_apply(mesh, &transform);
+        mesh_apply(mesh, transform);
     return code;
 }
 
@@ -120,11 +120,17 @@ static int build_body(struct model *model, struct contact_shape *shape, struct s
 {
     struct cloth_error inner = {0};
     struct mesh mesh = {0};
+    struct mesh_transform transform = {0};
+    struct contact_frames frames;
+    double *place = NULL;
     const int file = scene_tree_get(tree, node, "obj");
     bool turned = false;
-    int code = build_body_mesh(model, &mesh, tree, node, error);
+    int code = build_body_mesh(model, &mesh, &transform, tree, node, error);
     if (!code)
-        code = contact_bodies_add(&model->bodies, &mesh, &turned, &inner);
+        code = scene_build_frames(model, &frames, &place, &mesh, &transform, tree, node, error);
+    if (!code)
+        code = contact_bodies_add_frames(&model->bodies, &mesh, frames.n ? &frames : NULL, &turned,
+                                         &inner);
     if (inner.code)
         code = inner.code == CLOTH_E_MEMORY
                    ? cloth_fail(error, inner.code, "%s: %s", tree->path, inner.text)
@@ -134,6 +140,7 @@ static int build_body(struct model *model, struct contact_shape *shape, struct s
         code = warn_of_body(model, tree, file, turned, error);
     shape->body = model->bodies.n;
     mesh_free(&mesh);
+    free(place);
     return code;
 }
 

@@ -130,10 +130,22 @@ static const struct scene_rule cylinder_keys[] = {
      .about = "from end to end; a short one is a disc"},
     MOVES,
     {0}};
+static const struct scene_rule text = {.type = SCENE_TEXT};
+static const struct scene_rule frames_keys[] = {
+    {"pc2", SCENE_TEXT, .choice = true,
+     .about = "a PC2 file of the mesh's vertices, relative to the scene's folder"},
+    {"obj", SCENE_LIST, .choice = true, .filled = true, .inside = &text,
+     .about = "OBJ files with the mesh's faces, one a frame"},
+    {"fps", SCENE_NUMBER, "1/s", "25", .range = SCENE_POSITIVE, .about = "frames a second"},
+    {"start", SCENE_NUMBER, "s", "0", .about = "when the first frame is"},
+    {0}};
 static const struct scene_rule body_keys[] = {
     {"obj", SCENE_TEXT, .required = true,
      .about = "an OBJ file of a closed mesh, relative to the scene's folder"},
     TRANSFORM(struct mesh_transform, ),
+    {"frames", SCENE_MAP, .inside = frames_keys,
+     .about = "where its vertices are in time, before scale, rotate and translate; linear between "
+              "frames"},
     MOVES,
     {0}};
 const struct scene_rule scene_body = {.type = SCENE_MAP, .inside = body_keys};

@@ -104,7 +104,8 @@ static void list_expected(const struct scene_rule *rule, char *text, size_t size
 {
     const char *const items[] = {[SCENE_NUMBER] = "numbers", [SCENE_INTEGER] = "whole numbers",
                                  [SCENE_LIST] = "lists",     [SCENE_CHOICE] = "words",
-                                 [SCENE_MAP] = "maps",       [SCENE_ONE_OF] = "maps"};
+                                 [SCENE_MAP] = "maps",       [SCENE_ONE_OF] = "maps",
+                                 [SCENE_TEXT] = "texts"};
     if (rule->length)
         snprintf(text, size, "a list of %zu %s", rule->length, items[rule->inside->type]);
     else

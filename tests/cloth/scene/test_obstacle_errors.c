@@ -133,6 +133,90 @@ START_TEST(bodies_that_cannot_be_read)
 }
 END_TEST
 
+/* A PC2 file of so many frames of n vertices, all at x = y = z = 1 but for the last frame's: 3. */
+static void write_pc2(const char *name, uint32_t n, uint32_t frames, size_t less)
+{
+    char bytes[32 + 12 * 20] = "POINTCACHE2";
+    const float one = 1, three = 3;
+    const uint32_t version = 1;
+    memcpy(bytes + 12, &version, 4);
+    memcpy(bytes + 16, &n, 4);
+    memcpy(bytes + 28, &frames, 4);
+    for (size_t i = 0; i < 3 * (size_t)n * frames; i++)
+        memcpy(bytes + 32 + 4 * i, i / 3 / n + 1 < frames ? &one : &three, 4);
+    scene_write_file(name, bytes, 32 + 12 * (size_t)n * frames - less);
+}
+
+START_TEST(frames_that_are_wrong)
+{
+    write_body("whole.obj", WHOLE);
+    write_body("turned.obj", "f 3 2 1\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
+    write_body("less.obj", "f 1 3 2\nf 1 2 4\n");
+    write_pc2("three.pc2", 3, 2, 0);
+    write_pc2("short.pc2", 4, 2, 4);
+    write_pc2("none.pc2", 4, 0, 0);
+#define FRAMES "body: {obj: whole.obj, frames: "
+    EXPECT({PLANE, FRAMES "{fps: 2}}",
+            .error = ":11:45: obstacles[0].body.frames has no pc2 or obj; "
+                     "one of them is expected"},
+           {PLANE, FRAMES "{obj: []}}",
+            .error = ":11:51: obstacles[0].body.frames.obj is an empty "
+                     "list; a non-empty list of texts is expected"},
+           {PLANE, FRAMES "{obj: [whole.obj, less.obj]}}",
+            .error =
+                ":11:63: frames: less.obj has 4 vertices and 2 faces, but the mesh of the body "
+                "has 4 and 4"},
+           {PLANE, FRAMES "{obj: [turned.obj]}}",
+            .error = ":11:52: frames: the faces of turned.obj have other corners than those of the "
+                     "mesh of the body"},
+           {PLANE, FRAMES "{obj: [whole.obj]}, motion: {times: [0], translate: [[0, 1, 0]]}}",
+            .error = ":11:73: a body with frames has no motion: its frames say where it is"});
+    static const char *const wrong[][2] = {
+        {"three.pc2", "three.pc2: its frames have 3 vertices, but the mesh has 4"},
+        {"short.pc2", "short.pc2: it ends within frame 2"},
+        {"none.pc2", "none.pc2: it has no frames"},
+        {"whole.obj", "whole.obj: no PC2 file of version 1"},
+        {"nowhere.pc2", "nowhere.pc2: cannot be read: No such file"}};
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        struct cloth_error error = {0};
+        struct model model;
+        char body[120];
+        snprintf(body, sizeof body, FRAMES "{pc2: %s}}", wrong[i][0]);
+        char *text = scene_changed(scene_right, PLANE, body);
+        ck_assert_int_eq(scene_read_text(&model, text, 0, NULL, &error), CLOTH_E_INPUT);
+        ck_assert_ptr_nonnull(strstr(error.text, ":11:51: frames: "));
+        ck_assert_msg(strstr(error.text, wrong[i][1]) != NULL, "%s", error.text);
+        model_free(&model);
+        free(text);
+    }
+}
+END_TEST
+
+/* Twice as large, 1 m up; the second frame is 3.5 m away. */
+START_TEST(frames_that_jump)
+{
+    write_body("whole.obj", WHOLE);
+    write_pc2("jumps.pc2", 4, 2, 0);
+    char *text = scene_changed(scene_right, PLANE,
+                               FRAMES "{pc2: jumps.pc2, fps: 2, start: 1}, scale: 2, translate: "
+                                      "[0, 1, 0]}");
+    struct model model = scene_read_right(text, 0, NULL);
+    ck_assert_uint_eq(model.n_warnings, 2); /* it is a point, too */
+    ck_assert_msg(strstr(model.warnings[0], ":11:45: vertex 1 of the body jumps by 6.9282 m from "
+                                            "frame 1 to the next, by more than a quarter") != NULL,
+                  "%s", model.warnings[0]);
+    const struct contact_body *body = contact_bodies_at(&model.bodies, 1);
+    phys_vec x[4];
+    ck_assert_uint_eq(body->n_frames, 2);
+    contact_body_places(body, 1.25, x);
+    ck_assert(x[3][0] == 4 && x[3][1] == 5 && x[3][2] == 4);
+    ck_assert(model_obstacles_move(&model) && model_moves_after(&model, 1.4));
+    ck_assert(!model_moves_after(&model, 1.5));
+    model_free(&model);
+    free(text);
+}
+END_TEST
+
 START_TEST(a_body_in_centimetres)
 {
     write_body("whole.obj", WHOLE);
@@ -180,6 +264,8 @@ int main(void)
     tcase_add_test(cases, motions);
     tcase_add_test(cases, bodies);
     tcase_add_test(cases, bodies_that_cannot_be_read);
+    tcase_add_test(cases, frames_that_are_wrong);
+    tcase_add_test(cases, frames_that_jump);
     tcase_add_test(cases, a_body_in_centimetres);
     tcase_add_test(cases, a_body_that_is_inside_out);
     suite_add_tcase(suite, cases);

@@ -1,0 +1,80 @@
+/* PC2 point caches: a header of 32 bytes, then x y z of each vertex in each frame, all of it
+ * little-endian floats and whole numbers, whatever the machine. */
+#include "cloth/base/memory.h"
+#include "cloth/mesh/mesh.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { HEADER = 32, POINT = 12 }; /* bytes */
+
+static uint32_t number_at(const unsigned char *bytes)
+{
+    uint32_t value = 0;
+    for (int i = 0; i < 4; i++)
+        value |= (uint32_t)bytes[i] << (8 * i);
+    return value;
+}
+
+static double float_at(const unsigned char *bytes)
+{
+    const uint32_t bits = number_at(bytes);
+    float value;
+    memcpy(&value, &bits, sizeof value);
+    return (double)value;
+}
+
+/* How many frames follow of the header; the file is read up to there. */
+static int read_header(FILE *file, const char *path, uint32_t n_vertices, uint32_t *n_frames,
+                       struct cloth_error *error)
+{
+    unsigned char header[HEADER];
+    if (fread(header, HEADER, 1, file) != 1 || memcmp(header, "POINTCACHE2", 12) != 0 ||
+        number_at(header + 12) != 1)
+        return cloth_fail(error, CLOTH_E_INPUT, "%s: no PC2 file of version 1", path);
+    if (number_at(header + 16) != n_vertices)
+        return cloth_fail(error, CLOTH_E_INPUT,
+                          "%s: its frames have %u vertices, but the mesh has %u", path,
+                          number_at(header + 16), n_vertices);
+    *n_frames = number_at(header + 28);
+    if (!*n_frames)
+        return cloth_fail(error, CLOTH_E_INPUT, "%s: it has no frames", path);
+    return CLOTH_OK;
+}
+
+/* Adds a frame to the list. bytes: room for one. */
+static int read_frame(FILE *file, const char *path, uint32_t n_vertices, unsigned char *bytes,
+                      struct cloth_list *list, struct cloth_error *error)
+{
+    if (fread(bytes, POINT, n_vertices, file) != n_vertices)
+        return cloth_fail(error, ferror(file) ? CLOTH_E_IO : CLOTH_E_INPUT,
+                          "%s: it ends within frame %zu", path, list->n / n_vertices + 1);
+    double(*place)[3] = cloth_list_add(list, sizeof *place, n_vertices, error);
+    for (size_t i = 0; place && i < 3 * (size_t)n_vertices; i++)
+        place[i / 3][i % 3] = float_at(bytes + 4 * i);
+    return place ? CLOTH_OK : CLOTH_E_MEMORY;
+}
+
+int mesh_read_pc2(const char *path, uint32_t n_vertices, uint32_t *n_frames, double **place,
+                  struct cloth_error *error)
+{
+    struct cloth_list list = {0};
+    FILE *file = fopen(path, "rb");
+    *n_frames = 0;
+    *place = NULL;
+    if (!file)
+        return cloth_fail(error, CLOTH_E_IO, "%s: cannot be read: %s", path, strerror(errno));
+    unsigned char *bytes = cloth_alloc(n_vertices, POINT, error);
+    int code = bytes ? read_header(file, path, n_vertices, n_frames, error) : CLOTH_E_MEMORY;
+    for (uint32_t k = 0; k < *n_frames && !code; k++)
+        code = read_frame(file, path, n_vertices, bytes, &list, error);
+    fclose(file);
+    free(bytes);
+    if (code)
+        free(list.items);
+    else
+        *place = list.items;
+    return code;
+}

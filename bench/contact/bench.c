@@ -18,7 +18,23 @@ static const struct bench_case CERTIFY = {
     "ways of up to 2 mm together and 2 mm each along each axis, thickness 1 mm; one thread",
     plan_certify, contact_certify_runs, 0};
 
-static const struct bench_case *const CASES[] = {&CERTIFY, NULL};
+static void plan_solid(struct measure *measure, const struct bench_options *options)
+{
+    const struct subject_shape ours = {"duite", 0, options->threads};
+    const int n = options->quick ? 1000 : 200000;
+    measure_value(measure, measure_series(measure, ours, "sphere triangles=%d", n), 1e9, "ns",
+                  "solid_ns_per_triangle_sphere");
+    measure_value(measure, measure_series(measure, ours, "box triangles=%d", n), 1e9, "ns",
+                  "solid_ns_per_triangle_box");
+}
+
+static const struct bench_case SOLID = {"solid",
+                                        "whether a triangle that lies 1 to 3 mm from a ball or a "
+                                        "box touches it on ways of up to 0.2 mm "
+                                        "along each axis; one thread",
+                                        plan_solid, contact_solid_runs, 0};
+
+static const struct bench_case *const CASES[] = {&CERTIFY, &SOLID, NULL};
 
 /* For two threads and the full sizes. */
 static const struct measure_target TARGETS[] = {
@@ -27,7 +43,7 @@ enum { TARGET_THREADS = 2 };
 
 static int serve_contact(const struct bench *bench)
 {
-    const struct serve_run *const runs[] = {contact_certify_runs, NULL};
+    const struct serve_run *const runs[] = {contact_certify_runs, contact_solid_runs, NULL};
     (void)bench;
     return serve("the cloth's kernels of contact", runs, NULL);
 }

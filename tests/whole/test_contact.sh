@@ -1,0 +1,77 @@
+#!/bin/sh
+# Cloth with certified contact goes through nothing: scenes by step length, material and integrator, each looked at in every frame by
+# --check-intersections. And one state_hash over ranks, threads, schedulers, mappings and balancers. With DUITE_LONG=1: all products.
+. "${srcdir:-.}/tests/support/tap.sh"
+skip_unless "$DUITE_CLOTH"
+plan_later
+cd "$scratch" || exit 99
+
+# 256 to 545 vertices.
+scene() { # NAME CLOTHS MORE END
+    cat > "$1.yaml" << END
+schema: 1
+name: $1
+cloths:
+$2
+materials:
+  m: {density: 0.2, stretch: 1000, shear: 300, bend: 1, damping: {viscous: 2e-5, stiffness: 0.004}}
+contact: {mode: certified, self: on, thickness: 0.002, friction: 0.3}
+time: {h: 0.004, end: $4, fps: 50}
+grain: 150
+$3
+END
+}
+sheet() { # NAME SIZE VERTICES TRANSFORM MORE
+    printf '  - {name: %s, material: m, mesh: {grid: {width: %s, height: %s, nx: %s, ny: %s}}, transform: {%s}%s}\n' "$1" "$2" "$2" "$3" "$3" "$4" "$5"
+}
+floor='{plane: {point: [0, 0, 0], normal: [0, 1, 0]}}'
+scene ball "$(sheet a 0.3 16 'translate: [0.01, 0.105, 0.02]')" 'obstacles: [{sphere: {centre: [0, 0, 0], radius: 0.1}}]' 0.3
+scene fold "$(sheet a 0.3 16 'translate: [0, 0.16, 0], rotate: [1, 1, 0, 0]')" "obstacles: [$floor]" 0.4
+scene pair "$(sheet a 0.3 16 'translate: [0, 0.065, 0]')
+$(sheet b 0.3 17 'translate: [0.02, 0.1, 0.03], rotate: [0.924, 0, 0.383, 0]')" "obstacles: [$floor, {box: {centre: [0, 0.03, 0], size: [0.1, 0.06, 0.1]}}]" 0.3
+scene edge "$(sheet a 0.3 16 'translate: [0.06, 0.2, 0]' ', velocity: [0, -10, 0]')" "obstacles: [$floor, {box: {centre: [0, 0.05, 0], size: [0.1, 0.1, 0.4]}}]" 0.05
+turn() { # SIGN: a turn and a half of an end
+    printf '{times: [0, 0.1, 0.2, 0.3], rotate: [[1, 0, 0, 0], [0.7071, %s0.7071, 0, 0], [0, %s1, 0, 0], [-0.7071, %s0.7071, 0, 0]], translate: [[0, 0, 0], [%s0.02, 0, 0], [%s0.04, 0, 0], [%s0.06, 0, 0]], about: [0, 0, 0]}' "$@"
+}
+scene wring "$(sheet a 0.3 16 'translate: [0, 0, 0]' ", pins: [{box: [[-0.2, -1, -1], [-0.149, 1, 1]], motion: $(turn '' '' '' '' '' '')}, {box: [[0.149, -1, -1], [0.2, 1, 1]], motion: $(turn - - - - - -)}]")" 'gravity: [0, 0, 0]' 0.3
+
+value() { sed -n "s/^ *\"$1\": \([^,]*\),\{0,1\}\$/\1/p" report.json; } # of a key of the report
+# holds SCENE OPTION...: nothing goes through anything, and something touched.
+holds() {
+    holds_scene=$1
+    shift
+    limited "$DUITE_CLOTH" "$holds_scene.yaml" --check-intersections --report report.json --quiet "$@" > said 2>&1
+    holds_got=$?
+    cat said
+    test $holds_got = 0 && test "$(value intersections)" = 0 && test "$(value intersections_shapes)" = 0 && test "$(value contacts)" -gt 0 ||
+        { echo "exit status $holds_got, $(value intersections) pairs, $(value intersections_shapes) with obstacles, $(value contacts) contacts" && return 1; }
+}
+triangles='materials.m={model: triangles, density: 0.2, stretch: 1000, shear: 300, poisson: 0.3, damping: {viscous: 2e-5, stiffness: 0.004}, bending: {rigidity: 1e-5}}'
+
+ok "a sheet on a ball" holds ball
+ok "a sheet that folds onto itself" holds fold
+ok "two sheets over a box, by triangles, bdf2" holds pair --set "$triangles" --set integrator=bdf2
+ok "a sheet at 10 m/s onto an edge, h = 10 ms" holds edge --set time.h=0.01
+ok "a sheet that is wrung" holds wring
+if test "${DUITE_LONG:-}" = 1; then
+    for name in ball fold pair edge wring; do
+        for h in 0.001 0.004 0.01; do
+            for integrator in implicit_euler bdf2; do
+                ok "$name, h = $h, springs, $integrator" holds $name --set time.h=$h --set integrator=$integrator
+                ok "$name, h = $h, triangles, $integrator" holds $name --set time.h=$h --set integrator=$integrator --set "$triangles"
+            done
+        done
+    done
+fi
+
+# Blocks meet across ranks, balancers move them, and the wrung one is solved again and cut.
+cd "$OLDPWD" || exit 99
+if quick; then
+    ok "one hash: two sheets over a box, few" ranks 4 tests/whole/same_hash "$scratch/pair.yaml" few 0 time.end=0.12
+else
+    ok "one hash: two sheets over a box, some" ranks 4 tests/whole/same_hash "$scratch/pair.yaml" some 0 time.end=0.15
+    ok "one hash: a sheet that is wrung, few" ranks 4 tests/whole/same_hash "$scratch/wring.yaml" few 0 time.end=0.2 grain=60
+fi
+if test "${DUITE_LONG:-}" = 1; then
+    ok "one hash: a sheet that is wrung, some" ranks 4 tests/whole/same_hash "$scratch/wring.yaml" some 0 grain=60
+fi

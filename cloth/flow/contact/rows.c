@@ -259,6 +259,8 @@ int flow_contact_tie(struct flow_state *state)
     int code = say(state, &args);
     if (!code)
         code = flow_ties_adopt(state);
+    if (!code)
+        code = flow_ties_group(state);
     for (args.block = 0; args.block < state->flow->tables.n_blocks && !code; args.block++)
         code = fork_table(state, &args);
     return code;

@@ -52,9 +52,7 @@ int flow_pieces_make(struct flow_source *source, struct cloth_error *error)
     for (uint32_t v = 0; made && v < p->n; v++)
         if (!p->free[v] || (p->slider && p->slider[v]))
             held[root_of(parent, v)] = 1;
-    /* With contacts pieces exchange momentum, so what a solve leaves is not known of one of them.
-     */
-    if (made && !model_certifies(source->model))
+    if (made)
         p->n_pieces = number(p, parent, held);
     free(parent);
     free(held);

@@ -77,17 +77,35 @@ static void unite(const struct flow *flow, uint64_t tick, uint32_t *parent)
     }
 }
 
-static int set_groups(struct flow_state *state)
+/* Whether blocks said that they have other ties than the joints that act. */
+static bool has_contacts(const struct flow_state *state)
+{
+    const struct flow *flow = state->flow;
+    uint64_t ties = 0;
+    for (uint32_t b = 0; b < flow->tables.n_blocks; b++)
+        ties += state->tied.said.of[b].n_ties;
+    for (const struct flow_tie *tie = flow->tie; tie < flow->tie + flow->n_ties; tie++)
+        for (uint32_t k = 0; k < tie->at.n && flow_tie_acts(tie, state->attempt.begin); k++) {
+            bool again = false;
+            for (uint32_t l = 0; l < k; l++)
+                again = again || tie->at.block[l] == tie->at.block[k];
+            ties -= !again;
+        }
+    return ties > 0;
+}
+
+int flow_ties_group(struct flow_state *state)
 {
     struct flow_tied *tied = &state->tied;
     const uint32_t n = state->head.n_pieces;
     if (!n)
         return DUITE_OK;
+    const bool free = !has_contacts(state);
     for (uint32_t piece = 0; piece <= n; piece++)
         tied->parent[piece] = piece;
     unite(state->flow, state->attempt.begin, tied->parent);
     for (uint32_t piece = 0; piece < n; piece++)
-        tied->group[piece] = root_of(tied->parent, piece + 1);
+        tied->group[piece] = free ? root_of(tied->parent, piece + 1) : 0;
     return duite_set(state->rt, state->run.groups, tied->group);
 }
 
@@ -155,7 +173,7 @@ int flow_ties_choose(struct flow_state *state)
     say_joints(state->flow, tick, tied);
     int code = flow_ties_adopt(state);
     if (!code)
-        code = set_groups(state);
+        code = flow_ties_group(state);
     return code ? code : fork_tables(state, first);
 }
 

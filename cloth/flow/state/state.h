@@ -266,6 +266,9 @@ void flow_ties_free(struct flow_state *state);
  * Then every block that has ties or had some makes its table (flow_ties_make), before anything
  * reads TIED. */
 int flow_ties_adopt(struct flow_state *state);
+/* Sets which free pieces of cloth are one for what a solve left of their momentum: those that the
+ * joints of the step join; none is free where the records say that there are contacts. */
+int flow_ties_group(struct flow_state *state);
 /* Makes the joints of the step under way those that its blocks have. */
 int flow_ties_choose(struct flow_state *state);
 /* Forks what shows x and v of their corners to the other blocks; what kernels with TIED(tie_halo)

@@ -607,6 +607,26 @@ START_TEST(corners_in_four_blocks)
 }
 END_TEST
 
+/* Momentum of cloth that touches nothing is exact to rounding, however the solve stops. */
+START_TEST(free_until_it_touches)
+{
+    struct setup setup;
+    struct record made = {0};
+    setup_sheet(&setup, SIDE);
+    setup_load(&setup, 3, 0.1, 0.2, -0.3);
+    setup.model.contact.mode = MODEL_CONTACT_CERTIFIED;
+    setup.model.contact.self = true;
+    setup.model.contact.thickness = 1e-3;
+    setup.model.halving = true;
+    setup.model.tolerance = 0.1;
+    record_run(&made, &setup.model);
+    ck_assert_msg(!made.code, "%s", made.error.text);
+    ck_assert_double_le(made.report.momentum_lost, 1e-15);
+    record_free(&made);
+    setup_free(&setup);
+}
+END_TEST
+
 /* ---- Rooms ---- */
 
 /* Blocks k and k + 1 share so many ties, and show each other as many rows: of n pairs. */
@@ -714,6 +734,7 @@ int main(void)
     tcase_add_test(blocks, coarse_block);
     tcase_add_loop_test(runs, corners_at_one_place, 0, kinds);
     tcase_add_loop_test(runs, corners_in_four_blocks, 0, kinds);
+    tcase_add_test(runs, free_until_it_touches);
     tcase_add_test(runs, rooms_grow_and_shrink);
     tcase_add_test(runs, others_stay_for_a_while);
     suite_add_tcase(suite, tables);

@@ -536,7 +536,9 @@ int main(void)
     TCase *cases = tcase_create("skin");
     tcase_add_checked_fixture(cases, NULL, end);
     tcase_set_timeout(cases, 120);
-    tcase_add_loop_test(cases, meets_all, 0, 3 * SHAPES);
+    for (int i = 0; i < 3 * SHAPES; i++) /* the quick subset cuts each shape in one way */
+        if (!unit_quick() || i % 3 == i / 3 % 3)
+            tcase_add_loop_test(cases, meets_all, i, i + 1);
     tcase_add_test(cases, misses_are_seen);
     tcase_add_test(cases, lies_anywhere);
     tcase_add_test(cases, roots);

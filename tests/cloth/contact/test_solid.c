@@ -302,10 +302,15 @@ static bool touches(const struct meeting *m)
 
 /* ---- The cases, one for each kind ---- */
 
+static int quick(int n)
+{
+    return unit_quick() ? n / 10 : n;
+}
+
 /* At the end as at the begin, against the gaps of points. */
 START_TEST(nearest)
 {
-    for (int i = 0; i < PAIRS; i++) {
+    for (int i = 0; i < quick(PAIRS); i++) {
         struct meeting m;
         make_shape((uint32_t)_i, 0.5, 0.5, &m);
         place_triangle(any_size(1e-6, 1), any_size(1e-3, 1), true, 0, &m);
@@ -365,7 +370,7 @@ END_TEST
 START_TEST(certified_never_touches)
 {
     int certified = 0, hit = 0;
-    for (int i = 0; i < MANY; i++) {
+    for (int i = 0; i < quick(MANY); i++) {
         struct meeting m;
         const double gap = any_size(1e-6, 1e-2), far = i % 4 ? 0.1 : 100;
         make_shape((uint32_t)_i, far, any_size(1e-3, 0.5), &m);
@@ -373,12 +378,12 @@ START_TEST(certified_never_touches)
         const bool is = contact_solid_certify(&m.solid, m.x, m.y, THICKNESS),
                    meets = comes_near(&m);
         ck_assert(!is || !meets);
-        ck_assert(i >= BRUTE || touches(&m) == meets);
+        ck_assert(i >= quick(BRUTE) || touches(&m) == meets);
         certified += is;
         hit += meets;
     }
-    ck_assert_int_gt(certified, MANY / 4);
-    ck_assert_int_gt(hit, MANY / 20);
+    ck_assert_int_gt(certified, quick(MANY) / 4);
+    ck_assert_int_gt(hit, quick(MANY) / 20);
 }
 END_TEST
 
@@ -386,13 +391,13 @@ END_TEST
 START_TEST(what_is_far_is_certified)
 {
     int n = 0;
-    for (int i = 0; i < MANY; i++) {
+    for (int i = 0; i < quick(MANY); i++) {
         struct meeting m;
         make_shape((uint32_t)_i, i % 2 ? 0.01 : 100, 0.05, &m);
         place_triangle(0.1, 0.02, true, 0.03, &m);
         n += contact_solid_certify(&m.solid, m.x, m.y, THICKNESS);
     }
-    ck_assert_int_eq(n, MANY);
+    ck_assert_int_eq(n, quick(MANY));
 }
 END_TEST
 
@@ -423,7 +428,7 @@ START_TEST(what_is_cut_is_certified)
             for (int k = 0; k < 3; k++)
                 m.y[k] = y[k];
             ck_assert(contact_solid_certify(&m.solid, m.x, m.y, THICKNESS));
-            ck_assert(i >= BRUTE || !touches(&m));
+            ck_assert(i >= quick(BRUTE) || !touches(&m));
             ck_assert(!comes_near(&m));
             ck_assert(!still || contact_solid_certify(&m.solid, m.x, less, THICKNESS));
         }
@@ -455,7 +460,7 @@ END_TEST
 START_TEST(apart)
 {
     int n = 0;
-    for (int i = 0; i < MANY; i++) {
+    for (int i = 0; i < quick(MANY); i++) {
         struct meeting m;
         phys_vec middle;
         double low[3], high[3];
@@ -479,7 +484,7 @@ START_TEST(apart)
             ck_assert_double_gt(hit.gap, reach);
         }
     }
-    ck_assert_int_gt(n, MANY / 8);
+    ck_assert_int_gt(n, quick(MANY) / 8);
 }
 END_TEST
 
@@ -487,7 +492,7 @@ END_TEST
 START_TEST(passing_by)
 {
     int by = 0, far = 0;
-    for (int i = 0; i < MANY; i++) {
+    for (int i = 0; i < quick(MANY); i++) {
         struct meeting m;
         struct contact_solid_point begin, end;
         const double reach = any_size(1e-4, 1e-1), gap = any_size(0.1, 10) * reach;

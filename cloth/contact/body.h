@@ -113,9 +113,11 @@ int contact_bodies_add_frames(struct contact_bodies *bodies, const struct mesh *
  * the velocities of its chords. Nobody may use the bodies meanwhile. */
 void contact_bodies_move(const struct contact_bodies *bodies, double from, double to);
 
-/* The places, m, of the vertices of a body with frames at a time, s. Whether a body, or NULL, has
- * frames that are not over by then. */
+/* The places, m, of the vertices, or of one vertex, of a body with frames at a time, s. Whether a
+ * body, or NULL, has frames that are not over by then. */
 void contact_body_places(const struct contact_body *body, double time, phys_vec *x);
+void contact_body_vertex_place(const struct contact_body *body, double time, uint32_t vertex,
+                               phys_vec *x);
 bool contact_body_moves_after(const struct contact_body *body, double time);
 
 /* That of a number, from 1; NULL for 0. */

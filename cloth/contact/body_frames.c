@@ -38,6 +38,14 @@ void contact_body_places(const struct contact_body *body, double time, phys_vec 
         moment_place(&at, v, x + v);
 }
 
+void contact_body_vertex_place(const struct contact_body *body, double time, uint32_t vertex,
+                               phys_vec *x)
+{
+    struct moment at;
+    find_moment(body, time, &at);
+    moment_place(&at, vertex, x);
+}
+
 bool contact_body_moves_after(const struct contact_body *body, double time)
 {
     const bool moves = body && body->n_frames > 1;

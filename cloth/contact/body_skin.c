@@ -23,6 +23,13 @@ size_t contact_body_skin_bytes(const struct contact_body *body)
     return contact_skin_bytes(&skin);
 }
 
+size_t contact_body_boxes_bytes(const struct contact_body *body)
+{
+    struct contact_skin skin;
+    measure_skin(body, &skin);
+    return contact_boxes_bytes(&skin);
+}
+
 struct body_source {
     uint32_t (*corner)[3], *id;
     unsigned char *stands, *seen; /* by triangle; by vertex */
@@ -121,4 +128,19 @@ void contact_body_ends(const struct contact_body *body, const struct contact_pos
     phys_pose_point(&pose->from, &middle, &was);
     phys_pose_point(&pose->to, &middle, &is);
     *way = is - was;
+}
+
+void contact_body_vertex_ends(const struct contact_body *body, const struct contact_pose *pose,
+                              uint32_t vertex, phys_vec *x, phys_vec *y)
+{
+    const phys_vec *from = contact_body_vertices(body) + vertex;
+    if (body->n_frames) {
+        contact_body_vertex_place(body, pose->begin, vertex, x);
+        contact_body_vertex_place(body, pose->end, vertex, y);
+    } else if (pose->moves) {
+        phys_pose_point(&pose->from, from, x);
+        phys_pose_point(&pose->to, from, y);
+    } else {
+        *x = *y = *from;
+    }
 }

@@ -10,8 +10,9 @@
  * where they have it then, so that a motion has no jump from step to step; none can be cut. The
  * certificates of cloth hold for it as they are. Local. */
 
-/* Room for its table, in bytes, aligned to CONTACT_ALIGN. */
+/* Room for its table, and for boxes of a step, in bytes, aligned to CONTACT_ALIGN. */
 size_t contact_body_skin_bytes(const struct contact_body *body);
+size_t contact_body_boxes_bytes(const struct contact_body *body);
 
 /* Makes the table, once for all steps: writes every byte of that room. Vertex v has the id
  * first_id + v. No vertex of a cloth, nor one of another body, may have such an id: pairs that
@@ -24,5 +25,21 @@ int contact_body_skin_make(const struct contact_body *body, uint32_t first_id, v
  * still they are the same in every step. */
 void contact_body_ends(const struct contact_body *body, const struct contact_pose *pose,
                        phys_vec *x, phys_vec *y, phys_vec *way);
+
+/* x and y of one vertex. */
+void contact_body_vertex_ends(const struct contact_body *body, const struct contact_pose *pose,
+                              uint32_t vertex, phys_vec *x, phys_vec *y);
+
+/* Fills, by vertex, a facet that has it; UINT32_MAX: none has. */
+void contact_body_fans(const struct contact_body *body, uint32_t *fan);
+
+/* Whether points along a direction n of length 1, out of a point of the surface, have this as their
+ * nearest point nearby: n is in the cone that the surface leaves open there. The point lies between
+ * n_vertices vertices: on one, on an edge or in a facet. y: by vertex, m. Where a flat part of the
+ * surface has edges, only its normal is; beside an edge that goes in, nothing is. So a contact
+ * beside an edge does not hold up what moves across it. */
+bool contact_body_opens(const struct contact_body *body, const uint32_t *fan, const phys_vec *y,
+                        uint32_t n_vertices, const uint32_t *vertex, const phys_vec *point,
+                        const phys_vec *n);
 
 #endif

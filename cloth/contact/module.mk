@@ -2,7 +2,8 @@
 libduite_cloth_la_SOURCES += \
 	cloth/contact/body.c cloth/contact/body.h \
 	cloth/contact/body_check.c cloth/contact/making.h \
-	cloth/contact/body_frames.c \
+	cloth/contact/body_fan.c \
+    cloth/contact/body_frames.c \
 	cloth/contact/body_make.c \
 	cloth/contact/body_skin.c cloth/contact/body_skin.h \
 	cloth/contact/body_tree.c \

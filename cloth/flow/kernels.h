@@ -11,6 +11,7 @@
     X(initial) X(keep) X(restore) X(status) X(tie) X(tie_show)                                     \
     X(force) X(force_free) X(prescribe_velocity) X(prescribe_position)                             \
     X(keep_halo) X(skin_refit) X(root) X(roots) X(tie_say) X(filter) X(constrain) X(collide)        \
+    X(body_skin) X(body_refit)                                                                     \
     X(euler) X(euler_next) X(verlet_first) X(verlet_second) X(midpoint) X(runge)                   \
     X(velocity_implicit) X(position) X(predict) X(correct) X(shift) X(residual)                    \
     X(system) X(system_of_forces) X(matrix) X(factor)                                              \

@@ -2,6 +2,8 @@
 # seen of it.
 libduite_cloth_la_SOURCES += \
     cloth/flow/bodies.h \
+    cloth/flow/contact/body.c \
+    cloth/flow/contact/body.h \
     cloth/flow/contact/certify.c \
     cloth/flow/contact/certify.h \
     cloth/flow/contact/contact.h \

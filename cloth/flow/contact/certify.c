@@ -4,6 +4,7 @@
  * no state is ever accepted in which a pair is not certified. Every decision follows from counts
  * that all ranks get alike. */
 #include "cloth/flow/contact/certify.h"
+#include "cloth/flow/contact/body.h"
 #include "cloth/flow/contact/contact.h"
 #include "cloth/flow/contact/skins.h"
 #include "cloth/flow/step/step.h"
@@ -26,6 +27,8 @@ int flow_contact_start(struct flow_state *state)
     int code = flow_keep(state);
     if (!code)
         code = flow_skins_keep(state);
+    if (!code)
+        code = flow_bodies_make(state);
     if (!code)
         code = flow_contact_none(state);
     if (!code)

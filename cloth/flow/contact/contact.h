@@ -14,12 +14,15 @@
  *
  * A side is a block of cloth or an obstacle. Sides have numbers: blocks, then obstacles. */
 
-/* Two features that are near each other, as the first one's block keeps it. */
+/* Two features that are near each other, as the first one's block keeps it. Corners of a body have
+ * no rows: `at` counts those of the cloth alone, and has the weights of the others behind them. */
 struct flow_contact {
     uint32_t side[2];    /* the block that keeps it; what it meets */
-    uint32_t kind;       /* enum contact_pair, or FLOW_CONTACT_SHAPE */
-    uint32_t feature[2]; /* of the skin of each side */
-    uint32_t point[4];   /* corners in the skins, as enum contact_pair orders them */
+    uint32_t kind;       /* enum contact_pair, CONTACT_TV or FLOW_CONTACT_SHAPE */
+    uint32_t feature[2]; /* of the skin of each side; CONTACT_TV, a vertex of a body and a triangle
+                          * of the first side: of the body's, then of the block's */
+    uint32_t point[4];   /* corners in the skins, as enum contact_pair orders them; CONTACT_TV:
+                          * first those of the triangle */
     uint32_t first;      /* so many of them are of the first side */
     struct flow_tie_corners at;
     struct contact_row row;
@@ -93,8 +96,9 @@ struct flow_cut {
 };
 int flow_contact_cut(struct flow_state *state, struct flow_cut *cut);
 
-/* A contact with a shape, where the shape is in a step between two times (s): row begins as that of
- * the contact. Others stay as they are. Local. (meet_shape.c) */
+/* A contact with an obstacle, where the obstacle is in a step between two times (s): row begins as
+ * that of the contact. Others stay as they are. Local.
+ * (meet_shape.c) */
 void flow_contact_ahead(const struct flow *flow, double from, double to,
                         const struct flow_contact *contact, struct contact_row *row);
 

@@ -1,12 +1,12 @@
-/* Two sides meet: every pair of their features that may come near each other in the step is
+/* Two skins meet: every pair of their features that may come near each other in the step is
  * certified. Those that are near at its end are listed, and those whose certificate fails. A block
- * may meet itself. The order of the list is that of the query, so it is the same for every mapping.
- */
+ * may meet itself, another block or a body. The order of the list is that of the query, so it is
+ * the same for every mapping. */
+#include "cloth/flow/contact/body.h"
 #include "cloth/flow/contact/contact.h"
 #include "cloth/flow/state/skin.h"
 
 #include "cloth/contact/certificate.h"
-#include <math.h>
 
 #include <math.h>
 
@@ -15,6 +15,9 @@ struct meeting {
     const struct flow *flow;
     const struct model *model;
     const struct flow_meet_args *args;
+    const struct contact_shape *obstacle; /* the body that it is with; NULL: a block */
+    const struct contact_body *body;
+    const uint32_t *fan; /* of the body (contact_body_opens) */
     struct contact_skin skin[2];
     struct contact_side side[2]; /* of a block that meets itself: both */
     struct flow_near *near;
@@ -49,8 +52,29 @@ static double friction_of(const struct meeting *m, const struct corners *corners
 {
     double product = 1;
     for (int k = 0; k < 4; k += 3) /* a corner of each */
-        product *= flow_friction_of(m->flow, m->skin + corners->side[k], corners->point[k]);
+        product *= m->body && corners->side[k]
+                       ? m->obstacle->friction
+                       : flow_friction_of(m->flow, m->skin + corners->side[k], corners->point[k]);
     return sqrt(product);
+}
+
+/* Of a body's vertex and a triangle of the block the latter comes first. */
+static bool is_turned(const struct meeting *m, const struct corners *corners)
+{
+    return m->body && corners->side[0] == 1;
+}
+
+/* Corner k of those that are kept, `from` of the pair. Those of a body have no rows. */
+static void describe_corner(const struct corners *corners, const struct contact_skin *skin,
+                            uint32_t k, uint32_t from, struct flow_contact *to)
+{
+    const uint32_t point = corners->point[from];
+    to->point[k] = point;
+    if (k >= to->at.n)
+        return;
+    to->at.block[k] = skin->block[point];
+    to->at.row[k] = skin->row[point];
+    to->at.held |= (unsigned char)((corners->held >> from & 1) << k);
 }
 
 /* What is kept of them, in memory that is zero. places: of the corners, where its row begins. */
@@ -58,26 +82,26 @@ static void describe(const struct meeting *m, const struct contact_candidate *ca
                      const struct corners *corners, const phys_vec places[4],
                      const struct contact_nearest *nearest, struct flow_contact *to)
 {
-    const int first = corners->side[0]; /* 1: of a triangle of the first side and a vertex */
-    to->kind = corners->pair;
-    to->first = corners->pair == CONTACT_VT ? 1 : 2;
-    to->at.n = 4;
-    to->at.held = (unsigned char)corners->held;
-    to->row.normal = nearest->normal;
+    const int second = corners->side[0]; /* 1: of a triangle of the first side and a vertex */
+    const bool turned = is_turned(m, corners);
+    const double sign = turned ? -1 : 1;
+    to->kind = turned ? (uint32_t)CONTACT_TV : (uint32_t)corners->pair;
+    to->first = corners->pair == CONTACT_EE ? 2 : (turned ? 3 : 1);
+    to->at.n = m->body ? to->first : 4;
+    to->row.normal = sign * nearest->normal;
     to->row.gap = nearest->gap;
     to->row.thickness = m->model->contact.thickness;
     to->row.friction = friction_of(m, corners);
     for (int k = 0; k < 2; k++) {
-        to->side[k] = m->args->side[k ^ first];
-        to->feature[k] = candidate->of[k ^ first];
+        to->side[k] = m->args->side[turned ? k : k ^ second];
+        to->feature[k] = candidate->of[k ^ second];
     }
-    for (int k = 0; k < 4; k++) {
-        const struct contact_skin *skin = m->skin + corners->side[k];
-        to->point[k] = corners->point[k];
-        to->at.block[k] = skin->block[corners->point[k]];
-        to->at.row[k] = skin->row[corners->point[k]];
-        to->at.weight[k] = nearest->weight[k];
-        to->row.origin += nearest->weight[k] * places[k];
+    for (uint32_t k = 0; k < 4; k++) {
+        const uint32_t from = (k + turned) % 4;
+        to->at.weight[k] = sign * nearest->weight[from];
+        describe_corner(corners, m->skin + corners->side[from], k, from, to);
+        if (k < to->at.n)
+            to->row.origin += to->at.weight[k] * places[from];
     }
 }
 
@@ -114,12 +138,38 @@ static bool is_ridge(const struct meeting *m, int side, uint32_t edge, const phy
     return ridge;
 }
 
+/* The same of a feature of the block and one of a body, whose surface goes on all around. It is one
+ * if the nearest point is inside the block's feature, and the direction there is in the cone that
+ * the body leaves open. Others are those of a neighbour of a feature, seen aslant: they would hold
+ * up what slides over an edge. */
+static bool presses_body(const struct meeting *m, const struct corners *corners,
+                         const struct contact_nearest *nearest)
+{
+    const bool turned = is_turned(m, corners);
+    const phys_vec normal = turned ? -nearest->normal : nearest->normal;
+    uint32_t n = 0, vertex[3];
+    phys_vec point = {0};
+    bool inside = true;
+    for (int k = 0; k < 4; k++) {
+        const double weight = fabs(nearest->weight[k]);
+        const bool of_body = corners->side[k];
+        inside = inside && (of_body || weight > 0);
+        if (!of_body || !(weight > 0))
+            continue;
+        point += weight * corners->y[k];
+        vertex[n++] = corners->point[k];
+    }
+    return inside && contact_body_opens(m->body, m->fan, m->side[1].y, n, vertex, &point, &normal);
+}
+
 /* Whether two features are a contact at the end of the step. */
 static bool presses(const struct meeting *m, const struct contact_candidate *candidate,
-                    const struct contact_nearest *nearest)
+                    const struct corners *corners, const struct contact_nearest *nearest)
 {
     if (!(nearest->gap < flow_contact_reach(m->model)))
         return false;
+    if (m->body)
+        return presses_body(m, corners, nearest);
     return candidate->kind != CONTACT_EE ||
            (is_ridge(m, 0, candidate->of[0], &nearest->normal, 1) &&
             is_ridge(m, 1, candidate->of[1], &nearest->normal, -1));
@@ -129,15 +179,16 @@ static void list(struct meeting *m, const struct contact_candidate *candidate,
                  const struct corners *corners, const phys_vec places[4],
                  const struct contact_nearest *nearest, bool fails)
 {
+    double part[4] = {1, 1, 1, 1};
     struct flow_near near;
     memset(&near, 0, sizeof near); /* padding, too: lists are compared byte by byte */
     near.fails = fails;
     describe(m, candidate, corners, places, nearest, &near.contact);
-    for (int k = 0; k < 4; k++)
-        near.part[k] = 1;
     if (fails)
         contact_cut(corners->pair, corners->x, corners->y, m->model->contact.thickness,
-                    corners->held, near.part);
+                    corners->held, part);
+    for (uint32_t k = 0; k < 4; k++)
+        near.part[k] = part[(k + is_turned(m, corners)) % 4];
     append(m, &near);
 }
 
@@ -152,7 +203,7 @@ static void look_at(struct meeting *m, const struct contact_candidate *candidate
         return;
     }
     contact_nearest_of(corners.pair, corners.y, &nearest);
-    if (presses(m, candidate, &nearest))
+    if (presses(m, candidate, &corners, &nearest))
         list(m, candidate, &corners, corners.y, &nearest, false);
 }
 
@@ -161,7 +212,7 @@ static bool is_left_out(const struct meeting *m, const struct contact_candidate 
 {
     uint32_t point[4];
     unsigned char side[4];
-    if (m->model->contact.self)
+    if (m->model->contact.self || m->body)
         return false;
     contact_candidate_corners(m->skin, m->skin + 1, candidate, point, side);
     return m->skin[side[0]].cloth[point[0]] == m->skin[side[3]].cloth[point[3]];
@@ -175,8 +226,9 @@ static void visit(void *to, uint32_t n, const struct contact_candidate *candidat
             look_at(m, candidate + i);
 }
 
-/* Parameters: w the list, cw the counts, then of each block its skin, its points, its boxes. */
-enum { AT_LIST, AT_COUNTS, AT_BLOCKS, EACH_BLOCK = 3 };
+/* Parameters: w the list, cw the counts, then of each block, or of all bodies, skins, points,
+ * boxes; behind those of bodies their fans. */
+enum { AT_LIST, AT_COUNTS, AT_SIDES, EACH_SIDE = 3 };
 
 static void open_side(const duite_call *call, size_t at, struct contact_skin *skin,
                       struct contact_side *side)
@@ -187,6 +239,24 @@ static void open_side(const duite_call *call, size_t at, struct contact_skin *sk
                                   .boxes = duite_in(call, at + 2, unsigned char),
                                   .x = points,
                                   .y = points + skin->n_points};
+}
+
+static void open_sides(const duite_call *call, struct meeting *m)
+{
+    const uint32_t n_blocks = m->flow->tables.n_blocks, *side = m->args->side;
+    const size_t other = AT_SIDES + (side[0] != side[1] ? EACH_SIDE : 0);
+    open_side(call, AT_SIDES, m->skin, m->side);
+    if (side[1] < n_blocks) {
+        open_side(call, other, m->skin + 1, m->side + 1);
+        return;
+    }
+    m->obstacle = m->model->obstacles + (side[1] - n_blocks);
+    m->body = contact_bodies_at(&m->model->bodies, m->obstacle->body);
+    m->fan = duite_in(call, other + EACH_SIDE, uint32_t) +
+             flow_body_place(m->model, side[1] - n_blocks).vertex;
+    flow_body_open(m->model, side[1] - n_blocks, duite_in(call, other, unsigned char),
+                   duite_in(call, other + 1, phys_vec), duite_in(call, other + 2, unsigned char),
+                   m->skin + 1, m->side + 1);
 }
 
 static int meet(const duite_call *call)
@@ -201,8 +271,7 @@ static int meet(const duite_call *call)
                         .counts = duite_out(call, AT_COUNTS, double) +
                                   (size_t)FLOW_COUNTS * args->number};
     const bool alone = args->side[0] == args->side[1];
-    for (int k = 0; k < 2; k++)
-        open_side(call, AT_BLOCKS + (alone ? 0 : EACH_BLOCK * (size_t)k), m.skin + k, m.side + k);
+    open_sides(call, &m);
     contact_query(m.side, alone ? m.side : m.side + 1, flow_contact_reach(m.model), visit, &m);
     m.counts[FLOW_COUNT_ALL] = (double)m.n;
     *list = (struct flow_list){.n = m.n < m.room ? m.n : m.room,

@@ -2,6 +2,7 @@
  * Vertices near the shape at the end of the step are contacts, and so are places on edges and in
  * triangles that are nearer to it than their corners: a corner of a box under the middle of a
  * triangle is one. */
+#include "cloth/flow/contact/body.h"
 #include "cloth/flow/contact/contact.h"
 #include "cloth/flow/state/skin.h"
 
@@ -178,8 +179,12 @@ void flow_contact_ahead(const struct flow *flow, double from, double to,
     struct contact_solid solid;
     struct contact_pose pose;
     struct contact_solid_point on;
-    if (contact->kind != FLOW_CONTACT_SHAPE)
+    if (contact->side[1] < flow->tables.n_blocks)
         return;
+    if (contact->kind != FLOW_CONTACT_SHAPE) {
+        flow_body_ahead(flow, from, to, contact, row);
+        return;
+    }
     const struct contact_shape *shape =
         model->obstacles + (contact->side[1] - flow->tables.n_blocks);
     contact_pose_over(shape, model->keys, &model->bodies, from, to, &pose);

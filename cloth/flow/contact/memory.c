@@ -13,12 +13,13 @@ void flow_contact_take(struct flow_state *state)
 {
     struct flow_contact_state *contact = &state->contact;
     const uint32_t n_blocks = state->head.n_blocks;
+    const size_t n_obstacles = state->flow->model->n_obstacles;
     struct cloth_error *trouble = &state->flow->trouble;
     if (!model_certifies(state->flow->model))
         return;
     contact->kept = cloth_alloc(n_blocks, sizeof *contact->kept, trouble);
-    contact->root = cloth_alloc(n_blocks, FLOW_ROOT * sizeof *contact->root, trouble);
-    contact->solid = cloth_alloc(state->flow->model->n_obstacles, sizeof *contact->solid, trouble);
+    contact->root = cloth_alloc(n_blocks + n_obstacles, FLOW_ROOT * sizeof *contact->root, trouble);
+    contact->solid = cloth_alloc(n_obstacles, sizeof *contact->solid, trouble);
     contact->found = cloth_alloc(n_blocks, sizeof *contact->found, trouble);
     contact->mark = cloth_alloc(n_blocks, sizeof *contact->mark, trouble);
     contact->said = cloth_alloc(flow_field_numbers(state, FLOW_FIELD_tie_said, 0), 1, trouble);

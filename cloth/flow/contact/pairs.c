@@ -4,6 +4,7 @@
  * get the same boxes.
  *
  * In reading order: boxes of all blocks, meetings, who needs which, their tasks. */
+#include "cloth/flow/contact/body.h"
 #include "cloth/flow/contact/contact.h"
 #include "cloth/flow/contact/skins.h"
 #include "cloth/flow/step/step.h"
@@ -24,15 +25,22 @@ static int root_body(const duite_call *call, const struct root_fields *on)
     return 0;
 }
 
-/* On every rank. */
-FLOW_KERNEL_WITH(roots, FLOW_COLLIDE, struct flow_block_args, (W(roots), ALL(root)),
-                 .replicated = 1)
+/* On every rank; of obstacles that are no bodies zeros. */
+FLOW_KERNEL_WITH(roots, FLOW_COLLIDE, struct flow_block_args,
+                 (W(roots), IF_MADE(body_boxes), ALL(root)), .replicated = 1)
 static int roots_body(const duite_call *call, const struct roots_fields *on)
 {
+    const struct model *model = flow_of(call)->model;
     const uint32_t n_blocks = flow_of(call)->tables.n_blocks;
+    double *obstacle = on->roots + FLOW_ROOT * (size_t)n_blocks;
     for (uint32_t b = 0; b < n_blocks; b++)
         memcpy(on->roots + FLOW_ROOT * (size_t)b, flow_numbers_of(on->root, b),
                FLOW_ROOT * sizeof *on->roots);
+    memset(obstacle, 0, FLOW_ROOT * model->n_obstacles * sizeof *obstacle);
+    for (uint32_t i = 0; i < model->n_obstacles; i++)
+        if (model->obstacles[i].body)
+            contact_boxes_root(on->body_boxes + flow_body_place(model, i).boxes,
+                               obstacle + FLOW_ROOT * i, obstacle + FLOW_ROOT * i + 3);
     return 0;
 }
 
@@ -40,6 +48,8 @@ static int get_roots(struct flow_state *state)
 {
     struct flow_block_args args;
     int code = flow_skins_refit(state);
+    if (!code)
+        code = flow_bodies_follow(state);
     if (!code)
         code = flow_fork_each(state, &flow_kernel_root, &args);
     args.block = 0;
@@ -64,7 +74,7 @@ static bool sides_are_near(const struct flow_state *state, uint32_t a, uint32_t 
 {
     const double *root = state->contact.root, *own = root + FLOW_ROOT * (size_t)a;
     const uint32_t n_blocks = state->flow->tables.n_blocks;
-    return b < n_blocks
+    return b < n_blocks || state->flow->model->obstacles[b - n_blocks].body
                ? is_near(own, root + FLOW_ROOT * (size_t)b, reach)
                : !contact_solid_apart(state->contact.solid + (b - n_blocks), own, own + 3, reach);
 }
@@ -183,30 +193,39 @@ uint32_t flow_contact_keepers(const struct flow_state *state, uint32_t block, un
 
 /* ---- Their tasks ---- */
 
-/* The objects of a block that a meeting reads. Returns the end. */
-static duite_object *add_block(const struct flow_state *state, uint32_t block, duite_object *refs)
+/* The objects of a block, or of all bodies, that a meeting reads. Returns the end. */
+static duite_object *add_side(const struct flow_state *state, uint32_t side, duite_object *refs)
 {
-    *refs++ = state->block[block].skin;
-    *refs++ = state->block[block].skin_x;
-    *refs++ = state->block[block].skin_boxes;
+    const bool block = side < state->flow->tables.n_blocks;
+    *refs++ = block ? state->block[side].skin : state->run.body_skins;
+    *refs++ = block ? state->block[side].skin_x : state->run.body_points;
+    *refs++ = block ? state->block[side].skin_boxes : state->run.body_boxes;
     return refs; /* FLOW_MEET_OBJECTS more */
+}
+
+static bool is_shape(const struct flow_state *state, uint32_t side)
+{
+    const uint32_t n_blocks = state->flow->tables.n_blocks;
+    return side >= n_blocks && !state->flow->model->obstacles[side - n_blocks].body;
 }
 
 static int fork_meeting(struct flow_state *state, uint32_t number)
 {
     const struct flow_meeting *meeting = state->contact.meetings.all + number;
     const uint32_t *side = meeting->side;
-    const bool shape = side[1] >= state->flow->tables.n_blocks;
+    const bool shape = is_shape(state, side[1]);
     const struct flow_step_args step = flow_attempt_args(state);
     const struct flow_meet_args args = {.side = {side[0], side[1]},
                                         .number = number,
                                         .room = meeting->room,
                                         .from = step.time - step.h,
                                         .to = step.time};
-    duite_object refs[2 + 2 * FLOW_MEET_OBJECTS] = {meeting->near, state->contact.meetings.counts};
-    duite_object *end = add_block(state, side[0], refs + 2);
+    duite_object refs[3 + 2 * FLOW_MEET_OBJECTS] = {meeting->near, state->contact.meetings.counts};
+    duite_object *end = add_side(state, side[0], refs + 2);
     if (side[0] != side[1] && !shape)
-        end = add_block(state, side[1], end);
+        end = add_side(state, side[1], end);
+    if (!shape && side[1] >= state->flow->tables.n_blocks)
+        *end++ = state->run.body_fans;
     return duite_fork(state->rt, shape ? &flow_meet_shape : &flow_meet, &args, (size_t)(end - refs),
                       refs);
 }
@@ -264,6 +283,8 @@ static void place_shapes(struct flow_state *state)
     const struct flow_step_args step = flow_attempt_args(state);
     for (uint32_t i = 0; i < model->n_obstacles; i++) {
         struct contact_pose pose;
+        if (model->obstacles[i].body)
+            continue;
         contact_pose_over(model->obstacles + i, model->keys, &model->bodies, step.time - step.h,
                           step.time, &pose);
         contact_solid_make(model->obstacles + i, &pose, state->contact.solid + i);

@@ -107,7 +107,7 @@ static bool find_point(const struct touching *t, const struct flow_contact *cont
 {
     const phys_vec *y[2] = {ends_in(t->call, AT_POINTS), NULL};
     *point = (phys_vec){0};
-    if (contact->kind != FLOW_CONTACT_SHAPE && !(y[1] = ends_of(t, contact->side[1])))
+    if (contact->first < contact->at.n && !(y[1] = ends_of(t, contact->side[1])))
         return false;
     for (uint32_t k = 0; k < contact->at.n; k++)
         *point += contact->at.weight[k] * y[k >= contact->first][contact->point[k]];
@@ -198,6 +198,8 @@ static size_t successor(const struct touching *t, const struct flow_contact *bef
         const struct flow_contact *after = t->after + i;
         if (compare_first(after, before))
             break;
+        if (before->kind == CONTACT_TV && after->side[1] != before->side[1])
+            continue; /* the vertex is another body's */
         if (!t->used[t->n_before + i] && phys_dot(&after->row.normal, &before->row.normal) > 0.7)
             return i;
     }

@@ -1,6 +1,7 @@
 /* The table of fields: the columns of the list in fields.h as functions, and the list by number. */
 #include "cloth/flow/bodies.h"
 
+#include "cloth/flow/contact/body.h"
 #include "cloth/flow/observe/observe.h"
 #include "cloth/flow/solver/solver.h"
 #include "cloth/flow/state/skin.h"
@@ -64,6 +65,40 @@ static size_t blocks(const struct flow_state *state, uint32_t block)
 {
     (void)block;
     return state->flow->tables.n_blocks;
+}
+
+static size_t sides(const struct flow_state *state, uint32_t block)
+{
+    return blocks(state, block) + state->flow->model->n_obstacles;
+}
+
+static struct flow_body_place bodies_end(const struct flow_state *state)
+{
+    return flow_body_place(state->flow->model, state->flow->model->n_obstacles);
+}
+
+static size_t body_skins(const struct flow_state *state, uint32_t block)
+{
+    (void)block;
+    return bodies_end(state).skin;
+}
+
+static size_t body_fans(const struct flow_state *state, uint32_t block)
+{
+    (void)block;
+    return bodies_end(state).vertex;
+}
+
+static size_t body_points(const struct flow_state *state, uint32_t block)
+{
+    (void)block;
+    return bodies_end(state).point;
+}
+
+static size_t body_boxes(const struct flow_state *state, uint32_t block)
+{
+    (void)block;
+    return bodies_end(state).boxes;
 }
 
 /* What a block says of its ties: there may be links to all blocks. */
@@ -190,6 +225,12 @@ static bool certified(const struct flow_state *state, uint32_t block)
     return model_certifies(state->flow->model);
 }
 
+static bool meets_bodies(const struct flow_state *state, uint32_t block)
+{
+    (void)block;
+    return flow_bodies_are_met(state->flow->model);
+}
+
 static bool explicit_run(const struct flow_state *state, uint32_t block)
 {
     return !implicit_run(state, block);
@@ -306,6 +347,11 @@ static enum flow_life is_work(const struct model *model)
 static enum flow_life is_derived_once(const struct model *model)
 {
     return model_is_filtered(model) ? FLOW_WORK : FLOW_DERIVED;
+}
+
+static enum flow_life is_derived_of_bodies(const struct model *model)
+{
+    return flow_bodies_move(model) ? FLOW_WORK : FLOW_DERIVED;
 }
 
 /* Verlet begins a step with the forces that ended the one before, which saw another velocity,

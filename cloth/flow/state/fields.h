@@ -105,9 +105,14 @@ enum { FLOW_ROW_NUMBERS = sizeof(struct contact_row) / sizeof(double) };
     X(energies,     BY_STEP, double,        FLOW_SUMS, one,           always,       is_work)       \
     X(trial,        ONE,     double,        FLOW_STATUS, one,           implicit_run, is_work)     \
     X(slope,        ONE,     double,        1, one,           implicit_run, is_work)               \
-    X(roots,        ONE,     double,        FLOW_ROOT, blocks,    certified,    is_work)               \
+    X(roots,        ONE,     double,        FLOW_ROOT, sides,     certified,    is_work)               \
     X(tie_said,     SIZED,   unsigned char, 1, records_bytes, certified,    is_work)               \
     X(cut_counts,   ONE,     double,        FLOW_CUT_COUNTS, one, certified,    is_work)               \
+    /* bodies that certified contact is with (contact/body.h) */                                   \
+    X(body_skins,   ONE,     unsigned char, 1, body_skins,   meets_bodies, is_derived)             \
+    X(body_fans,    ONE,     uint32_t,      1, body_fans,    meets_bodies, is_derived)             \
+    X(body_points,  ONE,     phys_vec,      4, body_points,  meets_bodies, is_derived_of_bodies)   \
+    X(body_boxes,   ONE,     unsigned char, 1, body_boxes,   meets_bodies, is_derived_of_bodies)   \
     /* a solve; pieces: what it left of free pieces; coarse, motion: factor, and its part of s */  \
     X(sums,         BY_PASS, double,        1, dots,          plain_solve,  is_work)               \
     X(scalars,      BY_PASS, struct solve_scalars, SOLVE_SCALARS, one,           implicit_run, is_work) \

@@ -61,9 +61,9 @@ enum flow_whose {
     FLOW_NOBODY,
     FLOW_OWN,
     FLOW_OF_NEIGHBOURS,
-    FLOW_OF_ALL,
     FLOW_IF_MADE,
-    FLOW_OF_TIED
+    FLOW_OF_TIED,
+    FLOW_OF_ALL
 };
 
 struct flow_parameter {

@@ -152,14 +152,23 @@ struct flow_kept_contacts {
     uint32_t room[FLOW_CONTACT_LISTS], n[FLOW_CONTACT_LISTS]; /* n: at most so many are there */
 };
 
+/* The step that bodies have points and boxes of (cloth/flow/contact/body.h). */
+struct flow_bodies_now {
+    bool made; /* there is one */
+    uint64_t begin;
+    uint32_t length; /* ticks, as of an attempt */
+};
+
 /* Certified contact as the main program sees it. */
 struct flow_contact_state {
     struct flow_meetings meetings;
     struct flow_kept_contacts *kept; /* a block */
     unsigned begin, now; /* which lists are those where the step began, and of the next solve */
-    struct contact_solid *solid; /* an obstacle: where it is over the step */
-    double *root;        /* a block: the box around its skin over the step, low and high, m */
-    uint32_t *found;     /* a block: contacts that the last look found */
+    struct contact_solid *solid; /* an obstacle that is no body: where it is over the step */
+    struct flow_bodies_now bodies;
+    double *root;    /* a block, then an obstacle that is a body: the box around its skin over the
+                      * step, low and high, m */
+    uint32_t *found; /* a block: contacts that the last look found */
     unsigned char *mark; /* a block: room */
     unsigned char *said; /* what all blocks said of their ties */
     duite_object *refs;  /* room for the objects of any task */

@@ -47,10 +47,5 @@ int scene_build_check_contact(const struct model *model, const struct scene_tree
                                "explicit steps (integrator: %s) solve no system that knows of "
                                "contact; project is expected",
                                model_integrator_name(model->integrator));
-    for (uint32_t i = 0; i < model->n_obstacles; i++)
-        if (model->obstacles[i].body)
-            return scene_tree_fail(tree, mode, error,
-                                   "contact.mode is certified, which bodies have not yet; project "
-                                   "is expected where an obstacle is a body");
     return check_thickness(model, tree, scene_tree_get(tree, contact, "thickness"), error);
 }

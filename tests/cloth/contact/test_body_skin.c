@@ -248,6 +248,53 @@ START_TEST(pairs_with_a_cloth)
 }
 END_TEST
 
+/* A bit along n from a point of the surface: how far the nearest of all facets is, of how far the
+ * point is. */
+static double nearness(const phys_vec *point, const phys_vec *n)
+{
+    const phys_vec x = *point + 1e-3 * *n;
+    struct contact_hit hit;
+    contact_body_kind.closest(NULL, body, 1, &x, &hit);
+    return fabs(hit.gap) / 1e-3;
+}
+
+/* A direction of length 1, across an edge if there is one. */
+static void any_direction(const phys_vec *edge, phys_vec *n)
+{
+    *n = (phys_vec){uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)};
+    if (edge)
+        *n -= phys_dot(edge, n) / phys_dot(edge, edge) * *edge;
+    *n /= sqrt(phys_dot(n, n));
+}
+
+/* On vertices and in the middle of edges: outside and inside of the ring, where edges go in. */
+START_TEST(opens_where_it_is_nearest)
+{
+    const phys_vec *x = contact_body_vertices(body);
+    const struct contact_facet *facet = contact_body_facets(body);
+    uint32_t *fan = take(body->n_vertices * sizeof *fan, 0);
+    int opened[2] = {0};
+    contact_body_fans(body, fan);
+    ck_assert_uint_eq(fan[body->n_vertices - 1], UINT32_MAX);
+    for (uint32_t i = 0; i < 40 * body->n_triangles; i++) {
+        const uint32_t *vertex = facet[i % body->n_triangles].corner, n = 1 + i / 7 % 2;
+        const phys_vec edge = x[vertex[1]] - x[vertex[0]];
+        const phys_vec point = n == 1 ? x[vertex[0]] : (x[vertex[0]] + x[vertex[1]]) / 2;
+        phys_vec along;
+        any_direction(n == 2 ? &edge : NULL, &along);
+        const bool opens = contact_body_opens(body, fan, x, n, vertex, &point, &along);
+        if (opens)
+            ck_assert_double_gt(nearness(&point, &along), 1 - 1e-5);
+        else
+            ck_assert_double_lt(nearness(&point, &along), 1 - 1e-7);
+        opened[n - 1] += opens;
+    }
+    ck_assert_int_gt(opened[0], 20);
+    ck_assert_int_gt(opened[1], 50);
+    free(fan);
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("body_skin");
@@ -257,6 +304,7 @@ int main(void)
     tcase_add_test(cases, all_features_once);
     tcase_add_test(cases, steps_join);
     tcase_add_test(cases, pairs_with_a_cloth);
+    tcase_add_test(cases, opens_where_it_is_nearest);
     suite_add_tcase(suite, cases);
     return unit_run(suite);
 }

@@ -1,0 +1,52 @@
+/* The facets around a vertex, from one to the next across their edges. */
+#include "cloth/contact/body_skin.h"
+
+/* Of a distance: a surface that rises by less is flat. */
+static const double FLAT = 1e-3;
+
+void contact_body_fans(const struct contact_body *body, uint32_t *fan)
+{
+    const struct contact_facet *facet = contact_body_facets(body);
+    for (uint32_t v = 0; v < body->n_vertices; v++)
+        fan[v] = UINT32_MAX;
+    for (uint32_t f = body->n_triangles; f-- > 0;)
+        for (int k = 0; k < 3; k++)
+            fan[facet[f].corner[k]] = f;
+}
+
+static bool is_below(const phys_vec *x, const phys_vec *point, const phys_vec *n)
+{
+    const phys_vec way = *x - *point;
+    const double rise = phys_dot(n, &way);
+    return !(rise > 0) || rise * rise <= FLAT * FLAT * phys_dot(&way, &way);
+}
+
+/* On which corner of a facet a vertex is. */
+static int corner_of(const struct contact_facet *facet, uint32_t vertex)
+{
+    return facet->corner[0] == vertex ? 0 : (facet->corner[1] == vertex ? 1 : 2);
+}
+
+/* On a vertex the surface goes down along all of its edges; on an edge, given by its other end, to
+ * both of its sides. */
+bool contact_body_opens(const struct contact_body *body, const uint32_t *fan, const phys_vec *y,
+                        uint32_t n_vertices, const uint32_t *vertex, const phys_vec *point,
+                        const phys_vec *n)
+{
+    const struct contact_facet *facet = contact_body_facets(body);
+    const uint32_t first = fan[vertex[0]];
+    uint32_t f = first;
+    bool opens = true;
+    if (n_vertices > 2)
+        return true;
+    do {
+        const int k = corner_of(facet + f, vertex[0]);
+        const uint32_t next = facet[f].corner[(k + 1) % 3], last = facet[f].corner[(k + 2) % 3];
+        if (n_vertices == 1)
+            opens = opens && is_below(y + next, point, n);
+        else if (next == vertex[1] || last == vertex[1])
+            opens = opens && is_below(y + (next == vertex[1] ? last : next), point, n);
+        f = facet[f].neighbour[k];
+    } while (opens && f != first);
+    return opens;
+}

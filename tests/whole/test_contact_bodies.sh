@@ -1,0 +1,118 @@
+#!/bin/sh
+# Certified contact with bodies: what rests, slides and is carried against closed forms; a drape against that on the shape which the body
+# nearly is; nothing goes through bodies that stand still, move and turn; one state_hash; the real body where it is.
+. "${srcdir:-.}/tests/support/tap.sh"
+same_hash=$PWD/tests/whole/same_hash
+skip_unless "$same_hash"
+. "$srcdir/tests/support/probes.sh"
+plan_later
+
+# slab N: a box of 1.2 x 0.1 x 1.2 m whose top, at y = 0, has N x N quads.
+slab() {
+    awk -v n="$1" 'function top(i, j) { return i * (n + 1) + j + 1 }
+        function quad(a, b, c, d) { print "f", a, b, c, d }
+        BEGIN { low = (n + 1) * (n + 1)
+            for (y = 0; y < 2; y++) for (i = 0; i <= n; i++) for (j = 0; j <= n; j++) print "v", 1.2 * i / n - 0.6, -0.1 * y, 1.2 * j / n - 0.6
+            for (i = 0; i < n; i++) for (j = 0; j < n; j++) {
+                quad(top(i, j), top(i, j + 1), top(i + 1, j + 1), top(i + 1, j))
+                quad(low + top(i, j), low + top(i + 1, j), low + top(i + 1, j + 1), low + top(i, j + 1)) }
+            for (i = 0; i < n; i++) {
+                quad(top(i, 0), top(i + 1, 0), low + top(i + 1, 0), low + top(i, 0))
+                quad(top(i + 1, n), top(i, n), low + top(i, n), low + top(i + 1, n))
+                quad(top(0, i + 1), top(0, i), low + top(0, i), low + top(0, i + 1))
+                quad(top(n, i), top(n, i + 1), low + top(n, i + 1), low + top(n, i)) } }' > slab.obj
+}
+slab 40
+apart() { awk -v a="$1" -v b="$2" 'BEGIN { print (a > b ? a - b : b - a) }'; }
+# A ball of 0.15 m, of 64 x 32 quads with two poles.
+awk 'BEGIN { t = atan2(0, -1); n = 64; m = 32; print "v 0 0.15 0"; print "v 0 -0.15 0"
+    for (i = 0; i < n; i++) for (j = 1; j < m; j++) {
+        far = 0.15 * sin(t * j / m); printf "v %.12f %.12f %.12f\n", far * cos(2 * t * i / n), 0.15 * cos(t * j / m), far * sin(2 * t * i / n) }
+    for (i = 0; i < n; i++) { a = 2 + i * (m - 1); b = 2 + (i + 1) % n * (m - 1)
+        print "f", 1, b + 1, a + 1; print "f", 2, a + m - 1, b + m - 1
+        for (j = 1; j < m - 1; j++) print "f", a + j, b + j, b + j + 1, a + j + 1 } }' > ball.obj
+# A ring around the y axis, of 24 x 12 vertices, in quads.
+awk 'BEGIN { t = atan2(0, -1) / 12
+    for (i = 0; i < 24; i++) for (j = 0; j < 12; j++) {
+        far = 0.15 + 0.05 * cos(2 * t * j); printf "v %.9f %.9f %.9f\n", far * cos(t * i), 0.05 * sin(2 * t * j), far * sin(t * i) }
+    for (i = 0; i < 24; i++) for (j = 0; j < 12; j++) {
+        k = (i + 1) % 24; l = (j + 1) % 12; print "f", 12 * i + j + 1, 12 * i + l + 1, 12 * k + l + 1, 12 * k + j + 1 } }' > ring.obj
+
+# scene NAME SIDE N HIGH FRICTION END OBSTACLES MORE
+scene() {
+    cat > "$1.yaml" << END
+schema: 1
+name: $1
+cloths: [{name: sheet, material: m, mesh: {grid: {width: $2, height: $2, nx: $3, ny: $3}}, transform: {translate: [0, $4, 0], rotate: [1, 0, 0.15, 0]}}]
+materials: {m: {density: 0.2, stretch: 500, shear: 50, damping: {stiffness: 0.02}}}
+contact: {mode: certified, self: on, thickness: 0.003, friction: $5}
+time: {h: 0.01, end: $6, fps: 100}
+obstacles: [$7]
+probes: [{name: p, vertices: [0, $(($3 * $3 / 2))], values: [position]}]
+grain: 40
+$8
+END
+}
+
+scene rest 0.2 11 0.004 0 0.4 'body: {obj: slab.obj}'
+rests() { # what it presses is on the multiplier, so the gap is the thickness
+    run rest.yaml && set -- $(last p.0.y p.60.y) && below "a corner" "$(apart "$1" 0.003)" 3e-5 && below "the middle" "$(apart "$2" 0.003)" 3e-5
+}
+ok "a sheet rests on a body" rests
+
+# Down a slope, over dozens of triangles: without friction by g sin(30 degrees), which implicit steps sum up to a h^2 n (n + 1) / 2; with it
+# as down the same slope of a box.
+slope='gravity: [4.905, -8.495709211, 0]'
+scene slope 0.2 11 0.003 0 0.3 'body: {obj: slab.obj, translate: [0.3, 0, 0.05]}' "$slope"
+scene rough 0.2 11 0.003 0.3 0.3 'body: {obj: slab.obj, translate: [0.3, 0, 0.05]}' "$slope"
+scene box 0.2 11 0.003 0.3 0.3 'box: {centre: [0.3, -0.05, 0.05], size: [1.2, 0.1, 1.2]}' "$slope"
+slides() { # edges that are crossed do not hold it up
+    run slope.yaml && set -- $(last p.60.x p.60.y) && near "the way down the slope" "$1" 0.2280825 2e-4 && near "the height" "$2" 0.003 1e-3
+}
+ok "a sheet slides over a body" slides
+rubs() {
+    run box.yaml && set -- $(last p.60.x) && run rough.yaml && set -- "$1" $(last p.60.x) && near "the way with friction" "$2" "$1" 0.06
+}
+ok "a sheet rubs on a body" rubs
+
+# A slab that moves and rises from the start on: the sheet slips a little, then it is carried.
+scene carried 0.2 11 0.003 0.5 0.3 'body: {obj: slab.obj, motion: {times: [0, 1], translate: [[0, 0, 0], [0.3, 0.1, 0]]}}'
+sed 's/body: {obj: slab.obj,/box: {centre: [0, -0.05, 0], size: [1.2, 0.1, 1.2],/' carried.yaml > carrier.yaml
+carries() {
+    run carrier.yaml && set -- $(last p.60.x) && run carried.yaml && set -- "$1" $(last p.60.x p.60.y) &&
+        near "the way" "$2" "$1" 0.02 && near "the height" "$3" 0.033 1e-3
+}
+ok "a body carries a sheet" carries
+
+scene ball 0.4 21 0.16 0.3 0.3 'body: {obj: ball.obj}'
+sed 's/body: .*\]/sphere: {centre: [0, 0, 0], radius: 0.15}]/' ball.yaml > sphere.yaml
+alike() { # the mesh is within 0.2 mm of the ball
+    run sphere.yaml && set -- $(last p.0.x p.0.y p.0.z p.220.y) && run ball.yaml && set -- "$@" $(last p.0.x p.0.y p.0.z p.220.y) &&
+        below "x of a corner" "$(apart "$5" "$1")" 0.006 && below "y of it" "$(apart "$6" "$2")" 0.006 && below "z of it" "$(apart "$7" "$3")" 0.006 &&
+        below "y of the middle" "$(apart "$8" "$4")" 0.0005
+}
+ok "a drape on a ball is as on a sphere" alike
+
+# Two rings, of which one rises and turns through the sheet's place while the other stands still below it.
+scene rings 0.5 20 0.1 0.5 0.4 'body: {obj: ring.obj, motion: {times: [0, 0.5], translate: [[0, 0, 0], [0.05, 0.15, 0]], rotate: [[1, 0, 0, 0], [1, 0.2, 0.5, 0]]}},
+  body: {obj: ring.obj, scale: 0.5, rotate: [1, 1, 0, 0], translate: [0, -0.1, 0]}'
+through() { # SCENE OPTION...: nothing is
+    limited "$DUITE_CLOTH" "$@" --threads 1 --check-intersections --report report.json --quiet
+}
+value() { sed -n "s/^ *\"$1\": \([^,]*\),\{0,1\}\$/\1/p" report.json; }
+ok "rings that move and turn" through rings.yaml
+ok "one hash" ranks 3 "$same_hash" rings.yaml few 0 time.end=0.12
+stands() { ranks 2 "$same_hash" ball.yaml few 0 time.end=0.08; }
+ok "one hash on a body that stands still" stands
+
+# Over the head of the body of others, in decimetres.
+real=$srcdir/../shared/data/body/female_generic.obj
+if test -r "$real" && ! quick; then
+    scene real 0.4 24 0.8 0.3 0.25 "body: {obj: $real, scale: 0.1}"
+    sed -i 's/translate: \[0, 0.8, 0\]/translate: [0.02, 0.8, 0.05]/; s/grain: 40/grain: 150/' real.yaml
+    for h in 0.004 0.01; do
+        ok "the real body by steps of $h s" through real.yaml --set time.h=$h --set time.fps=25
+    done
+else
+    skip "the real body" "its mesh is not here, or quick tests are wanted"
+fi

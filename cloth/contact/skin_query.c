@@ -60,6 +60,18 @@ PHYS_INLINE void widen(const struct query *query, const struct contact_boxes *bo
     }
 }
 
+/* The same of the second skin, to meet boxes of the first. */
+PHYS_INLINE void widen_other(const struct query *query, const struct contact_boxes *boxes,
+                             uint32_t lane, struct contact_boxes *wide)
+{
+    PHYS_UNROLL
+    for (int c = 0; c < 3; c++) {
+        const float low = boxes->low[c][lane], high = boxes->high[c][lane];
+        wide->low[c] = (contact_lanes){low, low, low, low} - query->above[c];
+        wide->high[c] = (contact_lanes){high, high, high, high} + query->below[c];
+    }
+}
+
 /* Which of four boxes meet a wide one. */
 PHYS_INLINE unsigned meeting(const struct contact_boxes *wide, const struct contact_boxes *boxes)
 {
@@ -146,51 +158,93 @@ static void add_edges(struct query *query, uint32_t a, uint32_t b)
         add(query, CONTACT_EE, a, b);
 }
 
-/* Vertices of the first leaf with the triangles of the second. */
-static void meet_vertices(struct query *query, const struct contact_leaf *a,
-                          const struct contact_leaf *b)
+/* A leaf of skin k, and which of its features may be near to the other leaf: a bit each. */
+struct leaf_near {
+    const struct contact_leaf *leaf;
+    const struct contact_boxes *group;
+    uint32_t vertices, triangles, edges;
+};
+
+/* Which of n boxes meet a wide one. */
+static uint32_t meeting_all(const struct contact_boxes *wide, const struct contact_boxes *boxes,
+                            uint32_t n)
 {
-    for (uint32_t i = 0; i < a->n_vertices; i++) {
+    uint32_t bits = 0;
+    for (uint32_t k = 0; k < n; k += 4)
+        bits |= (uint32_t)meeting(wide, boxes + k / 4) << k;
+    return bits;
+}
+
+static void look_at_leaf(const struct query *query, int k, const struct contact_leaf *leaf,
+                         const struct contact_boxes *wide, struct leaf_near *near)
+{
+    const struct contact_boxes *group = query->group[k];
+    *near = (struct leaf_near){leaf, group, UINT32_MAX, UINT32_MAX, UINT32_MAX};
+    if (!wide)
+        return;
+    near->vertices = meeting_all(wide, group + contact_vertex_group(leaf), leaf->n_vertices);
+    near->triangles = meeting_all(wide, group + leaf->group, leaf->n_triangles);
+    near->edges = meeting_all(wide, group + contact_edge_group(leaf), leaf->n_edges);
+}
+
+/* The first n bits. */
+PHYS_INLINE uint32_t bits_below(uint32_t bits, uint32_t n)
+{
+    return n < 32 ? bits & ((UINT32_C(1) << n) - 1) : bits;
+}
+
+/* Vertices of the first leaf with the triangles of the second. */
+static void meet_vertices(struct query *query, const struct leaf_near *a, const struct leaf_near *b)
+{
+    const struct contact_leaf *of = a->leaf, *other = b->leaf;
+    for (uint32_t left = bits_below(a->vertices, of->n_vertices); left; left &= left - 1) {
+        const uint32_t i = (uint32_t)__builtin_ctz(left);
         struct contact_boxes wide;
-        widen(query, query->group[0] + contact_vertex_group(a) + i / 4, i % 4, &wide);
-        for (uint32_t k = 0; k < b->n_triangles; k += 4) {
-            unsigned bits = meeting(&wide, query->group[1] + b->group + k / 4);
+        widen(query, a->group + contact_vertex_group(of) + i / 4, i % 4, &wide);
+        for (uint32_t k = 0; k < other->n_triangles; k += 4) {
+            unsigned bits = meeting(&wide, b->group + other->group + k / 4) & b->triangles >> k;
             for (; bits; bits &= bits - 1)
-                add_vertex(query, 0, a->vertex + i,
-                           b->triangle + k + (uint32_t)__builtin_ctz(bits));
+                add_vertex(query, 0, of->vertex + i,
+                           other->triangle + k + (uint32_t)__builtin_ctz(bits));
         }
     }
 }
 
 /* Triangles of the first leaf with the vertices of the second. */
-static void meet_triangles(struct query *query, const struct contact_leaf *a,
-                           const struct contact_leaf *b)
+static void meet_triangles(struct query *query, const struct leaf_near *a,
+                           const struct leaf_near *b)
 {
-    for (uint32_t i = 0; i < a->n_triangles; i++) {
+    const struct contact_leaf *of = a->leaf, *other = b->leaf;
+    for (uint32_t left = bits_below(a->triangles, of->n_triangles); left; left &= left - 1) {
+        const uint32_t i = (uint32_t)__builtin_ctz(left);
         struct contact_boxes wide;
-        widen(query, query->group[0] + a->group + i / 4, i % 4, &wide);
-        for (uint32_t k = 0; k < b->n_vertices; k += 4) {
-            unsigned bits = meeting(&wide, query->group[1] + contact_vertex_group(b) + k / 4);
+        widen(query, a->group + of->group + i / 4, i % 4, &wide);
+        for (uint32_t k = 0; k < other->n_vertices; k += 4) {
+            unsigned bits =
+                meeting(&wide, b->group + contact_vertex_group(other) + k / 4) & b->vertices >> k;
             for (; bits; bits &= bits - 1)
-                add_vertex(query, 1, b->vertex + k + (uint32_t)__builtin_ctz(bits),
-                           a->triangle + i);
+                add_vertex(query, 1, other->vertex + k + (uint32_t)__builtin_ctz(bits),
+                           of->triangle + i);
         }
     }
 }
 
 /* Edges of two leaves; of one with itself, each pair once. */
-static void meet_edges(struct query *query, const struct contact_leaf *a,
-                       const struct contact_leaf *b)
+static void meet_edges(struct query *query, const struct leaf_near *a, const struct leaf_near *b)
 {
-    for (uint32_t i = 0; i < a->n_edges; i++) {
+    const struct contact_leaf *of = a->leaf, *other = b->leaf;
+    for (uint32_t left = bits_below(a->edges, of->n_edges); left; left &= left - 1) {
+        const uint32_t i = (uint32_t)__builtin_ctz(left);
+        const bool self = a == b;
         struct contact_boxes wide;
-        widen(query, query->group[0] + contact_edge_group(a) + i / 4, i % 4, &wide);
-        for (uint32_t k = a == b ? i / 4 * 4 : 0; k < b->n_edges; k += 4) {
-            unsigned bits = meeting(&wide, query->group[1] + contact_edge_group(b) + k / 4);
-            if (a == b && k <= i)
+        widen(query, a->group + contact_edge_group(of) + i / 4, i % 4, &wide);
+        for (uint32_t k = self ? i / 4 * 4 : 0; k < other->n_edges; k += 4) {
+            unsigned bits =
+                meeting(&wide, b->group + contact_edge_group(other) + k / 4) & b->edges >> k;
+            if (self && k <= i)
                 bits &= ~1u << i % 4;
             for (; bits; bits &= bits - 1)
-                add_edges(query, a->edge + i, b->edge + k + (uint32_t)__builtin_ctz(bits));
+                add_edges(query, of->edge + i, other->edge + k + (uint32_t)__builtin_ctz(bits));
         }
     }
 }
@@ -202,13 +256,32 @@ static bool is_leaf(uint32_t child)
     return child & CONTACT_IS_LEAF;
 }
 
-static void meet_leaves(struct query *query, uint32_t child_a, uint32_t child_b)
+static const struct contact_leaf *leaf_of(const struct query *query, int k, struct part part)
 {
-    const struct contact_leaf *a = query->skin[0]->leaf + (child_a & ~CONTACT_IS_LEAF);
-    const struct contact_leaf *b = query->skin[1]->leaf + (child_b & ~CONTACT_IS_LEAF);
-    meet_vertices(query, a, b);
-    meet_triangles(query, a, b);
-    meet_edges(query, a, b);
+    const uint32_t child = query->skin[k]->child[part.node][part.lane];
+    return query->skin[k]->leaf + (child & ~CONTACT_IS_LEAF);
+}
+
+/* What is near to the other leaf's box alone is looked at. */
+static void meet_leaves(struct query *query, struct part a, struct part b)
+{
+    struct contact_boxes wide[2];
+    struct leaf_near near[2];
+    widen(query, query->node[0] + a.node, a.lane, wide);
+    widen_other(query, query->node[1] + b.node, b.lane, wide + 1);
+    look_at_leaf(query, 0, leaf_of(query, 0, a), wide + 1, near);
+    look_at_leaf(query, 1, leaf_of(query, 1, b), wide, near + 1);
+    meet_vertices(query, near, near + 1);
+    meet_triangles(query, near, near + 1);
+    meet_edges(query, near, near + 1);
+}
+
+static void meet_leaf_self(struct query *query, struct part part)
+{
+    struct leaf_near near;
+    look_at_leaf(query, 0, leaf_of(query, 0, part), NULL, &near);
+    meet_vertices(query, &near, &near);
+    meet_edges(query, &near, &near);
 }
 
 /* Two parts whose boxes meet. */
@@ -218,7 +291,7 @@ static void meet(struct query *query, struct part a, struct part b)
     const uint32_t of_b = query->skin[1]->child[b.node][b.lane];
     const bool descend_a = !is_leaf(of_a), descend_b = !is_leaf(of_b);
     if (!descend_a && !descend_b) {
-        meet_leaves(query, of_a, of_b);
+        meet_leaves(query, a, b);
         return;
     }
     if (descend_a && descend_b && parts_are_flat(query, a, b))
@@ -238,14 +311,12 @@ static void meet_self(struct query *query, uint32_t node)
 {
     for (uint32_t i = 0; i < 4; i++) {
         const uint32_t child = query->skin[0]->child[node][i];
-        const struct contact_leaf *leaf = query->skin[0]->leaf + (child & ~CONTACT_IS_LEAF);
         struct contact_boxes wide;
         if (!is_leaf(child)) {
             if (!part_is_flat(query, (struct part){node, i}))
                 meet_self(query, child);
-        } else if (leaf->n_triangles) {
-            meet_vertices(query, leaf, leaf);
-            meet_edges(query, leaf, leaf);
+        } else {
+            meet_leaf_self(query, (struct part){node, i});
         }
         widen(query, query->node[0] + node, i, &wide);
         unsigned bits = meeting(&wide, query->node[0] + node) & ~1u << i;

@@ -12,7 +12,7 @@ bench_libbench_la_SOURCES = bench/bench.h bench/environment.h bench/load.c bench
 	bench/tasks/wake.c bench/ranks/cg.c bench/ranks/delegate.c bench/ranks/forks.c bench/ranks/loaded.c bench/ranks/memory.c bench/ranks/migrate.c bench/ranks/ranks.c \
 	bench/ranks/ranks.h bench/ranks/sheet.c bench/ranks/sheet.h bench/ranks/stencil.c bench/ranks/twin.c \
 	bench/cg/bench.c bench/cg/cg.h bench/cg/frames.c bench/cg/make.c bench/cg/ours.c bench/cg/plans.c bench/cg/states.c \
-	bench/contact/bench.c bench/contact/certify.c bench/contact/contact.h bench/contact/solid.c \
+	bench/contact/bench.c bench/contact/certify.c bench/contact/contact.h bench/contact/detect.c bench/contact/solid.c \
 	bench/physics/bench.c bench/physics/ours.c bench/physics/physics.h \
 	bench/predict/bench.c bench/predict/errors.c bench/predict/many.c bench/predict/order.c bench/predict/predict.h bench/predict/sheet.c bench/sweep/median.c bench/sweep/compare.h \
 	tests/support/trace_file.c tests/support/trace_file.h \

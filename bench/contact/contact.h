@@ -15,4 +15,8 @@ extern const struct serve_run contact_certify_runs[];
  * 5 mm lie 1 to 3 mm from the shape and go up to 0.2 mm along each axis. */
 extern const struct serve_run contact_solid_runs[];
 
+/* detect shape=waves|draped|six_layers threads= quick= rounds=: seconds a vertex of the best of so
+ * many steps. */
+extern const struct serve_run contact_detect_runs[];
+
 #endif

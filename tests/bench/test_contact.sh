@@ -17,6 +17,9 @@ targets_listed() {
     diff - "$scratch/targets" << 'END'
 certify_ns_per_pair <= 35
 certified_uncut >= 0.85
+detect_ns_per_vertex_waves <= 130
+detect_ns_per_vertex_draped <= 400
+detect_ns_per_vertex_six_layers <= 2000
 END
 }
 

@@ -211,7 +211,7 @@ enum model_contact_mode {
 };
 struct model_contact {
     enum model_contact_mode mode;
-    bool self;        /* cloths touch themselves and each other */
+    bool self;        /* a cloth touches itself, too */
     double thickness; /* m, > 0: of cloth that touches something, half of it on each side */
     double friction;  /* coefficient, >= 0, of materials and obstacles that have none of their own;
                          sides a and b rub on each other by sqrt(a b) */

@@ -53,6 +53,15 @@ ok "a sheet that folds onto itself" holds fold
 ok "two sheets over a box, by triangles, bdf2" holds pair --set "$triangles" --set integrator=bdf2
 ok "a sheet at 10 m/s onto an edge, h = 10 ms" holds edge --set time.h=0.01
 ok "a sheet that is wrung" holds wring
+scene press "$(sheet a 0.1 6 'translate: [0, 0.01, 0]' ', pins: [{vertices: [0, 5, 30, 35], motion: {times: [0, 0.1], translate: [[0, 0, 0], [0, -0.05, 0]]}}]')" \
+    "obstacles: [$floor]" 0.1
+pressed() { # says why, and names no stretch
+    limited "$DUITE_CLOTH" press.yaml --quiet > said 2>&1
+    pressed_got=$?
+    cat said
+    test $pressed_got = 1 && grep -q 'what touches cannot be kept apart.*halved down to h/1024' said
+}
+ok "pins that are led into the floor" pressed
 if test "${DUITE_LONG:-}" = 1; then
     for name in ball fold pair edge wring; do
         for h in 0.001 0.004 0.01; do

@@ -248,7 +248,7 @@ static const struct scene_rule contact_keys[] = {
      .about = "certified: in the solve, and no step ends where a contact is not proven; project: "
               "vertices in obstacles are put out after the step"},
     {"self", SCENE_CHOICE, .fallback = "off", INTO(struct model_contact, self),
-     WORDS({"on", true}, {"off", false}), .about = "certified: cloths touch themselves and others"},
+     WORDS({"on", true}, {"off", false}), .about = "certified: a cloth touches itself, too"},
     {"thickness", SCENE_NUMBER, "m", "0.001", .range = SCENE_POSITIVE,
      INTO(struct model_contact, thickness), .about = "certified: how near to each other what touches is"},
     {"friction", SCENE_NUMBER, .fallback = "0", .range = SCENE_NOT_NEGATIVE,

@@ -23,6 +23,7 @@ libduite_cloth_la_SOURCES += \
 	cloth/contact/skin_query.c \
 	cloth/contact/skin_refit.c \
 	cloth/contact/solid.c cloth/contact/solid.h cloth/contact/solid_core.h \
+	cloth/contact/solid_cut.c cloth/contact/solid_divide.h \
 	cloth/contact/solid_nearest.c \
 	cloth/contact/sphere.c \
 	cloth/contact/surface.c cloth/contact/surface.h

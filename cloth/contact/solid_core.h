@@ -6,7 +6,7 @@
 
 #include <math.h>
 
-/* What solid.c and solid_nearest.c share: a triangle in the axes of a core, and the core itself. */
+/* What the files of this topic share: a triangle in the axes of a core, and the core itself. */
 
 PHYS_INLINE double contact_inner(const double a[3], const double b[3])
 {

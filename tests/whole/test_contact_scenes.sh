@@ -1,0 +1,21 @@
+#!/bin/sh
+# The scenes whose contact is certified, coarse and short: cloth touches, and goes through nothing, by exact arithmetic in each frame.
+. "${srcdir:-.}/tests/support/tap.sh"
+skip_unless "$DUITE_CLOTH"
+plan_later
+cd "$scratch" || exit 99
+
+value() { sed -n "s/^ *\"$1\": *\([^,]*\).*/\1/p" report.json; }
+nothing_enters() { # SCENE KEY=VALUE...
+    scene=$srcdir/cloth/scenes/$1.yaml
+    shift
+    for set; do set -- "$@" --set "$set"; shift; done
+    limited "$DUITE_CLOTH" "$scene" "$@" --threads 2 --quiet --check-intersections --report report.json || return 1
+    grep -E '"(contacts|contact_|intersections|steps)' report.json
+    test "$(value intersections)" = 0 && test "$(value intersections_shapes)" = 0 && test "$(value contacts)" -gt 100
+}
+ok "sphere.yaml" nothing_enters sphere 'cloths[0].mesh.grid={width: 1, height: 1, nx: 40, ny: 40}' time.end=0.5
+ok "drape.yaml" nothing_enters drape cloths[0].mesh.disc.rings=14 time.end=0.3
+set --
+for i in 0 1 2 3 4; do set -- "$@" "cloths[$i].mesh.grid={width: 0.5, height: 0.5, nx: 15, ny: 15}"; done
+ok "stack.yaml" nothing_enters stack "$@" time.end=0.25

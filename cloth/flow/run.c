@@ -136,6 +136,22 @@ void flow_filter_by(struct flow *flow, struct flow_filter filter)
     flow->filter = filter;
 }
 
+void flow_start(const struct flow *flow, double *position)
+{
+    const struct flow_particles *particles = &flow->source.particles;
+    uint32_t first = 0;
+    for (uint32_t c = 0; c < flow->model->n_cloths; c++) {
+        const struct model_cloth *cloth = flow->model->cloths + c;
+        for (uint32_t v = first; v < first + cloth->mesh.n_vertices; v++) {
+            struct flow_particle at;
+            flow_particle_of(particles, flow->model, cloth, first, v, &at);
+            for (int k = 0; k < 3; k++)
+                position[3 * (size_t)v + (size_t)k] = at.position[k];
+        }
+        first += cloth->mesh.n_vertices;
+    }
+}
+
 uint64_t flow_vertices(const struct flow *flow)
 {
     return flow->n_vertices;
@@ -251,7 +267,7 @@ static const char *reason(const struct flow_state *state, int code)
 {
     if (code == FLOW_NOT_WRITTEN && state->flow->trouble.code)
         return state->flow->trouble.text;
-    if (code == FLOW_STRETCHED || code == FLOW_TANGLED)
+    if (code == FLOW_STRETCHED || code == FLOW_TANGLED || code == FLOW_PINCHED)
         return state->reason;
     return code > 0 ? own_sentence(duite_message(), code) : duite_message();
 }

@@ -165,6 +165,10 @@ int flow_run(struct flow *flow, duite *rt, const struct flow_output *output,
 /* Vertices of all cloths together; 0 where a flow only joined and has not run. Local. */
 uint64_t flow_vertices(const struct flow *flow);
 
+/* Where a run starts: 3 numbers a vertex, m, in the input's numbering. On rank 0, before the run.
+ * Local. */
+void flow_start(const struct flow *flow, double *position);
+
 /* Names of the columns of the table of probes, with commas between: step, time, then those of its
  * rows' numbers, with units. NULL: the model has no probes. On rank 0 when the flow is prepared.
  * Lives as long as the flow. Local. */

@@ -7,16 +7,81 @@
 #include "cloth/flow/contact/body.h"
 #include "cloth/flow/contact/contact.h"
 #include "cloth/flow/contact/skins.h"
+#include "cloth/flow/setup/setup.h"
+#include "cloth/flow/state/room.h"
 #include "cloth/flow/step/step.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 
 enum { MAX_SOLVES = 5, MAX_CUTS = 8 };
+/* Of the contacts: where more rows than that lose half of their way, the step is too long. */
+static const double TOO_MANY = 0.01;
 
 double flow_contact_stiffness(const struct flow *flow, double h)
 {
     const double inertia = 4 * flow->vertex_mass / (h * h);
     return flow->contact_stiffness > inertia ? flow->contact_stiffness : inertia;
+}
+
+bool flow_contact_is_last(const struct flow_state *state)
+{
+    return state->attempt.length == 1 || !state->flow->model->halving;
+}
+
+/* ---- What cannot be kept apart ---- */
+
+/* Writes the vertices of a pair, counted from 1 over all cloths as files do; rank 0 alone knows
+ * them. */
+static void describe(const struct flow_state *state, const struct flow_near *near, size_t size,
+                     char *text)
+{
+    const struct flow_tie_corners *at = &near->contact.at;
+    size_t used = (size_t)snprintf(text, size, ", the first of them at vertices");
+    for (uint32_t k = 0; k < at->n && used < size && state->flow->vertex; k++) {
+        const uint32_t place = state->flow->tables.block[at->block[k]].first + at->row[k];
+        used += (size_t)snprintf(text + used, size - used, " %u", state->flow->vertex[place] + 1);
+    }
+    if (!state->flow->vertex)
+        text[0] = 0;
+}
+
+/* Finds the first pair of a list that fails, and describes it. */
+static int describe_first(struct flow_state *state, const struct flow_meeting *meeting, size_t size,
+                          char *text)
+{
+    size_t bytes;
+    int code = duite_get_count(state->rt, meeting->near, &bytes);
+    if (code)
+        return code;
+    struct flow_list *list = aligned_alloc(FLOW_LINE, (bytes / FLOW_LINE + 1) * FLOW_LINE);
+    if (!list)
+        cloth_fail(&state->flow->trouble, CLOTH_E_MEMORY, "out of memory for a list of pairs");
+    code = flow_memory_agree(state);
+    if (!code)
+        code = duite_get(state->rt, meeting->near, list);
+    const struct flow_near *near = (const struct flow_near *)(list + 1);
+    uint64_t i = 0;
+    while (!code && i < list->n && !near[i].fails)
+        i++;
+    if (!code && i < list->n)
+        describe(state, near + i, size, text);
+    free(list);
+    return code;
+}
+
+/* The reason of a failure. when: what is wrong. */
+static int say_why(struct flow_state *state, uint64_t n, const char *when)
+{
+    const struct flow_meetings *meetings = &state->contact.meetings;
+    char first[200] = "";
+    uint32_t i = 0;
+    while (i < meetings->n && !(meetings->count[FLOW_COUNTS * (size_t)i + FLOW_COUNT_FAILS] > 0))
+        i++;
+    const int code =
+        i < meetings->n ? describe_first(state, meetings->all + i, sizeof first, first) : DUITE_OK;
+    snprintf(state->reason, sizeof state->reason, "%llu %s%s", (unsigned long long)n, when, first);
+    return code;
 }
 
 /* ---- What a step begins with ---- */
@@ -34,11 +99,10 @@ int flow_contact_start(struct flow_state *state)
     if (!code)
         code = flow_contact_look(state, &seen);
     if (!code && seen.fails) {
-        snprintf(state->reason, sizeof state->reason,
-                 "%llu pairs of vertices and triangles, or of edges, touch where the run starts; "
-                 "move the cloths apart",
-                 (unsigned long long)seen.fails);
-        return FLOW_TANGLED;
+        code = say_why(state, seen.fails,
+                       "pairs of features touch where the run starts, cloths or a cloth and an "
+                       "obstacle: move them apart");
+        return code ? code : FLOW_TANGLED;
     }
     if (!code)
         code = flow_contact_accept(state);
@@ -87,12 +151,16 @@ static int cut(struct flow_state *state, struct flow_seen *seen)
         code = flow_contact_cut(state, &cut);
         report->contact_cuts += cut.rows;
         state->contact.cut += cut.rows;
-        state->contact.failed =
-            state->contact.failed || (double)cut.halved > 0.01 * (double)seen->contacts;
+        if (!flow_contact_is_last(state) && (double)cut.halved > TOO_MANY * (double)seen->contacts)
+            state->contact.failed = true;
         if (!code)
             code = flow_contact_look(state, seen);
     }
     state->contact.failed = state->contact.failed || seen->fails;
+    if (!code && seen->fails && flow_contact_is_last(state))
+        code = say_why(state, seen->fails,
+                       "pairs of features cannot be kept apart: obstacles or pins pinch the cloth, "
+                       "or are too fast");
     return code;
 }
 

@@ -79,10 +79,10 @@ struct flow_seen {
 /* Looks at the way from kept_x to x: all pairs are certified, the near ones are listed. (pairs.c)
  */
 int flow_contact_look(struct flow_state *state, struct flow_seen *seen);
-/* The lists of meetings whose features may have corners in a block, put into `to`; the blocks that
- * may keep contacts with corners in it, marked. They return how many. Local. (pairs.c) */
+/* The lists of meetings whose features may have corners in a block, put into `to`; returns how
+ * many. Marks the blocks that may keep contacts with corners in it, of all. Local. (pairs.c) */
 uint32_t flow_contact_lists(const struct flow_state *state, uint32_t block, duite_object *to);
-uint32_t flow_contact_keepers(const struct flow_state *state, uint32_t block, unsigned char *keeps);
+void flow_contact_keepers(const struct flow_state *state, uint32_t block, unsigned char *keeps);
 /* Forks what makes the contacts of all blocks: those of the solve, pressed, and the pairs that
  * fail; or, at the end of a step, those that are near. (touch.c) */
 int flow_contact_none(struct flow_state *state); /* there are none yet */

@@ -176,19 +176,15 @@ uint32_t flow_contact_lists(const struct flow_state *state, uint32_t block, duit
     return n;
 }
 
-uint32_t flow_contact_keepers(const struct flow_state *state, uint32_t block, unsigned char *keeps)
+void flow_contact_keepers(const struct flow_state *state, uint32_t block, unsigned char *keeps)
 {
     const struct flow_meetings *meetings = &state->contact.meetings;
     const uint32_t n_blocks = state->flow->tables.n_blocks;
-    uint32_t n = 0;
     memset(keeps, 0, n_blocks);
     for (uint32_t i = 0; i < meetings->n; i++)
         for (int k = 0; k < 2 && concerns(state, meetings->all + i, block); k++)
             if (meetings->all[i].side[k] < n_blocks)
                 keeps[meetings->all[i].side[k]] = 1;
-    for (uint32_t b = 0; b < n_blocks; b++)
-        n += keeps[b];
-    return n;
 }
 
 /* ---- Their tasks ---- */

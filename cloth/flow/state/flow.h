@@ -41,7 +41,8 @@ enum {
     FLOW_NOT_CONVERGED,
     FLOW_STRETCHED,
     FLOW_NO_FILTER,
-    FLOW_TANGLED
+    FLOW_TANGLED,
+    FLOW_PINCHED
 };
 
 /* Rows of a block's halo that blocks on one other rank read. */

@@ -172,10 +172,9 @@ struct flow_contact_state {
     unsigned char *mark; /* a block: room */
     unsigned char *said; /* what all blocks said of their ties */
     duite_object *refs;  /* room for the objects of any task */
-    size_t n_refs;
-    bool touched; /* something is near something else */
-    uint64_t cut; /* how often a way was cut in the step */
-    bool failed;  /* no cut ends the step: it is to be made again with half the length */
+    bool touched;        /* something is near something else */
+    uint64_t cut;        /* how often a way was cut in the step */
+    bool failed;         /* no cut ends the step: it is to be made again with half the length */
     double iterations, restarts; /* of the solves of this step but the last */
 };
 

@@ -66,6 +66,8 @@ static int give_up(struct flow_state *state, const struct flow_verdict *verdict)
     if (state->contact.failed)
         return give_up_contact(state);
     const struct flow_step_args args = flow_attempt_args(state);
+    if (state->contact.failed && flow_contact_is_last(state))
+        return FLOW_PINCHED; /* certify.c said why */
     const bool above = verdict->max > 0 && verdict->after > verdict->max;
     snprintf(state->reason, sizeof state->reason,
              "step %llu: in %g s the largest stretch of an edge grows from %g to %g times its "

@@ -291,7 +291,7 @@ int flow_contact_look(struct flow_state *state, struct flow_seen *seen)
 {
     int code = get_roots(state);
     place_shapes(state);
-    if (!code && !all_meet(state))
+    if (!code && (!state->contact.meetings.counts.generation || !all_meet(state)))
         code = make_meetings(state);
     do
         code = code ? code : meet(state);

@@ -219,8 +219,9 @@ static int make_table(const duite_call *call)
                                     .others = links + 1,
                                     .list = &list,
                                     .room = args->room};
+    if (!code && !flow_ties_make(&of, call->param[AT_TIES].data))
+        code = duite_fail(call, FLOW_NO_MEMORY, "block %u has no room for its ties", of.block);
     if (!code) {
-        flow_ties_make(&of, call->param[AT_TIES].data); /* the room is for them */
         const struct flow_ties ties = flow_ties_open(call->param[AT_TIES].data);
         write_rows(flow, &args->step, &found, &ties, duite_out(call, AT_ROWS, struct contact_row));
     }

@@ -91,7 +91,7 @@ static void place(int shape, double u, double v, phys_vec *at)
         const double turn = u / width * 4 * pi, radius = 0.01 + v;
         *at = (phys_vec){radius * cos(turn), 1.2e-3 * turn / (2 * pi), radius * sin(turn), 0};
     } else if (shape == 9) {
-        ring(350, u, v, at);
+        ring(354, u, v, at);
     }
 }
 
@@ -102,7 +102,7 @@ static void move(int shape, double u, double v, phys_vec *to)
     if (shape == 8 && over > 0)
         *to = (phys_vec){middle - over, 1e-3, v, 0};
     if (shape == 9)
-        ring(374, u, v, to);
+        ring(366, u, v, to);
 }
 
 /* Some are far away, some fast; every vertex has a motion of its own. */

@@ -62,6 +62,14 @@ pressed() { # says why, and names no stretch
     test $pressed_got = 1 && grep -q 'what touches cannot be kept apart.*halved down to h/1024' said
 }
 ok "pins that are led into the floor" pressed
+scene sunk "$(sheet a 0.1 6 'translate: [0, -0.01, 0]')" "obstacles: [$floor]" 0.1
+sunk() { # is refused, and nothing says that a step puts it out
+    limited "$DUITE_CLOTH" sunk.yaml > said 2>&1
+    sunk_got=$?
+    cat said
+    test $sunk_got = 1 && grep -q 'm deep in it$' said && grep -q 'touch where the run starts' said
+}
+ok "a start in the floor" sunk
 if test "${DUITE_LONG:-}" = 1; then
     for name in ball fold pair edge wring; do
         for h in 0.001 0.004 0.01; do

@@ -155,7 +155,8 @@ static double find_deepest(const struct flow *flow, const struct contact_shape *
     return gap;
 }
 
-/* The first step puts it out at once, by the nearest way, which may be none that was meant. */
+/* The first step puts it out at once, by the nearest way, which may be none that was meant. A start
+ * of certified contact is refused, and this says where. */
 static void warn_of_inside(struct flow *flow)
 {
     const struct model *model = flow->model;
@@ -169,10 +170,13 @@ static void warn_of_inside(struct flow *flow)
             if (gap < -DEEP)
                 snprintf(flow->warning[9], size,
                          "%.200s%scloth '%.60s' starts inside obstacles[%u], a %s: vertex %u is %g "
-                         "m deep in it; the first step puts it out by the nearest way",
+                         "m deep in it%s",
                          cloth->place ? cloth->place : "", cloth->place ? ": " : "",
                          cloth->name ? cloth->name : "", i,
-                         contact_kinds[model->obstacles[i].kind]->name, deepest, -gap);
+                         contact_kinds[model->obstacles[i].kind]->name, deepest, -gap,
+                         model_certifies(model)
+                             ? ""
+                             : "; the first step puts it out by the nearest way");
         }
 }
 

@@ -191,7 +191,7 @@ static void write_rows(const struct flow *flow, const struct flow_step_args *ste
                        const struct found *found, const struct flow_ties *ties,
                        struct contact_row *row)
 {
-    memset(row, 0, ties->room.ties * sizeof *row);
+    memset(row, 0, (ties->room.ties ? ties->room.ties : 1) * sizeof *row);
     for (uint32_t i = 0; i < ties->n; i++) {
         if (ties->of[i] < flow->n_ties)
             continue;

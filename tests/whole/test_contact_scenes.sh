@@ -19,3 +19,4 @@ ok "drape.yaml" nothing_enters drape cloths[0].mesh.disc.rings=14 time.end=0.3
 set --
 for i in 0 1 2 3 4; do set -- "$@" "cloths[$i].mesh.grid={width: 0.5, height: 0.5, nx: 15, ny: 15}"; done
 ok "stack.yaml" nothing_enters stack "$@" time.end=0.25
+ok "twist.yaml" nothing_enters twist 'cloths[0].mesh.grid={width: 0.8, height: 0.25, nx: 41, ny: 14}' time.h=0.01

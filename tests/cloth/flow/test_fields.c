@@ -1,6 +1,7 @@
 /* The table of fields against runs: what exists is made in the size that the table says, and freed;
  * what a step does with a field between two steps is what the table calls it. Work fields may be
  * anything when a step begins; a state field may not. */
+#include "cloth/flow/contact/certify.h"
 #include "cloth/flow/kernels.h"
 #include "cloth/flow/setup/setup.h"
 #include "cloth/flow/solver/solve.h"
@@ -51,6 +52,7 @@ static void start(struct session *s)
 static void end(struct session *s)
 {
     ck_assert_int_eq(duite_wait(s->rt), 0);
+    ck_assert_int_eq(flow_contact_free_objects(&s->state), 0);
     flow_objects_free(&s->state);
     flow_memory_free(&s->state);
     ck_assert_int_eq(duite_stop(&s->rt), 0);
@@ -154,9 +156,17 @@ static void tied_explicitly(struct session *s)
     tie(s);
 }
 
+/* Over a floor that it comes to. */
+static void certified(struct session *s)
+{
+    conditioned(s);
+    s->setup.model.contact = (struct model_contact){
+        .mode = MODEL_CONTACT_CERTIFIED, .self = true, .thickness = 0.002, .friction = 0.3};
+}
+
 static void (*const kinds[])(struct session *) = {
-    plain,  conditioned, guessed, newton, bdf2,         euler,
-    verlet, midpoint,    runge,   tied,   tied_plainly, tied_explicitly};
+    plain, conditioned, guessed,      newton,          bdf2,     euler, verlet, midpoint,
+    runge, tied,        tied_plainly, tied_explicitly, certified};
 enum { KINDS = sizeof kinds / sizeof *kinds };
 
 /* ---- What exists ---- */
@@ -224,8 +234,9 @@ END_TEST
 /* Every field exists in some kind of run, or is of what these runs do not have. */
 START_TEST(every_field_has_a_run)
 {
-    static const char *const others[] = {"filter", "probe_force", "probe_values",
-                                         "pieces", "saved",       "groups"};
+    static const char *const others[] = {"filter",      "probe_force", "probe_values", "pieces",
+                                         "saved",       "groups",      "body_skins",   "body_fans",
+                                         "body_points", "body_boxes"};
     bool exists[FLOW_FIELDS_OF_ALL] = {false};
     for (int kind = 0; kind < KINDS; kind++) {
         struct session s;
@@ -318,12 +329,15 @@ static uint64_t run_changed(int kind, enum flow_life life, int only, change *how
     if (model_is_implicit(&s.setup.model))
         ck_assert_int_eq(flow_cg_record(&s.state), 0);
     ck_assert_int_eq(flow_initialise(&s.state), 0);
+    if (model_certifies(&s.setup.model))
+        ck_assert_int_eq(flow_contact_start(&s.state), 0);
     for (int step = 0; step < STEPS; step++) {
         for (int field = 0; field < FLOW_FIELDS_OF_ALL && step && how; field++)
             if (is_changed(&s, field, life, only))
                 change_field(&s, field, how);
         ck_assert_int_eq(step_on(&s), 0);
         ck_assert_int_eq(duite_wait(s.rt), 0);
+        flow_contact_settled(&s.state, true);
         s.state.smooth = FLOW_TICKS; /* BDF2 goes on */
     }
     const uint64_t hash = hash_state(&s);

@@ -49,22 +49,9 @@ static void note(struct flow_state *state, const double status[FLOW_STATUS])
     report_progress(state, iterations);
 }
 
-/* Certified contact found no end of the step. */
-static int give_up_contact(struct flow_state *state)
-{
-    snprintf(state->reason, sizeof state->reason,
-             "step %llu: in %g s what touches cannot be kept apart: pins or obstacles leave cloth "
-             "no room, or it moves too fast for such a step (contact.mode: certified)",
-             (unsigned long long)(state->attempt.begin / FLOW_TICKS + 1),
-             flow_attempt_args(state).h);
-    return FLOW_STRETCHED;
-}
-
 /* No step is short enough. */
 static int give_up(struct flow_state *state, const struct flow_verdict *verdict)
 {
-    if (state->contact.failed)
-        return give_up_contact(state);
     const struct flow_step_args args = flow_attempt_args(state);
     if (state->contact.failed && flow_contact_is_last(state))
         return FLOW_PINCHED; /* certify.c said why */

@@ -26,6 +26,9 @@ struct contact_row {
     double firm;  /* how many times as stiff as others it is; 0: as stiff */
 };
 
+/* Of the thickness: a contact with a load that opens by less in a step stays one in it. */
+#define CONTACT_ROW_OPENS 0.1
+
 /* The gap at a point. */
 PHYS_INLINE double contact_row_gap(const struct contact_row *row, const phys_vec *point)
 {
@@ -42,18 +45,19 @@ PHYS_INLINE void contact_row_stretch(const struct contact_row *row, const phys_v
 }
 
 /* The force on the first side if the step ends at this point, and its negative derivative
- * alpha I + w w' as a spring's value has it: w, alpha. Both are zero where nothing presses: what
- * has a load stays for this step, and leaves in the next one if it was pulled. Where the spring
- * across would pull more than friction allows it is softer by so much: the secant of Coulomb's law,
- * which takes energy away in a step of any length. The secant is that of the stretch as it will be,
- * if it grows as it did in the step before. */
+ * alpha I + w w' as a spring's value has it: w, alpha. Both are zero where nothing presses. What
+ * has a load and hardly opens stays for this step, and leaves in the next one if it was pulled: so
+ * what rests does not bounce. Where the spring across would pull more than friction allows it is
+ * softer by so much: the secant of Coulomb's law, which takes energy away in a step of any length.
+ * The secant is that of the stretch as it will be, if it grows as it did in the step before. */
 PHYS_INLINE void contact_row_linearise(const struct contact_row *row, const phys_vec *point,
                                        phys_vec *force, phys_vec *value)
 {
     const double stiffness = row->stiffness;
     const double push = row->load + stiffness * (row->thickness - contact_row_gap(row, point));
     *force = *value = (phys_vec){0};
-    if (!(push > 0 || row->load > 0))
+    const double opens = contact_row_gap(row, point) - row->thickness;
+    if (!(push > 0 || (row->load > 0 && opens < CONTACT_ROW_OPENS * row->thickness)))
         return;
     phys_vec stretch;
     contact_row_stretch(row, point, &stretch);

@@ -81,6 +81,16 @@ if test "${DUITE_LONG:-}" = 1; then
     done
 fi
 
+# What slides without friction over the edges of what it lies on keeps its speed.
+scene slide "$(sheet ground 0.6 25 'translate: [0, 0, 0]' ', pins: [{box: [[-1, -1, -1], [1, 1, 1]]}]')
+$(sheet patch 0.1 6 'translate: [-0.2, 0.00205, 0.003], rotate: [0.99, 0, 0.14, 0]' ', velocity: [1, 0, 0]')" 'probes: [{name: patch, cloth: patch, vertices: [0, 35], values: [velocity]}]' 0.2
+sliding() {
+    limited "$DUITE_CLOTH" slide.yaml --set grain=1000 --set contact.friction=0 --set contact.self=off --set 'materials.m.damping={stiffness: 0.004}' --output slid --quiet > said 2>&1 || { cat said && return 1; }
+    awk -F, 'NR == 1 { for (i = 1; i <= NF; i++) if ($i ~ /^patch\.[0-9]*\.vx/) at[++n] = i }
+        END { for (i = 1; i <= n; i++) { print "vx", $at[i]; if ($at[i] < 0.995 || $at[i] > 1.005) bad = 1 } exit bad || n != 2 }' slid/probes.csv
+}
+ok "a patch slides over a cloth without friction" sliding
+
 # Starts and steps that cannot be kept apart.
 scene crossed "$(sheet a 0.3 16 'translate: [0, 0, 0]')
 $(sheet b 0.3 16 'translate: [0.001, 0, 0.003], rotate: [1, 1, 0, 0]')" '' 0.1

@@ -162,7 +162,15 @@ static bool presses_body(const struct meeting *m, const struct corners *corners,
     return inside && contact_body_opens(m->body, m->fan, m->side[1].y, n, vertex, &point, &normal);
 }
 
-/* Whether two features are a contact at the end of the step. */
+/* Whether a vertex is above the inside of a triangle. */
+static bool is_above(const struct contact_nearest *nearest)
+{
+    return nearest->weight[1] != 0 && nearest->weight[2] != 0 && nearest->weight[3] != 0;
+}
+
+/* Whether two features are a contact at the end of the step. A vertex beside a triangle is one
+ * where it is too near alone: the plane across the way to it would hold up what slides over an
+ * edge. */
 static bool presses(const struct meeting *m, const struct contact_candidate *candidate,
                     const struct corners *corners, const struct contact_nearest *nearest)
 {
@@ -170,9 +178,10 @@ static bool presses(const struct meeting *m, const struct contact_candidate *can
         return false;
     if (m->body)
         return presses_body(m, corners, nearest);
-    return candidate->kind != CONTACT_EE ||
-           (is_ridge(m, 0, candidate->of[0], &nearest->normal, 1) &&
-            is_ridge(m, 1, candidate->of[1], &nearest->normal, -1));
+    if (candidate->kind != CONTACT_EE)
+        return is_above(nearest) || nearest->gap < m->model->contact.thickness;
+    return is_ridge(m, 0, candidate->of[0], &nearest->normal, 1) &&
+           is_ridge(m, 1, candidate->of[1], &nearest->normal, -1);
 }
 
 static void list(struct meeting *m, const struct contact_candidate *candidate,

@@ -206,9 +206,48 @@ static size_t successor(const struct touching *t, const struct flow_contact *bef
     return t->n;
 }
 
+/* Whether the nearest point is inside the triangle that a vertex meets. */
+static bool is_inside(const struct flow_contact *contact)
+{
+    bool inside = true;
+    for (uint32_t k = contact->first; k < contact->at.n; k++)
+        inside = inside && contact->at.weight[k] != 0;
+    return inside;
+}
+
+/* Whether the vertex of a contact meets a triangle of that surface from above. */
+static bool is_met(const struct touching *t, size_t i)
+{
+    const struct flow_contact *contact = t->after + i;
+    size_t from = i, to = i;
+    bool met = false;
+    while (from > 0 && !compare_first(t->after + from - 1, contact))
+        from--;
+    for (to = from; to < t->n && !compare_first(t->after + to, contact); to++)
+        met = met || (is_inside(t->after + to) &&
+                      phys_dot(&t->after[to].row.normal, &contact->row.normal) > 0.5);
+    return met;
+}
+
+/* A vertex that meets a triangle from above is near to its neighbours as well, aslant: they would
+ * hold it up as it slides. Those contacts are none. */
+static void drop_aslant(struct touching *t)
+{
+    size_t kept = 0;
+    for (size_t i = 0; i < t->n; i++)
+        t->used[t->n_before + i] =
+            t->after[i].kind == CONTACT_VT && !is_inside(t->after + i) && is_met(t, i);
+    for (size_t i = 0; i < t->n; i++)
+        if (!t->used[t->n_before + i])
+            t->after[kept++] = t->after[i];
+    memset(t->used + t->n_before, 0, t->n);
+    t->n = kept;
+}
+
 static void end_accept(struct touching *t)
 {
     qsort(t->after, t->n, sizeof *t->after, compare);
+    drop_aslant(t);
     for (size_t i = 0; i < t->n; i++) {
         const size_t at = find_before(t, t->after + i);
         if (at < t->n_before)

@@ -79,12 +79,12 @@ struct own {
 static struct own own_in(const struct flow_tie_list *list, uint32_t block, uint64_t *scratch,
                          size_t room)
 {
-    uint64_t *key = scratch + room;
-    return (struct own){.list = list,
-                        .block = block,
-                        .of = (uint32_t *)(void *)scratch,
-                        .key = key,
-                        .spare = key + SOLVE_TIE_CORNERS * room};
+    struct own own = {.list = list, .block = block, .of = (uint32_t *)(void *)scratch};
+    if (!room) /* and no scratch */
+        return own;
+    own.key = scratch + room;
+    own.spare = own.key + SOLVE_TIE_CORNERS * room;
+    return own;
 }
 
 static const struct flow_tie_corners *corners_of(const struct flow_tie_list *list, uint32_t number)

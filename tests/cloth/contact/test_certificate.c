@@ -66,7 +66,10 @@ START_TEST(not_finite)
                 phys_vec x[4], y[4];
                 double t[4] = {1, 1, 1, 1};
                 lay(KINDS[i], 1e-3, 0, 0, x, y);
-                *(k < 4 ? x + k : y + k - 4) = (phys_vec){0, 0, value[j], 0};
+                if (k < 4)
+                    x[k] = (phys_vec){0, 0, value[j], 0};
+                else
+                    y[k - 4] = (phys_vec){0, 0, value[j], 0};
                 ck_assert(!contact_certify(KINDS[i], x, y, THICKNESS));
                 ck_assert(!contact_cut(KINDS[i], x, y, THICKNESS, 0, t));
             }

@@ -75,10 +75,10 @@ enum contact_passing contact_solid_pass(const struct contact_solid *solid, const
                                         const phys_vec y[3], double thickness, double reach);
 
 /* Lowers t, the parts (0 to 1) of their ways that the corners go, so that the triangle from x to
- * x + t (y - x) is certified; they stay where it is already. Smaller parts do, too, where the shape
- * at the end leaves room for the triangle as it begins: always, if it stands still. held: bit k:
- * corner k cannot be cut. Returns false, t unchanged, if it finds no such parts: the shape goes
- * where the triangle begins, or a corner that is held goes into it. */
+ * x + t (y - x) is certified; they stay where it is already. What other pairs cut further is to be
+ * certified again: most often it is, but a direction that divided the longer ways need not divide
+ * the shorter ones. held: bit k: corner k cannot be cut. Returns false, t unchanged, if it finds no
+ * such parts: the shape goes where the triangle begins, or a corner that is held goes into it. */
 bool contact_solid_cut(const struct contact_solid *solid, const phys_vec x[3], const phys_vec y[3],
                        double thickness, unsigned held, double t[3]);
 

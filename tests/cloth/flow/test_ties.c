@@ -63,7 +63,7 @@ static struct flow_tie_corners draw_corners(uint32_t n)
 
 static const struct flow_tie_corners *corners(uint32_t i)
 {
-    return i < 3 ? &joints[i].at : ties + i - 3;
+    return i < 3 ? &joints[i].at : ties + (i - 3);
 }
 
 static bool is_listed(uint32_t i)
@@ -674,7 +674,7 @@ static void check_links(const struct session *s, uint32_t b, uint32_t n, const u
     uint32_t is[1 + FLOW_TIE_OTHERS][2];
     ck_assert_int_eq(duite_get(s->rt, s->state.block[b].tie_links, is), 0);
     ck_assert_uint_eq(is[0][0], n);
-    ck_assert_int_eq(memcmp(is + 1, links, n * sizeof *links), 0);
+    ck_assert(!n || !memcmp(is + 1, links, n * sizeof *links));
 }
 
 START_TEST(rooms_grow_and_shrink)

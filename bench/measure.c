@@ -256,7 +256,7 @@ int measure_run(struct measure *measure, const char *name, size_t rounds, uint64
                 measure->full ? "more is planned than there is room for" : "out of memory");
     if (!code)
         code = start_all(measure, &team, settings);
-    for (long round = -1; round < (long)rounds && !code; round++) {
+    for (long round = measure->cold ? 0 : -1; round < (long)rounds && !code; round++) {
         set_order(&team, measure->n_series, round > 0 && round % 2, seed);
         code = run_round(measure, name, &team, round);
     }

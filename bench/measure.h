@@ -42,6 +42,7 @@ struct measure_metric {
     size_t rounds; /* when it is computed: all of them, with their samples */
     double scale;
     const char *missing;                 /* why it was not measured, or NULL */
+    const char *none;                    /* why rounds have no value, or NULL */
     double median, low, high;            /* NAN if not reached or not measured */
     const struct measure_target *target; /* NULL: it is only reported */
 };
@@ -51,6 +52,7 @@ struct measure {
     struct measure_metric metric[MEASURE_METRICS];
     size_t n_series, n_metrics;
     unsigned loops; /* busy processes on each core meanwhile, see bench/loops.h */
+    bool cold;      /* the first round counts, too: of runs that take long */
     bool full;      /* more were planned than there is room for: an error of the case */
 };
 
@@ -80,9 +82,9 @@ enum measure_verdict measure_verdict(const struct measure_metric *metric);
 /* A random number below n. */
 uint64_t measure_random(uint64_t *seed, uint64_t n);
 
-/* Starts the subjects, runs one round that is left out and then `rounds` that count, computes the
- * metrics and tells `settings` of each subject once. 1, after a line on stderr, as soon as anything
- * fails: a wrong answer, a subject that dies, no memory. `name`: of the case. */
+/* Starts the subjects, runs one round that is left out unless `cold` and then `rounds` that count,
+ * computes the metrics and tells `settings` of each subject once. 1, after a line on stderr, as
+ * soon as anything fails: a wrong answer, a subject that dies, no memory. `name`: of the case. */
 int measure_run(struct measure *measure, const char *name, size_t rounds, uint64_t *seed,
                 void (*settings)(const char *kind, const char *text));
 

@@ -11,21 +11,26 @@ bench_libbench_la_SOURCES = bench/bench.h bench/environment.h bench/load.c bench
 	bench/tasks/granularity.c bench/tasks/growth.c bench/tasks/independent.c bench/tasks/stencil.c \
 	bench/tasks/wake.c bench/ranks/cg.c bench/ranks/delegate.c bench/ranks/forks.c bench/ranks/loaded.c bench/ranks/memory.c bench/ranks/migrate.c bench/ranks/ranks.c \
 	bench/ranks/ranks.h bench/ranks/sheet.c bench/ranks/sheet.h bench/ranks/stencil.c bench/ranks/twin.c \
-	bench/cg/bench.c bench/cg/cg.h bench/cg/frames.c bench/cg/make.c bench/cg/ours.c bench/cg/plans.c bench/cg/states.c \
-	bench/contact/bench.c bench/contact/certify.c bench/contact/contact.h bench/contact/detect.c bench/contact/solid.c \
+	bench/cg/bench.c bench/cg/cg.h bench/cg/frames.c bench/cg/make.c bench/cg/ours.c bench/cg/plans.c bench/cg/states.c bench/sets.h \
+	bench/contact/bench.c bench/contact/blender.c bench/contact/certify.c bench/contact/contact.h bench/contact/detect.c bench/contact/instructions.c \
+	bench/contact/maps.c \
+	bench/contact/plans.c bench/contact/scene.c bench/contact/shapes.c bench/contact/shapes.h bench/contact/solid.c bench/contact/state.c \
+	cloth/intersections.c cloth/intersections.h cloth/intersections_model.c cloth/intersections_parts.c \
 	bench/physics/bench.c bench/physics/ours.c bench/physics/physics.h \
 	bench/predict/bench.c bench/predict/errors.c bench/predict/many.c bench/predict/order.c bench/predict/predict.h bench/predict/sheet.c bench/sweep/median.c bench/sweep/compare.h \
 	tests/support/trace_file.c tests/support/trace_file.h \
 	$(BENCH_STATE) $(BENCH_SHARED)
 bench_libbench_la_CPPFLAGS = $(AM_CPPFLAGS) -DBENCH_MPIRUN='"$(MPIRUN)"' -DBENCH_CFLAGS='"$(CFLAGS)"' \
 	-DBENCH_HOSTS='"$(abs_top_srcdir)/tests/cluster/hosts.sh"' \
+	-DBENCH_BLENDER='"$(abs_top_srcdir)/bench/rivals/blender_sphere.py"' \
+	-DBENCH_SCENES='"$(abs_top_srcdir)/cloth/scenes"' \
 	-DBENCH_STATES_SCENE='"$(abs_top_srcdir)/bench/cg/states.yaml"' \
 	-DBENCH_DRESS='"$(abs_top_srcdir)/../shared/data/meshes/dress-v17k-f34k.obj"'
 bench_libbench_la_LIBADD = libduite_cloth.la libduite_predict.la libduite_core.la
 check_PROGRAMS += bench/duite-bench
 bench_duite_bench_SOURCES = bench/duite-bench.c
 bench_duite_bench_LDADD = bench/libbench.la -lm
-EXTRA_DIST += bench/experiments bench/rivals/openmp.c bench/cg/states.yaml
+EXTRA_DIST += bench/experiments bench/rivals/blender_sphere.py bench/rivals/openmp.c bench/cg/states.yaml
 
 OPENMP_FILES = bench/rivals/openmp.c bench/problem.c bench/serve.c
 OPENMP_NEEDS = $(OPENMP_FILES) bench/problem.h bench/serve.h
@@ -93,6 +98,15 @@ bench_rivals_petsc_LDFLAGS =
 bench_rivals_petsc_LDADD = $(PETSC_LIBS) $(MPI_LIBS) -lm
 endif
 
+if HAVE_RIVAL_EMBREE
+check_PROGRAMS += bench/rivals/embree
+BENCH_RIVALS += bench/rivals/embree$(EXEEXT)
+bench_rivals_embree_SOURCES = bench/rivals/embree.c bench/contact/shapes.c bench/contact/shapes.h bench/serve.c bench/serve.h
+bench_rivals_embree_CFLAGS = $(RIVAL_CFLAGS)
+bench_rivals_embree_LDFLAGS =
+bench_rivals_embree_LDADD = -lembree3 -lm
+endif
+
 # Comparisons of policies: graph-run schedules graphs without an application, compare runs products of everything.
 check_PROGRAMS += bench/graph-run bench/compare
 bench_graph_run_SOURCES = bench/sweep/run.c bench/sweep/graph.c bench/sweep/graph.h
@@ -101,6 +115,11 @@ bench_compare_SOURCES = bench/environment.h bench/load.c bench/load.h bench/swee
 bench_compare_CPPFLAGS = $(AM_CPPFLAGS) -DBENCH_MPIRUN='"$(MPIRUN)"' -DBENCH_CFLAGS='"$(CFLAGS)"'
 bench_compare_LDADD = libduite_core.la -lm
 
-bench: bench/duite-bench$(EXEEXT) bench/graph-run$(EXEEXT) bench/compare$(EXEEXT) duite-cloth$(EXEEXT) $(BENCH_RIVALS)
+# What bench/experiments contact-partition runs.
+check_PROGRAMS += bench/contact-partition
+bench_contact_partition_SOURCES = bench/contact/partition.c
+bench_contact_partition_LDADD = bench/libbench.la -lm
+
+bench: bench/contact-partition$(EXEEXT) bench/duite-bench$(EXEEXT) bench/graph-run$(EXEEXT) bench/compare$(EXEEXT) duite-cloth$(EXEEXT) $(BENCH_RIVALS)
 check_DATA += $(BENCH_RIVALS)
 .PHONY: bench

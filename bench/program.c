@@ -29,21 +29,25 @@
     }
 
 static const struct program PROGRAMS[] = {
-    {"duite", NULL, "", NULL, false, {0}, {0}},
-    {"duite_hosts", NULL, "", NULL, true, {0}, {0}},
-    {"twin", NULL, "", NULL, false, TURNS, {0}},
-    {"twin_hosts", NULL, "", NULL, true, TURNS, {0}},
-    {"sequential", NULL, "", NULL, false, {0}, {0}},
-    {"libgomp", "rivals/libgomp", RIVAL_LIBGOMP_MISSING, "libgomp_passive", false, ACTIVE},
-    {"libgomp_passive", "rivals/libgomp", RIVAL_LIBGOMP_MISSING, NULL, false, PASSIVE},
-    {"libomp", "rivals/libomp", RIVAL_LIBOMP_MISSING, "libomp_passive", false, ACTIVE},
-    {"libomp_passive", "rivals/libomp", RIVAL_LIBOMP_MISSING, NULL, false, PASSIVE},
-    {"starpu", "rivals/starpu", RIVAL_STARPU_MISSING, NULL, false, {"STARPU_SILENT=1"}, {0}},
-    {"mpi", "rivals/mpi", RIVAL_MPI_MISSING, NULL, false, TURNS, {0}},
-    {"openmp", "cg/twin", RIVAL_OPENMP_MISSING, NULL, false, ACTIVE},
+    {"duite", NULL, "", NULL, NULL, false, {0}, {0}},
+    {"duite_hosts", NULL, "", NULL, NULL, true, {0}, {0}},
+    {"duite_valgrind", NULL, "", NULL, "valgrind", false, {0}, {0}},
+    {"blender", NULL, "", NULL, "blender", false, {0}, {0}},
+    {"twin", NULL, "", NULL, NULL, false, TURNS, {0}},
+    {"twin_hosts", NULL, "", NULL, NULL, true, TURNS, {0}},
+    {"sequential", NULL, "", NULL, NULL, false, {0}, {0}},
+    {"libgomp", "rivals/libgomp", RIVAL_LIBGOMP_MISSING, "libgomp_passive", NULL, false, ACTIVE},
+    {"libgomp_passive", "rivals/libgomp", RIVAL_LIBGOMP_MISSING, NULL, NULL, false, PASSIVE},
+    {"libomp", "rivals/libomp", RIVAL_LIBOMP_MISSING, "libomp_passive", NULL, false, ACTIVE},
+    {"libomp_passive", "rivals/libomp", RIVAL_LIBOMP_MISSING, NULL, NULL, false, PASSIVE},
+    {"starpu", "rivals/starpu", RIVAL_STARPU_MISSING, NULL, NULL, false, {"STARPU_SILENT=1"}, {0}},
+    {"mpi", "rivals/mpi", RIVAL_MPI_MISSING, NULL, NULL, false, TURNS, {0}},
+    {"openmp", "cg/twin", RIVAL_OPENMP_MISSING, NULL, NULL, false, ACTIVE},
+    {"embree", "rivals/embree", RIVAL_EMBREE_MISSING, NULL, NULL, false, {0}, {0}},
     {"petsc",
      "rivals/petsc",
      RIVAL_PETSC_MISSING,
+     NULL,
      NULL,
      false,
      {"OMPI_MCA_mpi_yield_when_idle=0", "OPENBLAS_NUM_THREADS=1"},
@@ -92,11 +96,30 @@ static const char *hosts_missing(void)
     return failed ? why : NULL;
 }
 
+/* Whether a folder of PATH has it. */
+static bool is_installed(const char *tool)
+{
+    char path[PATH_MAX];
+    const char *folder = getenv("PATH");
+    while (folder && *folder) {
+        const int length = (int)strcspn(folder, ":");
+        snprintf(path, sizeof path, "%.*s/%s", length, folder, tool);
+        if (!access(path, X_OK))
+            return true;
+        folder += length + (folder[length] == ':');
+    }
+    return false;
+}
+
 const char *program_missing(const struct program *program)
 {
     static char why[200];
     if (!program)
         return "unknown";
+    if (program->tool && !is_installed(program->tool)) {
+        snprintf(why, sizeof why, "not installed: %s", program->tool);
+        return why;
+    }
     if (!access(path_of(program), X_OK))
         return program->hosts ? hosts_missing() : NULL;
     snprintf(why, sizeof why, "not built: %s%s",

@@ -10,6 +10,7 @@ struct program {
     const char *file;    /* beside duite-bench; NULL: duite-bench itself */
     const char *missing; /* the package that configure did not find, or "" */
     const char *other;   /* the kind of the same program in another setting, or NULL */
+    const char *tool;    /* a program that it calls, to be found as a shell does; NULL: none */
     bool hosts;          /* each rank on a host of its own, by tests/cluster/hosts.sh */
     /* NAME=VALUE words where each thread has a core, and where not; a user's own setting of a name
      * goes first */

@@ -86,6 +86,14 @@ static void report_target(struct report *report, const struct measure_metric *me
     write_number(report->json, metric->name, "_target", metric->target->bound);
 }
 
+/* Why it has no median. */
+static const char *why_none(const struct measure_metric *metric)
+{
+    if (metric->missing)
+        return metric->missing;
+    return metric->none ? metric->none : "not found within the sizes tried";
+}
+
 void report_metric(struct report *report, const struct measure_metric *metric)
 {
     char median[32], low[32], high[32];
@@ -94,8 +102,7 @@ void report_metric(struct report *report, const struct measure_metric *metric)
                metric->unit, digits(metric->low, low, sizeof low),
                digits(metric->high, high, sizeof high));
     else
-        printf("%s: %s", metric->name,
-               metric->missing ? metric->missing : "not found within the sizes tried");
+        printf("%s: %s", metric->name, why_none(metric));
     write_number(report->json, metric->name, "", metric->median);
     write_number(report->json, metric->name, "_low", metric->low);
     write_number(report->json, metric->name, "_high", metric->high);

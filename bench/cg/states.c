@@ -3,16 +3,16 @@
 #include "bench/cg/cg.h"
 
 #include "bench/measure.h"
+#include "bench/sets.h"
 #include "cloth/scene/scene.h"
 
 #include <math.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-enum { MOST_SETS = 12, SET_LENGTH = 4400, IRREGULAR_SIDE = 187, QUICK_SIDE = 16 };
+enum { IRREGULAR_SIDE = 187, QUICK_SIDE = 16 };
 
 #define PLACE "cloths[0].transform={rotate: [0.87, 0.4, 0.25, 0.1], translate: [0, 0.62, 0]}"
 #define FREE  "cloths[0].pins=[]"
@@ -126,23 +126,6 @@ static int mesh_set(const char *motion, bool quick, char *set)
 
 /* ---- Models ---- */
 
-struct sets {
-    size_t n;
-    struct scene_set set[MOST_SETS];
-    char text[MOST_SETS][SET_LENGTH];
-};
-
-__attribute__((format(printf, 2, 3))) static void add(struct sets *sets, const char *format, ...)
-{
-    va_list list;
-    va_start(list, format);
-    vsnprintf(sets->text[sets->n], SET_LENGTH, format, list);
-    va_end(list);
-    if (*sets->text[sets->n])
-        sets->set[sets->n].text = sets->text[sets->n];
-    sets->n += *sets->text[sets->n] != '\0';
-}
-
 static int read_model(struct model *model, const struct motion *motion, bool quick, double h,
                       double end, bool bend)
 {
@@ -151,21 +134,21 @@ static int read_model(struct model *model, const struct motion *motion, bool qui
     char mesh[SET_LENGTH];
     int code = sets ? mesh_set(motion->name, quick, mesh) : serve_no_memory();
     if (!code) {
-        add(sets, "%s", mesh);
+        add_set(sets, "%s", mesh);
         for (int i = 0; i < 4 && motion->sets[i]; i++)
-            add(sets, "%s", motion->sets[i]);
-        add(sets, "time.h=%.17g", h);
-        add(sets, "time.end=%.17g", end);
+            add_set(sets, "%s", motion->sets[i]);
+        add_set(sets, "time.h=%.17g", h);
+        add_set(sets, "time.end=%.17g", end);
         if (bend)
-            add(sets, "materials.cloth.bend=5");
+            add_set(sets, "materials.cloth.bend=5");
         if (quick && !*mesh) {
-            add(sets, "cloths[0].mesh.grid.nx=%d", QUICK_SIDE);
-            add(sets, "cloths[0].mesh.grid.ny=%d", QUICK_SIDE);
+            add_set(sets, "cloths[0].mesh.grid.nx=%d", QUICK_SIDE);
+            add_set(sets, "cloths[0].mesh.grid.ny=%d", QUICK_SIDE);
         }
         if (quick)
-            add(sets, "grain=40");
+            add_set(sets, "grain=40");
         if (end > h)
-            add(sets, "solver={stop: {relative: 0.01}}"); /* the motion: it need not be exact */
+            add_set(sets, "solver={stop: {relative: 0.01}}"); /* the motion: it need not be exact */
         if (scene_read(model, BENCH_STATES_SCENE, sets->n, sets->set, &error))
             code = serve_fail("%s", error.text);
     }

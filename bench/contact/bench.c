@@ -42,7 +42,13 @@ static void plan_detect(struct measure *measure, const struct bench_options *opt
             measure_series(measure, (struct subject_shape){"duite", 0, options->threads},
                            "detect shape=%s threads=%u quick=%d rounds=%d", shape[i],
                            options->threads, options->quick, options->quick ? 2 : 10);
+        const struct measure_series *rival =
+            measure_series(measure, (struct subject_shape){"embree", 0, options->threads},
+                           "detect shape=%s threads=%u quick=%d rounds=%d", shape[i],
+                           options->threads, options->quick, options->quick ? 2 : 10);
         measure_value(measure, time, 1e9, "ns", "detect_ns_per_vertex_%s", shape[i]);
+        measure_value(measure, rival, 1e9, "ns", "detect_embree_ns_per_vertex_%s", shape[i]);
+        measure_ratio(measure, time, rival, "detect_vs_embree_%s", shape[i]);
     }
 }
 
@@ -52,7 +58,18 @@ static const struct bench_case DETECT = {
     "queries, and the distances of what they visit",
     plan_detect, contact_detect_runs, 0};
 
-static const struct bench_case *const CASES[] = {&CERTIFY, &SOLID, &DETECT, NULL};
+static const struct bench_case *const CASES[] = {&CERTIFY,
+                                                 &SOLID,
+                                                 &DETECT,
+                                                 &contact_maps,
+                                                 &contact_part,
+                                                 &contact_iterations,
+                                                 &contact_self,
+                                                 &contact_frames,
+                                                 &contact_twist,
+                                                 &contact_instructions,
+                                                 &contact_intersections,
+                                                 NULL};
 
 /* For two threads and the full sizes. */
 static const struct measure_target TARGETS[] = {{"certify_ns_per_pair", 35, false},
@@ -60,15 +77,34 @@ static const struct measure_target TARGETS[] = {{"certify_ns_per_pair", 35, fals
                                                 {"detect_ns_per_vertex_waves", 130, false},
                                                 {"detect_ns_per_vertex_draped", 400, false},
                                                 {"detect_ns_per_vertex_six_layers", 2000, false},
+                                                {"detect_vs_embree_waves", 0.45, false},
+                                                {"detect_vs_embree_six_layers", 1.2, false},
+                                                {"map_ms", 20, false},
+                                                {"collision_speedup_t2", 1.8, true},
+                                                {"collision_speedup_r2", 1.6, true},
+                                                {"iterations_with_contact", 1.2, false},
+                                                {"self_on_vs_off", 1.5, false},
+                                                {"sphere_seconds_per_frame", 0.35, false},
+                                                {"stack_seconds_per_frame", 1, false},
+                                                {"sphere_vs_blender", 0.125, false},
+                                                {"twist_balance_vs_none", 0.95, false},
+                                                {"instructions_nothing_to_touch", 1.01, false},
+                                                {"intersections", 0, false},
                                                 {0}};
 enum { TARGET_THREADS = 2 };
 
 static int serve_contact(const struct bench *bench)
 {
-    const struct serve_run *const runs[] = {contact_certify_runs, contact_detect_runs,
-                                            contact_solid_runs, NULL};
+    const struct serve_run *const runs[] = {
+        contact_certify_runs, contact_detect_runs,      contact_solid_runs,
+        contact_map_runs,     contact_scene_runs,       contact_state_runs,
+        contact_blender_runs, contact_instruction_runs, NULL};
     (void)bench;
-    return serve("the cloth's kernels of contact", runs, NULL);
+    const int status = serve("the cloth's kernels of contact, and its runs; "
+                             "duite_options_default() but for threads, scheduler and balancer",
+                             runs, NULL);
+    const int code = contact_state_end();
+    return status || code;
 }
 
 const struct bench bench_contact = {

@@ -2,9 +2,10 @@
 #define BENCH_CONTACT_CONTACT_H
 
 #include "bench/bench.h"
+#include "cloth/model/model.h"
 
-/* The bench "contact": what finding and certifying contacts costs. bench.c has the plans; a file a
- * case has what our process runs for it. */
+/* The bench "contact": what finding and certifying contacts costs, and what runs of scenes do with
+ * it. bench.c and plans.c have the plans; the other files have what our process runs for them. */
 
 /* certify pairs=: seconds a pair of contact_certify. uncut pairs=: the share of them that passes.
  * Pairs are drawn: half of each kind, mixed; corners in a cube of 10 mm; they move by up to 2 mm
@@ -18,5 +19,40 @@ extern const struct serve_run contact_solid_runs[];
 /* detect shape=waves|draped|six_layers threads= quick= rounds=: seconds a vertex of the best of so
  * many steps. */
 extern const struct serve_run contact_detect_runs[];
+
+/* map threads= quick= rounds=: seconds to draw the maps of a ring. look_up threads= quick= rounds=:
+ * seconds a vertex to look one up there. The best of so many rounds each. */
+extern const struct serve_run contact_map_runs[];
+
+/* ---- Scenes ---- */
+
+/* Reads a scene of cloth/scenes by its name, to the end of the part that the bench runs. self: "on"
+ * or "off" with certified contact, or "" for what the file says. quick: a tiny one. The model
+ * belongs to the caller, also after a failure. 0, or what serve_fail returns. */
+int contact_scene_read(struct model *model, const char *name, const char *self, bool quick);
+
+/* scene name= self= balance= threads= scheduler= quick= what=: a run tells what=wall: seconds of
+ * all steps; frame: seconds for each 1 / fps that was simulated; intersections: the most in a
+ * frame; contacts: the most at a time; moved: tasks and objects that went to other ranks. */
+extern const struct serve_run contact_scene_runs[];
+
+/* Of the sphere's sheet after ms= of its run, kept by threads= and quick=.
+ * look times=: seconds of the contact part of a step, without its solves: boxes, certificates, what
+ * is near, and the rows of the contacts. iterations contacts=0|1: of the next step's solve. */
+extern const struct serve_run contact_state_runs[];
+/* Ends what the runs above have left. 1 if the runtime did not stop well. Collective. */
+int contact_state_end(void);
+
+/* blender threads= quick=: seconds a frame of the sphere's sheet as Blender simulates it. */
+extern const struct serve_run contact_blender_runs[];
+
+/* instructions contact=0|1 steps=: of a step of a scene without anything to touch, without and with
+ * a map `contact`. */
+extern const struct serve_run contact_instruction_runs[];
+
+/* ---- Plans ---- */
+
+extern const struct bench_case contact_self, contact_frames, contact_part, contact_iterations,
+    contact_twist, contact_instructions, contact_intersections, contact_maps;
 
 #endif

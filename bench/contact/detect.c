@@ -2,6 +2,7 @@
  * for a step, met with themselves and each other, and the distance of every pair that comes.
  * Threads take blocks, then pairs of blocks, one after the other. */
 #include "bench/contact/contact.h"
+#include "bench/contact/shapes.h"
 
 #include "cloth/contact/body.h"
 #include "cloth/contact/pair.h"
@@ -14,8 +15,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { SIDE = 187, QUICK_SIDE = 40, GRAIN = 1000, MOST_THREADS = 64 };
-static const double REACH = 2e-3; /* m */
+enum { GRAIN = 1000, MOST_THREADS = 64 };
 
 struct block {
     void *table, *boxes;
@@ -33,37 +33,6 @@ struct sheet {
     atomic_uint next, next_pair;
     atomic_ulong near, visited;
 };
-
-/* ---- Shapes ---- */
-
-static void place_waves(double u, double v, phys_vec *x)
-{
-    *x = (phys_vec){u, 0.02 * sin(50 * u) * cos(35 * v), v, 0};
-}
-
-/* Over a disc of 50 cm, in twelve folds beside it. */
-static void place_draped(double u, double v, phys_vec *x)
-{
-    const double px = u - 0.5, pz = v - 0.5, s = sqrt(px * px + pz * pz), down = s - 0.25;
-    const double turn = atan2(pz, px), r = 0.25 + down * (0.2 + 0.18 * sin(12 * turn));
-    *x = (phys_vec){px, 0, pz, 0};
-    if (down > 0)
-        *x = (phys_vec){r * cos(turn), -0.97 * down, r * sin(turn), 0};
-}
-
-/* Folded five times, layers 1.5 mm from each other. */
-static void place_six_layers(double u, double v, phys_vec *x)
-{
-    const double layer = floor(6 * u) < 6 ? floor(6 * u) : 5, along = u - layer / 6;
-    const double at = fmod(layer, 2) < 1 ? along : 1 / 6.0 - along;
-    *x = (phys_vec){at, 9e-3 * u + 5e-3 * sin(40 * v) * cos(60 * at), v, 0};
-}
-
-static const struct {
-    const char *name;
-    void (*place)(double u, double v, phys_vec *x);
-} shapes[] = {
-    {"waves", place_waves}, {"draped", place_draped}, {"six_layers", place_six_layers}, {0}};
 
 /* ---- A sheet made ready ---- */
 
@@ -85,8 +54,7 @@ static size_t whole_lines(size_t bytes)
     return (bytes / CONTACT_ALIGN + 1) * CONTACT_ALIGN;
 }
 
-static int make_block(struct sheet *sheet, uint32_t b, unsigned side,
-                      void (*place)(double u, double v, phys_vec *x))
+static int make_block(struct sheet *sheet, uint32_t b, unsigned side, shapes_place *place)
 {
     struct block *block = sheet->block + b;
     const struct flow_source *source = &sheet->flow->source;
@@ -105,11 +73,7 @@ static int make_block(struct sheet *sheet, uint32_t b, unsigned side,
         const uint32_t vertex = source->blocks.vertex[block->skin.id[i]];
         phys_vec *x = block->x + i, *y = x + counts.n_points;
         place(vertex % side / (side - 1.0), vertex / side / (side - 1.0), x);
-        *y = *x + (phys_vec){0, -4e-3, 0, 0};
-        for (int c = 0; c < 3; c++) { /* by 0.1 mm of its own */
-            seed = seed * 6364136223846793005u + 1442695040888963407u;
-            (*y)[c] += 1e-4 * ((double)(seed >> 11) * 0x1p-53 - 0.5);
-        }
+        shapes_move(&seed, x, y);
     }
     return 0;
 }
@@ -144,10 +108,8 @@ static int make_flow(struct sheet *sheet, unsigned side)
 
 static int make_sheet(struct sheet *sheet, unsigned side, const char *name)
 {
-    int shape = 0;
-    while (shapes[shape].name && strcmp(shapes[shape].name, name))
-        shape++;
-    int code = shapes[shape].name ? make_flow(sheet, side) : serve_fail("no shape '%s'", name);
+    shapes_place *place = shapes_find(name);
+    int code = place ? make_flow(sheet, side) : serve_fail("no shape '%s'", name);
     if (code)
         return code;
     sheet->n = sheet->flow->source.blocks.n_blocks;
@@ -156,7 +118,7 @@ static int make_sheet(struct sheet *sheet, unsigned side, const char *name)
     if (!sheet->block || !sheet->pair)
         return serve_no_memory();
     for (uint32_t b = 0; b < sheet->n && !code; b++)
-        code = make_block(sheet, b, side, shapes[shape].place);
+        code = make_block(sheet, b, side, place);
     return code;
 }
 
@@ -193,7 +155,7 @@ static void visit(void *to, uint32_t n, const struct contact_candidate *candidat
             y[k] = block->x[block->skin.n_points + point[k]];
         }
         contact_nearest_of(pair, y, &nearest);
-        meeting->near += nearest.gap < REACH;
+        meeting->near += nearest.gap < SHAPES_REACH;
     }
 }
 
@@ -206,7 +168,7 @@ static void meet(struct sheet *sheet, const uint32_t pair[2])
         side[k] = (struct contact_side){&block->skin, block->boxes, block->x,
                                         block->x + block->skin.n_points};
     }
-    contact_query(side, side + 1, REACH, visit, &meeting);
+    contact_query(side, side + 1, SHAPES_REACH, visit, &meeting);
     atomic_fetch_add(&sheet->near, meeting.near);
     atomic_fetch_add(&sheet->visited, meeting.visited);
 }
@@ -221,7 +183,8 @@ static void find_pairs(struct sheet *sheet)
             contact_boxes_root(sheet->block[a].boxes, low[0], high[0]);
             contact_boxes_root(sheet->block[b].boxes, low[1], high[1]);
             for (int c = 0; c < 3; c++)
-                near = near && low[0][c] - high[1][c] < REACH && low[1][c] - high[0][c] < REACH;
+                near = near && low[0][c] - high[1][c] < SHAPES_REACH &&
+                       low[1][c] - high[0][c] < SHAPES_REACH;
             if (near)
                 memcpy(sheet->pair[sheet->n_pairs++], (uint32_t[2]){a, b}, sizeof *sheet->pair);
         }
@@ -276,7 +239,7 @@ static int step(struct sheet *sheet, unsigned threads)
 static int detect(void *context, struct serve_request *request, double *value)
 {
     const unsigned threads = (unsigned)serve_number(request, "threads");
-    const unsigned side = serve_number(request, "quick") ? QUICK_SIDE : SIDE;
+    const unsigned side = serve_number(request, "quick") ? SHAPES_QUICK_SIDE : SHAPES_SIDE;
     const uint64_t rounds = serve_number(request, "rounds");
     struct sheet sheet = {0};
     unsigned long near = 0;

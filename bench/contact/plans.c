@@ -1,0 +1,261 @@
+/* What the cases measure that run scenes, or a state of one. Runs are long: the first of a case
+ * counts, too, where it says `cold`. */
+#include "bench/contact/contact.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Intersections that the cases so far have found; NAN: none of them looked for any. */
+static double all_intersections = NAN;
+
+static double note_intersections(const struct measure_metric *metric, size_t round)
+{
+    double sum = 0;
+    for (size_t i = 0; i < metric->n; i++)
+        sum += metric->of[i].sample[round];
+    all_intersections = isnan(all_intersections) ? sum : all_intersections + sum;
+    return sum;
+}
+
+static void measure_intersections(struct measure *measure, const char *name,
+                                  const struct measure_series *found)
+{
+    struct measure_metric *metric =
+        measure_metric(measure, "pairs", note_intersections, "intersections_%s", name);
+    metric->of = found;
+}
+
+static struct measure_series *scene(struct measure *measure, const struct bench_options *options,
+                                    unsigned ranks, const char *settings, const char *what)
+{
+    const unsigned threads = ranks ? 1 : options->threads;
+    return measure_series(measure, (struct subject_shape){"duite", ranks, threads},
+                          "scene %s threads=%u scheduler=%s quick=%d%s what=%s", settings, threads,
+                          options->scheduler, options->quick,
+                          strstr(settings, "balance=") ? "" : " balance=none", what);
+}
+
+/* Seconds, what=wall or frame, and how many intersections its frames have. */
+static const struct measure_series *plan_scene(struct measure *measure,
+                                               const struct bench_options *options,
+                                               const char *name, const char *what)
+{
+    char settings[20];
+    snprintf(settings, sizeof settings, "name=%s", name);
+    const struct measure_series *time = scene(measure, options, 0, settings, what);
+    const struct measure_series *found = scene(measure, options, 0, settings, "intersections");
+    measure_intersections(measure, name, found);
+    return time;
+}
+
+/* ---- Cloth with itself, on and off ---- */
+
+static void plan_self(struct measure *measure, const struct bench_options *options)
+{
+    const struct measure_series *on = scene(measure, options, 0, "name=sheet self=on", "wall");
+    const struct measure_series *off = scene(measure, options, 0, "name=sheet self=off", "wall");
+    const struct measure_series *found =
+        scene(measure, options, 0, "name=sheet self=on", "intersections");
+    measure->cold = true;
+    measure_value(measure, on, 1, "s", "self_on_seconds");
+    measure_ratio(measure, on, off, "self_on_vs_off");
+    measure_intersections(measure, "sheet", found);
+}
+
+const struct bench_case contact_self = {
+    "self",
+    "sheet.yaml, all 0.48 s, certified contact of the cloth with itself and the floor against "
+    "contact with the floor alone",
+    plan_self, contact_scene_runs, 2};
+
+/* ---- Frames ---- */
+
+static void plan_frames(struct measure *measure, const struct bench_options *options)
+{
+    static const char *const name[] = {"sphere", "stack"};
+    const struct measure_series *ours[2];
+    measure->cold = true;
+    for (int i = 0; i < 2; i++) {
+        ours[i] = plan_scene(measure, options, name[i], "frame");
+        measure_value(measure, ours[i], 1, "s", "%s_seconds_per_frame", name[i]);
+    }
+    const struct measure_series *rival =
+        measure_series(measure, (struct subject_shape){"blender", 0, options->threads},
+                       "blender threads=%u quick=%d", options->threads, options->quick);
+    measure_value(measure, rival, 1, "s", "sphere_blender_seconds_per_frame");
+    measure_ratio(measure, ours[0], rival, "sphere_vs_blender");
+}
+
+const struct bench_case contact_frames = {
+    "frames",
+    "seconds for each 1/25 s of sphere.yaml until 0.6 s and of stack.yaml until 0.2 s, in steps of "
+    "8 ms",
+    plan_frames, contact_scene_runs, 2};
+
+/* ---- The contact part of a step, and what contacts cost a solve ---- */
+
+static const struct measure_series *
+look(struct measure *measure, const struct bench_options *options, unsigned ranks, unsigned threads)
+{
+    return measure_series(measure, (struct subject_shape){"duite", ranks, threads},
+                          "look ms=%d times=%d threads=%u scheduler=%s quick=%d",
+                          options->quick ? 160 : 400, options->quick ? 2 : 10, threads,
+                          options->scheduler, options->quick);
+}
+
+static double geometric(const struct measure_metric *metric, size_t round)
+{
+    double sum = 0;
+    for (size_t i = 0; i < metric->n; i++)
+        sum += log(metric->of[i].sample[round] / metric->against[i].sample[round]);
+    return exp(sum / (double)metric->n);
+}
+
+enum { STATES = 2 };
+
+static void plan_iterations(struct measure *measure, const struct bench_options *options)
+{
+    static const int after[2][STATES] = {{300, 600}, {120, 160}}; /* ms */
+    static const char *const name[STATES] = {"early", "late"};
+    const struct measure_series *of[2][STATES];
+    for (int with = 0; with < 2; with++)
+        for (int i = 0; i < STATES; i++)
+            of[with][i] =
+                measure_series(measure, (struct subject_shape){"duite", 0, options->threads},
+                               "iterations ms=%d contacts=%d threads=%u scheduler=%s quick=%d",
+                               after[options->quick][i], with, options->threads, options->scheduler,
+                               options->quick);
+    struct measure_metric *metric =
+        measure_metric(measure, "x", geometric, "iterations_with_contact");
+    metric->of = of[1][0];
+    metric->against = of[0][0];
+    metric->n = STATES;
+    for (int i = 0; i < STATES; i++) {
+        measure_value(measure, of[1][i], 1, "iterations", "iterations_sphere_%s", name[i]);
+        measure_value(measure, of[0][i], 1, "iterations", "iterations_sphere_%s_without", name[i]);
+    }
+}
+
+static void plan_part(struct measure *measure, const struct bench_options *options)
+{
+    const unsigned n = options->threads;
+    const struct measure_series *one = look(measure, options, 0, 1);
+    const struct measure_series *threads = look(measure, options, 0, n);
+    const struct measure_series *ranks = look(measure, options, n, 1);
+    measure_value(measure, one, 1e3, "ms", "collision_ms");
+    measure_ratio(measure, one, threads, "collision_speedup_t%u", n);
+    measure_ratio(measure, one, ranks, "collision_speedup_r%u", n);
+}
+
+const struct bench_case contact_part = {
+    "part",
+    "the contact part of a step of sphere.yaml after 0.4 s, without its solves: boxes, "
+    "certificates, what is near, the rows of the contacts; on threads and ranks against one",
+    plan_part, contact_state_runs, 8};
+
+const struct bench_case contact_iterations = {
+    "iterations",
+    "the solve of a step of sphere.yaml after 0.3 and 0.6 s with its contacts against the same "
+    "state and stop without their rows and forces",
+    plan_iterations, contact_state_runs, 1};
+
+/* ---- Balancers ---- */
+
+static int by_size(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static double ratio(const struct measure_metric *metric, size_t i, size_t round)
+{
+    return metric->of[i].sample[round] / metric->against->sample[round];
+}
+
+static double median(const struct measure_metric *metric, size_t i)
+{
+    double value[64];
+    size_t n = 0;
+    for (; n < metric->rounds && n < sizeof value / sizeof *value; n++)
+        value[n] = ratio(metric, i, n);
+    qsort(value, n, sizeof *value, by_size);
+    return n ? (value[(n - 1) / 2] + value[n / 2]) / 2 : NAN;
+}
+
+/* That of the balancer whose median over all rounds is less. */
+static double better(const struct measure_metric *metric, size_t round)
+{
+    return ratio(metric, median(metric, 1) < median(metric, 0), round);
+}
+
+static void plan_twist(struct measure *measure, const struct bench_options *options)
+{
+    static const char *const name[] = {"delegate", "migrate"};
+    const struct measure_series *of[2], *found = NULL;
+    char settings[40];
+    for (int i = 0; i < 2; i++) {
+        snprintf(settings, sizeof settings, "name=twist balance=%s", name[i]);
+        of[i] = scene(measure, options, 2, settings, "wall");
+    }
+    const struct measure_series *none = scene(measure, options, 2, "name=twist", "wall");
+    found = scene(measure, options, 2, "name=twist", "intersections");
+    measure->cold = true;
+    measure_value(measure, none, 1, "s", "twist_none_seconds");
+    for (int i = 0; i < 2; i++)
+        measure_ratio(measure, of[i], none, "twist_%s_vs_none", name[i]);
+    struct measure_metric *best = measure_metric(measure, "x", better, "twist_balance_vs_none");
+    best->of = of[0];
+    best->against = none;
+    measure_intersections(measure, "twist", found);
+}
+
+const struct bench_case contact_twist = {
+    "twist",
+    "twist.yaml until 1.5 s on two ranks of a thread, with the balancers delegate and migrate "
+    "against none; twist_balance_vs_none is the better one",
+    plan_twist, contact_scene_runs, 4};
+
+/* ---- Nothing to touch ---- */
+
+static void plan_instructions(struct measure *measure, const struct bench_options *options)
+{
+    const struct measure_series *of[2];
+    const struct subject_shape shape = {"duite_valgrind", 0, 1};
+    for (int contact = 0; contact < 2; contact++)
+        of[contact] = measure_series(measure, shape, "instructions contact=%d steps=%d", contact,
+                                     options->quick ? 2 : 10);
+    measure->cold = true;
+    measure_value(measure, of[0], 1e-6, "millions", "instructions_per_step");
+    measure_ratio(measure, of[1], of[0], "instructions_nothing_to_touch");
+}
+
+const struct bench_case contact_instructions = {
+    "instructions",
+    "instructions a step, by valgrind: a sheet of 900 vertices without anything to touch, with a "
+    "map `contact` against without",
+    plan_instructions, contact_instruction_runs, 1};
+
+/* ---- All frames ---- */
+
+static double sum_up(const struct measure_metric *metric, size_t round)
+{
+    (void)metric, (void)round;
+    return all_intersections;
+}
+
+static void plan_intersections(struct measure *measure, const struct bench_options *options)
+{
+    struct measure_metric *metric = measure_metric(measure, "pairs", sum_up, "intersections");
+    measure->cold = true;
+    metric->none = "no case before it ran scenes";
+    metric->of = measure_series(measure, (struct subject_shape){"duite", 0, options->threads},
+                                "uncut pairs=64");
+}
+
+const struct bench_case contact_intersections = {
+    "intersections",
+    "pairs of triangles that intersect in the frames of the scenes that the cases before this one "
+    "ran, of the state and as files hold them; counted after the clock has stopped",
+    plan_intersections, contact_certify_runs, 1};

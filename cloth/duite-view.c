@@ -22,6 +22,8 @@ struct options {
     int width, height;
     double azimuth, elevation, zoom;
     bool check_intersections;
+    bool contact;      /* coloured by its force */
+    double most_force; /* N: that has the hottest colour; 0: the largest of the frame */
 };
 
 static const struct argp_option OPTIONS[] = {
@@ -30,6 +32,8 @@ static const struct argp_option OPTIONS[] = {
     {"size", 's', "WxH", 0, "Pixels of the picture (1280x720)", 0},
     {"camera", 'c', "AZIMUTH,ELEVATION[,ZOOM]", 0,
      "Where to look from, in degrees: 0,0 is from +z, 90,0 from +x (32,20,1)", 0},
+    {"colour", 'k', "contact[,MAX]", 0,
+     "Colour the cloth by the force of contact on its vertices, up to MAX N (the largest)", 0},
     {"check-intersections", 'i', NULL, 0,
      "Look in all frames, exactly, for triangles that go through each other or through obstacles",
      0},
@@ -65,6 +69,20 @@ static int parse_camera(const char *text, struct options *options)
            !(options->zoom > 0 && options->zoom <= 1000);
 }
 
+static int parse_colour(const char *text, struct options *options)
+{
+    static const char word[] = "contact";
+    int end = 0;
+    options->contact = true;
+    options->most_force = 0;
+    if (strncmp(text, word, strlen(word)) != 0)
+        return 1;
+    text += strlen(word);
+    if (*text && (sscanf(text, ",%lf%n", &options->most_force, &end) != 1 || text[end]))
+        return 1;
+    return *text && !(options->most_force > 0 && isfinite(options->most_force));
+}
+
 static error_t parse(int key, char *arg, struct argp_state *state)
 {
     struct options *options = state->input;
@@ -88,6 +106,10 @@ static error_t parse(int key, char *arg, struct argp_state *state)
                        "--camera takes AZIMUTH,ELEVATION[,ZOOM], the elevation within +-89 and "
                        "the zoom above 0 and up to 1000, not `%s'",
                        arg);
+        return 0;
+    case 'k':
+        if (parse_colour(arg, options))
+            argp_error(state, "--colour takes contact[,MAX], MAX above 0 (N), not `%s'", arg);
         return 0;
     case 'i':
         options->check_intersections = true;
@@ -115,6 +137,7 @@ struct show {
     struct view_obstacles obstacles;
     unsigned char *used; /* a vertex: whether a face or an edge uses it */
     double *position;    /* of the frame read last */
+    float *heat;         /* a vertex, 0 .. 1; NULL: the cloth has its own colour */
 };
 
 /* Vertices that nothing uses are not to be seen, and neither camera nor light is to look for them:
@@ -129,6 +152,39 @@ static int read_frame(struct show *show, uint64_t frame, struct cloth_error *err
     for (size_t v = 0; !code && first < n && v < n; v++)
         if (!show->used[v])
             memcpy(show->position + 3 * v, show->position + 3 * first, 3 * sizeof(double));
+    return code;
+}
+
+static double length_of(const double *v)
+{
+    return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+}
+
+/* How hot the forces of a frame are; says what the hottest is. */
+static void find_heat(struct show *show, const double *force)
+{
+    const size_t n = show->cache->mesh.n_vertices;
+    double most = show->options->most_force, largest = 0;
+    for (size_t v = 0; v < n; v++)
+        largest = fmax(largest, length_of(force + 3 * v));
+    most = most > 0 ? most : largest;
+    for (size_t v = 0; v < n; v++)
+        show->heat[v] = most > 0 ? (float)fmin(length_of(force + 3 * v) / most, 1) : 0;
+    printf("the largest force of contact on a vertex is %g N, the hottest colour %g N\n", largest,
+           most);
+}
+
+static int read_heat(struct show *show, uint64_t frame, struct cloth_error *error)
+{
+    const uint32_t n = show->cache->mesh.n_vertices;
+    double *force = malloc(3 * (size_t)n * sizeof *force);
+    show->heat = malloc(n * sizeof *show->heat);
+    int code = force && show->heat
+                   ? output_forces_read(show->options->folder, n, frame, force, error)
+                   : cloth_fail(error, CLOTH_E_MEMORY, "no memory for %u vertices", n);
+    if (!code)
+        find_heat(show, force);
+    free(force);
     return code;
 }
 
@@ -184,6 +240,8 @@ static int draw(const struct show *show, const struct view_camera *camera,
     int code = view_context_open(&context, error);
     code = code ? code : view_scene_new(&scene, &shape, error);
     code = code ? code : view_scene_move(scene, show->position, error);
+    if (!code && show->heat)
+        view_scene_heat(scene, show->heat);
     code = code ? code : view_picture_draw(&picture, scene, camera, error);
     code = code ? code : view_picture_write(&picture, options->png, error);
     view_picture_free(&picture);
@@ -226,12 +284,15 @@ static int show_frame(struct output_cache *cache, const struct options *options,
         mesh_used(&cache->mesh, show.used);
         code = fit_camera(&show, &camera, error);
         code = code ? code : read_frame(&show, frame, error);
+        if (!code && options->contact)
+            code = read_heat(&show, frame, error);
         view_obstacles_at(&show.obstacles, cache->time[frame]);
         code = code ? code : draw(&show, &camera, error);
     }
     view_obstacles_free(&show.obstacles);
     free(show.used);
     free(show.position);
+    free(show.heat);
     return code;
 }
 

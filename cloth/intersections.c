@@ -2,6 +2,7 @@
  * vertices follow those of the cloths. Only bodies move in between frames by anything but the
  * frame. */
 #include "cloth/intersections.h"
+#include "cloth/intersections_parts.h"
 
 #include "cloth/base/memory.h"
 #include "cloth/verify/orient.h"
@@ -27,6 +28,8 @@ struct intersections {
     const struct contact_shape *obstacles;
     const struct phys_key *keys;
     const struct contact_bodies *bodies;
+    const struct contact_apart *apart;
+    bool self_off;
     size_t n_cloths, n_obstacles;
     phys_vec *place;                  /* room for the vertices of a body */
     struct surface *cloth, *obstacle; /* n_cloths + 1; n_obstacles + 1: empty but of bodies */
@@ -115,40 +118,6 @@ static int take_body(struct intersections *all, size_t i, struct cloth_error *er
     return code;
 }
 
-/* ---- Parts ---- */
-
-static uint32_t root_of(uint32_t *root, uint32_t v)
-{
-    while (root[v] != v)
-        v = root[v] = root[root[v]];
-    return v;
-}
-
-/* Keeps the lowest vertex of each. */
-static int find_parts(struct intersections *all, struct cloth_error *error)
-{
-    const uint32_t n = all->cloth[all->n_cloths].point;
-    uint32_t *root = cloth_alloc(n, sizeof *root, error);
-    bool *used = cloth_alloc(n, sizeof *used, error);
-    all->part = cloth_alloc(n, sizeof *all->part, error);
-    const int code = root && used && all->part ? CLOTH_OK : CLOTH_E_MEMORY;
-    for (uint32_t v = 0; v < n && !code; v++)
-        root[v] = v;
-    for (uint32_t t = 0; t < all->soup.n_first && !code; t++)
-        for (int c = 0; c < 3; c++) {
-            const uint32_t a = root_of(root, all->joined[t][c]);
-            const uint32_t b = root_of(root, all->joined[t][0]);
-            root[a < b ? b : a] = a < b ? a : b;
-            used[all->joined[t][c]] = true;
-        }
-    for (uint32_t v = 0; v < n && !code; v++)
-        if (used[v] && root[v] == v)
-            all->part[all->n_parts++] = v;
-    free(root);
-    free(used);
-    return code;
-}
-
 /* ---- What is found ---- */
 
 static void say(const struct look *look, const char *format, ...)
@@ -223,6 +192,39 @@ static void say_inside(struct look *look, uint32_t point, size_t obstacle)
         all->cloth[i].name ? all->cloth[i].name : "", all->cloth[i].name ? "'" : "", obstacle);
 }
 
+/* ---- What does not meet ---- */
+
+/* A folder has all cloths in one mesh. */
+static uint32_t cloth_of(const struct intersections *all, uint32_t t)
+{
+    uint32_t i = 0;
+    if (all->apart->apart)
+        return contact_apart_cloth(all->apart, all->corner[t][0], 0);
+    while (t >= all->cloth[i + 1].triangle)
+        i++;
+    return i;
+}
+
+/* Whether a triangle of cloth and an obstacle do not meet. */
+static bool misses(const struct intersections *all, uint32_t t, size_t obstacle)
+{
+    return contact_is_attached(all->apart, 3, all->corner[t], (uint32_t)obstacle) ||
+           contact_are_apart(all->apart, cloth_of(all, t),
+                             all->apart->n_cloths + (uint32_t)obstacle);
+}
+
+static bool is_left_out(const struct intersections *all, const struct verify_pair *pair)
+{
+    const uint32_t *t = pair->triangle, a = cloth_of(all, t[0]);
+    size_t i = 0;
+    if (t[1] < all->soup.n_first)
+        return (all->self_off && a == cloth_of(all, t[1])) ||
+               contact_are_apart(all->apart, a, cloth_of(all, t[1]));
+    while (t[1] >= all->obstacle[i + 1].triangle)
+        i++;
+    return misses(all, t[0], i);
+}
+
 /* ---- A frame ---- */
 
 static void place_body(const struct look *look, size_t obstacle)
@@ -267,6 +269,8 @@ static int look_at_pairs(struct look *look, uint64_t *pairs, uint64_t *with_bodi
     const struct verify_pair *pair = all->pairs.items;
     for (size_t i = 0; i < all->pairs.n && !code; i++) {
         const bool cloths = pair[i].triangle[1] < all->soup.n_first;
+        if (is_left_out(all, pair + i))
+            continue;
         *pairs += cloths;
         *with_bodies += !cloths;
         say_pair(look, pair + i);
@@ -285,9 +289,12 @@ static int look_at_shape(struct look *look, size_t obstacle, uint64_t *entered,
     all->entered.n = 0;
     const int code = verify_enter(&all->soup, shape, &pose, depth, &all->entered, error);
     const uint32_t *triangle = all->entered.items;
-    for (size_t i = 0; i < all->entered.n && !code; i++)
+    for (size_t i = 0; i < all->entered.n && !code; i++) {
+        if (misses(all, triangle[i], obstacle))
+            continue;
+        *entered += 1;
         say_entered(look, triangle[i], obstacle);
-    *entered += all->entered.n;
+    }
     return code;
 }
 
@@ -297,6 +304,11 @@ static void look_inside(struct look *look, size_t obstacle, uint64_t *inside)
     const struct surface *body = all->obstacle + obstacle;
     for (uint32_t i = 0; i < all->n_parts; i++) {
         const uint32_t point = all->part[i];
+        if (contact_is_attached(all->apart, 1, &point, (uint32_t)obstacle) ||
+            (all->apart->apart &&
+             contact_are_apart(all->apart, contact_apart_cloth(all->apart, point, 0),
+                               all->apart->n_cloths + (uint32_t)obstacle)))
+            continue;
         if (!verify_inside(&all->soup, body[0].triangle, body[1].triangle, all->x[point]))
             continue;
         *inside += 1;
@@ -395,7 +407,10 @@ static int fill(struct intersections *all, const struct intersections_setup *set
         take_cloth(all, setup, i);
     for (size_t i = 0; i < setup->n_obstacles && !code; i++)
         code = take_body(all, i, error);
-    return code ? code : find_parts(all, error);
+    return code ? code
+                : intersections_parts(all->cloth[all->n_cloths].point, all->soup.n_first,
+                                      (const uint32_t(*)[3])all->joined, &all->part, &all->n_parts,
+                                      error);
 }
 
 int intersections_open(struct intersections **intersections,
@@ -408,6 +423,8 @@ int intersections_open(struct intersections **intersections,
     all->obstacles = setup->obstacles;
     all->keys = setup->keys;
     all->bodies = setup->bodies;
+    all->apart = setup->apart;
+    all->self_off = setup->self_off;
     all->n_cloths = setup->n_meshes;
     all->n_obstacles = setup->n_obstacles;
     const int code = fill(all, setup, error);

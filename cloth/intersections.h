@@ -2,6 +2,7 @@
 #define CLOTH_INTERSECTIONS_H
 
 #include "cloth/base/error.h"
+#include "cloth/contact/apart.h"
 #include "cloth/contact/shape.h"
 #include "cloth/mesh/mesh.h"
 
@@ -25,6 +26,8 @@ struct intersections_setup {
     const struct contact_shape *obstacles;
     const struct phys_key *keys; /* of their motions */
     const struct contact_bodies *bodies;
+    const struct contact_apart *apart; /* what does not meet; it outlives it all */
+    bool self_off;                     /* nor does any cloth meet itself */
 };
 
 /* Of all frames so far. */
@@ -47,10 +50,15 @@ struct intersections_found {
 int intersections_open(struct intersections **intersections,
                        const struct intersections_setup *setup, struct cloth_error *error);
 
-/* The same for a model, while it has its meshes; it outlives it all. */
+/* Of each vertex of all cloths the lowest that welds make it one with; to be freed in any case.
+ * CLOTH_E_MEMORY. */
 struct model;
+int intersections_same(const struct model *model, uint32_t **same, struct cloth_error *error);
+
+/* The same for a model, while it has its meshes, and what of it does not meet; both outlive it all.
+ * self_off: as above. */
 int intersections_of(struct intersections **intersections, const struct model *model,
-                     struct cloth_error *error);
+                     const struct contact_apart *apart, bool self_off, struct cloth_error *error);
 
 /* Checks a frame: position as of flow_output.frame; written: as floats, else as doubles. A frame
  * may be checked both ways, one after the other. Prints the first few of what is found first, on

@@ -87,7 +87,8 @@ static int check_folder(const struct folder *folder, const char *program,
                                               .n_obstacles = cache->n_obstacles,
                                               .obstacles = cache->obstacles,
                                               .keys = cache->keys,
-                                              .bodies = &cache->bodies};
+                                              .bodies = &cache->bodies,
+                                              .apart = &cache->apart};
     struct intersections *intersections = NULL;
     int code = find_same(folder, error);
     code = code ? code : intersections_open(&intersections, &setup, error);

@@ -12,8 +12,7 @@ static uint32_t root_of(const uint32_t *same, uint32_t v)
     return v;
 }
 
-/* Of each vertex the lowest that welds make it one with. */
-static int find_same(const struct model *model, uint32_t **same, struct cloth_error *error)
+int intersections_same(const struct model *model, uint32_t **same, struct cloth_error *error)
 {
     const uint32_t n = model_first(model, model->n_cloths);
     *same = cloth_alloc(n, sizeof **same, error);
@@ -36,12 +35,12 @@ static int find_same(const struct model *model, uint32_t **same, struct cloth_er
 }
 
 int intersections_of(struct intersections **intersections, const struct model *model,
-                     struct cloth_error *error)
+                     const struct contact_apart *apart, bool self_off, struct cloth_error *error)
 {
     uint32_t *same = NULL;
     const struct mesh **meshes = cloth_alloc(model->n_cloths, sizeof *meshes, error);
     const char **names = cloth_alloc(model->n_cloths, sizeof *names, error);
-    int code = meshes && names ? find_same(model, &same, error) : CLOTH_E_MEMORY;
+    int code = meshes && names ? intersections_same(model, &same, error) : CLOTH_E_MEMORY;
     for (uint32_t i = 0; i < model->n_cloths && !code; i++) {
         meshes[i] = &model->cloths[i].mesh;
         names[i] = model->cloths[i].name;
@@ -54,7 +53,9 @@ int intersections_of(struct intersections **intersections, const struct model *m
                                               .n_obstacles = model->n_obstacles,
                                               .obstacles = model->obstacles,
                                               .keys = model->keys,
-                                              .bodies = &model->bodies};
+                                              .bodies = &model->bodies,
+                                              .apart = apart,
+                                              .self_off = self_off};
     code = code ? code : intersections_open(intersections, &setup, error);
     free(meshes);
     free(names);

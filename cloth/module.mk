@@ -7,6 +7,7 @@ include cloth/mesh/module.mk
 include cloth/physics/module.mk
 include cloth/contact/module.mk
 include cloth/verify/module.mk
+include cloth/untangle/module.mk
 include cloth/solve/module.mk
 include cloth/model/module.mk
 include cloth/element/module.mk
@@ -19,8 +20,8 @@ bin_PROGRAMS += duite-cloth
 dist_man_MANS += cloth/duite-cloth.1
 duite_cloth_SOURCES = \
 	cloth/duite-cloth.c \
-	cloth/intersections.h cloth/room.h cloth/simulate.h \
-	cloth/intersections.c cloth/intersections_model.c cloth/room.c cloth/simulate.c \
+	cloth/drape.h cloth/intersections.h cloth/outputs.h cloth/room.h cloth/simulate.h cloth/start.h \
+	cloth/drape.c cloth/intersections.c cloth/intersections_model.c cloth/intersections_parts.h cloth/intersections_parts.c cloth/outputs.c cloth/room.c cloth/simulate.c cloth/start.c \
 	cloth/summary.h \
 	cloth/summary.c
 duite_cloth_LDADD = libduite_cloth.la libduite_core.la

@@ -17,7 +17,8 @@ static double output_bytes(const struct model *model, const struct flow *flow)
     double columns = header ? 1 : 0;
     for (; header && *header; header++)
         columns += *header == ',';
-    return frames * (3 * sizeof(float) * (double)flow_vertices(flow) + INDEX) +
+    const double vectors = model->contact.force && model_certifies(model) ? 2 : 1;
+    return frames * (vectors * 3 * sizeof(float) * (double)flow_vertices(flow) + INDEX) +
            steps * columns * NUMBER;
 }
 

@@ -3,9 +3,10 @@
 #include "cloth/simulate.h"
 
 #include "cloth/base/memory.h"
-#include "cloth/intersections.h"
 #include "cloth/output/output.h"
+#include "cloth/outputs.h"
 #include "cloth/room.h"
+#include "cloth/start.h"
 #include "cloth/summary.h"
 
 #include <math.h>
@@ -25,17 +26,16 @@ struct run {
     unsigned threads;
     struct model model;
     struct flow *flow;
-    struct output_lock *locks[2];        /* rank 0: of the folders of frames and of the system */
-    struct output_frames *frames;        /* then, when frames are wanted */
-    struct output_probes *probes;        /* then, if the scene has any */
-    struct intersections *intersections; /* rank 0: if they are looked for */
-    struct intersections_found found;    /* then, at the end */
+    struct contact_apart apart; /* rank 0: of the model, with what the flow attached */
+    struct outputs outputs;     /* rank 0 */
+    bool wants_frames;          /* the same on all ranks */
     struct summary_progress progress;
     struct flow_report report;
-    struct mesh_elastic *elastic; /* rank 0: of each material */
-    struct cloth_error untraced;  /* why the trace is not whole */
-    bool intersects;              /* some were found; the same on all ranks */
-    bool stopped_before;          /* asked to stop before it began */
+    struct untangle_result untangled; /* rank 0 */
+    struct mesh_elastic *elastic;     /* rank 0: of each material */
+    struct cloth_error untraced;      /* why the trace is not whole */
+    bool intersects;                  /* some were found; the same on all ranks */
+    bool stopped_before;              /* asked to stop before it began */
 };
 
 static atomic_int stop_requested; /* read by all threads, written by the signal's handler */
@@ -94,77 +94,6 @@ static int check_file(const struct run *run, const char *option, const char *pat
     return code ? cloth_fail(error, code, "%s %s: %s", option, path, inner.text) : code;
 }
 
-/* Another run may write into the same folder. */
-static int lock_folder(struct output_lock **lock, const char *folder, struct cloth_error *error)
-{
-    struct cloth_error note = {0};
-    const int code = output_lock_take(lock, folder, &note, error);
-    if (note.code && !code)
-        fprintf(stderr, "duite-cloth: warning: %s\n", note.text);
-    return code;
-}
-
-static int open_system(struct run *run, struct cloth_error *error)
-{
-    const struct model *model = &run->model;
-    if (!model_is_implicit(model))
-        return cloth_fail(error, CLOTH_E_INPUT,
-                          "--save-system: an explicit integrator solves no system");
-    if (model->integrator != MODEL_IMPLICIT_EULER || model->newton_steps > 1)
-        return cloth_fail(error, CLOTH_E_INPUT,
-                          "--save-system: a step has one system of its own by implicit_euler with "
-                          "newton.steps 1 only");
-    if (model_is_filtered(model))
-        return cloth_fail(
-            error, CLOTH_E_INPUT,
-            "--save-system: the files know held vertices only, no pins to lines or planes");
-    if (model->end / model->h + 0.5 < 1)
-        return cloth_fail(error, CLOTH_E_INPUT,
-                          "--save-system: the scene ends before its first step");
-    return lock_folder(run->locks + 1, run->options->save_system, error);
-}
-
-/* In the folder of frames, which is there. */
-static int open_probes(struct run *run, struct cloth_error *error)
-{
-    const char *header = flow_header(run->flow);
-    return header ? output_probes_open(&run->probes, run->options->output, header, error)
-                  : output_probes_forget(run->options->output, error);
-}
-
-static int open_output(struct run *run, struct cloth_error *error)
-{
-    const struct model *model = &run->model;
-    if (lock_folder(run->locks, run->options->output, error))
-        return error->code;
-    const struct mesh **meshes = calloc(model->n_cloths, sizeof *meshes);
-    const char **names = calloc(model->n_cloths, sizeof *names);
-    int code = CLOTH_E_MEMORY;
-    if (meshes && names) {
-        for (uint32_t i = 0; i < model->n_cloths; i++) {
-            meshes[i] = &model->cloths[i].mesh;
-            names[i] = model->cloths[i].name;
-        }
-        const struct output_setup setup = {.folder = run->options->output,
-                                           .n_meshes = model->n_cloths,
-                                           .meshes = meshes,
-                                           .names = names,
-                                           .fps = model->fps,
-                                           .n_obstacles = model->n_obstacles,
-                                           .obstacles = model->obstacles,
-                                           .keys = model->keys,
-                                           .bodies = &model->bodies,
-                                           .n_inputs = model->n_files,
-                                           .inputs = (const char *const *)model->files};
-        code = output_open(&run->frames, &setup, error);
-    } else {
-        cloth_fail(error, code, "out of memory before the first frame");
-    }
-    free(meshes);
-    free(names);
-    return code ? code : open_probes(run, error);
-}
-
 /* Rank 0 alone reads the scene, so it is compared what the ranks were asked to read. Collective;
  * the same on all ranks. */
 static int check_same(const struct run *run, struct cloth_error *error)
@@ -204,6 +133,14 @@ static int read_and_cut(struct run *run, struct cloth_error *error)
     int code = scene_read(&run->model, options->scene, options->n_sets, options->sets, error);
     if (!code && !stop_wanted(NULL))
         code = flow_prepare(&run->flow, &run->model, run->ranks, error);
+    if (!code && run->flow)
+        code = start_untangle(&run->model, &run->flow, run->ranks, !options->quiet, &run->untangled,
+                              error);
+    run->apart = run->model.contact.apart;
+    if (!code && run->flow)
+        run->apart.attached = flow_attached(run->flow);
+    if (!code && run->flow)
+        run->apart.n_vertices = (uint32_t)flow_vertices(run->flow);
     if (!code)
         code = find_elastic(run, error);
     if (!code && options->report)
@@ -225,30 +162,13 @@ static bool check_stop(struct run *run)
     return wanted;
 }
 
-/* Certified contact keeps apart what is apart: a run does not start with cloths that go through
- * each other or through obstacles. */
-static void check_start(const struct run *run, struct cloth_error *error)
+/* Only rank 0 knows whether the scene asks for frames. Collective. */
+static void agree_on_frames(struct run *run)
 {
-    const size_t n = flow_vertices(run->flow);
-    struct intersections *intersections = NULL;
-    double *position = cloth_alloc(n, 3 * sizeof *position, error);
-    if (!position || intersections_of(&intersections, &run->model, error)) {
-        free(position);
-        return;
-    }
-    flow_start(run->flow, position);
-    if (!intersections_frame(intersections, 0, 0, position, false, error)) {
-        const struct intersections_found found = intersections_found(intersections);
-        if (found.bad)
-            cloth_fail(error, CLOTH_E_INPUT,
-                       "%s: where the run starts %llu pairs of triangles go through each other and "
-                       "%llu through obstacles; contact.mode certified needs a start where none "
-                       "does: move the cloths apart",
-                       run->options->scene, (unsigned long long)found.pairs,
-                       (unsigned long long)found.with_shapes);
-    }
-    intersections_close(&intersections);
-    free(position);
+    const struct simulate_options *options = run->options;
+    int wanted = options->output || options->check_intersections || run->outputs.drape;
+    MPI_Bcast(&wanted, 1, MPI_INT, 0, MPI_COMM_WORLD);
+    run->wants_frames = wanted;
 }
 
 /* All that can be wrong with the input, then the folder of frames. */
@@ -276,13 +196,10 @@ static int prepare(struct run *run)
     if (run->rank == 0 && options->output)
         room_check(&run->model, run->flow, options->output, &error);
     if (!error.code && run->rank == 0 && model_certifies(&run->model))
-        check_start(run, &error);
-    if (!error.code && run->rank == 0 && options->check_intersections)
-        intersections_of(&run->intersections, &run->model, &error);
-    if (!error.code && run->rank == 0 && options->save_system)
-        open_system(run, &error);
-    if (!error.code && run->rank == 0 && options->output)
-        open_output(run, &error);
+        start_check(&run->model, run->flow, &run->apart, options->scene, &error);
+    if (!error.code && run->rank == 0)
+        outputs_open(&run->outputs, options, &run->model, run->flow, &run->apart, &error);
+    agree_on_frames(run);
     return agree(run, &error);
 }
 
@@ -298,7 +215,7 @@ static void show_step(void *context, uint64_t step, uint64_t steps, uint64_t cg_
 {
     struct run *run = context;
     if (!run->options->quiet)
-        summary_progress_step(&run->progress, step, steps, cg_iterations);
+        summary_progress_step(&run->progress, step, steps, cg_iterations, run->report.contacts_now);
 }
 
 static int runtime_fails(struct cloth_error *error, int code)
@@ -315,53 +232,18 @@ static int say_lost(const struct run *run, const struct cloth_error *error)
     return CLOTH_E_LOST;
 }
 
-static int save_system(void *context, const struct solve_system *system, struct cloth_error *error)
-{
-    const struct run *run = context;
-    return output_system(run->options->save_system, system, error);
-}
-
-/* What is looked at as written is looked at once it is. */
-static int check_frame(const struct run *run, uint64_t frame, double time, const double *position,
-                       struct cloth_error *error)
-{
-    const int code = intersections_frame(run->intersections, frame, time, position, false, error);
-    if (code || !run->frames)
-        return code;
-    return intersections_frame(run->intersections, frame, time, position, true, error);
-}
-
-static int take_frame(void *context, uint64_t frame, double time, const double *position,
-                      struct cloth_error *error)
-{
-    const struct run *run = context;
-    int code = CLOTH_OK;
-    if (run->frames)
-        code = output_frame(run->frames, frame, time, position, error);
-    if (!code && run->intersections)
-        code = check_frame(run, frame, time, position, error);
-    return code;
-}
-
-static int write_row(void *context, uint64_t step, double time, size_t n, const double *values,
-                     struct cloth_error *error)
-{
-    const struct run *run = context;
-    return output_probes_row(run->probes, step, time, n, values, error);
-}
-
 static void run_flow(struct run *run, duite *rt, struct cloth_error *error)
 {
     const struct simulate_options *options = run->options;
-    const bool frames = options->output || options->check_intersections;
-    const struct flow_output output = {.context = run,
-                                       .frame = frames ? take_frame : NULL,
-                                       .row = options->output ? write_row : NULL,
-                                       .system = options->save_system ? save_system : NULL};
+    const struct flow_output output = {.context = &run->outputs,
+                                       .frame = run->wants_frames ? outputs_frame : NULL,
+                                       .force = options->output ? outputs_force : NULL,
+                                       .row = options->output ? outputs_row : NULL,
+                                       .system = options->save_system ? outputs_system : NULL};
     const struct flow_progress progress = {run, forget_meshes, show_step, stop_wanted};
     run->threads = duite_threads(rt);
     summary_progress_begin(&run->progress);
-    flow_run(run->flow, rt, frames || options->save_system ? &output : NULL, &progress,
+    flow_run(run->flow, rt, run->wants_frames || options->save_system ? &output : NULL, &progress,
              &run->report, error);
     summary_progress_end(&run->progress);
 }
@@ -389,8 +271,7 @@ static int execute(struct run *run)
         if (!error.code)
             runtime_fails(&error, code);
     }
-    output_probes_close(&run->probes, &error);
-    output_close(&run->frames, &error);
+    outputs_close(&run->outputs, &error);
     return error.code == CLOTH_E_LOST ? say_lost(run, &error) : agree(run, &error);
 }
 
@@ -404,13 +285,24 @@ static void say_stopped(const struct run *run)
     fputc('\n', stderr);
 }
 
+static void warn_of_motion(const struct run *run)
+{
+    const struct model_rest *rest = &run->model.rest;
+    if (rest->speed > 0 && !run->report.stopped && isnan(run->report.rest_seconds))
+        fprintf(stderr,
+                "duite-cloth: warning: the cloth is not at rest at time.end, %g s: some vertex "
+                "was faster than %g m/s in the last %g s, or something was still to move or "
+                "vary\n",
+                run->model.end, rest->speed, rest->hold);
+}
+
 /* Collective. */
 static void count_intersections(struct run *run)
 {
     int intersects = 0;
-    if (run->intersections) {
-        run->found = intersections_found(run->intersections);
-        intersects = run->found.bad > 0;
+    if (run->outputs.intersections) {
+        run->outputs.found = intersections_found(run->outputs.intersections);
+        intersects = run->outputs.found.bad > 0;
     }
     MPI_Bcast(&intersects, 1, MPI_INT, 0, MPI_COMM_WORLD);
     run->intersects = intersects;
@@ -426,14 +318,20 @@ static int conclude(struct run *run)
     MPI_Allreduce(MPI_IN_PLACE, &peak, 1, MPI_UINT64_T, MPI_MAX, MPI_COMM_WORLD);
     double path = NAN, bound = NAN;
     count_intersections(run);
+    struct outputs *outputs = &run->outputs;
+    if (outputs->drape)
+        drape_find(outputs->drape, &outputs->drapes, &error);
     if (run->rank == 0 && run->options->trace)
         duite_trace_bounds(run->options->trace, &path, &bound); /* else it has none */
     if (run->rank == 0) {
         const struct summary summary = {.options = run->options,
                                         .model = &run->model,
                                         .report = &run->report,
+                                        .untangled = &run->untangled,
                                         .elastic = run->elastic,
-                                        .intersections = run->intersections ? &run->found : NULL,
+                                        .intersections =
+                                            outputs->intersections ? &outputs->found : NULL,
+                                        .drape = outputs->drape ? &outputs->drapes : NULL,
                                         .ranks = run->ranks,
                                         .threads = run->threads,
                                         .workers = workers,
@@ -442,13 +340,8 @@ static int conclude(struct run *run)
                                         .lower_bound = bound};
         if (run->report.stopped)
             say_stopped(run);
-        intersections_say(&run->found, "duite-cloth");
-        if (run->model.rest.speed > 0 && !run->report.stopped && isnan(run->report.rest_seconds))
-            fprintf(stderr,
-                    "duite-cloth: warning: the cloth is not at rest at time.end, %g s: some vertex "
-                    "was faster than %g m/s in the last %g s, or something was still to move or "
-                    "vary\n",
-                    run->model.end, run->model.rest.speed, run->model.rest.hold);
+        intersections_say(&outputs->found, "duite-cloth");
+        warn_of_motion(run);
         if (run->options->report)
             summary_write(&summary, run->options->report, &error);
         if (!run->options->quiet)
@@ -477,11 +370,8 @@ int simulate(const struct simulate_options *options)
         code = failure == CLOTH_E_LOST ? SIMULATE_LOST : failure ? SIMULATE_FAILED : done;
     }
     struct cloth_error ignored = {0};
-    output_probes_close(&run.probes, &ignored);
-    output_close(&run.frames, &ignored);
-    intersections_close(&run.intersections);
-    output_lock_free(run.locks);
-    output_lock_free(run.locks + 1);
+    outputs_close(&run.outputs, &ignored);
+    outputs_free(&run.outputs);
     flow_free(run.flow);
     free(run.elastic);
     model_free(&run.model);

@@ -38,6 +38,14 @@ static double iterations_mean(const struct summary *summary)
     return implicit ? ratio((double)report->cg_iterations_total, (double)report->steps) : NAN;
 }
 
+/* Solves a step; those of steps that were given up count, too. */
+static double solves_mean(const struct flow_report *report)
+{
+    const uint64_t solves =
+        report->steps + report->steps_halved + report->steps_retaken + report->contact_solves;
+    return ratio((double)solves, (double)report->steps);
+}
+
 static void print_times(FILE *file, const struct flow_report *report)
 {
     const struct {
@@ -107,6 +115,22 @@ static void print_intersections(FILE *file, const struct intersections_found *fo
         fprintf(file, "none in %" PRIu64 " frames\n", found->frames);
 }
 
+static void print_contact(FILE *file, const struct flow_report *report)
+{
+    fprintf(file,
+            "  contacts         %" PRIu64 " at most; %.2f solves a step, %" PRIu64
+            " pairs certified\n",
+            report->contacts, solves_mean(report), report->contact_pairs);
+    if (report->contact_cuts)
+        fprintf(file,
+                "  ways cut         %" PRIu64 ", of one vertex in %" PRIu64
+                " steps in a row at most\n",
+                report->contact_cuts, report->contact_cut_run);
+    if (report->contact_pinches)
+        fprintf(file, "  pinched          %" PRIu64 " pairs, in steps that were halved; first %s\n",
+                report->contact_pinches, report->contact_pinch);
+}
+
 void summary_print(FILE *file, const struct summary *summary)
 {
     const struct flow_report *report = summary->report;
@@ -125,6 +149,9 @@ void summary_print(FILE *file, const struct summary *summary)
     fprintf(file, "  instructions     %s\n", cloth_simd_name());
     fprintf(file, "  steps            %" PRIu64 " of %g s, %g s simulated\n", report->steps,
             model->h, report->simulated_seconds);
+    if (model->n_obstacles || model_seeks(model))
+        fprintf(file, "  contact          %s%s\n", model_contact_name(model),
+                model->contact.assumed ? ", by default" : "");
     if (!isnan(report->rest_seconds))
         fprintf(file, "  at rest          after %g s\n", report->rest_seconds);
     if (report->steps_halved)
@@ -133,6 +160,8 @@ void summary_print(FILE *file, const struct summary *summary)
         fprintf(file,
                 "  gained energy    %" PRIu64 " steps by bdf2, made again by implicit_euler\n",
                 report->steps_retaken);
+    if (report->contacts)
+        print_contact(file, report);
     fprintf(file, "  wall time        %.3f s, %.6f s a step\n", report->wall_seconds,
             ratio(report->wall_seconds, (double)report->steps));
     print_times(file, report);
@@ -156,6 +185,9 @@ void summary_print(FILE *file, const struct summary *summary)
                 summary->options->output);
     else
         fprintf(file, "  frames           not written (--output DIR)\n");
+    if (summary->drape)
+        fprintf(file, "  drape            coefficient %.2f %%, shadow %.6f m2\n",
+                summary->drape->coefficient, summary->drape->shadow);
     if (summary->intersections)
         print_intersections(file, summary->intersections);
 }
@@ -182,6 +214,7 @@ static void add_setting(struct output_report *json, const struct summary *summar
     output_report_text(json, "mapping", summary->options->mapping_name);
     output_report_text(json, "balance", summary->options->balance_name);
     output_report_text(json, "simd", cloth_simd_name());
+    output_report_text(json, "contact_mode", model_contact_name(summary->model));
 }
 
 /* material_NAME_KEY */
@@ -251,16 +284,19 @@ static void add_energies(struct output_report *json, const struct flow_report *r
 {
     const struct flow_energy *start = &report->start, *end = &report->end;
     output_report_number(json, "energy_start",
-                         start->kinetic + start->elastic + start->gravity + start->loads);
+                         start->kinetic + start->elastic + start->gravity + start->loads +
+                             start->contact);
     output_report_number(json, "energy_end",
-                         end->kinetic + end->elastic + end->gravity + end->loads);
+                         end->kinetic + end->elastic + end->gravity + end->loads + end->contact);
     output_report_number(json, "energy_lowest", report->energy_lowest);
     output_report_number(json, "energy_highest", report->energy_highest);
     output_report_number(json, "energy_gained", report->energy_gained);
+    output_report_number(json, "energy_lent", report->energy_lent);
     output_report_number(json, "energy_kinetic", end->kinetic);
     output_report_number(json, "energy_elastic", end->elastic);
     output_report_number(json, "energy_gravity", end->gravity);
     output_report_number(json, "energy_loads", end->loads);
+    output_report_number(json, "energy_contact", end->contact);
     output_report_number(json, "torque_left", report->torque_left);
 }
 
@@ -273,9 +309,28 @@ static void add_halved(struct output_report *json, const struct flow_report *rep
     output_report_integer(json, "steps_halved_stretch", by[FLOW_CAUSE_STRETCH]);
     output_report_integer(json, "steps_halved_energy", by[FLOW_CAUSE_ENERGY]);
     output_report_integer(json, "steps_halved_contact", by[FLOW_CAUSE_CONTACT]);
+}
+
+/* Of certified contact. */
+static void add_contact(struct output_report *json, const struct summary *summary)
+{
+    const struct flow_report *report = summary->report;
     output_report_integer(json, "contacts", report->contacts);
+    output_report_integer(json, "contact_pairs", report->contact_pairs);
     output_report_integer(json, "contact_solves", report->contact_solves);
+    output_report_number(json, "contact_solves_mean",
+                         model_certifies(summary->model) ? solves_mean(report) : NAN);
     output_report_integer(json, "contact_cuts", report->contact_cuts);
+    output_report_number(json, "contact_cut_momentum", report->contact_cut_momentum);
+    output_report_integer(json, "contact_cut_run", report->contact_cut_run);
+    output_report_integer(json, "contact_queries", report->contact_queries);
+    output_report_integer(json, "contact_queries_again", report->contact_queries_again);
+    output_report_integer(json, "contact_graphs", report->contact_graphs);
+    output_report_integer(json, "contact_pinches", report->contact_pinches);
+    if (report->contact_pinch[0])
+        output_report_text(json, "contact_pinch", report->contact_pinch);
+    else
+        output_report_null(json, "contact_pinch");
 }
 
 static void add_runtime(struct output_report *json, const struct summary *summary)
@@ -299,8 +354,16 @@ static void add_runtime(struct output_report *json, const struct summary *summar
     output_report_number(json, "critical_path_seconds", summary->critical_path);
     output_report_number(json, "lower_bound_seconds", summary->lower_bound);
     add_halved(json, summary->report);
+    add_contact(json, summary);
     output_report_integer(json, "steps_retaken", summary->report->steps_retaken);
     output_report_integer(json, "peak_memory_bytes", summary->memory_bytes);
+}
+
+static void add_untangled(struct output_report *json, const struct untangle_result *result)
+{
+    output_report_integer(json, "untangle_rounds", result->rounds);
+    output_report_integer(json, "untangle_vertices", result->moved);
+    output_report_number(json, "untangle_largest", result->largest);
 }
 
 static void add_intersections(struct output_report *json, const struct intersections_found *found)
@@ -310,6 +373,12 @@ static void add_intersections(struct output_report *json, const struct intersect
     output_report_number(json, "intersections_shapes", found ? (double)found->with_shapes : none);
     output_report_number(json, "intersections_frame",
                          found && found->bad ? (double)found->first : none);
+}
+
+static void add_drape(struct output_report *json, const struct drape_found *found)
+{
+    output_report_number(json, "drape_coefficient_percent", found ? found->coefficient : NAN);
+    output_report_number(json, "drape_shadow_m2", found ? found->shadow : NAN);
 }
 
 int summary_write(const struct summary *summary, const char *path, struct cloth_error *error)
@@ -326,7 +395,9 @@ int summary_write(const struct summary *summary, const char *path, struct cloth_
     code = add_materials(json, summary, error);
     output_report_number(json, "max_stretch", summary->report->max_stretch);
     output_report_number(json, "stretch_highest", summary->report->stretch_highest);
+    add_untangled(json, summary->untangled);
     add_intersections(json, summary->intersections);
+    add_drape(json, summary->drape);
     add_hash(json, "state_hash", summary->report->state_hash);
     if (!code)
         code = output_report_write(json, path, error);
@@ -351,16 +422,18 @@ static void write_duration(char *text, size_t size, double seconds)
 }
 
 void summary_progress_step(struct summary_progress *progress, uint64_t step, uint64_t steps,
-                           uint64_t cg_iterations)
+                           uint64_t cg_iterations, uint64_t contacts)
 {
     double time = now(), pause = progress->terminal ? 0.1 : 10;
     if (time - progress->shown < pause && !(progress->terminal && step == steps))
         return;
-    char left[32];
+    char left[32], touching[40] = "";
     double each = ratio(time - progress->begun, (double)step);
     write_duration(left, sizeof left, each * (double)(steps - step));
-    fprintf(stderr, "%sstep %" PRIu64 " of %" PRIu64 ", %" PRIu64 " iterations, %s left%s",
-            progress->terminal ? "\r\033[K" : "", step, steps, cg_iterations, left,
+    if (contacts)
+        snprintf(touching, sizeof touching, "%" PRIu64 " contacts, ", contacts);
+    fprintf(stderr, "%sstep %" PRIu64 " of %" PRIu64 ", %" PRIu64 " iterations, %s%s left%s",
+            progress->terminal ? "\r\033[K" : "", step, steps, cg_iterations, touching, left,
             progress->terminal ? "" : "\n");
     fflush(stderr);
     progress->shown = time;

@@ -1,9 +1,11 @@
 #ifndef CLOTH_SUMMARY_H
 #define CLOTH_SUMMARY_H
 
+#include "cloth/drape.h"
 #include "cloth/flow/run.h"
 #include "cloth/intersections.h"
 #include "cloth/simulate.h"
+#include "cloth/untangle/untangle.h"
 
 #include <stdio.h>
 
@@ -12,8 +14,10 @@ struct summary {
     const struct simulate_options *options;
     const struct model *model;
     const struct flow_report *report;
+    const struct untangle_result *untangled;
     const struct mesh_elastic *elastic;              /* of each material of the model */
     const struct intersections_found *intersections; /* NULL: they were not looked for */
+    const struct drape_found *drape;                 /* NULL: there is no drape test */
     int ranks;
     unsigned threads;                  /* of rank 0 */
     uint64_t workers;                  /* of all ranks together */
@@ -35,7 +39,7 @@ struct summary_progress {
 };
 void summary_progress_begin(struct summary_progress *progress);
 void summary_progress_step(struct summary_progress *progress, uint64_t step, uint64_t steps,
-                           uint64_t cg_iterations);
+                           uint64_t cg_iterations, uint64_t contacts);
 void summary_progress_end(struct summary_progress *progress);
 
 #endif

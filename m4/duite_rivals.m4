@@ -39,6 +39,8 @@ AC_DEFUN([DUITE_RIVALS], [
     AS_IF([test "x$ac_cv_prog_c_openmp" = xunsupported || test "x$ac_cv_prog_c_openmp" = xunknown],
         [duite_found=no], [duite_found=yes])
     DUITE_RIVAL([OPENMP], [$duite_found], [a compiler with OpenMP], [a plain loop])
+    AC_CHECK_HEADER([embree3/rtcore.h], [AC_CHECK_LIB([embree3], [rtcCollide], [duite_found=yes], [duite_found=no])], [duite_found=no])
+    DUITE_RIVAL([EMBREE], [$duite_found], [libembree-dev (version 3)], [Embree])
     DUITE_PETSC
     DUITE_RIVAL([PETSC], [$duite_found], [petsc-dev], [PETSc])
     AS_IF([test -z "$duite_rivals_missing"], [duite_rivals_say=yes],

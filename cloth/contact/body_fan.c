@@ -3,6 +3,9 @@
 
 /* Of a distance: a surface that rises by less is flat. */
 static const double FLAT = 1e-3;
+/* Square of the sine of an angle: facets that meet at less are of one flat surface. It is small, as
+ * a triangle of the cloth may lie over many edges. */
+static const double BENDS = 4e-6;
 
 void contact_body_fans(const struct contact_body *body, uint32_t *fan)
 {
@@ -49,4 +52,42 @@ bool contact_body_opens(const struct contact_body *body, const uint32_t *fan, co
         f = facet[f].neighbour[k];
     } while (opens && f != first);
     return opens;
+}
+
+static void find_normal(const struct contact_facet *facet, const phys_vec *y, phys_vec *n)
+{
+    const phys_vec a = y[facet->corner[1]] - y[facet->corner[0]];
+    const phys_vec b = y[facet->corner[2]] - y[facet->corner[0]];
+    *n = (phys_vec){a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0],
+                    0};
+}
+
+/* Whether two facets meet at an angle. */
+static bool is_bent(const phys_vec *m, const phys_vec *n)
+{
+    const double dot = phys_dot(m, n);
+    return !(dot > 0 && dot * dot > (1 - BENDS) * phys_dot(m, m) * phys_dot(n, n));
+}
+
+bool contact_body_bends(const struct contact_body *body, const uint32_t *fan, const phys_vec *y,
+                        uint32_t n_vertices, const uint32_t *vertex)
+{
+    const struct contact_facet *facet = contact_body_facets(body);
+    const uint32_t first = fan[vertex[0]];
+    phys_vec before = {0};
+    uint32_t f = first;
+    bool bends = false, any = false;
+    do {
+        const int k = corner_of(facet + f, vertex[0]);
+        const uint32_t next = facet[f].corner[(k + 1) % 3], last = facet[f].corner[(k + 2) % 3];
+        if (n_vertices == 1 || next == vertex[1] || last == vertex[1]) {
+            phys_vec normal;
+            find_normal(facet + f, y, &normal);
+            bends = bends || (any && is_bent(&before, &normal));
+            before = any ? before : normal;
+            any = true;
+        }
+        f = facet[f].neighbour[k];
+    } while (!bends && f != first);
+    return bends;
 }

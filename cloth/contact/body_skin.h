@@ -42,4 +42,8 @@ bool contact_body_opens(const struct contact_body *body, const uint32_t *fan, co
                         uint32_t n_vertices, const uint32_t *vertex, const phys_vec *point,
                         const phys_vec *n);
 
+/* Whether the surface bends at a vertex or an edge, by more than 0.1 degree. */
+bool contact_body_bends(const struct contact_body *body, const uint32_t *fan, const phys_vec *y,
+                        uint32_t n_vertices, const uint32_t *vertex);
+
 #endif

@@ -21,7 +21,7 @@ static bool are_apart(const struct contact_shape *shape, const struct contact_po
 {
     const struct contact_kind *kind = contact_kinds[shape->kind];
     phys_vec own[AT_ONCE];
-    if (!kind->apart)
+    if (pose->image || !kind->apart)
         return false;
     for (size_t i = 0; i < n && pose->moves; i++)
         phys_pose_back(&pose->to, x + i, own + i);

@@ -1,5 +1,6 @@
 # Shapes that cloth meets, one file a kind. Pure.
 libduite_cloth_la_SOURCES += \
+	cloth/contact/apart.h \
 	cloth/contact/body.c cloth/contact/body.h \
 	cloth/contact/body_check.c cloth/contact/making.h \
 	cloth/contact/body_fan.c \
@@ -11,9 +12,11 @@ libduite_cloth_la_SOURCES += \
 	cloth/contact/capsule.c \
 	cloth/contact/certificate.c cloth/contact/certificate.h cloth/contact/direction.h \
 	cloth/contact/cylinder.c \
+	cloth/contact/image.c cloth/contact/image.h cloth/contact/image_draw.c \
 	cloth/contact/meet.c cloth/contact/meet.h \
 	cloth/contact/pair.c cloth/contact/pair.h \
 	cloth/contact/plane.c \
+	cloth/contact/repulse.h \
 	cloth/contact/row.h \
 	cloth/contact/shape.c cloth/contact/shape.h \
 	cloth/contact/skin.h cloth/contact/skin_table.h \
@@ -26,4 +29,5 @@ libduite_cloth_la_SOURCES += \
 	cloth/contact/solid_cut.c cloth/contact/solid_divide.h \
 	cloth/contact/solid_nearest.c \
 	cloth/contact/sphere.c \
-	cloth/contact/surface.c cloth/contact/surface.h
+	cloth/contact/surface.c cloth/contact/surface.h \
+	cloth/contact/view.c cloth/contact/view.h

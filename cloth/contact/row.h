@@ -4,14 +4,21 @@
 #include "cloth/physics/vec.h"
 
 #include <math.h>
+#include <stdbool.h>
 
 /* A contact as the solves of a step see it: a force between a point of the first side and one of
  * the second. The difference of both is the sum of weight times place over the corners of the
  * contact, `point` below (m). Along the normal it is the force of an augmented Lagrangian,
- * max(0, load + k (thickness - gap)): the multiplier `load` carries what rests on the contact, so k
- * may be soft. Across the normal it is a spring, cut to friction times the load (Coulomb's law):
- * `slip` is how far it is stretched. Steps are implicit, so the force is that of the end of the
- * step. Pure functions; N, m, N/m. */
+ * max(0, load + k (aim - gap)): the multiplier `load` carries what rests on the contact, so k may
+ * be soft. Across the normal it is a spring, cut to friction times the load (Coulomb's law): `slip`
+ * is how far it is stretched. Steps are implicit, so the force is that of the end of the step.
+ *
+ * A contact gives back no more energy than it took up: `energy` is the work that its force along
+ * the normal did on it so far. A spring of stiffness k that pushes with F holds F^2 / 2k. So a step
+ * begins with a push of sqrt(2 k energy) at most. It goes on from the load of the step before and,
+ * where the gap is below the thickness, rises towards it as far as the energy does. What rests too
+ * deep is lifted slowly though it has none left; that energy is `lent`. Pure functions;
+ * N, m, N/m, J. */
 struct contact_row {
     phys_vec normal; /* out of the second side, of length 1 */
     phys_vec origin; /* the point where the step began */
@@ -23,11 +30,53 @@ struct contact_row {
     double stiffness; /* k */
     double slid;  /* how far the spring was stretched at the end of the step before, uncut, and */
     double grows; /* by what factor that grew in it; 0: as 1 */
-    double firm;  /* how many times as stiff as others it is; 0: as stiff */
+    double firm;  /* how many times as stiff as others it is; 1 or less: as stiff */
+    double energy, rested; /* where the step began: the work taken up so far, the load */
+    double start, aim;     /* the gap there; the gap where the push is the load */
+    double hold, span;     /* stiffness across the normal; length of the step, s: of the step before
+                            * until this one begins */
+    double
+        lent; /* of the energy: what the row was given in the step before, as it had too little */
+    double pushed; /* by the solve before of the same step: 1 it was, -1 it was not; 0: there was
+                    * none */
 };
 
-/* Of the thickness: a contact with a load that opens by less in a step stays one in it. */
+/* Of the thickness: a contact with a load that opens by less beyond it stays one in the step. */
 #define CONTACT_ROW_OPENS 0.1
+/* Of what a gap lacks of the thickness: so much is made up for in a step. What is held up by a
+ * contact swings on it if that is more than k h^2 / mass. */
+#define CONTACT_ROW_RISES 0.125
+/* The same of one that was made stiffer, as its pair failed: it has to have room soon. */
+#define CONTACT_ROW_YIELDS 0.5
+/* The same where a load rests, though the row has not taken up the energy for it. */
+#define CONTACT_ROW_LIFTS 0.02
+
+/* A step begins, or is solved again, with a row that has the gap of its begin. stiffness: of rows
+ * that are not firm; h: s, its length. */
+PHYS_INLINE void contact_row_begin(struct contact_row *row, double stiffness, double h)
+{
+    const double firm = row->firm > 1 ? row->firm : 1, k = stiffness * firm;
+    const double lacks = row->thickness - row->gap;
+    const double rises = firm > 1 ? CONTACT_ROW_YIELDS : CONTACT_ROW_RISES;
+    const double rise = lacks > 0 ? rises * lacks : lacks;
+    const double most = (sqrt(2 * k * row->energy) - row->rested) / k;
+    const double softer = row->hold > 0 ? row->hold / stiffness : 1;
+    const double lifts = lacks > 0 && row->rested > 0 && most * k > -1e-6 * row->rested
+                             ? CONTACT_ROW_LIFTS * lacks
+                             : most;
+    const double allowed = firm > 1 && lacks > 0 ? rise : (most > lifts ? most : lifts);
+    const double push = row->rested + k * (rise < allowed ? rise : allowed);
+    const double needs = push > 0 ? 0.5 * push * push / k : 0;
+    row->lent = needs > row->energy ? needs - row->energy : 0;
+    row->energy += row->lent;
+    row->start = row->gap;
+    row->aim = row->gap + (rise < allowed ? rise : allowed);
+    row->stiffness = k;
+    row->hold = stiffness;
+    row->slid *= row->span > 0 ? h / row->span : 1;
+    row->span = h;
+    row->slip *= softer < 1 ? softer : sqrt(softer);
+}
 
 /* The gap at a point. */
 PHYS_INLINE double contact_row_gap(const struct contact_row *row, const phys_vec *point)
@@ -44,66 +93,125 @@ PHYS_INLINE void contact_row_stretch(const struct contact_row *row, const phys_v
     *stretch = way - phys_dot(&row->normal, &way) * row->normal;
 }
 
+/* The force along the normal if the step ends at this point; below 0: it would pull. */
+PHYS_INLINE double contact_row_push(const struct contact_row *row, const phys_vec *point)
+{
+    return row->load + row->stiffness * (row->aim - contact_row_gap(row, point));
+}
+
+/* The stiffness across the normal at a stretch: softer where the spring would pull more than
+ * friction allows it, the secant of Coulomb's law. It is that of the stretch as it will be, if that
+ * grows as it did in the step before. */
+PHYS_INLINE double contact_row_across(const struct contact_row *row, const phys_vec *stretch)
+{
+    const double most = row->friction * row->load;
+    const double length = sqrt(phys_dot(stretch, stretch)) * (row->grows > 0 ? row->grows : 1);
+    return most < row->hold * length ? most / length : (most > 0 ? row->hold : 0);
+}
+
 /* The force on the first side if the step ends at this point, and its negative derivative
  * alpha I + w w' as a spring's value has it: w, alpha. Both are zero where nothing presses. What
  * has a load and hardly opens stays for this step, and leaves in the next one if it was pulled: so
- * what rests does not bounce. Where the spring across would pull more than friction allows it is
- * softer by so much: the secant of Coulomb's law, which takes energy away in a step of any length.
- * The secant is that of the stretch as it will be, if it grows as it did in the step before. */
+ * what rests does not bounce. A positive stiffness across takes energy away in a step of any
+ * length. Where the step was solved before, that solve says what presses: an active set. */
 PHYS_INLINE void contact_row_linearise(const struct contact_row *row, const phys_vec *point,
                                        phys_vec *force, phys_vec *value)
 {
-    const double stiffness = row->stiffness;
-    const double push = row->load + stiffness * (row->thickness - contact_row_gap(row, point));
+    const double gap = contact_row_gap(row, point), push = contact_row_push(row, point);
     *force = *value = (phys_vec){0};
-    const double opens = contact_row_gap(row, point) - row->thickness;
-    if (!(push > 0 || (row->load > 0 && opens < CONTACT_ROW_OPENS * row->thickness)))
+    const bool stays =
+        push > 0 || (row->load > 0 && gap < (1 + CONTACT_ROW_OPENS) * row->thickness);
+    if (row->pushed != 0 ? row->pushed < 0 : !stays)
         return;
     phys_vec stretch;
     contact_row_stretch(row, point, &stretch);
-    const double most = row->friction * row->load;
-    const double length = sqrt(phys_dot(&stretch, &stretch)) * (row->grows > 0 ? row->grows : 1);
-    const double across = most < stiffness * length ? most / length : (most > 0 ? stiffness : 0);
+    const double across = contact_row_across(row, &stretch);
     *force = push * row->normal - across * stretch;
-    *value = sqrt(stiffness - across) * row->normal + (phys_vec){0, 0, 0, across};
+    *value = sqrt(row->stiffness - across) * row->normal + (phys_vec){0, 0, 0, across};
 }
 
-/* The step ended at this point, or is to be solved once more from its begin: the load becomes the
- * force along the normal. */
+/* The step is to be solved once more from its begin: the load becomes the force along the normal
+ * that it ended with. */
 PHYS_INLINE void contact_row_press(struct contact_row *row, const phys_vec *point)
 {
-    const double push = row->load + row->stiffness * (row->thickness - contact_row_gap(row, point));
+    const double push = contact_row_push(row, point);
     row->load = push > 0 ? push : 0;
+    row->pushed = push > 0 ? 1 : -1;
+}
+
+/* The force on the first side in a step that ended at this point: that of the linear solve, which
+ * had this value, or it times the square of something. Friction has the stiffness that it had
+ * there. */
+PHYS_INLINE void contact_row_force(const struct contact_row *row, const phys_vec *point,
+                                   const phys_vec *value, phys_vec *force)
+{
+    const double across = (*value)[3];
+    const phys_vec w = *value * (phys_vec){1, 1, 1, 0};
+    const double both = phys_dot(&w, &w) + across;
+    phys_vec stretch;
+    *force = (phys_vec){0};
+    if (!(both > 0))
+        return;
+    contact_row_stretch(row, point, &stretch);
+    *force =
+        contact_row_push(row, point) * row->normal - row->stiffness * (across / both) * stretch;
 }
 
 /* A contact whose pair fails again takes more than others can give: it is made stiffer while that
  * lasts, and softer from step to step after it. */
-PHYS_INLINE double contact_row_firm(const struct contact_row *row)
-{
-    return row->firm > 1 ? row->firm : 1;
-}
 PHYS_INLINE void contact_row_stiffen(struct contact_row *row)
 {
-    const double firm = 4 * contact_row_firm(row);
+    const double firm = 4 * (row->firm > 1 ? row->firm : 1);
     row->firm = firm < 256 ? firm : 256;
 }
 
-/* The step ended at this point, and the row was pressed: the slip that is left, in the row of the
- * next step. What friction cannot hold has slid. */
-PHYS_INLINE void contact_row_slide(const struct contact_row *row, const phys_vec *point,
-                                   struct contact_row *next)
+/* How firm a row without a load is to be, which would end the step with this gap (m): what comes is
+ * stopped within half the thickness or so. */
+PHYS_INLINE double contact_row_firm_for(const struct contact_row *row, double gap)
+{
+    const double firm = 2 * (1 - gap / row->thickness);
+    return firm > 1 ? (firm < 256 ? firm : 256) : 0;
+}
+
+/* The energy that a row has taken up when the step ended at this point with this load, but no more
+ * than can be of use. */
+PHYS_INLINE double contact_row_energy(const struct contact_row *row, const phys_vec *point,
+                                      double load)
+{
+    const double energy = row->energy + load * (row->start - contact_row_gap(row, point));
+    const double push = load + row->stiffness * row->thickness;
+    const double most = 0.5 * push * push / row->stiffness;
+    return energy > 0 ? (energy < most ? energy : most) : 0;
+}
+
+/* What the row of a step to come holds: its energy, and that of the spring across. */
+PHYS_INLINE double contact_row_holds(const struct contact_row *row)
+{
+    return row->energy + 0.5 * row->hold * phys_dot(&row->slip, &row->slip);
+}
+
+/* The step ended at this point: what the row of the next step has of it. What friction cannot hold
+ * has slid. */
+PHYS_INLINE void contact_row_end(const struct contact_row *row, const phys_vec *point,
+                                 struct contact_row *next)
 {
     phys_vec stretch;
     contact_row_stretch(row, point, &stretch);
+    const double push = contact_row_push(row, point), load = push > 0 ? push : 0;
     const double length = sqrt(phys_dot(&stretch, &stretch));
-    const double most = row->friction * row->load, pull = row->stiffness * length;
+    const double most = row->friction * load, pull = row->hold * length;
     const double grows = row->slid > 0 ? length / row->slid : 1;
     next->slid = length;
     next->grows = grows < 2 ? (grows > 0.5 ? grows : 0.5) : 2;
     next->slip = pull <= most ? stretch : most / pull * stretch;
     next->slip -= phys_dot(&next->normal, &next->slip) * next->normal;
-    next->load = row->load;
-    next->firm = 0.5 * row->firm;
+    next->load = next->rested = load;
+    next->lent = row->lent;
+    next->energy = contact_row_energy(row, point, load);
+    next->hold = row->hold;
+    next->span = row->span;
+    next->pushed = 0;
+    next->firm = fmax(next->firm, 0.5 * row->firm);
 }
 
 #endif

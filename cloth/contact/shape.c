@@ -2,6 +2,8 @@
  * stands still is not touched on the way, so that its bits are those of its kind alone. */
 #include "cloth/contact/shape.h"
 
+#include "cloth/contact/image.h"
+
 #include <math.h>
 
 enum { AT_ONCE = 32 }; /* points, whose room is on the stack */
@@ -66,12 +68,22 @@ void contact_pose_over(const struct contact_shape *shape, const struct phys_key 
     phys_pose_at(shape->n, keys + shape->first, shape->about, to, &pose->to);
 }
 
+/* In the axes of the parameters. */
+static void closest_own(const struct contact_shape *shape, const struct contact_pose *pose,
+                        size_t n, const phys_vec *x, struct contact_hit *hit)
+{
+    if (pose->image)
+        contact_image_closest(pose->image, n, x, hit);
+    else
+        contact_kinds[shape->kind]->closest(shape->value, pose->body, n, x, hit);
+}
+
 static void closest_still(const struct contact_shape *shape, const struct contact_pose *pose,
                           size_t n, const phys_vec *x, struct contact_hit *hit)
 {
     for (size_t i = 0; i < n; i++)
         hit[i].velocity = (phys_vec){0};
-    contact_kinds[shape->kind]->closest(shape->value, pose->body, n, x, hit);
+    closest_own(shape, pose, n, x, hit);
 }
 
 static void closest_moving(const struct contact_shape *shape, const struct contact_pose *pose,
@@ -80,8 +92,10 @@ static void closest_moving(const struct contact_shape *shape, const struct conta
     phys_vec own[AT_ONCE], was, is;
     for (size_t i = 0; i < n; i++)
         phys_pose_back(&pose->to, x + i, own + i);
-    contact_kinds[shape->kind]->closest(shape->value, pose->body, n, own, hit);
+    closest_own(shape, pose, n, own, hit);
     for (size_t i = 0; i < n; i++) {
+        if (!(hit[i].gap < INFINITY))
+            continue;
         const phys_vec surface = own[i] - hit[i].gap * hit[i].normal;
         phys_pose_point(&pose->from, &surface, &was);
         phys_pose_point(&pose->to, &surface, &is);

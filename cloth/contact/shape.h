@@ -1,7 +1,7 @@
 #ifndef CLOTH_CONTACT_SHAPE_H
 #define CLOTH_CONTACT_SHAPE_H
 
-#include "cloth/contact/body.h"
+#include "cloth/contact/view.h"
 #include "cloth/physics/motion.h"
 #include "cloth/physics/vec.h"
 
@@ -24,16 +24,20 @@ struct contact_shape {
     uint32_t body;   /* number of a body of the scene, from 1; 0: its parameters are all there is */
     double about[3]; /* m: the point that its motion rotates about */
     double friction; /* coefficient, >= 0: of contact that is certified */
+    struct contact_view view; /* of a body that is met by maps (image.h); width 0: by its tree */
     double value[CONTACT_VALUES]; /* its parameters, one after the other as its kind lists them */
 };
+
+struct contact_image;
 
 /* Where a shape is at the begin and at the end of a step, and the body that it is. */
 struct contact_pose {
     const struct contact_body *body; /* NULL: it is none */
     bool moves; /* else the poses mean nothing: the shape is where its parameters say */
     struct phys_pose from, to;
-    double begin, end; /* s: of the step */
-    double rate;       /* 1/s: 1 over the length of the step; 0: it has none */
+    double begin, end;                 /* s: of the step */
+    double rate;                       /* 1/s: 1 over the length of the step; 0: it has none */
+    const struct contact_image *image; /* maps that are met in place of the body; NULL: none */
 };
 
 /* The point of a surface that is nearest to a given one. */
@@ -97,12 +101,14 @@ extern const uint32_t contact_n_kinds;
 void contact_aside(const phys_vec *axis, phys_vec *aside);
 void contact_axes(const double point[3], const double along[3], struct phys_pose *axes);
 
-/* The pose of a shape over a step between two times, s. keys, bodies: of the scene. */
+/* The pose of a shape over a step between two times, s, without maps. keys, bodies: of the scene.
+ */
 void contact_pose_over(const struct contact_shape *shape, const struct phys_key *keys,
                        const struct contact_bodies *bodies, double from, double to,
                        struct contact_pose *pose);
 
-/* Of n points (m) at the end of the step. */
+/* Of n points (m) at the end of the step. Beside maps the gap is INFINITY, and the rest means
+ * nothing. */
 void contact_closest(const struct contact_shape *shape, const struct contact_pose *pose, size_t n,
                      const phys_vec *x, struct contact_hit *hit);
 

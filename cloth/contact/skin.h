@@ -18,7 +18,9 @@
  * corners of the skin's triangles are at; all positions are by point. The same vertex has the same
  * id in all skins. All functions are local. */
 
-#define CONTACT_NO_POINT UINT32_MAX
+/* Beside an edge: there is no triangle; there is one, of another skin. */
+#define CONTACT_NO_POINT  UINT32_MAX
+#define CONTACT_FAR_POINT (UINT32_MAX - 1)
 
 /* A table opened; it points into the table. Of one that is only measured, the first four. */
 struct contact_skin {
@@ -26,8 +28,8 @@ struct contact_skin {
     uint32_t n_edges, n_vertices; /* features */
     const uint32_t (*corner)[3];  /* n_triangles: points */
     const uint32_t (*edge)[2];    /* n_edges: points */
-    const uint32_t (*beside)[2];  /* n_edges: the third points of triangles with the edge, as far as
-                                   * they are in the skin; CONTACT_NO_POINT: there is no such one */
+    const uint32_t (*beside)[2];  /* n_edges: the third points of triangles with the edge; those in
+                                   * the skin come first */
     const uint32_t *vertex;       /* n_vertices: points */
     const uint32_t *number;       /* n_triangles: which one of the source's it is */
     const uint32_t *id;           /* n_points */
@@ -43,11 +45,13 @@ struct contact_skin {
 
 /* What a skin is made of. x (m) says which triangles are near to each other, now and later: the
  * positions that the cloth begins with. stands: by triangle, bit k: this skin has the vertex at
- * corner k as a feature, by this triangle; bit 3 + k: the edge from corner k to the next one. */
+ * corner k as a feature, by this triangle; bit 3 + k: the edge from corner k to the next one.
+ * shared: bit k: if it has that edge, other triangles have it as well, here or in another skin. */
 struct contact_skin_source {
     uint32_t n_points, n_triangles;
     const uint32_t (*corner)[3];         /* n_triangles */
     const unsigned char *stands;         /* n_triangles */
+    const unsigned char *shared;         /* n_triangles; NULL: others are here alone */
     const uint32_t *id;                  /* n_points */
     const uint32_t *block, *row, *cloth; /* n_points; of bodies NULL: all 0 */
     const unsigned char *held;           /* n_points */

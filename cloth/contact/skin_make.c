@@ -176,6 +176,7 @@ static void add_features(struct making *making, uint32_t triangle, struct contac
 {
     const uint32_t *corner = making->from->corner[triangle];
     const unsigned stands = making->from->stands[triangle];
+    const unsigned shared = making->from->shared ? making->from->shared[triangle] : 0;
     for (int k = 0; k < 3; k++) {
         if (stands >> k & 1) {
             making->vertex[making->n_vertices++] = corner[k];
@@ -185,7 +186,10 @@ static void add_features(struct making *making, uint32_t triangle, struct contac
             uint32_t *edge = making->edge[making->n_edges];
             edge[0] = corner[k];
             edge[1] = corner[(k + 1) % 3];
-            find_beside(making, edge, making->beside[making->n_edges++]);
+            uint32_t *beside = making->beside[making->n_edges++];
+            find_beside(making, edge, beside);
+            if (beside[1] == CONTACT_NO_POINT && shared >> k & 1)
+                beside[1] = CONTACT_FAR_POINT;
             leaf->n_edges++;
         }
     }

@@ -50,12 +50,13 @@ struct flow_view {
     const unsigned char *tie_table;         /* NULL: the run has no ties */
     const duite_param *tie_halo;            /* of each block that it shares ties with */
     const struct contact_row *contact_rows; /* of those ties that are contacts; NULL: none is asked
-                                             * for */
+                                             * for, or the run has none */
 };
-/* That of a body whose kernel declares x, v, the neighbours' halos of both, and ties. */
+/* That of a body whose kernel declares x, v, the neighbours' halos of both, ties and contacts. */
 #define FLOW_VIEW(on)                                                                              \
     {                                                                                              \
-        (on)->x, (on)->v, (on)->halo_x, (on)->halo_v, (on)->tie_table, (on)->tied_tie_halo, NULL   \
+        (on)->x, (on)->v, (on)->halo_x, (on)->halo_v, (on)->tie_table, (on)->tied_tie_halo,        \
+            (on)->contact_rows                                                                     \
     }
 
 /* Notes in the status that this rank is asked to stop, if it is. */
@@ -130,10 +131,18 @@ void flow_ties_force(const struct flow *flow, const struct flow_view *view, phys
 void flow_ties_system(const struct flow *flow, const struct flow_view *view, double h, double push,
                       phys_vec *b, phys_vec *value);
 double flow_ties_energy(const struct flow *flow, const struct flow_view *view);
-/* Contacts of a block (contact/rows.c). Adds their forces where x is, N. Their part of a system:
+/* Contacts of a block (contact/rows.c). Adds their forces where x is at the time of
+ * the step, N. Their part of a system:
  * where h v leads if push is h; where x is, with - h^2 K v on the right side, if it is 0; the
  * matrix alone where b is NULL. */
-void flow_contact_force(const struct flow *flow, const struct flow_view *view, phys_vec *f);
+void flow_contact_force(const struct flow *flow, const struct flow_view *view,
+                        const struct flow_step_args *step, phys_vec *f);
+/* Adds to f the forces that they had in the step that ended at x, N; value: of the solve's matrix,
+ * obstacle: of each, from 1, or 0. What an obstacle puts on rows that are here is added to its
+ * vector, too. */
+void flow_contact_solved(const struct flow *flow, const struct flow_view *view,
+                         const uint32_t *obstacle, const phys_vec *value, phys_vec *f,
+                         phys_vec *by_obstacle);
 void flow_contact_system(const struct flow *flow, const struct flow_view *view, double h,
                          double push, phys_vec *b, phys_vec *value);
 /* Takes out of lost[3] what solve_lost cannot know: N dv of ties that lead to held ends. */
@@ -168,11 +177,12 @@ void flow_varying_add(const duite_call *call, const struct flow_table *t, double
 double flow_varying_energy(const duite_call *call, const struct flow_table *t, double now,
                            const phys_vec *x);
 
-/* All forces on the block's rows at a time, s, in N; those without the drag. (forces.c) */
-void flow_forces(const duite_call *call, const struct flow_table *t, double now,
-                 const struct flow_view *view, phys_vec *f);
-void flow_forces_free(const duite_call *call, const struct flow_table *t, double now,
-                      const struct flow_view *view, phys_vec *f);
+/* All forces on the block's rows at a time of a step, its `now`, in N; those without the drag.
+ * (forces.c) */
+void flow_forces(const duite_call *call, const struct flow_table *t,
+                 const struct flow_step_args *step, const struct flow_view *view, phys_vec *f);
+void flow_forces_free(const duite_call *call, const struct flow_table *t,
+                      const struct flow_step_args *step, const struct flow_view *view, phys_vec *f);
 
 /* Rows of the worker's own for these where no other task reads them; until the task ends. */
 static inline phys_vec *flow_force_room(const duite_call *call)

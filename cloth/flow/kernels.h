@@ -10,8 +10,8 @@
     X(table_make) X(table_keep) X(skin_make) X(skin_keep)                                          \
     X(initial) X(keep) X(restore) X(status) X(tie) X(tie_show)                                     \
     X(force) X(force_free) X(prescribe_velocity) X(prescribe_position)                             \
-    X(keep_halo) X(skin_refit) X(root) X(roots) X(tie_say) X(filter) X(constrain) X(collide)        \
-    X(body_skin) X(body_refit)                                                                     \
+    X(keep_halo) X(skin_refit) X(skin_place) X(root) X(roots) X(tie_say) X(filter) X(constrain) X(collide)        \
+    X(body_skin) X(body_refit) X(map_draw) X(map_draw_again)                                                                    \
     X(euler) X(euler_next) X(verlet_first) X(verlet_second) X(midpoint) X(runge)                   \
     X(velocity_implicit) X(position) X(predict) X(correct) X(shift) X(residual)                    \
     X(system) X(system_of_forces) X(matrix) X(factor)                                              \
@@ -19,8 +19,8 @@
     X(cg_begin) X(cg_begin_coarse) X(cg_start) X(cg_start_preconditioned) X(cg_guess)              \
     X(cg_pass) X(cg_pass_preconditioned) X(tie_pack) X(tie_pack_pass) X(tie_show_basis)            \
     X(cg_scalars) X(cg_scalars_of_parts) X(cg_scalars_coarse) X(piece_sums) X(piece_shift)         \
-    X(stretch) X(energy) X(level) X(watch) X(probe) X(row) X(frame)                                \
-    X(collect) X(seconds) X(broadcast) X(system_part) X(system_save)
+    X(stretch) X(energy) X(level) X(watch) X(contact_force) X(probe) X(row)                         \
+    X(frame) X(frame_force) X(collect) X(seconds) X(broadcast) X(system_part) X(system_save)
 /* clang-format on */
 
 #define FLOW_KERNEL_NUMBER(name) FLOW_KERNEL_##name,

@@ -8,10 +8,16 @@ libduite_cloth_la_SOURCES += \
     cloth/flow/contact/certify.h \
     cloth/flow/contact/contact.h \
     cloth/flow/contact/cut.c \
+    cloth/flow/contact/cut_run.h \
+    cloth/flow/contact/maps.c \
+    cloth/flow/contact/maps.h \
     cloth/flow/contact/meet.c \
     cloth/flow/contact/meet_shape.c \
     cloth/flow/contact/memory.c \
     cloth/flow/contact/pairs.c \
+    cloth/flow/contact/pick.c \
+    cloth/flow/contact/repel.c \
+    cloth/flow/contact/repel.h \
     cloth/flow/contact/rows.c \
     cloth/flow/contact/skins.c \
     cloth/flow/contact/skins.h \
@@ -40,6 +46,7 @@ libduite_cloth_la_SOURCES += \
     cloth/flow/setup/thickness.c \
     cloth/flow/setup/source.h \
     cloth/flow/setup/springs.c \
+    cloth/flow/setup/follow.c \
     cloth/flow/setup/starts.c \
     cloth/flow/setup/stiffness.c \
     cloth/flow/setup/warn.c \
@@ -52,6 +59,7 @@ libduite_cloth_la_SOURCES += \
     cloth/flow/state/flow.h \
     cloth/flow/state/forks.c \
     cloth/flow/state/kernel.h \
+    cloth/flow/state/anchor.c cloth/flow/state/anchor.h \
     cloth/flow/state/objects.c \
     cloth/flow/state/room.h \
     cloth/flow/state/skin.c \
@@ -96,6 +104,7 @@ libduite_cloth_la_SOURCES += \
     cloth/flow/solver/pattern.c \
     cloth/flow/solver/halo.c \
     cloth/flow/solver/pieces.c \
+    cloth/flow/observe/contact.c \
     cloth/flow/observe/finish.c \
     cloth/flow/observe/frames.c \
     cloth/flow/observe/observe.h \

@@ -4,6 +4,7 @@
 
 #include "cloth/base/memory.h"
 #include "cloth/flow/contact/certify.h"
+#include "cloth/flow/contact/repel.h"
 #include "cloth/flow/observe/observe.h"
 #include "cloth/flow/setup/setup.h"
 #include "cloth/flow/solver/solve.h"
@@ -79,6 +80,7 @@ static int build(struct flow *flow, int ranks, struct cloth_error *error)
     flow->release = flow_source_release(&flow->source);
     flow->contact_stiffness = flow_source_stiffness(&flow->source);
     flow->vertex_mass = flow_source_mass(&flow->source);
+    flow->feels_contact = model_feels_contact(flow->model);
     flow_preconditioner_choose(flow, flow->source.blocks.n_blocks);
     if (flow_watched_header(&flow->source.watched, flow->model, &flow->header, error) ||
         flow_warn(flow, error))
@@ -126,6 +128,7 @@ void flow_free(struct flow *flow)
     free(flow->names.name);
     free(flow->unused.vertex);
     free(flow->unused.position);
+    free(flow->attached);
     flow_watched_free(&flow->watched);
     free(flow->header);
     free(flow);
@@ -152,9 +155,22 @@ void flow_start(const struct flow *flow, double *position)
     }
 }
 
+void flow_starts(const struct flow *flow, double (*start)[6], unsigned char *held)
+{
+    const struct flow_particles *particles = &flow->source.particles;
+    flow_starts_take(particles, flow->model, start);
+    for (uint32_t v = 0; v < particles->n; v++)
+        held[v] = !particles->free[v] || (particles->slider && particles->slider[v]);
+}
+
 uint64_t flow_vertices(const struct flow *flow)
 {
     return flow->n_vertices;
+}
+
+const uint32_t *flow_attached(const struct flow *flow)
+{
+    return flow->attached ? flow->attached : flow->source.particles.attached;
 }
 
 const char *flow_header(const struct flow *flow)
@@ -233,6 +249,8 @@ static int run_steps(struct flow_state *state)
         code = flow_initialise(state);
     if (!code && model_certifies(state->flow->model))
         code = flow_contact_start(state);
+    if (!code && model_repels(state->flow->model))
+        code = flow_repulsion_start(state);
     if (!code)
         code = flow_steps(state);
     if (!code && implicit && state->report->steps && state->output && state->output->system)

@@ -14,6 +14,7 @@
  * whose v is that of half a step before x, `kinetic` is that of v half a step on. */
 struct flow_energy {
     double kinetic, elastic, gravity, loads;
+    double contact; /* what certified contacts hold (contact/row.h) */
 };
 
 /* Why a step is begun again with half its length: its solve failed; a position, velocity or edge is
@@ -38,8 +39,17 @@ struct flow_report {
     uint64_t steps_halved; /* how often a step was given up and begun again with half the length, */
     uint64_t halved_by[FLOW_CAUSES]; /* and why */
     uint64_t contacts;               /* certified contact: the most at a time; */
+    uint64_t contact_pairs;          /* pairs of features that were certified, in every look; */
     uint64_t contact_solves;         /* solves of steps beyond their first; */
-    uint64_t contact_cuts;           /* how often a vertex's way was cut */
+    uint64_t contact_cuts;           /* how often a vertex's way was cut; */
+    uint64_t contact_cut_run;        /* most steps in a row, of those made, that cut one vertex; */
+    uint64_t contact_queries;        /* how often two sides were looked at, and */
+    uint64_t contact_queries_again;  /* of these again in a step, after another solve or a cut; */
+    uint64_t contact_graphs;         /* how often the round of the solve was recorded again; */
+    uint64_t contacts_now;           /* at the end of the last step accepted */
+    uint64_t contact_pinches;        /* pairs that nothing kept apart, so that a step was halved; */
+    char contact_pinch[240];         /* the first of them; on rank 0, else empty */
+    double contact_cut_momentum;     /* kg m/s: what cuts changed, summed over the steps made */
     uint64_t steps_retaken; /* how often one by BDF2 gained energy and was made again by implicit
                                Euler */
     uint64_t frames, cg_iterations_total, cg_iterations_max; /* iterations: of the steps made */
@@ -61,6 +71,7 @@ struct flow_report {
                                are not judged by it (model: stretch_growth, stretch_limit) */
     struct flow_energy start, end; /* of all vertices */
     double torque_left;            /* at the end, of the forces of uncorrected triangles, N m */
+    double energy_lent;            /* J: by contacts, with energy_steps; else NaN */
     double energy_lowest, energy_highest, /* of their sum, at the start and after each step; */
         energy_gained; /* the most that it rose above an earlier one; NaN but with energy_steps */
     uint64_t state_hash;
@@ -79,6 +90,9 @@ struct flow_output {
      * seconds. Returns 0 or a code and fills error. */
     int (*frame)(void *context, uint64_t frame, double time, const double *position,
                  struct cloth_error *error);
+    /* After it the force of contact on each vertex in the step that ended there, N, alike, of a run
+     * whose contact is certified; NULL: it is not wanted. */
+    int (*force)(void *context, uint64_t frame, const double *force, struct cloth_error *error);
     /* A row of the table of probes: n numbers, whose names are flow_header's, of the state after so
      * many steps, from 0 on. Returns 0 or a code and fills error. NULL: it is not wanted. */
     int (*row)(void *context, uint64_t step, double time, size_t n, const double *values,
@@ -168,6 +182,14 @@ uint64_t flow_vertices(const struct flow *flow);
 /* Where a run starts: 3 numbers a vertex, m, in the input's numbering. On rank 0, before the run.
  * Local. */
 void flow_start(const struct flow *flow, double *position);
+
+/* The same with velocities, m/s: of each vertex 6 numbers, as model_cloth.start has them; and
+ * whether a pin holds it or moves it, 1 or 0. On rank 0, before the run. Local. */
+void flow_starts(const struct flow *flow, double (*start)[6], unsigned char *held);
+
+/* Of each vertex, in the input's numbering: the obstacle, from 1, that its pin follows, or 0. NULL:
+ * none does. On rank 0 when the flow is prepared. Lives as long as the flow. Local. */
+const uint32_t *flow_attached(const struct flow *flow);
 
 /* Names of the columns of the table of probes, with commas between: step, time, then those of its
  * rows' numbers, with units. NULL: the model has no probes. On rank 0 when the flow is prepared.

@@ -96,6 +96,21 @@ void mesh_add_mass(const struct mesh *mesh, double density, double *mass)
         mesh_add_mass_of(mesh, t, density, mass);
 }
 
+double mesh_box(const struct mesh *mesh, double low[3], double high[3])
+{
+    double longest = 0;
+    for (size_t i = 0; i < 3; i++) {
+        low[i] = INFINITY;
+        high[i] = -INFINITY;
+        for (size_t v = 0; v < mesh->n_vertices; v++) {
+            low[i] = fmin(low[i], mesh->position[3 * v + i]);
+            high[i] = fmax(high[i], mesh->position[3 * v + i]);
+        }
+        longest = fmax(longest, high[i] - low[i]);
+    }
+    return longest;
+}
+
 void mesh_free(struct mesh *mesh)
 {
     free(mesh->position);

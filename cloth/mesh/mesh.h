@@ -128,6 +128,10 @@ int mesh_uv(const struct mesh *mesh, uint32_t v, double uv[2]);
 void mesh_axes(const struct mesh *mesh, double u[3], double v[3]);
 
 /* Frees what the mesh owns and clears it; a zeroed mesh is fine. */
+/* The box around all vertices, m; from INFINITY to -INFINITY of none. Returns its longest side, 0
+ * of none. */
+double mesh_box(const struct mesh *mesh, double low[3], double high[3]);
+
 void mesh_free(struct mesh *mesh);
 
 /* All edges of the triangles and the lone edges, each once, a < b, sorted by (a, b). A lone edge
@@ -165,6 +169,23 @@ void mesh_share_of(const struct mesh *mesh, uint32_t triangle, double density, b
  * of a sheet do not depend on its diagonals. */
 void mesh_add_cell_mass_of(const struct mesh *mesh, uint32_t triangle, double density,
                            double *mass);
+
+/* The sum of the areas of all triangles, as positioned, m^2. */
+double mesh_surface(const struct mesh *mesh);
+
+/* Triangles of which the arrays are lent. */
+struct mesh_shape {
+    uint32_t n_vertices, n_triangles;
+    const double *position; /* n_vertices x 3, finite, m */
+    const uint32_t (*corner)[3];
+};
+/* The area that the triangles shade in light along an axis of any length but 0, m^2: that of the
+ * union of what is seen of them. It is cut by 2048 lines across the axis; along each of them it is
+ * exact, across them it is summed by the midpoint rule. So a polygon's error is of second order in
+ * the distance of two lines, a border along a line counts up to half a distance too far. Error:
+ * CLOTH_E_MEMORY. */
+int mesh_shadow(const struct mesh_shape *shape, const double axis[3], double *area,
+                struct cloth_error *error);
 
 /* Regions of a mesh are bits in a mask by vertex. The last region that has all of n > 0 vertices;
  * -1: there is none. */

@@ -21,6 +21,17 @@ static void free_pairs(struct model_pairs *pairs)
     free(pairs->place);
 }
 
+void model_start_at(struct model_cloth *cloth, double *start)
+{
+    for (uint32_t i = 0; i < cloth->n_starts; i++)
+        free_pick(&cloth->starts[i].pick);
+    free(cloth->starts);
+    free(cloth->start);
+    cloth->starts = NULL;
+    cloth->n_starts = 0;
+    cloth->start = start;
+}
+
 static void free_cloth(struct model_cloth *cloth)
 {
     for (uint32_t i = 0; i < cloth->n_pins; i++)
@@ -31,16 +42,13 @@ static void free_cloth(struct model_cloth *cloth)
     }
     for (uint32_t i = 0; i < cloth->n_masses; i++)
         free_pick(&cloth->masses[i].pick);
-    for (uint32_t i = 0; i < cloth->n_starts; i++)
-        free_pick(&cloth->starts[i].pick);
+    model_start_at(cloth, NULL);
     free(cloth->masses);
-    free(cloth->starts);
     free(cloth->region);
     free(cloth->mask);
     free(cloth->pins);
     free(cloth->loads);
     free(cloth->name);
-    free(cloth->start);
     free(cloth->place);
     free(cloth->mesh_place);
     free(cloth->velocity_place);
@@ -74,7 +82,13 @@ void model_free(struct model *model)
     free(model->curve_keys);
     free(model->materials);
     free(model->cloths);
+    for (uint32_t i = 0; i < model->n_obstacles && model->obstacle_names; i++)
+        free(model->obstacle_names[i]);
+    free(model->obstacle_names);
     free(model->obstacles);
+    free(model->contact.pairs);
+    free(model->contact.apart.end);
+    free(model->contact.apart.apart);
     free(model->bodies.memory);
     for (uint32_t i = 0; i < model->n_files; i++)
         free(model->files[i]);
@@ -97,12 +111,59 @@ const struct model_word model_integrators[] = {{"implicit_euler", MODEL_IMPLICIT
                                                {"bdf2", MODEL_BDF2},
                                                {0}};
 
-const char *model_integrator_name(enum model_integrator integrator)
+const struct model_word model_contact_modes[] = {{"certified", MODEL_CONTACT_CERTIFIED},
+                                                 {"repulsion", MODEL_CONTACT_REPULSION},
+                                                 {"project", MODEL_CONTACT_PROJECT},
+                                                 {0}};
+
+static const char *word_of(const struct model_word *word, int value)
 {
-    const struct model_word *word = model_integrators;
-    while (word->word && word->value != (int)integrator)
+    while (word->word && word->value != value)
         word++;
     return word->word;
+}
+
+const char *model_integrator_name(enum model_integrator integrator)
+{
+    return word_of(model_integrators, (int)integrator);
+}
+
+bool model_feels_contact(const struct model *model)
+{
+    bool feels = false;
+    for (uint32_t i = 0; i < model->n_probes; i++) {
+        const struct model_probe *probe = model->probes + i;
+        feels = feels || probe->contact || probe->contact_total || probe->by_obstacle;
+    }
+    return feels && model_certifies(model);
+}
+
+const char *model_contact_name(const struct model *model)
+{
+    return word_of(model_contact_modes, (int)model->contact.mode);
+}
+
+bool model_meets(const struct model *model, uint32_t cloth, uint32_t other)
+{
+    return !contact_are_apart(&model->contact.apart, cloth, other) &&
+           (cloth != other || model->contact.self);
+}
+
+double model_friction(const struct model *model, uint32_t cloth, uint32_t other)
+{
+    const bool is_cloth = other < model->n_cloths;
+    const uint32_t a = model->cloths[cloth].material;
+    const uint32_t b =
+        is_cloth ? model->cloths[other].material : model->n_materials + (other - model->n_cloths);
+    double friction = sqrt(model->materials[a].friction *
+                           (is_cloth ? model->materials[b].friction
+                                     : model->obstacles[other - model->n_cloths].friction));
+    for (uint32_t i = 0; i < model->contact.n_pairs; i++) {
+        const struct model_rub *pair = model->contact.pairs + i;
+        if ((pair->of[0] == a && pair->of[1] == b) || (pair->of[0] == b && pair->of[1] == a))
+            friction = pair->friction;
+    }
+    return friction;
 }
 
 static bool has_material(const struct model_cloth *cloth, uint32_t material)

@@ -2,9 +2,10 @@
 #define CLOTH_MODEL_MODEL_H
 
 #include "cloth/base/error.h"
+#include "cloth/contact/apart.h"
 #include "cloth/contact/shape.h"
 #include "cloth/mesh/elastic.h"
-#include "cloth/mesh/mesh.h"
+#include "cloth/model/cloth.h"
 #include "cloth/physics/air.h"
 #include "cloth/physics/curve.h"
 #include "cloth/physics/motion.h"
@@ -16,178 +17,8 @@
 #include <stdint.h>
 
 /* What is to be simulated, as a scene file or a program says it: SI units, right-handed, +y up.
- * Everything is owned by the model and freed by model_free. Rank 0 alone holds one. */
-
-struct model_material {
-    char *name;
-    double density; /* kg/m^2, > 0; 0: all its cloths have mass_per_vertex */
-    enum { MODEL_SPRINGS, MODEL_TRIANGLES } model;
-    double stretch, weft_excess; /* membrane moduli, N/m, >= 0: along the warp, and what that along
-                                    the weft is more */
-    double shear, bend;          /* likewise; bend: of springs only */
-    double poisson;              /* triangles: nu12, nu12 nu21 < 1 */
-    bool uncorrected;            /* triangles: with the papers' forces (cloth/physics/triangle.h) */
-    enum { MODEL_NO_BENDING, MODEL_HINGES, MODEL_QUADRATIC } bending; /* besides bend springs */
-    double rigidity[2];       /* N m, of warp and weft, >= 0 */
-    double damping_viscous;   /* kg/s a vertex */
-    double damping_mass;      /* 1/s: a force -damping_mass * m * v */
-    double damping_stiffness; /* s: along each spring, times its k; of strains and angles too */
-    double damping_excess;    /* s: what it is of bending less that */
-    double ea;                /* N, >= 0: force / strain of an edge without triangles */
-    double limit_strain;      /* >= 0: edges stretched beyond it are pulled back, */
-    double limit_stiffness;   /* by so many N/m, >= 0; 0: they are not */
-    double friction;          /* coefficient, >= 0: of contact that is certified */
-    int both_diagonals;       /* grids: shear springs along both diagonals of a cell */
-};
-
-/* A word of scenes, and what it means: the value of an enum, mostly. */
-struct model_word {
-    const char *word; /* NULL ends a list */
-    int value;
-};
-
-/* A `place` is where the scene says a thing, for messages: "scene.yaml:4:11", or an option; NULL:
- * it does not say. */
-
-/* Chooses vertices of a cloth. */
-struct model_pick {
-    enum { MODEL_PICK_VERTICES, MODEL_PICK_NEAREST, MODEL_PICK_BOX } kind;
-    uint32_t n_vertices;
-    uint32_t *vertices; /* of the cloth's mesh */
-    double point[3];    /* nearest: its nearest vertex after the transform, the first of equals, */
-    double radius;      /* and all that are not farther than this, m; 0: it alone */
-    double box[2][3];   /* box: every vertex inside or on it after the transform */
-    char *place;
-};
-
-/* Holds vertices where they start, or moves them from there; or leaves them free along a slider. */
-struct model_pin {
-    struct model_pick pick;
-    uint32_t
-        motion; /* number of the model's motion, from 1; 0: it does not move, or its slider does */
-    uint32_t slider; /* number of the model's slider, from 1; 0: it holds points */
-};
-
-/* Through each vertex that it has, where it starts: a line, or a plane. */
-struct model_slider {
-    enum { MODEL_LINE, MODEL_PLANE } kind;
-    uint32_t motion;     /* that it takes part in, from 1; 0: none */
-    double direction[3]; /* of the line, or normal to the plane; of length 1 */
-};
-
-/* Key frames first .. first + n - 1 of the model's, about a point (m). */
-struct model_motion {
-    uint32_t first, n; /* n > 0 */
-    double about[3];
-};
-
-/* How a load varies: by keys first .. first + n - 1 of the model's; n 0: as a sine of the
- * frequency (1/s) and phase (turns). */
-struct model_curve {
-    uint32_t first, n;
-    double frequency, phase;
-};
-
-/* A force: on each of the picked vertices, newton; or, if there are edges, along these,
- * newton a metre of the length at rest, half of an edge's on each end. */
-struct model_load {
-    struct model_pick pick; /* a vertex that stands twice gets it twice; edges: its place alone */
-    uint32_t n_edges;
-    uint32_t (*edges)[2]; /* of the cloth's mesh */
-    double force[3];
-    uint32_t curve; /* that it is multiplied by, from 1; 0: it is constant */
-};
-
-/* More mass, on each of the picked vertices. */
-struct model_mass {
-    struct model_pick pick; /* a vertex that stands twice gets it twice */
-    double mass;            /* kg, > 0 */
-};
-
-/* A plane wave over the mesh: sin(2 pi (vector . (p - about) + phase)), p where the mesh has a
- * vertex, times each of the other two. */
-struct model_wave {
-    double vector[3], phase;          /* waves a metre, waves */
-    double translate[3], velocity[3]; /* m, m/s */
-};
-
-/* How the picked vertices start, if not where the mesh has them: x -> about + rotate(scale * (x -
- * about)) + translate; then v, or what it was before, + spin x (x - about). The wave is added to
- * both. */
-struct model_start {
-    struct model_pick pick;
-    struct mesh_transform transform;
-    double about[3], spin[3], velocity[3]; /* m, rad/s, m/s */
-    bool has_velocity;
-    struct model_wave wave;
-};
-
-enum { MODEL_MAX_REGIONS = 64 };
-
-struct model_cloth {
-    char *name;
-    struct mesh mesh;  /* transformed: rest lengths and masses are those of this shape, */
-    struct mesh *rest; /* unless this is another, which shares all but the positions; or NULL */
-    uint32_t material;
-    uint32_t n_regions; /* where there are others: at most MODEL_MAX_REGIONS */
-    uint32_t
-        *region;    /* materials, which have model, diagonals and, if any, bending of the cloth's */
-    uint64_t *mask; /* by vertex, which regions have it: mesh_region; NULL: there are none */
-    double mass_per_vertex; /* kg, replaces density * area where > 0 */
-    double velocity[3];     /* at the start, m/s */
-    double *start;          /* n_vertices x 6: where they start (m) and how fast (m/s), the shape of
-                               the mesh notwithstanding; NULL: at the mesh, with `velocity` */
-    uint32_t n_pins, n_loads, n_masses, n_starts;
-    struct model_pin *pins;
-    struct model_load *loads;
-    struct model_mass *masses;
-    struct model_start *starts;                /* one after the other, from that start */
-    char *place, *mesh_place, *velocity_place; /* of the cloth, and of parts of it */
-};
-
-/* Vertices of a cloth's mesh. */
-struct model_end {
-    uint32_t cloth, n;
-    uint32_t *vertices;
-};
-
-/* Pairs of vertices, of two cloths or of one: vertex i of one end and vertex i of the other, of
- * which there are as many. */
-struct model_pairs {
-    struct model_end end[2];
-    char *place;
-};
-
-/* A spring of the scene for each pair. It has no mass. It acts in the steps that begin at `begin`
- * or later, and before `end`. */
-enum { MODEL_START_LENGTH = -1 };
-struct model_joint {
-    struct model_pairs pairs;
-    double stiffness, damping; /* N/m, > 0; kg/s, along the joint */
-    double length;             /* at rest, m; MODEL_START_LENGTH: the distance at the start */
-    double begin, end;         /* s, >= 0; end 0: never */
-};
-
-/* Whether it comes or goes while the run is on. */
-static inline bool model_is_timed(const struct model_joint *joint)
-{
-    return joint->begin > 0 || joint->end > 0;
-}
-
-/* Makes the two vertices of each pair one. */
-struct model_weld {
-    struct model_pairs pairs;
-    double tolerance; /* m: they start at most so far from each other */
-};
-
-/* What is reported of vertices after each step. */
-struct model_probe {
-    char *name;
-    uint32_t cloth;
-    struct model_pick pick;
-    bool position, velocity, reaction; /* of each vertex */
-    bool total;                        /* the sum of their reactions */
-};
+ * Everything is owned by the model and freed by model_free. Rank 0 alone holds one. What cloths are
+ * made of, and what acts on them, is in cloth.h. */
 
 /* A run ends when no vertex was faster than `speed` for `hold` seconds. */
 struct model_rest {
@@ -206,15 +37,31 @@ enum model_integrator {
 };
 enum { MODEL_INTEGRATORS = MODEL_BDF2 + 1 };
 enum model_contact_mode {
-    MODEL_CONTACT_PROJECT,  /* vertices in an obstacle are put onto it after the step */
-    MODEL_CONTACT_CERTIFIED /* the solve knows of contacts; a step ends where all are certified */
+    MODEL_CONTACT_PROJECT,   /* vertices in an obstacle are put onto it after the step */
+    MODEL_CONTACT_REPULSION, /* springs push apart what is too near when a step begins */
+    MODEL_CONTACT_CERTIFIED  /* the solve knows of contacts; a step ends where all are certified */
+};
+/* The coefficient of two sides, in place of what theirs make. of: numbers of materials; those of
+ * obstacles follow. */
+struct model_rub {
+    uint32_t of[2];
+    double friction;
 };
 struct model_contact {
     enum model_contact_mode mode;
+    bool assumed;     /* nobody chose the mode: it is the default of the scene */
+    bool idle;        /* there is nothing to touch: steps need not look for anything */
     bool self;        /* a cloth touches itself, too */
+    bool untangle;    /* a start that is not free is made so */
+    bool force;       /* frames have the force of contact on each vertex */
     double thickness; /* m, > 0: of cloth that touches something, half of it on each side */
     double friction;  /* coefficient, >= 0, of materials and obstacles that have none of their own;
-                         sides a and b rub on each other by sqrt(a b) */
+                         sides a and b rub on each other by sqrt(a b), */
+    uint32_t n_pairs; /* unless one of these is of them: the last counts */
+    struct model_rub *pairs;
+    struct contact_apart apart; /* what does not meet */
+    double stiffness;           /* repulsion: N/m, > 0; 0: as flow_repulsion_of finds */
+    double damping; /* repulsion: >= 0; part of the critical damping of a vertex of mean mass */
 };
 enum model_stop {
     MODEL_STOP_RELATIVE,
@@ -243,6 +90,7 @@ struct model {
     struct model_material *materials;
     struct model_cloth *cloths;
     struct contact_shape *obstacles;
+    char **obstacle_names;        /* n_obstacles, NULL: it has none; NULL: none has */
     struct contact_bodies bodies; /* of the obstacles that are bodies */
     struct model_probe *probes;
     uint32_t n_joints, n_welds;
@@ -261,6 +109,7 @@ struct model {
     struct phys_air air;
     uint32_t wind_curve; /* that the wind is multiplied by, from 1; 0: it is constant */
     struct model_contact contact;
+    struct model_drape drape;
 
     double h;                  /* s; time is an integer count of h/1024 */
     char *h_place, *fps_place; /* where fps is the default: that of end */
@@ -309,10 +158,47 @@ static inline int model_is_implicit(const struct model *model)
     return model->integrator >= MODEL_IMPLICIT_EULER;
 }
 
-/* Whether its steps end where all contacts are certified. */
+/* Whether its steps end where all contacts are certified: not where there can be none. */
 static inline bool model_certifies(const struct model *model)
 {
-    return model_is_implicit(model) && model->contact.mode == MODEL_CONTACT_CERTIFIED;
+    return model_is_implicit(model) && model->contact.mode == MODEL_CONTACT_CERTIFIED &&
+           !model->contact.idle;
+}
+
+/* The end of a sentence that refuses what certified contact cannot do: how to do without it, where
+ * nobody asked for it; else empty. */
+static inline const char *model_contact_cure(const struct model *model)
+{
+    return model->contact.assumed
+               ? "; contact is certified by default in this scene, contact: {mode: project} is "
+                 "the way without"
+               : "";
+}
+
+/* The area of a cloth at rest, m^2; while it has its mesh. */
+static inline double model_area(const struct model_cloth *cloth)
+{
+    return mesh_surface(cloth->rest ? cloth->rest : &cloth->mesh);
+}
+/* That of the disc of a drape test, m^2. */
+static inline double model_disc(const struct model_drape *drape)
+{
+    return 3.14159265358979323846 * drape->radius * drape->radius;
+}
+
+/* Whether a probe reports the force of contact. On the rank that has the probes. */
+bool model_feels_contact(const struct model *model);
+
+/* Whether springs push apart what is too near. */
+static inline bool model_repels(const struct model *model)
+{
+    return model->contact.mode == MODEL_CONTACT_REPULSION;
+}
+
+/* Whether features of cloth that are near each other, or near an obstacle, are found. */
+static inline bool model_seeks(const struct model *model)
+{
+    return model_certifies(model) || model_repels(model);
 }
 
 /* Whether its solves are filtered by more than points: by sliders or the program. */
@@ -320,6 +206,20 @@ static inline int model_is_filtered(const struct model *model)
 {
     return model_is_implicit(model) && (model->n_sliders || model->own_filter);
 }
+
+/* Whether pins follow obstacles. */
+static inline bool model_follows(const struct model *model)
+{
+    bool follows = false;
+    for (uint32_t i = 0; i < model->n_motions; i++)
+        follows = follows || model->motions[i].follow;
+    return follows;
+}
+
+/* Whether a cloth meets another side of contact.apart: an obstacle, another cloth, or itself. The
+ * coefficient by which the two rub on each other. Of who has the cloths. */
+bool model_meets(const struct model *model, uint32_t cloth, uint32_t other);
+double model_friction(const struct model *model, uint32_t cloth, uint32_t other);
 
 /* Whether an obstacle moves: two key frames of it differ. */
 bool model_obstacles_move(const struct model *model);
@@ -358,6 +258,8 @@ uint32_t model_patches(const struct model *model, uint32_t n_blocks);
 /* Their names in scenes. */
 extern const struct model_word model_integrators[];
 const char *model_integrator_name(enum model_integrator integrator);
+extern const struct model_word model_contact_modes[];
+const char *model_contact_name(const struct model *model);
 
 /* The shape at rest of a cloth; the modulus along the weft. */
 static inline const struct mesh *model_rest(const struct model_cloth *cloth)
@@ -446,6 +348,10 @@ static inline uint32_t model_first(const struct model *model, uint32_t cloth)
         first += model->cloths[c].mesh.n_vertices;
     return first;
 }
+
+/* Makes a cloth start as `start` says (model_cloth.start, which the cloth then owns), whatever it
+ * had before. */
+void model_start_at(struct model_cloth *cloth, double *start);
 
 /* Frees what the model owns and clears it. */
 void model_free(struct model *model);

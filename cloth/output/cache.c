@@ -54,6 +54,14 @@ static void parse_scene(struct output_cache *cache, struct output_json *json)
                                      "duite-cloth wrote: run the scene again"
                                    : "\"obstacles\"");
     output_obstacles_read(cache, json);
+    while (!json->failed && output_json_take(json, ',')) {
+        if (!cache->apart.apart && output_json_key(json, "apart"))
+            output_apart_read(cache, json);
+        else if (!cache->attached && output_json_key(json, "attached"))
+            output_attached_read(cache, json);
+        else
+            output_json_fail(json, "\"apart\" or \"attached\", or the end");
+    }
     output_json_expect(json, '}');
     output_json_expect(json, '\0');
 }
@@ -183,6 +191,18 @@ static int read_bodies(struct output_cache *cache, const char *folder, struct cl
     return code;
 }
 
+/* That cloths that do not meet others have the vertices of the mesh. */
+static int check_apart(const struct output_cache *cache, const char *folder,
+                       struct cloth_error *error)
+{
+    const struct contact_apart *apart = &cache->apart;
+    if (!apart->n_cloths || apart->end[apart->n_cloths - 1] == cache->mesh.n_vertices)
+        return 0;
+    return cloth_fail(error, CLOTH_E_INPUT,
+                      "%s/scene.json has cloths of %u vertices, cloth.obj beside it %u", folder,
+                      apart->end[apart->n_cloths - 1], cache->mesh.n_vertices);
+}
+
 int output_cache_open(struct output_cache *cache, const char *folder, struct cloth_error *error)
 {
     static const struct {
@@ -203,6 +223,7 @@ int output_cache_open(struct output_cache *cache, const char *folder, struct clo
                     : cloth_fail(error, CLOTH_E_MEMORY, "no memory for paths");
         free(path);
     }
+    code = code ? code : check_apart(cache, folder, error);
     code = code ? code : read_bodies(cache, folder, error);
     if (code)
         output_cache_close(cache);
@@ -243,6 +264,9 @@ void output_cache_close(struct output_cache *cache)
     free(cache->obstacles);
     free(cache->bodies.memory);
     free(cache->keys);
+    free(cache->apart.end);
+    free(cache->apart.apart);
+    free(cache->attached);
     if (cache->pc2)
         fclose(cache->pc2);
     memset(cache, 0, sizeof *cache);

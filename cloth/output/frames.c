@@ -39,6 +39,14 @@ static int fill_scene(FILE *file, const void *what)
     output_json_number(file, setup->fps);
     fputs(",\n  \"obstacles\": ", file);
     output_obstacles(file, setup->n_obstacles, setup->obstacles, setup->keys);
+    if (setup->apart && setup->apart->apart) {
+        fputs(",\n  \"apart\": ", file);
+        output_apart(file, setup->apart);
+    }
+    if (setup->apart && setup->apart->attached) {
+        fputs(",\n  \"attached\": ", file);
+        output_attached(file, setup->n_obstacles, setup->apart);
+    }
     fputs("\n}\n", file);
     return ferror(file);
 }

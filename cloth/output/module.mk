@@ -1,11 +1,13 @@
 libduite_cloth_la_SOURCES += \
 	cloth/output/output.h \
+	cloth/output/forces.c \
 	cloth/output/frames.c \
 	cloth/output/lock.c \
 	cloth/output/probes.c \
 	cloth/output/cache.c \
 	cloth/output/report.c \
 	cloth/output/room.c \
+	cloth/output/files/apart.c \
 	cloth/output/files/bodies.c \
 	cloth/output/files/bodies.h \
 	cloth/output/files/files.h \

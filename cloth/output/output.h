@@ -2,6 +2,7 @@
 #define CLOTH_OUTPUT_OUTPUT_H
 
 #include "cloth/base/error.h"
+#include "cloth/contact/apart.h"
 #include "cloth/contact/shape.h"
 #include "cloth/mesh/mesh.h"
 #include "cloth/solve/system.h"
@@ -14,10 +15,14 @@
  *   cloth.obj      the start, with the input's polygons, one `o` per cloth
  *   cloth.pc2      PC2 point cache: header, then one float x y z a vertex and frame
  *   frames.csv     frame,time: the true time of each frame
+ *   contact.pc2    where it is asked for: the force of contact on each vertex (output_forces)
  *   body-K.obj     the bodies among the obstacles, K from 0, without their motion
  *   scene.json     what a viewer needs: {"fps", "obstacles": [{KIND: {its parameters}}]}, of a
  *                  body {"obj": its file}; one that moves also has "about" and
- *                  "keys": [{"time", "translate", "rotate"}]
+ *                  "keys": [{"time", "translate", "rotate"}]. Where the scene keeps some from
+ * meeting, "apart": {"cloths": [vertices of each], "pairs": [[cloth, other], ...]} follows: numbers
+ * of cloths; those of obstacles follow. Where pins follow obstacles, "attached": [[obstacle,
+ * vertex, ...], ...]: vertices whose triangles do not meet it
  *
  * PC2's count of frames is rewritten after each frame and the file synced, so that a run that is
  * killed leaves whole files up to the last finished frame. */
@@ -34,6 +39,7 @@ struct output_setup {
     const struct contact_shape *obstacles;
     const struct phys_key *keys;         /* of their motions */
     const struct contact_bodies *bodies; /* that they name; NULL: none */
+    const struct contact_apart *apart;   /* what does not meet; NULL: all meets */
     size_t n_inputs;
     const char *const *inputs; /* paths of what the run reads, which is not replaced */
 };
@@ -55,6 +61,31 @@ int output_frame(void *context, uint64_t frame, double time, const double *posit
 
 /* Closes; *frames becomes NULL. */
 int output_close(struct output_frames **frames, struct cloth_error *error);
+
+/* The force of contact on each vertex in each frame, DIR/contact.pc2: a PC2 cache like cloth.pc2,
+ * with forces, N, in the place of positions. It may have a frame less, of a run that was killed.
+ * Local functions, on rank 0. */
+struct output_forces;
+
+/* Begins it in a folder of frames, which is there. Replaces the one of an earlier run, nothing
+ * else. Errors as of output_open. */
+int output_forces_open(struct output_forces **forces, const char *folder, uint32_t n_vertices,
+                       struct cloth_error *error);
+
+/* Appends a frame: force is (all vertices) x 3. Has the form of flow_output.force, context =
+ * forces. A frame that fails leaves the ones before it whole. */
+int output_forces_frame(void *context, uint64_t frame, const double *force,
+                        struct cloth_error *error);
+
+/* Closes; *forces becomes NULL. */
+int output_forces_close(struct output_forces **forces, struct cloth_error *error);
+
+/* Removes that of an earlier run from a folder of frames, whose run has none. */
+int output_forces_forget(const char *folder, struct cloth_error *error);
+
+/* Reads a frame back. Errors: CLOTH_E_INPUT, there is none, or it cannot be read. */
+int output_forces_read(const char *folder, uint32_t n_vertices, uint64_t frame, double *force,
+                       struct cloth_error *error);
 
 /* A folder's lock: DIR/duite.lock, which names the host and the process of the run that writes into
  * the folder. Local functions, on rank 0. */
@@ -102,6 +133,8 @@ struct output_cache {
     struct phys_key *keys; /* of their motions */
     uint32_t n_bodies;
     struct contact_bodies bodies; /* n_bodies */
+    struct contact_apart apart;   /* what does not meet */
+    uint32_t *attached;           /* n_vertices; as apart.attached, which it is */
     FILE *pc2;
 };
 int output_cache_open(struct output_cache *cache, const char *folder, struct cloth_error *error);

@@ -28,11 +28,14 @@ libduite_cloth_la_SOURCES += \
 	cloth/scene/build/cloth.c \
 	cloth/scene/build/contact.c \
 	cloth/scene/build/curve.c \
+	cloth/scene/build/drape.c \
 	cloth/scene/build/frames.c \
 	cloth/scene/build/idle.c \
 	cloth/scene/build/joint.c \
 	cloth/scene/build/load.c \
 	cloth/scene/build/region.c \
+	cloth/scene/build/settled.c \
+	cloth/scene/build/sides.c \
 	cloth/scene/build/start.c \
 	cloth/scene/build/motion.c \
 	cloth/scene/build/obstacle.c \

@@ -30,9 +30,17 @@ int scene_read(struct model *model, const char *path, size_t n_sets, const struc
     if (!code)
         code = scene_build_check_obstacles(model, &tree, &own);
     if (!code)
+        code = scene_build_sides(model, &tree, &own);
+    if (!code)
+        scene_build_contact(model, &tree);
+    if (!code)
         code = scene_build_check_contact(model, &tree, &own);
     if (!code)
         code = scene_build_probes(model, &tree, &own);
+    if (!code)
+        scene_build_contact_idle(model);
+    if (!code)
+        code = scene_build_drape(model, &tree, &own);
     if (!code)
         code = scene_build_joints(model, &tree, &own);
     if (!code)

@@ -11,6 +11,7 @@ enum program { PROGRAM_CAST, PROGRAM_BACK, PROGRAM_CLOTH, PROGRAM_GROUND, N_PROG
 
 /* Colours of fronts and backs, linear. */
 static const float CLOTH[2][3] = {{0.40f, 0.030f, 0.028f}, {0.46f, 0.120f, 0.050f}};
+static const float PALE[2][3] = {{0.42f, 0.42f, 0.40f}, {0.36f, 0.36f, 0.35f}};
 static const float STONE[2][3] = {{0.22f, 0.25f, 0.28f}, {0.22f, 0.25f, 0.28f}};
 
 struct view_scene {
@@ -19,6 +20,7 @@ struct view_scene {
     struct draw_lights lights;
     GLuint program[N_PROGRAMS];
     GLuint nothing; /* a vertex array without attributes */
+    bool heated;
 };
 
 static int make_programs(struct view_scene *scene, struct cloth_error *error)
@@ -106,6 +108,12 @@ int view_scene_move(struct view_scene *scene, const double *position, struct clo
     return trouble == GL_NO_ERROR
                ? 0
                : cloth_fail(error, CLOTH_E_LIBRARY, "OpenGL took no vertices (0x%x)", trouble);
+}
+
+void view_scene_heat(struct view_scene *scene, const float *heat)
+{
+    draw_mesh_heat(&scene->mesh, heat);
+    scene->heated = true;
 }
 
 static GLuint use(const struct view_scene *scene, enum program which,
@@ -242,7 +250,7 @@ void view_scene_draw(const struct view_scene *scene, const struct view_camera *c
         glDisable(GL_CULL_FACE);
         glDisable(GL_POLYGON_OFFSET_FILL);
     }
-    glUniform3fv(glGetUniformLocation(surface, "paint"), 2, CLOTH[0]);
+    glUniform3fv(glGetUniformLocation(surface, "paint"), 2, scene->heated ? PALE[0] : CLOTH[0]);
     draw_mesh_draw(&scene->mesh);
 }
 

@@ -86,6 +86,9 @@ int view_scene_new(struct view_scene **scene, const struct view_shape *shape,
                    struct cloth_error *error);
 /* position: n_vertices x 3 of the frame to be drawn; obstacles are drawn where they are now. */
 int view_scene_move(struct view_scene *scene, const double *position, struct cloth_error *error);
+/* Draws the cloth pale, and each vertex the redder, then yellow, the hotter it is: n_vertices, 0 ..
+ * 1. */
+void view_scene_heat(struct view_scene *scene, const float *heat);
 void view_scene_draw(const struct view_scene *scene, const struct view_camera *camera, int width,
                      int height);
 void view_scene_free(struct view_scene *scene);

@@ -8,7 +8,7 @@ export DUITE_SCHEDULER=nobody DUITE_MAPPING=nowhere DUITE_BALANCE=never DUITE_TH
 experiments=$(cd "$srcdir" && pwd)/bench/experiments
 mkdir "$scratch/bench" # what it leaves lies there
 ln -s "$PWD/duite-cloth" "$PWD/duite-predict" "$scratch"
-ln -s "$PWD/bench/compare" "$scratch/bench/compare"
+ln -s "$PWD/bench/compare" "$PWD/bench/contact-partition" "$scratch/bench"
 table() { # NAME LINES: so many rows, none of them without figures
     status=0
     (cd "$scratch" && limited sh "$experiments" --quick "$1") > "$scratch/said" 2>&1 || status=$?
@@ -19,12 +19,13 @@ table() { # NAME LINES: so many rows, none of them without figures
 unknown() {
     status=0
     sh "$experiments" garment > "$scratch/said" 2>&1 || status=$?
-    test $status = 2 && grep -q "zara|partutex|resolution|grain|link|scaling" "$scratch/said"
+    test $status = 2 && grep -q "zara|partutex|resolution|grain|link|scaling|contact-partition" "$scratch/said"
 }
 ok "an unknown experiment" unknown
 ok "resolution" table resolution 3
 ok "grain" table grain 8
 ok "scaling" table scaling 24
+ok "contact-partition" table contact-partition 17
 if test "${DUITE_LONG:-}" = 1; then
     ok "zara" table zara 22
     ok "partutex" table partutex 7

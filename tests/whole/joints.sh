@@ -29,6 +29,7 @@ momentum() { rows '{ p = 0.1 * c("p.0.vx") + 0.3 * c("q.1.vx"); if (p < 0) p = -
 cat > panels.yaml << 'END'
 schema: 1
 grain: 20
+contact: {mode: project}
 cloths:
   - {name: front, mesh: {grid: {width: 0.7, height: 0.7, nx: 8, ny: 8}}, material: m, pins: [{vertices: [0, 7]}]}
   - {name: back, mesh: {grid: {width: 0.7, height: 0.7, nx: 8, ny: 8}}, material: m, transform: {translate: [0, -0.1, 0.72]}}

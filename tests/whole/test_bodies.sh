@@ -14,6 +14,7 @@ awk 'BEGIN { t = atan2(0, -1) / 12
         k = (i + 1) % 24; l = (j + 1) % 12; print "f", 12 * i + j + 1, 12 * i + l + 1, 12 * k + l + 1, 12 * k + j + 1 } }' > "$scratch/ring.obj"
 cat > "$scratch/ring.yaml" << 'END'
 schema: 1
+contact: {mode: project}
 cloths: [{mesh: {grid: {width: 1, height: 1, nx: 30, ny: 30}}, material: cloth}]
 obstacles:
   - body: {obj: ring.obj, scale: 1.1, translate: [0, -0.115, 0.01], motion: {times: [0, 1], translate: [[0, 0, 0], [0.1, 0.2, 0]], rotate: [[1, 0, 0, 0], [1, 0.2, 0.1, 0]]}}
@@ -81,6 +82,6 @@ refused() { # what is open is said, with its place, before there is a folder
     sed '$d' "$scratch/ring.obj" > "$scratch/open.obj"
     sed 's/ring.obj/open.obj/' "$scratch/ring.yaml" > "$scratch/open.yaml"
     limited "$DUITE_CLOTH" "$scratch/open.yaml" --output "$scratch/none" > "$scratch/said" 2>&1
-    test $? = 2 && grep 'open.yaml:4:17: body: open.obj: the mesh is not closed' "$scratch/said" && ! test -e "$scratch/none"
+    test $? = 2 && grep 'open.yaml:5:17: body: open.obj: the mesh is not closed' "$scratch/said" && ! test -e "$scratch/none"
 }
 ok "a body with a hole" refused

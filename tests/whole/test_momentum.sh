@@ -15,6 +15,7 @@ value() { sed -n "s/^ *\"$1\": *\"\{0,1\}\([^\",]*\).*/\1/p" report.json; }
 
 cat > two.yaml << 'END'
 schema: 1
+contact: {mode: project}
 gravity: [0, 0, 0]
 cloths:
   - name: free

@@ -11,6 +11,7 @@ material='density: 0.25, stretch: 500, shear: 100, damping: {stiffness: 0.01, ma
 whole() { # MATERIAL SCENE
     cat << END
 schema: 1
+contact: {mode: project}
 grain: 20
 cloths:
   - name: a
@@ -28,6 +29,7 @@ END
 halves() { # MATERIAL SCENE
     cat << END
 schema: 1
+contact: {mode: project}
 grain: 20
 cloths:
   - {name: a, mesh: {grid: {width: 1, height: 0.5, nx: 9, ny: 5, cells: same}}, transform: {translate: [0, 0, -0.25]}, material: m, pins: [{vertices: [0]}]}
@@ -86,6 +88,7 @@ ok "panels that lie apart at rest are flat across their seam" turned
 bent() { # OFFSET TOLERANCE
     cat > bent.yaml << END
 schema: 1
+contact: {mode: project}
 gravity: [0, 0, 0]
 cloths:
   - {name: a, mesh: {grid: {width: 0.3, height: 0.3, nx: 4, ny: 4}}, material: m}
@@ -104,6 +107,7 @@ ok "or as a tolerance of the user's own" eval 'bent 0.19201 2e-5 && below "energ
 folds() { # BENDING of the second panel
     cat > folds.yaml << END
 schema: 1
+contact: {mode: project}
 gravity: [0, 0, 0]
 cloths:
   - {name: a, mesh: {grid: {width: 0.3, height: 0.3, nx: 4, ny: 4}}, material: m}
@@ -148,6 +152,7 @@ ok "a total by the second name" total
 # ---- A pin on the second name; a chain of welds is one vertex; parts of another damping ----
 cat > star.yaml << 'END'
 schema: 1
+contact: {mode: project}
 cloths:
   - {name: a, mesh: {inline: {vertices: [[0, 0, 0], [1, 0, 0]], edges: [[0, 1]]}}, mass_per_vertex: 0.1, material: m}
   - {name: b, mesh: {inline: {vertices: [[0, 1, 0], [0, 0, 0]], edges: [[0, 1]]}}, mass_per_vertex: 0.2, material: m}
@@ -174,6 +179,7 @@ ok "parts that move start with their common momentum" moving
 tube() { # a strip whose ends are one: all vertices alike
     cat > tube.yaml << END
 schema: 1
+contact: {mode: project}
 gravity: [0, 0, 0]
 cloths:
   - mesh: {inline: {vertices: [[1, 0, 0], [0, 0, 1], [-1, 0, 0], [0, 0, -1], [1, 0, 0]], edges: [[0, 1], [1, 2], [2, 3], [3, 4]]}}
@@ -207,7 +213,7 @@ refused() { # ERROR --set ...
     limited "$DUITE_CLOTH" star.yaml --quiet "$@" > said 2>&1
     test $? -eq 2 && cat said && grep -qF -- "$error" said
 }
-ok "vertices that start apart" refused "star.yaml:6:9: a weld is between vertex 0 of cloth 'a' and vertex 0 of cloth 'b', which start 1 m from each other; at most 1e-06 m are expected (tolerance)" \
+ok "vertices that start apart" refused "star.yaml:7:9: a weld is between vertex 0 of cloth 'a' and vertex 0 of cloth 'b', which start 1 m from each other; at most 1e-06 m are expected (tolerance)" \
     --set 'welds[0].to.vertex=0'
 near_enough() { run star.yaml --set 'welds[0].to.vertex=0' --set 'welds[0].tolerance=1' --set 'welds[1].tolerance=2'; }
 ok "but within their tolerance" near_enough

@@ -17,6 +17,8 @@
 enum { MAX_SOLVES = 5, MAX_CUTS = 8 };
 /* Of the contacts: where more rows than that lose half of their way, the step is too long. */
 static const double TOO_MANY = 0.01;
+/* Of the contacts: so few pairs that fail are cut at once. */
+static const double FEW = 0.001;
 
 double flow_contact_stiffness(const struct flow *flow, double h)
 {
@@ -31,17 +33,22 @@ bool flow_contact_is_last(const struct flow_state *state)
 
 /* ---- What cannot be kept apart ---- */
 
-/* Writes the vertices of a pair, counted from 1 over all cloths as files do; rank 0 alone knows
- * them. */
+/* Writes what a pair is of: vertices, counted from 1 over all cloths as files do, and the obstacle.
+ * Rank 0 alone knows them. */
 static void describe(const struct flow_state *state, const struct flow_near *near, size_t size,
                      char *text)
 {
     const struct flow_tie_corners *at = &near->contact.at;
-    size_t used = (size_t)snprintf(text, size, ", the first of them at vertices");
+    const uint32_t n_blocks = state->flow->tables.n_blocks, other = near->contact.side[1];
+    size_t used = (size_t)snprintf(text, size, "vertices");
     for (uint32_t k = 0; k < at->n && used < size && state->flow->vertex; k++) {
         const uint32_t place = state->flow->tables.block[at->block[k]].first + at->row[k];
-        used += (size_t)snprintf(text + used, size - used, " %u", state->flow->vertex[place] + 1);
+        used += (size_t)snprintf(text + used, size - used, " %u%s", state->flow->vertex[place] + 1,
+                                 at->held >> k & 1 ? " (pinned)" : "");
     }
+    if (other >= n_blocks && used < size)
+        snprintf(text + used, size - used, " and obstacles[%u], a %s", other - n_blocks,
+                 contact_kinds[state->flow->model->obstacles[other - n_blocks].kind]->name);
     if (!state->flow->vertex)
         text[0] = 0;
 }
@@ -70,21 +77,58 @@ static int describe_first(struct flow_state *state, const struct flow_meeting *m
     return code;
 }
 
+/* Describes the first pair that the last look found to fail; nothing but on rank 0. */
+static int describe_failing(struct flow_state *state, size_t size, char *text)
+{
+    const struct flow_meetings *meetings = &state->contact.meetings;
+    uint32_t i = 0;
+    text[0] = 0;
+    while (i < meetings->n && !(meetings->count[FLOW_COUNTS * (size_t)i + FLOW_COUNT_FAILS] > 0))
+        i++;
+    return i < meetings->n ? describe_first(state, meetings->all + i, size, text) : DUITE_OK;
+}
+
 /* The reason of a failure. when: what is wrong. */
 static int say_why(struct flow_state *state, uint64_t n, const char *when)
 {
-    const struct flow_meetings *meetings = &state->contact.meetings;
-    char first[200] = "";
-    uint32_t i = 0;
-    while (i < meetings->n && !(meetings->count[FLOW_COUNTS * (size_t)i + FLOW_COUNT_FAILS] > 0))
-        i++;
-    const int code =
-        i < meetings->n ? describe_first(state, meetings->all + i, sizeof first, first) : DUITE_OK;
-    snprintf(state->reason, sizeof state->reason, "%llu %s%s", (unsigned long long)n, when, first);
+    char first[200];
+    const int code = describe_failing(state, sizeof first, first);
+    snprintf(state->reason, sizeof state->reason, "%llu %s%s%s%s", (unsigned long long)n, when,
+             first[0] ? ", the first of them at " : "", first,
+             model_contact_cure(state->flow->model));
+    return code;
+}
+
+/* Nothing can be cut any more, and pairs fail: the step is halved for it, or the run ends. */
+static int note_pinch(struct flow_state *state, uint64_t fails)
+{
+    struct flow_report *report = state->report;
+    const bool first = !report->contact_pinches;
+    char pair[200] = "";
+    report->contact_pinches += fails;
+    if (flow_contact_is_last(state))
+        return say_why(state, fails,
+                       "pairs of features cannot be kept apart: obstacles or pins pinch the cloth, "
+                       "or are too fast");
+    const int code = first ? describe_failing(state, sizeof pair, pair) : DUITE_OK;
+    if (pair[0])
+        snprintf(report->contact_pinch, sizeof report->contact_pinch, "%s, at %g s", pair,
+                 flow_attempt_args(state).time);
     return code;
 }
 
 /* ---- What a step begins with ---- */
+
+/* again: it was looked at before. */
+static int look(struct flow_state *state, bool again, struct flow_seen *seen)
+{
+    struct flow_report *report = state->report;
+    const int code = flow_contact_look(state, seen);
+    report->contact_pairs += seen->passes;
+    report->contact_queries += state->contact.meetings.n;
+    report->contact_queries_again += again ? state->contact.meetings.n : 0;
+    return code;
+}
 
 int flow_contact_start(struct flow_state *state)
 {
@@ -97,7 +141,9 @@ int flow_contact_start(struct flow_state *state)
     if (!code)
         code = flow_contact_none(state);
     if (!code)
-        code = flow_contact_look(state, &seen);
+        code = flow_contact_cut_none(state);
+    if (!code)
+        code = look(state, false, &seen);
     if (!code && seen.fails) {
         code = say_why(state, seen.fails,
                        "pairs of features touch where the run starts, cloths or a cloth and an "
@@ -114,7 +160,9 @@ int flow_contact_begin(struct flow_state *state)
 {
     state->contact.now = state->contact.begin;
     state->contact.failed = false;
-    state->contact.cut = 0;
+    state->contact.cut = state->contact.cut_run = 0;
+    state->contact.attempt++;
+    state->contact.cut_momentum = 0;
     state->contact.iterations = state->contact.restarts = 0;
     const int code = flow_skins_keep(state);
     return code ? code : flow_contact_tie(state);
@@ -150,18 +198,17 @@ static int cut(struct flow_state *state, struct flow_seen *seen)
         struct flow_cut cut;
         code = flow_contact_cut(state, &cut);
         report->contact_cuts += cut.rows;
+        state->contact.cut_momentum += cut.momentum;
         state->contact.cut += cut.rows;
+        if (cut.run > state->contact.cut_run)
+            state->contact.cut_run = cut.run;
         if (!flow_contact_is_last(state) && (double)cut.halved > TOO_MANY * (double)seen->contacts)
             state->contact.failed = true;
         if (!code)
-            code = flow_contact_look(state, seen);
+            code = look(state, true, seen);
     }
     state->contact.failed = state->contact.failed || seen->fails;
-    if (!code && seen->fails && flow_contact_is_last(state))
-        code = say_why(state, seen->fails,
-                       "pairs of features cannot be kept apart: obstacles or pins pinch the cloth, "
-                       "or are too fast");
-    return code;
+    return !code && seen->fails ? note_pinch(state, seen->fails) : code;
 }
 
 /* Whether the step as it was solved is of any use. */
@@ -180,8 +227,8 @@ int flow_contact_settle(struct flow_state *state)
         code = duite_get(state->rt, state->run.status[parity], status);
         if (code || !is_solved(status))
             return code;
-        code = flow_contact_look(state, &seen);
-        if (code || !seen.fails || solve == MAX_SOLVES)
+        code = look(state, solve > 1, &seen);
+        if (code || solve == MAX_SOLVES || !((double)seen.fails > FEW * (double)seen.contacts))
             break;
         code = again(state, status);
     }
@@ -189,7 +236,7 @@ int flow_contact_settle(struct flow_state *state)
         code = cut(state, &seen);
     if (seen.contacts > state->report->contacts)
         state->report->contacts = seen.contacts;
-    state->contact.touched = seen.contacts > 0;
+    state->contact.near = seen.contacts;
     return code || state->contact.failed ? code : flow_contact_accept(state);
 }
 
@@ -197,11 +244,17 @@ void flow_contact_status(const struct flow_state *state, double status[FLOW_STAT
 {
     status[FLOW_ITERATIONS] += state->contact.iterations;
     status[FLOW_RESTARTS] += state->contact.restarts;
-    status[FLOW_TOUCHED] += (double)state->contact.cut;
+    status[FLOW_TOUCHED] += (double)(state->contact.cut + state->contact.pushed);
 }
 
 void flow_contact_settled(struct flow_state *state, bool accepted)
 {
-    if (accepted)
-        state->contact.begin = state->contact.now;
+    if (!accepted)
+        return;
+    state->contact.begin = state->contact.now;
+    state->contact.accepted = state->contact.attempt;
+    state->report->contacts_now = state->contact.near;
+    if (state->contact.cut_run > state->report->contact_cut_run)
+        state->report->contact_cut_run = state->contact.cut_run;
+    state->report->contact_cut_momentum += state->contact.cut_momentum;
 }

@@ -33,8 +33,8 @@ enum { FLOW_CONTACT_SHAPE = 8, FLOW_ON_VERTEX = 0, FLOW_ON_TRIANGLE };
 /* What two sides found: a contact to be, or a pair whose certificate fails in this step. */
 struct flow_near {
     struct flow_contact contact;
-    bool fails;
-    double part[4]; /* then: how far each corner may go */
+    bool fails, presses; /* of those that fail: it is to be a contact of the next solve */
+    double part[4];      /* then: how far each corner may go */
 };
 
 /* A list in an object of bytes that changes its size: the head, then the items. */
@@ -48,16 +48,58 @@ static inline size_t flow_list_bytes(size_t n, size_t item)
     return sizeof(struct flow_list) + n * item;
 }
 
-/* Numbers that a task of two sides adds to the counts, at 4 times its number: pairs that fail;
- * items of its list, there or not; those that the first side keeps; the second. */
-enum { FLOW_COUNT_FAILS, FLOW_COUNT_ALL, FLOW_COUNT_FIRST, FLOW_COUNT_SECOND, FLOW_COUNTS };
+/* Numbers that a task of two sides adds to the counts, at FLOW_COUNTS times its number: pairs that
+ * fail; that are certified; items of its list, there or not; those that the first side keeps; the
+ * second. */
+enum {
+    FLOW_COUNT_FAILS,
+    FLOW_COUNT_PASSES,
+    FLOW_COUNT_ALL,
+    FLOW_COUNT_FIRST,
+    FLOW_COUNT_SECOND,
+    FLOW_COUNTS
+};
 
-/* The coefficient of the cloth that a point of a skin is of. */
-static inline double flow_friction_of(const struct flow *flow, const struct contact_skin *skin,
-                                      uint32_t point)
+/* The coefficient of a cloth and another side, as flow->friction has them. */
+static inline double flow_friction_of(const struct flow *flow, uint32_t cloth, uint32_t other)
 {
-    return flow->friction[skin->cloth[point]];
+    return flow
+        ->friction[(size_t)cloth * ((size_t)flow->n_cloths + flow->model->n_obstacles) + other];
 }
+/* The cloth that n points of a feature are of: a point that welds make one of several cloths is of
+ * the first of them. */
+static inline uint32_t flow_cloth_of(const struct contact_skin *skin, uint32_t n,
+                                     const uint32_t *point)
+{
+    uint32_t cloth = 0;
+    for (uint32_t k = 0; k < n; k++)
+        cloth = skin->cloth[point[k]] > cloth ? skin->cloth[point[k]] : cloth;
+    return cloth;
+}
+/* Whether any two sides do not meet, or any feature does not meet an obstacle: one with a corner
+ * whose pin follows it. */
+static inline bool flow_leaves_out(const struct model *model)
+{
+    return !model->contact.self || model->contact.apart.apart || model_follows(model);
+}
+/* Whether one of n points is attached to an obstacle, by number. attached: of their skin. */
+static inline bool flow_is_attached(const uint32_t *attached, uint32_t n, const uint32_t *point,
+                                    uint32_t obstacle)
+{
+    bool is = false;
+    for (uint32_t k = 0; k < n; k++)
+        is = is || attached[point[k]] == obstacle + 1;
+    return is;
+}
+
+/* Take out of a list of contacts, sorted as touch.c has them, what is none; return how many are
+ * left. Local. (pick.c)
+ * A vertex that meets a triangle from above is near to its neighbours as well, aslant: they would
+ * hold it up as it slides. marks: n, zero before and after. */
+size_t flow_contact_drop_aslant(struct flow_contact *list, size_t n, unsigned char *marks);
+/* A vertex above an edge or a vertex is nearest to that on each triangle there. Springs would add
+ * up, so the first is the contact. */
+size_t flow_contact_drop_repeated(struct flow_contact *list, size_t n);
 
 /* Functions of the main program. Collective; they return what the runtime does. */
 
@@ -74,7 +116,7 @@ void flow_contact_part(struct flow_state *state);
 
 /* What a look at the step found. */
 struct flow_seen {
-    uint64_t fails, contacts;
+    uint64_t fails, passes, contacts;
 };
 /* Looks at the way from kept_x to x: all pairs are certified, the near ones are listed. (pairs.c)
  */
@@ -93,8 +135,16 @@ int flow_contact_tie(struct flow_state *state);
 /* Cuts the ways of the corners of pairs that fail. (cut.c) */
 struct flow_cut {
     uint64_t rows, halved; /* that were cut; by more than half of a way that counts */
+    uint64_t run;          /* most steps in a row that one of them was cut in, with this one */
+    double momentum;       /* kg m/s: that the cloth lost or gained */
 };
 int flow_contact_cut(struct flow_state *state, struct flow_cut *cut);
+int flow_contact_cut_none(struct flow_state *state); /* no row was cut yet */
+
+/* Of a contact with a convex shape: normal and gap of row's origin at the end of a step between two
+ * times (s). Local. (meet_shape.c) */
+void flow_contact_end(const struct flow *flow, double from, double to,
+                      const struct flow_contact *contact, struct contact_row *row);
 
 /* A contact with an obstacle, where the obstacle is in a step between two times (s): row begins as
  * that of the contact. Others stay as they are. Local.
@@ -108,7 +158,7 @@ double flow_contact_stiffness(const struct flow *flow, double h);
 /* m: nearer features are contacts. */
 static inline double flow_contact_reach(const struct model *model)
 {
-    return 1.3 * model->contact.thickness;
+    return (model_certifies(model) ? 1.3 : 1) * model->contact.thickness;
 }
 
 #endif

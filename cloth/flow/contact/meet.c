@@ -17,11 +17,13 @@ struct meeting {
     const struct flow_meet_args *args;
     const struct contact_shape *obstacle; /* the body that it is with; NULL: a block */
     const struct contact_body *body;
-    const uint32_t *fan; /* of the body (contact_body_opens) */
+    const uint32_t *fan;      /* of the body (contact_body_opens) */
+    const uint32_t *attached; /* by point of the first skin */
     struct contact_skin skin[2];
     struct contact_side side[2]; /* of a block that meets itself: both */
     struct flow_near *near;
     size_t n, room; /* found; there is room for */
+    size_t passes;  /* pairs that are certified */
     double *counts;
 };
 
@@ -47,15 +49,22 @@ static void find_corners(const struct meeting *m, const struct contact_candidate
     }
 }
 
-/* Of the two features. */
-static double friction_of(const struct meeting *m, const struct corners *corners)
+/* The cloth, or behind all cloths the obstacle, that n corners are of, from one on. */
+static uint32_t side_of(const struct meeting *m, const uint32_t point[4],
+                        const unsigned char side[4], uint32_t from, uint32_t n)
 {
-    double product = 1;
-    for (int k = 0; k < 4; k += 3) /* a corner of each */
-        product *= m->body && corners->side[k]
-                       ? m->obstacle->friction
-                       : flow_friction_of(m->flow, m->skin + corners->side[k], corners->point[k]);
-    return sqrt(product);
+    return m->body && side[from] ? m->flow->n_cloths + (m->args->side[1] - m->flow->tables.n_blocks)
+                                 : flow_cloth_of(m->skin + side[from], n, point + from);
+}
+
+/* Of the two features. */
+static double friction_of(const struct meeting *m, enum contact_pair pair, const uint32_t point[4],
+                          const unsigned char side[4])
+{
+    const uint32_t n = pair == CONTACT_EE ? 2 : 1; /* of the first one's corners */
+    const uint32_t a = side_of(m, point, side, 0, n), b = side_of(m, point, side, n, 4 - n);
+    return a < m->flow->n_cloths ? flow_friction_of(m->flow, a, b)
+                                 : flow_friction_of(m->flow, b, a);
 }
 
 /* Of a body's vertex and a triangle of the block the latter comes first. */
@@ -91,7 +100,7 @@ static void describe(const struct meeting *m, const struct contact_candidate *ca
     to->row.normal = sign * nearest->normal;
     to->row.gap = nearest->gap;
     to->row.thickness = m->model->contact.thickness;
-    to->row.friction = friction_of(m, corners);
+    to->row.friction = friction_of(m, corners->pair, corners->point, corners->side);
     for (int k = 0; k < 2; k++) {
         to->side[k] = m->args->side[turned ? k : k ^ second];
         to->feature[k] = candidate->of[k ^ second];
@@ -117,7 +126,7 @@ static void append(struct meeting *m, const struct flow_near *near)
 
 /* Whether a surface has a ridge at an edge, towards what is nearest to it: on a flat or hollow one
  * vertices and triangles are nearer than the edge is, and a contact of their own is enough. At a
- * border of the cloth, or of what the skin knows, there is one triangle or none: a flat one counts.
+ * border of the cloth a flat triangle counts. Of an edge between two skins one triangle decides.
  * sign: 1 where the normal points away from what is nearest, else -1. */
 static bool is_ridge(const struct meeting *m, int side, uint32_t edge, const phys_vec *normal,
                      double sign)
@@ -129,7 +138,7 @@ static bool is_ridge(const struct meeting *m, int side, uint32_t edge, const phy
     const double square = phys_dot(&along, &along);
     const bool border = skin->beside[edge][1] == CONTACT_NO_POINT;
     bool ridge = true;
-    for (int k = 0; k < 2 && skin->beside[edge][k] != CONTACT_NO_POINT; k++) {
+    for (int k = 0; k < 2 && skin->beside[edge][k] < CONTACT_FAR_POINT; k++) {
         const phys_vec to = y[skin->beside[edge][k]] - *from;
         const phys_vec across = to - phys_dot(&to, &along) / square * along;
         const double up = sign * phys_dot(&across, normal);
@@ -141,7 +150,8 @@ static bool is_ridge(const struct meeting *m, int side, uint32_t edge, const phy
 /* The same of a feature of the block and one of a body, whose surface goes on all around. It is one
  * if the nearest point is inside the block's feature, and the direction there is in the cone that
  * the body leaves open. Others are those of a neighbour of a feature, seen aslant: they would hold
- * up what slides over an edge. */
+ * up what slides over an edge. Where the body is flat, vertices of the cloth are nearer to it than
+ * its edges and triangles are. */
 static bool presses_body(const struct meeting *m, const struct corners *corners,
                          const struct contact_nearest *nearest)
 {
@@ -159,18 +169,25 @@ static bool presses_body(const struct meeting *m, const struct corners *corners,
         point += weight * corners->y[k];
         vertex[n++] = corners->point[k];
     }
-    return inside && contact_body_opens(m->body, m->fan, m->side[1].y, n, vertex, &point, &normal);
+    const phys_vec *y = m->side[1].y;
+    const bool one = corners->pair == CONTACT_VT && !turned; /* a vertex of the cloth is nearer */
+    return inside && contact_body_opens(m->body, m->fan, y, n, vertex, &point, &normal) &&
+           (one || contact_body_bends(m->body, m->fan, y, n, vertex));
 }
 
-/* Whether a vertex is above the inside of a triangle. */
-static bool is_above(const struct contact_nearest *nearest)
+/* Whether two features are nearest inside both: a vertex is above the inside of a triangle, edges
+ * cross. */
+static bool is_inside(const struct contact_nearest *nearest)
 {
-    return nearest->weight[1] != 0 && nearest->weight[2] != 0 && nearest->weight[3] != 0;
+    bool inside = true;
+    for (int k = 0; k < 4; k++)
+        inside = inside && nearest->weight[k] != 0;
+    return inside;
 }
 
 /* Whether two features are a contact at the end of the step. A vertex beside a triangle is one
  * where it is too near alone: the plane across the way to it would hold up what slides over an
- * edge. */
+ * edge. What is nearest at an end of an edge is such a vertex. */
 static bool presses(const struct meeting *m, const struct contact_candidate *candidate,
                     const struct corners *corners, const struct contact_nearest *nearest)
 {
@@ -179,23 +196,47 @@ static bool presses(const struct meeting *m, const struct contact_candidate *can
     if (m->body)
         return presses_body(m, corners, nearest);
     if (candidate->kind != CONTACT_EE)
-        return is_above(nearest) || nearest->gap < m->model->contact.thickness;
-    return is_ridge(m, 0, candidate->of[0], &nearest->normal, 1) &&
+        return is_inside(nearest) || nearest->gap < m->model->contact.thickness;
+    return is_inside(nearest) && is_ridge(m, 0, candidate->of[0], &nearest->normal, 1) &&
            is_ridge(m, 1, candidate->of[1], &nearest->normal, -1);
 }
 
+/* What is near at the end of the step. */
 static void list(struct meeting *m, const struct contact_candidate *candidate,
-                 const struct corners *corners, const phys_vec places[4],
-                 const struct contact_nearest *nearest, bool fails)
+                 const struct corners *corners, const struct contact_nearest *nearest)
 {
-    double part[4] = {1, 1, 1, 1};
     struct flow_near near;
     memset(&near, 0, sizeof near); /* padding, too: lists are compared byte by byte */
-    near.fails = fails;
-    describe(m, candidate, corners, places, nearest, &near.contact);
-    if (fails)
-        contact_cut(corners->pair, corners->x, corners->y, m->model->contact.thickness,
-                    corners->held, part);
+    describe(m, candidate, corners, corners->y, nearest, &near.contact);
+    for (uint32_t k = 0; k < 4; k++)
+        near.part[k] = 1;
+    append(m, &near);
+}
+
+/* What the gap becomes in the step, along the normal of its begin. */
+static double gap_ahead(const struct corners *corners, const struct contact_nearest *nearest)
+{
+    phys_vec way = {0};
+    for (int k = 0; k < 4; k++)
+        way += nearest->weight[k] * (corners->y[k] - corners->x[k]);
+    return nearest->gap + phys_dot(&nearest->normal, &way);
+}
+
+/* What the step drives into each other. */
+static void fail(struct meeting *m, const struct contact_candidate *candidate,
+                 const struct corners *corners)
+{
+    double part[4] = {1, 1, 1, 1};
+    struct contact_nearest nearest;
+    struct flow_near near;
+    memset(&near, 0, sizeof near);
+    contact_nearest_of(corners->pair, corners->x, &nearest);
+    describe(m, candidate, corners, corners->x, &nearest, &near.contact);
+    near.fails = true;
+    near.presses = true;
+    near.contact.row.firm = contact_row_firm_for(&near.contact.row, gap_ahead(corners, &nearest));
+    contact_cut(corners->pair, corners->x, corners->y, m->model->contact.thickness, corners->held,
+                part);
     for (uint32_t k = 0; k < 4; k++)
         near.part[k] = part[(k + is_turned(m, corners)) % 4];
     append(m, &near);
@@ -206,25 +247,31 @@ static void look_at(struct meeting *m, const struct contact_candidate *candidate
     struct contact_nearest nearest;
     struct corners corners;
     find_corners(m, candidate, &corners);
-    if (!contact_certify(corners.pair, corners.x, corners.y, m->model->contact.thickness)) {
-        contact_nearest_of(corners.pair, corners.x, &nearest);
-        list(m, candidate, &corners, corners.x, &nearest, true);
+    if (model_certifies(m->model) &&
+        !contact_certify(corners.pair, corners.x, corners.y, m->model->contact.thickness)) {
+        fail(m, candidate, &corners);
         return;
     }
+    m->passes++;
     contact_nearest_of(corners.pair, corners.y, &nearest);
     if (presses(m, candidate, &corners, &nearest))
-        list(m, candidate, &corners, corners.y, &nearest, false);
+        list(m, candidate, &corners, &nearest);
 }
 
-/* Whether a cloth that does not meet itself is on both sides. */
+/* Whether the two sides do not meet, or the feature of the block is attached to the body. */
 static bool is_left_out(const struct meeting *m, const struct contact_candidate *candidate)
 {
     uint32_t point[4];
     unsigned char side[4];
-    if (m->model->contact.self || m->body)
+    if (!flow_leaves_out(m->model))
         return false;
-    contact_candidate_corners(m->skin, m->skin + 1, candidate, point, side);
-    return m->skin[side[0]].cloth[point[0]] == m->skin[side[3]].cloth[point[3]];
+    const enum contact_pair pair =
+        contact_candidate_corners(m->skin, m->skin + 1, candidate, point, side);
+    if (friction_of(m, pair, point, side) < 0)
+        return true;
+    const uint32_t n = pair == CONTACT_EE ? 2 : 1, from = side[0] ? n : 0;
+    return m->body && flow_is_attached(m->attached, side[0] ? 4 - n : n, point + from,
+                                       m->args->side[1] - m->flow->tables.n_blocks);
 }
 
 static void visit(void *to, uint32_t n, const struct contact_candidate *candidate)
@@ -255,6 +302,7 @@ static void open_sides(const duite_call *call, struct meeting *m)
     const uint32_t n_blocks = m->flow->tables.n_blocks, *side = m->args->side;
     const size_t other = AT_SIDES + (side[0] != side[1] ? EACH_SIDE : 0);
     open_side(call, AT_SIDES, m->skin, m->side);
+    m->attached = flow_skin_open(duite_in(call, AT_SIDES, unsigned char)).attached;
     if (side[1] < n_blocks) {
         open_side(call, other, m->skin + 1, m->side + 1);
         return;
@@ -283,6 +331,7 @@ static int meet(const duite_call *call)
     open_sides(call, &m);
     contact_query(m.side, alone ? m.side : m.side + 1, flow_contact_reach(m.model), visit, &m);
     m.counts[FLOW_COUNT_ALL] = (double)m.n;
+    m.counts[FLOW_COUNT_PASSES] = (double)m.passes;
     *list = (struct flow_list){.n = m.n < m.room ? m.n : m.room,
                                .side = {args->side[0], args->side[1]}};
     return duite_resize(call, AT_LIST, flow_list_bytes(list->n, sizeof *m.near));

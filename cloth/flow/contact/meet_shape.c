@@ -1,4 +1,5 @@
 /* A block meets a convex shape: each of its triangles is certified on its way through the step.
+ * Where contact is not certified it meets any obstacle, and only what is near counts.
  * Vertices near the shape at the end of the step are contacts, and so are places on edges and in
  * triangles that are nearer to it than their corners: a corner of a box under the middle of a
  * triangle is one. */
@@ -14,12 +15,17 @@ struct meeting {
     const struct flow *flow;
     const struct model *model;
     const struct flow_meet_args *args;
+    const struct contact_shape *shape;
+    struct contact_pose pose;
     struct contact_solid solid;
-    double friction; /* of the shape */
+    uint32_t obstacle;        /* behind all cloths */
+    const uint32_t *attached; /* by point of the skin */
     struct contact_skin skin;
     const phys_vec *x, *y; /* by point */
+    double h;              /* s: of the step */
     struct flow_near *near;
     size_t n, room; /* found; there is room for */
+    size_t passes;  /* triangles in reach that are certified */
     double *counts;
 };
 
@@ -30,6 +36,18 @@ static void append(struct meeting *m, const struct flow_near *near)
     m->n++;
     m->counts[FLOW_COUNT_FAILS] += near->fails;
     m->counts[FLOW_COUNT_FIRST]++;
+}
+
+/* Of the cloth that n points are of, and the shape. */
+static double friction_of(const struct meeting *m, uint32_t n, const uint32_t *point)
+{
+    return flow_friction_of(m->flow, flow_cloth_of(&m->skin, n, point), m->obstacle);
+}
+
+static bool is_left_out(const struct meeting *m, uint32_t n, const uint32_t *point)
+{
+    return friction_of(m, n, point) < 0 ||
+           flow_is_attached(m->attached, n, point, m->obstacle - m->flow->n_cloths);
 }
 
 /* What is kept of a point of the cloth, in memory that is zero: n corners at places, whose weights
@@ -44,7 +62,7 @@ static void describe(const struct meeting *m, uint32_t n, const uint32_t *point,
     to->row.normal = on->normal;
     to->row.gap = on->gap;
     to->row.thickness = m->model->contact.thickness;
-    to->row.friction = sqrt(m->friction * flow_friction_of(m->flow, &m->skin, point[0]));
+    to->row.friction = friction_of(m, n, point);
     for (int k = 0; k < 2; k++)
         to->side[k] = m->args->side[k];
     for (uint32_t k = 0; k < n; k++) {
@@ -58,21 +76,61 @@ static void describe(const struct meeting *m, uint32_t n, const uint32_t *point,
     }
 }
 
+/* ---- Where it would be ---- */
+
+static bool is_certified(const struct meeting *m, const phys_vec x[3], const phys_vec y[3])
+{
+    return contact_solid_certify(&m->solid, x, y, m->model->contact.thickness);
+}
+
+/* What the gap at a point becomes while the point and the shape go on for a step as they did in
+ * this one; or in this one, from its begin. */
+static double gap_ahead(const struct meeting *m, const phys_vec *x, const phys_vec *y,
+                        const struct contact_solid_point *on)
+{
+    phys_vec way = -m->h * on->velocity;
+    for (int k = 0; k < 3; k++)
+        way += on->weight[k] * (y[k] - x[k]);
+    return on->gap + phys_dot(&on->normal, &way);
+}
+
 /* ---- Triangles ---- */
 
-static void fail(struct meeting *m, uint32_t triangle, const phys_vec x[3], const phys_vec y[3])
+/* Corners that fail alone are contacts of their own. */
+static bool fails_alone(const struct meeting *m, const phys_vec x[3], const phys_vec y[3])
 {
-    const uint32_t *point = m->skin.corner[triangle];
+    bool fails = false;
+    for (int k = 0; k < 3; k++) {
+        const phys_vec begin[3] = {x[k], x[k], x[k]}, end[3] = {y[k], y[k], y[k]};
+        fails = fails || !is_certified(m, begin, end);
+    }
+    return fails;
+}
+
+/* on: where the step begins. */
+static void fail(struct meeting *m, uint32_t n, const uint32_t *point, const phys_vec x[3],
+                 const phys_vec y[3], const struct contact_solid_point *on, struct flow_near *near)
+{
+    double part[3] = {1, 1, 1};
+    describe(m, n, point, x, on, near);
+    near->fails = true;
+    near->contact.row.firm = contact_row_firm_for(&near->contact.row, gap_ahead(m, x, y, on));
+    contact_solid_cut(&m->solid, x, y, m->model->contact.thickness, near->contact.at.held, part);
+    for (uint32_t k = 0; k < n; k++)
+        near->part[k] = part[k];
+}
+
+static void fail_triangle(struct meeting *m, uint32_t triangle, const phys_vec x[3],
+                          const phys_vec y[3])
+{
     struct contact_solid_point on;
     struct flow_near near;
     memset(&near, 0, sizeof near); /* padding, too: lists are compared byte by byte */
     contact_solid_nearest(&m->solid, CONTACT_BEGIN, x, &on);
-    describe(m, 3, point, x, &on, &near);
-    near.fails = true;
+    fail(m, 3, m->skin.corner[triangle], x, y, &on, &near);
+    near.presses = !fails_alone(m, x, y);
     near.contact.feature[0] = triangle;
     near.contact.feature[1] = FLOW_ON_TRIANGLE;
-    contact_solid_cut(&m->solid, x, y, m->model->contact.thickness, near.contact.at.held,
-                      near.part);
     append(m, &near);
 }
 
@@ -83,10 +141,14 @@ static void list_triangle(struct meeting *m, uint32_t triangle, const phys_vec y
     contact_solid_nearest(&m->solid, CONTACT_END, y, &on);
     if (on.feature < CONTACT_ON_EDGE || !(on.gap < flow_contact_reach(m->model)))
         return;
+    if (!model_certifies(m->model) && !(on.gap > 0))
+        return; /* its corners know the way out */
     memset(&near, 0, sizeof near);
     describe(m, 3, m->skin.corner[triangle], y, &on, &near);
     near.contact.feature[0] = triangle;
     near.contact.feature[1] = FLOW_ON_TRIANGLE;
+    if (!model_certifies(m->model))
+        near.contact.row.slip = (m->args->from - m->args->to) * on.velocity;
     append(m, &near);
 }
 
@@ -97,29 +159,103 @@ static void look_at_triangle(struct meeting *m, uint32_t triangle)
     const phys_vec y[3] = {m->y[point[0]], m->y[point[1]], m->y[point[2]]};
     const enum contact_passing passing = contact_solid_pass(
         &m->solid, x, y, m->model->contact.thickness, flow_contact_reach(m->model));
+    m->passes += passing == CONTACT_PASSES;
     if (passing == CONTACT_PASSES)
         list_triangle(m, triangle, y);
     else if (passing == CONTACT_MAY_TOUCH)
-        fail(m, triangle, x, y);
+        fail_triangle(m, triangle, x, y);
 }
 
 /* ---- Vertices ---- */
 
+/* Of a vertex as a triangle whose corners are one. */
+static void find_vertex(const struct meeting *m, enum contact_end end, const phys_vec x[3],
+                        struct contact_solid_point *on)
+{
+    contact_solid_nearest(&m->solid, end, x, on);
+    memcpy(on->weight, (const double[3]){1, 0, 0}, sizeof on->weight);
+}
+
+/* Where it ends the step. A vertex that is to come too near in the next step is a contact, too. */
+static void list_vertex(struct meeting *m, uint32_t point, const phys_vec x[3], const phys_vec y[3],
+                        struct flow_near *near)
+{
+    struct contact_solid_point on;
+    find_vertex(m, CONTACT_END, y, &on);
+    const double ahead = gap_ahead(m, x, y, &on);
+    if (!(on.gap < flow_contact_reach(m->model)) && !(ahead < m->model->contact.thickness))
+        return;
+    describe(m, 1, &point, y, &on, near);
+    if (on.gap > m->model->contact.thickness)
+        near->contact.row.firm = contact_row_firm_for(&near->contact.row, ahead);
+    append(m, near);
+}
+
 static void look_at_vertex(struct meeting *m, uint32_t vertex)
 {
     const uint32_t point = m->skin.vertex[vertex];
+    const phys_vec x[3] = {m->x[point], m->x[point], m->x[point]};
     const phys_vec y[3] = {m->y[point], m->y[point], m->y[point]};
-    struct contact_solid_point on;
     struct flow_near near;
-    contact_solid_nearest(&m->solid, CONTACT_END, y, &on);
-    if (!(on.gap < flow_contact_reach(m->model)))
-        return;
-    on.weight[0] = 1;
     memset(&near, 0, sizeof near);
-    describe(m, 1, &point, y, &on, &near);
     near.contact.feature[0] = vertex;
     near.contact.feature[1] = FLOW_ON_VERTEX;
+    if (is_certified(m, x, y)) {
+        list_vertex(m, point, x, y, &near);
+        return;
+    }
+    struct contact_solid_point on;
+    find_vertex(m, CONTACT_BEGIN, x, &on);
+    fail(m, 1, &point, x, y, &on, &near);
+    near.presses = true;
     append(m, &near);
+}
+
+/* ---- What is not certified ---- */
+
+/* Vertices are put out of whatever they are in. What the shape carries along in the step is taken
+ * off the slip, as flow_contact_ahead does. */
+static void look_at_place(struct meeting *m, uint32_t vertex)
+{
+    const uint32_t point = m->skin.vertex[vertex];
+    struct contact_solid_point on = {.weight = {1}};
+    struct contact_hit hit;
+    struct flow_near near;
+    contact_closest(m->shape, &m->pose, 1, m->y + point, &hit);
+    if (!(hit.gap < flow_contact_reach(m->model)))
+        return;
+    on.normal = hit.normal;
+    on.gap = hit.gap;
+    memset(&near, 0, sizeof near);
+    describe(m, 1, &point, m->y + point, &on, &near);
+    near.contact.feature[0] = vertex;
+    near.contact.feature[1] = FLOW_ON_VERTEX;
+    near.contact.row.slip = (m->args->from - m->args->to) * hit.velocity;
+    append(m, &near);
+}
+
+/* Edges and triangles that are near a shape from outside; of bodies vertices alone count. */
+static void look_at_places(struct meeting *m)
+{
+    for (uint32_t i = 0; i < m->skin.n_triangles && !m->shape->body; i++) {
+        const uint32_t *point = m->skin.corner[i];
+        const phys_vec y[3] = {m->y[point[0]], m->y[point[1]], m->y[point[2]]};
+        if (!is_left_out(m, 3, point))
+            list_triangle(m, i, y);
+    }
+    for (uint32_t i = 0; i < m->skin.n_vertices; i++)
+        if (!is_left_out(m, 1, m->skin.vertex + i))
+            look_at_place(m, i);
+}
+
+static void look(struct meeting *m)
+{
+    for (uint32_t i = 0; i < m->skin.n_triangles; i++)
+        if (!is_left_out(m, 3, m->skin.corner[i]))
+            look_at_triangle(m, i);
+    for (uint32_t i = 0; i < m->skin.n_vertices; i++)
+        if (!is_left_out(m, 1, m->skin.vertex + i))
+            look_at_vertex(m, i);
 }
 
 /* ---- The task ---- */
@@ -134,25 +270,30 @@ static int meet(const duite_call *call)
     const struct contact_shape *shape =
         flow->model->obstacles + (args->side[1] - flow->tables.n_blocks);
     struct flow_list *list = duite_out(call, AT_LIST, struct flow_list);
-    struct contact_pose pose;
-    contact_pose_over(shape, flow->model->keys, &flow->model->bodies, args->from, args->to, &pose);
     struct meeting m = {.flow = flow,
                         .model = flow->model,
                         .args = args,
-                        .friction = shape->friction,
+                        .obstacle = flow->n_cloths + (args->side[1] - flow->tables.n_blocks),
+                        .shape = shape,
+                        .h = args->to - args->from,
                         .near = (struct flow_near *)(list + 1),
                         .room = args->room,
                         .counts = duite_out(call, AT_COUNTS, double) +
                                   (size_t)FLOW_COUNTS * args->number};
-    contact_solid_make(shape, &pose, &m.solid);
-    m.skin = flow_skin_open(duite_in(call, AT_SKIN, unsigned char)).skin;
+    contact_pose_over(shape, flow->model->keys, &flow->model->bodies, args->from, args->to,
+                      &m.pose);
+    contact_solid_make(shape, &m.pose, &m.solid);
+    const struct flow_skin skin = flow_skin_open(duite_in(call, AT_SKIN, unsigned char));
+    m.skin = skin.skin;
+    m.attached = skin.attached;
     m.x = duite_in(call, AT_POINTS, phys_vec);
     m.y = m.x + m.skin.n_points;
-    for (uint32_t i = 0; i < m.skin.n_triangles; i++)
-        look_at_triangle(&m, i);
-    for (uint32_t i = 0; i < m.skin.n_vertices; i++)
-        look_at_vertex(&m, i);
+    if (model_certifies(m.model))
+        look(&m);
+    else
+        look_at_places(&m);
     m.counts[FLOW_COUNT_ALL] = (double)m.n;
+    m.counts[FLOW_COUNT_PASSES] = (double)m.passes;
     *list = (struct flow_list){.n = m.n < m.room ? m.n : m.room,
                                .side = {args->side[0], args->side[1]}};
     return duite_resize(call, AT_LIST, flow_list_bytes(list->n, sizeof *m.near));
@@ -169,29 +310,47 @@ const duite_kernel flow_meet_shape = {.name = "meet_shape",
                                       .variadic = DUITE_R,
                                       .args_size = sizeof(struct flow_meet_args)};
 
-/* ---- What a contact is in the step to come ---- */
+/* ---- Where a contact is ---- */
 
-void flow_contact_ahead(const struct flow *flow, double from, double to,
-                        const struct flow_contact *contact, struct contact_row *row)
+/* The normal and the gap of a place, at an end of a step. */
+static void find_place(const struct flow *flow, double from, double to, enum contact_end end,
+                       const struct flow_contact *contact, struct contact_row *row,
+                       phys_vec *velocity)
 {
     const struct model *model = flow->model;
+    const struct contact_shape *shape =
+        model->obstacles + (contact->side[1] - flow->tables.n_blocks);
     const phys_vec x[3] = {row->origin, row->origin, row->origin};
     struct contact_solid solid;
     struct contact_pose pose;
     struct contact_solid_point on;
+    contact_pose_over(shape, model->keys, &model->bodies, from, to, &pose);
+    contact_solid_make(shape, &pose, &solid);
+    contact_solid_nearest(&solid, end, x, &on);
+    row->normal = on.normal;
+    row->gap = on.gap;
+    *velocity = on.velocity;
+}
+
+void flow_contact_end(const struct flow *flow, double from, double to,
+                      const struct flow_contact *contact, struct contact_row *row)
+{
+    phys_vec velocity;
+    find_place(flow, from, to, CONTACT_END, contact, row, &velocity);
+}
+
+void flow_contact_ahead(const struct flow *flow, double from, double to,
+                        const struct flow_contact *contact, struct contact_row *row)
+{
+    phys_vec velocity;
     if (contact->side[1] < flow->tables.n_blocks)
         return;
     if (contact->kind != FLOW_CONTACT_SHAPE) {
         flow_body_ahead(flow, from, to, contact, row);
         return;
     }
-    const struct contact_shape *shape =
-        model->obstacles + (contact->side[1] - flow->tables.n_blocks);
-    contact_pose_over(shape, model->keys, &model->bodies, from, to, &pose);
-    contact_solid_make(shape, &pose, &solid);
-    contact_solid_nearest(&solid, CONTACT_BEGIN, x, &on);
-    const phys_vec carried = (to - from) * on.velocity;
-    row->normal = on.normal;
-    row->gap = on.gap - phys_dot(&on.normal, &carried);
+    find_place(flow, from, to, CONTACT_BEGIN, contact, row, &velocity);
+    const phys_vec carried = (to - from) * velocity;
+    row->gap -= phys_dot(&row->normal, &carried);
     row->slip -= carried;
 }

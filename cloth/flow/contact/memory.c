@@ -1,4 +1,4 @@
-/* What certified contact has besides fields: memory of the main program, and objects whose number
+/* What contacts have besides fields: memory of the main program, and objects whose number
  * or size changes while the run is on. */
 #include "cloth/flow/contact/certify.h"
 #include "cloth/flow/contact/contact.h"
@@ -15,7 +15,7 @@ void flow_contact_take(struct flow_state *state)
     const uint32_t n_blocks = state->head.n_blocks;
     const size_t n_obstacles = state->flow->model->n_obstacles;
     struct cloth_error *trouble = &state->flow->trouble;
-    if (!model_certifies(state->flow->model))
+    if (!model_seeks(state->flow->model))
         return;
     contact->kept = cloth_alloc(n_blocks, sizeof *contact->kept, trouble);
     contact->root = cloth_alloc(n_blocks + n_obstacles, FLOW_ROOT * sizeof *contact->root, trouble);

@@ -38,7 +38,7 @@ static int roots_body(const duite_call *call, const struct roots_fields *on)
                FLOW_ROOT * sizeof *on->roots);
     memset(obstacle, 0, FLOW_ROOT * model->n_obstacles * sizeof *obstacle);
     for (uint32_t i = 0; i < model->n_obstacles; i++)
-        if (model->obstacles[i].body)
+        if (model->obstacles[i].body && on->body_boxes)
             contact_boxes_root(on->body_boxes + flow_body_place(model, i).boxes,
                                obstacle + FLOW_ROOT * i, obstacle + FLOW_ROOT * i + 3);
     return 0;
@@ -47,9 +47,7 @@ static int roots_body(const duite_call *call, const struct roots_fields *on)
 static int get_roots(struct flow_state *state)
 {
     struct flow_block_args args;
-    int code = flow_skins_refit(state);
-    if (!code)
-        code = flow_bodies_follow(state);
+    int code = flow_bodies_follow(state);
     if (!code)
         code = flow_fork_each(state, &flow_kernel_root, &args);
     args.block = 0;
@@ -69,14 +67,41 @@ static bool is_near(const double *a, const double *b, double reach)
 
 /* ---- Meetings ---- */
 
+/* Whether any cloth of block a meets the other side. */
+static bool sides_meet(const struct flow_state *state, uint32_t a, uint32_t b)
+{
+    const struct flow *flow = state->flow;
+    const uint32_t n_blocks = flow->tables.n_blocks, obstacle = flow->n_cloths + (b - n_blocks);
+    const struct flow_skin_size *own = &flow->tables.block[a].skin;
+    const struct flow_skin_size *other = b < n_blocks ? &flow->tables.block[b].skin : NULL;
+    const uint32_t from = other ? other->cloth[0] : obstacle,
+                   to = other ? other->cloth[1] : obstacle;
+    bool meet = false;
+    for (uint32_t c = own->cloth[0]; c <= own->cloth[1]; c++)
+        for (uint32_t i = from; i <= to; i++)
+            meet = meet || flow_friction_of(flow, c, i) >= 0;
+    return meet;
+}
+
+/* Whether a block meets an obstacle by its triangles and vertices: bodies that certified contact is
+ * with have skins. */
+static bool is_shape(const struct flow_state *state, uint32_t side)
+{
+    const struct model *model = state->flow->model;
+    const uint32_t n_blocks = state->flow->tables.n_blocks;
+    return side >= n_blocks && !(model_certifies(model) && model->obstacles[side - n_blocks].body);
+}
+
 /* Block a and any side: at some time of the step. */
 static bool sides_are_near(const struct flow_state *state, uint32_t a, uint32_t b, double reach)
 {
     const double *root = state->contact.root, *own = root + FLOW_ROOT * (size_t)a;
     const uint32_t n_blocks = state->flow->tables.n_blocks;
-    return b < n_blocks || state->flow->model->obstacles[b - n_blocks].body
-               ? is_near(own, root + FLOW_ROOT * (size_t)b, reach)
-               : !contact_solid_apart(state->contact.solid + (b - n_blocks), own, own + 3, reach);
+    const bool near =
+        is_shape(state, b)
+            ? !contact_solid_apart(state->contact.solid + (b - n_blocks), own, own + 3, reach)
+            : is_near(own, root + FLOW_ROOT * (size_t)b, reach);
+    return near && sides_meet(state, a, b);
 }
 
 static uint32_t count_sides(const struct flow_state *state)
@@ -199,12 +224,6 @@ static duite_object *add_side(const struct flow_state *state, uint32_t side, dui
     return refs; /* FLOW_MEET_OBJECTS more */
 }
 
-static bool is_shape(const struct flow_state *state, uint32_t side)
-{
-    const uint32_t n_blocks = state->flow->tables.n_blocks;
-    return side >= n_blocks && !state->flow->model->obstacles[side - n_blocks].body;
-}
-
 static int fork_meeting(struct flow_state *state, uint32_t number)
 {
     const struct flow_meeting *meeting = state->contact.meetings.all + number;
@@ -265,6 +284,7 @@ static void sum_up(struct flow_state *state, struct flow_seen *seen)
     for (uint32_t i = 0; i < meetings->n; i++) {
         const double *count = meetings->count + FLOW_COUNTS * (size_t)i;
         seen->fails += (uint64_t)count[FLOW_COUNT_FAILS];
+        seen->passes += (uint64_t)count[FLOW_COUNT_PASSES];
         seen->contacts += (uint64_t)count[FLOW_COUNT_ALL];
         found[meetings->all[i].side[0]] += (uint32_t)count[FLOW_COUNT_FIRST];
         if (count[FLOW_COUNT_SECOND] > 0)
@@ -279,7 +299,7 @@ static void place_shapes(struct flow_state *state)
     const struct flow_step_args step = flow_attempt_args(state);
     for (uint32_t i = 0; i < model->n_obstacles; i++) {
         struct contact_pose pose;
-        if (model->obstacles[i].body)
+        if (!is_shape(state, state->flow->tables.n_blocks + i))
             continue;
         contact_pose_over(model->obstacles + i, model->keys, &model->bodies, step.time - step.h,
                           step.time, &pose);
@@ -289,7 +309,10 @@ static void place_shapes(struct flow_state *state)
 
 int flow_contact_look(struct flow_state *state, struct flow_seen *seen)
 {
-    int code = get_roots(state);
+    int code =
+        model_certifies(state->flow->model) ? flow_skins_refit(state) : flow_skins_place(state);
+    if (!code)
+        code = get_roots(state);
     place_shapes(state);
     if (!code && (!state->contact.meetings.counts.generation || !all_meet(state)))
         code = make_meetings(state);

@@ -5,7 +5,9 @@
  * table.
  *
  * In reading order: finding them, what a block says, its table, their part of a system. */
+#include "cloth/contact/repulse.h"
 #include "cloth/flow/contact/contact.h"
+#include "cloth/flow/contact/repel.h"
 #include "cloth/flow/solver/solve.h"
 #include "cloth/flow/step/step.h"
 
@@ -184,20 +186,26 @@ static int say(struct flow_state *state, struct row_args *args)
 
 /* ---- Its table ---- */
 
-enum { AT_TABLE, AT_LINKS, AT_TIES, AT_ROWS, AT_TABLE_LISTS };
+enum { AT_TABLE, AT_LINKS, AT_TIES, AT_ROWS, AT_OBSTACLES, AT_TABLE_LISTS };
 
 /* Every byte: rows that are not there as well. */
 static void write_rows(const struct flow *flow, const struct flow_step_args *step,
                        const struct found *found, const struct flow_ties *ties,
-                       struct contact_row *row)
+                       struct contact_row *row, uint32_t *obstacle)
 {
-    memset(row, 0, (ties->room.ties ? ties->room.ties : 1) * sizeof *row);
+    const size_t room = ties->room.ties ? ties->room.ties : 1;
+    memset(row, 0, room * sizeof *row);
+    memset(obstacle, 0, room * sizeof *obstacle);
     for (uint32_t i = 0; i < ties->n; i++) {
         if (ties->of[i] < flow->n_ties)
             continue;
         const struct flow_contact *contact = found->contact[ties->of[i] - flow->n_ties];
+        if (contact->side[1] >= flow->tables.n_blocks)
+            obstacle[i] = 1 + contact->side[1] - flow->tables.n_blocks;
         row[i] = contact->row;
-        row[i].stiffness = flow_contact_stiffness(flow, step->h) * contact_row_firm(&contact->row);
+        if (!model_certifies(flow->model))
+            continue;
+        contact_row_begin(row + i, flow_contact_stiffness(flow, step->h), step->h);
         flow_contact_ahead(flow, step->time - step->h, step->time, contact, row + i);
     }
 }
@@ -223,7 +231,8 @@ static int make_table(const duite_call *call)
         code = duite_fail(call, FLOW_NO_MEMORY, "block %u has no room for its ties", of.block);
     if (!code) {
         const struct flow_ties ties = flow_ties_open(call->param[AT_TIES].data);
-        write_rows(flow, &args->step, &found, &ties, duite_out(call, AT_ROWS, struct contact_row));
+        write_rows(flow, &args->step, &found, &ties, duite_out(call, AT_ROWS, struct contact_row),
+                   duite_out(call, AT_OBSTACLES, uint32_t));
     }
     forget(&found);
     return code;
@@ -235,7 +244,7 @@ static int make_table_timed(const duite_call *call)
 }
 const duite_kernel flow_tie_contacts = {.name = "tie_contacts",
                                         .body = make_table_timed,
-                                        .access = {DUITE_R, DUITE_R, DUITE_W, DUITE_W},
+                                        .access = {DUITE_R, DUITE_R, DUITE_W, DUITE_W, DUITE_W},
                                         .variadic = DUITE_R,
                                         .args_size = sizeof(struct row_args)};
 
@@ -248,6 +257,7 @@ static int fork_table(struct flow_state *state, struct row_args *args)
     refs[AT_LINKS] = of->tie_links;
     refs[AT_TIES] = of->tie_table;
     refs[AT_ROWS] = of->contact_rows;
+    refs[AT_OBSTACLES] = of->contact_obstacles;
     const duite_object *end = add_lists(state, args->block, refs + AT_TABLE_LISTS);
     return duite_fork(state->rt, &flow_tie_contacts, args, (size_t)(end - refs), refs);
 }
@@ -293,16 +303,92 @@ static void spread(const struct flow_ties *ties, uint32_t i, double scale, const
             y[ties->corner[i][k]] += scale * ties->weight[i][k] * *force;
 }
 
-void flow_contact_force(const struct flow *flow, const struct flow_view *view, phys_vec *f)
+/* The difference of the velocities of both sides' points, as corners have them. */
+static void find_speed(const struct flow_ties *ties, const struct flow_view *view, uint32_t i,
+                       phys_vec *speed)
+{
+    *speed = (phys_vec){0};
+    for (int k = 0; k < SOLVE_TIE_CORNERS; k++)
+        *speed += ties->weight[i][k] * *flow_tie_v(ties, view, ties->corner[i][k]);
+}
+
+/* The force of a contact, and its value in a step of h. against: its part that resists where the
+ * point goes, without what resists its speed. */
+struct pressed {
+    phys_vec force, value, against;
+};
+
+/* Where the second side is carried is a part of the slip, so it is one of the speed. Without
+ * velocities this is the way from the row's origin, over h. */
+static void repel(const struct flow *flow, const struct flow_ties *ties,
+                  const struct flow_view *view, double h, uint32_t i, const phys_vec *point,
+                  struct pressed *to)
+{
+    const struct contact_row *row = view->contact_rows + i;
+    const struct contact_spring spring = flow_repulsion_of(flow, h);
+    struct contact_repelled repelled;
+    const double rate = h > 0 ? 1 / h : 0;
+    phys_vec speed = rate * (*point - row->origin);
+    if (view->v)
+        find_speed(ties, view, i, &speed);
+    speed += rate * row->slip;
+    contact_repel(&spring, row, point, &speed, &repelled);
+    to->force = repelled.force;
+    to->against = sqrt(repelled.stiffness) * row->normal;
+    contact_repelled_value(&repelled, &row->normal, h, &to->value);
+}
+
+/* Where a point is beside a second side that has a part of its way through the step before it. */
+static void shift(const struct contact_row *row, double left, phys_vec *point)
+{
+    *point -= left * row->slip;
+}
+
+/* ahead: s, that corners are moved on at their velocities. left: of the step's time. */
+static void press(const struct flow *flow, const struct flow_ties *ties,
+                  const struct flow_view *view, double h, double ahead, double left, uint32_t i,
+                  struct pressed *to)
+{
+    phys_vec point;
+    find_point(ties, view, ahead, i, &point);
+    if (model_certifies(flow->model)) {
+        contact_row_linearise(view->contact_rows + i, &point, &to->force, &to->value);
+        to->against = to->value;
+    } else {
+        shift(view->contact_rows + i, left, &point);
+        repel(flow, ties, view, h, i, &point, to);
+    }
+}
+
+void flow_contact_force(const struct flow *flow, const struct flow_view *view,
+                        const struct flow_step_args *step, phys_vec *f)
+{
+    const double left = step->h > 0 ? (step->time - step->now) / step->h : 0;
+    const struct flow_ties ties = flow_ties_open(view->tie_table);
+    for (uint32_t i = 0; i < ties.n; i++) {
+        struct pressed pressed;
+        if (ties.of[i] < flow->n_ties)
+            continue;
+        press(flow, &ties, view, step->h, 0, left, i, &pressed);
+        spread(&ties, i, 1, &pressed.force, f);
+    }
+}
+
+void flow_contact_solved(const struct flow *flow, const struct flow_view *view,
+                         const uint32_t *obstacle, const phys_vec *value, phys_vec *f,
+                         phys_vec *by_obstacle)
 {
     const struct flow_ties ties = flow_ties_open(view->tie_table);
     for (uint32_t i = 0; i < ties.n; i++) {
-        phys_vec point, force, value;
+        phys_vec point, force;
         if (ties.of[i] < flow->n_ties)
             continue;
         find_point(&ties, view, 0, i, &point);
-        contact_row_linearise(view->contact_rows + i, &point, &force, &value);
+        contact_row_force(view->contact_rows + i, &point, value + i, &force);
         spread(&ties, i, 1, &force, f);
+        for (int k = 0; k < SOLVE_TIE_CORNERS && obstacle[i]; k++)
+            if (ties.corner[i][k] < ties.n_rows)
+                by_obstacle[obstacle[i] - 1] += ties.weight[i][k] * force;
     }
 }
 
@@ -311,9 +397,8 @@ static void resist(const struct flow_ties *ties, const struct flow_view *view, d
                    const phys_vec *value, phys_vec *b)
 {
     const phys_vec three = {1, 1, 1, 0};
-    phys_vec speed = {0}, lost;
-    for (int k = 0; k < SOLVE_TIE_CORNERS; k++)
-        speed += ties->weight[i][k] * *flow_tie_v(ties, view, ties->corner[i][k]);
+    phys_vec speed, lost;
+    find_speed(ties, view, i, &speed);
     solve_spring_times(value, &speed, &lost);
     lost *= three;
     spread(ties, i, -h * h, &lost, b);
@@ -324,15 +409,14 @@ void flow_contact_system(const struct flow *flow, const struct flow_view *view, 
 {
     const struct flow_ties ties = flow_ties_open(view->tie_table);
     for (uint32_t i = 0; i < ties.n; i++) {
-        phys_vec point, force;
+        struct pressed pressed;
         if (ties.of[i] < flow->n_ties)
             continue;
-        find_point(&ties, view, b ? push : 0, i, &point);
-        contact_row_linearise(view->contact_rows + i, &point, &force, value + i);
+        press(flow, &ties, view, h, b ? push : 0, 0, i, &pressed);
         if (b && push > 0)
-            spread(&ties, i, h, &force, b);
+            spread(&ties, i, h, &pressed.force, b);
         else if (b)
-            resist(&ties, view, h, i, value + i, b);
-        value[i] *= (phys_vec){h, h, h, h * h}; /* h^2 N: of w w' each w takes h */
+            resist(&ties, view, h, i, &pressed.against, b);
+        value[i] = pressed.value * (phys_vec){h, h, h, h * h}; /* h^2 N: of w w' each w takes h */
     }
 }

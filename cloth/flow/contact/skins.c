@@ -53,6 +53,26 @@ static int skin_refit_body(const duite_call *call, const struct skin_refit_field
     return 0;
 }
 
+/* Points that stand still. */
+FLOW_KERNEL(skin_place, FLOW_COLLIDE, struct flow_block_args,
+            (R(skin), R(x), W(skin_x), W(skin_boxes), NEIGHBOURS(halo_x)))
+static int skin_place_body(const duite_call *call, const struct skin_place_fields *on)
+{
+    const struct flow_skin skin = flow_skin_open(on->skin);
+    const uint32_t n = skin.skin.n_points;
+    const phys_vec nowhere = {0};
+    gather(&skin, flow_shape_of(call)->n_neighbours, on->x, on->halo_x, on->skin_x);
+    memcpy(on->skin_x + n, on->skin_x, n * sizeof *on->skin_x);
+    contact_refit(&skin.skin, on->skin_x, on->skin_x, &nowhere, on->skin_boxes);
+    return 0;
+}
+
+int flow_skins_place(struct flow_state *state)
+{
+    struct flow_block_args args;
+    return flow_fork_each(state, &flow_kernel_skin_place, &args);
+}
+
 int flow_skins_refit(struct flow_state *state)
 {
     struct flow_block_args args;

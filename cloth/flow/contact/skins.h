@@ -3,11 +3,14 @@
 
 #include "cloth/flow/state/state.h"
 
-/* The skins of all blocks in a step (cloth/flow/state/skin.h), of runs whose contact is certified.
+/* The skins of all blocks in a step (cloth/flow/state/skin.h), of runs that find contacts.
  * Functions of the main program. Collective; they return what the runtime does. */
 
 /* Forks what keeps the halos of x, beside flow_keep: kept_halo_x is halo_x as it is now. */
 int flow_skins_keep(struct flow_state *state);
+
+/* Forks what makes `skin_x`, x of the points as it is, twice, and `skin_boxes` of that. */
+int flow_skins_place(struct flow_state *state);
 
 /* Forks what makes `skin_x`, kept_x of the points of each block's skin and then x of them, and
  * `skin_boxes`, the boxes of the way from the one to the other (contact_refit). */

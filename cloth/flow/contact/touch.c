@@ -4,6 +4,7 @@
 #include "cloth/flow/contact/contact.h"
 #include "cloth/flow/step/step.h"
 
+#include <float.h>
 #include <stdlib.h>
 
 struct touch_args {
@@ -14,9 +15,10 @@ struct touch_args {
     double from, to; /* s: of the step */
 };
 
-/* Parameters: r the contacts there are, w those to be, r the block's own points; then of each
- * meeting its list and, if another block is in it, the points of that. */
-enum { AT_BEFORE, AT_AFTER, AT_POINTS, AT_MEETINGS };
+/* Parameters: r the contacts there are, w those to be, r the block's own points, cw what energy the
+ * contacts to be hold; then of each meeting its list and, if another block is in it, the points of
+ * that. */
+enum { AT_BEFORE, AT_AFTER, AT_POINTS, AT_ENERGY, AT_MEETINGS };
 
 /* What the body works on. */
 struct touching {
@@ -119,7 +121,7 @@ static void find_row(const struct touching *t, const struct flow_contact *contac
                      struct contact_row *row)
 {
     *row = contact->row;
-    row->stiffness = t->args->stiffness * contact_row_firm(row);
+    contact_row_begin(row, t->args->stiffness, t->args->to - t->args->from);
     flow_contact_ahead(flow_of(t->call), t->args->from, t->args->to, contact, row);
 }
 
@@ -134,6 +136,7 @@ static void press(const struct touching *t, struct flow_contact *contact)
         return;
     contact_row_press(&row, &point);
     contact->row.load = row.load;
+    contact->row.pushed = row.pushed;
 }
 
 /* The contact of before that is this one; n_before: there is none. */
@@ -147,10 +150,12 @@ static size_t find_before(const struct touching *t, const struct flow_contact *c
 static void add_failing(struct touching *t, const struct flow_near *near)
 {
     const size_t at = find_before(t, &near->contact);
-    if (near->fails && at == t->n_before)
-        t->after[t->n++] = near->contact;
-    else if (near->fails)
+    if (!near->fails)
+        return;
+    if (at < t->n_before)
         t->used[at] = 1;
+    else if (near->presses)
+        t->after[t->n++] = near->contact;
 }
 
 static void end_again(struct touching *t)
@@ -160,9 +165,8 @@ static void end_again(struct touching *t)
         *contact = t->before[i];
         if (t->used[i])
             contact_row_stiffen(&contact->row);
+        press(t, contact);
     }
-    for (size_t i = 0; i < t->n; i++)
-        press(t, t->after + i);
     qsort(t->after, t->n, sizeof *t->after, compare);
 }
 
@@ -183,9 +187,26 @@ static void hand_over(const struct touching *t, size_t from, size_t to)
     if (!find_point(t, before, &point))
         return;
     find_row(t, before, &row);
-    contact_row_press(&row, &point);
-    contact_row_slide(&row, &point, after);
+    contact_row_end(&row, &point, after);
     t->used[from] = t->used[t->n_before + to] = 1;
+}
+
+/* The place in a triangle that is nearest to a shape jumps along it where both are almost parallel.
+ * A contact goes on at the place where it was if that is hardly farther: else what rests would rock
+ * from step to step. */
+static void stay(const struct touching *t, const struct flow_contact *before,
+                 struct flow_contact *after)
+{
+    const double hardly = 0.05 * after->row.thickness;
+    struct contact_row there = after->row;
+    if (before->kind != FLOW_CONTACT_SHAPE || before->feature[1] != FLOW_ON_TRIANGLE)
+        return;
+    find_point(t, before, &there.origin);
+    flow_contact_end(flow_of(t->call), t->args->from, t->args->to, before, &there);
+    if (!(there.gap < after->row.gap + hardly))
+        return;
+    after->row = there;
+    memcpy(after->at.weight, before->at.weight, sizeof after->at.weight);
 }
 
 /* The pair that a contact slid on to: of the same first feature, on much the same side, and new.
@@ -200,63 +221,53 @@ static size_t successor(const struct touching *t, const struct flow_contact *bef
             break;
         if (before->kind == CONTACT_TV && after->side[1] != before->side[1])
             continue; /* the vertex is another body's */
+        if (before->kind == FLOW_CONTACT_SHAPE && after->feature[1] != before->feature[1])
+            continue; /* a vertex and a triangle of that number */
         if (!t->used[t->n_before + i] && phys_dot(&after->row.normal, &before->row.normal) > 0.7)
             return i;
     }
     return t->n;
 }
 
-/* Whether the nearest point is inside the triangle that a vertex meets. */
-static bool is_inside(const struct flow_contact *contact)
+/* A run starts: what is about to rest is in the first solve, though nothing presses yet. And it has
+ * the energy to rise by a tenth of the thickness. */
+static void begin_all(struct touching *t)
 {
-    bool inside = true;
-    for (uint32_t k = contact->first; k < contact->at.n; k++)
-        inside = inside && contact->at.weight[k] != 0;
-    return inside;
-}
-
-/* Whether the vertex of a contact meets a triangle of that surface from above. */
-static bool is_met(const struct touching *t, size_t i)
-{
-    const struct flow_contact *contact = t->after + i;
-    size_t from = i, to = i;
-    bool met = false;
-    while (from > 0 && !compare_first(t->after + from - 1, contact))
-        from--;
-    for (to = from; to < t->n && !compare_first(t->after + to, contact); to++)
-        met = met || (is_inside(t->after + to) &&
-                      phys_dot(&t->after[to].row.normal, &contact->row.normal) > 0.5);
-    return met;
-}
-
-/* A vertex that meets a triangle from above is near to its neighbours as well, aslant: they would
- * hold it up as it slides. Those contacts are none. */
-static void drop_aslant(struct touching *t)
-{
-    size_t kept = 0;
-    for (size_t i = 0; i < t->n; i++)
-        t->used[t->n_before + i] =
-            t->after[i].kind == CONTACT_VT && !is_inside(t->after + i) && is_met(t, i);
-    for (size_t i = 0; i < t->n; i++)
-        if (!t->used[t->n_before + i])
-            t->after[kept++] = t->after[i];
-    memset(t->used + t->n_before, 0, t->n);
-    t->n = kept;
+    const double k = flow_contact_stiffness(flow_of(t->call), flow_of(t->call)->model->h);
+    for (size_t i = 0; i < t->n; i++) {
+        struct contact_row *row = &t->after[i].row;
+        row->load = DBL_MIN;
+        row->energy = 0.005 * k * row->thickness * row->thickness;
+    }
 }
 
 static void end_accept(struct touching *t)
 {
     qsort(t->after, t->n, sizeof *t->after, compare);
-    drop_aslant(t);
+    t->n = flow_contact_drop_aslant(t->after, t->n, t->used + t->n_before);
+    if (!model_certifies(flow_of(t->call)->model))
+        t->n = flow_contact_drop_repeated(t->after, t->n);
     for (size_t i = 0; i < t->n; i++) {
         const size_t at = find_before(t, t->after + i);
-        if (at < t->n_before)
+        if (at < t->n_before) {
+            stay(t, t->before + at, t->after + i);
             hand_over(t, at, i);
+        }
     }
     for (size_t i = 0; i < t->n_before; i++) {
         const size_t next = t->used[i] ? t->n : successor(t, t->before + i);
         if (next < t->n)
             hand_over(t, i, next);
+    }
+    if (!(t->args->to > t->args->from))
+        begin_all(t);
+}
+
+static void sum_energy(const struct touching *t, double held[FLOW_HELD])
+{
+    for (size_t i = 0; i < t->n; i++) {
+        held[FLOW_HELD_ALL] += contact_row_holds(&t->after[i].row);
+        held[FLOW_HELD_LENT] += t->after[i].row.lent;
     }
 }
 
@@ -289,7 +300,7 @@ static int touch(const duite_call *call)
     struct touching t = {.call = call,
                          .args = args,
                          .before = (const struct flow_contact *)(before + 1),
-                         .n_before = before->n,
+                         .n_before = model_certifies(flow_of(call)->model) ? before->n : 0,
                          .after = (struct flow_contact *)(after + 1)};
     t.used = calloc(t.n_before + args->room + 1, 1);
     if (!t.used)
@@ -299,6 +310,8 @@ static int touch(const duite_call *call)
         end_accept(&t);
     else
         end_again(&t);
+    if (args->accept)
+        sum_energy(&t, duite_out(call, AT_ENERGY, double));
     free(t.used);
     *after = (struct flow_list){.n = t.n};
     return duite_resize(call, AT_AFTER, flow_list_bytes(t.n, sizeof *t.after));
@@ -310,7 +323,8 @@ static int touch_timed(const duite_call *call)
 }
 const duite_kernel flow_touch = {.name = "touch",
                                  .body = touch_timed,
-                                 .access = {DUITE_R, DUITE_W, DUITE_R},
+                                 .access = {DUITE_R, DUITE_W, DUITE_R, DUITE_CW},
+                                 .law = {[AT_ENERGY] = &duite_sum},
                                  .variadic = DUITE_R,
                                  .args_size = sizeof(struct touch_args)};
 
@@ -371,6 +385,7 @@ static int fork_block(struct flow_state *state, struct touch_args *args, unsigne
     contact->refs[AT_BEFORE] = kept->list[contact->now];
     contact->refs[AT_AFTER] = kept->list[to];
     contact->refs[AT_POINTS] = state->block[args->block].skin_x;
+    contact->refs[AT_ENERGY] = state->run.contact_energy;
     const duite_object *end = add_meetings(state, args->block, contact->refs + AT_MEETINGS);
     return duite_fork(state->rt, &flow_touch, args, (size_t)(end - contact->refs), contact->refs);
 }
@@ -386,7 +401,7 @@ static int fork_blocks(struct flow_state *state, bool accept)
                               .stiffness = flow_contact_stiffness(state->flow, step.h),
                               .from = step.time - step.h,
                               .to = step.time};
-    int code = DUITE_OK;
+    int code = duite_set(state->rt, state->run.contact_energy, NULL);
     for (; args.block < state->flow->tables.n_blocks && !code; args.block++)
         code = fork_block(state, &args, to);
     contact->now = to;

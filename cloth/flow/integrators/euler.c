@@ -18,7 +18,7 @@ static int euler_move(const duite_call *call, const struct flow_table *t,
     flow_fetch_own(t, m->halo_x);
     flow_fetch_own(t, m->halo_v);
     flow_fetch_halos(t, view);
-    flow_forces(call, t, step->now, view, f);
+    flow_forces(call, t, step, view, f);
     flow_sliders_filter(call, t, step->time, f);
     flow_part_ends(call, FLOW_FORCE);
     const int well = phys_euler(t->n, step->h, ahead, FLOW_BOUND, t->mass, t->free, f, m->from_x,
@@ -37,7 +37,8 @@ static int euler_move(const duite_call *call, const struct flow_table *t,
 /* In place. */
 FLOW_KERNEL(euler, FLOW_VELOCITY, struct flow_step_args,
             (R(table), RW(x), RW(v), W(spare_halo_x), W(spare_halo_v), SUM(status),
-             NEIGHBOURS(halo_x), NEIGHBOURS(halo_v), IF_MADE(tie_table), TIED(tie_halo)))
+             NEIGHBOURS(halo_x), NEIGHBOURS(halo_v), IF_MADE(tie_table), IF_MADE(contact_rows),
+             TIED(tie_halo)))
 static int euler_body(const duite_call *call, const struct euler_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table);
@@ -56,7 +57,7 @@ static int euler_body(const duite_call *call, const struct euler_fields *on)
 FLOW_KERNEL(euler_next, FLOW_VELOCITY, struct flow_step_args,
             (R(table), R(x), R(v), W(kept_x), W(kept_v), W(spare_halo_x), W(spare_halo_v),
              SUM(status), NEIGHBOURS(halo_x), NEIGHBOURS(halo_v), IF_MADE(tie_table),
-             TIED(tie_halo)))
+             IF_MADE(contact_rows), TIED(tie_halo)))
 static int euler_next_body(const duite_call *call, const struct euler_next_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table);

@@ -82,7 +82,7 @@ static inline phys_vec *flow_stage_slopes(const duite_call *call, const struct f
     flow_fetch_own(t, halo_x);
     flow_fetch_own(t, halo_v);
     flow_fetch_halos(t, view);
-    flow_forces(call, t, step->now, view, a);
+    flow_forces(call, t, step, view, a);
     flow_part_ends(call, FLOW_FORCE);
     phys_accelerate(t->n, t->mass, t->free, a);
     flow_sliders_filter(call, t, step->time, a);

@@ -23,7 +23,8 @@ static void midpoint_stage(const struct flow_table *t, const struct flow_stage_a
 
 FLOW_KERNEL(midpoint, FLOW_POSITION, struct flow_stage_args,
             (R(table), RW(x), RW(v), RW(x0), RW(v0), W(spare_halo_x), W(spare_halo_v), SUM(status),
-             NEIGHBOURS(halo_x), NEIGHBOURS(halo_v), IF_MADE(tie_table), TIED(tie_halo)))
+             NEIGHBOURS(halo_x), NEIGHBOURS(halo_v), IF_MADE(tie_table), IF_MADE(contact_rows),
+             TIED(tie_halo)))
 static int midpoint_body(const duite_call *call, const struct midpoint_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table), *t = &table;

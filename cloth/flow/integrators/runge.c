@@ -4,7 +4,7 @@
 FLOW_KERNEL(runge, FLOW_POSITION, struct flow_stage_args,
             (R(table), RW(x), RW(v), RW(x0), RW(v0), RW(sum_x), RW(sum_v), W(spare_halo_x),
              W(spare_halo_v), SUM(status), NEIGHBOURS(halo_x), NEIGHBOURS(halo_v),
-             IF_MADE(tie_table), TIED(tie_halo)))
+             IF_MADE(tie_table), IF_MADE(contact_rows), TIED(tie_halo)))
 static int runge_body(const duite_call *call, const struct runge_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table), *t = &table;

@@ -30,14 +30,14 @@ static int verlet_first_body(const duite_call *call, const struct verlet_first_f
 
 FLOW_KERNEL(verlet_second, FLOW_VELOCITY, struct flow_step_args,
             (R(table), R(x), RW(v), W(f), R(v0), W(spare_halo_v), SUM(status), NEIGHBOURS(halo_x),
-             NEIGHBOURS(halo_v), IF_MADE(tie_table), TIED(tie_halo)))
+             NEIGHBOURS(halo_v), IF_MADE(tie_table), IF_MADE(contact_rows), TIED(tie_halo)))
 static int verlet_second_body(const duite_call *call, const struct verlet_second_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table), *t = &table;
     const struct flow_view view = FLOW_VIEW(on);
     flow_fetch_own(t, on->spare_halo_v);
     flow_fetch_halos(t, &view);
-    flow_forces_free(call, t, on->args->now, &view, on->f);
+    flow_forces_free(call, t, on->args, &view, on->f);
     flow_part_ends(call, FLOW_FORCE);
     phys_kick(t->n, 0.5 * on->args->h, 0, t->mass, t->drag, t->free, on->f, on->v0, on->v);
     flow_sliders_keep(call, t, on->args->time, on->v0, on->v);
@@ -53,6 +53,6 @@ int flow_verlet_end(struct flow_state *state)
     if (!code)
         code = flow_fork_each(state, &flow_kernel_verlet_second, &args);
     flow_swap_halos_v(state);
-    state->settled_forces = !model->n_obstacles && !model_is_driven(model);
+    state->settled_forces = !model->n_obstacles && !model_is_driven(model) && !model_seeks(model);
     return code;
 }

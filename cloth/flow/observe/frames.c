@@ -11,10 +11,24 @@ double flow_frame_tick(const struct model *model, uint64_t frame)
     return (double)frame / (model->fps * model->h) * FLOW_TICKS;
 }
 
-static void put_position(struct flow *flow, uint32_t vertex, const phys_vec *x)
+static void put_vector(struct flow *flow, uint32_t vertex, const phys_vec *x)
 {
     for (int c = 0; c < 3; c++)
         flow->room[3 * (size_t)vertex + (size_t)c] = (*x)[c];
+}
+
+/* A vector of the vertices of all blocks, by all their names. */
+static void put_all(struct flow *flow, const duite_param *vector)
+{
+    for (uint32_t b = 0; b < flow->tables.n_blocks; b++) {
+        const phys_vec *x = flow_rows_of(vector, b);
+        const struct flow_table *t = flow->tables.block + b;
+        const uint32_t end = flow_names_from(&flow->names, t->first + t->n);
+        for (uint32_t i = 0; i < t->n; i++)
+            put_vector(flow, flow->vertex[t->first + i], x + i);
+        for (uint32_t i = flow_names_from(&flow->names, t->first); i < end; i++)
+            put_vector(flow, flow->names.name[i][1], x + flow->names.name[i][0] - t->first);
+    }
 }
 
 struct frame_args {
@@ -23,25 +37,39 @@ struct frame_args {
     double time; /* s */
 };
 
-/* The vertices of all blocks, by all their names. */
 FLOW_KERNEL_WITH(frame, FLOW_OUTPUT, struct frame_args, (RW(token), ALL(x)), .side_effects = 1)
 static int frame_body(const duite_call *call, const struct frame_fields *on)
 {
     struct flow *flow = flow_of(call);
-    for (uint32_t b = 0; b < flow->tables.n_blocks; b++) {
-        const phys_vec *x = flow_rows_of(on->x, b);
-        const struct flow_table *t = flow->tables.block + b;
-        const uint32_t end = flow_names_from(&flow->names, t->first + t->n);
-        for (uint32_t i = 0; i < t->n; i++)
-            put_position(flow, flow->vertex[t->first + i], x + i);
-        for (uint32_t i = flow_names_from(&flow->names, t->first); i < end; i++)
-            put_position(flow, flow->names.name[i][1], x + flow->names.name[i][0] - t->first);
-    }
+    put_all(flow, on->x);
     if (flow->output->frame(flow->output->context, on->args->frame, on->args->time, flow->room,
                             &flow->trouble))
         return duite_fail(call, FLOW_NOT_WRITTEN, "%s", flow->trouble.text);
     flow->frames = on->args->frame + 1;
     return 0;
+}
+
+/* Of the vertices that no block has: no force; then again their places. */
+static void put_unused(const struct flow *flow, bool force)
+{
+    for (uint32_t i = 0; i < flow->unused.n; i++)
+        for (size_t c = 0; c < 3; c++)
+            flow->room[3 * (size_t)flow->unused.vertex[i] + c] =
+                force ? 0 : flow->unused.position[i][c];
+}
+
+/* The forces of a frame that is written. */
+FLOW_KERNEL_WITH(frame_force, FLOW_OUTPUT, struct frame_args, (RW(token), ALL(contact_force)),
+                 .side_effects = 1)
+static int frame_force_body(const duite_call *call, const struct frame_force_fields *on)
+{
+    struct flow *flow = flow_of(call);
+    put_unused(flow, true);
+    put_all(flow, on->contact_force);
+    const int failed =
+        flow->output->force(flow->output->context, on->args->frame, flow->room, &flow->trouble);
+    put_unused(flow, false);
+    return failed ? duite_fail(call, FLOW_NOT_WRITTEN, "%s", flow->trouble.text) : 0;
 }
 
 /* Forks a frame of the state at a tick, kept or not. */
@@ -58,8 +86,12 @@ static int fork_frame(struct flow_state *state, double tick, bool kept)
         if (code)
             return code;
     }
-    return flow_fork_at(state, 0, &flow_kernel_frame, &args,
-                        kept ? FLOW_AS(FLOW_FOR(x, kept_x)) : NULL);
+    const int code = flow_fork_at(state, 0, &flow_kernel_frame, &args,
+                                  kept ? FLOW_AS(FLOW_FOR(x, kept_x)) : NULL);
+    if (code || !flow_shows_contact(state))
+        return code;
+    return flow_fork_at(state, 0, &flow_kernel_frame_force, &args,
+                        kept ? FLOW_AS(FLOW_FOR(contact_force, kept_contact_force)) : NULL);
 }
 
 int flow_frame_last(struct flow_state *state)

@@ -8,6 +8,9 @@
 
 /* Forks what is watched of the state at the end of the step under way, or at the start. */
 int flow_watch(struct flow_state *state);
+/* Forks the force of contact in the step that was accepted last, where anything reports it; before
+ * the next step begins. */
+int flow_contact_watch(struct flow_state *state);
 /* Forks its row of the table of probes. */
 int flow_probes_row(struct flow_state *state);
 /* The same if probes are wanted, and finds whether the run rests: when the step is accepted,

@@ -12,7 +12,7 @@ struct probe_args {
 };
 
 FLOW_KERNEL(probe, FLOW_OUTPUT, struct probe_args,
-            (R(table), R(x), R(v), R(probe_force), W(probe_values)))
+            (R(table), R(x), R(v), R(probe_force), W(probe_values), IF_MADE(contact_force)))
 
 /* m a - f of a row that is held, a the acceleration that its pin gives it. */
 static void reaction_of_held(const duite_call *call, const struct flow_table *t, uint32_t row,
@@ -58,6 +58,7 @@ static int probe_body(const duite_call *call, const struct probe_fields *on)
             to[c] = on->x[row][c];
             to[3 + c] = on->v[row][c];
             to[6 + c] = pull[c];
+            to[9 + c] = on->contact_force ? on->contact_force[row][c] : 0;
         }
     }
     return 0;
@@ -83,21 +84,27 @@ static double *put(double *to, bool wanted, const double *three)
     return to;
 }
 
-static void fill_probes(const struct flow *flow, const double *probe_values, double *to)
+/* by_obstacle: the force of each; NULL: no probe reports any. */
+static void fill_probes(const struct flow *flow, const double *probe_values,
+                        const phys_vec *by_obstacle, double *to)
 {
     const struct flow_watched *watched = &flow->watched;
     for (uint32_t p = 0; p < flow->model->n_probes; p++) {
         const struct model_probe *probe = flow->model->probes + p;
-        double sum[3] = {0};
+        double sum[6] = {0};
         for (uint32_t i = watched->first[p]; i < watched->first[p + 1]; i++) {
             const double *vertex = probe_values + FLOW_PROBE_VALUES * (size_t)watched->entry[i];
             to = put(to, probe->position, vertex);
             to = put(to, probe->velocity, vertex + 3);
             to = put(to, probe->reaction, vertex + 6);
-            for (int c = 0; c < 3 && !watched->again[i]; c++)
+            to = put(to, probe->contact, vertex + 9);
+            for (int c = 0; c < 6 && !watched->again[i]; c++)
                 sum[c] += vertex[6 + c];
         }
         to = put(to, probe->total, sum);
+        to = put(to, probe->contact_total, sum + 3);
+        for (int c = 0; c < 3 && probe->by_obstacle; c++)
+            *to++ = by_obstacle[probe->obstacle][c];
     }
 }
 
@@ -108,7 +115,9 @@ struct row_args {
 };
 
 FLOW_KERNEL_WITH(row, FLOW_OUTPUT, struct row_args,
-                 (RW(token), R(status), R(peaks), R(energy), ALL(probe_values)), .side_effects = 1)
+                 (RW(token), R(status), R(peaks), R(energy), IF_MADE(obstacle_force),
+                  ALL(probe_values)),
+                 .side_effects = 1)
 static int row_body(const duite_call *call, const struct row_fields *on)
 {
     struct flow *flow = flow_of(call);
@@ -122,7 +131,7 @@ static int row_body(const duite_call *call, const struct row_fields *on)
     to[FLOW_COLUMN_LONGEST] = on->peaks[FLOW_PEAK_LONGEST];
     to[FLOW_COLUMN_SHORTEST] = -on->peaks[FLOW_PEAK_SHORTEST];
     memcpy(to + FLOW_COLUMN_ENERGY, on->energy, FLOW_ENERGIES * sizeof *to);
-    fill_probes(flow, flow->probe_values, to + FLOW_RUN_COLUMNS);
+    fill_probes(flow, flow->probe_values, on->obstacle_force, to + FLOW_RUN_COLUMNS);
     if (flow->output->row(flow->output->context, on->args->steps, on->args->time,
                           flow->watched.n_columns, flow->row, &flow->trouble))
         return duite_fail(call, FLOW_NOT_WRITTEN, "%s", flow->trouble.text);

@@ -75,6 +75,8 @@ static int find_rest(struct flow_state *state)
 
 int flow_watched(struct flow_state *state)
 {
-    const int code = flow_writes_probes(state) ? flow_probes_row(state) : DUITE_OK;
+    int code = flow_contact_watch(state);
+    if (!code && flow_writes_probes(state))
+        code = flow_probes_row(state);
     return code ? code : find_rest(state);
 }

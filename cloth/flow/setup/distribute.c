@@ -25,6 +25,16 @@ struct shape {
 
 /* ---- Broadcasts ---- */
 
+/* Frictions of all sides; bytes of what says which do not meet. */
+static size_t n_frictions(const struct model *model)
+{
+    return (size_t)model->n_cloths * ((size_t)model->n_cloths + model->n_obstacles);
+}
+static size_t apart_bytes(const struct model *model)
+{
+    return model->contact.apart.apart ? model->n_cloths * sizeof(uint32_t) + n_frictions(model) : 0;
+}
+
 static uint32_t larger(uint32_t a, uint32_t b)
 {
     return a > b ? a : b;
@@ -42,10 +52,12 @@ static int broadcast_head(const duite_call *call)
     head->release = flow->release;
     head->contact_stiffness = flow->contact_stiffness;
     head->vertex_mass = flow->vertex_mass;
+    head->feels_contact = flow->feels_contact;
     head->partition_hash = flow->partition_hash;
     head->n_vertices = flow->n_vertices;
     head->n_pieces = source->particles.n_pieces;
     head->n_ties = source->springs.n_timed;
+    head->n_anchors = source->particles.n_anchors;
     head->n_triangles = flow->n_triangles;
     head->n_blocks = source->blocks.n_blocks;
     head->n_neighbours = source->neighbours.n_neighbours;
@@ -54,7 +66,8 @@ static int broadcast_head(const duite_call *call)
                          flow->model->n_obstacles * sizeof *flow->model->obstacles +
                          flow->model->n_keys * sizeof *flow->model->keys +
                          flow->model->n_motions * sizeof *flow->model->motions +
-                         flow->model->n_cloths * sizeof *flow->friction +
+                         n_frictions(flow->model) * sizeof *flow->friction +
+                         apart_bytes(flow->model) + head->n_anchors * sizeof *flow->anchor +
                          flow->model->n_sliders * sizeof *flow->model->sliders +
                          flow->model->n_curve_keys * sizeof *flow->model->curve_keys +
                          flow->model->n_curves * sizeof *flow->model->curves +
@@ -83,6 +96,17 @@ static char *put(char *to, const void *from, size_t bytes)
     return to + bytes;
 }
 
+static char *put_frictions(char *to, const struct model *model)
+{
+    for (uint32_t c = 0; c < model->n_cloths; c++)
+        for (uint32_t i = 0; i < model->n_cloths + model->n_obstacles; i++) {
+            const double friction =
+                model_meets(model, c, i) ? model_friction(model, c, i) : FLOW_APART;
+            to = put(to, &friction, sizeof friction);
+        }
+    return to;
+}
+
 static int broadcast_shared(const duite_call *call)
 {
     const struct flow *flow = flow_of(call);
@@ -96,8 +120,9 @@ static int broadcast_shared(const duite_call *call)
     to = put(to, model->curve_keys, model->n_curve_keys * sizeof *model->curve_keys);
     to = put(to, model->curves, model->n_curves * sizeof *model->curves);
     to = put(to, model->motions, model->n_motions * sizeof *model->motions);
-    for (uint32_t c = 0; c < model->n_cloths; c++)
-        to = put(to, &model->materials[model->cloths[c].material].friction, sizeof(double));
+    to = put_frictions(to, model);
+    to = put(to, source->particles.anchor,
+             source->particles.n_anchors * sizeof *source->particles.anchor);
     for (uint32_t i = 0; i < source->springs.n_timed; i++) {
         const struct flow_tie tie = flow_joints_tie(source, source->springs.timed + i);
         to = put(to, &tie, sizeof tie);
@@ -133,7 +158,12 @@ static int broadcast_shared(const duite_call *call)
     to = put(to, all->ghost_start,
              ((size_t)all->n_neighbours + source->blocks.n_blocks) * sizeof *all->ghost_start);
     to = put(to, all->ghost, all->n_ghosts * sizeof *all->ghost);
-    put(to, all->joins, all->n_neighbours * sizeof *all->joins);
+    to = put(to, all->joins, all->n_neighbours * sizeof *all->joins);
+    const struct contact_apart *apart = &model->contact.apart;
+    if (apart->apart) {
+        to = put(to, apart->end, model->n_cloths * sizeof *apart->end);
+        put(to, apart->apart, n_frictions(model));
+    }
     return 0;
 }
 const duite_kernel flow_broadcast_shared = {
@@ -168,6 +198,9 @@ int flow_share_head(struct flow_state *state)
     flow->received.materials = NULL;
     flow->received.cloths = NULL;
     flow->received.obstacles = NULL;
+    flow->received.obstacle_names = NULL;
+    flow->received.contact.n_pairs = 0;
+    flow->received.contact.pairs = NULL;
     flow->received.bodies.memory = NULL;
     flow->received.joints = NULL;
     flow->received.welds = NULL;
@@ -183,16 +216,17 @@ int flow_share_head(struct flow_state *state)
     flow->release = head->release;
     flow->contact_stiffness = head->contact_stiffness;
     flow->vertex_mass = head->vertex_mass;
+    flow->feels_contact = head->feels_contact;
     flow->partition_hash = head->partition_hash;
     flow->n_vertices = head->n_vertices;
     flow->n_triangles = head->n_triangles;
     return DUITE_OK;
 }
 
-static void unpack(struct flow_state *state)
+/* What is not of blocks. Returns where it ends. */
+static const void *unpack_model(struct flow_state *state)
 {
     struct flow *flow = state->flow;
-    struct flow_tables *tables = &flow->tables;
     flow->received.bodies.memory = flow->shared;
     flow->received.obstacles = (void *)((char *)flow->shared + flow->model->bodies.bytes);
     flow->received.keys = (void *)(flow->received.obstacles + flow->model->n_obstacles);
@@ -201,13 +235,28 @@ static void unpack(struct flow_state *state)
     flow->received.curves = (void *)(flow->received.curve_keys + flow->model->n_curve_keys);
     flow->received.motions = (void *)(flow->received.curves + flow->model->n_curves);
     flow->friction = (const void *)(flow->received.motions + flow->model->n_motions);
-    flow->tie = (const void *)(flow->friction + state->head.model.n_cloths);
-    const struct shape *shape = (const void *)(flow->tie + flow->n_ties);
+    flow->n_cloths = state->head.model.n_cloths;
+    flow->n_anchors = state->head.n_anchors;
+    flow->anchor = (const void *)(flow->friction + n_frictions(&state->head.model));
+    flow->tie = (const void *)(flow->anchor + flow->n_anchors);
+    return flow->tie + flow->n_ties;
+}
+
+static void unpack(struct flow_state *state)
+{
+    struct flow *flow = state->flow;
+    struct flow_tables *tables = &flow->tables;
+    const struct shape *shape = unpack_model(state);
     const uint32_t *neighbour = (const void *)(shape + tables->n_blocks);
     const uint32_t *ghost_start = neighbour + state->head.n_neighbours;
     const uint32_t *ghost = ghost_start + state->head.n_neighbours + tables->n_blocks;
     const uint32_t *joins = ghost + state->head.n_ghosts;
     uint32_t first = 0;
+    if (state->head.model.contact.apart.apart) {
+        flow->received.contact.apart.end = (void *)(joins + state->head.n_neighbours);
+        flow->received.contact.apart.apart =
+            (void *)(joins + state->head.n_neighbours + flow->n_cloths);
+    }
     tables->neighbour = neighbour;
     tables->ghost = ghost;
     for (uint32_t b = 0; b < tables->n_blocks; b++, shape++) {
@@ -294,7 +343,7 @@ static int skin_keep_body(const duite_call *call, const struct skin_keep_fields 
 
 static int distribute(struct flow_state *state, uint32_t from, uint32_t to)
 {
-    const bool skins = model_certifies(state->flow->model);
+    const bool skins = model_seeks(state->flow->model);
     struct flow_block_args args = {.block = from};
     int code = DUITE_OK;
     for (; args.block < to && !code; args.block++) {
@@ -322,6 +371,8 @@ static void forget_source(struct flow_state *state)
     flow->source.blocks.vertex = NULL;
     flow->names = flow->source.names;
     flow->source.names = (struct flow_names){0};
+    flow->attached = flow->source.particles.attached;
+    flow->source.particles.attached = NULL;
     flow->watched = flow->source.watched;
     flow->source.watched = (struct flow_watched){0};
     flow_source_free(&flow->source);

@@ -2,6 +2,7 @@
 #include "cloth/flow/setup/long_steps.h"
 
 #include "cloth/base/memory.h"
+#include "cloth/flow/contact/repel.h"
 #include "cloth/flow/state/state.h"
 
 #include <math.h>
@@ -46,6 +47,23 @@ static void warn_explicit(struct flow *flow, const struct flow_limit *limit)
             "%.200s: steps of %g s are beyond the limit of %s, %g s: the fastest vibration (up "
             "to %g rad/s, at vertex %u of cloth '%.60s') can grow in each",
             place, model->h, name, max, limit->omega, limit->vertex, limit->cloth->name);
+}
+
+/* Springs of contacts, which may be faster than those of the cloth. */
+static void warn_of_contacts(struct flow *flow)
+{
+    const struct model *model = flow->model;
+    const struct contact_spring spring = flow_repulsion_of(flow, model->h);
+    const double rate = FLOW_REPULSION_MOST / flow->vertex_mass;
+    const struct flow_limit limit = {.omega = sqrt(rate * spring.stiffness),
+                                     .along = rate * spring.damping};
+    const double max = flow_limit_of(&limit, model->integrator);
+    if (!flow->warning[4][0] && flow->vertex_mass > 0 && model->h > max)
+        snprintf(flow->warning[4], sizeof flow->warning[4],
+                 "%.200s: steps of %g s are beyond what contacts of stiffness %g N/m and damping "
+                 "%g allow %s, %g s: what they push can bounce ever harder",
+                 place_of(model), model->h, spring.stiffness, model->contact.damping,
+                 model_integrator_name(model->integrator), max);
 }
 
 static void warn_implicit(struct flow *flow, const struct flow_limit *limit)
@@ -121,5 +139,7 @@ int flow_warn_of_steps(struct flow *flow, struct cloth_error *error)
         warn_implicit(flow, &limit);
     else
         warn_explicit(flow, &limit);
+    if (!model_is_implicit(flow->model) && model_repels(flow->model))
+        warn_of_contacts(flow);
     return warn_of_elements(flow, error);
 }

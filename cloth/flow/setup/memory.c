@@ -59,7 +59,7 @@ static void take(struct flow_state *state)
 {
     struct flow *flow = state->flow;
     const struct flow_head *head = &state->head;
-    const size_t tied = model_certifies(flow->model) /* others of a block, at most */
+    const size_t tied = model_seeks(flow->model) /* others of a block, at most */
                             ? head->n_blocks
                             : smaller(head->n_blocks, head->n_ties);
     const size_t refs =

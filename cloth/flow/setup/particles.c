@@ -303,6 +303,8 @@ int flow_particles_make(struct flow_particles *particles, const struct model *mo
         code = flow_welds_settle(particles, model, error);
     if (!code)
         code = each_cloth(particles, model, cloth_forces, error);
+    if (!code)
+        code = flow_follow_make(particles, model, error);
     if (!code && particles->unused.n == particles->n)
         code = model_fail(model->n_cloths ? model->cloths[0].mesh_place : NULL, error,
                           "nothing to simulate: no face, edge or joint uses a vertex");
@@ -393,6 +395,8 @@ void flow_particles_free(struct flow_particles *particles)
     free(particles->drag);
     flow_welds_free(&particles->welds);
     free(particles->motion);
+    free(particles->anchor);
+    free(particles->attached);
     free(particles->varying);
     free(particles->slider);
     free(particles->piece);

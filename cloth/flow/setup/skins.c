@@ -81,7 +81,8 @@ static int list_triangles(struct flow_source *source, uint32_t n, struct cloth_e
     return CLOTH_OK;
 }
 
-/* Marks the first of the edges that have the same ends. edge: three of each listed triangle. */
+/* Marks the first of the edges that have the same ends, and whether there are others. edge: three
+ * of each listed triangle. */
 static int mark_edges(struct flow_source *source, uint32_t n, uint32_t (*edge)[2],
                       struct cloth_error *error)
 {
@@ -91,8 +92,9 @@ static int mark_edges(struct flow_source *source, uint32_t n, uint32_t (*edge)[2
               : CLOTH_E_MEMORY;
     for (uint32_t i = 0; i < 3 * n && !code; i++) {
         const uint32_t e = order[i], before = i ? order[i - 1] : 0;
-        if (i == 0 || memcmp(edge[e], edge[before], sizeof *edge))
-            source->skins.stands[e / 3] |= (unsigned char)(8 << e % 3);
+        const bool again = i && !memcmp(edge[e], edge[before], sizeof *edge);
+        source->skins.stands[e / 3] |= (unsigned char)(again ? 0 : 8 << e % 3);
+        source->skins.shared[before / 3] |= (unsigned char)(again << before % 3);
     }
     free(order);
     return code;
@@ -139,6 +141,18 @@ static uint32_t find_points(const struct flow_source *source, uint32_t block, ui
     return kept;
 }
 
+/* The cloths that points are of, from the first to the last. */
+static void find_cloths(const struct flow_source *source, uint32_t n, const uint32_t *place,
+                        uint32_t cloth[2])
+{
+    struct flow_cloths at = {0};
+    for (uint32_t i = 0; i < n; i++) {
+        flow_source_cloth(&at, source->model, source->blocks.vertex[place[i]]);
+        cloth[0] = i && cloth[0] < at.cloth ? cloth[0] : at.cloth;
+        cloth[1] = i && cloth[1] > at.cloth ? cloth[1] : at.cloth;
+    }
+}
+
 static int count_skins(struct flow_source *source, struct cloth_error *error)
 {
     const struct flow_skins *skins = &source->skins;
@@ -154,6 +168,7 @@ static int count_skins(struct flow_source *source, struct cloth_error *error)
         struct flow_skin_size *size = &source->shape[b].skin;
         size->n_triangles = skins->start[b + 1] - skins->start[b];
         size->n_points = find_points(source, b, place);
+        find_cloths(source, size->n_points, place, size->cloth);
         for (uint32_t i = skins->start[b]; i < skins->start[b + 1]; i++) {
             size->n_vertices += (uint32_t)__builtin_popcount(skins->stands[i] & 7u);
             size->n_edges += (uint32_t)__builtin_popcount(skins->stands[i] >> 3);
@@ -170,7 +185,8 @@ int flow_skins_make(struct flow_source *source, struct cloth_error *error)
     skins->start = cloth_alloc((size_t)source->blocks.n_blocks + 1, sizeof *skins->start, error);
     skins->triangle = cloth_alloc(n, sizeof *skins->triangle, error);
     skins->stands = cloth_alloc(n, 1, error);
-    if (!skins->start || !skins->triangle || !skins->stands)
+    skins->shared = cloth_alloc(n, 1, error);
+    if (!skins->start || !skins->triangle || !skins->stands || !skins->shared)
         return CLOTH_E_MEMORY;
     int code = list_triangles(source, n, error);
     if (!code)
@@ -183,6 +199,7 @@ void flow_skins_free(struct flow_skins *skins)
     free(skins->start);
     free(skins->triangle);
     free(skins->stands);
+    free(skins->shared);
     *skins = (struct flow_skins){0};
 }
 
@@ -263,6 +280,7 @@ static void fill_points(const struct making *making, const struct flow_skin_arra
         making->cloth[i] = at.cloth;
         making->held[i] = !source->particles.free[v];
         making->x[i] = particle.position;
+        arrays->attached[i] = source->particles.attached ? source->particles.attached[v] : 0;
         arrays->from[i] = neighbour_of(t, block);
         arrays->at[i] = arrays->from[i] == t->n_neighbours ? making->row[i] : source->halo[place];
     }
@@ -283,17 +301,18 @@ int flow_source_skin(const struct flow_source *source, uint32_t block, void *mem
     find_points(source, block, making.place);
     fill_corners(&making, block);
     fill_points(&making, &arrays);
-    const struct contact_skin_source from = {.n_points = t->skin.n_points,
-                                             .n_triangles = t->skin.n_triangles,
-                                             .corner = (const uint32_t(*)[3])making.corner,
-                                             .stands =
-                                                 source->skins.stands + source->skins.start[block],
-                                             .id = making.place,
-                                             .block = making.block,
-                                             .row = making.row,
-                                             .cloth = making.cloth,
-                                             .held = making.held,
-                                             .x = making.x};
+    const struct contact_skin_source from = {
+        .n_points = t->skin.n_points,
+        .n_triangles = t->skin.n_triangles,
+        .corner = (const uint32_t(*)[3])making.corner,
+        .stands = source->skins.stands + source->skins.start[block],
+        .shared = source->skins.shared + source->skins.start[block],
+        .id = making.place,
+        .block = making.block,
+        .row = making.row,
+        .cloth = making.cloth,
+        .held = making.held,
+        .x = making.x};
     const int code = contact_skin_make(&from, memory, error);
     free(room);
     return code;

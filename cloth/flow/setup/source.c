@@ -149,7 +149,7 @@ int flow_source_make(struct flow_source *source, const struct model *model, int 
                      struct cloth_error *error)
 {
     *source = (struct flow_source){.model = model};
-    int code = model_certifies(model) ? flow_thickness_check(model, error) : CLOTH_OK;
+    int code = model_seeks(model) ? flow_thickness_check(model, error) : CLOTH_OK;
     if (!code)
         code = flow_particles_make(&source->particles, model, error);
     if (!code)
@@ -173,7 +173,7 @@ int flow_source_make(struct flow_source *source, const struct model *model, int 
         code = flow_watched_make(&source->watched, source, error);
     if (!code)
         code = find_shapes(source, error);
-    if (!code && model_certifies(model))
+    if (!code && model_seeks(model))
         code = flow_skins_make(source, error);
     if (code)
         flow_source_free(source);

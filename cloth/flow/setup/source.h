@@ -3,6 +3,7 @@
 
 #include "cloth/base/memory.h"
 #include "cloth/element/cloths.h"
+#include "cloth/flow/state/anchor.h"
 #include "cloth/flow/state/tables.h"
 #include "cloth/flow/state/ties.h"
 #include "cloth/mesh/blocks.h"
@@ -52,7 +53,10 @@ struct flow_particles {
     struct flow_unusual unused, pinned, loaded; /* that no face or edge uses: all; pinned; loaded */
     unsigned char *used, *free;                 /* free: 0 where a pin holds */
     uint32_t *motion, *slider;                  /* number from 1, 0: none; NULL: there are none */
-    uint32_t n_pieces, *piece;                  /* free ones: the same */
+    uint32_t n_anchors; /* of vertices that follow bodies with frames: anchor i is motion number */
+    struct flow_anchor *anchor; /* n_motions + 1 + i */
+    uint32_t *attached; /* obstacle, from 1, that the vertex follows, 0: none; of all names; NULL */
+    uint32_t n_pieces, *piece; /* free ones: the same */
     struct flow_welds welds;
     double *mass;       /* kg */
     double *own, *drag; /* kg, of each name alone; kg/s; NULL: there are no welds */
@@ -73,6 +77,14 @@ void flow_particles_free(struct flow_particles *particles);
  */
 int flow_starts_make(struct flow_particles *particles, uint32_t first,
                      const struct model_cloth *cloth, struct cloth_error *error);
+
+/* The same of all vertices, as they have been made. Local. */
+void flow_starts_take(const struct flow_particles *particles, const struct model *model,
+                      double (*start)[6]);
+
+/* Finds what follows obstacles, when starts and pins are there. Error: CLOTH_E_MEMORY. Local. */
+int flow_follow_make(struct flow_particles *particles, const struct model *model,
+                     struct cloth_error *error);
 
 /* The loads of a cloth, the first vertex of which is `first`, as the part of flow_particles_make
  * that is about them; after weights. Local. */
@@ -244,7 +256,8 @@ struct flow_skins {
     uint32_t *start; /* a block, and one more: its triangles; NULL: there are no skins */
     uint32_t *triangle;
     unsigned char *stands; /* a triangle of this list: for which vertices and edges it stands, as
-                            * contact_skin_source has it */
+                            * contact_skin_source has it; */
+    unsigned char *shared; /* and which of those edges others have, too */
 };
 
 /* The sides of a block's springs, while its table is due. */

@@ -184,7 +184,7 @@ static void each_link(const struct flow_springs *springs, uint32_t c, const stru
     }
     if (parts & 1u << ELEMENT_FACES && model_has_cells(model, cloth))
         link_cells(visitor, mesh);
-    if (model_certifies(model) && !triangles && lacks_springs(model, cloth))
+    if (model_seeks(model) && !triangles && lacks_springs(model, cloth))
         link_triangles(visitor, mesh);
 }
 

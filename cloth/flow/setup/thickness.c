@@ -42,8 +42,9 @@ int flow_thickness_check(const struct model *model, struct cloth_error *error)
             code = model_fail(
                 cloth->place, error,
                 "cloth '%.60s': the edge between vertices %u and %u is %g m long at "
-                "rest, shorter than contact.thickness, %g m; a smaller one is expected",
-                cloth->name ? cloth->name : "", ends[0], ends[1], length, model->contact.thickness);
+                "rest, shorter than contact.thickness, %g m; a smaller one is expected%s",
+                cloth->name ? cloth->name : "", ends[0], ends[1], length, model->contact.thickness,
+                model_contact_cure(model));
     }
     return code;
 }

@@ -96,21 +96,6 @@ static void warn_of_moduli(struct flow *flow)
         }
 }
 
-/* The largest extent of a mesh along an axis, m. */
-static double extent_of(const struct mesh *mesh)
-{
-    double extent = 0;
-    for (size_t i = 0; i < 3; i++) {
-        double min = INFINITY, max = -INFINITY;
-        for (size_t v = 0; v < mesh->n_vertices; v++) {
-            min = fmin(min, mesh->position[3 * v + i]);
-            max = fmax(max, mesh->position[3 * v + i]);
-        }
-        extent = fmax(extent, max - min);
-    }
-    return extent;
-}
-
 /* Files are often in centimetres or millimetres. Chains, which no garment is, may have any length.
  */
 static void warn_of_extent(struct flow *flow)
@@ -118,7 +103,8 @@ static void warn_of_extent(struct flow *flow)
     const struct model *model = flow->model;
     for (uint32_t c = 0; c < model->n_cloths && !flow->warning[7][0]; c++) {
         const struct model_cloth *cloth = model->cloths + c;
-        const double extent = extent_of(&cloth->mesh);
+        double low[3], high[3];
+        const double extent = mesh_box(&cloth->mesh, low, high);
         if (!cloth->mesh.n_triangles || (extent >= LEAST_EXTENT && extent <= MAX_EXTENT))
             continue;
         snprintf(flow->warning[7], sizeof flow->warning[7],
@@ -166,6 +152,8 @@ static void warn_of_inside(struct flow *flow)
         for (uint32_t i = 0; i < model->n_obstacles && !flow->warning[9][0]; i++) {
             const struct model_cloth *cloth = model->cloths + c;
             uint32_t deepest = 0;
+            if (!model_meets(model, c, model->n_cloths + i))
+                continue;
             const double gap = find_deepest(flow, model->obstacles + i, cloth, first, &deepest);
             if (gap < -DEEP)
                 snprintf(flow->warning[9], size,

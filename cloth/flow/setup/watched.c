@@ -43,6 +43,9 @@ static int find_all(struct flow_watched *watched, const struct flow_source *sour
     const struct model *model = source->model;
     for (uint32_t p = 0; p < model->n_probes; p++) {
         const struct model_probe *probe = model->probes + p;
+        watched->first[p + 1] = (uint32_t)finder->entries.n;
+        if (probe->by_obstacle)
+            continue;
         finder->first = model_first(model, probe->cloth);
         const struct flow_picking picking = {.pick = &probe->pick,
                                              .cloth = model->cloths + probe->cloth,
@@ -113,8 +116,10 @@ static int find_again(struct flow_watched *watched, uint32_t n_probes, struct cl
 static size_t columns_of(const struct flow_watched *watched, const struct model *model, uint32_t p)
 {
     const struct model_probe *probe = model->probes + p;
-    const size_t values = 3 * ((size_t)probe->position + probe->velocity + probe->reaction);
-    return values * (watched->first[p + 1] - watched->first[p]) + (probe->total ? 3 : 0);
+    const size_t values =
+        3 * ((size_t)probe->position + probe->velocity + probe->reaction + probe->contact);
+    return values * (watched->first[p + 1] - watched->first[p]) +
+           3 * ((size_t)probe->total + probe->contact_total + probe->by_obstacle);
 }
 
 int flow_watched_make(struct flow_watched *watched, const struct flow_source *source,
@@ -166,9 +171,11 @@ static void print_probe(FILE *file, const struct flow_watched *watched, const st
         const struct {
             bool wanted;
             const char *letter, *unit;
-        } values[] = {
-            {probe->position, "", "m"}, {probe->velocity, "v", "m/s"}, {probe->reaction, "r", "N"}};
-        for (int k = 0; k < 3; k++) {
+        } values[] = {{probe->position, "", "m"},
+                      {probe->velocity, "v", "m/s"},
+                      {probe->reaction, "r", "N"},
+                      {probe->contact, "c", "N"}};
+        for (size_t k = 0; k < sizeof values / sizeof *values; k++) {
             snprintf(before, sizeof before, "%.100s.%u.%s", probe->name, watched->vertex[i] - first,
                      values[k].letter);
             if (values[k].wanted)
@@ -177,6 +184,9 @@ static void print_probe(FILE *file, const struct flow_watched *watched, const st
     }
     snprintf(before, sizeof before, "%.100s.total.r", probe->name);
     if (probe->total)
+        three(file, before, "N");
+    snprintf(before, sizeof before, "%.100s%s.c", probe->name, probe->by_obstacle ? "" : ".total");
+    if (probe->contact_total || probe->by_obstacle)
         three(file, before, "N");
 }
 

@@ -164,8 +164,7 @@ FLOW_KERNEL(system, FLOW_MATRIX, struct flow_step_args,
 static int system_body(const duite_call *call, const struct system_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table);
-    struct flow_view view = FLOW_VIEW(on);
-    view.contact_rows = on->contact_rows;
+    const struct flow_view view = FLOW_VIEW(on);
     make_system(call, &table, on->args, on->args->h, &view, on->f, on->a);
     return 0;
 }
@@ -177,8 +176,7 @@ FLOW_KERNEL(system_of_forces, FLOW_MATRIX, struct flow_step_args,
 static int system_of_forces_body(const duite_call *call, const struct system_of_forces_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table);
-    struct flow_view view = FLOW_VIEW(on);
-    view.contact_rows = on->contact_rows;
+    const struct flow_view view = FLOW_VIEW(on);
     make_system(call, &table, on->args, 0, &view, on->f, on->a);
     return 0;
 }

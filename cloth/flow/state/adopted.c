@@ -15,7 +15,7 @@ static size_t max_others(const struct flow_state *state)
     const struct flow_head *head = &state->head;
     const size_t joints = 4 * (size_t)head->n_ties;
     const size_t all = (size_t)head->n_blocks * head->n_blocks;
-    return joints < all && !model_certifies(state->flow->model) ? joints : all;
+    return joints < all && !model_seeks(state->flow->model) ? joints : all;
 }
 
 static void take(struct flow_tied_blocks *blocks, size_t n_blocks, size_t n_others,
@@ -33,7 +33,7 @@ void flow_ties_take(struct flow_state *state)
     struct flow_tied *tied = &state->tied;
     struct cloth_error *trouble = &state->flow->trouble;
     const size_t others = max_others(state);
-    if (!head->n_ties && !model_certifies(state->flow->model))
+    if (!head->n_ties && !model_seeks(state->flow->model))
         return;
     tied->parent = cloth_alloc((size_t)head->n_pieces + 1, sizeof *tied->parent, trouble);
     tied->group = cloth_alloc(head->n_pieces, sizeof *tied->group, trouble);
@@ -219,5 +219,6 @@ int flow_ties_adopt(struct flow_state *state)
             code = set_links(state, b);
     if (code || recorded || !model_is_implicit(state->flow->model))
         return code;
+    state->report->contact_graphs += model_seeks(state->flow->model);
     return flow_cg_record(state);
 }

@@ -168,7 +168,7 @@ int flow_ties_choose(struct flow_state *state)
     if (flow_ties_stay(state, tick))
         return DUITE_OK;
     find_interval(state->flow, tick, tied);
-    if (model_certifies(state->flow->model)) /* they come with the contacts of the step */
+    if (model_seeks(state->flow->model)) /* they come with the contacts of the step */
         return DUITE_OK;
     say_joints(state->flow, tick, tied);
     int code = flow_ties_adopt(state);

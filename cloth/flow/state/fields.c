@@ -2,6 +2,7 @@
 #include "cloth/flow/bodies.h"
 
 #include "cloth/flow/contact/body.h"
+#include "cloth/flow/contact/maps.h"
 #include "cloth/flow/observe/observe.h"
 #include "cloth/flow/solver/solver.h"
 #include "cloth/flow/state/skin.h"
@@ -72,6 +73,12 @@ static size_t sides(const struct flow_state *state, uint32_t block)
     return blocks(state, block) + state->flow->model->n_obstacles;
 }
 
+static size_t obstacles(const struct flow_state *state, uint32_t block)
+{
+    (void)block;
+    return state->flow->model->n_obstacles;
+}
+
 static struct flow_body_place bodies_end(const struct flow_state *state)
 {
     return flow_body_place(state->flow->model, state->flow->model->n_obstacles);
@@ -99,6 +106,11 @@ static size_t body_boxes(const struct flow_state *state, uint32_t block)
 {
     (void)block;
     return bodies_end(state).boxes;
+}
+
+static size_t map_bytes(const struct flow_state *state, uint32_t block)
+{
+    return flow_map_bytes(state->flow, block);
 }
 
 /* What a block says of its ties: there may be links to all blocks. */
@@ -225,10 +237,33 @@ static bool certified(const struct flow_state *state, uint32_t block)
     return model_certifies(state->flow->model);
 }
 
+static bool feels(const struct flow_state *state, uint32_t block)
+{
+    (void)block;
+    return flow_feels_contact(state);
+}
+
+static bool meets(const struct flow_state *state, uint32_t block)
+{
+    (void)block;
+    return model_seeks(state->flow->model);
+}
+
+static bool shows_force(const struct flow_state *state, uint32_t block)
+{
+    (void)block;
+    return flow_shows_contact(state);
+}
+
 static bool meets_bodies(const struct flow_state *state, uint32_t block)
 {
     (void)block;
     return flow_bodies_are_met(state->flow->model);
+}
+
+static bool mapped(const struct flow_state *state, uint32_t block)
+{
+    return block < flow_map_strips(state->flow);
 }
 
 static bool explicit_run(const struct flow_state *state, uint32_t block)
@@ -288,7 +323,7 @@ static bool coarse_run(const struct flow_state *state, uint32_t block)
 
 static bool may_be_tied(const struct flow_state *state, uint32_t block)
 {
-    return state->flow->n_ties > 0 || certified(state, block);
+    return state->flow->n_ties > 0 || meets(state, block);
 }
 
 static bool solves_tied(const struct flow_state *state, uint32_t block)
@@ -355,10 +390,10 @@ static enum flow_life is_derived_of_bodies(const struct model *model)
 }
 
 /* Verlet begins a step with the forces that ended the one before, which saw another velocity,
- * unless obstacles or pins may have moved something since (verlet.c). */
+ * unless contact or pins may have moved something since, or brought other forces (verlet.c). */
 static enum flow_life is_state_of_verlet(const struct model *model)
 {
-    const bool settled = !model->n_obstacles && !model_is_driven(model);
+    const bool settled = !model->n_obstacles && !model_is_driven(model) && !model_seeks(model);
     return model->integrator == MODEL_VERLET && settled ? FLOW_STATE_FIELD : FLOW_WORK;
 }
 
@@ -367,6 +402,12 @@ static enum flow_life is_state_of_guess(const struct model *model)
 {
     const bool linear = model->integrator == MODEL_IMPLICIT_EULER && model->newton_steps <= 1;
     return linear && model->guess != MODEL_GUESS_ZERO ? FLOW_STATE_FIELD : FLOW_WORK;
+}
+
+/* A frame may show the end of the step before. */
+static enum flow_life is_state_of_frames(const struct model *model)
+{
+    return model->contact.force ? FLOW_STATE_FIELD : FLOW_WORK;
 }
 
 /* ---- The table ---- */

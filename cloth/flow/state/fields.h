@@ -44,12 +44,16 @@ enum { FLOW_ROW_NUMBERS = sizeof(struct contact_row) / sizeof(double) };
     /* before a step that may be given up */                                                       \
     X(kept_x,       ONE,     phys_vec,      4, rows,          kept,         is_work)               \
     X(kept_v,       ONE,     phys_vec,      4, rows,          kept,         is_work)               \
-    /* contact that is certified: skins (skin.h); before the step, and x of skins before and after  \
+    /* contact: skins (skin.h); before a certified step, and x of skins before and after            \
      * it, and their boxes */                                                                      \
-    X(skin,         ONE,     unsigned char, 1, skin_bytes,    certified,    is_derived)            \
+    X(skin,         ONE,     unsigned char, 1, skin_bytes,    meets,        is_derived)            \
     X(kept_halo_x,  ONE,     phys_vec,      4, halo,          certified,    is_work)               \
-    X(skin_x,       ONE,     phys_vec,      4, skin_points,   certified,    is_work)               \
-    X(skin_boxes,   ONE,     unsigned char, 1, skin_boxes,    certified,    is_work)               \
+    X(skin_x,       ONE,     phys_vec,      4, skin_points,   meets,        is_work)               \
+    X(skin_boxes,   ONE,     unsigned char, 1, skin_boxes,    meets,        is_work)               \
+    /* of each row: struct flow_cut_run (contact/cut.c) */                                         \
+    X(cut_runs,     ONE,     uint32_t,      4, rows,          certified,    is_state)              \
+    /* its strip of the maps of bodies (contact/maps.h) */                                         \
+    X(maps,         ONE,     unsigned char, 1, map_bytes,     mapped,       is_derived)            \
     /* explicit integrators (explicit.h); x0, v0: where a step began, or Verlet's half step */     \
     X(spare_halo_x, ONE,     phys_vec,      4, halo,          explicit_run, is_work)               \
     X(spare_halo_v, ONE,     phys_vec,      4, halo,          explicit_run, is_work)               \
@@ -62,11 +66,16 @@ enum { FLOW_ROW_NUMBERS = sizeof(struct contact_row) / sizeof(double) };
     X(base_v,       ONE,     phys_vec,      4, rows,          based,        is_work)               \
     X(last_x,       ONE,     phys_vec,      4, rows,          bdf2,         is_state)              \
     X(last_v,       ONE,     phys_vec,      4, rows,          bdf2,         is_state)              \
-    /* certified contact: the box around the skin of the block over the step (pairs.c). What it says \
+    /* contact: the box around the skin of the block over the step (pairs.c). What it says \
      * of its ties; what its contacts are in the step under way: struct contact_row (rows.c) */    \
-    X(root,         ONE,     double,        FLOW_ROOT, one,       certified,    is_work)               \
-    X(tie_record,   SIZED,   unsigned char, 1, record_bytes,  certified,    is_work)               \
-    X(contact_rows, ONE,     struct contact_row, FLOW_ROW_NUMBERS, tie_count, certified, is_work)  \
+    X(root,         ONE,     double,        FLOW_ROOT, one,       meets,        is_work)               \
+    X(tie_record,   SIZED,   unsigned char, 1, record_bytes,  meets,        is_work)               \
+    X(contact_rows, ONE,     struct contact_row, FLOW_ROW_NUMBERS, tie_count, meets,     is_work)  \
+    /* of each of these the obstacle that it is with, from 1; 0: none */                           \
+    X(contact_obstacles, ONE, uint32_t,     1, tie_count,     meets,        is_work)               \
+    /* where it is asked for: the force of contact on each row in the last step, N */              \
+    X(contact_force, ONE,    phys_vec,      4, rows,          feels,        is_state_of_frames)    \
+    X(kept_contact_force, ONE, phys_vec,    4, rows,          shows_force,  is_work)               \
     /* the system of a step: matrix (flow_matrix_in), its filter if any; its solve */        \
     X(a,            ONE,     phys_vec,      1, matrix,        implicit_run, is_work)               \
     X(filter,       ONE,     phys_vec,      4, rows,          filtered,     is_work)               \
@@ -105,9 +114,12 @@ enum { FLOW_ROW_NUMBERS = sizeof(struct contact_row) / sizeof(double) };
     X(energies,     BY_STEP, double,        FLOW_SUMS, one,           always,       is_work)       \
     X(trial,        ONE,     double,        FLOW_STATUS, one,           implicit_run, is_work)     \
     X(slope,        ONE,     double,        1, one,           implicit_run, is_work)               \
-    X(roots,        ONE,     double,        FLOW_ROOT, sides,     certified,    is_work)               \
-    X(tie_said,     SIZED,   unsigned char, 1, records_bytes, certified,    is_work)               \
+    X(roots,        ONE,     double,        FLOW_ROOT, sides,     meets,        is_work)               \
+    X(tie_said,     SIZED,   unsigned char, 1, records_bytes, meets,        is_work)               \
     X(cut_counts,   ONE,     double,        FLOW_CUT_COUNTS, one, certified,    is_work)               \
+    X(cut_longest,  ONE,     double,        1, one,           certified,    is_work)               \
+    X(obstacle_force, ONE,   phys_vec,      4, obstacles,     feels,        is_work)               \
+    X(contact_energy, ONE,   double,        FLOW_HELD, one, meets,        is_work)                   \
     /* bodies that certified contact is with (contact/body.h) */                                   \
     X(body_skins,   ONE,     unsigned char, 1, body_skins,   meets_bodies, is_derived)             \
     X(body_fans,    ONE,     uint32_t,      1, body_fans,    meets_bodies, is_derived)             \

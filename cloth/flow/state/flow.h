@@ -57,6 +57,8 @@ struct flow_unused {
     double (*position)[3];
 };
 
+#define FLOW_APART (-1.0)
+
 /* On rank 0 as flow_prepare left it; elsewhere what it received from rank 0. */
 struct flow {
     const struct model *model; /* rank 0: the program's; else &received */
@@ -65,10 +67,16 @@ struct flow {
     uint64_t n_steps, partition_hash;
     double inertia, release;               /* kg m^2, J: flow_source_inertia, flow_source_release */
     double contact_stiffness, vertex_mass; /* N/m, kg: flow_source_stiffness, flow_source_mass */
+    bool feels_contact;                    /* a probe reports the force of contact */
     struct flow_tables tables;             /* shapes */
     void *shared; /* bodies, obstacles, key frames, frictions, ties, neighbours and ghosts that what
                      is here points to */
-    const double *friction; /* by cloth: its material's coefficient */
+    uint32_t n_cloths;
+    const double *friction; /* n_cloths x (n_cloths + n_obstacles): the coefficient of a cloth and
+                             * another side, cloths before obstacles; FLOW_APART: the two do not
+                             * meet */
+    uint32_t n_anchors;
+    const struct flow_anchor *anchor; /* n_anchors: of motions behind those of the model */
     uint32_t n_ties;
     const struct flow_tie *tie; /* n_ties */
 
@@ -79,6 +87,7 @@ struct flow {
     uint32_t *vertex;          /* by place; from then on */
     struct flow_names names;   /* from then on */
     struct flow_unused unused;
+    uint32_t *attached; /* from then on: flow_attached */
     struct flow_watched watched;
     char *header; /* of the table of probes; NULL: none */
 

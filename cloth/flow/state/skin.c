@@ -17,6 +17,7 @@ static size_t lay(const struct contact_skin *skin, void *memory, struct flow_ski
     flow_room_next(&room, contact_skin_bytes(skin));
     arrays->from = flow_room_next(&room, skin->n_points * sizeof *arrays->from);
     arrays->at = flow_room_next(&room, skin->n_points * sizeof *arrays->at);
+    arrays->attached = flow_room_next(&room, skin->n_points * sizeof *arrays->attached);
     return room.used;
 }
 
@@ -42,5 +43,6 @@ struct flow_skin flow_skin_open(const void *memory)
     lay(&skin.skin, (void *)memory, &arrays); /* it is only read */
     skin.from = arrays.from;
     skin.at = arrays.at;
+    skin.attached = arrays.attached;
     return skin;
 }

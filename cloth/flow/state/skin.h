@@ -13,6 +13,7 @@ struct flow_skin {
     const uint32_t
         *from;          /* n_points: the number of the neighbour; n_neighbours: the block itself */
     const uint32_t *at; /* n_points: place in its halo; row */
+    const uint32_t *attached; /* n_points: the obstacle, from 1, that its pin follows, or 0 */
 };
 
 /* Bytes of the object, which follow of the block's shape. */
@@ -23,7 +24,7 @@ struct flow_skin flow_skin_open(const void *memory);
 
 /* What does not change in a run is written there. from, at: as above. */
 struct flow_skin_arrays {
-    uint32_t *from, *at;
+    uint32_t *from, *at, *attached;
 };
 struct flow_skin_arrays flow_skin_places(const struct flow_table *table, void *memory);
 

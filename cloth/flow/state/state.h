@@ -55,8 +55,9 @@ enum {
 /* Indices into the peaks of a state that is watched, F64, each the largest of any block: square of
  * the speed, l / L of the springs that count for it, and minus that. */
 enum { FLOW_PEAK_SPEED, FLOW_PEAK_LONGEST, FLOW_PEAK_SHORTEST, FLOW_PEAKS };
-/* Numbers of a watched vertex: position, velocity, reaction; sums of a free piece. */
-enum { FLOW_PROBE_VALUES = 9, FLOW_PIECE_SUMS = 8 };
+/* Numbers of a watched vertex: position, velocity, reaction, force of contact; sums of a free
+ * piece. */
+enum { FLOW_PROBE_VALUES = 12, FLOW_PIECE_SUMS = 8 };
 /* Energies, J, and after them the torque that uncorrected triangles leave, N m (step/energy.c).
  */
 enum {
@@ -70,8 +71,11 @@ enum {
 };
 /* Numbers of a box: low and high corner. */
 enum { FLOW_ROOT = 6 };
-/* What is counted of ways that are cut: rows; those that lose more than half. */
-enum { FLOW_CUT_ROWS, FLOW_CUT_HALVED, FLOW_CUT_COUNTS };
+/* What is counted of ways that are cut: rows; those that lose more than half; what it changes of
+ * their momentum, three numbers, kg m/s. */
+enum { FLOW_CUT_ROWS, FLOW_CUT_HALVED, FLOW_CUT_MOMENTUM, FLOW_CUT_COUNTS = FLOW_CUT_MOMENTUM + 3 };
+/* Energy that contacts hold, and of it what they were lent in the step. */
+enum { FLOW_HELD_ALL, FLOW_HELD_LENT, FLOW_HELD };
 /* Indices into what rank 0 broadcasts, I64 x 2. */
 enum { FLOW_BROADCAST_FRAMES, FLOW_BROADCAST_HASH, FLOW_BROADCAST };
 
@@ -85,7 +89,7 @@ struct flow_head {
     uint64_t shared_bytes;                                              /* of the next broadcast */
     uint32_t n_vertices, n_triangles, n_blocks, n_neighbours, n_ghosts; /* of all blocks */
     uint32_t max_rows, max_neighbours, max_halo, max_entries;           /* of any block */
-    uint32_t max_ghosts, n_pieces, n_ties;
+    uint32_t max_ghosts, n_pieces, n_ties, n_anchors, feels_contact;
     uint64_t n_elements; /* of all blocks */
     struct model model;  /* pointers mean nothing elsewhere */
 };
@@ -159,6 +163,12 @@ struct flow_bodies_now {
     uint32_t length; /* ticks, as of an attempt */
 };
 
+/* The maps of bodies as they are (cloth/flow/contact/maps.h). */
+struct flow_maps_now {
+    bool drawn;  /* they are, */
+    double from; /* at the end of a step that began then, s */
+};
+
 /* Certified contact as the main program sees it. */
 struct flow_contact_state {
     struct flow_meetings meetings;
@@ -172,9 +182,14 @@ struct flow_contact_state {
     unsigned char *mark; /* a block: room */
     unsigned char *said; /* what all blocks said of their ties */
     duite_object *refs;  /* room for the objects of any task */
-    bool touched;        /* something is near something else */
+    uint64_t near;       /* how many contacts there are at the end of the step */
     uint64_t cut;        /* how often a way was cut in the step */
-    bool failed;         /* no cut ends the step: it is to be made again with half the length */
+    uint64_t pushed;     /* contacts of the step that springs push apart */
+    uint64_t cut_run;    /* most steps in a row that a row was cut in, of those cut in the step */
+    uint32_t attempt, accepted; /* the step under way, of all that were begun, from 1 on; the last
+                                 * one that was accepted; 0: none */
+    double cut_momentum;        /* kg m/s: what cuts in the step changed */
+    bool failed; /* no cut ends the step: it is to be made again with half the length */
     double iterations, restarts; /* of the solves of this step but the last */
 };
 
@@ -204,6 +219,7 @@ struct flow_state {
     struct flow_packed packed;
     struct flow_tied tied;
     struct flow_contact_state contact;
+    struct flow_maps_now maps;
     duite_graph solve; /* a round of conjugate gradients */
     struct flow_run_objects run;
     unsigned pass; /* of a round that is recorded: 0 or 1; else 0 */
@@ -244,6 +260,18 @@ static inline bool flow_shows(const struct flow_state *state)
 static inline bool flow_writes_probes(const struct flow_state *state)
 {
     return state->flow->model->n_probes && state->output && state->output->row;
+}
+
+/* Whether frames have the force of contact. Whether they or probes report it. */
+static inline bool flow_shows_contact(const struct flow_state *state)
+{
+    const struct model *model = state->flow->model;
+    return model->contact.force && model_certifies(model) && flow_shows(state) &&
+           state->output->force;
+}
+static inline bool flow_feels_contact(const struct flow_state *state)
+{
+    return flow_shows_contact(state) || (state->flow->feels_contact && flow_writes_probes(state));
 }
 
 /* s: of the steps accepted so far. */

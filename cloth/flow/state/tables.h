@@ -18,6 +18,7 @@
 /* How large the skin of a block is (skin.h); zero but where contact is certified. */
 struct flow_skin_size {
     uint32_t n_points, n_triangles, n_edges, n_vertices;
+    uint32_t cloth[2]; /* its points are of these cloths and some between them */
 };
 
 /* One block. Its springs: first the inner ones, sorted by (lower row, higher row), then those cut

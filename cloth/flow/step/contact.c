@@ -1,6 +1,7 @@
 /* What holds rows in the solve, and what puts them out of obstacles after it. A row that a slider
  * holds is filtered by it. Then the program's own filter has its part. */
 #include "cloth/contact/meet.h"
+#include "cloth/flow/contact/maps.h"
 #include "cloth/flow/step/sliders.h"
 #include "cloth/flow/step/step.h"
 
@@ -71,43 +72,89 @@ int flow_contact_constrain(struct flow_state *state)
 
 /* ---- After a step: what is inside an obstacle is put on it ---- */
 
+/* An obstacle as the rows of a block meet it. */
+struct meeting {
+    const struct flow_table *table;
+    const struct contact_apart *apart;
+    uint32_t other; /* the obstacle there */
+    const struct contact_shape *obstacle;
+    struct contact_pose pose;
+    struct contact_image image; /* that the pose has, if it has any */
+    phys_vec *x, *v;
+};
+
+/* Whether a row's cloth meets it; looked for from the cloth of the row before. */
+static bool is_met(const struct meeting *m, uint32_t row, uint32_t *cloth)
+{
+    if (!m->apart->apart)
+        return true;
+    *cloth = contact_apart_cloth(m->apart, m->table->vertex[row], *cloth);
+    return !contact_are_apart(m->apart, *cloth, m->other);
+}
+
+/* Rows from .. to - 1, those of cloths that meet it. Returns how many were put out. */
+static size_t project(const struct meeting *m, uint32_t from, uint32_t to)
+{
+    size_t touched = 0;
+    uint32_t cloth = 0;
+    while (from < to) {
+        const bool met = is_met(m, from, &cloth);
+        uint32_t end = m->apart->apart ? from + 1 : to;
+        while (end < to && is_met(m, end, &cloth) == met)
+            end++;
+        if (met)
+            touched += contact_project(m->obstacle, &m->pose, end - from, m->table->free + from,
+                                       m->x + from, m->v + from);
+        from = end;
+    }
+    return touched;
+}
+
 /* Rows that a slider holds leave an obstacle along it. Returns how many rows of the block met it.
  */
-static size_t obstacle_meets(const duite_call *call, const struct flow_table *t,
-                             const struct flow_step_args *step,
-                             const struct contact_shape *obstacle, phys_vec *x, phys_vec *v)
+static size_t obstacle_meets(const duite_call *call, const struct flow_step_args *step,
+                             struct meeting *m)
 {
-    struct contact_pose pose;
+    const struct flow_table *t = m->table;
     struct contact_hit hit;
     struct flow_pins pins;
     struct flow_slider slider;
-    uint32_t from = 0;
+    uint32_t from = 0, cloth = 0;
     size_t touched = 0;
-    flow_obstacle_pose(call, step, obstacle, &pose);
+    flow_obstacle_pose(call, step, m->obstacle, &m->pose);
+    m->pose.image = m->image.body ? &m->image : NULL;
     flow_pins_begin(call, t, step->time, &pins);
     for (uint32_t i = 0; i < t->n_sliding; i++) {
         const uint32_t row = t->sliding[i][0];
-        touched += contact_project(obstacle, &pose, row - from, t->free + from, x + from, v + from);
+        touched += project(m, from, row);
         from = row + 1;
-        contact_closest(obstacle, &pose, 1, x + row, &hit);
+        if (!is_met(m, row, &cloth))
+            continue;
+        contact_closest(m->obstacle, &m->pose, 1, m->x + row, &hit);
         flow_pins_slider(&pins, i, &slider);
         phys_vec way = hit.normal;
         if (flow_slider_way(&slider.filter, &way))
-            touched += contact_leave(&hit, &way, x + row, v + row);
+            touched += contact_leave(&hit, &way, m->x + row, m->v + row);
     }
-    return touched +
-           contact_project(obstacle, &pose, t->n - from, t->free + from, x + from, v + from);
+    return touched + project(m, from, t->n);
 }
 
 FLOW_KERNEL(collide, FLOW_COLLIDE, struct flow_step_args,
-            (R(table), RW(x), RW(v), W(halo_x), W(halo_v), SUM(status)))
+            (R(table), RW(x), RW(v), W(halo_x), W(halo_v), SUM(status), ALL(maps)))
 static int collide_body(const duite_call *call, const struct collide_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table), *t = &table;
     const struct model *model = flow_of(call)->model;
-    for (uint32_t i = 0; i < model->n_obstacles; i++)
-        on->status[FLOW_TOUCHED] +=
-            (double)obstacle_meets(call, t, on->args, model->obstacles + i, on->x, on->v);
+    for (uint32_t i = 0; i < model->n_obstacles; i++) {
+        struct meeting meeting = {.table = t,
+                                  .apart = &model->contact.apart,
+                                  .other = flow_of(call)->n_cloths + i,
+                                  .obstacle = model->obstacles + i,
+                                  .x = on->x,
+                                  .v = on->v};
+        flow_map_open(flow_of(call), i, on->maps, &meeting.image);
+        on->status[FLOW_TOUCHED] += (double)obstacle_meets(call, on->args, &meeting);
+    }
     flow_write_halo(t, on->x, on->halo_x);
     flow_write_halo(t, on->v, on->halo_v);
     return flow_check(call, t, on->args, on->x, "position", on->status);
@@ -118,6 +165,8 @@ int flow_contact_project(struct flow_state *state)
 {
     struct flow_step_args args = flow_attempt_args(state);
     const struct model *model = state->flow->model;
-    contact_bodies_move(&model->bodies, args.begin * model->h / FLOW_TICKS, args.time);
-    return flow_fork_each(state, &flow_kernel_collide, &args);
+    const double from = args.begin * model->h / FLOW_TICKS;
+    contact_bodies_move(&model->bodies, from, args.time);
+    const int code = flow_maps_draw(state, from);
+    return code ? code : flow_fork_each(state, &flow_kernel_collide, &args);
 }

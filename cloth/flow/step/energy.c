@@ -82,16 +82,29 @@ int flow_energy_fork(struct flow_state *state)
                         : DUITE_OK;
 }
 
+/* What the contacts hold that the state was accepted with, or is to be. */
+static int get_contact(struct flow_state *state, double *energy)
+{
+    double held[FLOW_HELD] = {0};
+    const int code = model_certifies(state->flow->model)
+                         ? duite_get(state->rt, state->run.contact_energy, held)
+                         : DUITE_OK;
+    *energy = held[FLOW_HELD_ALL];
+    state->guard.lent = held[FLOW_HELD_LENT];
+    return code;
+}
+
 int flow_energy_wait(struct flow_state *state)
 {
     struct flow_guard *guard = &state->guard;
     double sums[FLOW_SUMS];
     if (!looks(state))
         return DUITE_OK;
-    const int code = duite_get(state->rt, flow_field_object(state, FLOW_FIELD_energies, 0), sums);
+    int code = duite_get(state->rt, flow_field_object(state, FLOW_FIELD_energies, 0), sums);
+    if (!code)
+        code = get_contact(state, &guard->sum);
     if (code)
         return code;
-    guard->sum = 0;
     for (int i = 0; i < FLOW_ENERGIES; i++)
         guard->sum += sums[i];
     guard->moving = sums[FLOW_ENERGY_MOTION] + sums[FLOW_ENERGY_ELASTIC];
@@ -127,6 +140,7 @@ void flow_energy_note(struct flow_state *state, bool touched)
     if (state->flow->model->energy_steps) {
         report->energy_lowest = fmin(report->energy_lowest, sum);
         report->energy_highest = fmax(report->energy_highest, sum);
+        report->energy_lent += state->guard.lent;
         report->energy_gained = fmax(report->energy_gained, sum - report->energy_lowest);
     }
     if (model_is_guarded(state->flow->model))
@@ -138,28 +152,32 @@ static void begin(struct flow_state *state)
 {
     struct flow_report *report = state->report;
     const struct flow_energy *start = &report->start;
-    const double total = start->kinetic + start->elastic + start->gravity + start->loads;
+    const double total =
+        start->kinetic + start->elastic + start->gravity + start->loads + start->contact;
     const bool reported = state->flow->model->energy_steps;
     state->guard = (struct flow_guard){
         .lowest = total, .max = fmax(start->kinetic + start->elastic, state->flow->release)};
     report->energy_lowest = report->energy_highest = reported ? total : NAN;
-    report->energy_gained = reported ? 0 : NAN;
+    report->energy_gained = report->energy_lent = reported ? 0 : NAN;
 }
 
 int flow_energy_get(struct flow_state *state, struct flow_energy *energy)
 {
-    double sums[FLOW_SUMS];
+    double sums[FLOW_SUMS], contact;
     struct flow_step_args args = flow_attempt_args(state);
     args.h = args.h > 0 ? args.h : state->flow->model->h; /* before the first step */
     int code = flow_energies(state, args, FLOW_FIELD_energy);
     if (!code)
         code = duite_get(state->rt, state->run.energy, sums);
+    if (!code)
+        code = get_contact(state, &contact);
     if (code)
         return code;
     *energy = (struct flow_energy){.kinetic = sums[FLOW_ENERGY_MOTION],
                                    .elastic = sums[FLOW_ENERGY_ELASTIC],
                                    .gravity = sums[FLOW_ENERGY_GRAVITY],
-                                   .loads = sums[FLOW_ENERGY_LOADS]};
+                                   .loads = sums[FLOW_ENERGY_LOADS],
+                                   .contact = contact};
     const double *torque = sums + FLOW_TORQUE;
     state->report->torque_left =
         sqrt(torque[0] * torque[0] + torque[1] * torque[1] + torque[2] * torque[2]);

@@ -19,7 +19,8 @@ struct flow_guard {
     double max;         /* of motion and strain together, since the start; no less than what
                          * weights and loads can set free (flow_source_release) */
     uint64_t calm;      /* tick: steps grow back from there on */
-    double sum, moving; /* of the step under way: their sum; motion and strain */
+    double sum, moving; /* of the step under way: their sum; motion and strain; */
+    double lent;        /* what contacts were lent to lift what rests on them too deep */
 };
 
 /* Forks what adds up the energies of the present state in a field: `energies` or `energy`. args:

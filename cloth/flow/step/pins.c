@@ -12,7 +12,8 @@
 void flow_pins_begin(const duite_call *call, const struct flow_table *t, double time,
                      struct flow_pins *pins)
 {
-    *pins = (struct flow_pins){.model = flow_of(call)->model, .table = t, .time = time};
+    *pins = (struct flow_pins){
+        .flow = flow_of(call), .model = flow_of(call)->model, .table = t, .time = time};
 }
 
 /* The pose of a motion, by number from 1, at the time of the pins. */
@@ -21,8 +22,27 @@ static const struct phys_pose *pose_of(struct flow_pins *pins, uint32_t motion)
     const struct model_motion *m = pins->model->motions + motion - 1;
     if (pins->motion != motion)
         phys_pose_at(m->n, pins->model->keys + m->first, m->about, pins->time, &pins->pose);
+    if (pins->motion != motion && m->follow)
+        phys_pose_at(m->n, pins->model->keys + m->first, m->about, 0, &pins->begin);
     pins->motion = motion;
     return &pins->pose;
+}
+
+/* Where a motion, or an anchor behind all motions, has what starts at x then. */
+static void place(struct flow_pins *pins, uint32_t motion, const phys_vec *x, phys_vec *to)
+{
+    const uint32_t n = pins->model->n_motions;
+    if (motion > n) {
+        flow_anchor_place(pins->model, pins->flow->anchor + (motion - n - 1), pins->time, to);
+        return;
+    }
+    *to = *x;
+    if (!pins->model->motions[motion - 1].n)
+        return; /* it follows what stands still */
+    const struct phys_pose *pose = pose_of(pins, motion);
+    if (pins->model->motions[motion - 1].follow)
+        phys_pose_back(&pins->begin, to, to);
+    phys_pose_point(pose, to, to);
 }
 
 void flow_pins_slider(struct flow_pins *pins, uint32_t i, struct flow_slider *slider)
@@ -106,7 +126,7 @@ static int prescribe_velocity_body(const duite_call *call,
     for (uint32_t i = 0; i < t->n_moved; i++) {
         const uint32_t row = t->moved[i][0];
         phys_vec to;
-        phys_pose_point(pose_of(&pins, t->moved[i][1]), t->position + row, &to);
+        place(&pins, t->moved[i][1], t->position + row, &to);
         v[row] = (to - x[row]) / h;
     }
     for (uint32_t i = 0; i < t->n_sliding; i++) {
@@ -135,7 +155,7 @@ static int prescribe_position_body(const duite_call *call,
     flow_pins_begin(call, t, on->args->time, &pins);
     for (uint32_t i = 0; i < t->n_moved; i++) {
         const uint32_t row = t->moved[i][0];
-        phys_pose_point(pose_of(&pins, t->moved[i][1]), t->position + row, x + row);
+        place(&pins, t->moved[i][1], t->position + row, x + row);
     }
     for (uint32_t i = 0; i < t->n_sliding; i++) {
         flow_pins_slider(&pins, i, &slider);
@@ -152,15 +172,13 @@ int flow_pins_prescribe_position(struct flow_state *state)
 
 /* ---- Accelerations, for reactions ---- */
 
-/* Poses of a motion at the end of the later step, at its begin and at that of the step before. */
-static void poses_of(const struct model *model, uint32_t motion, const struct flow_two_steps *steps,
-                     struct phys_pose pose[3])
+/* At the end of the later step, at its begin and at that of the step before. */
+static void pins_of(const duite_call *call, const struct flow_two_steps *steps,
+                    struct flow_pins pins[3])
 {
     const double back[3] = {0, steps->h, steps->h + steps->before};
-    for (int i = 0; i < 3; i++) {
-        struct flow_pins pins = {.model = model, .time = steps->end - back[i]};
-        pose[i] = *pose_of(&pins, motion);
-    }
+    for (int i = 0; i < 3; i++)
+        flow_pins_begin(call, NULL, steps->end - back[i], pins + i);
 }
 
 /* Of what was at x[2], x[1], x[0] in turn. */
@@ -172,11 +190,11 @@ static void second_difference(const struct flow_two_steps *steps, const phys_vec
 void flow_due_acceleration(const duite_call *call, const struct flow_two_steps *steps,
                            uint32_t motion, const phys_vec *start, phys_vec *a)
 {
-    struct phys_pose pose[3];
+    struct flow_pins pins[3];
     phys_vec x[3];
-    poses_of(flow_of(call)->model, motion, steps, pose);
+    pins_of(call, steps, pins);
     for (int i = 0; i < 3; i++)
-        phys_pose_point(pose + i, start, x + i);
+        place(pins + i, motion, start, x + i);
     second_difference(steps, x, a);
 }
 
@@ -187,12 +205,15 @@ void flow_slider_acceleration(const duite_call *call, const struct flow_two_step
 {
     const struct model *model = flow_of(call)->model;
     const uint32_t motion = model->sliders[slider - 1].motion;
+    struct flow_pins pins[3];
     struct phys_pose pose[3];
     phys_vec at[3], turned[2], own, along;
     *a = (phys_vec){0};
     if (!motion)
         return;
-    poses_of(model, motion, steps, pose);
+    pins_of(call, steps, pins);
+    for (int i = 0; i < 3; i++)
+        pose[i] = *pose_of(pins + i, motion);
     phys_pose_back(pose, x, &own);
     for (int i = 0; i < 3; i++)
         phys_pose_point(pose + i, &own, at + i);

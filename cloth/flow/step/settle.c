@@ -135,10 +135,11 @@ static int await(struct flow_state *state, double status[FLOW_STATUS], struct fl
     return DUITE_OK;
 }
 
-/* Whether contact had a part in the step, or a tie that came or went: then it may gain energy. */
+/* Whether a vertex was moved by contact beyond what was solved, or a tie came or went: then a step
+ * may gain energy. */
 static bool is_disturbed(const struct flow_state *state, const double status[FLOW_STATUS])
 {
-    return status[FLOW_TOUCHED] > 0 || state->contact.touched || flow_ties_changed(state);
+    return status[FLOW_TOUCHED] > 0 || flow_ties_changed(state);
 }
 
 /* With its frames. */

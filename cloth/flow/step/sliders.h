@@ -35,12 +35,13 @@ PHYS_INLINE bool flow_slider_way(const phys_vec *filter, phys_vec *up)
 
 /* The pins of a block at one time, and how far somebody came who goes through its rows. */
 struct flow_pins {
+    const struct flow *flow;
     const struct model *model;
     const struct flow_table *table;
     double time;
-    uint32_t motion; /* that the pose is of; 0: none yet */
-    struct phys_pose pose;
-    uint32_t next; /* sliding row */
+    uint32_t motion;              /* that the pose is of; 0: none yet */
+    struct phys_pose pose, begin; /* now; where the run starts, of one that follows an obstacle */
+    uint32_t next;                /* sliding row */
     struct flow_slider slider;
 };
 /* At a time, s: in a step its end. */

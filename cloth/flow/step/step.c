@@ -3,6 +3,7 @@
  * the status of the last step (settle.c). Then come stages that change the state. */
 #include "cloth/flow/step/step.h"
 #include "cloth/flow/contact/certify.h"
+#include "cloth/flow/contact/repel.h"
 #include "cloth/flow/integrators/integrator.h"
 #include "cloth/flow/observe/observe.h"
 #include "cloth/flow/state/state.h"
@@ -39,7 +40,7 @@ static bool is_driven(const struct model *model)
 
 static bool projects(const struct model *model)
 {
-    return model->n_obstacles > 0 && !model_certifies(model);
+    return model->n_obstacles > 0 && !model_seeks(model);
 }
 
 /* Velocities change before the forces: the copy is made before that. */
@@ -55,7 +56,7 @@ static bool keeps_late(const struct model *model)
 
 bool flow_step_is_driven(const struct model *model)
 {
-    return model_is_driven(model) || model_is_filtered(model) || model_certifies(model);
+    return model_is_driven(model) || model_is_filtered(model) || model_seeks(model);
 }
 
 /* ---- Stages ---- */
@@ -120,6 +121,8 @@ int flow_step_begin(struct flow_state *state)
         code = flow_ties_choose(state);
     if (!code && model_certifies(state->flow->model))
         code = flow_contact_begin(state);
+    if (!code && model_repels(state->flow->model))
+        code = flow_repulsion_begin(state);
     return code ? code : fork_stages(state, PREDICT, SOLVE);
 }
 

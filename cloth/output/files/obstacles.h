@@ -19,6 +19,14 @@ void output_obstacles(FILE *file, size_t n, const struct contact_shape *obstacle
 /* Reads it but for the bodies; what it allocates belongs to the cache, also after a failure. */
 void output_obstacles_read(struct output_cache *cache, struct output_json *json);
 
+/* What does not meet (output.h); cloths and pairs once each. Reading: as obstacles are; the arrays
+ * belong to the cache. n_obstacles: of the list, which is there already. */
+void output_apart(FILE *file, const struct contact_apart *apart);
+void output_apart_read(struct output_cache *cache, struct output_json *json);
+/* The same of what pins attach. */
+void output_attached(FILE *file, size_t n_obstacles, const struct contact_apart *apart);
+void output_attached_read(struct output_cache *cache, struct output_json *json);
+
 /* How many bodies the scene.json of a folder names; 0 where there is none that can be read. */
 uint32_t output_bodies_before(const char *folder);
 

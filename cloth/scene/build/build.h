@@ -17,6 +17,17 @@ int scene_build_obstacles(struct model *model, struct scene_tree *tree, struct c
 int scene_build_check_obstacles(const struct model *model, const struct scene_tree *tree,
                                 struct cloth_error *error);
 
+/* The mode of contact where the scene does not say it; after the cloths. */
+void scene_build_contact(struct model *model, const struct scene_tree *tree);
+
+/* Whether there is anything to touch; after the probes, whose forces of contact are looked for. */
+void scene_build_contact_idle(struct model *model);
+
+/* contact.pairs and contact.ignore, whose names are of materials, cloths, obstacles and groups;
+ * after the cloths. */
+int scene_build_sides(struct model *model, const struct scene_tree *tree,
+                      struct cloth_error *error);
+
 /* What can be had of contact: by the integrator, and how thin it may be where these cloths are.
  * After the cloths. */
 int scene_build_check_contact(const struct model *model, const struct scene_tree *tree,
@@ -28,6 +39,8 @@ int scene_build_cloths(struct model *model, struct scene_tree *tree, struct clot
 /* After the cloths, whose vertices they name. */
 int scene_build_probes(struct model *model, const struct scene_tree *tree,
                        struct cloth_error *error);
+int scene_build_drape(struct model *model, const struct scene_tree *tree,
+                      struct cloth_error *error);
 int scene_build_joints(struct model *model, const struct scene_tree *tree,
                        struct cloth_error *error);
 int scene_build_welds(struct model *model, const struct scene_tree *tree,
@@ -85,6 +98,11 @@ int scene_build_loads(struct model *model, struct model_cloth *cloth, const stru
 /* The masses and starts of a cloth that has its mesh and name. */
 int scene_build_starts(struct model_cloth *cloth, const struct scene_tree *tree, int node,
                        struct cloth_error *error);
+
+/* Where a cloth starts that has its mesh, name and velocity, by its key from; files of the folder
+ * are added to the model's. */
+int scene_build_settled(struct model *model, struct model_cloth *cloth, struct scene_tree *tree,
+                        int node, struct cloth_error *error);
 
 /* That the key rotate of a map, which filled the transform, is a rotation. */
 int scene_build_check_turn(const struct mesh_transform *transform, const struct scene_tree *tree,

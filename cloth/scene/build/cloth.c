@@ -225,6 +225,8 @@ static int build_cloth(struct model *model, uint32_t i, struct scene_tree *tree,
     if (!code)
         code = build_pins(model, cloth, tree, node, error);
     if (!code)
+        code = scene_build_settled(model, cloth, tree, node, error);
+    if (!code)
         code = scene_build_starts(cloth, tree, node, error);
     return code ? code : scene_build_loads(model, cloth, tree, node, error);
 }

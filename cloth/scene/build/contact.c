@@ -1,11 +1,88 @@
-/* Contact that is certified needs a solve that knows of it, and a thickness that the numbers of the
- * scene resolve. */
+/* The mode of contact, where the scene does not say it; and what certified contact needs: a solve
+ * that knows of it, and a thickness that the numbers of the scene resolve. */
 #include "cloth/scene/build/build.h"
 
 #include <math.h>
 
 static const double MARGIN = 1e-9; /* m: of a certificate */
 static const double OPEN = 0.1;    /* of the thickness: so much of it steps leave open */
+
+/* ---- Its default ---- */
+
+/* Whether a cloth meets more than planes: what is thin or has edges goes through a cloth whose
+ * vertices alone are put out, and cloths go through each other. */
+static bool meets_surfaces(const struct model *model, uint32_t cloth)
+{
+    bool meets = false;
+    for (uint32_t c = 0; c <= cloth; c++)
+        meets = meets || (model->cloths[c].mesh.n_triangles && model_meets(model, cloth, c));
+    for (uint32_t i = 0; i < model->n_obstacles; i++)
+        meets = meets || (contact_kinds[model->obstacles[i].kind] != &contact_plane &&
+                          model_meets(model, cloth, model->n_cloths + i));
+    return meets;
+}
+
+static bool has_surfaces(const struct model *model)
+{
+    bool has = false;
+    for (uint32_t c = 0; c < model->n_cloths; c++)
+        has = has || (model->cloths[c].mesh.n_triangles && meets_surfaces(model, c));
+    return has;
+}
+
+static bool has_maps(const struct model *model)
+{
+    bool has = false;
+    for (uint32_t i = 0; i < model->n_obstacles; i++)
+        has = has || model->obstacles[i].view.height;
+    return has;
+}
+
+/* A certificate is of triangles. Obstacles would let edges that have none through. */
+static bool has_edges_to_stop(const struct model *model)
+{
+    bool has = false;
+    for (uint32_t c = 0; c < model->n_cloths; c++)
+        has = has || model->cloths[c].mesh.n_bare_edges;
+    return has && model->n_obstacles;
+}
+
+void scene_build_contact(struct model *model, const struct scene_tree *tree)
+{
+    const int contact = scene_tree_get(tree, 1, "contact");
+    if (scene_tree_get(tree, contact, "mode"))
+        return;
+    model->contact.assumed = true;
+    if (model_is_implicit(model) && has_surfaces(model) && !has_edges_to_stop(model) &&
+        !has_maps(model))
+        model->contact.mode = MODEL_CONTACT_CERTIFIED;
+}
+
+/* ---- Where it has nothing to do ---- */
+
+static bool meets_anything(const struct model *model, uint32_t cloth)
+{
+    bool meets = false;
+    for (uint32_t c = 0; c <= cloth; c++)
+        meets = meets || model_meets(model, cloth, c);
+    for (uint32_t i = 0; i < model->n_obstacles; i++)
+        meets = meets || model_meets(model, cloth, model->n_cloths + i);
+    return meets;
+}
+
+void scene_build_contact_idle(struct model *model)
+{
+    bool idle = true;
+    for (uint32_t c = 0; c < model->n_cloths; c++)
+        idle = idle && !meets_anything(model, c);
+    for (uint32_t i = 0; i < model->n_probes; i++) {
+        const struct model_probe *probe = model->probes + i;
+        idle = idle && !probe->by_obstacle && !probe->contact && !probe->contact_total;
+    }
+    model->contact.idle = idle;
+}
+
+/* ---- What it needs ---- */
 
 /* The largest coordinate of a vertex where it starts, m. */
 static double farthest(const struct model *model)
@@ -14,7 +91,8 @@ static double farthest(const struct model *model)
     for (uint32_t c = 0; c < model->n_cloths; c++) {
         const struct model_cloth *cloth = model->cloths + c;
         for (size_t i = 0; i < 3 * (size_t)cloth->mesh.n_vertices; i++)
-            far = fmax(far, fabs(cloth->mesh.position[i]));
+            far = fmax(far, fabs(cloth->start ? cloth->start[i / 3 * 6 + i % 3]
+                                              : cloth->mesh.position[i]));
     }
     return far;
 }
@@ -30,8 +108,30 @@ static int check_thickness(const struct model *model, const struct scene_tree *t
         return CLOTH_OK;
     return scene_tree_fail(tree, node, error,
                            "contact.thickness is %g m; at least %.3g m is expected: frames are in "
-                           "float, which this is what %g m from the origin needs",
-                           model->contact.thickness, least, far);
+                           "float, which this is what %g m from the origin needs%s",
+                           model->contact.thickness, least, far, model_contact_cure(model));
+}
+
+/* That no body is met by maps. */
+static int check_bodies(const struct model *model, const struct scene_tree *tree,
+                        struct cloth_error *error)
+{
+    const int list = scene_tree_get(tree, 1, "obstacles");
+    uint32_t i = 0;
+    while (i < model->n_obstacles && !model->obstacles[i].view.height)
+        i++;
+    if (i == model->n_obstacles)
+        return CLOTH_OK;
+    const int body = scene_tree_get(tree, scene_tree_item(tree, list, i), "body");
+    if (model_repels(model))
+        return scene_tree_fail(tree, scene_tree_get(tree, body, "meet"), error,
+                               "a body that is met by image, in contact.mode repulsion, which "
+                               "looks for the nearest points of bodies; meet: bvh, or contact: "
+                               "{mode: project}, is expected");
+    return scene_tree_fail(tree, scene_tree_get(tree, body, "meet"), error,
+                           "a body that is met by image, in contact.mode certified: maps of its "
+                           "front and back do not show all of it, so nothing can be proven of "
+                           "them; meet: bvh, or contact: {mode: project}, is expected");
 }
 
 int scene_build_check_contact(const struct model *model, const struct scene_tree *tree,
@@ -39,13 +139,17 @@ int scene_build_check_contact(const struct model *model, const struct scene_tree
 {
     const int contact = scene_tree_get(tree, 1, "contact");
     const int mode = scene_tree_get(tree, contact, "mode");
+    if (model_repels(model))
+        return check_bodies(model, tree, error);
     if (model->contact.mode != MODEL_CONTACT_CERTIFIED)
         return CLOTH_OK;
     if (!model_is_implicit(model))
         return scene_tree_fail(tree, mode, error,
                                "contact.mode is certified, which implicit_euler and bdf2 can do: "
                                "explicit steps (integrator: %s) solve no system that knows of "
-                               "contact; project is expected",
+                               "contact; repulsion or project is expected",
                                model_integrator_name(model->integrator));
-    return check_thickness(model, tree, scene_tree_get(tree, contact, "thickness"), error);
+    const int code = check_bodies(model, tree, error);
+    return code ? code
+                : check_thickness(model, tree, scene_tree_get(tree, contact, "thickness"), error);
 }

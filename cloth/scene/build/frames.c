@@ -83,25 +83,12 @@ static int read_objs(const struct reading *r, int list, uint32_t *n, double **pl
     return *place ? code : r->error->code;
 }
 
-static double extent_of(const struct mesh *mesh)
-{
-    double extent = 0;
-    for (size_t c = 0; c < 3; c++) {
-        double low = INFINITY, high = -INFINITY;
-        for (size_t v = 0; v < mesh->n_vertices; v++) {
-            low = fmin(low, mesh->position[3 * v + c]);
-            high = fmax(high, mesh->position[3 * v + c]);
-        }
-        extent = fmax(extent, high - low);
-    }
-    return extent;
-}
-
 /* Of the first vertex that goes too far at once. */
 static int warn_of_jump(const struct reading *r, const struct contact_frames *frames)
 {
     const size_t n = r->mesh->n_vertices;
-    const double most = JUMP * extent_of(r->mesh);
+    double low[3], high[3];
+    const double most = JUMP * mesh_box(r->mesh, low, high);
     for (size_t i = 0; i + n < n * frames->n; i++) {
         double square = 0;
         for (int c = 0; c < 3; c++)

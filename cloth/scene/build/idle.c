@@ -64,7 +64,27 @@ static bool is_explicit(const struct model *model)
 
 static bool certifies_nothing(const struct model *model)
 {
-    return !model_certifies(model);
+    return !model_is_implicit(model) || model->contact.mode != MODEL_CONTACT_CERTIFIED;
+}
+
+static bool meets_nothing(const struct model *model)
+{
+    return !model_seeks(model);
+}
+
+static bool repels_nothing(const struct model *model)
+{
+    return !model_repels(model);
+}
+
+/* By project: what cloths do not meet of each other, they never do. */
+static bool leaves_out_nothing(const struct model *model)
+{
+    bool leaves = model_seeks(model);
+    for (uint32_t c = 0; c < model->n_cloths; c++)
+        for (uint32_t i = 0; i < model->n_obstacles; i++)
+            leaves = leaves || !model_meets(model, c, model->n_cloths + i);
+    return !leaves;
 }
 
 static bool takes_one_newton_step(const struct model *model)
@@ -133,6 +153,8 @@ static bool has_no_wind(const struct model *model)
 }
 
 #define IS_CERTIFIED "means nothing: it is of contact.mode certified"
+#define IS_MET       "means nothing: it is of contact.mode certified and repulsion"
+#define IS_REPELLED  "means nothing: it is of contact.mode repulsion"
 
 /* A key of the scene, or of a map of it, and when it does nothing. */
 static const struct {
@@ -140,9 +162,16 @@ static const struct {
     bool (*idle)(const struct model *model);
     const char *what; /* the rest of the sentence */
 } idle_keys[] = {
-    {"contact", "self", certifies_nothing, IS_CERTIFIED},
-    {"contact", "thickness", certifies_nothing, IS_CERTIFIED},
-    {"contact", "friction", certifies_nothing, IS_CERTIFIED},
+    {"contact", "self", meets_nothing, IS_MET},
+    {"contact", "untangle", certifies_nothing, IS_CERTIFIED},
+    {"contact", "thickness", meets_nothing, IS_MET},
+    {"contact", "friction", meets_nothing, IS_MET},
+    {"contact", "pairs", meets_nothing, IS_MET},
+    {"contact", "ignore", leaves_out_nothing,
+     "means nothing: by project cloths meet obstacles alone, and these are of cloths"},
+    {"contact", "stiffness", repels_nothing, IS_REPELLED},
+    {"contact", "damping", repels_nothing, IS_REPELLED},
+    {"contact", "force", certifies_nothing, IS_CERTIFIED},
     {NULL, "solver", is_explicit, "means nothing: explicit steps solve no system"},
     {NULL, "newton", is_explicit, "means nothing: explicit steps solve no system"},
     {NULL, "air", blows_nothing, "means nothing: it blows on triangles, and no cloth has any"},
@@ -174,7 +203,8 @@ static bool is_off(const struct scene_tree *tree, int node, const char *key)
     double value = 1;
     if (!strcmp(key, "stretch_growth") || !strcmp(key, "friction"))
         scene_scalar_number(text, &value);
-    return value <= 0 || (!strcmp(key, "self") && !strcmp(text, "off"));
+    return value <= 0 ||
+           ((!strcmp(key, "self") || !strcmp(key, "untangle")) && !strcmp(text, "off"));
 }
 
 static int warn_of_keys(const struct idle_scene *scene)
@@ -250,9 +280,9 @@ static int warn_of_motion(const struct idle_scene *scene, int owner)
 static int warn_of_friction(const struct idle_scene *scene, int owner)
 {
     const int node = scene_tree_get(scene->tree, owner, "friction");
-    if (!node || !certifies_nothing(scene->model) || is_off(scene->tree, node, "friction"))
+    if (!node || !meets_nothing(scene->model) || is_off(scene->tree, node, "friction"))
         return CLOTH_OK;
-    return warn(scene, node, "friction " IS_CERTIFIED);
+    return warn(scene, node, "friction " IS_MET);
 }
 
 static int warn_of_materials(const struct idle_scene *scene)
@@ -264,11 +294,36 @@ static int warn_of_materials(const struct idle_scene *scene)
     return code;
 }
 
+/* What says of a body how its maps are, where it has none. */
+static int warn_of_view(const struct idle_scene *scene, int body)
+{
+    static const char *const keys[] = {"resolution", "view"};
+    const int meet = scene_tree_get(scene->tree, body, "meet");
+    int code = CLOTH_OK;
+    for (int i = 0; i < 2 && meet && !code; i++) {
+        const int node = scene_tree_get(scene->tree, body, keys[i]);
+        if (is_given(scene->tree, node) && strcmp(scene_tree_scalar(scene->tree, meet), "image"))
+            code = warn(scene, node, "%s means nothing: it is of meet: image", keys[i]);
+    }
+    return code;
+}
+
 static int warn_of_obstacle(const struct idle_scene *scene, int obstacle)
 {
     const int shape = scene_tree_pair(scene->tree, obstacle, 0).value;
-    const int code = warn_of_friction(scene, shape);
+    int code = warn_of_friction(scene, shape);
+    if (!code)
+        code = warn_of_view(scene, shape);
     return code ? code : warn_of_motion(scene, shape);
+}
+
+static int warn_of_layer(const struct idle_scene *scene, int cloth)
+{
+    const int node = scene_tree_get(scene->tree, cloth, "layer");
+    const struct model *model = scene->model;
+    if (!is_given(scene->tree, node) || (model_certifies(model) && model->contact.untangle))
+        return CLOTH_OK;
+    return warn(scene, node, "layer means nothing: it is of contact.untangle");
 }
 
 /* A joint acts in the steps that begin within its time, to a tick of h / 1024. */
@@ -314,7 +369,9 @@ int scene_build_idle(struct model *model, const struct scene_tree *tree, struct 
         code = warn_of_format(&scene);
     for (uint32_t i = 0; i < model->n_cloths && !code; i++) {
         const int cloth = scene_tree_item(tree, cloths, i);
-        code = warn_of_list(&scene, cloth, "start", warn_of_start);
+        code = warn_of_layer(&scene, cloth);
+        if (!code)
+            code = warn_of_list(&scene, cloth, "start", warn_of_start);
         if (!code)
             code = warn_of_list(&scene, cloth, "pins", warn_of_motion);
     }

@@ -6,6 +6,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* Makes room for n more keys. */
 static int grow_keys(struct model *model, size_t n, struct cloth_error *error)
@@ -205,6 +206,59 @@ static int build_slider(struct model *model, struct model_pin *pin, enum scene_c
                                  scene_tree_get(tree, node, hold_keys[hold]), error);
 }
 
+/* Adds the motion of an obstacle to the model's. */
+static int build_follow(struct model *model, const struct scene_tree *tree, int pin,
+                        struct cloth_error *error)
+{
+    const int node = scene_tree_get(tree, pin, "follow");
+    const char *name = scene_tree_scalar(tree, node);
+    const char **names = scene_build_array(model->n_obstacles, sizeof *names, error);
+    struct model_motion *motions =
+        realloc(model->motions, (model->n_motions + 1) * sizeof *motions);
+    size_t n_names = 0;
+    uint32_t found = 0;
+    model->motions = motions ? motions : model->motions;
+    for (uint32_t i = 0; i < model->n_obstacles && names; i++) {
+        const char *own = model->obstacle_names[i];
+        if (own)
+            names[n_names++] = own;
+        if (own && !strcmp(own, name))
+            found = i + 1;
+    }
+    int code = names ? CLOTH_OK : error->code;
+    if (!code && !motions)
+        code = cloth_fail(error, CLOTH_E_MEMORY, "out of memory while the scene is read");
+    if (!code && !found && !n_names)
+        code = scene_tree_fail(tree, node, error, "there is no obstacle '%.60s': none has a name",
+                               name);
+    else if (!code && !found)
+        code = scene_build_no_such("obstacle", name, names, n_names, tree, node, error);
+    free(names);
+    if (code)
+        return code;
+    const struct contact_shape *shape = model->obstacles + found - 1;
+    struct model_motion *motion = motions + model->n_motions++;
+    *motion = (struct model_motion){.first = shape->first, .n = shape->n, .follow = found};
+    memcpy(motion->about, shape->about, sizeof motion->about);
+    return CLOTH_OK;
+}
+
+/* A pin follows an obstacle with all of its vertices, and has no motion of its own. */
+static int check_follow(enum scene_constraint hold, const struct scene_tree *tree, int pin,
+                        struct cloth_error *error)
+{
+    const int motion = scene_tree_get(tree, pin, "motion");
+    if (hold != SCENE_POINT)
+        return scene_tree_fail(tree, scene_tree_get(tree, pin, "follow"), error,
+                               "a pin to a %s cannot follow an obstacle; to: point is expected",
+                               scene_holds[hold].word);
+    if (motion)
+        return scene_tree_fail(tree, motion, error,
+                               "a pin follows an obstacle and has a motion; one of the two is "
+                               "expected");
+    return CLOTH_OK;
+}
+
 int scene_build_constraint(struct model *model, struct model_pin *pin,
                            const struct scene_tree *tree, int node, struct cloth_error *error)
 {
@@ -212,11 +266,16 @@ int scene_build_constraint(struct model *model, struct model_pin *pin,
     const enum scene_constraint hold =
         (enum scene_constraint)scene_word_value(scene_holds, to, NULL);
     const int motion = scene_tree_get(tree, node, "motion");
+    const bool follows = scene_tree_get(tree, node, "follow");
     int code = check_constraint(hold, tree, node, error);
+    if (!code && follows)
+        code = check_follow(hold, tree, node, error);
+    if (!code && follows)
+        code = build_follow(model, tree, node, error);
     if (!code && motion)
         code = build_pin_motion(model, tree, motion, error);
     if (code)
         return code;
-    pin->motion = motion ? model->n_motions : 0;
+    pin->motion = motion || follows ? model->n_motions : 0;
     return hold == SCENE_POINT ? CLOTH_OK : build_slider(model, pin, hold, tree, node, error);
 }

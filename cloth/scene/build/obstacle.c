@@ -115,6 +115,17 @@ static int warn_of_body(struct model *model, const struct scene_tree *tree, int 
         extent > MAX_EXTENT ? MAX_EXTENT : LEAST_EXTENT);
 }
 
+/* The maps that a body is met by, if it is. */
+static void build_view(const struct model *model, struct contact_shape *shape,
+                       const struct scene_tree *tree, int node)
+{
+    const char *along = scene_tree_text(tree, node, "view");
+    const uint32_t axis = (uint32_t)scene_word_value(scene_views, along, NULL);
+    if (scene_word_value(scene_meets, scene_tree_text(tree, node, "meet"), NULL))
+        contact_view_make(contact_bodies_at(&model->bodies, shape->body), axis,
+                          scene_tree_integer(tree, node, "resolution"), &shape->view);
+}
+
 static int build_body(struct model *model, struct contact_shape *shape, struct scene_tree *tree,
                       int node, struct cloth_error *error)
 {
@@ -139,6 +150,8 @@ static int build_body(struct model *model, struct contact_shape *shape, struct s
     if (!code)
         code = warn_of_body(model, tree, file, turned, error);
     shape->body = model->bodies.n;
+    if (!code)
+        build_view(model, shape, tree, node);
     mesh_free(&mesh);
     free(place);
     return code;
@@ -165,6 +178,29 @@ static int build_shape(struct model *model, struct contact_shape *shape, struct 
     return code || !motion ? code : build_shape_motion(model, shape, tree, motion, error);
 }
 
+/* So that contact.pairs and contact.ignore can say it. */
+static int build_name(struct model *model, uint32_t i, const struct scene_tree *tree, int obstacle,
+                      struct cloth_error *error)
+{
+    const int shape = scene_tree_pair(tree, obstacle, 0).value;
+    const int node = scene_tree_get(tree, shape, "name");
+    const char *name = scene_tree_text(tree, shape, "name");
+    if (!node)
+        return CLOTH_OK;
+    for (uint32_t k = 0; k < i; k++)
+        if (model->obstacle_names[k] && !strcmp(model->obstacle_names[k], name))
+            return scene_tree_fail(tree, node, error,
+                                   "a second obstacle is named '%.60s'; names must differ", name);
+    for (uint32_t k = 0; k < model->n_materials; k++)
+        if (!strcmp(model->materials[k].name, name))
+            return scene_tree_fail(tree, node, error,
+                                   "an obstacle is named '%.60s', as a material is; another name "
+                                   "is expected, since contact.pairs has names of both",
+                                   name);
+    model->obstacle_names[i] = scene_build_copy(name, error);
+    return model->obstacle_names[i] ? CLOTH_OK : error->code;
+}
+
 int scene_build_obstacles(struct model *model, struct scene_tree *tree, struct cloth_error *error)
 {
     int list = scene_tree_get(tree, 1, "obstacles");
@@ -173,10 +209,14 @@ int scene_build_obstacles(struct model *model, struct scene_tree *tree, struct c
     if (!model->obstacles)
         return error->code;
     model->n_obstacles = (uint32_t)n;
-    int code = CLOTH_OK;
-    for (size_t i = 0; !code && i < n; i++)
-        code =
-            build_shape(model, model->obstacles + i, tree, scene_tree_item(tree, list, i), error);
+    model->obstacle_names = scene_build_array(n, sizeof *model->obstacle_names, error);
+    int code = model->obstacle_names ? CLOTH_OK : error->code;
+    for (size_t i = 0; !code && i < n; i++) {
+        const int node = scene_tree_item(tree, list, i);
+        code = build_shape(model, model->obstacles + i, tree, node, error);
+        if (!code)
+            code = build_name(model, (uint32_t)i, tree, node, error);
+    }
     return code;
 }
 
@@ -207,15 +247,11 @@ static double height(const struct contact_shape *plane, const double x[3])
 /* The middle of the box around a mesh, and how far from it the corners of the box are. */
 static double surround(const struct mesh *mesh, double middle[3])
 {
-    double square = 0;
-    for (size_t i = 0; i < 3; i++) {
-        double min = INFINITY, max = -INFINITY;
-        for (size_t v = 0; v < mesh->n_vertices; v++) {
-            min = fmin(min, mesh->position[3 * v + i]);
-            max = fmax(max, mesh->position[3 * v + i]);
-        }
-        middle[i] = (min + max) / 2;
-        square += (max - min) * (max - min) / 4;
+    double square = 0, low[3], high[3];
+    mesh_box(mesh, low, high);
+    for (int i = 0; i < 3; i++) {
+        middle[i] = (low[i] + high[i]) / 2;
+        square += (high[i] - low[i]) * (high[i] - low[i]) / 4;
     }
     return sqrt(square);
 }

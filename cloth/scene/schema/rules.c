@@ -81,8 +81,13 @@ static const struct scene_rule material_keys[] = {
     {0}};
 static const struct scene_rule material = {.type = SCENE_MAP, .inside = material_keys};
 
+static const struct scene_rule text = {.type = SCENE_TEXT};
+
 /* What every obstacle may have. */
 #define MOVES \
+    {"name", SCENE_TEXT, .about = "unique, for contact.pairs and contact.ignore"}, \
+    {"groups", SCENE_LIST, .filled = true, .inside = &text, \
+     .about = "names for contact.ignore, of your choice"}, \
     {"friction", SCENE_NUMBER, .range = SCENE_NOT_NEGATIVE, \
      .about = "coefficient of certified contact; else that of contact"}, \
     {"motion", SCENE_MAP, .inside = scene_motion_keys, \
@@ -130,7 +135,6 @@ static const struct scene_rule cylinder_keys[] = {
      .about = "from end to end; a short one is a disc"},
     MOVES,
     {0}};
-static const struct scene_rule text = {.type = SCENE_TEXT};
 static const struct scene_rule frames_keys[] = {
     {"pc2", SCENE_TEXT, .choice = true,
      .about = "a PC2 file of the mesh's vertices, relative to the scene's folder"},
@@ -139,10 +143,21 @@ static const struct scene_rule frames_keys[] = {
     {"fps", SCENE_NUMBER, "1/s", "25", .range = SCENE_POSITIVE, .about = "frames a second"},
     {"start", SCENE_NUMBER, "s", "0", .about = "when the first frame is"},
     {0}};
+const struct model_word scene_meets[] = {{"bvh", false}, {"image", true}, {0}};
+const struct model_word scene_views[] = {
+    {"thinnest", CONTACT_THINNEST}, {"x", 0}, {"y", 1}, {"z", 2}, {0}};
 static const struct scene_rule body_keys[] = {
     {"obj", SCENE_TEXT, .required = true,
      .about = "an OBJ file of a closed mesh, relative to the scene's folder"},
     TRANSFORM(struct mesh_transform, ),
+    {"meet", SCENE_CHOICE, .fallback = "bvh", .words = scene_meets,
+     .about = "bvh: its triangles, found by a tree of boxes; image: maps of it, from the front and "
+              "the back, not by contact.mode certified"},
+    {"resolution", SCENE_INTEGER, .fallback = "1024", .min = CONTACT_LEAST_RESOLUTION,
+     .max = CONTACT_MOST_RESOLUTION, .about = "of image: pixels along the longer side of the maps"},
+    {"view", SCENE_CHOICE, .fallback = "thinnest", .words = scene_views,
+     .about = "of image: the axis along which the maps see the body before it moves; thinnest: "
+              "that of its least extent"},
     {"frames", SCENE_MAP, .inside = frames_keys,
      .about = "where its vertices are in time, before scale, rotate and translate; linear between "
               "frames"},
@@ -242,18 +257,53 @@ static const struct scene_rule solver_keys[] = {
      INTO(struct model, max_iterations), .about = "a solve that needs more fails"},
     {0}};
 
+static const struct scene_rule pair_keys[] = {
+    {"of", SCENE_LIST, .required = true, .length = 2, .inside = &text,
+     .about = "names of materials or obstacles"},
+    {"friction", SCENE_NUMBER, .required = true, .range = SCENE_NOT_NEGATIVE,
+     INTO(struct model_rub, friction), .about = "coefficient of the two"},
+    {0}};
+static const struct scene_rule pair = {.type = SCENE_MAP, .inside = pair_keys};
+static const struct scene_rule ignored = {.type = SCENE_LIST, .length = 2, .inside = &text};
 static const struct scene_rule contact_keys[] = {
-    {"mode", SCENE_CHOICE, .fallback = "project", INTO(struct model_contact, mode),
-     WORDS({"certified", MODEL_CONTACT_CERTIFIED}, {"project", MODEL_CONTACT_PROJECT}),
-     .about = "certified: in the solve, and no step ends where a contact is not proven; project: "
-              "vertices in obstacles are put out after the step"},
+    {"mode", SCENE_CHOICE, INTO(struct model_contact, mode),
+     .words = model_contact_modes,
+     .about = "certified: in the solve, and no step ends where a contact is not proven; repulsion: "
+              "springs push apart what is too near; project: vertices in obstacles are put out "
+              "after the step; else certified in implicit steps where there is more to touch than "
+              "planes"},
     {"self", SCENE_CHOICE, .fallback = "off", INTO(struct model_contact, self),
-     WORDS({"on", true}, {"off", false}), .about = "certified: a cloth touches itself, too"},
+     WORDS({"on", true}, {"off", false}), .about = "certified, repulsion: a cloth touches itself, too"},
+    {"untangle", SCENE_CHOICE, .fallback = "off", INTO(struct model_contact, untangle),
+     WORDS({"on", true}, {"off", false}),
+     .about = "certified: cloths that start in each other or in obstacles are moved apart"},
+    {"force", SCENE_CHOICE, .fallback = "off", INTO(struct model_contact, force),
+     WORDS({"on", true}, {"off", false}),
+     .about = "certified: frames have the force of contact on each vertex, in contact.pc2"},
     {"thickness", SCENE_NUMBER, "m", "0.001", .range = SCENE_POSITIVE,
-     INTO(struct model_contact, thickness), .about = "certified: how near to each other what touches is"},
+     INTO(struct model_contact, thickness), 
+     .about = "certified, repulsion: how near to each other what touches is"},
     {"friction", SCENE_NUMBER, .fallback = "0", .range = SCENE_NOT_NEGATIVE,
      INTO(struct model_contact, friction),
      .about = "coefficient of materials and obstacles that give none; sides a and b: sqrt(a b)"},
+    {"pairs", SCENE_LIST, .fallback = "[]", .inside = &pair,
+     ARRAY(struct model_contact, pairs, n_pairs), .about = "two sides with a friction of their own"},
+    {"ignore", SCENE_LIST, .fallback = "[]", .inside = &ignored,
+     .about = "[A, B]: cloths, obstacles or groups that do not meet"},
+    {"stiffness", SCENE_NUMBER, "N/m", .range = SCENE_POSITIVE,
+     INTO(struct model_contact, stiffness),
+     .about = "repulsion: force by what is missing of the thickness; else by mass and time.h"},
+    {"damping", SCENE_NUMBER, .fallback = "0.2", .range = SCENE_NOT_NEGATIVE,
+     INTO(struct model_contact, damping),
+     .about = "repulsion: part of the critical damping of a vertex of mean mass"},
+    {0}};
+
+static const struct scene_rule drape_keys[] = {
+    {"cloth", SCENE_TEXT, .about = "its name; optional where there is one only"},
+    {"radius", SCENE_NUMBER, "m", .required = true, .range = SCENE_POSITIVE,
+     INTO(struct model_drape, radius), .about = "of the disc that carries the cloth"},
+    {"axis", SCENE_LIST, .fallback = "[0, 1, 0]", .length = 3, .inside = &number,
+     INTO(struct model_drape, axis), .about = "along which the light falls; of any length but 0"},
     {0}};
 
 static const struct scene_rule newton_keys[] = {
@@ -332,6 +382,8 @@ static const struct scene_rule scene_keys[] = {
     {"solver", SCENE_MAP, .fallback = "{}", .inside = solver_keys, .about = "of implicit steps"},
     {"probes", SCENE_LIST, .fallback = "[]", .inside = &scene_probe,
      ARRAY(struct model, probes, n_probes), .about = "what probes.csv reports after each step"},
+    {"drape", SCENE_MAP, .inside = drape_keys, INTO(struct model, drape),
+     .about = "the drape test: its coefficient is printed; else there is none"},
     {"joints", SCENE_LIST, .fallback = "[]", .inside = &joint,
      ARRAY(struct model, joints, n_joints), .about = "springs between any two vertices"},
     {"welds", SCENE_LIST, .fallback = "[]", .inside = &weld, ARRAY(struct model, welds, n_welds),

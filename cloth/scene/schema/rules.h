@@ -80,7 +80,12 @@ struct scene_inline {
     double (*vertices)[3];
     uint32_t (*edges)[2], (*triangles)[3];
 };
-extern const struct scene_rule scene_grid, scene_disc, scene_inline;
+enum { SCENE_LAST_FRAME = -1 };
+struct scene_settled {
+    double frame; /* SCENE_LAST_FRAME: the last one */
+    char *cloth;  /* NULL: it is not given */
+};
+extern const struct scene_rule scene_grid, scene_disc, scene_inline, scene_settled;
 extern const struct scene_rule scene_transform; /* a struct mesh_transform */
 extern const struct scene_rule scene_region;    /* a struct model_pick */
 extern const struct scene_rule scene_body;      /* a struct mesh_transform */
@@ -89,6 +94,8 @@ extern const struct scene_rule scene_body;      /* a struct mesh_transform */
 enum scene_constraint { SCENE_POINT, SCENE_LINE, SCENE_PLANE };
 extern const struct model_word scene_holds[];        /* enum scene_constraint, in its order */
 extern const struct model_word scene_rests[];        /* whether by uv */
+extern const struct model_word scene_meets[];        /* whether by maps */
+extern const struct model_word scene_views[];        /* an axis, or CONTACT_THINNEST */
 extern const struct model_word scene_probe_values[]; /* offsets of flags in a struct model_probe */
 
 /* What a word among `words` means; *known: whether it is among them. */

@@ -3,6 +3,7 @@
 
 /* clang-format off */
 static const struct scene_rule number = {.type = SCENE_NUMBER, ITEM(double)};
+static const struct scene_rule text = {.type = SCENE_TEXT};
 static const struct scene_rule positive = {
     .type = SCENE_NUMBER, .range = SCENE_POSITIVE, ITEM(double)};
 static const struct scene_rule vertex = {.type = SCENE_INTEGER, ITEM(uint32_t)};
@@ -68,7 +69,9 @@ const struct model_word scene_probe_values[] = {
     {"position", (int)offsetof(struct model_probe, position)},
     {"velocity", (int)offsetof(struct model_probe, velocity)},
     {"reaction", (int)offsetof(struct model_probe, reaction)},
+    {"contact", (int)offsetof(struct model_probe, contact)},
     {"total", (int)offsetof(struct model_probe, total)},
+    {"contact_total", (int)offsetof(struct model_probe, contact_total)},
     {0}};
 
 static const struct scene_rule quaternion = {
@@ -109,6 +112,8 @@ static const struct scene_rule pin_keys[] = {
      .about = "of the line, of any length but 0"},
     {"normal", SCENE_LIST, .length = 3, .inside = &number,
      .about = "to the plane, of any length but 0"},
+    {"follow", SCENE_TEXT,
+     .about = "name of an obstacle that takes the vertices along; they do not meet it"},
     {"motion", SCENE_MAP, .inside = scene_motion_keys,
      .about = "of the vertices, or of their lines or planes, by key frames"},
     {0}};
@@ -121,9 +126,12 @@ static const struct scene_rule probe_keys[] = {
      .about = "unique, of letters, digits, _ and -; else probe1, probe2, ..."},
     {"cloth", SCENE_TEXT, .about = "its name; optional where there is one only"},
     PICK(struct model_probe),
+    {"obstacle", SCENE_TEXT, .choice = true, MEANS(struct model_probe, by_obstacle, true),
+     .about = "its name, or number from 0: the force that it puts on all cloth"},
     {"values", SCENE_LIST, .filled = true, .fallback = "[position, velocity, reaction]",
      .inside = &probe_value,
-     .about = "of each vertex position, velocity, reaction; total: the sum of their reactions"},
+     .about = "of each vertex position, velocity, reaction, contact: the force of it; total, "
+              "contact_total: the sums of reactions, of these forces"},
     {0}};
 const struct scene_rule scene_probe = {
     .type = SCENE_MAP, .inside = probe_keys, PLACE(struct model_probe, pick.place)};
@@ -190,6 +198,17 @@ static const struct scene_rule start_keys[] = {
 static const struct scene_rule start = {
     .type = SCENE_MAP, .inside = start_keys, PLACE(struct model_start, pick.place)};
 
+static const struct scene_rule settled_keys[] = {
+    {"frames", SCENE_TEXT, .required = true,
+     .about = "folder of an earlier run's --output, relative to the scene's"},
+    {"frame", SCENE_NUMBER_OR_WORD, .fallback = "last", .range = SCENE_NOT_NEGATIVE,
+     INTO(struct scene_settled, frame), WORDS({"last", SCENE_LAST_FRAME}),
+     .about = "which one, from 0"},
+    {"cloth", SCENE_TEXT, INTO(struct scene_settled, cloth),
+     .about = "its name there; else the same as here"},
+    {0}};
+const struct scene_rule scene_settled = {.type = SCENE_MAP, .inside = settled_keys};
+
 static const struct scene_rule region_keys[] = {
     PICK_VERTICES(struct model_pick, ),
     PICK_BOX(struct model_pick, ),
@@ -206,8 +225,12 @@ static const struct scene_rule cloth_keys[] = {
     {"material", SCENE_TEXT, .required = true, .about = "a name in materials"},
     {"regions", SCENE_LIST, .fallback = "[]", .inside = &scene_region,
      .about = "parts of other materials; the last one that has an element counts"},
+    {"layer", SCENE_INTEGER, .fallback = "0", INTO(struct model_cloth, layer),
+     .about = "contact.untangle: of two cloths the higher one is outside"},
     {"rest", SCENE_CHOICE, .fallback = "position", .words = scene_rests,
      .about = "where the shape at rest is taken from; uv: in m"},
+    {"groups", SCENE_LIST, .filled = true, .inside = &text,
+     .about = "names for contact.ignore, of your choice"},
     {"mass_per_vertex", SCENE_NUMBER, "kg", .range = SCENE_POSITIVE,
      INTO(struct model_cloth, mass_per_vertex), .about = "instead of density times area"},
     {"velocity", SCENE_LIST, "m/s", .fallback = "[0, 0, 0]", .length = 3, .inside = &number,
@@ -219,6 +242,8 @@ static const struct scene_rule cloth_keys[] = {
      ARRAY(struct model_cloth, loads, n_loads), .about = "forces on vertices"},
     {"masses", SCENE_LIST, .fallback = "[]", .inside = &mass,
      ARRAY(struct model_cloth, masses, n_masses), .about = "more mass of vertices"},
+    {"from", SCENE_MAP, .inside = settled_keys, .apart = true,
+     .about = "a frame of an earlier run, in which it starts at rest"},
     {"start", SCENE_LIST, .fallback = "[]", .inside = &start,
      ARRAY(struct model_cloth, starts, n_starts),
      .about = "how vertices start, where that is not the mesh's shape"},

@@ -108,6 +108,18 @@ void draw_mesh_place(struct draw_mesh *mesh, const double (*vertex)[6])
     upload_vertices(mesh);
 }
 
+void draw_mesh_heat(struct draw_mesh *mesh, const float *heat)
+{
+    glBindVertexArray(mesh->array);
+    if (!mesh->heats)
+        glGenBuffers(1, &mesh->heats);
+    glBindBuffer(GL_ARRAY_BUFFER, mesh->heats);
+    glBufferData(GL_ARRAY_BUFFER, (GLsizeiptr)(mesh->n_vertices * sizeof *heat), heat,
+                 GL_DYNAMIC_DRAW);
+    glEnableVertexAttribArray(DRAW_HEAT);
+    glVertexAttribPointer(DRAW_HEAT, 1, GL_FLOAT, GL_FALSE, 0, NULL);
+}
+
 float draw_mesh_edge(const struct draw_mesh *mesh)
 {
     double sum = 0;
@@ -136,6 +148,7 @@ void draw_mesh_free(struct draw_mesh *mesh)
     glDeleteVertexArrays(1, &mesh->array);
     glDeleteBuffers(1, &mesh->vertices);
     glDeleteBuffers(1, &mesh->indices);
+    glDeleteBuffers(1, &mesh->heats);
     free(mesh->vertex);
     mesh->vertex = NULL;
 }

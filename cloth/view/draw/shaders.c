@@ -73,16 +73,20 @@ const char DRAW_BACK_FRAGMENT[] =
 
 const char DRAW_CLOTH_VERTEX[] =
     "in vec3 position, normal;\n"
+    "in float heat;\n"
     "out vec3 at, up;\n"
+    "out float hot;\n"
     "void main()\n"
     "{\n"
     "    at = position;\n"
+    "    hot = heat;\n"
     "    up = normal;\n"
     "    gl_Position = clip * vec4(position, 1.0);\n"
     "}\n";
 
 const char DRAW_CLOTH_FRAGMENT[] =
     "in vec3 at, up;\n"
+    "in float hot;\n"
     "out vec4 shade;\n"
     "uniform vec3 paint[2];\n" /* of the front and of the back */
     "void main()\n"
@@ -91,6 +95,9 @@ const char DRAW_CLOTH_FRAGMENT[] =
     "    vec3 v = normalize(eye - at), lit, behind;\n"
     "    gather(at, n, gl_FragCoord.xy, 1.0, lit, behind);\n"
     "    vec3 albedo = gl_FrontFacing ? paint[0] : paint[1];\n"
+    "    if (hot > 0.0)\n" /* red, then yellow */
+    "        albedo = mix(mix(albedo, vec3(0.75, 0.04, 0.01), clamp(2.0 * hot, 0.0, 1.0)),\n"
+    "                     vec3(0.95, 0.80, 0.10), clamp(2.0 * hot - 1.0, 0.0, 1.0));\n"
     "    lit += vec3(0.26, 0.25, 0.24) * (0.5 - 0.5 * n.y);\n" /* from the floor */
     "    float rim = pow(1.0 - clamp(dot(n, v), 0.0, 1.0), 4.0);\n"
     "    vec3 c = albedo * (lit + 0.22 * behind);\n"

@@ -3,6 +3,7 @@
 
 /* Random pairs of features that move, of several sorts. */
 #include "cloth/contact/pair.h"
+#include "tests/support/random.h"
 
 #include <check.h>
 #include <stdint.h>
@@ -32,18 +33,9 @@ static const struct pairs_sort PAIRS_SORTS[] = {
 };
 enum { PAIRS_SORTS_N = sizeof PAIRS_SORTS / sizeof *PAIRS_SORTS };
 
-static uint64_t pairs_seed = 1;
-
-static inline double pairs_uniform(double low, double high)
-{
-    pairs_seed = pairs_seed * 6364136223846793005u + 1442695040888963407u;
-    return low + (high - low) * (double)(pairs_seed >> 11) * 0x1p-53;
-}
-
 static inline void pairs_vector(double reach, phys_vec *x)
 {
-    *x = (phys_vec){pairs_uniform(-reach, reach), pairs_uniform(-reach, reach),
-                    pairs_uniform(-reach, reach), 0};
+    *x = (phys_vec){uniform(-reach, reach), uniform(-reach, reach), uniform(-reach, reach), 0};
 }
 
 /* Draws corners, which lie together: the first feature's begin, then the second's. */
@@ -53,9 +45,9 @@ static inline void pairs_corners(enum contact_pair pair, const struct pairs_sort
     for (int k = 0; k < 4; k++)
         pairs_vector(0.5 * sort->size, x + k);
     if (sort->flat > 0 && pair == CONTACT_VT)
-        x[3] = x[1] + pairs_uniform(0, 2) * (x[2] - x[1]) + sort->flat * x[3];
+        x[3] = x[1] + uniform(0, 2) * (x[2] - x[1]) + sort->flat * x[3];
     if (sort->flat > 0 && pair == CONTACT_EE)
-        x[3] = x[2] + pairs_uniform(-2, 2) * (x[1] - x[0]) + sort->flat * x[3];
+        x[3] = x[2] + uniform(-2, 2) * (x[1] - x[0]) + sort->flat * x[3];
 }
 
 static inline void pairs_draw(enum contact_pair pair, const struct pairs_sort *sort, phys_vec x[4],

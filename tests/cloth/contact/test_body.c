@@ -2,6 +2,7 @@
  * edges and corners, what is apart; the real body where it is beside the source tree. */
 #include "cloth/contact/shape.h"
 #include "tests/cloth/contact/bodies.h"
+#include "tests/support/random.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -12,14 +13,6 @@ enum { N_MADE = 4, POINTS = 600 };
 static struct surface made;
 static struct contact_bodies bodies;
 static struct mesh mesh;
-static uint64_t seed = 1;
-
-/* Between two numbers, the same on every machine. */
-static double uniform(double from, double to)
-{
-    seed = seed * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
-    return from + (to - from) * ((double)(seed >> 11) / 9007199254740992.0);
-}
 
 static void start(void)
 {
@@ -186,7 +179,7 @@ START_TEST(nearest_of_all)
     static struct contact_hit hit[POINTS], alone;
     size_t inside = 0;
     for (int round = 0; round < 3; round++) {
-        seed = (uint64_t)(10 * _i + round);
+        random_seed = (uint64_t)(10 * _i + round);
         make(_i);
         const struct contact_body *body = body_of();
         const int n = mesh.n_triangles > 1000 ? POINTS / 4 : POINTS;
@@ -294,7 +287,7 @@ END_TEST
 START_TEST(apart)
 {
     size_t n_apart = 0, n_free = 0;
-    seed = 7;
+    random_seed = 7;
     make(_i);
     const struct contact_body *body = body_of();
     for (int i = 0; i < POINTS; i++) {

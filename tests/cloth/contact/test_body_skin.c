@@ -2,6 +2,7 @@
  * a cloth against brute force. */
 #include "cloth/contact/body_skin.h"
 #include "tests/cloth/contact/bodies.h"
+#include "tests/support/random.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -11,14 +12,6 @@ static const double REACH = 0.02;
 
 static struct contact_bodies bodies;
 static const struct contact_body *body;
-static uint64_t seed = 1;
-
-/* Between two numbers, the same on every machine. */
-static double uniform(double from, double to)
-{
-    seed = seed * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
-    return from + (to - from) * ((double)(seed >> 11) / 9007199254740992.0);
-}
 
 /* A ring with a vertex that no triangle has. */
 static void start(void)

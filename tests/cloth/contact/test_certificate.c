@@ -107,7 +107,7 @@ static void check_cut(enum contact_pair pair, const phys_vec x[4], const phys_ve
     PAIRS_CHECK(contact_certify(pair, x, end, THICKNESS));
     for (int i = 0; i < 4; i++) {
         for (int k = 0; k < 4; k++)
-            less[k] = i == k ? 0 : pairs_uniform(0, 1) * (i % 2 ? t[k] : 1);
+            less[k] = i == k ? 0 : uniform(0, 1) * (i % 2 ? t[k] : 1);
         end_of(x, i % 2 ? y : end, held, less, further);
         if (contact_certify(pair, x, further, THICKNESS))
             continue;
@@ -132,7 +132,7 @@ START_TEST(cuts)
     int uncut = 0, cut = 0, refused = 0, n = pairs_count();
     for (int i = 0; i < n; i++) {
         const enum contact_pair pair = KINDS[i & 1];
-        const unsigned held = i % 3 ? 0 : (unsigned)pairs_uniform(0, 16);
+        const unsigned held = i % 3 ? 0 : (unsigned)uniform(0, 16);
         double t[4] = {1, 1, 1, 1};
         phys_vec x[4], y[4];
         pairs_draw(pair, sort, x, y);

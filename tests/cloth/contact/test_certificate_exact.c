@@ -261,7 +261,7 @@ START_TEST(certain_is_true)
     prepare();
     for (int i = 0; i < n; i++) {
         const enum contact_pair pair = KINDS[i & 1];
-        const unsigned held = i % 3 ? 0 : (unsigned)pairs_uniform(0, 16);
+        const unsigned held = i % 3 ? 0 : (unsigned)uniform(0, 16);
         double t[4] = {1, 1, 1, 1};
         phys_vec x[4], y[4], end[4];
         pairs_draw(pair, sort, x, y);

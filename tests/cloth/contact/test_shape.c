@@ -1,64 +1,25 @@
 /* Closest points of every kind of shape, in random poses, against what a point inside it is. That
  * is said here once more, without distances; the surface is found from it by halving. */
-#include "cloth/contact/shape.h"
 #include "cloth/contact/surface.h"
+#include "tests/cloth/contact/shapes.h"
 #include "tests/support/unit.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum { SHAPES = 20, POINTS = 100, SAMPLES = 1000 };
 
-static uint64_t seed = 1;
-static double uniform(double low, double high)
-{
-    seed = seed * 6364136223846793005u + 1442695040888963407u;
-    return low + (high - low) * (double)(seed >> 11) * 0x1p-53;
-}
-
-static void pick_point(double reach, phys_vec *x)
-{
-    *x = (phys_vec){uniform(-reach, reach), uniform(-reach, reach), uniform(-reach, reach), 0};
-}
-
-static double length(const phys_vec *a)
-{
-    return sqrt(phys_dot(a, a));
-}
-
-static void make_unit(size_t n, double *value)
-{
-    double square = 0;
-    for (size_t i = 0; i < n; i++)
-        square += value[i] * value[i];
-    for (size_t i = 0; i < n; i++)
-        value[i] /= sqrt(square);
-}
-
 /* Two key frames, whose motion lasts from 1 to 2 s. */
 static void make(uint32_t kind, struct contact_shape *shape, struct phys_key keys[2])
 {
-    double *value = shape->value;
-    *shape = (struct contact_shape){.kind = kind, .n = 2};
-    for (const struct contact_parameter *p = contact_kinds[kind]->parameter; p->name; p++) {
-        const size_t n = contact_role_size(p->role);
-        const bool is_length = p->role == CONTACT_LENGTH || p->role == CONTACT_LENGTHS;
-        for (size_t i = 0; i < n; i++)
-            value[i] = is_length ? uniform(0.2, 1) : uniform(-1, 1);
-        if (p->role == CONTACT_DIRECTION || p->role == CONTACT_ROTATION)
-            make_unit(n, value);
-        value += n;
-    }
+    pick_shape(kind, 0.2, shape);
     for (int k = 0; k < 2; k++) {
         keys[k].time = 1 + k;
         for (int i = 0; i < 3; i++) {
             keys[k].translate[i] = uniform(-1, 1);
             shape->about[i] = uniform(-1, 1);
         }
-        for (int i = 0; i < 4; i++)
-            keys[k].rotate[i] = uniform(-1, 1);
-        make_unit(4, keys[k].rotate);
+        pick_turn(keys[k].rotate);
     }
 }
 

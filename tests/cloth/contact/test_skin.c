@@ -2,6 +2,8 @@
  * nearer than the reach, at times of the step, are visited; each pair comes at most once, in one
  * order; none of them shares a vertex. What the boxes do not know of is missed, and seen here. */
 #include "cloth/contact/skin_table.h"
+#include "tests/cloth/contact/distances.h"
+#include "tests/support/random.h"
 #include "tests/support/unit.h"
 
 #include <math.h>
@@ -31,14 +33,6 @@ static phys_vec x[N], y[N];
 static uint32_t corner[TRIANGLES][3], edge[EDGES][2], n_edges, part_of[N];
 static uint32_t edge_of[N][N]; /* by its ends, ascending */
 static struct skin skins[PARTS];
-static uint64_t seed;
-
-/* Between two numbers, the same on every machine. */
-static double uniform(double from, double to)
-{
-    seed = seed * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
-    return from + (to - from) * ((double)(seed >> 11) / 9007199254740992.0);
-}
 
 /* ---- The sheet ---- */
 
@@ -318,60 +312,6 @@ static void at_time(uint32_t vertex, double s, phys_vec *at)
     *at = x[vertex] + s * (y[vertex] - x[vertex]);
 }
 
-static double clamp(double part)
-{
-    return part < 0 ? 0 : part > 1 ? 1 : part;
-}
-
-static double length(const phys_vec *of)
-{
-    return sqrt(phys_dot(of, of));
-}
-
-static double point_segment(const phys_vec *p, const phys_vec *a, const phys_vec *b)
-{
-    const phys_vec ab = *b - *a, ap = *p - *a;
-    const phys_vec rest = ap - clamp(phys_dot(&ab, &ap) / phys_dot(&ab, &ab)) * ab;
-    return length(&rest);
-}
-
-/* By the plane if the point is above the inside, else by the edges. */
-static double vertex_distance(const phys_vec p[4])
-{
-    const phys_vec u = p[2] - p[1], w = p[3] - p[1];
-    const phys_vec normal = {u[1] * w[2] - u[2] * w[1], u[2] * w[0] - u[0] * w[2],
-                             u[0] * w[1] - u[1] * w[0], 0};
-    double least = (double)INFINITY;
-    bool above = true;
-    for (int k = 0; k < 3; k++) {
-        const phys_vec *a = p + 1 + k, *b = p + 1 + (k + 1) % 3, e = *b - *a, away = p[0] - *a;
-        const phys_vec in = {normal[1] * e[2] - normal[2] * e[1],
-                             normal[2] * e[0] - normal[0] * e[2],
-                             normal[0] * e[1] - normal[1] * e[0], 0};
-        above = above && phys_dot(&in, &away) >= 0;
-        least = fmin(least, point_segment(p, a, b));
-    }
-    const phys_vec away = p[0] - p[1];
-    return above ? fabs(phys_dot(&normal, &away)) / length(&normal) : least;
-}
-
-/* Of ends from the other edge, or where the lines are nearest if that is inside of both. */
-static double edge_distance(const phys_vec p[4])
-{
-    const phys_vec u = p[1] - p[0], w = p[3] - p[2], r = p[0] - p[2];
-    const double uu = phys_dot(&u, &u), ww = phys_dot(&w, &w), uw = phys_dot(&u, &w);
-    const double ur = phys_dot(&u, &r), wr = phys_dot(&w, &r), rest = uu * ww - uw * uw;
-    double least = fmin(fmin(point_segment(p, p + 2, p + 3), point_segment(p + 1, p + 2, p + 3)),
-                        fmin(point_segment(p + 2, p, p + 1), point_segment(p + 3, p, p + 1)));
-    if (rest > 1e-12 * uu * ww) {
-        const double s = (uw * wr - ww * ur) / rest, t = (uu * wr - uw * ur) / rest;
-        const phys_vec way = r + s * u - t * w;
-        if (s > 0 && s < 1 && t > 0 && t < 1)
-            least = fmin(least, length(&way));
-    }
-    return least;
-}
-
 static bool are_near(const uint32_t v[4], double (*distance)(const phys_vec[4]), double reach)
 {
     for (int i = 0; i <= TIMES; i++) {
@@ -438,7 +378,7 @@ START_TEST(meets_all)
     static const uint32_t parts[] = {PARTS, 1, 3};
     const int shape = _i / 3;
     uint32_t near;
-    seed = (uint64_t)_i;
+    random_seed = (uint64_t)_i;
     make(shape, parts[_i % 3]);
     for (size_t i = 0; i < (unit_quick() ? 1 : sizeof reach / sizeof *reach); i++) {
         query_all(reach[i]);
@@ -462,7 +402,7 @@ START_TEST(misses_are_seen)
 {
     const phys_vec none = {0};
     uint32_t near;
-    seed = 3;
+    random_seed = 3;
     make(3, PARTS);
     for (uint32_t p = 0; p < PARTS; p++)
         contact_refit(&skins[p].skin, skins[p].x, skins[p].x, &none, skins[p].boxes);
@@ -482,7 +422,7 @@ END_TEST
 /* A copy of table and boxes elsewhere is as good; boxes do not depend on what was there. */
 START_TEST(lies_anywhere)
 {
-    seed = 4;
+    random_seed = 4;
     make(2, PARTS);
     query_all(2e-3);
     const uint32_t seen = n_seen;
@@ -513,7 +453,7 @@ END_TEST
 
 START_TEST(roots)
 {
-    seed = 5;
+    random_seed = 5;
     make(4, PARTS);
     for (uint32_t p = 0; p < PARTS; p++) {
         double low[3], high[3];

@@ -73,6 +73,12 @@ static int take_frame(void *context, uint64_t frame, double time, const double *
     return CLOTH_OK;
 }
 
+static int take_force(void *context, uint64_t frame, const double *force, struct cloth_error *error)
+{
+    (void)context, (void)frame, (void)force, (void)error;
+    return 0;
+}
+
 static int take_row(void *context, uint64_t step, double time, size_t n, const double *values,
                     struct cloth_error *error)
 {
@@ -101,8 +107,10 @@ struct how {
 
 static void run_checked(struct how *how, struct flow *flow, struct cloth_error *error)
 {
-    const struct flow_output output = {
-        .frame = take_frame, .row = take_row, .system = how->system ? take_system : NULL};
+    const struct flow_output output = {.frame = take_frame,
+                                       .force = take_force,
+                                       .row = take_row,
+                                       .system = how->system ? take_system : NULL};
     duite_options options = duite_options_default();
     duite *rt = NULL;
     options.kernels = flow_kernels();
@@ -405,25 +413,61 @@ START_TEST(rests)
 }
 END_TEST
 
+static const char box[] = "v -1 0 -1\nv 1 0 -1\nv -1 1 -1\nv 1 1 -1\nv -1 0 1\nv 1 0 1\n"
+                          "v -1 1 1\nv 1 1 1\nf 1 5 7 3\nf 2 4 8 6\nf 1 2 6 5\nf 3 7 8 4\n"
+                          "f 1 3 4 2\nf 5 6 8 7\n";
+
+/* Bodies that are met by maps: one that moves, and one that changes its shape. */
+START_TEST(maps)
+{
+    static const char wide[] = "v -1 0 -1\nv 2 0 -1\nv -1 1 -1\nv 1 2 -1\nv -1 0 1\nv 1 0 1\n"
+                               "v -1 1 1\nv 1 1 1\nf 1 5 7 3\nf 2 4 8 6\nf 1 2 6 5\nf 3 7 8 4\n"
+                               "f 1 3 4 2\nf 5 6 8 7\n";
+    static const char *const moves =
+        "obstacles[1]={body: {obj: box.obj, scale: 0.2, translate: [0, -0.2012, 0], meet: image, "
+        "resolution: 20, motion: {times: [0, 1], translate: [[0, 0, 0], [0, 0.1, 0]]}}}";
+    static const char *const changes =
+        "obstacles[2]={body: {obj: box.obj, scale: 0.3, translate: [0.2, -0.301, 0], meet: image, "
+        "view: y, resolution: 33, frames: {obj: [box.obj, wide.obj], fps: 1}}}";
+    scene_write_file("box.obj", box, sizeof box - 1);
+    scene_write_file("wide.obj", wide, sizeof wide - 1);
+    for (size_t i = 0; i < INTEGRATORS; i++)
+        if (paired(i, INTEGRATORS, 0, 3))
+            run(SETS(integrators[i], moves, changes, "contact.mode=project"));
+}
+END_TEST
+
 /* A plane, cloth on cloth, and a body that comes from below; a solve that ends early leaves ways to
  * cut. */
 START_TEST(certified_contact)
 {
-    static const char box[] = "v -1 0 -1\nv 1 0 -1\nv -1 1 -1\nv 1 1 -1\nv -1 0 1\nv 1 0 1\n"
-                              "v -1 1 1\nv 1 1 1\nf 1 5 7 3\nf 2 4 8 6\nf 1 2 6 5\nf 3 7 8 4\n"
-                              "f 1 3 4 2\nf 5 6 8 7\n";
     static const char *const mode =
-        "contact={mode: certified, self: on, thickness: 0.0005, friction: 0.3}";
+        "contact={mode: certified, self: on, force: on, thickness: 0.0005, friction: 0.3}";
     static const char *const body = "obstacles[1]={body: {obj: box.obj, scale: 0.2, translate: "
                                     "[0, -0.2012, 0], motion: {times: [0, 1], translate: "
                                     "[[0, 0, 0], [0, 0.1, 0]]}}}";
     static const char *const above =
         "cloths[1]={mesh: {grid: {width: 1, height: 1, nx: 3, ny: 3}}, material: triangles, "
         "velocity: [0, -3, 0], transform: {translate: [0.1, 0.001, 0.1]}}";
+    static const char *const probes =
+        "probes=[{cloth: sheet, vertices: [0], values: [contact, contact_total]}, {obstacle: 1}]";
     scene_write_file("box.obj", box, sizeof box - 1);
     for (size_t i = 0; i < IMPLICIT; i++)
-        run(SETS(integrators[i], mode, body, above, "probes=[]",
-                 i ? "solver.stop={count: 1}" : NULL));
+        run(SETS(integrators[i], mode, body, above, probes, i ? "solver.stop={count: 1}" : NULL));
+}
+END_TEST
+
+/* A plane, and cloth on cloth. */
+START_TEST(repulsion)
+{
+    static const char *const mode = "contact={mode: repulsion, self: on, thickness: 0.002, "
+                                    "friction: 0.3}";
+    static const char *const above =
+        "cloths[1]={mesh: {grid: {width: 1, height: 1, nx: 3, ny: 3}}, material: triangles, "
+        "velocity: [0, -3, 0], transform: {translate: [0.1, 0.001, 0.1]}}";
+    for (size_t i = 0; i < INTEGRATORS; i++)
+        if (whole || i % 2 == 0)
+            run(SETS(integrators[i], mode, above, "probes=[]"));
 }
 END_TEST
 
@@ -471,6 +515,8 @@ int main(int argc, char **argv)
     tcase_add_test(cases, saved_systems);
     tcase_add_test(cases, rests);
     tcase_add_test(cases, certified_contact);
+    tcase_add_test(cases, repulsion);
+    tcase_add_test(cases, maps);
     tcase_add_test(cases, every_kernel_was_run);
     suite_add_tcase(suite, integrations);
     suite_add_tcase(suite, cases);

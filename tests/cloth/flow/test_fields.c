@@ -2,11 +2,11 @@
  * what a step does with a field between two steps is what the table calls it. Work fields may be
  * anything when a step begins; a state field may not. */
 #include "cloth/flow/contact/certify.h"
-#include "cloth/flow/kernels.h"
+#include "cloth/flow/contact/repel.h"
 #include "cloth/flow/setup/setup.h"
 #include "cloth/flow/solver/solve.h"
 #include "cloth/flow/step/step.h"
-#include "tests/cloth/flow/models.h"
+#include "tests/cloth/flow/session.h"
 #include "tests/support/unit.h"
 
 #include <math.h>
@@ -14,51 +14,6 @@
 #include <string.h>
 
 enum { STEPS = 4, SIDE = 6 };
-
-struct session {
-    struct setup setup;
-    struct flow *flow;
-    duite *rt;
-    struct flow_report report;
-    struct flow_state state;
-    struct cloth_error error;
-};
-
-static int take_row(void *context, uint64_t step, double time, size_t n, const double *values,
-                    struct cloth_error *error)
-{
-    (void)context, (void)step, (void)time, (void)n, (void)values, (void)error;
-    return CLOTH_OK;
-}
-
-static const struct flow_output output = {.row = take_row};
-
-static void start(struct session *s)
-{
-    duite_options options = duite_options_default();
-    int rank, ranks;
-    record_mpi(&rank, &ranks);
-    ck_assert_int_eq(flow_prepare(&s->flow, &s->setup.model, 1, &s->error), 0);
-    options.kernels = flow_kernels();
-    options.context = s->flow;
-    options.threads = 1;
-    options.bind = 0;
-    ck_assert_int_eq(duite_start(&s->rt, &options), 0);
-    s->state = (struct flow_state){
-        .flow = s->flow, .rt = s->rt, .output = &output, .report = &s->report, .error = &s->error};
-    ck_assert_int_eq(flow_run_begin(&s->state), 0);
-}
-
-static void end(struct session *s)
-{
-    ck_assert_int_eq(duite_wait(s->rt), 0);
-    ck_assert_int_eq(flow_contact_free_objects(&s->state), 0);
-    flow_objects_free(&s->state);
-    flow_memory_free(&s->state);
-    ck_assert_int_eq(duite_stop(&s->rt), 0);
-    flow_free(s->flow);
-    setup_free(&s->setup);
-}
 
 /* ---- Kinds of runs ---- */
 
@@ -164,9 +119,28 @@ static void certified(struct session *s)
         .mode = MODEL_CONTACT_CERTIFIED, .self = true, .thickness = 0.002, .friction = 0.3};
 }
 
+static void repel(struct session *s)
+{
+    s->setup.model.contact =
+        (struct model_contact){.mode = MODEL_CONTACT_REPULSION, .self = true, .thickness = 0.002};
+}
+
+static void repelled(struct session *s)
+{
+    conditioned(s);
+    repel(s);
+}
+
+static void repelled_explicitly(struct session *s)
+{
+    verlet(s);
+    repel(s);
+}
+
 static void (*const kinds[])(struct session *) = {
-    plain, conditioned, guessed,      newton,          bdf2,     euler, verlet, midpoint,
-    runge, tied,        tied_plainly, tied_explicitly, certified};
+    plain,        conditioned,     guessed,   newton,   bdf2,
+    euler,        verlet,          midpoint,  runge,    tied,
+    tied_plainly, tied_explicitly, certified, repelled, repelled_explicitly};
 enum { KINDS = sizeof kinds / sizeof *kinds };
 
 /* ---- What exists ---- */
@@ -201,12 +175,12 @@ START_TEST(what_exists_is_made)
 {
     struct session s;
     kinds[_i](&s);
-    start(&s);
+    session_start(&s);
     ck_assert_uint_gt(s.flow->tables.n_blocks, 2);
     for (int field = 0; field < FLOW_FIELDS_OF_ALL; field++)
         for (uint32_t b = 0; b < blocks_of(&s, field); b++)
             check_made(&s, field, b);
-    end(&s);
+    session_end(&s);
 }
 END_TEST
 
@@ -214,7 +188,7 @@ START_TEST(all_is_freed)
 {
     struct session s;
     kinds[_i](&s);
-    start(&s);
+    session_start(&s);
     ck_assert_int_eq(flow_objects_free(&s.state), 0);
     for (int field = 0; field < FLOW_FIELDS_OF_ALL; field++)
         for (uint32_t b = 0; b < blocks_of(&s, field); b++) {
@@ -234,17 +208,18 @@ END_TEST
 /* Every field exists in some kind of run, or is of what these runs do not have. */
 START_TEST(every_field_has_a_run)
 {
-    static const char *const others[] = {"filter",      "probe_force", "probe_values", "pieces",
-                                         "saved",       "groups",      "body_skins",   "body_fans",
-                                         "body_points", "body_boxes"};
+    static const char *const others[] = {
+        "filter",        "probe_force",        "probe_values",   "pieces",      "saved",
+        "groups",        "body_skins",         "body_fans",      "body_points", "body_boxes",
+        "contact_force", "kept_contact_force", "obstacle_force", "maps"};
     bool exists[FLOW_FIELDS_OF_ALL] = {false};
     for (int kind = 0; kind < KINDS; kind++) {
         struct session s;
         kinds[kind](&s);
-        start(&s);
+        session_start(&s);
         for (int field = 0; field < FLOW_FIELDS_OF_ALL; field++)
             exists[field] = exists[field] || made(&s, field, 0).generation;
-        end(&s);
+        session_end(&s);
     }
     for (int field = 0; field < FLOW_FIELDS_OF_ALL; field++) {
         bool other = false;
@@ -325,12 +300,14 @@ static uint64_t run_changed(int kind, enum flow_life life, int only, change *how
 {
     struct session s;
     kinds[kind](&s);
-    start(&s);
+    session_start(&s);
     if (model_is_implicit(&s.setup.model))
         ck_assert_int_eq(flow_cg_record(&s.state), 0);
     ck_assert_int_eq(flow_initialise(&s.state), 0);
     if (model_certifies(&s.setup.model))
         ck_assert_int_eq(flow_contact_start(&s.state), 0);
+    if (model_repels(&s.setup.model))
+        ck_assert_int_eq(flow_repulsion_start(&s.state), 0);
     for (int step = 0; step < STEPS; step++) {
         for (int field = 0; field < FLOW_FIELDS_OF_ALL && step && how; field++)
             if (is_changed(&s, field, life, only))
@@ -341,7 +318,7 @@ static uint64_t run_changed(int kind, enum flow_life life, int only, change *how
         s.state.smooth = FLOW_TICKS; /* BDF2 goes on */
     }
     const uint64_t hash = hash_state(&s);
-    end(&s);
+    session_end(&s);
     return hash;
 }
 
@@ -376,12 +353,12 @@ START_TEST(state_lasts)
     struct session s;
     bool is_state[FLOW_FIELDS_OF_ALL];
     kinds[_i](&s);
-    start(&s);
+    session_start(&s);
     for (int field = 0; field < FLOW_FIELDS_OF_ALL; field++)
         is_state[field] = is_changed(&s, field, FLOW_STATE_FIELD, field);
     if (s.setup.model.guess != MODEL_GUESS_PREVIOUS)
         is_state[FLOW_FIELD_dv] = false;
-    end(&s);
+    session_end(&s);
     ck_assert(is_state[FLOW_FIELD_x] && is_state[FLOW_FIELD_v]);
     for (int field = 0; field < FLOW_FIELDS_OF_ALL; field++)
         if (is_state[field])

@@ -108,7 +108,7 @@ static void check_points(uint32_t b)
 }
 
 /* Counts by place, and by the places of both ends. */
-static uint32_t vertices[MOST], edges[MOST][MOST], n_triangles;
+static uint32_t vertices[MOST], edges[MOST][MOST], n_triangles, n_borders;
 
 static void count_features(uint32_t b)
 {
@@ -118,6 +118,7 @@ static void count_features(uint32_t b)
     for (uint32_t i = 0; i < skin->n_edges; i++) {
         const uint32_t p = skin->id[skin->edge[i][0]], q = skin->id[skin->edge[i][1]];
         edges[p < q ? p : q][p < q ? q : p]++;
+        n_borders += skin->beside[i][1] == CONTACT_NO_POINT;
     }
     for (uint32_t t = 0; t < skin->n_triangles; t++) {
         const uint32_t *corner = skin->corner[t];
@@ -151,7 +152,8 @@ static void check_features(void)
     ck_assert_uint_eq(n_triangles, mesh->n_triangles);
 }
 
-static void check_all(void)
+/* borders: edges of one triangle. An edge whose triangles are in different skins is none. */
+static void check_all(uint32_t borders)
 {
     ck_assert_uint_gt(n_blocks(), 6);
     for (uint32_t b = 0; b < n_blocks(); b++) {
@@ -159,6 +161,7 @@ static void check_all(void)
         count_features(b);
     }
     check_features();
+    ck_assert_uint_eq(n_borders, borders);
 }
 
 /* ---- Tests ---- */
@@ -167,7 +170,7 @@ START_TEST(springs)
 {
     setup_pin(&setup, 2, (const uint32_t[]){0, SIDE - 1});
     make();
-    check_all();
+    check_all(4 * (SIDE - 1));
 }
 END_TEST
 
@@ -176,7 +179,7 @@ START_TEST(no_shear)
 {
     setup.material.shear = setup.material.bend = 0;
     make();
-    check_all();
+    check_all(4 * (SIDE - 1));
 }
 END_TEST
 
@@ -184,7 +187,7 @@ START_TEST(welded_sides)
 {
     weld_sides();
     make();
-    check_all();
+    check_all(2 * (SIDE - 1));
     ck_assert_uint_eq(flow->source.blocks.n_places, SIDE * SIDE - SIDE);
 }
 END_TEST

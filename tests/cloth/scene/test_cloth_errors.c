@@ -316,13 +316,32 @@ START_TEST(motions_that_cannot_be_made)
 }
 END_TEST
 
+#define DRAPE(text) "\ntime: {h", "\ndrape: " text "\ntime: {h"
+
+START_TEST(drape_tests_without_a_border)
+{
+    EXPECT({DRAPE("{}"),
+            .error = ":12:8: drape.radius is missing; a finite number > 0 (m) is expected"},
+           {DRAPE("{radius: 0}"),
+            .error = ":12:17: drape.radius is 0; a finite number > 0 (m) is expected"},
+           {DRAPE("{radius: 1}"),
+            .error = ":12:17: drape.radius is 1 m, a disc of 3.14 m2; the triangles of cloth "
+                     "'sheet' have 2 m2: a smaller disc is expected"},
+           {DRAPE("{radius: 0.1, axis: [0, 0, 0]}"),
+            .error = ":12:28: drape.axis is zero; a direction is expected"},
+           {DRAPE("{radius: 0.1, cloth: shet}"),
+            .error = ":12:29: there is no cloth 'shet'; did you mean 'sheet'? Allowed: sheet"});
+}
+END_TEST
+
 #define PROBE(text) "\ntime: {h", "\nprobes: [" text "]\ntime: {h"
 
 START_TEST(probes_that_tell_nothing)
 {
     EXPECT(
         {PROBE("{name: a}"),
-         .error = ":12:10: probes[0] has no vertices or nearest or box; one of them is expected"},
+         .error = ":12:10: probes[0] has no vertices or nearest or box or obstacle; one of "
+                  "them is expected"},
         {PROBE("{vertices: [0], radius: 1}"),
          .error = ":12:34: radius is given without nearest, the point that it is measured from; "
                   "both or neither are expected"},
@@ -330,7 +349,7 @@ START_TEST(probes_that_tell_nothing)
          .error = ":12:39: probes[0].radius is -0.1; a finite number >= 0 (m) is expected"},
         {PROBE("{vertices: [0], nearest: [0, 0, 0]}"),
          .error = ":12:26: probes[0] has both vertices and nearest; one of vertices or nearest or "
-                  "box is expected"},
+                  "box or obstacle is expected"},
         {PROBE("{vertices: [12]}"),
          .error =
              ":12:22: vertex 12 is outside the mesh of cloth 'sheet', which has 12 vertices; 0 "
@@ -344,10 +363,22 @@ START_TEST(probes_that_tell_nothing)
         {PROBE("{vertices: [1], cloth: shet}"),
          .error = ":12:33: there is no cloth 'shet'; did you mean 'sheet'? Allowed: sheet"},
         {PROBE("{vertices: [1], values: [total, mass]}"),
-         .error = ":12:42: probes[0].values[1] is mass; position or velocity or reaction or total "
-                  "is expected"},
+         .error = ":12:42: probes[0].values[1] is mass; position or velocity or reaction or "
+                  "contact or total or contact_total is expected"},
         {PROBE("{vertices: [1], values: [total, total]}"),
          .error = ":12:42: total stands twice in the values of a probe"},
+        {PROBE("{obstacle: 5}"),
+         .error = ":12:21: there is no obstacle '5'; there are 1, counted from 0, and none has a "
+                  "name"},
+        {PROBE("{obstacle: 0, values: [contact]}"),
+         .error = ":12:32: probe 'probe1' is of an obstacle: its force on all cloth is reported, "
+                  "and values means nothing"},
+        {PROBE("{obstacle: 0}"),
+         .error = ":12:21: probe 'probe1' reports the force of contact, which contact.mode "
+                  "certified knows; here it is project, which reports none"},
+        {PROBE("{vertices: [1], values: [contact_total]}"),
+         .error = ":12:34: probe 'probe1' reports the force of contact, which contact.mode "
+                  "certified knows; here it is project, which reports none"},
         {"end: 0.1", "end: 0.1, rest: {speed: 0}",
          .error = ":12:42: time.rest.speed is 0; a finite number > 0 (m/s) is expected"});
 }
@@ -457,6 +488,7 @@ int main(void)
     tcase_add_test(cases, starts_and_masses_that_cannot_be_made);
     tcase_add_test(cases, motions_that_cannot_be_made);
     tcase_add_test(cases, pins_that_hold_to_nothing);
+    tcase_add_test(cases, drape_tests_without_a_border);
     tcase_add_test(cases, probes_that_tell_nothing);
     tcase_add_test(cases, joints_that_cannot_be_made);
     tcase_add_test(cases, welds_that_cannot_be_made);

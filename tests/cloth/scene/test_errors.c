@@ -79,25 +79,66 @@ START_TEST(wrong_kinds)
          .error = ":2:13: integrator is rk5; implicit_euler or explicit_euler or "
                   "symplectic_euler or verlet or midpoint or rk4 or bdf2 is expected"},
         {"gravity: [0, -9.81, 0]", "contact: {mode: projekt}",
-         .error = ":2:17: contact.mode is projekt; certified or project is expected"},
+         .error = ":2:17: contact.mode is projekt; certified or repulsion or project is expected"},
         {"gravity: [0, -9.81, 0]", "contact: project",
-         .error = ":2:10: contact is project; a map of mode, self, thickness, friction is "
-                  "expected: write contact: {mode: project}"},
+         .error = ":2:10: contact is project; a map of mode, self, untangle, force, "
+                  "thickness, friction, pairs, ignore, stiffness, damping is expected: write "
+                  "contact: {mode: project}"},
         {"gravity: [0, -9.81, 0]", "contact: filter",
-         .error = ":2:10: contact is filter; a map of mode, self, thickness, friction is "
-                  "expected: it is gone; contact: {mode: certified} or {mode: project} is there"},
+         .error = ":2:10: contact is filter; a map of mode, self, untangle, force, "
+                  "thickness, friction, pairs, ignore, stiffness, damping is expected: it is gone; "
+                  "contact: {mode: "
+                  "certified} or {mode: "
+                  "project} is there"},
         {"gravity: [0, -9.81, 0]", "contact: {mode: filter}",
-         .error = ":2:17: contact.mode is filter; certified or project is expected: it is gone; "
-                  "certified knows of contact in the solve, too"},
+         .error =
+             ":2:17: contact.mode is filter; certified or repulsion or project is expected: it "
+             "is gone; certified knows of contact in the solve, too"},
         {"gravity: [0, -9.81, 0]", "contact: {friction: -0.1}",
          .error = ":2:21: contact.friction is -0.1; a finite number >= 0 is expected"},
         {"gravity: [0, -9.81, 0]", "contact: {thickness: 0}",
          .error = ":2:22: contact.thickness is 0; a finite number > 0 (m) is expected"},
         {"gravity: [0, -9.81, 0]", "contact: {mode: certified}\nintegrator: verlet",
          .error = ":2:17: contact.mode is certified, which implicit_euler and bdf2 can do: "
-                  "explicit steps (integrator: verlet) ..."},
+                  "explicit steps (integrator: verlet) solve no system that knows of contact; "
+                  "repulsion or project is expected"},
+        {"gravity: [0, -9.81, 0]", "contact: {mode: repulsion, stiffness: 0}",
+         .error = ":2:39: contact.stiffness is 0; a finite number > 0 (N/m) is expected"},
+        {"gravity: [0, -9.81, 0]", "contact: {mode: repulsion, damping: -1}",
+         .error = ":2:37: contact.damping is -1; a finite number >= 0 is expected"},
         {"gravity: [0, -9.81, 0]", "contact: {mode: certified, thickness: 1e-8}",
          .error = ":2:39: contact.thickness is 1e-08 m; at least ..."},
+        {"gravity: [0, -9.81, 0]", "contact: {pairs: [{of: [coton, sheet], friction: 1}]}",
+         .error = ":2:25: there is no material or obstacle 'coton'; did you mean 'cotton'? "
+                  "Allowed: cotton"},
+        {"gravity: [0, -9.81, 0]", "contact: {pairs: [{of: [cotton], friction: 1}]}",
+         .error = ":2:24: contact.pairs[0].of is a list of 1; a list of 2 texts is expected"},
+        {"gravity: [0, -9.81, 0]",
+         "contact: {pairs: [{of: [cotton, cotton], friction: 1}, {of: [cotton, cotton], friction: "
+         "2}]}",
+         .error = ":2:61: contact.pairs[0] and contact.pairs[1] are of the same two; one is "
+                  "expected"},
+        {"gravity: [0, -9.81, 0]", "contact: {ignore: [[sheet, shet]]}",
+         .error = ":2:28: there is no cloth, obstacle or group 'shet'; did you mean 'sheet'? "
+                  "Allowed: sheet"},
+        {"plane: {", "plane: {name: cotton, ",
+         .error = ":11:28: an obstacle is named 'cotton', as a material is; another name is "
+                  "expected, since contact.pairs has names of both"},
+        {"[{plane: {", "[{sphere: {name: a, centre: [0, 9, 0], radius: 1}}, {plane: {name: a, ",
+         .error = ":11:79: a second obstacle is named 'a'; names must differ"},
+        {"pins: [{vertices: [0, 3]}]", "pins: [{vertices: [0, 3], follow: flor}]",
+         .error = ":7:39: there is no obstacle 'flor': none has a name"},
+        {"pins: [{vertices: [0, 3]}]",
+         "pins: [{vertices: [0, 3], follow: a, motion: {times: [0], translate: [[0, 0, 0]]}}]",
+         .error = ":7:50: a pin follows an obstacle and has a motion; one of the two is expected"},
+        {"pins: [{vertices: [0, 3]}]",
+         "pins: [{vertices: [0, 3], follow: a, to: line, direction: [1, 0, 0]}]",
+         .error = ":7:39: a pin to a line cannot follow an obstacle; to: point is expected"},
+        {"gravity: [0, -9.81, 0]", "contact: {self: on, thickness: 1e-8}",
+         .error = ":2:32: contact.thickness is 1e-08 m; at least 2.07e-06 m is expected: frames "
+                  "are in float, which this is what 1 m from the origin needs; contact is "
+                  "certified by default in this scene, contact: {mode: project} is the way "
+                  "without"},
         {"[{vertices: [0, 3]}]", "[]\n    loads: []",
          .error = ":9:5: loads is twice in cloths[0]; each key is allowed once"},
         {"pins: [{vertices: [0, 3]}]", "pins: [{}]",

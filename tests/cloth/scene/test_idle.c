@@ -15,11 +15,30 @@ static const struct {
     const char *set[MAX_SETS], *warning;
 } cases[] = {
     {{"contact.mode=project"}, NULL},
-    {{"contact.self=on"}, "contact.self means nothing: it is of contact.mode certified"},
+    {{"contact.self=on"}, NULL},
+    {{"contact.mode=project", "contact.self=on"},
+     "contact.self means nothing: it is of contact.mode certified and repulsion"},
+    {{"contact.stiffness=5"}, "contact.stiffness means nothing: it is of contact.mode repulsion"},
+    {{"contact.damping=0.3"}, "contact.damping means nothing: it is of contact.mode repulsion"},
+    {{"contact.mode=certified", "contact.damping=0.3"}, "contact.damping means nothing"},
+    {{"contact={mode: repulsion, self: on, stiffness: 5, damping: 0.3, friction: 0.3}"}, NULL},
     {{"contact.self=off"}, NULL},
+    {{"contact.untangle=on"}, "contact.untangle means nothing: it is of contact.mode certified"},
+    {{"contact.untangle=off"}, NULL},
+    {{"cloths[0].layer=1"}, "layer means nothing: it is of contact.untangle"},
+    {{"contact.mode=certified", "cloths[0].layer=1"}, "layer means nothing"},
+    {{"contact.mode=certified", "contact.untangle=on"}, NULL},
+    {{"contact.mode=project", "contact.force=on"},
+     "contact.force means nothing: it is of contact.mode certified"},
     {{"contact.thickness=0.002"}, "contact.thickness means nothing"},
     {{"contact.friction=0.3"}, "contact.friction means nothing"},
     {{"contact.friction=0"}, NULL},
+    {{"contact.pairs=[{of: [cotton, cotton], friction: 1}]"}, "contact.pairs means nothing"},
+    {{"contact.mode=certified", "contact.thickness=0.01", "obstacles[0].plane.name=floor",
+      "contact.pairs=[{of: [floor, floor], friction: 1}]"},
+     "contact.pairs[0] means nothing: obstacles do not touch each other"},
+    {{"contact.ignore=[[sheet, sheet]]"}, "contact.ignore means nothing: by project cloths meet"},
+    {{"obstacles[0].plane.name=floor", "contact.ignore=[[sheet, floor]]"}, NULL},
     {{"materials.cotton.friction=0.3"}, "friction means nothing"},
     {{"obstacles[0].plane.friction=0.3"}, "friction means nothing"},
     {{"solver.stop.count=3"}, NULL},
@@ -110,12 +129,12 @@ END_TEST
 /* In the file the place is that of the value. */
 START_TEST(places_in_files)
 {
-    char *text = scene_changed(scene_right, "gravity:", "contact: {self: on}\ngravity:");
+    char *text = scene_changed(scene_right, "gravity:", "contact: {friction: 1}\ngravity:");
     struct model model = scene_read_right(text, 0, NULL);
     const size_t path = strlen(scene_path());
     ck_assert_uint_eq(model.n_warnings, 1);
     ck_assert_msg(!strncmp(model.warnings[0], scene_path(), path), "%s", model.warnings[0]);
-    ck_assert_msg(!strncmp(model.warnings[0] + path, ":2:17: contact", 14), "%s",
+    ck_assert_msg(!strncmp(model.warnings[0] + path, ":2:21: contact", 14), "%s",
                   model.warnings[0]);
     model_free(&model);
     free(text);

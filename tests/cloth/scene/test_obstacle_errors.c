@@ -256,6 +256,64 @@ START_TEST(a_body_that_is_inside_out)
 }
 END_TEST
 
+#define MAPS "body: {obj: whole.obj, "
+START_TEST(maps_that_are_wrong)
+{
+    write_body("whole.obj", WHOLE);
+    EXPECT({PLANE, MAPS "meet: images}",
+            .error = ":11:43: obstacles[0].body.meet is images; bvh or image is expected"},
+           {PLANE, MAPS "meet: image, resolution: 8}",
+            .error = ":11:62: obstacles[0].body.resolution is 8; a whole number from 16 to 4096 is "
+                     "expected"},
+           {PLANE, MAPS "meet: image, view: w}",
+            .error = ":11:56: obstacles[0].body.view is w; thinnest or x or y or z is expected"});
+    char *text = scene_changed(scene_right, PLANE, MAPS "meet: image}");
+    scene_expect_error(
+        text, "contact.mode=certified",
+        ":11:43: a body that is met by image, in contact.mode certified: maps of its "
+        "front and back do not show all of it, so nothing can be proven of them; "
+        "meet: bvh, or contact: {mode: project}, is expected");
+    scene_expect_error(
+        text, "contact.mode=repulsion",
+        ":11:43: a body that is met by image, in contact.mode repulsion, which looks for the "
+        "nearest points of bodies; meet: bvh, or contact: {mode: project}, is expected");
+    free(text);
+}
+END_TEST
+
+/* Along which axis, in how many pixels; what is of maps says nothing where there are none. */
+START_TEST(maps)
+{
+    static const struct {
+        const char *keys;
+        uint32_t axis, width, height, warnings;
+    } cases[] = {{"meet: bvh", 0, 0, 0, 0},
+                 {"meet: image", 1, 768, 1024, 0},
+                 {"meet: image, view: x, resolution: 90", 0, 60, 90, 0},
+                 {"meet: image, view: z, resolution: 90", 2, 90, 45, 0},
+                 {"view: z, resolution: 90", 0, 0, 0, 2}};
+    write_body("whole.obj", WHOLE);
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char body[200];
+        snprintf(body, sizeof body, MAPS "scale: [4, 2, 3], %s}", cases[i].keys);
+        char *text = scene_changed(scene_right, PLANE, body);
+        struct model model = scene_read_right(text, 0, NULL);
+        const struct contact_view *view = &model.obstacles->view;
+        ck_assert_uint_eq(view->axis, cases[i].axis);
+        ck_assert_uint_eq(view->width, cases[i].width);
+        ck_assert_uint_eq(view->height, cases[i].height);
+        ck_assert_uint_eq(model.n_warnings, cases[i].warnings);
+        ck_assert_int_eq(model.contact.mode,
+                         view->height ? MODEL_CONTACT_PROJECT : MODEL_CONTACT_CERTIFIED);
+        if (cases[i].warnings)
+            ck_assert_ptr_nonnull(
+                strstr(model.warnings[0], "resolution means nothing: it is of meet: image"));
+        model_free(&model);
+        free(text);
+    }
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("obstacle errors");
@@ -266,6 +324,8 @@ int main(void)
     tcase_add_test(cases, bodies_that_cannot_be_read);
     tcase_add_test(cases, frames_that_are_wrong);
     tcase_add_test(cases, frames_that_jump);
+    tcase_add_test(cases, maps_that_are_wrong);
+    tcase_add_test(cases, maps);
     tcase_add_test(cases, a_body_in_centimetres);
     tcase_add_test(cases, a_body_that_is_inside_out);
     suite_add_tcase(suite, cases);

@@ -108,6 +108,70 @@ START_TEST(still_motions)
 }
 END_TEST
 
+#define SECOND "cloths[1]={mesh: {grid: {width: 1, height: 1, nx: 3, ny: 3}}, material: cotton}"
+#define CHAIN                                                                                      \
+    "cloths[1]={mesh: {inline: {vertices: [[9, 0, 0], [9, 1, 0]], edges: [[0, 1]]}}, material: "   \
+    "wire, mass_per_vertex: 1}"
+#define BALL "obstacles[1]={sphere: {centre: [0, 9, 0], radius: 1}}"
+
+/* The mode of contact where the scene does not say it: a plane alone is projected onto. */
+static const struct {
+    const char *set[3];
+    enum model_contact_mode mode;
+} modes[] = {
+    {{"obstacles=[]"}, MODEL_CONTACT_PROJECT},
+    {{"time.fps=25"}, MODEL_CONTACT_PROJECT}, /* one cloth and a plane */
+    {{BALL}, MODEL_CONTACT_CERTIFIED},
+    {{BALL, "integrator=bdf2"}, MODEL_CONTACT_CERTIFIED},
+    {{BALL, "integrator=verlet"}, MODEL_CONTACT_PROJECT},
+    {{"contact.self=on"}, MODEL_CONTACT_CERTIFIED},
+    {{SECOND}, MODEL_CONTACT_CERTIFIED},
+    {{CHAIN, "materials.wire={ea: 1}"}, MODEL_CONTACT_PROJECT},
+    {{CHAIN, "materials.wire={ea: 1}", BALL}, MODEL_CONTACT_PROJECT},
+    {{CHAIN, "materials.wire={ea: 1}", "contact.self=on"}, MODEL_CONTACT_PROJECT},
+};
+
+START_TEST(contact_modes)
+{
+    struct scene_set sets[4] = {{.text = "contact.thickness=0.01"}};
+    size_t n = 1;
+    for (; n < 4 && modes[_i].set[n - 1]; n++)
+        sets[n] = (struct scene_set){.text = modes[_i].set[n - 1]};
+    struct model model = scene_read_right(scene_right, n, sets);
+    ck_assert(model.contact.assumed);
+    ck_assert_int_eq((int)model.contact.mode, (int)modes[_i].mode);
+    ck_assert(strstr(model_contact_cure(&model), "mode: project"));
+    model_free(&model);
+    model = scene_read_set("contact.mode=certified");
+    ck_assert(!model.contact.assumed && !model_contact_cure(&model)[0]);
+    model_free(&model);
+}
+END_TEST
+
+/* Steps look for contact where something can touch, or where it is reported. */
+static const struct {
+    const char *set[2];
+    bool certifies;
+} idle_scenes[] = {
+    {{"obstacles=[]"}, false},
+    {{"obstacles=[]", "contact.self=on"}, true},
+    {{"obstacles=[{plane: {point: [0, -9, 0], normal: [0, 1, 0]}}]"}, true},
+    {{"obstacles=[]", "probes=[{cloth: sheet, vertices: [1], values: [contact], name: p}]"}, true},
+};
+
+START_TEST(contact_with_nothing)
+{
+    struct scene_set sets[3] = {{.text = "contact.mode=certified"}};
+    size_t n = 1;
+    for (; n < 3 && idle_scenes[_i].set[n - 1]; n++)
+        sets[n] = (struct scene_set){.text = idle_scenes[_i].set[n - 1]};
+    struct model model = scene_read_right(scene_right, n, sets);
+    ck_assert_int_eq(model_certifies(&model), idle_scenes[_i].certifies);
+    ck_assert_int_eq((int)model.contact.mode, MODEL_CONTACT_CERTIFIED);
+    model_free(&model);
+}
+END_TEST
+
 START_TEST(cloth_and_material)
 {
     struct model model = scene_read_right(scene_right, 0, NULL);
@@ -415,6 +479,41 @@ START_TEST(probes_and_rest)
 }
 END_TEST
 
+START_TEST(drape_test)
+{
+    struct model model = read_changed("\ntime: {h", "\ndrape: {radius: 0.5}\ntime: {h");
+    ck_assert_double_eq(model.drape.radius, 0.5);
+    ck_assert_double_eq_tol(model_disc(&model.drape), acos(-1) / 4, 1e-15);
+    ck_assert_double_eq_tol(model_area(model.cloths), 2, 1e-15);
+    same_vector(model.drape.axis, 0, 1, 0);
+    model_free(&model);
+    model = read_changed("\ntime: {h",
+                         "\ndrape: {radius: 0.5, axis: [3, 0, 4], cloth: sheet}\ntime: {h");
+    ck_assert_uint_eq(model.drape.cloth, 0);
+    ck_assert_double_eq_tol(model.drape.axis[0], 0.6, 1e-15);
+    model_free(&model);
+    model = scene_read_right(scene_right, 0, NULL);
+    ck_assert_double_eq(model.drape.radius, 0);
+    model_free(&model);
+}
+END_TEST
+
+START_TEST(probes_of_contact)
+{
+    struct model model = read_changed(
+        "\ntime: {h",
+        "\ncontact: {mode: certified}\nintegrator: implicit_euler\n"
+        "probes: [{vertices: [3, 1], values: [contact, contact_total]}, {obstacle: 0}]\ntime: {h");
+    const struct model_probe *probe = model.probes;
+    ck_assert(probe[0].contact && probe[0].contact_total && !probe[0].by_obstacle);
+    ck_assert(!probe[0].position && !probe[0].total);
+    ck_assert(probe[1].by_obstacle && !probe[1].contact && !probe[1].position);
+    ck_assert_uint_eq(probe[1].obstacle, 0);
+    ck_assert(model_feels_contact(&model));
+    model_free(&model);
+}
+END_TEST
+
 START_TEST(numbers_of_every_form)
 {
     static const struct {
@@ -463,6 +562,8 @@ int main(void)
     TCase *cases = tcase_create("values");
     tcase_add_test(cases, world_and_time);
     tcase_add_test(cases, obstacles);
+    tcase_add_loop_test(cases, contact_modes, 0, sizeof modes / sizeof *modes);
+    tcase_add_loop_test(cases, contact_with_nothing, 0, sizeof idle_scenes / sizeof *idle_scenes);
     tcase_add_test(cases, still_motions);
     tcase_add_test(cases, cloth_and_material);
     tcase_add_test(cases, named_fabrics);
@@ -474,6 +575,8 @@ int main(void)
     tcase_add_test(cases, cloths_of_every_mesh);
     tcase_add_test(cases, starts_and_masses);
     tcase_add_test(cases, probes_and_rest);
+    tcase_add_test(cases, drape_test);
+    tcase_add_test(cases, probes_of_contact);
     tcase_add_test(cases, numbers_of_every_form);
     tcase_add_test(cases, shared_empty_map_takes_defaults);
     tcase_add_test(cases, huge_and_tiny_normals);

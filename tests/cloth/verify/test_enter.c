@@ -2,6 +2,7 @@
  * nested searches, since gaps are convex. Points against closed surfaces. */
 #include "cloth/verify/verify.h"
 #include "tests/cloth/contact/bodies.h"
+#include "tests/cloth/contact/shapes.h"
 #include "tests/support/unit.h"
 
 #include <math.h>
@@ -11,42 +12,14 @@
 enum { TRIANGLES = 100, HALVINGS = 50 };
 static const double DEPTH = 1e-6;
 
-static uint64_t seed = 1;
-static double uniform(double low, double high)
-{
-    seed = seed * 6364136223846793005u + 1442695040888963407u;
-    return low + (high - low) * (double)(seed >> 11) * 0x1p-53;
-}
-
-static void make_unit(size_t n, double *value)
-{
-    double square = 0;
-    for (size_t i = 0; i < n; i++)
-        square += value[i] * value[i];
-    for (size_t i = 0; i < n; i++)
-        value[i] /= sqrt(square);
-}
-
 /* Two key frames, whose motion lasts from 1 to 2 s. */
 static void make_shape(uint32_t kind, struct contact_shape *shape, struct phys_key keys[2])
 {
-    double *value = shape->value;
-    *shape = (struct contact_shape){.kind = kind, .n = 2};
-    for (const struct contact_parameter *p = contact_kinds[kind]->parameter; p->name; p++) {
-        const size_t n = contact_role_size(p->role);
-        const bool is_length = p->role == CONTACT_LENGTH || p->role == CONTACT_LENGTHS;
-        for (size_t i = 0; i < n; i++)
-            value[i] = is_length ? uniform(0.2, 1) : uniform(-1, 1);
-        if (p->role == CONTACT_DIRECTION || p->role == CONTACT_ROTATION)
-            make_unit(n, value);
-        value += n;
-    }
+    pick_shape(kind, 0.2, shape);
     memset(keys, 0, 2 * sizeof *keys);
     for (int k = 0; k < 2; k++) {
         keys[k].time = 1 + k;
-        for (int i = 0; i < 4; i++)
-            keys[k].rotate[i] = uniform(-1, 1);
-        make_unit(4, keys[k].rotate);
+        pick_turn(keys[k].rotate);
     }
 }
 

@@ -3,6 +3,7 @@
  * face, or what is normal to an edge of each, or in a plane to an edge of one, keeps them apart. */
 #include "cloth/verify/orient.h"
 #include "cloth/verify/verify.h"
+#include "tests/support/random.h"
 #include "tests/support/unit.h"
 
 #include <gmp.h>
@@ -10,13 +11,6 @@
 #include <stdio.h>
 
 enum { SIGNS = 20000, PAIRS = 6000, KINDS = 6 };
-
-static uint64_t seed = 1;
-static double uniform(double low, double high)
-{
-    seed = seed * 6364136223846793005u + 1442695040888963407u;
-    return low + (high - low) * (double)(seed >> 11) * 0x1p-53;
-}
 
 static int pick(int n)
 {

@@ -1,5 +1,6 @@
 /* The sweep finds the pairs that all pairs, tried one by one, have. */
 #include "cloth/verify/verify.h"
+#include "tests/support/random.h"
 #include "tests/support/unit.h"
 
 #include <math.h>
@@ -13,13 +14,6 @@ struct soup {
     uint32_t corner[TRIANGLES][3];
     struct verify_soup made;
 };
-
-static uint64_t seed = 1;
-static double uniform(double low, double high)
-{
-    seed = seed * 6364136223846793005u + 1442695040888963407u;
-    return low + (high - low) * (double)(seed >> 11) * 0x1p-53;
-}
 
 /* Triangles of a size in a box, some of them `giant`; shared: each has a corner of the one before.
  */

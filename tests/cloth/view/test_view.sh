@@ -41,7 +41,7 @@ says "names the folder" "$scratch/none: No such file"
 exits 2 "a frame that is not there" picture --png "$scratch/x.png" --frame 2
 says "says how many there are" '2 frames, 0 to 1'
 for bad in --frame=-1 --frame=1x --frame= --size=0x10 --size=10 --size=10x10x --camera=1 --camera=0,90 --camera=0,0,0 \
-    --camera=0,0x --camera=nan,0 --png=; do
+    --camera=0,0x --camera=nan,0 --colour=red --colour=contact,0 --colour=contact,1x --colour=contacts --png=; do
     exits 2 "refuses $bad" picture --png "$scratch/x.png" "$bad"
 done
 exits 1 "without a driver" env __EGL_VENDOR_LIBRARY_FILENAMES=/dev/null "$DUITE_VIEW" "$dir" --png "$scratch/x.png"
@@ -69,6 +69,20 @@ ok "the last frame is frame 1" cmp "$scratch/last.png" "$scratch/1.png"
 not_ok_expected "frames differ" cmp "$scratch/0.png" "$scratch/1.png"
 ok "another camera" picture --png "$scratch/c.png" --frame 1 --camera=-40,10,1.5
 not_ok_expected "cameras differ" cmp "$scratch/c.png" "$scratch/1.png"
+# Colours by the force of contact.
+exits 2 "forces that were not written" picture --png "$scratch/hot.png" --frame 1 --colour contact
+says "says how they are" 'contact.pc2: No such file or directory; .* contact: {force: on}'
+{
+    printf 'POINTCACHE2\0\1\0\0\0\3\0\0\0\0\0\0\0\0\0\200\77\1\0\0\0'
+    printf "$nil$one$nil$nil$nil$nil$nil$nil$nil"
+} > "$dir/contact.pc2"
+exits 2 "forces of fewer frames" picture --png "$scratch/hot.png" --frame 1 --colour contact
+says "says how many there are" 'contact.pc2 has 1 frames: no frame 1'
+ok "forces" picture --png "$scratch/hot.png" --frame 0 --colour contact
+says "says what is hottest" 'largest force of contact on a vertex is 1 N, the hottest colour 1 N'
+not_ok_expected "they show" cmp "$scratch/hot.png" "$scratch/0.png"
+ok "forces on another scale" picture --png "$scratch/warm.png" --frame 0 --colour contact,4
+not_ok_expected "it shows" cmp "$scratch/hot.png" "$scratch/warm.png"
 # The same triangle, and a vertex that nothing uses far away: neither camera nor light looks for it.
 mkdir "$scratch/far"
 cp "$dir/frames.csv" "$dir/scene.json" "$scratch/far"

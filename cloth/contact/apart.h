@@ -1,0 +1,47 @@
+#ifndef CLOTH_CONTACT_APART_H
+#define CLOTH_CONTACT_APART_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* Which cloths and obstacles do not meet, since the scene leaves them out. Sides have numbers here:
+ * cloths, then obstacles. */
+struct contact_apart {
+    uint32_t n_cloths, n_obstacles;
+    uint32_t *end;        /* n_cloths: one behind the last vertex of each, of all cloths */
+    unsigned char *apart; /* n_cloths x (n_cloths + n_obstacles): 1 where the two do not meet; NULL:
+                           * all meet. Of cloths it is symmetric. */
+    uint32_t n_vertices;  /* of all cloths */
+    const uint32_t *attached; /* by vertex: the obstacle, from 1, that its pin follows, or 0, which
+                               * no feature with a corner there meets; NULL: none does */
+};
+
+static inline bool contact_is_attached(const struct contact_apart *all, uint32_t n,
+                                       const uint32_t *vertex, uint32_t obstacle)
+{
+    bool is = false;
+    for (uint32_t k = 0; k < n && all->attached; k++)
+        is = is || all->attached[vertex[k]] == obstacle + 1;
+    return is;
+}
+
+static inline bool contact_are_apart(const struct contact_apart *all, uint32_t cloth,
+                                     uint32_t other)
+{
+    return all->apart &&
+           all->apart[(size_t)cloth * ((size_t)all->n_cloths + all->n_obstacles) + other];
+}
+
+/* The cloth of a vertex; looked for from a guess on. */
+static inline uint32_t contact_apart_cloth(const struct contact_apart *all, uint32_t vertex,
+                                           uint32_t guess)
+{
+    while (guess && vertex < all->end[guess - 1])
+        guess--;
+    while (vertex >= all->end[guess])
+        guess++;
+    return guess;
+}
+
+#endif

@@ -1,0 +1,50 @@
+#ifndef CLOTH_CONTACT_IMAGE_H
+#define CLOTH_CONTACT_IMAGE_H
+
+#include "cloth/contact/shape.h"
+
+/* The second way to meet a body: two maps of it, of all that is seen from the front and from the
+ * back along an axis, in parallel (Vassilev, Spanlang, Chrysanthou, Fast Cloth Animation on Walking
+ * Avatars, 2001). A pixel has the depth and the normal of the surface there, of bodies with frames
+ * its velocity, too. A point between both maps counts as inside. So a lookup costs the same
+ * whatever the body, and what lies between the two surfaces is solid: maps are blind at armpits and
+ * wherever else a part of the body hides another, and nothing of them is certified.
+ *
+ * Maps are of the axes that the body is in; who moves it brings the point there. They are drawn in
+ * strips of rows, each on its own, to bits that do not depend on how they are cut. Pure functions;
+ * nothing is allocated. */
+
+/* Front 0, back 1; where there is nothing, their depths are -INFINITY and INFINITY. */
+struct contact_pixel {
+    float depth[2]; /* m, along the axis, from the low corner of the body's box */
+    float normal[2][3];
+};
+struct contact_pixel_velocity {
+    float of[2][3]; /* m/s */
+};
+
+/* Bytes of a strip: its pixels, row after row, then of a body with frames their velocities. */
+size_t contact_strip_bytes(const struct contact_body *body, const struct contact_view *view,
+                           uint32_t strip);
+
+/* Draws a strip of the body as it is now (contact_bodies_move). A pixel is that of its middle: a
+ * triangle has it by the top-left rule, so that both maps have the same pixels and edges no holes.
+ * Normals are interpolated from those of vertices, but are that of the triangle where the body
+ * bends much. */
+void contact_strip_draw(const struct contact_body *body, const struct contact_view *view,
+                        uint32_t strip, void *memory);
+
+/* Maps that are drawn, of a body that has not moved since. */
+struct contact_image {
+    const struct contact_body *body;
+    struct contact_view view;
+    const void *strip[CONTACT_STRIPS];
+};
+
+/* Of n points (m), in the body's axes: the surface that its pixel shows, as a plane through the
+ * middle of the pixel; of front and back the one with the larger gap, the nearer for points inside.
+ * Beside both maps the gap is INFINITY. All of each hit is written. */
+void contact_image_closest(const struct contact_image *image, size_t n, const phys_vec *x,
+                           struct contact_hit *hit);
+
+#endif

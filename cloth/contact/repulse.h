@@ -1,0 +1,60 @@
+#ifndef CLOTH_CONTACT_REPULSE_H
+#define CLOTH_CONTACT_REPULSE_H
+
+#include "cloth/contact/row.h"
+
+/* A contact as a spring that pushes apart, in the manner of Vassilev, Spanlang & Chrysanthou
+ * (2001): nothing is kept from step to step, and nothing is promised. With the gap g at the point
+ * of a row (row.h), the speed u of the point along the normal n and v across it, both against the
+ * second side, the force on the first side is
+ *     push n - rub v,   rub = min(friction push / |v|, hold),
+ *     push = max(0, k (thickness - g) - c u) where g < thickness, else 0.
+ * It never pulls. Friction slows what slides by Coulomb's law, and what sticks creeps as through a
+ * fluid. Along v it does not change with |v|, so its slope is 0 there. By that a step would turn
+ * around what is slow. So the slope is what rub has beyond `spare`: with m / h or less no friction
+ * turns around a mass m in a step of h. Pure functions; N, m, N/m, N s/m. */
+struct contact_spring {
+    double stiffness, damping; /* k, c */
+    double hold;               /* the most that friction resists a velocity by, k h or less */
+    double spare;
+};
+
+/* The force on the first side, and its negative derivatives: by the point stiffness n n', by its
+ * velocity damping n n' + rub (I - n n'). */
+struct contact_repelled {
+    phys_vec force;
+    double stiffness, damping, rub;
+};
+
+/* speed: of the point against the second side. Of a row normal, origin, gap, thickness and friction
+ * count. */
+PHYS_INLINE void contact_repel(const struct contact_spring *spring, const struct contact_row *row,
+                               const phys_vec *point, const phys_vec *speed,
+                               struct contact_repelled *to)
+{
+    const double depth = row->thickness - contact_row_gap(row, point);
+    const double along = phys_dot(&row->normal, speed);
+    const double push = spring->stiffness * depth - spring->damping * along;
+    *to = (struct contact_repelled){0};
+    if (!(depth > 0 && push > 0))
+        return;
+    const phys_vec across = *speed - along * row->normal;
+    const double length = sqrt(phys_dot(&across, &across)), most = row->friction * push;
+    const double hold = most > 0 ? spring->hold : 0;
+    const double rub = most < spring->hold * length ? most / length : hold;
+    to->stiffness = spring->stiffness;
+    to->damping = spring->damping;
+    to->rub = rub > spring->spare ? rub - spring->spare : 0;
+    to->force = push * row->normal - rub * across;
+}
+
+/* alpha I + w w' as a spring's value has it (w, alpha) of what a force loses to a change of
+ * velocity in a step of h, over h: hold is k h at most, so that w is real. */
+PHYS_INLINE void contact_repelled_value(const struct contact_repelled *of, const phys_vec *normal,
+                                        double h, phys_vec *value)
+{
+    const double square = of->stiffness + (of->damping - of->rub) / h;
+    *value = sqrt(square > 0 ? square : 0) * *normal + (phys_vec){0, 0, 0, of->rub / h};
+}
+
+#endif

@@ -1,0 +1,30 @@
+#ifndef CLOTH_DRAPE_H
+#define CLOTH_DRAPE_H
+
+#include "cloth/model/model.h"
+
+/* The drape coefficient of a cloth that hangs over a disc, as textile laboratories have it (ISO
+ * 9073-9, BS 5058): the area that the hanging border shades in light along the axis of the disc,
+ * against the area of the flat border. 100 %: the border stands out stiffly. 0 %: it hangs straight
+ * down. Local functions, on one rank. */
+struct drape;
+
+struct drape_found {
+    double coefficient; /* % */
+    double shadow;      /* m^2, of the whole cloth */
+};
+
+/* While the model has its meshes; *drape is NULL where it has no drape test. Error:
+ * CLOTH_E_MEMORY. */
+int drape_of(struct drape **drape, const struct model *model, struct cloth_error *error);
+
+/* Takes a frame, in the place of the one before. position: as of flow_output.frame. */
+void drape_frame(struct drape *drape, const double *position);
+
+/* Of the last frame, of which there was one. Error: CLOTH_E_MEMORY. */
+int drape_find(const struct drape *drape, struct drape_found *found, struct cloth_error *error);
+
+/* *drape becomes NULL; nothing is done if it is. */
+void drape_close(struct drape **drape);
+
+#endif

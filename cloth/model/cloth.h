@@ -1,0 +1,200 @@
+#ifndef CLOTH_MODEL_CLOTH_H
+#define CLOTH_MODEL_CLOTH_H
+
+#include "cloth/mesh/mesh.h"
+#include "cloth/physics/curve.h"
+#include "cloth/physics/motion.h"
+#include "cloth/physics/spring.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* The parts of a model (model.h): materials, cloths and what picks, holds, moves, loads and joins
+ * their vertices, or reports of them. SI units. What they point to belongs to the model. */
+
+struct model_material {
+    char *name;
+    double density; /* kg/m^2, > 0; 0: all its cloths have mass_per_vertex */
+    enum { MODEL_SPRINGS, MODEL_TRIANGLES } model;
+    double stretch, weft_excess; /* membrane moduli, N/m, >= 0: along the warp, and what that along
+                                    the weft is more */
+    double shear, bend;          /* likewise; bend: of springs only */
+    double poisson;              /* triangles: nu12, nu12 nu21 < 1 */
+    bool uncorrected;            /* triangles: with the papers' forces (cloth/physics/triangle.h) */
+    enum { MODEL_NO_BENDING, MODEL_HINGES, MODEL_QUADRATIC } bending; /* besides bend springs */
+    double rigidity[2];       /* N m, of warp and weft, >= 0 */
+    double damping_viscous;   /* kg/s a vertex */
+    double damping_mass;      /* 1/s: a force -damping_mass * m * v */
+    double damping_stiffness; /* s: along each spring, times its k; of strains and angles too */
+    double damping_excess;    /* s: what it is of bending less that */
+    double ea;                /* N, >= 0: force / strain of an edge without triangles */
+    double limit_strain;      /* >= 0: edges stretched beyond it are pulled back, */
+    double limit_stiffness;   /* by so many N/m, >= 0; 0: they are not */
+    double friction;          /* coefficient, >= 0: of contact that is certified */
+    int both_diagonals;       /* grids: shear springs along both diagonals of a cell */
+};
+
+/* A word of scenes, and what it means: the value of an enum, mostly. */
+struct model_word {
+    const char *word; /* NULL ends a list */
+    int value;
+};
+
+/* A `place` is where the scene says a thing, for messages: "scene.yaml:4:11", or an option; NULL:
+ * it does not say. */
+
+/* Chooses vertices of a cloth. */
+struct model_pick {
+    enum { MODEL_PICK_VERTICES, MODEL_PICK_NEAREST, MODEL_PICK_BOX } kind;
+    uint32_t n_vertices;
+    uint32_t *vertices; /* of the cloth's mesh */
+    double point[3];    /* nearest: its nearest vertex after the transform, the first of equals, */
+    double radius;      /* and all that are not farther than this, m; 0: it alone */
+    double box[2][3];   /* box: every vertex inside or on it after the transform */
+    char *place;
+};
+
+/* Holds vertices where they start, or moves them from there; or leaves them free along a slider. */
+struct model_pin {
+    struct model_pick pick;
+    uint32_t
+        motion; /* number of the model's motion, from 1; 0: it does not move, or its slider does */
+    uint32_t slider; /* number of the model's slider, from 1; 0: it holds points */
+};
+
+/* Through each vertex that it has, where it starts: a line, or a plane. */
+struct model_slider {
+    enum { MODEL_LINE, MODEL_PLANE } kind;
+    uint32_t motion;     /* that it takes part in, from 1; 0: none */
+    double direction[3]; /* of the line, or normal to the plane; of length 1 */
+};
+
+/* Key frames first .. first + n - 1 of the model's, about a point (m). */
+struct model_motion {
+    uint32_t first, n; /* n > 0, */
+    double about[3];
+    uint32_t follow; /* unless it is that of an obstacle, by number from 1, whose keys these are: it
+                      * takes along what is there at time 0 */
+};
+
+/* How a load varies: by keys first .. first + n - 1 of the model's; n 0: as a sine of the
+ * frequency (1/s) and phase (turns). */
+struct model_curve {
+    uint32_t first, n;
+    double frequency, phase;
+};
+
+/* A force: on each of the picked vertices, newton; or, if there are edges, along these,
+ * newton a metre of the length at rest, half of an edge's on each end. */
+struct model_load {
+    struct model_pick pick; /* a vertex that stands twice gets it twice; edges: its place alone */
+    uint32_t n_edges;
+    uint32_t (*edges)[2]; /* of the cloth's mesh */
+    double force[3];
+    uint32_t curve; /* that it is multiplied by, from 1; 0: it is constant */
+};
+
+/* More mass, on each of the picked vertices. */
+struct model_mass {
+    struct model_pick pick; /* a vertex that stands twice gets it twice */
+    double mass;            /* kg, > 0 */
+};
+
+/* A plane wave over the mesh: sin(2 pi (vector . (p - about) + phase)), p where the mesh has a
+ * vertex, times each of the other two. */
+struct model_wave {
+    double vector[3], phase;          /* waves a metre, waves */
+    double translate[3], velocity[3]; /* m, m/s */
+};
+
+/* How the picked vertices start, if not where the mesh has them: x -> about + rotate(scale * (x -
+ * about)) + translate; then v, or what it was before, + spin x (x - about). The wave is added to
+ * both. */
+struct model_start {
+    struct model_pick pick;
+    struct mesh_transform transform;
+    double about[3], spin[3], velocity[3]; /* m, rad/s, m/s */
+    bool has_velocity;
+    struct model_wave wave;
+};
+
+enum { MODEL_MAX_REGIONS = 64 };
+
+struct model_cloth {
+    char *name;
+    struct mesh mesh;  /* transformed: rest lengths and masses are those of this shape, */
+    struct mesh *rest; /* unless this is another, which shares all but the positions; or NULL */
+    uint32_t material;
+    uint32_t layer;     /* where a start is untangled: of two cloths the higher one is outside */
+    uint32_t n_regions; /* where there are others: at most MODEL_MAX_REGIONS */
+    uint32_t
+        *region;    /* materials, which have model, diagonals and, if any, bending of the cloth's */
+    uint64_t *mask; /* by vertex, which regions have it: mesh_region; NULL: there are none */
+    double mass_per_vertex; /* kg, replaces density * area where > 0 */
+    double velocity[3];     /* at the start, m/s */
+    double *start;          /* n_vertices x 6: where they start (m) and how fast (m/s), the shape of
+                               the mesh notwithstanding; NULL: at the mesh, with `velocity` */
+    uint32_t n_pins, n_loads, n_masses, n_starts;
+    struct model_pin *pins;
+    struct model_load *loads;
+    struct model_mass *masses;
+    struct model_start *starts;                /* one after the other, from that start */
+    char *place, *mesh_place, *velocity_place; /* of the cloth, and of parts of it */
+};
+
+/* Vertices of a cloth's mesh. */
+struct model_end {
+    uint32_t cloth, n;
+    uint32_t *vertices;
+};
+
+/* Pairs of vertices, of two cloths or of one: vertex i of one end and vertex i of the other, of
+ * which there are as many. */
+struct model_pairs {
+    struct model_end end[2];
+    char *place;
+};
+
+/* A spring of the scene for each pair. It has no mass. It acts in the steps that begin at `begin`
+ * or later, and before `end`. */
+enum { MODEL_START_LENGTH = -1 };
+struct model_joint {
+    struct model_pairs pairs;
+    double stiffness, damping; /* N/m, > 0; kg/s, along the joint */
+    double length;             /* at rest, m; MODEL_START_LENGTH: the distance at the start */
+    double begin, end;         /* s, >= 0; end 0: never */
+};
+
+/* Whether it comes or goes while the run is on. */
+static inline bool model_is_timed(const struct model_joint *joint)
+{
+    return joint->begin > 0 || joint->end > 0;
+}
+
+/* Makes the two vertices of each pair one. */
+struct model_weld {
+    struct model_pairs pairs;
+    double tolerance; /* m: they start at most so far from each other */
+};
+
+/* What is reported of vertices after each step. */
+struct model_probe {
+    char *name;
+    uint32_t cloth;
+    struct model_pick pick;
+    bool position, velocity, reaction; /* of each vertex; */
+    bool contact;                      /* the force of contact on each; */
+    bool total, contact_total;         /* sums of their reactions, of these forces */
+    bool by_obstacle;  /* it picks no vertices: the force that an obstacle puts on all cloth */
+    uint32_t obstacle; /* then: which */
+};
+
+/* The drape test of a cloth: the shadow of its border, along an axis, against the flat border. */
+struct model_drape {
+    uint32_t cloth;
+    double axis[3]; /* of length 1 */
+    double radius;  /* of the disc that carries the cloth, m; 0: there is no such test */
+};
+
+#endif

@@ -1,0 +1,208 @@
+/* The forces of frames lie in a PC2 cache of their own, so that what reads cloth.pc2 reads it as
+ * before. As there the count is rewritten last, when the floats that it counts are on the disk; it
+ * never counts a frame that cloth.pc2 does not. */
+#include "cloth/output/files/files.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+static const char NAME[] = "contact.pc2";
+
+struct output_forces {
+    char *path;
+    int file; /* -1: none */
+    uint32_t n_points, n_frames;
+    unsigned char *bytes; /* of one frame */
+};
+
+static uint64_t frame_at(uint32_t n_points, uint64_t frame)
+{
+    return OUTPUT_PC2_HEADER + (uint64_t)12 * n_points * frame;
+}
+
+/* ---- Writing ---- */
+
+/* Whether a file that is there is a cache of an earlier run. */
+static bool is_ours(const char *path)
+{
+    unsigned char header[OUTPUT_PC2_HEADER];
+    uint32_t n_points, n_frames;
+    const int file = open(path, O_RDONLY | O_CLOEXEC);
+    if (file < 0)
+        return false;
+    const ssize_t n = read(file, header, sizeof header);
+    close(file);
+    return n == (ssize_t)sizeof header && output_pc2_parse(header, &n_points, &n_frames);
+}
+
+static int remove_old(const char *path, struct cloth_error *error)
+{
+    struct stat status;
+    if (lstat(path, &status) != 0)
+        return 0;
+    if (!is_ours(path))
+        return cloth_fail(error, CLOTH_E_INPUT,
+                          "%s is in the way, and is no point cache of an earlier run; give another "
+                          "folder, or move the file away",
+                          path);
+    return unlink(path) == 0 ? 0 : output_refuse(error, "replace", path);
+}
+
+int output_forces_forget(const char *folder, struct cloth_error *error)
+{
+    char *path = output_path(folder, NAME, "");
+    if (!path)
+        return cloth_fail(error, CLOTH_E_MEMORY, "no memory for the path of %s", NAME);
+    const int code = is_ours(path) ? remove_old(path, error) : 0;
+    free(path);
+    return code;
+}
+
+static int start(struct output_forces *forces, struct cloth_error *error)
+{
+    unsigned char header[OUTPUT_PC2_HEADER];
+    const int code = remove_old(forces->path, error);
+    if (code)
+        return code;
+    forces->file = open(forces->path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (forces->file < 0)
+        return output_refuse(error, "write", forces->path);
+    output_pc2_header(header, forces->n_points, 0);
+    return output_write_at(forces->file, header, sizeof header, 0) == 0
+               ? 0
+               : output_fail(error, "write", forces->path);
+}
+
+int output_forces_open(struct output_forces **forces, const char *folder, uint32_t n_vertices,
+                       struct cloth_error *error)
+{
+    *forces = NULL;
+    struct output_forces *made = calloc(1, sizeof *made);
+    if (!made)
+        return cloth_fail(error, CLOTH_E_MEMORY, "no memory for the forces of %s", folder);
+    made->file = -1;
+    made->n_points = n_vertices;
+    made->path = output_path(folder, NAME, "");
+    made->bytes = malloc((size_t)12 * n_vertices + 1);
+    int code = made->path && made->bytes
+                   ? start(made, error)
+                   : cloth_fail(error, CLOTH_E_MEMORY, "no memory for the forces of %s", folder);
+    if (code) {
+        struct cloth_error ignored = {0};
+        output_forces_close(&made, &ignored);
+        return code;
+    }
+    *forces = made;
+    return 0;
+}
+
+static int write_frame(struct output_forces *forces, struct cloth_error *error)
+{
+    const size_t size = (size_t)12 * forces->n_points;
+    unsigned char count[4];
+    output_put_u32(count, forces->n_frames + 1);
+    if (output_write_at(forces->file, forces->bytes, size,
+                        frame_at(forces->n_points, forces->n_frames)) != 0 ||
+        output_sync(forces->file) != 0)
+        return output_fail(error, "write a frame to", forces->path);
+    if (output_write_at(forces->file, count, sizeof count, OUTPUT_PC2_COUNT) != 0 ||
+        output_sync(forces->file) != 0)
+        return output_fail(error, "count a frame in", forces->path);
+    forces->n_frames++;
+    return 0;
+}
+
+int output_forces_frame(void *context, uint64_t frame, const double *force,
+                        struct cloth_error *error)
+{
+    struct output_forces *forces = context;
+    if (frame != forces->n_frames || frame >= INT32_MAX)
+        return cloth_fail(error, CLOTH_E_RUN, "%s: frame %ju came where frame %u was due",
+                          forces->path, (uintmax_t)frame, forces->n_frames);
+    for (size_t i = 0; i < (size_t)3 * forces->n_points; i++) {
+        if (!(fabs(force[i]) <= (double)FLT_MAX))
+            return cloth_fail(error, CLOTH_E_RUN,
+                              "frame %ju: vertex %zu has no finite force of contact; the frame is "
+                              "not written",
+                              (uintmax_t)frame, i / 3);
+        output_put_float(forces->bytes + 4 * i, (float)force[i]);
+    }
+    const int code = output_check_same(forces->file, forces->path, error);
+    return code ? code : write_frame(forces, error);
+}
+
+int output_forces_close(struct output_forces **forces, struct cloth_error *error)
+{
+    struct output_forces *gone = *forces;
+    *forces = NULL;
+    if (!gone)
+        return 0;
+    int code = 0;
+    if (gone->file >= 0 && close(gone->file) != 0)
+        code = output_fail(error, "close", gone->path);
+    free(gone->path);
+    free(gone->bytes);
+    free(gone);
+    return code;
+}
+
+/* ---- Reading ---- */
+
+static int read_floats(FILE *file, uint32_t n_points, uint64_t frame, double *force)
+{
+    unsigned char bytes[12];
+    if (fseeko(file, (off_t)frame_at(n_points, frame), SEEK_SET) != 0)
+        return -1;
+    for (size_t v = 0; v < n_points; v++) {
+        if (fread(bytes, sizeof bytes, 1, file) != 1)
+            return -1;
+        for (size_t c = 0; c < 3; c++)
+            force[3 * v + c] = (double)output_get_float(bytes + 4 * c);
+    }
+    return 0;
+}
+
+static int read_frame(FILE *file, const char *path, uint32_t n_vertices, uint64_t frame,
+                      double *force, struct cloth_error *error)
+{
+    unsigned char header[OUTPUT_PC2_HEADER];
+    uint32_t n_points, n_frames;
+    if (fread(header, sizeof header, 1, file) != 1 ||
+        !output_pc2_parse(header, &n_points, &n_frames) || n_points != n_vertices)
+        return cloth_fail(error, CLOTH_E_INPUT, "%s is not a point cache of %u vertices", path,
+                          n_vertices);
+    if (frame >= n_frames)
+        return cloth_fail(error, CLOTH_E_INPUT, "%s has %u frames: no frame %ju", path, n_frames,
+                          (uintmax_t)frame);
+    return read_floats(file, n_points, frame, force) == 0
+               ? 0
+               : cloth_fail(error, CLOTH_E_INPUT, "%s is cut off before frame %ju ends", path,
+                            (uintmax_t)frame);
+}
+
+int output_forces_read(const char *folder, uint32_t n_vertices, uint64_t frame, double *force,
+                       struct cloth_error *error)
+{
+    char *path = output_path(folder, NAME, "");
+    FILE *file = path ? fopen(path, "rbe") : NULL;
+    int code;
+    if (!path)
+        code = cloth_fail(error, CLOTH_E_MEMORY, "no memory for the path of %s", NAME);
+    else if (!file)
+        code = cloth_fail(error, CLOTH_E_INPUT,
+                          "cannot read %s: %s; a run writes it if its scene has contact: {force: "
+                          "on}",
+                          path, strerror(errno));
+    else
+        code = read_frame(file, path, n_vertices, frame, force, error);
+    if (file)
+        fclose(file);
+    free(path);
+    return code;
+}

@@ -1,0 +1,166 @@
+/* What a run writes and looks at, from the first frame to the last. The folders are locked before
+ * anything is written into them, and stay so. */
+#include "cloth/outputs.h"
+
+#include "cloth/output/output.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+/* Another run may write into the same folder. */
+static int lock_folder(struct output_lock **lock, const char *folder, struct cloth_error *error)
+{
+    struct cloth_error note = {0};
+    const int code = output_lock_take(lock, folder, &note, error);
+    if (note.code && !code)
+        fprintf(stderr, "duite-cloth: warning: %s\n", note.text);
+    return code;
+}
+
+static int open_system(struct outputs *to, const struct model *model, struct cloth_error *error)
+{
+    if (!model_is_implicit(model))
+        return cloth_fail(error, CLOTH_E_INPUT,
+                          "--save-system: an explicit integrator solves no system");
+    if (model->integrator != MODEL_IMPLICIT_EULER || model->newton_steps > 1)
+        return cloth_fail(error, CLOTH_E_INPUT,
+                          "--save-system: a step has one system of its own by implicit_euler with "
+                          "newton.steps 1 only");
+    if (model_is_filtered(model))
+        return cloth_fail(
+            error, CLOTH_E_INPUT,
+            "--save-system: the files know held vertices only, no pins to lines or planes");
+    if (model->end / model->h + 0.5 < 1)
+        return cloth_fail(error, CLOTH_E_INPUT,
+                          "--save-system: the scene ends before its first step");
+    return lock_folder(to->locks + 1, to->options->save_system, error);
+}
+
+/* In the folder of frames, which is there. */
+static int open_probes(struct outputs *to, const struct flow *flow, struct cloth_error *error)
+{
+    const char *header = flow_header(flow);
+    return header ? output_probes_open(&to->probes, to->options->output, header, error)
+                  : output_probes_forget(to->options->output, error);
+}
+
+static int open_forces(struct outputs *to, const struct model *model, const struct flow *flow,
+                       struct cloth_error *error)
+{
+    const char *folder = to->options->output;
+    return model->contact.force && model_certifies(model)
+               ? output_forces_open(&to->forces, folder, (uint32_t)flow_vertices(flow), error)
+               : output_forces_forget(folder, error);
+}
+
+static int open_output(struct outputs *to, const struct model *model, const struct flow *flow,
+                       const struct contact_apart *apart, struct cloth_error *error)
+{
+    if (lock_folder(to->locks, to->options->output, error))
+        return error->code;
+    const struct mesh **meshes = calloc(model->n_cloths, sizeof *meshes);
+    const char **names = calloc(model->n_cloths, sizeof *names);
+    int code = CLOTH_E_MEMORY;
+    if (meshes && names) {
+        for (uint32_t i = 0; i < model->n_cloths; i++) {
+            meshes[i] = &model->cloths[i].mesh;
+            names[i] = model->cloths[i].name;
+        }
+        const struct output_setup setup = {.folder = to->options->output,
+                                           .n_meshes = model->n_cloths,
+                                           .meshes = meshes,
+                                           .names = names,
+                                           .fps = model->fps,
+                                           .n_obstacles = model->n_obstacles,
+                                           .obstacles = model->obstacles,
+                                           .keys = model->keys,
+                                           .bodies = &model->bodies,
+                                           .apart = apart,
+                                           .n_inputs = model->n_files,
+                                           .inputs = (const char *const *)model->files};
+        code = output_open(&to->frames, &setup, error);
+    } else {
+        cloth_fail(error, code, "out of memory before the first frame");
+    }
+    free(meshes);
+    free(names);
+    code = code ? code : open_forces(to, model, flow, error);
+    return code ? code : open_probes(to, flow, error);
+}
+
+int outputs_open(struct outputs *to, const struct simulate_options *options,
+                 const struct model *model, const struct flow *flow,
+                 const struct contact_apart *apart, struct cloth_error *error)
+{
+    to->options = options;
+    int code = CLOTH_OK;
+    if (options->check_intersections)
+        code = intersections_of(&to->intersections, model, apart, false, error);
+    if (!code)
+        code = drape_of(&to->drape, model, error);
+    if (!code && options->save_system)
+        code = open_system(to, model, error);
+    if (!code && options->output)
+        code = open_output(to, model, flow, apart, error);
+    return code;
+}
+
+void outputs_close(struct outputs *of, struct cloth_error *error)
+{
+    output_probes_close(&of->probes, error);
+    output_forces_close(&of->forces, error);
+    output_close(&of->frames, error);
+}
+
+void outputs_free(struct outputs *of)
+{
+    intersections_close(&of->intersections);
+    drape_close(&of->drape);
+    output_lock_free(of->locks);
+    output_lock_free(of->locks + 1);
+}
+
+/* ---- What the run gives ---- */
+
+int outputs_system(void *context, const struct solve_system *system, struct cloth_error *error)
+{
+    const struct outputs *of = context;
+    return output_system(of->options->save_system, system, error);
+}
+
+/* What is looked at as written is looked at once it is. */
+static int check_frame(const struct outputs *of, uint64_t frame, double time,
+                       const double *position, struct cloth_error *error)
+{
+    const int code = intersections_frame(of->intersections, frame, time, position, false, error);
+    if (code || !of->frames)
+        return code;
+    return intersections_frame(of->intersections, frame, time, position, true, error);
+}
+
+int outputs_frame(void *context, uint64_t frame, double time, const double *position,
+                  struct cloth_error *error)
+{
+    const struct outputs *of = context;
+    int code = CLOTH_OK;
+    if (of->frames)
+        code = output_frame(of->frames, frame, time, position, error);
+    if (!code && of->intersections)
+        code = check_frame(of, frame, time, position, error);
+    if (of->drape)
+        drape_frame(of->drape, position);
+    return code;
+}
+
+int outputs_force(void *context, uint64_t frame, const double *force, struct cloth_error *error)
+{
+    const struct outputs *of = context;
+    return output_forces_frame(of->forces, frame, force, error);
+}
+
+int outputs_row(void *context, uint64_t step, double time, size_t n, const double *values,
+                struct cloth_error *error)
+{
+    const struct outputs *of = context;
+    return output_probes_row(of->probes, step, time, n, values, error);
+}

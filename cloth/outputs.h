@@ -1,0 +1,40 @@
+#ifndef CLOTH_OUTPUTS_H
+#define CLOTH_OUTPUTS_H
+
+#include "cloth/drape.h"
+#include "cloth/flow/run.h"
+#include "cloth/intersections.h"
+#include "cloth/simulate.h"
+
+/* What a run writes and looks at: frames, probes, forces, systems, intersections, the drape test.
+ * Rank 0 alone has any of it; it begins as zero. All functions are local. */
+struct outputs {
+    const struct simulate_options *options;
+    struct output_lock *locks[2];        /* of the folders of frames and of the system */
+    struct output_frames *frames;        /* if they are wanted */
+    struct output_probes *probes;        /* if the scene has any */
+    struct output_forces *forces;        /* of frames; NULL: none */
+    struct intersections *intersections; /* if they are looked for */
+    struct intersections_found found;    /* then, at the end */
+    struct drape *drape;                 /* if the scene has that test */
+    struct drape_found drapes;           /* then, at the end */
+};
+
+/* Finds what can be wrong with it and opens what the options and the model ask for. What is opened
+ * is freed by outputs_close and outputs_free, also after an error. Returns a cloth_code. */
+int outputs_open(struct outputs *to, const struct simulate_options *options,
+                 const struct model *model, const struct flow *flow,
+                 const struct contact_apart *apart, struct cloth_error *error);
+/* The files are whole. */
+void outputs_close(struct outputs *of, struct cloth_error *error);
+void outputs_free(struct outputs *of);
+
+/* Functions of a struct flow_output whose context is a struct outputs. */
+int outputs_frame(void *context, uint64_t frame, double time, const double *position,
+                  struct cloth_error *error);
+int outputs_force(void *context, uint64_t frame, const double *force, struct cloth_error *error);
+int outputs_row(void *context, uint64_t step, double time, size_t n, const double *values,
+                struct cloth_error *error);
+int outputs_system(void *context, const struct solve_system *system, struct cloth_error *error);
+
+#endif

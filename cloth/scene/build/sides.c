@@ -1,0 +1,176 @@
+/* Sides of contacts by their names. contact.pairs gives two of them a coefficient: materials and
+ * obstacles. contact.ignore keeps two from meeting: cloths, obstacles and groups of both. A name of
+ * several is all of them. */
+#include "cloth/scene/build/build.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- Coefficients ---- */
+
+/* Adds the names of obstacles behind the first n of a list. Returns how many there are then. */
+static size_t add_obstacles(const struct model *model, size_t n, const char **names)
+{
+    for (uint32_t i = 0; i < model->n_obstacles; i++)
+        if (model->obstacle_names[i])
+            names[n++] = model->obstacle_names[i];
+    return n;
+}
+
+static int no_surface(const struct model *model, const char *name, const struct scene_tree *tree,
+                      int node, struct cloth_error *error)
+{
+    const char **names =
+        scene_build_array((size_t)model->n_materials + model->n_obstacles, sizeof *names, error);
+    if (!names)
+        return error->code;
+    for (uint32_t i = 0; i < model->n_materials; i++)
+        names[i] = model->materials[i].name;
+    const size_t n = add_obstacles(model, model->n_materials, names);
+    const int code = scene_build_no_such("material or obstacle", name, names, n, tree, node, error);
+    free(names);
+    return code;
+}
+
+static int find_surface(const struct model *model, uint32_t *number, const struct scene_tree *tree,
+                        int node, struct cloth_error *error)
+{
+    const char *name = scene_tree_scalar(tree, node);
+    for (uint32_t i = 0; i < model->n_materials; i++)
+        if (!strcmp(model->materials[i].name, name)) {
+            *number = i;
+            return CLOTH_OK;
+        }
+    for (uint32_t i = 0; i < model->n_obstacles; i++)
+        if (model->obstacle_names[i] && !strcmp(model->obstacle_names[i], name)) {
+            *number = model->n_materials + i;
+            return CLOTH_OK;
+        }
+    return no_surface(model, name, tree, node, error);
+}
+
+static bool is_of(const struct model_rub *pair, const uint32_t of[2])
+{
+    return (pair->of[0] == of[0] && pair->of[1] == of[1]) ||
+           (pair->of[0] == of[1] && pair->of[1] == of[0]);
+}
+
+static int build_pair(struct model *model, uint32_t i, const struct scene_tree *tree, int node,
+                      struct cloth_error *error)
+{
+    struct model_rub *pairs = model->contact.pairs;
+    const int of = scene_tree_get(tree, node, "of");
+    int code = CLOTH_OK;
+    for (size_t k = 0; k < 2 && !code; k++)
+        code = find_surface(model, pairs[i].of + k, tree, scene_tree_item(tree, of, k), error);
+    for (uint32_t k = 0; k < i && !code; k++)
+        if (is_of(pairs + k, pairs[i].of))
+            code = scene_tree_fail(tree, of, error,
+                                   "contact.pairs[%u] and contact.pairs[%u] are of the same two; "
+                                   "one is expected",
+                                   k, i);
+    if (code || pairs[i].of[0] < model->n_materials || pairs[i].of[1] < model->n_materials)
+        return code;
+    return scene_build_warn(model, tree, of, error,
+                            "contact.pairs[%u] means nothing: obstacles do not touch each other",
+                            i);
+}
+
+/* ---- What does not meet ---- */
+
+/* Whether a name is that of a side, cloths before obstacles, or of one of its groups. */
+static bool is_side(const struct model *model, const struct scene_tree *tree, uint32_t side,
+                    const char *name)
+{
+    const bool cloth = side < model->n_cloths;
+    const uint32_t i = cloth ? side : side - model->n_cloths;
+    const int list = scene_tree_get(tree, 1, cloth ? "cloths" : "obstacles");
+    const int item = scene_tree_item(tree, list, i);
+    const int map = cloth ? item : scene_tree_pair(tree, item, 0).value;
+    const char *own = cloth ? model->cloths[i].name : model->obstacle_names[i];
+    const int groups = scene_tree_get(tree, map, "groups");
+    bool is = own && !strcmp(own, name);
+    for (size_t k = 0; k < scene_tree_length(tree, groups); k++)
+        is = is || !strcmp(scene_tree_scalar(tree, scene_tree_item(tree, groups, k)), name);
+    return is;
+}
+
+static int check_side(const struct model *model, const struct scene_tree *tree, int node,
+                      struct cloth_error *error)
+{
+    const uint32_t n_sides = model->n_cloths + model->n_obstacles;
+    const char *name = scene_tree_scalar(tree, node);
+    for (uint32_t i = 0; i < n_sides; i++)
+        if (is_side(model, tree, i, name))
+            return CLOTH_OK;
+    const char **names = scene_build_array(n_sides, sizeof *names, error);
+    if (!names)
+        return error->code;
+    for (uint32_t i = 0; i < model->n_cloths; i++)
+        names[i] = model->cloths[i].name;
+    const size_t n = add_obstacles(model, model->n_cloths, names);
+    const int code =
+        scene_build_no_such("cloth, obstacle or group", name, names, n, tree, node, error);
+    free(names);
+    return code;
+}
+
+/* Marks a cloth and another side, both ways. Returns whether there are two to mark. */
+static bool mark(struct contact_apart *all, uint32_t a, uint32_t b)
+{
+    const size_t n_sides = (size_t)all->n_cloths + all->n_obstacles;
+    if (a < all->n_cloths)
+        all->apart[a * n_sides + b] = 1;
+    if (b < all->n_cloths)
+        all->apart[b * n_sides + a] = 1;
+    return a < all->n_cloths || b < all->n_cloths;
+}
+
+static int ignore(struct model *model, const struct scene_tree *tree, int node,
+                  struct cloth_error *error)
+{
+    const uint32_t n_sides = model->n_cloths + model->n_obstacles;
+    const int name[2] = {scene_tree_item(tree, node, 0), scene_tree_item(tree, node, 1)};
+    bool any = false;
+    int code = check_side(model, tree, name[0], error);
+    if (!code)
+        code = check_side(model, tree, name[1], error);
+    for (uint32_t a = 0; a < n_sides && !code; a++)
+        for (uint32_t b = 0; b < n_sides; b++)
+            if (is_side(model, tree, a, scene_tree_scalar(tree, name[0])) &&
+                is_side(model, tree, b, scene_tree_scalar(tree, name[1])))
+                any |= mark(&model->contact.apart, a, b);
+    if (code || any)
+        return code;
+    return scene_build_warn(model, tree, node, error,
+                            "contact.ignore means nothing here: obstacles do not touch each other");
+}
+
+static int build_apart(struct model *model, struct cloth_error *error)
+{
+    struct contact_apart *all = &model->contact.apart;
+    all->n_cloths = model->n_cloths;
+    all->n_obstacles = model->n_obstacles;
+    all->end = scene_build_array(model->n_cloths, sizeof *all->end, error);
+    all->apart = scene_build_array((size_t)model->n_cloths * (model->n_cloths + model->n_obstacles),
+                                   1, error);
+    for (uint32_t c = 0; c < model->n_cloths && all->end; c++)
+        all->end[c] = model_first(model, c + 1);
+    return all->end && all->apart ? CLOTH_OK : error->code;
+}
+
+int scene_build_sides(struct model *model, const struct scene_tree *tree, struct cloth_error *error)
+{
+    const int contact = scene_tree_get(tree, 1, "contact");
+    const int pairs = scene_tree_get(tree, contact, "pairs");
+    const int ignored = scene_tree_get(tree, contact, "ignore");
+    const size_t n_ignored = scene_tree_length(tree, ignored);
+    int code = CLOTH_OK;
+    for (uint32_t i = 0; i < model->contact.n_pairs && !code; i++)
+        code = build_pair(model, i, tree, scene_tree_item(tree, pairs, i), error);
+    if (!code && n_ignored)
+        code = build_apart(model, error);
+    for (size_t i = 0; i < n_ignored && !code; i++)
+        code = ignore(model, tree, scene_tree_item(tree, ignored, i), error);
+    return code;
+}

@@ -1,0 +1,136 @@
+/* Which side of a cloth is out its triangles say: out is where they are seen counterclockwise from.
+ * Of an outer cloth every vertex that has an inner cloth near it is to be there. Where the nearest
+ * place of the inner cloth is its border, it has no side. The inner cloth stays where it is. */
+#include "cloth/untangle/state.h"
+
+static bool is_of(const struct untangle *all, uint32_t triangle, const void *context)
+{
+    return all->owner[triangle] == *(const uint32_t *)context;
+}
+
+bool untangle_beside(const struct untangle *all, uint32_t point, uint32_t cloth,
+                     struct untangle_nearest *at, phys_vec *normal)
+{
+    const double reach = UNTANGLE_REACH * all->of->thickness;
+    if (!untangle_find(all, all->x + point, reach, is_of, &cloth, at))
+        return false;
+    bool border = true;
+    *normal = (phys_vec){0};
+    for (int k = 0; k < 3; k++) {
+        const uint32_t corner = all->corner[at->triangle][k];
+        const double weight = -at->at.weight[1 + k];
+        border = border && (all->border[corner] || !(weight > 0));
+        *normal += weight * all->normal[corner];
+    }
+    return !border && untangle_unit(normal);
+}
+
+int untangle_push_vertex(struct untangle *all, uint32_t point, const struct untangle_nearest *at,
+                         const phys_vec *normal, bool still)
+{
+    struct untangle_push *push = untangle_add(all);
+    if (!push)
+        return CLOTH_E_MEMORY;
+    push->n = 4;
+    push->normal = *normal;
+    push->want = all->room;
+    push->still = still ? 14 : 0;
+    for (uint32_t k = 0; k < 4; k++) {
+        push->point[k] = k ? all->corner[at->triangle][k - 1] : point;
+        push->weight[k] = at->at.weight[k];
+    }
+    return CLOTH_OK;
+}
+
+int untangle_push_edge(struct untangle *all, const struct untangle_crossing *crossing, double sign,
+                       bool still)
+{
+    const uint32_t *end = all->edge[crossing->edge].end, *corner = all->corner[crossing->triangle];
+    double weight[UNTANGLE_CORNERS];
+    phys_vec normal;
+    untangle_face(all, crossing->triangle, &normal);
+    normal *= sign;
+    untangle_place(all, crossing, weight);
+    struct untangle_push *push = untangle_add(all);
+    if (!push)
+        return CLOTH_E_MEMORY;
+    const phys_vec along = all->x[end[1]] - all->x[end[0]];
+    push->n = 4;
+    push->normal = normal;
+    push->want = all->room;
+    push->still = still ? 14 : 0;
+    push->point[0] = end[phys_dot(&along, &normal) < 0];
+    push->weight[0] = 1;
+    for (int k = 0; k < 3; k++) {
+        push->point[1 + k] = corner[k];
+        push->weight[1 + k] = -weight[2 + k];
+    }
+    return CLOTH_OK;
+}
+
+int untangle_push_triangle(struct untangle *all, const struct untangle_crossing *crossing,
+                           double sign, bool still)
+{
+    const uint32_t *end = all->edge[crossing->edge].end, *corner = all->corner[crossing->triangle];
+    double weight[UNTANGLE_CORNERS];
+    phys_vec normal = sign * (all->normal[end[0]] + all->normal[end[1]]);
+    untangle_place(all, crossing, weight);
+    if (!untangle_unit(&normal))
+        return CLOTH_OK;
+    struct untangle_push *push = untangle_add(all);
+    if (!push)
+        return CLOTH_E_MEMORY;
+    const phys_vec along = all->x[end[1]] - all->x[end[0]];
+    push->n = 4;
+    push->normal = normal;
+    push->want = all->room;
+    push->still = still;
+    push->point[0] = end[phys_dot(&along, &normal) > 0];
+    push->weight[0] = -1;
+    for (int k = 0; k < 3; k++) {
+        push->point[1 + k] = corner[k];
+        push->weight[1 + k] = weight[2 + k];
+    }
+    return CLOTH_OK;
+}
+
+static int look_at_vertex(struct untangle *all, uint32_t point, uint32_t inner)
+{
+    struct untangle_nearest at;
+    phys_vec normal;
+    if (!untangle_beside(all, point, inner, &at, &normal) ||
+        !(at.at.gap * phys_dot(&normal, &at.at.normal) < all->open))
+        return CLOTH_OK;
+    all->count.layers++;
+    return untangle_push_vertex(all, point, &at, &normal, true);
+}
+
+static int push_crossings(struct untangle *all)
+{
+    const struct untangle_crossing *crossing = all->crossings.items;
+    int code = CLOTH_OK;
+    for (size_t i = 0; i < all->crossings.n && !code; i++) {
+        const uint32_t edge = all->edge[crossing[i].edge].owner;
+        const uint32_t triangle = all->owner[crossing[i].triangle];
+        if (!untangle_layered(all, edge, triangle))
+            continue;
+        code = all->of->layer[edge] > all->of->layer[triangle]
+                   ? untangle_push_edge(all, crossing + i, 1, true)
+                   : untangle_push_triangle(all, crossing + i, 1, true);
+    }
+    return code;
+}
+
+/* A point that cloths have in common is on no side of them. */
+int untangle_layers(struct untangle *all)
+{
+    const uint32_t *layer = all->of->layer;
+    all->count.layers = 0;
+    int code = push_crossings(all);
+    for (uint32_t inner = 0; inner < all->of->n_cloths; inner++)
+        for (uint32_t p = 0; p < all->of->n_points && !code; p++)
+            if (all->used[p] && !all->shared[p] && layer[all->cloth[p]] > layer[inner] &&
+                untangle_meets(all, all->cloth[p], inner))
+                code = look_at_vertex(all, p, inner);
+    return code;
+}

@@ -1,0 +1,113 @@
+/* Features that are too near to each other go apart, along the way between them. Where it is known
+ * on which side of a surface the other has to be, of bodies and of inner cloths, they go there. */
+#include "cloth/untangle/state.h"
+
+#include <string.h>
+
+struct looking {
+    struct untangle *all;
+    const struct contact_skin *skin[2];
+};
+
+struct corners {
+    enum contact_pair pair;
+    uint32_t point[4], first; /* corners before `first` are of the first feature */
+};
+
+/* Whose normals say where the other is to be, by the feature that it is of: of the outer one the
+ * inner, of cloth and a body the body, of what lies on each other the lower cloth. -1: nobody's. */
+static int base_of(const struct untangle *all, const struct corners *c, double gap)
+{
+    const uint32_t n = all->of->n_cloths;
+    const uint32_t a = all->cloth[c->point[0]], b = all->cloth[c->point[3]];
+    if (a >= n || b >= n)
+        return a >= n ? 0 : 1;
+    if (untangle_layered(all, a, b))
+        return all->of->layer[a] < all->of->layer[b] ? 0 : 1;
+    if (a == b || gap > 1e-6 * all->of->thickness)
+        return -1;
+    return a < b ? 0 : 1;
+}
+
+static int push_apart(struct untangle *all, const struct corners *c,
+                      const struct contact_nearest *at)
+{
+    const int base = base_of(all, c, at->gap);
+    struct untangle_push *push = untangle_add(all);
+    phys_vec normal = {0};
+    if (!push)
+        return CLOTH_E_MEMORY;
+    push->n = 4;
+    push->normal = at->normal;
+    push->want = all->room;
+    for (uint32_t k = 0; k < 4; k++) {
+        const bool is_base = base == (k >= c->first);
+        push->point[k] = c->point[k];
+        push->weight[k] = at->weight[k];
+        push->still |= (uint32_t)is_base << k;
+        if (is_base)
+            normal += fabs(at->weight[k]) * all->normal[c->point[k]];
+    }
+    if (base == 0)
+        normal = -normal;
+    if (phys_dot(&normal, &push->normal) < 0)
+        push->normal = -push->normal;
+    return CLOTH_OK;
+}
+
+static bool pair_meets(const struct untangle *all, const struct corners *c)
+{
+    const uint32_t a = all->cloth[c->point[0]], b = all->cloth[c->point[3]];
+    return untangle_meets(all, a, b) && !untangle_attached(all, 4, c->point, a > b ? a : b);
+}
+
+static void look_at(struct untangle *all, const struct corners *c)
+{
+    struct contact_nearest nearest;
+    phys_vec x[4];
+    bool tangled = false;
+    for (int k = 0; k < 4; k++) {
+        x[k] = all->x[c->point[k]];
+        tangled = tangled || all->tangled[c->point[k]];
+    }
+    contact_nearest_of(c->pair, x, &nearest);
+    if (tangled || nearest.gap >= all->open || !pair_meets(all, c))
+        return;
+    if (!all->count.near++)
+        memcpy(all->near, c->point, sizeof all->near);
+    push_apart(all, c, &nearest);
+}
+
+static void visit(void *to, uint32_t n, const struct contact_candidate *candidate)
+{
+    const struct looking *looking = to;
+    for (uint32_t i = 0; i < n && !looking->all->error->code; i++) {
+        struct corners c;
+        uint32_t point[4];
+        unsigned char side[4];
+        c.pair = contact_candidate_corners(looking->skin[0], looking->skin[1], candidate + i, point,
+                                           side);
+        c.first = c.pair == CONTACT_VT ? 1 : 2;
+        for (int k = 0; k < 4; k++)
+            c.point[k] = looking->skin[side[k]]->id[point[k]];
+        look_at(looking->all, &c);
+    }
+}
+
+int untangle_near(struct untangle *all)
+{
+    const struct contact_side cloth = {&all->skin, all->boxes, all->x, all->x};
+    struct looking looking = {all, {&all->skin, &all->skin}};
+    all->count.near = 0;
+    contact_query(&cloth, &cloth, all->open, visit, &looking);
+    for (size_t i = 0; i < all->of->n_obstacles; i++) {
+        const struct untangle_body *at = all->body + i;
+        if (!at->body)
+            continue;
+        const phys_vec *x = all->x + at->point;
+        const struct contact_side body = {&at->skin, at->boxes, x, x};
+        looking.skin[1] = &at->skin;
+        contact_query(&cloth, &body, all->open, visit, &looking);
+    }
+    return all->error->code;
+}

@@ -1,0 +1,179 @@
+/* Edges that cross triangles of their own layer are cut, and the cloth falls into parts. The
+ * largest part of each piece of cloth is where it should be; the others are on the wrong side of
+ * what their edges cross, and go through its nearest place. */
+#include "cloth/untangle/state.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* A part that is on the wrong side of a cloth. */
+struct link {
+    uint32_t part, cloth;
+};
+
+/* ---- Parts ---- */
+
+/* Joins points along edges of cloth. cut: by edge; NULL: none is. */
+static void join(const struct untangle *all, const unsigned char *cut, uint32_t *root)
+{
+    for (uint32_t p = 0; p < all->of->n_points; p++)
+        root[p] = p;
+    for (uint32_t e = 0; e < all->n_edges; e++) {
+        const struct untangle_edge *edge = all->edge + e;
+        if (edge->owner >= all->of->n_cloths || (cut && cut[e]))
+            continue;
+        const uint32_t a = untangle_root(root, edge->end[0]), b = untangle_root(root, edge->end[1]);
+        root[a < b ? b : a] = a < b ? a : b;
+    }
+    for (uint32_t p = 0; p < all->of->n_points; p++)
+        root[p] = untangle_root(root, p);
+}
+
+static bool is_cut(const struct untangle *all, const struct untangle_crossing *crossing)
+{
+    const uint32_t n = all->of->n_cloths, owner = all->owner[crossing->triangle];
+    const uint32_t of = all->edge[crossing->edge].owner;
+    return of < n && owner < n && !untangle_layered(all, of, owner);
+}
+
+/* All parts but the largest of each piece, of equal ones the first. largest: room, by point. */
+static void find_wrong(struct untangle *all, uint32_t *largest)
+{
+    const uint32_t n = all->of->n_points;
+    memset(all->size, 0, n * sizeof *all->size);
+    for (uint32_t p = 0; p < n; p++)
+        all->size[all->part[p]]++;
+    for (uint32_t p = 0; p < n; p++)
+        largest[p] = p;
+    for (uint32_t p = 0; p < n; p++) {
+        uint32_t *best = largest + all->piece[p];
+        if (all->size[all->part[p]] > all->size[all->part[*best]])
+            *best = all->part[p];
+    }
+    for (uint32_t p = 0; p < n; p++) {
+        all->wrong[p] = all->part[p] != all->part[largest[all->piece[p]]];
+        all->tangled[p] |= all->wrong[p];
+    }
+}
+
+/* ---- What they are on the wrong side of ---- */
+
+static int by_part(const void *left, const void *right)
+{
+    const struct link *a = left, *b = right;
+    if (a->part != b->part)
+        return a->part < b->part ? -1 : 1;
+    return (a->cloth > b->cloth) - (a->cloth < b->cloth);
+}
+
+static int find_links(struct untangle *all)
+{
+    const struct untangle_crossing *crossing = all->crossings.items;
+    all->links.n = 0;
+    for (uint32_t t = 0; t < all->of->n_triangles; t++)
+        all->stamp[t] = UNTANGLE_NONE;
+    for (size_t i = 0; i < all->crossings.n; i++)
+        for (int k = 0; k < 2 && is_cut(all, crossing + i); k++) {
+            const uint32_t end = all->edge[crossing[i].edge].end[k];
+            if (!all->wrong[end])
+                continue;
+            struct link *link = cloth_list_add(&all->links, sizeof *link, 1, all->error);
+            if (!link)
+                return CLOTH_E_MEMORY;
+            *link = (struct link){all->part[end], all->owner[crossing[i].triangle]};
+            all->stamp[crossing[i].triangle] = all->part[end];
+        }
+    struct link *link = all->links.items;
+    size_t n = 0;
+    if (all->links.n)
+        qsort(link, all->links.n, sizeof *link, by_part);
+    for (size_t i = 0; i < all->links.n; i++)
+        if (!n || by_part(link + i, link + n - 1))
+            link[n++] = link[i];
+    all->links.n = n;
+    return CLOTH_OK;
+}
+
+/* ---- The way through ---- */
+
+struct seeker {
+    uint32_t point, cloth;
+};
+
+/* Of another cloth all of it; of its own what the part crosses, and other parts that are wrong. */
+static bool allows(const struct untangle *all, uint32_t triangle, const void *context)
+{
+    const struct seeker *seeker = context;
+    const uint32_t *corner = all->corner[triangle], part = all->part[seeker->point];
+    bool is = all->stamp[triangle] == part || seeker->cloth != all->cloth[seeker->point];
+    for (int k = 0; k < 3; k++)
+        is = is || (all->wrong[corner[k]] && all->part[corner[k]] != part);
+    for (int k = 0; k < 3; k++)
+        is = is && corner[k] != seeker->point;
+    return is && all->owner[triangle] == seeker->cloth;
+}
+
+/* A point that is on the surface goes along with its neighbours. */
+static int push_through(struct untangle *all, uint32_t point, uint32_t cloth)
+{
+    const struct seeker seeker = {point, cloth};
+    struct untangle_nearest found;
+    if (!untangle_find(all, all->x + point, UNTANGLE_REACH * all->of->thickness, allows, &seeker,
+                       &found) ||
+        found.at.gap < 1e-6 * all->of->thickness)
+        return CLOTH_OK;
+    struct untangle_push *push = untangle_add(all);
+    if (!push)
+        return CLOTH_E_MEMORY;
+    push->n = 4;
+    push->normal = -found.at.normal;
+    push->want = all->room;
+    for (uint32_t k = 0; k < 4; k++) {
+        push->point[k] = k ? all->corner[found.triangle][k - 1] : point;
+        push->weight[k] = found.at.weight[k];
+    }
+    return CLOTH_OK;
+}
+
+static int push_part(struct untangle *all, uint32_t point)
+{
+    const struct link *link = all->links.items, key = {all->part[point], 0};
+    size_t low = 0, high = all->links.n;
+    while (low < high) {
+        const size_t middle = low + (high - low) / 2;
+        if (by_part(link + middle, &key) < 0)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    for (; low < all->links.n && link[low].part == key.part; low++)
+        if (!untangle_zoned(all, all->cloth[point], link[low].cloth) &&
+            push_through(all, point, link[low].cloth))
+            return CLOTH_E_MEMORY;
+    return CLOTH_OK;
+}
+
+int untangle_parts(struct untangle *all)
+{
+    const struct untangle_crossing *crossing = all->crossings.items;
+    int code = CLOTH_OK;
+    bool any = false;
+    all->zoned.n = 0;
+    memset(all->wrong, 0, all->n_points);
+    for (size_t i = 0; i < all->crossings.n; i++) {
+        all->cut[crossing[i].edge] |= is_cut(all, crossing + i);
+        any = any || all->cut[crossing[i].edge];
+    }
+    if (!any)
+        return CLOTH_OK;
+    join(all, NULL, all->piece);
+    join(all, all->cut, all->part);
+    find_wrong(all, all->largest);
+    for (size_t i = 0; i < all->crossings.n; i++)
+        all->cut[crossing[i].edge] = 0;
+    code = find_links(all);
+    code = code ? code : untangle_zones(all);
+    for (uint32_t p = 0; p < all->of->n_points && !code; p++)
+        code = all->wrong[p] ? push_part(all, p) : CLOTH_OK;
+    return code;
+}

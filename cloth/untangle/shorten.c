@@ -1,0 +1,84 @@
+/* An edge that crosses a triangle is a point of the contour of an intersection, which goes on along
+ * the triangles that have the edge, in directions R. A way D of the edge against the triangle,
+ * whose normal is N, takes the point along the edge E and so shortens the contour by
+ *
+ *     D . sum over R of (R - (R.E) / (N.E) N)
+ *
+ * (Volino & Magnenat-Thalmann 2006, equation 5). D is chosen along that sum; its length is a step
+ * that a long sum makes whole. */
+#include "cloth/untangle/state.h"
+
+/* The sum; false: it is none. */
+static bool find_gradient(const struct untangle *all, const struct untangle_crossing *crossing,
+                          phys_vec *gradient)
+{
+    const struct untangle_edge *edge = all->edge + crossing->edge;
+    phys_vec normal, along = all->x[edge->end[1]] - all->x[edge->end[0]];
+    *gradient = (phys_vec){0};
+    untangle_face(all, crossing->triangle, &normal);
+    const double slope = untangle_unit(&along) ? phys_dot(&along, &normal) : 0;
+    if (!(fabs(slope) > 1e-6))
+        return false;
+    for (int k = 0; k < 2 && edge->opposite[k] != UNTANGLE_NONE; k++) {
+        const phys_vec to = all->x[edge->opposite[k]] - all->x[edge->end[0]];
+        const phys_vec across = to - phys_dot(&to, &along) * along;
+        phys_vec face, line;
+        untangle_product(&along, &across, &face);
+        untangle_product(&face, &normal, &line);
+        if (!untangle_unit(&line))
+            continue;
+        if (phys_dot(&line, &across) < 0)
+            line = -line;
+        *gradient += line - phys_dot(&line, &along) / slope * normal;
+    }
+    return true;
+}
+
+static int push_edge(struct untangle *all, const struct untangle_crossing *crossing)
+{
+    phys_vec gradient;
+    if (!find_gradient(all, crossing, &gradient))
+        return CLOTH_OK;
+    const double square = phys_dot(&gradient, &gradient);
+    if (!untangle_unit(&gradient))
+        return CLOTH_OK;
+    struct untangle_push *push = untangle_add(all);
+    if (!push)
+        return CLOTH_E_MEMORY;
+    untangle_place(all, crossing, push->weight);
+    push->n = UNTANGLE_CORNERS;
+    push->normal = gradient;
+    push->want = all->of->thickness * sqrt(square / (1 + square));
+    for (uint32_t k = 0; k < push->n; k++) {
+        push->point[k] =
+            k < 2 ? all->edge[crossing->edge].end[k] : all->corner[crossing->triangle][k - 2];
+        if (k >= 2)
+            push->weight[k] = -push->weight[k];
+    }
+    return CLOTH_OK;
+}
+
+/* Whether something else pushes a point of it in the round. */
+static bool is_pushed(const struct untangle *all, const struct untangle_crossing *crossing)
+{
+    const struct untangle_edge *edge = all->edge + crossing->edge;
+    const uint32_t owner = all->owner[crossing->triangle];
+    bool is = untangle_layered(all, edge->owner, owner) || untangle_zoned(all, edge->owner, owner);
+    for (int k = 0; k < 2; k++)
+        is = is || all->wrong[edge->end[k]] || all->inside[edge->end[k]];
+    for (int k = 0; k < 3; k++) {
+        const uint32_t corner = all->corner[crossing->triangle][k];
+        is = is || all->wrong[corner] || all->inside[corner];
+    }
+    return is;
+}
+
+int untangle_shorten(struct untangle *all)
+{
+    const struct untangle_crossing *crossing = all->crossings.items;
+    int code = CLOTH_OK;
+    for (size_t i = 0; i < all->crossings.n && !code; i++)
+        if (!is_pushed(all, crossing + i))
+            code = push_edge(all, crossing + i);
+    return code;
+}

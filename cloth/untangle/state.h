@@ -1,0 +1,201 @@
+#ifndef CLOTH_UNTANGLE_STATE_H
+#define CLOTH_UNTANGLE_STATE_H
+
+#include "cloth/base/memory.h"
+#include "cloth/contact/skin.h"
+#include "cloth/untangle/untangle.h"
+#include "cloth/verify/verify.h"
+
+#include <math.h>
+
+/* What the files of this folder share: one soup of all cloths, then of all bodies. Local. */
+
+#define UNTANGLE_NONE UINT32_MAX
+
+/* Of all triangles, each once. */
+struct untangle_edge {
+    uint32_t end[2];
+    uint32_t opposite[2]; /* third corners of its triangles; UNTANGLE_NONE */
+    uint32_t n, owner;    /* its triangles; whose the first of them is */
+    double length;        /* m: as x had it */
+};
+
+/* normal . sum of weight x shall be at least `want`. */
+enum { UNTANGLE_CORNERS = 5 };
+struct untangle_push {
+    uint32_t n, point[UNTANGLE_CORNERS];
+    uint32_t still; /* bit k: corner k moves only if no other can */
+    double weight[UNTANGLE_CORNERS], want;
+    phys_vec normal;
+};
+
+/* An edge that goes through a triangle. */
+struct untangle_crossing {
+    uint32_t edge, triangle;
+};
+
+struct untangle_body {
+    const struct contact_body *body; /* NULL: the obstacle is none */
+    struct contact_pose pose;
+    uint32_t point, triangle; /* its first ones */
+    struct contact_skin skin;
+    void *boxes;
+};
+
+struct untangle {
+    const struct untangle_cloths *of;
+    uint32_t n_points, n_triangles, n_edges;
+    phys_vec *x, *start, *best;        /* by point; best: of the round with the least wrong */
+    phys_vec *normal;                  /* by point: as long as areas are */
+    double (*place)[3];                /* the same as x, for verify */
+    uint32_t (*corner)[3], (*side)[3]; /* by triangle; its edges */
+    uint32_t *owner;                   /* by triangle: a cloth, or n_cloths + an obstacle; */
+    uint32_t *cloth;                   /* by point: a cloth that has it, or the same of a body */
+    struct untangle_edge *edge;
+    unsigned char *held,
+        *border; /* by point; border: where a surface ends, or goes on as another; */
+    unsigned char *used, *shared; /* a triangle of cloth has it; of two cloths */
+    unsigned char *moved;         /* so far */
+    struct untangle_body *body;   /* by obstacle */
+    struct contact_skin skin;     /* of all cloths */
+    void *boxes;
+    struct contact_facet *facet; /* of the tree of all cloths */
+    struct contact_node *node;
+    uint32_t n_nodes;
+    double open, room; /* m: no pair is nearer; where what is moved goes */
+
+    /* Of a round. */
+    struct cloth_list pairs, crossings, links, zoned, pushes;
+    uint32_t *part;                 /* by point: the root of its part */
+    uint32_t *piece, *size;         /* by point: the root of its piece; vertices of a part; */
+    uint32_t *largest;              /* of a piece: a point of its largest part */
+    unsigned char *cut;             /* by edge: 0 between rounds */
+    uint32_t *zone, *votes[2];      /* by point: the root of its zone; of it, for either side */
+    signed char *label;             /* by point: side of a cloth, 1 or -1; 0: none */
+    uint32_t *stamp;                /* by triangle: a part that crosses it */
+    unsigned char *wrong, *tangled; /* by point: of a part that is on the wrong side; of what
+                                     * crosses something of its own layer */
+    unsigned char *inside, *seen;   /* by point: too deep in an obstacle; already looked at */
+    struct untangle_count count;
+    uint32_t near[4]; /* as of untangle_result */
+
+    struct cloth_list memory; /* void *: all of the above */
+    struct cloth_error *error;
+};
+
+/* A zeroed array that lives as long as `all`. */
+void *untangle_room(struct untangle *all, size_t n, size_t size);
+int untangle_open(struct untangle *all, phys_vec *x);
+void untangle_close(struct untangle *all);
+/* Boxes, normals and the tree follow the points. */
+void untangle_refit(struct untangle *all);
+
+/* Each finds some of what is wrong in a round, counts it and adds pushes. */
+int untangle_cross(struct untangle *all);     /* first: fills crossings */
+int untangle_parts(struct untangle *all);     /* after it: parts, and pushes of the wrong ones */
+int untangle_zones(struct untangle *all);     /* in it: of pairs of cloths that are not cut off */
+int untangle_shorten(struct untangle *all);   /* after these: shorter contours */
+int untangle_layers(struct untangle *all);    /* after untangle_cross */
+int untangle_obstacles(struct untangle *all); /* before untangle_shorten */
+int untangle_near(struct untangle *all);      /* last */
+
+/* The nearest point of the cloths' triangles that `allows` takes, nearer than reach. */
+struct untangle_nearest {
+    uint32_t triangle;
+    struct contact_nearest at; /* corner 0 is the point, the others those of the triangle */
+};
+typedef bool untangle_allows(const struct untangle *all, uint32_t triangle, const void *context);
+bool untangle_find(const struct untangle *all, const phys_vec *x, double reach,
+                   untangle_allows *allows, const void *context, struct untangle_nearest *found);
+
+/* The nearest point of a cloth to a point, nearer than the reach, and the normal there of length 1;
+ * false: there is none, or it is at the border, where the point is on no side. */
+#define UNTANGLE_REACH 30 /* thicknesses: what is farther away is not beside that cloth */
+bool untangle_beside(const struct untangle *all, uint32_t point, uint32_t cloth,
+                     struct untangle_nearest *at, phys_vec *normal);
+
+/* Push what is on the wrong side of a cloth, so that it comes to where `normal` points, or the
+ * cloth's own one times `sign`: a vertex; of an edge that crosses the cloth the end that is not
+ * there; a triangle that an edge of the cloth crosses. still: the cloth stays. */
+int untangle_push_vertex(struct untangle *all, uint32_t point, const struct untangle_nearest *at,
+                         const phys_vec *normal, bool still);
+int untangle_push_edge(struct untangle *all, const struct untangle_crossing *crossing, double sign,
+                       bool still);
+int untangle_push_triangle(struct untangle *all, const struct untangle_crossing *crossing,
+                           double sign, bool still);
+
+/* Where a crossing is: weights of the edge's ends, then of the triangle's corners; each have the
+ * sum 1. */
+void untangle_place(const struct untangle *all, const struct untangle_crossing *crossing,
+                    double weight[UNTANGLE_CORNERS]);
+
+/* Adds a push, zeroed; NULL: no memory. */
+struct untangle_push *untangle_add(struct untangle *all);
+/* Moves x. */
+void untangle_move(struct untangle *all);
+
+/* Whether two surfaces, owners of triangles, meet. */
+static inline bool untangle_meets(const struct untangle *all, uint32_t a, uint32_t b)
+{
+    const uint32_t n = all->of->n_cloths, cloth = a < n ? a : b, other = a < n ? b : a;
+    return cloth < n && !(all->of->self_off && a == b) &&
+           !(all->of->apart && contact_are_apart(all->of->apart, cloth, other));
+}
+
+/* Whether one of n points of a feature is of a pin that follows the obstacle, by its owner's
+ * number. Points of bodies are not. */
+static inline bool untangle_attached(const struct untangle *all, uint32_t n, const uint32_t *point,
+                                     uint32_t owner)
+{
+    const uint32_t cloths = all->of->n_cloths;
+    bool is = false;
+    for (uint32_t k = 0; k < n && all->of->apart && owner >= cloths; k++)
+        is = is || (point[k] < all->of->n_points &&
+                    contact_is_attached(all->of->apart, 1, point + k, owner - cloths));
+    return is;
+}
+
+/* Whether two surfaces, owners of triangles, are told apart by layers. */
+static inline bool untangle_layered(const struct untangle *all, uint32_t a, uint32_t b)
+{
+    const uint32_t n = all->of->n_cloths;
+    return a < n && b < n && all->of->layer[a] != all->of->layer[b];
+}
+
+/* Whether two cloths are a pair of those. */
+bool untangle_zoned(const struct untangle *all, uint32_t a, uint32_t b);
+
+static inline uint32_t untangle_root(uint32_t *root, uint32_t p)
+{
+    while (root[p] != p)
+        p = root[p] = root[root[p]];
+    return p;
+}
+
+PHYS_INLINE void untangle_product(const phys_vec *a, const phys_vec *b, phys_vec *to)
+{
+    *to = (phys_vec){(*a)[1] * (*b)[2] - (*a)[2] * (*b)[1], (*a)[2] * (*b)[0] - (*a)[0] * (*b)[2],
+                     (*a)[0] * (*b)[1] - (*a)[1] * (*b)[0], 0};
+}
+
+/* Gives it the length 1; false if it has none. */
+PHYS_INLINE bool untangle_unit(phys_vec *a)
+{
+    const double length = sqrt(phys_dot(a, a));
+    if (!(length > CONTACT_TINY))
+        return false;
+    *a /= length;
+    return true;
+}
+
+/* Of length 1, or 0 if the triangle has no area. */
+PHYS_INLINE void untangle_face(const struct untangle *all, uint32_t triangle, phys_vec *normal)
+{
+    const uint32_t *c = all->corner[triangle];
+    const phys_vec u = all->x[c[1]] - all->x[c[0]], v = all->x[c[2]] - all->x[c[0]];
+    untangle_product(&u, &v, normal);
+    if (!untangle_unit(normal))
+        *normal = (phys_vec){0};
+}
+
+#endif

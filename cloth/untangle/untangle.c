@@ -1,0 +1,85 @@
+/* Rounds go on until nothing is wrong. They end without success after so many, or where a few dozen
+ * have not left less wrong than there was before. */
+#include "cloth/untangle/state.h"
+
+#include <string.h>
+
+enum { ROUNDS = 300, PATIENCE = 60 };
+
+static int find_wrong(struct untangle *all)
+{
+    all->pushes.n = 0;
+    untangle_refit(all);
+    int code = untangle_cross(all);
+    code = code ? code : untangle_obstacles(all);
+    code = code ? code : untangle_parts(all);
+    code = code ? code : untangle_layers(all);
+    code = code ? code : untangle_shorten(all);
+    return code ? code : untangle_near(all);
+}
+
+static uint64_t sum_of(const struct untangle_count *count)
+{
+    return count->pairs + count->entered + count->near + count->layers;
+}
+
+/* The round with the least wrong so far. */
+static void keep(struct untangle *all, struct untangle_result *result)
+{
+    memcpy(all->best, all->x, all->n_points * sizeof *all->best);
+    memcpy(result->near, all->near, sizeof result->near);
+    result->left = all->count;
+}
+
+static void conclude(const struct untangle *all, phys_vec *x, struct untangle_result *result)
+{
+    for (uint32_t p = 0; p < all->of->n_points; p++) {
+        const phys_vec way = all->best[p] - all->start[p];
+        const double square = phys_dot(&way, &way);
+        if (!(square > 0))
+            continue;
+        x[p] = all->best[p];
+        result->moved++;
+        result->largest = fmax(result->largest, sqrt(square));
+    }
+}
+
+static int go_round(struct untangle *all, const struct untangle_listener *listener,
+                    struct untangle_result *result)
+{
+    uint64_t least = UINT64_MAX;
+    uint32_t since = 0;
+    int code;
+    while (!(code = find_wrong(all))) {
+        const uint64_t wrong = sum_of(&all->count);
+        since++;
+        if (wrong < least) {
+            keep(all, result);
+            least = wrong;
+            since = 0;
+        }
+        if (listener)
+            listener->round(listener->context, result->rounds, &all->count);
+        if (!wrong || result->rounds == ROUNDS || since == PATIENCE)
+            break;
+        untangle_move(all);
+        result->rounds++;
+    }
+    return code;
+}
+
+int untangle(const struct untangle_cloths *cloths, phys_vec *x,
+             const struct untangle_listener *listener, struct untangle_result *result,
+             struct cloth_error *error)
+{
+    struct untangle all = {.of = cloths, .error = error};
+    *result = (struct untangle_result){0};
+    if (!cloths->n_triangles)
+        return CLOTH_OK;
+    int code = untangle_open(&all, x);
+    code = code ? code : go_round(&all, listener, result);
+    if (!code)
+        conclude(&all, x, result);
+    untangle_close(&all);
+    return code;
+}

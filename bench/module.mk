@@ -16,6 +16,7 @@ bench_libbench_la_SOURCES = bench/bench.h bench/environment.h bench/load.c bench
 	bench/contact/maps.c \
 	bench/contact/plans.c bench/contact/scene.c bench/contact/shapes.c bench/contact/shapes.h bench/contact/solid.c bench/contact/state.c \
 	cloth/intersections.c cloth/intersections.h cloth/intersections_model.c cloth/intersections_parts.c \
+	cloth/intersections_soup.c cloth/intersections_soup.h \
 	bench/physics/bench.c bench/physics/ours.c bench/physics/physics.h \
 	bench/predict/bench.c bench/predict/errors.c bench/predict/many.c bench/predict/order.c bench/predict/predict.h bench/predict/sheet.c bench/sweep/median.c bench/sweep/compare.h \
 	tests/support/trace_file.c tests/support/trace_file.h \

@@ -1,16 +1,10 @@
 /* The model's cloths, welds and obstacles, as the check wants them. */
 #include "cloth/base/memory.h"
+#include "cloth/base/sets.h"
 #include "cloth/intersections.h"
 #include "cloth/model/model.h"
 
 #include <stdlib.h>
-
-static uint32_t root_of(const uint32_t *same, uint32_t v)
-{
-    while (same[v] != v)
-        v = same[v];
-    return v;
-}
 
 int intersections_same(const struct model *model, uint32_t **same, struct cloth_error *error)
 {
@@ -18,19 +12,17 @@ int intersections_same(const struct model *model, uint32_t **same, struct cloth_
     *same = cloth_alloc(n, sizeof **same, error);
     if (!*same)
         return CLOTH_E_MEMORY;
-    for (uint32_t v = 0; v < n; v++)
-        (*same)[v] = v;
+    cloth_sets_start(*same, n);
     for (uint32_t w = 0; w < model->n_welds; w++) {
         const struct model_end *end = model->welds[w].pairs.end;
         for (uint32_t i = 0; i < end[0].n; i++) {
             const uint32_t a = model_first(model, end[0].cloth) + end[0].vertices[i];
             const uint32_t b = model_first(model, end[1].cloth) + end[1].vertices[i];
-            const uint32_t u = root_of(*same, a), v = root_of(*same, b);
-            (*same)[u < v ? v : u] = u < v ? u : v;
+            cloth_sets_join(*same, a, b);
         }
     }
     for (uint32_t v = 0; v < n; v++)
-        (*same)[v] = root_of(*same, v);
+        (*same)[v] = cloth_sets_root(*same, v);
     return CLOTH_OK;
 }
 

@@ -2,23 +2,16 @@
 #include "cloth/intersections_parts.h"
 
 #include "cloth/base/memory.h"
+#include "cloth/base/sets.h"
 
 #include <stdbool.h>
 #include <stdlib.h>
-
-static uint32_t root_of(uint32_t *root, uint32_t v)
-{
-    while (root[v] != v)
-        v = root[v] = root[root[v]];
-    return v;
-}
 
 static void join(uint32_t n_triangles, const uint32_t (*corner)[3], uint32_t *root, bool *used)
 {
     for (uint32_t t = 0; t < n_triangles; t++)
         for (int c = 0; c < 3; c++) {
-            const uint32_t a = root_of(root, corner[t][c]), b = root_of(root, corner[t][0]);
-            root[a < b ? b : a] = a < b ? a : b;
+            cloth_sets_join(root, corner[t][c], corner[t][0]);
             used[corner[t][c]] = true;
         }
 }
@@ -31,10 +24,10 @@ int intersections_parts(uint32_t n, uint32_t n_triangles, const uint32_t (*corne
     *part = cloth_alloc(n, sizeof **part, error);
     *n_parts = 0;
     const int code = root && used && *part ? CLOTH_OK : CLOTH_E_MEMORY;
-    for (uint32_t v = 0; v < n && !code; v++)
-        root[v] = v;
-    if (!code)
+    if (!code) {
+        cloth_sets_start(root, n);
         join(n_triangles, corner, root, used);
+    }
     for (uint32_t v = 0; v < n && !code; v++)
         if (used[v] && root[v] == v)
             (*part)[(*n_parts)++] = v;

@@ -25,6 +25,8 @@ bool untangle_beside(const struct untangle *all, uint32_t point, uint32_t cloth,
     return !border && untangle_unit(normal);
 }
 
+enum { TRIANGLE = 7 << 1 }; /* its corners, of a push whose corner 0 is a vertex */
+
 int untangle_push_vertex(struct untangle *all, uint32_t point, const struct untangle_nearest *at,
                          const phys_vec *normal, bool still)
 {
@@ -34,7 +36,7 @@ int untangle_push_vertex(struct untangle *all, uint32_t point, const struct unta
     push->n = 4;
     push->normal = *normal;
     push->want = all->room;
-    push->still = still ? 14 : 0;
+    push->still = still ? TRIANGLE : 0;
     for (uint32_t k = 0; k < 4; k++) {
         push->point[k] = k ? all->corner[at->triangle][k - 1] : point;
         push->weight[k] = at->at.weight[k];
@@ -42,56 +44,48 @@ int untangle_push_vertex(struct untangle *all, uint32_t point, const struct unta
     return CLOTH_OK;
 }
 
-int untangle_push_edge(struct untangle *all, const struct untangle_crossing *crossing, double sign,
-                       bool still)
+/* Pushes an end of an edge and the triangle that the edge crosses apart along the normal, at the
+ * place of the crossing. side: 1: the end goes along the normal, and it is the one that lies less
+ * far along it; -1: the triangle goes along the normal, and the end is the one that lies farther
+ * along it. */
+static int push_end(struct untangle *all, const struct untangle_crossing *crossing,
+                    const phys_vec *normal, double side, uint32_t still)
 {
     const uint32_t *end = all->edge[crossing->edge].end, *corner = all->corner[crossing->triangle];
+    const phys_vec along = all->x[end[1]] - all->x[end[0]];
     double weight[UNTANGLE_CORNERS];
-    phys_vec normal;
-    untangle_face(all, crossing->triangle, &normal);
-    normal *= sign;
     untangle_place(all, crossing, weight);
     struct untangle_push *push = untangle_add(all);
     if (!push)
         return CLOTH_E_MEMORY;
-    const phys_vec along = all->x[end[1]] - all->x[end[0]];
     push->n = 4;
-    push->normal = normal;
+    push->normal = *normal;
     push->want = all->room;
-    push->still = still ? 14 : 0;
-    push->point[0] = end[phys_dot(&along, &normal) < 0];
-    push->weight[0] = 1;
+    push->still = still;
+    push->point[0] = end[side * phys_dot(&along, normal) < 0];
+    push->weight[0] = side;
     for (int k = 0; k < 3; k++) {
         push->point[1 + k] = corner[k];
-        push->weight[1 + k] = -weight[2 + k];
+        push->weight[1 + k] = -side * weight[2 + k];
     }
     return CLOTH_OK;
+}
+
+int untangle_push_edge(struct untangle *all, const struct untangle_crossing *crossing, double sign,
+                       bool still)
+{
+    phys_vec normal;
+    untangle_face(all, crossing->triangle, &normal);
+    normal *= sign;
+    return push_end(all, crossing, &normal, 1, still ? TRIANGLE : 0);
 }
 
 int untangle_push_triangle(struct untangle *all, const struct untangle_crossing *crossing,
                            double sign, bool still)
 {
-    const uint32_t *end = all->edge[crossing->edge].end, *corner = all->corner[crossing->triangle];
-    double weight[UNTANGLE_CORNERS];
+    const uint32_t *end = all->edge[crossing->edge].end;
     phys_vec normal = sign * (all->normal[end[0]] + all->normal[end[1]]);
-    untangle_place(all, crossing, weight);
-    if (!untangle_unit(&normal))
-        return CLOTH_OK;
-    struct untangle_push *push = untangle_add(all);
-    if (!push)
-        return CLOTH_E_MEMORY;
-    const phys_vec along = all->x[end[1]] - all->x[end[0]];
-    push->n = 4;
-    push->normal = normal;
-    push->want = all->room;
-    push->still = still;
-    push->point[0] = end[phys_dot(&along, &normal) > 0];
-    push->weight[0] = -1;
-    for (int k = 0; k < 3; k++) {
-        push->point[1 + k] = corner[k];
-        push->weight[1 + k] = weight[2 + k];
-    }
-    return CLOTH_OK;
+    return untangle_unit(&normal) ? push_end(all, crossing, &normal, -1, still) : CLOTH_OK;
 }
 
 static int look_at_vertex(struct untangle *all, uint32_t point, uint32_t inner)

@@ -3,6 +3,8 @@
  * what their edges cross, and go through its nearest place. */
 #include "cloth/untangle/state.h"
 
+#include "cloth/base/sets.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -16,17 +18,15 @@ struct link {
 /* Joins points along edges of cloth. cut: by edge; NULL: none is. */
 static void join(const struct untangle *all, const unsigned char *cut, uint32_t *root)
 {
-    for (uint32_t p = 0; p < all->of->n_points; p++)
-        root[p] = p;
+    cloth_sets_start(root, all->of->n_points);
     for (uint32_t e = 0; e < all->n_edges; e++) {
         const struct untangle_edge *edge = all->edge + e;
         if (edge->owner >= all->of->n_cloths || (cut && cut[e]))
             continue;
-        const uint32_t a = untangle_root(root, edge->end[0]), b = untangle_root(root, edge->end[1]);
-        root[a < b ? b : a] = a < b ? a : b;
+        cloth_sets_join(root, edge->end[0], edge->end[1]);
     }
     for (uint32_t p = 0; p < all->of->n_points; p++)
-        root[p] = untangle_root(root, p);
+        root[p] = cloth_sets_root(root, p);
 }
 
 static bool is_cut(const struct untangle *all, const struct untangle_crossing *crossing)
@@ -122,17 +122,8 @@ static int push_through(struct untangle *all, uint32_t point, uint32_t cloth)
                        &found) ||
         found.at.gap < 1e-6 * all->of->thickness)
         return CLOTH_OK;
-    struct untangle_push *push = untangle_add(all);
-    if (!push)
-        return CLOTH_E_MEMORY;
-    push->n = 4;
-    push->normal = -found.at.normal;
-    push->want = all->room;
-    for (uint32_t k = 0; k < 4; k++) {
-        push->point[k] = k ? all->corner[found.triangle][k - 1] : point;
-        push->weight[k] = found.at.weight[k];
-    }
-    return CLOTH_OK;
+    const phys_vec through = -found.at.normal;
+    return untangle_push_vertex(all, point, &found, &through, false);
 }
 
 static int push_part(struct untangle *all, uint32_t point)

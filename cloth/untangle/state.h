@@ -165,13 +165,6 @@ static inline bool untangle_layered(const struct untangle *all, uint32_t a, uint
 /* Whether two cloths are a pair of those. */
 bool untangle_zoned(const struct untangle *all, uint32_t a, uint32_t b);
 
-static inline uint32_t untangle_root(uint32_t *root, uint32_t p)
-{
-    while (root[p] != p)
-        p = root[p] = root[root[p]];
-    return p;
-}
-
 PHYS_INLINE void untangle_product(const phys_vec *a, const phys_vec *b, phys_vec *to)
 {
     *to = (phys_vec){(*a)[1] * (*b)[2] - (*a)[2] * (*b)[1], (*a)[2] * (*b)[0] - (*a)[0] * (*b)[2],

@@ -4,6 +4,8 @@
  * others go there. */
 #include "cloth/untangle/state.h"
 
+#include "cloth/base/sets.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -108,28 +110,25 @@ static void find_labels(struct untangle *all, const struct zoned *zoned)
 
 static void count_votes(struct untangle *all, const struct zoned *zoned)
 {
-    for (uint32_t p = 0; p < all->of->n_points; p++) {
-        all->zone[p] = p;
+    cloth_sets_start(all->zone, all->of->n_points);
+    for (uint32_t p = 0; p < all->of->n_points; p++)
         all->votes[0][p] = all->votes[1][p] = 0;
-    }
     for (uint32_t e = 0; e < all->n_edges; e++) {
         const struct untangle_edge *edge = all->edge + e;
         if (edge->owner != zoned->cloth[0] || !all->label[edge->end[0]] ||
             !all->label[edge->end[1]])
             continue;
-        const uint32_t a = untangle_root(all->zone, edge->end[0]);
-        const uint32_t b = untangle_root(all->zone, edge->end[1]);
-        all->zone[a < b ? b : a] = a < b ? a : b;
+        cloth_sets_join(all->zone, edge->end[0], edge->end[1]);
     }
     for (uint32_t p = 0; p < all->of->n_points; p++)
         if (all->label[p])
-            all->votes[all->label[p] > 0][untangle_root(all->zone, p)]++;
+            all->votes[all->label[p] > 0][cloth_sets_root(all->zone, p)]++;
 }
 
 /* Of the zone of a point: 1 or -1; 0: it is in none. */
 static int side_of(struct untangle *all, uint32_t point)
 {
-    const uint32_t root = untangle_root(all->zone, point);
+    const uint32_t root = cloth_sets_root(all->zone, point);
     return !all->label[point] ? 0 : all->votes[1][root] >= all->votes[0][root] ? 1 : -1;
 }
 

@@ -5,21 +5,13 @@
 
 #include "cloth/base/memory.h"
 #include "cloth/base/order.h"
+#include "cloth/base/sets.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
 /* ---- Which vertices are one ---- */
-
-static uint32_t root_of(uint32_t *parent, uint32_t vertex)
-{
-    while (parent[vertex] != vertex) {
-        parent[vertex] = parent[parent[vertex]];
-        vertex = parent[vertex];
-    }
-    return vertex;
-}
 
 static int list_pairs(struct cloth_list *list, const struct model *model, const unsigned char *used,
                       struct cloth_error *error)
@@ -48,14 +40,11 @@ static int name_all(struct flow_welds *welds, uint32_t n, const struct cloth_lis
 {
     const struct flow_pair *pair = list->items;
     uint32_t *root = welds->root;
-    for (uint32_t v = 0; v < n; v++)
-        root[v] = v;
-    for (size_t i = 0; i < list->n; i++) {
-        const uint32_t a = root_of(root, pair[i].vertex[0]), b = root_of(root, pair[i].vertex[1]);
-        root[a > b ? a : b] = a > b ? b : a;
-    }
-    for (uint32_t v = 0; v < n; v++) { /* none is above its parent */
-        root[v] = root[root[v]];
+    cloth_sets_start(root, n);
+    for (size_t i = 0; i < list->n; i++)
+        cloth_sets_join(root, pair[i].vertex[0], pair[i].vertex[1]);
+    for (uint32_t v = 0; v < n; v++) {
+        root[v] = cloth_sets_root(root, v);
         welds->n += root[v] != v;
     }
     welds->name = cloth_alloc(welds->n, sizeof *welds->name, error);

@@ -3,6 +3,7 @@
  *
  * In reading order: what blocks have of the joints of a step, the choice, the tables of the blocks,
  * what others see of them. */
+#include "cloth/base/sets.h"
 #include "cloth/flow/bodies.h"
 #include "cloth/flow/solver/solve.h"
 
@@ -59,22 +60,12 @@ static void find_interval(const struct flow *flow, uint64_t tick, struct flow_ti
 
 /* ---- What ties make of free pieces ---- */
 
-static uint32_t root_of(const uint32_t *parent, uint32_t piece)
-{
-    while (parent[piece] != piece)
-        piece = parent[piece];
-    return piece;
-}
-
-/* Unites what ties join: piece k is number k of the parents, 0 is what a pin holds. The lowest
- * number of each group is its root. */
+/* Unites what ties join: piece k is number k of the parents, 0 is what a pin holds. */
 static void unite(const struct flow *flow, uint64_t tick, uint32_t *parent)
 {
-    for (const struct flow_tie *tie = flow->tie; tie < flow->tie + flow->n_ties; tie++) {
-        const uint32_t a = root_of(parent, tie->piece[0]), b = root_of(parent, tie->piece[1]);
+    for (const struct flow_tie *tie = flow->tie; tie < flow->tie + flow->n_ties; tie++)
         if (flow_tie_acts(tie, tick))
-            parent[a > b ? a : b] = a > b ? b : a;
-    }
+            cloth_sets_join(parent, tie->piece[0], tie->piece[1]);
 }
 
 /* Whether blocks said that they have other ties than the joints that act. */
@@ -101,11 +92,10 @@ int flow_ties_group(struct flow_state *state)
     if (!n)
         return DUITE_OK;
     const bool free = !has_contacts(state);
-    for (uint32_t piece = 0; piece <= n; piece++)
-        tied->parent[piece] = piece;
+    cloth_sets_start(tied->parent, n + 1);
     unite(state->flow, state->attempt.begin, tied->parent);
     for (uint32_t piece = 0; piece < n; piece++)
-        tied->group[piece] = free ? root_of(tied->parent, piece + 1) : 0;
+        tied->group[piece] = free ? cloth_sets_root(tied->parent, piece + 1) : 0;
     return duite_set(state->rt, state->run.groups, tied->group);
 }
 

@@ -354,9 +354,11 @@ int duite_abandon(duite **rt);
  * there, even when no task is left, they stand between these two, since workers and heartbeats call
  * MPI at any other time. Only under MPI_THREAD_MULTIPLE they need no begin and end. Begin waits
  * until nobody of this rank is inside MPI. Until the end tasks run on, but nothing is sent or
- * received, and all other calls of the main program are refused and remembered (DUITE_E_STATE): a
- * program waits first. A rank that stays longer than lost_seconds is taken for lost by ranks that
- * are outside meanwhile. Errors: DUITE_E_STATE (begun twice, ended without begin). Local. */
+ * received, and all other calls of the main program are refused and remembered (DUITE_E_STATE). So
+ * all ranks call duite_wait first: else a rank in duite_get may need what this one has not sent,
+ * and a call of MPI that waits for that rank never returns. A rank that stays longer than
+ * lost_seconds is taken for lost by ranks that are outside meanwhile. Errors: DUITE_E_STATE (begun
+ * twice, ended without begin). Local. */
 int duite_mpi_begin(duite *rt);
 int duite_mpi_end(duite *rt);
 

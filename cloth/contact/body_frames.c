@@ -52,7 +52,8 @@ bool contact_body_moves_after(const struct contact_body *body, double time)
     return moves && time < body->first + (body->n_frames - 1) / body->rate;
 }
 
-/* A triangle without area in a frame faces up. */
+/* A triangle without area has neither a direction nor angles: it faces up, and says nothing of its
+ * corners. */
 static void move_normals(const struct contact_body *body, const phys_vec *x, phys_vec *of_facet,
                          phys_vec *of_vertex)
 {
@@ -65,7 +66,7 @@ static void move_normals(const struct contact_body *body, const phys_vec *x, phy
         contact_cross(&u, &w, of_facet + f);
         const double square = phys_dot(of_facet + f, of_facet + f);
         of_facet[f] = square > 0 ? of_facet[f] / sqrt(square) : (phys_vec){0, 1, 0, 0};
-        for (int i = 0; i < 3; i++) {
+        for (int i = 0; i < 3 && square > 0; i++) {
             const phys_vec a = x[corner[(i + 1) % 3]] - x[corner[i]];
             const phys_vec b = x[corner[(i + 2) % 3]] - x[corner[i]];
             of_vertex[corner[i]] += contact_angle(&a, &b) * of_facet[f];

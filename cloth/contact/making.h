@@ -38,8 +38,8 @@ static inline void contact_cross(const phys_vec *a, const phys_vec *b, phys_vec 
                           u[0] * v[1] - u[1] * v[0], 0};
 }
 
-/* The angle between two vectors of any length, rad, of + - * / and sqrt alone, so that its bits are
- * the same everywhere. */
+/* The angle between two vectors of any length above 0 that are not opposite, rad, of + - * / and
+ * sqrt alone, so that its bits are the same everywhere. */
 double contact_angle(const phys_vec *a, const phys_vec *b);
 
 /* Whether there are triangles, not too many, and no vertex is too far away; before there is room.

@@ -185,6 +185,42 @@ START_TEST(ends_of_steps)
 }
 END_TEST
 
+/* A corner of a box goes along an edge to the other corner of it, where two triangles have no area
+ * any more. What is left is a wedge, of which the inside is inside, and normals have the length 1:
+ * that of the corner is along a sum of those of the triangles with an area. */
+START_TEST(triangles_that_lose_their_area)
+{
+    struct surface box;
+    struct mesh mesh;
+    struct contact_bodies bodies = {0};
+    struct cloth_error error = {0};
+    bool turned;
+    surface_box(&box, 1, 1, 1);
+    surface_mesh(&box, &mesh);
+    double place[2][8][3];
+    memcpy(place[0], box.x, sizeof place[0]);
+    memcpy(place[1], box.x, sizeof place[1]);
+    memcpy(place[1][7], place[1][3], sizeof place[1][7]); /* (1, 1, 1) to (1, 1, -1) */
+    const struct contact_frames frames = {2, 0, 1, (const double(*)[3])place[0]};
+    ck_assert_int_eq(contact_bodies_add_frames(&bodies, &mesh, &frames, &turned, &error), 0);
+    contact_bodies_move(&bodies, 1, 1);
+    const struct contact_body *body = contact_bodies_at(&bodies, 1);
+    for (uint32_t v = 0; v < body->n_vertices; v++)
+        ck_assert_double_eq_tol(
+            phys_dot(contact_body_normals(body) + v, contact_body_normals(body) + v), 1, 1e-12);
+    const struct contact_shape shape = {.kind = 5, .body = 1};
+    const phys_vec at[2] = {{1 - 1e-3, 1 - 1e-3, -1 + 5e-4, 0}, {1 + 1e-3, 1 + 1e-3, -1 - 1e-3, 0}};
+    struct contact_pose pose;
+    struct contact_hit hit[2];
+    contact_pose_over(&shape, NULL, &bodies, 1, 1, &pose);
+    contact_closest(&shape, &pose, 2, at, hit);
+    ck_assert_double_lt(hit[0].gap, 0);
+    ck_assert_double_eq_tol(hit[1].gap, sqrt(3) * 1e-3, 1e-12);
+    mesh_free(&mesh);
+    free(bodies.memory);
+}
+END_TEST
+
 START_TEST(frames_that_are_nowhere)
 {
     static struct moving m;
@@ -212,6 +248,7 @@ int main(void)
     tcase_add_test(cases, the_surface_has_its_velocity);
     tcase_add_test(cases, times_alone_say_the_bytes);
     tcase_add_test(cases, ends_of_steps);
+    tcase_add_test(cases, triangles_that_lose_their_area);
     tcase_add_test(cases, frames_that_are_nowhere);
     suite_add_tcase(suite, cases);
     return unit_run(suite);

@@ -63,6 +63,10 @@ framed() { # 15 steps end with the sheet in the ball: its folder says what did n
     test $? = 4 && grep 'with obstacles' said
 }
 ok "frames tell what does not meet" framed
+nobody() { # names that leave nothing out, as obstacles do not meet: the folder can be read
+    run sides.yaml --set 'contact.ignore=[[ball, ground]]' --set 'obstacles[1].plane.name=ground' && limited "$DUITE_VIEW" out --check-intersections > said 2>&1 || { cat said; return 1; }
+}
+ok "frames tell that nothing is left out" nobody
 crossed() { # a cloth of two squares that cross
     cat > crossed.yaml << 'END'
 schema: 1

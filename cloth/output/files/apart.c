@@ -95,10 +95,12 @@ void output_apart_read(struct output_cache *cache, struct output_json *json)
     apart->apart = calloc((size_t)apart->n_cloths * (apart->n_cloths + apart->n_obstacles), 1);
     if (!apart->apart)
         output_json_fail(json, "fewer cloths than fit in memory");
-    do
-        take_pair(apart, json);
-    while (!json->failed && output_json_take(json, ','));
-    output_json_expect(json, ']');
+    if (!output_json_take(json, ']')) {
+        do
+            take_pair(apart, json);
+        while (!json->failed && output_json_take(json, ','));
+        output_json_expect(json, ']');
+    }
     output_json_expect(json, '}');
 }
 
@@ -126,6 +128,8 @@ void output_attached_read(struct output_cache *cache, struct output_json *json)
         output_json_fail(json, "fewer vertices than fit in memory");
     cache->apart.attached = cache->attached;
     output_json_expect(json, '[');
+    if (output_json_take(json, ']'))
+        return;
     do {
         output_json_expect(json, '[');
         if (!json->failed)

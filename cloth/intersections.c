@@ -1,6 +1,7 @@
 /* A frame places the vertices of the cloths; the time of the frame places those of bodies. A frame
  * counts as bad once, even if it is checked as doubles and as written. */
 #include "cloth/intersections.h"
+#include "cloth/intersections_parts.h"
 #include "cloth/intersections_soup.h"
 
 #include "cloth/verify/orient.h"
@@ -8,6 +9,7 @@
 #include <inttypes.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <string.h>
 #include <unistd.h>
 
 enum { SAID = 5 }; /* intersections of the first frame that has any */
@@ -201,17 +203,33 @@ static int look_at_shape(struct look *look, size_t obstacle, uint64_t *entered,
     return code;
 }
 
+/* Whether a vertex of cloth may be in an obstacle: *guess is a cloth near its own. */
+static bool may_be_in(const struct intersections *all, uint32_t point, size_t obstacle,
+                      uint32_t *guess)
+{
+    if (contact_is_attached(all->apart, 1, &point, (uint32_t)obstacle))
+        return true;
+    if (!all->apart->apart)
+        return false;
+    *guess = contact_apart_cloth(all->apart, point, *guess);
+    return contact_are_apart(all->apart, *guess, all->apart->n_cloths + (uint32_t)obstacle);
+}
+
+/* Where no triangles intersect a part of the cloth is inside or outside as a whole, but for what
+ * may be inside. So the first vertex that may not be speaks for its part. */
 static void look_inside(struct look *look, size_t obstacle, uint64_t *inside)
 {
     const struct intersections *all = look->all;
     const struct surface *body = all->obstacle + obstacle;
-    for (uint32_t i = 0; i < all->n_parts; i++) {
-        const uint32_t point = all->part[i];
-        if (contact_is_attached(all->apart, 1, &point, (uint32_t)obstacle) ||
-            (all->apart->apart &&
-             contact_are_apart(all->apart, contact_apart_cloth(all->apart, point, 0),
-                               all->apart->n_cloths + (uint32_t)obstacle)))
+    const uint32_t n = all->cloth[all->n_cloths].point;
+    uint32_t guess = 0;
+    memset(all->seen, 0, n);
+    for (uint32_t point = 0; point < n; point++) {
+        const uint32_t part = all->part[point];
+        if (part == INTERSECTIONS_NO_PART || all->seen[part] ||
+            may_be_in(all, point, obstacle, &guess))
             continue;
+        all->seen[part] = 1;
         if (!verify_inside(&all->soup, body[0].triangle, body[1].triangle, all->x[point]))
             continue;
         *inside += 1;

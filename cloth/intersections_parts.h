@@ -5,10 +5,12 @@
 
 #include <stdint.h>
 
-/* A vertex of each part of n vertices whose triangles are joined, the lowest: *n_parts of them,
- * ascending, in *part, which the caller frees. Vertices without triangles are no part. Error:
- * CLOTH_E_MEMORY. */
+/* A vertex that no triangle has. */
+#define INTERSECTIONS_NO_PART UINT32_MAX
+
+/* Of each of n vertices the part that it is of, in *part, which the caller frees: the lowest vertex
+ * that triangles join it to, directly or through others. Error: CLOTH_E_MEMORY. */
 int intersections_parts(uint32_t n, uint32_t n_triangles, const uint32_t (*corner)[3],
-                        uint32_t **part, uint32_t *n_parts, struct cloth_error *error);
+                        uint32_t **part, struct cloth_error *error);
 
 #endif

@@ -77,9 +77,11 @@ static int take_arrays(struct intersections *all, struct cloth_error *error)
     all->x = cloth_alloc(all->soup.n_points, sizeof *all->x, error);
     all->corner = cloth_alloc(all->soup.n_triangles, sizeof *all->corner, error);
     all->joined = cloth_alloc(all->soup.n_triangles, sizeof *all->joined, error);
-    if (!all->x || !all->corner || !all->joined)
+    const uint32_t in_cloths = all->cloth[all->n_cloths].point;
+    all->seen = cloth_alloc(in_cloths, sizeof *all->seen, error);
+    if (!all->x || !all->corner || !all->joined || !all->seen)
         return CLOTH_E_MEMORY;
-    const uint64_t in_bodies = all->soup.n_points - all->cloth[all->n_cloths].point;
+    const uint64_t in_bodies = all->soup.n_points - in_cloths;
     all->place = aligned_alloc(sizeof *all->place, (in_bodies + 1) * sizeof *all->place);
     if (!all->place)
         return cloth_fail(error, CLOTH_E_MEMORY, "no memory for the vertices of bodies");
@@ -111,8 +113,7 @@ static int fill(struct intersections *all, const struct intersections_setup *set
         code = take_body(all, i, error);
     return code ? code
                 : intersections_parts(all->cloth[all->n_cloths].point, all->soup.n_first,
-                                      (const uint32_t(*)[3])all->joined, &all->part, &all->n_parts,
-                                      error);
+                                      (const uint32_t(*)[3])all->joined, &all->part, error);
 }
 
 int intersections_open(struct intersections **intersections,
@@ -146,6 +147,7 @@ void intersections_close(struct intersections **intersections)
     free(all->cloth);
     free(all->obstacle);
     free(all->part);
+    free(all->seen);
     free(all->x);
     free(all->place);
     free(all->corner);

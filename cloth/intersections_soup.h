@@ -24,8 +24,8 @@ struct intersections {
     size_t n_cloths, n_obstacles;
     phys_vec *place;                  /* room for the vertices of a body */
     struct surface *cloth, *obstacle; /* n_cloths + 1; n_obstacles + 1: empty unless a body */
-    uint32_t *part; /* the lowest vertex of each part of the cloths that triangles join */
-    uint32_t n_parts;
+    uint32_t *part;                   /* by vertex of all cloths (intersections_parts.h) */
+    unsigned char *seen;              /* by part, while a body is looked at: a vertex of it was */
     double (*x)[3];
     uint32_t (*corner)[3]; /* of a triangle, as its mesh has them */
     uint32_t (*joined)[3]; /* the same, welded: the lowest vertex that each is one with */

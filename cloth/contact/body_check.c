@@ -1,6 +1,6 @@
 /* What a mesh has to be to be a body: closed, of triangles with an area that are wound alike and do
  * not lie on each other, and with room inside. */
-#include "cloth/base/memory.h"
+#include "cloth/base/sets.h"
 #include "cloth/contact/making.h"
 
 #include <math.h>
@@ -207,20 +207,15 @@ static int orient(struct contact_making *making, bool *turned)
  * room: `order` leads to the first triangle of the part, whose normal has its volume in lane 3. */
 static uint32_t part_of(const struct contact_making *making, uint32_t t)
 {
-    while (making->order[t] != t)
-        t = making->order[t] = making->order[making->order[t]];
-    return t;
+    return cloth_sets_root(making->order, t);
 }
 
 static void find_parts(struct contact_making *making)
 {
+    cloth_sets_start(making->order, making->n);
     for (uint32_t t = 0; t < making->n; t++)
-        making->order[t] = t;
-    for (uint32_t t = 0; t < making->n; t++)
-        for (int i = 0; i < 3; i++) {
-            const uint32_t a = part_of(making, t), b = part_of(making, making->neighbour[t][i]);
-            making->order[a > b ? a : b] = a > b ? b : a;
-        }
+        for (int i = 0; i < 3; i++)
+            cloth_sets_join(making->order, t, making->neighbour[t][i]);
 }
 
 static void measure_parts(struct contact_making *making)

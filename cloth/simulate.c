@@ -232,6 +232,14 @@ static int say_lost(const struct run *run, const struct cloth_error *error)
     return CLOTH_E_LOST;
 }
 
+/* Puts the scene before an error. */
+static void name_scene(const char *scene, struct cloth_error *error)
+{
+    struct cloth_error named = {0};
+    cloth_fail(&named, error->code, "%.200s: %.800s", scene, error->text);
+    *error = named;
+}
+
 static void run_flow(struct run *run, duite *rt, struct cloth_error *error)
 {
     const struct simulate_options *options = run->options;
@@ -246,6 +254,8 @@ static void run_flow(struct run *run, duite *rt, struct cloth_error *error)
     flow_run(run->flow, rt, run->wants_frames || options->save_system ? &output : NULL, &progress,
              &run->report, error);
     summary_progress_end(&run->progress);
+    if (error->code == CLOTH_E_INPUT) /* a start that only the first look finds to touch */
+        name_scene(options->scene, error);
 }
 
 static int execute(struct run *run)
@@ -351,6 +361,16 @@ static int conclude(struct run *run)
     return code ? code : agree(run, &run->untraced);
 }
 
+/* The exit code of a run that began. done: if nothing failed. */
+static int code_of(int failure, int done)
+{
+    if (failure == CLOTH_E_LOST)
+        return SIMULATE_LOST;
+    if (failure == CLOTH_E_INPUT)
+        return SIMULATE_BAD_INPUT;
+    return failure ? SIMULATE_FAILED : done;
+}
+
 int simulate(const struct simulate_options *options)
 {
     struct run run = {.options = options};
@@ -367,7 +387,7 @@ int simulate(const struct simulate_options *options)
         if (!failure)
             failure = conclude(&run);
         const int done = run.intersects ? SIMULATE_INTERSECTS : SIMULATE_OK;
-        code = failure == CLOTH_E_LOST ? SIMULATE_LOST : failure ? SIMULATE_FAILED : done;
+        code = code_of(failure, done);
     }
     struct cloth_error ignored = {0};
     outputs_close(&run.outputs, &ignored);

@@ -115,12 +115,13 @@ static void print_intersections(FILE *file, const struct intersections_found *fo
         fprintf(file, "none in %" PRIu64 " frames\n", found->frames);
 }
 
-static void print_contact(FILE *file, const struct flow_report *report)
+static void print_contact(FILE *file, const struct model *model, const struct flow_report *report)
 {
-    fprintf(file,
-            "  contacts         %" PRIu64 " at most; %.2f solves a step, %" PRIu64
-            " pairs certified\n",
-            report->contacts, solves_mean(report), report->contact_pairs);
+    fprintf(file, "  contacts         %" PRIu64 " at most", report->contacts);
+    if (model_certifies(model))
+        fprintf(file, "; %.2f solves a step, %" PRIu64 " pairs certified", solves_mean(report),
+                report->contact_pairs);
+    fputc('\n', file);
     if (report->contact_cuts)
         fprintf(file,
                 "  ways cut         %" PRIu64 ", of one vertex in %" PRIu64
@@ -161,7 +162,7 @@ void summary_print(FILE *file, const struct summary *summary)
                 "  gained energy    %" PRIu64 " steps by bdf2, made again by implicit_euler\n",
                 report->steps_retaken);
     if (report->contacts)
-        print_contact(file, report);
+        print_contact(file, model, report);
     fprintf(file, "  wall time        %.3f s, %.6f s a step\n", report->wall_seconds,
             ratio(report->wall_seconds, (double)report->steps));
     print_times(file, report);

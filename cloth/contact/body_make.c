@@ -207,7 +207,8 @@ static int check_frames(const struct contact_making *making)
                 if (!(fabs(making->frames->place[(size_t)k * n + v][c]) < CONTACT_BODY_BOUND))
                     return cloth_fail(making->error, CLOTH_E_INPUT,
                                       "vertex %u of frame %u is %g m from the origin along an "
-                                      "axis; less than %g m is expected",
+                                      "axis; less than %g m is expected (vertices and frames "
+                                      "count from 1)",
                                       v + 1, k + 1, making->frames->place[(size_t)k * n + v][c],
                                       CONTACT_BODY_BOUND);
     return CLOTH_OK;

@@ -102,9 +102,14 @@ int flow_prepare(struct flow **flow, const struct model *model, int ranks,
         return code;
     (*flow)->model = model;
     (*flow)->n_steps = (uint64_t)(model->end / model->h + 0.5);
-    for (uint32_t c = 0; c < model->n_cloths; c++)
+    (*flow)->cloth_first = cloth_alloc(model->n_cloths, sizeof *(*flow)->cloth_first, error);
+    if (!(*flow)->cloth_first)
+        code = CLOTH_E_MEMORY;
+    for (uint32_t c = 0; c < model->n_cloths && !code; c++) {
         (*flow)->n_triangles += model->cloths[c].mesh.n_triangles;
-    if ((*flow)->n_steps >= UINT32_MAX)
+        (*flow)->cloth_first[c] = model_first(model, c);
+    }
+    if (!code && (*flow)->n_steps >= UINT32_MAX)
         code = cloth_fail(error, CLOTH_E_INPUT,
                           "end / h makes %g steps; at most 4294967294 are possible",
                           model->end / model->h);
@@ -125,6 +130,7 @@ void flow_free(struct flow *flow)
     free(flow->tables.block);
     free(flow->shared);
     free(flow->vertex);
+    free(flow->cloth_first);
     free(flow->names.name);
     free(flow->unused.vertex);
     free(flow->unused.position);
@@ -266,6 +272,8 @@ static int code_of_cloth(int code)
         return CLOTH_E_MEMORY;
     if (code == DUITE_E_LOST || code == DUITE_E_MPI)
         return CLOTH_E_LOST;
+    if (code == FLOW_TANGLED)
+        return CLOTH_E_INPUT;
     return code > 0 ? CLOTH_E_RUN : CLOTH_E_LIBRARY;
 }
 

@@ -4,6 +4,7 @@
 #include "cloth/mesh/mesh.h"
 
 #include <errno.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -54,7 +55,15 @@ static int read_frame(FILE *file, const char *path, uint32_t n_vertices, unsigne
     double(*place)[3] = cloth_list_add(list, sizeof *place, n_vertices, error);
     for (size_t i = 0; place && i < 3 * (size_t)n_vertices; i++)
         place[i / 3][i % 3] = float_at(bytes + 4 * i);
-    return place ? CLOTH_OK : CLOTH_E_MEMORY;
+    if (!place)
+        return CLOTH_E_MEMORY;
+    for (size_t i = 0; i < 3 * (size_t)n_vertices; i++)
+        if (!isfinite(place[i / 3][i % 3]))
+            return cloth_fail(error, CLOTH_E_INPUT,
+                              "%s: vertex %zu of frame %zu has a coordinate that is no finite "
+                              "number (vertices and frames count from 1)",
+                              path, i / 3 + 1, list->n / n_vertices);
+    return CLOTH_OK;
 }
 
 int mesh_read_pc2(const char *path, uint32_t n_vertices, uint32_t *n_frames, double **place,

@@ -11,8 +11,11 @@
 #include "cloth/flow/state/room.h"
 #include "cloth/flow/step/step.h"
 
+#include <inttypes.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum { MAX_SOLVES = 5, MAX_CUTS = 8 };
 /* Of the contacts: where more rows than that lose half of their way, the step is too long. */
@@ -33,24 +36,53 @@ bool flow_contact_is_last(const struct flow_state *state)
 
 /* ---- What cannot be kept apart ---- */
 
-/* Writes what a pair is of: vertices, counted from 1 over all cloths as files do, and the obstacle.
- * Rank 0 alone knows them. */
+/* Appends to a text as far as it has room. */
+__attribute__((format(printf, 3, 4))) static void append(char *text, size_t size,
+                                                         const char *format, ...)
+{
+    const size_t used = strlen(text);
+    va_list list;
+    va_start(list, format);
+    vsnprintf(text + used, size - used, format, list);
+    va_end(list);
+}
+
+/* The cloth of a vertex that counts over all cloths. */
+static uint32_t cloth_of(const struct flow *flow, uint32_t vertex)
+{
+    uint32_t c = flow->model->n_cloths - 1;
+    while (flow->cloth_first[c] > vertex)
+        c--;
+    return c;
+}
+
+/* Writes what a pair is of: vertices as their meshes count them, from 1, and the obstacle. Rank 0
+ * alone knows them. */
 static void describe(const struct flow_state *state, const struct flow_near *near, size_t size,
                      char *text)
 {
+    const struct flow *flow = state->flow;
     const struct flow_tie_corners *at = &near->contact.at;
-    const uint32_t n_blocks = state->flow->tables.n_blocks, other = near->contact.side[1];
-    size_t used = (size_t)snprintf(text, size, "vertices");
-    for (uint32_t k = 0; k < at->n && used < size && state->flow->vertex; k++) {
-        const uint32_t place = state->flow->tables.block[at->block[k]].first + at->row[k];
-        used += (size_t)snprintf(text + used, size - used, " %u%s", state->flow->vertex[place] + 1,
-                                 at->held >> k & 1 ? " (pinned)" : "");
+    const uint32_t n_blocks = flow->tables.n_blocks, other = near->contact.side[1];
+    uint32_t last = flow->model->n_cloths;
+    text[0] = 0;
+    if (!flow->vertex)
+        return;
+    append(text, size, "vertices");
+    for (uint32_t k = 0; k < at->n; k++) {
+        const uint32_t place = flow->tables.block[at->block[k]].first + at->row[k];
+        const uint32_t vertex = flow->vertex[place], c = cloth_of(flow, vertex);
+        if (k && c != last)
+            append(text, size, " of '%.40s' and", flow->model->cloths[last].name);
+        append(text, size, " %" PRIu32 "%s", vertex - flow->cloth_first[c] + 1,
+               at->held >> k & 1 ? " (pinned)" : "");
+        last = c;
     }
-    if (other >= n_blocks && used < size)
-        snprintf(text + used, size - used, " and obstacles[%u], a %s", other - n_blocks,
-                 contact_kinds[state->flow->model->obstacles[other - n_blocks].kind]->name);
-    if (!state->flow->vertex)
-        text[0] = 0;
+    if (at->n)
+        append(text, size, " of '%.40s'", flow->model->cloths[last].name);
+    if (other >= n_blocks)
+        append(text, size, " and obstacles[%" PRIu32 "], a %s", other - n_blocks,
+               contact_kinds[flow->model->obstacles[other - n_blocks].kind]->name);
 }
 
 /* Finds the first pair of a list that fails, and describes it. */
@@ -88,14 +120,14 @@ static int describe_failing(struct flow_state *state, size_t size, char *text)
     return i < meetings->n ? describe_first(state, meetings->all + i, size, text) : DUITE_OK;
 }
 
-/* The reason of a failure. when: what is wrong. */
-static int say_why(struct flow_state *state, uint64_t n, const char *when)
+/* The reason of a failure. what: is wrong with n pairs; cure: what helps. */
+static int say_why(struct flow_state *state, uint64_t n, const char *what, const char *cure)
 {
     char first[200];
     const int code = describe_failing(state, sizeof first, first);
-    snprintf(state->reason, sizeof state->reason, "%llu %s%s%s%s", (unsigned long long)n, when,
+    snprintf(state->reason, sizeof state->reason, "%" PRIu64 " %s%s%s%s%s", n, what,
              first[0] ? ", the first of them at " : "", first,
-             model_contact_cure(state->flow->model));
+             first[0] ? " (vertices count from 1)" : "", cure);
     return code;
 }
 
@@ -109,7 +141,8 @@ static int note_pinch(struct flow_state *state, uint64_t fails)
     if (flow_contact_is_last(state))
         return say_why(state, fails,
                        "pairs of features cannot be kept apart: obstacles or pins pinch the cloth, "
-                       "or are too fast");
+                       "or are too fast",
+                       model_contact_cure(state->flow->model));
     const int code = first ? describe_failing(state, sizeof pair, pair) : DUITE_OK;
     if (pair[0])
         snprintf(report->contact_pinch, sizeof report->contact_pinch, "%s, at %g s", pair,
@@ -147,7 +180,8 @@ int flow_contact_start(struct flow_state *state)
     if (!code && seen.fails) {
         code = say_why(state, seen.fails,
                        "pairs of features touch where the run starts, cloths or a cloth and an "
-                       "obstacle: move them apart");
+                       "obstacle",
+                       ": move them apart, or write contact: {untangle: on}");
         return code ? code : FLOW_TANGLED;
     }
     if (!code)

@@ -85,6 +85,7 @@ struct flow {
                              extents, shear, what starts inside; empty: none */
     struct flow_source source; /* until the tables are distributed */
     uint32_t *vertex;          /* by place; from then on */
+    uint32_t *cloth_first;     /* n_cloths of the model: the first vertex of each among all */
     struct flow_names names;   /* from then on */
     struct flow_unused unused;
     uint32_t *attached; /* from then on: flow_attached */

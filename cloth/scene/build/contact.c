@@ -108,7 +108,7 @@ static int check_thickness(const struct model *model, const struct scene_tree *t
         return CLOTH_OK;
     return scene_tree_fail(tree, node, error,
                            "contact.thickness is %g m; at least %.3g m is expected: frames are in "
-                           "float, which this is what %g m from the origin needs%s",
+                           "float, and cloth that is %g m from the origin needs that much%s",
                            model->contact.thickness, least, far, model_contact_cure(model));
 }
 

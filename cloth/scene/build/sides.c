@@ -78,21 +78,42 @@ static int build_pair(struct model *model, uint32_t i, const struct scene_tree *
 
 /* ---- What does not meet ---- */
 
-/* Whether a name is that of a side, cloths before obstacles, or of one of its groups. */
+/* The list of the groups of a side, cloths before obstacles. */
+static int groups_of(const struct model *model, const struct scene_tree *tree, uint32_t side)
+{
+    const bool cloth = side < model->n_cloths;
+    const int list = scene_tree_get(tree, 1, cloth ? "cloths" : "obstacles");
+    const int item = scene_tree_item(tree, list, cloth ? side : side - model->n_cloths);
+    const int map = cloth ? item : scene_tree_pair(tree, item, 0).value;
+    return scene_tree_get(tree, map, "groups");
+}
+
+/* Whether a name is that of a side or of one of its groups. */
 static bool is_side(const struct model *model, const struct scene_tree *tree, uint32_t side,
                     const char *name)
 {
-    const bool cloth = side < model->n_cloths;
-    const uint32_t i = cloth ? side : side - model->n_cloths;
-    const int list = scene_tree_get(tree, 1, cloth ? "cloths" : "obstacles");
-    const int item = scene_tree_item(tree, list, i);
-    const int map = cloth ? item : scene_tree_pair(tree, item, 0).value;
-    const char *own = cloth ? model->cloths[i].name : model->obstacle_names[i];
-    const int groups = scene_tree_get(tree, map, "groups");
+    const char *own = side < model->n_cloths ? model->cloths[side].name
+                                             : model->obstacle_names[side - model->n_cloths];
+    const int groups = groups_of(model, tree, side);
     bool is = own && !strcmp(own, name);
     for (size_t k = 0; k < scene_tree_length(tree, groups); k++)
         is = is || !strcmp(scene_tree_scalar(tree, scene_tree_item(tree, groups, k)), name);
     return is;
+}
+
+/* Adds the groups of a list that are not yet among the first n names. Returns how many there are
+ * then. */
+static size_t add_groups(const struct scene_tree *tree, int groups, size_t n, const char **names)
+{
+    for (size_t k = 0; k < scene_tree_length(tree, groups); k++) {
+        const char *name = scene_tree_scalar(tree, scene_tree_item(tree, groups, k));
+        size_t i = 0;
+        while (i < n && strcmp(names[i], name) != 0)
+            i++;
+        names[n] = name;
+        n += i == n;
+    }
+    return n;
 }
 
 static int check_side(const struct model *model, const struct scene_tree *tree, int node,
@@ -100,15 +121,20 @@ static int check_side(const struct model *model, const struct scene_tree *tree, 
 {
     const uint32_t n_sides = model->n_cloths + model->n_obstacles;
     const char *name = scene_tree_scalar(tree, node);
-    for (uint32_t i = 0; i < n_sides; i++)
+    size_t room = n_sides;
+    for (uint32_t i = 0; i < n_sides; i++) {
         if (is_side(model, tree, i, name))
             return CLOTH_OK;
-    const char **names = scene_build_array(n_sides, sizeof *names, error);
+        room += scene_tree_length(tree, groups_of(model, tree, i));
+    }
+    const char **names = scene_build_array(room, sizeof *names, error);
     if (!names)
         return error->code;
     for (uint32_t i = 0; i < model->n_cloths; i++)
         names[i] = model->cloths[i].name;
-    const size_t n = add_obstacles(model, model->n_cloths, names);
+    size_t n = add_obstacles(model, model->n_cloths, names);
+    for (uint32_t i = 0; i < n_sides; i++)
+        n = add_groups(tree, groups_of(model, tree, i), n, names);
     const int code =
         scene_build_no_such("cloth, obstacle or group", name, names, n, tree, node, error);
     free(names);

@@ -326,6 +326,8 @@ static bool number_fits(const struct scene_rule *rule, const char *text)
         return false;
     if (rule->range == SCENE_FRACTION)
         return value > 0 && value < 1;
+    if (rule->range == SCENE_COEFFICIENT)
+        return value >= 0 && value <= 1000;
     return rule->range == SCENE_ANY || value > 0 ||
            (rule->range == SCENE_NOT_NEGATIVE && value >= 0);
 }

@@ -74,8 +74,8 @@ static const struct scene_rule material_keys[] = {
     {"strain_limit", SCENE_MAP, .inside = limit_keys,
      .about = "springs that pull edges back which are stretched too far"},
     {"damping", SCENE_MAP, .fallback = "{}", .inside = damping_keys, .about = "of motion"},
-    {"friction", SCENE_NUMBER, .range = SCENE_NOT_NEGATIVE, INTO(struct model_material, friction),
-     .about = "coefficient of certified contact; else that of contact"},
+    {"friction", SCENE_NUMBER, .range = SCENE_COEFFICIENT, INTO(struct model_material, friction),
+     .about = "coefficient of contact, certified or by repulsion; else that of contact"},
     {"diagonals", SCENE_CHOICE, .fallback = "both", INTO(struct model_material, both_diagonals),
      WORDS({"both", true}, {"one", false}), .about = "shear springs in a cell of a grid"},
     {0}};
@@ -85,11 +85,11 @@ static const struct scene_rule text = {.type = SCENE_TEXT};
 
 /* What every obstacle may have. */
 #define MOVES \
-    {"name", SCENE_TEXT, .about = "unique, for contact.pairs and contact.ignore"}, \
+    {"name", SCENE_TEXT, .about = "unique, for contact.pairs, contact.ignore, pins that follow and probes"}, \
     {"groups", SCENE_LIST, .filled = true, .inside = &text, \
      .about = "names for contact.ignore, of your choice"}, \
-    {"friction", SCENE_NUMBER, .range = SCENE_NOT_NEGATIVE, \
-     .about = "coefficient of certified contact; else that of contact"}, \
+    {"friction", SCENE_NUMBER, .range = SCENE_COEFFICIENT, \
+     .about = "coefficient of contact, certified or by repulsion; else that of contact"}, \
     {"motion", SCENE_MAP, .inside = scene_motion_keys, \
      .about = "from where the other keys say, by key frames; it need not begin there"}
 
@@ -260,7 +260,7 @@ static const struct scene_rule solver_keys[] = {
 static const struct scene_rule pair_keys[] = {
     {"of", SCENE_LIST, .required = true, .length = 2, .inside = &text,
      .about = "names of materials or obstacles"},
-    {"friction", SCENE_NUMBER, .required = true, .range = SCENE_NOT_NEGATIVE,
+    {"friction", SCENE_NUMBER, .required = true, .range = SCENE_COEFFICIENT,
      INTO(struct model_rub, friction), .about = "coefficient of the two"},
     {0}};
 static const struct scene_rule pair = {.type = SCENE_MAP, .inside = pair_keys};
@@ -283,7 +283,7 @@ static const struct scene_rule contact_keys[] = {
     {"thickness", SCENE_NUMBER, "m", "0.001", .range = SCENE_POSITIVE,
      INTO(struct model_contact, thickness), 
      .about = "certified, repulsion: how near to each other what touches is"},
-    {"friction", SCENE_NUMBER, .fallback = "0", .range = SCENE_NOT_NEGATIVE,
+    {"friction", SCENE_NUMBER, .fallback = "0", .range = SCENE_COEFFICIENT,
      INTO(struct model_contact, friction),
      .about = "coefficient of materials and obstacles that give none; sides a and b: sqrt(a b)"},
     {"pairs", SCENE_LIST, .fallback = "[]", .inside = &pair,

@@ -23,7 +23,13 @@ enum scene_type {
     SCENE_CHOICE          /* one of the words `choices` */
 };
 
-enum scene_range { SCENE_ANY, SCENE_POSITIVE, SCENE_NOT_NEGATIVE, SCENE_FRACTION };
+enum scene_range {
+    SCENE_ANY,
+    SCENE_POSITIVE,
+    SCENE_NOT_NEGATIVE,
+    SCENE_FRACTION,
+    SCENE_COEFFICIENT
+};
 
 /* A member of the structure that a map fills. `of` and `size` name the structure, for the test that
  * all keys of a map mean the same one. */

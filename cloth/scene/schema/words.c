@@ -115,7 +115,7 @@ static void list_expected(const struct scene_rule *rule, char *text, size_t size
 
 static void number_expected(const struct scene_rule *rule, char *text, size_t size)
 {
-    const char *const ranges[] = {"", " > 0", " >= 0", " > 0 and < 1"};
+    const char *const ranges[] = {"", " > 0", " >= 0", " > 0 and < 1", " >= 0 and <= 1000"};
     snprintf(text, size, "a finite number%s", ranges[rule->range]);
     if (rule->type != SCENE_NUMBER_OR_LIST)
         return;

@@ -95,7 +95,7 @@ START_TEST(wrong_kinds)
              ":2:17: contact.mode is filter; certified or repulsion or project is expected: it "
              "is gone; certified knows of contact in the solve, too"},
         {"gravity: [0, -9.81, 0]", "contact: {friction: -0.1}",
-         .error = ":2:21: contact.friction is -0.1; a finite number >= 0 is expected"},
+         .error = ":2:21: contact.friction is -0.1; a finite number >= 0 and <= 1000 is expected"},
         {"gravity: [0, -9.81, 0]", "contact: {thickness: 0}",
          .error = ":2:22: contact.thickness is 0; a finite number > 0 (m) is expected"},
         {"gravity: [0, -9.81, 0]", "contact: {mode: certified}\nintegrator: verlet",
@@ -121,6 +121,12 @@ START_TEST(wrong_kinds)
         {"gravity: [0, -9.81, 0]", "contact: {ignore: [[sheet, shet]]}",
          .error = ":2:28: there is no cloth, obstacle or group 'shet'; did you mean 'sheet'? "
                   "Allowed: sheet"},
+        {"obstacles: [{plane: {",
+         "contact: {ignore: [[sheet, warn]]}\nobstacles: [{plane: {groups: [warm, warm], ",
+         .error = ":11:28: there is no cloth, obstacle or group 'warn'; did you mean 'warm'? "
+                  "Allowed: sheet, warm"},
+        {"gravity: [0, -9.81, 0]", "contact: {friction: 1001}",
+         .error = ":2:21: contact.friction is 1001; a finite number >= 0 and <= 1000 is expected"},
         {"plane: {", "plane: {name: cotton, ",
          .error = ":11:28: an obstacle is named 'cotton', as a material is; another name is "
                   "expected, since contact.pairs has names of both"},

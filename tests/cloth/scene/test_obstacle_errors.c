@@ -3,6 +3,7 @@
 #include "tests/cloth/scene/scene_file.h"
 #include "tests/support/unit.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -133,17 +134,18 @@ START_TEST(bodies_that_cannot_be_read)
 }
 END_TEST
 
-/* A PC2 file of so many frames of n vertices, all at x = y = z = 1 but for the last frame's: 3. */
-static void write_pc2(const char *name, uint32_t n, uint32_t frames, size_t less)
+/* A PC2 file of so many frames of n vertices, all at x = y = z = 1 but for those of the
+ * last frame. */
+static void write_pc2(const char *name, uint32_t n, uint32_t frames, size_t less, float last)
 {
     char bytes[32 + 12 * 20] = "POINTCACHE2";
-    const float one = 1, three = 3;
+    const float one = 1;
     const uint32_t version = 1;
     memcpy(bytes + 12, &version, 4);
     memcpy(bytes + 16, &n, 4);
     memcpy(bytes + 28, &frames, 4);
     for (size_t i = 0; i < 3 * (size_t)n * frames; i++)
-        memcpy(bytes + 32 + 4 * i, i / 3 / n + 1 < frames ? &one : &three, 4);
+        memcpy(bytes + 32 + 4 * i, i / 3 / n + 1 < frames ? &one : &last, 4);
     scene_write_file(name, bytes, 32 + 12 * (size_t)n * frames - less);
 }
 
@@ -152,9 +154,10 @@ START_TEST(frames_that_are_wrong)
     write_body("whole.obj", WHOLE);
     write_body("turned.obj", "f 3 2 1\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
     write_body("less.obj", "f 1 3 2\nf 1 2 4\n");
-    write_pc2("three.pc2", 3, 2, 0);
-    write_pc2("short.pc2", 4, 2, 4);
-    write_pc2("none.pc2", 4, 0, 0);
+    write_pc2("three.pc2", 3, 2, 0, 3);
+    write_pc2("short.pc2", 4, 2, 4, 3);
+    write_pc2("none.pc2", 4, 0, 0, 3);
+    write_pc2("nan.pc2", 4, 2, 0, NAN);
 #define FRAMES "body: {obj: whole.obj, frames: "
     EXPECT({PLANE, FRAMES "{fps: 2}}",
             .error = ":11:45: obstacles[0].body.frames has no pc2 or obj; "
@@ -175,6 +178,7 @@ START_TEST(frames_that_are_wrong)
         {"three.pc2", "three.pc2: its frames have 3 vertices, but the mesh has 4"},
         {"short.pc2", "short.pc2: it ends within frame 2"},
         {"none.pc2", "none.pc2: it has no frames"},
+        {"nan.pc2", "nan.pc2: vertex 1 of frame 2 has a coordinate that is no finite number"},
         {"whole.obj", "whole.obj: no PC2 file of version 1"},
         {"nowhere.pc2", "nowhere.pc2: cannot be read: No such file"}};
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
@@ -196,7 +200,7 @@ END_TEST
 START_TEST(frames_that_jump)
 {
     write_body("whole.obj", WHOLE);
-    write_pc2("jumps.pc2", 4, 2, 0);
+    write_pc2("jumps.pc2", 4, 2, 0, 3);
     char *text = scene_changed(scene_right, PLANE,
                                FRAMES "{pc2: jumps.pc2, fps: 2, start: 1}, scale: 2, translate: "
                                       "[0, 1, 0]}");

@@ -4,6 +4,7 @@
 #include "cloth/physics/vec.h"
 
 #include <math.h>
+#include <stdbool.h>
 
 /* Distances of features in the ways of a textbook (m), which share no code with the product. */
 

@@ -71,7 +71,7 @@ tests_cloth_flow_test_newton_SOURCES = tests/cloth/flow/test_newton.c $(FLOW_TES
 tests_cloth_flow_test_newton_LDADD = $(CLOTH_TEST_LIBS)
 TESTS += tests/cloth/flow/test_newton
 check_PROGRAMS += tests/cloth/flow/test_checked
-tests_cloth_flow_test_checked_SOURCES = tests/cloth/flow/test_checked.c $(FLOW_TEST_MODELS) \
+tests_cloth_flow_test_checked_SOURCES = tests/cloth/flow/test_checked.c tests/cloth/flow/checked_runs.h $(FLOW_TEST_MODELS) \
 	tests/cloth/scene/scene_file.c tests/cloth/scene/scene_file.h
 tests_cloth_flow_test_checked_LDADD = $(CLOTH_TEST_LIBS)
 tests_cloth_flow_test_checked_LDFLAGS = $(AM_LDFLAGS) -Wl,--wrap=check_call
@@ -82,7 +82,7 @@ tests_cloth_flow_test_warnings_LDADD = $(CLOTH_TEST_LIBS)
 TESTS += tests/cloth/flow/test_warnings
 FLOW_TEST_SESSION = tests/cloth/flow/session.c tests/cloth/flow/session.h $(FLOW_TEST_MODELS)
 check_PROGRAMS += tests/cloth/flow/test_fields tests/cloth/flow/test_ties tests/cloth/flow/test_ties_runs
-tests_cloth_flow_test_ties_SOURCES = tests/cloth/flow/test_ties.c $(FLOW_TEST_MODELS)
+tests_cloth_flow_test_ties_SOURCES = tests/cloth/flow/test_ties.c tests/cloth/flow/random_ties.h $(FLOW_TEST_MODELS)
 tests_cloth_flow_test_ties_LDADD = $(CLOTH_TEST_LIBS)
 tests_cloth_flow_test_ties_runs_SOURCES = tests/cloth/flow/test_ties_runs.c $(FLOW_TEST_SESSION)
 tests_cloth_flow_test_ties_runs_LDADD = $(CLOTH_TEST_LIBS)

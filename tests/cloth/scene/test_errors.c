@@ -61,23 +61,28 @@ END_TEST
 
 START_TEST(wrong_kinds)
 {
+    EXPECT({"gravity: [0, -9.81, 0]", "gravity: 9.81",
+            .error = ":2:10: gravity is 9.81; a list of 3 numbers (m/s^2) is expected"},
+           {"gravity: [0, -9.81, 0]", "gravity: [0, 1]",
+            .error = ":2:10: gravity is a list of 2; a list of 3 numbers (m/s^2) is expected"},
+           {"gravity: [0, -9.81, 0]", "gravity: [0, {a: 1}, 0]",
+            .error = ":2:14: gravity[1] is a map of 1; a finite number (m/s^2) is expected"},
+           {"time: {h: 0.001, end: 0.1}", "time: 3", .error = ":12:7: time is 3; a map of h, ..."},
+           {"name: sheet", "name: ''",
+            .error = ":4:11: cloths[0].name is the text ''; a text is expected"},
+           {"name: sheet", "name: [a]",
+            .error = ":4:11: cloths[0].name is a list of 1; a text is expected"},
+           {"name: sheet", "name: !mine a",
+            .error = ":4:11: cloths[0].name has the tag !mine; a value without a tag is expected"},
+           {"gravity: [0, -9.81, 0]", "integrator: rk5",
+            .error = ":2:13: integrator is rk5; implicit_euler or explicit_euler or "
+                     "symplectic_euler or verlet or midpoint or rk4 or bdf2 is expected"});
+}
+END_TEST
+
+START_TEST(wrong_contact)
+{
     EXPECT(
-        {"gravity: [0, -9.81, 0]", "gravity: 9.81",
-         .error = ":2:10: gravity is 9.81; a list of 3 numbers (m/s^2) is expected"},
-        {"gravity: [0, -9.81, 0]", "gravity: [0, 1]",
-         .error = ":2:10: gravity is a list of 2; a list of 3 numbers (m/s^2) is expected"},
-        {"gravity: [0, -9.81, 0]", "gravity: [0, {a: 1}, 0]",
-         .error = ":2:14: gravity[1] is a map of 1; a finite number (m/s^2) is expected"},
-        {"time: {h: 0.001, end: 0.1}", "time: 3", .error = ":12:7: time is 3; a map of h, ..."},
-        {"name: sheet", "name: ''",
-         .error = ":4:11: cloths[0].name is the text ''; a text is expected"},
-        {"name: sheet", "name: [a]",
-         .error = ":4:11: cloths[0].name is a list of 1; a text is expected"},
-        {"name: sheet", "name: !mine a",
-         .error = ":4:11: cloths[0].name has the tag !mine; a value without a tag is expected"},
-        {"gravity: [0, -9.81, 0]", "integrator: rk5",
-         .error = ":2:13: integrator is rk5; implicit_euler or explicit_euler or "
-                  "symplectic_euler or verlet or midpoint or rk4 or bdf2 is expected"},
         {"gravity: [0, -9.81, 0]", "contact: {mode: projekt}",
          .error = ":2:17: contact.mode is projekt; certified or repulsion or project is expected"},
         {"gravity: [0, -9.81, 0]", "contact: project",
@@ -108,11 +113,45 @@ START_TEST(wrong_kinds)
          .error = ":2:37: contact.damping is -1; a finite number >= 0 is expected"},
         {"gravity: [0, -9.81, 0]", "contact: {mode: certified, thickness: 1e-8}",
          .error = ":2:39: contact.thickness is 1e-08 m; at least ..."},
+        {"gravity: [0, -9.81, 0]", "contact: {pairs: [{of: [cotton], friction: 1}]}",
+         .error = ":2:24: contact.pairs[0].of is a list of 1; a list of 2 texts is expected"},
+        {"gravity: [0, -9.81, 0]", "contact: {self: on, thickness: 1e-8}",
+         .error = ":2:32: contact.thickness is 1e-08 m; at least 2.07e-06 m is expected: frames "
+                  "are in float, which this is what 1 m from the origin needs; contact is "
+                  "certified by default in this scene, contact: {mode: project} is the way "
+                  "without"});
+}
+END_TEST
+
+START_TEST(wrong_pins)
+{
+    EXPECT(
+        {"pins: [{vertices: [0, 3]}]",
+         "pins: [{vertices: [0, 3], follow: a, motion: {times: [0], translate: [[0, 0, 0]]}}]",
+         .error = ":7:50: a pin follows an obstacle and has a motion; one of the two is expected"},
+        {"pins: [{vertices: [0, 3]}]",
+         "pins: [{vertices: [0, 3], follow: a, to: line, direction: [1, 0, 0]}]",
+         .error = ":7:39: a pin to a line cannot follow an obstacle; to: point is expected"},
+        {"[{vertices: [0, 3]}]", "[]\n    loads: []",
+         .error = ":9:5: loads is twice in cloths[0]; each key is allowed once"},
+        {"pins: [{vertices: [0, 3]}]", "pins: [{}]",
+         .error =
+             ":7:12: cloths[0].pins[0] has no vertices or nearest or box; one of them is expected"},
+        {"{vertices: [0, 3]}", "{vertices: [0], nearest: [0, 0, 0]}",
+         .error = ":7:28: cloths[0].pins[0] has both vertices and nearest; one of vertices or "
+                  "nearest or box is expected"},
+        {"vertices: [0, 3]", "vertices: []",
+         .error = ":7:23: cloths[0].pins[0].vertices is an empty list; a non-empty list of "
+                  "whole numbers is expected"});
+}
+END_TEST
+
+START_TEST(wrong_names)
+{
+    EXPECT(
         {"gravity: [0, -9.81, 0]", "contact: {pairs: [{of: [coton, sheet], friction: 1}]}",
          .error = ":2:25: there is no material or obstacle 'coton'; did you mean 'cotton'? "
                   "Allowed: cotton"},
-        {"gravity: [0, -9.81, 0]", "contact: {pairs: [{of: [cotton], friction: 1}]}",
-         .error = ":2:24: contact.pairs[0].of is a list of 1; a list of 2 texts is expected"},
         {"gravity: [0, -9.81, 0]",
          "contact: {pairs: [{of: [cotton, cotton], friction: 1}, {of: [cotton, cotton], friction: "
          "2}]}",
@@ -133,29 +172,7 @@ START_TEST(wrong_kinds)
         {"[{plane: {", "[{sphere: {name: a, centre: [0, 9, 0], radius: 1}}, {plane: {name: a, ",
          .error = ":11:79: a second obstacle is named 'a'; names must differ"},
         {"pins: [{vertices: [0, 3]}]", "pins: [{vertices: [0, 3], follow: flor}]",
-         .error = ":7:39: there is no obstacle 'flor': none has a name"},
-        {"pins: [{vertices: [0, 3]}]",
-         "pins: [{vertices: [0, 3], follow: a, motion: {times: [0], translate: [[0, 0, 0]]}}]",
-         .error = ":7:50: a pin follows an obstacle and has a motion; one of the two is expected"},
-        {"pins: [{vertices: [0, 3]}]",
-         "pins: [{vertices: [0, 3], follow: a, to: line, direction: [1, 0, 0]}]",
-         .error = ":7:39: a pin to a line cannot follow an obstacle; to: point is expected"},
-        {"gravity: [0, -9.81, 0]", "contact: {self: on, thickness: 1e-8}",
-         .error = ":2:32: contact.thickness is 1e-08 m; at least 2.07e-06 m is expected: frames "
-                  "are in float, which this is what 1 m from the origin needs; contact is "
-                  "certified by default in this scene, contact: {mode: project} is the way "
-                  "without"},
-        {"[{vertices: [0, 3]}]", "[]\n    loads: []",
-         .error = ":9:5: loads is twice in cloths[0]; each key is allowed once"},
-        {"pins: [{vertices: [0, 3]}]", "pins: [{}]",
-         .error =
-             ":7:12: cloths[0].pins[0] has no vertices or nearest or box; one of them is expected"},
-        {"{vertices: [0, 3]}", "{vertices: [0], nearest: [0, 0, 0]}",
-         .error = ":7:28: cloths[0].pins[0] has both vertices and nearest; one of vertices or "
-                  "nearest or box is expected"},
-        {"vertices: [0, 3]", "vertices: []",
-         .error = ":7:23: cloths[0].pins[0].vertices is an empty list; a non-empty list of "
-                  "whole numbers is expected"});
+         .error = ":7:39: there is no obstacle 'flor': none has a name"});
 }
 END_TEST
 
@@ -309,6 +326,9 @@ int main(void)
     tcase_add_test(cases, times_out_of_range);
     tcase_add_test(cases, what_is_no_number);
     tcase_add_test(cases, wrong_kinds);
+    tcase_add_test(cases, wrong_contact);
+    tcase_add_test(cases, wrong_pins);
+    tcase_add_test(cases, wrong_names);
     tcase_add_test(cases, unknown_and_missing_keys);
     tcase_add_test(cases, files_that_are_no_scenes);
     tcase_add_test(cases, files_that_cannot_be_read);

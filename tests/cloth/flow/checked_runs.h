@@ -1,0 +1,166 @@
+#ifndef TESTS_CLOTH_FLOW_CHECKED_RUNS_H
+#define TESTS_CLOTH_FLOW_CHECKED_RUNS_H
+
+#include "cloth/flow/kernels.h"
+#include "tests/cloth/flow/models.h"
+#include "tests/cloth/scene/scene_file.h"
+#include "tests/support/unit.h"
+
+#include <mpi.h>
+#include <stdio.h>
+#include <string.h>
+
+/* Runs of a small scene in checking mode: the base, with sets of the case. For one test program. */
+
+enum { MAX_SETS = 6 };
+
+static const char *const base =
+    "schema: 1\n"
+    "cloths:\n"
+    "  - name: sheet\n"
+    "    mesh: {grid: {width: 1, height: 1, nx: 6, ny: 6}}\n"
+    "    material: springs\n"
+    "    pins: [{vertices: [0]}]\n"
+    "    velocity: [0, -1, 0]\n"
+    "materials:\n"
+    "  springs: {density: 0.2, stretch: 50, shear: 25, bend: 5, damping: {viscous: 0.001, mass: "
+    "0.1, stiffness: 0.01}}\n"
+    "  undamped: {density: 0.2, stretch: 50, ea: 50}\n"
+    "  hinges: {density: 0.2, stretch: 50, shear: 25, bending: {rigidity: 0.001}}\n"
+    "  quadratic: {density: 0.2, stretch: 50, shear: 25, bending: {model: quadratic, rigidity: "
+    "[0.001, 0.002]}}\n"
+    "  triangles: {density: 0.2, model: triangles, stretch: [50, 40], shear: 20, poisson: 0.3,\n"
+    "    damping: {stiffness: 0.01}, bending: {rigidity: 0.001}}\n"
+    "  uncorrected: {density: 0.2, model: triangles, stretch: 50, shear: 20, forces: uncorrected}\n"
+    "obstacles:\n"
+    "  - plane: {point: [0, -0.0015, 0], normal: [0, 1, 0]}\n"
+    "probes: [{vertices: [0, 7, 35], values: [position, velocity, reaction, total]}]\n"
+    "time: {h: 0.001, end: 0.002, fps: 500}\n"
+    "solver: {stop: {count: 4}}\n"
+    "energies: steps\n"
+    "grain: 8\n";
+
+static inline int take_frame(void *context, uint64_t frame, double time, const double *position,
+                             struct cloth_error *error)
+{
+    (void)context, (void)frame, (void)time, (void)position, (void)error;
+    return CLOTH_OK;
+}
+
+static inline int take_force(void *context, uint64_t frame, const double *force,
+                             struct cloth_error *error)
+{
+    (void)context, (void)frame, (void)force, (void)error;
+    return 0;
+}
+
+static inline int take_row(void *context, uint64_t step, double time, size_t n,
+                           const double *values, struct cloth_error *error)
+{
+    (void)context, (void)step, (void)time, (void)n, (void)values, (void)error;
+    return CLOTH_OK;
+}
+
+static inline int take_system(void *context, const struct solve_system *system,
+                              struct cloth_error *error)
+{
+    (void)context, (void)system, (void)error;
+    return CLOTH_OK;
+}
+
+static inline void constrain_some(void *context, const struct flow_rows *rows)
+{
+    (void)context;
+    for (size_t i = 0; i < rows->n; i += 3)
+        rows->filter[i] = (phys_vec){0};
+}
+
+/* What a run is besides its scene. */
+struct how {
+    bool system, own_filter;
+    struct flow_report report; /* of it */
+};
+
+static inline void run_checked(struct how *how, struct flow *flow, struct cloth_error *error)
+{
+    const struct flow_output output = {.frame = take_frame,
+                                       .force = take_force,
+                                       .row = take_row,
+                                       .system = how->system ? take_system : NULL};
+    duite_options options = duite_options_default();
+    duite *rt = NULL;
+    options.kernels = flow_kernels();
+    options.context = flow;
+    options.threads = 1;
+    options.bind = 0;
+    options.check = 1;
+    ck_assert_msg(!duite_start(&rt, &options), "%s", duite_message());
+    flow_filter_by(flow, (struct flow_filter){.rows = constrain_some});
+    flow_run(flow, rt, &output, NULL, &how->report, error);
+    ck_assert_msg(!duite_stop(&rt), "%s", duite_message());
+}
+
+static bool quick, sampled;
+static unsigned asked; /* how many runs the case has asked for */
+
+static inline void sample(void)
+{
+    sampled = quick;
+    asked = 0;
+}
+
+static inline void sample_no_more(void)
+{
+    sampled = false;
+}
+
+/* Sampled: all but the first run that a case asks for, and each fifth one after it. */
+static inline bool left_out(void)
+{
+    return sampled && asked++ % 5;
+}
+
+/* The base with these sets, of which those that are NULL are none. Returns whether it was run.
+ * Collective. */
+static inline bool run_how(struct how *how, const char *const sets[MAX_SETS])
+{
+    if (left_out())
+        return false;
+    struct scene_set some[MAX_SETS];
+    char name[1024] = "";
+    size_t n = 0;
+    for (size_t i = 0; i < MAX_SETS; i++)
+        if (sets[i]) {
+            some[n++] = (struct scene_set){.text = sets[i]};
+            snprintf(name + strlen(name), sizeof name - strlen(name), " %s", sets[i]);
+        }
+    int rank, ranks;
+    struct cloth_error error = {0};
+    struct flow *flow = NULL;
+    struct model model = {0};
+    record_mpi(&rank, &ranks);
+    if (rank) {
+        flow_join(&flow, &error);
+    } else {
+        model = scene_read_right(base, n, some);
+        model.own_filter = how->own_filter;
+        flow_prepare(&flow, &model, ranks, &error);
+    }
+    MPI_Bcast(&error, sizeof error, MPI_BYTE, 0, MPI_COMM_WORLD);
+    if (!error.code)
+        run_checked(how, flow, &error);
+    flow_free(flow);
+    if (!rank)
+        model_free(&model);
+    ck_assert_msg(!error.code, "with%s: %s", name, error.text);
+    return true;
+}
+
+#define SETS(...) ((const char *const[MAX_SETS]){__VA_ARGS__})
+
+static inline void run(const char *const sets[MAX_SETS])
+{
+    run_how(&(struct how){0}, sets);
+}
+
+#endif

@@ -122,11 +122,14 @@ static void print_contact(FILE *file, const struct model *model, const struct fl
         fprintf(file, "; %.2f solves a step, %" PRIu64 " pairs certified", solves_mean(report),
                 report->contact_pairs);
     fputc('\n', file);
-    if (report->contact_cuts)
+    if (report->contact_cuts && report->contact_cut_run)
         fprintf(file,
                 "  ways cut         %" PRIu64 ", of one vertex in %" PRIu64
                 " steps in a row at most\n",
                 report->contact_cuts, report->contact_cut_run);
+    else if (report->contact_cuts)
+        fprintf(file, "  ways cut         %" PRIu64 ", all in steps that were given up\n",
+                report->contact_cuts);
     if (report->contact_pinches)
         fprintf(file, "  pinched          %" PRIu64 " pairs, in steps that were halved; first %s\n",
                 report->contact_pinches, report->contact_pinch);

@@ -147,6 +147,11 @@ int scene_build_frames(struct model *model, struct contact_frames *frames, doubl
                        const struct mesh *mesh, const struct mesh_transform *transform,
                        const struct scene_tree *tree, int body, struct cloth_error *error);
 
+/* Warns of a body whose surface meets itself where the run starts. place: of its vertices in the
+ * first of its frames; NULL: it has none. */
+int scene_build_warn_crossed(struct model *model, const struct mesh *mesh, const double *place,
+                             const struct scene_tree *tree, int file, struct cloth_error *error);
+
 /* The mesh of the OBJ file that a node names, relative to the scene's folder, by mesh_read_obj or
  * mesh_read_surface; the file is added to the model's. What is wrong with the file is in `inner`,
  * without the place in the scene. */

@@ -149,6 +149,8 @@ static int build_body(struct model *model, struct contact_shape *shape, struct s
                                      scene_tree_scalar(tree, file), inner.text);
     if (!code)
         code = warn_of_body(model, tree, file, turned, error);
+    if (!code)
+        code = scene_build_warn_crossed(model, &mesh, place, tree, file, error);
     shape->body = model->bodies.n;
     if (!code)
         build_view(model, shape, tree, node);

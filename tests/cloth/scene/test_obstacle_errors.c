@@ -67,7 +67,7 @@ END_TEST
 #define WHOLE   "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
 static void write_body(const char *name, const char *faces)
 {
-    char text[200];
+    char text[400];
     snprintf(text, sizeof text, "%s%s", CORNERS, faces);
     scene_write_file(name, text, strlen(text));
 }
@@ -260,6 +260,29 @@ START_TEST(a_body_that_is_inside_out)
 }
 END_TEST
 
+/* A second tetrahedron, in a corner of the first or away from it. */
+START_TEST(a_body_that_goes_through_itself)
+{
+    const char *const at[] = {"0.1", "3"};
+    for (int i = 0; i < 2; i++) {
+        char rest[300];
+        snprintf(rest, sizeof rest,
+                 "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\nv %s 0.1 0.1\nv 9 0.1 0.1\nv %s 9 0.1\n"
+                 "v %s 0.1 9\nf 5 7 6\nf 5 6 8\nf 5 8 7\nf 6 7 8\n",
+                 at[i], at[i], at[i]);
+        write_body("twice.obj", rest);
+        char *text = scene_changed(scene_right, PLANE, "body: {obj: twice.obj}");
+        struct model model = scene_read_right(text, 0, NULL);
+        ck_assert_uint_eq(model.n_warnings, i ? 0 : 1);
+        ck_assert(i || strstr(model.warnings[0], ":11:26: the body goes through itself: 3 pairs of "
+                                                 "its triangles intersect, the first are 2 3 4 "
+                                                 "and 5 7 6 (vertices count from 1)"));
+        model_free(&model);
+        free(text);
+    }
+}
+END_TEST
+
 #define MAPS "body: {obj: whole.obj, "
 START_TEST(maps_that_are_wrong)
 {
@@ -332,6 +355,7 @@ int main(void)
     tcase_add_test(cases, maps);
     tcase_add_test(cases, a_body_in_centimetres);
     tcase_add_test(cases, a_body_that_is_inside_out);
+    tcase_add_test(cases, a_body_that_goes_through_itself);
     suite_add_tcase(suite, cases);
     return unit_run(suite);
 }

@@ -93,12 +93,17 @@ static inline const phys_vec *flow_tie_values(const struct flow_table *t, const 
     return (const phys_vec *)values + flow_value_rows(t);
 }
 
-/* They as a solve sees them. p_other: p of their ghosts, in a pass. */
-static inline struct solve_ties flow_ties_solved(const struct flow_ties *ties,
-                                                 const phys_vec *value, const phys_vec *p_other)
+/* Behind those, what a solve reads of ties in every pass: the ones that add something, side by side
+ * in their order, for most contacts of a pile do not press. Rows that they take: */
+static inline size_t flow_acting_rows(uint32_t room)
 {
-    return (struct solve_ties){ties->n, ties->corner, ties->weight, value, p_other};
+    return room ? 1 + 2 * (size_t)room + (room + 1) / 2 : 0;
 }
+/* Writes them (solver/ties.c). value: of all ties; the rows follow. */
+void flow_ties_gather(const struct flow_ties *ties, phys_vec *value);
+/* They as a solve sees them. p_other: p of the ghosts of ties, in a pass. */
+struct solve_ties flow_ties_solved(const struct flow_ties *ties, const phys_vec *value,
+                                   const phys_vec *p_other);
 
 /* A corner of a tie: a row of the block's own, or of what the blocks that it shares ties with show
  * it. shown: TIED of a field whose rows are those shown, once (part 0) or twice (0, 1). */

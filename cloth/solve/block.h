@@ -50,7 +50,8 @@ PHYS_INLINE void solve_constrain(const phys_vec *normal, phys_vec *filter)
 
 /* What joins rows for some solves only, in a block of any format. A tie has up to four corners with
  * weights w_k. It adds w_i w_k N to row i and column k, N a value of SOLVE_SPRINGS: with u the sum
- * of w_k p_k it adds w_i N u to row i. Every block with a corner knows the whole tie. */
+ * of w_k p_k it adds w_i N u to row i. Every block with a corner knows the whole tie. Ties that add
+ * nothing need not be among them. */
 enum { SOLVE_TIE_CORNERS = 4 };
 struct solve_ties {
     size_t n;

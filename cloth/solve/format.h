@@ -79,6 +79,12 @@ PHYS_INLINE void solve_nine_of(enum solve_format format, const void *entry, size
     }
 }
 
+/* Whether a spring's value adds nothing. */
+PHYS_INLINE bool solve_is_nothing(const phys_vec *value)
+{
+    return (*value)[0] == 0 && (*value)[1] == 0 && (*value)[2] == 0 && (*value)[3] == 0;
+}
+
 /* alpha d + w (w . d) of a spring; lane 3 becomes rubbish. */
 PHYS_INLINE void solve_spring_times(const phys_vec *value, const phys_vec *d, phys_vec *y)
 {

@@ -169,6 +169,8 @@ static void couple_ties(const struct flow *flow, const phys_vec *value,
     m.own = solve_patches_of(m.ties.n_rows, flow->patches);
     for (uint32_t i = 0; i < m.ties.n; i++) {
         struct coupled_tie tie;
+        if (solve_is_nothing(value + i))
+            continue;
         see_tie(&m, i, &tie);
         find_targets(&m, &tie);
         for (uint32_t k = 0; k < tie.n; k++)

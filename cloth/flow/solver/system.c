@@ -110,6 +110,12 @@ static void end_matrix(const struct making *m, const struct solve_cut *cut)
     memset(value + n, 0, (4 * flow_value_rows(t) - n) * sizeof *value);
 }
 
+static void gather_ties(const struct making *m)
+{
+    const struct flow_ties ties = flow_ties_open(m->view.tie_table);
+    flow_ties_gather(&ties, (phys_vec *)m->values + flow_value_rows(m->t));
+}
+
 static void make(const struct making *m)
 {
     const struct flow_table *t = m->t;
@@ -130,6 +136,8 @@ static void make(const struct making *m)
     if (m->view.contact_rows)
         flow_contact_system(flow_of(m->call), &m->view, m->h, m->push, m->b,
                             (phys_vec *)m->values + flow_value_rows(m->t));
+    if (m->view.tie_table)
+        gather_ties(m);
     if (m->sums)
         end_matrix(m, &cut);
 }

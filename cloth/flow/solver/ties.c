@@ -1,6 +1,63 @@
-/* What a solve shows of the corners of ties (cloth/flow/state/ties.h): rows of s to the blocks that
- * they lead to, after each pass, and once a solve the coarse functions there. */
+/* Ties in a solve (cloth/flow/state/ties.h): those that it reads in every pass; and what it shows
+ * of their corners: rows of s to the blocks that they lead to, after each pass, and once a solve
+ * the coarse functions there. */
 #include "cloth/flow/solver/solver.h"
+
+/* ---- Those that add something ---- */
+
+/* How many there are, then what there is room for. */
+struct acting {
+    uint64_t *n;
+    phys_vec *value;
+    double (*weight)[SOLVE_TIE_CORNERS];
+    uint32_t (*corner)[SOLVE_TIE_CORNERS];
+};
+
+/* Their rows are behind the values of all. */
+static struct acting find_acting(const struct flow_ties *ties, const phys_vec *value)
+{
+    const size_t room = ties->room.ties;
+    phys_vec *rows = (phys_vec *)value + room; /* who only reads does not write */
+    return (struct acting){(void *)rows, rows + 1, (void *)(rows + 1 + room),
+                           (void *)(rows + 1 + 2 * room)};
+}
+
+void flow_ties_gather(const struct flow_ties *ties, phys_vec *value)
+{
+    const struct acting to = find_acting(ties, value);
+    size_t n = 0;
+    for (uint32_t i = 0; i < ties->n; i++) {
+        if (solve_is_nothing(value + i))
+            continue;
+        to.value[n] = value[i];
+        memcpy(to.weight[n], ties->weight[i], sizeof to.weight[n]);
+        memcpy(to.corner[n], ties->corner[i], sizeof to.corner[n]);
+        n++;
+    }
+    if (!ties->room.ties)
+        return;
+    const size_t rest = ties->room.ties - n;
+    memset(to.value + n, 0, rest * sizeof *to.value);
+    memset(to.weight + n, 0, rest * sizeof *to.weight);
+    memset(to.corner + n, 0, rest * sizeof *to.corner);
+    memset(to.n, 0, sizeof *value);
+    *to.n = n;
+}
+
+struct solve_ties flow_ties_solved(const struct flow_ties *ties, const phys_vec *value,
+                                   const phys_vec *p_other)
+{
+    const struct acting acting = find_acting(ties, value);
+    return (struct solve_ties){
+        .n = ties->n ? *acting.n : 0,
+        .corner = (const uint32_t(*)[SOLVE_TIE_CORNERS])acting.corner,
+        .weight = (const double(*)[SOLVE_TIE_CORNERS])acting.weight,
+        .value = acting.value,
+        .p_other = p_other,
+    };
+}
+
+/* ---- What it shows ---- */
 
 /* Rows that others see; zero where there are none. */
 static void pack(const struct flow_ties *ties, const phys_vec *y, double *to)

@@ -160,13 +160,15 @@ static size_t skin_boxes(const struct flow_state *state, uint32_t block)
     return contact_boxes_bytes(&skin);
 }
 
-/* The diagonal, the filter if there is one, the values of the entries, those of ties:
- * flow_matrix_in, flow_tie_values. */
+/* The diagonal, the filter if there is one, the values of the entries, those of ties, the ties that
+ * add something: flow_matrix_in, flow_tie_values, flow_ties_solved. */
 static size_t matrix(const struct flow_state *state, uint32_t block)
 {
     const struct flow_table *t = table_of(state, block);
     const size_t filter = model_is_filtered(state->flow->model) ? 4 * (size_t)t->n : 0;
-    return 4 * (flow_diagonal_rows(t) + flow_value_rows(t) + tie_room(state, block).ties) + filter;
+    const uint32_t ties = tie_room(state, block).ties;
+    return 4 * (flow_diagonal_rows(t) + flow_value_rows(t) + ties + flow_acting_rows(ties)) +
+           filter;
 }
 
 static size_t factor(const struct flow_state *state, uint32_t block)

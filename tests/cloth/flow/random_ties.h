@@ -95,7 +95,7 @@ static inline void draw_all(unsigned seed)
         ties[i] = draw_corners(below(SOLVE_TIE_CORNERS + 1));
     list = (struct flow_tie_list){3, TIES, joints, 12, ties};
     for (uint32_t i = 0; i < 3 + TIES; i++) {
-        values[i] = (phys_vec){draw(), draw(), draw(), 1 + draw()};
+        values[i] = i % 3 ? (phys_vec){draw(), draw(), draw(), 1 + draw()} : (phys_vec){0};
         if (is_listed(i))
             add_dense(i);
     }

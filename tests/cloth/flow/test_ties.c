@@ -170,7 +170,7 @@ struct seen {
     struct solve_cut cut;
     double free[ROWS];
     uint32_t row[ROWS + 1];
-    phys_vec value[3 + TIES], ghosts[BLOCKS * ROWS];
+    phys_vec value[4 * (3 + TIES)], ghosts[BLOCKS * ROWS];
 };
 
 static void see(uint32_t b, enum solve_format format, struct seen *s)
@@ -184,6 +184,8 @@ static void see(uint32_t b, enum solve_format format, struct seen *s)
         s->value[i] = values[s->ties.of[i]];
     for (uint32_t g = 0; g < s->ties.n_ghosts; g++)
         s->ghosts[g] = p[s->ties.other[s->ties.ghost_other[g]]][s->ties.ghost_row[g]];
+    ck_assert_uint_le(s->ties.room.ties + flow_acting_rows(s->ties.room.ties), 4 * (3 + TIES));
+    flow_ties_gather(&s->ties, s->value);
     s->solved = flow_ties_solved(&s->ties, s->value, s->ghosts);
     s->cut = (struct solve_cut){0, NULL, s->ties.n_halo, s->ties.halo, &s->solved};
 }
@@ -244,6 +246,28 @@ START_TEST(local_preconditioners_have_the_diagonal)
 }
 END_TEST
 
+START_TEST(a_solve_sees_what_adds_something)
+{
+    make_all(1);
+    for (uint32_t b = 0; b < BLOCKS; b++) {
+        struct seen s;
+        size_t n = 0;
+        see(b, SOLVE_SPRINGS, &s);
+        for (uint32_t i = 0; i < s.ties.n; i++) {
+            if (s.ties.of[i] % 3 == 0)
+                continue;
+            ck_assert_uint_lt(n, s.solved.n);
+            ck_assert_mem_eq(s.solved.value + n, values + s.ties.of[i], sizeof *values);
+            ck_assert_mem_eq(s.solved.weight[n], s.ties.weight[i], sizeof s.ties.weight[i]);
+            ck_assert_mem_eq(s.solved.corner[n], s.ties.corner[i], sizeof s.ties.corner[i]);
+            n++;
+        }
+        ck_assert_uint_eq(s.solved.n, n);
+    }
+    free_all();
+}
+END_TEST
+
 /* P' N P of rows with weights, some without axes. */
 START_TEST(coarse_block)
 {
@@ -283,6 +307,7 @@ int main(void)
     tcase_add_test(tables, room_that_does_not_do);
     tcase_add_test(tables, others_that_show_nothing);
     tcase_add_loop_test(blocks, product, 0, 6);
+    tcase_add_test(blocks, a_solve_sees_what_adds_something);
     tcase_add_loop_test(blocks, local_preconditioners_have_the_diagonal, 0, 4);
     tcase_add_test(blocks, coarse_block);
     suite_add_tcase(suite, tables);

@@ -15,6 +15,7 @@ libduite_cloth_la_SOURCES += \
     cloth/flow/contact/meet_shape.c \
     cloth/flow/contact/memory.c \
     cloth/flow/contact/pairs.c \
+    cloth/flow/contact/index.c \
     cloth/flow/contact/pick.c \
     cloth/flow/contact/repel.c \
     cloth/flow/contact/repel.h \

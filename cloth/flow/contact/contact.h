@@ -9,8 +9,9 @@
 /* Certified contact of a step, as its main program drives it. In reading order: certify.c is the
  * step: solve, look, solve again or cut. pairs.c finds which sides are near each other. meet.c is
  * the task of two of them: it certifies what may touch and lists what is near. touch.c makes of
- * that the contacts of a block, which are state. rows.c brings contacts to the blocks that have
- * their corners, and into the system of the step. cut.c cuts ways.
+ * that the contacts of a block, which are state. index.c says which of them have corners where.
+ * rows.c brings contacts to the blocks that have their corners, and into the system of the step.
+ * cut.c cuts ways.
  *
  * A side is a block of cloth or an obstacle. Sides have numbers: blocks, then obstacles. */
 
@@ -47,6 +48,14 @@ static inline size_t flow_list_bytes(size_t n, size_t item)
 {
     return sizeof(struct flow_list) + n * item;
 }
+
+/* A list of contacts that a block keeps ends with which of them have corners in which block. Bytes
+ * of the whole list at most; writes that part, behind the contacts, and returns the bytes; finds
+ * those of a block: n places in the list, ascending. Local. (index.c) */
+size_t flow_contact_index_room(size_t n, uint32_t n_blocks);
+size_t flow_contact_index(struct flow_list *list, uint32_t n_blocks);
+const uint32_t *flow_contact_of(const struct flow_list *list, uint32_t block, uint32_t n_blocks,
+                                size_t *n);
 
 /* Numbers that a task of two sides adds to the counts, at FLOW_COUNTS times its number: pairs that
  * fail; that are certified; items of its list, there or not; those that the first side keeps; the

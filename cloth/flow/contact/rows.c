@@ -22,32 +22,25 @@ struct found {
     struct flow_tie_corners *corners;
 };
 
-static bool is_in(const struct flow_contact *contact, uint32_t block)
-{
-    bool in = false;
-    for (uint32_t k = 0; k < contact->at.n; k++)
-        in = in || contact->at.block[k] == block;
-    return in;
-}
-
 /* From the parameters `at` on. Returns false without memory. */
 static bool find(const duite_call *call, size_t at, uint32_t block, struct found *to)
 {
-    size_t n = 0;
-    for (size_t i = at; i < call->n_params; i++)
-        n += duite_in(call, i, struct flow_list)->n;
-    *to = (struct found){.contact = malloc((n + 1) * sizeof *to->contact),
-                         .corners = malloc((n + 1) * sizeof *to->corners)};
+    const uint32_t n_blocks = flow_of(call)->tables.n_blocks;
+    size_t n = 0, all = 0;
+    for (size_t i = at; i < call->n_params; i++, all += n)
+        flow_contact_of(duite_in(call, i, struct flow_list), block, n_blocks, &n);
+    *to = (struct found){.contact = malloc((all + 1) * sizeof *to->contact),
+                         .corners = malloc((all + 1) * sizeof *to->corners)};
     if (!to->contact || !to->corners)
         return false;
     for (size_t i = at; i < call->n_params; i++) {
         const struct flow_list *list = duite_in(call, i, struct flow_list);
         const struct flow_contact *contact = (const struct flow_contact *)(list + 1);
-        for (const struct flow_contact *end = contact + list->n; contact < end; contact++)
-            if (is_in(contact, block)) {
-                to->contact[to->n] = contact;
-                to->corners[to->n++] = contact->at;
-            }
+        const uint32_t *place = flow_contact_of(list, block, n_blocks, &n);
+        for (size_t k = 0; k < n; k++) {
+            to->contact[to->n] = contact + place[k];
+            to->corners[to->n++] = contact[place[k]].at;
+        }
     }
     return true;
 }

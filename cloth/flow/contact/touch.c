@@ -314,7 +314,7 @@ static int touch(const duite_call *call)
         sum_energy(&t, duite_out(call, AT_ENERGY, double));
     free(t.used);
     *after = (struct flow_list){.n = t.n};
-    return duite_resize(call, AT_AFTER, flow_list_bytes(t.n, sizeof *t.after));
+    return duite_resize(call, AT_AFTER, flow_contact_index(after, flow_of(call)->tables.n_blocks));
 }
 
 static int touch_timed(const duite_call *call)
@@ -341,7 +341,7 @@ static void make_list(struct flow_state *state, uint32_t block, unsigned which, 
     while (kept->room[which] < room)
         kept->room[which] = kept->room[which] ? 2 * kept->room[which] : FLOW_TIE_CLASS;
     duite_new_sized(state->rt, DUITE_BYTE, 0,
-                    flow_list_bytes(kept->room[which], sizeof(struct flow_contact)),
+                    flow_contact_index_room(kept->room[which], state->flow->tables.n_blocks),
                     &kept->list[which]);
     duite_colocate(state->rt, kept->list[which], state->block[block].x);
 }

@@ -95,6 +95,13 @@ int mesh_read_surface(struct mesh *mesh, const char *path, struct cloth_error *e
 int mesh_read_pc2(const char *path, uint32_t n_vertices, uint32_t *n_frames, double **place,
                   struct cloth_error *error);
 
+/* The same of one frame; of MESH_LAST_FRAME the last: *place is n_vertices x 3, and no other frame
+ * is read. *n_frames: of the file. *place is NULL, too, where it has no such frame, which is no
+ * error. */
+#define MESH_LAST_FRAME UINT32_MAX
+int mesh_read_pc2_frame(const char *path, uint32_t n_vertices, uint32_t frame, uint32_t *n_frames,
+                        double **place, struct cloth_error *error);
+
 /* Takes copies of the arrays: vertices n x 3, edges n_edges x 2, triangles n_triangles x 3 (either
  * may be absent). Checks indices, repeated corners, finite positions, non-manifold edges and edges
  * that stand twice as mesh_read_obj does, naming the entry

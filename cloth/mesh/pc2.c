@@ -27,7 +27,7 @@ static double float_at(const unsigned char *bytes)
     return (double)value;
 }
 
-/* How many frames follow of the header; the file is read up to there. */
+/* How many frames follow of the header, one or more; the file is read up to there. */
 static int read_header(FILE *file, const char *path, uint32_t n_vertices, uint32_t *n_frames,
                        struct cloth_error *error)
 {
@@ -45,13 +45,13 @@ static int read_header(FILE *file, const char *path, uint32_t n_vertices, uint32
     return CLOTH_OK;
 }
 
-/* Adds a frame to the list. bytes: room for one. */
-static int read_frame(FILE *file, const char *path, uint32_t n_vertices, unsigned char *bytes,
-                      struct cloth_list *list, struct cloth_error *error)
+/* Adds a frame, the next of the file, to the list. bytes: room for one. */
+static int read_frame(FILE *file, const char *path, uint32_t n_vertices, uint32_t frame,
+                      unsigned char *bytes, struct cloth_list *list, struct cloth_error *error)
 {
     if (fread(bytes, POINT, n_vertices, file) != n_vertices)
         return cloth_fail(error, ferror(file) ? CLOTH_E_IO : CLOTH_E_INPUT,
-                          "%s: it ends within frame %zu", path, list->n / n_vertices + 1);
+                          "%s: it ends within frame %ju", path, (uintmax_t)frame + 1);
     double(*place)[3] = cloth_list_add(list, sizeof *place, n_vertices, error);
     for (size_t i = 0; place && i < 3 * (size_t)n_vertices; i++)
         place[i / 3][i % 3] = float_at(bytes + 4 * i);
@@ -66,24 +66,66 @@ static int read_frame(FILE *file, const char *path, uint32_t n_vertices, unsigne
     return CLOTH_OK;
 }
 
-int mesh_read_pc2(const char *path, uint32_t n_vertices, uint32_t *n_frames, double **place,
-                  struct cloth_error *error)
+/* Reads the frames from `first` on, before `end`; both are numbers of frames that the header
+ * counts. */
+static int read_frames(FILE *file, const char *path, uint32_t n_vertices, uint32_t first,
+                       uint32_t end, double **place, struct cloth_error *error)
 {
     struct cloth_list list = {0};
-    FILE *file = fopen(path, "rb");
-    *n_frames = 0;
-    *place = NULL;
-    if (!file)
-        return cloth_fail(error, CLOTH_E_IO, "%s: cannot be read: %s", path, strerror(errno));
     unsigned char *bytes = cloth_alloc(n_vertices, POINT, error);
-    int code = bytes ? read_header(file, path, n_vertices, n_frames, error) : CLOTH_E_MEMORY;
-    for (uint32_t k = 0; k < *n_frames && !code; k++)
-        code = read_frame(file, path, n_vertices, bytes, &list, error);
-    fclose(file);
+    int code = bytes ? CLOTH_OK : CLOTH_E_MEMORY;
+    if (!code && fseeko(file, HEADER + (off_t)POINT * n_vertices * first, SEEK_SET) != 0)
+        code = cloth_fail(error, CLOTH_E_IO, "%s: cannot be read: %s", path, strerror(errno));
+    for (uint32_t k = first; k < end && !code; k++)
+        code = read_frame(file, path, n_vertices, k, bytes, &list, error);
     free(bytes);
     if (code)
         free(list.items);
     else
         *place = list.items;
+    return code;
+}
+
+/* Opens it, and reads its header. Returns NULL after an error. */
+static FILE *open_frames(const char *path, uint32_t n_vertices, uint32_t *n_frames,
+                         struct cloth_error *error)
+{
+    FILE *file = fopen(path, "rbe");
+    *n_frames = 0;
+    if (!file) {
+        cloth_fail(error, CLOTH_E_IO, "%s: cannot be read: %s", path, strerror(errno));
+        return NULL;
+    }
+    if (read_header(file, path, n_vertices, n_frames, error)) {
+        fclose(file);
+        return NULL;
+    }
+    return file;
+}
+
+int mesh_read_pc2(const char *path, uint32_t n_vertices, uint32_t *n_frames, double **place,
+                  struct cloth_error *error)
+{
+    *place = NULL;
+    FILE *file = open_frames(path, n_vertices, n_frames, error);
+    if (!file)
+        return error->code;
+    const int code = read_frames(file, path, n_vertices, 0, *n_frames, place, error);
+    fclose(file);
+    return code;
+}
+
+int mesh_read_pc2_frame(const char *path, uint32_t n_vertices, uint32_t frame, uint32_t *n_frames,
+                        double **place, struct cloth_error *error)
+{
+    int code = CLOTH_OK;
+    *place = NULL;
+    FILE *file = open_frames(path, n_vertices, n_frames, error);
+    if (!file)
+        return error->code;
+    const uint32_t one = frame == MESH_LAST_FRAME ? *n_frames - 1 : frame;
+    if (one < *n_frames)
+        code = read_frames(file, path, n_vertices, one, one + 1, place, error);
+    fclose(file);
     return code;
 }

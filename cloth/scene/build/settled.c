@@ -87,6 +87,14 @@ static int check_frame(const struct scene_settled *from, uint32_t n_frames,
                            from->frame, folder->path, n_frames - 1);
 }
 
+/* A number that files count frames by: what is none of them is none of a file's. */
+static uint32_t frame_of(const struct scene_settled *from)
+{
+    return from->frame == SCENE_LAST_FRAME ? MESH_LAST_FRAME
+           : from->frame < MESH_LAST_FRAME ? (uint32_t)from->frame
+                                           : MESH_LAST_FRAME - 1;
+}
+
 /* place: of all vertices in the frame, m. */
 static int take(struct model_cloth *cloth, const struct folder *folder, const double *place,
                 const struct scene_tree *tree, int node, struct cloth_error *error)
@@ -113,16 +121,16 @@ static int take_frame(struct model_cloth *cloth, const struct scene_settled *fro
     struct cloth_error inner = {0};
     uint32_t n_frames = 0;
     double *places = NULL;
-    int code = mesh_read_pc2(folder->pc2, folder->n_all, &n_frames, &places, &inner);
+    int code =
+        mesh_read_pc2_frame(folder->pc2, folder->n_all, frame_of(from), &n_frames, &places, &inner);
     if (code == CLOTH_E_MEMORY)
         return cloth_fail(error, code, "%s: %s", tree->path, inner.text);
     if (code)
         return scene_tree_fail(tree, scene_tree_get(tree, node, "frames"), error, "from: %s",
                                inner.text);
     code = check_frame(from, n_frames, folder, tree, node, error);
-    const size_t frame = from->frame == SCENE_LAST_FRAME ? n_frames - 1 : (size_t)from->frame;
     if (!code)
-        code = take(cloth, folder, places + 3 * frame * folder->n_all, tree, node, error);
+        code = take(cloth, folder, places, tree, node, error);
     free(places);
     return code;
 }

@@ -15,6 +15,7 @@
 #     awaits PID COMMAND...            waits until COMMAND passes, as long as the process lives: no time limit of its own
 #     quick                            whether only the quick subset is wanted (DUITE_QUICK=1)
 #     skip_unless FILE                 skip_all unless the program FILE was built
+#     value KEY [FILE]                 what a report has of a key; FILE: report.json
 #     install_duite PREFIX             make install there, whatever configure was told; `locations PREFIX` are its settings
 # $scratch is a folder of the test's own, removed at its end. $DUITE_CLOTH and $DUITE_VIEW are the programs.
 
@@ -101,6 +102,7 @@ skip_all() {
 
 skip_unless() { test -x "$1" || skip_all "$1 is not built"; }
 
+value() { sed -n "s/^ *\"$1\": *\"\{0,1\}\(.*[^\",]\)\"\{0,1\},\{0,1\}\$/\1/p" "${2:-report.json}"; }
 quick() { test "${DUITE_QUICK:-}" = 1; }
 
 limited() { timeout --kill-after=10 "${DUITE_TIMEOUT:-1800}" "$@"; }

@@ -41,4 +41,3 @@ solver: {stop: {relative: 1.0e-12}}
 probes: [{name: p, cloth: front, vertices: [58, 60], values: [position, reaction]}, {name: q, cloth: back, vertices: [4], values: [position]}]
 END
 
-value() { sed -n "s/^ *\"$1\": \"*\([^\",]*\).*/\1/p" "${2:-one.json}"; }

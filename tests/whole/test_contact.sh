@@ -35,7 +35,6 @@ turn() { # SIGN: a turn and a half of an end
 }
 scene wring "$(sheet a 0.3 16 'translate: [0, 0, 0]' ", pins: [{box: [[-0.2, -1, -1], [-0.149, 1, 1]], motion: $(turn '' '' '' '' '' '')}, {box: [[0.149, -1, -1], [0.2, 1, 1]], motion: $(turn - - - - - -)}]")" 'gravity: [0, 0, 0]' 0.6
 
-value() { sed -n "s/^ *\"$1\": \([^,]*\),\{0,1\}\$/\1/p" report.json; } # of a key of the report
 # holds SCENE OPTION...: nothing goes through anything, something touched, and no vertex is cut in more than 20 steps in a row.
 holds() {
     holds_scene=$1

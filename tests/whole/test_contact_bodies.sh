@@ -99,7 +99,6 @@ scene rings 0.5 20 0.1 0.5 0.4 'body: {obj: ring.obj, motion: {times: [0, 0.5], 
 through() { # SCENE OPTION...: nothing is
     limited "$DUITE_CLOTH" "$@" --threads 1 --check-intersections --report report.json --quiet
 }
-value() { sed -n "s/^ *\"$1\": \([^,]*\),\{0,1\}\$/\1/p" report.json; }
 ok "rings that move and turn" through rings.yaml
 ok "one hash" ranks 3 "$same_hash" rings.yaml few 0 time.end=0.12
 stands() { ranks 2 "$same_hash" ball.yaml few 0 time.end=0.08; }

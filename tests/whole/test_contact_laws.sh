@@ -5,7 +5,6 @@
 . "$srcdir/tests/support/probes.sh"
 plan_later
 
-value() { sed -n "s/^ *\"$1\": \([^,]*\),\{0,1\}\$/\1/p" report.json; } # of a key of the report
 
 # ---- Two sheets thrown at each other in free space. A vertex of a grid of springs has a quarter of the mass of each of its cells.
 

@@ -6,7 +6,6 @@ skip_unless "$DUITE_CLOTH"
 plan_later
 cd "$scratch" || exit 99
 
-value() { sed -n "s/^ *\"$1\": *\([^,]*\).*/\1/p" report.json; }
 nothing_enters() { # SCENE KEY=VALUE...
     scene=$srcdir/cloth/scenes/$1.yaml
     shift

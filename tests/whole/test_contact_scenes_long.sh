@@ -8,7 +8,6 @@ plan_later
 cd "$scratch" || exit 99
 exec 3>&1
 
-value() { sed -n "s/^ *\"$1\": *\"\{0,1\}\([^\",]*\).*/\1/p" report.json; }
 nothing_enters() { # NAME SCENE OPTION...
     what=$1
     file=$srcdir/cloth/scenes/$2.yaml

@@ -7,7 +7,6 @@ plan_later
 cd "$scratch" || exit 99
 exec 3>&1
 
-value() { sed -n "s/^ *\"$1\": *\"\{0,1\}\([^\",]*\).*/\1/p" report.json; }
 drape() { # FABRIC RINGS: leaves its coefficient in $found
     limited "$DUITE_CLOTH" "$srcdir/cloth/scenes/drape.yaml" --set materials.fabric.like="$1" --set "cloths[0].mesh.disc.rings=$2" --quiet \
         --check-intersections --report report.json || return 1

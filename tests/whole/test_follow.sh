@@ -3,15 +3,11 @@
 # it, and on every rank.
 . "${srcdir:-.}/tests/support/tap.sh"
 plan_later
-. "${srcdir:-.}/tests/support/probes.sh"
-value() { sed -n "s/^ *\"$1\": \"*\([^\",]*\).*/\1/p" one.json; }
-hash() { "$@" --quiet --report one.json && value state_hash; }
+. "$srcdir/tests/support/bodies.sh"
+. "$srcdir/tests/support/probes.sh"
+hash() { "$@" --quiet --report report.json && value state_hash; }
 
-box() { # X: a box whose upper side is at y 0
-    printf 'v %s %s %s\n' -0.1 -0.1 -0.1 0.1 -0.1 -0.1 -0.1 0 -0.1 0.1 0 -0.1 -0.1 -0.1 0.1 0.1 -0.1 0.1 -0.1 0 0.1 0.1 0 0.1
-    printf 'f %s %s %s %s\n' 1 3 4 2 5 6 8 7 1 2 6 5 3 7 8 4 1 5 7 3 2 4 8 6
-}
-box > box.obj
+box_obj -0.1 -0.1 -0.1 0.1 0 0.1 > box.obj # its upper side is at y 0
 awk '/^v/ { c = cos(0.5); s = sin(0.5); printf "v %.17g %.17g %.17g\n", $2 + 0.03, c * $3 - s * $4, s * $3 + c * $4; next } { print }' box.obj > turned.obj
 
 # A sheet lies on the box, 0.4 mm above it, held along a side; its thickness is 1 mm.
@@ -47,13 +43,13 @@ begun() { # a motion that has a shift at time 0 takes along from there
 }
 ok "also from a motion that does not begin at rest" begun
 touching() { # what is attached does not pinch; the rest is kept out, by shape and by body
-    run follow.yaml --check-intersections --report one.json && last $columns > wanted && test "$(value contacts)" -gt 0 &&
+    run follow.yaml --check-intersections --report report.json && last $columns > wanted && test "$(value contacts)" -gt 0 &&
         ! run follow.yaml --set 'cloths[0].pins[0].box=[[-0.11, -1, -0.01], [0.11, 1, 0.01]]' --set 'cloths[0].transform.translate=[0, -0.001, 0]' > said 2>&1 && grep 'through obstacles' said
 }
 ok "attached vertices do not pinch cloth, others are kept out" touching
 body='obstacles[0]={body: {name: table, obj: box.obj, motion: {times: [0, 0.1], translate: [[0, 0, 0], [0.02, 0.04, 0]], rotate: [[1, 0, 0, 0], [1, 0.1, 0.2, 0]], about: [0, 0, 0]}}}'
 sunk() { # 1 mm in it
-    run follow.yaml --set 'cloths[0].transform.translate=[0, -0.001, 0]' --check-intersections --report one.json "$@" && test "$(value contacts)" -gt 0 && limited "$DUITE_VIEW" out --check-intersections
+    run follow.yaml --set 'cloths[0].transform.translate=[0, -0.001, 0]' --check-intersections --report report.json "$@" && test "$(value contacts)" -gt 0 && limited "$DUITE_VIEW" out --check-intersections
 }
 ok "attached vertices may be in the obstacle, frames say so" sunk
 ok "in a body" sunk --set "$body"
@@ -64,7 +60,7 @@ lost() { # without what the frames say, the viewer finds it
 ok "it is known from there alone" lost
 frames='obstacles[0]={body: {name: table, obj: box.obj, frames: {obj: [box.obj, turned.obj], fps: 10}}}'
 by_frames() { # at the last frame all is where the turn has it
-    run follow.yaml --set "$frames" --check-intersections --report one.json && last p.17.x p.17.y p.17.z p.24.x p.24.y p.24.z > found && test "$(value contacts)" -gt 0 &&
+    run follow.yaml --set "$frames" --check-intersections --report report.json && last p.17.x p.17.y p.17.z p.24.x p.24.y p.24.z > found && test "$(value contacts)" -gt 0 &&
         awk 'BEGIN { c = cos(0.5); s = sin(0.5); y = 0.0004 } { n = split("0 -0.05 0 0", z, " ")
             e = ($1 - 0.03) ^ 2 + ($2 - c * y - s * 0.05) ^ 2 + ($3 - s * y + c * 0.05) ^ 2 + ($4 - 0.03) ^ 2 + ($5 - c * y) ^ 2 + ($6 - s * y) ^ 2; print $0, e; exit !(e < 1e-24) }' found
 }

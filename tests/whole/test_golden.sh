@@ -20,7 +20,6 @@ cd "$scratch" || exit 99
 echo "$metis METIS, of a graph that metis_cuts.c makes" > "$fresh"
 test -n "${DUITE_GOLDEN:-}" || grep -qxF "$(cat "$fresh")" "$table" || skip_all "METIS is another one than that of golden.txt: it cuts to $metis"
 
-value() { sed -n "s/^ *\"$1\": \"\([^\"]*\)\".*/\1/p" report.json; }
 
 simulate() { # SCENE ARGUMENT...
     limited "$DUITE_CLOTH" "$@" --threads 2 --quiet --report report.json

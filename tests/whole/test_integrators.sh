@@ -6,7 +6,6 @@ plan_later
 cd "$scratch" || exit 99
 
 run() { limited "$DUITE_CLOTH" "$@" --quiet; }
-value() { sed -n "s/^ *\"$1\": *\"\{0,1\}\([^\",]*\).*/\1/p" report.json; }
 
 cat > fall.yaml << 'END'
 schema: 1

@@ -1,6 +1,7 @@
 #!/bin/sh
 # duite-cloth --check-intersections: what it finds, what it says, reports and returns.
 . "${srcdir:-.}/tests/support/tap.sh"
+. "$srcdir/tests/support/bodies.sh"
 skip_unless "$DUITE_CLOTH"
 plan_later
 cd "$scratch" || exit 99
@@ -34,22 +35,7 @@ $(piece b '[0, 1, 0], [-1, 1, 0], [0, 1, 1]')" "$still
 welds: [{from: {cloth: a, vertices: [0, 2]}, to: {cloth: b, vertices: [0, 2]}}]"
 scene ball "$flat" "$still
 obstacles: [{sphere: {centre: [0.25, 0.8, 0.25], radius: 0.3}}, {plane: {point: [0, 0, 0], normal: [0, 1, 0]}}]"
-cat > box.obj << 'END'
-v -2 -2 -2
-v 2 -2 -2
-v -2 2 -2
-v 2 2 -2
-v -2 -2 2
-v 2 -2 2
-v -2 2 2
-v 2 2 2
-f 1 5 7 3
-f 2 4 8 6
-f 1 2 6 5
-f 3 7 8 4
-f 1 3 4 2
-f 5 6 8 7
-END
+box_obj -2 -2 -2 2 2 2 > box.obj
 scene inside "$(echo "$flat" | sed 's/material: m/&, pins: [{vertices: [0, 1, 2]}]/')" "$still
 obstacles: [{body: {obj: box.obj}}]"
 scene held "$(echo "$flat" | sed 's/material: m/&, pins: [{vertices: [0], follow: box}]/')" "$still
@@ -75,7 +61,6 @@ check() {
     cat said
     test $check_got = "$check_status" || { echo "exit status $check_got" && return 1; }
 }
-value() { sed -n "s/^ *\"$1\": \([^,]*\),\{0,1\}\$/\1/p" report.json; } # of a key of the report
 reports() { # PAIRS WITH_SHAPES FRAME
     set -- "$1 $2 $3" "$(value intersections) $(value intersections_shapes) $(value intersections_frame)"
     test "$1" = "$2" || { echo "the report has $2, not $1" && return 1; }

@@ -38,7 +38,7 @@ ok "a joint of no length is stiff in every direction from the begin" together
 
 # ---- Two panels, joined by 8 joints that close, over several blocks ----
 alike() {
-    run panels.yaml --report one.json || return 1
+    run panels.yaml --report report.json || return 1
     # shellcheck disable=SC2046 # six numbers
     set -- $(last p.60.x p.60.y p.60.z q.4.x q.4.y q.4.z)
     apart=$(echo "$@" | awk '{ print sqrt(($1 - $4) ^ 2 + ($2 - $5) ^ 2 + ($3 - $6) ^ 2) }')

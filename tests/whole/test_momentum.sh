@@ -8,7 +8,6 @@ cd "$scratch" || exit 99
 exec 3>&1
 
 run() { limited "$DUITE_CLOTH" "$@" --quiet; }
-value() { sed -n "s/^ *\"$1\": *\"\{0,1\}\([^\",]*\).*/\1/p" report.json; }
 
 # ---- A free sheet that quivers, beside one on a pin, and a mesh of two pieces, one of them on a pin. The centre of what is free is slowed down by drag: v' = -(a + c / m) v = -v,
 # ---- of which implicit Euler makes v / (1 + h) a step.

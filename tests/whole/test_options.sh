@@ -20,7 +20,6 @@ time: {h: 0.001, end: 0.08, fps: 50}
 END
 
 run() { limited "$DUITE_CLOTH" "$@"; }
-value() { sed -n "s/^ *\"$1\": \"\{0,1\}\([^\",]*\)\"\{0,1\},\{0,1\}\$/\1/p" report.json; } # of a key of the report
 is() { test "$(value "$1")" = "$2" || { echo "$1 is '$(value "$1")', not '$2'" && return 1; }; }
 prints() { "$@" > printed 2> complained; }
 

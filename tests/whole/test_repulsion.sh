@@ -2,6 +2,7 @@
 # Contact by springs, contact.mode: repulsion: what rests on a plane, slides and creeps on it against closed forms, also where the plane is carried
 # along; two cloths that meet keep their momentum; a sheet stays out of a ball; one state_hash.
 . "${srcdir:-.}/tests/support/tap.sh"
+. "$srcdir/tests/support/bodies.sh"
 . "$srcdir/tests/support/probes.sh"
 plan_later
 
@@ -111,22 +112,7 @@ grain: 60
 END
 ok "a sheet on a ball" limited "$DUITE_CLOTH" ball.yaml --check-intersections --quiet
 # A block as a body, which moves up.
-cat > block.obj << END
-v -1 0 -1
-v 1 0 -1
-v -1 1 -1
-v 1 1 -1
-v -1 0 1
-v 1 0 1
-v -1 1 1
-v 1 1 1
-f 1 5 7 3
-f 2 4 8 6
-f 1 2 6 5
-f 3 7 8 4
-f 1 3 4 2
-f 5 6 8 7
-END
+box_obj -1 0 -1 1 1 1 > block.obj
 block='obstacles[0]={body: {obj: block.obj, translate: [0, -1, 0], motion: {times: [0, 1], translate: [[0, 0, 0], [0, 0.1, 0]]}}}'
 lifts_on() { run rest.yaml --set "$block" "$@" && near "inside" "$(less "$(last p.5.y)" 0.1)" "$(high 1)" 1e-4; }
 ok "rests on a body that rises" lifts_on --set time.h=0.004

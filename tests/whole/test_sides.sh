@@ -4,7 +4,6 @@
 . "${srcdir:-.}/tests/support/tap.sh"
 plan_later
 . "${srcdir:-.}/tests/support/probes.sh"
-value() { sed -n "s/^ *\"$1\": \"*\([^\",]*\).*/\1/p" one.json; }
 
 # ---- Friction of two ----
 cat > slide.yaml << 'END'
@@ -17,7 +16,7 @@ contact: {mode: certified}
 time: {h: 0.005, end: 0.1}
 grain: 20
 END
-hash() { "$@" --quiet --report one.json && value state_hash; }
+hash() { "$@" --quiet --report report.json && value state_hash; }
 alike() { # the coefficient that 0.25 and 0.25 make
     wanted=$(hash limited "$DUITE_CLOTH" slide.yaml)
     set -- slide.yaml --set materials.m.friction=0.9 --set 'obstacles[0].plane.friction=0.7' --set 'contact.pairs=[{of: [slope, m], friction: 0.25}]'
@@ -47,7 +46,7 @@ fell() { # metres, of both: the formula of implicit Euler, to rounding
     set -- $(last p.0.y p.14.y)
     awk -v a="$1" -v b="$2" 'BEGIN { y = 0.12 - 9.81 * 1e-4 * 15 * 16 / 2; a -= y; b -= y; print a, b; exit !(a * a + b * b < 1e-16) }'
 }
-falls() { run sides.yaml --report one.json "$@" && fell; }
+falls() { run sides.yaml --report report.json "$@" && fell; }
 ok "cloths that are told to do not meet, nor obstacles" falls --check-intersections
 ok "by projection likewise" falls --set contact.mode=project
 stopped() { run sides.yaml --set 'contact.ignore=[]' --set contact.mode="$1" && ! fell; }
@@ -77,11 +76,11 @@ materials: {m: {density: 0.2, stretch: 1000}}
 contact: {self: on, ignore: [[a, a]]}
 time: {h: 0.01, end: 0.05}
 END
-    run crossed.yaml --check-intersections --report one.json && ! run crossed.yaml --set 'contact.ignore=[]' > said 2>&1 && grep 'go through each other' said
+    run crossed.yaml --check-intersections --report report.json && ! run crossed.yaml --set 'contact.ignore=[]' > said 2>&1 && grep 'go through each other' said
 }
 ok "a cloth that does not meet itself" crossed
 unasked() { # with self: off it may start so; who looks for intersections sees them
-    run crossed.yaml --set contact='{mode: certified}' --report one.json && ! run crossed.yaml --set contact='{mode: certified}' --check-intersections > said 2>&1 && grep 'triangles intersect' said
+    run crossed.yaml --set contact='{mode: certified}' --report report.json && ! run crossed.yaml --set contact='{mode: certified}' --check-intersections > said 2>&1 && grep 'triangles intersect' said
 }
 ok "nor is asked to" unasked
 

@@ -36,7 +36,6 @@ ends_well() { # of the run in the background: status 0, though it would take hou
     cat complained
     test $status = 0
 }
-value() { sed -n "s/^ *\"$1\": \"\{0,1\}\([^\",]*\)\"\{0,1\},\{0,1\}\$/\1/p" "$2"; } # KEY REPORT
 
 begin() { # COMMAND...: in the background, until it has made three steps
     rm -rf frames pid.* stopped.json

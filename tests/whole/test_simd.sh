@@ -12,7 +12,6 @@ run() { # SIMD ARGUMENT...
         --set 'cloths[0].mesh.grid.nx=30' --set 'cloths[0].mesh.grid.ny=30' --set 'gravity=[4,-9.81,2]' \
         --set materials.cloth.bend=3 --set solver.stop.relative=1e-6 --set "solver.$2"
 }
-value() { sed -n "s/^ *\"$1\": \"\([^\"]*\)\".*/\1/p" report.json; }
 
 has() { # SIMD: whether it is there; one that is not is refused
     status=0

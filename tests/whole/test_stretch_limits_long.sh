@@ -7,7 +7,6 @@ plan_later
 cd "$scratch" || exit 99
 exec 3>&1
 
-value() { sed -n "s/^ *\"$1\": *\"\{0,1\}\([^\",]*\).*/\1/p" report.json; }
 
 stays() { # SCENE H
     limit=$(sed -n 's/^time:.*stretch_limit: *\([0-9.]*\).*/\1/p' "$1")

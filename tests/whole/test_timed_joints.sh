@@ -24,7 +24,7 @@ ok "in one block" eval 'run two.yaml $timed --set integrator=rk4 --set grain=9 &
 
 unjudged() { # 5 J come with the joint
     # shellcheck disable=SC2086 # a list of settings
-    run two.yaml $timed --set integrator="$1" --report one.json && test "$(value steps_halved)" = 0 && test "$(value steps_retaken)" = 0 && test "$(value steps)" = 300
+    run two.yaml $timed --set integrator="$1" --report report.json && test "$(value steps_halved)" = 0 && test "$(value steps_retaken)" = 0 && test "$(value steps)" = 300
 }
 for integrator in implicit_euler bdf2; do
     ok "energy that comes with a joint is no step's fault, $integrator" unjudged $integrator
@@ -44,12 +44,12 @@ ok "also where steps do not overlap" pulls --set 'cloths[1].pins=[{vertices: [0]
 
 wakes() { # a run that rests waits for joints that are to come
     # shellcheck disable=SC2086
-    run two.yaml $timed --set 'time.rest={speed: 0.001, hold: 0.05}' --set integrator="$1" --report one.json && grep rest_seconds one.json && test "$(value steps)" = 300
+    run two.yaml $timed --set 'time.rest={speed: 0.001, hold: 0.05}' --set integrator="$1" --report report.json && grep rest_seconds report.json && test "$(value steps)" = 300
 }
 ok "a run does not rest before a joint begins" wakes rk4
 
 # ---- Two panels, joined along an edge, over several blocks ----
-seen() { run panels.yaml "$@" --report one.json && last p.60.x p.60.y p.60.z q.4.x q.4.y q.4.z p.58.rx p.58.ry p.58.rz && value energy_kinetic && value energy_elastic; }
+seen() { run panels.yaml "$@" --report report.json && last p.60.x p.60.y p.60.z q.4.x q.4.y q.4.z p.58.rx p.58.ry p.58.rz && value energy_kinetic && value energy_elastic; }
 apart() { # the largest relative difference of two lists of numbers
     paste -d ' ' "$1" "$2" | awk '{ n = NF / 2; for (i = 1; i <= n; i++) { d = $i - $(n + i); d = d < 0 ? -d : d; s = $i < 0 ? -$i : $i; if (s > 0 && d / s > most) most = d / s } }
         END { printf "%.3g\n", most }'
@@ -76,7 +76,7 @@ done
 iterations() { value cg_iterations_mean; }
 preconditioned() { # PRECONDITIONER
     set -- --set solver.preconditioner="$1" --set solver.stop.relative=1e-6 --set 'joints[0].stiffness=50000' --set grain=12
-    run panels.yaml "$@" --report one.json && always=$(iterations) && run panels.yaml "$@" --set 'joints[0].end=100' --report one.json && timed=$(iterations) &&
+    run panels.yaml "$@" --report report.json && always=$(iterations) && run panels.yaml "$@" --set 'joints[0].end=100' --report report.json && timed=$(iterations) &&
         echo "# $2 $always iterations a step, $timed where the joints are timed" >&3 && awk -v a="$always" -v b="$timed" 'BEGIN { exit !(a > 10 && b <= 1.3 * a) }'
 }
 for preconditioner in ${kinds#none }; do
@@ -87,19 +87,19 @@ as_patched() { as_always 1e-8 solver.patches=4 grain=64 'cloths[0].mesh.grid={wi
 ok "with patches, coarse" as_patched coarse
 ok "with patches, ic0_coarse" as_patched ic0_coarse
 free_panels() { # two free panels that joints join: momentum as by joints that are always there
-    run panels.yaml --set 'cloths[0].pins=[]' --set 'probes=[]' --set 'joints[0].end=0.05' --set solver.stop.relative=1e-3 --report one.json && below "momentum lost, kg m/s" "$(value momentum_lost)" 1e-13
+    run panels.yaml --set 'cloths[0].pins=[]' --set 'probes=[]' --set 'joints[0].end=0.05' --set solver.stop.relative=1e-3 --report report.json && below "momentum lost, kg m/s" "$(value momentum_lost)" 1e-13
 }
 ok "free panels that are joined keep their momentum to rounding" free_panels
 
 momentum_kept() { # of joints with held ends, what the solve lost is the residual, no more
-    run panels.yaml --set 'cloths[0].pins[0].vertices=[0,7,58]' --set 'joints[0].end=0.05' --report one.json && below "momentum lost, kg m/s" "$(value momentum_lost)" 1e-10
+    run panels.yaml --set 'cloths[0].pins[0].vertices=[0,7,58]' --set 'joints[0].end=0.05' --report report.json && below "momentum lost, kg m/s" "$(value momentum_lost)" 1e-10
 }
 ok "momentum that pins take is not lost" momentum_kept
 
 recorded() { # TIMES SETTING...
     times=$1
     shift
-    run panels.yaml --report one.json "$@" && echo "recorded $(value graphs_recorded) times" && test "$(value graphs_recorded)" = "$times"
+    run panels.yaml --report report.json "$@" && echo "recorded $(value graphs_recorded) times" && test "$(value graphs_recorded)" = "$times"
 }
 ok "the solve is recorded once where joints last" recorded 1
 ok "also where they are there from the start" recorded 1 --set 'joints[0].end=100'
@@ -110,7 +110,7 @@ ok "not where others come between the same blocks" recorded 3 --set 'joints[0].b
 # ---- The same bits ----
 alike() { # SETTING...
     for setting in "$@"; do set -- "$@" --set "$setting" && shift; done
-    run panels.yaml "$@" --report one.json || return 1
+    run panels.yaml "$@" --report report.json || return 1
     for run in '1 2' '2 1' '3 2'; do
         limited "$MPIRUN" -n "${run% *}" "$DUITE_CLOTH" panels.yaml --threads "${run#* }" --quiet --report many.json --set 'probes=[]' "$@" || return 1
         test "$(value state_hash)" = "$(value state_hash many.json)" || { echo "another hash on $run"; return 1; }

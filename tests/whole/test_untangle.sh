@@ -2,6 +2,7 @@
 # contact.untangle: starts that are tangled are made free and then run certified; free ones keep every bit; what cannot be untangled is
 # refused with its pairs named.
 . "${srcdir:-.}/tests/support/tap.sh"
+. "$srcdir/tests/support/bodies.sh"
 skip_unless "$DUITE_CLOTH"
 plan_later
 cd "$scratch" || exit 99
@@ -27,7 +28,6 @@ sheet() { # NAME HEIGHT MORE
 waves() { # along x, along z, their height
     printf ', start: [{box: [[-1, -1, -1], [1, 1, 1]], wave: {vector: [%s, 0, %s], phase: 0.2, translate: [0, %s, 0]}}]' "$@"
 }
-value() { sed -n "s/^ *\"$1\": \([^,]*\),\{0,1\}\$/\1/p" report.json; }
 between() { awk -v x="$2" -v a="$1" -v b="$3" 'BEGIN { print "#", x, "of", a, "to", b; exit !(x >= a && x <= b) }'; }
 fine() { # SCENE OPTION...: it runs, and nothing is in anything from the first frame on
     limited "$DUITE_CLOTH" "$@" --threads 1 --check-intersections --report report.json --quiet
@@ -47,8 +47,7 @@ scene corner "$(sheet a 0.083)" 'box: {centre: [0.01, 0, 0.02], size: [0.1, 0.1,
 ok "the corner of a box in a sheet" freed corner.yaml 1 8
 
 # The same box as a body of twelve triangles, whose corner is in no vertex of the sheet.
-awk 'BEGIN { for (i = 0; i < 8; i++) print "v", i % 2 - 0.5, int(i / 2) % 2 - 0.5, int(i / 4) - 0.5
-    print "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6" }' > cube.obj
+box_obj -0.5 -0.5 -0.5 0.5 0.5 0.5 > cube.obj
 scene body "$(sheet a 0.083)" 'body: {obj: cube.obj, scale: 0.1, rotate: [0.880476, 0.279848, 0, 0.364705], translate: [0.01, 0, 0.02]}'
 ok "the corner of a body in a sheet" freed body.yaml 0.3 8
 

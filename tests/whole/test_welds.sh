@@ -61,9 +61,9 @@ same() {
 hash_of() { sed -n 's/^ *"state_hash": *"\(.*\)".*/\1/p' "$1"; }
 welded() { # MATERIAL SCENE
     whole "$1" "$2" > whole.yaml && halves "$1" "$2" > halves.yaml
-    run whole.yaml && mv out/probes.csv whole.csv && run halves.yaml --report one.json && same whole.csv out/probes.csv || return 1
+    run whole.yaml && mv out/probes.csv whole.csv && run halves.yaml --report report.json && same whole.csv out/probes.csv || return 1
     limited "$MPIRUN" -n 2 "$DUITE_CLOTH" halves.yaml --threads 2 --quiet --output out2 --report two.json || return 1
-    same whole.csv out2/probes.csv && test "$(hash_of one.json)" = "$(hash_of two.json)"
+    same whole.csv out2/probes.csv && test "$(hash_of report.json)" = "$(hash_of two.json)"
 }
 ok "two halves of springs are the whole sheet, bit for bit" welded "$material" ''
 ok "by BDF2, in half storage" welded "$material" 'integrator: bdf2

@@ -62,7 +62,7 @@ static int measure_triangle(struct contact_making *making, uint32_t t)
 
 static int by_ends(const void *left, const void *right)
 {
-    const struct contact_side *a = left, *b = right;
+    const struct contact_making_side *a = left, *b = right;
     if (a->ends != b->ends)
         return a->ends < b->ends ? -1 : 1;
     return (a->triangle > b->triangle) - (a->triangle < b->triangle);
@@ -73,7 +73,7 @@ static void sort_sides(struct contact_making *making)
     for (uint32_t t = 0; t < making->n; t++)
         for (uint32_t i = 0; i < 3; i++) {
             const uint32_t a = making->corner[t][i], b = making->corner[t][(i + 1) % 3];
-            making->side[3 * (size_t)t + i] = (struct contact_side){
+            making->side[3 * (size_t)t + i] = (struct contact_making_side){
                 a < b ? (uint64_t)a << 32 | b : (uint64_t)b << 32 | a, t, i, a < b};
         }
     qsort(making->side, 3 * (size_t)making->n, sizeof *making->side, by_ends);
@@ -103,7 +103,7 @@ static int fail_open(const struct contact_making *making, size_t first, size_t n
                       others == 1 ? " has" : "s have");
 }
 
-static int fail_turned(const struct contact_making *making, const struct contact_side *side)
+static int fail_turned(const struct contact_making *making, const struct contact_making_side *side)
 {
     return cloth_fail(making->error, CLOTH_E_INPUT,
                       "triangles %u and %u, at the edge between vertices %u and %u, are wound "
@@ -113,7 +113,7 @@ static int fail_turned(const struct contact_making *making, const struct contact
 }
 
 /* Their normals point against each other: between them there is nothing, and no side is inside. */
-static int fail_folded(const struct contact_making *making, const struct contact_side *side)
+static int fail_folded(const struct contact_making *making, const struct contact_making_side *side)
 {
     return cloth_fail(making->error, CLOTH_E_INPUT,
                       "triangles %u and %u lie on each other, at the edge between vertices %u and "
@@ -123,7 +123,7 @@ static int fail_folded(const struct contact_making *making, const struct contact
                       (uint32_t)side->ends + 1);
 }
 
-static bool are_folded(const struct contact_making *making, const struct contact_side *side)
+static bool are_folded(const struct contact_making *making, const struct contact_making_side *side)
 {
     const phys_vec sum = making->normal[side[0].triangle] + making->normal[side[1].triangle];
     return phys_dot(&sum, &sum) < FOLDED * FOLDED;
@@ -133,7 +133,7 @@ static int join_sides(struct contact_making *making)
 {
     sort_sides(making);
     for (size_t i = 0; i < 3 * (size_t)making->n; i += 2) {
-        const struct contact_side *side = making->side + i;
+        const struct contact_making_side *side = making->side + i;
         const size_t n = count_sides(making, i);
         if (n != 2)
             return fail_open(making, i, n);

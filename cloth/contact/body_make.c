@@ -15,6 +15,8 @@ double contact_angle(const phys_vec *a, const phys_vec *b)
     phys_vec product;
     contact_cross(a, b, &product);
     const double across = sqrt(phys_dot(&product, &product));
+    if (!(across > 0))
+        return phys_dot(a, b) < 0 ? 3.14159265358979323846 : 0;
     const double lengths = sqrt(phys_dot(a, a) * phys_dot(b, b));
     const double along = phys_dot(a, b) + lengths;
     double tangent = across / (along + sqrt(across * across + along * along)); /* of a quarter */

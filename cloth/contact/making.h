@@ -7,7 +7,7 @@
  * way round it is; body_make.c makes it. */
 
 /* An edge of a triangle: from corner `edge` to the next one. */
-struct contact_side {
+struct contact_making_side {
     uint64_t ends; /* the lower vertex above the higher one: equal for both sides of an edge */
     uint32_t triangle, edge;
     bool rises; /* from the lower vertex to the higher one */
@@ -20,8 +20,8 @@ struct contact_making {
     uint32_t n;
     uint32_t (*corner)[3], (*neighbour)[3];
     phys_vec *normal, *low, *high;
-    struct contact_side *side; /* 3 n */
-    uint32_t *order, *place;   /* of the tree; where in it a triangle is */
+    struct contact_making_side *side; /* 3 n */
+    uint32_t *order, *place;          /* of the tree; where in it a triangle is */
     struct cloth_error *error;
 };
 
@@ -38,8 +38,8 @@ static inline void contact_cross(const phys_vec *a, const phys_vec *b, phys_vec 
                           u[0] * v[1] - u[1] * v[0], 0};
 }
 
-/* The angle between two vectors of any length above 0 that are not opposite, rad, of + - * / and
- * sqrt alone, so that its bits are the same everywhere. */
+/* The angle between two vectors of any length, rad; 0 if one has none. Of + - * / and sqrt alone,
+ * so that its bits are the same everywhere. */
 double contact_angle(const phys_vec *a, const phys_vec *b);
 
 /* Whether there are triangles, not too many, and no vertex is too far away; before there is room.

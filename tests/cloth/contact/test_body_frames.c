@@ -2,6 +2,7 @@
  * then is, and their surface has the velocity of its chord. */
 #include "cloth/base/memory.h"
 #include "cloth/contact/body_skin.h"
+#include "cloth/contact/making.h"
 #include "tests/cloth/contact/bodies.h"
 
 #include <string.h>
@@ -185,6 +186,20 @@ START_TEST(ends_of_steps)
 }
 END_TEST
 
+/* Also of triangles that are a line: their corners come in any order on it. */
+START_TEST(angles)
+{
+    const double pi = acos(-1);
+    const phys_vec a = {1, 2, -3, 0}, across = {3, 0, 1, 0}, none = {0};
+    const phys_vec ahead = 2 * a, back = -0.5 * a;
+    ck_assert_double_eq_tol(contact_angle(&a, &across), pi / 2, 1e-15);
+    ck_assert_double_eq_tol(contact_angle(&a, &ahead), 0, 1e-15);
+    ck_assert_double_eq_tol(contact_angle(&a, &back), pi, 1e-15);
+    ck_assert_double_eq(contact_angle(&a, &none), 0);
+    ck_assert_double_eq(contact_angle(&none, &none), 0);
+}
+END_TEST
+
 /* A corner of a box goes along an edge to the other corner of it, where two triangles have no area
  * any more. What is left is a wedge, of which the inside is inside, and normals have the length 1:
  * that of the corner is along a sum of those of the triangles with an area. */
@@ -248,6 +263,7 @@ int main(void)
     tcase_add_test(cases, the_surface_has_its_velocity);
     tcase_add_test(cases, times_alone_say_the_bytes);
     tcase_add_test(cases, ends_of_steps);
+    tcase_add_test(cases, angles);
     tcase_add_test(cases, triangles_that_lose_their_area);
     tcase_add_test(cases, frames_that_are_nowhere);
     suite_add_tcase(suite, cases);

@@ -303,6 +303,12 @@ static int check_frames(struct output_cache *cache, int *exit_code, struct cloth
     const int code = intersections_of_folder(cache, "duite-view", &found, error);
     if (code)
         return code;
+    for (uint32_t i = 0; i < cache->n_obstacles; i++)
+        if (cache->unplaced[i])
+            fprintf(stderr,
+                    "duite-view: obstacles[%u] is left out: it is a body with frames, and the "
+                    "folder has its place at the start alone\n",
+                    i);
     if (!found.bad)
         printf("no intersections in %ju frames\n", (uintmax_t)found.frames);
     intersections_say(&found, "duite-view");

@@ -27,7 +27,9 @@ struct intersections_setup {
     const struct phys_key *keys; /* of their motions */
     const struct contact_bodies *bodies;
     const struct contact_apart *apart; /* what does not meet; it outlives it all */
-    bool self_off;                     /* nor does any cloth meet itself */
+    const bool *unplaced; /* n_obstacles: those that are left out, as their places are not known;
+                             NULL: none; it outlives it all */
+    bool self_off;        /* nor does any cloth meet itself */
 };
 
 /* Of all frames so far. */

@@ -86,6 +86,7 @@ static int check_folder(const struct folder *folder, const char *program,
                                               .same = folder->same,
                                               .n_obstacles = cache->n_obstacles,
                                               .obstacles = cache->obstacles,
+                                              .unplaced = cache->unplaced,
                                               .keys = cache->keys,
                                               .bodies = &cache->bodies,
                                               .apart = &cache->apart};

@@ -262,6 +262,7 @@ void output_cache_close(struct output_cache *cache)
     mesh_free(&cache->mesh);
     free(cache->time);
     free(cache->obstacles);
+    free(cache->unplaced);
     free(cache->bodies.memory);
     free(cache->keys);
     free(cache->apart.end);

@@ -38,7 +38,7 @@ static int fill_scene(FILE *file, const void *what)
     fputs("{\n  \"fps\": ", file);
     output_json_number(file, setup->fps);
     fputs(",\n  \"obstacles\": ", file);
-    output_obstacles(file, setup->n_obstacles, setup->obstacles, setup->keys);
+    output_obstacles(file, setup->n_obstacles, setup->obstacles, setup->keys, setup->bodies);
     if (setup->apart && setup->apart->apart) {
         fputs(",\n  \"apart\": ", file);
         output_apart(file, setup->apart);

@@ -18,11 +18,12 @@
  *   contact.pc2    where it is asked for: the force of contact on each vertex (output_forces)
  *   body-K.obj     the bodies among the obstacles, K from 0, without their motion
  *   scene.json     what a viewer needs: {"fps", "obstacles": [{KIND: {its parameters}}]}, of a
- *                  body {"obj": its file}; one that moves also has "about" and
- *                  "keys": [{"time", "translate", "rotate"}]. Where the scene keeps some from
- * meeting, "apart": {"cloths": [vertices of each], "pairs": [[cloth, other], ...]} follows: numbers
- * of cloths; those of obstacles follow. Where pins follow obstacles, "attached": [[obstacle,
- * vertex, ...], ...]: vertices whose triangles do not meet it
+ *                  body {"obj": its file}, with "frames": their number if they change its shape,
+ * but not their places; one that moves also has "about" and "keys": [{"time", "translate",
+ * "rotate"}]. Where the scene keeps some from meeting, "apart": {"cloths": [vertices of each],
+ * "pairs": [[cloth, other], ...]} follows: numbers of cloths; those of obstacles follow. Where pins
+ * follow obstacles, "attached": [[obstacle, vertex, ...], ...]: vertices whose triangles do not
+ * meet it
  *
  * PC2's count of frames is rewritten after each frame and the file synced, so that a run that is
  * killed leaves whole files up to the last finished frame. */
@@ -130,6 +131,7 @@ struct output_cache {
     double fps;
     uint32_t n_obstacles, n_keys;
     struct contact_shape *obstacles;
+    bool *unplaced;        /* n_obstacles: bodies with frames, whose later places are not there */
     struct phys_key *keys; /* of their motions */
     uint32_t n_bodies;
     struct contact_bodies bodies; /* n_bodies */

@@ -5,16 +5,17 @@
 #include "cloth/output/files/json.h"
 #include "cloth/output/output.h"
 
-/* Obstacles in scene.json: a list of {KIND: {its parameters}}, of bodies {"obj": FILE}, and of what
- * moves also "about" and "keys": [{"time", "translate", "rotate"}]. */
+/* Obstacles in scene.json: a list of {KIND: {its parameters}}, of bodies {"obj": FILE}, with
+ * "frames": N where these change its shape, and of what moves also "about" and "keys": [{"time",
+ * "translate", "rotate"}]. */
 
 /* The name of the file of a body, by number from 1, with a suffix. */
 enum { OUTPUT_BODY_NAME = 40 };
 void output_body_name(char name[OUTPUT_BODY_NAME], uint32_t number, const char *suffix);
 
-/* Writes the list. keys: of all motions. */
+/* Writes the list. keys: of all motions; bodies: those that are named; NULL: none. */
 void output_obstacles(FILE *file, size_t n, const struct contact_shape *obstacles,
-                      const struct phys_key *keys);
+                      const struct phys_key *keys, const struct contact_bodies *bodies);
 
 /* Reads it but for the bodies; what it allocates belongs to the cache, also after a failure. */
 void output_obstacles_read(struct output_cache *cache, struct output_json *json);

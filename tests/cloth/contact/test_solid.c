@@ -141,6 +141,61 @@ START_TEST(what_is_cut_is_certified)
 }
 END_TEST
 
+/* A ball of 0.1 m goes by `shift` past what begins 0.2 m from its centre. Ends are told from its
+ * centre then, angles from the way to where the triangle was. */
+static void pass_ball(const double shift[2], const double radius[3], double degrees, double part[3])
+{
+    struct meeting m = {.shape = {.kind = 0, .n = 2, .value = {0, 0, 0, 0.1}}};
+    const double angle = degrees * 0.017453292519943295;
+    while (contact_kinds[m.shape.kind] != &contact_sphere)
+        m.shape.kind++;
+    m.keys[0] = (struct phys_key){.rotate = {1, 0, 0, 0}};
+    m.keys[1] =
+        (struct phys_key){.time = 1, .translate = {shift[0], shift[1], 0}, .rotate = {1, 0, 0, 0}};
+    contact_pose_over(&m.shape, m.keys, NULL, 0, 1, &m.pose);
+    contact_solid_make(&m.shape, &m.pose, &m.solid);
+    for (int k = 0; k < 3; k++) {
+        const double aside = (k - 1) * 1e-4, along = 1e-4 * (k == 1);
+        m.x[k] = (phys_vec){0.2, along, aside, 0};
+        m.y[k] = (phys_vec){shift[0] + radius[k] * cos(angle),
+                            shift[1] + radius[k] * sin(angle) + along, aside, 0};
+        part[k] = 1;
+    }
+    ck_assert(contact_solid_certify(&m.solid, m.x, m.x, THICKNESS));
+    ck_assert(!contact_solid_certify(&m.solid, m.x, m.y, THICKNESS));
+    ck_assert(contact_solid_cut(&m.solid, m.x, m.y, THICKNESS, 0, part));
+}
+
+/* It cuts along the direction that cuts least: that to the end, (cos 14, sin 14), leaves whole what
+ * ends outside. The one to the end of what stays, n = (0.08, 0.1) / 0.1281, would leave 0.6, the
+ * mean of that and the one of the begin 0.96. On the far side the direction to the end divides
+ * nothing. Along n what stays has 0.0281 m, what goes all its way -0.1937 m, and 1e-4 m, a tenth of
+ * the thickness, is due. */
+START_TEST(cuts_along_what_cuts_least)
+{
+    const double shift[2] = {0.12, -0.1};
+    double part[3];
+    pass_ball(shift, (const double[3]){0.1015, 0.1015, 0.0999}, 14, part);
+    ck_assert_double_eq(part[0], 1);
+    ck_assert_double_eq(part[1], 1);
+    ck_assert(part[2] > 0.8 && part[2] < 1);
+    pass_ball(shift, (const double[3]){0.15, 0.15, 0.15}, 180, part);
+    for (int k = 0; k < 3; k++)
+        ck_assert_double_eq_tol(part[k], 0.0280 / 0.2218, 1e-3);
+}
+END_TEST
+
+/* The direction of the begin is taken if it divides all that goes less: there 0.1 m of 0.4 m. That
+ * of the end would leave 0.36. */
+START_TEST(cuts_along_that_of_the_begin)
+{
+    double part[3];
+    pass_ball((const double[2]){0, -0.15}, (const double[3]){0.2, 0.2, 0.2}, 180, part);
+    for (int k = 0; k < 3; k++)
+        ck_assert_double_eq_tol(part[k], (0.1 - 1e-4) / 0.4, 1e-6);
+}
+END_TEST
+
 /* Nothing is cut of a corner that is held. */
 START_TEST(held_corners_stay)
 {
@@ -238,6 +293,8 @@ int main(void)
     tcase_add_loop_test(cases, certified_never_touches, 0, n);
     tcase_add_loop_test(cases, what_is_far_is_certified, 0, n);
     tcase_add_loop_test(cases, what_is_cut_is_certified, 0, n);
+    tcase_add_test(cases, cuts_along_what_cuts_least);
+    tcase_add_test(cases, cuts_along_that_of_the_begin);
     tcase_add_loop_test(cases, held_corners_stay, 0, n);
     tcase_add_loop_test(cases, apart, 0, n);
     tcase_add_loop_test(cases, passing_by, 0, n);

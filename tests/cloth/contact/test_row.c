@@ -106,6 +106,22 @@ START_TEST(slides_as_coulomb_says)
 }
 END_TEST
 
+/* Friction counts on the load that a step begins with: of all loads it leaves out the last one, as
+ * the first step begins with none. So what slides on something new keeps friction load h / mass of
+ * speed too much, however the load comes about. */
+START_TEST(new_contacts_brake_a_step_late)
+{
+    const double friction = 0.3, seconds = 0.2;
+    struct mass mass = make(0, friction);
+    mass.kg = 1e-3;
+    mass.v = (phys_vec){1, -0.01, 0, 0}; /* it presses from the first step on */
+    run(&mass, seconds);
+    const double loads = G * seconds + mass.v[1] + 0.01; /* over mass */
+    const double late = friction * mass.row.load / mass.kg * mass.h;
+    ck_assert_double_eq_tol(mass.v[0] - (1 - friction * loads), late, 0.1 * late);
+}
+END_TEST
+
 /* On level ground it stops after v^2 / (2 friction G), and stays. */
 START_TEST(stops)
 {
@@ -158,6 +174,7 @@ int main(void)
     tcase_add_test(tests, rests);
     tcase_add_test(tests, sticks_and_slips);
     tcase_add_test(tests, slides_as_coulomb_says);
+    tcase_add_test(tests, new_contacts_brake_a_step_late);
     tcase_add_test(tests, stops);
     tcase_add_test(tests, derivative);
     suite_add_tcase(suite, tests);

@@ -295,6 +295,7 @@ static void add_energies(struct output_report *json, const struct flow_report *r
     output_report_number(json, "energy_lowest", report->energy_lowest);
     output_report_number(json, "energy_highest", report->energy_highest);
     output_report_number(json, "energy_gained", report->energy_gained);
+    output_report_number(json, "energy_gained_unlent", report->energy_gained_unlent);
     output_report_number(json, "energy_lent", report->energy_lent);
     output_report_number(json, "energy_kinetic", end->kinetic);
     output_report_number(json, "energy_elastic", end->elastic);

@@ -17,8 +17,8 @@
  * the normal did on it so far. A spring of stiffness k that pushes with F holds F^2 / 2k. So a step
  * begins with a push of sqrt(2 k energy) at most. It goes on from the load of the step before and,
  * where the gap is below the thickness, rises towards it as far as the energy does. What rests too
- * deep is lifted slowly though it has none left; that energy is `lent`. Pure functions;
- * N, m, N/m, J. */
+ * deep is lifted slowly though it has none left. That energy is lent to it (contact_row_lent). Pure
+ * functions; N, m, N/m, J. */
 struct contact_row {
     phys_vec normal; /* out of the second side, of length 1 */
     phys_vec origin; /* the point where the step began */
@@ -35,8 +35,6 @@ struct contact_row {
     double start, aim;     /* the gap there; the gap where the push is the load */
     double hold, span;     /* stiffness across the normal; length of the step, s: of the step before
                             * until this one begins */
-    double
-        lent; /* of the energy: what the row was given in the step before, as it had too little */
     double pushed; /* by the solve before of the same step: 1 it was, -1 it was not; 0: there was
                     * none */
 };
@@ -67,8 +65,7 @@ PHYS_INLINE void contact_row_begin(struct contact_row *row, double stiffness, do
     const double allowed = firm > 1 && lacks > 0 ? rise : (most > lifts ? most : lifts);
     const double push = row->rested + k * (rise < allowed ? rise : allowed);
     const double needs = push > 0 ? 0.5 * push * push / k : 0;
-    row->lent = needs > row->energy ? needs - row->energy : 0;
-    row->energy += row->lent;
+    row->energy = fmax(row->energy, needs);
     row->start = row->gap;
     row->aim = row->gap + (rise < allowed ? rise : allowed);
     row->stiffness = k;
@@ -109,19 +106,26 @@ PHYS_INLINE double contact_row_across(const struct contact_row *row, const phys_
     return most < row->hold * length ? most / length : (most > 0 ? row->hold : 0);
 }
 
+/* Whether it is in the matrix, if the step ends with this gap and push: it presses, or it has a
+ * load and hardly opens. Where the step was solved before, that solve says it: an active set. */
+PHYS_INLINE bool contact_row_acts(const struct contact_row *row, double gap, double push)
+{
+    const bool stays =
+        push > 0 || (row->load > 0 && gap < (1 + CONTACT_ROW_OPENS) * row->thickness);
+    return row->pushed != 0 ? row->pushed > 0 : stays;
+}
+
 /* The force on the first side if the step ends at this point, and its negative derivative
  * alpha I + w w' as a spring's value has it: w, alpha. Both are zero where nothing presses. What
  * has a load and hardly opens stays for this step, and leaves in the next one if it was pulled: so
  * what rests does not bounce. A positive stiffness across takes energy away in a step of any
- * length. Where the step was solved before, that solve says what presses: an active set. */
+ * length. */
 PHYS_INLINE void contact_row_linearise(const struct contact_row *row, const phys_vec *point,
                                        phys_vec *force, phys_vec *value)
 {
     const double gap = contact_row_gap(row, point), push = contact_row_push(row, point);
     *force = *value = (phys_vec){0};
-    const bool stays =
-        push > 0 || (row->load > 0 && gap < (1 + CONTACT_ROW_OPENS) * row->thickness);
-    if (row->pushed != 0 ? row->pushed < 0 : !stays)
+    if (!contact_row_acts(row, gap, push))
         return;
     phys_vec stretch;
     contact_row_stretch(row, point, &stretch);
@@ -184,6 +188,17 @@ PHYS_INLINE double contact_row_energy(const struct contact_row *row, const phys_
     return energy > 0 ? (energy < most ? energy : most) : 0;
 }
 
+/* What was lent to a contact in a step that ended at this point: what it has after the step and
+ * what its push gave in it, beyond what it had before. Both are energies; after: 0 if it ended. A
+ * push gives too much where the solve before raised the load of a step that opens in the end. */
+PHYS_INLINE double contact_row_lent(const struct contact_row *row, const phys_vec *point,
+                                    double before, double after)
+{
+    const double gap = contact_row_gap(row, point), push = contact_row_push(row, point);
+    const double gave = contact_row_acts(row, gap, push) ? push * (gap - row->start) : 0;
+    return fmax(after + gave - before, 0);
+}
+
 /* What the row of a step to come holds: its energy, and that of the spring across. */
 PHYS_INLINE double contact_row_holds(const struct contact_row *row)
 {
@@ -206,7 +221,6 @@ PHYS_INLINE void contact_row_end(const struct contact_row *row, const phys_vec *
     next->slip = pull <= most ? stretch : most / pull * stretch;
     next->slip -= phys_dot(&next->normal, &next->slip) * next->normal;
     next->load = next->rested = load;
-    next->lent = row->lent;
     next->energy = contact_row_energy(row, point, load);
     next->hold = row->hold;
     next->span = row->span;

@@ -73,6 +73,7 @@ struct flow_report {
     double torque_left;            /* at the end, of the forces of uncorrected triangles, N m */
     double energy_lent;            /* J: by contacts, with energy_steps; else NaN */
     double energy_lowest, energy_highest, /* of their sum, at the start and after each step; */
+        energy_lowest_unlent, energy_gained_unlent, /* of it less energy_lent */
         energy_gained; /* the most that it rose above an earlier one; NaN but with energy_steps */
     uint64_t state_hash;
     uint64_t last_frame; /* the last frame written */

@@ -54,7 +54,8 @@ check_PROGRAMS += tests/whole/metis_cuts
 tests_whole_metis_cuts_SOURCES = tests/whole/metis_cuts.c
 tests_whole_metis_cuts_LDADD = $(METIS_LIBS)
 dist_check_SCRIPTS += tests/whole/test_golden.sh
-EXTRA_DIST += tests/whole/golden.txt tests/whole/balance.awk tests/whole/joints.sh
+EXTRA_DIST += tests/whole/golden.txt tests/whole/balance.awk tests/whole/spin.awk \
+	tests/whole/joints.sh
 TESTS += tests/whole/test_golden.sh
 dist_check_SCRIPTS += tests/whole/test_contact_long.sh tests/whole/test_capstan_long.sh
 LONG_TESTS += tests/whole/test_contact_long.sh tests/whole/test_capstan_long.sh

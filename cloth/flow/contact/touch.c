@@ -30,6 +30,7 @@ struct touching {
     size_t n;
     unsigned char *used; /* n_before, then n: those before that live on; those after that have a
                           * multiplier of their own */
+    double lent;         /* J: to those before */
 };
 
 /* ---- Order ---- */
@@ -179,7 +180,7 @@ static void accept(struct touching *t, const struct flow_near *near)
 }
 
 /* What presses and what sticks goes on. */
-static void hand_over(const struct touching *t, size_t from, size_t to)
+static void hand_over(struct touching *t, size_t from, size_t to)
 {
     const struct flow_contact *before = t->before + from;
     struct contact_row row, *after = &t->after[to].row;
@@ -188,7 +189,19 @@ static void hand_over(const struct touching *t, size_t from, size_t to)
         return;
     find_row(t, before, &row);
     contact_row_end(&row, &point, after);
+    t->lent += contact_row_lent(&row, &point, before->row.energy, after->energy);
     t->used[from] = t->used[t->n_before + to] = 1;
+}
+
+/* Nothing goes on. */
+static void part(struct touching *t, const struct flow_contact *before)
+{
+    struct contact_row row;
+    phys_vec point;
+    if (!find_point(t, before, &point))
+        return;
+    find_row(t, before, &row);
+    t->lent += contact_row_lent(&row, &point, before->row.energy, 0);
 }
 
 /* The place in a triangle that is nearest to a shape jumps along it where both are almost parallel.
@@ -255,9 +268,13 @@ static void end_accept(struct touching *t)
         }
     }
     for (size_t i = 0; i < t->n_before; i++) {
-        const size_t next = t->used[i] ? t->n : successor(t, t->before + i);
+        if (t->used[i])
+            continue;
+        const size_t next = successor(t, t->before + i);
         if (next < t->n)
             hand_over(t, i, next);
+        else
+            part(t, t->before + i);
     }
     if (!(t->args->to > t->args->from))
         begin_all(t);
@@ -265,10 +282,9 @@ static void end_accept(struct touching *t)
 
 static void sum_energy(const struct touching *t, double held[FLOW_HELD])
 {
-    for (size_t i = 0; i < t->n; i++) {
+    for (size_t i = 0; i < t->n; i++)
         held[FLOW_HELD_ALL] += contact_row_holds(&t->after[i].row);
-        held[FLOW_HELD_LENT] += t->after[i].row.lent;
-    }
+    held[FLOW_HELD_LENT] += t->lent;
 }
 
 /* ---- Both ---- */

@@ -133,6 +133,14 @@ static void note_guard(struct flow_state *state, bool touched)
     guard->max = fmax(guard->max, guard->moving);
 }
 
+/* The sum less all that was lent so far. */
+static void note_unlent(struct flow_report *report, double sum)
+{
+    report->energy_gained_unlent =
+        fmax(report->energy_gained_unlent, sum - report->energy_lowest_unlent);
+    report->energy_lowest_unlent = fmin(report->energy_lowest_unlent, sum);
+}
+
 void flow_energy_note(struct flow_state *state, bool touched)
 {
     struct flow_report *report = state->report;
@@ -142,6 +150,7 @@ void flow_energy_note(struct flow_state *state, bool touched)
         report->energy_highest = fmax(report->energy_highest, sum);
         report->energy_lent += state->guard.lent;
         report->energy_gained = fmax(report->energy_gained, sum - report->energy_lowest);
+        note_unlent(report, sum - report->energy_lent);
     }
     if (model_is_guarded(state->flow->model))
         note_guard(state, touched);
@@ -157,8 +166,9 @@ static void begin(struct flow_state *state)
     const bool reported = state->flow->model->energy_steps;
     state->guard = (struct flow_guard){
         .lowest = total, .max = fmax(start->kinetic + start->elastic, state->flow->release)};
-    report->energy_lowest = report->energy_highest = reported ? total : NAN;
-    report->energy_gained = report->energy_lent = reported ? 0 : NAN;
+    report->energy_lowest = report->energy_highest = report->energy_lowest_unlent =
+        reported ? total : NAN;
+    report->energy_gained = report->energy_gained_unlent = report->energy_lent = reported ? 0 : NAN;
 }
 
 int flow_energy_get(struct flow_state *state, struct flow_energy *energy)

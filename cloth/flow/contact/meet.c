@@ -222,7 +222,8 @@ static double gap_ahead(const struct corners *corners, const struct contact_near
     return nearest->gap + phys_dot(&nearest->normal, &way);
 }
 
-/* What the step drives into each other. */
+/* What the step drives into each other. Where no cut will do, the parts stay 1: the pair fails
+ * again in the next look, and after the last one the step is given up. */
 static void fail(struct meeting *m, const struct contact_candidate *candidate,
                  const struct corners *corners)
 {
@@ -235,8 +236,8 @@ static void fail(struct meeting *m, const struct contact_candidate *candidate,
     near.fails = true;
     near.presses = true;
     near.contact.row.firm = contact_row_firm_for(&near.contact.row, gap_ahead(corners, &nearest));
-    contact_cut(corners->pair, corners->x, corners->y, m->model->contact.thickness, corners->held,
-                part);
+    (void)contact_cut(corners->pair, corners->x, corners->y, m->model->contact.thickness,
+                      corners->held, part);
     for (uint32_t k = 0; k < 4; k++)
         near.part[k] = part[(k + is_turned(m, corners)) % 4];
     append(m, &near);

@@ -107,7 +107,7 @@ static bool fails_alone(const struct meeting *m, const phys_vec x[3], const phys
     return fails;
 }
 
-/* on: where the step begins. */
+/* on: where the step begins. Where no cut will do, the parts stay 1, as in meet.c. */
 static void fail(struct meeting *m, uint32_t n, const uint32_t *point, const phys_vec x[3],
                  const phys_vec y[3], const struct contact_solid_point *on, struct flow_near *near)
 {
@@ -115,7 +115,8 @@ static void fail(struct meeting *m, uint32_t n, const uint32_t *point, const phy
     describe(m, n, point, x, on, near);
     near->fails = true;
     near->contact.row.firm = contact_row_firm_for(&near->contact.row, gap_ahead(m, x, y, on));
-    contact_solid_cut(&m->solid, x, y, m->model->contact.thickness, near->contact.at.held, part);
+    (void)contact_solid_cut(&m->solid, x, y, m->model->contact.thickness, near->contact.at.held,
+                            part);
     for (uint32_t k = 0; k < n; k++)
         near->part[k] = part[k];
 }

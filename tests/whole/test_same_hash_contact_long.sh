@@ -1,0 +1,33 @@
+#!/bin/sh
+# One state_hash of the scenes whose contact is certified, coarse and short, over 1 to 4 ranks, threads, schedulers, mappings and
+# balancers; in two of them steps are halved.
+. "${srcdir:-.}/tests/support/tap.sh"
+skip_unless "$DUITE_CLOTH"
+plan_later
+exec 3>&1
+
+value() { sed -n "s/^ *\"$1\": *\([^,]*\),\{0,1\}\$/\1/p" "$scratch/report.json"; }
+coarse() { # SCENE BLOCKS HALVED KEY=VALUE...: so many blocks and halved steps at least; then the hashes
+    coarse_scene=$srcdir/cloth/scenes/$1.yaml coarse_name=$1 coarse_blocks=$2 coarse_halved=$3
+    shift 3
+    { for set; do printf -- '--set\n%s\n' "$set"; done; } > "$scratch/sets"
+    # shellcheck disable=SC2046 # no blanks in them
+    limited "$DUITE_CLOTH" "$coarse_scene" $(cat "$scratch/sets") --quiet --output "$scratch/out" --report "$scratch/report.json" || return 1
+    printf '# %s: %s blocks, %s steps, %s halved, %s contacts, %s more solves, %s cuts\n' "$coarse_name" "$(value blocks)" "$(value steps)" \
+        "$(value steps_halved)" "$(value contacts)" "$(value contact_solves)" "$(value contact_cuts)" >&3
+    test "$(value blocks)" -ge "$coarse_blocks" && test "$(value steps_halved)" -ge "$coarse_halved" && test "$(value contacts)" -gt 0 &&
+        ranks 4 tests/whole/same_hash "$coarse_scene" some 0 "$@"
+}
+side() { # N CLOTH...: their grids are N vertices wide
+    side_n=$1
+    shift
+    for i; do printf 'cloths[%s].mesh.grid.nx=%s cloths[%s].mesh.grid.ny=%s ' "$i" "$side_n" "$i" "$side_n"; done
+}
+# shellcheck disable=SC2046
+ok "sphere.yaml" coarse sphere 8 0 $(side 30 0) time.end=0.4 grain=100
+# shellcheck disable=SC2046
+ok "stack.yaml, steps halved" coarse stack 8 1 $(side 12 0 1 2 3 4) time.end=0.35 grain=80
+ok "drape.yaml" coarse drape 5 0 cloths[0].mesh.disc.rings=12 time.end=0.2 grain=80
+ok "twist.yaml, steps halved" coarse twist 6 1 cloths[0].mesh.grid.nx=33 cloths[0].mesh.grid.ny=11 time.end=1.2 grain=60
+# shellcheck disable=SC2046
+ok "slope.yaml" coarse slope 6 0 $(side 12 0 1) 'probes[0].vertices=[70]' 'probes[1].vertices=[70]' time.end=0.4 grain=40

@@ -98,6 +98,16 @@ sliding() {
 }
 ok "a patch slides over a cloth without friction" sliding
 
+# The coarse functions of a vertex that several blocks see through contacts: with those of another one solves begin again, or end nowhere.
+scene heap "$(for i in 0 1 2 3 4; do sheet s$i 0.3 12 "translate: [0.00$i, 0.0$((i + 1)), 0], rotate: [1, 0, 0.0$i, 0]"; done)" "obstacles: [$floor]" 0.15
+coarse() {
+    limited "$DUITE_CLOTH" heap.yaml --set solver.preconditioner=coarse --set grain=40 --set time.h=0.008 --report report.json --quiet > said 2>&1
+    coarse_got=$?
+    cat said report.json
+    test $coarse_got = 0 && test "$(value cg_restarts)" = 0 && test "$(value blocks)" -gt 15 && test "$(value contacts)" -gt 500
+}
+ok "contacts of many blocks and the coarse preconditioner" coarse
+
 # Starts and steps that cannot be kept apart.
 scene crossed "$(sheet a 0.3 16 'translate: [0, 0, 0]')
 $(sheet b 0.3 16 'translate: [0.001, 0, 0.003], rotate: [1, 1, 0, 0]')" '' 0.1

@@ -8,6 +8,7 @@ include cloth/physics/module.mk
 include cloth/contact/module.mk
 include cloth/verify/module.mk
 include cloth/untangle/module.mk
+include cloth/garment/module.mk
 include cloth/solve/module.mk
 include cloth/model/module.mk
 include cloth/element/module.mk
@@ -26,6 +27,11 @@ duite_cloth_SOURCES = \
 	cloth/summary.h \
 	cloth/summary.c
 duite_cloth_LDADD = libduite_cloth.la libduite_core.la
+
+bin_PROGRAMS += duite-garment
+dist_man_MANS += cloth/duite-garment.1
+duite_garment_SOURCES = cloth/duite-garment.c
+duite_garment_LDADD = libduite_cloth.la libduite_core.la
 
 scenesdir = $(pkgdatadir)/scenes
 dist_scenes_DATA =

@@ -1,6 +1,8 @@
 libduite_cloth_la_SOURCES += \
 	cloth/scene/scene.h \
 	cloth/scene/scene.c \
+	cloth/scene/pattern.h cloth/scene/pattern/reader.h \
+	cloth/scene/pattern/panels.c cloth/scene/pattern/pattern.c cloth/scene/pattern/stitches.c cloth/scene/pattern/values.c \
 	cloth/scene/yaml/tree.h \
 	cloth/scene/yaml/tree.c \
 	cloth/scene/yaml/load.c \

@@ -12,7 +12,7 @@ int scene_read(struct model *model, const char *path, size_t n_sets, const struc
     struct cloth_error own = {0}; /* the caller may want none, the steps below rely on one */
     struct scene_tree tree;
     *model = (struct model){0};
-    int code = scene_tree_load(&tree, path, &own);
+    int code = scene_tree_load(&tree, path, &scene_words, &own);
     tree.n_sets = n_sets;
     tree.sets = sets;
     if (!code)

@@ -63,3 +63,6 @@ dist_check_SCRIPTS += tests/whole/test_contact_long.sh tests/whole/test_capstan_
 LONG_TESTS += tests/whole/test_contact_long.sh tests/whole/test_capstan_long.sh
 dist_check_SCRIPTS += tests/whole/test_contact_scenes_long.sh tests/whole/test_drape_long.sh
 LONG_TESTS += tests/whole/test_contact_scenes_long.sh tests/whole/test_drape_long.sh
+dist_check_SCRIPTS += tests/whole/test_garment.sh
+EXTRA_DIST += tests/whole/garment_golden.txt
+TESTS += tests/whole/test_garment.sh

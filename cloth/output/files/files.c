@@ -125,6 +125,28 @@ int output_write_file(const char *path, int (*fill)(FILE *file, const void *what
     return output_fail(error, "write", path);
 }
 
+int output_replace_file(const char *path, int (*fill)(FILE *file, const void *what),
+                        const void *what, struct cloth_error *error)
+{
+    struct stat status;
+    const bool there = stat(path, &status) == 0;
+    if (there && !S_ISREG(status.st_mode))
+        return output_write_file(path, fill, what, error);
+    char *target = there ? realpath(path, NULL) : strdup(path), *part = NULL;
+    if (!target || asprintf(&part, "%s.%ld.part", target, (long)getpid()) < 0) {
+        free(target);
+        return cloth_fail(error, CLOTH_E_MEMORY, "no memory to write %s", path);
+    }
+    int code = output_write_file(part, fill, what, error);
+    if (!code && rename(part, target) != 0) {
+        code = output_fail(error, "write", path);
+        unlink(part);
+    }
+    free(part);
+    free(target);
+    return code;
+}
+
 void output_sync_folder(const char *folder)
 {
     int handle = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);

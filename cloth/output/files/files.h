@@ -38,6 +38,11 @@ int output_sync(int file);
 int output_write_file(const char *path, int (*fill)(FILE *file, const void *what), const void *what,
                       struct cloth_error *error);
 
+/* The same beside its final name, then renamed, so that the path never holds half a file. A path
+ * that is no plain file, such as a pipe, is written to as it is; a link stays one. */
+int output_replace_file(const char *path, int (*fill)(FILE *file, const void *what),
+                        const void *what, struct cloth_error *error);
+
 /* Brings the names in a folder to the disk, so that a rename survives a power cut; best effort. */
 void output_sync_folder(const char *folder);
 

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* No scene is larger; a device that never ends stops here. */
+/* No file is larger; a device that never ends stops here. */
 static const size_t MAX_BYTES = (size_t)256 << 20;
 
 static int read_all(FILE *file, char **bytes, size_t *size)
@@ -30,21 +30,21 @@ static int read_all(FILE *file, char **bytes, size_t *size)
     return ferror(file) ? CLOTH_E_IO : CLOTH_OK;
 }
 
-static int read_file(const char *path, char **bytes, size_t *size, struct cloth_error *error)
+static int read_file(const char *path, const struct scene_words *words, char **bytes, size_t *size,
+                     struct cloth_error *error)
 {
     FILE *file = fopen(path, "rb");
     if (!file)
-        return cloth_fail(error, CLOTH_E_INPUT, "%s: cannot open the scene file: %s", path,
-                          strerror(errno));
+        return cloth_fail(error, CLOTH_E_INPUT, "%s: cannot open the %s file: %s", path,
+                          words->noun, strerror(errno));
     int code = read_all(file, bytes, size);
     if (code == CLOTH_E_MEMORY)
         cloth_fail(error, code, "%s: out of memory", path);
     else if (code == CLOTH_E_INPUT)
-        cloth_fail(error, code,
-                   "%s: larger than 256 MiB; a large mesh belongs into a file of its own", path);
+        cloth_fail(error, code, "%s: larger than 256 MiB%s", path, words->large);
     else if (code)
-        code = cloth_fail(error, CLOTH_E_INPUT, "%s: cannot read the scene file: %s", path,
-                          strerror(errno));
+        code = cloth_fail(error, CLOTH_E_INPUT, "%s: cannot read the %s file: %s", path,
+                          words->noun, strerror(errno));
     fclose(file);
     return code;
 }
@@ -53,7 +53,8 @@ static int read_file(const char *path, char **bytes, size_t *size, struct cloth_
  * scene, wherever they stand. */
 enum { MAX_DEPTH = 1000 };
 
-static int check_depth(const char *path, const char *bytes, size_t size, struct cloth_error *error)
+static int check_depth(const char *path, const struct scene_words *words, const char *bytes,
+                       size_t size, struct cloth_error *error)
 {
     size_t depth = 0, line = 1;
     for (size_t i = 0; i < size; i++) {
@@ -63,9 +64,9 @@ static int check_depth(const char *path, const char *bytes, size_t size, struct 
         depth -= closes && depth > 0;
         if (depth > MAX_DEPTH)
             return cloth_fail(error, CLOTH_E_INPUT,
-                              "%s:%zu: more than %d brackets [ and { are open here; a scene needs "
+                              "%s:%zu: more than %d brackets [ and { are open here; a %s needs "
                               "a few",
-                              path, line, MAX_DEPTH);
+                              path, line, MAX_DEPTH, words->noun);
     }
     return CLOTH_OK;
 }
@@ -84,8 +85,9 @@ static void line_and_column(const char *bytes, size_t offset, size_t *line, size
     }
 }
 
-static int parser_fails(const yaml_parser_t *parser, const char *path, const char *bytes,
-                        size_t size, struct cloth_error *error)
+static int parser_fails(const yaml_parser_t *parser, const char *path,
+                        const struct scene_words *words, const char *bytes, size_t size,
+                        struct cloth_error *error)
 {
     if (parser->error == YAML_MEMORY_ERROR)
         return cloth_fail(error, CLOTH_E_MEMORY, "%s: out of memory", path);
@@ -94,61 +96,66 @@ static int parser_fails(const yaml_parser_t *parser, const char *path, const cha
         size_t offset = parser->problem_offset < size ? parser->problem_offset : size;
         line_and_column(bytes, offset, &line, &column);
         return cloth_fail(error, CLOTH_E_INPUT,
-                          "%s:%zu:%zu: not readable as text: %s; a scene is YAML in UTF-8", path,
-                          line, column, parser->problem);
+                          "%s:%zu:%zu: not readable as text: %s; a %s is %s in UTF-8", path, line,
+                          column, parser->problem, words->noun, words->form);
     }
-    return cloth_fail(error, CLOTH_E_INPUT, "%s:%zu:%zu: not YAML: %s%s%s", path, line, column,
-                      parser->problem, parser->context ? ", " : "",
+    return cloth_fail(error, CLOTH_E_INPUT, "%s:%zu:%zu: not %s: %s%s%s", path, line, column,
+                      words->form, parser->problem, parser->context ? ", " : "",
                       parser->context ? parser->context : "");
 }
 
-static int check_root(const struct scene_tree *tree, struct cloth_error *error)
+static int check_root(const struct scene_tree *tree, const struct scene_words *words,
+                      struct cloth_error *error)
 {
     if (!yaml_document_get_root_node((yaml_document_t *)&tree->document))
-        return cloth_fail(error, CLOTH_E_INPUT,
-                          "%s:1:1: the file is empty; a scene starts with 'schema: 1'", tree->path);
+        return cloth_fail(error, CLOTH_E_INPUT, "%s:1:1: the file is empty; %s", tree->path,
+                          words->start);
     if (scene_tree_empty(tree, 1))
-        return scene_tree_fail(tree, 1, error,
-                               "the file is empty; a scene starts with 'schema: 1'");
+        return scene_tree_fail(tree, 1, error, "the file is empty; %s", words->start);
     if (!scene_tree_is(tree, 1, YAML_MAPPING_NODE))
-        return scene_tree_fail(tree, 1, error,
-                               "the file is not a map; a scene starts with 'schema: 1'");
+        return scene_tree_fail(tree, 1, error, "the file is not a map; %s", words->start);
     return CLOTH_OK;
 }
 
-static int parse(struct scene_tree *tree, yaml_parser_t *parser, const char *bytes, size_t size,
-                 struct cloth_error *error)
+static int parse(struct scene_tree *tree, const struct scene_words *words, yaml_parser_t *parser,
+                 const char *bytes, size_t size, struct cloth_error *error)
 {
     yaml_parser_set_input_string(parser, (const unsigned char *)bytes, size);
     if (!yaml_parser_load(parser, &tree->document))
-        return parser_fails(parser, tree->path, bytes, size, error);
+        return parser_fails(parser, tree->path, words, bytes, size, error);
     tree->loaded = true;
-    int code = check_root(tree, error);
+    int code = check_root(tree, words, error);
     if (code)
         return code;
     yaml_document_t second;
     if (!yaml_parser_load(parser, &second))
-        return parser_fails(parser, tree->path, bytes, size, error);
+        return parser_fails(parser, tree->path, words, bytes, size, error);
     if (yaml_document_get_root_node(&second))
-        code = cloth_fail(error, CLOTH_E_INPUT,
-                          "%s:%zu:%zu: a second document starts here; a scene file holds one",
-                          tree->path, second.start_mark.line + 1, second.start_mark.column + 1);
+        code = cloth_fail(
+            error, CLOTH_E_INPUT, "%s:%zu:%zu: a second document starts here; a %s file holds one",
+            tree->path, second.start_mark.line + 1, second.start_mark.column + 1, words->noun);
     yaml_document_delete(&second);
     return code;
 }
 
-int scene_tree_load(struct scene_tree *tree, const char *path, struct cloth_error *error)
+const struct scene_words scene_words = {.noun = "scene",
+                                        .form = "YAML",
+                                        .start = "a scene starts with 'schema: 1'",
+                                        .large = "; a large mesh belongs into a file of its own"};
+
+int scene_tree_load(struct scene_tree *tree, const char *path, const struct scene_words *words,
+                    struct cloth_error *error)
 {
     *tree = (struct scene_tree){.path = path};
     char *bytes = NULL;
     size_t size = 0;
     yaml_parser_t parser;
-    int code = read_file(path, &bytes, &size, error);
+    int code = read_file(path, words, &bytes, &size, error);
     if (!code)
-        code = check_depth(path, bytes, size, error);
+        code = check_depth(path, words, bytes, size, error);
     if (!code) {
         if (yaml_parser_initialize(&parser)) {
-            code = parse(tree, &parser, bytes, size, error);
+            code = parse(tree, words, &parser, bytes, size, error);
             yaml_parser_delete(&parser);
         } else {
             code = cloth_fail(error, CLOTH_E_MEMORY, "%s: out of memory", path);

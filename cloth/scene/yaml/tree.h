@@ -23,9 +23,18 @@ struct scene_tree {
 #define SCENE_BY_SET     (SIZE_MAX)
 #define SCENE_BY_DEFAULT (SIZE_MAX - 1)
 
+/* How errors call a file. */
+struct scene_words {
+    const char *noun, *form; /* "scene", "YAML" */
+    const char *start;       /* a sentence: how one starts */
+    const char *large;       /* what to do with too large a one; "" */
+};
+extern const struct scene_words scene_words;
+
 /* Reads the one document of a file; its root is a map. Errors: CLOTH_E_INPUT with file:line:column.
  */
-int scene_tree_load(struct scene_tree *tree, const char *path, struct cloth_error *error);
+int scene_tree_load(struct scene_tree *tree, const char *path, const struct scene_words *words,
+                    struct cloth_error *error);
 void scene_tree_free(struct scene_tree *tree);
 
 /* Fails with CLOTH_E_INPUT and "place: sentence", where the place is the file, line and column of a

@@ -1,0 +1,36 @@
+#ifndef CLOTH_GARMENT_DETAIL_CURVE_H
+#define CLOTH_GARMENT_DETAIL_CURVE_H
+
+#include "cloth/garment/pattern.h"
+
+/* An edge of a panel as a curve over its length. Local functions. */
+
+enum { CURVE_PARTS = 64 };
+
+struct curve {
+    enum garment_curve kind;
+    double point[4][2];             /* m: begin, controls, end */
+    double centre[2];               /* m, of an arc */
+    double turns;                   /* of an arc, above 0 is counterclockwise */
+    double length;                  /* m */
+    double before[CURVE_PARTS + 1]; /* m: the length of a Bezier curve up to t = k / CURVE_PARTS */
+};
+
+void curve_make(struct curve *curve, const struct garment_panel *panel, uint32_t edge);
+
+/* Where the curve is at a parameter from 0 to 1. */
+void curve_at(const struct curve *curve, double t, double place[2]);
+
+/* Where it is at a part of its length, from 0 to 1. */
+void curve_at_length(const struct curve *curve, double part, double place[2]);
+
+/* How much it turns in all, radians; by CURVE_PARTS chords. */
+double curve_turning(const struct curve *curve);
+
+/* Half the integral of x dy - y dx along it, m^2: those of a counterclockwise loop are its area. */
+double curve_area(const struct curve *curve);
+
+/* cos and sin of an angle in degrees, to 1e-15; exact for multiples of 90. */
+void curve_turn(double degrees, double *cosine, double *sine);
+
+#endif

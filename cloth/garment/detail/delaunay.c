@@ -1,0 +1,239 @@
+/* The triangulation as a structure: who is beside whom. A triangle is written by `put` alone, so
+ * that every change can be undone. */
+#include "cloth/garment/detail/delaunay.h"
+#include "cloth/garment/detail/delaunay_parts.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+int delaunay_make(struct delaunay *plane, const double low[2], const double high[2], uint32_t room,
+                  struct cloth_error *error)
+{
+    const double wide = fmax(high[0] - low[0], high[1] - low[1]);
+    *plane =
+        (struct delaunay){.n_fixed = DELAUNAY_BOX, .n = DELAUNAY_BOX, .room = room + DELAUNAY_BOX};
+    plane->triangle_room = 2 * plane->room;
+    plane->place = cloth_alloc(plane->room, sizeof *plane->place, error);
+    plane->at = cloth_alloc(plane->room, sizeof *plane->at, error);
+    plane->triangle = cloth_alloc(plane->triangle_room, sizeof *plane->triangle, error);
+    if (!plane->place || !plane->at || !plane->triangle)
+        return CLOTH_E_MEMORY;
+    for (int k = 0; k < DELAUNAY_BOX; k++) {
+        const bool right = k == 1 || k == 2, up = k >= 2;
+        plane->place[k][0] = right ? high[0] + wide : low[0] - wide;
+        plane->place[k][1] = up ? high[1] + wide : low[1] - wide;
+    }
+    plane->n_triangles = 2;
+    plane->triangle[0] =
+        (struct delaunay_triangle){{0, 1, 2}, {DELAUNAY_NONE, 1, DELAUNAY_NONE}, 0};
+    plane->triangle[1] =
+        (struct delaunay_triangle){{0, 2, 3}, {DELAUNAY_NONE, DELAUNAY_NONE, 0}, 0};
+    plane->at[3] = 1;
+    return CLOTH_OK;
+}
+
+void delaunay_free(struct delaunay *plane)
+{
+    free(plane->place);
+    free(plane->at);
+    free(plane->triangle);
+    free(plane->suspect.items);
+    free(plane->changes.items);
+    *plane = (struct delaunay){0};
+}
+
+static struct delaunay_change *new_change(struct delaunay *plane)
+{
+    struct delaunay_change *change = cloth_list_add(&plane->changes, sizeof *change, 1, NULL);
+    if (!change)
+        plane->failed = true;
+    return change;
+}
+
+static void log_triangle(struct delaunay *plane, uint32_t triangle)
+{
+    struct delaunay_change *change = plane->logs ? new_change(plane) : NULL;
+    if (change)
+        *change = (struct delaunay_change){
+            .triangle = triangle, .vertex = DELAUNAY_NONE, .before = plane->triangle[triangle]};
+}
+
+void delaunay_log_vertex(struct delaunay *plane, uint32_t vertex)
+{
+    struct delaunay_change *change = plane->logs ? new_change(plane) : NULL;
+    if (change)
+        *change =
+            (struct delaunay_change){.triangle = DELAUNAY_NONE,
+                                     .vertex = vertex,
+                                     .place = {plane->place[vertex][0], plane->place[vertex][1]},
+                                     .at = plane->at[vertex]};
+}
+
+void delaunay_log(struct delaunay *plane)
+{
+    plane->logs = true;
+    plane->changes.n = 0;
+}
+
+void delaunay_keep(struct delaunay *plane)
+{
+    plane->logs = false;
+}
+
+/* Vertices and triangles that were added stay, taken out: they have no `at` and no corner. Those of
+ * the end go. */
+void delaunay_undo(struct delaunay *plane)
+{
+    const struct delaunay_change *change = plane->changes.items;
+    for (size_t i = plane->changes.n; i-- > 0;) {
+        if (change[i].triangle != DELAUNAY_NONE) {
+            plane->triangle[change[i].triangle] = change[i].before;
+            continue;
+        }
+        memcpy(plane->place[change[i].vertex], change[i].place, sizeof change[i].place);
+        plane->at[change[i].vertex] = change[i].at;
+    }
+    while (plane->n > plane->n_fixed && plane->at[plane->n - 1] == DELAUNAY_NONE)
+        plane->n--;
+    while (plane->n_triangles > 0 &&
+           plane->triangle[plane->n_triangles - 1].vertex[0] == DELAUNAY_NONE)
+        plane->n_triangles--;
+    plane->logs = false;
+    plane->last = 0;
+}
+
+static void set_at(struct delaunay *plane, uint32_t vertex, uint32_t triangle)
+{
+    if (plane->at[vertex] == triangle)
+        return;
+    delaunay_log_vertex(plane, vertex);
+    plane->at[vertex] = triangle;
+}
+
+void delaunay_put(struct delaunay *plane, uint32_t triangle, struct delaunay_triangle value)
+{
+    log_triangle(plane, triangle);
+    plane->triangle[triangle] = value;
+    for (int i = 0; i < 3; i++)
+        set_at(plane, value.vertex[i], triangle);
+}
+
+void delaunay_put_beside(struct delaunay *plane, uint32_t triangle, uint32_t before, uint32_t now)
+{
+    if (triangle == DELAUNAY_NONE)
+        return;
+    log_triangle(plane, triangle);
+    struct delaunay_triangle *of = &plane->triangle[triangle];
+    for (int i = 0; i < 3; i++)
+        if (of->beside[i] == before) {
+            of->beside[i] = now;
+            return;
+        }
+}
+
+void delaunay_take_triangle(struct delaunay *plane, uint32_t triangle)
+{
+    log_triangle(plane, triangle);
+    plane->triangle[triangle].vertex[0] = DELAUNAY_NONE;
+}
+
+void delaunay_take_vertex(struct delaunay *plane, uint32_t vertex)
+{
+    delaunay_log_vertex(plane, vertex);
+    plane->at[vertex] = DELAUNAY_NONE;
+}
+
+uint32_t delaunay_new_triangle(struct delaunay *plane)
+{
+    const uint32_t triangle = plane->n_triangles++;
+    plane->triangle[triangle] = (struct delaunay_triangle){{DELAUNAY_NONE, 0, 0}, {0, 0, 0}, 0};
+    return triangle;
+}
+
+uint32_t delaunay_new_vertex(struct delaunay *plane, const double place[2])
+{
+    const uint32_t vertex = plane->n++;
+    memcpy(plane->place[vertex], place, sizeof plane->place[vertex]);
+    plane->at[vertex] = DELAUNAY_NONE;
+    return vertex;
+}
+
+/* The two triangles at an edge that is not of the hull turn it:
+ *
+ *          c              c
+ *        / | \          /   \
+ *       a  |  b   ->   a --- b
+ *        \ | /          \   /
+ *          d              d
+ */
+void delaunay_flip(struct delaunay *plane, uint32_t t, int i)
+{
+    const struct delaunay_triangle one = plane->triangle[t];
+    const uint32_t u = one.beside[i];
+    const struct delaunay_triangle two = plane->triangle[u];
+    const int i1 = (i + 1) % 3, i2 = (i + 2) % 3;
+    const int j = two.beside[0] == t ? 0 : two.beside[1] == t ? 1 : 2;
+    const int j1 = (j + 1) % 3, j2 = (j + 2) % 3;
+    const uint32_t a = one.vertex[i], d = one.vertex[i1], c = one.vertex[i2], b = two.vertex[j];
+    const unsigned ca = (one.fixed >> i1) & 1, ad = (one.fixed >> i2) & 1;
+    const unsigned db = (two.fixed >> j1) & 1, bc = (two.fixed >> j2) & 1;
+    delaunay_put(plane, t,
+                 (struct delaunay_triangle){{a, d, b},
+                                            {two.beside[j1], u, one.beside[i2]},
+                                            (unsigned char)(db | ad << 2)});
+    delaunay_put(plane, u,
+                 (struct delaunay_triangle){{a, b, c},
+                                            {two.beside[j2], one.beside[i1], t},
+                                            (unsigned char)(bc | ca << 1)});
+    delaunay_put_beside(plane, two.beside[j1], u, t);
+    delaunay_put_beside(plane, one.beside[i1], t, u);
+}
+
+uint32_t delaunay_around(const struct delaunay *plane, uint32_t vertex, uint32_t most,
+                         uint32_t *around)
+{
+    uint32_t start = plane->at[vertex], n = 0;
+    if (start == DELAUNAY_NONE)
+        return 0;
+    for (uint32_t t = start, steps = 0; steps < most; steps++) { /* clockwise to an end */
+        const struct delaunay_triangle *of = &plane->triangle[t];
+        t = of->beside[(delaunay_corner(of, vertex) + 2) % 3];
+        if (t == DELAUNAY_NONE || t == plane->at[vertex])
+            break;
+        start = t;
+    }
+    for (uint32_t t = start; t != DELAUNAY_NONE;) {
+        if (n == most)
+            return 0;
+        around[n++] = t;
+        const struct delaunay_triangle *of = &plane->triangle[t];
+        t = of->beside[(delaunay_corner(of, vertex) + 1) % 3];
+        if (t == start)
+            break;
+    }
+    return n;
+}
+
+static double square(const double a[2], const double b[2])
+{
+    return (a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]);
+}
+
+double delaunay_sharpness(const double a[2], const double b[2], const double c[2])
+{
+    const double one = square(a, b), two = square(b, c), three = square(c, a);
+    if (!(delaunay_area(a, b, c) > DELAUNAY_FLAT * fmax(one, fmax(two, three))))
+        return 2;
+    if (one <= two && one <= three)
+        return (two + three - one) / (2 * sqrt(two * three));
+    if (two <= three)
+        return (one + three - two) / (2 * sqrt(one * three));
+    return (one + two - three) / (2 * sqrt(one * two));
+}
+
+double delaunay_sharpness_of(const struct delaunay *plane, uint32_t triangle)
+{
+    const uint32_t *v = plane->triangle[triangle].vertex;
+    return delaunay_sharpness(plane->place[v[0]], plane->place[v[1]], plane->place[v[2]]);
+}

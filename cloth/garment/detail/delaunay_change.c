@@ -1,0 +1,255 @@
+/* Vertices that come and go, and the flips after them (Lawson, 1977). */
+#include "cloth/garment/detail/delaunay.h"
+#include "cloth/garment/detail/delaunay_parts.h"
+
+#include <math.h>
+
+void delaunay_suspect(struct delaunay *plane, uint32_t triangle)
+{
+    uint32_t *edge = cloth_list_add(&plane->suspect, sizeof *edge, 3, NULL);
+    if (!edge)
+        plane->failed = true;
+    for (uint32_t i = 0; edge && i < 3; i++)
+        edge[i] = 3 * triangle + i;
+}
+
+/* Whether the angles opposite an edge sum up to more than half a turn: their sine's sign. Within
+ * rounding of the circle an edge stays, so that flips end. */
+static bool is_delaunay(const struct delaunay *plane, const struct delaunay_triangle *one, int i,
+                        const struct delaunay_triangle *two, int j)
+{
+    const double *a = plane->place[one->vertex[i]], *b = plane->place[two->vertex[j]];
+    const double *c = plane->place[one->vertex[(i + 1) % 3]];
+    const double *d = plane->place[one->vertex[(i + 2) % 3]];
+    const double sine_a = delaunay_area(a, c, d), sine_b = delaunay_area(b, d, c);
+    const double cosine_a = (c[0] - a[0]) * (d[0] - a[0]) + (c[1] - a[1]) * (d[1] - a[1]);
+    const double cosine_b = (c[0] - b[0]) * (d[0] - b[0]) + (c[1] - b[1]) * (d[1] - b[1]);
+    const double one_sum = sine_a * cosine_b, two_sum = cosine_a * sine_b;
+    return one_sum + two_sum >= -1e-10 * (fabs(one_sum) + fabs(two_sum));
+}
+
+static bool may_flip(const struct delaunay *plane, const struct delaunay_triangle *one, int i,
+                     const struct delaunay_triangle *two, int j)
+{
+    const double *a = plane->place[one->vertex[i]], *b = plane->place[two->vertex[j]];
+    const double *d = plane->place[one->vertex[(i + 1) % 3]];
+    const double *c = plane->place[one->vertex[(i + 2) % 3]];
+    return delaunay_sharpness(a, d, b) < 2 && delaunay_sharpness(a, b, c) < 2;
+}
+
+void delaunay_legalise(struct delaunay *plane)
+{
+    size_t left = 100 * ((size_t)plane->n_triangles + plane->suspect.n); /* rounding ends here */
+    while (plane->suspect.n > 0 && left-- > 0) {
+        const uint32_t edge = ((uint32_t *)plane->suspect.items)[--plane->suspect.n];
+        const uint32_t t = edge / 3;
+        const int i = (int)(edge % 3);
+        const struct delaunay_triangle *one = &plane->triangle[t];
+        if (one->vertex[0] == DELAUNAY_NONE || (one->fixed >> i & 1) ||
+            one->beside[i] == DELAUNAY_NONE)
+            continue;
+        const uint32_t u = one->beside[i];
+        const struct delaunay_triangle *two = &plane->triangle[u];
+        const int j = two->beside[0] == t ? 0 : two->beside[1] == t ? 1 : 2;
+        if (is_delaunay(plane, one, i, two, j) || !may_flip(plane, one, i, two, j))
+            continue;
+        delaunay_flip(plane, t, i);
+        delaunay_suspect(plane, t);
+        delaunay_suspect(plane, u);
+    }
+    plane->suspect.n = 0;
+}
+
+/* Twice the area of an edge and a place: below 0 if the place is on the right. Exactly the opposite
+ * seen from the other side, or a walk could go to and fro over an edge that points at the place. */
+static double side_of(const struct delaunay *plane, uint32_t a, uint32_t b, const double place[2])
+{
+    return a < b ? delaunay_area(plane->place[a], plane->place[b], place)
+                 : -delaunay_area(plane->place[b], plane->place[a], place);
+}
+
+/* The triangle that a place is in, or is nearest to be in, from all. */
+static uint32_t search(const struct delaunay *plane, const double place[2])
+{
+    uint32_t best = DELAUNAY_NONE;
+    double most = -INFINITY;
+    for (uint32_t t = 0; t < plane->n_triangles; t++) {
+        const uint32_t *v = plane->triangle[t].vertex;
+        if (v[0] == DELAUNAY_NONE)
+            continue;
+        const double least =
+            fmin(side_of(plane, v[0], v[1], place),
+                 fmin(side_of(plane, v[1], v[2], place), side_of(plane, v[2], v[0], place)));
+        if (least > most) {
+            most = least;
+            best = t;
+        }
+        if (least >= 0)
+            break;
+    }
+    return best;
+}
+
+/* Walks towards a place over edges that have it on their far side; DELAUNAY_NONE: it is outside. */
+static uint32_t find(const struct delaunay *plane, const double place[2], uint32_t from)
+{
+    uint32_t t = from;
+    for (uint32_t steps = 0; steps <= plane->n_triangles; steps++) {
+        const struct delaunay_triangle *of = &plane->triangle[t];
+        uint32_t next = t;
+        for (uint32_t k = 0; k < 3 && next == t; k++) {
+            const uint32_t i = (k + steps) % 3; /* by turns, or it could go in circles */
+            if (side_of(plane, of->vertex[(i + 1) % 3], of->vertex[(i + 2) % 3], place) < 0)
+                next = of->beside[i];
+        }
+        if (next == t || next == DELAUNAY_NONE)
+            return next;
+        t = next;
+    }
+    return search(plane, place);
+}
+
+/* Where a place is in its triangle: on the edge opposite corner 0 .. 2, 3 inside, 4 on a corner. */
+static int part_of(const struct delaunay *plane, const struct delaunay_triangle *of,
+                   const double place[2])
+{
+    int part = 3;
+    for (int i = 0; i < 3; i++) {
+        const double *a = plane->place[of->vertex[(i + 1) % 3]];
+        const double *b = plane->place[of->vertex[(i + 2) % 3]];
+        const double x = b[0] - a[0], y = b[1] - a[1];
+        if (delaunay_area(a, b, place) <= DELAUNAY_FLAT * (x * x + y * y))
+            part = part == 3 ? i : 4;
+    }
+    return part;
+}
+
+/* A triangle becomes three around its new vertex. */
+static void split_triangle(struct delaunay *plane, uint32_t t, uint32_t vertex)
+{
+    const struct delaunay_triangle old = plane->triangle[t];
+    const uint32_t part[3] = {t, delaunay_new_triangle(plane), delaunay_new_triangle(plane)};
+    for (int i = 0; i < 3; i++) {
+        const int i1 = (i + 1) % 3, i2 = (i + 2) % 3;
+        delaunay_put(plane, part[i],
+                     (struct delaunay_triangle){{vertex, old.vertex[i1], old.vertex[i2]},
+                                                {old.beside[i], part[i1], part[i2]},
+                                                (unsigned char)(old.fixed >> i & 1)});
+        if (i > 0)
+            delaunay_put_beside(plane, old.beside[i], t, part[i]);
+    }
+    for (int i = 0; i < 3; i++)
+        delaunay_suspect(plane, part[i]);
+}
+
+/* The two triangles at an edge become four. */
+static void split_edge(struct delaunay *plane, uint32_t t, int i, uint32_t vertex)
+{
+    const struct delaunay_triangle one = plane->triangle[t];
+    const uint32_t u = one.beside[i];
+    const struct delaunay_triangle two = plane->triangle[u];
+    const int i1 = (i + 1) % 3, i2 = (i + 2) % 3;
+    const int j = two.beside[0] == t ? 0 : two.beside[1] == t ? 1 : 2;
+    const int j1 = (j + 1) % 3, j2 = (j + 2) % 3;
+    const uint32_t a = one.vertex[i], b = two.vertex[j], c = one.vertex[i1], d = one.vertex[i2];
+    const uint32_t t2 = delaunay_new_triangle(plane), u2 = delaunay_new_triangle(plane);
+    const unsigned da = one.fixed >> i1 & 1, ac = one.fixed >> i2 & 1;
+    const unsigned cb = two.fixed >> j1 & 1, bd = two.fixed >> j2 & 1;
+    delaunay_put(
+        plane, t,
+        (struct delaunay_triangle){{vertex, a, c}, {one.beside[i2], u, t2}, (unsigned char)ac});
+    delaunay_put(
+        plane, t2,
+        (struct delaunay_triangle){{vertex, d, a}, {one.beside[i1], t, u2}, (unsigned char)da});
+    delaunay_put(
+        plane, u2,
+        (struct delaunay_triangle){{vertex, b, d}, {two.beside[j2], t2, u}, (unsigned char)bd});
+    delaunay_put(
+        plane, u,
+        (struct delaunay_triangle){{vertex, c, b}, {two.beside[j1], u2, t}, (unsigned char)cb});
+    delaunay_put_beside(plane, one.beside[i1], t, t2);
+    delaunay_put_beside(plane, two.beside[j2], u, u2);
+    const uint32_t part[4] = {t, t2, u, u2};
+    for (int k = 0; k < 4; k++)
+        delaunay_suspect(plane, part[k]);
+}
+
+uint32_t delaunay_insert(struct delaunay *plane, const double place[2], uint32_t near)
+{
+    if (plane->n == plane->room || plane->n_triangles + 2 > plane->triangle_room)
+        return DELAUNAY_NONE;
+    const uint32_t t = find(plane, place, near);
+    if (t == DELAUNAY_NONE)
+        return DELAUNAY_NONE;
+    const struct delaunay_triangle *of = &plane->triangle[t];
+    const int part = part_of(plane, of, place);
+    if (part == 4 || (part < 3 && ((of->fixed >> part & 1) || of->beside[part] == DELAUNAY_NONE)))
+        return DELAUNAY_NONE;
+    const uint32_t vertex = delaunay_new_vertex(plane, place);
+    if (part == 3)
+        split_triangle(plane, t, vertex);
+    else
+        split_edge(plane, t, part, vertex);
+    delaunay_legalise(plane);
+    plane->last = plane->at[vertex];
+    return vertex;
+}
+
+/* The neighbours at an edge that two triangles leave become each other's. */
+static void close_gap(struct delaunay *plane, uint32_t gone, uint32_t one, uint32_t two,
+                      unsigned fixed)
+{
+    delaunay_put_beside(plane, one, gone, two);
+    delaunay_put_beside(plane, two, gone, one);
+    const uint32_t side[2] = {one, two};
+    for (int k = 0; k < 2; k++) {
+        if (side[k] == DELAUNAY_NONE)
+            continue;
+        struct delaunay_triangle value = plane->triangle[side[k]];
+        for (int i = 0; i < 3; i++)
+            if (fixed && value.beside[i] == side[1 - k])
+                value.fixed |= (unsigned char)(1U << i);
+        delaunay_put(plane, side[k], value);
+    }
+}
+
+bool delaunay_merge(struct delaunay *plane, uint32_t vertex, uint32_t to)
+{
+    enum { MOST = 32 };
+    uint32_t around[MOST];
+    const uint32_t n = delaunay_around(plane, vertex, MOST, around);
+    for (uint32_t k = 0; k < n; k++) { /* does each that stays keep its side? */
+        const struct delaunay_triangle *of = &plane->triangle[around[k]];
+        const int i = delaunay_corner(of, vertex);
+        const uint32_t b = of->vertex[(i + 1) % 3], c = of->vertex[(i + 2) % 3];
+        if (b != to && c != to &&
+            delaunay_sharpness(plane->place[to], plane->place[b], plane->place[c]) >= 2)
+            return false;
+    }
+    for (uint32_t k = 0; k < n; k++) {
+        struct delaunay_triangle of = plane->triangle[around[k]];
+        const int i = delaunay_corner(&of, vertex);
+        if (of.vertex[(i + 1) % 3] != to && of.vertex[(i + 2) % 3] != to) {
+            of.vertex[i] = to;
+            delaunay_put(plane, around[k], of);
+        }
+    }
+    for (uint32_t k = 0; k < n; k++) {
+        const struct delaunay_triangle of = plane->triangle[around[k]];
+        const int i = of.vertex[0] == vertex   ? 0
+                      : of.vertex[1] == vertex ? 1
+                      : of.vertex[2] == vertex ? 2
+                                               : -1;
+        if (i < 0)
+            continue;
+        const int toward = of.vertex[(i + 1) % 3] == to ? (i + 1) % 3 : (i + 2) % 3;
+        close_gap(plane, around[k], of.beside[i], of.beside[toward],
+                  (of.fixed >> i & 1) | (of.fixed >> toward & 1));
+        delaunay_take_triangle(plane, around[k]);
+    }
+    delaunay_take_vertex(plane, vertex);
+    for (uint32_t k = 0; k < n; k++)
+        if (plane->triangle[around[k]].vertex[0] != DELAUNAY_NONE)
+            delaunay_suspect(plane, around[k]);
+    return n > 0;
+}

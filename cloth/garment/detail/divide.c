@@ -1,0 +1,254 @@
+/* Both sides of a stitch have equally many divisions: those that the mean of their lengths wants,
+ * but none much longer than the spacing. Their parts are equal read from either end, so that the
+ * direction of the stitch does not matter. */
+#include "cloth/base/memory.h"
+#include "cloth/garment/detail/work.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static const double TURN = 0.8;         /* rad: a division turns no more */
+static const double LONG = 1.5;         /* spacings: a division of a gathered edge is no longer */
+static const double SHARP = 0.86602540; /* cos 30 degrees */
+static const double MOST = 0x1p25;      /* divisions of all edges */
+static const double JUMP = 1.35;        /* of divisions on both sides of a corner */
+static const double GROWTH = 0.3;       /* of divisions, a length along their edge */
+enum { SWEEPS = 8 };                    /* over all corners: sizes spread that far */
+
+static void add_edge(struct work *work, uint32_t panel, uint32_t e)
+{
+    struct work_edge *edge = &work->edge[work->first[panel] + e];
+    curve_make(&edge->curve, &work->pattern->panel[panel], e);
+    edge->least = 1 + (uint32_t)(curve_turning(&edge->curve) / TURN);
+    edge->partner = UINT32_MAX;
+}
+
+int work_make(struct work *work, const struct garment_pattern *pattern, struct cloth_error *error)
+{
+    *work = (struct work){.pattern = pattern};
+    work->first = cloth_alloc((size_t)pattern->n_panels + 1, sizeof *work->first, error);
+    work->panel = cloth_alloc(pattern->n_panels, sizeof *work->panel, error);
+    if (!work->first || !work->panel)
+        return CLOTH_E_MEMORY;
+    for (uint32_t p = 0; p < pattern->n_panels; p++) {
+        work->first[p + 1] = work->first[p] + pattern->panel[p].n_edges;
+        work->panel[p].clockwise = garment_panel_area(&pattern->panel[p]) < 0;
+    }
+    work->edge = cloth_alloc(work->first[pattern->n_panels], sizeof *work->edge, error);
+    if (!work->edge)
+        return CLOTH_E_MEMORY;
+    for (uint32_t p = 0; p < pattern->n_panels; p++)
+        for (uint32_t e = 0; e < pattern->panel[p].n_edges; e++)
+            add_edge(work, p, e);
+    for (uint32_t s = 0; s < pattern->n_stitches; s++) {
+        const struct garment_side *side = pattern->stitch[s].side;
+        const uint32_t one = work->first[side[0].panel] + side[0].edge;
+        const uint32_t two = work->first[side[1].panel] + side[1].edge;
+        work->edge[one].partner = two;
+        work->edge[two].partner = one;
+    }
+    return CLOTH_OK;
+}
+
+void work_free(struct work *work)
+{
+    for (uint32_t p = 0; work->panel && p < work->pattern->n_panels; p++) {
+        delaunay_free(&work->panel[p].plane);
+        free(work->panel[p].sharp);
+        free(work->panel[p].start);
+    }
+    for (uint32_t e = 0; work->edge && e < work->first[work->pattern->n_panels]; e++)
+        free(work->edge[e].part);
+    free(work->first);
+    free(work->edge);
+    free(work->panel);
+    *work = (struct work){0};
+}
+
+/* As a number, since it may be beyond all integers. */
+static double wanted(const struct work *work, const struct work_edge *edge)
+{
+    const struct work_edge *other = edge->partner == UINT32_MAX ? edge : &work->edge[edge->partner];
+    const double one = edge->curve.length / work->spacing,
+                 two = other->curve.length / work->spacing;
+    const double finer = fmax(edge->finer, other->finer);
+    const double mean = floor(finer * 0.5 * (one + two) + 0.5);
+    return fmax(fmax(mean, ceil(finer * fmax(one, two) / LONG)), fmax(edge->least, other->least));
+}
+
+/* At the corner between two edges neither's divisions are much longer than the other's. */
+static void even_corner(struct work_edge *one, struct work_edge *two)
+{
+    const double a = one->end[1] * one->curve.length, b = two->end[0] * two->curve.length;
+    if (a > JUMP * b)
+        one->end[1] = JUMP * b / one->curve.length;
+    if (b > JUMP * a)
+        two->end[0] = JUMP * a / two->curve.length;
+}
+
+/* Along an edge they grow slowly; both edges of a stitch are alike, and from both ends. */
+static void even_edge(struct work *work, struct work_edge *edge)
+{
+    for (int k = 0; k < 2; k++)
+        edge->end[k] = fmin(edge->end[k], edge->end[1 - k] + GROWTH);
+    if (edge->partner == UINT32_MAX)
+        return;
+    struct work_edge *other = &work->edge[edge->partner];
+    const double least = fmin(fmin(edge->end[0], edge->end[1]), fmin(other->end[0], other->end[1]));
+    edge->end[0] = edge->end[1] = other->end[0] = other->end[1] = least;
+}
+
+static void even_out(struct work *work)
+{
+    for (int k = 0; k < SWEEPS; k++)
+        for (uint32_t p = 0; p < work->pattern->n_panels; p++) {
+            const uint32_t first = work->first[p], n = work->first[p + 1] - first;
+            for (uint32_t e = 0; e < n; e++)
+                even_corner(&work->edge[first + e], &work->edge[first + (e + 1) % n]);
+            for (uint32_t e = 0; e < n; e++)
+                even_edge(work, &work->edge[first + e]);
+        }
+}
+
+/* How long a division is to be at a part of the length. */
+static double size_at(const struct work_edge *edge, double t)
+{
+    const double begin = edge->end[0] + GROWTH * t, end = edge->end[1] + GROWTH * (1 - t);
+    return fmin(edge->middle, fmin(begin, end));
+}
+
+/* Goes along an edge by its divisions, and writes them, if wanted. Returns how many fit best;
+ * *reached: where the last of them ends. */
+static uint32_t walk(const struct work_edge *edge, double *part, double *reached)
+{
+    uint32_t n = 0;
+    double t = 0;
+    for (;;) {
+        const double half = t + 0.5 * size_at(edge, t), step = size_at(edge, fmin(half, 1));
+        if (n > 0 && t + 0.5 * step >= 1)
+            break;
+        t += step;
+        n++;
+        if (part)
+            part[n] = t;
+    }
+    *reached = t;
+    return n;
+}
+
+/* Divisions that are not equal. Both ends of the list are exact. */
+static int grade(struct work_edge *edge, struct cloth_error *error)
+{
+    double reached;
+    const uint32_t n = walk(edge, NULL, &reached);
+    if (n < edge->least)
+        return CLOTH_OK;
+    double *part = cloth_alloc((size_t)n + 1, sizeof *part, error);
+    if (!part)
+        return CLOTH_E_MEMORY;
+    walk(edge, part, &reached);
+    for (uint32_t k = 0; k <= n; k++)
+        part[k] /= reached;
+    for (uint32_t k = 0; edge->partner != UINT32_MAX && k <= n / 2; k++) {
+        const double both = 0.5 * (part[k] + (1 - part[n - k]));
+        part[k] = both;
+        part[n - k] = 1 - both;
+    }
+    edge->part = part;
+    edge->n = n;
+    return CLOTH_OK;
+}
+
+static int divide_edge(struct work_edge *edge, double n, struct cloth_error *error)
+{
+    free(edge->part);
+    edge->part = NULL;
+    edge->n = (uint32_t)n;
+    const bool equal = fmin(edge->end[0], edge->end[1]) > 0.999 * edge->middle;
+    return equal ? CLOTH_OK : grade(edge, error);
+}
+
+/* Whether an edge has other divisions than before. */
+static bool differs(const struct work_edge *edge, const struct work_edge *before)
+{
+    return edge->n != before->n || edge->end[0] != before->end[0] || edge->end[1] != before->end[1];
+}
+
+static int divide_panel(struct work *work, uint32_t panel, const struct work_edge *before,
+                        struct cloth_error *error)
+{
+    for (uint32_t e = work->first[panel]; e < work->first[panel + 1]; e++) {
+        struct work_edge *edge = &work->edge[e];
+        int code = divide_edge(edge, 1 / edge->middle + 0.5, error);
+        if (code)
+            return code;
+        work->panel[panel].meshed = work->panel[panel].meshed && !differs(edge, &before[e]);
+    }
+    return CLOTH_OK;
+}
+
+int work_divide(struct work *work, struct cloth_error *error)
+{
+    const uint32_t n = work->first[work->pattern->n_panels];
+    double sum = 0;
+    struct work_edge *before = cloth_alloc(n, sizeof *before, error);
+    int code = before ? CLOTH_OK : CLOTH_E_MEMORY;
+    for (uint32_t e = 0; e < n && !code; e++) {
+        const double parts = wanted(work, &work->edge[e]);
+        before[e] = work->edge[e];
+        sum += parts;
+        if (!(sum <= MOST))
+            code = cloth_fail(error, CLOTH_E_INPUT,
+                              "edges of %g m would divide the boundary into more than %.0f parts",
+                              work->spacing, MOST);
+        work->edge[e].middle = work->edge[e].end[0] = work->edge[e].end[1] = 1 / parts;
+    }
+    if (!code)
+        even_out(work);
+    for (uint32_t p = 0; p < work->pattern->n_panels && !code; p++)
+        code = divide_panel(work, p, before, error);
+    free(before);
+    return code;
+}
+
+/* Whether the loop, which is counterclockwise, has an angle below 30 degrees inside of place i. */
+static bool is_sharp(const double (*place)[2], uint32_t n, uint32_t i)
+{
+    const double *a = place[(i + n - 1) % n], *b = place[i], *c = place[(i + 1) % n];
+    const double from[2] = {a[0] - b[0], a[1] - b[1]}, to[2] = {c[0] - b[0], c[1] - b[1]};
+    const double sizes =
+        sqrt((from[0] * from[0] + from[1] * from[1]) * (to[0] * to[0] + to[1] * to[1]));
+    return from[0] * to[0] + from[1] * to[1] > SHARP * sizes &&
+           to[0] * from[1] - to[1] * from[0] > 0;
+}
+
+int work_outline(struct work *work, uint32_t panel, double (**place)[2], struct cloth_error *error)
+{
+    struct work_panel *of = &work->panel[panel];
+    const struct work_edge *edge = work->edge + work->first[panel];
+    const uint32_t n_edges = work->pattern->panel[panel].n_edges;
+    free(of->start);
+    free(of->sharp);
+    of->sharp = NULL;
+    *place = NULL;
+    of->start = cloth_alloc((size_t)n_edges + 1, sizeof *of->start, error);
+    if (!of->start)
+        return CLOTH_E_MEMORY;
+    for (uint32_t e = 0; e < n_edges; e++)
+        of->start[e + 1] = of->start[e] + edge[e].n;
+    const uint32_t n = of->start[n_edges];
+    of->sharp = cloth_alloc(n, 1, error);
+    *place = cloth_alloc(n, sizeof **place, error);
+    if (!of->sharp || !*place)
+        return CLOTH_E_MEMORY;
+    for (uint32_t e = 0; e < n_edges; e++)
+        for (uint32_t k = 0; k < edge[e].n; k++) {
+            double *at = (*place)[of->start[e] + k];
+            curve_at_length(&edge[e].curve, edge[e].part ? edge[e].part[k] : (double)k / edge[e].n,
+                            at);
+            at[0] = of->clockwise ? -at[0] : at[0];
+        }
+    for (uint32_t e = 0; e < n_edges; e++)
+        of->sharp[of->start[e]] = is_sharp((const double(*)[2]) * place, n, of->start[e]);
+    return CLOTH_OK;
+}

@@ -1,0 +1,112 @@
+/* Boxes of edges sort out most pairs of them; of the rest every segment is tried with every other.
+ */
+#include "cloth/garment/detail/meet.h"
+#include "cloth/base/memory.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+struct box {
+    double low[2], high[2];
+};
+
+static const double *place_of(const struct meet_loop *loop, uint32_t i)
+{
+    return loop->place[i == loop->start[loop->n_edges] ? 0 : i];
+}
+
+static bool apart(const struct box *a, const struct box *b, double near)
+{
+    for (int k = 0; k < 2; k++)
+        if (a->low[k] - near > b->high[k] || b->low[k] - near > a->high[k])
+            return true;
+    return false;
+}
+
+static struct box box_of(const double *a, const double *b)
+{
+    return (struct box){{fmin(a[0], b[0]), fmin(a[1], b[1])}, {fmax(a[0], b[0]), fmax(a[1], b[1])}};
+}
+
+static double area(const double *a, const double *b, const double *c)
+{
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+}
+
+/* Square of the distance from x to the segment from a to b. */
+static double distance(const double *x, const double *a, const double *b)
+{
+    const double along[2] = {b[0] - a[0], b[1] - a[1]}, to[2] = {x[0] - a[0], x[1] - a[1]};
+    const double length = along[0] * along[0] + along[1] * along[1];
+    double s = length > 0 ? (to[0] * along[0] + to[1] * along[1]) / length : 0;
+    s = s < 0 ? 0 : s > 1 ? 1 : s;
+    const double d[2] = {to[0] - s * along[0], to[1] - s * along[1]};
+    return d[0] * d[0] + d[1] * d[1];
+}
+
+static bool segments_meet(const double *a, const double *b, const double *c, const double *d,
+                          double near)
+{
+    const struct box one = box_of(a, b), two = box_of(c, d);
+    if (apart(&one, &two, near))
+        return false;
+    const bool across = (area(a, b, c) > 0) != (area(a, b, d) > 0);
+    const bool along = (area(c, d, a) > 0) != (area(c, d, b) > 0);
+    const double least = fmin(fmin(distance(a, c, d), distance(b, c, d)),
+                              fmin(distance(c, a, b), distance(d, a, b)));
+    return (across && along) || least < near * near;
+}
+
+/* Whether the way from a over b to c goes back where it came from. */
+static bool folds(const double *a, const double *b, const double *c)
+{
+    const double from[2] = {a[0] - b[0], a[1] - b[1]}, to[2] = {c[0] - b[0], c[1] - b[1]};
+    const double cosine = from[0] * to[0] + from[1] * to[1];
+    return cosine > 0 && fabs(from[0] * to[1] - from[1] * to[0]) <= 1e-6 * cosine;
+}
+
+static bool pair_meets(const struct meet_loop *loop, uint32_t i, uint32_t j, double near)
+{
+    const uint32_t n = loop->start[loop->n_edges];
+    const double *a = place_of(loop, i), *b = place_of(loop, i + 1);
+    const double *c = place_of(loop, j), *d = place_of(loop, j + 1);
+    const bool next = i + 1 == j, last = i == 0 && j + 1 == n;
+    if (next || last)
+        return (next && folds(a, b, d)) || (last && folds(c, d, b));
+    return segments_meet(a, b, c, d, near);
+}
+
+static bool edges_meet(const struct meet_loop *loop, uint32_t e, uint32_t f, double near)
+{
+    for (uint32_t i = loop->start[e]; i < loop->start[e + 1]; i++)
+        for (uint32_t j = e == f ? i + 1 : loop->start[f]; j < loop->start[f + 1]; j++)
+            if (pair_meets(loop, i, j, near))
+                return true;
+    return false;
+}
+
+int meet_find(const struct meet_loop *loop, double near, bool *found, uint32_t edge[2],
+              struct cloth_error *error)
+{
+    struct box *box = cloth_alloc(loop->n_edges, sizeof *box, error);
+    *found = false;
+    if (!box)
+        return CLOTH_E_MEMORY;
+    for (uint32_t e = 0; e < loop->n_edges; e++) {
+        box[e] = (struct box){{INFINITY, INFINITY}, {-INFINITY, -INFINITY}};
+        for (uint32_t i = loop->start[e]; i <= loop->start[e + 1]; i++)
+            for (int k = 0; k < 2; k++) {
+                box[e].low[k] = fmin(box[e].low[k], place_of(loop, i)[k]);
+                box[e].high[k] = fmax(box[e].high[k], place_of(loop, i)[k]);
+            }
+    }
+    for (uint32_t e = 0; e < loop->n_edges && !*found; e++)
+        for (uint32_t f = e; f < loop->n_edges && !*found; f++)
+            if (!apart(&box[e], &box[f], near) && edges_meet(loop, e, f, near)) {
+                *found = true;
+                edge[0] = e;
+                edge[1] = f;
+            }
+    free(box);
+    return CLOTH_OK;
+}

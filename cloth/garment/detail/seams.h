@@ -1,0 +1,12 @@
+#ifndef CLOTH_GARMENT_DETAIL_SEAMS_H
+#define CLOTH_GARMENT_DETAIL_SEAMS_H
+
+#include "cloth/garment/garment.h"
+
+/* Pairs the vertices of all stitches of a garment that has its pieces. Of the two directions the
+ * one with the shorter total distance in space is taken; the edges of a dart, which share a corner,
+ * are joined from there on. Error: CLOTH_E_MEMORY. Local. */
+int seams_make(struct garment *garment, const struct garment_pattern *pattern,
+               struct cloth_error *error);
+
+#endif

@@ -1,0 +1,140 @@
+/* A panel is meshed again only when its divisions changed. What makes them change is found in its
+ * mesh: a boundary that crosses itself between its vertices, or triangles that the inside could not
+ * make good. */
+#include "cloth/garment/detail/work.h"
+#include "cloth/base/memory.h"
+#include "cloth/garment/detail/flat.h"
+#include "cloth/garment/detail/meet.h"
+
+#include <stdlib.h>
+
+enum { TRIES = 6, FAIR_TRIES = 3 };
+
+/* Which angles are worth a finer boundary: at first those that a slightly finer one may better,
+ * then those alone that are bad. */
+struct worth {
+    double cosine, factor;
+};
+static const struct worth FAIR = {0.86602540, 1.15}, POOR = {0.93969262, 1.5}; /* 30, 20 degrees */
+
+/* Asks for shorter divisions of an edge. */
+static void refine(struct work *work, uint32_t panel, uint32_t edge, double factor, bool *again)
+{
+    work->edge[work->first[panel] + edge].finer *= factor;
+    *again = true;
+}
+
+static uint32_t edge_of(const struct work_panel *of, uint32_t n_edges, uint32_t vertex)
+{
+    uint32_t e = 0;
+    while (e + 1 < n_edges && of->start[e + 1] <= vertex)
+        e++;
+    return e;
+}
+
+/* Edges of bad triangles that are not excused; each is refined once. */
+static int refine_poor(struct work *work, uint32_t panel, struct worth worth, bool *again,
+                       struct cloth_error *error)
+{
+    const struct work_panel *of = &work->panel[panel];
+    const uint32_t n_edges = work->pattern->panel[panel].n_edges;
+    unsigned char *poor = cloth_alloc(n_edges, 1, error);
+    if (!poor)
+        return CLOTH_E_MEMORY;
+    for (uint32_t t = 0; t < of->plane.n_triangles; t++) {
+        if (delaunay_sharpness_of(&of->plane, t) <= worth.cosine ||
+            flat_excused(&of->plane, of->start[n_edges], of->sharp, t))
+            continue;
+        for (int i = 0; i < 3; i++) {
+            const uint32_t v = of->plane.triangle[t].vertex[i];
+            if (v < of->start[n_edges])
+                poor[edge_of(of, n_edges, v)] = 1;
+        }
+    }
+    for (uint32_t e = 0; e < n_edges; e++)
+        if (poor[e])
+            refine(work, panel, e, worth.factor, again);
+    free(poor);
+    return CLOTH_OK;
+}
+
+static int cannot(const struct work *work, uint32_t panel, uint32_t edge, struct cloth_error *error)
+{
+    return cloth_fail(error, CLOTH_E_INPUT,
+                      "panel '%s' cannot be meshed by edges of %g m: at edge %u its boundary comes "
+                      "too near to itself",
+                      work->pattern->panel[panel].name, work->spacing, edge);
+}
+
+/* place: the panel's boundary. */
+static int mesh_outline(struct work *work, uint32_t panel, const double (*place)[2], int try,
+                        bool *again, struct cloth_error *error)
+{
+    struct work_panel *of = &work->panel[panel];
+    const uint32_t n_edges = work->pattern->panel[panel].n_edges;
+    const struct meet_loop outline = {n_edges, of->start, place};
+    const struct flat_loop loop = {of->start[n_edges], place, of->sharp};
+    struct cloth_error why = {0};
+    uint32_t edge[2] = {0, 0}, crossing;
+    bool meets = false;
+    const bool last = try == TRIES - 1;
+    int code = meet_find(&outline, 1e-8, &meets, edge, error);
+    if (!code && !meets && loop.n >= 3) {
+        code = flat_make(&of->plane, &loop, work->spacing, &crossing, &why);
+        meets = crossing != DELAUNAY_NONE;
+        edge[0] = edge[1] = meets ? edge_of(of, n_edges, crossing) : 0;
+        if (code && !meets)
+            cloth_fail(error, code, "panel '%s': %s", work->pattern->panel[panel].name, why.text);
+        code = meets ? CLOTH_OK : code;
+        of->meshed = !code && !meets;
+    }
+    if (code || of->meshed)
+        return code   ? code
+               : last ? CLOTH_OK
+                      : refine_poor(work, panel, try < FAIR_TRIES ? FAIR : POOR, again, error);
+    if (last)
+        return cannot(work, panel, edge[0], error);
+    refine(work, panel, edge[0], 2, again);
+    if (edge[1] != edge[0])
+        refine(work, panel, edge[1], 2, again);
+    return CLOTH_OK;
+}
+
+static int mesh_panel(struct work *work, uint32_t panel, int try, bool *again,
+                      struct cloth_error *error)
+{
+    double(*place)[2];
+    int code = work_outline(work, panel, &place, error);
+    delaunay_free(&work->panel[panel].plane);
+    if (!code)
+        code = mesh_outline(work, panel, (const double(*)[2])place, try, again, error);
+    free(place);
+    return code;
+}
+
+int work_mesh(struct work *work, double spacing, struct cloth_error *error)
+{
+    int code = CLOTH_OK;
+    bool again = true;
+    work->spacing = spacing;
+    for (uint32_t e = 0; e < work->first[work->pattern->n_panels]; e++)
+        work->edge[e].finer = 1;
+    for (uint32_t p = 0; p < work->pattern->n_panels; p++)
+        work->panel[p].meshed = false;
+    for (int k = 0; k < TRIES && again && !code; k++) {
+        again = false;
+        code = work_divide(work, error);
+        for (uint32_t p = 0; p < work->pattern->n_panels && !code; p++)
+            if (!work->panel[p].meshed)
+                code = mesh_panel(work, p, k, &again, error);
+    }
+    return code;
+}
+
+uint32_t work_count(const struct work *work)
+{
+    uint32_t n = 0;
+    for (uint32_t p = 0; p < work->pattern->n_panels; p++)
+        n += work->panel[p].plane.n;
+    return n;
+}

@@ -1,0 +1,201 @@
+/* The spacing that gives a wanted number of vertices is found by meshing: each try corrects it by
+ * what the last one had too much. */
+#include "cloth/garment/garment.h"
+#include "cloth/base/memory.h"
+#include "cloth/garment/detail/flat.h"
+#include "cloth/garment/detail/seams.h"
+#include "cloth/garment/detail/work.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { TRIES = 10 };
+static const double CLOSE = 0.005; /* of the wanted number: near enough */
+static const uint32_t MOST = (uint32_t)1 << 27;
+
+/* A lattice of triangles with edges h has 1.155 / h^2 vertices an area; of a boundary of length P
+ * about 0.365 P / h more are there, since those of the boundary are nearer to each other. */
+static double first_spacing(const struct work *work, double n)
+{
+    double area = 0, around = 0;
+    for (uint32_t p = 0; p < work->pattern->n_panels; p++) {
+        area += fabs(garment_panel_area(&work->pattern->panel[p]));
+        for (uint32_t e = work->first[p]; e < work->first[p + 1]; e++)
+            around += work->edge[e].curve.length;
+    }
+    const double a = 1.155 * area, b = 0.365 * around;
+    return (b + sqrt(b * b + 4 * a * n)) / (2 * n);
+}
+
+/* Where to search on: between what gave too few and too many, else by the last error. */
+static double next_spacing(double spacing, double n, double wanted, double fine, double coarse)
+{
+    const double next = spacing * sqrt(n / wanted);
+    return next > fine && next < coarse    ? next
+           : coarse < INFINITY && fine > 0 ? 0.5 * (fine + coarse)
+                                           : next;
+}
+
+static int mesh_by_count(struct work *work, uint32_t wanted, struct cloth_error *error)
+{
+    double spacing = first_spacing(work, wanted), best = spacing, least = INFINITY;
+    double fine = 0, coarse = INFINITY; /* spacings that gave too many and too few */
+    int code = CLOTH_OK;
+    for (int k = 0; k < TRIES && least > CLOSE && !code; k++) {
+        code = work_mesh(work, spacing, error);
+        const double n = work_count(work), off = fabs(n - wanted) / wanted;
+        if (off < least) {
+            least = off;
+            best = spacing;
+        }
+        if (n > wanted)
+            fine = spacing;
+        else
+            coarse = spacing;
+        if (off > CLOSE)
+            spacing = next_spacing(spacing, n, wanted, fine, coarse);
+    }
+    if (!code && work->spacing != best)
+        code = work_mesh(work, best, error);
+    return code;
+}
+
+static int check_fineness(const struct garment_fineness *fineness, struct cloth_error *error)
+{
+    if (fineness->vertices && (fineness->vertices < 3 || fineness->vertices > MOST))
+        return cloth_fail(error, CLOTH_E_INPUT, "%u vertices cannot be had: 3 to %u",
+                          fineness->vertices, MOST);
+    if (!fineness->vertices && !(fineness->edge > 0 && isfinite(fineness->edge)))
+        return cloth_fail(error, CLOTH_E_INPUT, "edges of %g m cannot be had", fineness->edge);
+    return CLOTH_OK;
+}
+
+static int make_room(struct garment *garment, const struct work *work, struct cloth_error *error)
+{
+    const struct garment_pattern *pattern = work->pattern;
+    uint64_t n = 0, n_triangles = 0;
+    for (uint32_t p = 0; p < pattern->n_panels; p++) {
+        n += work->panel[p].plane.n;
+        n_triangles += work->panel[p].plane.n_triangles;
+    }
+    if (n > MOST)
+        return cloth_fail(error, CLOTH_E_INPUT, "%ju vertices are too many: up to %u", (uintmax_t)n,
+                          MOST);
+    garment->position = cloth_alloc(n, sizeof *garment->position, error);
+    garment->uv = cloth_alloc(n, sizeof *garment->uv, error);
+    garment->triangle = cloth_alloc(n_triangles, sizeof *garment->triangle, error);
+    garment->excused = cloth_alloc(n_triangles, 1, error);
+    garment->piece = cloth_alloc(pattern->n_panels, sizeof *garment->piece, error);
+    if (!garment->position || !garment->uv || !garment->triangle || !garment->excused ||
+        !garment->piece)
+        return CLOTH_E_MEMORY;
+    garment->n_vertices = (uint32_t)n;
+    garment->n_triangles = (uint32_t)n_triangles;
+    return CLOTH_OK;
+}
+
+/* Maya's rotation x, y, z: the vector turns about x first. Only the first two columns are needed,
+ * since panels are flat. */
+static void axes_of(const double degrees[3], double axis[2][3])
+{
+    double c[3], s[3];
+    for (int k = 0; k < 3; k++)
+        curve_turn(degrees[k], &c[k], &s[k]);
+    axis[0][0] = c[2] * c[1];
+    axis[0][1] = s[2] * c[1];
+    axis[0][2] = -s[1];
+    axis[1][0] = c[2] * s[1] * s[0] - s[2] * c[0];
+    axis[1][1] = s[2] * s[1] * s[0] + c[2] * c[0];
+    axis[1][2] = c[1] * s[0];
+}
+
+static void put_piece(struct garment *garment, struct work *work, uint32_t p, uint32_t first,
+                      uint32_t first_triangle)
+{
+    const struct garment_panel *panel = &work->pattern->panel[p];
+    struct work_panel *of = &work->panel[p];
+    const uint32_t n = of->plane.n, n_triangles = of->plane.n_triangles;
+    double axis[2][3];
+    axes_of(panel->rotate, axis);
+    for (uint32_t v = 0; v < n; v++) {
+        const double *uv = of->plane.place[v], x = of->clockwise ? -uv[0] : uv[0];
+        memcpy(garment->uv[first + v], uv, sizeof garment->uv[0]);
+        for (int k = 0; k < 3; k++)
+            garment->position[first + v][k] =
+                (x * axis[0][k] + uv[1] * axis[1][k]) + panel->translate[k];
+    }
+    for (uint32_t t = 0; t < n_triangles; t++) {
+        for (int i = 0; i < 3; i++)
+            garment->triangle[first_triangle + t][i] = first + of->plane.triangle[t].vertex[i];
+        garment->excused[first_triangle + t] =
+            flat_excused(&of->plane, of->start[panel->n_edges], of->sharp, t);
+    }
+    garment->piece[p] = (struct garment_piece){first, n, first_triangle, n_triangles, of->start};
+    of->start = NULL; /* the garment's now */
+}
+
+static int put_all(struct garment *garment, struct work *work, struct cloth_error *error)
+{
+    int code = make_room(garment, work, error);
+    uint32_t first = 0, first_triangle = 0;
+    if (code)
+        return code;
+    garment->edge = work->spacing;
+    garment->n_pieces = work->pattern->n_panels;
+    for (uint32_t p = 0; p < garment->n_pieces; p++) {
+        put_piece(garment, work, p, first, first_triangle);
+        first += garment->piece[p].n_vertices;
+        first_triangle += garment->piece[p].n_triangles;
+    }
+    return seams_make(garment, work->pattern, error);
+}
+
+int garment_make(struct garment *garment, const struct garment_pattern *pattern,
+                 const struct garment_fineness *fineness, struct cloth_error *error)
+{
+    struct work work = {0};
+    *garment = (struct garment){0};
+    int code = check_fineness(fineness, error);
+    if (code)
+        return code;
+    code = work_make(&work, pattern, error);
+    if (!code)
+        code = fineness->vertices ? mesh_by_count(&work, fineness->vertices, error)
+                                  : work_mesh(&work, fineness->edge, error);
+    code = code ? code : put_all(garment, &work, error);
+    work_free(&work);
+    return code;
+}
+
+void garment_free(struct garment *garment)
+{
+    for (uint32_t p = 0; garment->piece && p < garment->n_pieces; p++)
+        free(garment->piece[p].start);
+    for (uint32_t s = 0; garment->seam && s < garment->n_seams; s++)
+        free(garment->seam[s].pair);
+    free(garment->position);
+    free(garment->uv);
+    free(garment->triangle);
+    free(garment->piece);
+    free(garment->seam);
+    free(garment->excused);
+    *garment = (struct garment){0};
+}
+
+double garment_least_angle(const struct garment *garment, uint32_t *below)
+{
+    static const double cosine_30 = 0.86602540378443864676;
+    double most = 0.5;
+    *below = 0;
+    for (uint32_t t = 0; t < garment->n_triangles; t++) {
+        const uint32_t *v = garment->triangle[t];
+        if (garment->excused[t])
+            continue;
+        const double cosine =
+            delaunay_sharpness(garment->uv[v[0]], garment->uv[v[1]], garment->uv[v[2]]);
+        *below += cosine > cosine_30;
+        most = fmax(most, fmin(cosine, 1));
+    }
+    return acos(most) * (180 / 3.14159265358979323846);
+}

@@ -1,0 +1,16 @@
+# Sewing patterns and the mesh of their panels. Pure.
+libduite_cloth_la_SOURCES += \
+	cloth/garment/garment.c cloth/garment/garment.h \
+	cloth/garment/check.c cloth/garment/pattern.c cloth/garment/pattern.h \
+	cloth/garment/detail/curve.c cloth/garment/detail/curve.h \
+	cloth/garment/detail/delaunay.c cloth/garment/detail/delaunay.h cloth/garment/detail/delaunay_parts.h \
+	cloth/garment/detail/delaunay_change.c \
+	cloth/garment/detail/delaunay_fix.c \
+	cloth/garment/detail/divide.c \
+	cloth/garment/detail/flat.c cloth/garment/detail/flat.h \
+	cloth/garment/detail/flat_improve.c \
+	cloth/garment/detail/flat_smooth.c \
+	cloth/garment/detail/lattice.c cloth/garment/detail/lattice.h \
+	cloth/garment/detail/meet.c cloth/garment/detail/meet.h \
+	cloth/garment/detail/seams.c cloth/garment/detail/seams.h \
+	cloth/garment/detail/work.c cloth/garment/detail/work.h

@@ -1,0 +1,66 @@
+#ifndef CLOTH_GARMENT_PATTERN_H
+#define CLOTH_GARMENT_PATTERN_H
+
+#include "cloth/base/error.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+/* A sewing pattern: flat panels, which of their edges are stitched, and where each panel is around
+ * the body. docs/garments.md has the file format. Lengths are in metres, whatever the file's unit.
+ */
+
+enum garment_curve { GARMENT_STRAIGHT, GARMENT_QUADRATIC, GARMENT_CUBIC, GARMENT_CIRCLE };
+
+struct garment_edge {
+    uint32_t end[2]; /* corners: where it begins and ends */
+    enum garment_curve curve;
+    double control[2][2]; /* m: of a Bezier curve, one or two */
+    double radius;        /* m, of an arc */
+    bool large;           /* the arc is longer than half a circle */
+    bool right;           /* the arc is on the right of the straight way from begin to end */
+};
+
+struct garment_panel {
+    char *name;
+    uint32_t n_corners, n_edges;
+    double (*corner)[2]; /* m, x and y in the panel's plane */
+    struct garment_edge *edge;
+    double rotate[3];    /* degrees about x, then y, then z; those axes stay where they are */
+    double translate[3]; /* m, after the rotation */
+};
+
+struct garment_side { /* an edge of a panel */
+    uint32_t panel, edge;
+};
+
+struct garment_stitch {
+    struct garment_side side[2];
+    bool right_wrong; /* both edges begin at the same end of the seam, whatever is nearer */
+};
+
+/* A zeroed one is empty. All arrays belong to it. */
+struct garment_pattern {
+    uint32_t n_panels, n_stitches;
+    struct garment_panel *panel;
+    struct garment_stitch *stitch;
+};
+
+void garment_pattern_free(struct garment_pattern *pattern);
+
+/* Whether it can be sewn from flat cloth: the edges of each panel are a closed loop in their order,
+ * through every corner once; none has no length, or is an arc of too small a radius; none meets
+ * another, or itself; no panel is smaller than 1 mm or larger than 100 m; no edge is stitched
+ * twice, or to itself. The messages of CLOTH_E_INPUT name panel and edge, counted from 0. Other
+ * error: CLOTH_E_MEMORY. Numbers of corners, panels and edges must be in range, and coordinates
+ * finite. Local. */
+int garment_pattern_check(const struct garment_pattern *pattern, struct cloth_error *error);
+
+/* The length of an edge, m. Local. */
+double garment_edge_length(const struct garment_panel *panel, uint32_t edge);
+
+/* The area of a panel, m^2: below 0 if its loop is clockwise, so that its front is on the side of
+ * -z. Local. */
+double garment_panel_area(const struct garment_panel *panel);
+
+#endif

@@ -1,0 +1,18 @@
+GARMENT_PATTERNS = tests/cloth/garment/patterns/circle.json tests/cloth/garment/patterns/cubic.json tests/cloth/garment/patterns/dart.json \
+	tests/cloth/garment/patterns/fold.json tests/cloth/garment/patterns/gather.json tests/cloth/garment/patterns/quadratic.json \
+	tests/cloth/garment/patterns/straight.json
+EXTRA_DIST += $(GARMENT_PATTERNS)
+if HAVE_CHECK
+check_PROGRAMS += tests/cloth/garment/test_curves
+tests_cloth_garment_test_curves_SOURCES = tests/cloth/garment/test_curves.c tests/cloth/garment/tools.h
+tests_cloth_garment_test_curves_LDADD = $(CLOTH_TEST_LIBS) -lm
+TESTS += tests/cloth/garment/test_curves
+check_PROGRAMS += tests/cloth/garment/test_mesh
+tests_cloth_garment_test_mesh_SOURCES = tests/cloth/garment/test_mesh.c tests/cloth/garment/tools.h
+tests_cloth_garment_test_mesh_LDADD = $(CLOTH_TEST_LIBS) -lm
+TESTS += tests/cloth/garment/test_mesh
+check_PROGRAMS += tests/cloth/garment/test_delaunay
+tests_cloth_garment_test_delaunay_SOURCES = tests/cloth/garment/test_delaunay.c
+tests_cloth_garment_test_delaunay_LDADD = $(CLOTH_TEST_LIBS) -lm
+TESTS += tests/cloth/garment/test_delaunay
+endif

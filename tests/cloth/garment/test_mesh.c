@@ -1,0 +1,278 @@
+/* Meshes of panels: nothing of the boundary is lost, no triangle is bad, seams have equal sides. */
+#include "tests/cloth/garment/tools.h"
+
+#define PI 3.14159265358979323846
+
+static const char *const PATTERNS[] = {"straight", "quadratic", "cubic", "circle",
+                                       "dart",     "gather",    "fold"};
+enum { N_PATTERNS = sizeof PATTERNS / sizeof *PATTERNS };
+static const double EDGES[] = {0.1, 0.021, 0.0053};
+enum { N_EDGES = sizeof EDGES / sizeof *EDGES };
+
+struct edge { /* a < b; the triangle's third vertex */
+    uint32_t a, b, apex;
+};
+
+static int compare(const void *left, const void *right)
+{
+    const struct edge *x = left, *y = right;
+    return x->a != y->a ? (x->a > y->a) - (x->a < y->a) : (x->b > y->b) - (x->b < y->b);
+}
+
+static struct edge *edges_of(const struct garment *garment, const struct garment_piece *piece)
+{
+    struct edge *edge = malloc(3 * (size_t)piece->n_triangles * sizeof *edge);
+    for (size_t i = 0; i < 3 * (size_t)piece->n_triangles; i++) {
+        const uint32_t *v = garment->triangle[piece->first_triangle + i / 3];
+        const uint32_t a = v[i % 3], b = v[(i + 1) % 3];
+        edge[i] = (struct edge){a < b ? a : b, a < b ? b : a, v[(i + 2) % 3]};
+    }
+    qsort(edge, 3 * (size_t)piece->n_triangles, sizeof *edge, compare);
+    return edge;
+}
+
+static double area_of(const double *a, const double *b, const double *c)
+{
+    return 0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]));
+}
+
+static double angle_at(const double *a, const double *b, const double *c)
+{
+    return atan2(2 * fabs(area_of(a, b, c)),
+                 (b[0] - a[0]) * (c[0] - a[0]) + (b[1] - a[1]) * (c[1] - a[1]));
+}
+
+/* Edges of one triangle are those of the boundary, each once; an inner one is Delaunay. V - E + F
+ * is that of a disc. */
+static void check_edges(const struct garment *garment, const struct garment_piece *piece,
+                        uint32_t n_around)
+{
+    struct edge *edge = edges_of(garment, piece);
+    const size_t n = 3 * (size_t)piece->n_triangles;
+    uint32_t n_edges = 0, n_border = 0;
+    for (size_t i = 0; i < n;) {
+        const size_t count = i + 1 < n && compare(&edge[i], &edge[i + 1]) == 0 ? 2 : 1;
+        const uint32_t a = edge[i].a - piece->first, b = edge[i].b - piece->first;
+        const bool border =
+            b < n_around && (b == a + 1 || (a == 0 && b == n_around - 1 && n_around > 2));
+        ck_assert(i + 2 >= n || compare(&edge[i], &edge[i + 2]) != 0);
+        ck_assert_uint_eq(border, count == 1);
+        if (count == 2) {
+            const double *x = garment->uv[edge[i].a], *y = garment->uv[edge[i].b];
+            ck_assert(angle_at(garment->uv[edge[i].apex], x, y) +
+                          angle_at(garment->uv[edge[i + 1].apex], x, y) <
+                      PI + 1e-6);
+        }
+        n_edges++;
+        n_border += border;
+        i += count;
+    }
+    ck_assert_uint_eq(n_border, n_around);
+    ck_assert_int_eq((int)piece->n_vertices - (int)n_edges + (int)piece->n_triangles, 1);
+    free(edge);
+}
+
+/* The triangles are counterclockwise, and their areas are that of the boundary's polygon. */
+static void check_area(const struct garment *garment, const struct garment_piece *piece,
+                       uint32_t n_around)
+{
+    double sum = 0, around = 0;
+    for (uint32_t t = 0; t < piece->n_triangles; t++) {
+        const uint32_t *v = garment->triangle[piece->first_triangle + t];
+        const double area = area_of(garment->uv[v[0]], garment->uv[v[1]], garment->uv[v[2]]);
+        ck_assert(area > 0);
+        sum += area;
+        for (int i = 0; i < 3; i++) /* panels are not stretched where they are placed */
+            ck_assert(fabs(distance_of(garment->uv[v[i]], garment->uv[v[(i + 1) % 3]], 2) -
+                           distance_of(garment->position[v[i]], garment->position[v[(i + 1) % 3]],
+                                       3)) < 1e-14);
+    }
+    for (uint32_t i = 0; i < n_around; i++) {
+        const double *a = garment->uv[piece->first + i];
+        const double *b = garment->uv[piece->first + (i + 1) % n_around];
+        around += 0.5 * (a[0] * b[1] - a[1] * b[0]);
+    }
+    ck_assert(fabs(sum - around) < 1e-12);
+}
+
+static void check_piece(const struct garment *garment, const struct garment_pattern *pattern,
+                        uint32_t p)
+{
+    const struct garment_panel *panel = &pattern->panel[p];
+    const struct garment_piece *piece = &garment->piece[p];
+    const uint32_t n_around = piece->start[panel->n_edges];
+    const double side = garment_panel_area(panel) < 0 ? -1 : 1;
+    check_edges(garment, piece, n_around);
+    check_area(garment, piece, n_around);
+    for (uint32_t e = 0; e < panel->n_edges; e++) {
+        const double *uv = garment->uv[piece->first + piece->start[e]];
+        const double *corner = panel->corner[panel->edge[e].end[0]];
+        ck_assert(uv[0] == side * corner[0] && uv[1] == corner[1]);
+    }
+}
+
+START_TEST(panels_are_whole)
+{
+    struct garment_pattern pattern;
+    struct garment garment;
+    read_pattern(&pattern, PATTERNS[_i / N_EDGES]);
+    make_garment(&garment, &pattern, EDGES[_i % N_EDGES], 0);
+    uint32_t n = 0, below;
+    for (uint32_t p = 0; p < garment.n_pieces; p++) {
+        ck_assert_uint_eq(garment.piece[p].first, n);
+        n += garment.piece[p].n_vertices;
+        check_piece(&garment, &pattern, p);
+    }
+    ck_assert_uint_eq(n, garment.n_vertices);
+    const double least = garment_least_angle(&garment, &below);
+    printf("# %s, edges of %g m: %u vertices, %u triangles, least angle %.1f degrees\n",
+           PATTERNS[_i / N_EDGES], EDGES[_i % N_EDGES], n, garment.n_triangles, least);
+    ck_assert(least >= 28);
+    ck_assert_uint_le(below, 2);
+    garment_free(&garment);
+    garment_pattern_free(&pattern);
+}
+END_TEST
+
+START_TEST(as_many_as_wanted)
+{
+    static const uint32_t wanted[] = {500, 3000, 20000};
+    static const double off[] = {0.05, 0.01, 0.01}; /* boundaries have whole divisions */
+    struct garment_pattern pattern;
+    struct garment garment;
+    const uint32_t n = wanted[_i % 3];
+    read_pattern(&pattern, PATTERNS[_i / 3]);
+    make_garment(&garment, &pattern, 0, n);
+    ck_assert_msg(fabs((double)garment.n_vertices - n) <= off[_i % 3] * n, "%s: %u, not %u",
+                  PATTERNS[_i / 3], garment.n_vertices, n);
+    garment_free(&garment);
+    garment_pattern_free(&pattern);
+}
+END_TEST
+
+/* On straight edges every part has the same length: each side has that of its own edge. */
+static void check_seam(const struct garment *garment, const struct garment_pattern *pattern,
+                       uint32_t s)
+{
+    const struct garment_seam *seam = &garment->seam[s];
+    ck_assert_uint_ge(seam->n_pairs, 2);
+    for (int k = 0; k < 2; k++) {
+        const struct garment_side side = pattern->stitch[s].side[k];
+        const double part =
+            garment_edge_length(&pattern->panel[side.panel], side.edge) / (seam->n_pairs - 1);
+        for (uint32_t i = 0; i + 1 < seam->n_pairs; i++) {
+            const double *a = garment->uv[seam->pair[i][k]], *b = garment->uv[seam->pair[i + 1][k]];
+            ck_assert(fabs(distance_of(a, b, 2) - part) < 1e-13);
+        }
+    }
+}
+
+START_TEST(seams_have_equal_sides)
+{
+    static const char *const sewn[3] = {"dart", "gather", "fold"};
+    struct garment_pattern pattern;
+    struct garment garment;
+    read_pattern(&pattern, sewn[_i]);
+    make_garment(&garment, &pattern, 0.007, 0);
+    ck_assert_uint_eq(garment.n_seams, 1);
+    check_seam(&garment, &pattern, 0);
+    garment_free(&garment);
+    garment_pattern_free(&pattern);
+}
+END_TEST
+
+/* A dart closes at the vertex that its edges share: edge 3 ends there, edge 4 begins there. */
+START_TEST(darts_close_at_their_tip)
+{
+    struct garment_pattern pattern;
+    struct garment garment;
+    read_pattern(&pattern, "dart");
+    make_garment(&garment, &pattern, 0.01, 0);
+    const struct garment_seam *seam = &garment.seam[0];
+    const uint32_t *tip = seam->pair[seam->n_pairs - 1];
+    ck_assert(seam->reversed);
+    ck_assert_uint_eq(tip[0], tip[1]);
+    ck_assert_uint_eq(tip[0], garment.piece[0].start[4]);
+    garment_free(&garment);
+    garment_pattern_free(&pattern);
+}
+END_TEST
+
+/* Panels that meet at a right angle along their seam: partners are at one place. The side's loop is
+ * clockwise, so its front is on the side of its -z, which the rotation takes to the room's -x, and
+ * its u is -x. */
+START_TEST(folds_meet)
+{
+    struct garment_pattern pattern;
+    struct garment garment;
+    read_pattern(&pattern, "fold");
+    make_garment(&garment, &pattern, 0.01, 0);
+    const struct garment_seam *seam = &garment.seam[0];
+    ck_assert(!seam->reversed);
+    for (uint32_t i = 0; i < seam->n_pairs; i++)
+        ck_assert(distance_of(garment.position[seam->pair[i][0]],
+                              garment.position[seam->pair[i][1]], 3) < 1e-15);
+    const struct garment_piece *side = &garment.piece[1];
+    for (uint32_t v = side->first; v < side->first + side->n_vertices; v++) {
+        ck_assert(garment.position[v][0] == 0.3);
+        ck_assert(garment.position[v][2] == garment.uv[v][0]);
+        ck_assert(garment.position[v][1] == garment.uv[v][1]);
+    }
+    const uint32_t *t = garment.triangle[side->first_triangle];
+    const double *a = garment.position[t[0]], *b = garment.position[t[1]],
+                 *c = garment.position[t[2]];
+    ck_assert((b[1] - a[1]) * (c[2] - a[2]) - (b[2] - a[2]) * (c[1] - a[1]) < 0);
+    garment_free(&garment);
+    garment_pattern_free(&pattern);
+}
+END_TEST
+
+/* About x first, then y: 90 and 90 degrees take (x, y) to (y, 0, -x). */
+START_TEST(rotations_are_in_order)
+{
+    struct garment_pattern pattern;
+    struct garment garment;
+    read_pattern(&pattern, "straight");
+    make_garment(&garment, &pattern, 0.05, 0);
+    for (uint32_t v = 0; v < garment.n_vertices; v++) {
+        const double *uv = garment.uv[v], *x = garment.position[v];
+        ck_assert(fabs(x[0] - (uv[1] + 0.1)) < 1e-15 && fabs(x[1] - 1) < 1e-15 &&
+                  fabs(x[2] - (-uv[0] - 0.2)) < 1e-15);
+    }
+    garment_free(&garment);
+    garment_pattern_free(&pattern);
+}
+END_TEST
+
+/* Twice the same bits, whatever lay in memory before. */
+START_TEST(the_same_again)
+{
+    struct garment_pattern pattern;
+    struct garment one, two;
+    read_pattern(&pattern, "circle");
+    make_garment(&one, &pattern, 0.011, 0);
+    make_garment(&two, &pattern, 0.011, 0);
+    ck_assert_uint_eq(one.n_vertices, two.n_vertices);
+    ck_assert_uint_eq(one.n_triangles, two.n_triangles);
+    ck_assert(memcmp(one.position, two.position, one.n_vertices * sizeof *one.position) == 0);
+    ck_assert(memcmp(one.triangle, two.triangle, one.n_triangles * sizeof *one.triangle) == 0);
+    garment_free(&one);
+    garment_free(&two);
+    garment_pattern_free(&pattern);
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("meshes of panels");
+    TCase *mesh = tcase_create("mesh");
+    tcase_add_loop_test(mesh, panels_are_whole, 0, N_PATTERNS * N_EDGES);
+    tcase_add_loop_test(mesh, as_many_as_wanted, 0, N_PATTERNS * 3);
+    tcase_add_loop_test(mesh, seams_have_equal_sides, 0, 3);
+    tcase_add_test(mesh, darts_close_at_their_tip);
+    tcase_add_test(mesh, folds_meet);
+    tcase_add_test(mesh, rotations_are_in_order);
+    tcase_add_test(mesh, the_same_again);
+    suite_add_tcase(suite, mesh);
+    return unit_run(suite);
+}

@@ -1,0 +1,39 @@
+#ifndef TESTS_CLOTH_GARMENT_TOOLS_H
+#define TESTS_CLOTH_GARMENT_TOOLS_H
+
+#include "cloth/garment/garment.h"
+#include "cloth/scene/pattern.h"
+#include "tests/support/unit.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Reads patterns/NAME.json, or ends the case. */
+static inline void read_pattern(struct garment_pattern *pattern, const char *name)
+{
+    const char *top = getenv("srcdir");
+    struct cloth_error error = {0};
+    char path[4096];
+    snprintf(path, sizeof path, "%s/tests/cloth/garment/patterns/%s.json", top ? top : ".", name);
+    ck_assert_msg(scene_read_pattern(pattern, path, &error) == 0, "%s", error.text);
+}
+
+static inline void make_garment(struct garment *garment, const struct garment_pattern *pattern,
+                                double edge, uint32_t vertices)
+{
+    const struct garment_fineness fineness = {edge, vertices};
+    struct cloth_error error = {0};
+    ck_assert_msg(garment_make(garment, pattern, &fineness, &error) == 0, "%s", error.text);
+}
+
+static inline double distance_of(const double *a, const double *b, int n)
+{
+    double sum = 0;
+    for (int k = 0; k < n; k++)
+        sum += (a[k] - b[k]) * (a[k] - b[k]);
+    return sqrt(sum);
+}
+
+#endif

@@ -1,0 +1,162 @@
+#!/bin/sh
+# duite-garment: what it prints and writes, the bits of its meshes, each error of a pattern, files that are no patterns.
+# A change that moves bits for a good reason writes the table again: DUITE_GOLDEN=FILE sh tests/whole/test_garment.sh
+. "${srcdir:-.}/tests/support/tap.sh"
+garment=${DUITE_GARMENT:-$PWD/duite-garment}
+skip_unless "$garment"
+plan_later
+patterns=$srcdir/tests/cloth/garment/patterns
+table=$srcdir/tests/whole/garment_golden.txt
+fresh=${DUITE_GOLDEN:-$scratch/fresh}
+case $fresh in /*) ;; *) fresh=$PWD/$fresh ;; esac
+shared=$srcdir/../shared/data/patterns
+page=$srcdir/cloth/duite-garment.1
+cd "$scratch" || exit 99
+
+run() { limited "$garment" "$@"; }
+prints() { "$@" > printed 2> complained; }
+
+# ---- Words and files
+
+short_answer() { prints run "$2" && grep -q -e "$1" printed && test ! -s complained; }
+ok "--help lists the options" short_answer '--vertices' --help
+ok "--version names the version" short_answer '^duite-garment [0-9]' --version
+documented() { # every option of --help stands in the manual page
+    run --help | sed -n 's/^ *\(-.,\)\{0,1\} *--\([a-z]*\).*/\2/p' > options
+    test "$(wc -l < options)" -ge 7 || return
+    while read -r option; do grep -q -e "\\\\-\\\\-$option" "$page" || { echo "--$option is not in the page" && return 1; }; done < options
+}
+ok "the manual page has every option" documented
+
+writes() {
+    prints run "$patterns/gather.json" --edge 0.02 -o skirt.obj && test ! -s complained &&
+        grep -q '^panel skirt: [0-9]* vertices, [0-9]* triangles, 0.06 m^2$' printed &&
+        grep -q '^seam 0: edge 2 of skirt, 0.2 m, and edge 0 of band, 0.13 m, reversed: 9 pairs, ' printed &&
+        test "$(grep -c '^g ' skirt.obj)" = 2 && test "$(grep -c '^v ' skirt.obj)" = "$(grep -c '^vt ' skirt.obj)" &&
+        grep -q '"reversed": true' skirt.seams.json
+}
+ok "mesh, seams and summary" writes
+quiet() { prints run "$patterns/gather.json" -n 300 -o q.obj --seams q.txt -q && test ! -s printed && test ! -s complained && test -s q.txt; }
+ok "--quiet, --seams" quiet
+if command -v python3 > /dev/null; then
+    ok "the seams are JSON" python3 -c 'import json; s = json.load(open("skirt.seams.json")); assert len(s["seams"][0]["pairs"]) == 9'
+else
+    skip "the seams are JSON" "no python3"
+fi
+
+refused() { # SENTENCE ARGUMENT...: exit status 2, and one line that has the sentence
+    sentence=$1
+    shift
+    prints run "$@"
+    got=$?
+    cat complained
+    test $got = 2 && grep -qF -e "$sentence" complained
+}
+ok "no pattern" refused "say which pattern to mesh" -e 0.1 -o x.obj
+ok "no output" refused "say where the mesh goes" "$patterns/dart.json" -e 0.1
+ok "no fineness" refused "say how fine" "$patterns/dart.json" -o x.obj
+ok "two finenesses" refused "take one" "$patterns/dart.json" -o x.obj -e 0.1 -n 100
+ok "no length" refused "--edge takes a length above 0" "$patterns/dart.json" -o x.obj -e 0
+ok "no number" refused "--vertices takes a number from 3 on" "$patterns/dart.json" -o x.obj -n 2
+ok "edges that are too short" refused "edges of 1e-09 m" "$patterns/dart.json" -o x.obj -e 1e-9
+ok "no file" refused "none.json: cannot open the pattern file" none.json -e 0.1 -o x.obj
+ok "no folder" refused "cannot write" "$patterns/dart.json" -e 0.1 -o none/x.obj
+cp "$patterns/dart.json" mine.json
+ok "the pattern is not replaced" refused "would replace the pattern" mine.json -e 0.1 -o mine.json
+ok "one file for both" refused "cannot be the same file" mine.json -e 0.1 -o x.obj --seams x.obj
+
+# ---- Patterns that cannot be sewn
+
+# bad SENTENCE SED...: the dart's pattern, changed by sed, is refused with this sentence.
+bad() {
+    sentence=$1
+    shift
+    sed "$@" "$patterns/dart.json" > bad.json
+    if cmp -s bad.json "$patterns/dart.json"; then echo "nothing changed: $*" > output && tap_result 1 "$sentence" && return; fi
+    ok "$sentence" refused "$sentence" bad.json -e 0.05 -o x.obj
+}
+bad "panel 'back' is no closed loop: edge 0 ends at vertex 1, edge 1 begins at vertex 3" -e 's/\[1, 2\]/[3, 2]/'
+bad "panel 'back' is no closed loop: edge 5 ends at vertex 6, edge 6 begins at vertex 0" -e 's/\[6, 0\]/[0, 6]/'
+bad "panel 'back' comes to vertex 0 a second time with edge 3" -e 's/\[2, 3\]/[2, 0]/; s/\[3, 4\]/[0, 4]/'
+bad "panel 'back' has vertex 7, but no edge there" -e 's/\[0, 50\]\]/[0, 50], [9, 9]]/'
+bad "panel 'back' has 0 edges" -e 's/"edges": \[{/"edges": [], "label": [{/; s/"stitches": .*/"stitches": []/'
+bad "panel 'back': edge 2 has no length" -e 's/\[22, 50\]/[40, 50]/'
+bad "panel 'back': edges 0 and 3 cross or touch each other" -e 's/\[20, 35\]/[20, -5]/'
+bad "panel 'back': edges 0 and 3 cross or touch each other" -e 's/\[20, 35\]/[20, 0]/'
+bad "panel 'back': edges 1 and 2 cross or touch each other" -e 's/\[22, 50\]/[40, 20]/'
+bad "panel 'back': edge 0 crosses or touches itself" -e 's/"endpoints": \[0, 1\]/"endpoints": [0, 1], "curvature": {"type": "cubic", "params": [[2, -0.5], [-1, -0.5]]}/'
+bad "panel 'back': edge 0 is an arc of radius 0.1 m" -e 's/"endpoints": \[0, 1\]/"endpoints": [0, 1], "curvature": {"type": "circle", "params": [10, 0, 1]}/'
+bad "panel 'back', edge 0: the radius is not above 0" -e 's/"endpoints": \[0, 1\]/"endpoints": [0, 1], "curvature": {"type": "circle", "params": [-10, 0, 1]}/'
+bad "panel 'back', edge 0: curvature.params of a circle has 2 entries; it has to have 3" -e 's/"endpoints": \[0, 1\]/"endpoints": [0, 1], "curvature": {"type": "circle", "params": [10, 0]}/'
+bad "panel 'back', edge 0: curvature.type is none of quadratic, cubic and circle" -e 's/"endpoints": \[0, 1\]/"endpoints": [0, 1], "curvature": {"type": "spline", "params": []}/'
+bad "panel 'back', edge 0: a control point has 1 entries; it has to have 2" -e 's/"endpoints": \[0, 1\]/"endpoints": [0, 1], "curvature": [0.5]/'
+bad "panel 'back', edge 0: an endpoint is 7, but there are 7 vertices, counted from 0" -e 's/\[0, 1\]/[0, 7]/'
+bad "panel 'back', edge 0: endpoints are missing" -e 's/{"endpoints": \[0, 1\]}/{}/'
+bad "panel 'back', edge 0: unknown key \"colour\" in the edge, which may have endpoints, curvature, label" -e 's/"endpoints": \[0, 1\]/"endpoints": [0, 1], "colour": 1/'
+bad "bad.json:8:9: panel 'back': unknown key \"turn\" in the panel" -e 's/"translation"/"turn"/'
+bad "panel 'back': rotation: missing" -e 's/"rotation": \[0, 0, 0\]/"label": ""/'
+bad "panel 'back': a vertex is \"x\"; it has to be a number" -e 's/\[40, 0\]/[40, "x"]/'
+bad "panel 'back': a vertex is 1e999; it has to be a number" -e 's/\[40, 0\]/[40, 1e999]/'
+bad "unknown key \"units\" in properties" -e 's/units_in_meter/units/'
+bad "units_in_meter is 0; it has to be 0.001 to 1e6" -e 's/"units_in_meter": 100/"units_in_meter": 0/'
+bad "units_in_meter is \"cm\"" -e 's/"units_in_meter": 100/"units_in_meter": "cm"/'
+bad "panel 'back' is 500 m large; panels have 0.001 to 100 m: is units_in_meter right?" -e 's/"units_in_meter": 100/"units_in_meter": 0.1/'
+bad "curvature_coords is world; it has to be" -e 's/"relative"/world/'
+bad "stitch 0: there is no panel 'front'" -e 's/"panel": "back", "edge": 4/"panel": "front", "edge": 4/'
+bad "stitch 0: the edge of panel 'back' is 7, but there are 7 edges, counted from 0" -e 's/"edge": 4/"edge": 7/'
+bad "stitch 0 joins edge 3 of panel 'back' to itself" -e 's/"edge": 4/"edge": 3/'
+bad "stitch 1: edge 4 of panel 'back' is stitched already, by stitch 0" -e 's/"stitches": \[/&[{"panel": "back", "edge": 4}, {"panel": "back", "edge": 0}], /'
+bad "stitch 0: a stitch has 1 entries; it has to have 2 to 3" -e 's/, {"panel": "back", "edge": 4}//'
+bad "the file has no \"properties\"" -e 's/"properties"/"parameters"/'
+bad "the pattern has no panels" -e 's/"panels": {/"panels": {}, "panel_order": {/; s/"stitches": .*/"stitches": []/'
+bad "has the key edge twice" -e 's/"edge": 4/"edge": 4, "edge": 4/'
+bad "not JSON" -e 's/\[40, 0\],/[40, 0] "/'
+
+hostile() { # NAME TEXT: no crash, one sentence
+    printf '%b' "$2" > hostile.json
+    exits 2 "hostile: $1" run hostile.json -e 0.05 -o x.obj
+}
+hostile "nothing" ''
+hostile "a list" '[]'
+hostile "a number" '7'
+hostile "zero bytes" '\000\000\000'
+hostile "half a file" '{"pattern": {"panels": {"a": {"vertices": [[0, 0'
+hostile "no closing brackets" "$(awk 'BEGIN { for (i = 0; i < 2000; i++) printf "[" }')"
+hostile "itself" '&a {"pattern": *a, "properties": *a}'
+hostile "panels that are each other" '{"properties": {"units_in_meter": 1}, "pattern": {"panels": &p {"a": {"vertices": &p [], "edges": *p, "translation": *p, "rotation": *p}}}}'
+hostile "a name without end" "{\"properties\": {\"units_in_meter\": 1}, \"pattern\": {\"panels\": {\"$(awk 'BEGIN { for (i = 0; i < 900; i++) printf "x" }')\": {}}}}"
+hostile "two panels of one name" '{"properties": {"units_in_meter": 1}, "pattern": {"panels": {"a b": &a {"vertices": [[0,0],[1,0],[0,1]], "edges": [{"endpoints":[0,1]},{"endpoints":[1,2]},{"endpoints":[2,0]}], "translation": [0,0,0], "rotation": [0,0,0]}, "a_b": *a}}}'
+hostile "a needle" '{"properties": {"units_in_meter": 1}, "pattern": {"panels": {"a": {"vertices": [[0,0],[1,0],[1,1e-12]], "edges": [{"endpoints":[0,1]},{"endpoints":[1,2]},{"endpoints":[2,0]}], "translation": [0,0,0], "rotation": [0,0,0]}}}}'
+hostile "a spike" '{"properties": {"units_in_meter": 1}, "pattern": {"panels": {"a": {"vertices": [[0,0],[1,0],[2,0],[1,0],[0,1]], "edges": [{"endpoints":[0,1]},{"endpoints":[1,2]},{"endpoints":[2,3]},{"endpoints":[3,4]},{"endpoints":[4,0]}], "translation": [0,0,0], "rotation": [0,0,0]}}}}'
+hostile "a curve beyond everything" '{"properties": {"units_in_meter": 1}, "pattern": {"panels": {"a": {"vertices": [[0,0],[1,0],[0,1]], "edges": [{"endpoints":[0,1], "curvature": [1e9, -1e9]},{"endpoints":[1,2]},{"endpoints":[2,0]}], "translation": [0,0,0], "rotation": [0,0,0]}}}}'
+
+# ---- Bits, the same with any compiler and optimisation
+
+golden() { # NAME ARGUMENT...
+    golden_name=$1
+    shift
+    if ! run "$@" -o golden.obj -q > output 2>&1; then tap_result 1 "$golden_name" && return; fi
+    printf '%s %s\n' "$(cat golden.obj golden.seams.json | cksum | tr ' ' '-')" "$golden_name" >> "$fresh"
+    echo "garment_golden.txt does not have: $(tail -n 1 "$fresh")" > output
+    grep -qxF "$(tail -n 1 "$fresh")" "$table"
+    tap_result $? "$golden_name"
+}
+for name in straight quadratic cubic circle dart gather fold; do
+    golden "$name, 3 cm" "$patterns/$name.json" -e 0.03
+    golden "$name, 4000 vertices" "$patterns/$name.json" -n 4000
+done
+
+# ---- Patterns of others
+
+whole() { # NAME: 35,000 vertices within 1 %, no bad triangle
+    prints run "$shared/$1.json" -n 35000 -o others.obj && tail -n 1 printed
+    tail -n 1 printed | awk '{ exit !($1 >= 34650 && $1 <= 35350 && $(NF - 6) >= 20 && $(NF - 3) <= 0.0001 * $3) }'
+}
+for name in tee dress skirt_4_panels wb_pants_straight; do
+    if test -e "$shared/$name.json"; then
+        ok "$name.json: 35,000 vertices" whole $name
+        golden "$name.json" "$shared/$name.json" -n 35000
+    else
+        skip "$name.json" "not there"
+    fi
+done

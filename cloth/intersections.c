@@ -264,7 +264,7 @@ int intersections_frame(struct intersections *intersections, uint64_t frame, dou
                         .frame = frame,
                         .time = time,
                         .written = written,
-                        .says = !intersections->found.bad};
+                        .says = intersections->program && !intersections->found.bad};
     uint64_t pairs = 0, with_shapes = 0;
     place_points(&look, position);
     int code = look_at_pairs(&look, &pairs, &with_shapes, error);

@@ -16,7 +16,7 @@ struct intersections;
 
 /* The arrays are read by intersections_open alone; shapes, keys and bodies outlive it all. */
 struct intersections_setup {
-    const char *program; /* that messages begin with */
+    const char *program; /* that messages begin with; NULL: nothing is printed */
     size_t n_meshes;
     const struct mesh *const *meshes;
     const char *const *names; /* of the cloths that the meshes are; NULL: they are not known */
@@ -58,13 +58,14 @@ struct model;
 int intersections_same(const struct model *model, uint32_t **same, struct cloth_error *error);
 
 /* The same for a model, while it has its meshes, and what of it does not meet; both outlive it all.
- * self_off: as above. */
+ * program, self_off: as above. */
 int intersections_of(struct intersections **intersections, const struct model *model,
-                     const struct contact_apart *apart, bool self_off, struct cloth_error *error);
+                     const struct contact_apart *apart, const char *program, bool self_off,
+                     struct cloth_error *error);
 
 /* Checks a frame: position as of flow_output.frame; written: as floats, else as doubles. A frame
  * may be checked both ways, one after the other. Prints the first few of what is found first, on
- * standard error. Errors: as of verify_pairs. */
+ * standard error, unless `program` was NULL. Errors: as of verify_pairs. */
 int intersections_frame(struct intersections *intersections, uint64_t frame, double time,
                         const double *position, bool written, struct cloth_error *error);
 

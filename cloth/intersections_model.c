@@ -27,7 +27,8 @@ int intersections_same(const struct model *model, uint32_t **same, struct cloth_
 }
 
 int intersections_of(struct intersections **intersections, const struct model *model,
-                     const struct contact_apart *apart, bool self_off, struct cloth_error *error)
+                     const struct contact_apart *apart, const char *program, bool self_off,
+                     struct cloth_error *error)
 {
     uint32_t *same = NULL;
     const struct mesh **meshes = cloth_alloc(model->n_cloths, sizeof *meshes, error);
@@ -37,7 +38,7 @@ int intersections_of(struct intersections **intersections, const struct model *m
         meshes[i] = &model->cloths[i].mesh;
         names[i] = model->cloths[i].name;
     }
-    const struct intersections_setup setup = {.program = "duite-cloth",
+    const struct intersections_setup setup = {.program = program,
                                               .n_meshes = model->n_cloths,
                                               .meshes = meshes,
                                               .names = names,

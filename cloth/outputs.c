@@ -95,7 +95,7 @@ int outputs_open(struct outputs *to, const struct simulate_options *options,
     to->options = options;
     int code = CLOTH_OK;
     if (options->check_intersections)
-        code = intersections_of(&to->intersections, model, apart, false, error);
+        code = intersections_of(&to->intersections, model, apart, "duite-cloth", false, error);
     if (!code)
         code = drape_of(&to->drape, model, error);
     if (!code && options->save_system)

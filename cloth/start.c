@@ -163,7 +163,8 @@ static int check(const struct model *model, const struct contact_apart *apart,
                  struct cloth_error *error)
 {
     struct intersections *intersections = NULL;
-    int code = intersections_of(&intersections, model, apart, !model->contact.self, error);
+    int code =
+        intersections_of(&intersections, model, apart, "duite-cloth", !model->contact.self, error);
     code = code ? code : intersections_frame(intersections, 0, 0, position, false, error);
     if (!code)
         *found = intersections_found(intersections);

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-enum { FRAMES = 15, QUICK_FRAMES = 2, LEAST_QUALITY = 10, MOST_QUALITY = 160 };
+enum { FRAMES = 15, QUICK_FRAMES = 2, LEAST_QUALITY = 10, MOST_QUALITY = 40 };
 
 static int run_blender(const struct model *model, unsigned threads, int frames, int quality,
                        const char *path, double *seconds)
@@ -33,7 +33,7 @@ static int look(const struct model *model, int frames, const char *path, double 
     struct intersections *all = NULL;
     double *position = calloc(n + 1, sizeof *position);
     FILE *file = fopen(path, "rb");
-    int code = position ? intersections_of(&all, model, &model->contact.apart, false, &error)
+    int code = position ? intersections_of(&all, model, &model->contact.apart, NULL, false, &error)
                         : CLOTH_E_MEMORY;
     for (int i = 0; i < frames && !code; i++) {
         if (!file || fread(position, sizeof *position, n, file) != n)

@@ -14,7 +14,8 @@
 #include <string.h>
 
 static const struct bench *const BENCHES[] = {&bench_tasks,   &bench_ranks,   &bench_cg,
-                                              &bench_physics, &bench_contact, &bench_compare};
+                                              &bench_physics, &bench_contact, &bench_garments,
+                                              &bench_compare};
 enum { N_BENCHES = sizeof BENCHES / sizeof *BENCHES, MOST_ONLY = 32 };
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || !defined(__OPTIMIZE__)

@@ -57,7 +57,7 @@ static int mesh_all(struct serve_request *request, struct figures *worst)
     const bool quick = serve_number(request, "quick"), others = others_are_there();
     *worst = (struct figures){0, 0, 60};
     for (int i = 0; i < N_NAMES; i++) {
-        struct figures figures;
+        struct figures figures = {0};
         char path[4096];
         snprintf(path, sizeof path, "%s/%s.json", others ? BENCH_PATTERNS : BENCH_OWN_PATTERNS,
                  others ? OTHERS[i] : OWN[i]);

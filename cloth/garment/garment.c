@@ -3,8 +3,8 @@
 #include "cloth/garment/garment.h"
 #include "cloth/base/memory.h"
 #include "cloth/garment/detail/flat.h"
+#include "cloth/garment/detail/meshing.h"
 #include "cloth/garment/detail/seams.h"
-#include "cloth/garment/detail/work.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -16,7 +16,7 @@ static const uint32_t MOST = (uint32_t)1 << 27;
 
 /* A lattice of triangles with edges h has 1.155 / h^2 vertices an area; of a boundary of length P
  * about 0.365 P / h more are there, since those of the boundary are nearer to each other. */
-static double first_spacing(const struct work *work, double n)
+static double first_spacing(const struct meshing *work, double n)
 {
     double area = 0, around = 0;
     for (uint32_t p = 0; p < work->pattern->n_panels; p++) {
@@ -37,14 +37,14 @@ static double next_spacing(double spacing, double n, double wanted, double fine,
                                            : next;
 }
 
-static int mesh_by_count(struct work *work, uint32_t wanted, struct cloth_error *error)
+static int mesh_by_count(struct meshing *work, uint32_t wanted, struct cloth_error *error)
 {
     double spacing = first_spacing(work, wanted), best = spacing, least = INFINITY;
     double fine = 0, coarse = INFINITY; /* spacings that gave too many and too few */
     int code = CLOTH_OK;
     for (int k = 0; k < TRIES && least > CLOSE && !code; k++) {
-        code = work_mesh(work, spacing, error);
-        const double n = work_count(work), off = fabs(n - wanted) / wanted;
+        code = meshing_mesh(work, spacing, error);
+        const double n = meshing_count(work), off = fabs(n - wanted) / wanted;
         if (off < least) {
             least = off;
             best = spacing;
@@ -57,7 +57,7 @@ static int mesh_by_count(struct work *work, uint32_t wanted, struct cloth_error 
             spacing = next_spacing(spacing, n, wanted, fine, coarse);
     }
     if (!code && work->spacing != best)
-        code = work_mesh(work, best, error);
+        code = meshing_mesh(work, best, error);
     return code;
 }
 
@@ -71,7 +71,7 @@ static int check_fineness(const struct garment_fineness *fineness, struct cloth_
     return CLOTH_OK;
 }
 
-static int make_room(struct garment *garment, const struct work *work, struct cloth_error *error)
+static int make_room(struct garment *garment, const struct meshing *work, struct cloth_error *error)
 {
     const struct garment_pattern *pattern = work->pattern;
     uint64_t n = 0, n_triangles = 0;
@@ -110,11 +110,11 @@ static void axes_of(const double degrees[3], double axis[2][3])
     axis[1][2] = c[1] * s[0];
 }
 
-static void put_piece(struct garment *garment, struct work *work, uint32_t p, uint32_t first,
+static void put_piece(struct garment *garment, struct meshing *work, uint32_t p, uint32_t first,
                       uint32_t first_triangle)
 {
     const struct garment_panel *panel = &work->pattern->panel[p];
-    struct work_panel *of = &work->panel[p];
+    struct meshing_panel *of = &work->panel[p];
     const uint32_t n = of->plane.n, n_triangles = of->plane.n_triangles;
     double axis[2][3];
     axes_of(panel->rotate, axis);
@@ -135,7 +135,7 @@ static void put_piece(struct garment *garment, struct work *work, uint32_t p, ui
     of->start = NULL; /* the garment's now */
 }
 
-static int put_all(struct garment *garment, struct work *work, struct cloth_error *error)
+static int put_all(struct garment *garment, struct meshing *work, struct cloth_error *error)
 {
     int code = make_room(garment, work, error);
     uint32_t first = 0, first_triangle = 0;
@@ -154,17 +154,17 @@ static int put_all(struct garment *garment, struct work *work, struct cloth_erro
 int garment_make(struct garment *garment, const struct garment_pattern *pattern,
                  const struct garment_fineness *fineness, struct cloth_error *error)
 {
-    struct work work = {0};
+    struct meshing work = {0};
     *garment = (struct garment){0};
     int code = check_fineness(fineness, error);
     if (code)
         return code;
-    code = work_make(&work, pattern, error);
+    code = meshing_make(&work, pattern, error);
     if (!code)
         code = fineness->vertices ? mesh_by_count(&work, fineness->vertices, error)
-                                  : work_mesh(&work, fineness->edge, error);
+                                  : meshing_mesh(&work, fineness->edge, error);
     code = code ? code : put_all(garment, &work, error);
-    work_free(&work);
+    meshing_free(&work);
     return code;
 }
 

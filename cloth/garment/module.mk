@@ -13,4 +13,4 @@ libduite_cloth_la_SOURCES += \
 	cloth/garment/detail/lattice.c cloth/garment/detail/lattice.h \
 	cloth/garment/detail/meet.c cloth/garment/detail/meet.h \
 	cloth/garment/detail/seams.c cloth/garment/detail/seams.h \
-	cloth/garment/detail/work.c cloth/garment/detail/work.h
+	cloth/garment/detail/meshing.c cloth/garment/detail/meshing.h

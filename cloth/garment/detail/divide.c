@@ -2,7 +2,7 @@
  * but none much longer than the spacing. Their parts are equal read from either end, so that the
  * direction of the stitch does not matter. */
 #include "cloth/base/memory.h"
-#include "cloth/garment/detail/work.h"
+#include "cloth/garment/detail/meshing.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -15,17 +15,18 @@ static const double JUMP = 1.35;        /* of divisions on both sides of a corne
 static const double GROWTH = 0.3;       /* of divisions, a length along their edge */
 enum { SWEEPS = 8 };                    /* over all corners: sizes spread that far */
 
-static void add_edge(struct work *work, uint32_t panel, uint32_t e)
+static void add_edge(struct meshing *work, uint32_t panel, uint32_t e)
 {
-    struct work_edge *edge = &work->edge[work->first[panel] + e];
+    struct meshing_edge *edge = &work->edge[work->first[panel] + e];
     curve_make(&edge->curve, &work->pattern->panel[panel], e);
     edge->least = 1 + (uint32_t)(curve_turning(&edge->curve) / TURN);
     edge->partner = UINT32_MAX;
 }
 
-int work_make(struct work *work, const struct garment_pattern *pattern, struct cloth_error *error)
+int meshing_make(struct meshing *work, const struct garment_pattern *pattern,
+                 struct cloth_error *error)
 {
-    *work = (struct work){.pattern = pattern};
+    *work = (struct meshing){.pattern = pattern};
     work->first = cloth_alloc((size_t)pattern->n_panels + 1, sizeof *work->first, error);
     work->panel = cloth_alloc(pattern->n_panels, sizeof *work->panel, error);
     if (!work->first || !work->panel)
@@ -50,7 +51,7 @@ int work_make(struct work *work, const struct garment_pattern *pattern, struct c
     return CLOTH_OK;
 }
 
-void work_free(struct work *work)
+void meshing_free(struct meshing *work)
 {
     for (uint32_t p = 0; work->panel && p < work->pattern->n_panels; p++) {
         delaunay_free(&work->panel[p].plane);
@@ -62,13 +63,14 @@ void work_free(struct work *work)
     free(work->first);
     free(work->edge);
     free(work->panel);
-    *work = (struct work){0};
+    *work = (struct meshing){0};
 }
 
 /* As a number, since it may be beyond all integers. */
-static double wanted(const struct work *work, const struct work_edge *edge)
+static double wanted(const struct meshing *work, const struct meshing_edge *edge)
 {
-    const struct work_edge *other = edge->partner == UINT32_MAX ? edge : &work->edge[edge->partner];
+    const struct meshing_edge *other =
+        edge->partner == UINT32_MAX ? edge : &work->edge[edge->partner];
     const double one = edge->curve.length / work->spacing,
                  two = other->curve.length / work->spacing;
     const double finer = fmax(edge->finer, other->finer);
@@ -77,7 +79,7 @@ static double wanted(const struct work *work, const struct work_edge *edge)
 }
 
 /* At the corner between two edges neither's divisions are much longer than the other's. */
-static void even_corner(struct work_edge *one, struct work_edge *two)
+static void even_corner(struct meshing_edge *one, struct meshing_edge *two)
 {
     const double a = one->end[1] * one->curve.length, b = two->end[0] * two->curve.length;
     if (a > JUMP * b)
@@ -87,18 +89,18 @@ static void even_corner(struct work_edge *one, struct work_edge *two)
 }
 
 /* Along an edge they grow slowly; both edges of a stitch are alike, and from both ends. */
-static void even_edge(struct work *work, struct work_edge *edge)
+static void even_edge(struct meshing *work, struct meshing_edge *edge)
 {
     for (int k = 0; k < 2; k++)
         edge->end[k] = fmin(edge->end[k], edge->end[1 - k] + GROWTH);
     if (edge->partner == UINT32_MAX)
         return;
-    struct work_edge *other = &work->edge[edge->partner];
+    struct meshing_edge *other = &work->edge[edge->partner];
     const double least = fmin(fmin(edge->end[0], edge->end[1]), fmin(other->end[0], other->end[1]));
     edge->end[0] = edge->end[1] = other->end[0] = other->end[1] = least;
 }
 
-static void even_out(struct work *work)
+static void even_out(struct meshing *work)
 {
     for (int k = 0; k < SWEEPS; k++)
         for (uint32_t p = 0; p < work->pattern->n_panels; p++) {
@@ -111,7 +113,7 @@ static void even_out(struct work *work)
 }
 
 /* How long a division is to be at a part of the length. */
-static double size_at(const struct work_edge *edge, double t)
+static double size_at(const struct meshing_edge *edge, double t)
 {
     const double begin = edge->end[0] + GROWTH * t, end = edge->end[1] + GROWTH * (1 - t);
     return fmin(edge->middle, fmin(begin, end));
@@ -119,7 +121,7 @@ static double size_at(const struct work_edge *edge, double t)
 
 /* Goes along an edge by its divisions, and writes them, if wanted. Returns how many fit best;
  * *reached: where the last of them ends. */
-static uint32_t walk(const struct work_edge *edge, double *part, double *reached)
+static uint32_t walk(const struct meshing_edge *edge, double *part, double *reached)
 {
     uint32_t n = 0;
     double t = 0;
@@ -137,7 +139,7 @@ static uint32_t walk(const struct work_edge *edge, double *part, double *reached
 }
 
 /* Divisions that are not equal. Both ends of the list are exact. */
-static int grade(struct work_edge *edge, struct cloth_error *error)
+static int grade(struct meshing_edge *edge, struct cloth_error *error)
 {
     double reached;
     const uint32_t n = walk(edge, NULL, &reached);
@@ -159,7 +161,7 @@ static int grade(struct work_edge *edge, struct cloth_error *error)
     return CLOTH_OK;
 }
 
-static int divide_edge(struct work_edge *edge, double n, struct cloth_error *error)
+static int divide_edge(struct meshing_edge *edge, double n, struct cloth_error *error)
 {
     free(edge->part);
     edge->part = NULL;
@@ -169,16 +171,16 @@ static int divide_edge(struct work_edge *edge, double n, struct cloth_error *err
 }
 
 /* Whether an edge has other divisions than before. */
-static bool differs(const struct work_edge *edge, const struct work_edge *before)
+static bool differs(const struct meshing_edge *edge, const struct meshing_edge *before)
 {
     return edge->n != before->n || edge->end[0] != before->end[0] || edge->end[1] != before->end[1];
 }
 
-static int divide_panel(struct work *work, uint32_t panel, const struct work_edge *before,
+static int divide_panel(struct meshing *work, uint32_t panel, const struct meshing_edge *before,
                         struct cloth_error *error)
 {
     for (uint32_t e = work->first[panel]; e < work->first[panel + 1]; e++) {
-        struct work_edge *edge = &work->edge[e];
+        struct meshing_edge *edge = &work->edge[e];
         int code = divide_edge(edge, 1 / edge->middle + 0.5, error);
         if (code)
             return code;
@@ -187,11 +189,11 @@ static int divide_panel(struct work *work, uint32_t panel, const struct work_edg
     return CLOTH_OK;
 }
 
-int work_divide(struct work *work, struct cloth_error *error)
+int meshing_divide(struct meshing *work, struct cloth_error *error)
 {
     const uint32_t n = work->first[work->pattern->n_panels];
     double sum = 0;
-    struct work_edge *before = cloth_alloc(n, sizeof *before, error);
+    struct meshing_edge *before = cloth_alloc(n, sizeof *before, error);
     int code = before ? CLOTH_OK : CLOTH_E_MEMORY;
     for (uint32_t e = 0; e < n && !code; e++) {
         const double parts = wanted(work, &work->edge[e]);
@@ -222,10 +224,11 @@ static bool is_sharp(const double (*place)[2], uint32_t n, uint32_t i)
            to[0] * from[1] - to[1] * from[0] > 0;
 }
 
-int work_outline(struct work *work, uint32_t panel, double (**place)[2], struct cloth_error *error)
+int meshing_outline(struct meshing *work, uint32_t panel, double (**place)[2],
+                    struct cloth_error *error)
 {
-    struct work_panel *of = &work->panel[panel];
-    const struct work_edge *edge = work->edge + work->first[panel];
+    struct meshing_panel *of = &work->panel[panel];
+    const struct meshing_edge *edge = work->edge + work->first[panel];
     const uint32_t n_edges = work->pattern->panel[panel].n_edges;
     free(of->start);
     free(of->sharp);

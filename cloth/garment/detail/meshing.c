@@ -1,7 +1,7 @@
 /* A panel is meshed again only when its divisions changed. What makes them change is found in its
  * mesh: a boundary that crosses itself between its vertices, or triangles that the inside could not
  * make good. */
-#include "cloth/garment/detail/work.h"
+#include "cloth/garment/detail/meshing.h"
 #include "cloth/base/memory.h"
 #include "cloth/garment/detail/flat.h"
 #include "cloth/garment/detail/meet.h"
@@ -18,13 +18,13 @@ struct worth {
 static const struct worth FAIR = {0.86602540, 1.15}, POOR = {0.93969262, 1.5}; /* 30, 20 degrees */
 
 /* Asks for shorter divisions of an edge. */
-static void refine(struct work *work, uint32_t panel, uint32_t edge, double factor, bool *again)
+static void refine(struct meshing *work, uint32_t panel, uint32_t edge, double factor, bool *again)
 {
     work->edge[work->first[panel] + edge].finer *= factor;
     *again = true;
 }
 
-static uint32_t edge_of(const struct work_panel *of, uint32_t n_edges, uint32_t vertex)
+static uint32_t edge_of(const struct meshing_panel *of, uint32_t n_edges, uint32_t vertex)
 {
     uint32_t e = 0;
     while (e + 1 < n_edges && of->start[e + 1] <= vertex)
@@ -33,10 +33,10 @@ static uint32_t edge_of(const struct work_panel *of, uint32_t n_edges, uint32_t 
 }
 
 /* Edges of bad triangles that are not excused; each is refined once. */
-static int refine_poor(struct work *work, uint32_t panel, struct worth worth, bool *again,
+static int refine_poor(struct meshing *work, uint32_t panel, struct worth worth, bool *again,
                        struct cloth_error *error)
 {
-    const struct work_panel *of = &work->panel[panel];
+    const struct meshing_panel *of = &work->panel[panel];
     const uint32_t n_edges = work->pattern->panel[panel].n_edges;
     unsigned char *poor = cloth_alloc(n_edges, 1, error);
     if (!poor)
@@ -58,7 +58,8 @@ static int refine_poor(struct work *work, uint32_t panel, struct worth worth, bo
     return CLOTH_OK;
 }
 
-static int cannot(const struct work *work, uint32_t panel, uint32_t edge, struct cloth_error *error)
+static int cannot(const struct meshing *work, uint32_t panel, uint32_t edge,
+                  struct cloth_error *error)
 {
     return cloth_fail(error, CLOTH_E_INPUT,
                       "panel '%s' cannot be meshed by edges of %g m: at edge %u its boundary comes "
@@ -67,10 +68,10 @@ static int cannot(const struct work *work, uint32_t panel, uint32_t edge, struct
 }
 
 /* place: the panel's boundary. */
-static int mesh_outline(struct work *work, uint32_t panel, const double (*place)[2], int try,
+static int mesh_outline(struct meshing *work, uint32_t panel, const double (*place)[2], int try,
                         bool *again, struct cloth_error *error)
 {
-    struct work_panel *of = &work->panel[panel];
+    struct meshing_panel *of = &work->panel[panel];
     const uint32_t n_edges = work->pattern->panel[panel].n_edges;
     const struct meet_loop outline = {n_edges, of->start, place};
     const struct flat_loop loop = {of->start[n_edges], place, of->sharp};
@@ -100,11 +101,11 @@ static int mesh_outline(struct work *work, uint32_t panel, const double (*place)
     return CLOTH_OK;
 }
 
-static int mesh_panel(struct work *work, uint32_t panel, int try, bool *again,
+static int mesh_panel(struct meshing *work, uint32_t panel, int try, bool *again,
                       struct cloth_error *error)
 {
     double(*place)[2];
-    int code = work_outline(work, panel, &place, error);
+    int code = meshing_outline(work, panel, &place, error);
     delaunay_free(&work->panel[panel].plane);
     if (!code)
         code = mesh_outline(work, panel, (const double(*)[2])place, try, again, error);
@@ -112,7 +113,7 @@ static int mesh_panel(struct work *work, uint32_t panel, int try, bool *again,
     return code;
 }
 
-int work_mesh(struct work *work, double spacing, struct cloth_error *error)
+int meshing_mesh(struct meshing *work, double spacing, struct cloth_error *error)
 {
     int code = CLOTH_OK;
     bool again = true;
@@ -123,7 +124,7 @@ int work_mesh(struct work *work, double spacing, struct cloth_error *error)
         work->panel[p].meshed = false;
     for (int k = 0; k < TRIES && again && !code; k++) {
         again = false;
-        code = work_divide(work, error);
+        code = meshing_divide(work, error);
         for (uint32_t p = 0; p < work->pattern->n_panels && !code; p++)
             if (!work->panel[p].meshed)
                 code = mesh_panel(work, p, k, &again, error);
@@ -131,7 +132,7 @@ int work_mesh(struct work *work, double spacing, struct cloth_error *error)
     return code;
 }
 
-uint32_t work_count(const struct work *work)
+uint32_t meshing_count(const struct meshing *work)
 {
     uint32_t n = 0;
     for (uint32_t p = 0; p < work->pattern->n_panels; p++)

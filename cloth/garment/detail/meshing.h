@@ -1,5 +1,5 @@
-#ifndef CLOTH_GARMENT_DETAIL_WORK_H
-#define CLOTH_GARMENT_DETAIL_WORK_H
+#ifndef CLOTH_GARMENT_DETAIL_MESHING_H
+#define CLOTH_GARMENT_DETAIL_MESHING_H
 
 #include "cloth/garment/detail/curve.h"
 #include "cloth/garment/detail/delaunay.h"
@@ -8,7 +8,7 @@
 /* A pattern while it is meshed. Edges of all panels have one numbering: those of panel p begin with
  * first[p]. Local functions. */
 
-struct work_panel {
+struct meshing_panel {
     struct delaunay plane;  /* its mesh, in the plane as seen from its front */
     unsigned char *sharp;   /* a vertex of its boundary: the panel's angle there is below 30 degrees
                              */
@@ -16,7 +16,7 @@ struct work_panel {
     bool clockwise, meshed; /* meshed: by the divisions as they are now */
 };
 
-struct work_edge {
+struct meshing_edge {
     struct curve curve;
     uint32_t least;   /* divisions that its turns need */
     uint32_t partner; /* the edge that it is stitched to; UINT32_MAX: none */
@@ -27,32 +27,34 @@ struct work_edge {
     double *part;     /* n + 1: parts of the length up to each; NULL: they are equal */
 };
 
-struct work {
+struct meshing {
     const struct garment_pattern *pattern;
-    uint32_t *first;          /* n_panels + 1 */
-    struct work_edge *edge;   /* first[n_panels] */
-    struct work_panel *panel; /* n_panels */
-    double spacing;           /* m: of inner triangles */
+    uint32_t *first;             /* n_panels + 1 */
+    struct meshing_edge *edge;   /* first[n_panels] */
+    struct meshing_panel *panel; /* n_panels */
+    double spacing;              /* m: of inner triangles */
 };
 
-/* work_free frees it, also after an error. */
-int work_make(struct work *work, const struct garment_pattern *pattern, struct cloth_error *error);
-void work_free(struct work *work);
+/* meshing_free frees it, also after an error. */
+int meshing_make(struct meshing *work, const struct garment_pattern *pattern,
+                 struct cloth_error *error);
+void meshing_free(struct meshing *work);
 
 /* Divides all edges and meshes all panels by a spacing. Where triangles are bad since the boundary
  * is too coarse for them, it is divided finer, on both sides of a stitch. */
-int work_mesh(struct work *work, double spacing, struct cloth_error *error);
+int meshing_mesh(struct meshing *work, double spacing, struct cloth_error *error);
 
 /* How many vertices all panels have. */
-uint32_t work_count(const struct work *work);
+uint32_t meshing_count(const struct meshing *work);
 
 /* The divisions of all edges by the spacing and by how much finer they are to be; panels of which
  * any changes are not meshed any more. Beside a short edge divisions are short, and become longer
  * along their edge. Errors: CLOTH_E_INPUT, too many; CLOTH_E_MEMORY. */
-int work_divide(struct work *work, struct cloth_error *error);
+int meshing_divide(struct meshing *work, struct cloth_error *error);
 
 /* The places of a panel's boundary by its divisions, and which of its corners are sharp. `start`
  * and `sharp` of the panel are new, *place is to be freed, also after an error. */
-int work_outline(struct work *work, uint32_t panel, double (**place)[2], struct cloth_error *error);
+int meshing_outline(struct meshing *work, uint32_t panel, double (**place)[2],
+                    struct cloth_error *error);
 
 #endif

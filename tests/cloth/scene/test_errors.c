@@ -117,8 +117,8 @@ START_TEST(wrong_contact)
          .error = ":2:24: contact.pairs[0].of is a list of 1; a list of 2 texts is expected"},
         {"gravity: [0, -9.81, 0]", "contact: {self: on, thickness: 1e-8}",
          .error = ":2:32: contact.thickness is 1e-08 m; at least 2.07e-06 m is expected: frames "
-                  "are in float, which this is what 1 m from the origin needs; contact is "
-                  "certified by default in this scene, contact: {mode: project} is the way "
+                  "are in float, and cloth that is 1 m from the origin needs that much; contact "
+                  "is certified by default in this scene, contact: {mode: project} is the way "
                   "without"});
 }
 END_TEST

@@ -5,6 +5,7 @@
 #include "cloth/base/memory.h"
 #include "cloth/output/output.h"
 #include "cloth/outputs.h"
+#include "cloth/progress.h"
 #include "cloth/room.h"
 #include "cloth/start.h"
 #include "cloth/summary.h"
@@ -29,7 +30,7 @@ struct run {
     struct contact_apart apart; /* rank 0: of the model, with what the flow attached */
     struct outputs outputs;     /* rank 0 */
     bool wants_frames;          /* the same on all ranks */
-    struct summary_progress progress;
+    struct progress progress;
     struct flow_report report;
     struct untangle_result untangled; /* rank 0 */
     struct mesh_elastic *elastic;     /* rank 0: of each material */
@@ -215,7 +216,7 @@ static void show_step(void *context, uint64_t step, uint64_t steps, uint64_t cg_
 {
     struct run *run = context;
     if (!run->options->quiet)
-        summary_progress_step(&run->progress, step, steps, cg_iterations, run->report.contacts_now);
+        progress_step(&run->progress, step, steps, cg_iterations, run->report.contacts_now);
 }
 
 static int runtime_fails(struct cloth_error *error, int code)
@@ -250,10 +251,10 @@ static void run_flow(struct run *run, duite *rt, struct cloth_error *error)
                                        .system = options->save_system ? outputs_system : NULL};
     const struct flow_progress progress = {run, forget_meshes, show_step, stop_wanted};
     run->threads = duite_threads(rt);
-    summary_progress_begin(&run->progress);
+    progress_begin(&run->progress);
     flow_run(run->flow, rt, run->wants_frames || options->save_system ? &output : NULL, &progress,
              &run->report, error);
-    summary_progress_end(&run->progress);
+    progress_end(&run->progress);
     if (error->code == CLOTH_E_INPUT) /* a start that only the first look finds to touch */
         name_scene(options->scene, error);
 }

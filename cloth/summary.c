@@ -1,5 +1,4 @@
-/* Everything printed here comes from the report of the run; nothing is measured but the progress
- * line's time. */
+/* Everything printed here comes from the report of the run; nothing is measured. */
 #include "cloth/summary.h"
 
 #include "cloth/base/simd.h"
@@ -8,15 +7,6 @@
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
-#include <time.h>
-#include <unistd.h>
-
-static double now(void)
-{
-    struct timespec time;
-    clock_gettime(CLOCK_MONOTONIC, &time);
-    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
-}
 
 /* NaN where there is nothing to divide by: printed as null. */
 static double ratio(double a, double b)
@@ -408,46 +398,4 @@ int summary_write(const struct summary *summary, const char *path, struct cloth_
         code = output_report_write(json, path, error);
     output_report_free(json);
     return code;
-}
-
-void summary_progress_begin(struct summary_progress *progress)
-{
-    *progress = (struct summary_progress){.terminal = isatty(STDERR_FILENO) == 1};
-    progress->begun = progress->shown = now();
-}
-
-static void write_duration(char *text, size_t size, double seconds)
-{
-    if (seconds < 120)
-        snprintf(text, size, "%.0f s", seconds);
-    else if (seconds < 7200)
-        snprintf(text, size, "%.0f min", seconds / 60);
-    else
-        snprintf(text, size, "%.1f h", seconds / 3600);
-}
-
-void summary_progress_step(struct summary_progress *progress, uint64_t step, uint64_t steps,
-                           uint64_t cg_iterations, uint64_t contacts)
-{
-    double time = now(), pause = progress->terminal ? 0.1 : 10;
-    if (time - progress->shown < pause && !(progress->terminal && step == steps))
-        return;
-    char left[32], touching[40] = "";
-    double each = ratio(time - progress->begun, (double)step);
-    write_duration(left, sizeof left, each * (double)(steps - step));
-    if (contacts)
-        snprintf(touching, sizeof touching, "%" PRIu64 " contacts, ", contacts);
-    fprintf(stderr, "%sstep %" PRIu64 " of %" PRIu64 ", %" PRIu64 " iterations, %s%s left%s",
-            progress->terminal ? "\r\033[K" : "", step, steps, cg_iterations, touching, left,
-            progress->terminal ? "" : "\n");
-    fflush(stderr);
-    progress->shown = time;
-    progress->open = progress->terminal;
-}
-
-void summary_progress_end(struct summary_progress *progress)
-{
-    if (progress->open)
-        fputc('\n', stderr);
-    progress->open = false;
 }

@@ -31,15 +31,4 @@ void summary_print(FILE *file, const struct summary *summary);
 /* The flat JSON that the man page describes. Errors as of output_report_write. */
 int summary_write(const struct summary *summary, const char *path, struct cloth_error *error);
 
-/* The progress line on standard error: on a terminal rewritten ten times a second, else a line
- * every ten seconds. */
-struct summary_progress {
-    double begun, shown; /* seconds of a clock that only goes forward */
-    bool terminal, open; /* open: the line on the terminal is not ended yet */
-};
-void summary_progress_begin(struct summary_progress *progress);
-void summary_progress_step(struct summary_progress *progress, uint64_t step, uint64_t steps,
-                           uint64_t cg_iterations, uint64_t contacts);
-void summary_progress_end(struct summary_progress *progress);
-
 #endif

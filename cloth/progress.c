@@ -1,0 +1,57 @@
+/* The line is written at most ten times a second on a terminal, and once in ten seconds elsewhere,
+ * whatever the steps take. */
+#include "cloth/progress.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <time.h>
+#include <unistd.h>
+
+static double now(void)
+{
+    struct timespec time;
+    clock_gettime(CLOCK_MONOTONIC, &time);
+    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
+}
+
+void progress_begin(struct progress *progress)
+{
+    *progress = (struct progress){.terminal = isatty(STDERR_FILENO) == 1};
+    progress->begun = progress->shown = now();
+}
+
+static void write_duration(char *text, size_t size, double seconds)
+{
+    if (seconds < 120)
+        snprintf(text, size, "%.0f s", seconds);
+    else if (seconds < 7200)
+        snprintf(text, size, "%.0f min", seconds / 60);
+    else
+        snprintf(text, size, "%.1f h", seconds / 3600);
+}
+
+void progress_step(struct progress *progress, uint64_t step, uint64_t steps, uint64_t cg_iterations,
+                   uint64_t contacts)
+{
+    double time = now(), pause = progress->terminal ? 0.1 : 10;
+    if (time - progress->shown < pause && !(progress->terminal && step == steps))
+        return;
+    char left[32], touching[40] = "";
+    const double each = (time - progress->begun) / (double)step;
+    write_duration(left, sizeof left, each * (double)(steps - step));
+    if (contacts)
+        snprintf(touching, sizeof touching, "%" PRIu64 " contacts, ", contacts);
+    fprintf(stderr, "%sstep %" PRIu64 " of %" PRIu64 ", %" PRIu64 " iterations, %s%s left%s",
+            progress->terminal ? "\r\033[K" : "", step, steps, cg_iterations, touching, left,
+            progress->terminal ? "" : "\n");
+    fflush(stderr);
+    progress->shown = time;
+    progress->open = progress->terminal;
+}
+
+void progress_end(struct progress *progress)
+{
+    if (progress->open)
+        fputc('\n', stderr);
+    progress->open = false;
+}

@@ -1,0 +1,21 @@
+#ifndef CLOTH_PROGRESS_H
+#define CLOTH_PROGRESS_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+/* The progress line of a run on standard error: on a terminal rewritten ten times a second, else a
+ * line every ten seconds. Local; called on rank 0. */
+struct progress {
+    double begun, shown; /* seconds of a clock that only goes forward */
+    bool terminal, open; /* open: the line on the terminal is not ended yet */
+};
+
+void progress_begin(struct progress *progress);
+/* After step number `step`, from 1, of `steps`: what its solves took, and how many contacts there
+ * are; 0: they are not mentioned. */
+void progress_step(struct progress *progress, uint64_t step, uint64_t steps, uint64_t cg_iterations,
+                   uint64_t contacts);
+void progress_end(struct progress *progress);
+
+#endif

@@ -132,9 +132,19 @@ int scene_build_no_such(const char *what, const char *name, const char *const *n
 /* Adds the path of a file that is read to the model's. */
 int scene_build_file(struct model *model, const char *path, struct cloth_error *error);
 
-/* The mesh of a cloth, transformed; its file is added to the model's. */
-int scene_build_mesh(struct model *model, struct mesh *mesh, struct scene_tree *tree, int cloth,
-                     struct cloth_error *error);
+/* The mesh of a cloth, the map `node`, transformed; its file is added to the model's. */
+int scene_build_mesh(struct model *model, struct model_cloth *cloth, struct scene_tree *tree,
+                     int node, struct cloth_error *error);
+
+/* The mesh of the pattern that the map `node` names, which is added to the model's files. What is
+ * wrong with the pattern is in `inner`, without the place in the scene. */
+int scene_build_pattern(struct model *model, struct model_cloth *cloth, struct scene_tree *tree,
+                        int node, struct cloth_error *error, struct cloth_error *inner);
+
+/* That this machine may have room for a mesh of n vertices. node: the key that asks for so many;
+ * what: "nx times ny is". */
+int scene_build_check_memory(uint64_t n, const char *what, const struct scene_tree *tree, int node,
+                             struct cloth_error *error);
 
 /* The path of the file that a node names, relative to the scene's folder; the file is added to the
  * model's. NULL: out of memory. */

@@ -213,7 +213,7 @@ static int build_cloth(struct model *model, uint32_t i, struct scene_tree *tree,
     if (!code)
         code = scene_build_material(&cloth->material, cloth, model, tree, node, error);
     if (!code)
-        code = scene_build_mesh(model, &cloth->mesh, tree, node, error);
+        code = scene_build_mesh(model, cloth, tree, node, error);
     if (!code)
         code = build_rest(cloth, tree, node, error);
     if (!code)

@@ -40,10 +40,8 @@ static int grid_height(struct scene_grid *grid, const struct scene_tree *tree, i
         grid->height, grid->ny, follows);
 }
 
-/* That this machine may have room for a mesh of n vertices. node: the key that asks for so many;
- * what: "nx times ny is". */
-static int check_memory(uint64_t n, const char *what, const struct scene_tree *tree, int node,
-                        struct cloth_error *error)
+int scene_build_check_memory(uint64_t n, const char *what, const struct scene_tree *tree, int node,
+                             struct cloth_error *error)
 {
     const double need = LEAST_BYTES * (double)n, memory = memory_bytes();
     if (need <= memory)
@@ -61,8 +59,8 @@ static int build_disc(struct mesh *mesh, struct scene_tree *tree, int node,
     int code = scene_fill(&disc, &scene_disc, tree, node, error);
     const uint64_t n = 1 + 3 * (uint64_t)disc.rings * (disc.rings + 1);
     if (!code)
-        code =
-            check_memory(n, "so many rings have", tree, scene_tree_get(tree, node, "rings"), error);
+        code = scene_build_check_memory(n, "so many rings have", tree,
+                                        scene_tree_get(tree, node, "rings"), error);
     return code ? code : mesh_disc(mesh, disc.radius, disc.rings, inner);
 }
 
@@ -78,7 +76,8 @@ static int build_grid(struct mesh *mesh, struct scene_tree *tree, int node,
         return scene_tree_fail(tree, scene_tree_get(tree, node, "nx"), error,
                                "nx times ny is %llu; at most 2^31 vertices are possible",
                                (unsigned long long)n);
-    code = check_memory(n, "nx times ny is", tree, scene_tree_get(tree, node, "nx"), error);
+    code = scene_build_check_memory(n, "nx times ny is", tree, scene_tree_get(tree, node, "nx"),
+                                    error);
     if (!code)
         code = grid_height(&grid, tree, node, error);
     return code ? code
@@ -160,13 +159,14 @@ int scene_build_check_turn(const struct mesh_transform *transform, const struct 
     return CLOTH_OK;
 }
 
-int scene_build_mesh(struct model *model, struct mesh *mesh, struct scene_tree *tree, int cloth,
-                     struct cloth_error *error)
+int scene_build_mesh(struct model *model, struct model_cloth *cloth, struct scene_tree *tree,
+                     int node, struct cloth_error *error)
 {
+    struct mesh *mesh = &cloth->mesh;
     struct cloth_error inner = {0};
     struct mesh_transform transform;
-    const int change = scene_tree_get(tree, cloth, "transform");
-    yaml_node_pair_t kind = scene_tree_pair(tree, scene_tree_get(tree, cloth, "mesh"), 0);
+    const int change = scene_tree_get(tree, node, "transform");
+    yaml_node_pair_t kind = scene_tree_pair(tree, scene_tree_get(tree, node, "mesh"), 0);
     const char *name = scene_tree_scalar(tree, kind.key);
     int code = scene_fill(&transform, &scene_transform, tree, change, error);
     if (!code)
@@ -179,6 +179,8 @@ int scene_build_mesh(struct model *model, struct mesh *mesh, struct scene_tree *
         code = build_disc(mesh, tree, kind.value, error, &inner);
     else if (!strcmp(name, "file"))
         code = scene_build_obj(model, mesh, mesh_read_obj, tree, kind.value, error, &inner);
+    else if (!strcmp(name, "pattern"))
+        code = scene_build_pattern(model, cloth, tree, kind.value, error, &inner);
     else
         code = build_inline(mesh, tree, kind.value, error, &inner);
     if (inner.code == CLOTH_E_MEMORY)

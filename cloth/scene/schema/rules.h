@@ -86,12 +86,16 @@ struct scene_inline {
     double (*vertices)[3];
     uint32_t (*edges)[2], (*triangles)[3];
 };
+struct scene_pattern {
+    double edge;       /* m; 0: it is not given */
+    uint32_t vertices; /* 0: they are not given */
+};
 enum { SCENE_LAST_FRAME = -1 };
 struct scene_settled {
     double frame; /* SCENE_LAST_FRAME: the last one */
     char *cloth;  /* NULL: it is not given */
 };
-extern const struct scene_rule scene_grid, scene_disc, scene_inline, scene_settled;
+extern const struct scene_rule scene_grid, scene_disc, scene_inline, scene_pattern, scene_settled;
 extern const struct scene_rule scene_transform; /* a struct mesh_transform */
 extern const struct scene_rule scene_region;    /* a struct model_pick */
 extern const struct scene_rule scene_body;      /* a struct mesh_transform */

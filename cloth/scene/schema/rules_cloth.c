@@ -47,6 +47,15 @@ static const struct scene_rule inline_keys[] = {
      ARRAY(struct scene_inline, triangles, n_triangles), .about = "triples of vertices"},
     {0}};
 
+static const struct scene_rule pattern_keys[] = {
+    {"file", SCENE_TEXT, .choice = true,
+     .about = "a sewing pattern (JSON, docs/garments.md), relative to the scene's folder"},
+    {"edge", SCENE_NUMBER, "m", .range = SCENE_POSITIVE, INTO(struct scene_pattern, edge),
+     .about = "how long the edges of its triangles are, about"},
+    {"vertices", SCENE_INTEGER, .min = 3, INTO(struct scene_pattern, vertices),
+     .about = "in place of edge: how many all panels have, about"},
+    {0}};
+
 #define MESH_PLACE PLACE(struct model_cloth, mesh_place)
 static const struct scene_rule mesh_kinds[] = {
     {"grid", SCENE_MAP, .inside = grid_keys, .apart = true, MESH_PLACE,
@@ -56,6 +65,8 @@ static const struct scene_rule mesh_kinds[] = {
     {"file", SCENE_TEXT, MESH_PLACE, .about = "an OBJ file, relative to the scene's folder"},
     {"inline", SCENE_MAP, .inside = inline_keys, .apart = true, MESH_PLACE,
      .about = "a mesh written out"},
+    {"pattern", SCENE_MAP, .inside = pattern_keys, .apart = true, MESH_PLACE,
+     .about = "the panels of a sewing pattern, where it places them"},
     {0}};
 
 static const struct scene_rule transform_keys[] = {
@@ -256,4 +267,5 @@ const struct scene_rule scene_cloth = {
 const struct scene_rule scene_grid = {.type = SCENE_MAP, .inside = grid_keys};
 const struct scene_rule scene_disc = {.type = SCENE_MAP, .inside = disc_keys};
 const struct scene_rule scene_inline = {.type = SCENE_MAP, .inside = inline_keys};
+const struct scene_rule scene_pattern = {.type = SCENE_MAP, .inside = pattern_keys};
 const struct scene_rule scene_transform = {.type = SCENE_MAP, .inside = transform_keys};

@@ -1,0 +1,113 @@
+/* Cloths whose mesh is made of a sewing pattern. */
+#include "tests/cloth/scene/scene_file.h"
+#include "tests/support/unit.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Two rectangles of 20 x 30 cm, face to face, 3 cm from each other. */
+static const char *const PILLOW =
+    "{\"pattern\": {\"panels\": {\n"
+    "  \"front\": {\"vertices\": [[0, 0], [20, 0], [20, 30], [0, 30]], \"edges\": [{\"endpoints\": "
+    "[0, 1]}, {\"endpoints\": [1, 2]}, {\"endpoints\": [2, 3]}, {\"endpoints\": [3, 0]}],\n"
+    "    \"translation\": [0, 0, 3], \"rotation\": [0, 0, 0]},\n"
+    "  \"back\": {\"vertices\": [[0, 0], [20, 0], [20, 30], [0, 30]], \"edges\": [{\"endpoints\": "
+    "[0, 1]}, {\"endpoints\": [1, 2]}, {\"endpoints\": [2, 3]}, {\"endpoints\": [3, 0]}],\n"
+    "    \"translation\": [20, 0, 0], \"rotation\": [0, 180, 0]}},\n"
+    "  \"stitches\": [[{\"panel\": \"front\", \"edge\": 1}, {\"panel\": \"back\", \"edge\": 3}],\n"
+    "    [{\"panel\": \"front\", \"edge\": 3}, {\"panel\": \"back\", \"edge\": 1}]]},\n"
+    " \"properties\": {\"curvature_coords\": \"relative\", \"units_in_meter\": 100}}\n";
+
+static const char *const GRID = "{grid: {width: 1, height: 2, nx: 4, ny: 3}}";
+
+/* The scene that is right, with the mesh of the pattern and without what names its vertices. */
+static char *scene_of(const char *mesh)
+{
+    scene_write_file("pillow.json", PILLOW, strlen(PILLOW));
+    char *text =
+        scene_changed(scene_right, "    loads: [{vertices: [11], force: [0, 1, 0]}]\n", "");
+    char *whole = scene_changed(text, GRID, mesh);
+    free(text);
+    return whole;
+}
+
+/* Areas and places are those of the panels, and lengths in uv those in space. */
+START_TEST(panels_as_a_mesh)
+{
+    char *text = scene_of("{pattern: {file: pillow.json, edge: 0.03}}");
+    struct model model = scene_read_right(text, 0, NULL);
+    const struct mesh *mesh = &model.cloths[0].mesh;
+    double low[3], high[3];
+    ck_assert_ptr_nonnull(mesh->uv);
+    ck_assert_uint_eq(mesh->n_faces, mesh->n_triangles);
+    ck_assert_double_eq_tol(mesh_surface(mesh), 2 * 0.2 * 0.3, 1e-12);
+    mesh_box(mesh, low, high);
+    for (int k = 0; k < 3; k++) {
+        ck_assert_double_eq_tol(low[k], 0, 1e-12);
+        ck_assert_double_eq_tol(high[k], k == 0 ? 0.2 : k == 1 ? 0.3 : 0.03, 1e-12);
+    }
+    for (uint32_t t = 0; t < mesh->n_triangles; t++)
+        for (uint32_t k = 0; k < 3; k++) {
+            const uint32_t a = mesh->triangle[3 * t + k], b = mesh->triangle[3 * t + (k + 1) % 3];
+            const double *x = mesh->position + 3 * a, *y = mesh->position + 3 * b;
+            const double *u = mesh->uv + 2 * a, *v = mesh->uv + 2 * b;
+            ck_assert_double_eq_tol(sqrt((x[0] - y[0]) * (x[0] - y[0]) +
+                                         (x[1] - y[1]) * (x[1] - y[1]) +
+                                         (x[2] - y[2]) * (x[2] - y[2])),
+                                    hypot(u[0] - v[0], u[1] - v[1]), 1e-12);
+        }
+    ck_assert_uint_eq(model.n_files, 2);
+    ck_assert_ptr_nonnull(strstr(model.files[1], "/pillow.json"));
+    model_free(&model);
+    free(text);
+}
+END_TEST
+
+START_TEST(panels_by_count)
+{
+    char *text = scene_of("{pattern: {file: pillow.json, vertices: 4000}}");
+    struct model model = scene_read_right(text, 0, NULL);
+    ck_assert_double_eq_tol(model.cloths[0].mesh.n_vertices, 4000, 40);
+    model_free(&model);
+    free(text);
+}
+END_TEST
+
+static void refused(const char *mesh, const char *error)
+{
+    char *text = scene_of(mesh);
+    scene_expect_error(text, NULL, error);
+    free(text);
+}
+
+START_TEST(patterns_that_cannot_be_used)
+{
+    refused("{pattern: {edge: 0.1}}",
+            ":5:21: cloths[0].mesh.pattern has no file; one of them is expected");
+    refused("{pattern: {file: pillow.json}}",
+            ":5:21: mesh.pattern has neither edge nor vertices; one of them is expected, which "
+            "says how fine the mesh is");
+    refused("{pattern: {file: pillow.json, edge: 0.1, vertices: 9}}",
+            ":5:62: mesh.pattern has both edge and vertices; one of them is expected");
+    refused("{pattern: {file: pillow.json, edge: 0}}",
+            ":5:47: cloths[0].mesh.pattern.edge is 0; a finite number > 0 (m) is expected");
+    refused("{pattern: {file: pillow.json, vertices: 2}}",
+            ":5:51: cloths[0].mesh.pattern.vertices is 2; a whole number from 3 to 4294967295 is "
+            "expected");
+    refused("{pattern: {file: none.json, edge: 0.1}}", ":5:21: mesh: ...");
+    refused("{pattern: {file: scene.yaml, edge: 0.1}}", ":5:21: mesh: ...");
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("meshes of patterns");
+    TCase *cases = tcase_create("patterns");
+    tcase_add_test(cases, panels_as_a_mesh);
+    tcase_add_test(cases, panels_by_count);
+    tcase_add_test(cases, patterns_that_cannot_be_used);
+    suite_add_tcase(suite, cases);
+    return unit_run(suite);
+}

@@ -53,6 +53,22 @@ static int open_forces(struct outputs *to, const struct model *model, const stru
                : output_forces_forget(folder, error);
 }
 
+/* Of the frames of a model; meshes and names are not in it yet. */
+static struct output_setup setup_of(const struct outputs *of, const struct model *model,
+                                    const struct contact_apart *apart)
+{
+    return (struct output_setup){.folder = of->options->output,
+                                 .n_meshes = model->n_cloths,
+                                 .fps = model->fps,
+                                 .n_obstacles = model->n_obstacles,
+                                 .obstacles = model->obstacles,
+                                 .keys = model->keys,
+                                 .bodies = &model->bodies,
+                                 .apart = apart,
+                                 .n_inputs = model->n_files,
+                                 .inputs = (const char *const *)model->files};
+}
+
 static int open_output(struct outputs *to, const struct model *model, const struct flow *flow,
                        const struct contact_apart *apart, struct cloth_error *error)
 {
@@ -66,18 +82,9 @@ static int open_output(struct outputs *to, const struct model *model, const stru
             meshes[i] = &model->cloths[i].mesh;
             names[i] = model->cloths[i].name;
         }
-        const struct output_setup setup = {.folder = to->options->output,
-                                           .n_meshes = model->n_cloths,
-                                           .meshes = meshes,
-                                           .names = names,
-                                           .fps = model->fps,
-                                           .n_obstacles = model->n_obstacles,
-                                           .obstacles = model->obstacles,
-                                           .keys = model->keys,
-                                           .bodies = &model->bodies,
-                                           .apart = apart,
-                                           .n_inputs = model->n_files,
-                                           .inputs = (const char *const *)model->files};
+        struct output_setup setup = setup_of(to, model, apart);
+        setup.meshes = meshes;
+        setup.names = names;
         code = output_open(&to->frames, &setup, error);
     } else {
         cloth_fail(error, code, "out of memory before the first frame");
@@ -89,20 +96,64 @@ static int open_output(struct outputs *to, const struct model *model, const stru
 }
 
 int outputs_open(struct outputs *to, const struct simulate_options *options,
-                 const struct model *model, const struct flow *flow,
+                 const struct phases *phases, const struct flow *flow,
                  const struct contact_apart *apart, struct cloth_error *error)
 {
+    const struct model *model = phases_model(phases), *last = phases->models + phases->n - 1;
     to->options = options;
     int code = CLOTH_OK;
     if (options->check_intersections)
         code = intersections_of(&to->intersections, model, apart, "duite-cloth", false, error);
     if (!code)
-        code = drape_of(&to->drape, model, error);
+        code = drape_of(&to->drape, last, error);
     if (!code && options->save_system)
-        code = open_system(to, model, error);
+        code = open_system(to, last, error);
     if (!code && options->output)
         code = open_output(to, model, flow, apart, error);
     return code;
+}
+
+/* Where obstacles are in the frames of all phases so far, and of this one. */
+static int write_scene(const struct outputs *of, const struct phases *phases,
+                       const struct contact_apart *apart, struct cloth_error *error)
+{
+    struct phases_motions motions;
+    struct output_setup setup = setup_of(of, phases_model(phases), apart);
+    int code = phases_motions(phases, &motions, error);
+    setup.obstacles = motions.obstacles;
+    setup.keys = motions.keys;
+    setup.bodies = motions.bodies;
+    if (!code)
+        code = output_scene(of->frames, &setup, error);
+    phases_motions_free(&motions);
+    return code;
+}
+
+int outputs_go_on(struct outputs *to, const struct phases *phases,
+                  const struct contact_apart *apart, struct cloth_error *error)
+{
+    int code = CLOTH_OK;
+    outputs_count(to);
+    to->begin = phases->total.simulated_seconds;
+    if (to->options->check_intersections)
+        code = intersections_of(&to->intersections, phases_model(phases), apart, "duite-cloth",
+                                false, error);
+    return code || !to->frames ? code : write_scene(to, phases, apart, error);
+}
+
+void outputs_count(struct outputs *of)
+{
+    if (!of->intersections)
+        return;
+    const struct intersections_found last = intersections_found(of->intersections);
+    struct intersections_found *all = &of->found;
+    if (!all->bad)
+        all->first = last.first;
+    all->frames += last.frames;
+    all->bad += last.bad;
+    all->pairs = last.pairs > all->pairs ? last.pairs : all->pairs;
+    all->with_shapes = last.with_shapes > all->with_shapes ? last.with_shapes : all->with_shapes;
+    intersections_close(&of->intersections);
 }
 
 void outputs_close(struct outputs *of, struct cloth_error *error)
@@ -129,9 +180,10 @@ int outputs_system(void *context, const struct solve_system *system, struct clot
 }
 
 /* What is looked at as written is looked at once it is. */
-static int check_frame(const struct outputs *of, uint64_t frame, double time,
+static int check_frame(const struct outputs *of, uint64_t frame, double total,
                        const double *position, struct cloth_error *error)
 {
+    const double time = total - of->begin; /* bodies and motions count from the phase's begin */
     const int code = intersections_frame(of->intersections, frame, time, position, false, error);
     if (code || !of->frames)
         return code;

@@ -4,6 +4,7 @@
 #include "cloth/drape.h"
 #include "cloth/flow/run.h"
 #include "cloth/intersections.h"
+#include "cloth/phases.h"
 #include "cloth/simulate.h"
 
 /* What a run writes and looks at: frames, probes, forces, systems, intersections, the drape test.
@@ -15,7 +16,8 @@ struct outputs {
     struct output_probes *probes;        /* if the scene has any */
     struct output_forces *forces;        /* of frames; NULL: none */
     struct intersections *intersections; /* if they are looked for */
-    struct intersections_found found;    /* then, at the end */
+    struct intersections_found found;    /* then, at the end; before it of the phases so far */
+    double begin;                        /* s: of the phase */
     struct drape *drape;                 /* if the scene has that test */
     struct drape_found drapes;           /* then, at the end */
 };
@@ -23,8 +25,13 @@ struct outputs {
 /* Finds what can be wrong with it and opens what the options and the model ask for. What is opened
  * is freed by outputs_close and outputs_free, also after an error. Returns a cloth_code. */
 int outputs_open(struct outputs *to, const struct simulate_options *options,
-                 const struct model *model, const struct flow *flow,
+                 const struct phases *phases, const struct flow *flow,
                  const struct contact_apart *apart, struct cloth_error *error);
+/* The same when a further phase begins: the frames go on. Returns a cloth_code. */
+int outputs_go_on(struct outputs *to, const struct phases *phases,
+                  const struct contact_apart *apart, struct cloth_error *error);
+/* Intersections in all frames so far. */
+void outputs_count(struct outputs *of);
 /* The files are whole. */
 void outputs_close(struct outputs *of, struct cloth_error *error);
 void outputs_free(struct outputs *of);

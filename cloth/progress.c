@@ -14,9 +14,9 @@ static double now(void)
     return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
 }
 
-void progress_begin(struct progress *progress)
+void progress_begin(struct progress *progress, const char *phase)
 {
-    *progress = (struct progress){.terminal = isatty(STDERR_FILENO) == 1};
+    *progress = (struct progress){.phase = phase, .terminal = isatty(STDERR_FILENO) == 1};
     progress->begun = progress->shown = now();
 }
 
@@ -41,8 +41,9 @@ void progress_step(struct progress *progress, uint64_t step, uint64_t steps, uin
     write_duration(left, sizeof left, each * (double)(steps - step));
     if (contacts)
         snprintf(touching, sizeof touching, "%" PRIu64 " contacts, ", contacts);
-    fprintf(stderr, "%sstep %" PRIu64 " of %" PRIu64 ", %" PRIu64 " iterations, %s%s left%s",
-            progress->terminal ? "\r\033[K" : "", step, steps, cg_iterations, touching, left,
+    fprintf(stderr, "%s%.40s%sstep %" PRIu64 " of %" PRIu64 ", %" PRIu64 " iterations, %s%s left%s",
+            progress->terminal ? "\r\033[K" : "", progress->phase ? progress->phase : "",
+            progress->phase ? ": " : "", step, steps, cg_iterations, touching, left,
             progress->terminal ? "" : "\n");
     fflush(stderr);
     progress->shown = time;

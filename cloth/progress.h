@@ -7,11 +7,12 @@
 /* The progress line of a run on standard error: on a terminal rewritten ten times a second, else a
  * line every ten seconds. Local; called on rank 0. */
 struct progress {
+    const char *phase;   /* that the line names; NULL: none */
     double begun, shown; /* seconds of a clock that only goes forward */
     bool terminal, open; /* open: the line on the terminal is not ended yet */
 };
 
-void progress_begin(struct progress *progress);
+void progress_begin(struct progress *progress, const char *phase);
 /* After step number `step`, from 1, of `steps`: what its solves took, and how many contacts there
  * are; 0: they are not mentioned. */
 void progress_step(struct progress *progress, uint64_t step, uint64_t steps, uint64_t cg_iterations,

@@ -8,31 +8,51 @@
 #include <math.h>
 #include <stdio.h>
 
-/* What frames and rows of probes, in steps of h, take on the disk, bytes. */
-static double output_bytes(const struct model *model, const struct flow *flow)
+/* What a run of several phases takes at most. */
+struct extent {
+    double frames, steps, seconds;
+    bool may_rest; /* and so take less */
+};
+
+static struct extent extent_of(uint32_t n, const struct model *phases)
+{
+    struct extent all = {.frames = 1};
+    for (uint32_t i = 0; i < n; i++) {
+        all.frames += floor(phases[i].fps * phases[i].end);
+        all.steps += phases[i].end / phases[i].h;
+        all.seconds += phases[i].end;
+        all.may_rest = all.may_rest || phases[i].rest.speed > 0;
+    }
+    return all;
+}
+
+/* What frames and rows of probes take on the disk, bytes. */
+static double output_bytes(const struct extent *all, const struct model *model,
+                           const struct flow *flow)
 {
     enum { NUMBER = 26, INDEX = 24 }; /* characters of a number with 17 digits; of a frame's line */
-    const double frames = floor(model->fps * model->end) + 1, steps = model->end / model->h;
     const char *header = flow_header(flow);
     double columns = header ? 1 : 0;
     for (; header && *header; header++)
         columns += *header == ',';
     const double vectors = model->contact.force && model_certifies(model) ? 2 : 1;
-    return frames * (vectors * 3 * sizeof(float) * (double)flow_vertices(flow) + INDEX) +
-           steps * columns * NUMBER;
+    return all->frames * (vectors * 3 * sizeof(float) * (double)flow_vertices(flow) + INDEX) +
+           all->steps * columns * NUMBER;
 }
 
-int room_check(const struct model *model, const struct flow *flow, const char *folder,
+int room_check(uint32_t n, const struct model *phases, const struct flow *flow, const char *folder,
                struct cloth_error *error)
 {
     const double MUCH = 10e9, OFTEN = 10;
+    const struct model *model = phases; /* all have its frames a second, and its columns */
+    const struct extent all = extent_of(n, phases);
     const char *place = model->fps_place ? model->fps_place : "fps";
-    const double bytes = output_bytes(model, flow), room = output_room(folder);
-    const double frames = floor(model->fps * model->end) + 1, steps = model->end / model->h;
+    const double bytes = output_bytes(&all, model, flow), room = output_room(folder);
+    const double frames = all.frames, steps = all.steps;
     char what[200];
     snprintf(what, sizeof what, "time.fps = %g gives %.0f frames of %llu vertices up to %g s",
-             model->fps, frames, (unsigned long long)flow_vertices(flow), model->end);
-    if (bytes > room && !(model->rest.speed > 0))
+             model->fps, frames, (unsigned long long)flow_vertices(flow), all.seconds);
+    if (bytes > room && !all.may_rest)
         return cloth_fail(
             error, CLOTH_E_INPUT,
             "%.300s: %s: frames and probes take %.3g GB, but %.200s has room for %.3g "

@@ -1,13 +1,7 @@
 /* Between duite_start and duite_stop MPI belongs to the runtime; before and after, the ranks agree
  * here about errors, so that all of them leave by the same way and one of them prints. */
-#include "cloth/simulate.h"
+#include "cloth/simulate_run.h"
 
-#include "cloth/base/memory.h"
-#include "cloth/output/output.h"
-#include "cloth/outputs.h"
-#include "cloth/progress.h"
-#include "cloth/room.h"
-#include "cloth/start.h"
 #include "cloth/summary.h"
 
 #include <math.h>
@@ -16,28 +10,7 @@
 #include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 #include <sys/resource.h>
-#include <sys/stat.h>
-#include <xxhash.h>
-
-struct run {
-    const struct simulate_options *options;
-    int rank, ranks;
-    unsigned threads;
-    struct model model;
-    struct flow *flow;
-    struct contact_apart apart; /* rank 0: of the model, with what the flow attached */
-    struct outputs outputs;     /* rank 0 */
-    bool wants_frames;          /* the same on all ranks */
-    struct progress progress;
-    struct flow_report report;
-    struct untangle_result untangled; /* rank 0 */
-    struct mesh_elastic *elastic;     /* rank 0: of each material */
-    struct cloth_error untraced;      /* why the trace is not whole */
-    bool intersects;                  /* some were found; the same on all ranks */
-    bool stopped_before;              /* asked to stop before it began */
-};
 
 static atomic_int stop_requested; /* read by all threads, written by the signal's handler */
 
@@ -47,7 +20,7 @@ static void request_stop(int signal)
     atomic_store_explicit(&stop_requested, 1, memory_order_relaxed);
 }
 
-static int stop_wanted(void *context)
+int simulate_stops(void *context)
 {
     (void)context;
     return atomic_load_explicit(&stop_requested, memory_order_relaxed);
@@ -62,9 +35,7 @@ void simulate_catch_signals(void)
     sigaction(SIGXFSZ, &action, NULL);
 }
 
-/* The code of the lowest rank that failed, on all ranks; that rank prints its sentence. Collective.
- */
-static int agree(const struct run *run, const struct cloth_error *error)
+int simulate_agree(const struct run *run, const struct cloth_error *error)
 {
     int first = error->code ? run->rank : run->ranks, code = error->code;
     MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_INT, MPI_MIN, MPI_COMM_WORLD);
@@ -80,136 +51,12 @@ static int agree(const struct run *run, const struct cloth_error *error)
     return code;
 }
 
-/* Found before the run, so that what is written after it, or as it runs, is not lost. */
-static int check_file(const struct run *run, const char *option, const char *path,
-                      struct cloth_error *error)
-{
-    struct cloth_error inner = {0};
-    struct stat file, read;
-    for (uint32_t i = 0; i < run->model.n_files && stat(path, &file) == 0; i++)
-        if (stat(run->model.files[i], &read) == 0 && file.st_dev == read.st_dev &&
-            file.st_ino == read.st_ino)
-            return cloth_fail(error, CLOTH_E_INPUT, "%s %s: this is %s, which would be lost",
-                              option, path, i ? "a file that the scene reads" : "the scene itself");
-    const int code = output_report_check(path, run->options->output, &inner);
-    return code ? cloth_fail(error, code, "%s %s: %s", option, path, inner.text) : code;
-}
-
-/* Rank 0 alone reads the scene, so it is compared what the ranks were asked to read. Collective;
- * the same on all ranks. */
-static int check_same(const struct run *run, struct cloth_error *error)
-{
-    const struct simulate_options *options = run->options;
-    uint64_t asked = XXH64(options->scene, strlen(options->scene), 0), first;
-    for (size_t i = 0; i < options->n_sets; i++)
-        asked = XXH64(options->sets[i].text, strlen(options->sets[i].text), asked);
-    first = asked;
-    MPI_Bcast(&first, 1, MPI_UINT64_T, 0, MPI_COMM_WORLD);
-    int other = asked == first ? run->ranks : run->rank;
-    MPI_Allreduce(MPI_IN_PLACE, &other, 1, MPI_INT, MPI_MIN, MPI_COMM_WORLD);
-    if (other == run->ranks)
-        return CLOTH_OK;
-    return cloth_fail(error, CLOTH_E_INPUT,
-                      "ranks 0 and %d were started with different scenes, or different values for "
-                      "them (--set and the like): give all ranks the same",
-                      other);
-}
-
-/* While there are meshes. */
-static int find_elastic(struct run *run, struct cloth_error *error)
-{
-    run->elastic = calloc(run->model.n_materials, sizeof *run->elastic);
-    if (!run->elastic)
-        return cloth_fail(error, CLOTH_E_MEMORY, "no memory for the moduli of materials");
-    for (uint32_t i = 0; i < run->model.n_materials; i++)
-        run->elastic[i] = model_elastic(&run->model, i);
-    return CLOTH_OK;
-}
-
-/* Rank 0 reads the scene and cuts it into blocks, unless it is asked to stop; the others are sent
- * their blocks by the run. */
-static int read_and_cut(struct run *run, struct cloth_error *error)
-{
-    const struct simulate_options *options = run->options;
-    int code = scene_read(&run->model, options->scene, options->n_sets, options->sets, error);
-    if (!code && !stop_wanted(NULL))
-        code = flow_prepare(&run->flow, &run->model, run->ranks, error);
-    if (!code && run->flow)
-        code = start_untangle(&run->model, &run->flow, run->ranks, !options->quiet, &run->untangled,
-                              error);
-    run->apart = run->model.contact.apart;
-    if (!code && run->flow)
-        run->apart.attached = flow_attached(run->flow);
-    if (!code && run->flow)
-        run->apart.n_vertices = (uint32_t)flow_vertices(run->flow);
-    if (!code)
-        code = find_elastic(run, error);
-    if (!code && options->report)
-        code = check_file(run, "--report", options->report, error);
-    if (!code && options->trace)
-        code = check_file(run, "--trace (or DUITE_TRACE)", options->trace, error);
-    return code;
-}
-
-/* Whether any rank was asked to stop before the run begins. Collective; the same on all ranks. */
-static bool check_stop(struct run *run)
-{
-    int wanted = stop_wanted(NULL);
-    MPI_Allreduce(MPI_IN_PLACE, &wanted, 1, MPI_INT, MPI_MAX, MPI_COMM_WORLD);
-    run->stopped_before = wanted;
-    if (wanted && run->rank == 0)
-        fprintf(stderr, "duite-cloth: stopped as asked by SIGUSR1 before the first step; nothing "
-                        "was written\n");
-    return wanted;
-}
-
-/* Only rank 0 knows whether the scene asks for frames. Collective. */
-static void agree_on_frames(struct run *run)
-{
-    const struct simulate_options *options = run->options;
-    int wanted = options->output || options->check_intersections || run->outputs.drape;
-    MPI_Bcast(&wanted, 1, MPI_INT, 0, MPI_COMM_WORLD);
-    run->wants_frames = wanted;
-}
-
-/* All that can be wrong with the input, then the folder of frames. */
-static int prepare(struct run *run)
-{
-    const struct simulate_options *options = run->options;
-    struct cloth_error error = {0};
-    if (check_same(run, &error))
-        return agree(run, &error);
-    if (run->rank == 0)
-        read_and_cut(run, &error);
-    else
-        flow_join(&run->flow, &error);
-    const int code = agree(run, &error);
-    if (code || check_stop(run))
-        return code;
-    const char *warning;
-    for (uint32_t i = 0; run->rank == 0 && i < run->model.n_warnings; i++)
-        fprintf(stderr, "duite-cloth: warning: %s\n", run->model.warnings[i]);
-    for (size_t i = 0; run->rank == 0 && (warning = flow_warning(run->flow, i)); i++)
-        fprintf(stderr, "duite-cloth: warning: %s\n", warning);
-    if (run->rank == 0 && run->model.n_probes && !options->output)
-        fprintf(stderr, "duite-cloth: warning: the scene has probes, whose table is written into "
-                        "the folder of --output; there is none\n");
-    if (run->rank == 0 && options->output)
-        room_check(&run->model, run->flow, options->output, &error);
-    if (!error.code && run->rank == 0 && model_certifies(&run->model))
-        start_check(&run->model, run->flow, &run->apart, options->scene, &error);
-    if (!error.code && run->rank == 0)
-        outputs_open(&run->outputs, options, &run->model, run->flow, &run->apart, &error);
-    agree_on_frames(run);
-    return agree(run, &error);
-}
-
 /* The blocks have all they need of the meshes. */
 static void forget_meshes(void *context)
 {
     struct run *run = context;
-    for (uint32_t i = 0; i < run->model.n_cloths; i++)
-        mesh_free(&run->model.cloths[i].mesh);
+    for (uint32_t i = 0; i < run->model->n_cloths; i++)
+        mesh_free(&run->model->cloths[i].mesh);
 }
 
 static void show_step(void *context, uint64_t step, uint64_t steps, uint64_t cg_iterations)
@@ -244,21 +91,54 @@ static void name_scene(const char *scene, struct cloth_error *error)
 static void run_flow(struct run *run, duite *rt, struct cloth_error *error)
 {
     const struct simulate_options *options = run->options;
+    const bool last = phases_is_last(&run->phases), goes_on = run->phases.n > 1;
     const struct flow_output output = {.context = &run->outputs,
+                                       .before = phases_before(&run->phases),
+                                       .end = last ? NULL : run->phases.end,
                                        .frame = run->wants_frames ? outputs_frame : NULL,
                                        .force = options->output ? outputs_force : NULL,
                                        .row = options->output ? outputs_row : NULL,
-                                       .system = options->save_system ? outputs_system : NULL};
-    const struct flow_progress progress = {run, forget_meshes, show_step, stop_wanted};
+                                       .system =
+                                           options->save_system && last ? outputs_system : NULL};
+    const bool wants = run->wants_frames || options->save_system || goes_on;
+    const struct flow_progress progress = {run, forget_meshes, show_step, simulate_stops};
     run->threads = duite_threads(rt);
-    progress_begin(&run->progress);
-    flow_run(run->flow, rt, run->wants_frames || options->save_system ? &output : NULL, &progress,
-             &run->report, error);
+    progress_begin(&run->progress, run->phases.done[run->phases.now].name);
+    flow_run(run->flow, rt, wants ? &output : NULL, &progress, &run->report, error);
     progress_end(&run->progress);
     if (error->code == CLOTH_E_INPUT) /* a start that only the first look finds to touch */
         name_scene(options->scene, error);
 }
 
+static void say_stopped(const struct run *run)
+{
+    const struct flow_report *report = &run->phases.total;
+    const char *phase = run->phases.done[run->phases.now].name;
+    double end = 0;
+    for (uint32_t i = 0; i < run->phases.n; i++)
+        end += run->phases.models[i].end;
+    fprintf(stderr, "duite-cloth: stopped as asked by SIGUSR1 after step %llu, at %g of %g s",
+            (unsigned long long)report->steps, report->simulated_seconds, end);
+    if (phase)
+        fprintf(stderr, ", in phase '%.60s'", phase);
+    if (run->options->output)
+        fprintf(stderr, "; the last frame is %llu", (unsigned long long)report->last_frame);
+    fputc('\n', stderr);
+}
+
+/* On rank 0, of the phase that ran. */
+static void warn_of_motion(const struct run *run)
+{
+    const struct model_rest *rest = &run->model->rest;
+    if (rest->speed > 0 && !run->report.stopped && isnan(run->report.rest_seconds))
+        fprintf(stderr,
+                "duite-cloth: warning: the cloth is not at rest at time.end, %g s: some vertex "
+                "was faster than %g m/s in the last %g s, or something was still to move or "
+                "vary\n",
+                run->model->end, rest->speed, rest->hold);
+}
+
+/* Runs the phase. */
 static int execute(struct run *run)
 {
     struct cloth_error error = {0};
@@ -282,41 +162,41 @@ static int execute(struct run *run)
         if (!error.code)
             runtime_fails(&error, code);
     }
-    outputs_close(&run->outputs, &error);
-    return error.code == CLOTH_E_LOST ? say_lost(run, &error) : agree(run, &error);
-}
-
-static void say_stopped(const struct run *run)
-{
-    const struct flow_report *report = &run->report;
-    fprintf(stderr, "duite-cloth: stopped as asked by SIGUSR1 after step %llu, at %g of %g s",
-            (unsigned long long)report->steps, report->simulated_seconds, run->model.end);
-    if (run->options->output)
-        fprintf(stderr, "; the last frame is %llu", (unsigned long long)report->last_frame);
-    fputc('\n', stderr);
-}
-
-static void warn_of_motion(const struct run *run)
-{
-    const struct model_rest *rest = &run->model.rest;
-    if (rest->speed > 0 && !run->report.stopped && isnan(run->report.rest_seconds))
-        fprintf(stderr,
-                "duite-cloth: warning: the cloth is not at rest at time.end, %g s: some vertex "
-                "was faster than %g m/s in the last %g s, or something was still to move or "
-                "vary\n",
-                run->model.end, rest->speed, rest->hold);
+    phases_name(&run->phases, &error);
+    if (error.code || phases_is_last(&run->phases) || run->report.stopped)
+        outputs_close(&run->outputs, &error);
+    else if (run->rank == 0)
+        warn_of_motion(run);
+    if (!error.code)
+        phases_add(&run->phases, &run->report);
+    return error.code == CLOTH_E_LOST ? say_lost(run, &error) : simulate_agree(run, &error);
 }
 
 /* Collective. */
 static void count_intersections(struct run *run)
 {
     int intersects = 0;
-    if (run->outputs.intersections) {
-        run->outputs.found = intersections_found(run->outputs.intersections);
-        intersects = run->outputs.found.bad > 0;
-    }
+    outputs_count(&run->outputs);
+    intersects = run->outputs.found.bad > 0;
     MPI_Bcast(&intersects, 1, MPI_INT, 0, MPI_COMM_WORLD);
     run->intersects = intersects;
+}
+
+/* All phases, or those up to a stop. */
+static int run_phases(struct run *run)
+{
+    int code = execute(run);
+    while (!code && !run->report.stopped && !run->stopped_before && !phases_is_last(&run->phases)) {
+        code = simulate_next(run);
+        if (!code && !run->stopped_before)
+            code = execute(run);
+    }
+    if (run->stopped_before) { /* between two phases: nothing else closed them */
+        struct cloth_error error = {0};
+        outputs_close(&run->outputs, &error);
+        return simulate_agree(run, &error);
+    }
+    return code;
 }
 
 static int conclude(struct run *run)
@@ -335,21 +215,22 @@ static int conclude(struct run *run)
     if (run->rank == 0 && run->options->trace)
         duite_trace_bounds(run->options->trace, &path, &bound); /* else it has none */
     if (run->rank == 0) {
-        const struct summary summary = {.options = run->options,
-                                        .model = &run->model,
-                                        .report = &run->report,
-                                        .untangled = &run->untangled,
-                                        .elastic = run->elastic,
-                                        .intersections =
-                                            outputs->intersections ? &outputs->found : NULL,
-                                        .drape = outputs->drape ? &outputs->drapes : NULL,
-                                        .ranks = run->ranks,
-                                        .threads = run->threads,
-                                        .workers = workers,
-                                        .memory_bytes = peak,
-                                        .critical_path = path,
-                                        .lower_bound = bound};
-        if (run->report.stopped)
+        const struct summary summary = {
+            .options = run->options,
+            .model = run->model,
+            .report = &run->phases.total,
+            .phases = &run->phases,
+            .untangled = &run->untangled,
+            .elastic = run->elastic,
+            .intersections = run->options->check_intersections ? &outputs->found : NULL,
+            .drape = outputs->drape ? &outputs->drapes : NULL,
+            .ranks = run->ranks,
+            .threads = run->threads,
+            .workers = workers,
+            .memory_bytes = peak,
+            .critical_path = path,
+            .lower_bound = bound};
+        if (run->report.stopped || run->stopped_before)
             say_stopped(run);
         intersections_say(&outputs->found, "duite-cloth");
         warn_of_motion(run);
@@ -358,8 +239,8 @@ static int conclude(struct run *run)
         if (!run->options->quiet)
             summary_print(stdout, &summary);
     }
-    const int code = agree(run, &error);
-    return code ? code : agree(run, &run->untraced);
+    const int code = simulate_agree(run, &error);
+    return code ? code : simulate_agree(run, &run->untraced);
 }
 
 /* The exit code of a run that began. done: if nothing failed. */
@@ -378,13 +259,13 @@ int simulate(const struct simulate_options *options)
     int code = SIMULATE_BAD_INPUT;
     MPI_Comm_rank(MPI_COMM_WORLD, &run.rank);
     MPI_Comm_size(MPI_COMM_WORLD, &run.ranks);
-    int failure = prepare(&run);
+    int failure = simulate_prepare(&run);
     if (failure == CLOTH_E_MEMORY || failure == CLOTH_E_LIBRARY || failure == CLOTH_E_IO)
         code = SIMULATE_FAILED;
     if (!failure && run.stopped_before)
         code = SIMULATE_OK;
     else if (!failure) {
-        failure = execute(&run);
+        failure = run_phases(&run);
         if (!failure)
             failure = conclude(&run);
         const int done = run.intersects ? SIMULATE_INTERSECTS : SIMULATE_OK;
@@ -395,6 +276,6 @@ int simulate(const struct simulate_options *options)
     outputs_free(&run.outputs);
     flow_free(run.flow);
     free(run.elastic);
-    model_free(&run.model);
+    phases_free(&run.phases);
     return code;
 }

@@ -7,6 +7,7 @@
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* NaN where there is nothing to divide by: printed as null. */
 static double ratio(double a, double b)
@@ -125,6 +126,17 @@ static void print_contact(FILE *file, const struct model *model, const struct fl
                 report->contact_pinches, report->contact_pinch);
 }
 
+static void print_phases(FILE *file, const struct phases *phases)
+{
+    for (uint32_t i = 0; i < phases->n && phases->named; i++) {
+        const struct phase_done *done = phases->done + i;
+        if (done->ended)
+            fprintf(file, "  phase %-10.40s %" PRIu64 " steps, %g s simulated in %.3f s, %s\n",
+                    done->name, done->steps, done->simulated_seconds, done->wall_seconds,
+                    strcmp(done->ended, "rest") == 0 ? "to rest" : done->ended);
+    }
+}
+
 void summary_print(FILE *file, const struct summary *summary)
 {
     const struct flow_report *report = summary->report;
@@ -143,6 +155,7 @@ void summary_print(FILE *file, const struct summary *summary)
     fprintf(file, "  instructions     %s\n", cloth_simd_name());
     fprintf(file, "  steps            %" PRIu64 " of %g s, %g s simulated\n", report->steps,
             model->h, report->simulated_seconds);
+    print_phases(file, summary->phases);
     if (model->n_obstacles || model_seeks(model))
         fprintf(file, "  contact          %s%s\n", model_contact_name(model),
                 model->contact.assumed ? ", by default" : "");
@@ -376,6 +389,24 @@ static void add_drape(struct output_report *json, const struct drape_found *foun
     output_report_number(json, "drape_shadow_m2", found ? found->shadow : NAN);
 }
 
+/* Those that began and did not fail. */
+static void add_phases(struct output_report *json, const struct phases *phases)
+{
+    if (!phases->named)
+        return;
+    output_report_list(json, "phases");
+    for (uint32_t i = 0; i < phases->n && phases->done[i].ended; i++) {
+        const struct phase_done *done = phases->done + i;
+        output_report_item(json);
+        output_report_text(json, "name", done->name);
+        output_report_integer(json, "steps", done->steps);
+        output_report_number(json, "simulated_seconds", done->simulated_seconds);
+        output_report_number(json, "wall_seconds", done->wall_seconds);
+        output_report_text(json, "ended", done->ended);
+    }
+    output_report_list_end(json);
+}
+
 int summary_write(const struct summary *summary, const char *path, struct cloth_error *error)
 {
     struct output_report *json = NULL;
@@ -394,6 +425,7 @@ int summary_write(const struct summary *summary, const char *path, struct cloth_
     add_intersections(json, summary->intersections);
     add_drape(json, summary->drape);
     add_hash(json, "state_hash", summary->report->state_hash);
+    add_phases(json, summary->phases);
     if (!code)
         code = output_report_write(json, path, error);
     output_report_free(json);

@@ -4,6 +4,7 @@
 #include "cloth/drape.h"
 #include "cloth/flow/run.h"
 #include "cloth/intersections.h"
+#include "cloth/phases.h"
 #include "cloth/simulate.h"
 #include "cloth/untangle/untangle.h"
 
@@ -12,8 +13,9 @@
 /* What a finished run says about itself. Local; called on rank 0. */
 struct summary {
     const struct simulate_options *options;
-    const struct model *model;
-    const struct flow_report *report;
+    const struct model *model;        /* of the last phase, as what follows, */
+    const struct flow_report *report; /* but as phases_add says */
+    const struct phases *phases;
     const struct untangle_result *untangled;
     const struct mesh_elastic *elastic;              /* of each material of the model */
     const struct intersections_found *intersections; /* NULL: they were not looked for */

@@ -223,7 +223,7 @@ int flow_run_begin(struct flow_state *state)
     struct flow *flow = state->flow;
     flow->trouble = (struct cloth_error){0};
     flow->output = state->output;
-    flow->frames = 0;
+    flow->frames = flow_before(state).frames;
     flow->hash = 0;
     int code = flow_share_head(state);
     if (code)
@@ -343,6 +343,7 @@ int flow_run(struct flow *flow, duite *rt, const struct flow_output *output,
         failed = cloth_fail(error, CLOTH_E_LIBRARY, "%s", duite_message());
     duite_wait(rt);
     if (flow->model) {
+        report->shown = state.shown >= (double)state.grid.now;
         report->simulated_seconds = (double)state.grid.now * flow->model->h / FLOW_TICKS;
         report->shortest_step = state.grid.least_done * flow->model->h / FLOW_TICKS;
         report->steps_halved = state.grid.refused;

@@ -52,9 +52,10 @@ struct flow_report {
     double contact_cut_momentum;     /* kg m/s: what cuts changed, summed over the steps made */
     uint64_t steps_retaken; /* how often one by BDF2 gained energy and was made again by implicit
                                Euler */
-    uint64_t frames, cg_iterations_total, cg_iterations_max; /* iterations: of the steps made */
-    double shortest_step;                                    /* s */
-    double simulated_seconds, wall_seconds;                  /* wall: from the first step on */
+    uint64_t frames;        /* with those before the run */
+    uint64_t cg_iterations_total, cg_iterations_max; /* iterations: of the steps made */
+    double shortest_step;                            /* s */
+    double simulated_seconds, wall_seconds;          /* wall: from the first step on */
     double seconds_force, seconds_acceleration, seconds_matrix, seconds_cg, seconds_velocity,
         seconds_position, seconds_collide,
         seconds_output;   /* in task bodies, over all workers and ranks; NaN: there were none */
@@ -77,15 +78,29 @@ struct flow_report {
         energy_gained; /* the most that it rose above an earlier one; NaN but with energy_steps */
     uint64_t state_hash;
     uint64_t last_frame; /* the last frame written */
+    bool shown;          /* it shows the end */
     bool stopped;        /* a stop was requested before the end */
     double rest_seconds; /* when the run was found at rest, s; NaN: it was not */
     duite_counters counters;
+};
+
+/* What there is before a run that goes on where others ended. */
+struct flow_before {
+    bool goes_on;           /* it does; else all of this is zero */
+    bool shown;             /* the last frame shows where it starts, which is not written again */
+    uint64_t frames, steps; /* of the runs before it, all together */
+    double time;            /* s: that they took */
 };
 
 /* Where frames and systems go: handed over by the program. Called on rank 0 only, from one task at
  * a time. */
 struct flow_output {
     void *context;
+    struct flow_before before; /* numbers and times of frames and rows count from it; the same on
+                                  all ranks */
+    /* On rank 0: room for 6 numbers a vertex, for where the run ends, as model_cloth.start has
+     * them. NULL: it is not wanted. */
+    double (*end)[6];
     /* Frames in their order; NULL: none are wanted. */
     /* position: vertices x 3 in the numbering of the input meshes, cloth after cloth. time in
      * seconds. Returns 0 or a code and fills error. */

@@ -72,6 +72,11 @@ void model_free(struct model *model)
         free_pairs(&model->joints[i].pairs);
     for (uint32_t i = 0; i < model->n_welds; i++)
         free_pairs(&model->welds[i].pairs);
+    for (uint32_t i = 0; i < model->n_phases; i++) {
+        free(model->phases[i].name);
+        free(model->phases[i].place);
+    }
+    free(model->phases);
     free(model->joints);
     free(model->welds);
     free(model->probes);

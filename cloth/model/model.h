@@ -25,6 +25,11 @@ struct model_rest {
     double speed, hold; /* m/s, s; speed 0: it does not end so */
 };
 
+/* A part of a scene that is run in several. */
+struct model_phase {
+    char *name, *place;
+};
+
 /* Explicit ones come first. docs/physics.md has their formulas. */
 enum model_integrator {
     MODEL_EXPLICIT_EULER,   /* x by the velocity before the step */
@@ -145,6 +150,9 @@ struct model {
                        PHYS_DEFINITE to all else */
 
     uint32_t grain; /* vertices a block */
+
+    uint32_t n_phases; /* of the scene; 0: it is one run. The model is that of one of them */
+    struct model_phase *phases;
 
     uint32_t n_files;
     char **files; /* that were read, by the paths they were opened by; the first is the scene */

@@ -276,6 +276,12 @@ int output_open(struct output_frames **frames, const struct output_setup *setup,
     return 0;
 }
 
+int output_scene(const struct output_frames *frames, const struct output_setup *setup,
+                 struct cloth_error *error)
+{
+    return output_replace_file(frames->path[PART_SCENE], fill_scene, setup, error);
+}
+
 static int encode(struct output_frames *frames, uint64_t frame, const double *position,
                   struct cloth_error *error)
 {

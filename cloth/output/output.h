@@ -51,6 +51,11 @@ struct output_setup {
 int output_open(struct output_frames **frames, const struct output_setup *setup,
                 struct cloth_error *error);
 
+/* Writes scene.json again, as of a setup with other motions, when the run goes on in another way.
+ * What of the setup is in other files is not read. Errors: as of output_open. */
+int output_scene(const struct output_frames *frames, const struct output_setup *setup,
+                 struct cloth_error *error);
+
 /* Bytes that files in a folder may have, which need not be there yet, with those of an earlier run
  * that would be replaced; infinite where the file system does not say. Local. */
 double output_room(const char *folder);
@@ -153,8 +158,9 @@ void output_cache_close(struct output_cache *cache);
  * output_open. Local. */
 int output_system(const char *folder, const struct solve_system *system, struct cloth_error *error);
 
-/* A flat JSON object, written whole or not at all (a temporary name, then renamed). Keys in the
- * order they are added; NaN and infinities become null. */
+/* A JSON object, written whole or not at all (a temporary name, then renamed). Keys in the
+ * order they are added; NaN and infinities become null. It is flat but for lists of flat objects.
+ */
 struct output_report;
 /* Checks, without writing, whether a report can be written to the path. made: a folder that will be
  * there by then, or NULL. CLOTH_E_INPUT with what is wrong, not the path. */
@@ -164,6 +170,11 @@ void output_report_text(struct output_report *report, const char *key, const cha
 void output_report_number(struct output_report *report, const char *key, double value);
 void output_report_integer(struct output_report *report, const char *key, uint64_t value);
 void output_report_null(struct output_report *report, const char *key);
+/* Begins a list, to which each call of output_report_item begins an object: the keys that follow
+ * are of this, until the list is ended. */
+void output_report_list(struct output_report *report, const char *key);
+void output_report_item(struct output_report *report);
+void output_report_list_end(struct output_report *report);
 /* To the file that the path names, or leads to through links. Errors as of output_open. */
 int output_report_write(struct output_report *report, const char *path, struct cloth_error *error);
 void output_report_free(struct output_report *report);

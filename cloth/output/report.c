@@ -14,6 +14,8 @@ struct output_report {
     FILE *stream;
     char *text; /* owned by the stream until it is closed, then by us */
     size_t size, n_keys;
+    size_t n_outside; /* keys, within a list: of what it is in */
+    size_t n_items;   /* then: of the list */
 };
 
 int output_report_new(struct output_report **report, struct cloth_error *error)
@@ -30,7 +32,10 @@ int output_report_new(struct output_report **report, struct cloth_error *error)
 
 static FILE *put_key(struct output_report *report, const char *key)
 {
-    fputs(report->n_keys++ ? ",\n  " : "{\n  ", report->stream);
+    if (report->n_outside)
+        fputs(report->n_keys++ ? ", " : "{", report->stream);
+    else
+        fputs(report->n_keys++ ? ",\n  " : "{\n  ", report->stream);
     output_json_string(report->stream, key);
     fputs(": ", report->stream);
     return report->stream;
@@ -54,6 +59,26 @@ void output_report_integer(struct output_report *report, const char *key, uint64
 void output_report_null(struct output_report *report, const char *key)
 {
     fputs("null", put_key(report, key));
+}
+
+void output_report_list(struct output_report *report, const char *key)
+{
+    fputs("[", put_key(report, key));
+    report->n_outside = report->n_keys;
+    report->n_items = report->n_keys = 0;
+}
+
+void output_report_item(struct output_report *report)
+{
+    fputs(report->n_items++ ? "},\n    " : "\n    ", report->stream);
+    report->n_keys = 0;
+}
+
+void output_report_list_end(struct output_report *report)
+{
+    fputs(report->n_items ? "}\n  ]" : "]", report->stream);
+    report->n_keys = report->n_outside;
+    report->n_outside = 0;
 }
 
 static int fill_report(FILE *file, const void *what)

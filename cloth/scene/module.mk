@@ -43,5 +43,6 @@ libduite_cloth_la_SOURCES += \
 	cloth/scene/build/motion.c \
 	cloth/scene/build/obstacle.c \
 	cloth/scene/build/pattern.c \
+	cloth/scene/build/phases.c \
 	cloth/scene/build/probe.c
 EXTRA_DIST += docs/scene.md

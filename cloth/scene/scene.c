@@ -6,8 +6,47 @@
 #include "cloth/scene/schema/fabrics.h"
 #include "cloth/scene/yaml/edit.h"
 
-int scene_read(struct model *model, const char *path, size_t n_sets, const struct scene_set *sets,
-               struct cloth_error *error)
+static int read_tree(struct model *model, struct scene_tree *tree, uint32_t phase,
+                     struct cloth_error *error)
+{
+    int code = scene_edit_sets(tree, phase, error);
+    if (!code)
+        code = scene_fabrics_fill(tree, error);
+    if (!code)
+        code = scene_check(model, tree, error);
+    if (!code)
+        code = scene_build_file(model, tree->path, error);
+    if (!code)
+        code = scene_build_phases(model, error);
+    if (!code)
+        code = scene_build_world(model, tree, error);
+    if (!code)
+        code = scene_build_cloths(model, tree, error);
+    if (!code)
+        code = scene_build_check_obstacles(model, tree, error);
+    if (!code)
+        code = scene_build_sides(model, tree, error);
+    if (!code)
+        scene_build_contact(model, tree);
+    if (!code)
+        code = scene_build_check_contact(model, tree, error);
+    if (!code)
+        code = scene_build_probes(model, tree, error);
+    if (!code)
+        scene_build_contact_idle(model);
+    if (!code)
+        code = scene_build_drape(model, tree, error);
+    if (!code)
+        code = scene_build_joints(model, tree, error);
+    if (!code)
+        code = scene_build_welds(model, tree, error);
+    if (!code)
+        code = scene_build_idle(model, tree, error);
+    return code;
+}
+
+int scene_read_phase(struct model *model, const char *path, uint32_t phase, size_t n_sets,
+                     const struct scene_set *sets, struct cloth_error *error)
 {
     struct cloth_error own = {0}; /* the caller may want none, the steps below rely on one */
     struct scene_tree tree;
@@ -16,37 +55,18 @@ int scene_read(struct model *model, const char *path, size_t n_sets, const struc
     tree.n_sets = n_sets;
     tree.sets = sets;
     if (!code)
-        code = scene_edit_sets(&tree, &own);
-    if (!code)
-        code = scene_fabrics_fill(&tree, &own);
-    if (!code)
-        code = scene_check(model, &tree, &own);
-    if (!code)
-        code = scene_build_file(model, path, &own);
-    if (!code)
-        code = scene_build_world(model, &tree, &own);
-    if (!code)
-        code = scene_build_cloths(model, &tree, &own);
-    if (!code)
-        code = scene_build_check_obstacles(model, &tree, &own);
-    if (!code)
-        code = scene_build_sides(model, &tree, &own);
-    if (!code)
-        scene_build_contact(model, &tree);
-    if (!code)
-        code = scene_build_check_contact(model, &tree, &own);
-    if (!code)
-        code = scene_build_probes(model, &tree, &own);
-    if (!code)
-        scene_build_contact_idle(model);
-    if (!code)
-        code = scene_build_drape(model, &tree, &own);
-    if (!code)
-        code = scene_build_joints(model, &tree, &own);
-    if (!code)
-        code = scene_build_welds(model, &tree, &own);
-    if (!code)
-        code = scene_build_idle(model, &tree, &own);
+        code = read_tree(model, &tree, phase, &own);
+    const int map = code && phase ? scene_tree_phase(&tree, phase) : 0;
+    const char *name = map ? scene_tree_text(&tree, map, "name") : NULL;
+    if (code)
+        cloth_fail(error, code, "%.*s%s%.60s%s", name ? 900 : 1023, own.text,
+                   name ? "; in phase '" : "", name ? name : "", name ? "'" : "");
     scene_tree_free(&tree);
-    return code ? cloth_fail(error, code, "%s", own.text) : CLOTH_OK;
+    return code;
+}
+
+int scene_read(struct model *model, const char *path, size_t n_sets, const struct scene_set *sets,
+               struct cloth_error *error)
+{
+    return scene_read_phase(model, path, 0, n_sets, sets, error);
 }

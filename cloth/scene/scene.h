@@ -20,6 +20,12 @@ struct scene_set {
 int scene_read(struct model *model, const char *path, size_t n_sets, const struct scene_set *sets,
                struct cloth_error *error);
 
+/* The same of one of the phases of a scene, counted from 0: before the caller's sets those of the
+ * phase change the document. scene_read has the first phase. Errors of a later one end with its
+ * name. Local. */
+int scene_read_phase(struct model *model, const char *path, uint32_t phase, size_t n_sets,
+                     const struct scene_set *sets, struct cloth_error *error);
+
 /* Prints every key of a scene with its kind, unit, range and default, one a line. Local. */
 void scene_print_keys(FILE *file);
 

@@ -157,6 +157,28 @@ static void place_unused(struct flow_state *state, bool at_rest, const struct pa
     }
 }
 
+static double double_of(const unsigned char *bytes)
+{
+    uint64_t bits = 0;
+    double value;
+    for (int i = 8; i > 0; i--)
+        bits = bits << 8 | bytes[i - 1];
+    memcpy(&value, &bits, sizeof value);
+    return value;
+}
+
+/* Hands a part of the positions, or of the velocities, to the program. */
+static void keep_end(const struct flow_state *state, enum flow_field_id vector,
+                     const struct part *part)
+{
+    double(*end)[6] = state->output ? state->output->end : NULL;
+    const unsigned char *from = state->bytes;
+    const int first = vector == FLOW_FIELD_v ? 3 : 0;
+    for (uint32_t v = part->from; end && v < part->to; v++)
+        for (int c = 0; c < 3; c++, from += 8)
+            end[v][first + c] = double_of(from);
+}
+
 static int hash_vectors(struct flow_state *state, enum flow_field_id vector, bool at_rest,
                         XXH64_state_t *hash)
 {
@@ -167,8 +189,10 @@ static int hash_vectors(struct flow_state *state, enum flow_field_id vector, boo
         if (hash)
             place_unused(state, at_rest, &part);
         code = collect_part(state, vector, &part);
-        if (hash && !code)
-            XXH64_update(hash, state->bytes, FLOW_VERTEX_BYTES * (size_t)(part.to - part.from));
+        if (!hash || code)
+            continue;
+        XXH64_update(hash, state->bytes, FLOW_VERTEX_BYTES * (size_t)(part.to - part.from));
+        keep_end(state, vector, &part);
     }
     return code;
 }
@@ -216,7 +240,9 @@ static int hash_all(struct flow_state *state)
 
 int flow_last_frame(struct flow_state *state)
 {
-    uint64_t broadcast[FLOW_BROADCAST] = {[FLOW_BROADCAST_FRAMES] = state->next_frame};
+    const struct flow_before before = flow_before(state);
+    uint64_t broadcast[FLOW_BROADCAST] = {[FLOW_BROADCAST_FRAMES] =
+                                              before.frames - before.shown + state->next_frame};
     const int code = flow_shows(state) ? broadcast_result(state, broadcast) : DUITE_OK;
     if (code)
         return code;

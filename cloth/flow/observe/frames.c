@@ -76,12 +76,15 @@ static int frame_force_body(const duite_call *call, const struct frame_force_fie
 static int fork_frame(struct flow_state *state, double tick, bool kept)
 {
     int64_t token;
-    const struct frame_args args = {.frame = state->next_frame++,
-                                    .time = tick * state->flow->model->h / FLOW_TICKS};
+    const struct flow_before before = flow_before(state);
+    const uint64_t number = state->next_frame++;
+    const struct frame_args args = {.frame = before.frames - before.shown + number,
+                                    .time =
+                                        before.time + tick * state->flow->model->h / FLOW_TICKS};
     state->shown = tick;
-    if (!flow_shows(state)) /* only counted */
+    if (!flow_shows(state) || number < before.shown) /* only counted */
         return DUITE_OK;
-    if (args.frame > 0) {
+    if (number > before.shown) {
         const int code = duite_get(state->rt, state->run.token, &token);
         if (code)
             return code;

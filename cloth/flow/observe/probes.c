@@ -142,13 +142,18 @@ static int row_body(const duite_call *call, const struct row_fields *on)
 int flow_probes_row(struct flow_state *state)
 {
     int64_t token;
-    const struct row_args args = {.steps = state->report->steps, .time = flow_time(state)};
+    const struct flow_before before = flow_before(state);
+    const uint64_t number = state->report->steps;
+    const struct row_args args = {.steps = before.steps + number,
+                                  .time = before.time + flow_time(state)};
     const double tick = state->flow->model->h / FLOW_TICKS;
     const uint32_t length = state->length ? state->length : FLOW_TICKS;
-    const uint32_t before = state->length_before ? state->length_before : length;
+    const uint32_t last = state->length_before ? state->length_before : length;
     const struct flow_two_steps steps = {
-        .end = args.time, .h = length * tick, .before = before * tick};
-    int code = args.steps ? duite_get(state->rt, state->run.token, &token) : DUITE_OK;
+        .end = flow_time(state), .h = length * tick, .before = last * tick};
+    if (number < before.goes_on) /* the run before ended with it */
+        return DUITE_OK;
+    int code = number > before.goes_on ? duite_get(state->rt, state->run.token, &token) : DUITE_OK;
     if (!code)
         code = flow_ties_show(state);
     for (uint32_t b = 0; b < state->flow->tables.n_blocks && !code; b++)

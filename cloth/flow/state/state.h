@@ -250,6 +250,11 @@ struct flow_state {
     double moved;  /* s: when it was last seen too fast for that */
 };
 
+static inline struct flow_before flow_before(const struct flow_state *state)
+{
+    return state->output ? state->output->before : (struct flow_before){0};
+}
+
 /* Whether frames are wanted. */
 static inline bool flow_shows(const struct flow_state *state)
 {

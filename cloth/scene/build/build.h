@@ -8,6 +8,9 @@
  * (meshes, motions, indices for names), and check what a table cannot: names, sizes, indices,
  * files. What they allocate belongs to the model, also after an error. */
 
+/* The names of the phases: no two are the same. */
+int scene_build_phases(const struct model *model, struct cloth_error *error);
+
 /* All but the cloths. */
 int scene_build_world(struct model *model, struct scene_tree *tree, struct cloth_error *error);
 

@@ -403,6 +403,8 @@ static int check(struct walk *walk, const struct place *at, const struct scene_r
         return check_one_of(walk, at, rule, node, structure_of(rule, base));
     if (map && rule->type == SCENE_NAMED)
         return check_named(walk, at, rule, node, base);
+    if (map && rule->type == SCENE_EDITS)
+        return check_names(walk, at, node);
     if (list && (rule->type == SCENE_LIST || rule->type == SCENE_NUMBER_OR_LIST))
         return check_list(walk, at, rule, node, base);
     if (!list && !map && rule->type >= SCENE_NUMBER)

@@ -2,13 +2,18 @@
 #include "cloth/scene/schema/choice.h"
 #include "cloth/scene/yaml/edit.h"
 
+#include <limits.h>
 #include <string.h>
 
-/* The last set that gave a key or anything below it, from 1; 0: none did. */
+/* The last set that gave a key or anything below it, from 1; 0: none did. Those of the caller come
+ * after those of the phase, whose keys are nodes in their order. */
 static size_t set_of_pair(const struct scene_tree *tree, yaml_node_pair_t pair)
 {
     const yaml_mark_t mark = scene_tree_node(tree, pair.key)->start_mark;
-    return mark.index == SCENE_BY_SET ? mark.line + 1 : 0;
+    if (mark.index == SCENE_BY_PHASE)
+        return mark.line;
+    const size_t phases = INT_MAX; /* more than there are nodes */
+    return mark.index == SCENE_BY_SET ? phases + mark.line + 1 : 0;
 }
 
 static bool is_choice(const struct scene_tree *tree, const struct scene_rule *keys, bool all,

@@ -354,6 +354,14 @@ static const struct scene_rule joint_keys[] = {
 static const struct scene_rule joint = {
     .type = SCENE_MAP, .inside = joint_keys, PLACE(struct model_joint, pairs.place)};
 
+static const struct scene_rule phase_keys[] = {
+    {"name", SCENE_TEXT, .required = true, INTO(struct model_phase, name),
+     .about = "of the phase, in messages and in the report"},
+    {"set", SCENE_EDITS, .fallback = "{}", .about = "keys of the scene that are others in it"},
+    {0}};
+static const struct scene_rule phase = {
+    .type = SCENE_MAP, .inside = phase_keys, PLACE(struct model_phase, place)};
+
 static const struct scene_rule scene_keys[] = {
     {"schema", SCENE_INTEGER, .required = true, .min = 1, .max = 1,
      .about = "version of these rules"},
@@ -388,6 +396,8 @@ static const struct scene_rule scene_keys[] = {
      ARRAY(struct model, joints, n_joints), .about = "springs between any two vertices"},
     {"welds", SCENE_LIST, .fallback = "[]", .inside = &weld, ARRAY(struct model, welds, n_welds),
      .about = "vertices of any cloths that are one"},
+    {"phases", SCENE_LIST, .filled = true, .inside = &phase, ARRAY(struct model, phases, n_phases),
+     .about = "runs of the scene, each from where the one before ended; else it is one run"},
     {"grain", SCENE_INTEGER, .fallback = "1000", .min = 1, INTO(struct model, grain),
      .about = "vertices a block"},
     {0}};

@@ -14,6 +14,7 @@ enum scene_type {
     SCENE_MAP,            /* inside: its keys */
     SCENE_ONE_OF,         /* a map with exactly one of the keys `inside` */
     SCENE_NAMED,          /* a map with keys of the user's choice; inside: their one rule */
+    SCENE_EDITS,          /* a map KEY: VALUE of changes to the scene (yaml/edit.h) */
     SCENE_LIST,           /* inside: the rule of its items */
     SCENE_NUMBER,         /* finite, in `range` */
     SCENE_INTEGER,        /* min <= value <= max */

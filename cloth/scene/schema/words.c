@@ -155,6 +155,9 @@ char *scene_rule_expected(const struct scene_rule *rule, char *text, size_t size
     case SCENE_NAMED:
         append(text, size, "a non-empty map of names");
         break;
+    case SCENE_EDITS:
+        append(text, size, "a map KEY: VALUE, such as time.h: 0.002");
+        break;
     case SCENE_LIST:
         list_expected(rule, text, size);
         break;

@@ -14,6 +14,7 @@ struct edit {
     yaml_mark_t mark;
     const char *start, *at; /* text of the set, and the rest of its path */
     struct cloth_error *error;
+    int value; /* a node; 0: the text has it, behind the path */
 };
 
 static int out_of_memory(struct cloth_error *error)
@@ -137,6 +138,12 @@ static int own(struct edit *edit, int node, yaml_node_type_t type)
 
 static int put(struct edit *edit, int node);
 
+static int no_path(const struct edit *edit)
+{
+    return edit_fails(edit, edit->value ? "KEY: VALUE is expected, such as time.h: 0.002"
+                                        : "KEY=VALUE is expected, such as time.h=0.002");
+}
+
 static int add_key(struct edit *edit, const char *name, size_t length)
 {
     yaml_node_t key = {.type = YAML_SCALAR_NODE};
@@ -151,8 +158,8 @@ static int put_key(struct edit *edit, int node)
     struct scene_tree *tree = edit->tree;
     const char *name = edit->at + (*edit->at == '.');
     size_t length = strcspn(name, ".[=");
-    if (!length || !name[length])
-        return edit_fails(edit, "KEY=VALUE is expected, such as time.h=0.002");
+    if (!length || (!name[length] && !edit->value))
+        return no_path(edit);
     int map = own(edit, node, YAML_MAPPING_NODE);
     if (!map)
         return 0;
@@ -202,6 +209,10 @@ static int put_index(struct edit *edit, int node)
  * with an error. */
 static int put(struct edit *edit, int node)
 {
+    if (edit->value && !*edit->at)
+        return edit->value;
+    if (edit->value && *edit->at == '=')
+        return no_path(edit);
     if (*edit->at == '=')
         return add_value(edit, edit->at + 1);
     if (*edit->at == '[')
@@ -209,25 +220,70 @@ static int put(struct edit *edit, int node)
     return put_key(edit, node);
 }
 
-int scene_edit_sets(struct scene_tree *tree, struct cloth_error *error)
+static bool starts_no_path(const char *text)
+{
+    return *text == '=' || *text == '[' || *text == '.';
+}
+
+/* Whether it changes the phases themselves. */
+static bool is_of_phases(const char *text)
+{
+    const size_t n = strlen("phases");
+    return !strncmp(text, "phases", n) && (!text[n] || strchr(".[=", text[n]));
+}
+
+/* Those of the tree's sets that change the phases themselves, or the others. */
+static int edit_by_options(struct scene_tree *tree, bool phases, struct cloth_error *error)
 {
     for (size_t i = 0; i < tree->n_sets; i++) {
         const char *text = tree->sets[i].text;
-        struct edit edit = {tree, {.index = SCENE_BY_SET, .line = i}, text, text, error};
-        if (*text == '=' || *text == '[' || *text == '.') {
-            edit_fails(&edit, "KEY=VALUE is expected, such as time.h=0.002");
-            return error->code;
-        }
-        if (!put(&edit, 1))
+        struct edit edit = {tree, {.index = SCENE_BY_SET, .line = i}, text, text, error, 0};
+        if (is_of_phases(text) != phases)
+            continue;
+        if (starts_no_path(text))
+            no_path(&edit);
+        else
+            put(&edit, 1);
+        if (error->code)
             return error->code;
     }
     return CLOTH_OK;
 }
 
+/* The check tells what is wrong with a set that is no map, or with its keys. */
+static int edit_by_phase(struct scene_tree *tree, uint32_t phase, struct cloth_error *error)
+{
+    const int map = scene_tree_phase(tree, phase), set = map ? scene_tree_get(tree, map, "set") : 0;
+    if (!scene_tree_is(tree, set, YAML_MAPPING_NODE))
+        return CLOTH_OK;
+    for (size_t i = 0; i < scene_tree_length(tree, set) && !error->code; i++) {
+        const yaml_node_pair_t pair = scene_tree_pair(tree, set, i);
+        const char *key = scene_tree_scalar(tree, pair.key);
+        const yaml_mark_t mark = {
+            .index = SCENE_BY_PHASE, .line = (size_t)pair.key, .column = phase};
+        struct edit edit = {tree, mark, key, key, error, pair.value};
+        if (key && is_of_phases(key))
+            edit_fails(&edit, "a phase cannot change the phases");
+        else if (key && starts_no_path(key))
+            no_path(&edit);
+        else if (key)
+            put(&edit, 1);
+    }
+    return error->code;
+}
+
+int scene_edit_sets(struct scene_tree *tree, uint32_t phase, struct cloth_error *error)
+{
+    int code = edit_by_options(tree, true, error);
+    if (!code)
+        code = edit_by_phase(tree, phase, error);
+    return code ? code : edit_by_options(tree, false, error);
+}
+
 int scene_edit_default(struct scene_tree *tree, int map, const char *key, const char *value,
                        struct cloth_error *error)
 {
-    struct edit edit = {tree, {.index = SCENE_BY_DEFAULT}, value, value, error};
+    struct edit edit = {tree, {.index = SCENE_BY_DEFAULT}, value, value, error, 0};
     int value_node = add_value(&edit, value);
     int key_node = value_node ? add_key(&edit, key, strlen(key)) : 0;
     if (key_node && !yaml_document_append_mapping_pair(&tree->document, map, key_node, value_node))

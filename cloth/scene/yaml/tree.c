@@ -68,10 +68,30 @@ int scene_tree_get(const struct scene_tree *tree, int map, const char *key)
     return 0;
 }
 
+int scene_tree_phase(const struct scene_tree *tree, uint32_t phase)
+{
+    const int list = scene_tree_get(tree, 1, "phases");
+    if (!scene_tree_is(tree, list, YAML_SEQUENCE_NODE) || phase >= scene_tree_length(tree, list))
+        return 0;
+    const int map = scene_tree_item(tree, list, phase);
+    return scene_tree_is(tree, map, YAML_MAPPING_NODE) ? map : 0;
+}
+
+/* Of a key in the set of a phase. */
+static char *phase_place(const struct scene_tree *tree, const yaml_mark_t *mark)
+{
+    char *place = NULL, *key = scene_tree_place(tree, (int)mark->line);
+    const int n = key ? asprintf(&place, "%s: phases[%zu].set", key, mark->column) : -1;
+    free(key);
+    return n < 0 ? NULL : place;
+}
+
 char *scene_tree_mark_place(const struct scene_tree *tree, const yaml_mark_t *mark)
 {
     char *place = NULL;
     int n;
+    if (mark->index == SCENE_BY_PHASE)
+        return phase_place(tree, mark);
     if (mark->index == SCENE_BY_DEFAULT) {
         n = asprintf(&place, "%s", tree->path);
     } else if (mark->index != SCENE_BY_SET) {

@@ -19,9 +19,10 @@ struct scene_tree {
 };
 
 /* Where a node came from when not from the file. It is kept in its mark: index is one of these,
- * line the set's number. */
+ * line the set's number; by a phase: line is the key in its set, column the phase's number. */
 #define SCENE_BY_SET     (SIZE_MAX)
 #define SCENE_BY_DEFAULT (SIZE_MAX - 1)
+#define SCENE_BY_PHASE   (SIZE_MAX - 2)
 
 /* How errors call a file. */
 struct scene_words {
@@ -52,6 +53,8 @@ size_t scene_tree_length(const struct scene_tree *tree, int node); /* of a list 
 int scene_tree_item(const struct scene_tree *tree, int list, size_t i);
 yaml_node_pair_t scene_tree_pair(const struct scene_tree *tree, int map, size_t i);
 int scene_tree_get(const struct scene_tree *tree, int map, const char *key); /* 0: no such key */
+/* The map of a phase, counted from 0; 0: there is none, or it is no map. */
+int scene_tree_phase(const struct scene_tree *tree, uint32_t phase);
 
 /* The place of a node, or of what has its mark, as scene_tree_fail names it; the caller frees it.
  * NULL: out of memory. */

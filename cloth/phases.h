@@ -1,0 +1,73 @@
+#ifndef CLOTH_PHASES_H
+#define CLOTH_PHASES_H
+
+#include "cloth/flow/run.h"
+#include "cloth/scene/scene.h"
+
+/* The phases of a scene: runs one after the other, each from the positions and velocities where the
+ * one before ended. A scene without phases is one of them. All begins as zero; on other ranks than
+ * 0 the models stay so. */
+
+/* What became of a phase. */
+struct phase_done {
+    const char *name; /* the model's; NULL on other ranks */
+    uint64_t steps;
+    double simulated_seconds, wall_seconds;
+    const char *ended; /* a word for the report; NULL: it did not begin, or it failed */
+};
+
+struct phases {
+    uint32_t n, now; /* at least 1; the one that is next, or runs */
+    bool named;      /* the scene has phases */
+    struct model *models;
+    struct phase_done *done;
+    double (*end)[6];         /* rank 0, of several: of each vertex, as model_cloth.start has it */
+    struct flow_report total; /* of those that are over, as phases_add says */
+};
+
+/* On rank 0: reads the models of all phases and compares what phases cannot change. Errors:
+ * CLOTH_E_INPUT with the place of the phase; CLOTH_E_MEMORY. Local. */
+int phases_read(struct phases *phases, const char *path, size_t n_sets,
+                const struct scene_set *sets, struct cloth_error *error);
+
+/* How many there are, from rank 0 to all. Error: CLOTH_E_MEMORY. Collective; it is not agreed on
+ * errors yet. */
+int phases_share(struct phases *phases, struct cloth_error *error);
+
+static inline struct model *phases_model(const struct phases *phases)
+{
+    return phases->models + phases->now;
+}
+static inline bool phases_is_last(const struct phases *phases)
+{
+    return phases->now + 1 == phases->n;
+}
+/* What the phase that is next goes on from. The same on all ranks. */
+struct flow_before phases_before(const struct phases *phases);
+
+/* Goes on to the next phase, whose cloths start where the last one ended, on rank 0. Error:
+ * CLOTH_E_MEMORY. Local. */
+int phases_next(struct phases *phases, struct cloth_error *error);
+
+/* Adds the report of the phase that is over. Counts and seconds are added up, of peaks the largest
+ * counts; energies, the hash, and what else is of the end, are those of this phase. Local. */
+void phases_add(struct phases *phases, const struct flow_report *report);
+
+/* The obstacles of the phase that runs, with motions over the time of all phases so far, for those
+ * who see the frames of all. */
+struct phases_motions {
+    struct contact_shape *obstacles;
+    struct phys_key *keys;
+    const struct contact_bodies *bodies;
+};
+/* Error: CLOTH_E_MEMORY. In any case phases_motions_free follows. On rank 0. Local. */
+int phases_motions(const struct phases *phases, struct phases_motions *motions,
+                   struct cloth_error *error);
+void phases_motions_free(struct phases_motions *motions);
+
+/* Puts the name of the phase that runs before an error, if the scene has phases. */
+void phases_name(const struct phases *phases, struct cloth_error *error);
+
+void phases_free(struct phases *phases);
+
+#endif

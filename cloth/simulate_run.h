@@ -1,0 +1,46 @@
+#ifndef CLOTH_SIMULATE_RUN_H
+#define CLOTH_SIMULATE_RUN_H
+
+#include "cloth/outputs.h"
+#include "cloth/phases.h"
+#include "cloth/progress.h"
+#include "cloth/simulate.h"
+#include "cloth/untangle/untangle.h"
+
+/* What simulate.c shares with simulate_begin.c: a run, from reading to reporting. */
+
+struct run {
+    const struct simulate_options *options;
+    int rank, ranks;
+    unsigned threads;
+    struct phases phases;
+    struct model *model;        /* of the phase that runs */
+    struct flow *flow;          /* as that */
+    struct contact_apart apart; /* rank 0: of the model, with what the flow attached */
+    struct outputs outputs;     /* rank 0 */
+    bool wants_frames;          /* the same on all ranks */
+    struct progress progress;
+    struct flow_report report;
+    struct untangle_result untangled; /* rank 0 */
+    struct mesh_elastic *elastic;     /* rank 0: of each material of the phase that runs */
+    struct cloth_error untraced;      /* why the trace is not whole */
+    bool intersects;                  /* some were found; the same on all ranks */
+    bool stopped_before;              /* asked to stop before the phase began */
+};
+
+/* The code of the lowest rank that failed, on all ranks; that rank prints its sentence. Collective.
+ */
+int simulate_agree(const struct run *run, const struct cloth_error *error);
+
+/* Whether SIGUSR1 came; has the form of flow_progress.stop. */
+int simulate_stops(void *context);
+
+/* All that can be wrong with the input, as far as it is known before the first phase has run; then
+ * the folder of frames. Or it is asked to stop: stopped_before. Collective; returns a cloth_code,
+ * the same on all ranks. */
+int simulate_prepare(struct run *run);
+
+/* Goes on to the next phase, unless that is asked to stop: stopped_before. Collective; as above. */
+int simulate_next(struct run *run);
+
+#endif

@@ -1,0 +1,172 @@
+#!/bin/sh
+# Phases: what passes from one to the next, to the last bit, against closed forms and against one run; frames, rows and reports that go
+# on; obstacles in scene.json; what ends a phase; and bad input.
+# shellcheck disable=SC2086 # lists of settings
+. "${srcdir:-.}/tests/support/tap.sh"
+skip_unless "$DUITE_CLOTH"
+plan_later
+cd "$scratch" || exit 99
+
+cat > sheet.yaml << 'END'
+schema: 1
+name: sheet
+cloths:
+  - name: sheet
+    mesh: {grid: {width: 1, height: 1, nx: 12, ny: 12}}
+    material: cloth
+    pins: [{vertices: [0, 11]}]
+materials:
+  cloth: {density: 0.2, stretch: 100, shear: 10, bend: 0.001, damping: {mass: 1}}
+obstacles:
+  - plane: {point: [0, -3, 0], normal: [0, 1, 0]}
+probes:
+  - {name: corner, cloth: sheet, vertices: [143], values: [position, velocity]}
+time: {h: 0.001, end: 0.1, fps: 100}
+integrator: symplectic_euler
+grain: 30
+END
+two='phases=[{name: one, set: {time.end: 0.04}}, {name: two, set: {time.end: 0.06}}]'
+
+run() { "$DUITE_CLOTH" sheet.yaml --quiet --report report.json "$@"; }
+hash() { value state_hash; }
+
+# ---- What passes on ----
+# Nothing is kept from step to step but positions and velocities.
+as_one() { # SETTING...
+    run "$@" && one=$(hash) && run "$@" --set "$two" && echo "$one and $(hash)" && test "$one" = "$(hash)" && test "$(value steps)" = 100
+}
+for integrator in explicit_euler symplectic_euler midpoint rk4; do
+    ok "two phases that change nothing are one run, $integrator" as_one --set integrator=$integrator
+done
+# A coarse space is made of where vertices start: without it, and without a guess, solves know nothing of the steps before.
+implicit='--set integrator=implicit_euler --set solver.guess=zero --set solver.preconditioner=ic0'
+three='phases=[{name: a, set: {time.end: 0.03}}, {name: b, set: {time.end: 0.03}}, {name: c, set: {time.end: 0.04}}]'
+ok "three phases of implicit Euler are one run, too" eval 'run $implicit && one=$(hash) && run $implicit --set "$three" && test "$one" = "$(hash)"'
+
+# Free flight of a cloth that nothing strains, by symplectic Euler: after n steps of weight g x = x0 + n h v0 + g h^2 n (n + 1) / 2.
+flies() {
+    run --set 'cloths[0].pins=[]' --set 'cloths[0].velocity=[1, 2, 0]' --set materials.cloth.damping.mass=0 --output frames \
+        --set 'phases=[{name: up, set: {time.end: 0.04}}, {name: away, set: {gravity: [3, 0, 0], time.end: 0.06}}]' &&
+        awk -F, 'NR == 2 { x = $(NF - 5); y = $(NF - 4) } END { h = 1e-3; g = -9.81
+            v = 2 + 40 * h * g; up = y + 40 * h * 2 + g * h * h * 40 * 41 / 2 + 60 * h * v; along = x + 0.1 + 3 * h * h * 60 * 61 / 2
+            print $(NF - 5), along, $(NF - 4), up, $(NF - 2), 1 + 0.18, $(NF - 1), v
+            d = ($(NF - 5) - along) ^ 2 + ($(NF - 4) - up) ^ 2 + ($(NF - 2) - 1.18) ^ 2 + ($(NF - 1) - v) ^ 2; exit !(NR == 102 && d < 1e-22) }' frames/probes.csv
+}
+ok "free flight through two phases is the closed form" flies
+
+# ---- Ranks and threads: a runtime and a flow for each phase ----
+same_everywhere() { # SETTING...
+    run --set "$two" "$@" && one=$(hash) || return 1
+    for n in 1 2 3; do
+        for threads in 1 2; do
+            ranks $n "$DUITE_CLOTH" sheet.yaml --quiet --report report.json --threads $threads --set "$two" "$@" || return 1
+            echo "$n ranks, $threads threads: $(hash), 1 rank: $one"
+            test "$(hash)" = "$one" || return 1
+        done
+    done
+}
+ok "the same bits on ranks 1 to 3 and threads 1 and 2" same_everywhere
+ok "also by BDF2, with frames and an obstacle that is met" same_everywhere --set integrator=bdf2 --output frames \
+    --set 'obstacles[0].plane.point=[0, -0.005, 0]' --set 'contact.mode=certified' --set time.fps=1000
+
+# ---- Frames, rows, times ----
+frames() { awk -F, 'NR > 1 { line = line (NR > 2 ? " " : "") $1 " " sprintf("%.6g", $2) } END { print line }' frames/frames.csv; }
+shown() { # WANTED SETTING...
+    want=$1
+    shift
+    run --output frames "$@" && frames && test "$(frames)" = "$want" && test "$(od -An -tu4 -j28 -N4 frames/cloth.pc2 | tr -d ' ')" = "$(($(wc -l < frames/frames.csv) - 1))"
+}
+ok "frames go on, the end of a phase is the start of the next" shown "0 0 1 0.02 2 0.04 3 0.06 4 0.08 5 0.1" --set "$two" --set time.fps=50
+ok "a phase that ends between two frames shows its end" shown "0 0 1 0.03 2 0.04 3 0.07 4 0.1" --set "$two" --set time.fps=33.333333333
+counts_rows() { run --output frames --set "$two" && awk -F, 'NR > 1 { if ($1 != NR - 2 || ($2 - $1 * 1e-3) ^ 2 > 1e-24) bad = 1 } END { exit bad || NR != 102 }' frames/probes.csv; }
+ok "rows of probes go on, each step once" counts_rows
+same_rows() { run --output one && run --output frames --set "$two" && cut -d, -f3- one/probes.csv > a && cut -d, -f3- frames/probes.csv > b && cmp a b; }
+ok "and have the numbers of one run" same_rows
+reports() { run --set "$two" && cat report.json && grep -q '{"name": "one", "steps": 40, "simulated_seconds": 0.04.*"ended": "end"}' report.json &&
+    grep -q '{"name": "two", "steps": 60, .*"ended": "end"}' report.json && test "$(value steps)" = 100 && test "$(grep -c '"name": ' report.json)" = 2; }
+ok "the report lists the phases" reports
+ok "one without phases has no such key" eval 'run && ! grep phases report.json'
+
+# ---- Obstacles in scene.json ----
+keys() {
+    sed -n 's/.*"time": \([^,]*\), "translate": \[[^,]*, \([^,]*\),.*/\1 \2/p' frames/scene.json |
+        awk '{ line = line (NR > 1 ? ", " : "") sprintf("%.9g %g", $1, $2) } END { print line }'
+}
+moves() { # KEYS SETTING...: time and height of each key frame
+    want=$1
+    shift
+    run --output frames "$@" && cat frames/scene.json && keys && test "$(keys)" = "$want"
+}
+up='{times: [0, 0.02], translate: [[0, 0, 0], [0, 0.1, 0]]}'
+ok "scene.json has the motion of a later phase at its time" moves "0 0, 0.04 0, 0.06 0.1" \
+    --set "phases=[{name: one, set: {time.end: 0.04}}, {name: two, set: {time.end: 0.06, 'obstacles[0].plane.motion': $up}}]"
+ok "that of an earlier one where it ended, then back at its place" moves "0 0, 0.02 0.05, 0.02 0" \
+    --set "phases=[{name: one, set: {time.end: 0.02, 'obstacles[0].plane.motion': {times: [0, 0.04], translate: [[0, 0, 0], [0, 0.1, 0]]}}}, {name: two}]"
+ok "and one of both phases twice" moves "0 0, 0.02 0.1, 0.04 0.1, 0.04 0, 0.06 0.1" --set "obstacles[0].plane.motion=$up" --set "$two"
+
+# ---- How phases end ----
+rests() { run --output frames --set 'materials.cloth.damping.mass=2000' --set time.fps=1000 --set "phases=[{name: one, set: {time.end: 1000, time.rest: {speed: 0.1, hold: 0.01}}}, {name: two, set: {time.end: 0.06}}]" &&
+    cat report.json && grep -q '"name": "one".*"ended": "rest"' report.json && grep -q '"name": "two", "steps": 60,.*"ended": "end"' report.json; }
+ok "a phase may come to rest before its end" rests
+
+fails() { # the second phase; frames 0 to 4 stay
+    status=0
+    "$DUITE_CLOTH" sheet.yaml --output frames --quiet 2> said --set "phases=[{name: one, set: {time.end: 0.04}}, {name: two, set: {time.end: 0.06, gravity: [0, 1e300, 0]}}]" || status=$?
+    cat said
+    echo "status $status, $(frames)"
+    test $status = 1 && grep -q "^duite-cloth: phase 'two': .*diverged.*; the last frame is 4$" said && test "$(frames)" = "0 0 1 0.01 2 0.02 3 0.03 4 0.04"
+}
+ok "a phase that fails is named and keeps the frames so far" fails
+
+stops() {
+    rm -rf frames
+    "$DUITE_CLOTH" sheet.yaml --output frames --quiet --report report.json --set "phases=[{name: one, set: {time.end: 0.04}}, {name: long, set: {time.end: 100000, time.fps: 100}}, {name: never}]" 2> said &
+    job=$!
+    awaits $job eval 'test "$(wc -l < frames/probes.csv 2> /dev/null || echo 0)" -gt 60' && kill -USR1 $job
+    status=0
+    wait $job || status=$?
+    cat said report.json
+    test $status = 0 && grep -q "stopped as asked by SIGUSR1 after step .*, in phase 'long'" said && grep -q '"name": "long",.*"ended": "stopped"' report.json && ! grep -q never report.json
+}
+ok "SIGUSR1 ends the whole run" stops
+
+# ---- Bad input ----
+cat > phases << 'END'
+phases:
+  - {name: one}
+  - name: two
+    set: {SET}
+END
+bad() { # SENTENCE SET
+    { cat sheet.yaml && sed "s|SET|$2|" phases; } > bad.yaml
+    status=0
+    rm -rf none
+    "$DUITE_CLOTH" bad.yaml --output none > said 2>&1 || status=$?
+    cat said
+    test $status = 2 && grep -qF -- "$1" said && ! test -e none/cloth.pc2
+}
+ok "an unknown key" bad "bad.yaml:20:11: phases[1].set: ends is not a key of time; did you mean 'end'?" "time.ends: 1"
+ok "a value out of range" bad "bad.yaml:20:21: time.end is -1; a finite number > 0 (s) is expected; in phase 'two'" "time.end: -1"
+ok "a path through what is no map" bad "bad.yaml:20:11: phases[1].set: 'time.h' is not a map; in phase 'two'" "time.h.x: 1"
+ok "an index out of a list" bad "phases[1].set: 'cloths' has 1 entries; an index from 0 to 1 is expected" "'cloths[3].material': cloth"
+ok "KEY=VALUE" bad "phases[1].set: KEY: VALUE is expected, such as time.h: 0.002" "time.h=1: 1"
+ok "no path" bad "phases[1].set: KEY: VALUE is expected, such as time.h: 0.002" ".h: 1"
+ok "phases in phases" bad "phases[1].set: a phase cannot change the phases" "phases: []"
+ok "another time.fps" bad "bad.yaml:19:5: phase 'two' has another time.fps than the first phase" "time.fps: 7"
+ok "another name" bad "phase 'two' has another name of the scene than" "name: other"
+ok "other vertices" bad "phase 'two' has other vertices or triangles of cloth 'sheet' than" "'cloths[0].mesh.grid.nx': 13"
+ok "one cloth more" bad "phase 'two' has another number of cloths than" "'cloths[1]': {name: b, material: cloth, mesh: {grid: {width: 1, height: 1, nx: 3, ny: 3}}}"
+ok "another name of a cloth" bad "phase 'two' has another name of cloth 'sheet' than" "'cloths[0].name': b, 'probes[0].cloth': b"
+ok "other probes" bad "phase 'two' has other probes than" "'probes[0].values': [velocity]"
+ok "other obstacles" bad "phase 'two' has other obstacles, or motions about other points, than" "'obstacles[0].plane.point': [0, -4, 0]"
+ok "a set that is no map" eval 'bad "bad.yaml:20:10: phases[1].set is a list of 1; a map KEY: VALUE, such as time.h: 0.002 is expected" "SET" || sed -i "s|{SET}|[1]|" bad.yaml;
+    "$DUITE_CLOTH" bad.yaml 2>&1 | grep -F "bad.yaml:20:10: phases[1].set is a list of 1; a map KEY: VALUE, such as time.h: 0.002 is expected"'
+says() { # SENTENCE PHASES
+    "$DUITE_CLOTH" sheet.yaml --set "phases=$2" > said 2>&1
+    status=$?
+    cat said
+    test $status = 2 && grep -qF -- "$1" said
+}
+ok "no phases" says "phases is an empty list; a non-empty list of maps is expected" "[]"
+ok "a phase without a name" says "phases[0].name is missing; a text is expected" "[{set: {time.end: 1}}]"
+ok "two of one name" says "phases[1].name is 'a', as that of phases[0]; each phase has a name of its own" "[{name: a}, {name: a}]"

@@ -26,7 +26,8 @@ struct intersections_setup {
     const struct contact_shape *obstacles;
     const struct phys_key *keys; /* of their motions */
     const struct contact_bodies *bodies;
-    const struct contact_apart *apart; /* what does not meet; it outlives it all */
+    const struct contact_apart *apart; /* what does not meet, triangles of vertices that are joined
+                                        * among it; it outlives it all */
     const bool *unplaced; /* n_obstacles: those that are left out, as their places are not known;
                              NULL: none; it outlives it all */
     bool self_off;        /* nor does any cloth meet itself */

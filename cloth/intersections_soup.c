@@ -3,6 +3,7 @@
 #include "cloth/intersections_soup.h"
 
 #include "cloth/base/memory.h"
+#include "cloth/base/sets.h"
 #include "cloth/intersections_parts.h"
 
 #include <inttypes.h>
@@ -90,6 +91,27 @@ static int take_arrays(struct intersections *all, struct cloth_error *error)
     return CLOTH_OK;
 }
 
+/* What seams or welds join has one number. */
+static int take_sewn(struct intersections *all, const struct intersections_setup *setup,
+                     struct cloth_error *error)
+{
+    const uint32_t *joined = setup->apart->joined, n = all->cloth[all->n_cloths].point;
+    if (!joined)
+        return CLOTH_OK;
+    all->sewn = cloth_alloc(all->soup.n_points, sizeof *all->sewn, error);
+    if (!all->sewn)
+        return CLOTH_E_MEMORY;
+    cloth_sets_start(all->sewn, all->soup.n_points);
+    for (uint32_t v = 0; v < n; v++) {
+        cloth_sets_join(all->sewn, v, joined[v]);
+        cloth_sets_join(all->sewn, v, setup->same ? setup->same[v] : v);
+    }
+    for (uint32_t v = 0; v < n; v++)
+        all->sewn[v] = cloth_sets_root(all->sewn, v);
+    all->soup.joined = all->sewn;
+    return CLOTH_OK;
+}
+
 static int take_names(struct intersections *all, const struct intersections_setup *setup,
                       struct cloth_error *error)
 {
@@ -107,6 +129,7 @@ static int fill(struct intersections *all, const struct intersections_setup *set
     int code = all->cloth && all->obstacle ? count_points(all, setup, error) : CLOTH_E_MEMORY;
     code = code ? code : take_names(all, setup, error);
     code = code ? code : take_arrays(all, error);
+    code = code ? code : take_sewn(all, setup, error);
     for (size_t i = 0; i < setup->n_meshes && !code; i++)
         take_cloth(all, setup, i);
     for (size_t i = 0; i < setup->n_obstacles && !code; i++)
@@ -153,6 +176,7 @@ void intersections_close(struct intersections **intersections)
     free(all->place);
     free(all->corner);
     free(all->joined);
+    free(all->sewn);
     free(all->pairs.items);
     free(all->entered.items);
     free(all);

@@ -30,6 +30,7 @@ struct intersections {
     double (*x)[3];
     uint32_t (*corner)[3]; /* of a triangle, as its mesh has them */
     uint32_t (*joined)[3]; /* the same, welded: the lowest vertex that each is one with */
+    uint32_t *sewn;        /* by point: as of struct verify_soup; NULL: no seams are pulled */
     struct verify_soup soup;
     struct cloth_list pairs, entered;
     struct intersections_found found;

@@ -16,7 +16,9 @@
  * of the whole cloth is a *feature* of one skin that has a triangle with it, so that each pair of
  * a vertex and a triangle, and of two edges, is met in one pair of skins. Points are those that
  * corners of the skin's triangles are at; all positions are by point. The same vertex has the same
- * id in all skins. All functions are local. */
+ * id in all skins. Vertices that are sewn to each other, but not yet at one place, have ids of
+ * their own and one number `joined`: features that share it do not meet. All functions are local.
+ */
 
 /* Beside an edge: there is no triangle; there is one, of another skin. */
 #define CONTACT_NO_POINT  UINT32_MAX
@@ -33,9 +35,10 @@ struct contact_skin {
     const uint32_t *vertex;       /* n_vertices: points */
     const uint32_t *number;       /* n_triangles: which one of the source's it is */
     const uint32_t *id;           /* n_points */
-    const uint32_t *block, *row;  /* n_points: whose row each is, */
-    const uint32_t *cloth;        /* of which cloth; of several the lowest vertex says it, */
-    const unsigned char *held;    /* 1: a pin holds it, where it is or as it moves it */
+    const uint32_t *joined; /* n_points: the id of one of those that it is sewn to, or its own */
+    const uint32_t *block, *row; /* n_points: whose row each is, */
+    const uint32_t *cloth;       /* of which cloth; of several the lowest vertex says it, */
+    const unsigned char *held;   /* 1: a pin holds it, where it is or as it moves it */
     uint32_t n_nodes, n_leaves;
     const uint32_t (*child)[4]; /* n_nodes: a node, or CONTACT_IS_LEAF with a leaf */
     const struct contact_leaf *leaf;
@@ -53,6 +56,7 @@ struct contact_skin_source {
     const unsigned char *stands;         /* n_triangles */
     const unsigned char *shared;         /* n_triangles; NULL: others are here alone */
     const uint32_t *id;                  /* n_points */
+    const uint32_t *joined;              /* n_points; NULL: the ids */
     const uint32_t *block, *row, *cloth; /* n_points; of bodies NULL: all 0 */
     const unsigned char *held;           /* n_points */
     const phys_vec *x;                   /* n_points */
@@ -98,9 +102,9 @@ enum { CONTACT_BATCH = 256 };
 typedef void contact_visit(void *to, uint32_t n, const struct contact_candidate *candidate);
 
 /* Visits all pairs of features that are nearer than reach (m) at any time of the step, and others
- * whose boxes are. Pairs that share an id are none. Each pair comes once. Their order follows of
- * tables, boxes and reach alone. A side with itself (a and b have the same skin): pairs within it,
- * of the kinds CONTACT_VT and CONTACT_EE. */
+ * whose boxes are. Pairs that share a number `joined` are none. Each pair comes once. Their order
+ * follows of tables, boxes and reach alone. A side with itself (a and b have the same skin): pairs
+ * within it, of the kinds CONTACT_VT and CONTACT_EE. */
 void contact_query(const struct contact_side *a, const struct contact_side *b, double reach,
                    contact_visit *visit, void *to);
 

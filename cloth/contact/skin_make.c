@@ -53,7 +53,8 @@ void contact_skin_lay(const struct contact_skin *skin, struct contact_skin_head 
     const uint64_t by_point = whole_lines(head->n_points * sizeof *skin->id);
     head->number = head->vertex + whole_lines(head->n_vertices * sizeof *skin->vertex);
     head->id = head->number + whole_lines(head->n_triangles * sizeof *skin->number);
-    head->block = head->id + by_point;
+    head->joined = head->id + by_point;
+    head->block = head->joined + by_point;
     head->row = head->block + by_point;
     head->cloth = head->row + by_point;
     head->held = head->cloth + by_point;
@@ -259,6 +260,7 @@ static void put_points(const struct contact_skin_source *from, const struct cont
     if (!n)
         return;
     memcpy(table + head->id, from->id, n * sizeof *from->id);
+    memcpy(table + head->joined, from->joined ? from->joined : from->id, n * sizeof *from->id);
     memcpy(table + head->held, from->held, n);
     if (!from->block)
         return;
@@ -324,6 +326,7 @@ struct contact_skin contact_skin_open(const void *table)
                                  .vertex = (const void *)(at + head->vertex),
                                  .number = (const void *)(at + head->number),
                                  .id = (const void *)(at + head->id),
+                                 .joined = (const void *)(at + head->joined),
                                  .block = (const void *)(at + head->block),
                                  .row = (const void *)(at + head->row),
                                  .cloth = (const void *)(at + head->cloth),

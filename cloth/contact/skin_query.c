@@ -140,8 +140,9 @@ static void add(struct query *query, uint32_t kind, uint32_t a, uint32_t b)
 static void add_vertex(struct query *query, int k, uint32_t vertex, uint32_t triangle)
 {
     const struct contact_skin *of = query->skin[k], *other = query->skin[!k];
-    const uint32_t id = of->id[of->vertex[vertex]], *corner = other->corner[triangle];
-    if (id == other->id[corner[0]] || id == other->id[corner[1]] || id == other->id[corner[2]])
+    const uint32_t is = of->joined[of->vertex[vertex]];
+    const uint32_t *with = other->joined, *corner = other->corner[triangle];
+    if (is == with[corner[0]] || is == with[corner[1]] || is == with[corner[2]])
         return;
     if (k && !query->self)
         add(query, CONTACT_TV, triangle, vertex);
@@ -151,9 +152,10 @@ static void add_vertex(struct query *query, int k, uint32_t vertex, uint32_t tri
 
 static void add_edges(struct query *query, uint32_t a, uint32_t b)
 {
-    const uint32_t *const *id = (const uint32_t *const[]){query->skin[0]->id, query->skin[1]->id};
+    const uint32_t *first = query->skin[0]->joined, *second = query->skin[1]->joined;
     const uint32_t *of = query->skin[0]->edge[a], *with = query->skin[1]->edge[b];
-    const uint32_t a0 = id[0][of[0]], a1 = id[0][of[1]], b0 = id[1][with[0]], b1 = id[1][with[1]];
+    const uint32_t a0 = first[of[0]], a1 = first[of[1]];
+    const uint32_t b0 = second[with[0]], b1 = second[with[1]];
     if (a0 != b0 && a0 != b1 && a1 != b0 && a1 != b1)
         add(query, CONTACT_EE, a, b);
 }

@@ -55,7 +55,7 @@ PHYS_INLINE uint32_t contact_edge_group(const struct contact_leaf *leaf)
 struct contact_skin_head {
     uint64_t bytes;
     uint32_t n_points, n_triangles, n_edges, n_vertices, n_nodes, n_leaves;
-    uint64_t corner, edge, beside, vertex, number, id, block, row, cloth, held, child, leaf;
+    uint64_t corner, edge, beside, vertex, number, id, joined, block, row, cloth, held, child, leaf;
     uint64_t loop, along, n_along; /* n_along: there is room for */
 };
 /* Places of a skin of these counts. */

@@ -93,19 +93,20 @@ static bool seam_meets(const struct element_seam *seam, const double a[9], doubl
     return true;
 }
 
-/* Across a seam: as the meshes lie where both have the edge at one place; else flat. */
+/* Across a seam: as the meshes lie where both have the edge at one place; else, and where it is
+ * sewn, flat: where a pattern places panels says nothing of the angle between them. */
 static int seam_rest(const struct element_cloths *cloths, const struct element_seam *seam,
                      struct phys_bend_rest *rest)
 {
     double x[2][12];
-    bool flat = false;
+    bool flat = seam->flat;
     for (int k = 0; k < 2; k++) {
         const struct element_side *side = seam->side + k;
         for (int i = 0; i < 3; i++)
             element_rest_position(cloths, side->cloth, side->corner[i], x[k] + 3 * i);
         flat = flat || cloths->model->cloths[side->cloth].rest;
     }
-    const bool one = seam_meets(seam, x[0], x[1]);
+    const bool one = !seam->flat && seam_meets(seam, x[0], x[1]);
     memcpy(x[0] + 9, x[1] + 6, 3 * sizeof **x);
     if (!one)
         lay_beside(x[0], x[1], x[0] + 9);
@@ -154,7 +155,10 @@ static void bend_make(const struct element_cloths *cloths, const struct element 
                                  side ? side->corner[2] : element->corner[3]};
         const struct model_material *material =
             model->materials + model_material_of(model->cloths + cloth, 2, own);
-        const double k_of = rigidity_of(cloths, cloth, own, material) * bend->rest.shape / sides;
+        const double rigidity = element->seam && element->seam->rigidity >= 0
+                                    ? element->seam->rigidity
+                                    : rigidity_of(cloths, cloth, own, material);
+        const double k_of = rigidity * bend->rest.shape / sides;
         bend->stiffness += (int)material->bending == energy ? k_of : 0;
         bend->damping += model_damping_bending(material) * k_of;
     }

@@ -16,6 +16,8 @@ struct element_side {
 struct element_seam {
     struct element_side side[2];
     double tolerance; /* m: how far apart welds let the sides' ends start */
+    bool flat;        /* it is sewn: flat at rest wherever the meshes are, */
+    double rigidity;  /* and then N m, of its hinges; < 0: as the materials say */
 };
 
 struct element {

@@ -121,6 +121,38 @@ struct model_start {
 
 enum { MODEL_MAX_REGIONS = 64 };
 
+/* A seam of a sewn cloth: pairs of vertices of its mesh that belong together, along an edge of one
+ * panel and one of the same or another panel. */
+struct model_seam {
+    struct {
+        char *panel; /* its name */
+        uint32_t edge;
+    } side[2];
+    uint32_t n_pairs;
+    uint32_t (*pair)[2]; /* of both sides, in the order of the first */
+    bool reversed;       /* the second side runs from its end to its begin */
+    double distance[2];  /* m: of partners in the mean, if both sides run alike, and reversed */
+};
+
+enum model_seams_state {
+    MODEL_SEAMS_OPEN,   /* nothing joins them */
+    MODEL_SEAMS_PULLED, /* a joint of rest length 0 for each pair, whose two meet as one vertex does
+                         */
+    MODEL_SEAMS_WELDED  /* a weld for each pair */
+};
+
+/* The seams of a cloth, and what is made of them: joints or welds of the model, whose pairs name
+ * their seam. */
+struct model_seams {
+    enum model_seams_state state;
+    double stiffness, damping; /* pulled: N/m, > 0, and kg/s, >= 0, of each joint */
+    double tolerance;          /* welded: m: partners start at most so far from each other */
+    double bending;            /* welded: N m: of the hinges across them; < 0: as the materials */
+    uint32_t n, n_reversed;
+    struct model_seam *seam;
+    uint32_t *reversed; /* seams that are sewn the other way round than they came */
+};
+
 struct model_cloth {
     char *name;
     struct mesh mesh;  /* transformed: rest lengths and masses are those of this shape, */
@@ -139,7 +171,8 @@ struct model_cloth {
     struct model_pin *pins;
     struct model_load *loads;
     struct model_mass *masses;
-    struct model_start *starts;                /* one after the other, from that start */
+    struct model_start *starts; /* one after the other, from that start */
+    struct model_seams seams;
     char *place, *mesh_place, *velocity_place; /* of the cloth, and of parts of it */
 };
 
@@ -154,6 +187,7 @@ struct model_end {
 struct model_pairs {
     struct model_end end[2];
     char *place;
+    uint32_t seam; /* of the cloth that both ends are of, from 1; 0: they are no seam's */
 };
 
 /* A spring of the scene for each pair. It has no mass. It acts in the steps that begin at `begin`

@@ -32,8 +32,20 @@ void model_start_at(struct model_cloth *cloth, double *start)
     cloth->start = start;
 }
 
+static void free_seams(struct model_seams *seams)
+{
+    for (uint32_t s = 0; s < seams->n; s++) {
+        free(seams->seam[s].side[0].panel);
+        free(seams->seam[s].side[1].panel);
+        free(seams->seam[s].pair);
+    }
+    free(seams->seam);
+    free(seams->reversed);
+}
+
 static void free_cloth(struct model_cloth *cloth)
 {
+    free_seams(&cloth->seams);
     for (uint32_t i = 0; i < cloth->n_pins; i++)
         free_pick(&cloth->pins[i].pick);
     for (uint32_t i = 0; i < cloth->n_loads; i++) {
@@ -94,6 +106,7 @@ void model_free(struct model *model)
     free(model->contact.pairs);
     free(model->contact.apart.end);
     free(model->contact.apart.apart);
+    free(model->contact.apart.joined);
     free(model->bodies.memory);
     for (uint32_t i = 0; i < model->n_files; i++)
         free(model->files[i]);
@@ -214,6 +227,14 @@ struct mesh_elastic model_elastic(const struct model *model, uint32_t material)
                                     common(all.shear, one.shear), common(all.poisson, one.poisson)};
     }
     return all;
+}
+
+void model_name_seam(const struct model_cloth *cloth, uint32_t seam, char text[MODEL_SEAM_NAME])
+{
+    const struct model_seam *of = cloth->seams.seam + seam;
+    snprintf(text, MODEL_SEAM_NAME,
+             "seam %u of cloth '%.60s' (edge %u of panel '%.60s', edge %u of panel '%.60s')", seam,
+             cloth->name, of->side[0].edge, of->side[0].panel, of->side[1].edge, of->side[1].panel);
 }
 
 int model_fail(const char *place, struct cloth_error *error, const char *format, ...)

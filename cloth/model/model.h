@@ -101,6 +101,7 @@ struct model {
     uint32_t n_joints, n_welds;
     struct model_joint *joints;
     struct model_weld *welds;
+    uint32_t n_pulled; /* joints that are of seams */
     uint32_t n_motions, n_keys;
     struct model_motion *motions;
     struct phys_key *keys; /* of each motion in ascending order, of pins and of obstacles; at time 0
@@ -360,6 +361,11 @@ static inline uint32_t model_first(const struct model *model, uint32_t cloth)
 /* Makes a cloth start as `start` says (model_cloth.start, which the cloth then owns), whatever it
  * had before. */
 void model_start_at(struct model_cloth *cloth, double *start);
+
+/* "seam 3 of cloth 'shirt' (edge 1 of panel 'front', edge 0 of panel 'back')". seam: from 0. On the
+ * rank that has the cloths. */
+enum { MODEL_SEAM_NAME = 280 };
+void model_name_seam(const struct model_cloth *cloth, uint32_t seam, char text[MODEL_SEAM_NAME]);
 
 /* Frees what the model owns and clears it. */
 void model_free(struct model *model);

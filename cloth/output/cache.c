@@ -59,8 +59,10 @@ static void parse_scene(struct output_cache *cache, struct output_json *json)
             output_apart_read(cache, json);
         else if (!cache->attached && output_json_key(json, "attached"))
             output_attached_read(cache, json);
+        else if (!cache->apart.joined && output_json_key(json, "sewn"))
+            output_sewn_read(cache, json);
         else
-            output_json_fail(json, "\"apart\" or \"attached\", or the end");
+            output_json_fail(json, "\"apart\", \"attached\" or \"sewn\", or the end");
     }
     output_json_expect(json, '}');
     output_json_expect(json, '\0');
@@ -267,6 +269,7 @@ void output_cache_close(struct output_cache *cache)
     free(cache->keys);
     free(cache->apart.end);
     free(cache->apart.apart);
+    free(cache->apart.joined);
     free(cache->attached);
     if (cache->pc2)
         fclose(cache->pc2);

@@ -47,6 +47,10 @@ static int fill_scene(FILE *file, const void *what)
         fputs(",\n  \"attached\": ", file);
         output_attached(file, setup->n_obstacles, setup->apart);
     }
+    if (setup->apart && setup->apart->joined) {
+        fputs(",\n  \"sewn\": ", file);
+        output_sewn(file, setup->apart);
+    }
     fputs("\n}\n", file);
     return ferror(file);
 }

@@ -23,7 +23,7 @@
  * "rotate"}]. Where the scene keeps some from meeting, "apart": {"cloths": [vertices of each],
  * "pairs": [[cloth, other], ...]} follows: numbers of cloths; those of obstacles follow. Where pins
  * follow obstacles, "attached": [[obstacle, vertex, ...], ...]: vertices whose triangles do not
- * meet it
+ * meet it. Where seams are pulled, "sewn": [[a, b], ...]: vertices whose triangles do not meet
  *
  * PC2's count of frames is rewritten after each frame and the file synced, so that a run that is
  * killed leaves whole files up to the last finished frame. */

@@ -38,6 +38,8 @@ libduite_cloth_la_SOURCES += \
 	cloth/scene/build/load.c \
 	cloth/scene/build/region.c \
 	cloth/scene/build/settled.c \
+	cloth/scene/build/seams.c \
+	cloth/scene/build/seams_file.c \
 	cloth/scene/build/sides.c \
 	cloth/scene/build/start.c \
 	cloth/scene/build/motion.c \

@@ -110,7 +110,8 @@ int untangle_cross(struct untangle *all)
                                      .n_triangles = all->n_triangles,
                                      .n_first = all->of->n_triangles,
                                      .x = (const double(*)[3])all->place,
-                                     .corner = (const uint32_t(*)[3])all->corner};
+                                     .corner = (const uint32_t(*)[3])all->corner,
+                                     .joined = all->joined};
     all->pairs.n = all->crossings.n = 0;
     int code = verify_pairs(&soup, &all->pairs, all->error);
     keep_meeting(all);

@@ -205,6 +205,18 @@ static int find_features(struct untangle *all, unsigned char *stands, struct con
     return CLOTH_OK;
 }
 
+/* Points of bodies, behind those of cloths, are joined to nothing. */
+static int find_joined(struct untangle *all)
+{
+    const uint32_t *joined = all->of->apart ? all->of->apart->joined : NULL;
+    if (!joined)
+        return CLOTH_OK;
+    all->joined = untangle_room(all, all->n_points, sizeof *all->joined);
+    for (uint32_t p = 0; p < all->n_points && all->joined; p++)
+        all->joined[p] = p < all->of->n_points ? joined[p] : p;
+    return all->joined ? CLOTH_OK : CLOTH_E_MEMORY;
+}
+
 static int make_skin(struct untangle *all)
 {
     unsigned char *stands = untangle_room(all, all->of->n_triangles, 1);
@@ -219,6 +231,7 @@ static int make_skin(struct untangle *all)
                                              .corner = (const uint32_t(*)[3])all->corner,
                                              .stands = stands,
                                              .id = id,
+                                             .joined = all->joined,
                                              .held = all->held,
                                              .x = all->x};
     void *table = untangle_room(all, contact_skin_bytes(&skin), 1);
@@ -291,6 +304,7 @@ int untangle_open(struct untangle *all, phys_vec *x)
     if (!code)
         memcpy(all->start, all->x, all->n_points * sizeof *all->x);
     code = code ? code : find_edges(all);
+    code = code ? code : find_joined(all);
     code = code ? code : make_skin(all);
     for (size_t i = 0; i < all->of->n_obstacles && !code; i++)
         code = make_body_skin(all, all->body + i);

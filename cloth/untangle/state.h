@@ -57,6 +57,7 @@ struct untangle {
     unsigned char *used, *shared; /* a triangle of cloth has it; of two cloths */
     unsigned char *moved;         /* so far */
     struct untangle_body *body;   /* by obstacle */
+    uint32_t *joined;             /* by point of all: as of contact_apart; NULL: none is */
     struct contact_skin skin;     /* of all cloths */
     void *boxes;
     struct contact_facet *facet; /* of the tree of all cloths */

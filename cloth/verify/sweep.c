@@ -163,10 +163,22 @@ static bool boxes_meet(const struct sweep *sweep, uint32_t a, uint32_t b, uint32
            (a < sweep->soup->n_first || b < sweep->soup->n_first);
 }
 
+/* Whether a corner of one triangle is sewn to one of another: not there yet, it may be on either
+ * side of it. */
+static bool are_sewn(const struct verify_soup *soup, const uint32_t a[3], const uint32_t b[3])
+{
+    bool sewn = false;
+    for (int i = 0; i < 3 && soup->joined; i++)
+        for (int k = 0; k < 3; k++)
+            sewn = sewn || (a[i] != b[k] && soup->joined[a[i]] == soup->joined[b[k]]);
+    return sewn;
+}
+
 static int try_pair(struct sweep *sweep, uint32_t a, uint32_t b)
 {
     const uint32_t(*corner)[3] = sweep->soup->corner;
-    if (!verify_meet((const double(*)[3])sweep->x, corner[a], corner[b]))
+    if (are_sewn(sweep->soup, corner[a], corner[b]) ||
+        !verify_meet((const double(*)[3])sweep->x, corner[a], corner[b]))
         return CLOTH_OK;
     struct verify_pair *pair = cloth_list_add(sweep->pairs, sizeof *pair, 1, sweep->error);
     if (!pair)

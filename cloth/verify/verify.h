@@ -17,6 +17,9 @@ struct verify_soup {
     uint32_t n_first;     /* pairs are sought among the first ones, and of these with the others */
     const double (*x)[3]; /* n_points, m */
     const uint32_t (*corner)[3]; /* n_triangles */
+    const uint32_t *joined;      /* n_points: a number that points have in common which are sewn to
+                                  * each other: triangles with two such corners are no pair; NULL:
+                                  * none are */
 };
 
 /* Two triangles that intersect, the lower number first. */

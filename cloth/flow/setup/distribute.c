@@ -201,6 +201,7 @@ int flow_share_head(struct flow_state *state)
     flow->received.obstacle_names = NULL;
     flow->received.contact.n_pairs = 0;
     flow->received.contact.pairs = NULL;
+    flow->received.contact.apart.joined = NULL;
     flow->received.bodies.memory = NULL;
     flow->received.joints = NULL;
     flow->received.welds = NULL;

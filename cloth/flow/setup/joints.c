@@ -49,6 +49,9 @@ static int make_joint(struct flow_spring *spring, const struct flow_particles *p
     const double length = joint->length < 0 ? distance_of(particles, model, pair) : joint->length;
     if (flow_root(&particles->welds, a) == flow_root(&particles->welds, b))
         return flow_pair_fail(model, pair, "a joint", "which welds make one", error);
+    if (joint->pairs.seam && !particles->free[a] && !particles->free[b])
+        return flow_pair_fail(model, pair, "a joint",
+                              "both of which pins hold: nothing can bring them together", error);
     *spring = (struct flow_spring){.a = a < b ? a : b,
                                    .b = a < b ? b : a,
                                    .stiffness = joint->stiffness,

@@ -11,10 +11,14 @@ int flow_pair_fail(const struct model *model, const struct flow_pair *pair, cons
                    const char *why, struct cloth_error *error)
 {
     const struct model_pairs *of = pair->of;
+    char seam[MODEL_SEAM_NAME];
+    if (of->seam)
+        model_name_seam(model->cloths + of->end[0].cloth, of->seam - 1, seam);
     return model_fail(of->place, error,
                       "%s is between vertex %u of cloth '%.60s' and vertex %u of cloth '%.60s', %s",
-                      what, of->end[0].vertices[pair->i], model->cloths[of->end[0].cloth].name,
-                      of->end[1].vertices[pair->i], model->cloths[of->end[1].cloth].name, why);
+                      of->seam ? seam : what, of->end[0].vertices[pair->i],
+                      model->cloths[of->end[0].cloth].name, of->end[1].vertices[pair->i],
+                      model->cloths[of->end[1].cloth].name, why);
 }
 
 int flow_pairs_list(struct cloth_list *list, const struct model *model,

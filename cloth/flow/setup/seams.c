@@ -70,28 +70,36 @@ static bool is_shared(const struct border *a, const struct border *b)
     return a->root[0] == b->root[0] && a->root[1] == b->root[1];
 }
 
-/* The tolerance, m, of the welds of each root: the largest. The caller frees it; NULL: no memory.
- */
-static double *tolerances_of(const struct model *model, const struct flow_welds *welds,
-                             struct cloth_error *error)
+/* What welds say of a root. */
+struct welded {
+    double tolerance;               /* m: the largest */
+    const struct model_seams *sewn; /* NULL: no weld of it is a seam's */
+};
+
+/* By root. The caller frees it; NULL: no memory. */
+static struct welded *find_welded(const struct model *model, const struct flow_welds *welds,
+                                  struct cloth_error *error)
 {
     const uint32_t n = model_first(model, model->n_cloths);
-    double *tolerance = cloth_alloc(n, sizeof *tolerance, error);
-    for (uint32_t w = 0; w < model->n_welds && tolerance; w++) {
+    struct welded *all = cloth_alloc(n, sizeof *all, error);
+    for (uint32_t w = 0; w < model->n_welds && all; w++) {
         const struct model_pairs *pairs = &model->welds[w].pairs;
-        const uint32_t *root = welds->root + model_first(model, pairs->end[0].cloth);
+        const uint32_t cloth = pairs->end[0].cloth;
+        const uint32_t *root = welds->root + model_first(model, cloth);
         for (uint32_t i = 0; i < pairs->end[0].n; i++) {
-            double *most = tolerance + root[pairs->end[0].vertices[i]];
-            *most = fmax(*most, model->welds[w].tolerance);
+            struct welded *at = all + root[pairs->end[0].vertices[i]];
+            at->tolerance = fmax(at->tolerance, model->welds[w].tolerance);
+            at->sewn = pairs->seam ? &model->cloths[cloth].seams : at->sewn;
         }
     }
-    return tolerance;
+    return all;
 }
 
-/* tolerance: by root. */
+/* welded: by root. */
 static void add_seam(struct element_cloths *elements, const struct flow_welds *welds,
-                     const double *tolerance, const struct border *border)
+                     const struct welded *welded, const struct border *border)
 {
+    const struct welded *ends[2] = {welded + border->root[0], welded + border->root[1]};
     struct element_seam *seam = elements->seam + elements->n_seams;
     uint32_t opposite[2];
     for (int k = 0; k < 2; k++) {
@@ -101,7 +109,9 @@ static void add_seam(struct element_cloths *elements, const struct flow_welds *w
         seam->side[k].first = model_first(elements->model, border[k].cloth);
         opposite[k] = welds->root[seam->side[k].first + border[k].corner[2]];
     }
-    seam->tolerance = fmax(tolerance[border->root[0]], tolerance[border->root[1]]);
+    seam->tolerance = fmax(ends[0]->tolerance, ends[1]->tolerance);
+    seam->flat = ends[0]->sewn && ends[1]->sewn;
+    seam->rigidity = seam->flat ? ends[0]->sewn->bending : -1;
     elements->n_seams += opposite[0] != opposite[1]; /* else one lies on the other */
 }
 
@@ -113,16 +123,16 @@ static int make_seams(struct element_cloths *elements, const struct flow_welds *
         return CLOTH_OK;
     qsort(list->items, list->n, sizeof *border, compare_borders);
     elements->seam = cloth_alloc(list->n, sizeof *elements->seam, error);
-    double *tolerance = elements->seam ? tolerances_of(elements->model, welds, error) : NULL;
-    if (!tolerance)
+    struct welded *welded = elements->seam ? find_welded(elements->model, welds, error) : NULL;
+    if (!welded)
         return CLOTH_E_MEMORY;
     for (size_t i = 0, end; i < list->n; i = end) {
         for (end = i + 1; end < list->n && is_shared(border + i, border + end);)
             end++;
         if (end == i + 2)
-            add_seam(elements, welds, tolerance, border + i);
+            add_seam(elements, welds, welded, border + i);
     }
-    free(tolerance);
+    free(welded);
     return element_seams_check(elements, error);
 }
 

@@ -1,6 +1,7 @@
 /* The skins of the blocks. Rank 0 keeps which triangles each has, and which vertices and edges each
  * triangle stands for: those that no triangle before it has, in the order of blocks. So every
  * vertex and every edge of the whole cloth, welds and seams included, is the feature of one skin.
+ * Vertices that seams pull to each other stay features of their own, and are joined in what meets.
  *
  * Corners of a triangle are joined: by springs, by what elements join, or by the links of cloths
  * without such springs (springs.c). So corners that a block does not own are rows that its
@@ -9,6 +10,7 @@
 
 #include "cloth/base/memory.h"
 #include "cloth/base/order.h"
+#include "cloth/base/sets.h"
 #include "cloth/flow/state/room.h"
 #include "cloth/flow/state/skin.h"
 #include "cloth/mesh/detail/sort.h"
@@ -178,6 +180,26 @@ static int count_skins(struct flow_source *source, struct cloth_error *error)
     return CLOTH_OK;
 }
 
+/* Of each place one of those that pulled seams join it with: alike for all of them. */
+static int find_joined(struct flow_source *source, struct cloth_error *error)
+{
+    const uint32_t *place = source->blocks.place, n = source->particles.n;
+    const uint32_t *vertex = source->model->contact.apart.joined;
+    if (!vertex)
+        return CLOTH_OK;
+    uint32_t *joined = cloth_alloc(source->blocks.n_places, sizeof *joined, error);
+    source->skins.joined = joined;
+    if (!joined)
+        return CLOTH_E_MEMORY;
+    cloth_sets_start(joined, source->blocks.n_places);
+    for (uint32_t v = 0; v < n; v++)
+        if (place[v] != MESH_NO_PLACE)
+            cloth_sets_join(joined, place[v], place[vertex[v]]);
+    for (uint32_t p = 0; p < source->blocks.n_places; p++)
+        joined[p] = cloth_sets_root(joined, p);
+    return CLOTH_OK;
+}
+
 int flow_skins_make(struct flow_source *source, struct cloth_error *error)
 {
     struct flow_skins *skins = &source->skins;
@@ -188,7 +210,9 @@ int flow_skins_make(struct flow_source *source, struct cloth_error *error)
     skins->shared = cloth_alloc(n, 1, error);
     if (!skins->start || !skins->triangle || !skins->stands || !skins->shared)
         return CLOTH_E_MEMORY;
-    int code = list_triangles(source, n, error);
+    int code = find_joined(source, error);
+    if (!code)
+        code = list_triangles(source, n, error);
     if (!code)
         code = mark_features(source, n, error);
     return code ? code : count_skins(source, error);
@@ -200,6 +224,7 @@ void flow_skins_free(struct flow_skins *skins)
     free(skins->triangle);
     free(skins->stands);
     free(skins->shared);
+    free(skins->joined);
     *skins = (struct flow_skins){0};
 }
 
@@ -209,7 +234,7 @@ void flow_skins_free(struct flow_skins *skins)
 struct making {
     const struct flow_source *source;
     const struct flow_table *table;
-    uint32_t *place, (*corner)[3], *block, *row, *cloth;
+    uint32_t *place, (*corner)[3], *block, *row, *cloth, *joined;
     unsigned char *held;
     phys_vec *x;
 };
@@ -223,6 +248,7 @@ static size_t lay(const struct flow_skin_size *size, void *memory, struct making
     making->block = flow_room_next(&room, n * sizeof *making->block);
     making->row = flow_room_next(&room, n * sizeof *making->row);
     making->cloth = flow_room_next(&room, n * sizeof *making->cloth);
+    making->joined = flow_room_next(&room, n * sizeof *making->joined);
     making->held = flow_room_next(&room, n);
     making->x = flow_room_next(&room, n * sizeof *making->x);
     return room.used;
@@ -278,6 +304,7 @@ static void fill_points(const struct making *making, const struct flow_skin_arra
         making->block[i] = block;
         making->row[i] = place - source->blocks.start[block];
         making->cloth[i] = at.cloth;
+        making->joined[i] = source->skins.joined ? source->skins.joined[place] : place;
         making->held[i] = !source->particles.free[v];
         making->x[i] = particle.position;
         arrays->attached[i] = source->particles.attached ? source->particles.attached[v] : 0;
@@ -308,6 +335,7 @@ int flow_source_skin(const struct flow_source *source, uint32_t block, void *mem
         .stands = source->skins.stands + source->skins.start[block],
         .shared = source->skins.shared + source->skins.start[block],
         .id = making.place,
+        .joined = making.joined,
         .block = making.block,
         .row = making.row,
         .cloth = making.cloth,

@@ -258,6 +258,8 @@ struct flow_skins {
     unsigned char *stands; /* a triangle of this list: for which vertices and edges it stands, as
                             * contact_skin_source has it; */
     unsigned char *shared; /* and which of those edges others have, too */
+    uint32_t
+        *joined; /* by place: one of those that pulled seams join it with; NULL: there are none */
 };
 
 /* The sides of a block's springs, while its table is due. */

@@ -39,6 +39,18 @@ void output_attached(FILE *file, size_t n_obstacles, const struct contact_apart 
     fputs(*before ? "]]" : "]", file);
 }
 
+void output_sewn(FILE *file, const struct contact_apart *apart)
+{
+    const char *before = "";
+    fputc('[', file);
+    for (uint32_t v = 0; v < apart->n_vertices; v++)
+        if (apart->joined[v] != v) {
+            fprintf(file, "%s[%u, %u]", before, apart->joined[v], v);
+            before = ", ";
+        }
+    fputc(']', file);
+}
+
 /* ---- Reading ---- */
 
 static void take_cloths(struct contact_apart *apart, struct output_json *json)
@@ -136,5 +148,37 @@ void output_attached_read(struct output_cache *cache, struct output_json *json)
             take_attached(cache, json);
         output_json_expect(json, ']');
     } while (!json->failed && output_json_take(json, ','));
+    output_json_expect(json, ']');
+}
+
+/* A vertex and one above it that it is sewn to. Without the mesh, they are read over. */
+static void take_sewn(struct contact_apart *apart, uint32_t n, struct output_json *json)
+{
+    output_json_expect(json, '[');
+    const double low = output_json_double(json);
+    output_json_expect(json, ',');
+    const double v = output_json_double(json);
+    output_json_expect(json, ']');
+    if (!(low >= 0 && low < v && (!n || v < n)))
+        output_json_fail(json, "two vertices of cloth.obj, ascending");
+    if (!json->failed && n)
+        apart->joined[(size_t)v] = (uint32_t)low;
+}
+
+void output_sewn_read(struct output_cache *cache, struct output_json *json)
+{
+    const uint32_t n = cache->mesh.n_vertices;
+    cache->apart.n_vertices = n;
+    cache->apart.joined = calloc((size_t)n + 1, sizeof *cache->apart.joined);
+    if (!cache->apart.joined)
+        output_json_fail(json, "fewer vertices than fit in memory");
+    for (uint32_t v = 0; v < n && !json->failed; v++)
+        cache->apart.joined[v] = v;
+    output_json_expect(json, '[');
+    if (output_json_take(json, ']'))
+        return;
+    do
+        take_sewn(&cache->apart, n, json);
+    while (!json->failed && output_json_take(json, ','));
     output_json_expect(json, ']');
 }

@@ -27,6 +27,9 @@ void output_apart_read(struct output_cache *cache, struct output_json *json);
 /* The same of what pins attach. */
 void output_attached(FILE *file, size_t n_obstacles, const struct contact_apart *apart);
 void output_attached_read(struct output_cache *cache, struct output_json *json);
+/* The same of what pulled seams join. */
+void output_sewn(FILE *file, const struct contact_apart *apart);
+void output_sewn_read(struct output_cache *cache, struct output_json *json);
 
 /* How many bodies the scene.json of a folder names; 0 where there is none that can be read. */
 uint32_t output_bodies_before(const char *folder);

@@ -49,6 +49,17 @@ int scene_build_joints(struct model *model, const struct scene_tree *tree,
 int scene_build_welds(struct model *model, const struct scene_tree *tree,
                       struct cloth_error *error);
 
+/* The seams of cloths, which become joints or welds of the model; after all others of these. */
+int scene_build_seams(struct model *model, const struct scene_tree *tree,
+                      struct cloth_error *error);
+
+/* Reads the seams of an OBJ mesh (docs/garments.md), for a mesh that has as many vertices and
+ * triangles. What is wrong with the file is in `inner`. They belong to `seams`, also after an
+ * error.
+ */
+int scene_read_seams(struct model_seams *seams, const struct mesh *mesh, const char *path,
+                     struct cloth_error *inner);
+
 /* The cloth, by number, that the key cloth of a map names; the only cloth where the key is missing.
  * what: whose key it is, in messages: "a probe". */
 int scene_build_cloth_of(uint32_t *cloth, const char *what, const struct model *model,

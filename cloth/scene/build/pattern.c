@@ -24,6 +24,37 @@ static int take_mesh(struct mesh *mesh, const struct garment *garment, struct cl
     return CLOTH_OK;
 }
 
+static int take_seam(struct model_seam *to, const struct garment_seam *from,
+                     const struct garment_stitch *stitch, const struct garment_pattern *pattern,
+                     struct cloth_error *error)
+{
+    *to = (struct model_seam){.n_pairs = from->n_pairs,
+                              .reversed = from->reversed,
+                              .distance = {from->distance[0], from->distance[1]}};
+    for (int k = 0; k < 2; k++) {
+        to->side[k].edge = stitch->side[k].edge;
+        to->side[k].panel = scene_build_copy(pattern->panel[stitch->side[k].panel].name, error);
+    }
+    to->pair = scene_build_array(from->n_pairs, sizeof *to->pair, error);
+    if (error->code)
+        return error->code;
+    memcpy(to->pair, from->pair, from->n_pairs * sizeof *to->pair);
+    return CLOTH_OK;
+}
+
+static int take_seams(struct model_seams *to, const struct garment *garment,
+                      const struct garment_pattern *pattern, struct cloth_error *error)
+{
+    int code = CLOTH_OK;
+    to->seam = scene_build_array(garment->n_seams, sizeof *to->seam, error);
+    if (!to->seam)
+        return error->code;
+    for (; to->n < garment->n_seams && !code; to->n++)
+        code = take_seam(to->seam + to->n, garment->seam + to->n, pattern->stitch + to->n, pattern,
+                         error);
+    return code;
+}
+
 /* Edge or vertices, one of the two. */
 static int check_fineness(const struct scene_pattern *asked, const struct scene_tree *tree,
                           int node, struct cloth_error *error)
@@ -63,6 +94,7 @@ int scene_build_pattern(struct model *model, struct model_cloth *cloth, struct s
     const struct garment_fineness fineness = {asked.edge, asked.vertices};
     code = code ? code : garment_make(&garment, &pattern, &fineness, inner);
     code = code ? code : take_mesh(&cloth->mesh, &garment, inner);
+    code = code ? code : take_seams(&cloth->seams, &garment, &pattern, error);
     garment_free(&garment);
     garment_pattern_free(&pattern);
     return code;

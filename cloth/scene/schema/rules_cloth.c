@@ -227,6 +227,31 @@ static const struct scene_rule region_keys[] = {
     {0}};
 const struct scene_rule scene_region = {.type = SCENE_MAP, .inside = region_keys};
 
+static const struct scene_rule seams_keys[] = {
+    {"state", SCENE_CHOICE, .fallback = "pulled", INTO(struct model_seams, state),
+     WORDS({"pulled", MODEL_SEAMS_PULLED}, {"welded", MODEL_SEAMS_WELDED},
+           {"open", MODEL_SEAMS_OPEN}),
+     .about = "pulled: a joint of rest length 0 for each pair of vertices; welded: a weld for each; "
+              "open: nothing"},
+    {"stiffness", SCENE_NUMBER, "N/m", "200", .range = SCENE_POSITIVE,
+     INTO(struct model_seams, stiffness), .about = "pulled: of each joint"},
+    {"damping", SCENE_NUMBER, "kg/s", .range = SCENE_NOT_NEGATIVE,
+     INTO(struct model_seams, damping),
+     .about = "pulled: along each joint; else 0.1 s times the stiffness"},
+    {"tolerance", SCENE_NUMBER, "m", "0.002", .range = SCENE_NOT_NEGATIVE,
+     INTO(struct model_seams, tolerance),
+     .about = "welded: partners start at most so far from each other"},
+    {"bending", SCENE_NUMBER, "N m", .range = SCENE_NOT_NEGATIVE,
+     INTO(struct model_seams, bending),
+     .about = "welded: rigidity of the hinges across them; else the materials'"},
+    {"reversed", SCENE_LIST, .fallback = "[]", .inside = &vertex,
+     ARRAY(struct model_seams, reversed, n_reversed),
+     .about = "numbers of seams, from 0, that are sewn the other way round than was found"},
+    {"file", SCENE_TEXT,
+     .about = "of an OBJ mesh: its .seams.json, as duite-garment writes it, relative to the scene's "
+              "folder"},
+    {0}};
+
 static const struct scene_rule cloth_keys[] = {
     {"name", SCENE_TEXT, INTO(struct model_cloth, name),
      .about = "unique; else cloth1, cloth2, ..."},
@@ -258,6 +283,8 @@ static const struct scene_rule cloth_keys[] = {
     {"start", SCENE_LIST, .fallback = "[]", .inside = &start,
      ARRAY(struct model_cloth, starts, n_starts),
      .about = "how vertices start, where that is not the mesh's shape"},
+    {"seams", SCENE_MAP, .inside = seams_keys, INTO(struct model_cloth, seams),
+     .about = "of a mesh that has them: what joins the panels; without the key nothing does"},
     {0}};
 const struct scene_rule scene_cloth = {
     .type = SCENE_MAP, .inside = cloth_keys, PLACE(struct model_cloth, place)};

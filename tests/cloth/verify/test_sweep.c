@@ -129,6 +129,28 @@ START_TEST(bounds)
 }
 END_TEST
 
+/* Two triangles that cross are a pair, unless a corner of one is sewn to one of the other. */
+START_TEST(sewn)
+{
+    static struct soup soup;
+    static const uint32_t joined[3][6] = {
+        {0, 1, 2, 3, 4, 5}, {0, 1, 2, 0, 4, 5}, {0, 1, 2, 3, 3, 5}};
+    static const double x[6][3] = {{0, 0, 0},     {1, 0, 0},    {0, 1, 0},
+                                   {.2, .2, -.2}, {.2, .2, .8}, {.3, .9, .3}};
+    struct verify_soup *made = make(&soup, (const double[3]){1, 1, 1}, 1, 0, false);
+    memcpy(soup.x, x, sizeof x);
+    made->n_triangles = made->n_first = 2;
+    for (int i = -1; i < 3; i++) {
+        struct cloth_list list = {0};
+        struct cloth_error error = {0};
+        made->joined = i < 0 ? NULL : joined[i];
+        ck_assert_int_eq(verify_pairs(made, &list, &error), CLOTH_OK);
+        ck_assert_uint_eq(list.n, i != 1);
+        free(list.items);
+    }
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("verify sweep");
@@ -137,6 +159,7 @@ int main(void)
     tcase_add_test(sweep, far_away);
     tcase_add_test(sweep, few);
     tcase_add_test(sweep, bounds);
+    tcase_add_test(sweep, sewn);
     suite_add_tcase(suite, sweep);
     return unit_run(suite);
 }

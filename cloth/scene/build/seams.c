@@ -1,0 +1,252 @@
+/* Seams become joints or welds: one entry of the model a seam, of the pairs that no seam before it
+ * has. A pair of one vertex, where the two edges of a dart begin, joins nothing. */
+#include "cloth/scene/build/build.h"
+
+#include "cloth/base/sets.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* s: partners that nothing else holds come together e-fold in this time, where no damping is
+ * given. Their joint would else close within a step, however far they are. */
+static const double CLOSING = 0.1;
+
+/* ---- Which pairs a seam joins ---- */
+
+struct pair {
+    uint32_t low, high; /* vertices of the cloth */
+    uint32_t seam, i;   /* pair i of this seam */
+};
+
+static int compare_pairs(const void *va, const void *vb)
+{
+    const struct pair *a = va, *b = vb;
+    const uint32_t left[4] = {a->low, a->high, a->seam, a->i};
+    const uint32_t right[4] = {b->low, b->high, b->seam, b->i};
+    for (int k = 0; k < 4; k++)
+        if (left[k] != right[k])
+            return left[k] < right[k] ? -1 : 1;
+    return 0;
+}
+
+/* joins: of each pair, seam after seam, 1 where it is the first of its two vertices. */
+static int find_firsts(const struct model_seams *seams, size_t n, unsigned char *joins,
+                       struct cloth_error *error)
+{
+    struct pair *all = scene_build_array(n, sizeof *all, error);
+    size_t k = 0;
+    if (!all)
+        return error->code;
+    for (uint32_t s = 0; s < seams->n; s++)
+        for (uint32_t i = 0; i < seams->seam[s].n_pairs; i++, k++) {
+            const uint32_t *v = seams->seam[s].pair[i];
+            all[k] = (struct pair){v[v[1] < v[0]], v[v[1] > v[0]], s, (uint32_t)k};
+        }
+    qsort(all, n, sizeof *all, compare_pairs);
+    for (k = 0; k < n; k++) {
+        const bool again = k && all[k].low == all[k - 1].low && all[k].high == all[k - 1].high;
+        joins[all[k].i] = !again && all[k].low != all[k].high;
+    }
+    free(all);
+    return CLOTH_OK;
+}
+
+/* ---- Joints and welds ---- */
+
+/* One more entry of a list of the model's; zeroed. NULL: out of memory. */
+static void *one_more(void **list, uint32_t *n, size_t size, struct cloth_error *error)
+{
+    char *grown = realloc(*list, (*n + (size_t)1) * size);
+    if (!grown) {
+        cloth_fail(error, CLOTH_E_MEMORY, "out of memory while the scene is read");
+        return NULL;
+    }
+    *list = grown;
+    return memset(grown + size * (*n)++, 0, size);
+}
+
+/* The pairs of a seam that join. joins: of each of its pairs. */
+static int fill_pairs(struct model_pairs *to, uint32_t cloth, const struct model_seam *seam,
+                      const unsigned char *joins, const struct scene_tree *tree, int node,
+                      struct cloth_error *error)
+{
+    to->place = scene_build_place(tree, node, error);
+    for (int k = 0; k < 2; k++) {
+        struct model_end *end = to->end + k;
+        end->cloth = cloth;
+        end->vertices = scene_build_array(seam->n_pairs, sizeof *end->vertices, error);
+        for (uint32_t i = 0; i < seam->n_pairs && end->vertices; i++)
+            if (joins[i])
+                end->vertices[end->n++] = seam->pair[i][k];
+    }
+    return error->code;
+}
+
+static int add_joint(struct model *model, uint32_t cloth, uint32_t seam, const unsigned char *joins,
+                     const struct scene_tree *tree, int node, struct cloth_error *error)
+{
+    const struct model_seams *seams = &model->cloths[cloth].seams;
+    void *list = model->joints;
+    struct model_joint *joint = one_more(&list, &model->n_joints, sizeof *joint, error);
+    model->joints = list;
+    if (!joint)
+        return error->code;
+    model->n_pulled++;
+    joint->stiffness = seams->stiffness;
+    joint->damping = seams->damping;
+    joint->pairs.seam = seam + 1;
+    return fill_pairs(&joint->pairs, cloth, seams->seam + seam, joins, tree, node, error);
+}
+
+static int add_weld(struct model *model, uint32_t cloth, uint32_t seam, const unsigned char *joins,
+                    const struct scene_tree *tree, int node, struct cloth_error *error)
+{
+    const struct model_seams *seams = &model->cloths[cloth].seams;
+    void *list = model->welds;
+    struct model_weld *weld = one_more(&list, &model->n_welds, sizeof *weld, error);
+    model->welds = list;
+    if (!weld)
+        return error->code;
+    weld->tolerance = seams->tolerance;
+    weld->pairs.seam = seam + 1;
+    return fill_pairs(&weld->pairs, cloth, seams->seam + seam, joins, tree, node, error);
+}
+
+static int sew(struct model *model, uint32_t cloth, const struct scene_tree *tree, int node,
+               struct cloth_error *error)
+{
+    const struct model_seams *seams = &model->cloths[cloth].seams;
+    size_t n = 0;
+    for (uint32_t s = 0; s < seams->n; s++)
+        n += seams->seam[s].n_pairs;
+    unsigned char *joins = scene_build_array(n, 1, error);
+    int code = joins ? find_firsts(seams, n, joins, error) : error->code;
+    const unsigned char *of = joins;
+    for (uint32_t s = 0; s < seams->n && !code; of += seams->seam[s++].n_pairs) {
+        if (!memchr(of, 1, seams->seam[s].n_pairs))
+            continue; /* it is joined by others already */
+        code = seams->state == MODEL_SEAMS_PULLED
+                   ? add_joint(model, cloth, s, of, tree, node, error)
+                   : add_weld(model, cloth, s, of, tree, node, error);
+    }
+    free(joins);
+    return code;
+}
+
+/* ---- The keys ---- */
+
+static void reverse(struct model_seam *seam)
+{
+    for (uint32_t i = 0, k = seam->n_pairs - 1; i < k; i++, k--) {
+        const uint32_t vertex = seam->pair[i][1];
+        seam->pair[i][1] = seam->pair[k][1];
+        seam->pair[k][1] = vertex;
+    }
+    seam->reversed = !seam->reversed;
+}
+
+static int reverse_some(struct model_cloth *cloth, const struct scene_tree *tree, int node,
+                        struct cloth_error *error)
+{
+    struct model_seams *seams = &cloth->seams;
+    const int list = scene_tree_get(tree, node, "reversed");
+    for (uint32_t i = 0; i < seams->n_reversed; i++) {
+        if (seams->reversed[i] >= seams->n)
+            return scene_tree_fail(tree, scene_tree_item(tree, list, i), error,
+                                   "seam %u is none of cloth '%.60s', which has %u seams, counted "
+                                   "from 0",
+                                   seams->reversed[i], cloth->name, seams->n);
+        for (uint32_t j = 0; j < i; j++)
+            if (seams->reversed[j] == seams->reversed[i])
+                return scene_tree_fail(tree, scene_tree_item(tree, list, i), error,
+                                       "seam %u stands twice in seams.reversed",
+                                       seams->reversed[i]);
+        reverse(seams->seam + seams->reversed[i]);
+    }
+    return CLOTH_OK;
+}
+
+static int read_file(struct model *model, struct model_cloth *cloth, const struct scene_tree *tree,
+                     int node, struct cloth_error *error)
+{
+    struct cloth_error inner = {0};
+    char *path = scene_build_path(model, tree, node, error);
+    const int code =
+        path ? scene_read_seams(&cloth->seams, &cloth->mesh, path, &inner) : error->code;
+    free(path);
+    if (inner.code == CLOTH_E_MEMORY)
+        return cloth_fail(error, inner.code, "%s: %s", tree->path, inner.text);
+    return inner.code ? scene_tree_fail(tree, node, error, "seams: %s", inner.text) : code;
+}
+
+static int find_seams(struct model *model, struct model_cloth *cloth, const struct scene_tree *tree,
+                      int of, int node, struct cloth_error *error)
+{
+    const int file = scene_tree_get(tree, node, "file");
+    const int mesh = scene_tree_pair(tree, scene_tree_get(tree, of, "mesh"), 0).key;
+    const bool pattern = !strcmp(scene_tree_scalar(tree, mesh), "pattern");
+    if (file && pattern)
+        return scene_tree_fail(tree, file, error,
+                               "seams.file is of OBJ meshes; the seams of a pattern are its "
+                               "stitches");
+    if (file)
+        return read_file(model, cloth, tree, file, error);
+    if (pattern)
+        return CLOTH_OK;
+    return scene_tree_fail(tree, node, error,
+                           "the mesh of cloth '%.60s' has no seams; a mesh.pattern, or seams.file "
+                           "is expected",
+                           cloth->name);
+}
+
+/* ---- What meets as one ---- */
+
+static void join_pairs(const struct model *model, const struct model_pairs *pairs)
+{
+    const uint32_t first = model_first(model, pairs->end[0].cloth);
+    for (uint32_t i = 0; i < pairs->end[0].n && pairs->seam; i++)
+        cloth_sets_join(model->contact.apart.joined, first + pairs->end[0].vertices[i],
+                        first + pairs->end[1].vertices[i]);
+}
+
+static int find_joined(struct model *model, struct cloth_error *error)
+{
+    struct contact_apart *apart = &model->contact.apart;
+    const uint32_t n = model_first(model, model->n_cloths);
+    if (!model->n_pulled)
+        return CLOTH_OK;
+    apart->joined = scene_build_array(n, sizeof *apart->joined, error);
+    if (!apart->joined)
+        return error->code;
+    cloth_sets_start(apart->joined, n);
+    for (uint32_t j = 0; j < model->n_joints; j++)
+        join_pairs(model, &model->joints[j].pairs);
+    for (uint32_t v = 0; v < n; v++)
+        apart->joined[v] = cloth_sets_root(apart->joined, v);
+    return CLOTH_OK;
+}
+
+static int build_seams(struct model *model, uint32_t i, const struct scene_tree *tree, int of,
+                       struct cloth_error *error)
+{
+    struct model_cloth *cloth = model->cloths + i;
+    const int node = scene_tree_get(tree, of, "seams");
+    if (!node)
+        return CLOTH_OK;
+    if (!scene_tree_get(tree, node, "damping"))
+        cloth->seams.damping = CLOSING * cloth->seams.stiffness;
+    if (!scene_tree_get(tree, node, "bending"))
+        cloth->seams.bending = -1;
+    int code = find_seams(model, cloth, tree, of, node, error);
+    code = code ? code : reverse_some(cloth, tree, node, error);
+    return code || cloth->seams.state == MODEL_SEAMS_OPEN ? code : sew(model, i, tree, node, error);
+}
+
+int scene_build_seams(struct model *model, const struct scene_tree *tree, struct cloth_error *error)
+{
+    const int list = scene_tree_get(tree, 1, "cloths");
+    int code = CLOTH_OK;
+    for (uint32_t i = 0; !code && i < model->n_cloths; i++)
+        code = build_seams(model, i, tree, scene_tree_item(tree, list, i), error);
+    return code ? code : find_joined(model, error);
+}

@@ -1,0 +1,113 @@
+/* The seams of an OBJ mesh, from the file that duite-garment writes beside it. Of its panels only
+ * the names of the sides are wanted. */
+#include "cloth/scene/build/build.h"
+#include "cloth/scene/pattern/reader.h"
+
+#include <string.h>
+
+static const struct scene_words WORDS = {
+    .noun = "file of seams", .form = "JSON", .start = "it is a map of \"seams\"", .large = ""};
+
+enum { SCHEMA, VERTICES, TRIANGLES, PANELS, SEAMS };
+static const char *const FILE_KEYS[PATTERN_KEYS] = {"schema", "vertices", "triangles", "panels",
+                                                    "seams"};
+enum { SIDES, PAIRS, REVERSED, DISTANCES };
+static const char *const SEAM_KEYS[PATTERN_KEYS] = {"sides", "pairs", "reversed", "distances"};
+static const char *const SIDE_KEYS[PATTERN_KEYS] = {"panel", "edge", "length"};
+
+static int read_count(const struct pattern_reader *reader, int node, const char *what,
+                      uint32_t expected)
+{
+    uint32_t n;
+    const int code = pattern_index(reader, node, what, UINT32_MAX, what, &n);
+    if (code || n == expected)
+        return code;
+    return pattern_wrong(reader, node, "it is of a mesh of %u %s, but the OBJ file has %u", n, what,
+                         expected);
+}
+
+static int read_side(const struct pattern_reader *reader, struct model_seam *seam, int k, int node)
+{
+    int value[PATTERN_KEYS];
+    const int code = pattern_map(reader, node, "a side", SIDE_KEYS, value);
+    if (code)
+        return code;
+    if (!value[0] || !value[1])
+        return pattern_wrong(reader, node, "a side has to have both panel and edge");
+    seam->side[k].panel = pattern_name(reader, value[0]);
+    if (!seam->side[k].panel)
+        return reader->error->code;
+    return pattern_index(reader, value[1], "an edge", UINT32_MAX, "edges", &seam->side[k].edge);
+}
+
+static int read_pairs(const struct pattern_reader *reader, struct model_seam *seam,
+                      const struct mesh *mesh, int node)
+{
+    const size_t most = UINT32_MAX, n = scene_tree_length(reader->tree, node);
+    int code = pattern_list(reader, node, "pairs", 1, most);
+    seam->pair = code ? NULL : scene_build_array(n, sizeof *seam->pair, reader->error);
+    for (size_t i = 0; i < n && !code && seam->pair; i++) {
+        const int pair = scene_tree_item(reader->tree, node, i);
+        code = pattern_list(reader, pair, "a pair", 2, 2);
+        for (size_t k = 0; k < 2 && !code; k++)
+            code = pattern_index(reader, scene_tree_item(reader->tree, pair, k), "a vertex",
+                                 mesh->n_vertices, "vertices", &seam->pair[i][k]);
+    }
+    seam->n_pairs = (uint32_t)n;
+    return code ? code : reader->error->code;
+}
+
+static int read_seam(const struct pattern_reader *reader, struct model_seam *seam,
+                     const struct mesh *mesh, int node)
+{
+    int value[PATTERN_KEYS];
+    int code = pattern_map(reader, node, "a seam", SEAM_KEYS, value);
+    if (!code && (!value[SIDES] || !value[PAIRS]))
+        return pattern_wrong(reader, node, "a seam has to have both sides and pairs");
+    code = code ? code : pattern_list(reader, value[SIDES], "sides", 2, 2);
+    for (int k = 0; k < 2 && !code; k++)
+        code = read_side(reader, seam, k, scene_tree_item(reader->tree, value[SIDES], (size_t)k));
+    if (!code && value[REVERSED])
+        code = pattern_flag(reader, value[REVERSED], "reversed", &seam->reversed);
+    if (!code && value[DISTANCES])
+        code = pattern_vector(reader, value[DISTANCES], "distances", 2, seam->distance);
+    return code ? code : read_pairs(reader, seam, mesh, value[PAIRS]);
+}
+
+static int read_file(const struct pattern_reader *reader, struct model_seams *seams,
+                     const struct mesh *mesh)
+{
+    int value[PATTERN_KEYS];
+    uint32_t schema = 0;
+    int code = pattern_map(reader, 1, "the file", FILE_KEYS, value);
+    for (int k = 0; k <= SEAMS && !code; k++)
+        if (!value[k] && k != PANELS)
+            return pattern_wrong(reader, 1, "the file has no \"%s\"", FILE_KEYS[k]);
+    code = code ? code : pattern_index(reader, value[SCHEMA], "schema", 2, "schemas", &schema);
+    if (!code && schema != 1)
+        return pattern_wrong(reader, value[SCHEMA], "schema is %u; it has to be 1", schema);
+    code = code ? code : read_count(reader, value[VERTICES], "vertices", mesh->n_vertices);
+    code = code ? code : read_count(reader, value[TRIANGLES], "triangles", mesh->n_triangles);
+    code = code ? code : pattern_list(reader, value[SEAMS], "seams", 0, UINT32_MAX);
+    if (code)
+        return code;
+    const size_t n = scene_tree_length(reader->tree, value[SEAMS]);
+    seams->seam = scene_build_array(n, sizeof *seams->seam, reader->error);
+    for (size_t s = 0; s < n && seams->seam && !code; s++) {
+        seams->n++;
+        code = read_seam(reader, seams->seam + s, mesh,
+                         scene_tree_item(reader->tree, value[SEAMS], s));
+    }
+    return code ? code : reader->error->code;
+}
+
+int scene_read_seams(struct model_seams *seams, const struct mesh *mesh, const char *path,
+                     struct cloth_error *inner)
+{
+    struct scene_tree tree;
+    const struct pattern_reader reader = {.tree = &tree, .error = inner, .edge = -1, .stitch = -1};
+    int code = scene_tree_load(&tree, path, &WORDS, inner);
+    code = code ? code : read_file(&reader, seams, mesh);
+    scene_tree_free(&tree);
+    return code;
+}

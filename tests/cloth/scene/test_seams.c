@@ -1,0 +1,299 @@
+/* Seams of cloths: which pairs become joints or welds, and what a sewn garment is made of: the
+ * numbers of vertices, edges and triangles that its pattern predicts, and the mass of its panels.
+ */
+#include "cloth/flow/state/flow.h"
+#include "tests/cloth/scene/scene_file.h"
+#include "tests/support/unit.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define RECTANGLE                                                                                  \
+    "\"vertices\": [[0, 0], [20, 0], [20, 30], [0, 30]], \"edges\": [{\"endpoints\": [0, 1]}, "    \
+    "{\"endpoints\": [1, 2]}, {\"endpoints\": [2, 3]}, {\"endpoints\": [3, 0]}]"
+#define STITCH(a, b)                                                                               \
+    "[{\"panel\": \"front\", \"edge\": " #a "}, {\"panel\": \"back\", \"edge\": " #b "}]"
+
+/* Two rectangles face to face, 3 cm from each other, sewn along one, two or all edges. */
+static const char *const PANELS =
+    "{\"pattern\": {\"panels\": {\n"
+    "  \"front\": {" RECTANGLE ",\n    \"translation\": [0, 0, 3], \"rotation\": [0, 0, 0]},\n"
+    "  \"back\": {" RECTANGLE ",\n    \"translation\": [20, 0, 0], \"rotation\": [0, 180, 0]}},\n"
+    "  \"stitches\": [%s]},\n"
+    " \"properties\": {\"curvature_coords\": \"relative\", \"units_in_meter\": 100}}\n";
+#define SIDES_OF  STITCH(1, 3) ", " STITCH(3, 1)
+#define BAG_OF    STITCH(0, 0) ", " SIDES_OF
+#define PILLOW_OF STITCH(2, 2) ", " BAG_OF
+
+static char *scene_of(const char *stitches, const char *keys)
+{
+    char *pattern = NULL, *text = NULL;
+    ck_assert_int_ge(asprintf(&pattern, PANELS, stitches), 0);
+    scene_write_file("panels.json", pattern, strlen(pattern));
+    free(pattern);
+    ck_assert_int_ge(asprintf(&text,
+                              "schema: 1\ncloths:\n  - name: bag\n    mesh: {pattern: {file: "
+                              "panels.json, edge: 0.03}}\n    material: m\n    seams: %s\n"
+                              "materials: {m: {model: triangles, density: 0.25, stretch: 100, "
+                              "shear: 30, bending: {rigidity: 2.0e-5}}}\n"
+                              "time: {h: 0.01, end: 0.1}\n",
+                              keys),
+                     0);
+    return text;
+}
+
+static struct model read_scene(const char *stitches, const char *keys)
+{
+    char *text = scene_of(stitches, keys);
+    struct model model = scene_read_right(text, 0, NULL);
+    free(text);
+    return model;
+}
+
+/* A bag's corner at the bottom is in two seams: the second has one pair less. */
+START_TEST(joints_of_seams)
+{
+    struct model model = read_scene(BAG_OF, "{state: pulled}");
+    ck_assert_uint_eq(model.n_joints, 3);
+    ck_assert_uint_eq(model.n_pulled, 3);
+    const struct model_seam *seam = model.cloths[0].seams.seam;
+    for (uint32_t j = 0; j < 3; j++) {
+        const struct model_joint *joint = model.joints + j;
+        ck_assert_uint_eq(joint->pairs.seam, j + 1);
+        ck_assert_uint_eq(joint->pairs.end[0].n, seam[j].n_pairs - (j > 0));
+        ck_assert_uint_eq(joint->pairs.end[1].n, joint->pairs.end[0].n);
+        ck_assert_double_eq(joint->stiffness, 200);
+        ck_assert_double_eq_tol(joint->damping, 20, 1e-12);
+        ck_assert_double_eq(joint->length, 0);
+        for (uint32_t i = 0; i < joint->pairs.end[0].n; i++) {
+            const double *x = model.cloths[0].mesh.position;
+            const double *a = x + 3 * (size_t)joint->pairs.end[0].vertices[i];
+            const double *b = x + 3 * (size_t)joint->pairs.end[1].vertices[i];
+            ck_assert_double_eq_tol(hypot(a[0] - b[0], a[1] - b[1]), 0, 1e-12);
+            ck_assert_uint_eq(model.contact.apart.joined[joint->pairs.end[1].vertices[i]],
+                              joint->pairs.end[0].vertices[i]);
+        }
+    }
+    model_free(&model);
+}
+END_TEST
+
+START_TEST(keys_of_seams)
+{
+    struct model model = read_scene(SIDES_OF, "{stiffness: 50, damping: 3, reversed: [1]}");
+    ck_assert_double_eq(model.joints[0].stiffness, 50);
+    ck_assert_double_eq(model.joints[0].damping, 3);
+    const struct model_seam *seam = model.cloths[0].seams.seam;
+    ck_assert(seam[0].reversed && !seam[1].reversed);
+    ck_assert_str_eq(seam[1].side[0].panel, "front");
+    ck_assert_uint_eq(seam[1].side[0].edge, 3);
+    const double *x = model.cloths[0].mesh.position;
+    ck_assert_double_eq_tol(
+        fabs(x[3 * (size_t)seam[1].pair[0][0] + 1] - x[3 * (size_t)seam[1].pair[0][1] + 1]), 0.3,
+        1e-12);
+    model_free(&model);
+    model = read_scene(SIDES_OF, "{state: open}");
+    ck_assert_uint_eq(model.n_joints + model.n_welds + model.n_pulled, 0);
+    ck_assert_ptr_null(model.contact.apart.joined);
+    model_free(&model);
+}
+END_TEST
+
+/* Sewn: what the pattern says of it. */
+struct sewn {
+    const char *stitches;
+    int euler;
+    double border; /* m */
+};
+
+struct side {
+    uint32_t low, high;
+    double length;
+};
+
+static int compare_sides(const void *va, const void *vb)
+{
+    const struct side *a = va, *b = vb;
+    if (a->low != b->low)
+        return a->low < b->low ? -1 : 1;
+    return (a->high > b->high) - (a->high < b->high);
+}
+
+static double length_of(const struct mesh *mesh, uint32_t a, uint32_t b)
+{
+    const double *x = mesh->position + 3 * (size_t)a, *y = mesh->position + 3 * (size_t)b;
+    return hypot(hypot(x[0] - y[0], x[1] - y[1]), x[2] - y[2]);
+}
+
+/* Edges of the sewn mesh, and the length of those with one triangle. */
+static uint32_t count_edges(const struct mesh *mesh, const uint32_t *root, double *border)
+{
+    const uint32_t n = 3 * mesh->n_triangles;
+    struct side *side = calloc(n, sizeof *side);
+    uint32_t edges = 0;
+    ck_assert_ptr_nonnull(side);
+    for (uint32_t i = 0; i < n; i++) {
+        const uint32_t *corner = mesh->triangle + i / 3 * 3;
+        const uint32_t p = corner[i % 3], q = corner[(i + 1) % 3], a = root[p], b = root[q];
+        side[i] = (struct side){a < b ? a : b, a < b ? b : a, length_of(mesh, p, q)};
+    }
+    qsort(side, n, sizeof *side, compare_sides);
+    *border = 0;
+    for (uint32_t i = 0, end; i < n; i = end, edges++) {
+        for (end = i + 1; end < n && !compare_sides(side + i, side + end);)
+            end++;
+        ck_assert_uint_le(end - i, 2);
+        *border += end - i == 1 ? side[i].length : 0;
+    }
+    free(side);
+    return edges;
+}
+
+static const struct sewn GARMENTS[] = {{SIDES_OF, 0, 0.8}, {BAG_OF, 1, 0.4}, {PILLOW_OF, 2, 0}};
+
+START_TEST(what_is_sewn)
+{
+    const struct sewn *sewn = GARMENTS + _i;
+    struct model model = read_scene(sewn->stitches, "{state: welded, tolerance: 0.031}");
+    struct cloth_error error = {0};
+    struct flow *flow;
+    ck_assert_msg(!flow_prepare(&flow, &model, 1, &error), "%s", error.text);
+    const struct flow_source *source = &flow->source;
+    const struct model_seams *seams = &model.cloths[0].seams;
+    const struct mesh *mesh = &model.cloths[0].mesh;
+    uint32_t merged = 4, hinges = 0; /* the ends of seams are the corners, */
+    double border, mass = 0;
+    for (uint32_t s = 0; s < seams->n; s++) {
+        merged += seams->seam[s].n_pairs - 2; /* this is what is between them */
+        hinges += seams->seam[s].n_pairs - 1;
+    }
+    const uint32_t edges = count_edges(mesh, source->particles.welds.root, &border);
+    ck_assert_uint_eq(source->blocks.n_places, mesh->n_vertices - merged);
+    ck_assert_int_eq((int)source->blocks.n_places - (int)edges + (int)mesh->n_triangles,
+                     sewn->euler);
+    ck_assert_double_eq_tol(border, sewn->border, 1e-12);
+    ck_assert_uint_eq(source->elements.n_seams, hinges);
+    for (uint32_t v = 0; v < mesh->n_vertices; v++)
+        mass += source->particles.mass[v];
+    ck_assert_double_eq_tol(mass, 0.25 * 2 * 0.2 * 0.3, 1e-12);
+    flow_free(flow);
+    model_free(&model);
+}
+END_TEST
+
+struct hinges {
+    uint32_t n;
+    double stiffness, rest;
+    const struct element_cloths *cloths;
+};
+
+/* A hinge across a seam: k and s0 of bending.h. */
+static void take_hinge(void *to, const struct element *element)
+{
+    struct hinges *hinges = to;
+    struct element_one one;
+    if (!element->seam)
+        return;
+    element_alone(hinges->cloths, element, NULL, &one);
+    hinges->n++;
+    hinges->stiffness += one.number[0];
+    hinges->rest = fmax(hinges->rest, fabs(one.number[2]));
+}
+
+/* They are flat at rest, though the panels lie face to face, and as stiff as the key says. */
+START_TEST(hinges_of_seams)
+{
+    double stiffness[3];
+    static const char *const keys[3] = {"{state: welded, tolerance: 0.031}",
+                                        "{state: welded, tolerance: 0.031, bending: 2.0e-5}",
+                                        "{state: welded, tolerance: 0.031, bending: 6.0e-5}"};
+    for (int i = 0; i < 3; i++) {
+        struct model model = read_scene(SIDES_OF, keys[i]);
+        struct cloth_error error = {0};
+        struct flow *flow;
+        ck_assert_msg(!flow_prepare(&flow, &model, 1, &error), "%s", error.text);
+        struct hinges hinges = {.cloths = &flow->source.elements};
+        element_each(&flow->source.elements, take_hinge, &hinges);
+        ck_assert_uint_eq(hinges.n, flow->source.elements.n_seams);
+        ck_assert_double_eq(hinges.rest, 0);
+        stiffness[i] = hinges.stiffness;
+        flow_free(flow);
+        model_free(&model);
+    }
+    ck_assert_double_gt(stiffness[0], 0);
+    ck_assert_double_eq_tol(stiffness[1], stiffness[0], 1e-12 * stiffness[0]);
+    ck_assert_double_eq_tol(stiffness[2], 3 * stiffness[0], 1e-12 * stiffness[2]);
+}
+END_TEST
+
+static void refused(const char *stitches, const char *keys, const char *error)
+{
+    char *text = scene_of(stitches, keys);
+    scene_expect_error(text, NULL, error);
+    free(text);
+}
+
+START_TEST(seams_that_cannot_be_sewn)
+{
+    refused(SIDES_OF, "{reversed: [2]}",
+            ":6:24: seam 2 is none of cloth 'bag', which has 2 seams, counted from 0");
+    refused(SIDES_OF, "{reversed: [1, 1]}", ":6:27: seam 1 stands twice in seams.reversed");
+    refused(SIDES_OF, "{file: panels.json}",
+            ":6:19: seams.file is of OBJ meshes; the seams of a pattern are its stitches");
+    refused(SIDES_OF, "{state: sewn}",
+            ":6:20: cloths[0].seams.state is sewn; pulled or welded or open is expected");
+    refused(SIDES_OF, "{stiffness: 0}",
+            ":6:24: cloths[0].seams.stiffness is 0; a finite number > 0 (N/m) is expected");
+    char *text = scene_changed(scene_right, "material: cotton", "seams: {}\n    material: cotton");
+    scene_expect_error(text, NULL,
+                       ":6:12: the mesh of cloth 'sheet' has no seams; a mesh.pattern, or "
+                       "seams.file is expected");
+    free(text);
+}
+END_TEST
+
+/* What flow_prepare finds. */
+static void not_prepared(const char *keys, const char *more, const char *error)
+{
+    struct model model = read_scene(SIDES_OF, keys);
+    struct cloth_error got = {0};
+    struct flow *flow;
+    struct model_pin pin = {.pick = {.kind = MODEL_PICK_BOX, .box = {{-1, -1, -1}, {1, 1, 1}}}};
+    if (more) {
+        model.cloths[0].pins = malloc(sizeof pin);
+        ck_assert_ptr_nonnull(model.cloths[0].pins);
+        model.cloths[0].pins[model.cloths[0].n_pins++] = pin;
+    }
+    ck_assert_int_eq(flow_prepare(&flow, &model, 1, &got), CLOTH_E_INPUT);
+    ck_assert_msg(strstr(got.text, error), "%s", got.text);
+    model_free(&model);
+}
+
+START_TEST(seams_that_cannot_be_closed)
+{
+    not_prepared(
+        "{state: welded}", NULL,
+        ":6:12: seam 0 of cloth 'bag' (edge 1 of panel 'front', edge 3 of panel 'back') is "
+        "between vertex ");
+    not_prepared("{state: welded}", NULL,
+                 "which start 0.03 m from each other; at most 0.002 m are expected (tolerance)");
+    not_prepared("{state: pulled}", "pinned",
+                 "both of which pins hold: nothing can bring them together");
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("seams");
+    TCase *cases = tcase_create("seams");
+    tcase_add_test(cases, joints_of_seams);
+    tcase_add_test(cases, keys_of_seams);
+    tcase_add_loop_test(cases, what_is_sewn, 0, sizeof GARMENTS / sizeof *GARMENTS);
+    tcase_add_test(cases, hinges_of_seams);
+    tcase_add_test(cases, seams_that_cannot_be_sewn);
+    tcase_add_test(cases, seams_that_cannot_be_closed);
+    suite_add_tcase(suite, cases);
+    return unit_run(suite);
+}

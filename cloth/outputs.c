@@ -134,10 +134,11 @@ int outputs_go_on(struct outputs *to, const struct phases *phases,
 {
     int code = CLOTH_OK;
     outputs_count(to);
-    to->begin = phases->total.simulated_seconds;
     if (to->options->check_intersections)
         code = intersections_of(&to->intersections, phases_model(phases), apart, "duite-cloth",
                                 false, error);
+    if (to->intersections)
+        intersections_begin(to->intersections, phases->total.simulated_seconds);
     return code || !to->frames ? code : write_scene(to, phases, apart, error);
 }
 
@@ -149,7 +150,7 @@ void outputs_count(struct outputs *of)
     struct intersections_found *all = &of->found;
     if (!all->bad)
         all->first = last.first;
-    all->frames += last.frames;
+    all->frames = last.frames > all->frames ? last.frames : all->frames; /* up to its last */
     all->bad += last.bad;
     all->pairs = last.pairs > all->pairs ? last.pairs : all->pairs;
     all->with_shapes = last.with_shapes > all->with_shapes ? last.with_shapes : all->with_shapes;
@@ -180,10 +181,9 @@ int outputs_system(void *context, const struct solve_system *system, struct clot
 }
 
 /* What is looked at as written is looked at once it is. */
-static int check_frame(const struct outputs *of, uint64_t frame, double total,
+static int check_frame(const struct outputs *of, uint64_t frame, double time,
                        const double *position, struct cloth_error *error)
 {
-    const double time = total - of->begin; /* bodies and motions count from the phase's begin */
     const int code = intersections_frame(of->intersections, frame, time, position, false, error);
     if (code || !of->frames)
         return code;

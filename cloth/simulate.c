@@ -143,6 +143,7 @@ static int execute(struct run *run)
 {
     struct cloth_error error = {0};
     duite *rt = NULL;
+    run->untraced = (struct cloth_error){0}; /* the files of the phase before are replaced */
     duite_options options = duite_options_default();
     options.kernels = flow_kernels();
     options.context = run->flow;
@@ -233,7 +234,8 @@ static int conclude(struct run *run)
         if (run->report.stopped || run->stopped_before)
             say_stopped(run);
         intersections_say(&outputs->found, "duite-cloth");
-        warn_of_motion(run);
+        if (!run->stopped_before) /* else it has warned */
+            warn_of_motion(run);
         if (run->options->report)
             summary_write(&summary, run->options->report, &error);
         if (!run->options->quiet)

@@ -113,19 +113,23 @@ int outputs_open(struct outputs *to, const struct simulate_options *options,
     return code;
 }
 
-/* Where obstacles are in the frames of all phases so far, and of this one. */
+/* Where obstacles are, and what is sewn, in the frames of all phases so far, and of this one. */
 static int write_scene(const struct outputs *of, const struct phases *phases,
                        const struct contact_apart *apart, struct cloth_error *error)
 {
     struct phases_motions motions;
-    struct output_setup setup = setup_of(of, phases_model(phases), apart);
+    struct contact_apart all = *apart;
+    struct output_setup setup = setup_of(of, phases_model(phases), &all);
     int code = phases_motions(phases, &motions, error);
+    const int joins = phases_joined(phases, apart->n_vertices, &all.joined, error);
+    code = code ? code : joins;
     setup.obstacles = motions.obstacles;
     setup.keys = motions.keys;
     setup.bodies = motions.bodies;
     if (!code)
         code = output_scene(of->frames, &setup, error);
     phases_motions_free(&motions);
+    free(all.joined);
     return code;
 }
 

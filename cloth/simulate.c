@@ -62,8 +62,12 @@ static void forget_meshes(void *context)
 static void show_step(void *context, uint64_t step, uint64_t steps, uint64_t cg_iterations)
 {
     struct run *run = context;
+    const struct progress_counts counts = {.cg_iterations = cg_iterations,
+                                           .contacts = run->report.contacts_now,
+                                           .seams_open = run->report.seams_open,
+                                           .seam_distance = run->report.seam_distance};
     if (!run->options->quiet)
-        progress_step(&run->progress, step, steps, cg_iterations, run->report.contacts_now);
+        progress_step(&run->progress, step, steps, &counts);
 }
 
 static int runtime_fails(struct cloth_error *error, int code)

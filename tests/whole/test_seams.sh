@@ -59,6 +59,40 @@ far() { # nothing has pulled them yet
 }
 ok "partners that are too far apart are not welded" far
 
+# Sewn in a phase that ends when all seams are closed, then welded.
+scene "$panels" '{}' '' > phases.yaml
+cat >> phases.yaml << END
+phases:
+  - {name: sew, set: {time.sewn: {distance: 0.001}, time.end: 1}}
+  - {name: wear, set: {'cloths[0].seams.state': welded, time.end: 0.1}}
+END
+phases() {
+    run phases.yaml --output phases && test "$(value intersections)" = 0 && "$DUITE_VIEW" -i phases || return 1
+    value state_hash > pulled.hash
+    grep '"ended": "sewn"' report.json && grep '"name": "wear"' report.json && test "$(value seams_open)" = 0 || return 1
+    grep '"panel_from": "front", "edge_from": 1, "panel_to": "back", "edge_to": 3, "pairs": 16, "reversed": 1' report.json || return 1
+    # 30 mm come down to 1 mm by exp(-t / 0.1 s) after 0.34 s; steps of implicit Euler are slower
+    awk -v d="$(value seam_distance)" -v t="$(value sewn_seconds)" 'BEGIN { print d, t; exit !(d > 0 && d <= 0.001 && t >= 0.34 && t <= 0.40) }'
+}
+ok "a run ends when all seams are closed; what is welded then does not intersect" phases
+sewn_alike() { ranks "$1" "$DUITE_CLOTH" phases.yaml --quiet --report report.json --threads "$2" && test "$(value state_hash)" = "$(cat pulled.hash)"; }
+ok "the same bits of two threads" sewn_alike 1 2
+ok "of two ranks" sewn_alike 2 2
+ok "of three ranks" sewn_alike 3 1
+unclosed() { # one panel is pinned, and of the other a vertex in the middle of a seam, but for which all come near
+    scene "$panels" '{}' 'pins: [{box: [[-1, -1, -1], [1, 1, 0.001]]}]' | sed 's/^time: {/time: {sewn: {}, /; s/end: 0.5/end: 0.1/' > unclosed.yaml
+    run unclosed.yaml --output unclosed 2> said
+    test $? = 1 && test -s unclosed/cloth.pc2 && cat said || return 1
+    grep -q "seams are not closed at time.end, 0.1 s: 4 of 4 are open by more than 0.001 m (time.sewn.distance); the worst: seam [0-3] of cloth 'pillow' (edge [0-3] of panel 'front', edge [0-3] of panel 'back') by 0.0[0-9]* m;" said
+}
+ok "seams that are not closed in time are named" unclosed
+idle() { # nothing is pulled
+    scene "$panels" '{state: open}' '' | sed 's/^time: {/time: {sewn: {}, /' > idle.yaml
+    run idle.yaml 2> said
+    test $? = 2 && grep -q 'idle.yaml:[0-9:]*: time.sewn waits for pulled seams, and the scene has none' said || { cat said; return 1; }
+}
+ok "a run that waits for seams has some" idle
+
 file() { # CHANGE SENTENCE
     sed "$1" pillow.seams.json > changed.seams.json && ! cmp -s pillow.seams.json changed.seams.json || return 1
     scene '{file: pillow.obj}' '{file: changed.seams.json}' '' > changed.yaml

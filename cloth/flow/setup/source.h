@@ -168,6 +168,7 @@ struct flow_spring {
     uint32_t a, b;                     /* a < b */
     double stiffness, damping, length; /* N/m, kg/s, m */
     unsigned char stretch;             /* counts for the largest stretch */
+    uint32_t seam;                     /* of those that pull, from 1; 0: it is no joint of one */
 };
 /* A spring that welds make parallel to another, of the same length at rest, by its number among all
  * springs of the cloths: the first of them is all, the others are gone. */

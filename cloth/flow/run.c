@@ -161,6 +161,11 @@ void flow_start(const struct flow *flow, double *position)
     }
 }
 
+const double (*flow_unwelded(const struct flow *flow))[3]
+{
+    return (const double(*)[3])flow->source.particles.unwelded;
+}
+
 void flow_starts(const struct flow *flow, double (*start)[6], unsigned char *held)
 {
     const struct flow_particles *particles = &flow->source.particles;

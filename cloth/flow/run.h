@@ -203,6 +203,9 @@ uint64_t flow_vertices(const struct flow *flow);
  * Local. */
 void flow_start(const struct flow *flow, double *position);
 
+/* The same before seams are welded, by vertex; NULL: none are. Lives until the run. */
+const double (*flow_unwelded(const struct flow *flow))[3];
+
 /* The same with velocities, m/s: of each vertex 6 numbers, as model_cloth.start has them; and
  * whether a pin holds it or moves it, 1 or 0. On rank 0, before the run. Local. */
 void flow_starts(const struct flow *flow, double (*start)[6], unsigned char *held);

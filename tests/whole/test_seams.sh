@@ -59,6 +59,34 @@ far() { # nothing has pulled them yet
 }
 ok "partners that are too far apart are not welded" far
 
+# Free where it starts and where it is welded, but not on the way, which is 15 mm long.
+way() { # WITH SENTENCE...: what is between the front panel's lower edge and where it is welded
+    scene "$panels" '{state: welded, tolerance: 0.031}' '' > free.yaml
+    run free.yaml --set time.end=0.02 || return 1
+    { sed '/^materials/,$d' free.yaml && echo "$1" && sed -n '/^materials/,$p' free.yaml; } > way.yaml
+    run way.yaml --set time.end=0.02 2> said
+    test $? = 2 && cat said && grep -q "way.yaml: the welds of seams would move cloth through $2, .* at vertices .* of 'pillow'" said
+}
+ok "a weld does not go through an obstacle" way 'obstacles: [{box: {centre: [0.1, -0.002, 0.0225], size: [0.02, 0.006, 0.002]}}]' 'obstacles\[0\]'
+cat > plate.obj << END
+v 0.09 -0.005 0.0215
+v 0.11 -0.005 0.0215
+v 0.11 0.001 0.0215
+v 0.09 0.001 0.0215
+v 0.09 -0.005 0.0235
+v 0.11 -0.005 0.0235
+v 0.11 0.001 0.0235
+v 0.09 0.001 0.0235
+f 4 3 2 1
+f 5 6 7 8
+f 1 2 6 5
+f 2 3 7 6
+f 3 4 8 7
+f 4 1 5 8
+END
+ok "nor through a body" way 'obstacles: [{body: {obj: plate.obj}}]' 'obstacles\[0\]'
+ok "nor through other cloth" way '  - {name: other, mesh: {grid: {width: 0.02, height: 0.006, nx: 5, ny: 3}}, material: m, transform: {rotate: [1, 1, 0, 0], translate: [0.1, -0.002, 0.0225]}}' 'the cloth'
+
 # Sewn in a phase that ends when all seams are closed, then welded.
 scene "$panels" '{}' '' > phases.yaml
 cat >> phases.yaml << END

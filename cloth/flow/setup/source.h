@@ -64,6 +64,7 @@ struct flow_particles {
     uint32_t n_varying;
     struct flow_varying *varying; /* in the scene's order; then by place */
     double (*start)[6];           /* m, m/s; NULL: all start where the meshes have them */
+    double (*unwelded)[3];        /* m: before the welds; NULL: no weld is of a seam */
 };
 
 /* Errors: CLOTH_E_INPUT for pins and loads outside their mesh, boxes without a vertex, starts

@@ -165,7 +165,7 @@ ok "duite.3 formats without warnings" formats
 ok "every public function has a comment before it" commented
 ok "guided tours stop at functions that are there" tours "$srcdir/docs/design.md"
 ok "docs/design.md lists the stages of a step" stages "$srcdir/docs/design.md"
-for program in duite-cloth duite-garment duite-view duite-trace duite-predict bench/duite-bench bench/compare bench/graph-run; do
+for program in duite-cloth duite-garment duite-mannequin duite-view duite-trace duite-predict bench/duite-bench bench/compare bench/graph-run; do
     if test -x $program; then
         ok "every option in --help of $program says what it is by itself" stands_alone ./$program
     else

@@ -71,6 +71,7 @@ include tests/cloth/contact/module.mk
 include tests/cloth/verify/module.mk
 include tests/cloth/untangle/module.mk
 include tests/cloth/garment/module.mk
+include tests/cloth/mannequin/module.mk
 include tests/cloth/physics/module.mk
 include tests/cloth/element/module.mk
 include tests/cloth/solve/module.mk

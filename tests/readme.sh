@@ -45,7 +45,7 @@ expected() {
 prepare() {
     mkdir -p "$home" "$scratch/bin" &&
         ln -s "$srcdir/cloth" "$srcdir/tests" "$srcdir/docs" "$srcdir/bootstrap" "$home" || return
-    for program in duite-cloth duite-garment duite-view duite-trace duite-predict; do
+    for program in duite-cloth duite-garment duite-mannequin duite-view duite-trace duite-predict; do
         test ! -x "$build/$program" || ln -s "$build/$program" "$home"
     done
     # The duite.pc of the build, which has another prefix, goes elsewhere.

@@ -2,8 +2,9 @@ libduite_cloth_la_SOURCES += \
 	cloth/output/output.h \
 	cloth/output/forces.c \
 	cloth/output/frames.c \
-	cloth/output/garment.c cloth/output/garment.h cloth/output/pattern.c \
+	cloth/output/garment.c cloth/output/garment.h \
 	cloth/output/lock.c \
+	cloth/output/mannequin.c cloth/output/mannequin.h \
 	cloth/output/probes.c \
 	cloth/output/cache.c \
 	cloth/output/report.c \

@@ -13,6 +13,7 @@ libduite_cloth_la_SOURCES += \
 	cloth/scene/schema/rules.h \
 	cloth/scene/schema/rules.c \
 	cloth/scene/schema/rules_cloth.c \
+	cloth/scene/schema/rules_mannequin.c \
 	cloth/scene/schema/tables.h \
 	cloth/scene/schema/store.h \
 	cloth/scene/schema/store.c \

@@ -66,3 +66,6 @@ LONG_TESTS += tests/whole/test_contact_scenes_long.sh tests/whole/test_drape_lon
 dist_check_SCRIPTS += tests/whole/test_garment.sh
 EXTRA_DIST += tests/whole/garment_golden.txt
 TESTS += tests/whole/test_garment.sh
+dist_check_SCRIPTS += tests/whole/test_mannequin.sh
+EXTRA_DIST += tests/whole/mannequin_golden.txt
+TESTS += tests/whole/test_mannequin.sh

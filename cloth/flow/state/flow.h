@@ -42,8 +42,7 @@ enum {
     FLOW_STRETCHED,
     FLOW_NO_FILTER,
     FLOW_TANGLED,
-    FLOW_PINCHED,
-    FLOW_UNSEWN
+    FLOW_PINCHED
 };
 
 /* Rows of a block's halo that blocks on one other rank read. */

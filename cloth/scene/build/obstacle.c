@@ -1,4 +1,5 @@
 /* Obstacles, and whether they leave the cloths any room. */
+#include "cloth/mannequin/mannequin.h"
 #include "cloth/scene/build/build.h"
 #include "cloth/scene/schema/check.h"
 #include "cloth/scene/yaml/scalar.h"
@@ -71,22 +72,45 @@ static int build_shape_motion(struct model *model, struct contact_shape *shape,
     return CLOTH_OK;
 }
 
+static int build_mannequin(struct mesh *mesh, struct scene_tree *tree, int node,
+                           struct cloth_error *error, struct cloth_error *inner)
+{
+    struct mannequin mannequin = {0};
+    const int code = scene_fill(&mannequin, &scene_mannequin, tree, node, error);
+    return code ? code : mannequin_make(mesh, &mannequin, NULL, inner);
+}
+
+/* The key that says which mesh a body is made of. */
+static int source_of(const struct scene_tree *tree, int node)
+{
+    const int file = scene_tree_get(tree, node, "obj");
+    return file ? file : scene_tree_get(tree, node, "mannequin");
+}
+
+static const char *source_name(const struct scene_tree *tree, int node)
+{
+    const int file = scene_tree_get(tree, node, "obj");
+    return file ? scene_tree_scalar(tree, file) : "the mannequin";
+}
+
 /* A mesh that a body is made of, where it starts. */
 static int build_body_mesh(struct model *model, struct mesh *mesh, struct mesh_transform *transform,
                            struct scene_tree *tree, int node, struct cloth_error *error)
 {
     struct cloth_error inner = {0};
-    const int file = scene_tree_get(tree, node, "obj");
+    const int source = source_of(tree, node), file = scene_tree_get(tree, node, "obj");
     int code = scene_fill(transform, &scene_body, tree, node, error);
     if (!code)
         code = scene_build_check_turn(transform, tree, node, error);
     if (code)
         return code;
-    code = scene_build_obj(model, mesh, mesh_read_surface, tree, file, error, &inner);
+    code = file ? scene_build_obj(model, mesh, mesh_read_surface, tree, file, error, &inner)
+                : build_mannequin(mesh, tree, source, error, &inner);
     if (inner.code == CLOTH_E_MEMORY)
         return cloth_fail(error, inner.code, "%s: %s", tree->path, inner.text);
     if (inner.code)
-        return scene_tree_fail(tree, file, error, "body: %s", inner.text);
+        return scene_tree_fail(tree, source, error, "%s: %s", file ? "body" : "mannequin",
+                               inner.text);
     if (!code)
         mesh_apply(mesh, transform);
     return code;
@@ -134,7 +158,7 @@ static int build_body(struct model *model, struct contact_shape *shape, struct s
     struct mesh_transform transform = {0};
     struct contact_frames frames;
     double *place = NULL;
-    const int file = scene_tree_get(tree, node, "obj");
+    const int source = source_of(tree, node);
     bool turned = false;
     int code = build_body_mesh(model, &mesh, &transform, tree, node, error);
     if (!code)
@@ -145,12 +169,12 @@ static int build_body(struct model *model, struct contact_shape *shape, struct s
     if (inner.code)
         code = inner.code == CLOTH_E_MEMORY
                    ? cloth_fail(error, inner.code, "%s: %s", tree->path, inner.text)
-                   : scene_tree_fail(tree, file, error, "body: %.200s: %s",
-                                     scene_tree_scalar(tree, file), inner.text);
+                   : scene_tree_fail(tree, source, error, "body: %.200s: %s",
+                                     source_name(tree, node), inner.text);
     if (!code)
-        code = warn_of_body(model, tree, file, turned, error);
+        code = warn_of_body(model, tree, source, turned, error);
     if (!code)
-        code = scene_build_warn_crossed(model, &mesh, place, tree, file, error);
+        code = scene_build_warn_crossed(model, &mesh, place, tree, source, error);
     shape->body = model->bodies.n;
     if (!code)
         build_view(model, shape, tree, node);

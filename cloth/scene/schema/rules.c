@@ -147,8 +147,10 @@ const struct model_word scene_meets[] = {{"bvh", false}, {"image", true}, {0}};
 const struct model_word scene_views[] = {
     {"thinnest", CONTACT_THINNEST}, {"x", 0}, {"y", 1}, {"z", 2}, {0}};
 static const struct scene_rule body_keys[] = {
-    {"obj", SCENE_TEXT, .required = true,
+    {"obj", SCENE_TEXT, .choice = true,
      .about = "an OBJ file of a closed mesh, relative to the scene's folder"},
+    {"mannequin", SCENE_MAP, .choice = true, .inside = scene_mannequin_keys, .apart = true,
+     .about = "a standing figure, made to measure (docs/garments.md)"},
     TRANSFORM(struct mesh_transform, ),
     {"meet", SCENE_CHOICE, .fallback = "bvh", .words = scene_meets,
      .about = "bvh: its triangles, found by a tree of boxes; image: maps of it, from the front and "
@@ -193,10 +195,6 @@ static const struct scene_rule rest_keys[] = {
     {"hold", SCENE_NUMBER, "s", "0.1", .range = SCENE_NOT_NEGATIVE, INTO(struct model_rest, hold),
      .about = "for so long"},
     {0}};
-static const struct scene_rule sewn_keys[] = {
-    {"distance", SCENE_NUMBER, "m", "0.001", .range = SCENE_POSITIVE, INTO(struct model, sewn),
-     .about = "partners of pulled seams are at most so far from each other"},
-    {0}};
 static const struct scene_rule time_keys[] = {
     {"h", SCENE_NUMBER, "s", .required = true, .range = SCENE_POSITIVE, INTO(struct model, h),
      PLACE(struct model, h_place), .about = "of a step"},
@@ -220,8 +218,6 @@ static const struct scene_rule time_keys[] = {
               "can set free; 0: by any"},
     {"rest", SCENE_MAP, .inside = rest_keys, INTO(struct model, rest),
      .about = "the run ends when the cloth is at rest"},
-    {"sewn", SCENE_MAP, .inside = sewn_keys,
-     .about = "the run ends when all pulled seams are closed; it fails if time.end comes first"},
     {0}};
 
 static const struct scene_rule stop_kinds[] = {

@@ -87,16 +87,9 @@ struct scene_inline {
     double (*vertices)[3];
     uint32_t (*edges)[2], (*triangles)[3];
 };
-struct scene_measure {
-    char *name;
-    double value;
-};
 struct scene_pattern {
-    double edge;          /* m; 0: it is not given */
-    uint32_t vertices;    /* 0: they are not given */
-    char *garment, *size; /* NULL: it is not given */
-    uint32_t n_measures;
-    struct scene_measure *measures;
+    double edge;       /* m; 0: it is not given */
+    uint32_t vertices; /* 0: they are not given */
 };
 enum { SCENE_LAST_FRAME = -1 };
 struct scene_settled {
@@ -107,6 +100,7 @@ extern const struct scene_rule scene_grid, scene_disc, scene_inline, scene_patte
 extern const struct scene_rule scene_transform; /* a struct mesh_transform */
 extern const struct scene_rule scene_region;    /* a struct model_pick */
 extern const struct scene_rule scene_body;      /* a struct mesh_transform */
+extern const struct scene_rule scene_mannequin; /* a struct mannequin */
 
 /* Words of choices that no field takes as they are. */
 enum scene_constraint { SCENE_POINT, SCENE_LINE, SCENE_PLANE };

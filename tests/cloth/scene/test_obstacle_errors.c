@@ -81,7 +81,7 @@ START_TEST(bodies)
     write_body("none.obj", "");
     EXPECT(
         {PLANE, "body: {scale: 2}",
-         .error = ":11:20: obstacles[0].body.obj is missing; a text is expected"},
+         .error = ":11:20: obstacles[0].body has no obj or mannequin; one of them is expected"},
         {PLANE, "body: {obj: open.obj}",
          .error = ":11:26: body: open.obj: the mesh is not closed: the edge between vertices 2 and "
                   "3 has 1 triangle where 2 are expected, as 3 edges have in all (vertices count "

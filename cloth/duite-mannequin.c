@@ -1,0 +1,135 @@
+/* The command line of the figure: reads what is asked for, hands it on, says what came of it. */
+#include "config.h"
+
+#include "cloth/mannequin/mannequin.h"
+#include "cloth/output/mannequin.h"
+
+#include <argp.h>
+#include <errno.h>
+#include <math.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+const char *argp_program_version = "duite-mannequin " PACKAGE_VERSION;
+
+struct options {
+    const char *output;
+    struct mannequin mannequin;
+    bool quiet;
+};
+
+static const struct argp_option OPTIONS[] = {
+    {"height", 'h', "METRES", 0, "Make a figure of this height (1.75)", 0},
+    {"measure", 'm', "NAME=METRES", 0,
+     "Give it this girth: neck, chest, waist, hip, thigh, knee, calf, ankle, upper_arm, elbow or "
+     "wrist; can be given for each",
+     0},
+    {"edge", 'e', "METRES", 0, "Make triangles with edges of about this length (0.02)", 0},
+    {"output", 'o', "FILE", 0, "Write the mesh to FILE, a Wavefront OBJ", 0},
+    {"quiet", 'q', NULL, 0, "No summary", 0},
+    {0}};
+
+static int parse_length(const char *text, double *length)
+{
+    char *end = NULL;
+    *length = strtod(text, &end);
+    return end == text || *end || !(*length > 0) || !isfinite(*length);
+}
+
+static void parse_measure(struct options *options, char *arg, struct argp_state *state)
+{
+    char *value = strchr(arg, '=');
+    if (!value)
+        argp_error(state, "--measure takes a name and a girth, NAME=METRES, not `%s'", arg);
+    *value++ = 0;
+    const uint32_t i = mannequin_find(arg);
+    if (i == MANNEQUIN_GIRTHS)
+        argp_error(state, "there is no measure `%s'; --help lists them", arg);
+    if (options->mannequin.girth[i] > 0)
+        argp_error(state, "the measure %s is given twice", arg);
+    if (parse_length(value, &options->mannequin.girth[i]))
+        argp_error(state, "the measure %s takes a length above 0 in metres, not `%s'", arg, value);
+}
+
+static error_t parse(int key, char *arg, struct argp_state *state)
+{
+    struct options *options = state->input;
+    switch (key) {
+    case 'h':
+        if (parse_length(arg, &options->mannequin.height))
+            argp_error(state, "--height takes a length above 0 in metres, not `%s'", arg);
+        return 0;
+    case 'm':
+        parse_measure(options, arg, state);
+        return 0;
+    case 'e':
+        if (parse_length(arg, &options->mannequin.edge))
+            argp_error(state, "--edge takes a length above 0 in metres, not `%s'", arg);
+        return 0;
+    case 'o':
+        if (!*arg)
+            argp_error(state, "--output takes the name of a file");
+        options->output = arg;
+        return 0;
+    case 'q':
+        options->quiet = true;
+        return 0;
+    case ARGP_KEY_ARG:
+        argp_error(state, "nothing is read: `%s' is one too many", arg);
+        return 0;
+    case ARGP_KEY_END:
+        if (!options->output)
+            argp_error(state, "say where the mesh goes: --output FILE");
+        return 0;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+}
+
+static void say(const struct mesh *mesh, const double *girth)
+{
+    double low[3], high[3];
+    mesh_box(mesh, low, high);
+    for (uint32_t i = 0; i < MANNEQUIN_GIRTHS; i++)
+        printf("%s: %.4f m (%s, of a figure of %g m)\n", mannequin_measures[i].name, girth[i],
+               mannequin_measures[i].section, MANNEQUIN_HEIGHT);
+    printf("%u vertices, %u triangles, %.4g m high\n", mesh->n_vertices, mesh->n_triangles,
+           high[1] - low[1]);
+}
+
+static int run(const struct options *options, struct cloth_error *error)
+{
+    struct mesh mesh = {0};
+    double girth[MANNEQUIN_GIRTHS];
+    int code = mannequin_make(&mesh, &options->mannequin, girth, error);
+    code = code ? code : output_mannequin_obj(options->output, &mesh, error);
+    if (!code && !options->quiet)
+        say(&mesh, girth);
+    mesh_free(&mesh);
+    return code;
+}
+
+int main(int argc, char **argv)
+{
+    static const struct argp argp = {OPTIONS,
+                                     parse,
+                                     NULL,
+                                     "Makes the closed mesh of a standing figure, made to measure, "
+                                     "for garments to be put on.",
+                                     NULL,
+                                     NULL,
+                                     NULL};
+    struct options options = {0};
+    struct cloth_error error = {0};
+    argp_err_exit_status = 2;
+    argp_parse(&argp, argc, argv, 0, NULL, &options);
+    int code = run(&options, &error);
+    if (!code && (fflush(stdout) != 0 || ferror(stdout)))
+        code =
+            cloth_fail(&error, CLOTH_E_IO, "cannot write to standard output: %s", strerror(errno));
+    if (code)
+        fprintf(stderr, "duite-mannequin: %s\n", error.text);
+    return code ? code == CLOTH_E_INPUT ? 2 : 1 : 0;
+}

@@ -1,0 +1,317 @@
+/* A pass goes over the edges in their order. What a change touches is marked, and left alone for
+ * the rest of the pass. */
+#include "cloth/base/memory.h"
+#include "cloth/mannequin/detail/surface.h"
+#include "cloth/mannequin/detail/vector.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static const double LONG = 4.0 / 3, SHORT = 0.8; /* of the length that is wanted */
+static const double BENT = 0.5; /* the cosine by which a change may turn a triangle */
+
+/* What a pass works with. */
+struct pass {
+    struct surface *surface;
+    struct surface_edges edges;
+    struct surface_fans fans;
+    unsigned char *touched; /* by triangle (split), by vertex (others) */
+};
+
+static int begin(struct pass *pass, struct surface *surface, struct cloth_error *error)
+{
+    *pass = (struct pass){.surface = surface};
+    int code = surface_edges_find(&pass->edges, surface, error);
+    if (!code)
+        code = surface_fans_find(&pass->fans, surface, error);
+    const size_t n = surface->n > surface->m ? surface->n : surface->m;
+    pass->touched = code ? NULL : cloth_alloc(n, 1, error);
+    return code || pass->touched ? code : error->code;
+}
+
+static void end(struct pass *pass)
+{
+    surface_edges_free(&pass->edges);
+    surface_fans_free(&pass->fans);
+    free(pass->touched);
+}
+
+/* Its length as a part of what is wanted there. */
+static double relative_length(const struct surface *surface, const struct figure *figure,
+                              double wanted, const struct surface_edge *edge)
+{
+    const double *a = surface->x[edge->end[0]], *b = surface->x[edge->end[1]];
+    const double middle[3] = {0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1]), 0.5 * (a[2] + b[2])};
+    return vector_distance(a, b) / figure_edge(figure, middle, wanted);
+}
+
+/* ---- Split ---- */
+
+/* The half of a triangle at the end `old` goes to `vertex`; the other half is new. */
+static int halve(struct surface *surface, uint32_t t, uint32_t a, uint32_t b, uint32_t vertex,
+                 struct cloth_error *error)
+{
+    const uint32_t u = surface_add_triangle(surface, error);
+    if (u == UINT32_MAX)
+        return error->code;
+    for (int i = 0; i < 3; i++) {
+        const uint32_t v = surface->triangle[t][i];
+        surface->triangle[u][i] = v == a ? vertex : v;
+        surface->triangle[t][i] = v == b ? vertex : v;
+    }
+    return CLOTH_OK;
+}
+
+static int split_edge(struct pass *pass, const struct surface_edge *edge, struct cloth_error *error)
+{
+    struct surface *surface = pass->surface;
+    const uint32_t a = edge->end[0], b = edge->end[1], v = surface_add_vertex(surface, error);
+    if (v == UINT32_MAX)
+        return error->code;
+    for (int c = 0; c < 3; c++)
+        surface->x[v][c] = 0.5 * (surface->x[a][c] + surface->x[b][c]);
+    surface->middle[v] = edge->triangle[1] == UINT32_MAX;
+    int code = CLOTH_OK;
+    for (int i = 0; i < 2 && !code; i++)
+        if (edge->triangle[i] != UINT32_MAX) {
+            pass->touched[edge->triangle[i]] = 1;
+            code = halve(surface, edge->triangle[i], a, b, v, error);
+        }
+    return code;
+}
+
+int surface_split(struct surface *surface, const struct figure *figure, double edge,
+                  struct cloth_error *error)
+{
+    struct pass pass;
+    int code = begin(&pass, surface, error);
+    for (uint32_t e = 0; e < pass.edges.n && !code; e++) {
+        const struct surface_edge *here = &pass.edges.edge[e];
+        const uint32_t *t = here->triangle;
+        if (pass.touched[t[0]] || (t[1] != UINT32_MAX && pass.touched[t[1]]))
+            continue;
+        if (relative_length(surface, figure, edge, here) > LONG)
+            code = split_edge(&pass, here, error);
+    }
+    end(&pass);
+    return code;
+}
+
+/* ---- Collapse ---- */
+
+static bool has(const uint32_t triangle[3], uint32_t v)
+{
+    return triangle[0] == v || triangle[1] == v || triangle[2] == v;
+}
+
+/* How many neighbours two vertices share; UINT32_MAX: one of them or of theirs is touched. */
+static uint32_t shared(const struct pass *pass, uint32_t a, uint32_t b)
+{
+    const struct surface_fans *fans = &pass->fans;
+    uint32_t near[64], n = 0, count = 0;
+    for (uint32_t i = fans->first[a]; i < fans->first[a + 1]; i++)
+        for (int k = 0; k < 3; k++) {
+            const uint32_t v = pass->surface->triangle[fans->fan[i]][k];
+            uint32_t j = 0;
+            while (j < n && near[j] != v)
+                j++;
+            if (pass->touched[v] || (j == n && n == 64))
+                return UINT32_MAX;
+            if (j == n)
+                near[n++] = v;
+        }
+    for (uint32_t j = 0; j < n; j++) {
+        bool is_near = false;
+        for (uint32_t i = fans->first[b]; i < fans->first[b + 1] && !is_near; i++)
+            is_near = has(pass->surface->triangle[fans->fan[i]], near[j]);
+        count += is_near && near[j] != a && near[j] != b;
+    }
+    for (uint32_t i = fans->first[b]; i < fans->first[b + 1]; i++)
+        for (int k = 0; k < 3; k++)
+            if (pass->touched[pass->surface->triangle[fans->fan[i]][k]])
+                return UINT32_MAX;
+    return count;
+}
+
+/* Whether the triangles of a but not of b keep their side, and get no long edge, if a moves. */
+static bool may_move(const struct pass *pass, uint32_t a, uint32_t b, const double to[3],
+                     double most)
+{
+    const struct surface *surface = pass->surface;
+    for (uint32_t i = pass->fans.first[a]; i < pass->fans.first[a + 1]; i++) {
+        const uint32_t *v = surface->triangle[pass->fans.fan[i]];
+        const double *x[3];
+        double before[3], after[3];
+        if (has(v, b))
+            continue;
+        vector_normal(surface->x[v[0]], surface->x[v[1]], surface->x[v[2]], before);
+        for (int k = 0; k < 3; k++) {
+            x[k] = v[k] == a ? to : surface->x[v[k]];
+            if (v[k] != a && vector_distance(x[k], to) > most)
+                return false;
+        }
+        vector_normal(x[0], x[1], x[2], after);
+        if (!(vector_cosine(before, after) > BENT))
+            return false;
+    }
+    return true;
+}
+
+/* Makes one vertex, a, of both; b's triangles at the edge lose their corners. */
+static void join(struct pass *pass, uint32_t a, uint32_t b, const double to[3])
+{
+    struct surface *surface = pass->surface;
+    const uint32_t both[2] = {a, b};
+    for (int s = 0; s < 2; s++)
+        for (uint32_t i = pass->fans.first[both[s]]; i < pass->fans.first[both[s] + 1]; i++)
+            for (int k = 0; k < 3; k++)
+                pass->touched[surface->triangle[pass->fans.fan[i]][k]] = 1;
+    for (uint32_t i = pass->fans.first[b]; i < pass->fans.first[b + 1]; i++) {
+        uint32_t *v = surface->triangle[pass->fans.fan[i]];
+        const bool gone = has(v, a);
+        for (int k = 0; k < 3; k++)
+            v[k] = gone ? UINT32_MAX : v[k] == b ? a : v[k];
+    }
+    memcpy(surface->x[a], to, sizeof surface->x[a]);
+    surface->middle[a] = surface->middle[a] || surface->middle[b];
+}
+
+static void collapse_edge(struct pass *pass, const struct surface_edge *edge, double most)
+{
+    const struct surface *surface = pass->surface;
+    const uint32_t a = edge->end[0], b = edge->end[1];
+    const bool boundary = edge->triangle[1] == UINT32_MAX;
+    double to[3];
+    if (surface->middle[a] && surface->middle[b] && !boundary)
+        return;
+    const double part = surface->middle[a] == surface->middle[b] ? 0.5 : surface->middle[b];
+    for (int c = 0; c < 3; c++)
+        to[c] = surface->x[a][c] + part * (surface->x[b][c] - surface->x[a][c]);
+    if (shared(pass, a, b) != (boundary ? 1 : 2))
+        return;
+    if (may_move(pass, a, b, to, most) && may_move(pass, b, a, to, most))
+        join(pass, a, b, to);
+}
+
+/* Leaves out triangles without corners, and vertices without triangles. */
+static int compact(struct surface *surface, struct cloth_error *error)
+{
+    uint32_t *place = cloth_alloc(surface->n, sizeof *place, error), m = 0, n = 0;
+    if (!place)
+        return error->code;
+    for (uint32_t t = 0; t < surface->m; t++)
+        if (surface->triangle[t][0] != UINT32_MAX)
+            memmove(surface->triangle[m++], surface->triangle[t], sizeof *surface->triangle);
+    surface->m = m;
+    for (uint32_t t = 0; t < m; t++)
+        for (int k = 0; k < 3; k++)
+            place[surface->triangle[t][k]] = 1;
+    for (uint32_t v = 0; v < surface->n; v++)
+        if (place[v]) {
+            memmove(surface->x[n], surface->x[v], sizeof *surface->x);
+            surface->middle[n] = surface->middle[v];
+            place[v] = n++;
+        }
+    surface->n = n;
+    for (uint32_t t = 0; t < m; t++)
+        for (int k = 0; k < 3; k++)
+            surface->triangle[t][k] = place[surface->triangle[t][k]];
+    free(place);
+    return CLOTH_OK;
+}
+
+int surface_collapse(struct surface *surface, const struct figure *figure, double edge,
+                     struct cloth_error *error)
+{
+    struct pass pass;
+    int code = begin(&pass, surface, error);
+    for (uint32_t e = 0; e < pass.edges.n && !code; e++) {
+        const struct surface_edge *here = &pass.edges.edge[e];
+        const uint32_t a = here->end[0], b = here->end[1];
+        if (pass.touched[a] || pass.touched[b])
+            continue;
+        const double relative = relative_length(surface, figure, edge, here);
+        const double length = vector_distance(surface->x[a], surface->x[b]);
+        if (relative < SHORT)
+            collapse_edge(&pass, here, LONG * length / relative);
+    }
+    end(&pass);
+    return code ? code : compact(surface, error);
+}
+
+/* ---- Turn ---- */
+
+static uint32_t opposite(const uint32_t v[3], const struct surface_edge *edge)
+{
+    return v[0] ^ v[1] ^ v[2] ^ edge->end[0] ^ edge->end[1];
+}
+
+/* How far from its best number of neighbours a vertex is that gets `change` more, squared. Half
+ * of those of a vertex in the middle plane are in the mirror image. */
+static int64_t excess(const struct pass *pass, uint32_t v, int change)
+{
+    const uint32_t n = pass->fans.first[v + 1] - pass->fans.first[v];
+    const int64_t d = (int64_t)n + change - (pass->surface->middle[v] ? 3 : 6);
+    return pass->surface->middle[v] ? 4 * d * d : d * d;
+}
+
+static bool is_edge(const struct pass *pass, uint32_t a, uint32_t b)
+{
+    const uint32_t low = a < b ? a : b, high = a < b ? b : a;
+    for (uint32_t e = pass->edges.first[low]; e < pass->edges.first[low + 1]; e++)
+        if (pass->edges.edge[e].end[1] == high)
+            return true;
+    return false;
+}
+
+/* Of two triangles a b c and b a d the triangles a d c and d b c: they lie as the old ones do. */
+static bool lies_well(const struct surface *surface, uint32_t a, uint32_t b, uint32_t c, uint32_t d)
+{
+    const double(*x)[3] = (const double(*)[3])surface->x;
+    double old[2][3], new[2][3];
+    vector_normal(x[a], x[b], x[c], old[0]);
+    vector_normal(x[b], x[a], x[d], old[1]);
+    vector_normal(x[a], x[d], x[c], new[0]);
+    vector_normal(x[d], x[b], x[c], new[1]);
+    for (int i = 0; i < 4; i++)
+        if (!(vector_cosine(old[i / 2], new[i % 2]) > BENT))
+            return false;
+    return vector_cosine(new[0], new[1]) > BENT;
+}
+
+static void turn_edge(struct pass *pass, const struct surface_edge *edge)
+{
+    struct surface *surface = pass->surface;
+    uint32_t *one = surface->triangle[edge->triangle[0]],
+             *two = surface->triangle[edge->triangle[1]];
+    const uint32_t c = opposite(one, edge), d = opposite(two, edge);
+    uint32_t k = 0;
+    while (one[k] != c)
+        k++;
+    const uint32_t a = one[(k + 1) % 3], b = one[(k + 2) % 3];
+    const uint32_t all[4] = {a, b, c, d};
+    int64_t gain = 0;
+    if (pass->touched[c] || pass->touched[d])
+        return;
+    for (int i = 0; i < 4; i++) {
+        gain += excess(pass, all[i], 0) - excess(pass, all[i], i < 2 ? -1 : 1);
+    }
+    if (gain <= 0 || is_edge(pass, c, d) || !lies_well(surface, a, b, c, d))
+        return;
+    memcpy(one, (uint32_t[3]){a, d, c}, sizeof(uint32_t[3]));
+    memcpy(two, (uint32_t[3]){d, b, c}, sizeof(uint32_t[3]));
+    for (int i = 0; i < 4; i++)
+        pass->touched[all[i]] = 1;
+}
+
+int surface_turn(struct surface *surface, struct cloth_error *error)
+{
+    struct pass pass;
+    int code = begin(&pass, surface, error);
+    for (uint32_t e = 0; e < pass.edges.n && !code; e++)
+        if (!pass.touched[pass.edges.edge[e].end[0]] && !pass.touched[pass.edges.edge[e].end[1]] &&
+            pass.edges.edge[e].triangle[1] != UINT32_MAX)
+            turn_edge(&pass, &pass.edges.edge[e]);
+    end(&pass);
+    return code;
+}

@@ -1,0 +1,146 @@
+/* Rounds of remeshing and measuring: what a girth lacks goes into the factor on its widths, until
+ * the mesh itself has the girths. */
+#include "cloth/mannequin/mannequin.h"
+#include "cloth/mannequin/detail/surface.h"
+#include "cloth/mannequin/measures.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { SHAPING = 8, FITTING = 12, COLLAPSES = 4 };
+static const double CELL = 0.02;   /* m: of the lattice */
+static const double CLOSE = 0.002; /* a girth is as asked for, as a part of it */
+static const double NEAR = 0.005;  /* it is near enough after all rounds */
+
+struct making {
+    struct mannequin asked; /* for a figure of MANNEQUIN_HEIGHT */
+    double factor[MANNEQUIN_GIRTHS], girth[MANNEQUIN_GIRTHS];
+    struct figure figure;
+    struct surface surface;
+    struct cloth_error *error;
+};
+
+static int remesh(struct making *making)
+{
+    struct surface *surface = &making->surface;
+    const double edge = making->asked.edge;
+    int code = surface_split(surface, &making->figure, edge, making->error);
+    for (int i = 0; i < COLLAPSES && !code; i++)
+        code = surface_collapse(surface, &making->figure, edge, making->error);
+    code = code ? code : surface_turn(surface, making->error);
+    return code ? code : surface_smooth(surface, &making->figure, making->error);
+}
+
+/* Measures, and corrects the factors. *worst: the measure that is furthest from what is asked for;
+ * MANNEQUIN_GIRTHS: all are close. */
+static int fit(struct making *making, uint32_t *worst)
+{
+    double most = CLOSE;
+    int code = CLOTH_OK;
+    *worst = MANNEQUIN_GIRTHS;
+    for (uint32_t i = 0; i < MANNEQUIN_GIRTHS && !code; i++) {
+        code =
+            surface_girth(&making->surface, &making->figure, i, &making->girth[i], making->error);
+        const double ratio = making->asked.girth[i] / fmax(making->girth[i], 1e-3);
+        if (fabs(ratio - 1) > most) {
+            most = fabs(ratio - 1);
+            *worst = i;
+        }
+        making->factor[i] *= fmin(1.1, fmax(0.9, ratio));
+    }
+    if (*worst < MANNEQUIN_GIRTHS)
+        figure_make(&making->figure, making->factor);
+    return code;
+}
+
+static int make(struct making *making, uint32_t *worst)
+{
+    figure_make(&making->figure, making->factor);
+    int code = surface_march(&making->surface, &making->figure, CELL, making->error);
+    for (int i = 0; i < SHAPING && !code; i++) {
+        code = remesh(making);
+        if (!code && i >= SHAPING / 2)
+            code = fit(making, worst);
+    }
+    for (int i = 0; i < FITTING && !code; i++) {
+        surface_project(&making->surface, &making->figure);
+        code = fit(making, worst);
+        if (*worst == MANNEQUIN_GIRTHS)
+            break;
+    }
+    return code;
+}
+
+/* ---- Both halves ---- */
+
+/* Whole and of the height asked for: lengths times scale. */
+static int mirror(const struct making *making, struct mesh *mesh, double height)
+{
+    const struct surface *half = &making->surface;
+    uint32_t n = half->n, *image = malloc((size_t)half->n * sizeof *image);
+    double *x = malloc(6 * (size_t)half->n * sizeof *x);
+    uint32_t *corner = malloc(6 * (size_t)half->m * sizeof *corner);
+    double low = INFINITY, high = -INFINITY;
+    const double scale = height / MANNEQUIN_HEIGHT;
+    if (!image || !x || !corner) {
+        free(image);
+        free(x);
+        free(corner);
+        return cloth_fail(making->error, CLOTH_E_MEMORY, "no memory for the mesh of a figure");
+    }
+    for (uint32_t v = 0; v < half->n; v++) {
+        low = fmin(low, half->x[v][1]);
+        high = fmax(high, half->x[v][1]);
+    }
+    for (uint32_t v = 0; v < half->n; v++) {
+        image[v] = half->middle[v] ? v : n++;
+        for (int side = 0; side < 2; side++) {
+            double *to = x + 3 * (size_t)(side ? image[v] : v);
+            to[0] = half->middle[v] ? 0 : scale * (side ? -half->x[v][0] : half->x[v][0]);
+            to[1] = height * ((half->x[v][1] - low) / (high - low));
+            to[2] = scale * half->x[v][2];
+        }
+    }
+    for (uint32_t t = 0; t < half->m; t++)
+        for (uint32_t k = 0; k < 3; k++) {
+            corner[3 * t + k] = half->triangle[t][k];
+            corner[3 * (half->m + t) + k] = image[half->triangle[t][2 - k]];
+        }
+    const int code = mesh_inline(mesh, n, x, 0, NULL, 2 * half->m, corner, making->error);
+    free(image);
+    free(x);
+    free(corner);
+    return code;
+}
+
+int mannequin_make(struct mesh *mesh, const struct mannequin *mannequin,
+                   double girth[MANNEQUIN_GIRTHS], struct cloth_error *error)
+{
+    struct making making = {.asked = *mannequin, .error = error};
+    uint32_t worst = MANNEQUIN_GIRTHS;
+    *mesh = (struct mesh){0};
+    int code = mannequin_complete(&making.asked, error);
+    const double height = making.asked.height, scale = height / MANNEQUIN_HEIGHT;
+    if (code)
+        return code;
+    making.asked.edge /= scale;
+    for (uint32_t i = 0; i < MANNEQUIN_GIRTHS; i++) {
+        making.asked.girth[i] /= scale;
+        making.factor[i] = making.asked.girth[i] / mannequin_measures[i].girth;
+    }
+    code = make(&making, &worst);
+    if (!code && worst < MANNEQUIN_GIRTHS &&
+        fabs(making.girth[worst] / making.asked.girth[worst] - 1) > NEAR)
+        code = cloth_fail(error, CLOTH_E_INPUT,
+                          "a %s of %g m does not go with the other girths: this figure gets one of "
+                          "%.3g m; change it, or those beside it",
+                          mannequin_measures[worst].name, making.asked.girth[worst] * scale,
+                          making.girth[worst] * scale);
+    if (!code)
+        code = mirror(&making, mesh, height);
+    for (uint32_t i = 0; i < MANNEQUIN_GIRTHS && girth; i++)
+        girth[i] = making.girth[i] * scale;
+    surface_free(&making.surface);
+    return code;
+}

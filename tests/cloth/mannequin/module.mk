@@ -1,0 +1,6 @@
+if HAVE_CHECK
+check_PROGRAMS += tests/cloth/mannequin/test_mannequin
+tests_cloth_mannequin_test_mannequin_SOURCES = tests/cloth/mannequin/test_mannequin.c tests/cloth/mannequin/tools.h
+tests_cloth_mannequin_test_mannequin_LDADD = $(CLOTH_TEST_LIBS) -lm
+TESTS += tests/cloth/mannequin/test_mannequin
+endif

@@ -1,0 +1,116 @@
+#!/bin/sh
+# duite-mannequin: what it prints and writes, the bits of its meshes, each error; the same figure as a body of a scene.
+# A change that moves bits for a good reason writes the table again: DUITE_GOLDEN=FILE sh tests/whole/test_mannequin.sh
+. "${srcdir:-.}/tests/support/tap.sh"
+mannequin=${DUITE_MANNEQUIN:-$PWD/duite-mannequin}
+cloth=${DUITE_CLOTH:-$PWD/duite-cloth}
+skip_unless "$mannequin"
+skip_unless "$cloth"
+plan_later
+table=$srcdir/tests/whole/mannequin_golden.txt
+fresh=${DUITE_GOLDEN:-$scratch/fresh}
+case $fresh in /*) ;; *) fresh=$PWD/$fresh ;; esac
+page=$srcdir/cloth/duite-mannequin.1
+document=$srcdir/docs/garments.md
+cd "$scratch" || exit 99
+
+run() { limited "$mannequin" "$@"; }
+prints() { "$@" > printed 2> complained; }
+
+# ---- Words and files
+
+short_answer() { prints run "$2" && grep -q -e "$1" printed && test ! -s complained; }
+ok "--help lists the options" short_answer '--measure' --help
+ok "--version names the version" short_answer '^duite-mannequin [0-9]' --version
+documented() { # every option of --help stands in the manual page
+    run --help | sed -n 's/^ *\(-.,\)\{0,1\} *--\([a-z]*\).*/\2/p' > options
+    test "$(wc -l < options)" -ge 8 || return
+    while read -r option; do grep -q -e "\\\\-\\\\-$option" "$page" || { echo "--$option is not in the page" && return 1; }; done < options
+}
+ok "the manual page has every option" documented
+writes() {
+    prints run --measure chest=1.02 -m wrist=0.16 -o figure.obj && test ! -s complained &&
+        grep -q '^chest: 1.0[12][0-9]* m (level, 1.28 m high, ' printed && grep -q '^wrist: 0.1[56][0-9]* m (across' printed &&
+        grep -q '^[0-9]* vertices, [0-9]* triangles, 1.75 m high$' printed &&
+        test "$(grep -c '^v ' figure.obj)" = "$(tail -n 1 printed | cut -d ' ' -f 1)"
+}
+ok "mesh and girths" writes
+tabled() { # the table of the document is that of the program
+    prints run -o figure.obj && sed -n 's/^\([a-z_]*\): \([0-9.]*\) m (.*/\1 \2/p' printed > girths
+    test "$(wc -l < girths)" = 11 || return
+    while read -r name girth; do
+        grep "^| \`$name\` | " "$document" | awk -F '|' -v is="$girth" '{ exit !($3 - is < 0.005 && is - $3 < 0.005) }' ||
+            { echo "$name is $girth" && return 1; }
+    done < girths
+}
+ok "docs/garments.md has all measures with their defaults" tabled
+quiet() { prints run -o q.obj -q && test ! -s printed && test ! -s complained && test -s q.obj; }
+ok "--quiet" quiet
+
+refused() { # SENTENCE ARGUMENT...: exit status 2, and one line that has the sentence
+    sentence=$1
+    shift
+    prints run "$@"
+    got=$?
+    cat complained
+    test $got = 2 && grep -qF -e "$sentence" complained
+}
+ok "no output" refused "say where the mesh goes"
+ok "an output without a name" refused "--output takes the name of a file" -o ''
+ok "no folder" refused "cannot write" -o none/x.obj
+ok "an argument" refused "nothing is read: \`x' is one too many" x
+ok "no height" refused "--height takes a length above 0" --height 0 -o x.obj
+ok "too high" refused "height is 9 m; figures have 1 to 2.3 m" --height 9 -o x.obj
+ok "no edge" refused "--edge takes a length above 0" -e much -o x.obj
+ok "edges that are too long" refused "edge is 0.1 m; a figure of 1.75 m has 0.008 to 0.025 m" -e 0.1 -o x.obj
+ok "a measure without a girth" refused "--measure takes a name and a girth, NAME=METRES" -m chest -o x.obj
+ok "no such measure" refused "there is no measure \`nose'" -m nose=0.1 -o x.obj
+ok "a measure twice" refused "the measure chest is given twice" -m chest=1 -m chest=1.1 -o x.obj
+ok "a measure that is none" refused "the measure chest takes a length above 0" -m chest=wide -o x.obj
+ok "a girth out of range" refused "chest is 3 m; a figure of 1.75 m has 0.82 to 1.28 m" -m chest=3 -o x.obj
+ok "girths that do not go together" refused "a hip of 0.85 m does not go with a thigh of 0.57 m" -m hip=0.85 -o x.obj
+
+# ---- Bits, the same with any compiler and optimisation
+
+golden() { # NAME ARGUMENT...
+    golden_name=$1
+    shift
+    if ! run "$@" -o golden.obj -q > output 2>&1; then tap_result 1 "$golden_name" && return; fi
+    printf '%s %s\n' "$(cksum < golden.obj | tr ' ' '-')" "$golden_name" >> "$fresh"
+    echo "mannequin_golden.txt does not have: $(tail -n 1 "$fresh")" > output
+    grep -qxF "$(tail -n 1 "$fresh")" "$table"
+    tap_result $? "$golden_name"
+}
+golden "the figure"
+golden "finer" -e 0.012
+golden "a small one" --height 1.3 -e 0.014 -m waist=0.6 -m calf=0.29
+
+# ---- Scenes
+
+scene() { # FILE BODY: a small cloth beside it falls a step
+    cat > "$1" << END
+schema: 1
+time: {h: 0.001, end: 0.001}
+materials: {m: {density: 0.2, stretch: 100}}
+cloths: [{name: c, mesh: {grid: {width: 0.1, height: 0.1, nx: 3, ny: 3}}, transform: {translate: [0, 2.5, 0]}, material: m}]
+contact: {mode: certified, thickness: 0.002}
+obstacles: [{body: $2}]
+END
+}
+same() {
+    scene s.yaml '{mannequin: {height: 1.6, measures: {waist: 0.7, upper_arm: 0.3}, edge: 0.019}, translate: [0, 0.5, 0]}'
+    run --height 1.6 -m waist=0.7 -m upper_arm=0.3 -e 0.019 -q -o alone.obj || return
+    scene t.yaml '{obj: alone.obj, translate: [0, 0.5, 0]}'
+    limited "$cloth" s.yaml --output s > said 2>&1 && limited "$cloth" t.yaml --output t >> said 2>&1 && cat said && cmp s/body-0.obj t/body-0.obj &&
+        ! grep -i warning said
+}
+ok "a scene's figure is that of the program" same
+scene_refused() { # SENTENCE BODY
+    scene bad.yaml "$2"
+    limited "$cloth" bad.yaml > said 2>&1
+    test $? = 2 && cat said && grep -qF -e "$1" said
+}
+ok "a scene's figure that is impossible" scene_refused "bad.yaml:6:32: mannequin: hip is 3 m" '{mannequin: {measures: {hip: 3}}}'
+ok "a measure that a scene cannot have" scene_refused "nose" '{mannequin: {measures: {nose: 0.1}}}'
+ok "a body that has neither" scene_refused "mannequin" '{scale: 1}'
+ok "a body that has both" scene_refused "mannequin" '{mannequin: {}, obj: alone.obj}'

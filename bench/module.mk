@@ -34,7 +34,7 @@ bench_libbench_la_LIBADD = libduite_cloth.la libduite_predict.la libduite_core.l
 check_PROGRAMS += bench/duite-bench
 bench_duite_bench_SOURCES = bench/duite-bench.c
 bench_duite_bench_LDADD = bench/libbench.la -lm
-EXTRA_DIST += bench/experiments bench/rivals/blender_sphere.py bench/rivals/openmp.c bench/cg/states.yaml
+EXTRA_DIST += bench/experiments bench/garments/experiments.sh bench/vassilev/panels.awk bench/vassilev/torso.awk bench/rivals/blender_sphere.py bench/rivals/openmp.c bench/cg/states.yaml
 
 OPENMP_FILES = bench/rivals/openmp.c bench/problem.c bench/serve.c
 OPENMP_NEEDS = $(OPENMP_FILES) bench/problem.h bench/serve.h
@@ -124,6 +124,12 @@ check_PROGRAMS += bench/contact-partition
 bench_contact_partition_SOURCES = bench/contact/partition.c
 bench_contact_partition_LDADD = bench/libbench.la -lm
 
-bench: bench/contact-partition$(EXEEXT) bench/duite-bench$(EXEEXT) bench/graph-run$(EXEEXT) bench/compare$(EXEEXT) duite-cloth$(EXEEXT) $(BENCH_RIVALS)
+# The six loops that bench/experiments vassilev runs.
+check_PROGRAMS += bench/vassilev/vassilev
+bench_vassilev_vassilev_SOURCES = bench/vassilev/vassilev.c bench/vassilev/loops.c bench/vassilev/loops.h bench/vassilev/repel.c \
+	bench/vassilev/take.c bench/serve.c bench/serve.h
+bench_vassilev_vassilev_LDADD = libduite_cloth.la libduite_core.la -lm
+
+bench: bench/vassilev/vassilev$(EXEEXT) bench/contact-partition$(EXEEXT) bench/duite-bench$(EXEEXT) bench/graph-run$(EXEEXT) bench/compare$(EXEEXT) duite-cloth$(EXEEXT) $(BENCH_RIVALS)
 check_DATA += $(BENCH_RIVALS)
 .PHONY: bench

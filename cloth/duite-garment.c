@@ -3,6 +3,7 @@
 #include "config.h"
 
 #include "cloth/garment/garment.h"
+#include "cloth/garment/own/own.h"
 #include "cloth/output/garment.h"
 #include "cloth/scene/pattern.h"
 
@@ -16,12 +17,20 @@
 
 const char *argp_program_version = "duite-garment " PACKAGE_VERSION;
 
-enum { SEAMS = 256 };
+enum { SEAMS = 256, OWN, SIZE, MEASURE, MEASURES, WRITE_PATTERN };
+enum { SIZE_M = 2 };
 
 struct options {
     const char *pattern, *output, *seams;
     struct garment_fineness fineness;
     bool quiet;
+    const char *written; /* where the pattern goes; NULL: nowhere */
+
+    const struct garment_own *own; /* in place of a pattern */
+    const struct garment_own *listed;
+    int size;                              /* -1: it is not given */
+    const char *measure[GARMENT_MEASURES]; /* NAME=VALUE */
+    int n_measures;
 };
 
 static const struct argp_option OPTIONS[] = {
@@ -30,6 +39,13 @@ static const struct argp_option OPTIONS[] = {
     {"output", 'o', "FILE", 0, "Write the mesh to FILE, a Wavefront OBJ", 0},
     {"seams", SEAMS, "FILE", 0,
      "Write the seams to FILE, as JSON (GARMENT.seams.json of an output GARMENT.obj)", 0},
+    {"own", OWN, "GARMENT", 0,
+     "Make one of the own garments in place of PATTERN: tshirt, trousers or skirt", 0},
+    {"size", SIZE, "SIZE", 0, "The size of an own garment: XS, S, M, L or XL (M)", 0},
+    {"measure", MEASURE, "NAME=VALUE", 0,
+     "A measure of an own garment that differs from its size's; once for each", 0},
+    {"measures", MEASURES, "GARMENT", 0, "List the measures of an own garment, and end", 0},
+    {"write-pattern", WRITE_PATTERN, "FILE", 0, "Write the pattern to FILE, as JSON", 0},
     {"quiet", 'q', NULL, 0, "No summary", 0},
     {0}};
 
@@ -51,14 +67,57 @@ static int parse_count(const char *text, uint32_t *count)
 
 static void finish(const struct options *options, struct argp_state *state)
 {
-    if (!options->pattern)
-        argp_error(state, "say which pattern to mesh");
-    if (!options->output)
+    if (options->listed)
+        return;
+    if (!options->pattern && !options->own)
+        argp_error(state, "say which pattern to mesh: PATTERN or --own GARMENT");
+    if (options->pattern && options->own)
+        argp_error(state, "a pattern and --own exclude each other: `%s' is one too many",
+                   options->pattern);
+    if (!options->own && (options->size >= 0 || options->n_measures))
+        argp_error(state, "--size and --measure need --own GARMENT");
+    if (!options->output && !options->written)
         argp_error(state, "say where the mesh goes: --output FILE");
+    if (!options->output && options->seams)
+        argp_error(state, "--seams needs --output FILE: seams are pairs of the mesh's vertices");
     if (options->fineness.vertices && options->fineness.edge > 0)
         argp_error(state, "--edge and --vertices are two ways to say how fine: take one");
-    if (!options->fineness.vertices && !(options->fineness.edge > 0))
+    if (options->output && !options->fineness.vertices && !(options->fineness.edge > 0))
         argp_error(state, "say how fine: --edge METRES or --vertices N");
+}
+
+static const struct garment_own *parse_garment(const char *arg, struct argp_state *state)
+{
+    const struct garment_own *own = garment_own_find(arg);
+    if (!own)
+        argp_error(state, "there is no own garment `%s'; there are %s", arg, garment_own_words);
+    return own;
+}
+
+/* The options of own garments. */
+static error_t parse_own(int key, const char *arg, struct argp_state *state)
+{
+    struct options *options = state->input;
+    switch (key) {
+    case OWN:
+        options->own = parse_garment(arg, state);
+        return 0;
+    case MEASURES:
+        options->listed = parse_garment(arg, state);
+        return 0;
+    case SIZE:
+        options->size = garment_size_find(arg);
+        if (options->size < 0)
+            argp_error(state, "--size takes one of %s, not `%s'", garment_size_words, arg);
+        return 0;
+    case MEASURE:
+        if (options->n_measures == GARMENT_MEASURES)
+            argp_error(state, "no garment has so many measures: `%s' is one too many", arg);
+        options->measure[options->n_measures++] = arg;
+        return 0;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
 }
 
 static error_t parse(int key, char *arg, struct argp_state *state)
@@ -83,6 +142,11 @@ static error_t parse(int key, char *arg, struct argp_state *state)
             argp_error(state, "--seams takes the name of a file");
         options->seams = arg;
         return 0;
+    case WRITE_PATTERN:
+        if (!*arg)
+            argp_error(state, "--write-pattern takes the name of a file");
+        options->written = arg;
+        return 0;
     case 'q':
         options->quiet = true;
         return 0;
@@ -95,7 +159,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         finish(options, state);
         return 0;
     default:
-        return ARGP_ERR_UNKNOWN;
+        return parse_own(key, arg, state);
     }
 }
 
@@ -122,12 +186,18 @@ static char *seams_path(const struct options *options)
 
 static int check_paths(const struct options *options, const char *seams, struct cloth_error *error)
 {
-    if (same_file(options->output, options->pattern) || same_file(seams, options->pattern))
-        return cloth_fail(error, CLOTH_E_INPUT, "the output would replace the pattern %s",
-                          options->pattern);
-    if (same_file(options->output, seams))
+    const char *const file[] = {options->written, options->output, seams};
+    for (int i = 0; i < 3; i++)
+        if (file[i] && options->pattern && same_file(file[i], options->pattern))
+            return cloth_fail(error, CLOTH_E_INPUT, "the output would replace the pattern %s",
+                              options->pattern);
+    if (options->output && same_file(options->output, seams))
         return cloth_fail(error, CLOTH_E_INPUT, "mesh and seams cannot be the same file: %s",
                           seams);
+    if (options->written && options->output &&
+        (same_file(options->written, options->output) || same_file(options->written, seams)))
+        return cloth_fail(error, CLOTH_E_INPUT, "mesh and pattern cannot be the same file: %s",
+                          options->written);
     return CLOTH_OK;
 }
 
@@ -162,40 +232,103 @@ static void say(const struct garment *garment, const struct garment_pattern *pat
         garment->n_vertices, garment->n_triangles, garment->edge, least, below);
 }
 
-static int run(const struct options *options, const char *seams, struct cloth_error *error)
+/* NAME=VALUE, among the measures of a garment. */
+static int set_measure(const struct garment_own *own, const char *text, double *value,
+                       struct cloth_error *error)
 {
-    struct garment_pattern pattern;
+    const char *equals = strchr(text, '=');
+    char *name = equals ? strndup(text, (size_t)(equals - text)) : NULL, *end = NULL;
+    if (equals && !name)
+        return cloth_fail(error, CLOTH_E_MEMORY, "no memory for a name");
+    const int i = name ? garment_own_measure(own, name) : -1;
+    free(name);
+    if (!equals)
+        return cloth_fail(error, CLOTH_E_INPUT, "--measure takes NAME=VALUE, not `%s'", text);
+    if (i < 0)
+        return cloth_fail(error, CLOTH_E_INPUT,
+                          "`%s': a %s has no such measure; --measures %s lists them", text,
+                          own->name, own->name);
+    value[i] = strtod(equals + 1, &end);
+    if (end == equals + 1 || *end || !isfinite(value[i]))
+        return cloth_fail(error, CLOTH_E_INPUT, "`%s': the value is not a number", text);
+    return CLOTH_OK;
+}
+
+static int take_pattern(struct garment_pattern *pattern, const struct options *options,
+                        struct cloth_error *error)
+{
+    double value[GARMENT_MEASURES];
+    int code = CLOTH_OK;
+    if (!options->own)
+        return scene_read_pattern(pattern, options->pattern, error);
+    garment_own_size(options->own, options->size < 0 ? SIZE_M : options->size, value);
+    for (int i = 0; i < options->n_measures && !code; i++)
+        code = set_measure(options->own, options->measure[i], value, error);
+    return code ? code : garment_own_make(pattern, options->own, value, error);
+}
+
+static int write_mesh(const struct options *options, const char *seams,
+                      const struct garment_pattern *pattern, struct cloth_error *error)
+{
     struct garment garment = {0};
-    int code = scene_read_pattern(&pattern, options->pattern, error);
-    code = code ? code : check_paths(options, seams, error);
-    code = code ? code : garment_make(&garment, &pattern, &options->fineness, error);
-    code = code ? code : output_garment_obj(options->output, &garment, &pattern, error);
-    code = code ? code : output_garment_seams(seams, &garment, &pattern, error);
+    int code = garment_make(&garment, pattern, &options->fineness, error);
+    code = code ? code : output_garment_obj(options->output, &garment, pattern, error);
+    code = code ? code : output_garment_seams(seams, &garment, pattern, error);
     if (!code && !options->quiet)
-        say(&garment, &pattern);
+        say(&garment, pattern);
     garment_free(&garment);
-    garment_pattern_free(&pattern);
     return code;
+}
+
+static int run(const struct options *options, struct cloth_error *error)
+{
+    struct garment_pattern pattern = {0};
+    char *seams = options->output ? seams_path(options) : NULL;
+    int code = options->output && !seams ? cloth_fail(error, CLOTH_E_MEMORY, "no memory for a name")
+                                         : take_pattern(&pattern, options, error);
+    code = code ? code : check_paths(options, seams, error);
+    if (!code && options->written)
+        code = output_pattern(options->written, &pattern, error);
+    if (!code && options->output)
+        code = write_mesh(options, seams, &pattern, error);
+    garment_pattern_free(&pattern);
+    free(seams);
+    return code;
+}
+
+static void list_measures(const struct garment_own *own)
+{
+    double value[GARMENT_MEASURES];
+    garment_own_size(own, SIZE_M, value);
+    printf("%s: %s. Measures in metres, of size M, and how much more the next size has\n",
+           own->name, own->about);
+    for (int i = 0; own->measure[i].name; i++) {
+        const struct garment_measure *measure = &own->measure[i];
+        printf("  %-10s %5g, %g more, %g to %g: %s\n", measure->name, value[i], measure->step,
+               measure->least, measure->most, measure->about);
+    }
 }
 
 int main(int argc, char **argv)
 {
     static const struct argp argp = {OPTIONS,
                                      parse,
-                                     "PATTERN",
+                                     "PATTERN\n--own GARMENT",
                                      "Makes the mesh of a garment from the sewing pattern PATTERN, "
-                                     "a JSON file: panels, and which vertices are sewn together.",
+                                     "a JSON file, or from measures: panels, and which vertices "
+                                     "are sewn together.",
                                      NULL,
                                      NULL,
                                      NULL};
-    struct options options = {0};
+    struct options options = {.size = -1};
     struct cloth_error error = {0};
+    int code = CLOTH_OK;
     argp_err_exit_status = 2;
     argp_parse(&argp, argc, argv, 0, NULL, &options);
-    char *seams = seams_path(&options);
-    int code = seams ? run(&options, seams, &error)
-                     : cloth_fail(&error, CLOTH_E_MEMORY, "no memory for a name");
-    free(seams);
+    if (options.listed)
+        list_measures(options.listed);
+    else
+        code = run(&options, &error);
     if (!code && (fflush(stdout) != 0 || ferror(stdout)))
         code =
             cloth_fail(&error, CLOTH_E_IO, "cannot write to standard output: %s", strerror(errno));

@@ -18,7 +18,8 @@ enum { SAID = 5 }; /* intersections of the first frame that has any */
 struct look {
     struct intersections *all;
     uint64_t frame, n; /* n: how much was found in it */
-    double time;
+    double time;       /* s, as it is printed, and */
+    double placed;     /* of motions and bodies */
     bool written;
     bool says; /* what is found */
 };
@@ -145,9 +146,9 @@ static void place_body(const struct look *look, size_t obstacle)
     const struct contact_body *body = contact_bodies_at(all->bodies, shape->body);
     const phys_vec *from = body ? contact_body_vertices(body) : NULL;
     struct contact_pose pose;
-    contact_pose_over(shape, all->keys, all->bodies, look->time, look->time, &pose);
+    contact_pose_over(shape, all->keys, all->bodies, look->placed, look->placed, &pose);
     if (body && body->n_frames) {
-        contact_body_places(body, look->time, all->place);
+        contact_body_places(body, look->placed, all->place);
         from = all->place;
     }
     for (uint32_t v = 0; body && v < body->n_vertices; v++) {
@@ -196,7 +197,7 @@ static int look_at_shape(struct look *look, size_t obstacle, uint64_t *entered,
     const struct contact_shape *shape = all->obstacles + obstacle;
     const double depth = look->written ? INTERSECTIONS_DEPTH_FLOAT : INTERSECTIONS_DEPTH;
     struct contact_pose pose;
-    contact_pose_over(shape, all->keys, all->bodies, look->time, look->time, &pose);
+    contact_pose_over(shape, all->keys, all->bodies, look->placed, look->placed, &pose);
     all->entered.n = 0;
     const int code = verify_enter(&all->soup, shape, &pose, depth, &all->entered, error);
     const uint32_t *triangle = all->entered.items;
@@ -257,12 +258,18 @@ static void add_found(const struct look *look, uint64_t pairs, uint64_t with_sha
     found->frames = look->frame + 1;
 }
 
+void intersections_begin(struct intersections *intersections, double begin)
+{
+    intersections->begin = begin;
+}
+
 int intersections_frame(struct intersections *intersections, uint64_t frame, double time,
                         const double *position, bool written, struct cloth_error *error)
 {
     struct look look = {.all = intersections,
                         .frame = frame,
                         .time = time,
+                        .placed = time - intersections->begin,
                         .written = written,
                         .says = intersections->program && !intersections->found.bad};
     uint64_t pairs = 0, with_shapes = 0;

@@ -64,6 +64,9 @@ int intersections_of(struct intersections **intersections, const struct model *m
                      const struct contact_apart *apart, const char *program, bool self_off,
                      struct cloth_error *error);
 
+/* From now on motions and bodies are at time 0 when the time of frames, s, is `begin`. */
+void intersections_begin(struct intersections *intersections, double begin);
+
 /* Checks a frame: position as of flow_output.frame; written: as floats, else as doubles. A frame
  * may be checked both ways, one after the other. Prints the first few of what is found first, on
  * standard error, unless `program` was NULL. Errors: as of verify_pairs. */

@@ -22,6 +22,7 @@ struct intersections {
     const struct contact_bodies *bodies;
     const struct contact_apart *apart;
     bool self_off;
+    double begin; /* s: when motions and bodies are at time 0 */
     size_t n_cloths, n_obstacles;
     phys_vec *place;                  /* room for the vertices of a body */
     struct surface *cloth, *obstacle; /* n_cloths + 1; n_obstacles + 1: empty unless a body */

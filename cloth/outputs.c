@@ -113,19 +113,23 @@ int outputs_open(struct outputs *to, const struct simulate_options *options,
     return code;
 }
 
-/* Where obstacles are in the frames of all phases so far, and of this one. */
+/* Where obstacles are, and what is sewn, in the frames of all phases so far, and of this one. */
 static int write_scene(const struct outputs *of, const struct phases *phases,
                        const struct contact_apart *apart, struct cloth_error *error)
 {
     struct phases_motions motions;
-    struct output_setup setup = setup_of(of, phases_model(phases), apart);
+    struct contact_apart all = *apart;
+    struct output_setup setup = setup_of(of, phases_model(phases), &all);
     int code = phases_motions(phases, &motions, error);
+    const int joins = phases_joined(phases, apart->n_vertices, &all.joined, error);
+    code = code ? code : joins;
     setup.obstacles = motions.obstacles;
     setup.keys = motions.keys;
     setup.bodies = motions.bodies;
     if (!code)
         code = output_scene(of->frames, &setup, error);
     phases_motions_free(&motions);
+    free(all.joined);
     return code;
 }
 
@@ -134,10 +138,11 @@ int outputs_go_on(struct outputs *to, const struct phases *phases,
 {
     int code = CLOTH_OK;
     outputs_count(to);
-    to->begin = phases->total.simulated_seconds;
     if (to->options->check_intersections)
         code = intersections_of(&to->intersections, phases_model(phases), apart, "duite-cloth",
                                 false, error);
+    if (to->intersections)
+        intersections_begin(to->intersections, phases->total.simulated_seconds);
     return code || !to->frames ? code : write_scene(to, phases, apart, error);
 }
 
@@ -149,7 +154,7 @@ void outputs_count(struct outputs *of)
     struct intersections_found *all = &of->found;
     if (!all->bad)
         all->first = last.first;
-    all->frames += last.frames;
+    all->frames = last.frames > all->frames ? last.frames : all->frames; /* up to its last */
     all->bad += last.bad;
     all->pairs = last.pairs > all->pairs ? last.pairs : all->pairs;
     all->with_shapes = last.with_shapes > all->with_shapes ? last.with_shapes : all->with_shapes;
@@ -180,10 +185,9 @@ int outputs_system(void *context, const struct solve_system *system, struct clot
 }
 
 /* What is looked at as written is looked at once it is. */
-static int check_frame(const struct outputs *of, uint64_t frame, double total,
+static int check_frame(const struct outputs *of, uint64_t frame, double time,
                        const double *position, struct cloth_error *error)
 {
-    const double time = total - of->begin; /* bodies and motions count from the phase's begin */
     const int code = intersections_frame(of->intersections, frame, time, position, false, error);
     if (code || !of->frames)
         return code;

@@ -17,7 +17,6 @@ struct outputs {
     struct output_forces *forces;        /* of frames; NULL: none */
     struct intersections *intersections; /* if they are looked for */
     struct intersections_found found;    /* then, at the end; before it of the phases so far */
-    double begin;                        /* s: of the phase */
     struct drape *drape;                 /* if the scene has that test */
     struct drape_found drapes;           /* then, at the end */
 };

@@ -3,6 +3,7 @@
 #include "cloth/phases.h"
 
 #include "cloth/base/memory.h"
+#include "cloth/base/sets.h"
 #include "cloth/phases_check.h"
 
 #include <math.h>
@@ -77,6 +78,26 @@ int phases_next(struct phases *phases, struct cloth_error *error)
         model_start_at(model->cloths + c, *start);
         first += n;
     }
+    return CLOTH_OK;
+}
+
+int phases_joined(const struct phases *phases, uint32_t n, uint32_t **joined,
+                  struct cloth_error *error)
+{
+    *joined = NULL;
+    for (uint32_t i = 0; i <= phases->now; i++) {
+        const uint32_t *of = phases->models[i].contact.apart.joined;
+        if (of && !*joined) {
+            *joined = cloth_alloc(n, sizeof **joined, error);
+            if (!*joined)
+                return CLOTH_E_MEMORY;
+            cloth_sets_start(*joined, n);
+        }
+        for (uint32_t v = 0; v < n && of; v++)
+            cloth_sets_join(*joined, v, of[v]);
+    }
+    for (uint32_t v = 0; v < n && *joined; v++)
+        (*joined)[v] = cloth_sets_root(*joined, v);
     return CLOTH_OK;
 }
 
@@ -158,10 +179,13 @@ static void take_peaks(struct flow_report *to, const struct flow_report *of)
     to->stretch_highest = fmax(to->stretch_highest, of->stretch_highest);
 }
 
-static const char *ended(const struct flow_report *report)
+/* sewn: it ended where it did since all seams were closed. */
+static const char *ended(const struct flow_report *report, bool sewn)
 {
     if (report->stopped)
         return "stopped";
+    if (sewn)
+        return "sewn";
     return isnan(report->rest_seconds) ? "end" : "rest";
 }
 
@@ -173,7 +197,7 @@ void phases_add(struct phases *phases, const struct flow_report *report)
     done->steps = report->steps;
     done->simulated_seconds = report->simulated_seconds;
     done->wall_seconds = report->wall_seconds;
-    done->ended = ended(report);
+    done->ended = ended(report, phases_model(phases)->sewn > 0);
     *total = *report;
     if (!phases->now)
         return;
@@ -181,9 +205,16 @@ void phases_add(struct phases *phases, const struct flow_report *report)
     add_seconds(total, &before);
     add_counters(&total->counters, &before.counters);
     take_peaks(total, &before);
-    total->rest_seconds += before.simulated_seconds;
     if (before.contact_pinch[0])
         memcpy(total->contact_pinch, before.contact_pinch, sizeof total->contact_pinch);
+    total->rest_seconds += before.simulated_seconds;
+    total->sewn_seconds += before.simulated_seconds;
+    if (report->seams)
+        return;
+    total->seams = before.seams;
+    total->seams_open = before.seams_open;
+    total->seam_distance = before.seam_distance;
+    total->sewn_seconds = before.sewn_seconds;
 }
 
 void phases_name(const struct phases *phases, struct cloth_error *error)

@@ -65,6 +65,11 @@ int phases_motions(const struct phases *phases, struct phases_motions *motions,
                    struct cloth_error *error);
 void phases_motions_free(struct phases_motions *motions);
 
+/* What seams pulled in any phase so far, of n vertices, as contact_apart.joined has it; NULL: none
+ * did. *joined: to be freed in any case. Error: CLOTH_E_MEMORY. On rank 0. Local. */
+int phases_joined(const struct phases *phases, uint32_t n, uint32_t **joined,
+                  struct cloth_error *error);
+
 /* Puts the name of the phase that runs before an error, if the scene has phases. */
 void phases_name(const struct phases *phases, struct cloth_error *error);
 

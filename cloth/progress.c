@@ -30,20 +30,24 @@ static void write_duration(char *text, size_t size, double seconds)
         snprintf(text, size, "%.1f h", seconds / 3600);
 }
 
-void progress_step(struct progress *progress, uint64_t step, uint64_t steps, uint64_t cg_iterations,
-                   uint64_t contacts)
+void progress_step(struct progress *progress, uint64_t step, uint64_t steps,
+                   const struct progress_counts *counts)
 {
     double time = now(), pause = progress->terminal ? 0.1 : 10;
     if (time - progress->shown < pause && !(progress->terminal && step == steps))
         return;
-    char left[32], touching[40] = "";
+    char left[32], touching[40] = "", open[60] = "";
     const double each = (time - progress->begun) / (double)step;
     write_duration(left, sizeof left, each * (double)(steps - step));
-    if (contacts)
-        snprintf(touching, sizeof touching, "%" PRIu64 " contacts, ", contacts);
-    fprintf(stderr, "%s%.40s%sstep %" PRIu64 " of %" PRIu64 ", %" PRIu64 " iterations, %s%s left%s",
+    if (counts->contacts)
+        snprintf(touching, sizeof touching, "%" PRIu64 " contacts, ", counts->contacts);
+    if (counts->seams_open)
+        snprintf(open, sizeof open, "%" PRIu64 " seams open by %.2g m, ", counts->seams_open,
+                 counts->seam_distance);
+    fprintf(stderr,
+            "%s%.40s%sstep %" PRIu64 " of %" PRIu64 ", %" PRIu64 " iterations, %s%s%s left%s",
             progress->terminal ? "\r\033[K" : "", progress->phase ? progress->phase : "",
-            progress->phase ? ": " : "", step, steps, cg_iterations, touching, left,
+            progress->phase ? ": " : "", step, steps, counts->cg_iterations, touching, open, left,
             progress->terminal ? "" : "\n");
     fflush(stderr);
     progress->shown = time;

@@ -13,10 +13,14 @@ struct progress {
 };
 
 void progress_begin(struct progress *progress, const char *phase);
-/* After step number `step`, from 1, of `steps`: what its solves took, and how many contacts there
- * are; 0: they are not mentioned. */
-void progress_step(struct progress *progress, uint64_t step, uint64_t steps, uint64_t cg_iterations,
-                   uint64_t contacts);
+/* After step number `step`, from 1, of `steps`: what its solves took, how many contacts there are,
+ * and how many pulled seams are open, by how much at most (m); 0: they are not mentioned. */
+struct progress_counts {
+    uint64_t cg_iterations, contacts, seams_open;
+    double seam_distance;
+};
+void progress_step(struct progress *progress, uint64_t step, uint64_t steps,
+                   const struct progress_counts *counts);
 void progress_end(struct progress *progress);
 
 #endif

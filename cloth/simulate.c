@@ -62,8 +62,12 @@ static void forget_meshes(void *context)
 static void show_step(void *context, uint64_t step, uint64_t steps, uint64_t cg_iterations)
 {
     struct run *run = context;
+    const struct progress_counts counts = {.cg_iterations = cg_iterations,
+                                           .contacts = run->report.contacts_now,
+                                           .seams_open = run->report.seams_open,
+                                           .seam_distance = run->report.seam_distance};
     if (!run->options->quiet)
-        progress_step(&run->progress, step, steps, cg_iterations, run->report.contacts_now);
+        progress_step(&run->progress, step, steps, &counts);
 }
 
 static int runtime_fails(struct cloth_error *error, int code)
@@ -143,6 +147,7 @@ static int execute(struct run *run)
 {
     struct cloth_error error = {0};
     duite *rt = NULL;
+    run->untraced = (struct cloth_error){0}; /* the files of the phase before are replaced */
     duite_options options = duite_options_default();
     options.kernels = flow_kernels();
     options.context = run->flow;
@@ -233,7 +238,8 @@ static int conclude(struct run *run)
         if (run->report.stopped || run->stopped_before)
             say_stopped(run);
         intersections_say(&outputs->found, "duite-cloth");
-        warn_of_motion(run);
+        if (!run->stopped_before) /* else it has warned */
+            warn_of_motion(run);
         if (run->options->report)
             summary_write(&summary, run->options->report, &error);
         if (!run->options->quiet)

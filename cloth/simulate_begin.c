@@ -6,6 +6,7 @@
 #include "cloth/output/output.h"
 #include "cloth/room.h"
 #include "cloth/start.h"
+#include "cloth/start_welds.h"
 
 #include <math.h>
 #include <mpi.h>
@@ -152,6 +153,8 @@ static void open_outputs(struct run *run, struct cloth_error *error)
     if (!error->code && model_certifies(run->model))
         start_check(run->model, run->flow, &run->apart, options->scene, error);
     if (!error->code)
+        start_welds(run->model, run->flow, &run->apart, options->scene, error);
+    if (!error->code)
         outputs_open(&run->outputs, options, &run->phases, run->flow, &run->apart, error);
 }
 
@@ -195,6 +198,8 @@ static void begin_phase(struct run *run, struct cloth_error *error)
     free(columns);
     if (!error->code && model_certifies(run->model))
         start_check(run->model, run->flow, &run->apart, run->options->scene, error);
+    if (!error->code)
+        start_welds(run->model, run->flow, &run->apart, run->options->scene, error);
     if (!error->code)
         outputs_go_on(&run->outputs, &run->phases, &run->apart, error);
 }

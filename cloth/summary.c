@@ -3,6 +3,7 @@
 
 #include "cloth/base/simd.h"
 #include "cloth/output/output.h"
+#include "cloth/summary_seams.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -156,6 +157,7 @@ void summary_print(FILE *file, const struct summary *summary)
     fprintf(file, "  steps            %" PRIu64 " of %g s, %g s simulated\n", report->steps,
             model->h, report->simulated_seconds);
     print_phases(file, summary->phases);
+    summary_seams_print(file, model, report);
     if (model->n_obstacles || model_seeks(model))
         fprintf(file, "  contact          %s%s\n", model_contact_name(model),
                 model->contact.assumed ? ", by default" : "");
@@ -426,6 +428,7 @@ int summary_write(const struct summary *summary, const char *path, struct cloth_
     add_drape(json, summary->drape);
     add_hash(json, "state_hash", summary->report->state_hash);
     add_phases(json, summary->phases);
+    summary_seams_add(json, summary->model, summary->report);
     if (!code)
         code = output_report_write(json, path, error);
     output_report_free(json);

@@ -19,7 +19,7 @@
     X(cg_begin) X(cg_begin_coarse) X(cg_start) X(cg_start_preconditioned) X(cg_guess)              \
     X(cg_pass) X(cg_pass_preconditioned) X(tie_pack) X(tie_pack_pass) X(tie_show_basis)            \
     X(cg_scalars) X(cg_scalars_of_parts) X(cg_scalars_coarse) X(piece_sums) X(piece_shift)         \
-    X(stretch) X(energy) X(level) X(watch) X(contact_force) X(probe) X(row)                         \
+    X(stretch) X(energy) X(level) X(watch) X(seams) X(contact_force) X(probe) X(row)                         \
     X(frame) X(frame_force) X(collect) X(seconds) X(broadcast) X(system_part) X(system_save)
 /* clang-format on */
 

@@ -112,4 +112,4 @@ libduite_cloth_la_SOURCES += \
     cloth/flow/observe/probes.c \
     cloth/flow/observe/stretch.c \
     cloth/flow/observe/system.c \
-    cloth/flow/observe/watch.c
+    cloth/flow/observe/seams.c cloth/flow/observe/watch.c

@@ -161,6 +161,11 @@ void flow_start(const struct flow *flow, double *position)
     }
 }
 
+const double (*flow_unwelded(const struct flow *flow))[3]
+{
+    return (const double(*)[3])flow->source.particles.unwelded;
+}
+
 void flow_starts(const struct flow *flow, double (*start)[6], unsigned char *held)
 {
     const struct flow_particles *particles = &flow->source.particles;
@@ -229,7 +234,8 @@ int flow_run_begin(struct flow_state *state)
     if (code)
         return code;
     describe(state);
-    state->report->rest_seconds = NAN;
+    state->report->rest_seconds = state->report->sewn_seconds = NAN;
+    state->report->seams = flow->model->n_pulled;
     code = flow_memory_take(state);
     if (!code)
         code = flow_share(state);
@@ -293,7 +299,8 @@ static const char *reason(const struct flow_state *state, int code)
 {
     if (code == FLOW_NOT_WRITTEN && state->flow->trouble.code)
         return state->flow->trouble.text;
-    if (code == FLOW_STRETCHED || code == FLOW_TANGLED || code == FLOW_PINCHED)
+    if (code == FLOW_STRETCHED || code == FLOW_TANGLED || code == FLOW_PINCHED ||
+        code == FLOW_UNSEWN)
         return state->reason;
     return code > 0 ? own_sentence(duite_message(), code) : duite_message();
 }
@@ -304,7 +311,7 @@ static int explain(struct flow_state *state, int code)
 {
     struct cloth_error why = {0};
     cloth_fail(&why, code_of_cloth(code), "%.900s%s", reason(state, code),
-               code >= FLOW_DIVERGED && code_of_cloth(code) == CLOTH_E_RUN &&
+               code >= FLOW_DIVERGED && code != FLOW_UNSEWN && code_of_cloth(code) == CLOTH_E_RUN &&
                        state->attempt.length == 1
                    ? "; the step had been halved down to h/1024"
                    : "");

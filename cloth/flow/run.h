@@ -77,10 +77,14 @@ struct flow_report {
         energy_lowest_unlent, energy_gained_unlent, /* of it less energy_lent */
         energy_gained; /* the most that it rose above an earlier one; NaN but with energy_steps */
     uint64_t state_hash;
-    uint64_t last_frame; /* the last frame written */
-    bool shown;          /* it shows the end */
-    bool stopped;        /* a stop was requested before the end */
-    double rest_seconds; /* when the run was found at rest, s; NaN: it was not */
+    uint64_t last_frame;        /* the last frame written */
+    bool shown;                 /* it shows the end */
+    bool stopped;               /* a stop was requested before the end */
+    double rest_seconds;        /* when the run was found at rest, s; NaN: it was not */
+    uint64_t seams, seams_open; /* that are pulled; of these, open at the end by more than the
+                                 * model's distance, or 1 mm; */
+    double seam_distance;       /* the largest distance of partners at the end, m; */
+    double sewn_seconds;        /* since when all have been closed, s; NaN: they are not */
     duite_counters counters;
 };
 
@@ -198,6 +202,9 @@ uint64_t flow_vertices(const struct flow *flow);
 /* Where a run starts: 3 numbers a vertex, m, in the input's numbering. On rank 0, before the run.
  * Local. */
 void flow_start(const struct flow *flow, double *position);
+
+/* The same before seams are welded, by vertex; NULL: none are. Lives until the run. */
+const double (*flow_unwelded(const struct flow *flow))[3];
 
 /* The same with velocities, m/s: of each vertex 6 numbers, as model_cloth.start has them; and
  * whether a pin holds it or moves it, 1 or 0. On rank 0, before the run. Local. */

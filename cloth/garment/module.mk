@@ -2,6 +2,11 @@
 libduite_cloth_la_SOURCES += \
 	cloth/garment/garment.c cloth/garment/garment.h \
 	cloth/garment/check.c cloth/garment/pattern.c cloth/garment/pattern.h \
+	cloth/garment/own/draw.c cloth/garment/own/draw.h \
+	cloth/garment/own/own.c cloth/garment/own/own.h \
+	cloth/garment/own/skirt.c \
+	cloth/garment/own/trousers.c \
+	cloth/garment/own/tshirt.c \
 	cloth/garment/detail/curve.c cloth/garment/detail/curve.h \
 	cloth/garment/detail/delaunay.c cloth/garment/detail/delaunay.h cloth/garment/detail/delaunay_parts.h \
 	cloth/garment/detail/delaunay_change.c \

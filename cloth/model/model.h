@@ -130,6 +130,8 @@ struct model {
                               earlier energy is made again, by BDF2 by implicit Euler, else shorter;
                               0: by any */
     struct model_rest rest;
+    double sewn; /* m: it ends when the partners of pulled seams are at most so far from each other;
+                    0: it does not end so */
     enum model_integrator integrator;
     uint32_t newton_steps;   /* at most, of a step of an implicit one; 0: as 1, one linear step */
     double newton_tolerance; /* |dv| of the last <= tolerance |change of v in the step|, by mass */

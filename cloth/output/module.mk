@@ -2,7 +2,7 @@ libduite_cloth_la_SOURCES += \
 	cloth/output/output.h \
 	cloth/output/forces.c \
 	cloth/output/frames.c \
-	cloth/output/garment.c cloth/output/garment.h \
+	cloth/output/garment.c cloth/output/garment.h cloth/output/pattern.c \
 	cloth/output/lock.c \
 	cloth/output/mannequin.c cloth/output/mannequin.h \
 	cloth/output/probes.c \

@@ -6,9 +6,10 @@ plan_later
 export DUITE_SCHEDULER=nobody DUITE_MAPPING=nowhere DUITE_BALANCE=never DUITE_THREADS=none DUITE_SEED=no DUITE_TRACE=/no/such/folder/trace
 
 experiments=$(cd "$srcdir" && pwd)/bench/experiments
-mkdir "$scratch/bench" # what it leaves lies there
+mkdir -p "$scratch/bench/vassilev" # what it leaves lies there
 ln -s "$PWD/duite-cloth" "$PWD/duite-predict" "$scratch"
 ln -s "$PWD/bench/compare" "$PWD/bench/contact-partition" "$scratch/bench"
+ln -s "$PWD/bench/vassilev/vassilev" "$scratch/bench/vassilev"
 table() { # NAME LINES: so many rows, none of them without figures
     status=0
     (cd "$scratch" && limited sh "$experiments" --quick "$1") > "$scratch/said" 2>&1 || status=$?
@@ -19,13 +20,33 @@ table() { # NAME LINES: so many rows, none of them without figures
 unknown() {
     status=0
     sh "$experiments" garment > "$scratch/said" 2>&1 || status=$?
-    test $status = 2 && grep -q "zara|partutex|resolution|grain|link|scaling|contact-partition" "$scratch/said"
+    test $status = 2 && grep -q "zara|partutex|resolution|grain|link|scaling|contact-partition|vassilev" "$scratch/said"
 }
 ok "an unknown experiment" unknown
 ok "resolution" table resolution 3
 ok "grain" table grain 8
 ok "scaling" table scaling 24
 ok "contact-partition" table contact-partition 17
+ok "vassilev" table vassilev 13
+# The torso of the experiment, and panels of so many vertices that joints pull together around it.
+awk -f "$srcdir/bench/vassilev/torso.awk" > "$scratch/torso.obj"
+awk -v n=300 -v shoulder=1.44 -v body='{obj: torso.obj, meet: image}' -f "$srcdir/bench/vassilev/panels.awk" > "$scratch/panels.yaml"
+# What the loops give: on two threads as many pairs repel each other, and vertices are in the body, as on one, or nearly so.
+loops() { # THREADS: prints pieces, vertices in the body, pairs that repel each other, mean of all iterations
+    limited bench/vassilev/vassilev run "$1" 300 on 0 "$scratch/panels.yaml" contact.thickness=0.02 | cut -d ' ' -f 4,12,13
+}
+threads_agree() {
+    loops 1 > "$scratch/one" && loops 2 > "$scratch/two" && cat "$scratch/one" "$scratch/two" &&
+        paste -d ' ' "$scratch/one" "$scratch/two" | awk '{ ok = $1 == 2 && $2 > 1 && $3 > 0 && $4 == 2 && near($2, $5) && near($3, $6) }
+            function near(a, b) { return a - b < 0.01 * a && b - a < 0.01 * a }
+            END { exit !ok }'
+}
+refused() { # KEY=VALUE SENTENCE
+    ! limited bench/vassilev/vassilev run 1 1 off 0 "$scratch/panels.yaml" "$1" > "$scratch/said" 2>&1 && grep "$2" "$scratch/said"
+}
+ok "six loops on one thread and on two" threads_agree
+ok "six loops of what they do not know" refused 'obstacles=[{plane: {point: [0, 0, 0], normal: [0, 1, 0]}}]' "met by image"
+ok "six loops of triangles" refused 'materials.cloth={model: triangles, density: 0.2, stretch: 40, shear: 10}' "springs alone"
 if test "${DUITE_LONG:-}" = 1; then
     ok "zara" table zara 22
     ok "partutex" table partutex 7

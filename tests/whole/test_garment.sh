@@ -22,7 +22,7 @@ short_answer() { prints run "$2" && grep -q -e "$1" printed && test ! -s complai
 ok "--help lists the options" short_answer '--vertices' --help
 ok "--version names the version" short_answer '^duite-garment [0-9]' --version
 documented() { # every option of --help stands in the manual page
-    run --help | sed -n 's/^ *\(-.,\)\{0,1\} *--\([a-z]*\).*/\2/p' > options
+    run --help | sed -n 's/^ *\(-.,\)\{0,1\} *--\([a-z-]*\).*/\2/p' | sed 's/-/\\\\-/g' > options
     test "$(wc -l < options)" -ge 7 || return
     while read -r option; do grep -q -e "\\\\-\\\\-$option" "$page" || { echo "--$option is not in the page" && return 1; }; done < options
 }
@@ -64,6 +64,42 @@ ok "no folder" refused "cannot write" "$patterns/dart.json" -e 0.1 -o none/x.obj
 cp "$patterns/dart.json" mine.json
 ok "the pattern is not replaced" refused "would replace the pattern" mine.json -e 0.1 -o mine.json
 ok "one file for both" refused "cannot be the same file" mine.json -e 0.1 -o x.obj --seams x.obj
+
+# ---- Own garments
+
+documents=$srcdir/docs/garments.md
+listed() { # GARMENT: its measures are in the document, with size M's values and ranges
+    run --measures "$1" > printed || return
+    sed -n 's/^  \([a-z]*\) *\([0-9.]*\), \([0-9.]*\) more, \([0-9.]* to [0-9.]*\): \(.*\)/| `\1` | \2 | \3 | \4 | \5 |/p' printed > rows
+    test "$(wc -l < rows)" -ge 9 || return
+    while read -r row; do grep -qF -e "$row" "$documents" || { echo "not in docs/garments.md: $row" && return 1; }; done < rows
+}
+round_trip() { # GARMENT: the pattern that is written gives the same bits
+    run --own "$1" --size S --measure height=1.7 -e 0.03 -o own.obj --write-pattern own.json -q &&
+        run own.json -e 0.03 -o again.obj -q && cmp own.obj again.obj && cmp own.seams.json again.seams.json
+}
+for name in tshirt trousers skirt; do
+    ok "$name: the measures are documented" listed $name
+    ok "$name: its pattern is read back" round_trip $name
+done
+pattern_alone() { rm -f x.obj && prints run --own skirt --write-pattern skirt.json && test ! -s printed && test -s skirt.json && test ! -e x.obj; }
+ok "a pattern without a mesh" pattern_alone
+larger() { # of a larger size more cloth is needed
+    for size in XS S M L XL; do run --own trousers --size $size -e 0.1 -o x.obj | awk '/^panel/ { area += $(NF - 1) } END { print area }'; done > areas
+    test "$(wc -l < areas)" = 5 && sort -n -u areas | cmp - areas
+}
+ok "sizes grow" larger
+ok "no such garment" refused "there is no own garment \`kilt'; there are tshirt, trousers, skirt" --own kilt -e 0.1 -o x.obj
+ok "no such size" refused "--size takes one of XS, S, M, L, XL" --own skirt --size 42 -e 0.1 -o x.obj
+ok "no such measure" refused "a skirt has no such measure" --own skirt --measure sleeve=1 -e 0.1 -o x.obj
+ok "a measure without a value" refused "--measure takes NAME=VALUE" --own skirt --measure hem -e 0.1 -o x.obj
+ok "a measure that is no number" refused "the value is not a number" --own skirt --measure hem=1m -e 0.1 -o x.obj
+ok "a measure that is out of range" refused "skirt: the measure hem is 9; it has to be 0.5 to 4" --own skirt --measure hem=9 -e 0.1 -o x.obj
+ok "two patterns" refused "exclude each other" mine.json --own skirt -e 0.1 -o x.obj
+ok "a size of a file" refused "need --own" mine.json --size M -e 0.1 -o x.obj
+ok "pattern over the mesh" refused "mesh and pattern cannot be the same file" --own skirt -e 0.1 -o x.obj --write-pattern x.obj
+ok "pattern over the pattern" refused "would replace the pattern" mine.json --write-pattern mine.json
+ok "seams of nothing" refused "--seams needs --output" --own skirt --write-pattern y.json --seams x.obj
 
 # ---- Patterns that cannot be sewn
 
@@ -144,6 +180,11 @@ golden() { # NAME ARGUMENT...
 for name in straight quadratic cubic circle dart gather fold; do
     golden "$name, 3 cm" "$patterns/$name.json" -e 0.03
     golden "$name, 4000 vertices" "$patterns/$name.json" -n 4000
+done
+
+for name in tshirt trousers skirt; do
+    golden "own $name, 2 cm" --own $name -e 0.02
+    golden "own $name, XL, 5000 vertices" --own $name --size XL -n 5000
 done
 
 # ---- Patterns of others

@@ -130,6 +130,70 @@ stops() {
 }
 ok "SIGUSR1 ends the whole run" stops
 
+# ---- What looks at all phases, or at the last ----
+# A sheet that is held everywhere, 0.4 m above a ball, which rises by 0.5 m in the first 0.05 s of the second phase: it is through from 0.08 s on.
+sed -e 's/pins: .*/pins: [{box: [[-9, -9, -9], [9, 9, 9]]}]/' -e 's/- plane: .*/- sphere: {centre: [0, -0.5, 0], radius: 0.1}/' sheet.yaml > ball.yaml
+looked() { # FIRST BAD PHASES...: the ball meets the sheet in so many of 11 frames
+    first=$1 many=$2 status=0
+    shift 2
+    "$DUITE_CLOTH" ball.yaml --quiet --report report.json --output frames --check-intersections --set contact.mode=project "$@" 2> said || status=$?
+    cat said
+    test $status = 4 && test "$(value intersections_frame)" = "$first" && grep -q "intersect in $many of 11 frames, from frame $first on" said &&
+        { status=0 && "$DUITE_VIEW" frames --check-intersections > said.view 2>&1 || status=$?; } && cat said.view && test $status = 4 &&
+        grep "intersect in $many of 11 frames, from frame $first on" said.view
+}
+through() {
+    looked 9 2 --set "phases=[{name: one, set: {time.end: 0.04}}, {name: two, set: {time.end: 0.06, 'obstacles[0].sphere.motion': {times: [0, 0.05], translate: [[0, 0, 0], [0, 0.5, 0]]}}}]" &&
+        grep -q 'frame 9, at 0.09 s' said
+}
+ok "intersections are looked for in all phases, the first frame counts" through
+ok "those of a phase that is over are not forgotten" looked 0 5 \
+    --set "phases=[{name: one, set: {time.end: 0.04, 'obstacles[0].sphere.motion': {times: [0], translate: [[0, 0.5, 0]]}}}, {name: two, set: {time.end: 0.06}}]"
+systems() {
+    run $implicit --save-system one && run $implicit --set "$two" --save-system frames/system && for file in matrix rhs solution position; do cmp one/$file.mtx frames/system/$file.mtx || return 1; done
+}
+ok "--save-system is of the last step of the last phase" systems
+tools=$(dirname "$DUITE_CLOTH")
+tasks() { "$tools/duite-trace" --csv=trace.csv trace && awk -F, '$3 == "task" { n[$4]++ } END { for (name in n) print name, n[name] }' trace.csv | sort; }
+traces() { # the tasks of a run of the second phase's length, on each of two ranks
+    ranks 2 "$DUITE_CLOTH" sheet.yaml --quiet --trace trace --end 0.06 && tasks > one.tasks && cat one.tasks && test "$(wc -l < one.tasks)" -gt 3 &&
+        ranks 2 "$DUITE_CLOTH" sheet.yaml --quiet --report report.json --set "$two" --trace trace && tasks > two.tasks && cmp one.tasks two.tasks &&
+        "$tools/duite-trace" --check trace && grep lower_bound report.json && ! grep 'lower_bound_seconds": null' report.json
+}
+ok "the trace is of the last phase, of all ranks" traces
+drapes() { run --set "phases=[{name: one, set: {time.end: 0.04}}, {name: two, set: {time.end: 0.06, drape: {radius: 0.1}}}]" && value drape_coefficient_percent && grep drape_coeff report.json && ! grep 'drape_coefficient_percent": null' report.json; }
+ok "a drape test of the last phase" drapes
+room() {
+    run --output frames --set "$two" --set time.fps=11000 2> said && cat said && grep -q 'gives 1101 frames of 144 vertices up to 0.1 s, but there are 100 steps' said
+}
+ok "frames of all phases are what the disk has room for" room
+warns() {
+    run --output frames --set contact.thickness=0.002 --set "phases=[{name: one}, {name: two, set: {integrator: explicit_euler, solver.patches: 2}}]" 2> said
+    cat said
+    test "$(grep -c 'contact.thickness means nothing' said)" = 1 && grep -q "^duite-cloth: warning: phase 'two': .*solver means nothing: explicit steps" said
+}
+ok "a warning names a later phase, one of both is said once" warns
+
+# A start that is not free is found when the phase begins: two pieces that cross, which the first phase lets be.
+cat > cross.yaml << 'END'
+schema: 1
+cloths:
+  - {name: a, material: m, mesh: {inline: {vertices: [[0, 1, 0], [1, 1, 0], [0, 1, 1]], triangles: [[0, 1, 2]]}}}
+  - {name: b, material: m, mesh: {inline: {vertices: [[0.2, 0, 0.2], [0.3, 2, 0.2], [0.2, 2, 0.3]], triangles: [[0, 1, 2]]}}}
+materials: {m: {density: 0.2, stretch: 500}}
+contact: {mode: project}
+gravity: [0, 0, 0]
+time: {h: 0.01, end: 0.04, fps: 50}
+phases: [{name: sew}, {name: wear, set: {contact.mode: certified}}]
+END
+crossed() {
+    status=0
+    "$DUITE_CLOTH" cross.yaml --quiet --output frames > said 2>&1 || status=$?
+    cat said
+    test $status = 2 && grep -q "^duite-cloth: phase 'wear': cross.yaml: where the run starts 1 pairs" said && test "$(frames)" = "0 0 1 0.02 2 0.04"
+}
+ok "a phase whose start is not free is named, and the frames so far stay" crossed
+
 # ---- Bad input ----
 cat > phases << 'END'
 phases:

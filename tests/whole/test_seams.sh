@@ -59,6 +59,68 @@ far() { # nothing has pulled them yet
 }
 ok "partners that are too far apart are not welded" far
 
+# Free where it starts and where it is welded, but not on the way, which is 15 mm long.
+way() { # WITH SENTENCE...: what is between the front panel's lower edge and where it is welded
+    scene "$panels" '{state: welded, tolerance: 0.031}' '' > free.yaml
+    run free.yaml --set time.end=0.02 || return 1
+    { sed '/^materials/,$d' free.yaml && echo "$1" && sed -n '/^materials/,$p' free.yaml; } > way.yaml
+    run way.yaml --set time.end=0.02 2> said
+    test $? = 2 && cat said && grep -q "way.yaml: the welds of seams would move cloth through $2, .* at vertices .* of 'pillow'" said
+}
+ok "a weld does not go through an obstacle" way 'obstacles: [{box: {centre: [0.1, -0.002, 0.0225], size: [0.02, 0.006, 0.002]}}]' 'obstacles\[0\]'
+cat > plate.obj << END
+v 0.09 -0.005 0.0215
+v 0.11 -0.005 0.0215
+v 0.11 0.001 0.0215
+v 0.09 0.001 0.0215
+v 0.09 -0.005 0.0235
+v 0.11 -0.005 0.0235
+v 0.11 0.001 0.0235
+v 0.09 0.001 0.0235
+f 4 3 2 1
+f 5 6 7 8
+f 1 2 6 5
+f 2 3 7 6
+f 3 4 8 7
+f 4 1 5 8
+END
+ok "nor through a body" way 'obstacles: [{body: {obj: plate.obj}}]' 'obstacles\[0\]'
+ok "nor through other cloth" way '  - {name: other, mesh: {grid: {width: 0.02, height: 0.006, nx: 5, ny: 3}}, material: m, transform: {rotate: [1, 1, 0, 0], translate: [0.1, -0.002, 0.0225]}}' 'the cloth'
+
+# Sewn in a phase that ends when all seams are closed, then welded.
+scene "$panels" '{}' '' > phases.yaml
+cat >> phases.yaml << END
+phases:
+  - {name: sew, set: {time.sewn: {distance: 0.001}, time.end: 1}}
+  - {name: wear, set: {'cloths[0].seams.state': welded, time.end: 0.1}}
+END
+phases() {
+    run phases.yaml --output phases && test "$(value intersections)" = 0 && "$DUITE_VIEW" -i phases || return 1
+    value state_hash > pulled.hash
+    grep '"ended": "sewn"' report.json && grep '"name": "wear"' report.json && test "$(value seams_open)" = 0 || return 1
+    grep '"panel_from": "front", "edge_from": 1, "panel_to": "back", "edge_to": 3, "pairs": 16, "reversed": 1' report.json || return 1
+    # 30 mm come down to 1 mm by exp(-t / 0.1 s) after 0.34 s; steps of implicit Euler are slower
+    awk -v d="$(value seam_distance)" -v t="$(value sewn_seconds)" 'BEGIN { print d, t; exit !(d > 0 && d <= 0.001 && t >= 0.34 && t <= 0.40) }'
+}
+ok "a run ends when all seams are closed; what is welded then does not intersect" phases
+sewn_alike() { ranks "$1" "$DUITE_CLOTH" phases.yaml --quiet --report report.json --threads "$2" && test "$(value state_hash)" = "$(cat pulled.hash)"; }
+ok "the same bits of two threads" sewn_alike 1 2
+ok "of two ranks" sewn_alike 2 2
+ok "of three ranks" sewn_alike 3 1
+unclosed() { # one panel is pinned, and of the other a vertex in the middle of a seam, but for which all come near
+    scene "$panels" '{}' 'pins: [{box: [[-1, -1, -1], [1, 1, 0.001]]}]' | sed 's/^time: {/time: {sewn: {}, /; s/end: 0.5/end: 0.1/' > unclosed.yaml
+    run unclosed.yaml --output unclosed 2> said
+    test $? = 1 && test -s unclosed/cloth.pc2 && cat said || return 1
+    grep -q "seams are not closed at time.end, 0.1 s: 4 of 4 are open by more than 0.001 m (time.sewn.distance); the worst: seam [0-3] of cloth 'pillow' (edge [0-3] of panel 'front', edge [0-3] of panel 'back') by 0.0[0-9]* m;" said
+}
+ok "seams that are not closed in time are named" unclosed
+idle() { # nothing is pulled
+    scene "$panels" '{state: open}' '' | sed 's/^time: {/time: {sewn: {}, /' > idle.yaml
+    run idle.yaml 2> said
+    test $? = 2 && grep -q 'idle.yaml:[0-9:]*: time.sewn waits for pulled seams, and the scene has none' said || { cat said; return 1; }
+}
+ok "a run that waits for seams has some" idle
+
 file() { # CHANGE SENTENCE
     sed "$1" pillow.seams.json > changed.seams.json && ! cmp -s pillow.seams.json changed.seams.json || return 1
     scene '{file: pillow.obj}' '{file: changed.seams.json}' '' > changed.yaml

@@ -13,6 +13,13 @@ int flow_watch(struct flow_state *state);
 int flow_contact_watch(struct flow_state *state);
 /* Forks its row of the table of probes. */
 int flow_probes_row(struct flow_state *state);
+/* Forks how far partners of pulled seams are from each other at the end of the step under way, or
+ * at the start; takes what it found, when the step is accepted, into the report. Nothing where no
+ * seams are pulled. */
+int flow_seams_fork(struct flow_state *state);
+int flow_seams_find(struct flow_state *state);
+/* FLOW_UNSEWN, with the reason: which seams are open most. */
+int flow_seams_fail(struct flow_state *state);
 /* The same if probes are wanted, and finds whether the run rests: when the step is accepted,
  * and for the start. */
 int flow_watched(struct flow_state *state);

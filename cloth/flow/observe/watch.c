@@ -35,8 +35,9 @@ static int watch_body(const duite_call *call, const struct watch_fields *on)
 
 int flow_watch(struct flow_state *state)
 {
-    if (!flow_writes_probes(state) && !may_rest(state))
-        return DUITE_OK;
+    const int sews = flow_seams_fork(state);
+    if (sews || (!flow_writes_probes(state) && !may_rest(state)))
+        return sews;
     const double none[FLOW_PEAKS] = {0, -INFINITY, -INFINITY};
     struct flow_block_args args;
     int code = duite_set(state->rt, flow_field_object(state, FLOW_FIELD_peaks, 0), none);
@@ -78,5 +79,7 @@ int flow_watched(struct flow_state *state)
     int code = flow_contact_watch(state);
     if (!code && flow_writes_probes(state))
         code = flow_probes_row(state);
+    if (!code)
+        code = flow_seams_find(state);
     return code ? code : find_rest(state);
 }

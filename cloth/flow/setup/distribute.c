@@ -20,7 +20,7 @@ struct shape {
     struct flow_skin_size skin;
     uint32_t joined, halo_start[SOLVE_MAX_PATCHES + 1];
     uint32_t n_watched, n_moved, n_sliding, n_loose, n_varying, n_neighbours, n_ghosts, n_stiff,
-        n_elements[ELEMENT_KINDS], n_materials;
+        n_pulled, n_elements[ELEMENT_KINDS], n_materials;
 };
 
 /* ---- Broadcasts ---- */
@@ -146,6 +146,7 @@ static int broadcast_shared(const duite_call *call)
                               .n_neighbours = t->n_neighbours,
                               .n_ghosts = t->n_ghosts,
                               .n_stiff = t->n_stiff,
+                              .n_pulled = t->n_pulled,
                               .n_materials = t->n_materials,
                               .skin = t->skin,
                               .joined = t->joined};
@@ -280,6 +281,7 @@ static void unpack(struct flow_state *state)
                                                .n_neighbours = shape->n_neighbours,
                                                .n_ghosts = shape->n_ghosts,
                                                .n_stiff = shape->n_stiff,
+                                               .n_pulled = shape->n_pulled,
                                                .n_materials = shape->n_materials,
                                                .skin = shape->skin,
                                                .joined = shape->joined,

@@ -77,14 +77,17 @@ static int make_timed(struct flow_springs *springs, const struct flow_particles 
     return make_joint(&timed->spring, particles, springs->model, joint, pair, error);
 }
 
+/* seam: as of the spring. */
 static int make_one(struct flow_springs *springs, const struct flow_particles *particles,
-                    const struct model_joint *joint, const struct flow_pair *pair,
+                    const struct model_joint *joint, uint32_t seam, const struct flow_pair *pair,
                     struct cloth_error *error)
 {
     if (model_is_timed(joint))
         return make_timed(springs, particles, joint, pair, error);
-    return make_joint(springs->joint + springs->n_joints++, particles, springs->model, joint, pair,
-                      error);
+    struct flow_spring *spring = springs->joint + springs->n_joints++;
+    const int code = make_joint(spring, particles, springs->model, joint, pair, error);
+    spring->seam = joint->pairs.seam ? seam : 0;
+    return code;
 }
 
 static int make_all(struct flow_springs *springs, const struct flow_particles *particles,
@@ -101,12 +104,14 @@ static int make_all(struct flow_springs *springs, const struct flow_particles *p
     if (!springs->joint || !springs->timed)
         return CLOTH_E_MEMORY;
     struct flow_pair *pair = list->items;
-    for (uint32_t j = 0, k = 0; j < model->n_joints; j++)
+    for (uint32_t j = 0, k = 0, seam = 0; j < model->n_joints; j++) {
+        seam += model->joints[j].pairs.seam != 0;
         for (uint32_t i = 0; i < model->joints[j].pairs.end[0].n && !code; i++, k++) {
-            code = make_one(springs, particles, model->joints + j, pair + k, error);
+            code = make_one(springs, particles, model->joints + j, seam, pair + k, error);
             if (!model_is_timed(model->joints + j)) /* of timed ones two may have several */
                 pair[springs->n_joints - 1] = pair[k];
         }
+    }
     list->n = springs->n_joints;
     for (size_t i = 0; i < list->n; i++) /* whichever names stand for them, vertices are the same */
         for (int end = 0; end < 2; end++)

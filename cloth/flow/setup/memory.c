@@ -93,6 +93,10 @@ static void take(struct flow_state *state)
     state->refs = cloth_alloc(refs, sizeof *state->refs, &flow->trouble);
     state->rows = cloth_alloc(larger(4 * (size_t)head->max_rows, head->max_neighbours),
                               sizeof *state->rows, &flow->trouble);
+    state->seam_peaks =
+        cloth_alloc(flow->model->n_pulled, sizeof *state->seam_peaks, &flow->trouble);
+    state->seam_squares =
+        cloth_alloc(flow->model->n_pulled, sizeof *state->seam_squares, &flow->trouble);
     flow_halo_take(state);
     flow_ties_take(state);
     flow_contact_take(state);
@@ -142,6 +146,8 @@ void flow_memory_free(struct flow_state *state)
     free(state->block);
     free(state->refs);
     free(state->rows);
+    free(state->seam_peaks);
+    free(state->seam_squares);
     flow_halo_free(state);
     flow_ties_free(state);
     flow_contact_free(state);
@@ -156,4 +162,5 @@ void flow_memory_free(struct flow_state *state)
     state->hash = NULL;
     state->refs = NULL;
     state->rows = NULL;
+    state->seam_peaks = state->seam_squares = NULL;
 }

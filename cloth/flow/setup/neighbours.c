@@ -73,11 +73,13 @@ static void find(void *to, const struct flow_spring *spring)
     struct flow_table *block[2];
     join(to, spring->a, spring->b, block);
     block[0]->n_stiff += spring->stiffness > 0;
+    block[0]->n_pulled += spring->seam != 0;
     if (block[0] == block[1]) {
         block[0]->n_inner++;
         return;
     }
     block[1]->n_stiff += spring->stiffness > 0;
+    block[1]->n_pulled += spring->seam != 0;
     block[0]->n_cut++;
     block[1]->n_cut++;
 }

@@ -391,6 +391,7 @@ void flow_particles_free(struct flow_particles *particles)
     free(particles->used);
     free(particles->free);
     free(particles->mass);
+    free(particles->unwelded);
     free(particles->own);
     free(particles->drag);
     flow_welds_free(&particles->welds);

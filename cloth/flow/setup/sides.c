@@ -14,6 +14,7 @@ struct flow_side {
     uint32_t spring;      /* its number: springs that join the same rows keep their order */
     double stiffness, damping, length;
     unsigned char stretch;
+    uint32_t seam;
 };
 
 static int compare_u32(uint32_t a, uint32_t b)
@@ -44,8 +45,9 @@ static void put_side(struct gatherer *gatherer, uint32_t block, uint32_t other, 
                      uint32_t there, const struct flow_spring *s)
 {
     struct flow_source *source = gatherer->source;
-    source->side[source->start[block - source->from]++] = (struct flow_side){
-        other, here, there, gatherer->spring, s->stiffness, s->damping, s->length, s->stretch};
+    source->side[source->start[block - source->from]++] =
+        (struct flow_side){other,      here,      there,      gatherer->spring, s->stiffness,
+                           s->damping, s->length, s->stretch, s->seam};
 }
 
 static void gather_spring(void *to, const struct flow_spring *s)
@@ -226,7 +228,7 @@ static void fill_sides(const struct flow_source *source, const struct flow_table
                        const struct flow_side *side, const struct flow_layout *layout)
 {
     const uint32_t *vertex = source->blocks.vertex;
-    uint32_t held = 0, entries = 0;
+    uint32_t held = 0, entries = 0, pulled = 0;
     for (uint32_t i = 0; i < t->n_inner + t->n_cut; i++) {
         const bool first = opens(t, side, i);
         entries += first;
@@ -243,6 +245,10 @@ static void fill_sides(const struct flow_source *source, const struct flow_table
         layout->damping[i] = side[i].damping;
         layout->length[i] = side[i].length;
         layout->stretch[i] = side[i].stretch;
+        if (side[i].seam) {
+            layout->pulled[pulled][0] = i;
+            layout->pulled[pulled++][1] = side[i].seam;
+        }
         if (!first || free_here == free_there || (side[i].other && !free_here))
             continue; /* neither end is held, or the free row is the neighbour's */
         layout->held[held][0] = free_here ? here : there;

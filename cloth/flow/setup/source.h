@@ -64,6 +64,7 @@ struct flow_particles {
     uint32_t n_varying;
     struct flow_varying *varying; /* in the scene's order; then by place */
     double (*start)[6];           /* m, m/s; NULL: all start where the meshes have them */
+    double (*unwelded)[3];        /* m: before the welds; NULL: no weld is of a seam */
 };
 
 /* Errors: CLOTH_E_INPUT for pins and loads outside their mesh, boxes without a vertex, starts
@@ -168,6 +169,7 @@ struct flow_spring {
     uint32_t a, b;                     /* a < b */
     double stiffness, damping, length; /* N/m, kg/s, m */
     unsigned char stretch;             /* counts for the largest stretch */
+    uint32_t seam;                     /* of those that pull, from 1; 0: it is no joint of one */
 };
 /* A spring that welds make parallel to another, of the same length at rest, by its number among all
  * springs of the cloths: the first of them is all, the others are gone. */

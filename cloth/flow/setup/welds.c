@@ -226,13 +226,30 @@ static void meet(struct flow_particles *p, uint32_t root, const uint32_t (*name)
             p->start[name[i][1]][c] = start[c];
 }
 
+/* Where all vertices are before welds of seams move them. */
+static int keep_unwelded(struct flow_particles *p, const struct model *model,
+                         struct cloth_error *error)
+{
+    bool sewn = false;
+    for (uint32_t w = 0; w < model->n_welds; w++)
+        sewn = sewn || model->welds[w].pairs.seam;
+    if (!sewn)
+        return CLOTH_OK;
+    p->unwelded = cloth_alloc(p->n, sizeof *p->unwelded, error);
+    for (uint32_t v = 0; v < p->n && p->unwelded; v++)
+        for (int c = 0; c < 3; c++)
+            p->unwelded[v][c] = p->start[v][c];
+    return p->unwelded ? CLOTH_OK : CLOTH_E_MEMORY;
+}
+
 int flow_welds_settle(struct flow_particles *p, const struct model *model,
                       struct cloth_error *error)
 {
     const struct flow_welds *welds = &p->welds;
     if (!welds->root)
         return CLOTH_OK;
-    const int code = check_distances(p, model, error);
+    int code = check_distances(p, model, error);
+    code = code ? code : keep_unwelded(p, model, error);
     struct flow_cloths at = {0};
     for (uint32_t v = 0; v < p->n && !code; v++) {
         const struct model_material *material = material_of(model, v, &at);

@@ -207,6 +207,12 @@ static size_t motion(const struct flow_state *state, uint32_t block)
     return flow_motion_doubles(state->flow);
 }
 
+static size_t pulled_seams(const struct flow_state *state, uint32_t block)
+{
+    (void)block;
+    return state->flow->model->n_pulled;
+}
+
 static size_t pieces(const struct flow_state *state, uint32_t block)
 {
     (void)block;
@@ -225,6 +231,12 @@ static bool kept(const struct flow_state *state, uint32_t block)
 {
     (void)block;
     return model_keeps(state->flow->model);
+}
+
+static bool pulls(const struct flow_state *state, uint32_t block)
+{
+    (void)block;
+    return state->flow->model->n_pulled;
 }
 
 static bool implicit_run(const struct flow_state *state, uint32_t block)

@@ -42,7 +42,8 @@ enum {
     FLOW_STRETCHED,
     FLOW_NO_FILTER,
     FLOW_TANGLED,
-    FLOW_PINCHED
+    FLOW_PINCHED,
+    FLOW_UNSEWN
 };
 
 /* Rows of a block's halo that blocks on one other rank read. */

@@ -243,11 +243,13 @@ struct flow_state {
     struct flow_guard guard;
     char reason[600]; /* why no step is short enough */
     uint64_t next_frame;
-    double shown;  /* tick of the last frame */
-    bool begun;    /* all ranks have their memory, objects are made */
-    bool stopping; /* a stop was agreed: no more steps begin */
-    bool resting;  /* it rests: ends after the next frame */
-    double moved;  /* s: when it was last seen too fast for that */
+    double shown;                      /* tick of the last frame */
+    bool begun;                        /* all ranks have their memory, objects are made */
+    bool stopping;                     /* a stop was agreed: no more steps begin */
+    bool resting;                      /* it rests: ends after the next frame */
+    bool sewn;                         /* so it does where it waits for seams, and all are closed */
+    double *seam_peaks, *seam_squares; /* of each pulled seam: 0; as the field, of the last step */
+    double moved;                      /* s: when it was last seen too fast for that */
 };
 
 static inline struct flow_before flow_before(const struct flow_state *state)

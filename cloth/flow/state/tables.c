@@ -51,6 +51,7 @@ static void lay(const struct flow_table *t, struct flow_room *room, struct flow_
     layout->varying_force = flow_room_next(room, t->n_varying * sizeof *layout->varying_force);
     layout->watched = flow_room_next(room, t->n_watched * sizeof *layout->watched);
     layout->stretch = flow_room_next(room, sides);
+    layout->pulled = flow_room_next(room, t->n_pulled * sizeof *layout->pulled);
     for (int i = 0; i < ELEMENT_KINDS; i++)
         lay_list(t, i, room, layout->list + i);
 }
@@ -89,6 +90,7 @@ void flow_table_open(struct flow_table *t, const void *memory)
     t->damping = arrays.damping;
     t->length = arrays.length;
     t->stretch = arrays.stretch;
+    t->pulled = (const uint32_t(*)[2])arrays.pulled;
     t->cut_entry = arrays.cut_entry;
     t->at = arrays.at;
     t->matrix =

@@ -41,6 +41,7 @@ struct flow_table {
     uint32_t n_sliding;       /* rows that pins leave free along a slider */
     uint32_t n_loose;         /* rows of pieces that no pin holds */
     uint32_t n_varying;       /* loads that vary */
+    uint32_t n_pulled;        /* springs that are joints of seams */
     uint32_t lowest, highest; /* of its vertices */
     uint32_t n_neighbours;    /* blocks that it is joined to */
     uint32_t n_ghosts;        /* rows that the cut springs end at, neighbour after neighbour */
@@ -70,6 +71,7 @@ struct flow_table {
     const uint32_t *at; /* half storage: of each spring, its entry */
     const double *stiffness, *damping, *length;
     const unsigned char *stretch; /* counts for the largest stretch */
+    const uint32_t (*pulled)[2];  /* n_pulled: spring, ascending; number of its seam, from 1 */
     struct element_list list[ELEMENT_KINDS];
     struct solve_block matrix; /* its diagonal: of each step, NULL here */
     struct solve_held held;
@@ -102,6 +104,7 @@ struct flow_layout {
     uint32_t *at;              /* n_inner + n_cut; of springs as entries: none */
     uint32_t *n_held;          /* 1: held entries */
     unsigned char *stretch;    /* n_inner + n_cut */
+    uint32_t (*pulled)[2];     /* n_pulled */
     struct element_list list[ELEMENT_KINDS];
 };
 

@@ -199,7 +199,7 @@ static int settle_overlapped(struct flow_state *state, bool *begun)
     const struct flow_attempt next = next_attempt(state);
     int code = DUITE_OK;
     *begun = !before.forked ||
-             (before.length == FLOW_TICKS && !state->stopping && !state->resting &&
+             (before.length == FLOW_TICKS && !state->stopping && !state->resting && !state->sewn &&
               !flow_step_is_driven(state->flow->model) && flow_ties_stay(state, next.begin));
     *begun = *begun && next.begin < state->grid.end;
     if (*begun) {
@@ -263,9 +263,11 @@ int flow_steps(struct flow_state *state)
         else if (!code && state->grid.now < state->grid.end) {
             if (state->stopping)
                 return stop(state);
-            if (state->resting && state->next_frame > frame)
+            if ((state->resting || state->sewn) && state->next_frame > frame)
                 break;
         }
     }
+    if (!code && state->flow->model->sewn > 0 && !state->sewn)
+        return flow_seams_fail(state);
     return code;
 }

@@ -1,6 +1,7 @@
 /* A panel is meshed again only when its divisions changed. What makes them change is found in its
  * mesh: a boundary that crosses itself between its vertices, or triangles that the inside could not
- * make good. */
+ * make good. Where this does not help, as in strips that are few triangles wide, all is meshed by a
+ * somewhat finer spacing. */
 #include "cloth/garment/detail/meshing.h"
 #include "cloth/base/memory.h"
 #include "cloth/garment/detail/flat.h"
@@ -8,7 +9,8 @@
 
 #include <stdlib.h>
 
-enum { TRIES = 6, FAIR_TRIES = 3 };
+enum { TRIES = 6, FAIR_TRIES = 3, FINER_TRIES = 6 };
+static const double FINER = 0.93; /* of the spacing before */
 
 /* Which angles are worth a finer boundary: at first those that a slightly finer one may better,
  * then those alone that are bad. */
@@ -32,7 +34,15 @@ static uint32_t edge_of(const struct meshing_panel *of, uint32_t n_edges, uint32
     return e;
 }
 
-/* Edges of bad triangles that are not excused; each is refined once. */
+/* Whether a triangle is bad, and not excused. */
+static bool is_worth(const struct meshing_panel *of, uint32_t n_edges, struct worth worth,
+                     uint32_t triangle)
+{
+    return delaunay_sharpness_of(&of->plane, triangle) > worth.cosine &&
+           !flat_excused(&of->plane, of->start[n_edges], of->sharp, triangle);
+}
+
+/* Edges of bad triangles; each is refined once. */
 static int refine_poor(struct meshing *work, uint32_t panel, struct worth worth, bool *again,
                        struct cloth_error *error)
 {
@@ -42,8 +52,7 @@ static int refine_poor(struct meshing *work, uint32_t panel, struct worth worth,
     if (!poor)
         return CLOTH_E_MEMORY;
     for (uint32_t t = 0; t < of->plane.n_triangles; t++) {
-        if (delaunay_sharpness_of(&of->plane, t) <= worth.cosine ||
-            flat_excused(&of->plane, of->start[n_edges], of->sharp, t))
+        if (!is_worth(of, n_edges, worth, t))
             continue;
         for (int i = 0; i < 3; i++) {
             const uint32_t v = of->plane.triangle[t].vertex[i];
@@ -113,23 +122,55 @@ static int mesh_panel(struct meshing *work, uint32_t panel, int try, bool *again
     return code;
 }
 
-int meshing_mesh(struct meshing *work, double spacing, struct cloth_error *error)
+/* *last: all tries were needed, so that there may be bad triangles. */
+static int mesh_at(struct meshing *work, double spacing, bool *last, struct cloth_error *error)
 {
-    int code = CLOTH_OK;
+    int code = CLOTH_OK, k = 0;
     bool again = true;
     work->spacing = spacing;
     for (uint32_t e = 0; e < work->first[work->pattern->n_panels]; e++)
         work->edge[e].finer = 1;
     for (uint32_t p = 0; p < work->pattern->n_panels; p++)
         work->panel[p].meshed = false;
-    for (int k = 0; k < TRIES && again && !code; k++) {
+    for (; k < TRIES && again && !code; k++) {
         again = false;
         code = meshing_divide(work, error);
         for (uint32_t p = 0; p < work->pattern->n_panels && !code; p++)
             if (!work->panel[p].meshed)
                 code = mesh_panel(work, p, k, &again, error);
     }
+    *last = k == TRIES;
     return code;
+}
+
+static bool is_poor(const struct meshing *work)
+{
+    for (uint32_t p = 0; p < work->pattern->n_panels; p++) {
+        const struct meshing_panel *of = &work->panel[p];
+        for (uint32_t t = 0; t < of->plane.n_triangles; t++)
+            if (is_worth(of, work->pattern->panel[p].n_edges, POOR, t))
+                return true;
+    }
+    return false;
+}
+
+int meshing_mesh(struct meshing *work, double spacing, struct cloth_error *error)
+{
+    struct cloth_error first = {0};
+    double finer = spacing;
+    bool last;
+    int code = mesh_at(work, finer, &last, &first);
+    const int before = code;
+    for (int k = 0; k < FINER_TRIES && (code == CLOTH_E_INPUT || (!code && last && is_poor(work)));
+         k++) {
+        struct cloth_error why = {0};
+        finer *= FINER;
+        code = mesh_at(work, finer, &last, &why);
+    }
+    if (!before && (code || (last && is_poor(work)))) /* nothing helps: as it was asked for */
+        code = mesh_at(work, spacing, &last, error);
+    return code ? cloth_fail(error, code, "%s", first.code ? first.text : "no memory for a mesh")
+                : CLOTH_OK;
 }
 
 uint32_t meshing_count(const struct meshing *work)

@@ -41,7 +41,8 @@ int meshing_make(struct meshing *work, const struct garment_pattern *pattern,
 void meshing_free(struct meshing *work);
 
 /* Divides all edges and meshes all panels by a spacing. Where triangles are bad since the boundary
- * is too coarse for them, it is divided finer, on both sides of a stitch. */
+ * is too coarse for them, it is divided finer, on both sides of a stitch. Where they stay bad, or a
+ * panel cannot be meshed, the spacing becomes up to a third finer. */
 int meshing_mesh(struct meshing *work, double spacing, struct cloth_error *error);
 
 /* How many vertices all panels have. */

@@ -150,7 +150,8 @@ int scene_build_file(struct model *model, const char *path, struct cloth_error *
 int scene_build_mesh(struct model *model, struct model_cloth *cloth, struct scene_tree *tree,
                      int node, struct cloth_error *error);
 
-/* The mesh of the pattern that the map `node` names, which is added to the model's files. What is
+/* The mesh of the pattern that the map `node` names, a file that is added to the model's, or an own
+ * garment. What is
  * wrong with the pattern is in `inner`, without the place in the scene. */
 int scene_build_pattern(struct model *model, struct model_cloth *cloth, struct scene_tree *tree,
                         int node, struct cloth_error *error, struct cloth_error *inner);

@@ -1,8 +1,9 @@
-/* A cloth's mesh from a sewing pattern: its panels, meshed, where the pattern places them. What is
- * wrong with a pattern is in `inner`, without the place in the scene. */
+/* A cloth's mesh from a sewing pattern, or an own garment: its panels, meshed, where the pattern
+ * places them. What is wrong with a pattern is in `inner`, without the place in the scene. */
 #include "cloth/scene/build/build.h"
 
 #include "cloth/garment/garment.h"
+#include "cloth/garment/own/own.h"
 #include "cloth/scene/pattern.h"
 #include "cloth/scene/schema/check.h"
 
@@ -82,6 +83,76 @@ static int read_file(struct model *model, struct garment_pattern *pattern,
     return code == CLOTH_E_IO ? CLOTH_E_INPUT : code; /* a scene that names no readable file */
 }
 
+/* A file has its own measures. */
+static int refuse_measures(const struct scene_tree *tree, int node, struct cloth_error *error)
+{
+    static const char *const key[] = {"size", "measures"};
+    for (int i = 0; i < 2; i++)
+        if (scene_tree_get(tree, node, key[i]))
+            return scene_tree_fail(tree, scene_tree_get(tree, node, key[i]), error,
+                                   "mesh.pattern.%s is of an own garment, which this pattern is "
+                                   "not: it is a file",
+                                   key[i]);
+    return CLOTH_OK;
+}
+
+static int take_measures(const struct garment_own *own, double *value,
+                         const struct scene_pattern *asked, const struct scene_tree *tree, int node,
+                         struct cloth_error *error)
+{
+    const int measures = scene_tree_get(tree, node, "measures");
+    const int size = garment_size_find(asked->size ? asked->size : "M");
+    if (size < 0)
+        return scene_tree_fail(tree, scene_tree_get(tree, node, "size"), error,
+                               "mesh.pattern.size is %s; one of %s is expected", asked->size,
+                               garment_size_words);
+    garment_own_size(own, size, value);
+    for (uint32_t i = 0; i < asked->n_measures; i++) {
+        const char *name = asked->measures[i].name;
+        const int k = garment_own_measure(own, name);
+        if (k < 0)
+            return scene_tree_fail(tree, scene_tree_get(tree, measures, name), error,
+                                   "mesh.pattern.measures: there is no measure %s of the garment "
+                                   "%s; 'duite-garment --measures %s' lists them",
+                                   name, own->name, own->name);
+        value[k] = asked->measures[i].value;
+    }
+    return CLOTH_OK;
+}
+
+static int make_own(struct garment_pattern *pattern, const struct scene_pattern *asked,
+                    const struct scene_tree *tree, int node, struct cloth_error *error,
+                    struct cloth_error *inner)
+{
+    const struct garment_own *own = garment_own_find(asked->garment);
+    double value[GARMENT_MEASURES];
+    if (!own)
+        return scene_tree_fail(tree, scene_tree_get(tree, node, "garment"), error,
+                               "mesh.pattern.garment is %s; one of %s is expected", asked->garment,
+                               garment_own_words);
+    const int code = take_measures(own, value, asked, tree, node, error);
+    return code ? code : garment_own_make(pattern, own, value, inner);
+}
+
+static int take_pattern(struct model *model, struct garment_pattern *pattern,
+                        const struct scene_pattern *asked, const struct scene_tree *tree, int node,
+                        struct cloth_error *error, struct cloth_error *inner)
+{
+    if (asked->garment)
+        return make_own(pattern, asked, tree, node, error, inner);
+    const int code = refuse_measures(tree, node, error);
+    return code ? code : read_file(model, pattern, tree, node, error, inner);
+}
+
+static void free_asked(struct scene_pattern *asked)
+{
+    for (uint32_t i = 0; asked->measures && i < asked->n_measures; i++)
+        free(asked->measures[i].name);
+    free(asked->measures);
+    free(asked->garment);
+    free(asked->size);
+}
+
 int scene_build_pattern(struct model *model, struct model_cloth *cloth, struct scene_tree *tree,
                         int node, struct cloth_error *error, struct cloth_error *inner)
 {
@@ -90,12 +161,13 @@ int scene_build_pattern(struct model *model, struct model_cloth *cloth, struct s
     struct garment garment = {0};
     int code = scene_fill(&asked, &scene_pattern, tree, node, error);
     code = code ? code : check_fineness(&asked, tree, node, error);
-    code = code ? code : read_file(model, &pattern, tree, node, error, inner);
+    code = code ? code : take_pattern(model, &pattern, &asked, tree, node, error, inner);
     const struct garment_fineness fineness = {asked.edge, asked.vertices};
     code = code ? code : garment_make(&garment, &pattern, &fineness, inner);
     code = code ? code : take_mesh(&cloth->mesh, &garment, inner);
     code = code ? code : take_seams(&cloth->seams, &garment, &pattern, error);
     garment_free(&garment);
     garment_pattern_free(&pattern);
+    free_asked(&asked);
     return code;
 }

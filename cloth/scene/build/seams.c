@@ -248,5 +248,10 @@ int scene_build_seams(struct model *model, const struct scene_tree *tree, struct
     int code = CLOTH_OK;
     for (uint32_t i = 0; !code && i < model->n_cloths; i++)
         code = build_seams(model, i, tree, scene_tree_item(tree, list, i), error);
+    if (!code && model->sewn > 0 && !model->n_pulled)
+        return scene_tree_fail(tree, scene_tree_get(tree, scene_tree_get(tree, 1, "time"), "sewn"),
+                               error,
+                               "time.sewn waits for pulled seams, and the scene has none: a cloth "
+                               "with seams: {state: pulled} is expected");
     return code ? code : find_joined(model, error);
 }

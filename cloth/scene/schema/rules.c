@@ -195,6 +195,10 @@ static const struct scene_rule rest_keys[] = {
     {"hold", SCENE_NUMBER, "s", "0.1", .range = SCENE_NOT_NEGATIVE, INTO(struct model_rest, hold),
      .about = "for so long"},
     {0}};
+static const struct scene_rule sewn_keys[] = {
+    {"distance", SCENE_NUMBER, "m", "0.001", .range = SCENE_POSITIVE, INTO(struct model, sewn),
+     .about = "partners of pulled seams are at most so far from each other"},
+    {0}};
 static const struct scene_rule time_keys[] = {
     {"h", SCENE_NUMBER, "s", .required = true, .range = SCENE_POSITIVE, INTO(struct model, h),
      PLACE(struct model, h_place), .about = "of a step"},
@@ -218,6 +222,8 @@ static const struct scene_rule time_keys[] = {
               "can set free; 0: by any"},
     {"rest", SCENE_MAP, .inside = rest_keys, INTO(struct model, rest),
      .about = "the run ends when the cloth is at rest"},
+    {"sewn", SCENE_MAP, .inside = sewn_keys,
+     .about = "the run ends when all pulled seams are closed; it fails if time.end comes first"},
     {0}};
 
 static const struct scene_rule stop_kinds[] = {

@@ -87,9 +87,16 @@ struct scene_inline {
     double (*vertices)[3];
     uint32_t (*edges)[2], (*triangles)[3];
 };
+struct scene_measure {
+    char *name;
+    double value;
+};
 struct scene_pattern {
-    double edge;       /* m; 0: it is not given */
-    uint32_t vertices; /* 0: they are not given */
+    double edge;          /* m; 0: it is not given */
+    uint32_t vertices;    /* 0: they are not given */
+    char *garment, *size; /* NULL: it is not given */
+    uint32_t n_measures;
+    struct scene_measure *measures;
 };
 enum { SCENE_LAST_FRAME = -1 };
 struct scene_settled {

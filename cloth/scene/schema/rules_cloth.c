@@ -47,9 +47,20 @@ static const struct scene_rule inline_keys[] = {
      ARRAY(struct scene_inline, triangles, n_triangles), .about = "triples of vertices"},
     {0}};
 
+static const struct scene_rule measure = {.type = SCENE_NUMBER,
+                                          INTO(struct scene_measure, value),
+                                          .about = "a measure, mostly in metres"};
+
 static const struct scene_rule pattern_keys[] = {
     {"file", SCENE_TEXT, .choice = true,
      .about = "a sewing pattern (JSON, docs/garments.md), relative to the scene's folder"},
+    {"garment", SCENE_TEXT, .choice = true, INTO(struct scene_pattern, garment),
+     .about = "an own garment (docs/garments.md): tshirt, trousers or skirt"},
+    {"size", SCENE_TEXT, INTO(struct scene_pattern, size),
+     .about = "of the garment: XS, S, M, L or XL; M unless told"},
+    {"measures", SCENE_NAMED, .inside = &measure,
+     ARRAY(struct scene_pattern, measures, n_measures), .name = FIELD(struct scene_measure, name),
+     .about = "NAME: VALUE of those of the garment that differ from its size's"},
     {"edge", SCENE_NUMBER, "m", .range = SCENE_POSITIVE, INTO(struct scene_pattern, edge),
      .about = "how long the edges of its triangles are, about"},
     {"vertices", SCENE_INTEGER, .min = 3, INTO(struct scene_pattern, vertices),

@@ -111,6 +111,19 @@ static void tied_explicitly(struct session *s)
     tie(s);
 }
 
+/* A seam of two pairs, across the sheet and inside a block. */
+static void sewn(struct session *s)
+{
+    static struct model_joint joint;
+    conditioned(s);
+    tie(s);
+    joint = *s->setup.model.joints;
+    joint.pairs.seam = 1;
+    joint.length = joint.end = 0;
+    s->setup.model.joints = &joint;
+    s->setup.model.n_pulled = 1;
+}
+
 /* Over a floor that it comes to. */
 static void certified(struct session *s)
 {
@@ -140,7 +153,8 @@ static void repelled_explicitly(struct session *s)
 static void (*const kinds[])(struct session *) = {
     plain,        conditioned,     guessed,   newton,   bdf2,
     euler,        verlet,          midpoint,  runge,    tied,
-    tied_plainly, tied_explicitly, certified, repelled, repelled_explicitly};
+    tied_plainly, tied_explicitly, certified, repelled, repelled_explicitly,
+    sewn};
 enum { KINDS = sizeof kinds / sizeof *kinds };
 
 /* ---- What exists ---- */

@@ -75,6 +75,37 @@ START_TEST(panels_by_count)
 }
 END_TEST
 
+static double width_of(const struct model *model)
+{
+    double low[3], high[3];
+    mesh_box(&model->cloths[0].mesh, low, high);
+    return high[0] - low[0];
+}
+
+/* A skirt's panels are half as wide as its hem; a transform scales and shifts all. */
+START_TEST(own_garments)
+{
+    char *text = scene_of("{pattern: {garment: skirt, edge: 0.1}}");
+    struct model model = scene_read_right(text, 0, NULL);
+    ck_assert_double_eq_tol(width_of(&model), 0.8, 1e-12);
+    ck_assert_uint_eq(model.cloths[0].seams.n, 8);
+    ck_assert_uint_eq(model.n_files, 1);
+    model_free(&model);
+    free(text);
+    text = scene_of("{pattern: {garment: skirt, size: XL, edge: 0.1}}");
+    model = scene_read_right(text, 0, NULL);
+    ck_assert_double_eq_tol(width_of(&model), 0.85, 1e-12);
+    model_free(&model);
+    free(text);
+    text = scene_of("{pattern: {garment: skirt, measures: {hem: 1.2, waist: 0.7}, edge: 0.1}}\n"
+                    "    transform: {scale: 2}");
+    model = scene_read_right(text, 0, NULL);
+    ck_assert_double_eq_tol(width_of(&model), 1.2, 1e-12);
+    model_free(&model);
+    free(text);
+}
+END_TEST
+
 static void refused(const char *mesh, const char *error)
 {
     char *text = scene_of(mesh);
@@ -85,7 +116,7 @@ static void refused(const char *mesh, const char *error)
 START_TEST(patterns_that_cannot_be_used)
 {
     refused("{pattern: {edge: 0.1}}",
-            ":5:21: cloths[0].mesh.pattern has no file; one of them is expected");
+            ":5:21: cloths[0].mesh.pattern has no file or garment; one of them is expected");
     refused("{pattern: {file: pillow.json}}",
             ":5:21: mesh.pattern has neither edge nor vertices; one of them is expected, which "
             "says how fine the mesh is");
@@ -96,6 +127,18 @@ START_TEST(patterns_that_cannot_be_used)
     refused("{pattern: {file: pillow.json, vertices: 2}}",
             ":5:51: cloths[0].mesh.pattern.vertices is 2; a whole number from 3 to 4294967295 is "
             "expected");
+    refused("{pattern: {garment: kilt, edge: 0.1}}",
+            ":5:31: mesh.pattern.garment is kilt; one of tshirt, trousers, skirt is expected");
+    refused("{pattern: {garment: skirt, size: 12, edge: 0.1}}",
+            ":5:44: mesh.pattern.size is 12; one of XS, S, M, L, XL is expected");
+    refused("{pattern: {garment: skirt, measures: {sleeve: 1}, edge: 0.1}}",
+            ":5:57: mesh.pattern.measures: there is no measure sleeve of the garment skirt; "
+            "'duite-garment --measures skirt' lists them");
+    refused("{pattern: {garment: skirt, measures: {hem: 9}, edge: 0.1}}",
+            ":5:21: mesh: skirt: the measure hem is 9; it has to be 0.5 to 4");
+    refused("{pattern: {file: pillow.json, size: M, edge: 0.1}}",
+            ":5:47: mesh.pattern.size is of an own garment, which this pattern is not: it is a "
+            "file");
     refused("{pattern: {file: none.json, edge: 0.1}}", ":5:21: mesh: ...");
     refused("{pattern: {file: scene.yaml, edge: 0.1}}", ":5:21: mesh: ...");
 }
@@ -107,6 +150,7 @@ int main(void)
     TCase *cases = tcase_create("patterns");
     tcase_add_test(cases, panels_as_a_mesh);
     tcase_add_test(cases, panels_by_count);
+    tcase_add_test(cases, own_garments);
     tcase_add_test(cases, patterns_that_cannot_be_used);
     suite_add_tcase(suite, cases);
     return unit_run(suite);

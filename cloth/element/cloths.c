@@ -40,6 +40,12 @@ void element_rest_local(const struct element_cloths *cloths, uint32_t cloth,
         directions_of(cloths, cloth, corner[i], uv + 2 * i);
     }
     phys_triangle_local(x, uv, local);
+    const double *turn = model_grain(cloths->model->cloths + cloth, 3, corner);
+    for (int i = 0; i < 3 && turn; i++) {
+        const double u = local[2 * i], v = local[2 * i + 1];
+        local[2 * i] = turn[0] * u + turn[1] * v;
+        local[2 * i + 1] = turn[0] * v - turn[1] * u;
+    }
 }
 
 void element_alone(const struct element_cloths *cloths, const struct element *element,

@@ -65,7 +65,7 @@ void element_alone(const struct element_cloths *cloths, const struct element *el
 void element_rest_position(const struct element_cloths *cloths, uint32_t cloth, uint32_t vertex,
                            double x[3]);
 
-/* A triangle's coordinates along warp and weft (phys_triangle_local). */
+/* A triangle's coordinates along warp and weft (phys_triangle_local), turned by its grain. */
 void element_rest_local(const struct element_cloths *cloths, uint32_t cloth,
                         const uint32_t corner[3], double local[6]);
 

@@ -5,6 +5,7 @@
 #include "cloth/garment/detail/flat.h"
 #include "cloth/garment/detail/meshing.h"
 #include "cloth/garment/detail/seams.h"
+#include "cloth/physics/curve.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -101,7 +102,7 @@ static void axes_of(const double degrees[3], double axis[2][3])
 {
     double c[3], s[3];
     for (int k = 0; k < 3; k++)
-        curve_turn(degrees[k], &c[k], &s[k]);
+        phys_turn(degrees[k], &c[k], &s[k]);
     axis[0][0] = c[2] * c[1];
     axis[0][1] = s[2] * c[1];
     axis[0][2] = -s[1];

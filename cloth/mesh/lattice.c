@@ -143,6 +143,19 @@ static int add_grid(struct builder *builder)
     return code;
 }
 
+/* From along u and v to along warp and weft. */
+static void turn(const struct mesh_regions *regions, const struct mesh_edge *edge, double *u,
+                 double *v)
+{
+    const uint32_t end[2] = {edge->a, edge->b};
+    const int region = regions ? mesh_region(regions->grain_mask, 2, end) : -1;
+    if (region < 0)
+        return;
+    const double c = regions->grain[region][0], s = regions->grain[region][1], along = *u;
+    *u = c * along + s * *v;
+    *v = c * *v - s * along;
+}
+
 /* The modulus along an edge. */
 static int modulus_of(const struct builder *builder, const struct mesh_edge *edge, double *modulus)
 {
@@ -155,7 +168,9 @@ static int modulus_of(const struct builder *builder, const struct mesh_edge *edg
         return cloth_fail(builder->error, CLOTH_E_INPUT,
                           "moduli of springs along warp and weft differ, which needs a mesh with "
                           "uv; a grid, an OBJ file with vt, or one modulus is expected");
-    const double u = (b[0] - a[0]) * (b[0] - a[0]), v = (b[1] - a[1]) * (b[1] - a[1]);
+    double along = b[0] - a[0], across = b[1] - a[1];
+    turn(builder->moduli->regions, edge, &along, &across);
+    const double u = along * along, v = across * across;
     if (u + v > 0)
         *modulus += moduli->weft_excess * (v / (u + v));
     return CLOTH_OK;

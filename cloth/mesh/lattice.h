@@ -37,10 +37,13 @@ struct mesh_moduli {
 };
 
 /* A spring whose ends are in a region has the moduli of that region. The moduli of the mesh say
- * which diagonals there are. */
+ * which diagonals there are. Of meshes that are no grid, the warp is turned for springs whose ends
+ * are in a grain. */
 struct mesh_regions {
-    const uint64_t *mask;             /* as mesh_region wants it */
+    const uint64_t *mask;             /* as mesh_region wants it; NULL: none */
     const struct mesh_moduli *moduli; /* by region */
+    const uint64_t *grain_mask;       /* the same of grains, and by grain */
+    const double (*grain)[2];         /* cosine and sine of the angle from u towards v */
 };
 
 /* The springs of a mesh, which mesh_lattice_each visits in order, as often as wanted. Those of a

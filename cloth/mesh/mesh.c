@@ -119,5 +119,9 @@ void mesh_free(struct mesh *mesh)
     free(mesh->face_corner);
     free(mesh->triangle);
     free(mesh->lone_edge);
+    for (uint32_t g = 0; g < mesh->n_groups; g++)
+        free(mesh->group[g]);
+    free(mesh->group);
+    free(mesh->group_run);
     *mesh = (struct mesh){0};
 }

@@ -37,6 +37,12 @@ struct mesh {
     uint32_t n_bare_edges; /* of these, that no triangle has: they come first */
     uint32_t *lone_edge;   /* n_lone_edges x 2: edges given without triangles */
 
+    uint32_t n_groups, n_group_runs;
+    char **group; /* n_groups: names of faces, each once; */
+    struct mesh_group_run {
+        uint32_t group, first, n; /* faces first .. first + n - 1 are in this group */
+    } * group_run;
+
     uint32_t grid_nx, grid_ny;      /* vertices in u and v of a grid; 0: not a grid */
     double grid_width, grid_height; /* m, before any transform */
     enum mesh_cells grid_cells;
@@ -75,7 +81,9 @@ double mesh_row_distance(double width, uint32_t nx);
 bool mesh_cell_turned(const struct mesh *mesh, uint32_t i, uint32_t j);
 
 /* Reads v (x y z, anything after them ignored), vt, f (any polygon; v, v/vt, v//vn, v/vt/vn;
- * negative indices) and l (lone edges) of a Wavefront OBJ file; all else is skipped. Errors name
+ * negative indices), l (lone edges) and g (groups) of a Wavefront OBJ file; all else is skipped,
+ * also o. Faces are in each of the groups that the last g before them names; without a name they
+ * are in none. A name that comes again goes on. Groups without faces are none. Errors name
  * file and line. They are: no vertices, numbers that are none or not finite, indices out of range,
  * faces with fewer than 3 or repeated corners. A polygon of more than 3 corners may not be without
  * area, nor cross or touch itself. More errors are: an edge shared by more than two triangles
@@ -129,6 +137,17 @@ uint32_t mesh_face(const struct mesh *mesh, uint32_t f, uint32_t room[3], const 
 
 /* The uv of a vertex; 0 if the mesh has none. */
 int mesh_uv(const struct mesh *mesh, uint32_t v, double uv[2]);
+
+/* The group of that name; UINT32_MAX: there is none. */
+uint32_t mesh_group_of(const struct mesh *mesh, const char *name);
+/* Adds a group of that name, which the mesh has not yet: n faces from `first` on. Of a mesh that is
+ * no grid. Error: CLOTH_E_MEMORY. */
+int mesh_group_add(struct mesh *mesh, const char *name, uint32_t first, uint32_t n,
+                   struct cloth_error *error);
+/* Writes 1 to the bytes of all vertices, or triangles, that a group's faces have. mark: n_vertices,
+ * or n_triangles, bytes of the caller. */
+void mesh_group_vertices(const struct mesh *mesh, uint32_t group, unsigned char *mark);
+void mesh_group_triangles(const struct mesh *mesh, uint32_t group, unsigned char *mark);
 
 /* The two longest principal axes of the vertices, of length 1, each with its largest component
  * above 0: u the longer one; of equal ones the earlier coordinate's. */

@@ -3,6 +3,7 @@
 #include "cloth/base/memory.h"
 #include "cloth/mesh/detail/finish.h"
 #include "cloth/mesh/detail/lines.h"
+#include "cloth/mesh/detail/naming.h"
 #include "cloth/mesh/detail/words.h"
 #include "cloth/mesh/mesh.h"
 
@@ -20,6 +21,7 @@ struct obj {
     struct cloth_list position, uv; /* 3 and 2 doubles an item */
     struct cloth_list corner;       /* uint32_t[2]: vertex, and uv or NO_UV */
     struct cloth_list face_start, face_line, edge, edge_line;
+    struct mesh_naming naming;
 };
 
 #define FAIL(obj, format, ...)                                                                     \
@@ -167,6 +169,8 @@ static int read_line(struct obj *obj, const char *line)
         return read_face(obj, at);
     if ((at = mesh_word_after(line, "l")))
         return read_edges(obj, at);
+    if ((at = mesh_word_after(line, "g")))
+        return mesh_naming_line(&obj->naming, at, (uint32_t)obj->face_start.n, obj->error);
     return CLOTH_OK;
 }
 
@@ -264,6 +268,8 @@ static int make_mesh(struct obj *obj, struct mesh *mesh)
     struct mesh_source source = {obj->lines.path, obj->face_line.items, obj->edge_line.items,
                                  obj->fans};
     int code = mesh_finish(mesh, &source, obj->error);
+    if (!code)
+        code = mesh_naming_end(&obj->naming, mesh, obj->error);
     return code ? code : make_uv(obj, mesh);
 }
 
@@ -277,6 +283,7 @@ static void free_obj(struct obj *obj)
     free(obj->face_line.items);
     free(obj->edge.items);
     free(obj->edge_line.items);
+    mesh_naming_free(&obj->naming);
     if (obj->c)
         freelocale(obj->c);
 }

@@ -158,11 +158,14 @@ struct model_cloth {
     struct mesh mesh;  /* transformed: rest lengths and masses are those of this shape, */
     struct mesh *rest; /* unless this is another, which shares all but the positions; or NULL */
     uint32_t material;
-    uint32_t layer;     /* where a start is untangled: of two cloths the higher one is outside */
-    uint32_t n_regions; /* where there are others: at most MODEL_MAX_REGIONS */
-    uint32_t
-        *region;    /* materials, which have model, diagonals and, if any, bending of the cloth's */
-    uint64_t *mask; /* by vertex, which regions have it: mesh_region; NULL: there are none */
+    uint32_t layer;       /* where a start is untangled: of two cloths the higher one is outside */
+    uint32_t n_regions;   /* where there are others: at most MODEL_MAX_REGIONS */
+    uint32_t *region;     /* materials, of panels first, which have model, diagonals and, if any,
+                             bending of the cloth's */
+    uint64_t *mask;       /* by vertex, which regions have it: mesh_region; NULL: there are none */
+    uint32_t n_grains;    /* where the warp is turned: at most MODEL_MAX_REGIONS; */
+    double (*grain)[2];   /* cosine and sine of the angle from u towards v; */
+    uint64_t *grain_mask; /* by vertex, which of these have it: mesh_region; NULL: none */
     double mass_per_vertex; /* kg, replaces density * area where > 0 */
     double velocity[3];     /* at the start, m/s */
     double *start;          /* n_vertices x 6: where they start (m) and how fast (m/s), the shape of

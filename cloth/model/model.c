@@ -58,6 +58,8 @@ static void free_cloth(struct model_cloth *cloth)
     free(cloth->masses);
     free(cloth->region);
     free(cloth->mask);
+    free(cloth->grain);
+    free(cloth->grain_mask);
     free(cloth->pins);
     free(cloth->loads);
     free(cloth->name);

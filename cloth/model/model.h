@@ -320,6 +320,15 @@ static inline uint32_t model_material_of(const struct model_cloth *cloth, size_t
     return region < 0 ? cloth->material : cloth->region[region];
 }
 
+/* Cosine and sine of the angle by which the warp is turned where n > 0 vertices of the cloth's mesh
+ * are; NULL: it is not. */
+static inline const double *model_grain(const struct model_cloth *cloth, size_t n,
+                                        const uint32_t *vertex)
+{
+    const int grain = mesh_region(cloth->grain_mask, n, vertex);
+    return grain < 0 ? NULL : cloth->grain[grain];
+}
+
 /* One after the other, all materials of a cloth: i = 0 is its own, then those of its regions. */
 static inline const struct model_material *
 model_material(const struct model *model, const struct model_cloth *cloth, uint32_t i)

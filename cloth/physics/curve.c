@@ -34,3 +34,13 @@ double phys_sine(double turns)
         sum = 1 - square / (2 * k * (2 * k + 1)) * sum;
     return x * sum;
 }
+
+void phys_turn(double degrees, double *cosine, double *sine)
+{
+    const double quarters = floor(degrees / 90 + 0.5);
+    const double turns = (degrees - 90 * quarters) / 360;
+    const double half = phys_sine(turns / 2), s = phys_sine(turns), c = 1 - 2 * half * half;
+    const int quarter = (int)(quarters - 4 * floor(quarters / 4));
+    *cosine = quarter == 0 ? c : quarter == 1 ? -s : quarter == 2 ? -c : s;
+    *sine = quarter == 0 ? s : quarter == 1 ? c : quarter == 2 ? -s : -c;
+}

@@ -3,8 +3,8 @@
 
 #include <stddef.h>
 
-/* How something varies in time: factors without unit. Pure functions of + - * / alone, so that they
- * have the same bits everywhere; nothing is allocated. */
+/* How something varies in time: factors without unit; and sine and cosine. Pure functions of + - *
+ * / alone, so that they have the same bits everywhere; nothing is allocated. */
 struct phys_curve_key {
     double time, factor; /* s, ascending; 1 */
 };
@@ -14,5 +14,8 @@ double phys_curve_at(size_t n, const struct phys_curve_key *curve_key, double ti
 
 /* sin(2 pi turns), to 2e-16. turns: less than 2^51. */
 double phys_sine(double turns);
+
+/* cos and sin of an angle in degrees, to 1e-15; exact for multiples of 90. */
+void phys_turn(double degrees, double *cosine, double *sine);
 
 #endif

@@ -18,7 +18,8 @@ static int find_regions(struct flow_springs *springs, uint32_t c, struct mesh_re
         return CLOTH_E_MEMORY;
     for (uint32_t i = 0; i < cloth->n_regions; i++)
         moduli[i] = model_moduli(springs->model->materials + cloth->region[i]);
-    *regions = (struct mesh_regions){cloth->mask, moduli};
+    *regions = (struct mesh_regions){cloth->mask, moduli, cloth->grain_mask,
+                                     (const double(*)[2])cloth->grain};
     return CLOTH_OK;
 }
 
@@ -48,10 +49,11 @@ static int make_cloth(struct flow_springs *springs, uint32_t c, struct cloth_err
     struct cloth_error inner = {0};
     if (model_has_triangles(springs->model, cloth))
         return check_edges(springs, c, error);
-    int code = cloth->mask ? find_regions(springs, c, springs->regions + c, error) : CLOTH_OK;
+    const bool parts = cloth->mask || cloth->grain_mask;
+    int code = parts ? find_regions(springs, c, springs->regions + c, error) : CLOTH_OK;
     if (code)
         return code;
-    moduli.regions = cloth->mask ? springs->regions + c : NULL;
+    moduli.regions = parts ? springs->regions + c : NULL;
     code = mesh_lattice_build(springs->lattice + c, model_rest(cloth), &moduli, &inner);
     if (code == CLOTH_E_INPUT)
         model_fail(cloth->mesh_place, error, "cloth '%.60s': %s", cloth->name, inner.text);

@@ -6,16 +6,6 @@
 #include <math.h>
 #include <string.h>
 
-void curve_turn(double degrees, double *cosine, double *sine)
-{
-    const double quarters = floor(degrees / 90 + 0.5);
-    const double turns = (degrees - 90 * quarters) / 360;
-    const double half = phys_sine(turns / 2), s = phys_sine(turns), c = 1 - 2 * half * half;
-    const int quarter = (int)(quarters - 4 * floor(quarters / 4));
-    *cosine = quarter == 0 ? c : quarter == 1 ? -s : quarter == 2 ? -c : s;
-    *sine = quarter == 0 ? s : quarter == 1 ? c : quarter == 2 ? -s : -c;
-}
-
 /* The angle, in turns from 0 to 0.25, whose sine and cosine are given: by Newton's method. */
 static double angle_of(double sine, double cosine)
 {
@@ -23,7 +13,7 @@ static double angle_of(double sine, double cosine)
     double turns = sine < cosine ? sine / two_pi : 0.25 - cosine / two_pi;
     for (int i = 0; i < 8; i++) {
         double c, s;
-        curve_turn(360 * turns, &c, &s);
+        phys_turn(360 * turns, &c, &s);
         turns += (sine * c - cosine * s) / two_pi;
     }
     return turns;
@@ -52,7 +42,7 @@ static void arc_at(const struct curve *curve, double t, double place[2])
     const double x = curve->point[0][0] - curve->centre[0];
     const double y = curve->point[0][1] - curve->centre[1];
     double c, s;
-    curve_turn(360 * (curve->turns * t), &c, &s);
+    phys_turn(360 * (curve->turns * t), &c, &s);
     place[0] = curve->centre[0] + (x * c - y * s);
     place[1] = curve->centre[1] + (x * s + y * c);
 }
@@ -204,7 +194,7 @@ double curve_area(const struct curve *curve)
     if (curve->kind == GARMENT_CIRCLE) {
         const double x = a[0] - curve->centre[0], y = a[1] - curve->centre[1];
         double c, s;
-        curve_turn(360 * curve->turns, &c, &s);
+        phys_turn(360 * curve->turns, &c, &s);
         sum += 0.5 * (x * x + y * y) * (6.283185307179586 * curve->turns - s);
     }
     return sum;

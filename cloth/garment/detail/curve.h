@@ -30,7 +30,4 @@ double curve_turning(const struct curve *curve);
 /* Half the integral of x dy - y dx along it, m^2: those of a counterclockwise loop are its area. */
 double curve_area(const struct curve *curve);
 
-/* cos and sin of an angle in degrees, to 1e-15; exact for multiples of 90. */
-void curve_turn(double degrees, double *cosine, double *sine);
-
 #endif

@@ -74,19 +74,23 @@ int scene_build_material(uint32_t *material, const struct model_cloth *cloth,
                          const struct model *model, const struct scene_tree *tree, int node,
                          struct cloth_error *error);
 
-/* The regions of a cloth that has its mesh, name and material. */
-int scene_build_regions(struct model_cloth *cloth, const struct model *model,
-                        struct scene_tree *tree, int node, struct cloth_error *error);
+/* The panels and regions of a cloth that has its mesh, name and material. */
+int scene_build_parts(struct model_cloth *cloth, struct model *model, struct scene_tree *tree,
+                      int node, struct cloth_error *error);
 
 /* That the materials of a cloth with its regions have the moduli that its mesh needs. */
 int scene_build_check_moduli(const struct model_cloth *cloth, const struct model *model,
                              const struct scene_tree *tree, int node, struct cloth_error *error);
 
+/* The group of the cloth's mesh that a node names, by number. */
+int scene_build_group(uint32_t *group, const struct model_cloth *cloth,
+                      const struct scene_tree *tree, int node, struct cloth_error *error);
+
 /* That a map that picks vertices has no radius without nearest. */
 int scene_build_check_radius(const struct scene_tree *tree, int node, struct cloth_error *error);
 
-/* Checks a pick that a map with one of the keys vertices, nearest, box filled: there are such
- * vertices. Puts the corners of a box in order. */
+/* Checks a pick that a map with one of the keys vertices, nearest, box, group filled: there are
+ * such vertices. Puts the corners of a box in order, and lists the vertices of a group. */
 int scene_build_pick(struct model_pick *pick, const struct scene_tree *tree, int node,
                      const struct model_cloth *cloth, struct cloth_error *error);
 

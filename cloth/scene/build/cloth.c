@@ -57,11 +57,53 @@ int scene_build_check_radius(const struct scene_tree *tree, int node, struct clo
                            "both or neither are expected");
 }
 
+int scene_build_group(uint32_t *group, const struct model_cloth *cloth,
+                      const struct scene_tree *tree, int node, struct cloth_error *error)
+{
+    const struct mesh *mesh = &cloth->mesh;
+    const char *name = scene_tree_scalar(tree, node);
+    *group = mesh_group_of(mesh, name);
+    if (*group != UINT32_MAX)
+        return CLOTH_OK;
+    if (!mesh->n_groups)
+        return scene_tree_fail(tree, node, error,
+                               "the mesh of cloth '%.60s' has no groups; an OBJ file with lines "
+                               "`g NAME` before faces, or a pattern, is expected",
+                               cloth->name);
+    return scene_build_no_such("group of faces", name, (const char *const *)mesh->group,
+                               mesh->n_groups, tree, node, error);
+}
+
+/* The vertices of a group, as if they were listed. */
+static int pick_group(struct model_pick *pick, const struct scene_tree *tree, int node,
+                      const struct model_cloth *cloth, struct cloth_error *error)
+{
+    const struct mesh *mesh = &cloth->mesh;
+    uint32_t group, n = 0;
+    if (scene_build_group(&group, cloth, tree, node, error))
+        return error->code;
+    unsigned char *mark = scene_build_array(mesh->n_vertices, 1, error);
+    if (!mark)
+        return error->code;
+    mesh_group_vertices(mesh, group, mark);
+    for (uint32_t v = 0; v < mesh->n_vertices; v++)
+        n += mark[v];
+    pick->vertices = scene_build_array(n, sizeof *pick->vertices, error);
+    for (uint32_t v = 0; v < mesh->n_vertices && pick->vertices; v++)
+        if (mark[v])
+            pick->vertices[pick->n_vertices++] = v;
+    free(mark);
+    return pick->vertices ? CLOTH_OK : error->code;
+}
+
 int scene_build_pick(struct model_pick *pick, const struct scene_tree *tree, int node,
                      const struct model_cloth *cloth, struct cloth_error *error)
 {
     if (scene_build_check_radius(tree, node, error))
         return error->code;
+    const int group = scene_tree_get(tree, node, "group");
+    if (group)
+        return pick_group(pick, tree, group, cloth, error);
     if (pick->kind == MODEL_PICK_VERTICES)
         return check_vertices(pick, tree, scene_tree_get(tree, node, "vertices"), cloth, error);
     if (pick->kind == MODEL_PICK_BOX)
@@ -217,7 +259,7 @@ static int build_cloth(struct model *model, uint32_t i, struct scene_tree *tree,
     if (!code)
         code = build_rest(cloth, tree, node, error);
     if (!code)
-        code = scene_build_regions(cloth, model, tree, node, error);
+        code = scene_build_parts(cloth, model, tree, node, error);
     if (!code)
         code = scene_build_check_moduli(cloth, model, tree, node, error);
     if (!code)

@@ -10,12 +10,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The panels of a garment as one mesh; uv is that of the panels. */
-static int take_mesh(struct mesh *mesh, const struct garment *garment, struct cloth_error *error)
+/* The panels of a garment as one mesh; uv is that of the panels, and each is a group. */
+static int take_mesh(struct mesh *mesh, const struct garment *garment,
+                     const struct garment_pattern *pattern, struct cloth_error *error)
 {
     const size_t n = garment->n_vertices;
-    const int code = mesh_inline(mesh, garment->n_vertices, *garment->position, 0, NULL,
-                                 garment->n_triangles, *garment->triangle, error);
+    int code = mesh_inline(mesh, garment->n_vertices, *garment->position, 0, NULL,
+                           garment->n_triangles, *garment->triangle, error);
+    for (uint32_t i = 0; i < garment->n_pieces && !code; i++)
+        code = mesh_group_add(mesh, pattern->panel[i].name, garment->piece[i].first_triangle,
+                              garment->piece[i].n_triangles, error);
     if (code)
         return code;
     mesh->uv = malloc(n * sizeof *garment->uv);
@@ -164,7 +168,7 @@ int scene_build_pattern(struct model *model, struct model_cloth *cloth, struct s
     code = code ? code : take_pattern(model, &pattern, &asked, tree, node, error, inner);
     const struct garment_fineness fineness = {asked.edge, asked.vertices};
     code = code ? code : garment_make(&garment, &pattern, &fineness, inner);
-    code = code ? code : take_mesh(&cloth->mesh, &garment, inner);
+    code = code ? code : take_mesh(&cloth->mesh, &garment, &pattern, inner);
     code = code ? code : take_seams(&cloth->seams, &garment, &pattern, error);
     garment_free(&garment);
     garment_pattern_free(&pattern);

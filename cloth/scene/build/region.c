@@ -1,4 +1,6 @@
-/* Regions of a cloth: each a bit in the mask of every vertex that it picks. */
+/* Parts of a cloth, each a bit in the mask of every vertex that it has: panels with a material,
+ * then regions; and apart from these panels with a grain. */
+#include "cloth/physics/curve.h"
 #include "cloth/scene/build/build.h"
 #include "cloth/scene/schema/check.h"
 
@@ -44,9 +46,10 @@ static int mark(struct model_cloth *cloth, struct scene_tree *tree, int node, ui
                            cloth->name);
 }
 
-/* What holds for a cloth as a whole is the same in all its regions. */
+/* What holds for a cloth as a whole is the same in all its parts. what: "region" */
 static int check_alike(const struct model_material *base, const struct model_material *material,
-                       const struct scene_tree *tree, int node, struct cloth_error *error)
+                       const char *what, const struct scene_tree *tree, int node,
+                       struct cloth_error *error)
 {
     const bool bent = base->bending != MODEL_NO_BENDING && material->bending != MODEL_NO_BENDING;
     const char *other = NULL;
@@ -59,41 +62,207 @@ static int check_alike(const struct model_material *base, const struct model_mat
     if (!other)
         return CLOTH_OK;
     return scene_tree_fail(tree, scene_tree_get(tree, node, "material"), error,
-                           "material '%.60s' of a region has another %s than '%.60s', that of the "
+                           "material '%.60s' of a %s has another %s than '%.60s', that of the "
                            "cloth; the same is expected",
-                           material->name, other, base->name);
+                           material->name, what, other, base->name);
 }
 
-static int build_region(struct model_cloth *cloth, const struct model *model, uint32_t i,
-                        struct scene_tree *tree, int node, struct cloth_error *error)
+/* The material of the next part, whose number it then has. */
+static int add_material(struct model_cloth *cloth, const struct model *model, const char *what,
+                        const struct scene_tree *tree, int node, struct cloth_error *error)
 {
-    uint32_t *material = cloth->region + i;
+    uint32_t *material = cloth->region + cloth->n_regions;
     int code = scene_build_material(material, cloth, model, tree, node, error);
-    for (uint32_t k = 0; k < i && !code; k++) /* so that all that bend do so alike */
-        code = check_alike(model->materials + cloth->region[k], model->materials + *material, tree,
-                           node, error);
+    for (uint32_t k = 0; k < cloth->n_regions && !code; k++) /* all that bend do so alike */
+        code = check_alike(model->materials + cloth->region[k], model->materials + *material, what,
+                           tree, node, error);
     if (!code)
-        code = check_alike(model->materials + cloth->material, model->materials + *material, tree,
-                           node, error);
-    return code ? code : mark(cloth, tree, node, (uint64_t)1 << i, error);
+        code = check_alike(model->materials + cloth->material, model->materials + *material, what,
+                           tree, node, error);
+    cloth->n_regions += code == CLOTH_OK;
+    return code;
 }
 
-int scene_build_regions(struct model_cloth *cloth, const struct model *model,
-                        struct scene_tree *tree, int node, struct cloth_error *error)
+/* ---- Panels ---- */
+
+static void mark_group(const struct model_cloth *cloth, uint32_t group, unsigned char *room,
+                       uint64_t *mask, uint64_t bit)
 {
-    const int list = scene_tree_get(tree, node, "regions");
+    memset(room, 0, cloth->mesh.n_vertices);
+    mesh_group_vertices(&cloth->mesh, group, room);
+    for (uint32_t v = 0; v < cloth->mesh.n_vertices; v++)
+        mask[v] |= room[v] ? bit : 0;
+}
+
+static int build_grain(struct model_cloth *cloth, const struct scene_tree *tree, int node,
+                       struct cloth_error *error)
+{
+    const int grain = scene_tree_get(tree, node, "grain");
+    double uv[2];
+    if (!mesh_uv(&cloth->mesh, 0, uv))
+        return scene_tree_fail(tree, grain, error,
+                               "the grain of a panel is measured from u, but the mesh of cloth "
+                               "'%.60s' has no uv; an OBJ file with vt, or a pattern, is expected",
+                               cloth->name);
+    double *turn = cloth->grain[cloth->n_grains++];
+    phys_turn(scene_tree_number(tree, node, "grain"), turn, turn + 1);
+    return CLOTH_OK;
+}
+
+/* room: a byte a vertex. */
+static int build_panel(struct model_cloth *cloth, const struct model *model, unsigned char *room,
+                       const struct scene_tree *tree, int node, struct cloth_error *error)
+{
+    const bool has_material = scene_tree_get(tree, node, "material");
+    const bool has_grain = scene_tree_get(tree, node, "grain");
+    uint32_t group;
+    int code = scene_build_group(&group, cloth, tree, scene_tree_get(tree, node, "group"), error);
+    if (!code && !has_material && !has_grain)
+        code = scene_tree_fail(tree, node, error,
+                               "a panel has neither material nor grain; one of them, at least, is "
+                               "expected");
+    if (!code && has_material)
+        code = add_material(cloth, model, "panel", tree, node, error);
+    if (!code && has_grain)
+        code = build_grain(cloth, tree, node, error);
+    if (!code && has_material)
+        mark_group(cloth, group, room, cloth->mask, UINT64_C(1) << (cloth->n_regions - 1));
+    if (!code && has_grain)
+        mark_group(cloth, group, room, cloth->grain_mask, UINT64_C(1) << (cloth->n_grains - 1));
+    return code;
+}
+
+/* That no group stands twice. */
+static int check_once(const struct scene_tree *tree, int list, size_t i, struct cloth_error *error)
+{
+    const int node = scene_tree_item(tree, list, i);
+    const char *name = scene_tree_text(tree, node, "group");
+    for (size_t k = 0; k < i; k++)
+        if (!strcmp(scene_tree_text(tree, scene_tree_item(tree, list, k), "group"), name))
+            return scene_tree_fail(tree, scene_tree_get(tree, node, "group"), error,
+                                   "group '%.60s' stands twice in panels; once is expected", name);
+    return CLOTH_OK;
+}
+
+static int build_panels(struct model_cloth *cloth, const struct model *model,
+                        const struct scene_tree *tree, int list, struct cloth_error *error)
+{
     const size_t n = scene_tree_length(tree, list);
     if (!n)
         return CLOTH_OK;
+    cloth->grain_mask = scene_build_array(cloth->mesh.n_vertices, sizeof(uint64_t), error);
+    cloth->grain = scene_build_array(n, sizeof *cloth->grain, error);
+    unsigned char *room = scene_build_array(cloth->mesh.n_vertices, 1, error);
+    int code = cloth->grain_mask && cloth->grain && room ? CLOTH_OK : error->code;
+    for (size_t i = 0; i < n && !code; i++) {
+        code = check_once(tree, list, i, error);
+        if (!code)
+            code = build_panel(cloth, model, room, tree, scene_tree_item(tree, list, i), error);
+    }
+    free(room);
+    return code;
+}
+
+/* ---- What does not do what it seems to ---- */
+
+/* Where groups share vertices, a triangle of another group may have all its corners on the border
+ * of this one. mask: the one of panels with a key; bit: the number of this panel there. */
+static uint32_t count_taken(const struct model_cloth *cloth, uint32_t group, const uint64_t *mask,
+                            uint32_t bit, unsigned char *room)
+{
+    uint32_t taken = 0;
+    memset(room, 0, cloth->mesh.n_triangles);
+    mesh_group_triangles(&cloth->mesh, group, room);
+    for (uint32_t t = 0; t < cloth->mesh.n_triangles; t++) {
+        uint32_t corner[3];
+        mesh_corners(&cloth->mesh, t, corner);
+        taken += !room[t] && mesh_region(mask, 3, corner) == (int)bit;
+    }
+    return taken;
+}
+
+static int warn_of_taken(struct model *model, const struct model_cloth *cloth,
+                         const struct scene_tree *tree, int list, struct cloth_error *error)
+{
+    unsigned char *room = scene_build_array(cloth->mesh.n_triangles, 1, error);
+    uint32_t material = 0, grain = 0;
+    int code = room ? CLOTH_OK : error->code;
+    for (size_t i = 0; i < scene_tree_length(tree, list) && !code; i++) {
+        const int node = scene_tree_item(tree, list, i);
+        const char *name = scene_tree_text(tree, node, "group");
+        const uint32_t group = mesh_group_of(&cloth->mesh, name);
+        uint32_t taken = 0;
+        if (scene_tree_get(tree, node, "material"))
+            taken = count_taken(cloth, group, cloth->mask, material++, room);
+        if (scene_tree_get(tree, node, "grain") && !taken)
+            taken = count_taken(cloth, group, cloth->grain_mask, grain, room);
+        grain += scene_tree_get(tree, node, "grain") != 0;
+        if (taken)
+            code = scene_build_warn(model, tree, node, error,
+                                    "triangles of cloth '%.60s' that are not in group '%.60s', but "
+                                    "have all corners in it, count as its own: %u",
+                                    cloth->name, name, taken);
+    }
+    free(room);
+    return code;
+}
+
+/* Whether warp and weft differ in anything that the cloth has. */
+static bool has_directions(const struct model_cloth *cloth, const struct model *model)
+{
+    bool has = model_has_triangles(model, cloth);
+    for (uint32_t i = 0; i <= cloth->n_regions; i++) {
+        const struct model_material *material = model_material(model, cloth, i);
+        has = has || material->weft_excess < 0 || material->weft_excess > 0 ||
+              material->rigidity[0] < material->rigidity[1] ||
+              material->rigidity[0] > material->rigidity[1];
+    }
+    return has;
+}
+
+static int warn_of_panels(struct model *model, const struct model_cloth *cloth,
+                          const struct scene_tree *tree, int list, struct cloth_error *error)
+{
+    const int code = warn_of_taken(model, cloth, tree, list, error);
+    if (code || !cloth->n_grains || has_directions(cloth, model))
+        return code;
+    return scene_build_warn(model, tree, list, error,
+                            "grain means nothing in cloth '%.60s': it turns model: triangles, and "
+                            "stretch or bending of two numbers",
+                            cloth->name);
+}
+
+/* ---- All ---- */
+
+int scene_build_parts(struct model_cloth *cloth, struct model *model, struct scene_tree *tree,
+                      int node, struct cloth_error *error)
+{
+    const int regions = scene_tree_get(tree, node, "regions");
+    const int panels = scene_tree_get(tree, node, "panels");
+    const size_t n_regions = scene_tree_length(tree, regions);
+    const size_t n = n_regions + scene_tree_length(tree, panels);
+    if (!n)
+        return CLOTH_OK;
     if (n > MODEL_MAX_REGIONS)
-        return scene_tree_fail(tree, list, error,
-                               "cloth '%.60s' has %zu regions; at most %d are possible",
+        return scene_tree_fail(tree, n_regions ? regions : panels, error,
+                               "cloth '%.60s' has %zu panels and regions; at most %d are possible",
                                cloth->name, n, MODEL_MAX_REGIONS);
     cloth->mask = scene_build_array(cloth->mesh.n_vertices, sizeof *cloth->mask, error);
     cloth->region = scene_build_array(n, sizeof *cloth->region, error);
     int code = cloth->mask && cloth->region ? CLOTH_OK : error->code;
-    cloth->n_regions = code ? 0 : (uint32_t)n;
-    for (uint32_t i = 0; i < n && !code; i++)
-        code = build_region(cloth, model, i, tree, scene_tree_item(tree, list, i), error);
+    if (!code)
+        code = build_panels(cloth, model, tree, panels, error);
+    for (size_t i = 0; i < n_regions && !code; i++) {
+        const int region = scene_tree_item(tree, regions, i);
+        code = add_material(cloth, model, "region", tree, region, error);
+        if (!code)
+            code = mark(cloth, tree, region, UINT64_C(1) << (cloth->n_regions - 1), error);
+    }
+    if (!code)
+        code = warn_of_panels(model, cloth, tree, panels, error);
+    if (!cloth->n_regions) { /* panels with a grain alone */
+        free(cloth->mask);
+        cloth->mask = NULL;
+    }
     return code;
 }

@@ -85,18 +85,20 @@ static int add_named(struct scene_tree *tree, int map, struct cloth_error *error
     return fabric < 0 ? CLOTH_OK : add(tree, scene_fabrics[fabric].word, error);
 }
 
-/* The same of each map of a list, and of those in its key `inner`, unless that is NULL. */
-static int add_all_named(struct scene_tree *tree, int list, const char *inner,
+/* The same of each map of a list, and of those in the lists of its keys `inner`, up to NULL. */
+static int add_all_named(struct scene_tree *tree, int list, const char *const *inner,
                          struct cloth_error *error)
 {
+    static const char *const none[] = {NULL};
     const size_t n =
         scene_tree_is(tree, list, YAML_SEQUENCE_NODE) ? scene_tree_length(tree, list) : 0;
     int code = CLOTH_OK;
     for (size_t i = 0; i < n && !code; i++) {
         const int item = scene_tree_item(tree, list, i);
         code = add_named(tree, item, error);
-        if (!code && inner && scene_tree_is(tree, item, YAML_MAPPING_NODE))
-            code = add_all_named(tree, scene_tree_get(tree, item, inner), NULL, error);
+        for (const char *const *key = inner; *key && !code; key++)
+            if (scene_tree_is(tree, item, YAML_MAPPING_NODE))
+                code = add_all_named(tree, scene_tree_get(tree, item, *key), none, error);
     }
     return code;
 }
@@ -113,9 +115,10 @@ static int fill(struct scene_tree *tree, int material, const struct value *value
 
 int scene_fabrics_fill(struct scene_tree *tree, struct cloth_error *error)
 {
+    static const char *const parts[] = {"panels", "regions", NULL};
     if (!scene_tree_is(tree, 1, YAML_MAPPING_NODE)) /* the check of keys says so */
         return CLOTH_OK;
-    int code = add_all_named(tree, scene_tree_get(tree, 1, "cloths"), "regions", error);
+    int code = add_all_named(tree, scene_tree_get(tree, 1, "cloths"), parts, error);
     const int materials = scene_tree_get(tree, 1, "materials");
     const bool is_map = scene_tree_is(tree, materials, YAML_MAPPING_NODE);
     for (size_t i = 0; !code && is_map && i < scene_tree_length(tree, materials); i++) {

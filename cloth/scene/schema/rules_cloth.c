@@ -117,6 +117,9 @@ const struct scene_rule scene_motion_keys[] = {
     {"box", SCENE_LIST, "m", .choice = true, .length = 2, .inside = &point, \
      INTO(type, pick box), MEANS(type, pick kind, MODEL_PICK_BOX), \
      .about = "all vertices in the box between two corners"}
+#define PICK_GROUP(type, pick) \
+    {"group", SCENE_TEXT, .choice = true, MEANS(type, pick kind, MODEL_PICK_VERTICES), \
+     .about = "all vertices of a group of the mesh's faces: of an OBJ file, or a panel"}
 #define PICK(type) \
     PICK_VERTICES(type, pick.), \
     {"nearest", SCENE_LIST, "m", .choice = true, .length = 3, .inside = &number, \
@@ -124,7 +127,8 @@ const struct scene_rule scene_motion_keys[] = {
      .about = "the vertex nearest to a point"}, \
     {"radius", SCENE_NUMBER, "m", .range = SCENE_NOT_NEGATIVE, INTO(type, pick.radius), \
      .about = "of nearest: and all vertices within it"}, \
-    PICK_BOX(type, pick.)
+    PICK_BOX(type, pick.), \
+    PICK_GROUP(type, pick.)
 
 static const struct scene_rule pin_keys[] = {
     PICK(struct model_pin),
@@ -234,6 +238,7 @@ const struct scene_rule scene_settled = {.type = SCENE_MAP, .inside = settled_ke
 static const struct scene_rule region_keys[] = {
     PICK_VERTICES(struct model_pick, ),
     PICK_BOX(struct model_pick, ),
+    PICK_GROUP(struct model_pick, ),
     {"material", SCENE_TEXT, .required = true, .about = "of what has all its vertices there"},
     {0}};
 const struct scene_rule scene_region = {.type = SCENE_MAP, .inside = region_keys};
@@ -263,6 +268,14 @@ static const struct scene_rule seams_keys[] = {
               "folder"},
     {0}};
 
+static const struct scene_rule panel_keys[] = {
+    {"group", SCENE_TEXT, .required = true, .about = "of the mesh's faces, by its name"},
+    {"material", SCENE_TEXT, .about = "of its triangles; else that of the cloth"},
+    {"grain", SCENE_NUMBER, "degrees",
+     .about = "by which the warp is turned from u towards v of its uv; else 0"},
+    {0}};
+static const struct scene_rule panel = {.type = SCENE_MAP, .inside = panel_keys};
+
 static const struct scene_rule cloth_keys[] = {
     {"name", SCENE_TEXT, INTO(struct model_cloth, name),
      .about = "unique; else cloth1, cloth2, ..."},
@@ -270,6 +283,8 @@ static const struct scene_rule cloth_keys[] = {
     {"transform", SCENE_MAP, .fallback = "{}", .inside = transform_keys, .apart = true,
      .about = "of the mesh, before lengths and masses are taken"},
     {"material", SCENE_TEXT, .required = true, .about = "a name in materials"},
+    {"panels", SCENE_LIST, .fallback = "[]", .inside = &panel,
+     .about = "groups of other materials or directions of threads; the last one counts"},
     {"regions", SCENE_LIST, .fallback = "[]", .inside = &scene_region,
      .about = "parts of other materials; the last one that has an element counts"},
     {"layer", SCENE_INTEGER, .fallback = "0", INTO(struct model_cloth, layer),

@@ -96,22 +96,6 @@ START_TEST(equal_parts)
 }
 END_TEST
 
-START_TEST(turns)
-{
-    static const double quarter[4][2] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
-    double c, s;
-    for (int k = -9; k < 9; k++) {
-        curve_turn(90.0 * k, &c, &s);
-        ck_assert(c == quarter[(k + 12) % 4][0] && s == quarter[(k + 12) % 4][1]);
-    }
-    for (double degrees = -400; degrees < 400; degrees += 7.3) {
-        curve_turn(degrees, &c, &s);
-        ck_assert(fabs(c - cos(degrees * PI / 180)) < 2e-15 &&
-                  fabs(s - sin(degrees * PI / 180)) < 2e-15);
-    }
-}
-END_TEST
-
 int main(void)
 {
     Suite *suite = suite_create("curves");
@@ -121,7 +105,6 @@ int main(void)
     tcase_add_test(forms, cubic_edges);
     tcase_add_test(forms, circular_edges);
     tcase_add_test(forms, equal_parts);
-    tcase_add_test(forms, turns);
     suite_add_tcase(suite, forms);
     return unit_run(suite);
 }

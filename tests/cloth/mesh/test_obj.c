@@ -191,6 +191,45 @@ START_TEST(lines_across_chunks)
 }
 END_TEST
 
+/* The bytes of what a group has: "0110". */
+static void group_is(const struct mesh *mesh, const char *name, const char *vertices,
+                     const char *triangles)
+{
+    const uint32_t group = mesh_group_of(mesh, name);
+    unsigned char vertex[16] = {0}, triangle[16] = {0};
+    ck_assert_msg(group < mesh->n_groups, "there is no group %s", name);
+    ck_assert(strlen(vertices) == mesh->n_vertices && strlen(triangles) == mesh->n_triangles);
+    mesh_group_vertices(mesh, group, vertex);
+    mesh_group_triangles(mesh, group, triangle);
+    for (uint32_t v = 0; v < mesh->n_vertices; v++)
+        ck_assert_msg(vertex[v] == vertices[v] - '0', "vertex %u of %s", v, name);
+    for (uint32_t t = 0; t < mesh->n_triangles; t++)
+        ck_assert_msg(triangle[t] == triangles[t] - '0', "triangle %u of %s", t, name);
+}
+
+START_TEST(groups_of_faces)
+{
+    struct mesh mesh = read_text(SQUARE "v 2 0 0\nv 2 1 0\nv 9 9 9\n"
+                                        "o all\ng empty\n g b \ta # c\nf 1 2 3 4\ng\nf 2 5 3\n"
+                                        "g a\nf 5 6 3\ng b a b\ng e\\\nnd\ng\n");
+    ck_assert_uint_eq(mesh.n_groups, 2); /* in the order of the file */
+    ck_assert_str_eq(mesh.group[0], "b");
+    ck_assert_str_eq(mesh.group[1], "a");
+    group_is(&mesh, "b", "1111000", "1100");
+    group_is(&mesh, "a", "1111110", "1101");
+    ck_assert_uint_eq(mesh_group_of(&mesh, "all"), UINT32_MAX);
+    ck_assert_uint_eq(mesh_group_of(&mesh, "empty"), UINT32_MAX);
+    mesh_free(&mesh);
+    mesh = read_text(SQUARE "f 1 2 3\ng last last\nf 1 3 4\n");
+    ck_assert_uint_eq(mesh.n_groups, 1);
+    group_is(&mesh, "last", "1011", "01");
+    ck_assert_int_eq(mesh_group_add(&mesh, "both", 0, 2, NULL), CLOTH_OK);
+    group_is(&mesh, "both", "1111", "11");
+    group_is(&mesh, "last", "1011", "01");
+    mesh_free(&mesh);
+}
+END_TEST
+
 RUN("obj", polygons_are_fanned, every_way_to_write_a_corner, numbers, the_locale_does_not_matter,
     all_else_is_skipped, faces_may_come_first, lone_edges, unused_vertices_are_kept, uv_of_vertices,
-    very_long_lines, lines_across_chunks)
+    very_long_lines, lines_across_chunks, groups_of_faces)

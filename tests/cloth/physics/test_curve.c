@@ -20,6 +20,22 @@ START_TEST(sines)
 }
 END_TEST
 
+START_TEST(angles)
+{
+    static const double quarter[4][2] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
+    double c, s;
+    for (int k = -9; k < 9; k++) {
+        phys_turn(90.0 * k, &c, &s);
+        ck_assert(c == quarter[(k + 12) % 4][0] && s == quarter[(k + 12) % 4][1]);
+    }
+    for (double degrees = -400; degrees < 400; degrees += 7.3) {
+        phys_turn(degrees, &c, &s);
+        ck_assert(fabs(c - cos(degrees * M_PI / 180)) < 2e-15 &&
+                  fabs(s - sin(degrees * M_PI / 180)) < 2e-15);
+    }
+}
+END_TEST
+
 START_TEST(key_frames)
 {
     const struct phys_curve_key curve_key[] = {{1, 2}, {2, 4}, {4, -4}};
@@ -39,6 +55,7 @@ int main(void)
     Suite *suite = suite_create("curve");
     TCase *cases = tcase_create("curve");
     tcase_add_test(cases, sines);
+    tcase_add_test(cases, angles);
     tcase_add_test(cases, key_frames);
     suite_add_tcase(suite, cases);
     return unit_run(suite);

@@ -190,7 +190,8 @@ START_TEST(loads_that_cannot_be_made)
             .error = ":8:39: radius is given without nearest, the point that it is measured from; "
                      "both or neither are expected"},
            {"vertices: [11], ", "",
-            .error = ":8:13: cloths[0].loads[0] has no vertices or nearest or box or edges; one of "
+            .error = ":8:13: cloths[0].loads[0] has no vertices or nearest or box or group or "
+                     "edges; one of "
                      "them is expected"});
 }
 END_TEST
@@ -243,7 +244,7 @@ START_TEST(regions_that_cannot_be_made)
             .error = ":7:15: cloths[0].regions[0].material is missing; a text is expected"},
            {MORE("regions: [{nearest: [0, 0, 0], material: cotton}]"),
             .error = ":7:16: nearest is not a key of cloths[0].regions[0]; allowed: vertices, box, "
-                     "material"},
+                     "group, material"},
            {MORE("regions: [{vertices: [0, 12], material: cotton}]"),
             .error = ":7:30: vertex 12 is outside the mesh of cloth 'sheet', which has 12 "
                      "vertices; 0 to 11 are allowed"},
@@ -260,34 +261,35 @@ END_TEST
 
 START_TEST(starts_and_masses_that_cannot_be_made)
 {
-    EXPECT({MORE("masses: [{vertices: [1], mass: 0}]"),
-            .error = ":7:36: cloths[0].masses[0].mass is 0; a finite number > 0 (kg) is expected"},
-           {MORE("masses: [{vertices: [1]}]"),
-            .error = ":7:14: cloths[0].masses[0].mass is missing; a finite number > 0 (kg) is "
-                     "expected"},
-           {MORE("masses: [{vertices: [1, 1], mass: 1}]"),
-            .error = ":7:29: vertex 1 stands twice in one mass"},
-           {MORE("start: [{spin: [1, 0, 0]}]"),
-            .error = ":7:13: cloths[0].start[0] has no vertices or nearest or box; one of them is "
-                     "expected"},
-           {MORE("start: [{vertices: [1, 2, 1]}]"),
-            .error = ":7:31: vertex 1 stands twice in one start"},
-           {MORE("start: [{vertices: [12]}]"),
-            .error = ":7:25: vertex 12 is outside the mesh of cloth 'sheet', which has 12 "
-                     "vertices; 0 to 11 are allowed"},
-           {MORE("start: [{vertices: [1], scale: 0}]"),
-            .error = ":7:36: cloths[0].start[0].scale is 0; a finite number > 0 or a list of 3 of "
-                     "them is expected"},
-           {MORE("start: [{vertices: [1], rotate: [0, 0, 0, 0]}]"),
-            .error = ":7:37: the quaternion [w, x, y, z] has no direction; its length must be "
-                     "neither zero nor huge"},
-           {MORE("start: [{vertices: [1], wave: {phase: 1}}]"),
-            .error =
-                ":7:35: cloths[0].start[0].wave.vector is missing; a list of 3 numbers (1/m) is "
-                "expected"},
-           {MORE("start: [{vertices: [1], spin: [0, .nan, 0]}]"),
-            .error =
-                ":7:39: cloths[0].start[0].spin[1] is .nan; a finite number (rad/s) is expected"});
+    EXPECT(
+        {MORE("masses: [{vertices: [1], mass: 0}]"),
+         .error = ":7:36: cloths[0].masses[0].mass is 0; a finite number > 0 (kg) is expected"},
+        {MORE("masses: [{vertices: [1]}]"),
+         .error = ":7:14: cloths[0].masses[0].mass is missing; a finite number > 0 (kg) is "
+                  "expected"},
+        {MORE("masses: [{vertices: [1, 1], mass: 1}]"),
+         .error = ":7:29: vertex 1 stands twice in one mass"},
+        {MORE("start: [{spin: [1, 0, 0]}]"),
+         .error =
+             ":7:13: cloths[0].start[0] has no vertices or nearest or box or group; one of them is "
+             "expected"},
+        {MORE("start: [{vertices: [1, 2, 1]}]"),
+         .error = ":7:31: vertex 1 stands twice in one start"},
+        {MORE("start: [{vertices: [12]}]"),
+         .error = ":7:25: vertex 12 is outside the mesh of cloth 'sheet', which has 12 "
+                  "vertices; 0 to 11 are allowed"},
+        {MORE("start: [{vertices: [1], scale: 0}]"),
+         .error = ":7:36: cloths[0].start[0].scale is 0; a finite number > 0 or a list of 3 of "
+                  "them is expected"},
+        {MORE("start: [{vertices: [1], rotate: [0, 0, 0, 0]}]"),
+         .error = ":7:37: the quaternion [w, x, y, z] has no direction; its length must be "
+                  "neither zero nor huge"},
+        {MORE("start: [{vertices: [1], wave: {phase: 1}}]"),
+         .error = ":7:35: cloths[0].start[0].wave.vector is missing; a list of 3 numbers (1/m) is "
+                  "expected"},
+        {MORE("start: [{vertices: [1], spin: [0, .nan, 0]}]"),
+         .error =
+             ":7:39: cloths[0].start[0].spin[1] is .nan; a finite number (rad/s) is expected"});
 }
 END_TEST
 
@@ -340,8 +342,9 @@ START_TEST(probes_that_tell_nothing)
 {
     EXPECT(
         {PROBE("{name: a}"),
-         .error = ":12:10: probes[0] has no vertices or nearest or box or obstacle; one of "
-                  "them is expected"},
+         .error =
+             ":12:10: probes[0] has no vertices or nearest or box or group or obstacle; one of "
+             "them is expected"},
         {PROBE("{vertices: [0], radius: 1}"),
          .error = ":12:34: radius is given without nearest, the point that it is measured from; "
                   "both or neither are expected"},
@@ -349,7 +352,7 @@ START_TEST(probes_that_tell_nothing)
          .error = ":12:39: probes[0].radius is -0.1; a finite number >= 0 (m) is expected"},
         {PROBE("{vertices: [0], nearest: [0, 0, 0]}"),
          .error = ":12:26: probes[0] has both vertices and nearest; one of vertices or nearest or "
-                  "box or obstacle is expected"},
+                  "box or group or obstacle is expected"},
         {PROBE("{vertices: [12]}"),
          .error =
              ":12:22: vertex 12 is outside the mesh of cloth 'sheet', which has 12 vertices; 0 "

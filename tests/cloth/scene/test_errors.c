@@ -135,11 +135,11 @@ START_TEST(wrong_pins)
         {"[{vertices: [0, 3]}]", "[]\n    loads: []",
          .error = ":9:5: loads is twice in cloths[0]; each key is allowed once"},
         {"pins: [{vertices: [0, 3]}]", "pins: [{}]",
-         .error =
-             ":7:12: cloths[0].pins[0] has no vertices or nearest or box; one of them is expected"},
+         .error = ":7:12: cloths[0].pins[0] has no vertices or nearest or box or group; one of "
+                  "them is expected"},
         {"{vertices: [0, 3]}", "{vertices: [0], nearest: [0, 0, 0]}",
          .error = ":7:28: cloths[0].pins[0] has both vertices and nearest; one of vertices or "
-                  "nearest or box is expected"},
+                  "nearest or box or group is expected"},
         {"vertices: [0, 3]", "vertices: []",
          .error = ":7:23: cloths[0].pins[0].vertices is an empty list; a non-empty list of "
                   "whole numbers is expected"});
@@ -275,7 +275,8 @@ START_TEST(sets_that_are_wrong)
         {"cloths[0].pins[0].vertices[0]=12", "vertex 12 is outside the mesh of cloth 'sheet', "
                                              "which has 12 vertices; 0 to 11 are allowed"},
         {"cloths[0].pins[0]={vertices: [0], nearest: [0, 0, 0]}",
-         "cloths[0].pins[0] has both vertices and nearest; one of vertices or nearest or box is "
+         "cloths[0].pins[0] has both vertices and nearest; one of vertices or nearest or box or "
+         "group is "
          "expected"},
         {"solver.stop={count: 3, absolute: 1}",
          "solver.stop has 2 keys; a map with exactly one of relative, absolute, mass_norm, "

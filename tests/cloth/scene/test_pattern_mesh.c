@@ -58,6 +58,12 @@ START_TEST(panels_as_a_mesh)
                                          (x[2] - y[2]) * (x[2] - y[2])),
                                     hypot(u[0] - v[0], u[1] - v[1]), 1e-12);
         }
+    ck_assert_uint_eq(mesh->n_groups, 2);
+    unsigned char *front = calloc(mesh->n_vertices, 1);
+    mesh_group_vertices(mesh, mesh_group_of(mesh, "front"), front);
+    for (uint32_t v = 0; v < mesh->n_vertices; v++)
+        ck_assert((mesh->position[3 * v + 2] > 0.015) == front[v]);
+    free(front);
     ck_assert_uint_eq(model.n_files, 2);
     ck_assert_ptr_nonnull(strstr(model.files[1], "/pillow.json"));
     model_free(&model);

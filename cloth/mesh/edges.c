@@ -1,6 +1,7 @@
 /* Edges are found by sorting the sides of the triangles, so that their order and sums depend on the
  * mesh only. */
 #include "cloth/base/memory.h"
+#include "cloth/base/order.h"
 #include "cloth/mesh/detail/sides.h"
 #include "cloth/mesh/detail/vector.h"
 #include "cloth/mesh/mesh.h"
@@ -54,6 +55,18 @@ int mesh_edges_find(struct mesh_edges *edges, const struct mesh *mesh, struct cl
 done:
     mesh_sides_free(&sides);
     return code;
+}
+
+static int compare_ends(const void *va, const void *vb)
+{
+    const struct mesh_edge *a = va, *b = vb;
+    return a->a != b->a ? cloth_compare_u32(a->a, b->a) : cloth_compare_u32(a->b, b->b);
+}
+
+const struct mesh_edge *mesh_edges_get(const struct mesh_edges *edges, uint32_t a, uint32_t b)
+{
+    const struct mesh_edge wanted = {.a = a < b ? a : b, .b = a < b ? b : a};
+    return edges->n ? bsearch(&wanted, edges->edge, edges->n, sizeof wanted, compare_ends) : NULL;
 }
 
 void mesh_edges_free(struct mesh_edges *edges)

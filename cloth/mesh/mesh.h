@@ -174,6 +174,8 @@ struct mesh_edges {
     struct mesh_edge *edge;
 };
 int mesh_edges_find(struct mesh_edges *edges, const struct mesh *mesh, struct cloth_error *error);
+/* The edge between two vertices, in any order; NULL: there is none. */
+const struct mesh_edge *mesh_edges_get(const struct mesh_edges *edges, uint32_t a, uint32_t b);
 void mesh_edges_free(struct mesh_edges *edges);
 
 /* Adds to mass[v] (kg, n_vertices) a third of each triangle's area (as positioned) times density

@@ -179,14 +179,16 @@ struct model_cloth {
     char *place, *mesh_place, *velocity_place; /* of the cloth, and of parts of it */
 };
 
-/* Vertices of a cloth's mesh. */
+/* Vertices of a cloth's mesh, or points on edges of it. */
 struct model_end {
     uint32_t cloth, n;
-    uint32_t *vertices;
+    uint32_t *vertices;   /* n; NULL: there are edges, */
+    uint32_t (*edges)[2]; /* n, between whose ends a and b is the point (1 - at) a + at b */
+    double *at;           /* n, 0 to 1 */
 };
 
 /* Pairs of vertices, of two cloths or of one: vertex i of one end and vertex i of the other, of
- * which there are as many. */
+ * which there are as many. The other end of a joint may have points on edges. */
 struct model_pairs {
     struct model_end end[2];
     char *place;
@@ -207,6 +209,12 @@ struct model_joint {
 static inline bool model_is_timed(const struct model_joint *joint)
 {
     return joint->begin > 0 || joint->end > 0;
+}
+
+/* Whether it is a tie: it is timed, or ends on edges. */
+static inline bool model_is_tied(const struct model_joint *joint)
+{
+    return model_is_timed(joint) || joint->pairs.end[1].edges;
 }
 
 /* Makes the two vertices of each pair one. */

@@ -16,8 +16,11 @@ static void free_pick(struct model_pick *pick)
 
 static void free_pairs(struct model_pairs *pairs)
 {
-    free(pairs->end[0].vertices);
-    free(pairs->end[1].vertices);
+    for (int end = 0; end < 2; end++) {
+        free(pairs->end[end].vertices);
+        free(pairs->end[end].edges);
+        free(pairs->end[end].at);
+    }
     free(pairs->place);
 }
 

@@ -1,6 +1,6 @@
 /* Joints are springs between vertices of any cloths, as the scene names them. Those that are there
- * in all steps come after the springs of all cloths, in the scene's order; those that come or go
- * are ties (cloth/flow/state/ties.h). */
+ * in all steps come after the springs of all cloths, in the scene's order; those that come or go,
+ * or end on edges, are ties (cloth/flow/state/ties.h). */
 #include "cloth/flow/setup/source.h"
 #include "cloth/flow/step/grid.h"
 
@@ -20,24 +20,47 @@ int flow_joints_use(const struct model *model, unsigned char *used, struct cloth
         struct cloth_list list = {0};
         code = flow_pairs_list(&list, model, &model->joints[j].pairs, "a joint", error);
         const struct flow_pair *pair = list.items;
-        for (size_t i = 0; i < list.n && !code; i++)
+        for (size_t i = 0; i < list.n && !code; i++) {
             used[pair[i].vertex[0]] = used[pair[i].vertex[1]] = 1;
+            if (pair[i].second != UINT32_MAX)
+                used[pair[i].second] = 1;
+        }
         free(list.items);
     }
     return code;
 }
 
+/* The vertices of a pair with their weights; the lower one of two comes first. In this order the
+ * weights come to 0 without rounding. Returns how many. */
+static uint32_t weigh(const struct flow_pair *pair, uint32_t vertex[3], double weight[3])
+{
+    const uint32_t a = pair->vertex[0], b = pair->vertex[1];
+    const bool edge = pair->second != UINT32_MAX, swap = !edge && b < a;
+    const double near = edge ? 1 - pair->at : 1;
+    vertex[0] = swap ? b : a;
+    vertex[1] = swap ? a : b;
+    vertex[2] = pair->second;
+    weight[0] = 1;
+    weight[1] = -near;
+    weight[2] = -(1 - near);
+    return edge ? 3 : 2;
+}
+
 static double distance_of(const struct flow_particles *particles, const struct model *model,
                           const struct flow_pair *pair)
 {
-    struct flow_particle at[2];
-    for (int end = 0; end < 2; end++) {
+    uint32_t vertex[3];
+    double weight[3];
+    phys_vec d = {0};
+    const uint32_t n = weigh(pair, vertex, weight);
+    for (uint32_t i = 0; i < n; i++) {
         struct flow_cloths cloth = {0};
-        flow_source_cloth(&cloth, model, pair->vertex[end]);
-        flow_particle_of(particles, model, model->cloths + cloth.cloth, cloth.first,
-                         pair->vertex[end], at + end);
+        struct flow_particle at;
+        flow_source_cloth(&cloth, model, vertex[i]);
+        flow_particle_of(particles, model, model->cloths + cloth.cloth, cloth.first, vertex[i],
+                         &at);
+        d += weight[i] * at.position;
     }
-    const phys_vec d = at[1].position - at[0].position;
     return sqrt(phys_dot(&d, &d));
 }
 
@@ -45,9 +68,11 @@ static int make_joint(struct flow_spring *spring, const struct flow_particles *p
                       const struct model *model, const struct model_joint *joint,
                       const struct flow_pair *pair, struct cloth_error *error)
 {
+    const struct flow_welds *welds = &particles->welds;
     const uint32_t a = pair->vertex[0], b = pair->vertex[1];
     const double length = joint->length < 0 ? distance_of(particles, model, pair) : joint->length;
-    if (flow_root(&particles->welds, a) == flow_root(&particles->welds, b))
+    if (flow_root(welds, a) == flow_root(welds, b) ||
+        (pair->second != UINT32_MAX && flow_root(welds, a) == flow_root(welds, pair->second)))
         return flow_pair_fail(model, pair, "a joint", "which welds make one", error);
     if (joint->pairs.seam && !particles->free[a] && !particles->free[b])
         return flow_pair_fail(model, pair, "a joint",
@@ -74,6 +99,7 @@ static int make_timed(struct flow_springs *springs, const struct flow_particles 
     struct flow_timed *timed = springs->timed + springs->n_timed++;
     timed->begin = tick_of(springs->model, joint->begin);
     timed->end = joint->end > 0 ? tick_of(springs->model, joint->end) : UINT64_MAX;
+    timed->n = weigh(pair, timed->vertex, timed->weight);
     return make_joint(&timed->spring, particles, springs->model, joint, pair, error);
 }
 
@@ -82,7 +108,7 @@ static int make_one(struct flow_springs *springs, const struct flow_particles *p
                     const struct model_joint *joint, uint32_t seam, const struct flow_pair *pair,
                     struct cloth_error *error)
 {
-    if (model_is_timed(joint))
+    if (model_is_tied(joint))
         return make_timed(springs, particles, joint, pair, error);
     struct flow_spring *spring = springs->joint + springs->n_joints++;
     const int code = make_joint(spring, particles, springs->model, joint, pair, error);
@@ -108,7 +134,7 @@ static int make_all(struct flow_springs *springs, const struct flow_particles *p
         seam += model->joints[j].pairs.seam != 0;
         for (uint32_t i = 0; i < model->joints[j].pairs.end[0].n && !code; i++, k++) {
             code = make_one(springs, particles, model->joints + j, seam, pair + k, error);
-            if (!model_is_timed(model->joints + j)) /* of timed ones two may have several */
+            if (!model_is_tied(model->joints + j)) /* of tied ones two may have several */
                 pair[springs->n_joints - 1] = pair[k];
         }
     }
@@ -140,22 +166,21 @@ struct flow_tie flow_joints_tie(const struct flow_source *source, const struct f
 {
     const struct mesh_blocks *blocks = &source->blocks;
     const struct flow_particles *particles = &source->particles;
-    const struct flow_spring *spring = &timed->spring;
-    const uint32_t vertex[2] = {spring->a, spring->b};
-    struct flow_tie tie = {.at = {.n = 2, .weight = {1, -1}},
-                           .stiffness = spring->stiffness,
-                           .damping = spring->damping,
-                           .length = spring->length,
+    struct flow_tie tie = {.at.n = timed->n,
+                           .stiffness = timed->spring.stiffness,
+                           .damping = timed->spring.damping,
+                           .length = timed->spring.length,
                            .begin = timed->begin,
                            .end = timed->end};
-    for (int end = 0; end < 2; end++) {
-        const uint32_t place = blocks->place[vertex[end]];
-        tie.at.block[end] = flow_source_block(blocks, place, 0);
-        tie.at.row[end] = place - blocks->start[tie.at.block[end]];
-        const uint32_t root = flow_root(&particles->welds, vertex[end]);
+    for (uint32_t k = 0; k < timed->n; k++) {
+        const uint32_t place = blocks->place[timed->vertex[k]];
+        tie.at.weight[k] = timed->weight[k];
+        tie.at.block[k] = flow_source_block(blocks, place, 0);
+        tie.at.row[k] = place - blocks->start[tie.at.block[k]];
+        const uint32_t root = flow_root(&particles->welds, timed->vertex[k]);
         if (!particles->free[root])
-            tie.at.held |= (unsigned char)(1 << end);
-        tie.piece[end] = particles->piece ? particles->piece[root] : 0;
+            tie.at.held |= (unsigned char)(1 << k);
+        tie.piece[k] = particles->piece ? particles->piece[root] : 0;
     }
     return tie;
 }

@@ -4,7 +4,8 @@
  * M^-1 K is at most the largest of these blocks over their masses. That is Gershgorin's bound by
  * blocks, but for 2 |Kaa| in place of |Kaa| + sum of |Kab|, which ignores the directions of
  * springs. A chain of equal springs and masses reaches it as it gets longer. Of an element with n
- * corners that are free, K is at most n times its blocks on the diagonal, likewise. */
+ * corners that are free, K is at most n times its blocks on the diagonal, likewise. Of a joint with
+ * weights w, |sum of w u.x|^2 <= sum of |w| times sum of |w| |u.x|^2. */
 #include "cloth/flow/setup/source.h"
 
 #include "cloth/base/memory.h"
@@ -43,23 +44,34 @@ static void add(struct block *block, double times, const struct flow_spring *s, 
     block->damping += times * s->damping;
 }
 
-static void visit(void *to, const struct flow_spring *s)
+/* A spring between the points that n vertices make by their weights, which come to 0. */
+static void visit_weighted(struct visitor *visitor, const struct flow_spring *s, uint32_t n,
+                           const uint32_t *vertex, const double *weight)
 {
-    struct visitor *visitor = to;
     const struct flow_welds *welds = &visitor->source->particles.welds;
-    const uint32_t at = flow_root(welds, s->a), bt = flow_root(welds, s->b);
-    struct flow_particle a, b;
-    particle_of(visitor, at, &a);
-    particle_of(visitor, bt, &b);
-    const phys_vec d = b.position - a.position;
+    struct flow_particle particle[SOLVE_TIE_CORNERS];
+    double free = 0;
+    phys_vec d = {0};
+    for (uint32_t k = 0; k < n; k++) {
+        particle_of(visitor, flow_root(welds, vertex[k]), particle + k);
+        d += weight[k] * particle[k].position;
+        free += fabs(weight[k]) * particle[k].free;
+    }
     const double length = sqrt(phys_dot(&d, &d));
     const phys_vec u = length > 0 ? d / length : d;
     const double longer = length > 0 ? 1 - s->length / length : 1;
     const double across = length > s->length ? longer : 0;
-    if (a.free > 0)
-        add(visitor->block + at, 1 + b.free, s, &u, across);
-    if (b.free > 0)
-        add(visitor->block + bt, 1 + a.free, s, &u, across);
+    for (uint32_t k = 0; k < n; k++)
+        if (particle[k].free > 0)
+            add(visitor->block + flow_root(welds, vertex[k]), fabs(weight[k]) * free, s, &u,
+                across);
+}
+
+static void visit(void *to, const struct flow_spring *s)
+{
+    const uint32_t vertex[2] = {s->a, s->b};
+    const double weight[2] = {1, -1};
+    visit_weighted(to, s, 2, vertex, weight);
 }
 
 /* Adds `times` a pair to the block of one of its corners: N, or as good N', since their sum is
@@ -170,7 +182,9 @@ int flow_limit_find(const struct flow_source *source, struct flow_limit *limit,
         flow_springs_each(&source->springs, visit, &visitor);
         for (uint32_t i = 0; i < source->springs.n_timed; i++)
             if (flow_joints_act(source->model, source->springs.timed + i))
-                visit(&visitor, &source->springs.timed[i].spring);
+                visit_weighted(&visitor, &source->springs.timed[i].spring,
+                               source->springs.timed[i].n, source->springs.timed[i].vertex,
+                               source->springs.timed[i].weight);
         element_each(&source->elements, visit_element, &visitor);
         find(&visitor, limit);
     }

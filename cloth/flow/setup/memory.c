@@ -61,7 +61,7 @@ static void take(struct flow_state *state)
     const struct flow_head *head = &state->head;
     const size_t tied = model_seeks(flow->model) /* others of a block, at most */
                             ? head->n_blocks
-                            : smaller(head->n_blocks, head->n_ties);
+                            : smaller(head->n_blocks, 2 * (size_t)head->n_ties);
     const size_t refs =
         larger(head->n_blocks, 2 * (size_t)head->max_neighbours) + 4 * tied + DUITE_MAX_ACCESS;
     flow->n_clocks = duite_threads(state->rt);

@@ -5,20 +5,52 @@
 #include "cloth/base/memory.h"
 #include "cloth/base/order.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 
 int flow_pair_fail(const struct model *model, const struct flow_pair *pair, const char *what,
                    const char *why, struct cloth_error *error)
 {
     const struct model_pairs *of = pair->of;
-    char seam[MODEL_SEAM_NAME];
+    const struct model_end *to = of->end + 1;
+    char seam[MODEL_SEAM_NAME], other[64];
     if (of->seam)
         model_name_seam(model->cloths + of->end[0].cloth, of->seam - 1, seam);
-    return model_fail(of->place, error,
-                      "%s is between vertex %u of cloth '%.60s' and vertex %u of cloth '%.60s', %s",
-                      of->seam ? seam : what, of->end[0].vertices[pair->i],
-                      model->cloths[of->end[0].cloth].name, of->end[1].vertices[pair->i],
-                      model->cloths[of->end[1].cloth].name, why);
+    if (to->edges)
+        snprintf(other, sizeof other, "the edge of vertices %u and %u", to->edges[pair->i][0],
+                 to->edges[pair->i][1]);
+    else
+        snprintf(other, sizeof other, "vertex %u", to->vertices[pair->i]);
+    return model_fail(
+        of->place, error, "%s is between vertex %u of cloth '%.60s' and %s of cloth '%.60s', %s",
+        of->seam ? seam : what, of->end[0].vertices[pair->i], model->cloths[of->end[0].cloth].name,
+        other, model->cloths[to->cloth].name, why);
+}
+
+/* The vertex of an end, of all cloths; of its mesh: `vertex`. */
+static int take_vertex(uint32_t *of_all, uint32_t vertex, const struct model *model,
+                       const struct model_pairs *pairs, int end, const char *what,
+                       struct cloth_error *error)
+{
+    const uint32_t cloth = pairs->end[end].cloth;
+    if (vertex >= model->cloths[cloth].mesh.n_vertices)
+        return flow_no_vertex(model->cloths + cloth, what, vertex, pairs->place, error);
+    *of_all = model_first(model, cloth) + vertex;
+    return CLOTH_OK;
+}
+
+/* On an end of the edge it is that vertex. */
+static int take_edge(struct flow_pair *pair, const struct model *model, const char *what,
+                     struct cloth_error *error)
+{
+    const struct model_pairs *pairs = pair->of;
+    const uint32_t *edge = pairs->end[1].edges[pair->i];
+    const double at = pairs->end[1].at[pair->i];
+    int code = take_vertex(&pair->vertex[1], edge[at >= 1], model, pairs, 1, what, error);
+    if (!code && at > 0 && at < 1)
+        code = take_vertex(&pair->second, edge[1], model, pairs, 1, what, error);
+    pair->at = at;
+    return code;
 }
 
 int flow_pairs_list(struct cloth_list *list, const struct model *model,
@@ -28,18 +60,24 @@ int flow_pairs_list(struct cloth_list *list, const struct model *model,
     if (!pair)
         return CLOTH_E_MEMORY;
     for (uint32_t i = 0; i < pairs->end[0].n; i++, pair++) {
-        *pair = (struct flow_pair){
-            .number = (uint32_t)(list->n - pairs->end[0].n + i), .i = i, .of = pairs};
-        for (int end = 0; end < 2; end++) {
-            const struct model_cloth *cloth = model->cloths + pairs->end[end].cloth;
-            if (pairs->end[end].vertices[i] >= cloth->mesh.n_vertices)
-                return flow_no_vertex(cloth, what, pairs->end[end].vertices[i], pairs->place,
-                                      error);
-            pair->vertex[end] =
-                model_first(model, pairs->end[end].cloth) + pairs->end[end].vertices[i];
-        }
-        if (pair->vertex[0] == pair->vertex[1])
-            return flow_pair_fail(model, pair, what, "itself; two vertices are expected", error);
+        *pair = (struct flow_pair){.second = UINT32_MAX,
+                                   .number = (uint32_t)(list->n - pairs->end[0].n + i),
+                                   .i = i,
+                                   .of = pairs};
+        int code =
+            take_vertex(&pair->vertex[0], pairs->end[0].vertices[i], model, pairs, 0, what, error);
+        if (!code && pairs->end[1].edges)
+            code = take_edge(pair, model, what, error);
+        else if (!code)
+            code = take_vertex(&pair->vertex[1], pairs->end[1].vertices[i], model, pairs, 1, what,
+                               error);
+        if (code)
+            return code;
+        if (pair->vertex[0] == pair->vertex[1] || pair->vertex[0] == pair->second)
+            return flow_pair_fail(model, pair, what,
+                                  pairs->end[1].edges ? "an end of which it is; another is expected"
+                                                      : "itself; two vertices are expected",
+                                  error);
     }
     return CLOTH_OK;
 }

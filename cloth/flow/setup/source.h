@@ -95,6 +95,9 @@ int flow_loads_make(struct flow_particles *particles, uint32_t first,
 /* A pair of vertices that the scene names. */
 struct flow_pair {
     uint32_t vertex[2];           /* of all cloths */
+    uint32_t second;              /* vertex[1] and this one are the ends of an edge, on which the */
+    double at;                    /* pair ends `at` of the way from there; UINT32_MAX: there is none
+                                   */
     uint32_t number, i;           /* among all that were listed; among those of its entry, */
     const struct model_pairs *of; /* this */
 };
@@ -178,9 +181,13 @@ struct flow_merged {
     double stiffness, damping;
     bool gone;
 };
-/* A joint that comes or goes while the run is on; it is a tie, and none of the springs. */
+/* A joint that comes or goes while the run is on, or that ends on an edge; it is a tie, and none of
+ * the springs. Its spring is between the points that its vertices make by their weights, which come
+ * to 0: from those above 0 to those below. a and b of the spring are not used. */
 struct flow_timed {
     struct flow_spring spring;
+    uint32_t n, vertex[SOLVE_TIE_CORNERS]; /* of all cloths */
+    double weight[SOLVE_TIE_CORNERS];
     uint64_t begin, end; /* ticks: steps that begin from .. to - 1 have it */
 };
 struct flow_springs {

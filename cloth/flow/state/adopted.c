@@ -9,11 +9,12 @@
 
 /* ---- Memory ---- */
 
-/* How many pairs (block, other block) there are at most: those of now, and of before. */
+/* How many pairs (block, other block) there are at most: those of now, and of before, of three
+ * corners each. */
 static size_t max_others(const struct flow_state *state)
 {
     const struct flow_head *head = &state->head;
-    const size_t joints = 4 * (size_t)head->n_ties;
+    const size_t joints = 12 * (size_t)head->n_ties;
     const size_t all = (size_t)head->n_blocks * head->n_blocks;
     return joints < all && !model_seeks(state->flow->model) ? joints : all;
 }

@@ -64,8 +64,8 @@ static void find_interval(const struct flow *flow, uint64_t tick, struct flow_ti
 static void unite(const struct flow *flow, uint64_t tick, uint32_t *parent)
 {
     for (const struct flow_tie *tie = flow->tie; tie < flow->tie + flow->n_ties; tie++)
-        if (flow_tie_acts(tie, tick))
-            cloth_sets_join(parent, tie->piece[0], tie->piece[1]);
+        for (uint32_t k = 1; k < tie->at.n && flow_tie_acts(tie, tick); k++)
+            cloth_sets_join(parent, tie->piece[0], tie->piece[k]);
 }
 
 /* Whether blocks said that they have other ties than the joints that act. */

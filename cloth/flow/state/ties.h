@@ -10,8 +10,8 @@
 /* Ties: what joins rows for some steps only. They are in no table of a block, and so in no
  * partition, halo or matrix that the run began with. A tie has up to four corners, rows with
  * weights, in up to four blocks. Every block with a corner knows the whole tie, and computes its
- * own corners. Timed joints are ties of two corners with the weights 1 and -1. Every rank knows
- * them all.
+ * own corners. Timed joints are ties of two corners with the weights 1 and -1, joints that end on
+ * edges ties of three with the weights 1, w - 1 and -w. Every rank knows them all.
  *
  * Before a step begins, the main program has a small record of each block: how many ties it has,
  * and how many rows it shows to which other blocks. From the records of all blocks it finds what
@@ -34,10 +34,11 @@ struct flow_tie_corners {
     double weight[SOLVE_TIE_CORNERS];
 };
 
-/* A timed joint, a spring of the scene that comes or goes while the run is on. */
+/* A joint that is no spring of the tables: one that comes or goes while the run is on, or that ends
+ * on an edge. */
 struct flow_tie {
-    struct flow_tie_corners at;        /* of the scene's: two, with the weights 1 and -1 */
-    uint32_t piece[2];                 /* of free pieces, from 1; 0: none (flow_particles) */
+    struct flow_tie_corners at;        /* whose weights come to 0 */
+    uint32_t piece[SOLVE_TIE_CORNERS]; /* of free pieces, from 1; 0: none (flow_particles) */
     double stiffness, damping, length; /* N/m, kg/s, m: those of a spring */
     uint64_t begin, end;               /* ticks: steps that begin from .. to - 1 have it */
 };

@@ -323,12 +323,25 @@ static const struct scene_rule newton_keys[] = {
     {0}};
 
 static const struct scene_rule vertex = {.type = SCENE_INTEGER, ITEM(uint32_t)};
+#define END_KEYS \
+    {"cloth", SCENE_TEXT, .about = "its name; optional where there is one only"}, \
+    {"vertex", SCENE_INTEGER, .choice = true, .about = "in the mesh's numbering"}, \
+    {"vertices", SCENE_LIST, .choice = true, .filled = true, .inside = &vertex, \
+     ARRAY(struct model_end, vertices, n), \
+     .about = "several, each with its own of the other end"}
 static const struct scene_rule end_keys[] = {
-    {"cloth", SCENE_TEXT, .about = "its name; optional where there is one only"},
-    {"vertex", SCENE_INTEGER, .choice = true, .about = "in the mesh's numbering"},
-    {"vertices", SCENE_LIST, .choice = true, .filled = true, .inside = &vertex,
-     ARRAY(struct model_end, vertices, n),
-     .about = "several, each with its own of the other end"},
+    END_KEYS,
+    {0}};
+static const struct scene_rule edge = {
+    .type = SCENE_LIST, .length = 2, .inside = &vertex, ITEM(uint32_t[2])};
+static const struct scene_rule point_keys[] = {
+    END_KEYS,
+    {"edge", SCENE_LIST, .choice = true, .length = 2, .inside = &vertex,
+     .about = "ends of an edge of the mesh: the joint ends at a point on it"},
+    {"edges", SCENE_LIST, .choice = true, .filled = true, .inside = &edge,
+     ARRAY(struct model_end, edges, n), .about = "several, each with its own of the other end"},
+    {"at", SCENE_NUMBER_OR_LIST, .inside = &number,
+     .about = "where on the edge, or on each: 0 at its first end, 1 at its second"},
     {0}};
 static const struct scene_rule weld_keys[] = {
     {"from", SCENE_MAP, .required = true, .inside = end_keys,
@@ -344,8 +357,8 @@ static const struct scene_rule weld = {
 static const struct scene_rule joint_keys[] = {
     {"from", SCENE_MAP, .required = true, .inside = end_keys,
      INTO(struct model_joint, pairs.end[0]), .about = "the vertices at one end"},
-    {"to", SCENE_MAP, .required = true, .inside = end_keys,
-     INTO(struct model_joint, pairs.end[1]), .about = "as many at the other"},
+    {"to", SCENE_MAP, .required = true, .inside = point_keys,
+     INTO(struct model_joint, pairs.end[1]), .about = "as many at the other, or points on edges"},
     {"stiffness", SCENE_NUMBER, "N/m", .required = true, .range = SCENE_POSITIVE,
      INTO(struct model_joint, stiffness), .about = "of each pair's spring"},
     {"damping", SCENE_NUMBER, "kg/s", "0", .range = SCENE_NOT_NEGATIVE,

@@ -120,7 +120,10 @@ static void number_expected(const struct scene_rule *rule, char *text, size_t si
     if (rule->type != SCENE_NUMBER_OR_LIST)
         return;
     size_t used = strlen(text);
-    snprintf(text + used, size - used, " or a list of %zu of them", rule->length);
+    if (rule->length)
+        snprintf(text + used, size - used, " or a list of %zu of them", rule->length);
+    else
+        snprintf(text + used, size - used, " or a list of them");
 }
 
 static void append_words(const struct scene_rule *rule, char *text, size_t size)

@@ -103,7 +103,7 @@ static int check(struct draw *draw, const double *value)
 /* The waistband's half; `waist`: the line that it is sewn to on either side, m. */
 static uint32_t put_band(struct draw *draw, const double *value, double waist, bool back)
 {
-    const double y = value[HEIGHT] / 1.75 * 0.79 + value[RISE] - value[BAND] + 0.02;
+    const double y = value[HEIGHT] / 1.75 * 0.79 + value[RISE] - value[BAND] + 0.035;
     const struct draw_place place = {
         .back = back, .y = y, .z = (back ? -0.5 : 0.5) * value[APART] + 0.01};
     struct draw_outline outline = {0};

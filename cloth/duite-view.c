@@ -233,7 +233,9 @@ static int draw(const struct show *show, const struct view_camera *camera,
                                .n_lines = cache->mesh.n_lone_edges,
                                .triangle = cache->mesh.triangle,
                                .line = cache->mesh.lone_edge,
-                               .obstacles = &show->obstacles};
+                               .obstacles = &show->obstacles,
+                               .n_cloths = cache->apart.n_cloths,
+                               .cloth_end = cache->apart.end};
     struct view_picture picture = {options->width, options->height, NULL};
     struct view_context *context = NULL;
     struct view_scene *scene = NULL;

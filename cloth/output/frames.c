@@ -39,7 +39,7 @@ static int fill_scene(FILE *file, const void *what)
     output_json_number(file, setup->fps);
     fputs(",\n  \"obstacles\": ", file);
     output_obstacles(file, setup->n_obstacles, setup->obstacles, setup->keys, setup->bodies);
-    if (setup->apart && setup->apart->apart) {
+    if (setup->apart && (setup->apart->apart || setup->apart->n_cloths > 1)) {
         fputs(",\n  \"apart\": ", file);
         output_apart(file, setup->apart);
     }

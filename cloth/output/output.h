@@ -20,8 +20,9 @@
  *   scene.json     what a viewer needs: {"fps", "obstacles": [{KIND: {its parameters}}]}, of a
  *                  body {"obj": its file}, with "frames": their number if they change its shape,
  * but not their places; one that moves also has "about" and "keys": [{"time", "translate",
- * "rotate"}]. Where the scene keeps some from meeting, "apart": {"cloths": [vertices of each],
- * "pairs": [[cloth, other], ...]} follows: numbers of cloths; those of obstacles follow. Where pins
+ * "rotate"}]. Of several cloths, or where the scene keeps some from meeting, "apart": {"cloths":
+ * [vertices of each], "pairs": [[cloth, other], ...]} follows: numbers of cloths; those of
+ * obstacles follow. Where pins
  * follow obstacles, "attached": [[obstacle, vertex, ...], ...]: vertices whose triangles do not
  * meet it. Where seams are pulled, "sewn": [[a, b], ...]: vertices whose triangles do not meet
  *

@@ -9,8 +9,15 @@
 
 enum program { PROGRAM_CAST, PROGRAM_BACK, PROGRAM_CLOTH, PROGRAM_GROUND, N_PROGRAMS };
 
-/* Colours of fronts and backs, linear. */
-static const float CLOTH[2][3] = {{0.40f, 0.030f, 0.028f}, {0.46f, 0.120f, 0.050f}};
+/* Colours of fronts and backs, linear. Those of cloths go round. They differ in lightness, too, for
+ * those who see no red or no green. */
+enum { N_COLOURS = 6 };
+static const float CLOTH[N_COLOURS][2][3] = {{{0.40f, 0.030f, 0.028f}, {0.46f, 0.120f, 0.050f}},
+                                             {{0.035f, 0.085f, 0.24f}, {0.09f, 0.15f, 0.30f}},
+                                             {{0.55f, 0.38f, 0.07f}, {0.52f, 0.42f, 0.18f}},
+                                             {{0.03f, 0.20f, 0.13f}, {0.09f, 0.26f, 0.19f}},
+                                             {{0.50f, 0.48f, 0.43f}, {0.45f, 0.43f, 0.40f}},
+                                             {{0.17f, 0.04f, 0.20f}, {0.24f, 0.10f, 0.26f}}};
 static const float PALE[2][3] = {{0.42f, 0.42f, 0.40f}, {0.36f, 0.36f, 0.35f}};
 static const float STONE[2][3] = {{0.22f, 0.25f, 0.28f}, {0.22f, 0.25f, 0.28f}};
 
@@ -21,6 +28,8 @@ struct view_scene {
     GLuint program[N_PROGRAMS];
     GLuint nothing; /* a vertex array without attributes */
     bool heated;
+    uint32_t n_parts;
+    struct draw_part *part; /* n_parts: cloths */
 };
 
 static int make_programs(struct view_scene *scene, struct cloth_error *error)
@@ -39,6 +48,36 @@ static int make_programs(struct view_scene *scene, struct cloth_error *error)
     return 0;
 }
 
+/* What of n runs of `corners` vertices belongs to a cloth, from `first` on. */
+static uint32_t count_of(const uint32_t *vertex, uint32_t corners, uint32_t first, uint32_t n,
+                         uint32_t end)
+{
+    uint32_t last = first;
+    while (last < n && vertex[(size_t)corners * last] < end)
+        last++;
+    return last - first;
+}
+
+static int make_parts(struct view_scene *scene, const struct view_shape *shape,
+                      struct cloth_error *error)
+{
+    const uint32_t n = shape->n_cloths ? shape->n_cloths : 1;
+    struct draw_part next = {0};
+    scene->part = calloc(n, sizeof *scene->part);
+    if (!scene->part)
+        return cloth_fail(error, CLOTH_E_MEMORY, "no memory for the colours of %u cloths", n);
+    scene->n_parts = n;
+    for (uint32_t c = 0; c < n; c++) {
+        const uint32_t end = c + 1 < n ? shape->cloth_end[c] : UINT32_MAX;
+        next.n_triangles = count_of(shape->triangle, 3, next.triangle, shape->n_triangles, end);
+        next.n_lines = count_of(shape->line, 2, next.line, shape->n_lines, end);
+        scene->part[c] = next;
+        next.triangle += next.n_triangles;
+        next.line += next.n_lines;
+    }
+    return CLOTH_OK;
+}
+
 static bool has_shapes(const struct view_scene *scene)
 {
     return scene->obstacles && scene->obstacles->n_vertices;
@@ -54,6 +93,7 @@ int view_scene_new(struct view_scene **scene, const struct view_shape *shape,
     made->obstacles = shape->obstacles;
     glGenVertexArrays(1, &made->nothing);
     int code = make_programs(made, error);
+    code = code ? code : make_parts(made, shape, error);
     code = code ? code : draw_lights_make(&made->lights, error);
     code = code ? code
                 : draw_mesh_make(&made->mesh, shape->n_vertices, shape->n_triangles,
@@ -250,8 +290,11 @@ void view_scene_draw(const struct view_scene *scene, const struct view_camera *c
         glDisable(GL_CULL_FACE);
         glDisable(GL_POLYGON_OFFSET_FILL);
     }
-    glUniform3fv(glGetUniformLocation(surface, "paint"), 2, scene->heated ? PALE[0] : CLOTH[0]);
-    draw_mesh_draw(&scene->mesh);
+    for (uint32_t c = 0; c < scene->n_parts; c++) {
+        glUniform3fv(glGetUniformLocation(surface, "paint"), 2,
+                     scene->heated ? PALE[0] : CLOTH[c % N_COLOURS][0]);
+        draw_mesh_draw_part(&scene->mesh, scene->part + c);
+    }
 }
 
 void view_scene_free(struct view_scene *scene)
@@ -264,5 +307,6 @@ void view_scene_free(struct view_scene *scene)
     for (int i = 0; i < N_PROGRAMS; i++)
         glDeleteProgram(scene->program[i]);
     glDeleteVertexArrays(1, &scene->nothing);
+    free(scene->part);
     free(scene);
 }

@@ -78,6 +78,9 @@ struct view_shape {
     const uint32_t *triangle,
         *line; /* x 3, x 2; read during view_scene_new only but for triangle */
     const struct view_obstacles *obstacles; /* as they are when the cloth moves; NULL: none */
+    uint32_t n_cloths;                      /* each has a colour; 0: there is one cloth */
+    const uint32_t *cloth_end; /* n_cloths: one behind the last vertex of each; triangles and lines
+                                * are in the order of cloths */
 };
 
 struct view_scene;

@@ -203,6 +203,7 @@ int flow_share_head(struct flow_state *state)
     flow->received.contact.n_pairs = 0;
     flow->received.contact.pairs = NULL;
     flow->received.contact.apart.joined = NULL;
+    flow->received.contact.apart.end = NULL;
     flow->received.bodies.memory = NULL;
     flow->received.joints = NULL;
     flow->received.welds = NULL;

@@ -172,17 +172,19 @@ static int ignore(struct model *model, const struct scene_tree *tree, int node,
                             "contact.ignore means nothing here: obstacles do not touch each other");
 }
 
-static int build_apart(struct model *model, struct cloth_error *error)
+/* ignores: some sides do not meet. */
+static int build_apart(struct model *model, bool ignores, struct cloth_error *error)
 {
     struct contact_apart *all = &model->contact.apart;
     all->n_cloths = model->n_cloths;
     all->n_obstacles = model->n_obstacles;
     all->end = scene_build_array(model->n_cloths, sizeof *all->end, error);
-    all->apart = scene_build_array((size_t)model->n_cloths * (model->n_cloths + model->n_obstacles),
-                                   1, error);
     for (uint32_t c = 0; c < model->n_cloths && all->end; c++)
         all->end[c] = model_first(model, c + 1);
-    return all->end && all->apart ? CLOTH_OK : error->code;
+    if (ignores)
+        all->apart = scene_build_array(
+            (size_t)model->n_cloths * (model->n_cloths + model->n_obstacles), 1, error);
+    return all->end && (all->apart || !ignores) ? CLOTH_OK : error->code;
 }
 
 int scene_build_sides(struct model *model, const struct scene_tree *tree, struct cloth_error *error)
@@ -194,8 +196,8 @@ int scene_build_sides(struct model *model, const struct scene_tree *tree, struct
     int code = CLOTH_OK;
     for (uint32_t i = 0; i < model->contact.n_pairs && !code; i++)
         code = build_pair(model, i, tree, scene_tree_item(tree, pairs, i), error);
-    if (!code && n_ignored)
-        code = build_apart(model, error);
+    if (!code)
+        code = build_apart(model, n_ignored, error);
     for (size_t i = 0; i < n_ignored && !code; i++)
         code = ignore(model, tree, scene_tree_item(tree, ignored, i), error);
     return code;

@@ -56,6 +56,11 @@ void draw_mesh_heat(struct draw_mesh *mesh, const float *heat);
 /* The mean length of the triangles' edges; 0 without triangles. */
 float draw_mesh_edge(const struct draw_mesh *mesh);
 void draw_mesh_draw(const struct draw_mesh *mesh);
+/* A run of its triangles, and of its lines. */
+struct draw_part {
+    uint32_t triangle, n_triangles, line, n_lines;
+};
+void draw_mesh_draw_part(const struct draw_mesh *mesh, const struct draw_part *part);
 void draw_mesh_free(struct draw_mesh *mesh);
 /* Area-weighted normals into vertex[6 v + 3 ..]; up where no triangle says. Pure. */
 void draw_normals(uint32_t n_vertices, float *vertex, uint32_t n_triangles,

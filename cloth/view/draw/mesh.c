@@ -134,13 +134,20 @@ float draw_mesh_edge(const struct draw_mesh *mesh)
     return mesh->n_triangles ? (float)(sum / (3.0 * mesh->n_triangles)) : 0;
 }
 
+void draw_mesh_draw_part(const struct draw_mesh *mesh, const struct draw_part *part)
+{
+    const size_t lines = (size_t)12 * mesh->n_triangles + (size_t)8 * part->line;
+    glBindVertexArray(mesh->array);
+    glDrawElements(GL_TRIANGLES, (GLsizei)(3 * part->n_triangles), GL_UNSIGNED_INT,
+                   (const void *)((size_t)12 * part->triangle));
+    if (part->n_lines)
+        glDrawElements(GL_LINES, (GLsizei)(2 * part->n_lines), GL_UNSIGNED_INT,
+                       (const void *)lines);
+}
+
 void draw_mesh_draw(const struct draw_mesh *mesh)
 {
-    glBindVertexArray(mesh->array);
-    glDrawElements(GL_TRIANGLES, (GLsizei)(3 * mesh->n_triangles), GL_UNSIGNED_INT, NULL);
-    if (mesh->n_lines)
-        glDrawElements(GL_LINES, (GLsizei)(2 * mesh->n_lines), GL_UNSIGNED_INT,
-                       (const void *)((size_t)12 * mesh->n_triangles));
+    draw_mesh_draw_part(mesh, &(struct draw_part){0, mesh->n_triangles, 0, mesh->n_lines});
 }
 
 void draw_mesh_free(struct draw_mesh *mesh)

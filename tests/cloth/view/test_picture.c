@@ -249,6 +249,34 @@ START_TEST(draws_lines)
 }
 END_TEST
 
+/* Two triangles beside each other, each a cloth. */
+START_TEST(cloths_differ_in_colour)
+{
+    struct cloth_error error = {0};
+    static const uint32_t triangle[6] = {0, 1, 2, 3, 4, 5}, end[2] = {3, 6};
+    static const double place[18] = {0,   0, 0, 0.4, 0, 0, 0.2, 0.4, 0,
+                                     0.6, 0, 0, 1,   0, 0, 0.8, 0.4, 0};
+    struct view_shape shape = {
+        .n_vertices = 6, .n_triangles = 2, .triangle = triangle, .n_cloths = 2, .cloth_end = end};
+    struct view_fit fit;
+    view_fit_start(&fit, 0, 0, (double)WIDTH / HEIGHT, 1);
+    view_fit_add(&fit, 6, place);
+    view_fit_camera(&fit, &camera);
+    ck_assert_int_eq(view_scene_new(&scene, &shape, &error), 0);
+    ck_assert_int_eq(view_scene_move(scene, place, &error), 0);
+    picture = (struct view_picture){WIDTH, HEIGHT, NULL};
+    ck_assert_msg(view_picture_draw(&picture, scene, &camera, &error) == 0, "%s", error.text);
+    int red = 0, blue = 0;
+    for (int i = 0; i < WIDTH * HEIGHT; i++) {
+        const unsigned char *pixel = picture.rgb + (size_t)3 * (size_t)i;
+        red += i % WIDTH < WIDTH / 2 && pixel[0] > 2 * pixel[2];
+        blue += i % WIDTH > WIDTH / 2 && 2 * pixel[2] > 3 * pixel[0];
+    }
+    ck_assert_int_gt(red, 500);
+    ck_assert_int_gt(blue, 500);
+}
+END_TEST
+
 START_TEST(png_holds_the_picture)
 {
     struct cloth_error error = {0};
@@ -315,6 +343,7 @@ int main(void)
     tcase_add_test(c, a_box_around_the_eye);
     tcase_add_test(c, front_and_back_differ);
     tcase_add_test(c, draws_lines);
+    tcase_add_test(c, cloths_differ_in_colour);
     tcase_add_test(c, png_holds_the_picture);
     tcase_add_test(c, refuses_what_it_cannot_write);
     Suite *s = suite_create("picture");

@@ -3,7 +3,9 @@
 #include "config.h"
 
 #include "cloth/garment/garment.h"
+#include "cloth/garment/girth.h"
 #include "cloth/garment/own/own.h"
+#include "cloth/mesh/mesh.h"
 #include "cloth/output/garment.h"
 #include "cloth/scene/pattern.h"
 
@@ -17,13 +19,14 @@
 
 const char *argp_program_version = "duite-garment " PACKAGE_VERSION;
 
-enum { SEAMS = 256, OWN, SIZE, MEASURE, MEASURES, WRITE_PATTERN };
+enum { SEAMS = 256, OWN, SIZE, MEASURE, MEASURES, WRITE_PATTERN, BODY };
 enum { SIZE_M = 2 };
 
 struct options {
     const char *pattern, *output, *seams;
     struct garment_fineness fineness;
     bool quiet;
+    const char *body;    /* that wears it; NULL: none */
     const char *written; /* where the pattern goes; NULL: nowhere */
 
     const struct garment_own *own; /* in place of a pattern */
@@ -46,6 +49,8 @@ static const struct argp_option OPTIONS[] = {
      "A measure of an own garment that differs from its size's; once for each", 0},
     {"measures", MEASURES, "GARMENT", 0, "List the measures of an own garment, and end", 0},
     {"write-pattern", WRITE_PATTERN, "FILE", 0, "Write the pattern to FILE, as JSON", 0},
+    {"body", BODY, "FILE", 0,
+     "Warn if the garment is too small for the body in FILE, an OBJ in metres", 0},
     {"quiet", 'q', NULL, 0, "No summary", 0},
     {0}};
 
@@ -78,6 +83,8 @@ static void finish(const struct options *options, struct argp_state *state)
         argp_error(state, "--size and --measure need --own GARMENT");
     if (!options->output && !options->written)
         argp_error(state, "say where the mesh goes: --output FILE");
+    if (!options->output && options->body)
+        argp_error(state, "--body needs --output FILE: the mesh is compared with it");
     if (!options->output && options->seams)
         argp_error(state, "--seams needs --output FILE: seams are pairs of the mesh's vertices");
     if (options->fineness.vertices && options->fineness.edge > 0)
@@ -146,6 +153,11 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         if (!*arg)
             argp_error(state, "--write-pattern takes the name of a file");
         options->written = arg;
+        return 0;
+    case BODY:
+        if (!*arg)
+            argp_error(state, "--body takes the name of a file");
+        options->body = arg;
         return 0;
     case 'q':
         options->quiet = true;
@@ -267,6 +279,34 @@ static int take_pattern(struct garment_pattern *pattern, const struct options *o
     return code ? code : garment_own_make(pattern, options->own, value, error);
 }
 
+/* Says on standard error if the garment is too small for the body. */
+static int compare_body(const struct garment *garment, const char *path, struct cloth_error *error)
+{
+    struct mesh mesh = {0};
+    struct girth_worst worst = {0};
+    const struct girth_mesh own = {garment->n_triangles, (const double(*)[3])garment->position,
+                                   (const uint32_t(*)[3])garment->triangle};
+    struct girth_seam *seam = calloc(garment->n_seams + (size_t)1, sizeof *seam);
+    int code = seam ? mesh_read_surface(&mesh, path, error)
+                    : cloth_fail(error, CLOTH_E_MEMORY, "no memory for seams");
+    code = code == CLOTH_E_IO ? CLOTH_E_INPUT : code; /* there is no such file */
+    for (uint32_t s = 0; s < garment->n_seams && !code; s++)
+        seam[s] = (struct girth_seam){garment->seam[s].n_pairs,
+                                      (const uint32_t(*)[2])garment->seam[s].pair};
+    const struct girth_mesh body = {mesh.n_triangles, (const double(*)[3])mesh.position,
+                                    (const uint32_t(*)[3])mesh.triangle};
+    if (!code)
+        code = girth_compare(&worst, &own, garment->n_seams, seam, &body, error);
+    if (!code && girth_too_small(&worst))
+        fprintf(stderr,
+                "duite-garment: warning: the garment is too small for the body: at y = %.3g m its "
+                "girth is %.3g m, the body's %.3g m\n",
+                worst.y, worst.garment, worst.body);
+    mesh_free(&mesh);
+    free(seam);
+    return code;
+}
+
 static int write_mesh(const struct options *options, const char *seams,
                       const struct garment_pattern *pattern, struct cloth_error *error)
 {
@@ -274,6 +314,8 @@ static int write_mesh(const struct options *options, const char *seams,
     int code = garment_make(&garment, pattern, &options->fineness, error);
     code = code ? code : output_garment_obj(options->output, &garment, pattern, error);
     code = code ? code : output_garment_seams(seams, &garment, pattern, error);
+    if (!code && options->body)
+        code = compare_body(&garment, options->body, error);
     if (!code && !options->quiet)
         say(&garment, pattern);
     garment_free(&garment);

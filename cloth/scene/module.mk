@@ -31,6 +31,7 @@ libduite_cloth_la_SOURCES += \
 	cloth/scene/build/cloth.c \
 	cloth/scene/build/contact.c \
 	cloth/scene/build/crossed.c \
+	cloth/scene/build/girth.c \
 	cloth/scene/build/curve.c \
 	cloth/scene/build/drape.c \
 	cloth/scene/build/frames.c \

@@ -89,6 +89,28 @@ larger() { # of a larger size more cloth is needed
     test "$(wc -l < areas)" = 5 && sort -n -u areas | cmp - areas
 }
 ok "sizes grow" larger
+cat > box.obj << 'END'
+v -.1 0 -.1
+v .1 0 -.1
+v .1 0 .1
+v -.1 0 .1
+v -.1 1.7 -.1
+v .1 1.7 -.1
+v .1 1.7 .1
+v -.1 1.7 .1
+f 1 2 3 4
+f 8 7 6 5
+f 1 5 6 2
+f 2 6 7 3
+f 3 7 8 4
+f 4 8 5 1
+END
+fits() { prints run --own skirt --measure waist=0.8 -e 0.05 -o x.obj --body box.obj && test ! -s complained; }
+ok "a body that it fits" fits
+tight() { prints run --own skirt --measure waist=0.7 -e 0.05 -o x.obj --body box.obj && grep -q "warning: .* too small .* its girth is 0.72 m, the body's 0.8 m" complained; }
+ok "a body that is too large" tight
+ok "no such body" refused "none.obj: cannot be opened" --own skirt -e 0.05 -o x.obj --body none.obj
+ok "a body without a mesh" refused "--body needs --output" --own skirt --write-pattern x.json --body box.obj
 ok "no such garment" refused "there is no own garment \`kilt'; there are tshirt, trousers, skirt" --own kilt -e 0.1 -o x.obj
 ok "no such size" refused "--size takes one of XS, S, M, L, XL" --own skirt --size 42 -e 0.1 -o x.obj
 ok "no such measure" refused "a skirt has no such measure" --own skirt --measure sleeve=1 -e 0.1 -o x.obj

@@ -53,6 +53,10 @@ int scene_build_welds(struct model *model, const struct scene_tree *tree,
 int scene_build_seams(struct model *model, const struct scene_tree *tree,
                       struct cloth_error *error);
 
+/* Warns of sewn cloths that are too small for a body, where it starts at rest; after the seams. */
+int scene_build_girths(struct model *model, const struct scene_tree *tree,
+                       struct cloth_error *error);
+
 /* Reads the seams of an OBJ mesh (docs/garments.md), for a mesh that has as many vertices and
  * triangles. What is wrong with the file is in `inner`. They belong to `seams`, also after an
  * error.

@@ -112,6 +112,47 @@ START_TEST(own_garments)
 }
 END_TEST
 
+/* A skirt around a box of 0.2 x 0.2 m; *warning: the one that says too small, or NULL. */
+static struct model worn(const char *waist, const char *state, const char **warning)
+{
+    static const char box[] =
+        "v -.1 0 -.1\nv .1 0 -.1\nv .1 0 .1\nv -.1 0 .1\nv -.1 1.7 -.1\nv .1 1.7 -.1\nv .1 1.7 .1\n"
+        "v -.1 1.7 .1\nf 1 2 3 4\nf 8 7 6 5\nf 1 5 6 2\nf 2 6 7 3\nf 3 7 8 4\nf 4 8 5 1\n";
+    char text[1024];
+    scene_write_file("box.obj", box, strlen(box));
+    snprintf(
+        text, sizeof text,
+        "schema: 1\ncloths:\n  - mesh: {pattern: {garment: skirt, measures: {waist: %s}, edge: "
+        "0.05}}\n    material: denim\n    seams: {state: %s}\n"
+        "obstacles:\n  - body: {obj: box.obj, name: figure}\n"
+        "contact: {mode: certified, thickness: 0.003}\ntime: {end: 1, h: 0.01}\n",
+        waist, state);
+    struct model model = scene_read_right(text, 0, NULL);
+    *warning = NULL;
+    for (uint32_t i = 0; i < model.n_warnings; i++)
+        if (strstr(model.warnings[i], "too small"))
+            *warning = model.warnings[i];
+    return model;
+}
+
+START_TEST(garments_that_are_too_small)
+{
+    const char *warning;
+    struct model model = worn("0.7", "pulled", &warning);
+    ck_assert_ptr_nonnull(warning);
+    ck_assert_msg(strstr(warning, "the garment is too small for the body figure: at y = 1.1 m") &&
+                      strstr(warning, " its girth is 0.72 m, the body's 0.8 m"),
+                  "%s", warning);
+    model_free(&model);
+    model = worn("0.8", "pulled", &warning);
+    ck_assert_ptr_null(warning);
+    model_free(&model);
+    model = worn("0.7", "open", &warning);
+    ck_assert_ptr_null(warning);
+    model_free(&model);
+}
+END_TEST
+
 static void refused(const char *mesh, const char *error)
 {
     char *text = scene_of(mesh);
@@ -157,6 +198,7 @@ int main(void)
     tcase_add_test(cases, panels_as_a_mesh);
     tcase_add_test(cases, panels_by_count);
     tcase_add_test(cases, own_garments);
+    tcase_add_test(cases, garments_that_are_too_small);
     tcase_add_test(cases, patterns_that_cannot_be_used);
     suite_add_tcase(suite, cases);
     return unit_run(suite);

@@ -17,13 +17,13 @@ static const uint32_t MOST = (uint32_t)1 << 27;
 
 /* A lattice of triangles with edges h has 1.155 / h^2 vertices an area; of a boundary of length P
  * about 0.365 P / h more are there, since those of the boundary are nearer to each other. */
-static double first_spacing(const struct meshing *work, double n)
+static double first_spacing(const struct meshing *meshing, double n)
 {
     double area = 0, around = 0;
-    for (uint32_t p = 0; p < work->pattern->n_panels; p++) {
-        area += fabs(garment_panel_area(&work->pattern->panel[p]));
-        for (uint32_t e = work->first[p]; e < work->first[p + 1]; e++)
-            around += work->edge[e].curve.length;
+    for (uint32_t p = 0; p < meshing->pattern->n_panels; p++) {
+        area += fabs(garment_panel_area(&meshing->pattern->panel[p]));
+        for (uint32_t e = meshing->first[p]; e < meshing->first[p + 1]; e++)
+            around += meshing->edge[e].curve.length;
     }
     const double a = 1.155 * area, b = 0.365 * around;
     return (b + sqrt(b * b + 4 * a * n)) / (2 * n);
@@ -38,14 +38,14 @@ static double next_spacing(double spacing, double n, double wanted, double fine,
                                            : next;
 }
 
-static int mesh_by_count(struct meshing *work, uint32_t wanted, struct cloth_error *error)
+static int mesh_by_count(struct meshing *meshing, uint32_t wanted, struct cloth_error *error)
 {
-    double spacing = first_spacing(work, wanted), best = spacing, least = INFINITY;
+    double spacing = first_spacing(meshing, wanted), best = spacing, least = INFINITY;
     double fine = 0, coarse = INFINITY; /* spacings that gave too many and too few */
     int code = CLOTH_OK;
     for (int k = 0; k < TRIES && least > CLOSE && !code; k++) {
-        code = meshing_mesh(work, spacing, error);
-        const double n = meshing_count(work), off = fabs(n - wanted) / wanted;
+        code = meshing_mesh(meshing, spacing, error);
+        const double n = meshing_count(meshing), off = fabs(n - wanted) / wanted;
         if (off < least) {
             least = off;
             best = spacing;
@@ -57,8 +57,8 @@ static int mesh_by_count(struct meshing *work, uint32_t wanted, struct cloth_err
         if (off > CLOSE)
             spacing = next_spacing(spacing, n, wanted, fine, coarse);
     }
-    if (!code && work->spacing != best)
-        code = meshing_mesh(work, best, error);
+    if (!code && meshing->spacing != best)
+        code = meshing_mesh(meshing, best, error);
     return code;
 }
 
@@ -72,13 +72,14 @@ static int check_fineness(const struct garment_fineness *fineness, struct cloth_
     return CLOTH_OK;
 }
 
-static int make_room(struct garment *garment, const struct meshing *work, struct cloth_error *error)
+static int make_room(struct garment *garment, const struct meshing *meshing,
+                     struct cloth_error *error)
 {
-    const struct garment_pattern *pattern = work->pattern;
+    const struct garment_pattern *pattern = meshing->pattern;
     uint64_t n = 0, n_triangles = 0;
     for (uint32_t p = 0; p < pattern->n_panels; p++) {
-        n += work->panel[p].plane.n;
-        n_triangles += work->panel[p].plane.n_triangles;
+        n += meshing->panel[p].plane.n;
+        n_triangles += meshing->panel[p].plane.n_triangles;
     }
     if (n > MOST)
         return cloth_fail(error, CLOTH_E_INPUT, "%ju vertices are too many: up to %u", (uintmax_t)n,
@@ -111,11 +112,11 @@ static void axes_of(const double degrees[3], double axis[2][3])
     axis[1][2] = c[1] * s[0];
 }
 
-static void put_piece(struct garment *garment, struct meshing *work, uint32_t p, uint32_t first,
+static void put_piece(struct garment *garment, struct meshing *meshing, uint32_t p, uint32_t first,
                       uint32_t first_triangle)
 {
-    const struct garment_panel *panel = &work->pattern->panel[p];
-    struct meshing_panel *of = &work->panel[p];
+    const struct garment_panel *panel = &meshing->pattern->panel[p];
+    struct meshing_panel *of = &meshing->panel[p];
     const uint32_t n = of->plane.n, n_triangles = of->plane.n_triangles;
     double axis[2][3];
     axes_of(panel->rotate, axis);
@@ -136,36 +137,36 @@ static void put_piece(struct garment *garment, struct meshing *work, uint32_t p,
     of->start = NULL; /* the garment's now */
 }
 
-static int put_all(struct garment *garment, struct meshing *work, struct cloth_error *error)
+static int put_all(struct garment *garment, struct meshing *meshing, struct cloth_error *error)
 {
-    int code = make_room(garment, work, error);
+    int code = make_room(garment, meshing, error);
     uint32_t first = 0, first_triangle = 0;
     if (code)
         return code;
-    garment->edge = work->spacing;
-    garment->n_pieces = work->pattern->n_panels;
+    garment->edge = meshing->spacing;
+    garment->n_pieces = meshing->pattern->n_panels;
     for (uint32_t p = 0; p < garment->n_pieces; p++) {
-        put_piece(garment, work, p, first, first_triangle);
+        put_piece(garment, meshing, p, first, first_triangle);
         first += garment->piece[p].n_vertices;
         first_triangle += garment->piece[p].n_triangles;
     }
-    return seams_make(garment, work->pattern, error);
+    return seams_make(garment, meshing->pattern, error);
 }
 
 int garment_make(struct garment *garment, const struct garment_pattern *pattern,
                  const struct garment_fineness *fineness, struct cloth_error *error)
 {
-    struct meshing work = {0};
+    struct meshing meshing = {0};
     *garment = (struct garment){0};
     int code = check_fineness(fineness, error);
     if (code)
         return code;
-    code = meshing_make(&work, pattern, error);
+    code = meshing_make(&meshing, pattern, error);
     if (!code)
-        code = fineness->vertices ? mesh_by_count(&work, fineness->vertices, error)
-                                  : meshing_mesh(&work, fineness->edge, error);
-    code = code ? code : put_all(garment, &work, error);
-    meshing_free(&work);
+        code = fineness->vertices ? mesh_by_count(&meshing, fineness->vertices, error)
+                                  : meshing_mesh(&meshing, fineness->edge, error);
+    code = code ? code : put_all(garment, &meshing, error);
+    meshing_free(&meshing);
     return code;
 }
 

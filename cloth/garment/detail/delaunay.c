@@ -167,27 +167,35 @@ uint32_t delaunay_new_vertex(struct delaunay *plane, const double place[2])
  *        \ | /          \   /
  *          d              d
  */
+struct delaunay_quad delaunay_quad_at(const struct delaunay *plane, uint32_t triangle, int i)
+{
+    const struct delaunay_triangle one = plane->triangle[triangle];
+    const struct delaunay_triangle two = plane->triangle[one.beside[i]];
+    const int i1 = (i + 1) % 3, i2 = (i + 2) % 3;
+    const int j = two.beside[0] == triangle ? 0 : two.beside[1] == triangle ? 1 : 2;
+    const int j1 = (j + 1) % 3, j2 = (j + 2) % 3;
+    return (struct delaunay_quad){
+        one.beside[i],
+        {one.vertex[i], one.vertex[i1], two.vertex[j], one.vertex[i2]},
+        {one.beside[i2], two.beside[j1], two.beside[j2], one.beside[i1]},
+        {one.fixed >> i2 & 1, two.fixed >> j1 & 1, two.fixed >> j2 & 1, one.fixed >> i1 & 1}};
+}
+
 void delaunay_flip(struct delaunay *plane, uint32_t t, int i)
 {
-    const struct delaunay_triangle one = plane->triangle[t];
-    const uint32_t u = one.beside[i];
-    const struct delaunay_triangle two = plane->triangle[u];
-    const int i1 = (i + 1) % 3, i2 = (i + 2) % 3;
-    const int j = two.beside[0] == t ? 0 : two.beside[1] == t ? 1 : 2;
-    const int j1 = (j + 1) % 3, j2 = (j + 2) % 3;
-    const uint32_t a = one.vertex[i], d = one.vertex[i1], c = one.vertex[i2], b = two.vertex[j];
-    const unsigned ca = (one.fixed >> i1) & 1, ad = (one.fixed >> i2) & 1;
-    const unsigned db = (two.fixed >> j1) & 1, bc = (two.fixed >> j2) & 1;
+    const struct delaunay_quad quad = delaunay_quad_at(plane, t, i);
+    const uint32_t u = quad.other, *v = quad.corner, *beside = quad.beside;
+    const unsigned *fixed = quad.fixed;
     delaunay_put(plane, t,
-                 (struct delaunay_triangle){{a, d, b},
-                                            {two.beside[j1], u, one.beside[i2]},
-                                            (unsigned char)(db | ad << 2)});
+                 (struct delaunay_triangle){{v[0], v[1], v[2]},
+                                            {beside[1], u, beside[0]},
+                                            (unsigned char)(fixed[1] | fixed[0] << 2)});
     delaunay_put(plane, u,
-                 (struct delaunay_triangle){{a, b, c},
-                                            {two.beside[j2], one.beside[i1], t},
-                                            (unsigned char)(bc | ca << 1)});
-    delaunay_put_beside(plane, two.beside[j1], u, t);
-    delaunay_put_beside(plane, one.beside[i1], t, u);
+                 (struct delaunay_triangle){{v[0], v[2], v[3]},
+                                            {beside[2], beside[3], t},
+                                            (unsigned char)(fixed[2] | fixed[3] << 1)});
+    delaunay_put_beside(plane, beside[1], u, t);
+    delaunay_put_beside(plane, beside[3], t, u);
 }
 
 uint32_t delaunay_around(const struct delaunay *plane, uint32_t vertex, uint32_t most,

@@ -63,11 +63,11 @@ uint32_t delaunay_insert(struct delaunay *plane, const double place[2], uint32_t
  * way. */
 bool delaunay_fix(struct delaunay *plane, uint32_t a, uint32_t b);
 
-/* Takes out all that is outside the boundary, the box too, and numbers what is left anew: the
+/* Takes out all that is outside the boundary, the box too, and gives what is left new numbers: the
  * vertices keep their order, and the first of the boundary becomes 0. */
 void delaunay_carve(struct delaunay *plane);
 
-/* Numbers vertices and triangles anew without those that were taken out. */
+/* Gives vertices and triangles new numbers, without those that were taken out. */
 void delaunay_pack(struct delaunay *plane);
 
 /* Moves a vertex that is not fixed to the vertex `to` beside it, and takes it out. false: some

@@ -145,33 +145,22 @@ static void split_triangle(struct delaunay *plane, uint32_t t, uint32_t vertex)
 /* The two triangles at an edge become four. */
 static void split_edge(struct delaunay *plane, uint32_t t, int i, uint32_t vertex)
 {
-    const struct delaunay_triangle one = plane->triangle[t];
-    const uint32_t u = one.beside[i];
-    const struct delaunay_triangle two = plane->triangle[u];
-    const int i1 = (i + 1) % 3, i2 = (i + 2) % 3;
-    const int j = two.beside[0] == t ? 0 : two.beside[1] == t ? 1 : 2;
-    const int j1 = (j + 1) % 3, j2 = (j + 2) % 3;
-    const uint32_t a = one.vertex[i], b = two.vertex[j], c = one.vertex[i1], d = one.vertex[i2];
-    const uint32_t t2 = delaunay_new_triangle(plane), u2 = delaunay_new_triangle(plane);
-    const unsigned da = one.fixed >> i1 & 1, ac = one.fixed >> i2 & 1;
-    const unsigned cb = two.fixed >> j1 & 1, bd = two.fixed >> j2 & 1;
-    delaunay_put(
-        plane, t,
-        (struct delaunay_triangle){{vertex, a, c}, {one.beside[i2], u, t2}, (unsigned char)ac});
-    delaunay_put(
-        plane, t2,
-        (struct delaunay_triangle){{vertex, d, a}, {one.beside[i1], t, u2}, (unsigned char)da});
-    delaunay_put(
-        plane, u2,
-        (struct delaunay_triangle){{vertex, b, d}, {two.beside[j2], t2, u}, (unsigned char)bd});
-    delaunay_put(
-        plane, u,
-        (struct delaunay_triangle){{vertex, c, b}, {two.beside[j1], u2, t}, (unsigned char)cb});
-    delaunay_put_beside(plane, one.beside[i1], t, t2);
-    delaunay_put_beside(plane, two.beside[j2], u, u2);
-    const uint32_t part[4] = {t, t2, u, u2};
+    const struct delaunay_quad quad = delaunay_quad_at(plane, t, i);
+    const uint32_t u = quad.other, t2 = delaunay_new_triangle(plane),
+                   u2 = delaunay_new_triangle(plane);
+    const uint32_t part[4] = {t, u, u2, t2}; /* part k has side k */
+    for (int n = 4; n > 0; n--) {
+        const int k = n % 4, next = (k + 1) % 4, before = (k + 3) % 4;
+        delaunay_put(plane, part[k],
+                     (struct delaunay_triangle){{vertex, quad.corner[k], quad.corner[next]},
+                                                {quad.beside[k], part[next], part[before]},
+                                                (unsigned char)quad.fixed[k]});
+    }
+    delaunay_put_beside(plane, quad.beside[3], t, t2);
+    delaunay_put_beside(plane, quad.beside[2], u, u2);
+    const uint32_t suspect[4] = {t, t2, u, u2};
     for (int k = 0; k < 4; k++)
-        delaunay_suspect(plane, part[k]);
+        delaunay_suspect(plane, suspect[k]);
 }
 
 uint32_t delaunay_insert(struct delaunay *plane, const double place[2], uint32_t near)

@@ -15,64 +15,64 @@ static const double JUMP = 1.35;        /* of divisions on both sides of a corne
 static const double GROWTH = 0.3;       /* of divisions, a length along their edge */
 enum { SWEEPS = 8 };                    /* over all corners: sizes spread that far */
 
-static void add_edge(struct meshing *work, uint32_t panel, uint32_t e)
+static void add_edge(struct meshing *meshing, uint32_t panel, uint32_t e)
 {
-    struct meshing_edge *edge = &work->edge[work->first[panel] + e];
-    curve_make(&edge->curve, &work->pattern->panel[panel], e);
+    struct meshing_edge *edge = &meshing->edge[meshing->first[panel] + e];
+    curve_make(&edge->curve, &meshing->pattern->panel[panel], e);
     edge->least = 1 + (uint32_t)(curve_turning(&edge->curve) / TURN);
     edge->partner = UINT32_MAX;
 }
 
-int meshing_make(struct meshing *work, const struct garment_pattern *pattern,
+int meshing_make(struct meshing *meshing, const struct garment_pattern *pattern,
                  struct cloth_error *error)
 {
-    *work = (struct meshing){.pattern = pattern};
-    work->first = cloth_alloc((size_t)pattern->n_panels + 1, sizeof *work->first, error);
-    work->panel = cloth_alloc(pattern->n_panels, sizeof *work->panel, error);
-    if (!work->first || !work->panel)
+    *meshing = (struct meshing){.pattern = pattern};
+    meshing->first = cloth_alloc((size_t)pattern->n_panels + 1, sizeof *meshing->first, error);
+    meshing->panel = cloth_alloc(pattern->n_panels, sizeof *meshing->panel, error);
+    if (!meshing->first || !meshing->panel)
         return CLOTH_E_MEMORY;
     for (uint32_t p = 0; p < pattern->n_panels; p++) {
-        work->first[p + 1] = work->first[p] + pattern->panel[p].n_edges;
-        work->panel[p].clockwise = garment_panel_area(&pattern->panel[p]) < 0;
+        meshing->first[p + 1] = meshing->first[p] + pattern->panel[p].n_edges;
+        meshing->panel[p].clockwise = garment_panel_area(&pattern->panel[p]) < 0;
     }
-    work->edge = cloth_alloc(work->first[pattern->n_panels], sizeof *work->edge, error);
-    if (!work->edge)
+    meshing->edge = cloth_alloc(meshing->first[pattern->n_panels], sizeof *meshing->edge, error);
+    if (!meshing->edge)
         return CLOTH_E_MEMORY;
     for (uint32_t p = 0; p < pattern->n_panels; p++)
         for (uint32_t e = 0; e < pattern->panel[p].n_edges; e++)
-            add_edge(work, p, e);
+            add_edge(meshing, p, e);
     for (uint32_t s = 0; s < pattern->n_stitches; s++) {
         const struct garment_side *side = pattern->stitch[s].side;
-        const uint32_t one = work->first[side[0].panel] + side[0].edge;
-        const uint32_t two = work->first[side[1].panel] + side[1].edge;
-        work->edge[one].partner = two;
-        work->edge[two].partner = one;
+        const uint32_t one = meshing->first[side[0].panel] + side[0].edge;
+        const uint32_t two = meshing->first[side[1].panel] + side[1].edge;
+        meshing->edge[one].partner = two;
+        meshing->edge[two].partner = one;
     }
     return CLOTH_OK;
 }
 
-void meshing_free(struct meshing *work)
+void meshing_free(struct meshing *meshing)
 {
-    for (uint32_t p = 0; work->panel && p < work->pattern->n_panels; p++) {
-        delaunay_free(&work->panel[p].plane);
-        free(work->panel[p].sharp);
-        free(work->panel[p].start);
+    for (uint32_t p = 0; meshing->panel && p < meshing->pattern->n_panels; p++) {
+        delaunay_free(&meshing->panel[p].plane);
+        free(meshing->panel[p].sharp);
+        free(meshing->panel[p].start);
     }
-    for (uint32_t e = 0; work->edge && e < work->first[work->pattern->n_panels]; e++)
-        free(work->edge[e].part);
-    free(work->first);
-    free(work->edge);
-    free(work->panel);
-    *work = (struct meshing){0};
+    for (uint32_t e = 0; meshing->edge && e < meshing->first[meshing->pattern->n_panels]; e++)
+        free(meshing->edge[e].part);
+    free(meshing->first);
+    free(meshing->edge);
+    free(meshing->panel);
+    *meshing = (struct meshing){0};
 }
 
 /* As a number, since it may be beyond all integers. */
-static double wanted(const struct meshing *work, const struct meshing_edge *edge)
+static double wanted(const struct meshing *meshing, const struct meshing_edge *edge)
 {
     const struct meshing_edge *other =
-        edge->partner == UINT32_MAX ? edge : &work->edge[edge->partner];
-    const double one = edge->curve.length / work->spacing,
-                 two = other->curve.length / work->spacing;
+        edge->partner == UINT32_MAX ? edge : &meshing->edge[edge->partner];
+    const double one = edge->curve.length / meshing->spacing,
+                 two = other->curve.length / meshing->spacing;
     const double finer = fmax(edge->finer, other->finer);
     const double mean = floor(finer * 0.5 * (one + two) + 0.5);
     return fmax(fmax(mean, ceil(finer * fmax(one, two) / LONG)), fmax(edge->least, other->least));
@@ -89,26 +89,26 @@ static void even_corner(struct meshing_edge *one, struct meshing_edge *two)
 }
 
 /* Along an edge they grow slowly; both edges of a stitch are alike, and from both ends. */
-static void even_edge(struct meshing *work, struct meshing_edge *edge)
+static void even_edge(struct meshing *meshing, struct meshing_edge *edge)
 {
     for (int k = 0; k < 2; k++)
         edge->end[k] = fmin(edge->end[k], edge->end[1 - k] + GROWTH);
     if (edge->partner == UINT32_MAX)
         return;
-    struct meshing_edge *other = &work->edge[edge->partner];
+    struct meshing_edge *other = &meshing->edge[edge->partner];
     const double least = fmin(fmin(edge->end[0], edge->end[1]), fmin(other->end[0], other->end[1]));
     edge->end[0] = edge->end[1] = other->end[0] = other->end[1] = least;
 }
 
-static void even_out(struct meshing *work)
+static void even_out(struct meshing *meshing)
 {
     for (int k = 0; k < SWEEPS; k++)
-        for (uint32_t p = 0; p < work->pattern->n_panels; p++) {
-            const uint32_t first = work->first[p], n = work->first[p + 1] - first;
+        for (uint32_t p = 0; p < meshing->pattern->n_panels; p++) {
+            const uint32_t first = meshing->first[p], n = meshing->first[p + 1] - first;
             for (uint32_t e = 0; e < n; e++)
-                even_corner(&work->edge[first + e], &work->edge[first + (e + 1) % n]);
+                even_corner(&meshing->edge[first + e], &meshing->edge[first + (e + 1) % n]);
             for (uint32_t e = 0; e < n; e++)
-                even_edge(work, &work->edge[first + e]);
+                even_edge(meshing, &meshing->edge[first + e]);
         }
 }
 
@@ -176,39 +176,39 @@ static bool differs(const struct meshing_edge *edge, const struct meshing_edge *
     return edge->n != before->n || edge->end[0] != before->end[0] || edge->end[1] != before->end[1];
 }
 
-static int divide_panel(struct meshing *work, uint32_t panel, const struct meshing_edge *before,
+static int divide_panel(struct meshing *meshing, uint32_t panel, const struct meshing_edge *before,
                         struct cloth_error *error)
 {
-    for (uint32_t e = work->first[panel]; e < work->first[panel + 1]; e++) {
-        struct meshing_edge *edge = &work->edge[e];
+    for (uint32_t e = meshing->first[panel]; e < meshing->first[panel + 1]; e++) {
+        struct meshing_edge *edge = &meshing->edge[e];
         int code = divide_edge(edge, 1 / edge->middle + 0.5, error);
         if (code)
             return code;
-        work->panel[panel].meshed = work->panel[panel].meshed && !differs(edge, &before[e]);
+        meshing->panel[panel].meshed = meshing->panel[panel].meshed && !differs(edge, &before[e]);
     }
     return CLOTH_OK;
 }
 
-int meshing_divide(struct meshing *work, struct cloth_error *error)
+int meshing_divide(struct meshing *meshing, struct cloth_error *error)
 {
-    const uint32_t n = work->first[work->pattern->n_panels];
+    const uint32_t n = meshing->first[meshing->pattern->n_panels];
     double sum = 0;
     struct meshing_edge *before = cloth_alloc(n, sizeof *before, error);
     int code = before ? CLOTH_OK : CLOTH_E_MEMORY;
     for (uint32_t e = 0; e < n && !code; e++) {
-        const double parts = wanted(work, &work->edge[e]);
-        before[e] = work->edge[e];
+        const double parts = wanted(meshing, &meshing->edge[e]);
+        before[e] = meshing->edge[e];
         sum += parts;
         if (!(sum <= MOST))
             code = cloth_fail(error, CLOTH_E_INPUT,
                               "edges of %g m would divide the boundary into more than %.0f parts",
-                              work->spacing, MOST);
-        work->edge[e].middle = work->edge[e].end[0] = work->edge[e].end[1] = 1 / parts;
+                              meshing->spacing, MOST);
+        meshing->edge[e].middle = meshing->edge[e].end[0] = meshing->edge[e].end[1] = 1 / parts;
     }
     if (!code)
-        even_out(work);
-    for (uint32_t p = 0; p < work->pattern->n_panels && !code; p++)
-        code = divide_panel(work, p, before, error);
+        even_out(meshing);
+    for (uint32_t p = 0; p < meshing->pattern->n_panels && !code; p++)
+        code = divide_panel(meshing, p, before, error);
     free(before);
     return code;
 }
@@ -224,12 +224,12 @@ static bool is_sharp(const double (*place)[2], uint32_t n, uint32_t i)
            to[0] * from[1] - to[1] * from[0] > 0;
 }
 
-int meshing_outline(struct meshing *work, uint32_t panel, double (**place)[2],
+int meshing_outline(struct meshing *meshing, uint32_t panel, double (**place)[2],
                     struct cloth_error *error)
 {
-    struct meshing_panel *of = &work->panel[panel];
-    const struct meshing_edge *edge = work->edge + work->first[panel];
-    const uint32_t n_edges = work->pattern->panel[panel].n_edges;
+    struct meshing_panel *of = &meshing->panel[panel];
+    const struct meshing_edge *edge = meshing->edge + meshing->first[panel];
+    const uint32_t n_edges = meshing->pattern->panel[panel].n_edges;
     free(of->start);
     free(of->sharp);
     of->sharp = NULL;

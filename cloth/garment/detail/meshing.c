@@ -20,9 +20,10 @@ struct worth {
 static const struct worth FAIR = {0.86602540, 1.15}, POOR = {0.93969262, 1.5}; /* 30, 20 degrees */
 
 /* Asks for shorter divisions of an edge. */
-static void refine(struct meshing *work, uint32_t panel, uint32_t edge, double factor, bool *again)
+static void refine(struct meshing *meshing, uint32_t panel, uint32_t edge, double factor,
+                   bool *again)
 {
-    work->edge[work->first[panel] + edge].finer *= factor;
+    meshing->edge[meshing->first[panel] + edge].finer *= factor;
     *again = true;
 }
 
@@ -43,11 +44,11 @@ static bool is_worth(const struct meshing_panel *of, uint32_t n_edges, struct wo
 }
 
 /* Edges of bad triangles; each is refined once. */
-static int refine_poor(struct meshing *work, uint32_t panel, struct worth worth, bool *again,
+static int refine_poor(struct meshing *meshing, uint32_t panel, struct worth worth, bool *again,
                        struct cloth_error *error)
 {
-    const struct meshing_panel *of = &work->panel[panel];
-    const uint32_t n_edges = work->pattern->panel[panel].n_edges;
+    const struct meshing_panel *of = &meshing->panel[panel];
+    const uint32_t n_edges = meshing->pattern->panel[panel].n_edges;
     unsigned char *poor = cloth_alloc(n_edges, 1, error);
     if (!poor)
         return CLOTH_E_MEMORY;
@@ -62,26 +63,26 @@ static int refine_poor(struct meshing *work, uint32_t panel, struct worth worth,
     }
     for (uint32_t e = 0; e < n_edges; e++)
         if (poor[e])
-            refine(work, panel, e, worth.factor, again);
+            refine(meshing, panel, e, worth.factor, again);
     free(poor);
     return CLOTH_OK;
 }
 
-static int cannot(const struct meshing *work, uint32_t panel, uint32_t edge,
+static int cannot(const struct meshing *meshing, uint32_t panel, uint32_t edge,
                   struct cloth_error *error)
 {
     return cloth_fail(error, CLOTH_E_INPUT,
                       "panel '%s' cannot be meshed by edges of %g m: at edge %u its boundary comes "
                       "too near to itself",
-                      work->pattern->panel[panel].name, work->spacing, edge);
+                      meshing->pattern->panel[panel].name, meshing->spacing, edge);
 }
 
 /* place: the panel's boundary. */
-static int mesh_outline(struct meshing *work, uint32_t panel, const double (*place)[2], int try,
+static int mesh_outline(struct meshing *meshing, uint32_t panel, const double (*place)[2], int try,
                         bool *again, struct cloth_error *error)
 {
-    struct meshing_panel *of = &work->panel[panel];
-    const uint32_t n_edges = work->pattern->panel[panel].n_edges;
+    struct meshing_panel *of = &meshing->panel[panel];
+    const uint32_t n_edges = meshing->pattern->panel[panel].n_edges;
     const struct meet_loop outline = {n_edges, of->start, place};
     const struct flat_loop loop = {of->start[n_edges], place, of->sharp};
     struct cloth_error why = {0};
@@ -90,93 +91,94 @@ static int mesh_outline(struct meshing *work, uint32_t panel, const double (*pla
     const bool last = try == TRIES - 1;
     int code = meet_find(&outline, 1e-8, &meets, edge, error);
     if (!code && !meets && loop.n >= 3) {
-        code = flat_make(&of->plane, &loop, work->spacing, &crossing, &why);
+        code = flat_make(&of->plane, &loop, meshing->spacing, &crossing, &why);
         meets = crossing != DELAUNAY_NONE;
         edge[0] = edge[1] = meets ? edge_of(of, n_edges, crossing) : 0;
         if (code && !meets)
-            cloth_fail(error, code, "panel '%s': %s", work->pattern->panel[panel].name, why.text);
+            cloth_fail(error, code, "panel '%s': %s", meshing->pattern->panel[panel].name,
+                       why.text);
         code = meets ? CLOTH_OK : code;
         of->meshed = !code && !meets;
     }
     if (code || of->meshed)
         return code   ? code
                : last ? CLOTH_OK
-                      : refine_poor(work, panel, try < FAIR_TRIES ? FAIR : POOR, again, error);
+                      : refine_poor(meshing, panel, try < FAIR_TRIES ? FAIR : POOR, again, error);
     if (last)
-        return cannot(work, panel, edge[0], error);
-    refine(work, panel, edge[0], 2, again);
+        return cannot(meshing, panel, edge[0], error);
+    refine(meshing, panel, edge[0], 2, again);
     if (edge[1] != edge[0])
-        refine(work, panel, edge[1], 2, again);
+        refine(meshing, panel, edge[1], 2, again);
     return CLOTH_OK;
 }
 
-static int mesh_panel(struct meshing *work, uint32_t panel, int try, bool *again,
+static int mesh_panel(struct meshing *meshing, uint32_t panel, int try, bool *again,
                       struct cloth_error *error)
 {
     double(*place)[2];
-    int code = meshing_outline(work, panel, &place, error);
-    delaunay_free(&work->panel[panel].plane);
+    int code = meshing_outline(meshing, panel, &place, error);
+    delaunay_free(&meshing->panel[panel].plane);
     if (!code)
-        code = mesh_outline(work, panel, (const double(*)[2])place, try, again, error);
+        code = mesh_outline(meshing, panel, (const double(*)[2])place, try, again, error);
     free(place);
     return code;
 }
 
 /* *last: all tries were needed, so that there may be bad triangles. */
-static int mesh_at(struct meshing *work, double spacing, bool *last, struct cloth_error *error)
+static int mesh_at(struct meshing *meshing, double spacing, bool *last, struct cloth_error *error)
 {
     int code = CLOTH_OK, k = 0;
     bool again = true;
-    work->spacing = spacing;
-    for (uint32_t e = 0; e < work->first[work->pattern->n_panels]; e++)
-        work->edge[e].finer = 1;
-    for (uint32_t p = 0; p < work->pattern->n_panels; p++)
-        work->panel[p].meshed = false;
+    meshing->spacing = spacing;
+    for (uint32_t e = 0; e < meshing->first[meshing->pattern->n_panels]; e++)
+        meshing->edge[e].finer = 1;
+    for (uint32_t p = 0; p < meshing->pattern->n_panels; p++)
+        meshing->panel[p].meshed = false;
     for (; k < TRIES && again && !code; k++) {
         again = false;
-        code = meshing_divide(work, error);
-        for (uint32_t p = 0; p < work->pattern->n_panels && !code; p++)
-            if (!work->panel[p].meshed)
-                code = mesh_panel(work, p, k, &again, error);
+        code = meshing_divide(meshing, error);
+        for (uint32_t p = 0; p < meshing->pattern->n_panels && !code; p++)
+            if (!meshing->panel[p].meshed)
+                code = mesh_panel(meshing, p, k, &again, error);
     }
     *last = k == TRIES;
     return code;
 }
 
-static bool is_poor(const struct meshing *work)
+static bool is_poor(const struct meshing *meshing)
 {
-    for (uint32_t p = 0; p < work->pattern->n_panels; p++) {
-        const struct meshing_panel *of = &work->panel[p];
+    for (uint32_t p = 0; p < meshing->pattern->n_panels; p++) {
+        const struct meshing_panel *of = &meshing->panel[p];
         for (uint32_t t = 0; t < of->plane.n_triangles; t++)
-            if (is_worth(of, work->pattern->panel[p].n_edges, POOR, t))
+            if (is_worth(of, meshing->pattern->panel[p].n_edges, POOR, t))
                 return true;
     }
     return false;
 }
 
-int meshing_mesh(struct meshing *work, double spacing, struct cloth_error *error)
+int meshing_mesh(struct meshing *meshing, double spacing, struct cloth_error *error)
 {
     struct cloth_error first = {0};
     double finer = spacing;
     bool last;
-    int code = mesh_at(work, finer, &last, &first);
+    int code = mesh_at(meshing, finer, &last, &first);
     const int before = code;
-    for (int k = 0; k < FINER_TRIES && (code == CLOTH_E_INPUT || (!code && last && is_poor(work)));
-         k++) {
+    for (int k = 0;
+         k < FINER_TRIES && (code == CLOTH_E_INPUT || (!code && last && is_poor(meshing))); k++) {
         struct cloth_error why = {0};
         finer *= FINER;
-        code = mesh_at(work, finer, &last, &why);
+        code = mesh_at(meshing, finer, &last, &why);
     }
-    if (!before && (code || (last && is_poor(work)))) /* nothing helps: as it was asked for */
-        code = mesh_at(work, spacing, &last, error);
+    if (!before && (code || (last && is_poor(meshing)))) /* nothing helps: as it was asked for */
+        code = mesh_at(meshing, spacing, &last, error);
     return code ? cloth_fail(error, code, "%s", first.code ? first.text : "no memory for a mesh")
                 : CLOTH_OK;
 }
 
-uint32_t meshing_count(const struct meshing *work)
+uint32_t meshing_count(const struct meshing *meshing)
 {
     uint32_t n = 0;
-    for (uint32_t p = 0; p < work->pattern->n_panels; p++)
-        n += work->panel[p].plane.n;
+    for (uint32_t p = 0; p < meshing->pattern->n_panels; p++)
+        n += meshing->panel[p].plane.n;
     return n;
 }

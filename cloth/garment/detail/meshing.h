@@ -36,26 +36,26 @@ struct meshing {
 };
 
 /* meshing_free frees it, also after an error. */
-int meshing_make(struct meshing *work, const struct garment_pattern *pattern,
+int meshing_make(struct meshing *meshing, const struct garment_pattern *pattern,
                  struct cloth_error *error);
-void meshing_free(struct meshing *work);
+void meshing_free(struct meshing *meshing);
 
 /* Divides all edges and meshes all panels by a spacing. Where triangles are bad since the boundary
  * is too coarse for them, it is divided finer, on both sides of a stitch. Where they stay bad, or a
  * panel cannot be meshed, the spacing becomes up to a third finer. */
-int meshing_mesh(struct meshing *work, double spacing, struct cloth_error *error);
+int meshing_mesh(struct meshing *meshing, double spacing, struct cloth_error *error);
 
 /* How many vertices all panels have. */
-uint32_t meshing_count(const struct meshing *work);
+uint32_t meshing_count(const struct meshing *meshing);
 
 /* The divisions of all edges by the spacing and by how much finer they are to be; panels of which
  * any changes are not meshed any more. Beside a short edge divisions are short, and become longer
  * along their edge. Errors: CLOTH_E_INPUT, too many; CLOTH_E_MEMORY. */
-int meshing_divide(struct meshing *work, struct cloth_error *error);
+int meshing_divide(struct meshing *meshing, struct cloth_error *error);
 
 /* The places of a panel's boundary by its divisions, and which of its corners are sharp. `start`
  * and `sharp` of the panel are new, *place is to be freed, also after an error. */
-int meshing_outline(struct meshing *work, uint32_t panel, double (**place)[2],
+int meshing_outline(struct meshing *meshing, uint32_t panel, double (**place)[2],
                     struct cloth_error *error);
 
 #endif

@@ -94,6 +94,7 @@ START_TEST(own_garments)
     char *text = scene_of("{pattern: {garment: skirt, edge: 0.1}}");
     struct model model = scene_read_right(text, 0, NULL);
     ck_assert_double_eq_tol(width_of(&model), 0.8, 1e-12);
+    ck_assert_uint_eq(model.cloths[0].mesh.n_groups, 4);
     ck_assert_uint_eq(model.cloths[0].seams.n, 8);
     ck_assert_uint_eq(model.n_files, 1);
     model_free(&model);

@@ -233,12 +233,6 @@ static bool kept(const struct flow_state *state, uint32_t block)
     return model_keeps(state->flow->model);
 }
 
-static bool pulls(const struct flow_state *state, uint32_t block)
-{
-    (void)block;
-    return state->flow->model->n_pulled;
-}
-
 static bool implicit_run(const struct flow_state *state, uint32_t block)
 {
     (void)block;
@@ -362,8 +356,7 @@ static bool saves(const struct flow_state *state, uint32_t block)
 
 static bool in_pieces(const struct flow_state *state, uint32_t block)
 {
-    (void)block;
-    return state->head.n_pieces;
+    return pieces(state, block);
 }
 
 static bool tied_pieces(const struct flow_state *state, uint32_t block)

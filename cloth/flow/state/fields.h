@@ -112,7 +112,7 @@ enum { FLOW_ROW_NUMBERS = sizeof(struct contact_row) / sizeof(double) };
     X(stretch,      BY_STEP, double,        1, one,           always,       is_work)               \
     X(peaks,        BY_STEP, double,        FLOW_PEAKS, one,           always,       is_work)      \
     /* of each pulled seam the square of the largest distance of partners, m^2 */                  \
-    X(seam_peaks,   BY_STEP, double,        1, pulled_seams,  pulls,        is_work)               \
+    X(seam_peaks,   BY_STEP, double,        1, pulled_seams,  always,       is_work)               \
     X(energies,     BY_STEP, double,        FLOW_SUMS, one,           always,       is_work)       \
     X(trial,        ONE,     double,        FLOW_STATUS, one,           implicit_run, is_work)     \
     X(slope,        ONE,     double,        1, one,           implicit_run, is_work)               \

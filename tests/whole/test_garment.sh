@@ -3,6 +3,7 @@
 # A change that moves bits for a good reason writes the table again: DUITE_GOLDEN=FILE sh tests/whole/test_garment.sh
 . "${srcdir:-.}/tests/support/tap.sh"
 garment=${DUITE_GARMENT:-$PWD/duite-garment}
+mannequin=${DUITE_MANNEQUIN:-$PWD/duite-mannequin}
 skip_unless "$garment"
 plan_later
 patterns=$srcdir/tests/cloth/garment/patterns
@@ -109,6 +110,22 @@ fits() { prints run --own skirt --measure waist=0.8 -e 0.05 -o x.obj --body box.
 ok "a body that it fits" fits
 tight() { prints run --own skirt --measure waist=0.7 -e 0.05 -o x.obj --body box.obj && grep -q "warning: .* too small .* its girth is 0.72 m, the body's 0.8 m" complained; }
 ok "a body that is too large" tight
+sizes_warned() { # GARMENT: the sizes that are too small for the mannequin, which is an M
+    for size in XS S M L XL; do
+        run --own "$1" --size $size -e 0.03 -o x.obj -q --body figure.obj 2> complained || return
+        test ! -s complained || printf '%s ' $size
+    done
+}
+worn() { # GARMENT SIZES: of a T-shirt's ease XS has enough left for a chest of 0.98 m
+    sizes_warned "$1" > warned && echo "too small: $(cat warned)" && test "$(cat warned)" = "$2"
+}
+if test -x "$mannequin" && limited "$mannequin" -o figure.obj -q; then
+    ok "tshirt: no size is too small for the mannequin" worn tshirt ""
+    ok "trousers: S is too small for the mannequin, M fits" worn trousers "XS S "
+    ok "skirt: S is too small for the mannequin, M fits" worn skirt "XS S "
+else
+    skip "garments on the mannequin" "no duite-mannequin"
+fi
 ok "no such body" refused "none.obj: cannot be opened" --own skirt -e 0.05 -o x.obj --body none.obj
 ok "a body without a mesh" refused "--body needs --output" --own skirt --write-pattern x.json --body box.obj
 ok "no such garment" refused "there is no own garment \`kilt'; there are tshirt, trousers, skirt" --own kilt -e 0.1 -o x.obj

@@ -195,6 +195,9 @@ void phases_add(struct phases *phases, const struct flow_report *report)
     struct flow_report *total = &phases->total;
     struct phase_done *done = phases->done + phases->now;
     done->steps = report->steps;
+    done->cg_iterations_mean = model_is_implicit(phases_model(phases))
+                                   ? (double)report->cg_iterations_total / (double)report->steps
+                                   : NAN;
     done->simulated_seconds = report->simulated_seconds;
     done->wall_seconds = report->wall_seconds;
     done->ended = ended(report, phases_model(phases)->sewn > 0);

@@ -12,6 +12,7 @@
 struct phase_done {
     const char *name; /* the model's; NULL on other ranks */
     uint64_t steps;
+    double cg_iterations_mean; /* a step; NaN: of an explicit phase */
     double simulated_seconds, wall_seconds;
     const char *ended; /* a word for the report; NULL: it did not begin, or it failed */
 };

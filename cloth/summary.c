@@ -402,6 +402,7 @@ static void add_phases(struct output_report *json, const struct phases *phases)
         output_report_item(json);
         output_report_text(json, "name", done->name);
         output_report_integer(json, "steps", done->steps);
+        output_report_number(json, "cg_iterations_mean", done->cg_iterations_mean);
         output_report_number(json, "simulated_seconds", done->simulated_seconds);
         output_report_number(json, "wall_seconds", done->wall_seconds);
         output_report_text(json, "ended", done->ended);

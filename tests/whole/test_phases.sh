@@ -82,9 +82,15 @@ counts_rows() { run --output frames --set "$two" && awk -F, 'NR > 1 { if ($1 != 
 ok "rows of probes go on, each step once" counts_rows
 same_rows() { run --output one && run --output frames --set "$two" && cut -d, -f3- one/probes.csv > a && cut -d, -f3- frames/probes.csv > b && cmp a b; }
 ok "and have the numbers of one run" same_rows
-reports() { run --set "$two" && cat report.json && grep -q '{"name": "one", "steps": 40, "simulated_seconds": 0.04.*"ended": "end"}' report.json &&
+reports() { run --set "$two" && cat report.json && grep -q '{"name": "one", "steps": 40, "cg_iterations_mean": null, "simulated_seconds": 0.04.*"ended": "end"}' report.json &&
     grep -q '{"name": "two", "steps": 60, .*"ended": "end"}' report.json && test "$(value steps)" = 100 && test "$(grep -c '"name": ' report.json)" = 2; }
 ok "the report lists the phases" reports
+reports_iterations() { # those of both phases are those of the run
+    run --set "$two" --set integrator=implicit_euler && grep -A 3 phases report.json &&
+        sed -n 's/.*"steps": \([0-9]*\), "cg_iterations_mean": \([^,]*\),.*/\1 \2/p' report.json |
+        awk -v mean="$(value cg_iterations_mean | tail -n 1)" '{ steps += $1; sum += $1 * $2 } END { exit !(NR == 2 && sum > 0 && (sum / steps - mean) ^ 2 < 1e-18 * mean ^ 2) }'
+}
+ok "and the iterations of each" reports_iterations
 ok "one without phases has no such key" eval 'run && ! grep phases report.json'
 
 # ---- Obstacles in scene.json ----

@@ -76,3 +76,38 @@ vassilev() {
     echo "The six loops at the last size, by loop"
     loops_by_name
 }
+
+# ---- ParTueTex's shirt ----
+
+# Of the last phase, which is the paper's: steps, seconds and iterations a step.
+hung() { sed -n 's/.*"name": "hang", "steps": \([0-9]*\), "cg_iterations_mean": \([^,]*\), .*"wall_seconds": \([^,]*\),.*/\1 \3 \2/p' "$scratch/report"; }
+shirt_row() { # RANKS THREADS OPTIONS...: mean of the runs; the first row's seconds are those that speed-ups are by
+    shape="$1 $2"
+    shift 2
+    : > "$scratch/rows"
+    for _ in $(seq $runs); do
+        run $shape shirt --output "$scratch/frames" "$@"
+        hung >> "$scratch/rows"
+        value state_hash >> "$scratch/hashes"
+    done
+    test "$(sort -u "$scratch/hashes" | wc -l)" = 1 || { echo "experiments: the shirt has other states" >&2 && exit 1; }
+    awk '{ seconds += $2 } END { print seconds / NR }' "$scratch/rows" > "$scratch/seconds"
+    test -s "$scratch/alone" || cp "$scratch/seconds" "$scratch/alone"
+    awk -v shape="$shape" -v alone="$(cat "$scratch/alone")" -v mean="$(cat "$scratch/seconds")" '{ steps = $1; iterations = $3 } END {
+        split(shape, s); printf "| %s x %s | %.3f | %.5f | %.2f | %.0f |\n", s[1], s[2], mean, mean / steps, alone / mean, iterations }' "$scratch/rows"
+}
+partutex_shirt() {
+    most=$(nproc)
+    set --
+    test $quick = no || set -- --set 'cloths[0].mesh.pattern.vertices=700' --grain 100 --set 'phases[1].set={time.end: 0.003}'
+    : > "$scratch/hashes" && : > "$scratch/alone"
+    run 1 1 shirt "$@" --set 'phases[1].set={time.end: 0.001}'
+    echo "Figure 3: the shirt of $(value triangles) triangles, one welded surface; plain conjugate gradients to 1e-3, 25 frames a second"
+    echo "gathered, mean of $runs runs of the phase that hangs"
+    echo
+    echo "| ranks x threads | seconds | seconds a step | speed-up | iterations a step (1115 there) |"
+    echo "|---|---:|---:|---:|---:|"
+    shirt_row 1 1 "$@"
+    for n in $(seq 2 "$most"); do shirt_row "$n" 1 "$@"; done
+    for n in $(seq 2 "$most"); do shirt_row 1 "$n" "$@"; done
+}

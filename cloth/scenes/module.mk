@@ -1,1 +1,1 @@
-dist_scenes_DATA += cloth/scenes/drape.yaml cloth/scenes/fabrics.yaml cloth/scenes/push.yaml cloth/scenes/sheet.yaml cloth/scenes/slope.yaml cloth/scenes/sphere.yaml cloth/scenes/stack.yaml cloth/scenes/twist.yaml cloth/scenes/zara.yaml
+dist_scenes_DATA += cloth/scenes/drape.yaml cloth/scenes/fabrics.yaml cloth/scenes/push.yaml cloth/scenes/sheet.yaml cloth/scenes/shirt.yaml cloth/scenes/slope.yaml cloth/scenes/sphere.yaml cloth/scenes/stack.yaml cloth/scenes/twist.yaml cloth/scenes/zara.yaml

@@ -20,7 +20,7 @@ table() { # NAME LINES: so many rows, none of them without figures
 unknown() {
     status=0
     sh "$experiments" garment > "$scratch/said" 2>&1 || status=$?
-    test $status = 2 && grep -q "zara|partutex|resolution|grain|link|scaling|contact-partition|vassilev" "$scratch/said"
+    test $status = 2 && grep -q "zara|partutex|resolution|grain|link|scaling|contact-partition|vassilev|partutex-shirt" "$scratch/said"
 }
 ok "an unknown experiment" unknown
 ok "resolution" table resolution 3
@@ -50,5 +50,6 @@ ok "six loops of triangles" refused 'materials.cloth={model: triangles, density:
 if test "${DUITE_LONG:-}" = 1; then
     ok "zara" table zara 22
     ok "partutex" table partutex 7
+    ok "partutex-shirt" table partutex-shirt $((2 * $(nproc)))
     ok "link" table link 9
 fi

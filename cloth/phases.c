@@ -128,6 +128,8 @@ static void add_counts(struct flow_report *to, const struct flow_report *of)
     to->cg_iterations_total += of->cg_iterations_total;
     to->cg_restarts += of->cg_restarts;
     to->factors_shifted += of->factors_shifted;
+    to->correction_rounds += of->correction_rounds;
+    to->corrections_unmet += of->corrections_unmet;
     to->contact_cut_momentum += of->contact_cut_momentum;
 }
 
@@ -142,6 +144,7 @@ static void add_seconds(struct flow_report *to, const struct flow_report *of)
     to->seconds_velocity = sum(to->seconds_velocity, of->seconds_velocity);
     to->seconds_position = sum(to->seconds_position, of->seconds_position);
     to->seconds_collide = sum(to->seconds_collide, of->seconds_collide);
+    to->seconds_correction = sum(to->seconds_correction, of->seconds_correction);
     to->seconds_output = sum(to->seconds_output, of->seconds_output);
 }
 
@@ -176,6 +179,7 @@ static void take_peaks(struct flow_report *to, const struct flow_report *of)
     to->cg_iterations_max = larger(to->cg_iterations_max, of->cg_iterations_max);
     to->momentum_lost = fmax(to->momentum_lost, of->momentum_lost);
     to->mass_norm_error = fmax(to->mass_norm_error, of->mass_norm_error);
+    to->correction_excess = fmax(to->correction_excess, of->correction_excess);
     to->stretch_highest = fmax(to->stretch_highest, of->stretch_highest);
 }
 

@@ -142,6 +142,19 @@ static void warn_of_motion(const struct run *run)
                 run->model->end, rest->speed, rest->hold);
 }
 
+static void warn_of_edges(const struct run *run)
+{
+    const struct flow_report *report = &run->phases.total;
+    if (report->corrections_unmet)
+        fprintf(
+            stderr,
+            "duite-cloth: warning: after %llu of %llu steps edges are over the limit of "
+            "velocity_correction and its tolerance, by up to %g of their length: rounds are too "
+            "few, or pins or the load hold them apart\n",
+            (unsigned long long)report->corrections_unmet, (unsigned long long)report->steps,
+            report->correction_excess);
+}
+
 /* Runs the phase. */
 static int execute(struct run *run)
 {
@@ -240,6 +253,7 @@ static int conclude(struct run *run)
         intersections_say(&outputs->found, "duite-cloth");
         if (!run->stopped_before) /* else it has warned */
             warn_of_motion(run);
+        warn_of_edges(run);
         if (run->options->report)
             summary_write(&summary, run->options->report, &error);
         if (!run->options->quiet)

@@ -47,7 +47,8 @@ static void print_times(FILE *file, const struct flow_report *report)
         {"force", report->seconds_force},       {"acceleration", report->seconds_acceleration},
         {"matrix", report->seconds_matrix},     {"CG", report->seconds_cg},
         {"velocity", report->seconds_velocity}, {"position", report->seconds_position},
-        {"collide", report->seconds_collide},   {"output", report->seconds_output}};
+        {"collide", report->seconds_collide},   {"correction", report->seconds_correction},
+        {"output", report->seconds_output}};
     fprintf(file, "  seconds in tasks, over all workers\n");
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++)
         if (!isnan(rows[i].seconds))
@@ -71,6 +72,12 @@ static void print_solves(FILE *file, const struct summary *summary)
                 "  IC(0)            made with a shift %" PRIu64 " times, of blocks times steps\n",
                 report->factors_shifted);
     fprintf(file, "  momentum lost    %.3e kg m/s at most in a step\n", report->momentum_lost);
+}
+
+static void print_correction(FILE *file, const struct flow_report *r)
+{
+    fprintf(file, "  correction       %" PRIu64 " rounds, which left an excess of %.4g at most\n",
+            r->correction_rounds, r->correction_excess);
 }
 
 /* With every cause that there was. */
@@ -171,6 +178,8 @@ void summary_print(FILE *file, const struct summary *summary)
                 report->steps_retaken);
     if (report->contacts)
         print_contact(file, model, report);
+    if (!isnan(report->correction_excess))
+        print_correction(file, report);
     fprintf(file, "  wall time        %.3f s, %.6f s a step\n", report->wall_seconds,
             ratio(report->wall_seconds, (double)report->steps));
     print_times(file, report);
@@ -270,6 +279,7 @@ static void add_times(struct output_report *json, const struct flow_report *repo
     output_report_number(json, "seconds_velocity", report->seconds_velocity);
     output_report_number(json, "seconds_position", report->seconds_position);
     output_report_number(json, "seconds_collide", report->seconds_collide);
+    output_report_number(json, "seconds_velocity_correction", report->seconds_correction);
     output_report_number(json, "seconds_output", report->seconds_output);
 }
 
@@ -285,6 +295,9 @@ static void add_solver(struct output_report *json, const struct summary *summary
     output_report_number(json, "momentum_lost", report->momentum_lost);
     output_report_integer(json, "cg_restarts", report->cg_restarts);
     output_report_integer(json, "factors_shifted", report->factors_shifted);
+    output_report_integer(json, "velocity_correction_rounds", report->correction_rounds);
+    output_report_integer(json, "velocity_correction_unmet", report->corrections_unmet);
+    output_report_number(json, "velocity_correction_excess", report->correction_excess);
     output_report_integer(json, "newton_steps", report->newton_steps);
     output_report_integer(json, "newton_unconverged", report->newton_unconverged);
 }
@@ -302,6 +315,7 @@ static void add_energies(struct output_report *json, const struct flow_report *r
     output_report_number(json, "energy_gained", report->energy_gained);
     output_report_number(json, "energy_gained_unlent", report->energy_gained_unlent);
     output_report_number(json, "energy_lent", report->energy_lent);
+    output_report_number(json, "energy_corrected", report->energy_corrected);
     output_report_number(json, "energy_kinetic", end->kinetic);
     output_report_number(json, "energy_elastic", end->elastic);
     output_report_number(json, "energy_gravity", end->gravity);

@@ -58,6 +58,8 @@ libduite_cloth_la_SOURCES += \
     cloth/flow/state/fields.c \
     cloth/flow/state/fields.h \
     cloth/flow/state/flow.h \
+    cloth/flow/state/life.c \
+    cloth/flow/state/life.h \
     cloth/flow/state/forks.c \
     cloth/flow/state/kernel.h \
     cloth/flow/state/anchor.c cloth/flow/state/anchor.h \
@@ -79,6 +81,7 @@ libduite_cloth_la_SOURCES += \
     cloth/flow/step/grid.h \
     cloth/flow/step/sliders.h \
     cloth/flow/step/contact.c \
+    cloth/flow/step/correct.c \
     cloth/flow/step/pins.c \
     cloth/flow/step/status.c \
     cloth/flow/step/settle.c \

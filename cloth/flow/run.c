@@ -236,6 +236,7 @@ int flow_run_begin(struct flow_state *state)
     describe(state);
     state->report->rest_seconds = state->report->sewn_seconds = NAN;
     state->report->seams = flow->model->n_pulled;
+    state->report->correction_excess = flow->model->correction_rounds ? 0 : NAN;
     code = flow_memory_take(state);
     if (!code)
         code = flow_share(state);

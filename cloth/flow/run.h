@@ -57,7 +57,7 @@ struct flow_report {
     double shortest_step;                            /* s */
     double simulated_seconds, wall_seconds;          /* wall: from the first step on */
     double seconds_force, seconds_acceleration, seconds_matrix, seconds_cg, seconds_velocity,
-        seconds_position, seconds_collide,
+        seconds_position, seconds_collide, seconds_correction,
         seconds_output;   /* in task bodies, over all workers and ranks; NaN: there were none */
     double momentum_lost; /* largest |sum of b - A dv over the vertices not held| of a step, kg m/s,
                            * of the dv that the step used; NaN for an explicit run */
@@ -66,8 +66,15 @@ struct flow_report {
                            * norm of A, against dv in the mass norm; NaN for an explicit run */
     uint64_t cg_restarts; /* of solves that the true residual refused, in the steps made */
     uint64_t
-        factors_shifted;    /* blocks times steps whose IC(0) needed a shift, or gave way to SSOR */
-    double max_stretch;     /* largest length / rest length of any stretch spring at the end */
+        factors_shifted; /* blocks times steps whose IC(0) needed a shift, or gave way to SSOR */
+    uint64_t correction_rounds; /* of velocity correction that corrected something, in all steps */
+    uint64_t corrections_unmet; /* steps that ended with edges over their limit by more than the
+                                 * tolerance, since there were no more rounds */
+    double correction_excess;   /* largest excess of an edge when a step ended, of its length; NaN:
+                                 * velocities are not corrected */
+    double energy_corrected;    /* J: kinetic energy that corrections took; NaN but with
+                                 * energy_steps */
+    double max_stretch;         /* largest length / rest length of any stretch spring at the end */
     double stretch_highest; /* the largest of these at the start and after any step; NaN where steps
                                are not judged by it (model: stretch_growth, stretch_limit) */
     struct flow_energy start, end; /* of all vertices */

@@ -31,8 +31,13 @@ struct model_material {
     double ea;                /* N, >= 0: force / strain of an edge without triangles */
     double limit_strain;      /* >= 0: edges stretched beyond it are pulled back, */
     double limit_stiffness;   /* by so many N/m, >= 0; 0: they are not */
-    double friction;          /* coefficient, >= 0: of contact that is certified */
-    int both_diagonals;       /* grids: shear springs along both diagonals of a cell */
+    struct model_correction {
+        double at, tolerance; /* >= 0: edges that would be stretched beyond it have their velocities
+                               * corrected; > 0: what may be left, of the length at rest */
+        uint32_t rounds;      /* at most; 0: they are not */
+    } correction;
+    double friction;    /* coefficient, >= 0: of contact that is certified */
+    int both_diagonals; /* grids: shear springs along both diagonals of a cell */
 };
 
 /* A word of scenes, and what it means: the value of an enum, mostly. */

@@ -136,6 +136,9 @@ struct model {
     uint32_t newton_steps;   /* at most, of a step of an implicit one; 0: as 1, one linear step */
     double newton_tolerance; /* |dv| of the last <= tolerance |change of v in the step|, by mass */
 
+    uint32_t
+        correction_rounds; /* the most that any material has; 0: velocities are not corrected */
+
     bool energy_steps; /* the report has energies after each step */
 
     enum model_stop stop; /* relative: |r| <= tolerance |b|; absolute: |r| <= tolerance (kg m/s);
@@ -247,11 +250,21 @@ static inline int model_is_driven(const struct model *model)
  * on the cloth. */
 bool model_is_guarded(const struct model *model);
 
-/* Whether a step may be made again, from a copy of the state before it. */
+/* Whether the state before a step is copied: the step may be made again, or velocities are
+ * corrected.
+ */
 static inline bool model_keeps(const struct model *model)
 {
-    return model->halving || model_certifies(model) ||
+    return model->halving || model->correction_rounds || model_certifies(model) ||
            (model->integrator == MODEL_BDF2 && model_is_guarded(model));
+}
+
+/* Whether x and v stay as an explicit integrator ended a step: no contact, pin or correction
+ * changes them, and no force comes or goes with contact. */
+static inline bool model_leaves_ends(const struct model *model)
+{
+    return !model->n_obstacles && !model_is_driven(model) && !model_seeks(model) &&
+           !model->correction_rounds;
 }
 
 /* Whether its solves stop by norms of the masses. */

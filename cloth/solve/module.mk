@@ -3,6 +3,7 @@ libduite_cloth_la_SOURCES += \
     cloth/solve/block.c cloth/solve/block.h cloth/solve/format.h \
     cloth/solve/cg.c cloth/solve/cg.h \
     cloth/solve/coarse.c cloth/solve/coarse.h cloth/solve/couple.c cloth/solve/pattern.c \
+    cloth/solve/correction.c cloth/solve/correction.h \
     cloth/solve/local.c cloth/solve/local.h cloth/solve/matrix3.h \
     cloth/solve/patches.c cloth/solve/patches.h \
     cloth/solve/system.c cloth/solve/system.h

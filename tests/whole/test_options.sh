@@ -271,6 +271,8 @@ ok "EA of an edge that is a triangle's side" idle "ea is of edges without triang
 ok "an edge that is a triangle's side needs none" "$DUITE_CLOTH" scene.yaml --end 0.01 --quiet --set "$side"
 ok "a limit of vertices without edges" idle "strain_limit is of edges, and it has none" scene.yaml --set "$(echo "$chain" | sed 's/, edges: [^}]*//')" \
     --set 'materials.cotton={strain_limit: {at: 0.1, stiffness: 5}}' --set 'joints=[{from: {vertex: 0}, to: {vertex: 1}, stiffness: 5}]'
+ok "a correction of vertices without edges" idle "velocity_correction is of edges, and it has none" scene.yaml --set "$(echo "$chain" | sed 's/, edges: [^}]*//')" \
+    --set 'materials.cotton={velocity_correction: {}}' --set 'joints=[{from: {vertex: 0}, to: {vertex: 1}, stiffness: 5}]'
 ok "bend of a chain" idle "bend and bending are of triangles" scene.yaml --set "$chain" --set 'materials.cotton={ea: 1, bend: 1}'
 ok "damping of bending that is none" idle "damping.bending is of bending" scene.yaml --set materials.cotton.damping.bending=1
 shears() { # triangles without shear say so, with it nothing

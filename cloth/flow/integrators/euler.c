@@ -72,10 +72,11 @@ static int euler_next_body(const duite_call *call, const struct euler_next_field
     return euler_move(call, &table, on->args, &view, &move);
 }
 
-/* Pins write into the state before the forces: then it is copied first. */
+/* Pins write into the state before the forces: then it is copied first. Recorded rounds of a
+ * correction name the objects of the state: then these stay. */
 bool flow_euler_keeps(const struct model *model)
 {
-    return model->halving && !model_is_driven(model);
+    return model->halving && !model_is_driven(model) && !model->correction_rounds;
 }
 
 static void swap_kept(struct flow_state *state)

@@ -405,7 +405,7 @@ void flow_implicit_status(const struct flow_state *state, double status[FLOW_STA
 void flow_implicit_settle(struct flow_state *state, bool accepted, const double status[FLOW_STATUS])
 {
     struct flow_report *report = state->report;
-    const bool touched = status[FLOW_TOUCHED] > 0;
+    const bool touched = status[FLOW_TOUCHED] + status[FLOW_CORRECTED] > 0;
     state->smooth = accepted && !touched ? state->attempt.length : 0;
     if (!accepted || !searches(state))
         return;

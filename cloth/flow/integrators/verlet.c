@@ -1,5 +1,5 @@
 /* Velocity Verlet. f, without the drag, stays from step to step: what ends one begins the next,
- * unless contact or pins moved something in between, or the step was taken back. */
+ * unless contact, pins or a correction moved something in between, or the step was taken back. */
 #include "cloth/flow/integrators/explicit.h"
 
 int flow_verlet_begin(struct flow_state *state)
@@ -47,12 +47,11 @@ static int verlet_second_body(const duite_call *call, const struct verlet_second
 
 int flow_verlet_end(struct flow_state *state)
 {
-    const struct model *model = state->flow->model;
     struct flow_step_args args = flow_explicit_args(state, 1);
     int code = flow_fork_each(state, &flow_kernel_verlet_first, &args);
     if (!code)
         code = flow_fork_each(state, &flow_kernel_verlet_second, &args);
     flow_swap_halos_v(state);
-    state->settled_forces = !model->n_obstacles && !model_is_driven(model) && !model_seeks(model);
+    state->settled_forces = model_leaves_ends(state->flow->model);
     return code;
 }

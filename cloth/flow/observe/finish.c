@@ -48,6 +48,7 @@ static int sum_seconds(struct flow_state *state)
     state->report->seconds_velocity = some(sum[FLOW_VELOCITY]);
     state->report->seconds_position = some(sum[FLOW_POSITION]);
     state->report->seconds_collide = some(sum[FLOW_COLLIDE]);
+    state->report->seconds_correction = some(sum[FLOW_CORRECTION]);
     state->report->seconds_output = some(sum[FLOW_OUTPUT]);
     return DUITE_OK;
 }

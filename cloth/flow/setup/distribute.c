@@ -16,6 +16,7 @@ enum {
 
 /* What is broadcast of a block; the neighbours of all blocks follow. */
 struct shape {
+    uint32_t n_corrected, n_corrected_cut;
     uint32_t n, n_inner, n_cut, n_entries, n_cut_entries, n_halo, n_held, lowest, highest;
     struct flow_skin_size skin;
     uint32_t joined, halo_start[SOLVE_MAX_PATCHES + 1];
@@ -132,6 +133,8 @@ static int broadcast_shared(const duite_call *call)
         struct shape shape = {.n = t->n,
                               .n_inner = t->n_inner,
                               .n_cut = t->n_cut,
+                              .n_corrected = t->n_corrected,
+                              .n_corrected_cut = t->n_corrected_cut,
                               .n_entries = t->n_entries,
                               .n_cut_entries = t->n_cut_entries,
                               .n_halo = t->n_halo,
@@ -267,6 +270,8 @@ static void unpack(struct flow_state *state)
                                                .first = first,
                                                .n_inner = shape->n_inner,
                                                .n_cut = shape->n_cut,
+                                               .n_corrected = shape->n_corrected,
+                                               .n_corrected_cut = shape->n_corrected_cut,
                                                .n_entries = shape->n_entries,
                                                .n_cut_entries = shape->n_cut_entries,
                                                .format = flow->model->format,

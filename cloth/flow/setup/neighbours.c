@@ -68,10 +68,27 @@ static void join(struct finder *finder, uint32_t a, uint32_t b, struct flow_tabl
     add_need(finder, bq, bp, p, kq);
 }
 
+/* Counts an edge whose velocities are corrected. */
+static void count_corrected(struct flow_source *source, const struct flow_spring *spring,
+                            struct flow_table *const block[2])
+{
+    if (block[0] == block[1]) {
+        block[0]->n_corrected++;
+        return;
+    }
+    block[0]->n_corrected_cut++;
+    block[1]->n_corrected_cut++;
+    source->cut[source->blocks.place[spring->a]]++;
+    source->cut[source->blocks.place[spring->b]]++;
+}
+
 static void find(void *to, const struct flow_spring *spring)
 {
+    struct finder *finder = to;
     struct flow_table *block[2];
     join(to, spring->a, spring->b, block);
+    if (spring->correction)
+        count_corrected(finder->source, spring, block);
     block[0]->n_stiff += spring->stiffness > 0;
     block[0]->n_pulled += spring->seam != 0;
     if (block[0] == block[1]) {
@@ -197,6 +214,10 @@ int flow_source_meet(struct flow_source *source, struct cloth_error *error)
 {
     struct finder finder = {.source = source, .error = error};
     source->patches = model_patches(source->model, source->blocks.n_blocks);
+    if (source->model->correction_rounds)
+        source->cut = cloth_alloc(source->particles.n, sizeof *source->cut, error);
+    if (source->model->correction_rounds && !source->cut)
+        return CLOTH_E_MEMORY;
     flow_springs_each(&source->springs, find, &finder);
     for (uint32_t b = 0; b < source->blocks.n_blocks; b++)
         number_halo(source, source->shape + b);

@@ -15,6 +15,7 @@ struct flow_side {
     double stiffness, damping, length;
     unsigned char stretch;
     uint32_t seam;
+    const struct model_correction *correction;
 };
 
 static int compare_u32(uint32_t a, uint32_t b)
@@ -47,7 +48,7 @@ static void put_side(struct gatherer *gatherer, uint32_t block, uint32_t other, 
     struct flow_source *source = gatherer->source;
     source->side[source->start[block - source->from]++] =
         (struct flow_side){other,      here,      there,      gatherer->spring, s->stiffness,
-                           s->damping, s->length, s->stretch, s->seam};
+                           s->damping, s->length, s->stretch, s->seam,          s->correction};
 }
 
 static void gather_spring(void *to, const struct flow_spring *s)
@@ -257,6 +258,36 @@ static void fill_sides(const struct flow_source *source, const struct flow_table
     *layout->n_held = held;
 }
 
+/* The limits of a block's edges. An edge between blocks makes the share of its correction that lets
+ * all those of a vertex be made at once. */
+static void fill_corrected(const struct flow_source *source, const struct flow_table *t,
+                           const struct flow_side *side, const struct flow_layout *layout)
+{
+    struct solve_edge *inner = layout->corrected;
+    struct flow_cut_edge *cut = layout->corrected_cut;
+    uint32_t s = 0;
+    for (uint32_t i = 0; i < t->n_inner + t->n_cut; i++) {
+        const struct model_correction *correction = side[i].correction;
+        s += i > t->n_inner && side[i].other != side[i - 1].other;
+        if (!correction)
+            continue;
+        const struct solve_edge edge = {.end = {layout->end[i][0], layout->end[i][1]},
+                                        .length = side[i].length,
+                                        .most = (1 + correction->at) * side[i].length,
+                                        .slack = correction->tolerance * side[i].length};
+        if (!side[i].other) {
+            *inner++ = edge;
+            continue;
+        }
+        const uint32_t here = source->cut[side[i].here], there = source->cut[side[i].there];
+        *cut = (struct flow_cut_edge){.edge = edge,
+                                      .row = edge.end[0],
+                                      .neighbour = s,
+                                      .share = 1.0 / (here > there ? here : there)};
+        cut++->edge.end[0] = source->halo[side[i].here];
+    }
+}
+
 void flow_source_table(const struct flow_source *source, uint32_t block, void *memory)
 {
     const struct flow_table *t = source->shape + block;
@@ -273,5 +304,6 @@ void flow_source_table(const struct flow_source *source, uint32_t block, void *m
     fill_inner(t, side, &arrays);
     fill_cut(source, t, side + t->n_inner, &arrays);
     fill_sides(source, t, side, &arrays);
+    fill_corrected(source, t, side, &arrays);
     flow_source_members(source, block, &arrays);
 }

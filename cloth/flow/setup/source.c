@@ -192,6 +192,7 @@ void flow_source_free(struct flow_source *source)
     free(source->names.name);
     free(source->shape);
     free(source->halo);
+    free(source->cut);
     mesh_blocks_free(&source->blocks);
     flow_springs_free(&source->springs);
     element_cloths_free(&source->elements);

@@ -173,6 +173,7 @@ struct flow_spring {
     double stiffness, damping, length; /* N/m, kg/s, m */
     unsigned char stretch;             /* counts for the largest stretch */
     uint32_t seam;                     /* of those that pull, from 1; 0: it is no joint of one */
+    const struct model_correction *correction; /* of such a one; NULL: it has none */
 };
 /* A spring that welds make parallel to another, of the same length at rest, by its number among all
  * springs of the cloths: the first of them is all, the others are gone. */
@@ -283,6 +284,8 @@ struct flow_source {
     struct flow_names names;
     uint32_t patches; /* of a block */
     uint32_t *halo;   /* by place: its number in the halo of its block */
+    uint32_t *cut;    /* by place: how many edges with a correction other blocks have there; NULL:
+                       * there are none */
     struct flow_neighbours neighbours;
     struct flow_watched watched;
     struct flow_skins skins;  /* of a model whose contact is certified */

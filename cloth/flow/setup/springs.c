@@ -93,18 +93,28 @@ static const struct model_material *material_of(const struct visitor *visitor, u
            model_material_of(visitor->cloth, 2, (const uint32_t[]){a, b});
 }
 
+/* NULL: none. */
+static const struct model_correction *correction_of(const struct visitor *visitor, uint32_t a,
+                                                    uint32_t b)
+{
+    const struct model_correction *correction = &material_of(visitor, a, b)->correction;
+    return visitor->model->correction_rounds && correction->rounds ? correction : NULL;
+}
+
 static void pass_on(void *context, const struct mesh_spring *s)
 {
     const struct visitor *visitor = context;
     const struct model_material *material = material_of(visitor, s->a, s->b);
     const double damping =
         s->kind == MESH_BEND ? model_damping_bending(material) : material->damping_stiffness;
-    const struct flow_spring spring = {.a = visitor->first + s->a,
-                                       .b = visitor->first + s->b,
-                                       .stiffness = s->stiffness,
-                                       .damping = damping * s->stiffness,
-                                       .length = s->length,
-                                       .stretch = s->kind == MESH_STRETCH};
+    const struct flow_spring spring = {
+        .a = visitor->first + s->a,
+        .b = visitor->first + s->b,
+        .stiffness = s->stiffness,
+        .damping = damping * s->stiffness,
+        .length = s->length,
+        .stretch = s->kind == MESH_STRETCH,
+        .correction = s->kind == MESH_STRETCH ? correction_of(visitor, s->a, s->b) : NULL};
     visitor->visit(visitor->to, &spring);
 }
 
@@ -117,12 +127,14 @@ static void link_pair(const struct visitor *visitor, const struct mesh *mesh, ui
     const double length = sqrt(x * x + y * y + z * z);
     const double stiffness = length > 0 ? ea / length : 0;
     const double damping = stiffness > 0 ? material_of(visitor, a, b)->damping_stiffness : 0;
-    const struct flow_spring spring = {.a = visitor->first + (a < b ? a : b),
-                                       .b = visitor->first + (a < b ? b : a),
-                                       .stiffness = stiffness,
-                                       .damping = damping * stiffness,
-                                       .length = length,
-                                       .stretch = stretch && length > 0};
+    const struct flow_spring spring = {
+        .a = visitor->first + (a < b ? a : b),
+        .b = visitor->first + (a < b ? b : a),
+        .stiffness = stiffness,
+        .damping = damping * stiffness,
+        .length = length,
+        .stretch = stretch && length > 0,
+        .correction = stretch && length > 0 ? correction_of(visitor, a, b) : NULL};
     visitor->visit(visitor->to, &spring);
 }
 

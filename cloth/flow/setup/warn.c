@@ -43,6 +43,8 @@ static const char *idle_key(const struct model *model, const struct model_materi
         return "ea is of edges without triangles";
     if (material->limit_stiffness > 0 && !triangles && !edges)
         return "strain_limit is of edges, and it has none";
+    if (material->correction.rounds && !triangles && !edges)
+        return "velocity_correction is of edges, and it has none";
     if (material->stretch > 0 && !triangles)
         return "stretch is of triangles and threads; edges without triangles have ea";
     if ((material->bend > 0 || material->bending != MODEL_NO_BENDING) && !triangles)

@@ -5,6 +5,7 @@
 #include "cloth/flow/contact/maps.h"
 #include "cloth/flow/observe/observe.h"
 #include "cloth/flow/solver/solver.h"
+#include "cloth/flow/state/life.h"
 #include "cloth/flow/state/skin.h"
 
 /* ---- How many rows ---- */
@@ -274,6 +275,12 @@ static bool mapped(const struct flow_state *state, uint32_t block)
     return block < flow_map_strips(state->flow);
 }
 
+static bool corrected(const struct flow_state *state, uint32_t block)
+{
+    (void)block;
+    return state->flow->model->correction_rounds > 0;
+}
+
 static bool explicit_run(const struct flow_state *state, uint32_t block)
 {
     return !implicit_run(state, block);
@@ -364,59 +371,6 @@ static bool tied_pieces(const struct flow_state *state, uint32_t block)
     return in_pieces(state, block) && may_be_tied(state, block);
 }
 
-/* ---- What it is between two steps ---- */
-
-static enum flow_life is_state(const struct model *model)
-{
-    (void)model;
-    return FLOW_STATE_FIELD;
-}
-
-static enum flow_life is_derived(const struct model *model)
-{
-    (void)model;
-    return FLOW_DERIVED;
-}
-
-static enum flow_life is_work(const struct model *model)
-{
-    (void)model;
-    return FLOW_WORK;
-}
-
-/* With sliders that move, or of a program, the filter, and so the basis, is another in each step.
- */
-static enum flow_life is_derived_once(const struct model *model)
-{
-    return model_is_filtered(model) ? FLOW_WORK : FLOW_DERIVED;
-}
-
-static enum flow_life is_derived_of_bodies(const struct model *model)
-{
-    return flow_bodies_move(model) ? FLOW_WORK : FLOW_DERIVED;
-}
-
-/* Verlet begins a step with the forces that ended the one before, which saw another velocity,
- * unless contact or pins may have moved something since, or brought other forces (verlet.c). */
-static enum flow_life is_state_of_verlet(const struct model *model)
-{
-    const bool settled = !model->n_obstacles && !model_is_driven(model) && !model_seeks(model);
-    return model->integrator == MODEL_VERLET && settled ? FLOW_STATE_FIELD : FLOW_WORK;
-}
-
-/* A linear step of implicit Euler may begin its solve with dv of the step before. */
-static enum flow_life is_state_of_guess(const struct model *model)
-{
-    const bool linear = model->integrator == MODEL_IMPLICIT_EULER && model->newton_steps <= 1;
-    return linear && model->guess != MODEL_GUESS_ZERO ? FLOW_STATE_FIELD : FLOW_WORK;
-}
-
-/* A frame may show the end of the step before. */
-static enum flow_life is_state_of_frames(const struct model *model)
-{
-    return model->contact.force ? FLOW_STATE_FIELD : FLOW_WORK;
-}
-
 /* ---- The table ---- */
 
 #define TYPE_OF(type)                                                                              \
@@ -427,7 +381,7 @@ static enum flow_life is_state_of_frames(const struct model *model)
              : DUITE_I64, default                                                                  \
              : DUITE_F64)
 #define FIELD(name, turns, place, type, width, rows, exists, life)                                 \
-    {#name, turns, place, TYPE_OF(type), width, rows, exists, life},
+    {#name, turns, place, TYPE_OF(type), width, rows, exists, flow_##life},
 #define ROW(name, many, ...)   ROW_##many(name, __VA_ARGS__)
 #define ROW_ONE(name, ...)     FIELD(name, FLOW_ONE, 0, __VA_ARGS__)
 #define ROW_SIZED(name, ...)   FIELD(name, FLOW_SIZED, 0, __VA_ARGS__)

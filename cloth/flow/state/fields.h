@@ -4,6 +4,7 @@
 #include "cloth/contact/row.h"
 #include "cloth/physics/vec.h"
 #include "cloth/solve/cg.h"
+#include "cloth/solve/correction.h"
 
 #include <duite.h>
 #include <stdbool.h>
@@ -14,9 +15,9 @@
  * of a field what it holds: its name, how many objects it has, the type of its numbers in C,
  * numbers a row, how many rows (at least one is made). It also says when the field exists, and what
  * becomes of it between two steps (enum flow_life). The words in the last three columns are
- * functions of fields.c. Objects are made, freed and colocated by loops over the list (objects.c),
- * and kernels name them (kernel.h). The last column says what a checkpoint must have; test_fields.c
- * holds runs to it. A new field is one row.
+ * functions of fields.c and life.c. Objects are made, freed and colocated by loops over the list
+ * (objects.c), and kernels name them (kernel.h). The last column says what a checkpoint must have;
+ * test_fields.c holds runs to it. A new field is one row.
  *
  * ONE: one object. SIZED: one that changes its size, up to this many rows. BY_STEP, BY_PASS: two
  * objects that take turns, name and name_next. By step, `name` is that of the step under way; by
@@ -54,6 +55,14 @@ enum { FLOW_ROW_NUMBERS = sizeof(struct contact_row) / sizeof(double) };
     X(cut_runs,     ONE,     uint32_t,      4, rows,          certified,    is_state)              \
     /* its strip of the maps of bodies (contact/maps.h) */                                         \
     X(maps,         ONE,     unsigned char, 1, map_bytes,     mapped,       is_derived)            \
+    /* velocity correction (step/correct.c): X with 1 / m in the fourth lane; what moved x since the
+     * step was solved; of each row that others need X and 1 / m, where the step began, S; x as it
+     * is; 1 if no inner edge needs a correction, and the largest excess of these */               \
+    X(edge_base,    ONE,     phys_vec,      4, rows,          corrected,    is_work)               \
+    X(edge_moved,   ONE,     phys_vec,      4, rows,          corrected,    is_work)               \
+    X(edge_ends,    ONE,     phys_vec,      12, halo,         corrected,    is_work)               \
+    X(edge_x,       BY_PASS, phys_vec,      4, halo,          corrected,    is_work)               \
+    X(edge_calm,    ONE,     double,        2, one,           corrected,    is_work)               \
     /* explicit integrators (explicit.h); x0, v0: where a step began, or Verlet's half step */     \
     X(spare_halo_x, ONE,     phys_vec,      4, halo,          explicit_run, is_work)               \
     X(spare_halo_v, ONE,     phys_vec,      4, halo,          explicit_run, is_work)               \
@@ -127,6 +136,9 @@ enum { FLOW_ROW_NUMBERS = sizeof(struct contact_row) / sizeof(double) };
     X(body_fans,    ONE,     uint32_t,      1, body_fans,    meets_bodies, is_derived)             \
     X(body_points,  ONE,     phys_vec,      4, body_points,  meets_bodies, is_derived_of_bodies)   \
     X(body_boxes,   ONE,     unsigned char, 1, body_boxes,   meets_bodies, is_derived_of_bodies)   \
+    /* its rounds, and what the last one found */                                                  \
+    X(edge_rounds,  BY_PASS, struct solve_rounds, SOLVE_ROUNDS_NUMBERS, one, corrected, is_work)   \
+    X(edge_excess,  BY_PASS, double,        2, one,           corrected,    is_work)               \
     /* a solve; pieces: what it left of free pieces; coarse, motion: factor, and its part of s */  \
     X(sums,         BY_PASS, double,        1, dots,          plain_solve,  is_work)               \
     X(scalars,      BY_PASS, struct solve_scalars, SOLVE_SCALARS, one,           implicit_run, is_work) \

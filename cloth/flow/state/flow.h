@@ -22,6 +22,7 @@ enum flow_part {
     FLOW_VELOCITY,
     FLOW_POSITION,
     FLOW_COLLIDE,
+    FLOW_CORRECTION,
     FLOW_OUTPUT,
     FLOW_PARTS
 };

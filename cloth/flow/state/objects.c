@@ -82,6 +82,10 @@ static int free_objects(duite *rt, size_t n, const duite_object *object)
 int flow_objects_free(struct flow_state *state)
 {
     int code = state->solve.generation ? duite_graph_free(state->rt, state->solve) : DUITE_OK;
+    if (state->correct.generation) {
+        const int failed = duite_graph_free(state->rt, state->correct);
+        code = code ? code : failed;
+    }
     for (uint32_t i = 0; i < state->packed.n; i++) {
         const int failed = free_objects(state->rt, 2, state->packed.halo[i].object);
         code = code ? code : failed;

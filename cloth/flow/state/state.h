@@ -45,11 +45,16 @@ enum {
     FLOW_RESIDUAL, /* r.D^-1 r, D the masses */
     FLOW_SHIFTED,  /* factors of blocks that were made with a shift or are of SSOR */
     FLOW_FAILED,
-    FLOW_BEYOND,  /* blocks: whose solve failed; that have a row beyond all bounds */
-    FLOW_TOUCHED, /* vertices that contact moved */
-    FLOW_SLOPE,   /* of a Newton step: dv.b before it, */
-    FLOW_CHANGE,  /* dv.M dv, */
-    FLOW_WHOLE,   /* (v - base_v).M (v - base_v) after it */
+    FLOW_BEYOND,    /* blocks: whose solve failed; that have a row beyond all bounds */
+    FLOW_TOUCHED,   /* vertices that contact moved */
+    FLOW_CORRECTED, /* rounds of a velocity correction; their steps that need more; the largest
+                     * excess that they leave; the kinetic energy that they took, J */
+    FLOW_CORRECTION_UNMET,
+    FLOW_CORRECTION_EXCESS,
+    FLOW_CORRECTION_ENERGY,
+    FLOW_SLOPE,  /* of a Newton step: dv.b before it, */
+    FLOW_CHANGE, /* dv.M dv, */
+    FLOW_WHOLE,  /* (v - base_v).M (v - base_v) after it */
     FLOW_STATUS
 };
 /* Indices into the peaks of a state that is watched, F64, each the largest of any block: square of
@@ -220,7 +225,8 @@ struct flow_state {
     struct flow_tied tied;
     struct flow_contact_state contact;
     struct flow_maps_now maps;
-    duite_graph solve; /* a round of conjugate gradients */
+    duite_graph solve;   /* a round of conjugate gradients */
+    duite_graph correct; /* two rounds of velocity correction */
     struct flow_run_objects run;
     unsigned pass; /* of a round that is recorded: 0 or 1; else 0 */
     struct flow_newton newton;

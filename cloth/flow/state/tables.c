@@ -52,6 +52,9 @@ static void lay(const struct flow_table *t, struct flow_room *room, struct flow_
     layout->watched = flow_room_next(room, t->n_watched * sizeof *layout->watched);
     layout->stretch = flow_room_next(room, sides);
     layout->pulled = flow_room_next(room, t->n_pulled * sizeof *layout->pulled);
+    layout->corrected = flow_room_next(room, t->n_corrected * sizeof *layout->corrected);
+    layout->corrected_cut =
+        flow_room_next(room, t->n_corrected_cut * sizeof *layout->corrected_cut);
     for (int i = 0; i < ELEMENT_KINDS; i++)
         lay_list(t, i, room, layout->list + i);
 }
@@ -91,6 +94,8 @@ void flow_table_open(struct flow_table *t, const void *memory)
     t->length = arrays.length;
     t->stretch = arrays.stretch;
     t->pulled = (const uint32_t(*)[2])arrays.pulled;
+    t->corrected = arrays.corrected;
+    t->corrected_cut = arrays.corrected_cut;
     t->cut_entry = arrays.cut_entry;
     t->at = arrays.at;
     t->matrix =

@@ -4,6 +4,7 @@
 #include "cloth/base/error.h"
 #include "cloth/element/kind.h"
 #include "cloth/physics/spring.h"
+#include "cloth/solve/correction.h"
 #include "cloth/solve/patches.h"
 
 /* What does not change during a run. Every rank knows the shapes of all blocks and who their
@@ -21,6 +22,14 @@ struct flow_skin_size {
     uint32_t cloth[2]; /* its points are of these cloths and some between them */
 };
 
+/* An edge whose velocities are corrected, cut by the border of a block: its ends are a row of the
+ * halo here, and of that of a neighbour. */
+struct flow_cut_edge {
+    struct solve_edge edge;
+    uint32_t row, neighbour; /* row here; which of the neighbours */
+    double share;            /* of its correction that either block makes at once */
+};
+
 /* One block. Its springs: first the inner ones, sorted by (lower row, higher row), then those cut
  * by its border, neighbour after neighbour. A cut spring is known to both blocks. The entries of
  * its matrix (cloth/solve/format.h) are in that order, too: the springs themselves or, in half
@@ -30,6 +39,7 @@ struct flow_table {
     /* Its shape, known to every rank. */
     uint32_t n, first;                               /* rows, place of row 0 */
     uint32_t n_inner, n_cut;                         /* springs */
+    uint32_t n_corrected, n_corrected_cut;           /* edges whose velocities are corrected */
     uint32_t n_stiff;                                /* of them, those that are more than links */
     uint32_t n_elements[ELEMENT_KINDS], n_materials; /* of a kind; of the model */
     uint32_t n_entries, n_cut_entries; /* of the matrix: what is counted here may be one entry */
@@ -72,6 +82,8 @@ struct flow_table {
     const double *stiffness, *damping, *length;
     const unsigned char *stretch; /* counts for the largest stretch */
     const uint32_t (*pulled)[2];  /* n_pulled: spring, ascending; number of its seam, from 1 */
+    const struct solve_edge *corrected;        /* n_corrected: their ends are rows here */
+    const struct flow_cut_edge *corrected_cut; /* n_corrected_cut, neighbour after neighbour */
     struct element_list list[ELEMENT_KINDS];
     struct solve_block matrix; /* its diagonal: of each step, NULL here */
     struct solve_held held;
@@ -105,6 +117,8 @@ struct flow_layout {
     uint32_t *n_held;          /* 1: held entries */
     unsigned char *stretch;    /* n_inner + n_cut */
     uint32_t (*pulled)[2];     /* n_pulled */
+    struct solve_edge *corrected;
+    struct flow_cut_edge *corrected_cut;
     struct element_list list[ELEMENT_KINDS];
 };
 

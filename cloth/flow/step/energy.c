@@ -168,7 +168,8 @@ static void begin(struct flow_state *state)
         .lowest = total, .max = fmax(start->kinetic + start->elastic, state->flow->release)};
     report->energy_lowest = report->energy_highest = report->energy_lowest_unlent =
         reported ? total : NAN;
-    report->energy_gained = report->energy_gained_unlent = report->energy_lent = reported ? 0 : NAN;
+    report->energy_gained = report->energy_gained_unlent = report->energy_lent =
+        report->energy_corrected = reported ? 0 : NAN;
 }
 
 int flow_energy_get(struct flow_state *state, struct flow_energy *energy)

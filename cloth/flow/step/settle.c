@@ -43,6 +43,12 @@ static void note(struct flow_state *state, const double status[FLOW_STATUS])
     const double error = sqrt(fmin(status[FLOW_ERROR], status[FLOW_RESIDUAL]) / status[FLOW_SIZE]);
     if (status[FLOW_SIZE] > 0 && error > report->mass_norm_error)
         report->mass_norm_error = error;
+    report->correction_rounds += (uint64_t)status[FLOW_CORRECTED];
+    report->corrections_unmet += status[FLOW_CORRECTION_UNMET] > 0;
+    if (status[FLOW_CORRECTION_EXCESS] > report->correction_excess)
+        report->correction_excess = status[FLOW_CORRECTION_EXCESS];
+    if (state->flow->model->energy_steps)
+        report->energy_corrected += status[FLOW_CORRECTION_ENERGY];
     report->cg_restarts += (uint64_t)status[FLOW_RESTARTS];
     report->factors_shifted += (uint64_t)status[FLOW_SHIFTED];
     state->stopping = state->stopping || status[FLOW_STOP] > 0;

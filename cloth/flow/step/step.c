@@ -43,6 +43,11 @@ static bool projects(const struct model *model)
     return model->n_obstacles > 0 && !model_seeks(model);
 }
 
+static bool corrects(const struct model *model)
+{
+    return model->correction_rounds > 0;
+}
+
 /* Velocities change before the forces: the copy is made before that. */
 static bool keeps_first(const struct model *model)
 {
@@ -91,6 +96,7 @@ static const struct stage stages[] = {
     {"keep", CORRECT, keeps_late, flow_keep},
     {"integrate", CORRECT, always, fork_end},
     {"prescribe positions", CORRECT, is_driven, flow_pins_prescribe_position},
+    {"correct", CORRECT, corrects, flow_correct},
     {"project", CORRECT, projects, flow_contact_project},
     {"certify", CERTIFY, certifies, flow_contact_settle},
     {"stretch", OBSERVE, flow_is_judged, flow_stretch_fork},

@@ -32,6 +32,10 @@ int flow_status_fork(struct flow_state *state);
 int flow_pins_prescribe_velocity(struct flow_state *state);
 int flow_pins_prescribe_position(struct flow_state *state);
 
+/* Forks the velocity correction of the step under way, whose positions and velocities are there
+ * (correct.c). The first call records its round. */
+int flow_correct(struct flow_state *state);
+
 /* Fork contact (contact.c). The first makes the filter of a step's solves from x and v. The second
  * puts the filter on the right side and in the matrix. The last puts vertices out of obstacles
  * after the step. */

@@ -80,7 +80,7 @@ static int check_membrane(const struct model_material *material, const struct sc
 }
 
 /* What the fields have as the scene says it becomes what the model means by them. */
-static int build_material(const struct model *model, struct model_material *material,
+static int build_material(struct model *model, struct model_material *material,
                           const struct scene_tree *tree, int node, struct cloth_error *error)
 {
     const int damping = scene_tree_get(tree, node, "damping");
@@ -90,6 +90,8 @@ static int build_material(const struct model *model, struct model_material *mate
         material->weft_excess -= material->stretch;
     if (scene_tree_get(tree, damping, "bending"))
         material->damping_excess -= material->damping_stiffness;
+    if (material->correction.rounds > model->correction_rounds)
+        model->correction_rounds = material->correction.rounds;
     return material->model == MODEL_TRIANGLES ? check_membrane(material, tree, node, error)
                                               : CLOTH_OK;
 }

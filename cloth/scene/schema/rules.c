@@ -40,6 +40,16 @@ static const struct scene_rule limit_keys[] = {
      INTO(struct model_material, limit_stiffness), .about = "of each edge beyond it"},
     {0}};
 
+static const struct scene_rule correction_keys[] = {
+    {"at", SCENE_NUMBER, .fallback = "0.1", .range = SCENE_NOT_NEGATIVE,
+     INTO(struct model_material, correction.at), .about = "strain that no edge is to end a step beyond"},
+    {"tolerance", SCENE_NUMBER, .fallback = "0.01", .range = SCENE_POSITIVE,
+     INTO(struct model_material, correction.tolerance),
+     .about = "strain beyond it that corrections may leave"},
+    {"rounds", SCENE_INTEGER, .fallback = "100", .min = 1,
+     INTO(struct model_material, correction.rounds), .about = "at most in a step"},
+    {0}};
+
 /* The list of two takes the member that follows, too. */
 #define STRETCH_AND_WEFT \
     .field = {offsetof(struct model_material, stretch), sizeof(double[2]), \
@@ -73,6 +83,8 @@ static const struct scene_rule material_keys[] = {
     {"bending", SCENE_MAP, .inside = bending_keys, .about = "rigidity about edges"},
     {"strain_limit", SCENE_MAP, .inside = limit_keys,
      .about = "springs that pull edges back which are stretched too far"},
+    {"velocity_correction", SCENE_MAP, .inside = correction_keys,
+     .about = "impulses after a step's solve, so that no edge ends it stretched too far"},
     {"damping", SCENE_MAP, .fallback = "{}", .inside = damping_keys, .about = "of motion"},
     {"friction", SCENE_NUMBER, .range = SCENE_COEFFICIENT, INTO(struct model_material, friction),
      .about = "coefficient of contact, certified or by repulsion; else that of contact"},

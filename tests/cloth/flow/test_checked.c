@@ -315,6 +315,16 @@ START_TEST(repulsion)
 }
 END_TEST
 
+/* Rows on a slider and held ones, edges within blocks and between them. */
+START_TEST(velocity_correction)
+{
+    for (size_t i = 0; i < INTEGRATORS; i++)
+        if (whole || i % 2 == 0)
+            run(SETS(integrators[i], "materials.springs.velocity_correction={at: 0, rounds: 5}",
+                     "cloths[0].start=[{vertices: [20], velocity: [9, 0, 0]}]"));
+}
+END_TEST
+
 /* ---- All kernels ---- */
 
 START_TEST(every_kernel_was_run)
@@ -360,6 +370,7 @@ int main(int argc, char **argv)
     tcase_add_test(cases, rests);
     tcase_add_test(cases, certified_contact);
     tcase_add_test(cases, repulsion);
+    tcase_add_test(cases, velocity_correction);
     tcase_add_test(cases, maps);
     tcase_add_test(cases, every_kernel_was_run);
     suite_add_tcase(suite, integrations);

@@ -150,11 +150,50 @@ static void repelled_explicitly(struct session *s)
     repel(s);
 }
 
-static void (*const kinds[])(struct session *) = {
-    plain,        conditioned,     guessed,   newton,   bdf2,
-    euler,        verlet,          midpoint,  runge,    tied,
-    tied_plainly, tied_explicitly, certified, repelled, repelled_explicitly,
-    sewn};
+/* Nothing may get longer. */
+static void correct(struct session *s)
+{
+    s->setup.material.correction = (struct model_correction){0, 0.01, 20};
+    s->setup.model.correction_rounds = 20;
+}
+
+static void corrected(struct session *s)
+{
+    conditioned(s);
+    correct(s);
+}
+
+static void corrected_by_bdf2(struct session *s)
+{
+    bdf2(s);
+    correct(s);
+}
+
+static void corrected_explicitly(struct session *s)
+{
+    verlet(s);
+    correct(s);
+}
+
+static void (*const kinds[])(struct session *) = {plain,
+                                                  conditioned,
+                                                  guessed,
+                                                  newton,
+                                                  bdf2,
+                                                  euler,
+                                                  verlet,
+                                                  midpoint,
+                                                  runge,
+                                                  tied,
+                                                  tied_plainly,
+                                                  tied_explicitly,
+                                                  certified,
+                                                  repelled,
+                                                  repelled_explicitly,
+                                                  sewn,
+                                                  corrected,
+                                                  corrected_by_bdf2,
+                                                  corrected_explicitly};
 enum { KINDS = sizeof kinds / sizeof *kinds };
 
 /* ---- What exists ---- */

@@ -76,6 +76,15 @@ START_TEST(triangles_out_of_range)
         {"stretch: 50", "stretch: 50, strain_limit: {at: 0.1, stiffness: 0}",
          .error = ":10:74: materials.cotton.strain_limit.stiffness is 0; a finite number > 0 (N/m) "
                   "is expected"},
+        {"stretch: 50", "stretch: 50, velocity_correction: {at: 0.1, tolerance: 0}",
+         .error = ":10:81: materials.cotton.velocity_correction.tolerance is 0; a finite number > "
+                  "0 is expected"},
+        {"stretch: 50", "stretch: 50, velocity_correction: {at: -0.1}",
+         .error = ":10:65: materials.cotton.velocity_correction.at is -0.1; a finite number >= 0 "
+                  "is expected"},
+        {"stretch: 50", "stretch: 50, velocity_correction: {rounds: 0}",
+         .error = ":10:69: materials.cotton.velocity_correction.rounds is 0; a whole number from 1 "
+                  "to 4294967295 is expected"},
         {"stretch: 50", "stretch: 50, bending: {rigidity: [1, .nan]}",
          .error =
              ":10:63: materials.cotton.bending.rigidity[1] is .nan; a finite number >= 0 (N m) is "

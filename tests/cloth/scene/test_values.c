@@ -365,6 +365,12 @@ START_TEST(triangles_and_bending)
     ck_assert_double_eq(m->limit_strain, 0.1);
     ck_assert_double_eq(m->limit_stiffness, 7);
     model_free(&model);
+    model = read_changed("stretch: 50", "stretch: 50, velocity_correction: {}");
+    ck_assert_double_eq(model.materials->correction.at, 0.1);
+    ck_assert_double_eq(model.materials->correction.tolerance, 0.01);
+    ck_assert_uint_eq(model.materials->correction.rounds, 100);
+    ck_assert_uint_eq(model.correction_rounds, 100);
+    model_free(&model);
     model = read_changed("stretch: 50", "stretch: 50, strain_limit: {at: 0, stiffness: 7}");
     ck_assert_int_eq(model.format, SOLVE_HALF);
     model_free(&model);

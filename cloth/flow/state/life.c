@@ -1,0 +1,54 @@
+/* What fields are between two steps: the last column of their list, as functions. */
+#include "cloth/flow/state/life.h"
+
+#include "cloth/flow/contact/body.h"
+
+enum flow_life flow_is_state(const struct model *model)
+{
+    (void)model;
+    return FLOW_STATE_FIELD;
+}
+
+enum flow_life flow_is_derived(const struct model *model)
+{
+    (void)model;
+    return FLOW_DERIVED;
+}
+
+enum flow_life flow_is_work(const struct model *model)
+{
+    (void)model;
+    return FLOW_WORK;
+}
+
+/* With sliders that move, or of a program, the filter, and so the basis, is another in each step.
+ */
+enum flow_life flow_is_derived_once(const struct model *model)
+{
+    return model_is_filtered(model) ? FLOW_WORK : FLOW_DERIVED;
+}
+
+enum flow_life flow_is_derived_of_bodies(const struct model *model)
+{
+    return flow_bodies_move(model) ? FLOW_WORK : FLOW_DERIVED;
+}
+
+/* Verlet begins a step with the forces that ended the one before (verlet.c). */
+enum flow_life flow_is_state_of_verlet(const struct model *model)
+{
+    const bool stays = model->integrator == MODEL_VERLET && model_leaves_ends(model);
+    return stays ? FLOW_STATE_FIELD : FLOW_WORK;
+}
+
+/* A linear step of implicit Euler may begin its solve with dv of the step before. */
+enum flow_life flow_is_state_of_guess(const struct model *model)
+{
+    const bool linear = model->integrator == MODEL_IMPLICIT_EULER && model->newton_steps <= 1;
+    return linear && model->guess != MODEL_GUESS_ZERO ? FLOW_STATE_FIELD : FLOW_WORK;
+}
+
+/* A frame may show the end of the step before. */
+enum flow_life flow_is_state_of_frames(const struct model *model)
+{
+    return model->contact.force ? FLOW_STATE_FIELD : FLOW_WORK;
+}

@@ -11,8 +11,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { TRIES = 10 };
-static const double CLOSE = 0.005; /* of the wanted number: near enough */
+enum { TRIES = 10, EARLY = 6 };
+static const double CLOSE = 0.005; /* of the wanted number: near enough, */
+static const double FAIR = 0.008;  /* and after the early tries */
 static const uint32_t MOST = (uint32_t)1 << 27;
 
 /* A lattice of triangles with edges h has 1.155 / h^2 vertices an area; of a boundary of length P
@@ -43,7 +44,7 @@ static int mesh_by_count(struct meshing *meshing, uint32_t wanted, struct cloth_
     double spacing = first_spacing(meshing, wanted), best = spacing, least = INFINITY;
     double fine = 0, coarse = INFINITY; /* spacings that gave too many and too few */
     int code = CLOTH_OK;
-    for (int k = 0; k < TRIES && least > CLOSE && !code; k++) {
+    for (int k = 0; k < TRIES && least > (k < EARLY ? CLOSE : FAIR) && !code; k++) {
         code = meshing_mesh(meshing, spacing, error);
         const double n = meshing_count(meshing), off = fabs(n - wanted) / wanted;
         if (off < least) {

@@ -16,6 +16,7 @@ libduite_cloth_la_SOURCES += \
 	cloth/garment/detail/divide.c \
 	cloth/garment/detail/flat.c cloth/garment/detail/flat.h \
 	cloth/garment/detail/flat_improve.c \
+	cloth/garment/detail/flat_refine.c \
 	cloth/garment/detail/flat_smooth.c \
 	cloth/garment/detail/lattice.c cloth/garment/detail/lattice.h \
 	cloth/garment/detail/meet.c cloth/garment/detail/meet.h \

@@ -216,7 +216,7 @@ golden() { # NAME ARGUMENT...
     grep -qxF "$(tail -n 1 "$fresh")" "$table"
     tap_result $? "$golden_name"
 }
-for name in straight quadratic cubic circle dart gather fold; do
+for name in straight quadratic cubic circle dart gather fold steep; do
     golden "$name, 3 cm" "$patterns/$name.json" -e 0.03
     golden "$name, 4000 vertices" "$patterns/$name.json" -n 4000
 done

@@ -13,6 +13,7 @@ static const double SHARP = 0.86602540; /* cos 30 degrees */
 static const double MOST = 0x1p25;      /* divisions of all edges */
 static const double JUMP = 1.35;        /* of divisions on both sides of a corner */
 static const double GROWTH = 0.3;       /* of divisions, a length along their edge */
+static const double LEAST = 0.25;       /* of the shortest division: none becomes shorter */
 enum { SWEEPS = 8 };                    /* over all corners: sizes spread that far */
 
 static void add_edge(struct meshing *meshing, uint32_t panel, uint32_t e)
@@ -79,13 +80,13 @@ static double wanted(const struct meshing *meshing, const struct meshing_edge *e
 }
 
 /* At the corner between two edges neither's divisions are much longer than the other's. */
-static void even_corner(struct meshing_edge *one, struct meshing_edge *two)
+static void even_corner(struct meshing_edge *one, struct meshing_edge *two, double least)
 {
     const double a = one->end[1] * one->curve.length, b = two->end[0] * two->curve.length;
     if (a > JUMP * b)
-        one->end[1] = JUMP * b / one->curve.length;
+        one->end[1] = fmin(one->end[1], fmax(JUMP * b, least) / one->curve.length);
     if (b > JUMP * a)
-        two->end[0] = JUMP * a / two->curve.length;
+        two->end[0] = fmin(two->end[0], fmax(JUMP * a, least) / two->curve.length);
 }
 
 /* Along an edge they grow slowly; both edges of a stitch are alike, and from both ends. */
@@ -100,13 +101,24 @@ static void even_edge(struct meshing *meshing, struct meshing_edge *edge)
     edge->end[0] = edge->end[1] = other->end[0] = other->end[1] = least;
 }
 
+/* Where the partner of an edge is beside it, or stitches lead in a ring, and gather, each round
+ * would ask for shorter divisions: none gets much shorter than the shortest one at the start. */
+static double shortest(const struct meshing *meshing)
+{
+    double least = INFINITY;
+    for (uint32_t e = 0; e < meshing->first[meshing->pattern->n_panels]; e++)
+        least = fmin(least, meshing->edge[e].middle * meshing->edge[e].curve.length);
+    return LEAST * least;
+}
+
 static void even_out(struct meshing *meshing)
 {
+    const double least = shortest(meshing);
     for (int k = 0; k < SWEEPS; k++)
         for (uint32_t p = 0; p < meshing->pattern->n_panels; p++) {
             const uint32_t first = meshing->first[p], n = meshing->first[p + 1] - first;
             for (uint32_t e = 0; e < n; e++)
-                even_corner(&meshing->edge[first + e], &meshing->edge[first + (e + 1) % n]);
+                even_corner(&meshing->edge[first + e], &meshing->edge[first + (e + 1) % n], least);
             for (uint32_t e = 0; e < n; e++)
                 even_edge(meshing, &meshing->edge[first + e]);
         }

@@ -15,7 +15,7 @@ static int make_box(struct delaunay *plane, const struct flat_loop *loop, uint32
             low[k] = fmin(low[k], loop->place[i][k]);
             high[k] = fmax(high[k], loop->place[i][k]);
         }
-    const uint64_t room = (uint64_t)2 * loop->n + n_inner + n_inner / 8 + 64;
+    const uint64_t room = (uint64_t)4 * loop->n + n_inner + n_inner / 4 + 64;
     if (room > UINT32_MAX / 8)
         return cloth_fail(error, CLOTH_E_INPUT, "a panel of %ju vertices is too large",
                           (uintmax_t)room);
@@ -60,6 +60,10 @@ int flat_make(struct delaunay *plane, const struct flat_loop *loop, double edge,
         return code;
     delaunay_carve(plane);
     flat_smooth(plane, error);
+    if (flat_refine(plane, loop->sharp)) {
+        delaunay_pack(plane);
+        flat_smooth(plane, error);
+    }
     flat_improve(plane, loop->sharp);
     delaunay_pack(plane);
     return plane->failed ? cloth_fail(error, CLOTH_E_MEMORY, "out of memory for a panel's mesh")

@@ -25,6 +25,14 @@ int flat_make(struct delaunay *plane, const struct flat_loop *loop, double edge,
 /* Moves the inner vertices near the boundary to the middle of their neighbours, some times. */
 void flat_smooth(struct delaunay *plane, struct cloth_error *error);
 
+/* Adds inner vertices where a triangle is poor, that is, has an angle below 20 degrees: from a fine
+ * boundary on triangles become larger step by step. Returns whether any was poor; if none was, it
+ * changes nothing. sharp: of the boundary's vertices. */
+bool flat_refine(struct delaunay *plane, const unsigned char *sharp);
+
+/* The centre of the circle through a triangle's corners. */
+void flat_centre(const struct delaunay *plane, uint32_t triangle, double centre[2]);
+
 /* Makes triangles better that have an angle below what the aim is: moves, adds and takes out
  * vertices nearby, and keeps what makes the worst of them better. sharp: of the boundary's
  * vertices. */

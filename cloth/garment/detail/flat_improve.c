@@ -194,16 +194,6 @@ static bool try_merge(struct improve *of, uint32_t vertex, uint32_t to, double b
     return finish(of, done, before);
 }
 
-/* The centre of the circle through the corners. */
-static void find_centre(const double *a, const double *b, const double *c, double centre[2])
-{
-    const double ab[2] = {b[0] - a[0], b[1] - a[1]}, ac[2] = {c[0] - a[0], c[1] - a[1]};
-    const double area = 2 * delaunay_area(a, b, c);
-    const double bb = ab[0] * ab[0] + ab[1] * ab[1], cc = ac[0] * ac[0] + ac[1] * ac[1];
-    centre[0] = a[0] + (ac[1] * bb - ab[1] * cc) / area;
-    centre[1] = a[1] + (ab[0] * cc - ac[0] * bb) / area;
-}
-
 static bool try_all(struct improve *of, uint32_t t)
 {
     const struct delaunay *plane = of->plane;
@@ -212,7 +202,7 @@ static bool try_all(struct improve *of, uint32_t t)
     memcpy(v, plane->triangle[t].vertex, sizeof v);
     const double *x[3] = {plane->place[v[0]], plane->place[v[1]], plane->place[v[2]]};
     double place[5][2];
-    find_centre(x[0], x[1], x[2], place[0]);
+    flat_centre(plane, t, place[0]);
     for (int k = 0; k < 2; k++)
         place[1][k] = (x[0][k] + x[1][k] + x[2][k]) / 3;
     for (int i = 0; i < 3; i++)

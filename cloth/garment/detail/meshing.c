@@ -9,7 +9,7 @@
 
 #include <stdlib.h>
 
-enum { TRIES = 6, FAIR_TRIES = 3, FINER_TRIES = 6 };
+enum { TRIES = 8, FAIR_TRIES = 3, FINER_TRIES = 6 };
 static const double FINER = 0.93; /* of the spacing before */
 
 /* Which angles are worth a finer boundary: at first those that a slightly finer one may better,
@@ -17,7 +17,7 @@ static const double FINER = 0.93; /* of the spacing before */
 struct worth {
     double cosine, factor;
 };
-static const struct worth FAIR = {0.86602540, 1.15}, POOR = {0.93969262, 1.5}; /* 30, 20 degrees */
+static const struct worth FAIR = {0.86602540, 1.15}, POOR = {0.93969262, 2}; /* 30, 20 degrees */
 
 /* Asks for shorter divisions of an edge. */
 static void refine(struct meshing *meshing, uint32_t panel, uint32_t edge, double factor,
@@ -35,12 +35,24 @@ static uint32_t edge_of(const struct meshing_panel *of, uint32_t n_edges, uint32
     return e;
 }
 
-/* Whether a triangle is bad, and not excused. */
+/* Whether a triangle fills a corner, so that two of its edges are the boundary's: shorter divisions
+ * leave its shape as it is. */
+static bool is_ear(const struct delaunay *plane, uint32_t triangle)
+{
+    const uint32_t *beside = plane->triangle[triangle].beside;
+    int n = 0;
+    for (int i = 0; i < 3; i++)
+        n += beside[i] == DELAUNAY_NONE;
+    return n > 1;
+}
+
+/* Whether a triangle is bad, and not excused. What is below 20 degrees and an ear stays so. */
 static bool is_worth(const struct meshing_panel *of, uint32_t n_edges, struct worth worth,
                      uint32_t triangle)
 {
     return delaunay_sharpness_of(&of->plane, triangle) > worth.cosine &&
-           !flat_excused(&of->plane, of->start[n_edges], of->sharp, triangle);
+           !flat_excused(&of->plane, of->start[n_edges], of->sharp, triangle) &&
+           !(worth.cosine == POOR.cosine && is_ear(&of->plane, triangle));
 }
 
 /* Edges of bad triangles; each is refined once. */

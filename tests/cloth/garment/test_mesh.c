@@ -4,7 +4,7 @@
 #define PI 3.14159265358979323846
 
 static const char *const PATTERNS[] = {"straight", "quadratic", "cubic", "circle",
-                                       "dart",     "gather",    "fold"};
+                                       "dart",     "gather",    "fold",  "steep"};
 enum { N_PATTERNS = sizeof PATTERNS / sizeof *PATTERNS };
 static const double EDGES[] = {0.1, 0.021, 0.0053};
 enum { N_EDGES = sizeof EDGES / sizeof *EDGES };
@@ -111,6 +111,8 @@ static void check_piece(const struct garment *garment, const struct garment_patt
     }
 }
 
+/* "steep" gathers by 4, around a ring of stitches, and beside its partner: its triangles are not as
+ * good. */
 START_TEST(panels_are_whole)
 {
     struct garment_pattern pattern;
@@ -127,8 +129,8 @@ START_TEST(panels_are_whole)
     const double least = garment_least_angle(&garment, &below);
     printf("# %s, edges of %g m: %u vertices, %u triangles, least angle %.1f degrees\n",
            PATTERNS[_i / N_EDGES], EDGES[_i % N_EDGES], n, garment.n_triangles, least);
-    ck_assert(least >= 28);
-    ck_assert_uint_le(below, 2);
+    ck_assert(least >= (pattern.n_stitches > 1 ? 20 : 28));
+    ck_assert_uint_le(below, pattern.n_stitches > 1 ? 10 : 2);
     garment_free(&garment);
     garment_pattern_free(&pattern);
 }

@@ -6,10 +6,8 @@
 #include <math.h>
 #include <string.h>
 
-/* The material that says how a cloth bends, which is alike in all its regions; NULL: it does not.
- * Without a bending of its own a region has no rigidity. */
-static const struct model_material *bending_of(const struct model *model,
-                                               const struct model_cloth *cloth)
+const struct model_material *element_bending_of(const struct model *model,
+                                                const struct model_cloth *cloth)
 {
     for (uint32_t i = 0; i <= cloth->n_regions; i++)
         if (model_material(model, cloth, i)->bending != MODEL_NO_BENDING)
@@ -27,8 +25,8 @@ static bool damps_bending(const struct model *model, const struct model_cloth *c
 
 bool element_bend_alike(const struct model *model, uint32_t a, uint32_t b)
 {
-    const struct model_material *one = bending_of(model, model->cloths + a);
-    const struct model_material *other = bending_of(model, model->cloths + b);
+    const struct model_material *one = element_bending_of(model, model->cloths + a);
+    const struct model_material *other = element_bending_of(model, model->cloths + b);
     return one && other && one->bending == other->bending;
 }
 
@@ -146,6 +144,7 @@ static void bend_make(const struct element_cloths *cloths, const struct element 
         seam_rest(cloths, element->seam, &bend->rest);
     else
         bend_rest(cloths, element->cloth, element->corner, &bend->rest);
+    element_fold_rest(cloths, element, &bend->rest.s);
     for (int k = 0; k < sides; k++) {
         const struct element_side *side = element->seam ? element->seam->side + k : NULL;
         const uint32_t cloth = side ? side->cloth : element->cloth;
@@ -185,7 +184,7 @@ static int bending_check(const struct element_cloths *cloths, uint32_t c, struct
 
 static bool hinges_has(const struct model *model, const struct model_cloth *cloth)
 {
-    const struct model_material *bends = bending_of(model, cloth);
+    const struct model_material *bends = element_bending_of(model, cloth);
     return bends && (bends->bending == MODEL_HINGES || damps_bending(model, cloth));
 }
 
@@ -253,7 +252,7 @@ const struct element_kind element_hinges = {
 
 static bool quadratic_has(const struct model *model, const struct model_cloth *cloth)
 {
-    const struct model_material *bends = bending_of(model, cloth);
+    const struct model_material *bends = element_bending_of(model, cloth);
     return bends && bends->bending == MODEL_QUADRATIC;
 }
 
@@ -275,7 +274,7 @@ static int quadratic_check(const struct element_cloths *cloths, uint32_t c,
                 "mesh: cloth '%.60s' is not flat at the edge between vertices %u and %u "
                 "(counted from 0), as bending: {model: quadratic} of material "
                 "'%.60s' expects; take model: hinge, or rest: uv",
-                cloth->name, edge->a, edge->b, bending_of(cloths->model, cloth)->name);
+                cloth->name, edge->a, edge->b, element_bending_of(cloths->model, cloth)->name);
     }
     return code;
 }

@@ -234,6 +234,8 @@ int element_cloths_make(struct element_cloths *cloths, const struct model *model
     int code = cloths->edges && cloths->axis ? CLOTH_OK : CLOTH_E_MEMORY;
     for (uint32_t c = 0; c < model->n_cloths && !code; c++)
         code = make_cloth(cloths, c, error);
+    if (!code)
+        code = element_folds_make(cloths, error);
     if (code)
         element_cloths_free(cloths);
     return code;
@@ -246,5 +248,6 @@ void element_cloths_free(struct element_cloths *cloths)
     free(cloths->edges);
     free(cloths->axis);
     free(cloths->seam);
+    free(cloths->fold);
     *cloths = (struct element_cloths){0};
 }

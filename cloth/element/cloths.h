@@ -28,12 +28,16 @@ struct element {
                                         so numbered that first + corner is its vertex */
 };
 
+struct element_fold;
+
 struct element_cloths {
     const struct model *model;
     struct mesh_edges *edges; /* a cloth; none where it has no elements */
     double (*axis)[2][3];     /* a cloth: directions of warp and weft where its mesh has no uv */
     uint32_t n_seams;
     struct element_seam *seam; /* of cloths with hinges; added by who knows of welds */
+    uint32_t n_folds;
+    struct element_fold *fold; /* edges of all cloths whose rest angle is given, by their ends */
 };
 
 /* Finds the edges, and what is wrong with rest shapes. Errors: CLOTH_E_INPUT for triangles without
@@ -43,6 +47,12 @@ int element_cloths_make(struct element_cloths *cloths, const struct model *model
 void element_cloths_free(struct element_cloths *cloths);
 /* What is wrong with the rest shapes across seams, as of element_cloths_make. Local. */
 int element_seams_check(const struct element_cloths *cloths, struct cloth_error *error);
+
+/* Finds the folds of all cloths, when edges are there. Errors: CLOTH_E_INPUT for cloths whose
+ * bending knows no rest angle and an edge that is folded twice, with the place; CLOTH_E_MEMORY. The
+ * other: CLOTH_E_INPUT for folds at borders that no seam has, when seams are there. Local. */
+int element_folds_make(struct element_cloths *cloths, struct cloth_error *error);
+int element_folds_check(const struct element_cloths *cloths, struct cloth_error *error);
 
 /* Shows every element of all cloths; of each kind, those across seams come last. */
 void element_each(const struct element_cloths *cloths,
@@ -75,6 +85,15 @@ static inline uint32_t element_material(const struct element_cloths *cloths,
 {
     return model_material_of(cloths->model->cloths + element->cloth, n, element->corner);
 }
+
+/* Whether a fold says the rest angle of a hinge; *s: then its 2 sin(theta / 2). */
+bool element_fold_rest(const struct element_cloths *cloths, const struct element *element,
+                       double *s);
+
+/* The material that says how a cloth bends, which is alike in all its regions; NULL: it does not.
+ * Without a bending of its own a region has no rigidity. */
+const struct model_material *element_bending_of(const struct model *model,
+                                                const struct model_cloth *cloth);
 
 /* Whether both cloths bend, by the same model. */
 bool element_bend_alike(const struct model *model, uint32_t a, uint32_t b);

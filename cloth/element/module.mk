@@ -3,6 +3,7 @@ libduite_cloth_la_SOURCES += \
     cloth/element/air.c \
     cloth/element/bending.c \
     cloth/element/cloths.c cloth/element/cloths.h \
+    cloth/element/folds.c \
     cloth/element/kind.h \
     cloth/element/kinds.c \
     cloth/element/strain_limit.c \

@@ -124,6 +124,16 @@ struct model_start {
     struct model_wave wave;
 };
 
+/* A fold: at rest the hinges between vertices that follow each other have this angle. */
+struct model_fold {
+    uint32_t n;
+    uint32_t *vertices; /* of the cloth's mesh */
+    bool sewn;          /* along a seam, where nothing folds unless it is welded */
+    double angle; /* degrees, above -180 and below 180; above 0: a ridge on the side from which the
+                     triangles are counterclockwise */
+    char *place;
+};
+
 enum { MODEL_MAX_REGIONS = 64 };
 
 /* A seam of a sewn cloth: pairs of vertices of its mesh that belong together, along an edge of one
@@ -181,6 +191,8 @@ struct model_cloth {
     struct model_mass *masses;
     struct model_start *starts; /* one after the other, from that start */
     struct model_seams seams;
+    uint32_t n_folds;
+    struct model_fold *folds;
     char *place, *mesh_place, *velocity_place; /* of the cloth, and of parts of it */
 };
 

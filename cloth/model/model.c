@@ -58,6 +58,11 @@ static void free_cloth(struct model_cloth *cloth)
     for (uint32_t i = 0; i < cloth->n_masses; i++)
         free_pick(&cloth->masses[i].pick);
     model_start_at(cloth, NULL);
+    for (uint32_t i = 0; i < cloth->n_folds; i++) {
+        free(cloth->folds[i].vertices);
+        free(cloth->folds[i].place);
+    }
+    free(cloth->folds);
     free(cloth->masses);
     free(cloth->region);
     free(cloth->mask);

@@ -34,6 +34,7 @@ libduite_cloth_la_SOURCES += \
 	cloth/scene/build/girth.c \
 	cloth/scene/build/curve.c \
 	cloth/scene/build/drape.c \
+	cloth/scene/build/fold.c \
 	cloth/scene/build/frames.c \
 	cloth/scene/build/idle.c \
 	cloth/scene/build/joint.c \

@@ -43,6 +43,8 @@ static int read_tree(struct model *model, struct scene_tree *tree, uint32_t phas
     if (!code)
         code = scene_build_seams(model, tree, error);
     if (!code)
+        code = scene_build_folds(model, tree, error);
+    if (!code)
         code = scene_build_girths(model, tree, error);
     if (!code)
         code = scene_build_idle(model, tree, error);

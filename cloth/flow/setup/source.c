@@ -159,6 +159,8 @@ int flow_source_make(struct flow_source *source, const struct model *model, int 
     if (!code)
         code = flow_seams_make(&source->elements, &source->particles.welds, error);
     if (!code)
+        code = element_folds_check(&source->elements, error);
+    if (!code)
         code = flow_springs_make(&source->springs, model, &source->particles.welds,
                                  &source->elements, error);
     if (!code)

@@ -57,6 +57,10 @@ int scene_build_seams(struct model *model, const struct scene_tree *tree,
 int scene_build_girths(struct model *model, const struct scene_tree *tree,
                        struct cloth_error *error);
 
+/* The folds of cloths, after their seams. */
+int scene_build_folds(struct model *model, const struct scene_tree *tree,
+                      struct cloth_error *error);
+
 /* Reads the seams of an OBJ mesh (docs/garments.md), for a mesh that has as many vertices and
  * triangles. What is wrong with the file is in `inner`. They belong to `seams`, also after an
  * error.

@@ -276,6 +276,22 @@ static const struct scene_rule panel_keys[] = {
     {0}};
 static const struct scene_rule panel = {.type = SCENE_MAP, .inside = panel_keys};
 
+static const struct scene_rule fold_edge_keys[] = {
+    {"panel", SCENE_TEXT, .required = true, .about = "its name"},
+    {"edge", SCENE_INTEGER, .required = true, .about = "of its edges, from 0: one that is sewn"},
+    {0}};
+static const struct scene_rule fold_keys[] = {
+    {"vertices", SCENE_LIST, .choice = true, .filled = true, .inside = &vertex,
+     ARRAY(struct model_fold, vertices, n),
+     .about = "along it: an edge of the mesh joins each with the next"},
+    {"edge", SCENE_MAP, .choice = true, .inside = fold_edge_keys,
+     .about = "of a panel: it folds where the seam is welded"},
+    {"angle", SCENE_NUMBER, "degrees", .required = true, INTO(struct model_fold, angle),
+     .about = "at rest, -180 to 180; above 0: a ridge on the front"},
+    {0}};
+static const struct scene_rule fold = {
+    .type = SCENE_MAP, .inside = fold_keys, PLACE(struct model_fold, place)};
+
 static const struct scene_rule cloth_keys[] = {
     {"name", SCENE_TEXT, INTO(struct model_cloth, name),
      .about = "unique; else cloth1, cloth2, ..."},
@@ -304,6 +320,8 @@ static const struct scene_rule cloth_keys[] = {
      ARRAY(struct model_cloth, loads, n_loads), .about = "forces on vertices"},
     {"masses", SCENE_LIST, .fallback = "[]", .inside = &mass,
      ARRAY(struct model_cloth, masses, n_masses), .about = "more mass of vertices"},
+    {"folds", SCENE_LIST, .fallback = "[]", .inside = &fold,
+     ARRAY(struct model_cloth, folds, n_folds), .about = "edges whose angle at rest is given"},
     {"from", SCENE_MAP, .inside = settled_keys, .apart = true,
      .about = "a frame of an earlier run, in which it starts at rest"},
     {"start", SCENE_LIST, .fallback = "[]", .inside = &start,

@@ -53,11 +53,48 @@ START_TEST(joints_that_end_nowhere)
 }
 END_TEST
 
+#define FOLD(text) "material: cotton", "material: cotton\n    folds: [{" text "}]"
+
+START_TEST(folds_that_cannot_be_made)
+{
+    EXPECT({FOLD("vertices: [4, 5]"),
+            .error = ":7:13: cloths[0].folds[0].angle is missing; a finite number (degrees) is "
+                     "expected"},
+           {FOLD("angle: 90"),
+            .error = ":7:13: cloths[0].folds[0] has no vertices or edge; one of them is expected"},
+           {FOLD("vertices: [4, 5], angle: 180"),
+            .error = ":7:39: a fold has an angle of 180 degrees; one above -180 and below 180 is "
+                     "expected"},
+           {FOLD("vertices: [4, 5], angle: -1e3"),
+            .error = ":7:39: a fold has an angle of -1000 degrees; one above -180 and below 180 "
+                     "is expected"},
+           {FOLD("vertices: [4], angle: 90"),
+            .error = ":7:24: a fold has one vertex; the vertices along it, two at least, are "
+                     "expected"},
+           {FOLD("vertices: [4, 12], angle: 90"),
+            .error = ":7:28: vertex 12 is outside the mesh of cloth 'sheet', which has 12 "
+                     "vertices; 0 to 11 are allowed"},
+           {FOLD("vertices: [4, 5, 7], angle: 90"),
+            .error = ":7:31: there is no edge between vertices 5 and 7 of cloth 'sheet', which a "
+                     "fold has one after the other; such two are expected"},
+           {FOLD("vertices: [4, 4], angle: 90"),
+            .error = ":7:28: there is no edge between vertices 4 and 4 of cloth 'sheet', which a "
+                     "fold has one after the other; such two are expected"},
+           {FOLD("edge: {panel: front}, angle: 90"),
+            .error = ":7:20: cloths[0].folds[0].edge.edge is missing; a whole number from 0 to "
+                     "4294967295 is expected"},
+           {FOLD("edge: {panel: front, edge: 1}, angle: 90"),
+            .error = ":7:20: no seam of cloth 'sheet' has edge 1 of a panel 'front', so nothing "
+                     "folds there; an edge that is sewn is expected"});
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("edge errors");
     TCase *cases = tcase_create("errors");
     tcase_add_test(cases, joints_that_end_nowhere);
+    tcase_add_test(cases, folds_that_cannot_be_made);
     suite_add_tcase(suite, cases);
     return unit_run(suite);
 }

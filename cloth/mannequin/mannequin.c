@@ -1,7 +1,8 @@
 /* Rounds of remeshing and measuring: what a girth lacks goes into the factor on its widths, until
  * the mesh itself has the girths. */
 #include "cloth/mannequin/mannequin.h"
-#include "cloth/mannequin/detail/surface.h"
+#include "cloth/base/memory.h"
+#include "cloth/mannequin/detail/rig.h"
 #include "cloth/mannequin/measures.h"
 
 #include <math.h>
@@ -74,32 +75,35 @@ static int make(struct making *making, uint32_t *worst)
 
 /* ---- Both halves ---- */
 
-/* Whole and of the height asked for: lengths times scale. */
-static int mirror(const struct making *making, struct mesh *mesh, double height)
+/* Heights in the half, and what lengths are multiplied by: heights, others. */
+struct fitting {
+    double low, high, scale[2];
+};
+
+static struct fitting fit_height(const struct surface *half, double height)
 {
-    const struct surface *half = &making->surface;
-    uint32_t n = half->n, *image = malloc((size_t)half->n * sizeof *image);
-    double *x = malloc(6 * (size_t)half->n * sizeof *x);
-    uint32_t *corner = malloc(6 * (size_t)half->m * sizeof *corner);
     double low = INFINITY, high = -INFINITY;
-    const double scale = height / MANNEQUIN_HEIGHT;
-    if (!image || !x || !corner) {
-        free(image);
-        free(x);
-        free(corner);
-        return cloth_fail(making->error, CLOTH_E_MEMORY, "no memory for the mesh of a figure");
-    }
     for (uint32_t v = 0; v < half->n; v++) {
         low = fmin(low, half->x[v][1]);
         high = fmax(high, half->x[v][1]);
     }
+    return (struct fitting){low, high, {height / (high - low), height / MANNEQUIN_HEIGHT}};
+}
+
+/* Vertices of the other half follow in the order of the first; those of the middle are shared.
+ * image: of each vertex; x and corner: filled. Returns how many vertices there are. */
+static uint32_t mirror(const struct surface *half, const struct fitting *fitting, double height,
+                       uint32_t *image, double *x, uint32_t *corner)
+{
+    uint32_t n = half->n;
     for (uint32_t v = 0; v < half->n; v++) {
+        const double y = (half->x[v][1] - fitting->low) / (fitting->high - fitting->low);
         image[v] = half->middle[v] ? v : n++;
         for (int side = 0; side < 2; side++) {
             double *to = x + 3 * (size_t)(side ? image[v] : v);
-            to[0] = half->middle[v] ? 0 : scale * (side ? -half->x[v][0] : half->x[v][0]);
-            to[1] = height * ((half->x[v][1] - low) / (high - low));
-            to[2] = scale * half->x[v][2];
+            to[0] = half->middle[v] ? 0 : fitting->scale[1] * (side ? -1 : 1) * half->x[v][0];
+            to[1] = height * y; /* exactly height at the top */
+            to[2] = fitting->scale[1] * half->x[v][2];
         }
     }
     for (uint32_t t = 0; t < half->m; t++)
@@ -107,40 +111,77 @@ static int mirror(const struct making *making, struct mesh *mesh, double height)
             corner[3 * t + k] = half->triangle[t][k];
             corner[3 * (half->m + t) + k] = image[half->triangle[t][2 - k]];
         }
-    const int code = mesh_inline(mesh, n, x, 0, NULL, 2 * half->m, corner, making->error);
+    return n;
+}
+
+/* The whole mesh, and its rig unless NULL. */
+static int finish(const struct making *making, struct mesh *mesh, struct mannequin_rig *rig)
+{
+    const struct surface *half = &making->surface;
+    const struct fitting fitting = fit_height(half, making->asked.height);
+    uint32_t *image = cloth_alloc(half->n, sizeof *image, making->error);
+    double *x = cloth_alloc(6 * (size_t)half->n, sizeof *x, making->error);
+    uint32_t *corner = cloth_alloc(6 * (size_t)half->m, sizeof *corner, making->error);
+    int code = making->error->code;
+    if (!code) {
+        const uint32_t n = mirror(half, &fitting, making->asked.height, image, x, corner);
+        code = mesh_inline(mesh, n, x, 0, NULL, 2 * half->m, corner, making->error);
+    }
+    if (!code && rig)
+        code = rig_make(rig, mesh, half, &making->figure, making->asked.edge, fitting.low,
+                        fitting.scale, making->error);
     free(image);
     free(x);
     free(corner);
     return code;
 }
 
-int mannequin_make(struct mesh *mesh, const struct mannequin *mannequin,
-                   double girth[MANNEQUIN_GIRTHS], struct cloth_error *error)
+static int check_girths(const struct making *making, uint32_t worst, double scale)
 {
-    struct making making = {.asked = *mannequin, .error = error};
+    const double is = making->girth[worst], asked = making->asked.girth[worst];
+    if (fabs(is / asked - 1) <= NEAR)
+        return CLOTH_OK;
+    return cloth_fail(making->error, CLOTH_E_INPUT,
+                      "a %s of %g m does not go with the other girths: this figure gets one of "
+                      "%.3g m; change it, or those beside it",
+                      mannequin_measures[worst].name, asked * scale, is * scale);
+}
+
+int mannequin_make_rigged(struct mesh *mesh, struct mannequin_rig *rig,
+                          const struct mannequin *mannequin, double girth[MANNEQUIN_GIRTHS],
+                          struct cloth_error *error)
+{
+    struct cloth_error own = {0};
+    struct making making = {.asked = *mannequin, .error = &own};
     uint32_t worst = MANNEQUIN_GIRTHS;
     *mesh = (struct mesh){0};
-    int code = mannequin_complete(&making.asked, error);
-    const double height = making.asked.height, scale = height / MANNEQUIN_HEIGHT;
-    if (code)
-        return code;
+    if (rig)
+        *rig = (struct mannequin_rig){0};
+    if (mannequin_complete(&making.asked, error))
+        return error->code;
+    const double scale = making.asked.height / MANNEQUIN_HEIGHT;
     making.asked.edge /= scale;
     for (uint32_t i = 0; i < MANNEQUIN_GIRTHS; i++) {
         making.asked.girth[i] /= scale;
         making.factor[i] = making.asked.girth[i] / mannequin_measures[i].girth;
     }
-    code = make(&making, &worst);
-    if (!code && worst < MANNEQUIN_GIRTHS &&
-        fabs(making.girth[worst] / making.asked.girth[worst] - 1) > NEAR)
-        code = cloth_fail(error, CLOTH_E_INPUT,
-                          "a %s of %g m does not go with the other girths: this figure gets one of "
-                          "%.3g m; change it, or those beside it",
-                          mannequin_measures[worst].name, making.asked.girth[worst] * scale,
-                          making.girth[worst] * scale);
-    if (!code)
-        code = mirror(&making, mesh, height);
+    int code = make(&making, &worst);
+    if (!code && worst < MANNEQUIN_GIRTHS)
+        code = check_girths(&making, worst, scale);
+    code = code ? code : finish(&making, mesh, rig);
     for (uint32_t i = 0; i < MANNEQUIN_GIRTHS && girth; i++)
         girth[i] = making.girth[i] * scale;
     surface_free(&making.surface);
-    return code;
+    if (code) {
+        mesh_free(mesh);
+        if (rig)
+            mannequin_rig_free(rig);
+    }
+    return code ? cloth_fail(error, code, "%s", own.text) : CLOTH_OK;
+}
+
+int mannequin_make(struct mesh *mesh, const struct mannequin *mannequin,
+                   double girth[MANNEQUIN_GIRTHS], struct cloth_error *error)
+{
+    return mannequin_make_rigged(mesh, NULL, mannequin, girth, error);
 }

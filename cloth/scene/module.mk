@@ -39,6 +39,7 @@ libduite_cloth_la_SOURCES += \
 	cloth/scene/build/idle.c \
 	cloth/scene/build/joint.c \
 	cloth/scene/build/load.c \
+	cloth/scene/build/mannequin.c \
 	cloth/scene/build/region.c \
 	cloth/scene/build/settled.c \
 	cloth/scene/build/seams.c \

@@ -88,17 +88,20 @@ static double pair_distance(const struct figure_part *part, const double x[3], d
     return e < FAR ? melt(d, part_distance(part, there, &other), PAIR) : d;
 }
 
-/* *least: half the least width of the part that is nearest. */
-static double distance(const struct figure *figure, const double x[3], double *least)
+/* *least: half the least width of the part that is nearest, *part. */
+static double distance(const struct figure *figure, const double x[3], double *least,
+                       uint32_t *part)
 {
     double sum = 1, nearest = 1;
     *least = 1;
+    *part = 0;
     for (uint32_t i = 0; i < figure->n; i++) {
         double thin = 1;
         const double d = pair_distance(&figure->part[i], x, &thin);
         if (d < nearest) {
             nearest = d;
             *least = thin;
+            *part = i;
         }
         sum = melt(sum, d, figure->part[i].blend);
     }
@@ -108,7 +111,8 @@ static double distance(const struct figure *figure, const double x[3], double *l
 double figure_distance(const struct figure *figure, const double x[3])
 {
     double least;
-    return distance(figure, x, &least);
+    uint32_t part;
+    return distance(figure, x, &least, &part);
 }
 
 double figure_gradient(const struct figure *figure, const double x[3], double gradient[3])
@@ -125,6 +129,15 @@ double figure_gradient(const struct figure *figure, const double x[3], double gr
 double figure_edge(const struct figure *figure, const double x[3], double edge)
 {
     double least;
-    distance(figure, x, &least);
+    uint32_t part;
+    distance(figure, x, &least, &part);
     return limit(THIN * least, SHORT * edge, edge);
+}
+
+uint32_t figure_nearest(const struct figure *figure, const double x[3])
+{
+    double least;
+    uint32_t part;
+    distance(figure, x, &least, &part);
+    return part;
 }

@@ -46,6 +46,27 @@ double figure_gradient(const struct figure *figure, const double x[3], double gr
 /* How long edges are to be near a point, m, where they are at most `edge`. */
 double figure_edge(const struct figure *figure, const double x[3], double edge);
 
+/* The number of the part that is nearest to a point. */
+uint32_t figure_nearest(const struct figure *figure, const double x[3]);
+
+/* What moves as one: bones, those of the left side; the chest has neck and head, too. */
+enum figure_bone {
+    FIGURE_PELVIS,
+    FIGURE_CHEST,
+    FIGURE_UPPER_ARM,
+    FIGURE_FOREARM,
+    FIGURE_THIGH,
+    FIGURE_SHIN,
+    FIGURE_FOOT,
+    FIGURE_BONES
+};
+
+/* The bone in the part that is nearest to a point. */
+enum figure_bone figure_bone(const struct figure *figure, const double x[3]);
+
+/* The joint at which a bone but the pelvis hangs on the one before, m. */
+void figure_joint(const struct figure *figure, enum figure_bone bone, double joint[3]);
+
 /* Where a girth is taken: a point inside the section, and its normal. */
 void figure_section(const struct figure *figure, uint32_t measure, double point[3],
                     double normal[3]);

@@ -2,6 +2,7 @@
 #include "cloth/mannequin/detail/figure.h"
 
 #include <math.h>
+#include <string.h>
 
 /* A station as it is written: widths for girths of the table. They are multiplied by the factor of
  * `one`, or by one between it and that of `two`. */
@@ -30,6 +31,10 @@ enum {
     WRIST = MANNEQUIN_WRIST
 };
 enum { TORSO, YOKE, THROAT, HEAD, LEG, FOOT, ARM, THUMB, PARTS };
+
+/* m: where joints are; along the arm, that of the elbow. */
+static const double WAIST_HEIGHT = 1.06, HIP_HEIGHT = 0.88, KNEE_HEIGHT = 0.48;
+static const double ANKLE_HEIGHT = 0.085, ELBOW_AT = 0.29;
 
 #define UPRIGHT .side = {1, 0, 0}, .axis = {0, 1, 0}, .front = {0, 0, 1}
 /* clang-format off */
@@ -228,4 +233,58 @@ void figure_section(const struct figure *figure, uint32_t measure, double point[
     }
     if (of_leg)
         point[0] = leg->station[k].value[0];
+}
+
+enum figure_bone figure_bone(const struct figure *figure, const double x[3])
+{
+    const uint32_t part = figure_nearest(figure, x);
+    const struct figure_part *arm = &figure->part[ARM];
+    double along = 0;
+    for (int c = 0; c < 3; c++)
+        along += ((c ? x[c] : fabs(x[c])) - arm->origin[c]) * arm->axis[c];
+    switch (part) {
+    case TORSO:
+        return x[1] < WAIST_HEIGHT ? FIGURE_PELVIS : FIGURE_CHEST;
+    case LEG:
+        return x[1] > KNEE_HEIGHT ? FIGURE_THIGH : x[1] > ANKLE_HEIGHT ? FIGURE_SHIN : FIGURE_FOOT;
+    case FOOT:
+        return FIGURE_FOOT;
+    case ARM:
+        return along < ELBOW_AT ? FIGURE_UPPER_ARM : FIGURE_FOREARM;
+    case THUMB:
+        return FIGURE_FOREARM;
+    default:
+        return FIGURE_CHEST;
+    }
+}
+
+/* The middle of the leg at a height. */
+static void place_in_leg(const struct figure_part *leg, double height, double joint[3])
+{
+    uint32_t k = 0;
+    while (k + 2 < leg->n && leg->station[k + 1].t < height)
+        k++;
+    const struct figure_station *a = &leg->station[k], *b = a + 1;
+    const double part = fmin(1, (height - a->t) / (b->t - a->t));
+    joint[0] = a->value[0] + part * (b->value[0] - a->value[0]);
+    joint[1] = height;
+    joint[2] = a->value[1] + part * (b->value[1] - a->value[1]);
+}
+
+void figure_joint(const struct figure *figure, enum figure_bone bone, double joint[3])
+{
+    const struct figure_part *arm = &figure->part[ARM];
+    const double along = bone == FIGURE_FOREARM ? ELBOW_AT : 0;
+    if (bone == FIGURE_UPPER_ARM || bone == FIGURE_FOREARM) {
+        for (int c = 0; c < 3; c++)
+            joint[c] = arm->origin[c] + along * arm->axis[c];
+    } else if (bone == FIGURE_CHEST) {
+        memcpy(joint, (const double[3]){0, WAIST_HEIGHT, -0.03}, 3 * sizeof *joint);
+    } else {
+        place_in_leg(&figure->part[LEG],
+                     bone == FIGURE_THIGH  ? HIP_HEIGHT
+                     : bone == FIGURE_SHIN ? KNEE_HEIGHT
+                                           : ANKLE_HEIGHT,
+                     joint);
+    }
 }

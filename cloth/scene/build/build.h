@@ -184,6 +184,14 @@ int scene_build_frames(struct model *model, struct contact_frames *frames, doubl
                        const struct mesh *mesh, const struct mesh_transform *transform,
                        const struct scene_tree *tree, int body, struct cloth_error *error);
 
+/* The mesh of a figure that the key mannequin of a body says, transformed, and its frames if it
+ * walks or has poses; else frames are left as they are. *place: what they point to, to be freed in
+ * any case. After the time. */
+int scene_build_mannequin(const struct model *model, struct mesh *mesh,
+                          const struct mesh_transform *transform, struct contact_frames *frames,
+                          double **place, struct scene_tree *tree, int body,
+                          struct cloth_error *error);
+
 /* Warns of a body whose surface meets itself where the run starts. place: of its vertices in the
  * first of its frames; NULL: it has none. */
 int scene_build_warn_crossed(struct model *model, const struct mesh *mesh, const double *place,

@@ -1,5 +1,4 @@
 /* Obstacles, and whether they leave the cloths any room. */
-#include "cloth/mannequin/mannequin.h"
 #include "cloth/scene/build/build.h"
 #include "cloth/scene/schema/check.h"
 #include "cloth/scene/yaml/scalar.h"
@@ -72,14 +71,6 @@ static int build_shape_motion(struct model *model, struct contact_shape *shape,
     return CLOTH_OK;
 }
 
-static int build_mannequin(struct mesh *mesh, struct scene_tree *tree, int node,
-                           struct cloth_error *error, struct cloth_error *inner)
-{
-    struct mannequin mannequin = {0};
-    const int code = scene_fill(&mannequin, &scene_mannequin, tree, node, error);
-    return code ? code : mannequin_make(mesh, &mannequin, NULL, inner);
-}
-
 /* The key that says which mesh a body is made of. */
 static int source_of(const struct scene_tree *tree, int node)
 {
@@ -93,26 +84,39 @@ static const char *source_name(const struct scene_tree *tree, int node)
     return file ? scene_tree_scalar(tree, file) : "the mannequin";
 }
 
-/* A mesh that a body is made of, where it starts. */
-static int build_body_mesh(struct model *model, struct mesh *mesh, struct mesh_transform *transform,
-                           struct scene_tree *tree, int node, struct cloth_error *error)
+/* The mesh of a file that a body is made of, where it starts. */
+static int build_body_file(struct model *model, struct mesh *mesh,
+                           const struct mesh_transform *transform, const struct scene_tree *tree,
+                           int node, struct cloth_error *error)
 {
     struct cloth_error inner = {0};
-    const int source = source_of(tree, node), file = scene_tree_get(tree, node, "obj");
-    int code = scene_fill(transform, &scene_body, tree, node, error);
-    if (!code)
-        code = scene_build_check_turn(transform, tree, node, error);
-    if (code)
-        return code;
-    code = file ? scene_build_obj(model, mesh, mesh_read_surface, tree, file, error, &inner)
-                : build_mannequin(mesh, tree, source, error, &inner);
+    const int file = scene_tree_get(tree, node, "obj");
+    const int code = scene_build_obj(model, mesh, mesh_read_surface, tree, file, error, &inner);
     if (inner.code == CLOTH_E_MEMORY)
         return cloth_fail(error, inner.code, "%s: %s", tree->path, inner.text);
     if (inner.code)
-        return scene_tree_fail(tree, source, error, "%s: %s", file ? "body" : "mannequin",
-                               inner.text);
+        return scene_tree_fail(tree, file, error, "body: %s", inner.text);
+    if (code)
+        return code;
+    mesh_apply(mesh, transform);
+    return CLOTH_OK;
+}
+
+static int build_body_mesh(struct model *model, struct mesh *mesh, struct contact_frames *frames,
+                           double **place, struct scene_tree *tree, int node,
+                           struct cloth_error *error)
+{
+    struct mesh_transform transform = {0};
+    *frames = (struct contact_frames){0};
+    int code = scene_fill(&transform, &scene_body, tree, node, error);
     if (!code)
-        mesh_apply(mesh, transform);
+        code = scene_build_check_turn(&transform, tree, node, error);
+    if (!code && scene_tree_get(tree, node, "obj"))
+        code = build_body_file(model, mesh, &transform, tree, node, error);
+    else if (!code)
+        code = scene_build_mannequin(model, mesh, &transform, frames, place, tree, node, error);
+    if (!code && scene_tree_get(tree, node, "frames"))
+        code = scene_build_frames(model, frames, place, mesh, &transform, tree, node, error);
     return code;
 }
 
@@ -155,14 +159,11 @@ static int build_body(struct model *model, struct contact_shape *shape, struct s
 {
     struct cloth_error inner = {0};
     struct mesh mesh = {0};
-    struct mesh_transform transform = {0};
     struct contact_frames frames;
     double *place = NULL;
     const int source = source_of(tree, node);
     bool turned = false;
-    int code = build_body_mesh(model, &mesh, &transform, tree, node, error);
-    if (!code)
-        code = scene_build_frames(model, &frames, &place, &mesh, &transform, tree, node, error);
+    int code = build_body_mesh(model, &mesh, &frames, &place, tree, node, error);
     if (!code)
         code = contact_bodies_add_frames(&model->bodies, &mesh, frames.n ? &frames : NULL, &turned,
                                          &inner);

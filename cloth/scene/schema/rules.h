@@ -1,6 +1,7 @@
 #ifndef CLOTH_SCENE_SCHEMA_RULES_H
 #define CLOTH_SCENE_SCHEMA_RULES_H
 
+#include "cloth/mannequin/pose.h"
 #include "cloth/model/model.h"
 
 #include <stdbool.h>
@@ -98,6 +99,13 @@ struct scene_pattern {
     uint32_t n_measures;
     struct scene_measure *measures;
 };
+struct scene_figure {
+    struct mannequin mannequin;
+    struct mannequin_walk walk;
+    uint32_t n_poses; /* 0: they are not given */
+    struct mannequin_pose *poses;
+    double fps; /* 1/s */
+};
 enum { SCENE_LAST_FRAME = -1 };
 struct scene_settled {
     double frame; /* SCENE_LAST_FRAME: the last one */
@@ -107,7 +115,7 @@ extern const struct scene_rule scene_grid, scene_disc, scene_inline, scene_patte
 extern const struct scene_rule scene_transform; /* a struct mesh_transform */
 extern const struct scene_rule scene_region;    /* a struct model_pick */
 extern const struct scene_rule scene_body;      /* a struct mesh_transform */
-extern const struct scene_rule scene_mannequin; /* a struct mannequin */
+extern const struct scene_rule scene_mannequin; /* a struct scene_figure */
 
 /* Words of choices that no field takes as they are. */
 enum scene_constraint { SCENE_POINT, SCENE_LINE, SCENE_PLANE };

@@ -1,6 +1,7 @@
-/* The bench "garments": meshes of sewing patterns. Each figure is that of the worst pattern. The
- * patterns are those beside the tree, or, where these are absent, small ones of the tests. */
-#include "bench/bench.h"
+/* The bench "garments": meshes of sewing patterns, and velocity correction. Each figure of meshes
+ * is that of the worst pattern. The patterns are those beside the tree, or, where these are absent,
+ * small ones of the tests. */
+#include "bench/garments/garments.h"
 
 #include "cloth/garment/garment.h"
 #include "cloth/scene/pattern.h"
@@ -121,17 +122,18 @@ static const struct bench_case PATTERNS = {
     "with the most triangles that have an angle below 30 degrees, and the least angle of all",
     plan_patterns, RUNS, 0};
 
-static const struct bench_case *const CASES[] = {&PATTERNS, NULL};
+static const struct bench_case *const CASES[] = {&PATTERNS, &garments_correction, NULL};
 
 static const struct measure_target TARGETS[] = {{"pattern_ms", 900, false},
                                                 {"pattern_below_30", 0.0001, false},
                                                 {"pattern_least_angle", 20, true},
+                                                {"velocity_correction_cost", 1.1, false},
                                                 {0}};
 enum { TARGET_THREADS = 2 };
 
 static int serve_garments(const struct bench *bench)
 {
-    const struct serve_run *const runs[] = {RUNS, NULL};
+    const struct serve_run *const runs[] = {RUNS, garments_correction_runs, NULL};
     (void)bench;
     return serve(others_are_there() ? "tee, dress, skirt_4_panels and wb_pants_straight"
                                     : "circle, dart, gather and quadratic of the tests: the "
@@ -140,5 +142,7 @@ static int serve_garments(const struct bench *bench)
 }
 
 const struct bench bench_garments = {
-    "garments", "meshes of sewing patterns", CASES, TARGETS, TARGET_THREADS, serve_garments, NULL,
-    NULL};
+    "garments",     "meshes of sewing patterns; velocity correction",
+    CASES,          TARGETS,
+    TARGET_THREADS, serve_garments,
+    NULL,           NULL};

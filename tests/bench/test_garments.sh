@@ -18,6 +18,7 @@ targets_listed() {
 pattern_ms <= 900
 pattern_below_30 <= 0.0001
 pattern_least_angle >= 20
+velocity_correction_cost <= 1.1
 END
 }
 

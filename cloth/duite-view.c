@@ -199,6 +199,15 @@ static uint64_t fitted_frame(const struct output_cache *cache, uint64_t i)
     return n > 1 ? i * (cache->n_frames - 1) / (n - 1) : 0;
 }
 
+/* Where they are in a frame. */
+static int place_obstacles(struct show *show, uint64_t frame, struct cloth_error *error)
+{
+    const int code = output_cache_pose(show->cache, frame, error);
+    if (!code)
+        view_obstacles_at(&show->obstacles, show->cache->time[frame]);
+    return code;
+}
+
 /* All frames share one camera: it is fitted to them all, or to a hundred spread evenly over a long
  * run. */
 static int fit_camera(struct show *show, struct view_camera *camera, struct cloth_error *error)
@@ -215,7 +224,9 @@ static int fit_camera(struct show *show, struct view_camera *camera, struct clot
         view_fit_add(&fit, cache->mesh.n_vertices, show->position);
     }
     for (uint64_t i = 0; i < fitted_frames(cache); i++) {
-        view_obstacles_at(&show->obstacles, cache->time[fitted_frame(cache, i)]);
+        const int code = place_obstacles(show, fitted_frame(cache, i), error);
+        if (code)
+            return code;
         view_fit_planes(&fit, show->obstacles.n_planes, (const double(*)[6])show->obstacles.plane);
         view_fit_near(&fit, show->obstacles.n_vertices, (const double(*)[6])show->obstacles.vertex);
     }
@@ -288,7 +299,7 @@ static int show_frame(struct output_cache *cache, const struct options *options,
         code = code ? code : read_frame(&show, frame, error);
         if (!code && options->contact)
             code = read_heat(&show, frame, error);
-        view_obstacles_at(&show.obstacles, cache->time[frame]);
+        code = code ? code : place_obstacles(&show, frame, error);
         code = code ? code : draw(&show, &camera, error);
     }
     view_obstacles_free(&show.obstacles);
@@ -305,12 +316,6 @@ static int check_frames(struct output_cache *cache, int *exit_code, struct cloth
     const int code = intersections_of_folder(cache, "duite-view", &found, error);
     if (code)
         return code;
-    for (uint32_t i = 0; i < cache->n_obstacles; i++)
-        if (cache->unplaced[i])
-            fprintf(stderr,
-                    "duite-view: obstacles[%u] is left out: it is a body with frames, and the "
-                    "folder has its place at the start alone\n",
-                    i);
     if (!found.bad)
         printf("no intersections in %ju frames\n", (uintmax_t)found.frames);
     intersections_say(&found, "duite-view");

@@ -111,16 +111,10 @@ static uint32_t cloth_of(const struct intersections *all, uint32_t t)
     return i;
 }
 
-static bool is_unplaced(const struct intersections *all, size_t obstacle)
-{
-    return all->unplaced && all->unplaced[obstacle];
-}
-
 /* Whether a triangle of cloth and an obstacle do not meet. */
 static bool misses(const struct intersections *all, uint32_t t, size_t obstacle)
 {
-    return is_unplaced(all, obstacle) ||
-           contact_is_attached(all->apart, 3, all->corner[t], (uint32_t)obstacle) ||
+    return contact_is_attached(all->apart, 3, all->corner[t], (uint32_t)obstacle) ||
            contact_are_apart(all->apart, cloth_of(all, t),
                              all->apart->n_cloths + (uint32_t)obstacle);
 }
@@ -276,9 +270,7 @@ int intersections_frame(struct intersections *intersections, uint64_t frame, dou
     place_points(&look, position);
     int code = look_at_pairs(&look, &pairs, &with_shapes, error);
     for (size_t i = 0; i < intersections->n_obstacles && !code; i++)
-        if (is_unplaced(intersections, i))
-            continue;
-        else if (intersections->obstacles[i].body)
+        if (intersections->obstacles[i].body)
             look_inside(&look, i, &with_shapes);
         else
             code = look_at_shape(&look, i, &with_shapes, error);

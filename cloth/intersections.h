@@ -28,9 +28,7 @@ struct intersections_setup {
     const struct contact_bodies *bodies;
     const struct contact_apart *apart; /* what does not meet, triangles of vertices that are joined
                                         * among it; it outlives it all */
-    const bool *unplaced; /* n_obstacles: those that are left out, as their places are not known;
-                             NULL: none; it outlives it all */
-    bool self_off;        /* nor does any cloth meet itself */
+    bool self_off;                     /* nor does any cloth meet itself */
 };
 
 /* Of all frames so far. */

@@ -68,6 +68,7 @@ static int check_frames(const struct folder *folder, struct intersections *inter
     int code = CLOTH_OK;
     for (uint64_t k = 0; k < cache->n_frames && !code; k++) {
         code = output_cache_frame(cache, k, folder->position, error);
+        code = code ? code : output_cache_pose(cache, k, error);
         code = code ? code
                     : intersections_frame(intersections, k, cache->time[k], folder->position, true,
                                           error);
@@ -86,7 +87,6 @@ static int check_folder(const struct folder *folder, const char *program,
                                               .same = folder->same,
                                               .n_obstacles = cache->n_obstacles,
                                               .obstacles = cache->obstacles,
-                                              .unplaced = cache->unplaced,
                                               .keys = cache->keys,
                                               .bodies = &cache->bodies,
                                               .apart = &cache->apart};

@@ -147,7 +147,6 @@ int intersections_open(struct intersections **intersections,
         return CLOTH_E_MEMORY;
     all->program = setup->program;
     all->obstacles = setup->obstacles;
-    all->unplaced = setup->unplaced;
     all->keys = setup->keys;
     all->bodies = setup->bodies;
     all->apart = setup->apart;

@@ -17,7 +17,6 @@ struct surface {
 struct intersections {
     const char *program;
     const struct contact_shape *obstacles;
-    const bool *unplaced; /* as of the setup */
     const struct phys_key *keys;
     const struct contact_bodies *bodies;
     const struct contact_apart *apart;

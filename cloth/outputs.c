@@ -2,6 +2,7 @@
  * anything is written into them, and stay so. */
 #include "cloth/outputs.h"
 
+#include "cloth/base/memory.h"
 #include "cloth/output/output.h"
 
 #include <stdio.h>
@@ -53,6 +54,17 @@ static int open_forces(struct outputs *to, const struct model *model, const stru
                : output_forces_forget(folder, error);
 }
 
+/* Of each body whether it changes its shape in any phase; to be freed. NULL: no memory. */
+static bool *find_posed(const struct phases *phases, struct cloth_error *error)
+{
+    const uint32_t n = phases->models->bodies.n;
+    bool *posed = cloth_alloc(n, sizeof *posed, error);
+    for (uint32_t p = 0; posed && p < phases->n; p++)
+        for (uint32_t i = 0; i < n; i++)
+            posed[i] |= contact_bodies_at(&phases->models[p].bodies, i + 1)->n_frames > 0;
+    return posed;
+}
+
 /* Of the frames of a model; meshes and names are not in it yet. */
 static struct output_setup setup_of(const struct outputs *of, const struct model *model,
                                     const struct contact_apart *apart)
@@ -69,15 +81,17 @@ static struct output_setup setup_of(const struct outputs *of, const struct model
                                  .inputs = (const char *const *)model->files};
 }
 
-static int open_output(struct outputs *to, const struct model *model, const struct flow *flow,
+static int open_output(struct outputs *to, const struct phases *phases, const struct flow *flow,
                        const struct contact_apart *apart, struct cloth_error *error)
 {
+    const struct model *model = phases_model(phases);
     if (lock_folder(to->locks, to->options->output, error))
         return error->code;
     const struct mesh **meshes = calloc(model->n_cloths, sizeof *meshes);
     const char **names = calloc(model->n_cloths, sizeof *names);
+    bool *posed = find_posed(phases, error);
     int code = CLOTH_E_MEMORY;
-    if (meshes && names) {
+    if (meshes && names && posed) {
         for (uint32_t i = 0; i < model->n_cloths; i++) {
             meshes[i] = &model->cloths[i].mesh;
             names[i] = model->cloths[i].name;
@@ -85,12 +99,14 @@ static int open_output(struct outputs *to, const struct model *model, const stru
         struct output_setup setup = setup_of(to, model, apart);
         setup.meshes = meshes;
         setup.names = names;
+        setup.posed = posed;
         code = output_open(&to->frames, &setup, error);
     } else {
         cloth_fail(error, code, "out of memory before the first frame");
     }
     free(meshes);
     free(names);
+    free(posed);
     code = code ? code : open_forces(to, model, flow, error);
     return code ? code : open_probes(to, flow, error);
 }
@@ -109,7 +125,7 @@ int outputs_open(struct outputs *to, const struct simulate_options *options,
     if (!code && options->save_system)
         code = open_system(to, last, error);
     if (!code && options->output)
-        code = open_output(to, model, flow, apart, error);
+        code = open_output(to, phases, flow, apart, error);
     return code;
 }
 
@@ -120,15 +136,20 @@ static int write_scene(const struct outputs *of, const struct phases *phases,
     struct phases_motions motions;
     struct contact_apart all = *apart;
     struct output_setup setup = setup_of(of, phases_model(phases), &all);
+    bool *posed = find_posed(phases, error);
     int code = phases_motions(phases, &motions, error);
     const int joins = phases_joined(phases, apart->n_vertices, &all.joined, error);
     code = code ? code : joins;
     setup.obstacles = motions.obstacles;
     setup.keys = motions.keys;
-    setup.bodies = motions.bodies;
+    setup.posed = posed;
+    code = code || posed ? code : error->code;
     if (!code)
         code = output_scene(of->frames, &setup, error);
     phases_motions_free(&motions);
+    if (!code)
+        output_bodies_go_on(of->frames, setup.bodies, phases->total.simulated_seconds);
+    free(posed);
     free(all.joined);
     return code;
 }

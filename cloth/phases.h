@@ -59,7 +59,6 @@ void phases_add(struct phases *phases, const struct flow_report *report);
 struct phases_motions {
     struct contact_shape *obstacles;
     struct phys_key *keys;
-    const struct contact_bodies *bodies;
 };
 /* Error: CLOTH_E_MEMORY. In any case phases_motions_free follows. On rank 0. Local. */
 int phases_motions(const struct phases *phases, struct phases_motions *motions,

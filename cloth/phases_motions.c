@@ -111,18 +111,6 @@ static uint32_t take(const struct phases *phases, uint32_t obstacle, uint32_t fi
     return first + course.n;
 }
 
-/* A folder says of a body whether it has frames: in any phase. */
-static const struct contact_bodies *bodies_of(const struct phases *phases)
-{
-    for (uint32_t p = 0; p < phases->now; p++) {
-        const struct model *model = phases->models + p;
-        for (uint32_t i = 1; i <= model->bodies.n; i++)
-            if (contact_bodies_at(&model->bodies, i)->n_frames)
-                return &model->bodies;
-    }
-    return &phases_model(phases)->bodies;
-}
-
 int phases_motions(const struct phases *phases, struct phases_motions *motions,
                    struct cloth_error *error)
 {
@@ -130,7 +118,7 @@ int phases_motions(const struct phases *phases, struct phases_motions *motions,
     size_t room = 0;
     for (uint32_t p = 0; p <= phases->now; p++)
         room += phases->models[p].n_keys + 2 * (size_t)model->n_obstacles;
-    *motions = (struct phases_motions){.bodies = bodies_of(phases)};
+    *motions = (struct phases_motions){0};
     motions->obstacles = cloth_alloc(model->n_obstacles, sizeof *motions->obstacles, error);
     motions->keys = cloth_alloc(room, sizeof *motions->keys, error);
     if (!motions->obstacles || !motions->keys)

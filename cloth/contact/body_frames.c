@@ -96,6 +96,17 @@ static void move_box(struct contact_body *body, const phys_vec *x)
     body->near = 1e-10 * most;
 }
 
+/* All that follows of where the vertices are. */
+static void follow_vertices(struct contact_body *body)
+{
+    char *memory = (char *)body;
+    const phys_vec *x = contact_body_vertices(body);
+    move_box(body, x);
+    move_normals(body, x, (void *)(memory + body->facet_normals),
+                 (void *)(memory + body->vertex_normals));
+    contact_tree_refit(body->n_nodes, contact_body_facets(body), x, (void *)(memory + body->nodes));
+}
+
 static void move_body(struct contact_body *body, double from, double to)
 {
     char *memory = (char *)body;
@@ -111,10 +122,19 @@ static void move_body(struct contact_body *body, double from, double to)
         moment_place(&is, v, x + v);
         velocity[v] = rate * (x[v] - before);
     }
-    move_box(body, x);
-    move_normals(body, x, (void *)(memory + body->facet_normals),
-                 (void *)(memory + body->vertex_normals));
-    contact_tree_refit(body->n_nodes, contact_body_facets(body), x, (void *)(memory + body->nodes));
+    follow_vertices(body);
+}
+
+void contact_body_place(const struct contact_bodies *bodies, uint32_t number, const double (*x)[3])
+{
+    char *at = bodies->memory;
+    for (uint32_t i = 1; i < number; i++)
+        at += ((struct contact_body *)(void *)at)->bytes;
+    struct contact_body *body = (void *)at;
+    phys_vec *vertex = (void *)(at + body->vertices);
+    for (uint32_t v = 0; v < body->n_vertices; v++)
+        vertex[v] = (phys_vec){x[v][0], x[v][1], x[v][2], 0};
+    follow_vertices(body);
 }
 
 void contact_bodies_move(const struct contact_bodies *bodies, double from, double to)

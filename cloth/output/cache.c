@@ -93,29 +93,40 @@ uint32_t output_bodies_before(const char *folder)
     return n;
 }
 
-static int read_cache(struct output_cache *cache, const char *path, struct cloth_error *error)
+/* Opens a point cache, which has as many points as the mesh beside it, and at least `least`
+ * frames. */
+static int open_points(const char *path, uint32_t n_vertices, const char *mesh, uint64_t least,
+                       FILE **pc2, uint64_t *n_frames, struct cloth_error *error)
 {
-    cache->pc2 = fopen(path, "rbe");
-    if (!cache->pc2)
-        return open_fail(error, path);
     unsigned char header[OUTPUT_PC2_HEADER];
-    uint32_t n_points, n_frames;
-    if (fread(header, sizeof header, 1, cache->pc2) != 1 ||
-        !output_pc2_parse(header, &n_points, &n_frames))
-        return cloth_fail(error, CLOTH_E_INPUT, "%s is not a point cache (PC2, version 1)", path);
-    if (n_points != cache->mesh.n_vertices)
-        return cloth_fail(error, CLOTH_E_INPUT, "%s has %u points, cloth.obj beside it %u", path,
-                          n_points, cache->mesh.n_vertices);
+    uint32_t n_points, n;
     struct stat status;
-    uint64_t needed = OUTPUT_PC2_HEADER + (uint64_t)12 * n_points * n_frames;
-    if (fstat(fileno(cache->pc2), &status) != 0)
+    *pc2 = fopen(path, "rbe");
+    if (!*pc2)
+        return open_fail(error, path);
+    if (fread(header, sizeof header, 1, *pc2) != 1 || !output_pc2_parse(header, &n_points, &n))
+        return cloth_fail(error, CLOTH_E_INPUT, "%s is not a point cache (PC2, version 1)", path);
+    if (n_points != n_vertices)
+        return cloth_fail(error, CLOTH_E_INPUT, "%s has %u points, %s beside it %u", path, n_points,
+                          mesh, n_vertices);
+    const uint64_t needed = OUTPUT_PC2_HEADER + (uint64_t)12 * n_points * n;
+    if (fstat(fileno(*pc2), &status) != 0)
         return output_fail(error, "read", path);
     if ((uint64_t)status.st_size < needed)
         return cloth_fail(error, CLOTH_E_INPUT,
                           "%s is cut off: its header counts %u frames (%ju bytes), it has %ju",
-                          path, n_frames, (uintmax_t)needed, (uintmax_t)status.st_size);
-    cache->n_frames = n_frames;
+                          path, n, (uintmax_t)needed, (uintmax_t)status.st_size);
+    if (n < least)
+        return cloth_fail(error, CLOTH_E_INPUT, "%s has %u frames, cloth.pc2 beside it %ju", path,
+                          n, (uintmax_t)least);
+    *n_frames = n;
     return 0;
+}
+
+static int read_cache(struct output_cache *cache, const char *path, struct cloth_error *error)
+{
+    return open_points(path, cache->mesh.n_vertices, "cloth.obj", 0, &cache->pc2, &cache->n_frames,
+                       error);
 }
 
 /* One line "frame,time" of the index; the frames count up from 0. */
@@ -178,6 +189,22 @@ static int read_body(struct output_cache *cache, const char *path, struct cloth_
     return code;
 }
 
+static int open_poses(struct output_cache *cache, const char *folder, uint32_t number,
+                      struct cloth_error *error)
+{
+    char mesh[OUTPUT_BODY_NAME], name[OUTPUT_BODY_NAME];
+    uint64_t n_frames;
+    output_body_name(mesh, number, "");
+    output_pose_name(name, number);
+    char *path = output_path(folder, name, "");
+    const int code =
+        path ? open_points(path, contact_bodies_at(&cache->bodies, number)->n_vertices, mesh,
+                           cache->n_frames, &cache->poses[number - 1], &n_frames, error)
+             : cloth_fail(error, CLOTH_E_MEMORY, "no memory for paths");
+    free(path);
+    return code;
+}
+
 /* Those that scene.json names. */
 static int read_bodies(struct output_cache *cache, const char *folder, struct cloth_error *error)
 {
@@ -190,6 +217,12 @@ static int read_bodies(struct output_cache *cache, const char *folder, struct cl
                     : cloth_fail(error, CLOTH_E_MEMORY, "no memory for paths");
         free(path);
     }
+    cache->poses = calloc((size_t)cache->n_bodies + 1, sizeof *cache->poses);
+    if (!code && !cache->poses)
+        code = cloth_fail(error, CLOTH_E_MEMORY, "no memory for the shapes of bodies");
+    for (uint32_t i = 1; i <= cache->n_bodies && !code; i++)
+        if (cache->posed[i - 1])
+            code = open_poses(cache, folder, i, error);
     return code;
 }
 
@@ -233,22 +266,19 @@ int output_cache_open(struct output_cache *cache, const char *folder, struct clo
 }
 
 /* Floats come in lumps, so that a frame of any size needs little memory besides the caller's. */
-int output_cache_frame(struct output_cache *cache, uint64_t frame, double *position,
+static int read_points(FILE *pc2, uint32_t n_points, uint64_t frame, double *position,
                        struct cloth_error *error)
 {
-    if (frame >= cache->n_frames)
-        return cloth_fail(error, CLOTH_E_INPUT, "there is no frame %ju: the run has %ju frames",
-                          (uintmax_t)frame, (uintmax_t)cache->n_frames);
-    size_t n = (size_t)3 * cache->mesh.n_vertices;
-    if (fseeko(cache->pc2, (off_t)(OUTPUT_PC2_HEADER + 4 * (uint64_t)n * frame), SEEK_SET) != 0)
+    const size_t n = (size_t)3 * n_points;
+    if (fseeko(pc2, (off_t)(OUTPUT_PC2_HEADER + 4 * (uint64_t)n * frame), SEEK_SET) != 0)
         return cloth_fail(error, CLOTH_E_IO, "cannot read frame %ju: %s", (uintmax_t)frame,
                           strerror(errno));
     unsigned char lump[4 * 1024];
     for (size_t done = 0; done < n;) {
         size_t some = n - done < 1024 ? n - done : 1024;
-        if (fread(lump, 4, some, cache->pc2) != some)
+        if (fread(lump, 4, some, pc2) != some)
             return cloth_fail(error, CLOTH_E_IO, "cannot read frame %ju: %s", (uintmax_t)frame,
-                              ferror(cache->pc2) ? strerror(errno) : "the file ends early");
+                              ferror(pc2) ? strerror(errno) : "the file ends early");
         for (size_t i = 0; i < some; i++, done++) {
             position[done] = (double)output_get_float(lump + 4 * i);
             if (!isfinite(position[done]))
@@ -259,12 +289,41 @@ int output_cache_frame(struct output_cache *cache, uint64_t frame, double *posit
     return 0;
 }
 
+int output_cache_frame(struct output_cache *cache, uint64_t frame, double *position,
+                       struct cloth_error *error)
+{
+    if (frame >= cache->n_frames)
+        return cloth_fail(error, CLOTH_E_INPUT, "there is no frame %ju: the run has %ju frames",
+                          (uintmax_t)frame, (uintmax_t)cache->n_frames);
+    return read_points(cache->pc2, cache->mesh.n_vertices, frame, position, error);
+}
+
+int output_cache_pose(struct output_cache *cache, uint64_t frame, struct cloth_error *error)
+{
+    int code = 0;
+    for (uint32_t i = 0; i < cache->n_bodies && !code; i++) {
+        const uint32_t n = contact_bodies_at(&cache->bodies, i + 1)->n_vertices;
+        double(*x)[3] = cache->poses[i] ? malloc(n * sizeof *x) : NULL;
+        if (cache->poses[i])
+            code = x ? read_points(cache->poses[i], n, frame, x[0], error)
+                     : cloth_fail(error, CLOTH_E_MEMORY, "no memory for %u vertices", n);
+        if (x && !code)
+            contact_body_place(&cache->bodies, i + 1, (const double(*)[3])x);
+        free(x);
+    }
+    return code;
+}
+
 void output_cache_close(struct output_cache *cache)
 {
     mesh_free(&cache->mesh);
     free(cache->time);
     free(cache->obstacles);
-    free(cache->unplaced);
+    for (uint32_t i = 0; cache->poses && i < cache->n_bodies; i++)
+        if (cache->poses[i])
+            fclose(cache->poses[i]);
+    free(cache->poses);
+    free(cache->posed);
     free(cache->bodies.memory);
     free(cache->keys);
     free(cache->apart.end);

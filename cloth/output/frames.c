@@ -8,6 +8,7 @@
 #include "cloth/output/files/files.h"
 #include "cloth/output/files/json.h"
 #include "cloth/output/files/obstacles.h"
+#include "cloth/output/files/poses.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -27,9 +28,10 @@ struct output_frames {
     char *path[N_PARTS];
     int index, cache; /* open files, -1: none */
     uint32_t n_points, n_frames;
-    uint32_t n_bodies_before; /* of the earlier run that is replaced */
-    uint64_t index_size;      /* bytes of the index that belong to whole frames */
-    unsigned char *bytes;     /* of one frame */
+    uint32_t n_bodies_before;   /* of the earlier run that is replaced */
+    uint64_t index_size;        /* bytes of the index that belong to whole frames */
+    unsigned char *bytes;       /* of one frame */
+    struct output_poses *poses; /* of bodies */
 };
 
 static int fill_scene(FILE *file, const void *what)
@@ -38,7 +40,7 @@ static int fill_scene(FILE *file, const void *what)
     fputs("{\n  \"fps\": ", file);
     output_json_number(file, setup->fps);
     fputs(",\n  \"obstacles\": ", file);
-    output_obstacles(file, setup->n_obstacles, setup->obstacles, setup->keys, setup->bodies);
+    output_obstacles(file, setup->n_obstacles, setup->obstacles, setup->keys, setup->posed);
     if (setup->apart && (setup->apart->apart || setup->apart->n_cloths > 1)) {
         fputs(",\n  \"apart\": ", file);
         output_apart(file, setup->apart);
@@ -167,6 +169,10 @@ static int check_ours(const struct output_frames *frames, const struct output_se
         char name[OUTPUT_BODY_NAME];
         output_body_name(name, i, "");
         code = check_file(frames, name, true, setup, inputs, error);
+        output_pose_name(name, i);
+        code = code ? code
+                    : check_file(frames, name, i <= n && setup->posed && setup->posed[i - 1], setup,
+                                 inputs, error);
     }
     free(inputs);
     return code;
@@ -174,7 +180,7 @@ static int check_ours(const struct output_frames *frames, const struct output_se
 
 /* ---- Beginning ---- */
 
-static int replace_parts(const struct output_frames *frames, char *const fresh[N_PARTS],
+static int replace_parts(struct output_frames *frames, char *const fresh[N_PARTS],
                          const struct output_setup *setup, struct cloth_error *error)
 {
     int code = 0;
@@ -183,6 +189,7 @@ static int replace_parts(const struct output_frames *frames, char *const fresh[N
     output_sync_folder(frames->folder);
     code =
         output_bodies_replace(frames->folder, count_bodies(setup), frames->n_bodies_before, error);
+    code = code ? code : output_poses_open(&frames->poses, setup, frames->n_bodies_before, error);
     if (code)
         return code;
     for (int i = 0; i < N_PARTS; i++)
@@ -192,7 +199,7 @@ static int replace_parts(const struct output_frames *frames, char *const fresh[N
     return 0;
 }
 
-static int start_files(const struct output_frames *frames, const struct output_setup *setup,
+static int start_files(struct output_frames *frames, const struct output_setup *setup,
                        struct cloth_error *error)
 {
     char *fresh[N_PARTS] = {NULL};
@@ -286,6 +293,12 @@ int output_scene(const struct output_frames *frames, const struct output_setup *
     return output_replace_file(frames->path[PART_SCENE], fill_scene, setup, error);
 }
 
+void output_bodies_go_on(const struct output_frames *frames, const struct contact_bodies *bodies,
+                         double begin)
+{
+    output_poses_go_on(frames->poses, bodies, begin);
+}
+
 static int encode(struct output_frames *frames, uint64_t frame, const double *position,
                   struct cloth_error *error)
 {
@@ -343,6 +356,7 @@ int output_frame(void *context, uint64_t frame, double time, const double *posit
     int code = encode(frames, frame, position, error);
     code = code ? code : output_check_same(frames->index, frames->path[PART_INDEX], error);
     code = code ? code : output_check_same(frames->cache, frames->path[PART_CACHE], error);
+    code = code ? code : output_poses_frame(frames->poses, time, error);
     if (code)
         return code;
     char line[64];
@@ -368,6 +382,8 @@ int output_close(struct output_frames **frames, struct cloth_error *error)
         code = output_fail(error, "close", gone->path[PART_INDEX]);
     if (gone->cache >= 0 && close(gone->cache) != 0)
         code = output_fail(error, "close", gone->path[PART_CACHE]);
+    const int poses = output_poses_close(&gone->poses, error);
+    code = code ? code : poses;
     free_frames(gone);
     return code;
 }

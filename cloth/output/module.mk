@@ -20,4 +20,5 @@ libduite_cloth_la_SOURCES += \
 	cloth/output/files/obj.c \
 	cloth/output/files/obstacles.c \
 	cloth/output/files/obstacles.h \
-	cloth/output/files/pc2.c
+	cloth/output/files/pc2.c \
+	cloth/output/files/poses.c cloth/output/files/poses.h

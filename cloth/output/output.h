@@ -7,6 +7,7 @@
 #include "cloth/mesh/mesh.h"
 #include "cloth/solve/system.h"
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -17,9 +18,11 @@
  *   frames.csv     frame,time: the true time of each frame
  *   contact.pc2    where it is asked for: the force of contact on each vertex (output_forces)
  *   body-K.obj     the bodies among the obstacles, K from 0, without their motion
+ *   body-K.pc2     of those that change their shape: a PC2 point cache of these vertices, frame by
+ *                  frame as cloth.pc2 is
  *   scene.json     what a viewer needs: {"fps", "obstacles": [{KIND: {its parameters}}]}, of a
- *                  body {"obj": its file}, with "frames": their number if they change its shape,
- * but not their places; one that moves also has "about" and "keys": [{"time", "translate",
+ *                  body {"obj": its file}, with "pc2": that of its shapes, if it changes them;
+ * one that moves also has "about" and "keys": [{"time", "translate",
  * "rotate"}]. Of several cloths, or where the scene keeps some from meeting, "apart": {"cloths":
  * [vertices of each], "pairs": [[cloth, other], ...]} follows: numbers of cloths; those of
  * obstacles follow. Where pins
@@ -41,6 +44,8 @@ struct output_setup {
     const struct contact_shape *obstacles;
     const struct phys_key *keys;         /* of their motions */
     const struct contact_bodies *bodies; /* that they name; NULL: none */
+    const bool *posed;                   /* of each of them, whether it changes its shape in any
+                                          * frame; NULL: none does */
     const struct contact_apart *apart;   /* what does not meet; NULL: all meets */
     size_t n_inputs;
     const char *const *inputs; /* paths of what the run reads, which is not replaced */
@@ -60,6 +65,11 @@ int output_scene(const struct output_frames *frames, const struct output_setup *
 /* Bytes that files in a folder may have, which need not be there yet, with those of an earlier run
  * that would be replaced; infinite where the file system does not say. Local. */
 double output_room(const char *folder);
+
+/* From now on the bodies are these, of the same meshes, at their time 0 when the time of frames, s,
+ * is `begin`. */
+void output_bodies_go_on(const struct output_frames *frames, const struct contact_bodies *bodies,
+                         double begin);
 
 /* Appends a frame: position is (all vertices) x 3, metres. Has the form of flow_output.frame,
  * context = frames. A frame that fails leaves the ones before it whole. */
@@ -137,10 +147,11 @@ struct output_cache {
     double fps;
     uint32_t n_obstacles, n_keys;
     struct contact_shape *obstacles;
-    bool *unplaced;        /* n_obstacles: bodies with frames, whose later places are not there */
     struct phys_key *keys; /* of their motions */
     uint32_t n_bodies;
     struct contact_bodies bodies; /* n_bodies */
+    bool *posed;                  /* n_bodies: those that change their shape; NULL: none is there */
+    FILE **poses;                 /* n_bodies: of these, their shapes */
     struct contact_apart apart;   /* what does not meet */
     uint32_t *attached;           /* n_vertices; as apart.attached, which it is */
     FILE *pc2;
@@ -149,6 +160,8 @@ int output_cache_open(struct output_cache *cache, const char *folder, struct clo
 /* Reads one frame: n_vertices x 3 doubles into position. */
 int output_cache_frame(struct output_cache *cache, uint64_t frame, double *position,
                        struct cloth_error *error);
+/* Gives the bodies that change their shape the one of a frame. */
+int output_cache_pose(struct output_cache *cache, uint64_t frame, struct cloth_error *error);
 void output_cache_close(struct output_cache *cache);
 
 /* Writes a system for other solvers, in Matrix Market form (Boisvert, Pozo & Remington 1996), into

@@ -1,8 +1,10 @@
-/* Surfaces are made once, in the axes that the parameters are in; a time moves them. Planes have no
- * surface of their own: they are drawn as ground. */
+/* Surfaces are made in the axes that the parameters are in, those of bodies for each time anew,
+ * since bodies may change their shapes; a time moves them. Planes have no surface of their own:
+ * they are drawn as ground. */
 #include "cloth/contact/surface.h"
 #include "cloth/view/view.h"
 
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -36,6 +38,24 @@ static int take_room(struct view_obstacles *obstacles, struct cloth_error *error
     return 0;
 }
 
+/* Of all, or of bodies alone. */
+static void make_surfaces(struct view_obstacles *obstacles, bool bodies_alone)
+{
+    uint32_t first = 0, vertices, triangles;
+    uint32_t(*triangle)[3] = obstacles->triangle;
+    for (size_t i = 0; i < obstacles->n; i++, first += vertices, triangle += triangles) {
+        const struct contact_shape *shape = obstacles->shape + i;
+        count_surface(obstacles, i, &vertices, &triangles);
+        if (!vertices || (bodies_alone && !shape->body))
+            continue;
+        contact_surface(shape, contact_bodies_at(obstacles->bodies, shape->body),
+                        obstacles->own + first, triangle);
+        for (uint32_t t = 0; t < triangles; t++)
+            for (int k = 0; k < 3; k++)
+                triangle[t][k] += first;
+    }
+}
+
 int view_obstacles_make(struct view_obstacles *obstacles, size_t n,
                         const struct contact_shape *shape, const struct phys_key *keys,
                         const struct contact_bodies *bodies, struct cloth_error *error)
@@ -43,17 +63,7 @@ int view_obstacles_make(struct view_obstacles *obstacles, size_t n,
     *obstacles = (struct view_obstacles){.n = n, .shape = shape, .keys = keys, .bodies = bodies};
     if (take_room(obstacles, error))
         return CLOTH_E_MEMORY;
-    uint32_t first = 0, vertices, triangles;
-    uint32_t(*triangle)[3] = obstacles->triangle;
-    for (size_t i = 0; i < n; i++, first += vertices, triangle += triangles) {
-        count_surface(obstacles, i, &vertices, &triangles);
-        if (vertices)
-            contact_surface(shape + i, contact_bodies_at(bodies, shape[i].body),
-                            obstacles->own + first, triangle);
-        for (uint32_t t = 0; t < triangles; t++)
-            for (int k = 0; k < 3; k++)
-                triangle[t][k] += first;
-    }
+    make_surfaces(obstacles, false);
     view_obstacles_at(obstacles, 0);
     return 0;
 }
@@ -76,6 +86,7 @@ void view_obstacles_at(struct view_obstacles *obstacles, double time)
 {
     size_t at = 0;
     obstacles->n_planes = 0;
+    make_surfaces(obstacles, true);
     for (size_t i = 0; i < obstacles->n; i++) {
         const struct contact_shape *shape = obstacles->shape + i;
         struct contact_pose pose;

@@ -23,8 +23,9 @@ struct view_obstacles {
     double (*own)[6], (*vertex)[6]; /* n_vertices: point, normal; without motion, and at the time */
     uint32_t (*triangle)[3];
 };
-/* What is drawn of n obstacles, at time 0 (s). shape, keys, bodies: stay the caller's, and outlive
- * it. To be freed in any case. Error: CLOTH_E_MEMORY. */
+/* What is drawn of n obstacles, at time 0 (s); bodies have the shapes that they have then. shape,
+ * keys, bodies: stay the caller's, and outlive it. To be freed in any case. Error: CLOTH_E_MEMORY.
+ */
 int view_obstacles_make(struct view_obstacles *obstacles, size_t n,
                         const struct contact_shape *shape, const struct phys_key *keys,
                         const struct contact_bodies *bodies, struct cloth_error *error);

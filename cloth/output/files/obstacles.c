@@ -18,8 +18,12 @@ void output_body_name(char name[OUTPUT_BODY_NAME], uint32_t number, const char *
     snprintf(name, OUTPUT_BODY_NAME, "body-%u.obj%s", number - 1, suffix);
 }
 
-static void put_shape(FILE *file, const struct contact_shape *shape,
-                      const struct contact_bodies *bodies)
+void output_pose_name(char name[OUTPUT_BODY_NAME], uint32_t number)
+{
+    snprintf(name, OUTPUT_BODY_NAME, "body-%u.pc2", number - 1);
+}
+
+static void put_shape(FILE *file, const struct contact_shape *shape, const bool *posed)
 {
     const struct contact_kind *kind = contact_kinds[shape->kind];
     const double *value = shape->value;
@@ -35,9 +39,11 @@ static void put_shape(FILE *file, const struct contact_shape *shape,
         output_body_name(name, shape->body, "");
         fprintf(file, "\"obj\": \"%s\"", name);
     }
-    const struct contact_body *body = bodies ? contact_bodies_at(bodies, shape->body) : NULL;
-    if (body && body->n_frames)
-        fprintf(file, ", \"frames\": %u", body->n_frames);
+    if (shape->body && posed && posed[shape->body - 1]) {
+        char name[OUTPUT_BODY_NAME];
+        output_pose_name(name, shape->body);
+        fprintf(file, ", \"pc2\": \"%s\"", name);
+    }
     fputc('}', file);
 }
 
@@ -60,12 +66,12 @@ static void put_motion(FILE *file, const struct contact_shape *shape, const stru
 }
 
 void output_obstacles(FILE *file, size_t n, const struct contact_shape *obstacles,
-                      const struct phys_key *keys, const struct contact_bodies *bodies)
+                      const struct phys_key *keys, const bool *posed)
 {
     fputc('[', file);
     for (size_t i = 0; i < n; i++) {
         fputs(i ? ",\n    " : "\n    ", file);
-        put_shape(file, obstacles + i, bodies);
+        put_shape(file, obstacles + i, posed);
         if (obstacles[i].n)
             put_motion(file, obstacles + i, keys);
         fputc('}', file);
@@ -121,10 +127,17 @@ static void take_body(struct output_cache *cache, struct output_json *json,
         output_json_fail(json, "\"obj\"");
     else if (!output_json_word(json, name))
         output_json_fail(json, "the file of the next body: \"body-K.obj\", K from 0");
-    double frames = 0;
-    if (output_json_take(json, ','))
-        take_numbers(json, "frames", 1, &frames);
-    cache->unplaced[cache->n_obstacles - 1] = frames > 0;
+    bool *posed = realloc(cache->posed, cache->n_bodies);
+    if (!posed) {
+        output_json_fail(json, "fewer bodies than fit in memory");
+        return;
+    }
+    cache->posed = posed;
+    posed[cache->n_bodies - 1] = output_json_take(json, ',');
+    output_pose_name(name, shape->body);
+    if (posed[cache->n_bodies - 1] &&
+        (!output_json_key(json, "pc2") || !output_json_word(json, name)))
+        output_json_fail(json, "\"pc2\": the file of the body's shapes");
 }
 
 static void take_shape(struct output_cache *cache, struct output_json *json,
@@ -206,13 +219,6 @@ void output_obstacles_read(struct output_cache *cache, struct output_json *json)
             return;
         }
         cache->obstacles = grown;
-        bool *unplaced = realloc(cache->unplaced, cache->n_obstacles + 1);
-        if (!unplaced) {
-            output_json_fail(json, "fewer obstacles than fit in memory");
-            return;
-        }
-        cache->unplaced = unplaced;
-        unplaced[cache->n_obstacles] = false;
         struct contact_shape *shape = grown + cache->n_obstacles++;
         take_shape(cache, json, shape);
         if (output_json_take(json, ','))

@@ -6,16 +6,19 @@
 #include "cloth/output/output.h"
 
 /* Obstacles in scene.json: a list of {KIND: {its parameters}}, of bodies {"obj": FILE}, with
- * "frames": N where these change its shape, and of what moves also "about" and "keys": [{"time",
+ * "pc2": FILE where its shape changes, and of what moves also "about" and "keys": [{"time",
  * "translate", "rotate"}]. */
 
 /* The name of the file of a body, by number from 1, with a suffix. */
 enum { OUTPUT_BODY_NAME = 40 };
 void output_body_name(char name[OUTPUT_BODY_NAME], uint32_t number, const char *suffix);
+/* That of its shapes. */
+void output_pose_name(char name[OUTPUT_BODY_NAME], uint32_t number);
 
-/* Writes the list. keys: of all motions; bodies: those that are named; NULL: none. */
+/* Writes the list. keys: of all motions; posed: by body, whether its shape changes; NULL: none's.
+ */
 void output_obstacles(FILE *file, size_t n, const struct contact_shape *obstacles,
-                      const struct phys_key *keys, const struct contact_bodies *bodies);
+                      const struct phys_key *keys, const bool *posed);
 
 /* Reads it but for the bodies; what it allocates belongs to the cache, also after a failure. */
 void output_obstacles_read(struct output_cache *cache, struct output_json *json);

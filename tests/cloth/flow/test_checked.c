@@ -327,6 +327,15 @@ END_TEST
 
 /* ---- All kernels ---- */
 
+START_TEST(pulled_seams)
+{
+    for (size_t i = 0; i < INTEGRATORS; i++)
+        run(SETS(integrators[i], "cloths[0].mesh={pattern: {garment: skirt, edge: 0.15}}",
+                 "cloths[0].pins=[]", "cloths[0].material=triangles",
+                 "cloths[0].seams={state: pulled, stiffness: 5, damping: 0.01}"));
+}
+END_TEST
+
 START_TEST(every_kernel_was_run)
 {
     const duite_kernel *const *all = flow_kernels();
@@ -371,6 +380,7 @@ int main(int argc, char **argv)
     tcase_add_test(cases, certified_contact);
     tcase_add_test(cases, repulsion);
     tcase_add_test(cases, velocity_correction);
+    tcase_add_test(cases, pulled_seams);
     tcase_add_test(cases, maps);
     tcase_add_test(cases, every_kernel_was_run);
     suite_add_tcase(suite, integrations);

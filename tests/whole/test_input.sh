@@ -154,9 +154,9 @@ for mass in 1 2; do
 done
 
 changed key 'end: 0.004' 'end: 0.004, fsp: 30'
-likewise "an unknown key" "key.yaml:8:30: fsp is not a key of time; did you mean 'fps'? Allowed: h, end, fps, halving, stretch_growth, stretch_limit, energy_growth, rest" key.yaml
+likewise "an unknown key" "key.yaml:8:30: fsp is not a key of time; did you mean 'fps'? Allowed: h, end, fps, halving, stretch_growth, stretch_limit, energy_growth, rest, sewn" key.yaml
 refused "an unknown key on the command line" \
-    "--set time.fsp=30: fsp is not a key of time; did you mean 'fps'? Allowed: h, end, fps, halving, stretch_growth, stretch_limit, energy_growth, rest" scene.yaml --set time.fsp=30
+    "--set time.fsp=30: fsp is not a key of time; did you mean 'fps'? Allowed: h, end, fps, halving, stretch_growth, stretch_limit, energy_growth, rest, sewn" scene.yaml --set time.fsp=30
 refused "a missing scene" "none.yaml: cannot open the scene file: No such file or directory" none.yaml
 printf 'schema: 1\ntime: [\n' > broken.yaml
 likewise "a broken scene" \

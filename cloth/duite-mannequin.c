@@ -1,7 +1,7 @@
 /* The command line of the figure: reads what is asked for, hands it on, says what came of it. */
 #include "config.h"
 
-#include "cloth/mannequin/mannequin.h"
+#include "cloth/mannequin/pose.h"
 #include "cloth/output/mannequin.h"
 
 #include <argp.h>
@@ -14,9 +14,13 @@
 
 const char *argp_program_version = "duite-mannequin " PACKAGE_VERSION;
 
+enum { FPS = 256 };
+static const double MOST_FRAMES = 100000, DEFAULT_FPS = 25;
+
 struct options {
     const char *output;
     struct mannequin mannequin;
+    double walk, fps; /* s, 1/s; 0: not given */
     bool quiet;
 };
 
@@ -28,6 +32,11 @@ static const struct argp_option OPTIONS[] = {
      0},
     {"edge", 'e', "METRES", 0, "Make triangles with edges of about this length (0.02)", 0},
     {"output", 'o', "FILE", 0, "Write the mesh to FILE, a Wavefront OBJ", 0},
+    {"walk", 'w', "SECONDS", 0,
+     "Write so many seconds of a walk on the spot, too, as a PC2 point cache (BODY.pc2 beside "
+     "BODY.obj)",
+     0},
+    {"fps", FPS, "RATE", 0, "Frames a second of the walk (25)", 0},
     {"quiet", 'q', NULL, 0, "No summary", 0},
     {0}};
 
@@ -53,6 +62,18 @@ static void parse_measure(struct options *options, char *arg, struct argp_state 
         argp_error(state, "the measure %s takes a length above 0 in metres, not `%s'", arg, value);
 }
 
+static void finish(struct options *options, struct argp_state *state)
+{
+    if (!options->output)
+        argp_error(state, "say where the mesh goes: --output FILE");
+    if (options->fps > 0 && !(options->walk > 0))
+        argp_error(state, "--fps is of a walk: say how long it is, --walk SECONDS");
+    options->fps = options->fps > 0 ? options->fps : DEFAULT_FPS;
+    if (!(options->walk * options->fps < MOST_FRAMES))
+        argp_error(state, "a walk has fewer than %g frames, not %g", MOST_FRAMES,
+                   options->walk * options->fps);
+}
+
 static error_t parse(int key, char *arg, struct argp_state *state)
 {
     struct options *options = state->input;
@@ -68,6 +89,14 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         if (parse_length(arg, &options->mannequin.edge))
             argp_error(state, "--edge takes a length above 0 in metres, not `%s'", arg);
         return 0;
+    case 'w':
+        if (parse_length(arg, &options->walk))
+            argp_error(state, "--walk takes seconds above 0, not `%s'", arg);
+        return 0;
+    case FPS:
+        if (parse_length(arg, &options->fps))
+            argp_error(state, "--fps takes a rate above 0, not `%s'", arg);
+        return 0;
     case 'o':
         if (!*arg)
             argp_error(state, "--output takes the name of a file");
@@ -80,8 +109,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         argp_error(state, "nothing is read: `%s' is one too many", arg);
         return 0;
     case ARGP_KEY_END:
-        if (!options->output)
-            argp_error(state, "say where the mesh goes: --output FILE");
+        finish(options, state);
         return 0;
     default:
         return ARGP_ERR_UNKNOWN;
@@ -99,15 +127,57 @@ static void say(const struct mesh *mesh, const double *girth)
            high[1] - low[1]);
 }
 
+/* ---- The walk ---- */
+
+struct walking {
+    const struct mannequin_rig *rig;
+    const struct mesh *mesh;
+    double fps;
+};
+
+static void place(const void *context, uint32_t frame, double (*x)[3])
+{
+    static const struct mannequin_walk walk = {0};
+    const struct walking *walking = context;
+    double angle[MANNEQUIN_ANGLES];
+    mannequin_walk_at(&walk, frame / walking->fps, angle);
+    mannequin_place(walking->rig, walking->mesh, angle, x);
+}
+
+/* Beside the mesh, with another ending. */
+static int write_walk(const struct options *options, const struct mannequin_rig *rig,
+                      const struct mesh *mesh, struct cloth_error *error)
+{
+    const char *output = options->output;
+    const size_t n = strlen(output);
+    const int stem = (int)(n > 4 && strcmp(output + n - 4, ".obj") == 0 ? n - 4 : n);
+    const struct walking walking = {rig, mesh, options->fps};
+    const struct output_shapes shapes = {.n_points = mesh->n_vertices,
+                                         .n_frames =
+                                             (uint32_t)(options->walk * options->fps + 0.5) + 1,
+                                         .place = place,
+                                         .context = &walking};
+    char *path = NULL;
+    if (asprintf(&path, "%.*s.pc2", stem, output) < 0)
+        return cloth_fail(error, CLOTH_E_MEMORY, "no memory for a name");
+    const int code = output_mannequin_pc2(path, &shapes, error);
+    free(path);
+    return code;
+}
+
 static int run(const struct options *options, struct cloth_error *error)
 {
     struct mesh mesh = {0};
+    struct mannequin_rig rig = {0};
     double girth[MANNEQUIN_GIRTHS];
-    int code = mannequin_make(&mesh, &options->mannequin, girth, error);
+    int code = mannequin_make_rigged(&mesh, &rig, &options->mannequin, girth, error);
     code = code ? code : output_mannequin_obj(options->output, &mesh, error);
+    if (!code && options->walk > 0)
+        code = write_walk(options, &rig, &mesh, error);
     if (!code && !options->quiet)
         say(&mesh, girth);
     mesh_free(&mesh);
+    mannequin_rig_free(&rig);
     return code;
 }
 

@@ -51,7 +51,7 @@ static const double ASIDE = 20, ARMS = 25, LEGS = 20, KNEES = 40, ELBOWS = 14, C
 void mannequin_walk_at(const struct mannequin_walk *walk, double time,
                        double angle[MANNEQUIN_ANGLES])
 {
-    const double since = time - walk->begin > 0 ? time - walk->begin : 0;
+    const double since = time - walk->begin;
     const double part = smooth(since / MANNEQUIN_WALK_RAMP);
     const double speed = walk->speed > 0 ? walk->speed : MANNEQUIN_WALK_SPEED;
     rest(angle);

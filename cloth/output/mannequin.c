@@ -1,6 +1,9 @@
 /* A figure is written as the bodies of a folder are. */
 #include "cloth/output/mannequin.h"
+#include "cloth/base/memory.h"
 #include "cloth/output/files/files.h"
+
+#include <stdlib.h>
 
 int output_mannequin_obj(const char *path, const struct mesh *mesh, struct cloth_error *error)
 {
@@ -8,4 +11,36 @@ int output_mannequin_obj(const char *path, const struct mesh *mesh, struct cloth
                                        .meshes = (const struct mesh *const[]){mesh},
                                        .names = (const char *const[]){"body"}};
     return output_replace_file(path, output_fill_obj, &alone, error);
+}
+
+struct writing {
+    const struct output_shapes *shapes;
+    double (*x)[3]; /* room for a frame */
+};
+
+static int fill_pc2(FILE *file, const void *what)
+{
+    const struct writing *writing = what;
+    const struct output_shapes *shapes = writing->shapes;
+    unsigned char header[OUTPUT_PC2_HEADER], bytes[4];
+    output_pc2_header(header, shapes->n_points, shapes->n_frames);
+    fwrite(header, sizeof header, 1, file);
+    for (uint32_t k = 0; k < shapes->n_frames && !ferror(file); k++) {
+        shapes->place(shapes->context, k, writing->x);
+        for (size_t i = 0; i < 3 * (size_t)shapes->n_points; i++) {
+            output_put_float(bytes, (float)writing->x[i / 3][i % 3]);
+            fwrite(bytes, sizeof bytes, 1, file);
+        }
+    }
+    return ferror(file);
+}
+
+int output_mannequin_pc2(const char *path, const struct output_shapes *shapes,
+                         struct cloth_error *error)
+{
+    const struct writing writing = {shapes,
+                                    cloth_alloc(shapes->n_points, sizeof *writing.x, error)};
+    const int code = writing.x ? output_replace_file(path, fill_pc2, &writing, error) : error->code;
+    free(writing.x);
+    return code;
 }

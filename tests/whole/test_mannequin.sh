@@ -24,7 +24,7 @@ ok "--help lists the options" short_answer '--measure' --help
 ok "--version names the version" short_answer '^duite-mannequin [0-9]' --version
 documented() { # every option of --help stands in the manual page
     run --help | sed -n 's/^ *\(-.,\)\{0,1\} *--\([a-z]*\).*/\2/p' > options
-    test "$(wc -l < options)" -ge 8 || return
+    test "$(wc -l < options)" -ge 10 || return
     while read -r option; do grep -q -e "\\\\-\\\\-$option" "$page" || { echo "--$option is not in the page" && return 1; }; done < options
 }
 ok "the manual page has every option" documented
@@ -47,6 +47,14 @@ ok "docs/garments.md has all measures with their defaults" tabled
 quiet() { prints run -o q.obj -q && test ! -s printed && test ! -s complained && test -s q.obj; }
 ok "--quiet" quiet
 
+walk_is_written() { # and begins as the mesh is
+    run --walk 1.5 --fps 10 -q -o walk.obj && test "$(od -An -tu4 -j28 -N4 walk.pc2 | tr -d ' ')" = 16 || return
+    n=$(grep -c '^v ' walk.obj)
+    test "$(wc -c < walk.pc2)" = $((32 + 16 * 12 * n)) || return
+    od -An -v -tf4 -w12 -j32 -N$((12 * n)) walk.pc2 > begin
+    grep '^v ' walk.obj | paste -d ' ' - begin | awk '{ for (i = 2; i <= 4; i++) if (($i - $(i + 3)) ^ 2 > 1e-12) bad = 1 } END { exit bad || NR < 5000 }'
+}
+ok "--walk, --fps" walk_is_written
 refused() { # SENTENCE ARGUMENT...: exit status 2, and one line that has the sentence
     sentence=$1
     shift
@@ -63,6 +71,10 @@ ok "no height" refused "--height takes a length above 0" --height 0 -o x.obj
 ok "too high" refused "height is 9 m; figures have 1 to 2.3 m" --height 9 -o x.obj
 ok "no edge" refused "--edge takes a length above 0" -e much -o x.obj
 ok "edges that are too long" refused "edge is 0.1 m; a figure of 1.75 m has 0.008 to 0.025 m" -e 0.1 -o x.obj
+ok "a walk that takes no time" refused "--walk takes seconds above 0" --walk 0 -o x.obj
+ok "no rate" refused "--fps takes a rate above 0" --walk 1 --fps x -o x.obj
+ok "a rate of nothing" refused "--fps is of a walk" --fps 25 -o x.obj
+ok "a walk that is too long" refused "a walk has fewer than 100000 frames, not 1e+06" --walk 1e5 --fps 10 -o x.obj
 ok "a measure without a girth" refused "--measure takes a name and a girth, NAME=METRES" -m chest -o x.obj
 ok "no such measure" refused "there is no measure \`nose'" -m nose=0.1 -o x.obj
 ok "a measure twice" refused "the measure chest is given twice" -m chest=1 -m chest=1.1 -o x.obj

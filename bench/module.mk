@@ -17,7 +17,7 @@ bench_libbench_la_SOURCES = bench/bench.h bench/environment.h bench/load.c bench
 	bench/contact/plans.c bench/contact/scene.c bench/contact/shapes.c bench/contact/shapes.h bench/contact/solid.c bench/contact/state.c \
 	cloth/intersections.c cloth/intersections.h cloth/intersections_model.c cloth/intersections_parts.c \
 	cloth/intersections_soup.c cloth/intersections_soup.h \
-	bench/garments/bench.c bench/garments/correction.c bench/garments/garments.h \
+	bench/garments/bench.c bench/garments/correction.c bench/garments/scenes.c bench/garments/worn.c bench/garments/garments.h \
 	bench/physics/bench.c bench/physics/ours.c bench/physics/physics.h \
 	bench/predict/bench.c bench/predict/errors.c bench/predict/many.c bench/predict/order.c bench/predict/predict.h bench/predict/sheet.c bench/sweep/median.c bench/sweep/compare.h \
 	tests/support/trace_file.c tests/support/trace_file.h \
@@ -27,6 +27,7 @@ bench_libbench_la_CPPFLAGS = $(AM_CPPFLAGS) -DBENCH_MPIRUN='"$(MPIRUN)"' -DBENCH
 	-DBENCH_BLENDER='"$(abs_top_srcdir)/bench/rivals/blender_sphere.py"' \
 	-DBENCH_SCENES='"$(abs_top_srcdir)/cloth/scenes"' \
 	-DBENCH_STATES_SCENE='"$(abs_top_srcdir)/bench/cg/states.yaml"' \
+	-DBENCH_WORN_SCENE='"$(abs_top_srcdir)/bench/garments/worn.yaml"' \
 	-DBENCH_HANGING_SCENE='"$(abs_top_srcdir)/bench/garments/hanging.yaml"' \
 	-DBENCH_PATTERNS='"$(abs_top_srcdir)/../shared/data/patterns"' \
 	-DBENCH_OWN_PATTERNS='"$(abs_top_srcdir)/tests/cloth/garment/patterns"' \
@@ -35,7 +36,7 @@ bench_libbench_la_LIBADD = libduite_cloth.la libduite_predict.la libduite_core.l
 check_PROGRAMS += bench/duite-bench
 bench_duite_bench_SOURCES = bench/duite-bench.c
 bench_duite_bench_LDADD = bench/libbench.la -lm
-EXTRA_DIST += bench/experiments bench/garments/experiments.sh bench/garments/hanging.yaml bench/vassilev/panels.awk bench/vassilev/torso.awk bench/rivals/blender_sphere.py bench/rivals/openmp.c bench/cg/states.yaml
+EXTRA_DIST += bench/experiments bench/garments/experiments.sh bench/garments/hanging.yaml bench/garments/worn.yaml bench/vassilev/panels.awk bench/vassilev/torso.awk bench/rivals/blender_sphere.py bench/rivals/openmp.c bench/cg/states.yaml
 
 OPENMP_FILES = bench/rivals/openmp.c bench/problem.c bench/serve.c
 OPENMP_NEEDS = $(OPENMP_FILES) bench/problem.h bench/serve.h

@@ -49,7 +49,7 @@ static int make(const struct bench_options *options, struct subject **maker, con
 }
 
 /* Makes the folder and names it to all processes. Small states have their own. */
-static int make_folder(const struct bench_options *options)
+int cg_make_folder(const struct bench_options *options)
 {
     char folder[PATH_MAX];
     size_t used = options->states ? (size_t)snprintf(folder, sizeof folder, "%s", options->states)
@@ -70,7 +70,7 @@ static int prepare(const struct bench_options *options,
                    void (*say)(const char *key, const char *text))
 {
     struct subject *maker = NULL;
-    int code = make_folder(options);
+    int code = cg_make_folder(options);
     for (const char *const *name = states_all(); *name && !code; name++) {
         struct state state = {0};
         char key[60], text[100];

@@ -29,6 +29,10 @@ struct states_plan {
 int states_plan_make(struct states_plan *plan, const char *name, bool quick);
 void states_plan_free(struct states_plan *plan);
 
+/* Makes the folder of the states and sets STATE_FOLDER for all processes. Small states have their
+ * own. 1 after a sentence on stderr. */
+int cg_make_folder(const struct bench_options *options);
+
 /* Waves the start of the model's cloth, sets it moving and shakes it a little, by a seed. */
 int states_wave(struct model *model);
 /* Lets the model's cloth start at x with v, n x 3 each. */

@@ -40,6 +40,11 @@ extern const struct serve_run contact_scene_runs[];
  * look times=: seconds of the contact part of a step, without its solves: boxes, certificates, what
  * is near, and the rows of the contacts. iterations contacts=0|1: of the next step's solve. */
 extern const struct serve_run contact_state_runs[];
+/* The same of any scene, which `read` reads by the request's word of=. rows: with the rows of the
+ * contacts. *n: how many there are. Also kept. 0, or what serve_fail returns. */
+typedef int contact_state_reader(struct model *model, struct serve_request *request);
+int contact_state_look(struct serve_request *request, contact_state_reader *read, bool rows,
+                       double *seconds, uint64_t *n);
 /* Ends what the runs above have left. 1 if the runtime did not stop well. Collective. */
 int contact_state_end(void);
 

@@ -60,12 +60,16 @@ static int move(struct flow_state *run)
     return code ? code : duite_wait(run->rt);
 }
 
-static int make(struct serve_request *request)
+static int read_sphere(struct model *model, struct serve_request *request)
 {
-    const bool quick = serve_number(request, "quick") != 0;
+    return contact_scene_read(model, "sphere", "", serve_number(request, "quick") != 0);
+}
+
+static int make(struct serve_request *request, contact_state_reader *read)
+{
     const double seconds = 1e-3 * (double)serve_number(request, "ms");
     struct flow_state *run = &session.run;
-    int code = contact_scene_read(&session.model, "sphere", "", quick);
+    int code = read(&session.model, request);
     if (code)
         return code;
     session.model.end = seconds;
@@ -78,20 +82,22 @@ static int make(struct serve_request *request)
         .flow = session.flow, .rt = session.rt, .report = &session.report, .error = &session.error};
     session.begun = true;
     code = flow_run_begin(run);
-    return tasks_code(code ? code : move(run));
+    code = code ? code : move(run);
+    return code && *session.error.text ? serve_fail("%s", session.error.text) : tasks_code(code);
 }
 
-static int ready(struct serve_request *request)
+static int ready(struct serve_request *request, contact_state_reader *read)
 {
-    char settings[sizeof session.settings], scheduler[40];
+    char settings[sizeof session.settings], scheduler[40], of[20];
     serve_word(request, "scheduler", scheduler, sizeof scheduler);
-    snprintf(settings, sizeof settings, "%u %u %s", (unsigned)serve_number(request, "ms"),
-             (unsigned)serve_number(request, "threads"), scheduler);
+    serve_word(request, "of", of, sizeof of);
+    snprintf(settings, sizeof settings, "%u %u %s %s", (unsigned)serve_number(request, "ms"),
+             (unsigned)serve_number(request, "threads"), scheduler, of);
     if (!strcmp(settings, session.settings))
         return 0;
     int code = end(0);
     if (!code)
-        code = make(request);
+        code = make(request, read);
     if (!code)
         snprintf(session.settings, sizeof session.settings, "%s", settings);
     return code;
@@ -99,16 +105,16 @@ static int ready(struct serve_request *request)
 
 /* Seconds of a look at the last step, the best of times=: its boxes, certificates, what is near;
  * and of the rows that the next one has of its contacts. */
-static int look(void *context, struct serve_request *request, double *value)
+int contact_state_look(struct serve_request *request, contact_state_reader *read, bool rows,
+                       double *value, uint64_t *n)
 {
     const uint64_t times = serve_number(request, "times");
-    int code = ready(request);
-    (void)context;
+    int code = ready(request, read);
     for (uint64_t i = 0; i < times && !code; i++) {
         struct flow_seen seen = {0};
         const double begin = serve_seconds();
         code = flow_contact_look(&session.run, &seen);
-        if (!code)
+        if (!code && rows)
             code = flow_contact_tie(&session.run);
         code = tasks_code(code ? code : duite_wait(session.rt));
         const double seconds = serve_seconds() - begin;
@@ -118,7 +124,16 @@ static int look(void *context, struct serve_request *request, double *value)
                               (uintmax_t)seen.contacts, (uintmax_t)session.contacts);
         session.contacts = seen.contacts;
     }
-    return !code && !session.contacts ? serve_fail("wrong answer: there are no contacts") : code;
+    *n = session.contacts;
+    return code;
+}
+
+static int look(void *context, struct serve_request *request, double *value)
+{
+    uint64_t n = 0;
+    (void)context;
+    const int code = contact_state_look(request, read_sphere, true, value, &n);
+    return !code && !n ? serve_fail("wrong answer: there are no contacts") : code;
 }
 
 /* Solves the system of the next step from zero, to the scene's stop. */
@@ -144,7 +159,7 @@ static int solve(double *iterations)
 static int iterations(void *context, struct serve_request *request, double *value)
 {
     const bool with = serve_number(request, "contacts") != 0;
-    int code = ready(request);
+    int code = ready(request, read_sphere);
     (void)context;
     if (!code && !(session.iterations[0] > 0)) {
         code = solve(session.iterations + 1);

@@ -1,6 +1,7 @@
-/* The bench "garments": meshes of sewing patterns, and velocity correction. Each figure of meshes
- * is that of the worst pattern. The patterns are those beside the tree, or, where these are absent,
- * small ones of the tests. */
+/* The bench "garments": meshes of sewing patterns, here, and garments that are worn, in files of
+ * their own. Each figure of meshes is that of the worst pattern. The patterns are those beside the
+ * tree, or, where these are absent, small ones of the tests. */
+#include "bench/contact/contact.h"
 #include "bench/garments/garments.h"
 
 #include "cloth/garment/garment.h"
@@ -122,27 +123,44 @@ static const struct bench_case PATTERNS = {
     "with the most triangles that have an angle below 30 degrees, and the least angle of all",
     plan_patterns, RUNS, 0};
 
-static const struct bench_case *const CASES[] = {&PATTERNS, &garments_correction, NULL};
+static const struct bench_case *const CASES[] = {
+    &PATTERNS,      &contact_maps,        &garments_worn,          &garments_jeans,
+    &garments_walk, &garments_correction, &garments_intersections, NULL};
 
 static const struct measure_target TARGETS[] = {{"pattern_ms", 900, false},
                                                 {"pattern_below_30", 0.0001, false},
                                                 {"pattern_least_angle", 20, true},
+                                                {"map_ms", 20, false},
+                                                {"body_ns_per_vertex", 200, false},
+                                                {"self_ns_per_vertex", 700, false},
+                                                {"jeans_repulsion_seconds", 2, false},
+                                                {"jeans_certified_seconds", 5, false},
+                                                {"walk_seconds_per_frame", 0.5, false},
                                                 {"velocity_correction_cost", 1.1, false},
+                                                {"intersections", 0, false},
                                                 {0}};
 enum { TARGET_THREADS = 2 };
 
 static int serve_garments(const struct bench *bench)
 {
-    const struct serve_run *const runs[] = {RUNS, garments_correction_runs, NULL};
+    const struct serve_run *const runs[] = {
+        RUNS, contact_map_runs, garments_worn_runs, garments_scene_runs, garments_correction_runs,
+        NULL};
     (void)bench;
-    return serve(others_are_there() ? "tee, dress, skirt_4_panels and wb_pants_straight"
-                                    : "circle, dart, gather and quadratic of the tests: the "
-                                      "patterns of ../shared/data/patterns are not there",
-                 runs, NULL);
+    const int status =
+        serve(others_are_there() ? "tee, dress, skirt_4_panels and wb_pants_straight"
+                                 : "circle, dart, gather and quadratic of the tests: the "
+                                   "patterns of ../shared/data/patterns are not there",
+              runs, NULL);
+    const int code = contact_state_end();
+    return status || code;
 }
 
-const struct bench bench_garments = {
-    "garments",     "meshes of sewing patterns; velocity correction",
-    CASES,          TARGETS,
-    TARGET_THREADS, serve_garments,
-    NULL,           NULL};
+const struct bench bench_garments = {"garments",
+                                     "sewing patterns, and garments that are put on and worn",
+                                     CASES,
+                                     TARGETS,
+                                     TARGET_THREADS,
+                                     serve_garments,
+                                     garments_worn_make,
+                                     NULL};

@@ -9,4 +9,19 @@
 extern const struct serve_run garments_correction_runs[];
 extern const struct bench_case garments_correction;
 
+/* scene name=dressing|jeans|layers|walk contact=certified|repulsion threads= scheduler= quick=
+ * what=: wall: seconds of all phases, without meshing; frame: of each 1/25 s of the last phase;
+ * intersections: the most in a frame. */
+extern const struct serve_run garments_scene_runs[];
+extern const struct bench_case garments_jeans, garments_walk, garments_intersections;
+
+/* Makes the T-shirt as it is worn, unless it was made before, in the folder of the states. 1 after
+ * a sentence on stderr. */
+int garments_worn_make(const struct bench_options *options,
+                       void (*say)(const char *key, const char *text));
+/* look of=self|body times= ms= threads= scheduler= quick=: seconds a vertex of what a step does to
+ * find contacts and to certify it: of cloth with itself, or with the body. */
+extern const struct serve_run garments_worn_runs[];
+extern const struct bench_case garments_worn;
+
 #endif

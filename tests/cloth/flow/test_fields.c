@@ -83,7 +83,8 @@ static void tie(struct session *s)
 {
     static uint32_t from[] = {1, SIDE * SIDE - 2}, to[] = {SIDE * SIDE - 2, SIDE * SIDE - 3};
     static struct model_joint joint;
-    joint = (struct model_joint){.pairs = {.end = {{0, 2, from}, {0, 2, to}}},
+    joint = (struct model_joint){.pairs = {.end = {{.cloth = 0, .n = 2, .vertices = from},
+                                                   {.cloth = 0, .n = 2, .vertices = to}}},
                                  .stiffness = 30,
                                  .damping = 0.01,
                                  .length = 0.5,

@@ -200,7 +200,9 @@ START_TEST(a_doubled_layer_has_a_scale_of_energy)
 {
     static const uint32_t edge[] = {0, 1};
     uint32_t names[] = {0, 1};
-    struct model_weld weld = {.pairs = {.end = {{0, 2, names}, {1, 2, names}}}, .tolerance = 1e-6};
+    struct model_weld weld = {.pairs = {.end = {{.cloth = 0, .n = 2, .vertices = names},
+                                                {.cloth = 1, .n = 2, .vertices = names}}},
+                              .tolerance = 1e-6};
     struct setup setup;
     struct flow_source source;
     struct cloth_error error = {0};

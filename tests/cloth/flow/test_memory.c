@@ -80,9 +80,14 @@ START_TEST(each_fails_once_with_welds)
 {
     struct setup setup;
     uint32_t from[] = {0, 1}, to[] = {20, 21}, ends[] = {7, 17};
-    struct model_weld weld = {.pairs = {{{0, 2, from}, {0, 2, to}}, NULL}, .tolerance = 2};
+    struct model_weld weld = {.pairs = {.end = {{.cloth = 0, .n = 2, .vertices = from},
+                                                {.cloth = 0, .n = 2, .vertices = to}}},
+                              .tolerance = 2};
     const struct model_joint joint = {
-        .pairs = {{{0, 1, ends}, {0, 1, ends + 1}}, NULL}, .stiffness = 1, .length = 0};
+        .pairs = {.end = {{.cloth = 0, .n = 1, .vertices = ends},
+                          {.cloth = 0, .n = 1, .vertices = ends + 1}}},
+        .stiffness = 1,
+        .length = 0};
     struct model_joint joints[] = {joint, joint};
     joints[1].end = 1;
     setup_sheet(&setup, 5);

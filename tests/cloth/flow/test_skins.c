@@ -68,7 +68,8 @@ static void weld_sides(void)
         welded[0][j] = j * SIDE;
         welded[1][j] = j * SIDE + SIDE - 1;
     }
-    weld = (struct model_weld){.pairs = {{{0, SIDE, welded[0]}, {0, SIDE, welded[1]}}, NULL},
+    weld = (struct model_weld){.pairs = {.end = {{.cloth = 0, .n = SIDE, .vertices = welded[0]},
+                                                 {.cloth = 0, .n = SIDE, .vertices = welded[1]}}},
                                .tolerance = 2};
     setup.model.welds = &weld;
     setup.model.n_welds = 1;

@@ -17,7 +17,8 @@ static void tied_sheet(struct session *s, enum model_preconditioner precondition
     static uint32_t from[] = {1, SIDE * SIDE - 2, 3, 14}, to[] = {SIDE * SIDE - 2, SIDE, 30, 15};
     static struct model_joint joint;
     *s = (struct session){0};
-    joint = (struct model_joint){.pairs = {.end = {{0, 4, from}, {0, 4, to}}},
+    joint = (struct model_joint){.pairs = {.end = {{.cloth = 0, .n = 4, .vertices = from},
+                                                   {.cloth = 0, .n = 4, .vertices = to}}},
                                  .stiffness = 1e5,
                                  .damping = 0.01,
                                  .length = 0.5,

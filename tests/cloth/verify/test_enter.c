@@ -75,7 +75,7 @@ static void make_place(struct place *place, double deep)
 static void check_place(const struct place *place, int count[3])
 {
     static const uint32_t corner[1][3] = {{0, 1, 2}};
-    const struct verify_soup soup = {3, 1, 1, place->x, corner};
+    const struct verify_soup soup = {3, 1, 1, place->x, corner, NULL};
     struct cloth_list list = {0};
     struct cloth_error error = {0};
     phys_vec normal;
@@ -138,7 +138,7 @@ START_TEST(numbers)
     const double x[9][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0},  {2, 0, 0},  {2, 1, 0},
                             {2, 0, 1}, {0, 0, 5}, {5, 0, -5}, {-5, 0, -5}};
     const uint32_t corner[4][3] = {{0, 1, 2}, {3, 4, 5}, {6, 7, 8}, {0, 1, 2}};
-    const struct verify_soup soup = {9, 4, 3, x, corner};
+    const struct verify_soup soup = {9, 4, 3, x, corner, NULL};
     const struct contact_pose pose = {0};
     struct cloth_list list = {0};
     struct cloth_error error = {0};
@@ -163,8 +163,12 @@ START_TEST(inside)
     static struct surface s;
     int count[2] = {0};
     surface_torus(&s, 1, 0.4, 40, 20);
-    const struct verify_soup soup = {s.n, s.n_triangles, s.n_triangles, (const double(*)[3])s.x,
-                                     (const uint32_t(*)[3])s.triangle};
+    const struct verify_soup soup = {s.n,
+                                     s.n_triangles,
+                                     s.n_triangles,
+                                     (const double(*)[3])s.x,
+                                     (const uint32_t(*)[3])s.triangle,
+                                     NULL};
     for (int k = 0; k < 1000; k++) {
         double at[3];
         for (int c = 0; c < 3; c++) /* half of them in line with corners */
@@ -193,7 +197,7 @@ START_TEST(touched)
     for (uint32_t k = 0; k < 8; k++)
         for (uint32_t c = 0; c < 3; c++)
             corner[k][c] = 2 * c + (k >> c & 1);
-    const struct verify_soup soup = {6, 8, 8, x, (const uint32_t(*)[3])corner};
+    const struct verify_soup soup = {6, 8, 8, x, (const uint32_t(*)[3])corner, NULL};
     ck_assert(verify_inside(&soup, 0, 8, at[0]));
     ck_assert(!verify_inside(&soup, 0, 8, at[1]));
 }

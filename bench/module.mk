@@ -36,7 +36,7 @@ bench_libbench_la_LIBADD = libduite_cloth.la libduite_predict.la libduite_core.l
 check_PROGRAMS += bench/duite-bench
 bench_duite_bench_SOURCES = bench/duite-bench.c
 bench_duite_bench_LDADD = bench/libbench.la -lm
-EXTRA_DIST += bench/experiments bench/garments/experiments.sh bench/garments/hanging.yaml bench/garments/worn.yaml bench/vassilev/panels.awk bench/vassilev/torso.awk bench/rivals/blender_sphere.py bench/rivals/openmp.c bench/cg/states.yaml
+EXTRA_DIST += bench/experiments bench/garments/experiments.sh bench/garments/hanging.yaml bench/garments/worn.yaml bench/vassilev/panels.awk bench/vassilev/jeans.yaml bench/rivals/blender_sphere.py bench/rivals/openmp.c bench/cg/states.yaml
 
 OPENMP_FILES = bench/rivals/openmp.c bench/problem.c bench/serve.c
 OPENMP_NEEDS = $(OPENMP_FILES) bench/problem.h bench/serve.h

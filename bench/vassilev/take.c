@@ -90,19 +90,36 @@ static void take_spring(void *to, const struct flow_spring *spring)
                                  spring->stiffness, spring->damping,        spring->length};
 }
 
+/* Those that end on edges; at an end of its edge a joint has two vertices. */
+static void take_edge_joints(struct loops *l, const struct flow_springs *springs)
+{
+    for (uint32_t i = 0; i < springs->n_timed; i++) {
+        const struct flow_timed *of = springs->timed + i;
+        const bool edge = of->n > 2;
+        l->joint[springs->n_joints + i] =
+            (struct loops_joint){.vertex = of->vertex[0],
+                                 .end = {of->vertex[1], of->vertex[edge ? 2 : 1]},
+                                 .share = edge ? -of->weight[2] : 0,
+                                 .stiffness = of->spring.stiffness,
+                                 .damping = of->spring.damping,
+                                 .length = of->spring.length};
+    }
+}
+
 static int take_springs(struct loops *l, const struct flow *flow)
 {
     const struct flow_springs *springs = &flow->source.springs;
     struct taking taking = {.l = l, .counts = true};
     flow_springs_each(springs, take_spring, &taking);
-    l->n_joints = springs->n_joints;
-    l->n_springs = (uint32_t)taking.n - l->n_joints;
+    l->n_joints = springs->n_joints + springs->n_timed;
+    l->n_springs = (uint32_t)taking.n - springs->n_joints;
     l->spring = calloc(l->n_springs + 1, sizeof *l->spring);
     l->joint = calloc(l->n_joints + 1, sizeof *l->joint);
     if (!l->spring || !l->joint)
         return fail("no memory");
     taking = (struct taking){.l = l};
     flow_springs_each(springs, take_spring, &taking);
+    take_edge_joints(l, springs);
     return 0;
 }
 

@@ -253,11 +253,11 @@ END_TEST
 START_TEST(cloths_differ_in_colour)
 {
     struct cloth_error error = {0};
-    static const uint32_t triangle[6] = {0, 1, 2, 3, 4, 5}, end[2] = {3, 6};
+    static const uint32_t apart[6] = {0, 1, 2, 3, 4, 5}, end[2] = {3, 6};
     static const double place[18] = {0,   0, 0, 0.4, 0, 0, 0.2, 0.4, 0,
                                      0.6, 0, 0, 1,   0, 0, 0.8, 0.4, 0};
     struct view_shape shape = {
-        .n_vertices = 6, .n_triangles = 2, .triangle = triangle, .n_cloths = 2, .cloth_end = end};
+        .n_vertices = 6, .n_triangles = 2, .triangle = apart, .n_cloths = 2, .cloth_end = end};
     struct view_fit fit;
     view_fit_start(&fit, 0, 0, (double)WIDTH / HEIGHT, 1);
     view_fit_add(&fit, 6, place);

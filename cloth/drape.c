@@ -50,6 +50,21 @@ void drape_frame(struct drape *drape, const double *position)
            3 * (size_t)drape->shape.n_vertices * sizeof *position);
 }
 
+size_t drape_numbers(const struct drape *drape)
+{
+    return 3 * (size_t)drape->shape.n_vertices;
+}
+
+void drape_get(const struct drape *drape, double *numbers)
+{
+    memcpy(numbers, drape->position, drape_numbers(drape) * sizeof *numbers);
+}
+
+void drape_set(struct drape *drape, const double *numbers)
+{
+    memcpy(drape->position, numbers, drape_numbers(drape) * sizeof *numbers);
+}
+
 int drape_find(const struct drape *drape, struct drape_found *found, struct cloth_error *error)
 {
     const int code = mesh_shadow(&drape->shape, drape->axis, &found->shadow, error);

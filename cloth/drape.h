@@ -22,6 +22,11 @@ int drape_of(struct drape **drape, const struct model *model, struct cloth_error
 void drape_frame(struct drape *drape, const double *position);
 
 /* Of the last frame, of which there was one. Error: CLOTH_E_MEMORY. */
+/* Numbers of what it has seen, the positions of the last frame, to be taken and put back. */
+size_t drape_numbers(const struct drape *drape);
+void drape_get(const struct drape *drape, double *numbers);
+void drape_set(struct drape *drape, const double *numbers);
+
 int drape_find(const struct drape *drape, struct drape_found *found, struct cloth_error *error);
 
 /* *drape becomes NULL; nothing is done if it is. */

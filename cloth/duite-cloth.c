@@ -19,9 +19,11 @@ enum {
     MAPPING,
     BALANCE,
     CHECK_INTERSECTIONS,
+    CHECKPOINT,
     OUTPUT,
     QUIET,
     REPORT,
+    RESTART,
     SAVE_SYSTEM,
     SCHEDULER,
     SEED,
@@ -35,6 +37,14 @@ enum {
 /* argp sorts them by group and name. */
 static const struct argp_option OPTIONS[] = {
     {"output", OUTPUT, "DIR", 0, "write frames into this folder, which is made", 1},
+    {"checkpoint", CHECKPOINT, "SECONDS", 0,
+     "write a checkpoint into the folder of --output this often (seconds of the clock), and at the "
+     "end",
+     1},
+    {"restart", RESTART, "DIR", 0,
+     "go on from the last checkpoint of the run whose --output was DIR, and write there; --end may "
+     "be later",
+     1},
     {"report", REPORT, "FILE", 0, "write the figures of the run as flat JSON", 1},
     {"save-system", SAVE_SYSTEM, "DIR", 0,
      "write the linear system of the last step, in Matrix Market form, into this folder, which is "
@@ -235,6 +245,18 @@ static error_t parse_steps(struct command *command, struct argp_state *state, co
     return EINVAL;
 }
 
+static error_t parse_checkpoint(struct command *command, struct argp_state *state, const char *text)
+{
+    char *end;
+    errno = 0;
+    const double seconds = strtod(text, &end);
+    command->run.checkpoint = seconds;
+    if (end != text && !*end && !errno && seconds > 0 && seconds <= 1e9)
+        return 0;
+    argp_failure(state, 0, 0, "--checkpoint %s: seconds, > 0 and at most 1e9, are expected", text);
+    return EINVAL;
+}
+
 static error_t parse_scene(struct command *command, struct argp_state *state, const char *path)
 {
     if (command->run.scene) {
@@ -252,6 +274,10 @@ static error_t parse(int key, char *value, struct argp_state *state)
         return parse_name(state, "--output", value, &command->run.output);
     case REPORT:
         return parse_name(state, "--report", value, &command->run.report);
+    case RESTART:
+        return parse_name(state, "--restart", value, &command->run.restart);
+    case CHECKPOINT:
+        return parse_checkpoint(command, state, value);
     case SAVE_SYSTEM:
         return parse_name(state, "--save-system", value, &command->run.save_system);
     case TRACE:
@@ -298,10 +324,29 @@ static const struct argp ARGP = {
     .doc = "Simulates the cloths of a scene file. Run it under mpirun for several ranks; the "
            "result is the same, to the "
            "last bit.\v"
-           "Exit codes: 0 done (or stopped by SIGUSR1), 1 the run failed or "
+           "Exit codes: 0 done, 1 the run failed or "
            "its files could not be written, 2 the input or the command line is wrong, 3 another "
-           "rank was lost, or MPI failed, 4 done, but --check-intersections found intersections. "
+           "rank was lost, or MPI failed, 4 done, but --check-intersections found intersections, "
+           "5 stopped by SIGUSR1 or SIGTERM. "
            "Scene files are described in docs/scene.md and by --keys."};
+
+/* A run goes on in its own folder. */
+static int check_restart(struct command *command)
+{
+    struct simulate_options *run = &command->run;
+    const char *wrong = NULL;
+    if (run->restart && run->output && strcmp(run->restart, run->output) != 0)
+        wrong = "--restart DIR goes on writing into DIR: leave --output out";
+    if (run->restart && !run->output)
+        run->output = run->restart;
+    if (run->checkpoint > 0 && !run->output)
+        wrong = "--checkpoint needs --output DIR: checkpoints are kept in that folder";
+    if (run->restart && run->save_system)
+        wrong = "--save-system with --restart: the system is that of a run from its start";
+    if (wrong && command->talks)
+        fprintf(stderr, "duite-cloth: %s\n", wrong);
+    return wrong ? SIMULATE_BAD_INPUT : SIMULATE_OK;
+}
 
 /* Returns an exit code. */
 static int command_line(struct command *command, int argc, char **argv)
@@ -319,7 +364,7 @@ static int command_line(struct command *command, int argc, char **argv)
         return SIMULATE_BAD_INPUT;
     }
     if (command->done || command->run.scene)
-        return SIMULATE_OK;
+        return command->done ? SIMULATE_OK : check_restart(command);
     if (command->talks)
         fprintf(stderr, "duite-cloth: a scene file is expected; see duite-cloth --help\n");
     return SIMULATE_BAD_INPUT;

@@ -3,7 +3,9 @@
 #include "cloth/outputs.h"
 
 #include "cloth/base/memory.h"
+#include "cloth/keeper.h"
 #include "cloth/output/output.h"
+#include "cloth/restart.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -38,19 +40,21 @@ static int open_system(struct outputs *to, const struct model *model, struct clo
 }
 
 /* In the folder of frames, which is there. */
-static int open_probes(struct outputs *to, const struct flow *flow, struct cloth_error *error)
+static int open_probes(struct outputs *to, const struct flow *flow, const uint64_t *n_rows,
+                       struct cloth_error *error)
 {
     const char *header = flow_header(flow);
-    return header ? output_probes_open(&to->probes, to->options->output, header, error)
+    return header ? output_probes_open(&to->probes, to->options->output, header, n_rows, error)
                   : output_probes_forget(to->options->output, error);
 }
 
 static int open_forces(struct outputs *to, const struct model *model, const struct flow *flow,
-                       struct cloth_error *error)
+                       const uint64_t *n_frames, struct cloth_error *error)
 {
     const char *folder = to->options->output;
     return model->contact.force && model_certifies(model)
-               ? output_forces_open(&to->forces, folder, (uint32_t)flow_vertices(flow), error)
+               ? output_forces_open(&to->forces, folder, (uint32_t)flow_vertices(flow), n_frames,
+                                    error)
                : output_forces_forget(folder, error);
 }
 
@@ -81,12 +85,17 @@ static struct output_setup setup_of(const struct outputs *of, const struct model
                                  .inputs = (const char *const *)model->files};
 }
 
+/* What stays of an earlier run, of all its phases: frames, rows. */
+struct stays {
+    uint64_t frames, rows;
+};
+
 static int open_output(struct outputs *to, const struct phases *phases, const struct flow *flow,
-                       const struct contact_apart *apart, struct cloth_error *error)
+                       const struct contact_apart *apart, const struct stays *stays,
+                       struct cloth_error *error)
 {
     const struct model *model = phases_model(phases);
-    if (lock_folder(to->locks, to->options->output, error))
-        return error->code;
+    const uint64_t *n_frames = stays ? &stays->frames : NULL;
     const struct mesh **meshes = calloc(model->n_cloths, sizeof *meshes);
     const char **names = calloc(model->n_cloths, sizeof *names);
     bool *posed = find_posed(phases, error);
@@ -100,6 +109,7 @@ static int open_output(struct outputs *to, const struct phases *phases, const st
         setup.meshes = meshes;
         setup.names = names;
         setup.posed = posed;
+        setup.n_frames = n_frames;
         code = output_open(&to->frames, &setup, error);
     } else {
         cloth_fail(error, code, "out of memory before the first frame");
@@ -107,14 +117,43 @@ static int open_output(struct outputs *to, const struct phases *phases, const st
     free(meshes);
     free(names);
     free(posed);
-    code = code ? code : open_forces(to, model, flow, error);
-    return code ? code : open_probes(to, flow, error);
+    code = code ? code : open_forces(to, model, flow, n_frames, error);
+    return code ? code : open_probes(to, flow, stays ? &stays->rows : NULL, error);
+}
+
+int outputs_lock(struct outputs *to, const struct simulate_options *options,
+                 struct cloth_error *error)
+{
+    if (!options->output || to->locks[0])
+        return CLOTH_OK;
+    return lock_folder(to->locks, options->output, error);
+}
+
+/* Of an earlier run that this one does not go on with nothing may be left. */
+static int open_keeper(struct outputs *to, const struct phases *phases, bool resumed,
+                       struct cloth_error *error)
+{
+    const struct simulate_options *options = to->options;
+    if (!resumed && output_checkpoints_forget(options->output, error))
+        return error->code;
+    to->phases = phases;
+    if (!(options->checkpoint > 0))
+        return CLOTH_OK;
+    to->settings = restart_settings(phases, error);
+    return to->settings
+               ? keeper_open(&to->keeper, options->output, options->checkpoint, to->settings, error)
+               : error->code;
 }
 
 int outputs_open(struct outputs *to, const struct simulate_options *options,
                  const struct phases *phases, const struct flow *flow,
-                 const struct contact_apart *apart, struct cloth_error *error)
+                 const struct contact_apart *apart, const struct flow_resumed *resumed,
+                 struct cloth_error *error)
 {
+    const struct flow_before before = phases_before(phases);
+    const struct stays stays = {.frames =
+                                    before.frames - before.shown + (resumed ? resumed->frames : 0),
+                                .rows = before.steps + (resumed ? resumed->steps : 0) + 1};
     const struct model *model = phases_model(phases), *last = phases->models + phases->n - 1;
     to->options = options;
     int code = CLOTH_OK;
@@ -124,9 +163,13 @@ int outputs_open(struct outputs *to, const struct simulate_options *options,
         code = drape_of(&to->drape, last, error);
     if (!code && options->save_system)
         code = open_system(to, last, error);
+    if (!code)
+        code = outputs_lock(to, options, error);
     if (!code && options->output)
-        code = open_output(to, phases, flow, apart, error);
-    return code;
+        code = open_output(to, phases, flow, apart, resumed ? &stays : NULL, error);
+    if (!code && options->output)
+        code = open_keeper(to, phases, resumed, error);
+    return code || !phases->now ? code : outputs_go_on(to, phases, apart, error);
 }
 
 /* Where obstacles are, and what is sewn, in the frames of all phases so far, and of this one. */
@@ -167,23 +210,30 @@ int outputs_go_on(struct outputs *to, const struct phases *phases,
     return code || !to->frames ? code : write_scene(to, phases, apart, error);
 }
 
+struct intersections_found outputs_found(const struct outputs *of)
+{
+    struct intersections_found all = of->found;
+    if (!of->intersections)
+        return all;
+    const struct intersections_found last = intersections_found(of->intersections);
+    if (!all.bad)
+        all.first = last.first;
+    all.frames = last.frames > all.frames ? last.frames : all.frames; /* up to its last */
+    all.bad += last.bad;
+    all.pairs = last.pairs > all.pairs ? last.pairs : all.pairs;
+    all.with_shapes = last.with_shapes > all.with_shapes ? last.with_shapes : all.with_shapes;
+    return all;
+}
+
 void outputs_count(struct outputs *of)
 {
-    if (!of->intersections)
-        return;
-    const struct intersections_found last = intersections_found(of->intersections);
-    struct intersections_found *all = &of->found;
-    if (!all->bad)
-        all->first = last.first;
-    all->frames = last.frames > all->frames ? last.frames : all->frames; /* up to its last */
-    all->bad += last.bad;
-    all->pairs = last.pairs > all->pairs ? last.pairs : all->pairs;
-    all->with_shapes = last.with_shapes > all->with_shapes ? last.with_shapes : all->with_shapes;
+    of->found = outputs_found(of);
     intersections_close(&of->intersections);
 }
 
 void outputs_close(struct outputs *of, struct cloth_error *error)
 {
+    keeper_close(&of->keeper);
     output_probes_close(&of->probes, error);
     output_forces_close(&of->forces, error);
     output_close(&of->frames, error);
@@ -193,6 +243,8 @@ void outputs_free(struct outputs *of)
 {
     intersections_close(&of->intersections);
     drape_close(&of->drape);
+    free(of->settings);
+    of->settings = NULL;
     output_lock_free(of->locks);
     output_lock_free(of->locks + 1);
 }

@@ -9,6 +9,7 @@
 
 /* What a run writes and looks at: frames, probes, forces, systems, intersections, the drape test.
  * Rank 0 alone has any of it; it begins as zero. All functions are local. */
+struct untangle_result;
 struct outputs {
     const struct simulate_options *options;
     struct output_lock *locks[2];        /* of the folders of frames and of the system */
@@ -19,18 +20,29 @@ struct outputs {
     struct intersections_found found;    /* then, at the end; before it of the phases so far */
     struct drape *drape;                 /* if the scene has that test */
     struct drape_found drapes;           /* then, at the end */
+    struct keeper *keeper;               /* of checkpoints, if they are wanted; then also: */
+    char *settings;                      /* restart_settings */
+    const struct phases *phases;
+    const struct untangle_result *untangled;
 };
 
-/* Finds what can be wrong with it and opens what the options and the model ask for. What is opened
- * is freed by outputs_close and outputs_free, also after an error. Returns a cloth_code. */
+/* The folder of frames is this run's, before anything else of it is looked at. */
+int outputs_lock(struct outputs *to, const struct simulate_options *options,
+                 struct cloth_error *error);
+/* Finds what can be wrong with it and opens what the options and the model ask for. resumed: of a
+ * run that goes on with the files of an earlier one; else NULL. What is opened is freed by
+ * outputs_close and outputs_free, also after an error. Returns a cloth_code. */
 int outputs_open(struct outputs *to, const struct simulate_options *options,
                  const struct phases *phases, const struct flow *flow,
-                 const struct contact_apart *apart, struct cloth_error *error);
+                 const struct contact_apart *apart, const struct flow_resumed *resumed,
+                 struct cloth_error *error);
 /* The same when a further phase begins: the frames go on. Returns a cloth_code. */
 int outputs_go_on(struct outputs *to, const struct phases *phases,
                   const struct contact_apart *apart, struct cloth_error *error);
-/* Intersections in all frames so far. */
+/* Intersections in all frames so far: of all phases; the first function ends that of the one that
+ * is over. */
 void outputs_count(struct outputs *of);
+struct intersections_found outputs_found(const struct outputs *of);
 /* The files are whole. */
 void outputs_close(struct outputs *of, struct cloth_error *error);
 void outputs_free(struct outputs *of);

@@ -34,6 +34,7 @@ int phases_read(struct phases *phases, const char *path, size_t n_sets,
         return code;
     }
     phases->models[0] = first;
+    phases->n_vertices = model_first(&first, first.n_cloths);
     for (uint32_t i = 1; i < phases->n && !code; i++) {
         code = scene_read_phase(phases->models + i, path, i, n_sets, sets, error);
         if (!code)
@@ -48,9 +49,11 @@ int phases_read(struct phases *phases, const char *path, size_t n_sets,
 
 int phases_share(struct phases *phases, struct cloth_error *error)
 {
-    uint32_t of[2] = {phases->n, phases->named};
-    MPI_Bcast(of, 2, MPI_UINT32_T, 0, MPI_COMM_WORLD);
+    uint32_t of[3] = {phases->n, phases->named, phases->now};
+    MPI_Bcast(of, 3, MPI_UINT32_T, 0, MPI_COMM_WORLD);
+    MPI_Bcast(&phases->total, sizeof phases->total, MPI_BYTE, 0, MPI_COMM_WORLD);
     phases->named = of[1];
+    phases->now = of[2];
     return of[0] && !phases->models ? make_room(phases, of[0], error) : CLOTH_OK;
 }
 
@@ -64,21 +67,45 @@ struct flow_before phases_before(const struct phases *phases)
                                 .time = total->simulated_seconds};
 }
 
-int phases_next(struct phases *phases, struct cloth_error *error)
+size_t phases_numbers(const struct phases *phases)
+{
+    return 6 * (size_t)phases->n_vertices;
+}
+
+/* The cloths of the phase of now. */
+static int start_at(struct phases *phases, double (*from)[6], struct cloth_error *error)
 {
     uint32_t first = 0;
-    phases->now++;
     struct model *model = phases_model(phases);
     for (uint32_t c = 0; c < model->n_cloths; c++) {
         const uint32_t n = model->cloths[c].mesh.n_vertices;
         double(*start)[6] = cloth_alloc(n, sizeof *start, error);
         if (!start)
             return CLOTH_E_MEMORY;
-        memcpy(start, phases->end + first, n * sizeof *start);
+        memcpy(start, from + first, n * sizeof *start);
         model_start_at(model->cloths + c, *start);
         first += n;
     }
     return CLOTH_OK;
+}
+
+int phases_start(struct phases *phases, const double *numbers, struct cloth_error *error)
+{
+    const size_t n = phases_numbers(phases);
+    phases->keeps_start = true;
+    if (!phases->start)
+        phases->start = cloth_alloc(n, sizeof *numbers, error);
+    if (!phases->start)
+        return CLOTH_E_MEMORY;
+    memcpy(phases->start, numbers, n * sizeof *numbers);
+    return start_at(phases, phases->start, error);
+}
+
+int phases_next(struct phases *phases, struct cloth_error *error)
+{
+    phases->now++;
+    return phases->keeps_start ? phases_start(phases, *phases->end, error)
+                               : start_at(phases, phases->end, error);
 }
 
 int phases_joined(const struct phases *phases, uint32_t n, uint32_t **joined,
@@ -241,5 +268,6 @@ void phases_free(struct phases *phases)
     free(phases->models);
     free(phases->done);
     free(phases->end);
+    free(phases->start);
     *phases = (struct phases){0};
 }

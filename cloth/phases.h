@@ -23,6 +23,9 @@ struct phases {
     struct model *models;
     struct phase_done *done;
     double (*end)[6];         /* rank 0, of several: of each vertex, as model_cloth.start has it */
+    uint32_t n_vertices;      /* rank 0: of all cloths; meshes are forgotten when a phase runs */
+    bool keeps_start;         /* where the phase of now started is kept, too, for checkpoints: */
+    double (*start)[6];       /* then: alike; NULL in the first one */
     struct flow_report total; /* of those that are over, as phases_add says */
 };
 
@@ -31,7 +34,8 @@ struct phases {
 int phases_read(struct phases *phases, const char *path, size_t n_sets,
                 const struct scene_set *sets, struct cloth_error *error);
 
-/* How many there are, from rank 0 to all. Error: CLOTH_E_MEMORY. Collective; it is not agreed on
+/* How many there are, which one is next, and what those before it came to, from rank 0 to all.
+ * Error: CLOTH_E_MEMORY. Collective; it is not agreed on
  * errors yet. */
 int phases_share(struct phases *phases, struct cloth_error *error);
 
@@ -49,6 +53,11 @@ struct flow_before phases_before(const struct phases *phases);
 /* Goes on to the next phase, whose cloths start where the last one ended, on rank 0. Error:
  * CLOTH_E_MEMORY. Local. */
 int phases_next(struct phases *phases, struct cloth_error *error);
+
+/* Numbers of where a phase starts. The cloths of the phase of now, a later one, start there, as
+ * when the phase before it ended. Error: CLOTH_E_MEMORY. On rank 0. Local. */
+size_t phases_numbers(const struct phases *phases);
+int phases_start(struct phases *phases, const double *numbers, struct cloth_error *error);
 
 /* Adds the report of the phase that is over. Counts and seconds are added up, of peaks the largest
  * counts; energies, the hash, and what else is of the end, are those of this phase. Local. */

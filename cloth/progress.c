@@ -33,11 +33,12 @@ static void write_duration(char *text, size_t size, double seconds)
 void progress_step(struct progress *progress, uint64_t step, uint64_t steps,
                    const struct progress_counts *counts)
 {
+    progress->first = progress->first ? progress->first : step;
     double time = now(), pause = progress->terminal ? 0.1 : 10;
     if (time - progress->shown < pause && !(progress->terminal && step == steps))
         return;
     char left[32], touching[40] = "", open[60] = "";
-    const double each = (time - progress->begun) / (double)step;
+    const double each = (time - progress->begun) / (double)(step - progress->first + 1);
     write_duration(left, sizeof left, each * (double)(steps - step));
     if (counts->contacts)
         snprintf(touching, sizeof touching, "%" PRIu64 " contacts, ", counts->contacts);

@@ -7,6 +7,7 @@
 /* The progress line of a run on standard error: on a terminal rewritten ten times a second, else a
  * line every ten seconds. Local; called on rank 0. */
 struct progress {
+    uint64_t first;      /* the step that was shown first; 0: none was */
     const char *phase;   /* that the line names; NULL: none */
     double begun, shown; /* seconds of a clock that only goes forward */
     bool terminal, open; /* open: the line on the terminal is not ended yet */

@@ -2,6 +2,7 @@
  * here about errors, so that all of them leave by the same way and one of them prints. */
 #include "cloth/simulate_run.h"
 
+#include "cloth/keeper.h"
 #include "cloth/summary.h"
 
 #include <math.h>
@@ -31,6 +32,7 @@ void simulate_catch_signals(void)
     struct sigaction action = {.sa_handler = request_stop, .sa_flags = SA_RESTART};
     sigemptyset(&action.sa_mask);
     sigaction(SIGUSR1, &action, NULL);
+    sigaction(SIGTERM, &action, NULL);
     action.sa_handler = SIG_IGN; /* the write fails with EFBIG, and that is said */
     sigaction(SIGXFSZ, &action, NULL);
 }
@@ -92,6 +94,13 @@ static void name_scene(const char *scene, struct cloth_error *error)
     *error = named;
 }
 
+/* Asked on rank 0 alone. */
+static int is_due(void *context)
+{
+    const struct run *run = context;
+    return run->outputs.keeper && keeper_due(run->outputs.keeper);
+}
+
 static void run_flow(struct run *run, duite *rt, struct cloth_error *error)
 {
     const struct simulate_options *options = run->options;
@@ -103,9 +112,11 @@ static void run_flow(struct run *run, duite *rt, struct cloth_error *error)
                                        .force = options->output ? outputs_force : NULL,
                                        .row = options->output ? outputs_row : NULL,
                                        .system =
-                                           options->save_system && last ? outputs_system : NULL};
+                                           options->save_system && last ? outputs_system : NULL,
+                                       .save = options->checkpoint > 0 ? restart_save : NULL};
     const bool wants = run->wants_frames || options->save_system || goes_on;
-    const struct flow_progress progress = {run, forget_meshes, show_step, simulate_stops};
+    const struct flow_progress progress = {run, forget_meshes, show_step, simulate_stops,
+                                           options->checkpoint > 0 ? is_due : NULL};
     run->threads = duite_threads(rt);
     progress_begin(&run->progress, run->phases.done[run->phases.now].name);
     flow_run(run->flow, rt, wants ? &output : NULL, &progress, &run->report, error);
@@ -121,7 +132,7 @@ static void say_stopped(const struct run *run)
     double end = 0;
     for (uint32_t i = 0; i < run->phases.n; i++)
         end += run->phases.models[i].end;
-    fprintf(stderr, "duite-cloth: stopped as asked by SIGUSR1 after step %llu, at %g of %g s",
+    fprintf(stderr, "duite-cloth: stopped as asked by a signal after step %llu, at %g of %g s",
             (unsigned long long)report->steps, report->simulated_seconds, end);
     if (phase)
         fprintf(stderr, ", in phase '%.60s'", phase);
@@ -283,13 +294,14 @@ int simulate(const struct simulate_options *options)
     if (failure == CLOTH_E_MEMORY || failure == CLOTH_E_LIBRARY || failure == CLOTH_E_IO)
         code = SIMULATE_FAILED;
     if (!failure && run.stopped_before)
-        code = SIMULATE_OK;
+        code = SIMULATE_STOPPED;
     else if (!failure) {
         failure = run_phases(&run);
         if (!failure)
             failure = conclude(&run);
         const int done = run.intersects ? SIMULATE_INTERSECTS : SIMULATE_OK;
-        code = code_of(failure, done);
+        const bool stopped = run.report.stopped || run.stopped_before;
+        code = code_of(failure, stopped ? SIMULATE_STOPPED : done);
     }
     struct cloth_error ignored = {0};
     outputs_close(&run.outputs, &ignored);
@@ -297,5 +309,6 @@ int simulate(const struct simulate_options *options)
     flow_free(run.flow);
     free(run.elastic);
     phases_free(&run.phases);
+    restart_free(&run.restart);
     return code;
 }

@@ -12,9 +12,12 @@ struct simulate_options {
     const char *scene; /* path of the scene file */
     size_t n_sets;     /* changes to it, in the order given */
     struct scene_set *sets;
-    const char *output, *report;             /* folder of frames, JSON file; NULL: none */
-    const char *save_system;                 /* folder; NULL: none */
-    const char *trace;                       /* file; NULL: none */
+    const char *output, *report; /* folder of frames, JSON file; NULL: none */
+    const char *restart;     /* the folder of frames of a run to go on with, which is `output`, too;
+                              * NULL:     none */
+    double checkpoint;       /* s: between two checkpoints; 0: none */
+    const char *save_system; /* folder; NULL: none */
+    const char *trace;       /* file; NULL: none */
     uint64_t trace_first, trace_end;         /* steps from .. to the one before */
     const struct duite_scheduler *scheduler; /* never NULL when it runs */
     const struct duite_mapping *mapping;     /* as that */
@@ -32,12 +35,13 @@ enum {
     SIMULATE_FAILED = 1,
     SIMULATE_BAD_INPUT = 2,
     SIMULATE_LOST = 3,
-    SIMULATE_INTERSECTS = 4 /* it is done, but a check that was asked for found intersections */
+    SIMULATE_INTERSECTS = 4, /* it is done, but a check that was asked for found intersections */
+    SIMULATE_STOPPED = 5     /* stopped by a signal before its end */
 };
 
-/* From now on SIGUSR1, on any rank, ends a run: it finishes its step, writes a frame of the state
- * after it and stops, or does not begin. SIGXFSZ becomes an error of the write, instead of ending
- * the process. Local. */
+/* From now on SIGUSR1 and SIGTERM, on any rank, end a run: it finishes its step, writes a
+ * checkpoint if they are asked for and a frame of the state after the step, and stops, or does not
+ * begin. SIGXFSZ becomes an error of the write, instead of ending the process. Local. */
 void simulate_catch_signals(void);
 
 /* Reads, runs, reports. It finds every input error before it writes anything, and one rank prints

@@ -39,6 +39,7 @@ static int check_same(const struct run *run, struct cloth_error *error)
     uint64_t asked = XXH64(options->scene, strlen(options->scene), 0), first;
     for (size_t i = 0; i < options->n_sets; i++)
         asked = XXH64(options->sets[i].text, strlen(options->sets[i].text), asked);
+    asked = XXH64(&options->checkpoint, sizeof options->checkpoint, asked + !options->restart);
     first = asked;
     MPI_Bcast(&first, 1, MPI_UINT64_T, 0, MPI_COMM_WORLD);
     int other = asked == first ? run->ranks : run->rank;
@@ -47,7 +48,7 @@ static int check_same(const struct run *run, struct cloth_error *error)
         return CLOTH_OK;
     return cloth_fail(error, CLOTH_E_INPUT,
                       "ranks 0 and %d were started with different scenes, or different values for "
-                      "them (--set and the like): give all ranks the same",
+                      "them (--set, --checkpoint and the like): give all ranks the same",
                       other);
 }
 
@@ -81,14 +82,23 @@ static int cut(struct run *run, struct cloth_error *error)
     return code ? code : find_elastic(run, error);
 }
 
-/* Rank 0 reads the scene of each phase and cuts the first one, unless it is asked to stop. */
+/* Rank 0 reads the scene of each phase and cuts the one that is next, unless it is asked to stop.
+ */
 static int read_and_cut(struct run *run, struct cloth_error *error)
 {
     const struct simulate_options *options = run->options;
     int code = phases_read(&run->phases, options->scene, options->n_sets, options->sets, error);
-    run->model = run->phases.models;
+    run->outputs.untangled = &run->untangled;
+    run->phases.keeps_start = options->checkpoint > 0;
+    if (!code && options->restart)
+        code = outputs_lock(&run->outputs, options, error);
+    if (!code && options->restart)
+        code = restart_read(&run->restart, options->restart, &run->phases, error);
+    run->model = phases_model(&run->phases);
     if (!code && !simulate_stops(NULL))
         code = cut(run, error);
+    if (!code && options->restart && run->flow)
+        code = restart_resume(&run->restart, run->flow, error);
     if (!code && options->report)
         code = check_file(run, "--report", options->report, error);
     if (!code && options->trace)
@@ -103,7 +113,7 @@ static bool check_stop(struct run *run)
     MPI_Allreduce(MPI_IN_PLACE, &wanted, 1, MPI_INT, MPI_MAX, MPI_COMM_WORLD);
     run->stopped_before = wanted;
     if (wanted && run->rank == 0 && !run->phases.done[0].ended)
-        fprintf(stderr, "duite-cloth: stopped as asked by SIGUSR1 before the first step; nothing "
+        fprintf(stderr, "duite-cloth: stopped as asked by a signal before the first step; nothing "
                         "was written\n");
     return wanted;
 }
@@ -155,7 +165,10 @@ static void open_outputs(struct run *run, struct cloth_error *error)
     if (!error->code)
         start_welds(run->model, run->flow, &run->apart, options->scene, error);
     if (!error->code)
-        outputs_open(&run->outputs, options, &run->phases, run->flow, &run->apart, error);
+        outputs_open(&run->outputs, options, &run->phases, run->flow, &run->apart,
+                     options->restart ? &run->restart.at : NULL, error);
+    if (!error->code && options->restart)
+        restart_outputs(&run->restart, &run->outputs, error);
 }
 
 int simulate_prepare(struct run *run)
@@ -168,7 +181,7 @@ int simulate_prepare(struct run *run)
     else
         flow_join(&run->flow, &error);
     phases_share(&run->phases, &error);
-    run->model = run->phases.models;
+    run->model = phases_model(&run->phases);
     const int code = simulate_agree(run, &error);
     if (code || check_stop(run))
         return code;

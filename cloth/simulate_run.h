@@ -4,6 +4,7 @@
 #include "cloth/outputs.h"
 #include "cloth/phases.h"
 #include "cloth/progress.h"
+#include "cloth/restart.h"
 #include "cloth/simulate.h"
 #include "cloth/untangle/untangle.h"
 
@@ -18,6 +19,7 @@ struct run {
     struct flow *flow;          /* as that */
     struct contact_apart apart; /* rank 0: of the model, with what the flow attached */
     struct outputs outputs;     /* rank 0 */
+    struct restart restart;     /* rank 0: what the run goes on from */
     bool wants_frames;          /* the same on all ranks */
     struct progress progress;
     struct flow_report report;
@@ -32,7 +34,7 @@ struct run {
  */
 int simulate_agree(const struct run *run, const struct cloth_error *error);
 
-/* Whether SIGUSR1 came; has the form of flow_progress.stop. */
+/* Whether SIGUSR1 or SIGTERM came; has the form of flow_progress.stop. */
 int simulate_stops(void *context);
 
 /* All that can be wrong with the input, as far as it is known before the first phase has run; then

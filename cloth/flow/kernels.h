@@ -8,7 +8,7 @@
 /* clang-format off */
 #define FLOW_KERNELS(X)                                                                            \
     X(table_make) X(table_keep) X(skin_make) X(skin_keep)                                          \
-    X(initial) X(keep) X(restore) X(status) X(tie) X(tie_show)                                     \
+    X(initial) X(resume) X(keep) X(restore) X(status) X(tie) X(tie_show)                                     \
     X(force) X(force_free) X(prescribe_velocity) X(prescribe_position)                             \
     X(keep_halo) X(skin_refit) X(skin_place) X(root) X(roots) X(tie_say) X(filter) X(constrain) X(collide)        \
     X(body_skin) X(body_refit) X(map_draw) X(map_draw_again)                                                                    \
@@ -40,6 +40,9 @@ extern const duite_kernel flow_pack;  /* r halo of s, w packed halo */
 extern const duite_kernel flow_meet, flow_meet_shape, flow_touch, flow_cut_ways, flow_count_ties,
     flow_tie_contacts;
 
-enum { FLOW_KERNELS_LISTED = FLOW_KERNELS_OF_ALL + 10 }; /* by flow_kernels (run.h) */
+/* Of checkpoints: checkpoint/checkpoint.h. */
+extern const duite_kernel flow_save_block, flow_send_main, flow_load_block;
+
+enum { FLOW_KERNELS_LISTED = FLOW_KERNELS_OF_ALL + 13 }; /* by flow_kernels (run.h) */
 
 #endif

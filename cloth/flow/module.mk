@@ -2,6 +2,10 @@
 # seen of it.
 libduite_cloth_la_SOURCES += \
     cloth/flow/bodies.h \
+    cloth/flow/checkpoint/checkpoint.h \
+    cloth/flow/checkpoint/resume.c \
+    cloth/flow/checkpoint/save.c \
+    cloth/flow/checkpoint/saved.c \
     cloth/flow/contact/body.c \
     cloth/flow/contact/body.h \
     cloth/flow/contact/certify.c \

@@ -3,6 +3,7 @@
 #include "cloth/flow/run.h"
 
 #include "cloth/base/memory.h"
+#include "cloth/flow/checkpoint/checkpoint.h"
 #include "cloth/flow/contact/certify.h"
 #include "cloth/flow/contact/repel.h"
 #include "cloth/flow/observe/observe.h"
@@ -38,6 +39,9 @@ const duite_kernel *const *flow_kernels(void)
                                                                      &flow_cut_ways,
                                                                      &flow_count_ties,
                                                                      &flow_tie_contacts,
+                                                                     &flow_save_block,
+                                                                     &flow_send_main,
+                                                                     &flow_load_block,
                                                                      NULL};
     return all;
 }
@@ -251,20 +255,29 @@ int flow_run_begin(struct flow_state *state)
     return code;
 }
 
-/* All steps, or until a stop that was asked for. */
-static int run_steps(struct flow_state *state)
+/* Where a run starts that does not go on from a checkpoint. */
+static int start(struct flow_state *state)
 {
-    const bool implicit = model_is_implicit(state->flow->model);
-    int code = flow_ties_choose(state);
-    if (!code && implicit && !state->solve.generation)
-        code = flow_cg_record(state);
-    if (!code)
-        code = flow_initialise(state);
+    int code = flow_initialise(state);
     if (!code && model_certifies(state->flow->model))
         code = flow_contact_start(state);
     if (!code && model_repels(state->flow->model))
         code = flow_repulsion_start(state);
+    return code;
+}
+
+/* All steps, or until a stop that was asked for. */
+static int run_steps(struct flow_state *state)
+{
+    const bool implicit = model_is_implicit(state->flow->model);
+    int code = state->head.resumed_bytes ? flow_resume_main(state) : DUITE_OK;
     if (!code)
+        code = flow_ties_choose(state);
+    if (!code && implicit && !state->solve.generation)
+        code = flow_cg_record(state);
+    if (!code)
+        code = state->head.resumed_bytes ? flow_resume_blocks(state) : start(state);
+    if (!code && !state->complete)
         code = flow_steps(state);
     if (!code && implicit && state->report->steps && state->output && state->output->system)
         code = flow_system(state);
@@ -336,14 +349,18 @@ int flow_run(struct flow *flow, duite *rt, const struct flow_output *output,
     *report = (struct flow_report){0};
     flow->progress = progress;
     int code = flow_run_begin(&state);
-    const double start = flow_now();
+    state.from = flow_now();
     if (!code)
         code = run_steps(&state);
     if (!code)
         code = duite_wait(rt); /* the last frame too is on disk */
-    report->wall_seconds = flow_now() - start;
+    report->wall_seconds = state.saved_wall + flow_now() - state.from;
     if (!code)
         code = flow_finish(&state);
+    if (!code && !report->stopped && !state.complete)
+        code = flow_save(&state, true);
+    if (!code)
+        code = duite_wait(rt);
     int failed = code ? explain(&state, code) : CLOTH_OK;
     const int contacts = flow_contact_free_objects(&state);
     const int objects = flow_objects_free(&state);

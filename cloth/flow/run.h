@@ -103,6 +103,13 @@ struct flow_before {
     double time;            /* s: that they took */
 };
 
+/* The whole state of a run between two steps, for a run of the same model later, on any ranks of
+ * machines of the same kind: opaque bytes. */
+struct flow_checkpoint {
+    unsigned char *bytes;
+    size_t n;
+};
+
 /* Where frames and systems go: handed over by the program. Called on rank 0 only, from one task at
  * a time. */
 struct flow_output {
@@ -127,6 +134,10 @@ struct flow_output {
     /* The system of the last step and the state after it, once, of an implicit run that made a
      * step. The arrays are lent. Returns 0 or a code and fills error. NULL: it is not wanted. */
     int (*system)(void *context, const struct solve_system *system, struct cloth_error *error);
+    /* The state between two steps, when a checkpoint is due (flow_progress.due), before a stop, and
+     * at the end. The bytes are the program's from then on (free); NULL: there was no memory for
+     * them. Frames and rows before it were handed over before. NULL: it is not wanted. */
+    void (*save)(void *context, struct flow_checkpoint state);
 };
 
 /* What a run says while it goes on; `step` is called by the main thread of rank 0 after each step,
@@ -143,6 +154,9 @@ struct flow_progress {
      * after them in a frame, and to stop. Asked in each step, on every rank, from tasks
      * of several threads at once. May be NULL. */
     int (*stop)(void *context);
+    /* Nonzero asks for a checkpoint: the run makes one within two steps, and asks again after each
+     * step. Asked on rank 0 only, from a task. May be NULL. */
+    int (*due)(void *context);
 };
 
 /* Kernels to list at duite_start, ended by NULL, and the context for duite_options.context. */
@@ -187,6 +201,19 @@ int flow_prepare(struct flow **flow, const struct model *model, int ranks,
 /* On the other ranks, which know no model: what they need rank 0 sends them in flow_run. Error:
  * CLOTH_E_MEMORY. Local. */
 int flow_join(struct flow **flow, struct cloth_error *error);
+
+/* On rank 0, before flow_run: the run goes on from a checkpoint of the same model, whose end may be
+ * later. The bytes, which begin at a multiple of 8, must live until flow_run returns. *at says how
+ * far it is. Errors: CLOTH_E_INPUT, it is not one of this model, or of another version: a sentence
+ * about "the checkpoint". Local. */
+struct flow_resumed {
+    uint64_t steps;  /* of the run that it is of: rows of its table of probes */
+    uint64_t frames; /* that are to stay; of this run, and those before it */
+    double time;     /* s */
+    double end;      /* s: of the run that it is of */
+};
+int flow_resume(struct flow *flow, struct flow_checkpoint from, struct flow_resumed *at,
+                struct cloth_error *error);
 
 /* Runs it to the end on a runtime that was started with flow_kernels() and `flow` as its context;
  * `output` is given on all ranks or on none. First the tables of the blocks go to the ranks that

@@ -98,6 +98,7 @@ void model_free(struct model *model)
         free(model->phases[i].name);
         free(model->phases[i].place);
     }
+    free(model->settings);
     free(model->phases);
     free(model->joints);
     free(model->welds);

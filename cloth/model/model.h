@@ -164,6 +164,7 @@ struct model {
     char **files; /* that were read, by the paths they were opened by; the first is the scene */
     uint32_t n_warnings;
     char **warnings; /* what is unusual about the scene but no error, each with its place */
+    char *settings;  /* a line `key: value` of each that the state depends on, sorted */
 };
 
 /* Whether its steps solve a linear system. */

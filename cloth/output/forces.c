@@ -1,6 +1,7 @@
 /* The forces of frames lie in a PC2 cache of their own, so that what reads cloth.pc2 reads it as
  * before. As there the count is rewritten last, when the floats that it counts are on the disk; it
  * never counts a frame that cloth.pc2 does not. */
+#include "cloth/output/files/cut.h"
 #include "cloth/output/files/files.h"
 
 #include <errno.h>
@@ -79,8 +80,17 @@ static int start(struct output_forces *forces, struct cloth_error *error)
                : output_fail(error, "write", forces->path);
 }
 
+static int go_on(struct output_forces *forces, uint64_t n_frames, struct cloth_error *error)
+{
+    forces->file = open(forces->path, O_RDWR | O_CLOEXEC);
+    forces->n_frames = (uint32_t)n_frames;
+    return forces->file < 0
+               ? output_refuse(error, "go on with", forces->path)
+               : output_cut_cache(forces->file, forces->path, forces->n_points, n_frames, error);
+}
+
 int output_forces_open(struct output_forces **forces, const char *folder, uint32_t n_vertices,
-                       struct cloth_error *error)
+                       const uint64_t *n_frames, struct cloth_error *error)
 {
     *forces = NULL;
     struct output_forces *made = calloc(1, sizeof *made);
@@ -90,9 +100,11 @@ int output_forces_open(struct output_forces **forces, const char *folder, uint32
     made->n_points = n_vertices;
     made->path = output_path(folder, NAME, "");
     made->bytes = malloc((size_t)12 * n_vertices + 1);
-    int code = made->path && made->bytes
-                   ? start(made, error)
-                   : cloth_fail(error, CLOTH_E_MEMORY, "no memory for the forces of %s", folder);
+    int code = CLOTH_OK;
+    if (!made->path || !made->bytes)
+        code = cloth_fail(error, CLOTH_E_MEMORY, "no memory for the forces of %s", folder);
+    else
+        code = n_frames ? go_on(made, *n_frames, error) : start(made, error);
     if (code) {
         struct cloth_error ignored = {0};
         output_forces_close(&made, &ignored);

@@ -5,6 +5,7 @@
  * mesh always belong together. First of all scene.json is made: where there is none, a cloth.obj is
  * not ours. */
 #include "cloth/output/files/bodies.h"
+#include "cloth/output/files/cut.h"
 #include "cloth/output/files/files.h"
 #include "cloth/output/files/json.h"
 #include "cloth/output/files/obstacles.h"
@@ -229,6 +230,37 @@ static int open_part(const struct output_frames *frames, enum part part, int *fi
     return *file >= 0 ? 0 : output_fail(error, "write", frames->path[part]);
 }
 
+/* With the files of an earlier run. The cache is cut first: it never counts a frame that the index
+ * has not. */
+static int go_on(struct output_frames *frames, const struct output_setup *setup,
+                 struct cloth_error *error)
+{
+    const uint64_t n = *setup->n_frames;
+    static const enum part parts[] = {PART_INDEX, PART_CACHE};
+    int *const file[] = {&frames->index, &frames->cache};
+    for (int i = 0; i < 2; i++) {
+        *file[i] = open(frames->path[parts[i]], O_RDWR | O_CLOEXEC);
+        if (*file[i] < 0)
+            return output_refuse(error, "go on with", frames->path[parts[i]]);
+    }
+    frames->n_frames = (uint32_t)n;
+    int code =
+        output_cut_cache(frames->cache, frames->path[PART_CACHE], frames->n_points, n, error);
+    if (!code)
+        code = output_cut_lines(frames->index, frames->path[PART_INDEX], 1 + n, &frames->index_size,
+                                error);
+    return code ? code : output_poses_open(&frames->poses, setup, 0, error);
+}
+
+static int begin(struct output_frames *frames, const struct output_setup *setup,
+                 struct cloth_error *error)
+{
+    int code = check_ours(frames, setup, error);
+    code = code ? code : start_files(frames, setup, error);
+    code = code ? code : open_part(frames, PART_INDEX, &frames->index, error);
+    return code ? code : open_part(frames, PART_CACHE, &frames->cache, error);
+}
+
 static int count_points(const struct output_setup *setup, uint32_t *n_points,
                         struct cloth_error *error)
 {
@@ -274,10 +306,8 @@ int output_open(struct output_frames **frames, const struct output_setup *setup,
     code = code ? code : allocate(made, setup->folder, error);
     code = code ? code : output_make_folder(setup->folder, error);
     made->n_bodies_before = output_bodies_before(setup->folder);
-    code = code ? code : check_ours(made, setup, error);
-    code = code ? code : start_files(made, setup, error);
-    code = code ? code : open_part(made, PART_INDEX, &made->index, error);
-    code = code ? code : open_part(made, PART_CACHE, &made->cache, error);
+    if (!code)
+        code = setup->n_frames ? go_on(made, setup, error) : begin(made, setup, error);
     if (code) {
         struct cloth_error ignored = {0};
         output_close(&made, &ignored);

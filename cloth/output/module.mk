@@ -1,5 +1,6 @@
 libduite_cloth_la_SOURCES += \
 	cloth/output/output.h \
+	cloth/output/checkpoint.c cloth/output/checkpoint.h \
 	cloth/output/forces.c \
 	cloth/output/frames.c \
 	cloth/output/garment.c cloth/output/garment.h cloth/output/pattern.c \
@@ -11,6 +12,7 @@ libduite_cloth_la_SOURCES += \
 	cloth/output/room.c \
 	cloth/output/files/apart.c \
 	cloth/output/files/bodies.c \
+	cloth/output/files/cut.c cloth/output/files/cut.h \
 	cloth/output/files/bodies.h \
 	cloth/output/files/files.h \
 	cloth/output/files/files.c \

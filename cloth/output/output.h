@@ -49,11 +49,14 @@ struct output_setup {
     const struct contact_apart *apart;   /* what does not meet; NULL: all meets */
     size_t n_inputs;
     const char *const *inputs; /* paths of what the run reads, which is not replaced */
+    const uint64_t *n_frames; /* how many of an earlier run stay, whose files go on; NULL: none, and
+                               * the files are new */
 };
 
 /* Opens a folder for frames. Files of an earlier run in it are replaced. A cloth.obj or body-K.obj
  * of anyone else is not, nor an input: CLOTH_E_INPUT, before anything changes. Further errors:
- * CLOTH_E_INPUT where the folder cannot be written to, CLOTH_E_IO, CLOTH_E_MEMORY. */
+ * CLOTH_E_INPUT where the folder cannot be written to, or has fewer frames than are to stay;
+ * CLOTH_E_IO, CLOTH_E_MEMORY. */
 int output_open(struct output_frames **frames, const struct output_setup *setup,
                 struct cloth_error *error);
 
@@ -85,9 +88,10 @@ int output_close(struct output_frames **frames, struct cloth_error *error);
 struct output_forces;
 
 /* Begins it in a folder of frames, which is there. Replaces the one of an earlier run, nothing
- * else. Errors as of output_open. */
+ * else, or goes on with its first frames (n_frames as of struct output_setup). Errors as of
+ * output_open. */
 int output_forces_open(struct output_forces **forces, const char *folder, uint32_t n_vertices,
-                       struct cloth_error *error);
+                       const uint64_t *n_frames, struct cloth_error *error);
 
 /* Appends a frame: force is (all vertices) x 3. Has the form of flow_output.force, context =
  * forces. A frame that fails leaves the ones before it whole. */
@@ -124,14 +128,19 @@ void output_lock_free(struct output_lock **lock);
 struct output_probes;
 
 /* Begins the table; header: its columns' names with commas between, the first two `step` and `time
- * [s]`. Replaces the table of an earlier run, nothing else. Errors as of output_open. */
+ * [s]`. Replaces the table of an earlier run, nothing else, or goes on behind its first *n_rows
+ * rows; NULL: a new table. Errors as of output_open. */
 int output_probes_open(struct output_probes **probes, const char *folder, const char *header,
-                       struct cloth_error *error);
+                       const uint64_t *n_rows, struct cloth_error *error);
 
 /* Appends a row. Has the form of flow_output.row, context = probes. Numbers have 17 digits, those
  * that are not finite are left out. A row that fails leaves the ones before it whole. */
 int output_probes_row(void *context, uint64_t step, double time, size_t n, const double *values,
                       struct cloth_error *error);
+
+/* Brings the table of a folder, if there is one, to the disk, whoever writes it. Error: CLOTH_E_IO.
+ */
+int output_probes_sync(const char *folder, struct cloth_error *error);
 
 /* Closes, with all rows on the disk; *probes becomes NULL. */
 int output_probes_close(struct output_probes **probes, struct cloth_error *error);

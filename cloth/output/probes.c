@@ -1,6 +1,7 @@
 /* The file holds a header and whole rows: a row is written at once, behind those before it, and one
  * that fails is taken away again. Rows are in the system's hands when output_probes_row returns, so
  * they outlive the process; they are brought to the disk when the file is closed. */
+#include "cloth/output/files/cut.h"
 #include "cloth/output/files/files.h"
 
 #include <errno.h>
@@ -85,8 +86,20 @@ static int start(struct output_probes *probes, const char *header, struct cloth_
     return 0;
 }
 
+/* Behind the rows of an earlier run that stay. */
+static int go_on(struct output_probes *probes, const char *header, uint64_t n_rows,
+                 struct cloth_error *error)
+{
+    probes->file = open(probes->path, O_RDWR | O_CLOEXEC);
+    if (probes->file < 0)
+        return output_refuse(error, "go on with", probes->path);
+    const int code = output_cut_header(probes->file, probes->path, header, error);
+    return code ? code
+                : output_cut_lines(probes->file, probes->path, 1 + n_rows, &probes->size, error);
+}
+
 int output_probes_open(struct output_probes **probes, const char *folder, const char *header,
-                       struct cloth_error *error)
+                       const uint64_t *n_rows, struct cloth_error *error)
 {
     *probes = NULL;
     struct output_probes *made = calloc(1, sizeof *made);
@@ -99,7 +112,8 @@ int output_probes_open(struct output_probes **probes, const char *folder, const 
     int code = made->path && made->line
                    ? output_make_folder(folder, error)
                    : cloth_fail(error, CLOTH_E_MEMORY, "no memory for the probes of %s", folder);
-    code = code ? code : start(made, header, error);
+    if (!code)
+        code = n_rows ? go_on(made, header, *n_rows, error) : start(made, header, error);
     if (code) {
         struct cloth_error ignored = {0};
         output_probes_close(&made, &ignored);
@@ -139,6 +153,19 @@ int output_probes_row(void *context, uint64_t step, double time, size_t n, const
     code = output_fail(error, "write a row to", probes->path);
     if (ftruncate(probes->file, (off_t)probes->size) != 0)
         return code; /* the first error is the one that matters */
+    return code;
+}
+
+int output_probes_sync(const char *folder, struct cloth_error *error)
+{
+    char *path = output_path(folder, NAME, "");
+    if (!path)
+        return cloth_fail(error, CLOTH_E_MEMORY, "no memory for the path of %s", NAME);
+    const int file = open(path, O_RDONLY | O_CLOEXEC);
+    const int code = file >= 0 && output_sync(file) != 0 ? output_fail(error, "write", path) : 0;
+    if (file >= 0)
+        close(file);
+    free(path);
     return code;
 }
 

@@ -41,6 +41,7 @@ libduite_cloth_la_SOURCES += \
 	cloth/scene/build/load.c \
 	cloth/scene/build/mannequin.c \
 	cloth/scene/build/region.c \
+	cloth/scene/build/settings.c \
 	cloth/scene/build/settled.c \
 	cloth/scene/build/seams.c \
 	cloth/scene/build/seams_file.c \

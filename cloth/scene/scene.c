@@ -48,6 +48,8 @@ static int read_tree(struct model *model, struct scene_tree *tree, uint32_t phas
         code = scene_build_girths(model, tree, error);
     if (!code)
         code = scene_build_idle(model, tree, error);
+    if (!code)
+        code = scene_build_settings(model, tree, error);
     return code;
 }
 

@@ -71,3 +71,6 @@ TESTS += tests/whole/test_garment.sh
 dist_check_SCRIPTS += tests/whole/test_mannequin.sh
 EXTRA_DIST += tests/whole/mannequin_golden.txt
 TESTS += tests/whole/test_mannequin.sh
+dist_check_SCRIPTS += tests/whole/test_checkpoint.sh tests/whole/test_checkpoint_long.sh
+TESTS += tests/whole/test_checkpoint.sh
+LONG_TESTS += tests/whole/test_checkpoint_long.sh

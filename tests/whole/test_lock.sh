@@ -29,11 +29,11 @@ begin() { # COMMAND...: a run of hours, in the background, that has frames
     job=$!
     awaits $job test -e frames/cloth.pc2
 }
-stop() { # PROCESS: a run of hours that goes well
+stop() { # PROCESS: a run of hours that ends as it is asked to
     kill -USR1 "$1"
     status=0
     wait "$1" || status=$?
-    test $status = 0 && test ! -e frames/duite.lock
+    test $status = 5 && test ! -e frames/duite.lock
 }
 run() { # a short run into the folder; leaves its status and what it said
     status=0
@@ -96,6 +96,7 @@ killed() { # SIGNAL: ends a run; whether it leaves its lock
 }
 ended() { ! killed "$1" && result && test ! -s second; }
 ok "SIGTERM removes the lock" ended TERM
+ok "SIGINT removes the lock" ended INT
 crashed() { killed KILL && dead=$job && replaced; }
 ok "SIGKILL leaves a lock, which the next run replaces" crashed
 failed() {

@@ -132,7 +132,7 @@ stops() {
     status=0
     wait $job || status=$?
     cat said report.json
-    test $status = 0 && grep -q "stopped as asked by SIGUSR1 after step .*, in phase 'long'" said && grep -q '"name": "long",.*"ended": "stopped"' report.json && ! grep -q never report.json
+    test $status = 5 && grep -q "stopped as asked by a signal after step .*, in phase 'long'" said && grep -q '"name": "long",.*"ended": "stopped"' report.json && ! grep -q never report.json
 }
 ok "SIGUSR1 ends the whole run" stops
 

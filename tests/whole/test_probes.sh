@@ -101,12 +101,12 @@ has_rows() { test "$(wc -l < killed/probes.csv)" -gt 30; }
 killed() { # rows up to then are whole
     "$DUITE_CLOTH" sheet.yaml --quiet --output killed --end 1000 & pid=$!
     awaits $pid has_rows
-    kill -TERM $pid && wait $pid
+    kill -KILL $pid && wait $pid
     rows=$(($(wc -l < killed/probes.csv) - 1))
     test $rows -ge 30 && whole killed/probes.csv $rows && tail -c 1 killed/probes.csv | cmp - newline
 }
 printf '\n' > newline
-ok "SIGTERM leaves whole rows" killed
+ok "SIGKILL leaves whole rows" killed
 
 refused() { # STATUS SENTENCE COMMAND...
     refused_want=$1 refused_what=$2 status=0

@@ -1,5 +1,5 @@
 #!/bin/sh
-# SIGUSR1 stops a run: it finishes its step, whenever the next frame is due, and writes the state after it as the last frame. It
+# SIGUSR1 and SIGTERM stop a run: it finishes its step, whenever the next frame is due, and writes the state after it as the last frame. It
 # may come to any rank, and before the run begins. Each run here would take hours: one that goes on is killed, and fails.
 # shellcheck disable=SC2086 # commands of several words
 . "${srcdir:-.}/tests/support/tap.sh"
@@ -29,12 +29,12 @@ exec "$@"
 END
 
 rows() { test -e frames/probes.csv && test "$(wc -l < frames/probes.csv)" -gt "$1"; }
-ends_well() { # of the run in the background: status 0, though it would take hours
+ends_well() { # of the run in the background: status 5, though it would take hours
     status=0
     wait $job || status=$?
     echo "exit status $status"
     cat complained
-    test $status = 0
+    test $status = 5
 }
 
 begin() { # COMMAND...: in the background, until it has made three steps
@@ -44,7 +44,7 @@ begin() { # COMMAND...: in the background, until it has made three steps
     awaits $job rows 3
 }
 whole() { # frames 0 and 1, the second of the step that the run ended with; the same bits as a run that ends there
-    set -- $(sed -n 's/^duite-cloth: stopped as asked by SIGUSR1 after step \([0-9]*\), at .* of 100000 s; the last frame is 1$/\1/p' complained)
+    set -- $(sed -n 's/^duite-cloth: stopped as asked by a signal after step \([0-9]*\), at .* of 100000 s; the last frame is 1$/\1/p' complained)
     cat frames/frames.csv
     test -n "$1" && test "$(wc -l < frames/frames.csv)" = 3 && test "$(wc -c < frames/cloth.pc2)" -eq $((32 + 2 * 12 * 64)) &&
         test "$(sed -n 's/^1,//p' frames/frames.csv)" = "$(value simulated_seconds stopped.json)" &&
@@ -55,6 +55,10 @@ whole() { # frames 0 and 1, the second of the step that the run ended with; the 
 stopped() { begin "$@" && kill -USR1 $job && ends_well && whole; }
 ok "SIGUSR1 finishes the step" stopped env
 ok "SIGUSR1 finishes the step, 2 ranks" stopped $two
+terminated() { begin "$@" && kill -TERM $job && ends_well && whole; }
+ok "SIGTERM finishes the step" terminated env
+to_all() { begin $two && kill -TERM $(cat pid.0 pid.1) && ends_well && whole; }
+ok "SIGTERM to two ranks" to_all
 one_rank() { begin $two && kill -USR1 "$(cat "pid.$1")" && ends_well && whole; }
 ok "SIGUSR1 to rank 0 alone" one_rank 0
 ok "SIGUSR1 to rank 1 alone" one_rank 1
@@ -65,7 +69,7 @@ due() { # a frame that is due is not written twice
     "$DUITE_CLOTH" dense.yaml --output frames > printed 2> complained &
     job=$!
     awaits $job rows 3 && kill -USR1 $job && ends_well || return 1
-    set -- $(sed -n 's/^duite-cloth: stopped as asked by SIGUSR1 after step \([0-9]*\), .*; the last frame is \([0-9]*\)$/\1 \2/p' complained)
+    set -- $(sed -n 's/^duite-cloth: stopped as asked by a signal after step \([0-9]*\), .*; the last frame is \([0-9]*\)$/\1 \2/p' complained)
     tail -n 2 frames/frames.csv
     test "$1" = "$2" && test "$(tail -n 1 frames/frames.csv | cut -d , -f 1)" = "$2"
 }
@@ -83,7 +87,7 @@ before() { # COMMAND...: the scene comes through a pipe, which is open when rank
     cat scene.yaml >&3
     exec 3>&-
     ends_well && test ! -s printed && test "$(ls frames)" = note && test ! -e stopped.json &&
-        test "$(cat complained)" = "duite-cloth: stopped as asked by SIGUSR1 before the first step; nothing was written"
+        test "$(cat complained)" = "duite-cloth: stopped as asked by a signal before the first step; nothing was written"
 }
 from=0
 ok "SIGUSR1 while the scene is read" before env

@@ -132,11 +132,17 @@ struct flow_seen {
 int flow_contact_look(struct flow_state *state, struct flow_seen *seen);
 /* The lists of meetings whose features may have corners in a block, put into `to`; returns how
  * many. Marks the blocks that may keep contacts with corners in it, of all. Local. (pairs.c) */
+struct flow_saved_side;
+int flow_contact_meet_again(struct flow_state *state, uint32_t n,
+                            const struct flow_saved_side *side); /* those of a checkpoint */
 uint32_t flow_contact_lists(const struct flow_state *state, uint32_t block, duite_object *to);
 void flow_contact_keepers(const struct flow_state *state, uint32_t block, unsigned char *keeps);
 /* Forks what makes the contacts of all blocks: those of the solve, pressed, and the pairs that
  * fail; or, at the end of a step, those that are near. (touch.c) */
 int flow_contact_none(struct flow_state *state); /* there are none yet */
+/* Room for the contacts of a block, at most n, that a checkpoint has, in its list of the step's
+ * begin. */
+void flow_contact_keep_again(struct flow_state *state, uint32_t block, uint32_t n);
 int flow_contact_again(struct flow_state *state);
 int flow_contact_accept(struct flow_state *state);
 /* Forks what makes ties of the contacts, for the next solve. (rows.c) */

@@ -4,6 +4,7 @@
  * get the same boxes.
  *
  * In reading order: boxes of all blocks, meetings, who needs which, their tasks. */
+#include "cloth/flow/checkpoint/checkpoint.h"
 #include "cloth/flow/contact/body.h"
 #include "cloth/flow/contact/contact.h"
 #include "cloth/flow/contact/skins.h"
@@ -149,6 +150,13 @@ static void make_list(struct flow_state *state, struct flow_meeting *meeting)
     duite_colocate(state->rt, meeting->near, state->block[owner].x);
 }
 
+static int make_counts(struct flow_state *state)
+{
+    struct flow_meetings *meetings = &state->contact.meetings;
+    return duite_new(state->rt, DUITE_F64, FLOW_COUNTS * (size_t)(meetings->n ? meetings->n : 1),
+                     &meetings->counts);
+}
+
 static int make_meetings(struct flow_state *state)
 {
     struct flow_meetings *meetings = &state->contact.meetings;
@@ -166,8 +174,23 @@ static int make_meetings(struct flow_state *state)
             *meeting = (struct flow_meeting){.side = {a, b}, .room = LEAST_ROOM};
             make_list(state, meeting);
         }
-    return duite_new(state->rt, DUITE_F64, FLOW_COUNTS * (size_t)(meetings->n ? meetings->n : 1),
-                     &meetings->counts);
+    return make_counts(state);
+}
+
+int flow_contact_meet_again(struct flow_state *state, uint32_t n,
+                            const struct flow_saved_side *side)
+{
+    struct flow_meetings *meetings = &state->contact.meetings;
+    const int code = flow_contact_room(state, n);
+    if (code)
+        return code;
+    for (uint32_t i = 0; i < n; i++) {
+        struct flow_meeting *meeting = meetings->all + meetings->n++;
+        *meeting =
+            (struct flow_meeting){.side = {side[i].side[0], side[i].side[1]}, .room = side[i].room};
+        make_list(state, meeting);
+    }
+    return n ? make_counts(state) : DUITE_OK;
 }
 
 /* ---- Who needs which ---- */

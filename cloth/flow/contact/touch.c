@@ -362,6 +362,12 @@ static void make_list(struct flow_state *state, uint32_t block, unsigned which, 
     duite_colocate(state->rt, kept->list[which], state->block[block].x);
 }
 
+void flow_contact_keep_again(struct flow_state *state, uint32_t block, uint32_t n)
+{
+    make_list(state, block, state->contact.begin, n ? n : 1);
+    state->contact.kept[block].n[state->contact.begin] = n;
+}
+
 int flow_contact_none(struct flow_state *state)
 {
     const struct flow_list none = {0};

@@ -279,6 +279,10 @@ static int count(struct flow_state *state)
 
 int flow_finish(struct flow_state *state)
 {
+    if (state->complete) { /* its report was whole */
+        const int hashed = hash_all(state);
+        return hashed ? hashed : count(state);
+    }
     int code = largest_stretch(state);
     if (!code)
         code = flow_energy_get(state, &state->report->end);

@@ -103,21 +103,29 @@ int flow_frame_last(struct flow_state *state)
     return state->shown < now ? fork_frame(state, now, false) : DUITE_OK;
 }
 
-int flow_frames(struct flow_state *state, uint64_t from)
+/* Those that the step shows, if what lies up to so many ticks behind its end is shown there. */
+static int fork_frames(struct flow_state *state, double begin, double behind)
 {
-    const struct model *model = state->flow->model;
-    const double now = (double)state->grid.now, begin = (double)from;
-    /* What lies so far behind now is certainly shown now: no end of a step can be nearer. */
-    const bool uniform = !model->halving || state->grid.now == state->grid.end;
-    const double behind = uniform ? FLOW_TICKS / 2.0 : 0.5;
-    const double middle = (begin + now) / 2;
+    const double now = (double)state->grid.now, middle = (begin + now) / 2;
     int code = DUITE_OK;
     while (!code) {
-        const double tick = flow_frame_tick(model, state->next_frame);
+        const double tick = flow_frame_tick(state->flow->model, state->next_frame);
         if (!(tick < now + behind))
             break;
         const bool before = tick < middle && begin < now;
         code = fork_frame(state, before ? begin : now, before);
     }
+    return code;
+}
+
+/* What lies so far behind now is certainly shown now: no end of a step can be nearer. A run that
+ * goes on later does so without the frames that only its end made certain. */
+int flow_frames(struct flow_state *state, uint64_t from)
+{
+    const double most = FLOW_TICKS / 2.0, begin = (double)from;
+    int code = fork_frames(state, begin, state->flow->model->halving ? 0.5 : most);
+    state->certain = (struct flow_frames_so_far){state->next_frame, state->shown};
+    if (!code && state->grid.now == state->grid.end)
+        code = fork_frames(state, begin, most);
     return code;
 }

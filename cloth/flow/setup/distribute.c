@@ -3,6 +3,7 @@
  * its turn comes. A task where the block lives takes it over, and rank 0 frees it. A few are on
  * their way at any time, so that rank 0 never holds more than its own and those. */
 #include "cloth/flow/bodies.h"
+#include "cloth/flow/checkpoint/checkpoint.h"
 #include "cloth/flow/observe/observe.h"
 #include "cloth/flow/setup/setup.h"
 
@@ -55,6 +56,8 @@ static int broadcast_head(const duite_call *call)
     head->vertex_mass = flow->vertex_mass;
     head->feels_contact = flow->feels_contact;
     head->partition_hash = flow->partition_hash;
+    if (flow->from.bytes)
+        head->resumed_bytes = ((const struct flow_saved *)flow->from.bytes)->main_bytes;
     head->n_vertices = flow->n_vertices;
     head->n_pieces = source->particles.n_pieces;
     head->n_ties = source->springs.n_timed;

@@ -199,6 +199,27 @@ static void fit(struct flow_state *state)
     tied->next = before;
 }
 
+static void copy(const struct flow_tied_blocks *from, uint32_t n_blocks,
+                 struct flow_tied_blocks *to)
+{
+    memcpy(to->room, from->room, n_blocks * sizeof *to->room);
+    memcpy(to->first, from->first, ((size_t)n_blocks + 1) * sizeof *to->first);
+    memcpy(to->other, from->other, from->first[n_blocks] * sizeof *to->other);
+    memcpy(to->place, from->place, from->first[n_blocks] * sizeof *to->place);
+}
+
+int flow_ties_again(struct flow_state *state, const struct flow_tied_blocks *tied)
+{
+    const uint32_t n_blocks = state->flow->tables.n_blocks;
+    int code = DUITE_OK;
+    copy(tied, n_blocks, &state->tied.next);
+    fit(state);
+    for (uint32_t b = 0; b < n_blocks && !code; b++)
+        if (!has_links(&state->tied, b))
+            code = set_links(state, b);
+    return code;
+}
+
 int flow_ties_adopt(struct flow_state *state)
 {
     struct flow_tied *tied = &state->tied;

@@ -94,7 +94,8 @@ struct flow {
     struct flow_watched watched;
     char *header; /* of the table of probes; NULL: none */
 
-    struct flow_filter filter; /* the program's; rows NULL: none */
+    struct flow_filter filter;   /* the program's; rows NULL: none */
+    struct flow_checkpoint from; /* that the run goes on from; bytes NULL: none */
 
     /* Of the run that is on. */
     bool made[FLOW_FIELDS_OF_ALL];        /* which fields exist, in all blocks or in the first */
@@ -128,6 +129,8 @@ struct flow {
     double *probe_values; /* watched x FLOW_PROBE_VALUES */
     uint64_t frames;      /* written */
     uint64_t hash;
+    struct flow_checkpoint saving; /* what tasks have copied so far; bytes NULL: no memory */
+    size_t saving_room;            /* bytes */
 };
 
 /* What a run's preconditioner is made of. An explicit run has none. */

@@ -55,6 +55,7 @@ enum {
     FLOW_SLOPE,  /* of a Newton step: dv.b before it, */
     FLOW_CHANGE, /* dv.M dv, */
     FLOW_WHOLE,  /* (v - base_v).M (v - base_v) after it */
+    FLOW_DUE,    /* a checkpoint is due */
     FLOW_STATUS
 };
 /* Indices into the peaks of a state that is watched, F64, each the largest of any block: square of
@@ -91,7 +92,8 @@ enum { FLOW_VERTEX_BYTES = 24 };
 struct flow_head {
     uint64_t n_steps, partition_hash;
     double inertia, release, contact_stiffness, vertex_mass;
-    uint64_t shared_bytes;                                              /* of the next broadcast */
+    uint64_t shared_bytes;  /* of the next broadcast */
+    uint64_t resumed_bytes; /* what the main program knew of a checkpoint; 0: there is none */
     uint32_t n_vertices, n_triangles, n_blocks, n_neighbours, n_ghosts; /* of all blocks */
     uint32_t max_rows, max_neighbours, max_halo, max_entries;           /* of any block */
     uint32_t max_ghosts, n_pieces, n_ties, n_anchors, feels_contact;
@@ -213,6 +215,40 @@ struct flow_newton {
     double status[FLOW_STATUS]; /* in place of what the solve of a linear step notes */
 };
 
+/* What the main program knows between two steps that the next ones go on from: checkpoints have it.
+ * length: ticks of the last step accepted, length_before: of the one before it; 0: none yet.
+ * guessed: ticks of the step that left dv, if the next solve may begin with it; else 0. smooth:
+ * ticks of the step before, if contact had no part in it; else 0, and then the next step is by
+ * implicit Euler where the others are by BDF2. settled_forces: f is that of x and v (velocity
+ * Verlet). longest: largest stretch at grid.now, if steps are judged by it. shown: tick of the last
+ * frame. certain: next_frame and shown without the frames that only the end of the run called for.
+ * resting: it rests, and ends after the next frame; sewn: so it does where it waits for seams, and
+ * all are closed; over: it ended so. moved: s, when it was last seen too fast for that. */
+struct flow_frames_so_far {
+    uint64_t next;
+    double shown;
+};
+#define FLOW_LASTING(X)                                                                            \
+    X(struct flow_grid, grid)                                                                      \
+    X(struct flow_guard, guard)                                                                    \
+    X(struct flow_frames_so_far, certain)                                                          \
+    X(uint64_t, next_frame)                                                                        \
+    X(double, shown)                                                                               \
+    X(double, longest)                                                                             \
+    X(double, moved)                                                                               \
+    X(uint32_t, length)                                                                            \
+    X(uint32_t, length_before)                                                                     \
+    X(uint32_t, guessed)                                                                           \
+    X(uint32_t, smooth)                                                                            \
+    X(bool, settled_forces)                                                                        \
+    X(bool, resting)                                                                               \
+    X(bool, sewn)                                                                                  \
+    X(bool, over)
+#define FLOW_LASTING_MEMBER(type, name) type name;
+struct flow_lasting {
+    FLOW_LASTING(FLOW_LASTING_MEMBER)
+};
+
 /* A run as the main program sees it; the same on every rank. */
 struct flow_state {
     struct flow *flow;
@@ -230,32 +266,27 @@ struct flow_state {
     struct flow_run_objects run;
     unsigned pass; /* of a round that is recorded: 0 or 1; else 0 */
     struct flow_newton newton;
-    uint32_t length; /* ticks of the last step accepted, and of the one before it; 0: none yet */
-    uint32_t length_before;
-    uint32_t
-        guessed; /* ticks of the step that left dv, if the next solve may begin with it; else 0 */
-    uint32_t smooth; /* ticks of the step before, if contact had no part in it; else 0, and then the
-                      * next step is by implicit Euler where the others are by BDF2 */
     struct flow_head head;
     duite_object *refs;    /* room for the objects of any task */
     double *rows;          /* room for the rows of any block, or a number for each neighbour */
     unsigned char *bytes;  /* rank 0: a part of the state, to be hashed, */
     XXH64_state_t *hash;   /* and what was hashed so far */
     duite_counters before; /* what was counted before the first step */
-    struct flow_grid grid;
+    union {                /* by name, or all of it */
+        struct flow_lasting lasting;
+        struct {
+            FLOW_LASTING(FLOW_LASTING_MEMBER)
+        };
+    };
     struct flow_attempt attempt;
-    bool settled_forces; /* f is that of x and v (velocity Verlet) */
-    double longest;      /* largest stretch at grid.now, if steps are judged by it */
-    struct flow_guard guard;
-    char reason[600]; /* why no step is short enough */
-    uint64_t next_frame;
-    double shown;                      /* tick of the last frame */
+    char reason[600];                  /* why no step is short enough */
     bool begun;                        /* all ranks have their memory, objects are made */
     bool stopping;                     /* a stop was agreed: no more steps begin */
-    bool resting;                      /* it rests: ends after the next frame */
-    bool sewn;                         /* so it does where it waits for seams, and all are closed */
+    bool complete;                     /* a checkpoint that it goes on from has all steps */
+    bool saving;                       /* a checkpoint is due: no step begins before it */
+    double saved_wall;                 /* s: of the runs that it goes on from */
+    double from;                       /* of flow_now: when the first step began */
     double *seam_peaks, *seam_squares; /* of each pulled seam: 0; as the field, of the last step */
-    double moved;                      /* s: when it was last seen too fast for that */
 };
 
 static inline struct flow_before flow_before(const struct flow_state *state)
@@ -315,6 +346,8 @@ void flow_ties_free(struct flow_state *state);
  * Then every block that has ties or had some makes its table (flow_ties_make), before anything
  * reads TIED. */
 int flow_ties_adopt(struct flow_state *state);
+/* What a checkpoint has of tied.now becomes that, before the first step. */
+int flow_ties_again(struct flow_state *state, const struct flow_tied_blocks *tied);
 /* Sets which free pieces of cloth are one for what a solve left of their momentum: those that the
  * joints of the step join; none is free where the records say that there are contacts. */
 int flow_ties_group(struct flow_state *state);

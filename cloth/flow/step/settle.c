@@ -1,6 +1,7 @@
 /* The steps of a run: each begins while the one before it is settled, that is, accepted or refused
  * by what all blocks noted in its status. What is decided follows from values that all ranks get
  * alike. */
+#include "cloth/flow/checkpoint/checkpoint.h"
 #include "cloth/flow/contact/certify.h"
 #include "cloth/flow/integrators/integrator.h"
 #include "cloth/flow/observe/observe.h"
@@ -129,6 +130,7 @@ static int await(struct flow_state *state, double status[FLOW_STATUS], struct fl
                                      .max = model->stretch_limit,
                                      .growth = model->stretch_growth};
     int code = duite_get(state->rt, state->run.status[parity], status);
+    state->saving = state->saving || (!code && status[FLOW_DUE] > 0);
     if (!code && flow_is_judged(model))
         code = flow_stretch_get(state, &verdict->after);
     if (!code)
@@ -205,8 +207,9 @@ static int settle_overlapped(struct flow_state *state, bool *begun)
     const struct flow_attempt next = next_attempt(state);
     int code = DUITE_OK;
     *begun = !before.forked ||
-             (before.length == FLOW_TICKS && !state->stopping && !state->resting && !state->sewn &&
-              !flow_step_is_driven(state->flow->model) && flow_ties_stay(state, next.begin));
+             (before.length == FLOW_TICKS && !state->stopping && !state->saving &&
+              !state->resting && !state->sewn && !flow_step_is_driven(state->flow->model) &&
+              flow_ties_stay(state, next.begin));
     *begun = *begun && next.begin < state->grid.end;
     if (*begun) {
         state->attempt = next;
@@ -246,11 +249,12 @@ static int watch_start(struct flow_state *state)
 /* Before the end, where it was asked for. */
 static int stop(struct flow_state *state)
 {
+    const int code = flow_save(state, false);
     state->report->stopped = true;
-    return flow_frame_last(state);
+    return code ? code : flow_frame_last(state);
 }
 
-int flow_steps(struct flow_state *state)
+static int begin(struct flow_state *state)
 {
     flow_grid_begin(&state->grid, state->flow->n_steps);
     int code = watch_start(state);
@@ -258,9 +262,23 @@ int flow_steps(struct flow_state *state)
         code = flow_energy_begin(state);
     if (!code)
         code = flow_frames(state, 0);
-    if (!code)
-        code = first_stretch(state);
-    while (!code && (state->grid.now < state->grid.end)) {
+    return code ? code : first_stretch(state);
+}
+
+/* What is due between two steps. frame: the one that was next before the last step. */
+static int pause(struct flow_state *state, uint64_t frame)
+{
+    state->over = (state->resting || state->sewn) && state->next_frame > frame;
+    if (state->over || !state->saving)
+        return DUITE_OK;
+    state->saving = false;
+    return flow_save(state, false);
+}
+
+int flow_steps(struct flow_state *state)
+{
+    int code = state->head.resumed_bytes ? DUITE_OK : begin(state);
+    while (!code && !state->over && state->grid.now < state->grid.end) {
         const uint64_t frame = state->next_frame;
         bool begun;
         code = settle_overlapped(state, &begun);
@@ -269,8 +287,7 @@ int flow_steps(struct flow_state *state)
         else if (!code && state->grid.now < state->grid.end) {
             if (state->stopping)
                 return stop(state);
-            if ((state->resting || state->sewn) && state->next_frame > frame)
-                break;
+            code = pause(state, frame);
         }
     }
     if (!code && state->flow->model->sewn > 0 && !state->sewn)

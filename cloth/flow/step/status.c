@@ -1,5 +1,5 @@
 /* What the tasks of a step note in its status: rows beyond all bounds, and that a stop is asked
- * for. */
+ * for, or a checkpoint due. */
 #include "cloth/flow/bodies.h"
 #include "cloth/flow/step/step.h"
 
@@ -29,10 +29,19 @@ int flow_check(const duite_call *call, const struct flow_table *t,
         y[bad][2]);
 }
 
+/* Rank 0 alone has the clock by which checkpoints are due. */
+static void note_due(const duite_call *call, double *status)
+{
+    const struct flow_progress *progress = flow_of(call)->progress;
+    if (call->rank == 0 && progress && progress->due && progress->due(progress->context))
+        status[FLOW_DUE] = 1;
+}
+
 FLOW_KERNEL(status, FLOW_NO_PART, struct flow_block_args, (SUM(status)))
 static int status_body(const duite_call *call, const struct status_fields *on)
 {
     flow_note_stop(call, on->status);
+    note_due(call, on->status);
     return 0;
 }
 

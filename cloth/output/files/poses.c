@@ -1,5 +1,6 @@
 /* As of the cloth, the count is rewritten last, when the floats that it counts are on the disk. */
 #include "cloth/output/files/poses.h"
+#include "cloth/output/files/cut.h"
 #include "cloth/output/files/files.h"
 #include "cloth/output/files/obstacles.h"
 
@@ -53,6 +54,13 @@ static int remove_old(const char *folder, uint32_t n_before, struct cloth_error 
     return code;
 }
 
+static int go_on(struct pose_file *of, uint64_t n_frames, struct cloth_error *error)
+{
+    of->file = open(of->path, O_RDWR | O_CLOEXEC);
+    return of->file < 0 ? output_refuse(error, "go on with", of->path)
+                        : output_cut_cache(of->file, of->path, of->n_points, n_frames, error);
+}
+
 static int start(struct pose_file *of, const struct output_setup *setup, uint32_t number,
                  struct cloth_error *error)
 {
@@ -63,6 +71,8 @@ static int start(struct pose_file *of, const struct output_setup *setup, uint32_
     of->path = pose_path(setup->folder, number);
     if (!of->path)
         return fail_memory(error);
+    if (setup->n_frames)
+        return go_on(of, *setup->n_frames, error);
     of->file = open(of->path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
     if (of->file < 0)
         return output_refuse(error, "write", of->path);
@@ -98,7 +108,8 @@ int output_poses_open(struct output_poses **poses, const struct output_setup *se
     if (!made)
         return fail_memory(error);
     made->bodies = setup->bodies;
-    const int code = remove_old(setup->folder, n_before, error);
+    const int code = setup->n_frames ? 0 : remove_old(setup->folder, n_before, error);
+    made->n_frames = setup->n_frames ? (uint32_t)*setup->n_frames : 0;
     return code ? code : start_all(made, setup, error);
 }
 

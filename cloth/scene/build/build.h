@@ -76,6 +76,10 @@ int scene_build_cloth_of(uint32_t *cloth, const char *what, const struct model *
 /* Warnings of keys that do nothing in this scene; after all others. */
 int scene_build_idle(struct model *model, const struct scene_tree *tree, struct cloth_error *error);
 
+/* Writes the settings of the model. Error: CLOTH_E_MEMORY. */
+int scene_build_settings(struct model *model, const struct scene_tree *tree,
+                         struct cloth_error *error);
+
 /* The material, by number, that the key material of a map names, for a cloth whose
  * mass_per_vertex is known. */
 int scene_build_material(uint32_t *material, const struct model_cloth *cloth,

@@ -196,7 +196,7 @@ static void share(struct record *r)
 static void run_prepared(struct record *r, struct flow *flow)
 {
     const struct flow_output output = {.context = r, .frame = keep_frame};
-    const struct flow_progress progress = {r, NULL, show_step, ask_stop};
+    const struct flow_progress progress = {.context = r, .step = show_step, .stop = ask_stop};
     duite_options options = duite_options_default();
     duite *rt = NULL;
     options.kernels = flow_kernels();

@@ -1,0 +1,59 @@
+#ifndef CLOTH_FLOW_CHECKPOINT_CHECKPOINT_H
+#define CLOTH_FLOW_CHECKPOINT_CHECKPOINT_H
+
+#include "cloth/flow/state/state.h"
+
+/* Checkpoints of a run: save.c makes them, resume.c goes on from one. Rank 0 has the bytes:
+ *
+ *   struct flow_saved     what the main program knows
+ *   arrays of it          of ties: rooms, first, other, place; of meetings: struct flow_saved_side;
+ *                         of each block how many contacts it keeps at most
+ *   of each block         the objects of FLOW_EACH_SAVED, in that order: a uint64_t with how many
+ *                         bytes, then these, up to a multiple of 8
+ *   at last               those of the run, alike
+ *
+ * Blocks are the same on any ranks, so none of it knows of ranks. */
+struct flow_saved {
+    uint64_t layout;     /* of these bytes: flow_saved_layout */
+    uint64_t main_bytes; /* this, and the arrays */
+    uint64_t partition_hash;
+    uint32_t n_vertices, n_blocks;
+    uint32_t n_others;   /* pairs of blocks that share ties; without any room there are no arrays */
+    uint32_t has_ties;   /* whether there are */
+    uint32_t n_meetings; /* of sides */
+    uint32_t n_kept;     /* of numbers of contacts: of each block, or none */
+    uint32_t attempt, accepted; /* of certified contact */
+    uint32_t finished;          /* the run had come to its end: the report is whole */
+    uint32_t spare;
+    uint64_t end; /* ticks: of the run */
+    struct flow_lasting lasting;
+    struct flow_report report;
+};
+struct flow_saved_side {
+    uint32_t side[2], room;
+};
+
+/* Bytes of main program of a checkpoint. Pure. */
+size_t flow_saved_main_bytes(const struct flow_saved *saved);
+
+/* What a checkpoint of a model has: fields, types and structures. Another version has another one.
+ * Pure. */
+uint64_t flow_saved_layout(const struct model *model);
+
+/* Puts the objects of a block that a checkpoint has into `refs`, in their order; block n_blocks:
+ * those of the run. Returns the end. There is room for FLOW_FIELDS_OF_ALL + 1. Local. */
+duite_object *flow_saved_objects(const struct flow_state *state, uint32_t block,
+                                 duite_object *refs);
+
+/* Bytes of a number of an object. */
+size_t flow_saved_width(duite_type type);
+
+/* Collective; they return what the runtime does. The first forks what hands a checkpoint to the
+ * program, if it wants any; finished: the run is over, and its report whole. Of a run that goes on
+ * from one, the second takes what the main program knew, before ties are chosen; the third makes
+ * the blocks what they were. */
+int flow_save(struct flow_state *state, bool finished);
+int flow_resume_main(struct flow_state *state);
+int flow_resume_blocks(struct flow_state *state);
+
+#endif

@@ -1,0 +1,238 @@
+/* A run goes on from a checkpoint of another one. Rank 0 has its bytes; what the main program knew
+ * goes to all ranks, and what blocks had to where they live now. All that follows from that, halos
+ * and tables, is made again. */
+#include "cloth/flow/checkpoint/checkpoint.h"
+
+#include "cloth/flow/bodies.h"
+#include "cloth/flow/contact/body.h"
+#include "cloth/flow/contact/contact.h"
+#include "cloth/flow/contact/repel.h"
+#include "cloth/flow/setup/setup.h"
+#include "cloth/flow/solver/solve.h"
+
+#include "cloth/base/memory.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { TRAVEL = 16 }; /* blocks on their way */
+
+/* ---- Before the run, on rank 0 ---- */
+
+static int refuse(struct cloth_error *error, const char *why)
+{
+    return cloth_fail(error, CLOTH_E_INPUT, "the checkpoint %s", why);
+}
+
+/* Whether the run that a checkpoint is of is not to go on. */
+static bool is_complete(const struct flow_saved *saved, uint64_t end)
+{
+    return saved->finished && (saved->lasting.over || saved->lasting.grid.now >= end);
+}
+
+int flow_resume(struct flow *flow, struct flow_checkpoint from, struct flow_resumed *at,
+                struct cloth_error *error)
+{
+    struct flow_saved saved;
+    const uint64_t end = flow->n_steps * FLOW_TICKS;
+    const double tick = flow->model->h / FLOW_TICKS;
+    if (from.n >= sizeof saved)
+        memcpy(&saved, from.bytes, sizeof saved);
+    if (from.n < sizeof saved || saved.layout != flow_saved_layout(flow->model))
+        return refuse(error, "is of another version of duite, or of another kind of processor");
+    if (saved.main_bytes > from.n || saved.main_bytes != flow_saved_main_bytes(&saved))
+        return refuse(error, "is no whole one");
+    if (saved.n_vertices != flow->n_vertices || saved.n_blocks != flow->source.blocks.n_blocks ||
+        saved.partition_hash != flow->partition_hash)
+        return refuse(error, "has other blocks of vertices");
+    if (end < saved.end)
+        return cloth_fail(error, CLOTH_E_INPUT,
+                          "the run of the checkpoint is to end at %g s: an end may be later, not "
+                          "%g s",
+                          (double)saved.end * tick, (double)end * tick);
+    flow->from = from;
+    *at = (struct flow_resumed){.steps = saved.report.steps,
+                                .frames = is_complete(&saved, end) ? saved.lasting.next_frame
+                                                                   : saved.lasting.certain.next,
+                                .time = (double)saved.lasting.grid.now * tick,
+                                .end = (double)saved.end * tick};
+    return CLOTH_OK;
+}
+
+/* ---- What the main program knew ---- */
+
+static int send_main(const duite_call *call)
+{
+    memcpy(call->param[0].data, flow_of(call)->from.bytes, call->param[0].count);
+    return 0;
+}
+const duite_kernel flow_send_main = {
+    .name = "resume_main", .body = send_main, .access = {DUITE_W}, .fixed = 1};
+
+/* To all ranks. */
+static int share_main(struct flow_state *state, unsigned char *received)
+{
+    duite_object object;
+    int code = duite_new(state->rt, DUITE_BYTE, state->head.resumed_bytes, &object);
+    if (!code)
+        code = duite_fork_at(state->rt, 0, &flow_send_main, NULL, 1, &object);
+    if (!code)
+        code = duite_get(state->rt, object, received);
+    const int freed = object.generation ? duite_free(state->rt, object) : DUITE_OK;
+    return code ? code : freed;
+}
+
+/* The frames that only the end of the run before called for are shown again, where they belong. */
+static void take_report(struct flow_state *state, const struct flow_saved *saved)
+{
+    const uint64_t end = state->grid.end;
+    state->complete = is_complete(saved, end);
+    state->lasting = saved->lasting;
+    state->grid.end = end;
+    if (!state->complete) {
+        state->next_frame = state->certain.next;
+        state->shown = state->certain.shown;
+    }
+    *state->report = saved->report;
+    state->saved_wall = saved->report.wall_seconds;
+    state->attempt.begin = state->grid.now;
+    state->contact.attempt = saved->attempt;
+    state->contact.accepted = saved->accepted;
+    const struct flow_before before = flow_before(state);
+    state->flow->frames = before.frames - before.shown + state->next_frame;
+}
+
+static int take_main(struct flow_state *state, const unsigned char *from)
+{
+    struct flow_saved saved;
+    struct flow_tied_blocks tied = {0};
+    memcpy(&saved, from, sizeof saved);
+    from += sizeof saved;
+    take_report(state, &saved);
+    if (saved.has_ties) {
+        tied.room = (void *)from;
+        tied.first = (void *)(tied.room + saved.n_blocks);
+        tied.other = tied.first + saved.n_blocks + 1;
+        tied.place = tied.other + saved.n_others;
+        from = (const void *)(tied.place + saved.n_others);
+    }
+    int code = saved.has_ties ? flow_ties_again(state, &tied) : DUITE_OK;
+    const struct flow_saved_side *side = (const void *)from;
+    if (!code && model_seeks(state->flow->model))
+        code = flow_contact_meet_again(state, saved.n_meetings, side);
+    const uint32_t *kept = (const void *)(side + saved.n_meetings);
+    for (uint32_t b = 0; b < saved.n_kept; b++)
+        flow_contact_keep_again(state, b, kept[b]);
+    return code;
+}
+
+int flow_resume_main(struct flow_state *state)
+{
+    unsigned char *main = cloth_alloc(state->head.resumed_bytes, 1, &state->flow->trouble);
+    state->grid.end = state->flow->n_steps * FLOW_TICKS;
+    int code = flow_memory_agree(state);
+    if (!code)
+        code = share_main(state, main);
+    if (!code)
+        code = take_main(state, main);
+    free(main);
+    return code;
+}
+
+/* ---- What blocks had ---- */
+
+/* Where the objects of the next block are, on rank 0: bytes of the checkpoint. */
+struct load_args {
+    uint64_t at;
+};
+
+static uint64_t bytes_at(const struct flow_checkpoint *from, uint64_t at)
+{
+    uint64_t bytes = UINT64_MAX;
+    if (at + sizeof bytes <= from->n)
+        memcpy(&bytes, from->bytes + at, sizeof bytes);
+    return bytes;
+}
+
+/* Where the object behind that one is. */
+static uint64_t next_at(uint64_t at, uint64_t bytes)
+{
+    return at + sizeof bytes + (bytes + 7) / 8 * 8;
+}
+
+/* Parameters: w what was saved. */
+static int load(const duite_call *call)
+{
+    const struct flow_checkpoint *from = &flow_of(call)->from;
+    uint64_t at = ((const struct load_args *)call->args)->at;
+    for (size_t i = 0; i < call->n_params; i++) {
+        const duite_param *to = call->param + i;
+        const size_t width = flow_saved_width(to->type);
+        const uint64_t bytes = bytes_at(from, at);
+        if (bytes > to->max * width || next_at(at, bytes) > from->n)
+            return duite_fail(call, FLOW_NO_MEMORY, "the checkpoint has no whole block");
+        memcpy(to->data, from->bytes + at + sizeof bytes, bytes);
+        if (bytes / width != to->count && duite_resize(call, i, bytes / width))
+            return duite_fail(call, FLOW_NO_MEMORY, "the checkpoint has a block of another size");
+        at = next_at(at, bytes);
+    }
+    return 0;
+}
+const duite_kernel flow_load_block = {.name = "resume_load",
+                                      .body = load,
+                                      .variadic = DUITE_W,
+                                      .args_size = sizeof(struct load_args),
+                                      .fixed = 1};
+
+/* Where the block lives: who writes an object last holds it. */
+FLOW_KERNEL(resume, FLOW_NO_PART, struct flow_block_args,
+            (R(table), RW(x), RW(v), W(halo_x), W(halo_v)))
+static int resume_body(const duite_call *call, const struct resume_fields *on)
+{
+    const struct flow_table table = flow_table_in(call, on->table);
+    flow_write_halo(&table, on->x, on->halo_x);
+    flow_write_halo(&table, on->v, on->halo_v);
+    return 0;
+}
+
+/* Rank 0 alone knows where the next block's are. */
+static void skip(const struct flow_state *state, size_t n, struct load_args *args)
+{
+    const struct flow_checkpoint *from = &state->flow->from;
+    for (size_t i = 0; i < n && from->bytes; i++)
+        args->at = next_at(args->at, bytes_at(from, args->at));
+}
+
+static int load_all(struct flow_state *state)
+{
+    const uint32_t n_blocks = state->flow->tables.n_blocks;
+    duite_object refs[FLOW_FIELDS_OF_ALL + 1];
+    struct load_args args = {.at = state->head.resumed_bytes};
+    int code = DUITE_OK;
+    for (uint32_t b = 0; b <= n_blocks && !code; b++) {
+        const struct flow_block_args block = {b};
+        const size_t n = (size_t)(flow_saved_objects(state, b, refs) - refs);
+        if (n)
+            code = duite_fork_at(state->rt, 0, &flow_load_block, &args, n, refs);
+        skip(state, n, &args);
+        if (!code && b < n_blocks)
+            code = flow_fork_one(state, &flow_kernel_resume, &block);
+        if (!code && b % TRAVEL == TRAVEL - 1)
+            code = duite_wait(state->rt);
+    }
+    return code;
+}
+
+int flow_resume_blocks(struct flow_state *state)
+{
+    const struct model *model = state->flow->model;
+    int code = load_all(state);
+    if (!code && !model_is_filtered(model))
+        code = flow_coarse_initialise(state);
+    if (!code && model_certifies(model))
+        code = flow_bodies_make(state);
+    if (!code && model_repels(model))
+        code = flow_repulsion_start(state);
+    const int failed = duite_wait(state->rt); /* the bytes are not read any more */
+    return code ? code : failed;
+}

@@ -1,0 +1,372 @@
+/* What a name ends with .checkpoint is whole, or the disk lost some of it: then its hash tells. */
+#include "cloth/output/checkpoint.h"
+
+#include "cloth/output/files/files.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <xxhash.h>
+
+static const char MAGIC[8] = "duiteCP", FOLDER[] = "checkpoints", SUFFIX[] = ".checkpoint";
+enum { VERSION = 1, DIGITS = 6 };
+static const uint64_t ORDER = 0x0102030405060708; /* of bytes */
+
+struct header {
+    char magic[8];
+    uint64_t order, version, size; /* size: bytes of the file */
+    uint64_t part[OUTPUT_CHECKPOINT_PARTS];
+};
+
+struct output_checkpoints {
+    char *folder;
+    char *last;                             /* the path of the newest; NULL: none was written */
+    uint64_t next;                          /* the number of the next one */
+    uint64_t kept[OUTPUT_CHECKPOINTS_KEPT]; /* numbers, the newest first; 0: none */
+};
+
+static size_t padded(size_t n)
+{
+    return (n + 7) / 8 * 8;
+}
+
+/* ---- Names ---- */
+
+/* The number of a file, or 0: no checkpoint has that name. */
+static uint64_t number_of(const char *name)
+{
+    char *end;
+    if (*name < '0' || *name > '9')
+        return 0;
+    errno = 0;
+    const uint64_t number = strtoull(name, &end, 10);
+    return errno || strcmp(end, SUFFIX) != 0 ? 0 : number;
+}
+
+static char *path_of(const char *folder, uint64_t number, const char *suffix)
+{
+    char name[64];
+    snprintf(name, sizeof name, "%0*ju%s", DIGITS, (uintmax_t)number, SUFFIX);
+    return output_path(folder, name, suffix);
+}
+
+static bool is_half(const char *name)
+{
+    char whole[64];
+    const size_t n = strlen(name), part = strlen(".part");
+    if (n <= part || n >= sizeof whole || strcmp(name + n - part, ".part") != 0)
+        return false;
+    memcpy(whole, name, n - part);
+    whole[n - part] = 0;
+    return number_of(whole) > 0;
+}
+
+/* Puts a number among the largest, which descend. */
+static void insert(uint64_t *kept, size_t n, uint64_t number)
+{
+    for (size_t i = 0; i < n; i++)
+        if (number > kept[i]) {
+            const uint64_t was = kept[i];
+            kept[i] = number;
+            number = was;
+        }
+}
+
+/* Finds the n largest numbers there are. half, all: what is to be removed on the way. */
+static int scan(const char *folder, bool half, bool all, size_t n, uint64_t *kept)
+{
+    DIR *handle = opendir(folder);
+    int failed = 0;
+    memset(kept, 0, n * sizeof *kept);
+    if (!handle)
+        return errno == ENOENT ? 0 : -1;
+    for (const struct dirent *entry; (entry = readdir(handle));) {
+        const uint64_t number = number_of(entry->d_name);
+        const bool is = number > 0;
+        if (((half || all) && is_half(entry->d_name)) || (all && is))
+            failed = unlinkat(dirfd(handle), entry->d_name, 0) != 0 || failed;
+        else if (is)
+            insert(kept, n, number);
+    }
+    const int reason = errno;
+    closedir(handle);
+    errno = reason;
+    return failed ? -1 : 0;
+}
+
+/* ---- Writing ---- */
+
+int output_checkpoints_open(struct output_checkpoints **checkpoints, const char *folder,
+                            struct cloth_error *error)
+{
+    struct output_checkpoints *made = *checkpoints = calloc(1, sizeof *made);
+    if (made)
+        made->folder = output_path(folder, FOLDER, "");
+    int code = made && made->folder
+                   ? output_make_folder(made->folder, error)
+                   : cloth_fail(error, CLOTH_E_MEMORY, "no memory for checkpoints");
+    if (!code && access(made->folder, W_OK | X_OK) != 0)
+        code = output_refuse(error, "write checkpoints into", made->folder);
+    if (!code && scan(made->folder, true, false, OUTPUT_CHECKPOINTS_KEPT, made->kept) != 0)
+        code = output_refuse(error, "remove half a checkpoint in", made->folder);
+    if (code)
+        output_checkpoints_close(checkpoints);
+    else
+        made->next = made->kept[0] + 1;
+    return code;
+}
+
+/* What goes to the file: its bytes, and their hash so far. */
+struct writing {
+    int file;
+    uint64_t at;
+    XXH64_state_t *hash;
+};
+
+static int write_bytes(struct writing *to, const void *bytes, size_t n)
+{
+    static const char nothing[8];
+    const size_t rest = padded(n) - n;
+    if (n)
+        XXH64_update(to->hash, bytes, n);
+    XXH64_update(to->hash, nothing, rest);
+    if (output_write_at(to->file, bytes, n, to->at) != 0 ||
+        output_write_at(to->file, nothing, rest, to->at + n) != 0)
+        return -1;
+    to->at += n + rest;
+    return 0;
+}
+
+static int write_all(struct writing *to, const struct output_part part[OUTPUT_CHECKPOINT_PARTS])
+{
+    struct header header = {.order = ORDER, .version = VERSION};
+    memcpy(header.magic, MAGIC, sizeof header.magic);
+    header.size = sizeof header + sizeof(uint64_t);
+    for (int i = 0; i < OUTPUT_CHECKPOINT_PARTS; i++) {
+        header.part[i] = part[i].n;
+        header.size += padded(part[i].n);
+    }
+    int bad = write_bytes(to, &header, sizeof header);
+    for (int i = 0; i < OUTPUT_CHECKPOINT_PARTS && !bad; i++)
+        bad = write_bytes(to, part[i].bytes, part[i].n);
+    const uint64_t digest = XXH64_digest(to->hash);
+    return bad || output_write_at(to->file, &digest, sizeof digest, to->at) != 0 ||
+           output_sync(to->file) != 0;
+}
+
+/* The file beside its name. Returns 0, or -1 with errno set. */
+static int write_file(const char *path, const struct output_part part[OUTPUT_CHECKPOINT_PARTS])
+{
+    struct writing to = {.hash = XXH64_createState()};
+    if (!to.hash) {
+        errno = ENOMEM;
+        return -1;
+    }
+    XXH64_reset(to.hash, 0);
+    to.file = open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    int bad = to.file < 0 || write_all(&to, part), reason = errno;
+    if (to.file >= 0 && close(to.file) != 0 && !bad) {
+        bad = 1;
+        reason = errno;
+    }
+    XXH64_freeState(to.hash);
+    if (bad)
+        unlink(path);
+    errno = reason;
+    return bad ? -1 : 0;
+}
+
+/* The newest is complete: the oldest goes. What cannot be removed stays. */
+static void keep(struct output_checkpoints *checkpoints, char *path)
+{
+    uint64_t *kept = checkpoints->kept;
+    const uint64_t oldest = kept[OUTPUT_CHECKPOINTS_KEPT - 1];
+    char *gone = oldest ? path_of(checkpoints->folder, oldest, "") : NULL;
+    memmove(kept + 1, kept, (OUTPUT_CHECKPOINTS_KEPT - 1) * sizeof *kept);
+    kept[0] = checkpoints->next++;
+    if (gone)
+        unlink(gone);
+    free(gone);
+    free(checkpoints->last);
+    checkpoints->last = path;
+}
+
+int output_checkpoints_write(struct output_checkpoints *checkpoints,
+                             const struct output_part part[OUTPUT_CHECKPOINT_PARTS],
+                             struct cloth_error *error)
+{
+    char *path = path_of(checkpoints->folder, checkpoints->next, "");
+    char *fresh = path_of(checkpoints->folder, checkpoints->next, ".part");
+    int code = CLOTH_OK;
+    if (!path || !fresh)
+        code = cloth_fail(error, CLOTH_E_MEMORY, "no memory to write a checkpoint");
+    else if (write_file(fresh, part) != 0 || rename(fresh, path) != 0)
+        code = output_fail(error, "write the checkpoint", path);
+    free(fresh);
+    if (code) {
+        free(path);
+        return code;
+    }
+    output_sync_folder(checkpoints->folder);
+    keep(checkpoints, path);
+    return CLOTH_OK;
+}
+
+const char *output_checkpoints_last(const struct output_checkpoints *checkpoints)
+{
+    return checkpoints->last;
+}
+
+void output_checkpoints_close(struct output_checkpoints **checkpoints)
+{
+    struct output_checkpoints *gone = *checkpoints;
+    *checkpoints = NULL;
+    if (!gone)
+        return;
+    free(gone->folder);
+    free(gone->last);
+    free(gone);
+}
+
+int output_checkpoints_forget(const char *folder, struct cloth_error *error)
+{
+    uint64_t none[1];
+    char *path = output_path(folder, FOLDER, "");
+    if (!path)
+        return cloth_fail(error, CLOTH_E_MEMORY, "no memory for the path of checkpoints");
+    const int code = scan(path, true, true, 1, none) != 0
+                         ? output_refuse(error, "remove the checkpoints of an earlier run in", path)
+                         : CLOTH_OK;
+    if (!code)
+        rmdir(path); /* unless somebody else has files there */
+    free(path);
+    return code;
+}
+
+/* ---- Reading ---- */
+
+static int damaged(struct cloth_error *error, const char *path, const char *how)
+{
+    return cloth_fail(error, CLOTH_E_IO, "%s is damaged: %s", path, how);
+}
+
+/* All of a file, and n: how many bytes. */
+static int read_bytes(const char *path, unsigned char **bytes, size_t *n, struct cloth_error *error)
+{
+    struct stat status;
+    FILE *file = fopen(path, "rbe");
+    if (!file || fstat(fileno(file), &status) != 0) {
+        const int code = output_fail(error, "read", path);
+        if (file)
+            fclose(file);
+        return code;
+    }
+    *n = status.st_size > 0 && S_ISREG(status.st_mode) ? (size_t)status.st_size : 0;
+    *bytes = malloc(*n + 8);
+    int code = CLOTH_OK;
+    if (!*bytes)
+        code = cloth_fail(error, CLOTH_E_MEMORY, "no memory for %s, of %zu bytes", path, *n);
+    else if (fread(*bytes, 1, *n, file) != *n)
+        code = ferror(file) ? output_fail(error, "read", path)
+                            : damaged(error, path, "it was cut off while it was read");
+    fclose(file);
+    return code;
+}
+
+static int check(const char *path, const unsigned char *bytes, size_t n, struct cloth_error *error)
+{
+    struct header header;
+    uint64_t digest, size = sizeof header + sizeof digest;
+    if (n < sizeof header || memcmp(bytes, MAGIC, sizeof MAGIC) != 0)
+        return cloth_fail(error, CLOTH_E_IO, "%s is no checkpoint of duite-cloth", path);
+    memcpy(&header, bytes, sizeof header);
+    if (header.order != ORDER || header.version != VERSION)
+        return cloth_fail(
+            error, CLOTH_E_INPUT,
+            "%s is a checkpoint of another version of duite-cloth, or of another kind "
+            "of processor: go on with the one that wrote it",
+            path);
+    for (int i = 0; i < OUTPUT_CHECKPOINT_PARTS; i++) {
+        if (header.part[i] > n)
+            return damaged(error, path, "a part of it is larger than the file");
+        size += padded(header.part[i]);
+    }
+    if (header.size != n || size != n)
+        return damaged(error, path, n < header.size ? "it is cut off" : "it has another length");
+    memcpy(&digest, bytes + n - sizeof digest, sizeof digest);
+    return XXH64(bytes, n - sizeof digest, 0) == digest
+               ? CLOTH_OK
+               : damaged(error, path, "its hash is another one");
+}
+
+int output_checkpoint_read(struct output_checkpoint *checkpoint, const char *path,
+                           struct cloth_error *error)
+{
+    struct header header;
+    size_t n = 0, at = sizeof header;
+    *checkpoint = (struct output_checkpoint){.path = strdup(path)};
+    if (!checkpoint->path)
+        return cloth_fail(error, CLOTH_E_MEMORY, "no memory for the path of a checkpoint");
+    int code = read_bytes(path, &checkpoint->bytes, &n, error);
+    code = code ? code : check(path, checkpoint->bytes, n, error);
+    if (code) {
+        output_checkpoint_free(checkpoint);
+        return code;
+    }
+    memcpy(&header, checkpoint->bytes, sizeof header);
+    for (int i = 0; i < OUTPUT_CHECKPOINT_PARTS; i++) {
+        checkpoint->part[i] = (struct output_part){checkpoint->bytes + at, header.part[i]};
+        at += padded(header.part[i]);
+    }
+    return CLOTH_OK;
+}
+
+static int read_newest(struct output_checkpoint *checkpoint, const char *path,
+                       struct cloth_error *note, struct cloth_error *error)
+{
+    enum { TRIED = 64 };
+    uint64_t number[TRIED];
+    if (scan(path, false, false, TRIED, number) != 0)
+        return output_refuse(error, "read", path);
+    if (!number[0])
+        return cloth_fail(error, CLOTH_E_INPUT,
+                          "%s holds no checkpoint: a run writes them with --checkpoint SECONDS",
+                          path);
+    for (int i = 0; i < TRIED && number[i]; i++) {
+        struct cloth_error why = {0};
+        char *file = path_of(path, number[i], "");
+        const int code = file ? output_checkpoint_read(checkpoint, file, &why)
+                              : cloth_fail(&why, CLOTH_E_MEMORY, "no memory for paths");
+        free(file);
+        if (code && code != CLOTH_E_IO)
+            *error = why;
+        if (code != CLOTH_E_IO)
+            return code;
+        if (!note->code)
+            *note = why;
+    }
+    return cloth_fail(error, CLOTH_E_INPUT, "%s holds no checkpoint that is whole: %s", path,
+                      note->text);
+}
+
+int output_checkpoint_newest(struct output_checkpoint *checkpoint, const char *folder,
+                             struct cloth_error *note, struct cloth_error *error)
+{
+    char *path = output_path(folder, FOLDER, "");
+    const int code =
+        path ? read_newest(checkpoint, path, note, error)
+             : cloth_fail(error, CLOTH_E_MEMORY, "no memory for the path of checkpoints");
+    free(path);
+    return code;
+}
+
+void output_checkpoint_free(struct output_checkpoint *checkpoint)
+{
+    free(checkpoint->path);
+    free(checkpoint->bytes);
+    *checkpoint = (struct output_checkpoint){0};
+}

@@ -1,0 +1,246 @@
+/* The file of a checkpoint: what is written reads back; whatever is cut off or changed is noticed;
+ * of several the newest that is whole serves; one that cannot be written leaves those before it. */
+#include "cloth/output/checkpoint.h"
+#include "tests/cloth/output/sample.h"
+#include "tests/support/unit.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+static struct sample sample;
+static struct cloth_error error, note;
+static struct output_checkpoints *checkpoints;
+static struct output_checkpoint read_back;
+
+static void start(void)
+{
+    memset(&error, 0, sizeof error);
+    memset(&note, 0, sizeof note);
+    sample_make(&sample);
+    ck_assert_msg(!output_checkpoints_open(&checkpoints, sample.folder, &error), "%s", error.text);
+}
+
+static void end(void)
+{
+    output_checkpoint_free(&read_back);
+    output_checkpoints_close(&checkpoints);
+    output_checkpoints_forget(sample.folder, &error);
+    sample_free(&sample);
+}
+
+/* Three parts, of which the second has no whole number of words: `mark` and what follows. */
+static void write_one(unsigned char mark)
+{
+    unsigned char bytes[13];
+    const uint64_t numbers[] = {mark, 1, 2};
+    memset(bytes, mark, sizeof bytes);
+    const struct output_part part[OUTPUT_CHECKPOINT_PARTS] = {
+        {"key: value\n", 11}, {bytes, sizeof bytes}, {numbers, sizeof numbers}};
+    ck_assert_msg(!output_checkpoints_write(checkpoints, part, &error), "%s", error.text);
+}
+
+static void path_of(unsigned number, char path[160])
+{
+    snprintf(path, 160, "%s/checkpoints/%06u.checkpoint", sample.folder, number);
+}
+
+static bool is_there(unsigned number)
+{
+    char path[160];
+    path_of(number, path);
+    return access(path, F_OK) == 0;
+}
+
+static int read_newest(void)
+{
+    memset(&error, 0, sizeof error);
+    memset(&note, 0, sizeof note);
+    output_checkpoint_free(&read_back);
+    return output_checkpoint_newest(&read_back, sample.folder, &note, &error);
+}
+
+static void check_mark(unsigned char mark)
+{
+    ck_assert_msg(!read_newest(), "%s", error.text);
+    ck_assert_uint_eq(read_back.part[0].n, 11);
+    ck_assert_uint_eq(read_back.part[1].n, 13);
+    ck_assert_uint_eq(read_back.part[2].n, 24);
+    ck_assert_int_eq(memcmp(read_back.part[0].bytes, "key: value\n", 11), 0);
+    for (size_t i = 0; i < 13; i++)
+        ck_assert_uint_eq(((const unsigned char *)read_back.part[1].bytes)[i], mark);
+    ck_assert_uint_eq(*(const uint64_t *)read_back.part[2].bytes, mark);
+}
+
+START_TEST(reads_back)
+{
+    write_one(7);
+    check_mark(7);
+    ck_assert_int_eq(note.code, 0);
+}
+END_TEST
+
+START_TEST(three_are_kept)
+{
+    for (unsigned char i = 1; i <= 5; i++)
+        write_one(i);
+    for (unsigned number = 1; number <= 5; number++)
+        ck_assert_int_eq(is_there(number), number > 2);
+    check_mark(5);
+}
+END_TEST
+
+/* A run that goes on counts on, and still three are kept. */
+START_TEST(counts_on)
+{
+    for (unsigned char i = 1; i <= 3; i++)
+        write_one(i);
+    output_checkpoints_close(&checkpoints);
+    ck_assert_int_eq(output_checkpoints_open(&checkpoints, sample.folder, &error), 0);
+    write_one(4);
+    ck_assert(!is_there(1) && is_there(2) && is_there(4));
+    check_mark(4);
+}
+END_TEST
+
+/* ---- Damage ---- */
+
+static size_t read_file(unsigned number, unsigned char *bytes, size_t room)
+{
+    char path[160];
+    path_of(number, path);
+    FILE *file = fopen(path, "rb");
+    ck_assert_ptr_nonnull(file);
+    const size_t n = fread(bytes, 1, room, file);
+    fclose(file);
+    return n;
+}
+
+static void put_file(unsigned number, const unsigned char *bytes, size_t n)
+{
+    char path[160];
+    path_of(number, path);
+    FILE *file = fopen(path, "wb");
+    ck_assert_ptr_nonnull(file);
+    ck_assert_uint_eq(fwrite(bytes, 1, n, file), n);
+    ck_assert_int_eq(fclose(file), 0);
+}
+
+/* Whatever is wrong with the newest: the one before it serves, and that is said. */
+static void falls_back(const char *what, size_t at)
+{
+    const int code = read_newest();
+    /* another version is refused by name: the rest of the file may be anything */
+    if (code) {
+        ck_assert_msg(code == CLOTH_E_INPUT && strstr(error.text, "another version"), "%s %zu: %s",
+                      what, at, error.text);
+        return;
+    }
+    ck_assert_msg(note.code == CLOTH_E_IO, "%s %zu is not noticed", what, at);
+    ck_assert_uint_eq(*(const uint64_t *)read_back.part[2].bytes, 1);
+}
+
+START_TEST(every_length)
+{
+    unsigned char bytes[512];
+    write_one(1);
+    write_one(2);
+    const size_t n = read_file(2, bytes, sizeof bytes);
+    ck_assert_uint_gt(n, 100);
+    ck_assert_uint_lt(n, sizeof bytes);
+    for (size_t length = 0; length < n; length++) {
+        put_file(2, bytes, length);
+        falls_back("length", length);
+    }
+    put_file(2, bytes, n);
+    check_mark(2);
+    put_file(2, bytes, n + 1); /* a byte of what lies behind it in memory */
+    falls_back("length", n + 1);
+}
+END_TEST
+
+START_TEST(every_bit)
+{
+    unsigned char bytes[512];
+    write_one(1);
+    write_one(2);
+    const size_t n = read_file(2, bytes, sizeof bytes);
+    for (size_t bit = 0; bit < 8 * n; bit++) {
+        bytes[bit / 8] ^= (unsigned char)(1 << bit % 8);
+        put_file(2, bytes, n);
+        falls_back("bit", bit);
+        bytes[bit / 8] ^= (unsigned char)(1 << bit % 8);
+    }
+}
+END_TEST
+
+START_TEST(none_is_said)
+{
+    ck_assert_int_eq(read_newest(), CLOTH_E_INPUT);
+    ck_assert_ptr_nonnull(strstr(error.text, "holds no checkpoint: a run writes them"));
+    write_one(1);
+    put_file(1, (const unsigned char *)"a letter", 8);
+    ck_assert_int_eq(read_newest(), CLOTH_E_INPUT);
+    ck_assert_ptr_nonnull(strstr(error.text, "no checkpoint that is whole"));
+}
+END_TEST
+
+/* ---- What is in the way ---- */
+
+START_TEST(failed_write_keeps_others)
+{
+    char path[200];
+    write_one(1);
+    path_of(2, path);
+    strcat(path, ".part");
+    ck_assert_int_eq(mkdir(path, 0777), 0);
+    const struct output_part part[OUTPUT_CHECKPOINT_PARTS] = {{"a", 1}, {"b", 1}, {"c", 1}};
+    ck_assert_int_eq(output_checkpoints_write(checkpoints, part, &error), CLOTH_E_IO);
+    check_mark(1);
+    ck_assert_int_eq(rmdir(path), 0);
+    memset(&error, 0, sizeof error);
+    write_one(2);
+    check_mark(2);
+}
+END_TEST
+
+/* Half a file of a run that was killed goes, what is not ours stays. */
+START_TEST(cleans_up)
+{
+    char half[200], other[200];
+    write_one(1);
+    path_of(2, half);
+    strcat(half, ".part");
+    snprintf(other, sizeof other, "%s/checkpoints/notes.part", sample.folder);
+    output_checkpoints_close(&checkpoints);
+    for (int i = 0; i < 2; i++) {
+        FILE *file = fopen(i ? other : half, "w");
+        ck_assert_ptr_nonnull(file);
+        fclose(file);
+    }
+    ck_assert_int_eq(output_checkpoints_open(&checkpoints, sample.folder, &error), 0);
+    ck_assert(access(half, F_OK) != 0 && access(other, F_OK) == 0);
+    ck_assert_int_eq(output_checkpoints_forget(sample.folder, &error), 0);
+    ck_assert(!is_there(1) && access(other, F_OK) == 0);
+    ck_assert_int_eq(unlink(other), 0);
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("checkpoint");
+    TCase *tcase = tcase_create("checkpoint");
+    tcase_add_checked_fixture(tcase, start, end);
+    tcase_add_test(tcase, reads_back);
+    tcase_add_test(tcase, three_are_kept);
+    tcase_add_test(tcase, counts_on);
+    tcase_add_test(tcase, every_length);
+    tcase_add_test(tcase, every_bit);
+    tcase_add_test(tcase, none_is_said);
+    tcase_add_test(tcase, failed_write_keeps_others);
+    tcase_add_test(tcase, cleans_up);
+    suite_add_tcase(suite, tcase);
+    return unit_run(suite);
+}

@@ -14,9 +14,9 @@ static const struct phys_key still = {.rotate = {1, 0, 0, 0}};
 static struct phys_key key_at(const struct model *model, const struct contact_shape *shape,
                               double time)
 {
-    const struct phys_key *key = model->keys + shape->first, *end = key + shape->n;
     if (!shape->n)
         return still;
+    const struct phys_key *key = model->keys + shape->first, *end = key + shape->n;
     while (key < end && key->time <= time)
         key++;
     if (key == model->keys + shape->first)
@@ -70,11 +70,12 @@ static void add_phase(struct course *to, const struct model *model, uint32_t obs
                       double seconds)
 {
     const struct contact_shape *shape = model->obstacles + obstacle;
-    const struct phys_key *keys = model->keys + shape->first;
     add(to, key_at(model, shape, 0), begin);
-    for (uint32_t i = 0; i < shape->n; i++)
-        if (keys[i].time > 0 && keys[i].time < seconds)
-            add(to, keys[i], begin + keys[i].time);
+    for (uint32_t i = 0; i < shape->n; i++) {
+        const struct phys_key *key = &model->keys[shape->first + i];
+        if (key->time > 0 && key->time < seconds)
+            add(to, *key, begin + key->time);
+    }
     if (!isinf(seconds))
         add(to, key_at(model, shape, seconds), begin + seconds);
 }

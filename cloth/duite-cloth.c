@@ -1,6 +1,7 @@
 /* The command line of duite-cloth. It is read after MPI has started, on every rank alike, and only
  * rank 0 prints, so that a mistake is said once and every rank ends with the same code. */
 #include "cloth/base/simd.h"
+#include "cloth/environment.h"
 #include "cloth/simulate.h"
 
 #include <config.h>
@@ -370,60 +371,6 @@ static int command_line(struct command *command, int argc, char **argv)
     return SIMULATE_BAD_INPUT;
 }
 
-/* ---- The environment ---- */
-
-static const char *name_of(const char *variable, const char *otherwise)
-{
-    const char *name = getenv(variable);
-    return name ? name : otherwise;
-}
-
-/* What counts where no option is given: the environment, else what is built in. What the
- * environment has wrong is found once the options are read, which may replace it. */
-static void begin(struct simulate_options *run)
-{
-    const duite_options defaults = duite_options_default();
-    run->scheduler = defaults.scheduler;
-    run->scheduler_name = name_of("DUITE_SCHEDULER", duite_scheduler_names()[0]);
-    run->mapping = defaults.mapping;
-    run->mapping_name = name_of("DUITE_MAPPING", duite_mapping_names()[0]);
-    run->balance = defaults.balance;
-    run->balance_name = name_of("DUITE_BALANCE", duite_balancer_names()[0]);
-    run->threads = defaults.threads;
-    run->seed = defaults.seed;
-    run->trace = defaults.trace;
-    run->trace_end = UINT64_MAX;
-}
-
-static int wrong_variable(struct cloth_error *error, const char *variable, const char *why)
-{
-    return cloth_fail(error, CLOTH_E_INPUT, "%s=%s in the environment: %s", variable,
-                      getenv(variable), why);
-}
-
-/* A policy is NULL, a number the largest of its type, only if the environment made it so. */
-static int check_environment(const struct simulate_options *run, struct cloth_error *error)
-{
-    const duite_options defaults = duite_options_default();
-    if (!run->scheduler && !duite_scheduler_find(run->scheduler_name))
-        return wrong_variable(error, "DUITE_SCHEDULER", duite_message());
-    if (!run->mapping && !duite_mapping_find(run->mapping_name))
-        return wrong_variable(error, "DUITE_MAPPING", duite_message());
-    if (!run->balance && !duite_balancer_find(run->balance_name))
-        return wrong_variable(error, "DUITE_BALANCE", duite_message());
-    if (run->threads == UINT_MAX) {
-        char why[60];
-        snprintf(why, sizeof why, "a whole number from 0 to %d is expected", DUITE_MAX_THREADS);
-        return wrong_variable(error, "DUITE_THREADS", why);
-    }
-    if (run->seed == UINT64_MAX && defaults.seed == UINT64_MAX)
-        return wrong_variable(error, "DUITE_SEED",
-                              "a whole number from 0 to 18446744073709551614 is expected");
-    if (run->trace && !*run->trace)
-        return wrong_variable(error, "DUITE_TRACE", "the name of a file is expected");
-    return CLOTH_OK;
-}
-
 static void free_command(struct command *command)
 {
     for (size_t i = 0; i < command->n_texts; i++)
@@ -453,7 +400,7 @@ static int agree(int code)
 static int check_host(int rank, const struct simulate_options *run)
 {
     struct cloth_error error = {0};
-    const int code = cloth_simd_check(&error) || check_environment(run, &error) ? SIMULATE_BAD_INPUT
+    const int code = cloth_simd_check(&error) || environment_check(run, &error) ? SIMULATE_BAD_INPUT
                                                                                 : SIMULATE_OK;
     int first = code ? rank : INT_MAX;
     MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_INT, MPI_MIN, MPI_COMM_WORLD);
@@ -470,7 +417,7 @@ int main(int argc, char **argv)
         return SIMULATE_FAILED;
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
     struct command command = {.talks = rank == 0};
-    begin(&command.run);
+    environment_begin(&command.run);
     int code = agree(command_line(&command, argc, argv));
     if (code == SIMULATE_OK && !command.done)
         code = agree(check_host(rank, &command.run));

@@ -1,0 +1,56 @@
+/* Settings that options do not give: they are read before the options, and judged after them. */
+#include "cloth/environment.h"
+
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+static const char *name_of(const char *variable, const char *otherwise)
+{
+    const char *name = getenv(variable);
+    return name ? name : otherwise;
+}
+
+void environment_begin(struct simulate_options *run)
+{
+    const duite_options defaults = duite_options_default();
+    run->scheduler = defaults.scheduler;
+    run->scheduler_name = name_of("DUITE_SCHEDULER", duite_scheduler_names()[0]);
+    run->mapping = defaults.mapping;
+    run->mapping_name = name_of("DUITE_MAPPING", duite_mapping_names()[0]);
+    run->balance = defaults.balance;
+    run->balance_name = name_of("DUITE_BALANCE", duite_balancer_names()[0]);
+    run->threads = defaults.threads;
+    run->seed = defaults.seed;
+    run->trace = defaults.trace;
+    run->trace_end = UINT64_MAX;
+}
+
+static int wrong_variable(struct cloth_error *error, const char *variable, const char *why)
+{
+    return cloth_fail(error, CLOTH_E_INPUT, "%s=%s in the environment: %s", variable,
+                      getenv(variable), why);
+}
+
+/* A policy is NULL, a number the largest of its type, only if the environment made it so. */
+int environment_check(const struct simulate_options *run, struct cloth_error *error)
+{
+    const duite_options defaults = duite_options_default();
+    if (!run->scheduler && !duite_scheduler_find(run->scheduler_name))
+        return wrong_variable(error, "DUITE_SCHEDULER", duite_message());
+    if (!run->mapping && !duite_mapping_find(run->mapping_name))
+        return wrong_variable(error, "DUITE_MAPPING", duite_message());
+    if (!run->balance && !duite_balancer_find(run->balance_name))
+        return wrong_variable(error, "DUITE_BALANCE", duite_message());
+    if (run->threads == UINT_MAX) {
+        char why[60];
+        snprintf(why, sizeof why, "a whole number from 0 to %d is expected", DUITE_MAX_THREADS);
+        return wrong_variable(error, "DUITE_THREADS", why);
+    }
+    if (run->seed == UINT64_MAX && defaults.seed == UINT64_MAX)
+        return wrong_variable(error, "DUITE_SEED",
+                              "a whole number from 0 to 18446744073709551614 is expected");
+    if (run->trace && !*run->trace)
+        return wrong_variable(error, "DUITE_TRACE", "the name of a file is expected");
+    return CLOTH_OK;
+}

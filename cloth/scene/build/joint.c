@@ -86,11 +86,11 @@ static int build_at(struct model_end *end, const struct scene_tree *tree, int no
                     struct cloth_error *error)
 {
     const int at = scene_tree_get(tree, node, "at");
-    const size_t n = scene_tree_scalar(tree, at) ? 1 : scene_tree_length(tree, at);
     if (!at)
         return scene_tree_fail(tree, node, error,
                                "the end of a joint on an edge has no at; a number from 0 to 1 is "
                                "expected, or a list of them, one for each edge");
+    const size_t n = scene_tree_scalar(tree, at) ? 1 : scene_tree_length(tree, at);
     if (n != end->n)
         return scene_tree_fail(tree, at, error,
                                "at has %zu numbers for %u edges; as many are expected", n, end->n);

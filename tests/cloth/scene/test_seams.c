@@ -262,6 +262,7 @@ static void not_prepared(const char *keys, const char *more, const char *error)
     struct flow *flow;
     struct model_pin pin = {.pick = {.kind = MODEL_PICK_BOX, .box = {{-1, -1, -1}, {1, 1, 1}}}};
     if (more) {
+        free(model.cloths[0].pins);
         model.cloths[0].pins = malloc(sizeof pin);
         ck_assert_ptr_nonnull(model.cloths[0].pins);
         model.cloths[0].pins[model.cloths[0].n_pins++] = pin;

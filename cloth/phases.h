@@ -39,9 +39,10 @@ int phases_read(struct phases *phases, const char *path, size_t n_sets,
  * errors yet. */
 int phases_share(struct phases *phases, struct cloth_error *error);
 
+/* That of the phase that is next; NULL if the scene could not be read. */
 static inline struct model *phases_model(const struct phases *phases)
 {
-    return phases->models + phases->now;
+    return phases->models ? phases->models + phases->now : NULL;
 }
 static inline bool phases_is_last(const struct phases *phases)
 {

@@ -2,6 +2,13 @@ dnl What pictures need; optional. duite_view_says names the packages that are mi
 AC_DEFUN([DUITE_VIEW_PART], [
     PKG_CHECK_MODULES([$1], [$2], [], [duite_view_missing="$duite_view_missing${duite_view_missing:+, }$3"])])
 
+dnl What charts as PNG need; optional. duite_chart_says names the package that is missing and what it costs.
+AC_DEFUN([DUITE_CHART], [
+    PKG_CHECK_MODULES([CAIRO], [cairo],
+        [AC_DEFINE([HAVE_CAIRO], [1], [Define to 1 if cairo draws charts as PNG.])
+         duite_chart_says="SVG, PNG"],
+        [duite_chart_says="SVG   (no PNG without libcairo2-dev)"])])
+
 AC_DEFUN([DUITE_VIEW], [
     duite_view_missing=
     DUITE_VIEW_PART([EPOXY], [epoxy], [libepoxy-dev])

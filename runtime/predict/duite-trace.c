@@ -1,4 +1,5 @@
 /* The command line of duite-trace: reads a trace once, and writes each form that is asked for. */
+#include "runtime/chart/chart.h"
 #include "runtime/predict/command.h"
 #include "runtime/predict/predict.h"
 #include "runtime/trace/export.h"
@@ -26,22 +27,39 @@ static const struct trace_export FORM_GRAPH = {
 #define FORM_OF(name) &trace_export_##name,
 static const struct trace_export *const FORMS[] = {&FORM_DOT, &FORM_GRAPH,
                                                    TRACE_EXPORT_ROWS(FORM_OF)};
-enum { N_FORMS = sizeof FORMS / sizeof FORMS[0], CHECK = 256, PARTIAL, FORM };
+enum { N_FORMS = sizeof FORMS / sizeof FORMS[0] };
+
+/* Forms of the chart, which has options of its own. */
+static const struct {
+    const char *option, *help;
+    int (*write)(const struct trace_run *run, const struct chart_options *options, FILE *file);
+} CHARTS[] = {{"svg", "draw the Gantt chart of the run as SVG", chart_write_svg},
+              {"png", "draw the Gantt chart of the run as PNG", chart_write_png}};
+enum { N_CHARTS = sizeof CHARTS / sizeof CHARTS[0], N_OUTS = N_FORMS + N_CHARTS };
+enum { CHECK = 256, PARTIAL, WINDOW, SIZE, FORM };
 
 struct command {
     const char *file;
-    const char *out[N_FORMS];
-    bool partial, check;
+    const char *out[N_OUTS]; /* by form, then by chart */
+    struct chart_options chart;
+    bool partial, check, charted; /* charted: an option of charts was given */
 };
 
-/* FORM + i: the form of row i; then the others, and zeros. */
-static struct argp_option options[N_FORMS + 3];
+/* FORM + i: the form of row i, then charts; then the others, and zeros. */
+static struct argp_option options[N_OUTS + 5];
 
 static void options_fill(void)
 {
     struct argp_option *next = options;
     for (int i = 0; i < N_FORMS; i++)
         *next++ = (struct argp_option){FORMS[i]->option, FORM + i, "OUT", 0, FORMS[i]->help, 1};
+    for (int i = 0; i < N_CHARTS; i++)
+        *next++ =
+            (struct argp_option){CHARTS[i].option, FORM + N_FORMS + i, "OUT", 0, CHARTS[i].help, 1};
+    *next++ = (struct argp_option){
+        "window", WINDOW, "FROM:TO", 0, "seconds that the chart shows (all)", 1};
+    *next++ = (struct argp_option){
+        "size", SIZE, "WxH", 0, "pixels of the chart (1280 wide, as high as its rows)", 1};
     *next++ = (struct argp_option){
         "check", CHECK, NULL, 0, "whether the events add up to what the workers counted", 2};
     *next = (struct argp_option){
@@ -51,13 +69,28 @@ static void options_fill(void)
 static error_t form_option_read(int key, char *value, struct argp_state *state)
 {
     struct command *command = state->input;
-    if (key >= FORM && key < FORM + N_FORMS) {
+    if (key >= FORM && key < FORM + N_OUTS) {
         command->out[key - FORM] = value;
         return 0;
     }
     switch (key) {
     case CHECK:
         command->check = true;
+        return 0;
+    case WINDOW:
+        command->charted = true;
+        if (!chart_window_parse(value, &command->chart))
+            argp_error(state, "--window takes FROM:TO in seconds, such as 0.1:0.2, not `%s'",
+                       value);
+        return 0;
+    case SIZE:
+        command->charted = true;
+        if (!chart_size_parse(value, &command->chart))
+            argp_error(state, "--size takes WIDTHxHEIGHT, such as 1280x720, not `%s'", value);
+        return 0;
+    case ARGP_KEY_END:
+        if (command->charted && !command->out[N_FORMS] && !command->out[N_FORMS + 1])
+            argp_error(state, "--window and --size are of charts: --svg OUT or --png OUT");
         return 0;
     case PARTIAL:
         command->partial = true;
@@ -83,13 +116,15 @@ static int write_failed(const char *out)
     return FAILED;
 }
 
-static int write_form(const struct trace_run *run, size_t form, const char *out)
+static int write_form(const struct trace_run *run, const struct command *command, size_t form)
 {
+    const char *out = command->out[form];
     bool standard = !strcmp(out, "-");
     FILE *file = standard ? stdout : fopen(out, "w");
     if (!file)
         return write_failed(out);
-    int code = FORMS[form]->write(run, file);
+    int code = form < N_FORMS ? FORMS[form]->write(run, file)
+                              : CHARTS[form - N_FORMS].write(run, &command->chart, file);
     errno = 0;
     bool fine = !ferror(file) && !fflush(file);
     if (!standard)
@@ -108,10 +143,10 @@ static int forms_write(const struct command *command, const struct trace_run *ru
     if (run->lost)
         fprintf(stderr, "duite-trace: warning: %s: %llu events or words were lost\n", command->file,
                 (unsigned long long)run->lost);
-    for (size_t i = 0; i < N_FORMS && !code; i++) {
+    for (size_t i = 0; i < N_OUTS && !code; i++) {
         asked |= command->out[i] != NULL;
         if (command->out[i])
-            code = write_form(run, i, command->out[i]);
+            code = write_form(run, command, i);
     }
     if (command->check && !code && !trace_sums_agree(run, stderr))
         code = FAILED;
@@ -124,7 +159,7 @@ static int forms_write(const struct command *command, const struct trace_run *ru
 
 int main(int argc, char **argv)
 {
-    struct command command = {0};
+    struct command command = {.chart = chart_options_default()};
     argp_err_exit_status = BAD_INPUT;
     options_fill();
     if (argp_parse(&ARGP, argc, argv, 0, NULL, &command))

@@ -7,12 +7,23 @@
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
 
-#include <math.h>
 #include <stdlib.h>
 
+/* When a value is there, and which task wrote it: its place among the links, from 1 on; 0: none. */
+struct chain_moment {
+    double end;
+    size_t link;
+};
+
 struct chain_object {
-    double value, sum; /* when its last value is there; when the last contribution to it is */
-    uint32_t parent;   /* slot of the object that it is a view of, or 0 */
+    struct chain_moment value, sum; /* its last value; the last contribution to it */
+    uint32_t parent;                /* slot of the object that it is a view of, or 0 */
+};
+
+/* A task and the one that it began after. Kept only where the tasks of the chain are asked for. */
+struct chain_link {
+    uint64_t number;
+    size_t before;
 };
 
 struct chain_graph {
@@ -28,10 +39,12 @@ struct chain {
     size_t objects_capacity;
     struct chain_graph *graph; /* by name */
     size_t graphs_capacity;
-    uint64_t forks, tasks; /* so far; of these, seen here */
-    double floor;          /* no task begins before: the flag of a replay was read then */
-    double longest;
-    bool failed, damaged;
+    uint64_t forks, tasks;     /* so far; of these, seen here */
+    struct chain_moment floor; /* no task begins before: the flag of a replay was read then */
+    struct chain_moment longest;
+    struct chain_link *link; /* link[0] is of no task */
+    size_t n_links, links_capacity;
+    bool failed, damaged, linked;
 };
 
 /* Every slot and every graph has a word of its own: larger names are damage, not a reason to make
@@ -70,22 +83,42 @@ static struct chain_graph *chain_graph(struct chain *c, uint32_t name)
 
 /* ---- Tasks ---- */
 
+static struct chain_moment chain_later(struct chain_moment a, struct chain_moment b)
+{
+    return b.end > a.end ? b : a;
+}
+
 /* When the value of an object is there; of a view: that of the object that it is gathered from. */
-static double chain_value(struct chain *c, uint32_t slot)
+static struct chain_moment chain_value(struct chain *c, uint32_t slot)
 {
     const struct chain_object *object = chain_object(c, slot);
     if (object && object->parent)
         object = chain_object(c, object->parent);
-    return object ? fmax(object->value, object->sum) : 0;
+    return object ? chain_later(object->value, object->sum) : (struct chain_moment){0, 0};
 }
 
-static void chain_write(struct chain *c, uint32_t slot, duite_mode mode, double end)
+static void chain_write(struct chain *c, uint32_t slot, duite_mode mode, struct chain_moment end)
 {
     struct chain_object *object = chain_object(c, slot);
     if (object && mode == DUITE_CW)
-        object->sum = fmax(object->sum, end);
+        object->sum = chain_later(object->sum, end);
     else if (object)
         object->value = object->sum = end;
+}
+
+/* The place of a new link; 0 if they are not kept, or without memory. */
+static size_t chain_link(struct chain *c, uint64_t number, size_t before)
+{
+    if (!c->linked || c->failed)
+        return 0;
+    struct chain_link *moved =
+        base_grow(c->link, &c->links_capacity, c->n_links + 2, sizeof *c->link);
+    c->failed = !moved;
+    if (!moved)
+        return 0;
+    c->link = moved;
+    c->link[++c->n_links] = (struct chain_link){number, before};
+    return c->n_links;
 }
 
 /* A task uses the objects that `use` names: slots, or, in a replay, places in `bound`. */
@@ -93,18 +126,19 @@ static void chain_task(struct chain *c, uint32_t kernel, size_t n, const uint32_
                        const uint32_t *bound, uint64_t number)
 {
     const struct trace_kernel *modes = &c->run->kernel[kernel];
-    double end = c->floor, seconds;
+    struct chain_moment end = c->floor;
+    double seconds;
     for (size_t i = 0; i < n; i++) {
         const duite_mode mode = trace_mode(modes, i);
         if (mode == DUITE_R || mode == DUITE_RW)
-            end = fmax(end, chain_value(c, bound ? bound[use[i]] : use[i]));
+            end = chain_later(end, chain_value(c, bound ? bound[use[i]] : use[i]));
     }
     trace_bodies_find(c->bodies, number, &seconds);
-    end += seconds;
+    end = (struct chain_moment){end.end + seconds, chain_link(c, number, end.link)};
     for (size_t i = 0; i < n; i++)
         if (trace_mode(modes, i) != DUITE_R)
             chain_write(c, bound ? bound[use[i]] : use[i], trace_mode(modes, i), end);
-    c->longest = fmax(c->longest, end);
+    c->longest = chain_later(c->longest, end);
     c->tasks++;
 }
 
@@ -203,7 +237,7 @@ static void chain_replay(struct chain *c, size_t n_objects)
     const uint64_t rounds = trace_words_next2(&c->words);
     const uint64_t before = trace_words_next2(&c->words);
     const uint32_t *bound = chain_row(c, n_objects);
-    const double floor = c->floor;
+    const struct chain_moment floor = c->floor;
     c->damaged |= !graph.at || graph.n_objects != n_objects;
     c->forks = before;
     for (uint64_t i = 0; i < rounds && !c->damaged && !c->failed; i++) {
@@ -211,7 +245,7 @@ static void chain_replay(struct chain *c, size_t n_objects)
             break;
         chain_round(c, &graph, bound);
         if (flag && !c->damaged && !c->failed)
-            c->floor = fmax(c->floor, chain_value(c, flag));
+            c->floor = chain_later(c->floor, chain_value(c, flag));
     }
     c->forks = before + rounds * graph.n_calls;
     c->floor = floor;
@@ -297,24 +331,62 @@ static int chain_walk(struct chain *c)
     return DUITE_OK;
 }
 
-int trace_bounds_find(const struct trace_run *run, struct trace_bounds *bounds)
+/* The numbers of the tasks that the longest chain has, from its last link back. */
+static int chain_numbers(const struct chain *c, struct trace_path *path)
 {
-    struct chain c = {.run = run, .words = trace_words_of(run)};
-    struct trace_sums sums = {0};
+    size_t n = 0, at;
+    for (at = c->longest.link; at; at = c->link[at].before)
+        n++;
+    path->number = base_alloc((n + 1) * sizeof *path->number);
+    if (!path->number)
+        return base_no_memory("the longest chain of a trace");
+    path->n = n;
+    for (at = c->longest.link; at; at = c->link[at].before)
+        path->number[--n] = c->link[at].number;
+    return DUITE_OK;
+}
+
+static int chain_find(const struct trace_run *run, struct chain *c)
+{
     if (run->lost || !run->whole)
         return base_error(DUITE_E_ARGUMENT,
                           "the trace is not whole (%llu events or words are "
                           "missing): it bounds nothing",
                           (unsigned long long)run->lost);
-    int code = trace_sum(run, &sums);
-    if (!code && !(c.bodies = trace_bodies_new(run)))
-        code = base_no_memory("the longest chain of a trace");
+    c->run = run;
+    c->words = trace_words_of(run);
+    c->bodies = trace_bodies_new(run);
+    return c->bodies ? chain_walk(c) : base_no_memory("the longest chain of a trace");
+}
+
+static void chain_free(struct chain *c)
+{
+    trace_bodies_free(c->bodies);
+    free(c->object);
+    free(c->graph);
+    free(c->link);
+}
+
+int trace_bounds_find(const struct trace_run *run, struct trace_bounds *bounds)
+{
+    struct chain c = {0};
+    struct trace_sums sums = {0};
+    int code = chain_find(run, &c);
     if (!code)
-        code = chain_walk(&c);
-    *bounds = (struct trace_bounds){.path = c.longest, .work = sums.busy};
+        code = trace_sum(run, &sums);
+    *bounds = (struct trace_bounds){.path = c.longest.end, .work = sums.busy};
     trace_sums_free(&sums);
-    trace_bodies_free(c.bodies);
-    free(c.object);
-    free(c.graph);
+    chain_free(&c);
+    return code;
+}
+
+int trace_path_find(const struct trace_run *run, struct trace_path *path)
+{
+    struct chain c = {.linked = true};
+    int code = chain_find(run, &c);
+    *path = (struct trace_path){.seconds = c.longest.end};
+    if (!code)
+        code = chain_numbers(&c, path);
+    chain_free(&c);
     return code;
 }

@@ -262,6 +262,42 @@ static void sums_print_kernels(const struct trace_run *run, const struct trace_s
     fprintf(file, "  %-28s %10s %12.6f\n", "(the runtime's own)", "", sums->own);
 }
 
+const char *trace_limit_name(const struct trace_shares *shares)
+{
+    const struct {
+        const char *name;
+        double share;
+    } limit[] = {{"work", shares->work},
+                 {"critical path", shares->path},
+                 {"messages", shares->messages},
+                 {"too few ready tasks", shares->starved},
+                 {"runtime and main program", shares->runtime}};
+    size_t largest = 0;
+    for (size_t i = 1; i < sizeof limit / sizeof *limit; i++)
+        if (limit[i].share > limit[largest].share)
+            largest = i;
+    return limit[largest].name;
+}
+
+static void sums_print_limit(const struct trace_run *run, const struct trace_sums *sums, double all,
+                             FILE *file)
+{
+    const double span = sums->last - sums->first;
+    struct trace_shares shares = {.work = sums_ratio(sums->busy, all),
+                                  .messages = sums_ratio(sums->messaging + sums->exposed, all),
+                                  .starved = sums_ratio(sums->idle - sums->exposed, all)};
+    struct trace_bounds bounds = {0};
+    shares.runtime = 1 - shares.work - shares.messages - shares.starved;
+    if (trace_bounds_find(run, &bounds)) {
+        fputs("  critical path unknown\n", file);
+    } else {
+        shares.path = sums_ratio(bounds.path, span);
+        fprintf(file, "  critical path %.6f s, %.1f %% of the time\n", bounds.path,
+                100 * shares.path);
+    }
+    fprintf(file, "  limited by    %s\n", trace_limit_name(&shares));
+}
+
 int trace_print(const struct trace_run *run, FILE *file)
 {
     struct trace_sums sums;
@@ -283,6 +319,7 @@ int trace_print(const struct trace_run *run, FILE *file)
         fprintf(file, "  LOST          %" PRIu64 " events or words of the program\n", run->lost);
     if (!run->whole)
         fputs("  NOT WHOLE     the run did not come to its end\n", file);
+    sums_print_limit(run, &sums, all, file);
     sums_print_shares(&sums, all, file);
     sums_print_kernels(run, &sums, file);
     trace_sums_free(&sums);

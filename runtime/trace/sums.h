@@ -55,4 +55,29 @@ struct trace_bounds {
  * without tasks. */
 int trace_bounds_find(const struct trace_run *run, struct trace_bounds *bounds);
 
+/* The tasks of the longest chain, the first one first: their numbers rise. */
+struct trace_path {
+    double seconds;   /* as trace_bounds.path */
+    uint64_t *number; /* n; to be freed by base_free, NULL after an error */
+    size_t n;
+};
+
+/* Errors as of trace_bounds_find. */
+int trace_path_find(const struct trace_run *run, struct trace_path *path);
+
+/* ---- What limits ---- */
+
+/* Shares of a run's time, 0 .. 1: of the workers' time, but for `path`, which is a share of the
+ * span. */
+struct trace_shares {
+    double work;     /* bodies of tasks */
+    double path;     /* the critical path; 0: unknown */
+    double messages; /* MPI, and idle while messages were awaited */
+    double starved;  /* idle otherwise: too few tasks are ready */
+    double runtime;  /* all else: the runtime, the main program, the trace itself */
+};
+
+/* The name of the largest share; of equal ones, the first. */
+const char *trace_limit_name(const struct trace_shares *shares);
+
 #endif

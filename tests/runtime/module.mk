@@ -110,6 +110,8 @@ LONG_TESTS += tests/runtime/test_migrate_long.sh
 dist_check_SCRIPTS += tests/runtime/test_trace.sh
 dist_check_SCRIPTS += tests/runtime/test_vite.sh
 TESTS += tests/runtime/test_trace.sh
+dist_check_SCRIPTS += tests/runtime/test_chart.sh
+TESTS += tests/runtime/test_chart.sh
 TESTS += tests/runtime/test_vite.sh
 
 if HAVE_CHECK
@@ -129,6 +131,9 @@ tests_runtime_test_predict_SOURCES = tests/runtime/test_predict.c $(PREDICTED_FI
 tests_runtime_test_predict_LDADD = libduite_predict.la $(DUITE_TEST_LIBS)
 tests_runtime_test_predict_replays_SOURCES = tests/runtime/test_predict_replays.c $(PREDICTED_FILES)
 tests_runtime_test_predict_replays_LDADD = libduite_predict.la $(DUITE_TEST_LIBS)
+RUNTIME_TESTS += tests/runtime/test_shares
+tests_runtime_test_shares_SOURCES = tests/runtime/test_shares.c
+tests_runtime_test_shares_LDADD = libduite_chart.la $(DUITE_TEST_LIBS)
 RUNTIME_TESTS += tests/runtime/test_bounds
 tests_runtime_test_bounds_SOURCES = tests/runtime/test_bounds.c tests/support/trace_file.c tests/support/trace_file.h
 tests_runtime_test_bounds_LDADD = $(DUITE_TEST_LIBS)

@@ -1,0 +1,43 @@
+/* The options of charts as command lines have them. */
+#include "runtime/chart/chart.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct chart_options chart_options_default(void)
+{
+    return (struct chart_options){.from = -INFINITY, .to = INFINITY, .width = CHART_WIDTH};
+}
+
+/* A number of seconds from 0 on that ends at `end`; nothing at all leaves *seconds. */
+static bool window_end_parse(const char *text, const char *end, double *seconds)
+{
+    char *behind = NULL;
+    if (text == end)
+        return true;
+    *seconds = strtod(text, &behind);
+    return behind == end && *text >= '0' && *text <= '9' && isfinite(*seconds);
+}
+
+bool chart_window_parse(const char *text, struct chart_options *options)
+{
+    const char *colon = strchr(text, ':');
+    struct chart_options window = *options;
+    if (!colon || !window_end_parse(text, colon, &window.from) ||
+        !window_end_parse(colon + 1, text + strlen(text), &window.to) || !(window.from < window.to))
+        return false;
+    *options = window;
+    return true;
+}
+
+bool chart_size_parse(const char *text, struct chart_options *options)
+{
+    int width, height, end = 0;
+    const int n = sscanf(text, "%5dx%5d%n", &width, &height, &end);
+    if (n != 2 || text[end] || width < 1 || height < 1)
+        return false;
+    options->width = width;
+    options->height = height;
+    return true;
+}

@@ -4,6 +4,7 @@
 #include "cloth/intersections.h"
 #include "cloth/output/output.h"
 #include "cloth/view/view.h"
+#include "cloth/view_trace.h"
 
 #include <argp.h>
 #include <math.h>
@@ -22,18 +23,26 @@ struct options {
     int width, height;
     double azimuth, elevation, zoom;
     bool check_intersections;
-    bool contact;      /* coloured by its force */
-    double most_force; /* N: that has the hottest colour; 0: the largest of the frame */
+    bool contact; /* coloured by its force */
+    const char *trace, *svg;
+    struct chart_options chart;   /* of the trace */
+    bool sized, windowed, framed; /* --size was given; --window; an option of frames */
+    double most_force;            /* N: that has the hottest colour; 0: the largest of the frame */
 };
 
 static const struct argp_option OPTIONS[] = {
     {"png", 'o', "FILE", 0, "Write a picture to FILE", 0},
     {"frame", 'f', "N", 0, "Frame to show, counted from 0, or `last' (the default)", 0},
-    {"size", 's', "WxH", 0, "Pixels of the picture (1280x720)", 0},
+    {"size", 's', "WxH", 0,
+     "Pixels of the picture (1280x720; of a chart 1280, and as high as its rows)", 0},
     {"camera", 'c', "AZIMUTH,ELEVATION[,ZOOM]", 0,
      "Where to look from, in degrees: 0,0 is from +z, 90,0 from +x (32,20,1)", 0},
     {"colour", 'k', "contact[,MAX]", 0,
      "Colour the cloth by the force of contact on its vertices, up to MAX N (the largest)", 0},
+    {"trace", 't', "FILE", 0,
+     "Draw the Gantt chart of a run from the trace that duite-cloth --trace wrote; no DIR then", 0},
+    {"svg", 'v', "FILE", 0, "Write the chart of --trace to FILE as SVG", 0},
+    {"window", 'w', "FROM:TO", 0, "Seconds that the chart of --trace shows (all)", 0},
     {"check-intersections", 'i', NULL, 0,
      "Look in all frames, exactly, for triangles that go through each other or through obstacles",
      0},
@@ -83,9 +92,47 @@ static int parse_colour(const char *text, struct options *options)
     return *text && !(options->most_force > 0 && isfinite(options->most_force));
 }
 
+/* What belongs together. */
+static void check_together(const struct options *options, struct argp_state *state)
+{
+    if (!options->trace && (options->svg || options->windowed))
+        argp_error(state, "--svg and --window are of charts: --trace FILE");
+    if (options->trace && (options->folder || options->framed || options->check_intersections))
+        argp_error(state, "--trace draws a chart of a run: no folder, frame, camera, colour or "
+                          "check goes with it");
+    if (options->trace && !options->png && !options->svg)
+        argp_error(state, "say where the chart goes: --svg FILE or --png FILE");
+    if (!options->trace && !options->folder)
+        argp_error(state, "say which folder of frames to show");
+    if (!options->png && !options->svg && !options->check_intersections)
+        argp_error(state, "say where the picture goes: --png FILE");
+}
+
+static error_t parse_chart(int key, char *arg, struct argp_state *state)
+{
+    struct options *options = state->input;
+    switch (key) {
+    case 't':
+    case 'v':
+        if (!*arg)
+            argp_error(state, "%s takes the name of a file", key == 't' ? "--trace" : "--svg");
+        *(key == 't' ? &options->trace : &options->svg) = arg;
+        return 0;
+    case 'w':
+        options->windowed = true;
+        if (!chart_window_parse(arg, &options->chart))
+            argp_error(state, "--window takes FROM:TO in seconds, such as 0.1:0.2, not `%s'", arg);
+        return 0;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+}
+
 static error_t parse(int key, char *arg, struct argp_state *state)
 {
     struct options *options = state->input;
+    options->framed |= key == 'f' || key == 'c' || key == 'k';
+    options->sized |= key == 's';
     switch (key) {
     case 'o':
         if (!*arg)
@@ -120,13 +167,10 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         options->folder = arg;
         return 0;
     case ARGP_KEY_END:
-        if (!options->folder)
-            argp_error(state, "say which folder of frames to show");
-        if (!options->png && !options->check_intersections)
-            argp_error(state, "say where the picture goes: --png FILE");
+        check_together(options, state);
         return 0;
     default:
-        return ARGP_ERR_UNKNOWN;
+        return parse_chart(key, arg, state);
     }
 }
 
@@ -323,17 +367,31 @@ static int check_frames(struct output_cache *cache, int *exit_code, struct cloth
     return CLOTH_OK;
 }
 
+static int draw_trace(struct options *options, struct cloth_error *error)
+{
+    if (options->sized) {
+        options->chart.width = options->width;
+        options->chart.height = options->height;
+    }
+    const int code = view_trace(options->trace, &options->chart, options->svg, options->png, error);
+    if (code)
+        fprintf(stderr, "duite-view: %s\n", error->text);
+    return code ? code == CLOTH_E_INPUT ? 2 : 1 : 0;
+}
+
 int main(int argc, char **argv)
 {
     static const struct argp argp = {OPTIONS,
                                      parse,
-                                     "DIR",
+                                     "DIR\n--trace FILE",
                                      "Makes a picture of a frame of a simulated cloth, or checks "
-                                     "all frames; DIR is what duite-cloth --output wrote.",
+                                     "all frames; DIR is what duite-cloth --output wrote. Or draws "
+                                     "the Gantt chart of a run.",
                                      NULL,
                                      NULL,
                                      NULL};
     struct options options = {.frame = LAST_FRAME,
+                              .chart = chart_options_default(),
                               .width = 1280,
                               .height = 720,
                               .azimuth = 32,
@@ -342,8 +400,10 @@ int main(int argc, char **argv)
     argp_err_exit_status = 2;
     argp_parse(&argp, argc, argv, 0, NULL, &options);
     struct cloth_error error = {0};
-    struct output_cache cache;
+    struct output_cache cache = {0};
     int exit_code = 0;
+    if (options.trace)
+        return draw_trace(&options, &error);
     int code = output_cache_open(&cache, options.folder, &error);
     if (!code && options.png)
         code = show_frame(&cache, &options, &error);

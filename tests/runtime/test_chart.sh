@@ -72,3 +72,22 @@ head -c 2000 "$scratch/ranks" > "$scratch/short"
 exits 2 "a truncated trace" ./duite-trace "$scratch/short" --svg "$scratch/none.svg"
 exits 2 "a foreign file" ./duite-trace "$srcdir/README.md" --svg "$scratch/none.svg"
 ok "... of which nothing is drawn" test ! -e "$scratch/none.svg"
+
+# ---- duite-view draws the same ----
+
+if test -x "${DUITE_VIEW:-./none}"; then
+    view() { limited "$DUITE_VIEW" --trace "$scratch/ranks" "$@"; }
+    same() { view --svg "$scratch/view.svg" && cmp "$scratch/view.svg" "$scratch/all.svg" && test ! -e "$scratch/view.svg.part"; }
+    ok "duite-view draws the same chart" same
+    png() { view --size 600x300 --png "$scratch/view.png" && test "$(head -c 4 "$scratch/view.png" | tail -c 3)" = PNG; }
+    if grep -q '^#define HAVE_CAIRO 1' config.h; then ok "... as PNG" png; else skip "... as PNG" "built without cairo"; fi
+    exits 2 "a chart that goes nowhere" view
+    exits 2 "a chart with a frame" view --svg "$scratch/none.svg" --frame 1
+    exits 2 "a chart with a folder" view --svg "$scratch/none.svg" "$scratch"
+    exits 2 "SVG of a folder" limited "$DUITE_VIEW" "$scratch" --svg "$scratch/none.svg"
+    exits 2 "a window behind the run" view --svg "$scratch/none.svg" --window 1000:1001
+    exits 2 "a truncated trace" limited "$DUITE_VIEW" --trace "$scratch/short" --svg "$scratch/none.svg"
+    ok "... of which nothing is drawn" test ! -e "$scratch/none.svg"
+else
+    skip "duite-view draws the same chart" "not built"
+fi

@@ -6,5 +6,6 @@ libduite_cloth_la_SOURCES += \
     cloth/element/folds.c \
     cloth/element/kind.h \
     cloth/element/kinds.c \
+    cloth/element/strain.c cloth/element/strain.h \
     cloth/element/strain_limit.c \
     cloth/element/triangles.c

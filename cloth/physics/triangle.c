@@ -5,6 +5,7 @@
 #include "cloth/physics/detail/membrane.h"
 
 #include <math.h>
+#include <string.h>
 
 int phys_membrane_make(double warp, double weft, double shear, double poisson, double damping,
                        struct phys_membrane *membrane)
@@ -141,6 +142,38 @@ PHYS_KERNEL_OF(double, phys_triangles_energy,
         sum = phys_sum_own(&four, t->corner, sight->n, &energy, sum);
     }
     return sum;
+}
+
+/* The larger eigenvalue of a symmetric matrix. */
+PHYS_INLINE void larger_of(const struct phys_plane2 *e, phys_vec *largest)
+{
+    const phys_vec half = 0.5 * (e->uu - e->vv), square = half * half + e->uv * e->uv;
+    phys_sqrt(&square, largest);
+    *largest += 0.5 * (e->uu + e->vv);
+}
+
+PHYS_KERNEL(phys_triangles_strain,
+            (const struct phys_triangles *t, const struct phys_sight *sight, double *largest,
+             double (*stress)[3]),
+            (t, sight, largest, stress))
+{
+    struct phys_moduli moduli = PHYS_NO_MODULI;
+    for (size_t first = 0; first < t->n; first += PHYS_WIDE) {
+        struct phys_four four;
+        struct phys_frame frame;
+        struct phys_plane2 e, s;
+        phys_vec larger;
+        phys_four_from(first, t->n, &four);
+        phys_frame_make(t, &four, sight, &moduli, &frame);
+        phys_frame_strain(&frame, &e);
+        phys_frame_stress(&frame, &e, &s);
+        larger_of(&e, &larger);
+        for (size_t i = 0; i < PHYS_WIDE && first + i < t->n; i++) {
+            largest[first + i] = larger[i];
+            if (stress)
+                memcpy(stress[first + i], (double[3]){s.uu[i], s.vv[i], s.uv[i]}, sizeof *stress);
+        }
+    }
 }
 
 PHYS_KERNEL(phys_triangles_torque,

@@ -75,6 +75,12 @@ void phys_triangles_system(const struct phys_triangles *triangles, size_t from, 
 double phys_triangles_energy(const struct phys_triangles *triangles,
                              const struct phys_sight *sight);
 
+/* What a state says of each triangle, all n: its largest principal strain, the larger eigenvalue of
+ * S - I; and, unless NULL, the elastic stress C : (S - I) along warp, along weft, and of shear
+ * (N/m). */
+void phys_triangles_strain(const struct phys_triangles *triangles, const struct phys_sight *sight,
+                           double *largest, double (*stress)[3]);
+
 /* Adds the torques (N m) that the forces of uncorrected triangles leave, of those that count here.
  */
 void phys_triangles_torque(const struct phys_triangles *triangles, const struct phys_sight *sight,

@@ -30,6 +30,34 @@ START_TEST(patch)
 }
 END_TEST
 
+/* F = R S with a rotation R out of the plane: strains are of S - I alone, stresses C times them. */
+START_TEST(strain_of_an_affine_map)
+{
+    const double suu = 1.05, suv = 0.03, svv = 0.97, c = 0.6, d = 0.8;
+    const phys_vec ru = {c, d, 0, 0}, rv = {0, 0, 1, 0};
+    const phys_vec fu = suu * ru + suv * rv, fv = suv * ru + svv * rv;
+    const double half = 0.5 * (suu - svv), mean = 0.5 * (suu + svv) - 1;
+    const double want = mean + sqrt(half * half + suv * suv);
+    const double c22 = WEFT / (1 - POISSON * POISSON * WEFT / WARP), c12 = POISSON * c22;
+    const double c11 = WARP / (1 - POISSON * POISSON * WEFT / WARP);
+    struct sheet s;
+    struct elements_state state;
+    double largest[TRIANGLES], again[TRIANGLES], stress[TRIANGLES][3];
+    make_sheet(&s, 0.1);
+    place(&s, &fu, &fv, &state);
+    const struct phys_sight sight = {.n = VERTICES, .x = state.x};
+    phys_triangles_strain(&s.triangles, &sight, largest, stress);
+    phys_triangles_strain(&s.triangles, &sight, again, NULL);
+    ck_assert_mem_eq(largest, again, sizeof again);
+    for (int t = 0; t < TRIANGLES; t++) {
+        ck_assert_double_eq_tol(largest[t], want, 1e-13);
+        ck_assert_double_eq_tol(stress[t][0], c11 * (suu - 1) + c12 * (svv - 1), 1e-10);
+        ck_assert_double_eq_tol(stress[t][1], c12 * (suu - 1) + c22 * (svv - 1), 1e-10);
+        ck_assert_double_eq_tol(stress[t][2], 2 * SHEAR * suv, 1e-10);
+    }
+}
+END_TEST
+
 /* Sum of the forces on the vertices of the right edge (u largest), or of the upper one. */
 static void pull(const phys_vec *f, int upper, phys_vec *sum)
 {
@@ -165,6 +193,7 @@ int main(void)
     Suite *suite = suite_create("triangle_forms");
     TCase *forms = tcase_create("closed forms");
     tcase_add_test(forms, patch);
+    tcase_add_test(forms, strain_of_an_affine_map);
     tcase_add_test(forms, uniaxial_stretch);
     tcase_add_test(forms, pure_shear);
     tcase_add_test(forms, uncorrected_forces_leave_their_torque);

@@ -1,6 +1,6 @@
 noinst_LTLIBRARIES += libduite_cloth.la
 libduite_cloth_la_SOURCES =
-libduite_cloth_la_LIBADD = $(YAML_LIBS) $(METIS_LIBS) $(XXHASH_LIBS) -lm
+libduite_cloth_la_LIBADD = $(HDF5_LIBS) $(YAML_LIBS) $(METIS_LIBS) $(XXHASH_LIBS) -lm
 
 include cloth/base/module.mk
 include cloth/mesh/module.mk

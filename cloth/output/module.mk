@@ -5,6 +5,9 @@ libduite_cloth_la_SOURCES += \
 	cloth/output/frames.c \
 	cloth/output/garment.c cloth/output/garment.h cloth/output/pattern.c \
 	cloth/output/lock.c \
+	cloth/output/hdf5.h cloth/output/hdf5/hdf5.h cloth/output/hdf5/grid.h \
+	cloth/output/hdf5/frames.c cloth/output/hdf5/grid.c cloth/output/hdf5/image.c \
+	cloth/output/hdf5/index.c cloth/output/hdf5/indexes.c \
 	cloth/output/mannequin.c cloth/output/mannequin.h \
 	cloth/output/probes.c \
 	cloth/output/cache.c \

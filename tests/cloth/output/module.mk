@@ -16,6 +16,12 @@ tests_cloth_output_test_report_SOURCES = tests/cloth/output/test_report.c
 tests_cloth_output_test_report_LDADD = tests/cloth/output/libsample.la $(CLOTH_TEST_LIBS)
 tests_cloth_output_test_crash_SOURCES = tests/cloth/output/test_crash.c
 tests_cloth_output_test_crash_LDADD = tests/cloth/output/libsample.la $(CLOTH_TEST_LIBS)
+if HAVE_HDF5
+check_PROGRAMS += tests/cloth/output/test_hdf5
+tests_cloth_output_test_hdf5_SOURCES = tests/cloth/output/test_hdf5.c
+tests_cloth_output_test_hdf5_LDADD = tests/cloth/output/libsample.la $(CLOTH_TEST_LIBS) $(HDF5_LIBS)
+TESTS += tests/cloth/output/test_hdf5
+endif
 TESTS += tests/cloth/output/test_frames tests/cloth/output/test_report tests/cloth/output/test_replace tests/cloth/output/test_crash \
 	tests/cloth/output/test_market tests/cloth/output/test_checkpoint
 endif

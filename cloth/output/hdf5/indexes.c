@@ -1,0 +1,198 @@
+/* ParaView from 5.12 on reads the series; the XDMF file is for what reads no VTKHDF. Both name a
+ * frame by its place beside them, so that a folder can be moved. */
+#include "cloth/output/hdf5/hdf5.h"
+
+#include "cloth/output/files/files.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+const char *const output_field_names[OUTPUT_FIELDS] = {
+    [OUTPUT_VELOCITY] = "velocity",   [OUTPUT_BLOCK] = "block",   [OUTPUT_RANK] = "rank",
+    [OUTPUT_FORCE] = "contact_force", [OUTPUT_STRAIN] = "strain", [OUTPUT_STRESS] = "stress"};
+
+static const struct {
+    const char *name, *begin, *end;
+} INDEX[OUTPUT_INDEXES] = {
+    [OUTPUT_SERIES] = {"cloth.vtkhdf.series",
+                       "{\n\"file-series-version\": \"1.0\",\n\"files\": [\n", "]\n}\n"},
+    [OUTPUT_XMF] = {"cloth.xmf",
+                    "<?xml version=\"1.0\"?>\n<!-- frames of duite-cloth -->\n<Xdmf "
+                    "Version=\"2.0\">\n<Domain>\n<Grid Name=\"frames\" GridType=\"Collection\" "
+                    "CollectionType=\"Temporal\">\n",
+                    "</Grid>\n</Domain>\n</Xdmf>\n"},
+};
+
+int output_indexes_open(struct output_indexes *indexes, const char *folder,
+                        struct cloth_error *error)
+{
+    int code = CLOTH_OK;
+    for (int i = 0; i < OUTPUT_INDEXES; i++)
+        indexes->of[i] = (struct output_index){.file = -1};
+    for (int i = 0; i < OUTPUT_INDEXES && !code; i++)
+        code = output_index_open(indexes->of + i, output_path(folder, INDEX[i].name, ""),
+                                 INDEX[i].begin, INDEX[i].end, error);
+    return code;
+}
+
+int output_indexes_close(struct output_indexes *indexes, struct cloth_error *error)
+{
+    int code = CLOTH_OK;
+    for (int i = 0; i < OUTPUT_INDEXES; i++) {
+        const int failed = output_index_close(indexes->of + i, error);
+        code = code ? code : failed;
+    }
+    return code;
+}
+
+/* ---- Entries ---- */
+
+/* An array of the frame's file. */
+static void put_item(FILE *text, const char *frame, const char *array, size_t rows, unsigned width,
+                     const char *type, int bytes)
+{
+    fprintf(text, "<DataItem Format=\"HDF\" NumberType=\"%s\" Precision=\"%d\" Dimensions=\"%zu",
+            type, bytes, rows);
+    if (width > 1)
+        fprintf(text, " %u", width);
+    fprintf(text, "\">%s:%s</DataItem>", frame, array);
+}
+
+static void put_cells(FILE *text, const char *frame, const struct output_grid *grid)
+{
+    const bool edges = grid->n_triangles == 0;
+    fprintf(text, "<Topology TopologyType=\"%s\"%s NumberOfElements=\"%u\">",
+            grid->mixed ? "Mixed"
+            : edges     ? "Polyline"
+                        : "Triangle",
+            edges ? " NodesPerElement=\"2\"" : "", output_grid_cells(grid));
+    if (grid->mixed)
+        put_item(text, frame, "/XdmfCells", grid->n_mixed, 1, "Int", 8);
+    else
+        put_item(text, frame, "/VTKHDF/Connectivity", grid->n_corners, 1, "Int", 8);
+    fputs("</Topology>\n", text);
+}
+
+static void put_field(FILE *text, const char *frame, const struct output_grid *grid,
+                      enum output_field field, int bytes)
+{
+    const bool cells = output_field_is_of_cells(field), whole = output_field_is_whole(field);
+    const unsigned width = output_field_width(field);
+    char array[64];
+    snprintf(array, sizeof array, "/VTKHDF/%s/%s", cells ? "CellData" : "PointData",
+             output_field_names[field]);
+    fprintf(text, "<Attribute Name=\"%s\" AttributeType=\"%s\" Center=\"%s\">",
+            output_field_names[field], width > 1 ? "Vector" : "Scalar", cells ? "Cell" : "Node");
+    put_item(text, frame, array, cells ? output_grid_cells(grid) : grid->n_points, width,
+             whole ? "Int" : "Float", whole ? 4 : bytes);
+    fputs("</Attribute>\n", text);
+}
+
+static void put_grid(FILE *text, const struct output_hdf5_setup *setup,
+                     const struct output_grid *grid, const char *frame, double time)
+{
+    const int bytes = setup->is_double ? 8 : 4;
+    fprintf(text, "<Grid Name=\"cloth\">\n<Time Value=\"%.17g\"/>\n", time);
+    put_cells(text, frame, grid);
+    fputs("<Geometry GeometryType=\"XYZ\">", text);
+    put_item(text, frame, "/VTKHDF/Points", grid->n_points, 3, "Float", bytes);
+    fputs("</Geometry>\n", text);
+    for (int i = 0; i < OUTPUT_FIELDS; i++)
+        if (setup->wants[i])
+            put_field(text, frame, grid, (enum output_field)i, bytes);
+    fputs("</Grid>\n", text);
+}
+
+int output_indexes_add(struct output_indexes *indexes, const struct output_hdf5_setup *setup,
+                       const struct output_grid *grid, const char *name, double time,
+                       struct cloth_error *error)
+{
+    char *entry = NULL;
+    size_t n = 0;
+    FILE *text = open_memstream(&entry, &n);
+    if (text)
+        put_grid(text, setup, grid, name, time);
+    int code = text && fclose(text) == 0
+                   ? output_index_add(indexes->of + OUTPUT_XMF, entry, n, error)
+                   : cloth_fail(error, CLOTH_E_MEMORY, "no memory for the index of frames");
+    free(entry);
+    char line[128];
+    const int size = snprintf(line, sizeof line, "{\"name\": \"%s\", \"time\": %.17g}", name, time);
+    const int series = output_index_add(indexes->of + OUTPUT_SERIES, line, (size_t)size, error);
+    return code ? code : series;
+}
+
+/* ---- What an earlier run left ---- */
+
+void output_hdf5_name(char name[OUTPUT_HDF5_NAME], uint64_t frame)
+{
+    snprintf(name, OUTPUT_HDF5_NAME, "hdf5/frame-%06ju.vtkhdf", (uintmax_t)frame);
+}
+
+/* Whether a file of the folder hdf5 has a name that frames get, whole or under way. */
+static bool is_frame(const char *name)
+{
+    static const char BEGIN[] = "frame-";
+    if (strncmp(name, BEGIN, sizeof BEGIN - 1) != 0)
+        return false;
+    name += sizeof BEGIN - 1;
+    const size_t digits = strspn(name, "0123456789");
+    return digits >= 6 &&
+           (strcmp(name + digits, ".vtkhdf") == 0 || strcmp(name + digits, ".vtkhdf.part") == 0);
+}
+
+static int remove_frames(const char *folder, struct cloth_error *error)
+{
+    char *frames = output_path(folder, "hdf5", "");
+    DIR *all = frames ? opendir(frames) : NULL;
+    int code = frames ? CLOTH_OK : cloth_fail(error, CLOTH_E_MEMORY, "no memory for a path");
+    for (struct dirent *entry = NULL; all && !code && (entry = readdir(all));) {
+        char *path = is_frame(entry->d_name) ? output_path(frames, entry->d_name, "") : NULL;
+        if (path && unlink(path) != 0)
+            code = output_refuse(error, "replace", path);
+        free(path);
+    }
+    if (all)
+        closedir(all);
+    if (frames && !code)
+        rmdir(frames); /* unless it has other files, too */
+    free(frames);
+    return code;
+}
+
+/* The indexes go first, so that none names what is not there. */
+int output_hdf5_remove(const char *folder, struct cloth_error *error)
+{
+    int code = CLOTH_OK;
+    for (int i = 0; i < OUTPUT_INDEXES && !code; i++) {
+        char *path = output_path(folder, INDEX[i].name, "");
+        if (!path)
+            return cloth_fail(error, CLOTH_E_MEMORY, "no memory for the path of an index");
+        if (access(path, F_OK) != 0)
+            code = CLOTH_OK;
+        else if (!output_index_is_ours(path, INDEX[i].begin))
+            code = cloth_fail(error, CLOTH_E_INPUT,
+                              "%s is in the way, and is no index of frames of an earlier run; give "
+                              "another folder, or move the file away",
+                              path);
+        else if (unlink(path) != 0)
+            code = output_refuse(error, "replace", path);
+        free(path);
+    }
+    return code ? code : remove_frames(folder, error);
+}
+
+/* What is no index of ours stays: nobody asked for it to go. */
+int output_hdf5_forget(const char *folder, struct cloth_error *error)
+{
+    bool ours = true;
+    for (int i = 0; i < OUTPUT_INDEXES; i++) {
+        char *path = output_path(folder, INDEX[i].name, "");
+        ours = ours && path && output_index_is_ours(path, INDEX[i].begin);
+        free(path);
+    }
+    return ours ? output_hdf5_remove(folder, error) : CLOTH_OK;
+}

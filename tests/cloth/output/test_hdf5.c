@@ -1,0 +1,293 @@
+/* Scientific frames, read back by HDF5 itself. */
+#include "cloth/output/hdf5.h"
+#include "tests/cloth/output/sample.h"
+#include "tests/support/unit.h"
+
+#include <hdf5.h>
+#include <math.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum { POINTS = 5, TRIANGLES = 2, EDGES = 1, CELLS = TRIANGLES + EDGES };
+static const uint32_t TRIANGLE[TRIANGLES][3] = {{0, 1, 2}, {2, 1, 3}}, EDGE[EDGES][2] = {{3, 4}};
+
+static struct sample sample;
+static unsigned warnings;
+static char warning[1200];
+
+static void warn(const char *text)
+{
+    warnings++;
+    snprintf(warning, sizeof warning, "%s", text);
+}
+
+/* A number that tells field, frame and place apart, no float. */
+static double value(int field, uint64_t frame, size_t i)
+{
+    return 100 * field + 10 * (double)frame + (double)i / 3;
+}
+
+static void derive(void *context, struct output_state *state)
+{
+    *(unsigned *)context += 1;
+    for (size_t i = 0; i < CELLS; i++)
+        state->field[OUTPUT_STRAIN][i] = value(OUTPUT_STRAIN, state->frame, i);
+    for (size_t i = 0; i < 3 * CELLS; i++)
+        state->field[OUTPUT_STRESS][i] = value(OUTPUT_STRESS, state->frame, i);
+}
+
+static unsigned derived;
+static struct output_hdf5_setup setup_of(bool is_double, uint32_t every, uint32_t level)
+{
+    struct output_hdf5_setup setup = {.folder = sample.folder,
+                                      .n_points = POINTS,
+                                      .n_triangles = TRIANGLES,
+                                      .n_edges = EDGES,
+                                      .triangle = TRIANGLE,
+                                      .edge = EDGE,
+                                      .is_double = is_double,
+                                      .every = every,
+                                      .level = level,
+                                      .derive = derive,
+                                      .context = &derived,
+                                      .warn = warn};
+    for (int i = 0; i < OUTPUT_FIELDS; i++)
+        setup.wants[i] = true;
+    return setup;
+}
+
+static void give(struct output_hdf5 *frames, uint64_t frame)
+{
+    struct output_state *state = output_hdf5_begin(frames, frame, (double)frame / 25);
+    for (size_t i = 0; i < 3 * POINTS; i++) {
+        state->position[i] = value(-1, frame, i);
+        state->field[OUTPUT_VELOCITY][i] = value(OUTPUT_VELOCITY, frame, i);
+        state->field[OUTPUT_FORCE][i] = value(OUTPUT_FORCE, frame, i);
+    }
+    for (int i = 0; i < POINTS; i++) {
+        state->number[OUTPUT_BLOCK][i] = i - 1;
+        state->number[OUTPUT_RANK][i] = i / 2;
+    }
+    output_hdf5_end(frames);
+}
+
+/* Writes those of n frames that it takes. */
+static void run(const struct output_hdf5_setup *setup, uint64_t n)
+{
+    struct cloth_error error = {0};
+    struct output_hdf5 *frames;
+    ck_assert_msg(output_hdf5_open(&frames, setup, &error) == 0, "%s", error.text);
+    for (uint64_t i = 0; i < n; i++)
+        if (output_hdf5_takes(frames, i))
+            give(frames, i);
+    ck_assert_msg(output_hdf5_close(&frames, &error) == 0, "%s", error.text);
+    ck_assert_ptr_null(frames);
+}
+
+static const char *path_of(const char *name)
+{
+    static char path[160];
+    snprintf(path, sizeof path, "%s/%s", sample.folder, name);
+    return path;
+}
+
+static bool is_there(const char *name)
+{
+    return access(path_of(name), F_OK) == 0;
+}
+
+static void read_all(hid_t file, const char *name, hid_t type, size_t n, void *to)
+{
+    const hid_t set = H5Dopen2(file, name, H5P_DEFAULT);
+    ck_assert_msg(set >= 0, "%s is not there", name);
+    const hid_t space = H5Dget_space(set);
+    ck_assert_int_eq(H5Sget_simple_extent_npoints(space), (hssize_t)n);
+    ck_assert_int_ge(H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, to), 0);
+    H5Sclose(space);
+    H5Dclose(set);
+}
+
+static void check_reals(hid_t file, const char *name, size_t n, int field, uint64_t frame,
+                        bool is_double)
+{
+    double got[3 * POINTS];
+    read_all(file, name, H5T_NATIVE_DOUBLE, n, got);
+    for (size_t i = 0; i < n; i++) {
+        const double want = value(field, frame, i);
+        ck_assert_msg(is_double ? got[i] == want : got[i] == (double)(float)want, "%s", name);
+    }
+}
+
+static void check_cells(hid_t file)
+{
+    static const int64_t CORNERS[] = {0, 1, 2, 2, 1, 3, 3, 4}, START[] = {0, 3, 6, 8};
+    static const int64_t MIXED[] = {4, 0, 1, 2, 4, 2, 1, 3, 2, 2, 3, 4};
+    static const unsigned char KIND[] = {5, 5, 3};
+    static const char *const COUNT[] = {"NumberOfPoints", "NumberOfCells",
+                                        "NumberOfConnectivityIds"};
+    const int64_t counts[] = {POINTS, CELLS, 8};
+    int64_t got[16];
+    unsigned char kind[CELLS];
+    for (int i = 0; i < 3; i++) {
+        char name[64];
+        snprintf(name, sizeof name, "VTKHDF/%s", COUNT[i]);
+        read_all(file, name, H5T_NATIVE_INT64, 1, got);
+        ck_assert_int_eq(got[0], counts[i]);
+    }
+    read_all(file, "VTKHDF/Connectivity", H5T_NATIVE_INT64, 8, got);
+    ck_assert_mem_eq(got, CORNERS, sizeof CORNERS);
+    read_all(file, "VTKHDF/Offsets", H5T_NATIVE_INT64, CELLS + 1, got);
+    ck_assert_mem_eq(got, START, sizeof START);
+    read_all(file, "XdmfCells", H5T_NATIVE_INT64, 12, got);
+    ck_assert_mem_eq(got, MIXED, sizeof MIXED);
+    read_all(file, "VTKHDF/Types", H5T_NATIVE_UCHAR, CELLS, kind);
+    ck_assert_mem_eq(kind, KIND, sizeof KIND);
+}
+
+static void check_frame(uint64_t frame, bool is_double)
+{
+    char name[48];
+    int32_t number[POINTS];
+    double time;
+    snprintf(name, sizeof name, "hdf5/frame-%06u.vtkhdf", (unsigned)frame);
+    const hid_t file = H5Fopen(path_of(name), H5F_ACC_RDONLY, H5P_DEFAULT);
+    ck_assert_msg(file >= 0, "%s is not there", name);
+    check_cells(file);
+    check_reals(file, "VTKHDF/Points", 3 * POINTS, -1, frame, is_double);
+    check_reals(file, "VTKHDF/PointData/velocity", 3 * POINTS, OUTPUT_VELOCITY, frame, is_double);
+    check_reals(file, "VTKHDF/PointData/contact_force", 3 * POINTS, OUTPUT_FORCE, frame, is_double);
+    check_reals(file, "VTKHDF/CellData/strain", CELLS, OUTPUT_STRAIN, frame, is_double);
+    check_reals(file, "VTKHDF/CellData/stress", 3 * CELLS, OUTPUT_STRESS, frame, is_double);
+    read_all(file, "VTKHDF/PointData/block", H5T_NATIVE_INT32, POINTS, number);
+    ck_assert(number[0] == -1 && number[4] == 3);
+    read_all(file, "VTKHDF/PointData/rank", H5T_NATIVE_INT32, POINTS, number);
+    ck_assert(number[1] == 0 && number[4] == 2);
+    read_all(file, "VTKHDF/FieldData/TimeValue", H5T_NATIVE_DOUBLE, 1, &time);
+    ck_assert(time == (double)frame / 25);
+    ck_assert_int_ge(H5Fclose(file), 0);
+}
+
+static void start(void)
+{
+    sample_make(&sample);
+    warnings = derived = 0;
+}
+
+static void end(void)
+{
+    sample_free(&sample);
+}
+
+START_TEST(comes_back)
+{
+    for (int i = 0; i < 4; i++) {
+        const struct output_hdf5_setup setup = setup_of(i % 2, 1, i / 2 ? 6 : 0);
+        run(&setup, 5);
+        for (uint64_t frame = 0; frame < 5; frame++)
+            check_frame(frame, i % 2);
+    }
+    ck_assert_uint_eq(derived, 4 * 5);
+}
+END_TEST
+
+START_TEST(every_third)
+{
+    char text[512];
+    const struct output_hdf5_setup setup = setup_of(true, 3, 0);
+    run(&setup, 7);
+    ck_assert(is_there("hdf5/frame-000003.vtkhdf") && is_there("hdf5/frame-000006.vtkhdf"));
+    ck_assert(!is_there("hdf5/frame-000001.vtkhdf"));
+    sample_read(path_of("cloth.vtkhdf.series"), text, sizeof text);
+    ck_assert_str_eq(
+        text, "{\n\"file-series-version\": \"1.0\",\n\"files\": [\n"
+              "{\"name\": \"hdf5/frame-000000.vtkhdf\", \"time\": 0},\n"
+              "{\"name\": \"hdf5/frame-000003.vtkhdf\", \"time\": 0.12},\n"
+              "{\"name\": \"hdf5/frame-000006.vtkhdf\", \"time\": 0.23999999999999999}]\n}\n");
+}
+END_TEST
+
+/* Equal frames are equal bytes, whenever they are written. */
+START_TEST(equal_frames_are_equal_files)
+{
+    char one[65536], two[65536];
+    const struct output_hdf5_setup setup = setup_of(false, 1, 0);
+    run(&setup, 1);
+    const size_t n = sample_read(path_of("hdf5/frame-000000.vtkhdf"), one, sizeof one);
+    sleep(1); /* another second on the clock */
+    run(&setup, 1);
+    ck_assert_uint_eq(sample_read(path_of("hdf5/frame-000000.vtkhdf"), two, sizeof two), n);
+    ck_assert_mem_eq(one, two, n);
+    ck_assert((double)n <= output_hdf5_bytes(&setup));
+}
+END_TEST
+
+START_TEST(replaces_an_earlier_run)
+{
+    struct cloth_error error = {0};
+    const struct output_hdf5_setup setup = setup_of(false, 1, 0);
+    run(&setup, 3);
+    sample_write(path_of("hdf5/frame-000007.vtkhdf.part"), "x", 1);
+    sample_write(path_of("hdf5/mine.txt"), "x", 1);
+    run(&setup, 1);
+    ck_assert(is_there("hdf5/frame-000000.vtkhdf") && !is_there("hdf5/frame-000001.vtkhdf"));
+    ck_assert(!is_there("hdf5/frame-000007.vtkhdf.part") && is_there("hdf5/mine.txt"));
+    ck_assert_int_eq(output_hdf5_forget(sample.folder, &error), 0);
+    ck_assert(!is_there("hdf5/frame-000000.vtkhdf") && !is_there("cloth.xmf"));
+    ck_assert(is_there("hdf5/mine.txt"));
+}
+END_TEST
+
+START_TEST(leaves_what_is_not_ours)
+{
+    struct cloth_error error = {0};
+    struct output_hdf5 *frames;
+    const struct output_hdf5_setup setup = setup_of(false, 1, 0);
+    sample_write(path_of("cloth.xmf"), "mine", 4);
+    ck_assert_int_eq(output_hdf5_open(&frames, &setup, &error), CLOTH_E_INPUT);
+    ck_assert_ptr_nonnull(strstr(error.text, "cloth.xmf is in the way"));
+    ck_assert_int_eq(output_hdf5_forget(sample.folder, &error), 0);
+    ck_assert(is_there("cloth.xmf"));
+}
+END_TEST
+
+/* A folder in the place of frame 1: the others are written, and it is said once. */
+START_TEST(goes_on_without_a_frame)
+{
+    struct cloth_error error = {0};
+    struct output_hdf5 *frames;
+    char text[512];
+    const struct output_hdf5_setup setup = setup_of(true, 1, 0);
+    ck_assert_int_eq(output_hdf5_open(&frames, &setup, &error), 0);
+    ck_assert_int_eq(mkdir(path_of("hdf5/frame-000001.vtkhdf"), 0777), 0);
+    for (uint64_t i = 0; i < 3; i++)
+        give(frames, i);
+    output_hdf5_wait(frames);
+    ck_assert_uint_eq(warnings, 1);
+    ck_assert_ptr_nonnull(strstr(warning, "hdf5/frame-000001.vtkhdf: Is a directory; the run goes "
+                                          "on without HDF5 frame 1"));
+    ck_assert_int_eq(output_hdf5_close(&frames, &error), CLOTH_E_IO);
+    ck_assert_ptr_nonnull(strstr(error.text, "1 of 3 HDF5 frames were not written"));
+    check_frame(0, true);
+    check_frame(2, true);
+    ck_assert(!is_there("hdf5/frame-000001.vtkhdf.part"));
+    sample_read(path_of("cloth.vtkhdf.series"), text, sizeof text);
+    ck_assert_ptr_null(strstr(text, "000001"));
+    ck_assert_ptr_nonnull(strstr(text, "000002"));
+}
+END_TEST
+
+int main(void)
+{
+    TCase *c = tcase_create("hdf5");
+    tcase_add_checked_fixture(c, start, end);
+    tcase_add_test(c, comes_back);
+    tcase_add_test(c, every_third);
+    tcase_add_test(c, equal_frames_are_equal_files);
+    tcase_add_test(c, replaces_an_earlier_run);
+    tcase_add_test(c, leaves_what_is_not_ours);
+    tcase_add_test(c, goes_on_without_a_frame);
+    Suite *s = suite_create("hdf5");
+    suite_add_tcase(s, c);
+    return unit_run(s);
+}

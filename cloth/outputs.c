@@ -117,6 +117,7 @@ static int open_output(struct outputs *to, const struct phases *phases, const st
     free(meshes);
     free(names);
     free(posed);
+    code = code ? code : outputs_hdf5_open(&to->hdf5, model, to->options->output, error);
     code = code ? code : open_forces(to, model, flow, n_frames, error);
     return code ? code : open_probes(to, flow, stays ? &stays->rows : NULL, error);
 }
@@ -207,6 +208,8 @@ int outputs_go_on(struct outputs *to, const struct phases *phases,
                                 false, error);
     if (to->intersections)
         intersections_begin(to->intersections, phases->total.simulated_seconds);
+    if (!code)
+        code = outputs_hdf5_go_on(&to->hdf5, phases_model(phases), error);
     return code || !to->frames ? code : write_scene(to, phases, apart, error);
 }
 
@@ -237,6 +240,7 @@ void outputs_close(struct outputs *of, struct cloth_error *error)
     output_probes_close(&of->probes, error);
     output_forces_close(&of->forces, error);
     output_close(&of->frames, error);
+    outputs_hdf5_close(&of->hdf5);
 }
 
 void outputs_free(struct outputs *of)
@@ -270,10 +274,12 @@ static int check_frame(const struct outputs *of, uint64_t frame, double time,
 int outputs_frame(void *context, uint64_t frame, double time, const double *position,
                   struct cloth_error *error)
 {
-    const struct outputs *of = context;
+    struct outputs *of = context;
     int code = CLOTH_OK;
     if (of->frames)
         code = output_frame(of->frames, frame, time, position, error);
+    if (!code)
+        outputs_hdf5_position(&of->hdf5, frame, time, position);
     if (!code && of->intersections)
         code = check_frame(of, frame, time, position, error);
     if (of->drape)
@@ -281,9 +287,18 @@ int outputs_frame(void *context, uint64_t frame, double time, const double *posi
     return code;
 }
 
+int outputs_beside(void *context, const struct flow_beside *beside, struct cloth_error *error)
+{
+    struct outputs *of = context;
+    (void)error;
+    outputs_hdf5_beside(&of->hdf5, beside);
+    return CLOTH_OK;
+}
+
 int outputs_force(void *context, uint64_t frame, const double *force, struct cloth_error *error)
 {
-    const struct outputs *of = context;
+    struct outputs *of = context;
+    outputs_hdf5_force(&of->hdf5, force);
     return output_forces_frame(of->forces, frame, force, error);
 }
 

@@ -95,6 +95,14 @@ static bool writes_forces(const struct model *model)
     return model->contact.force && model_certifies(model);
 }
 
+static bool same_hdf5(const struct model_hdf5 *a, const struct model_hdf5 *b)
+{
+    return a->velocity == b->velocity && a->block == b->block && a->rank == b->rank &&
+           a->contact_force == b->contact_force && a->strain == b->strain &&
+           a->stress == b->stress && a->is_double == b->is_double && a->every == b->every &&
+           a->level == b->level;
+}
+
 int phases_check(const struct model *first, const struct model *model, uint32_t phase,
                  struct cloth_error *error)
 {
@@ -105,6 +113,8 @@ int phases_check(const struct model *first, const struct model *model, uint32_t 
         return differs(&of, "another time.fps");
     if (writes_forces(first) != writes_forces(model))
         return differs(&of, "another contact.force, or contact that is not certified in both,");
+    if (!same_hdf5(&first->hdf5, &model->hdf5))
+        return differs(&of, "another output.hdf5");
     int code = check_cloths(&of);
     if (!code)
         code = check_obstacles(&of);

@@ -4,6 +4,7 @@
 
 #include "cloth/flow/run.h"
 #include "cloth/output/output.h"
+#include "cloth/outputs_hdf5.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -36,7 +37,8 @@ static double output_bytes(const struct extent *all, const struct model *model,
     for (; header && *header; header++)
         columns += *header == ',';
     const double vectors = model->contact.force && model_certifies(model) ? 2 : 1;
-    return all->frames * (vectors * 3 * sizeof(float) * (double)flow_vertices(flow) + INDEX) +
+    return all->frames * (vectors * 3 * sizeof(float) * (double)flow_vertices(flow) + INDEX +
+                          outputs_hdf5_bytes(model)) +
            all->steps * columns * NUMBER;
 }
 

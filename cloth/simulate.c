@@ -109,6 +109,7 @@ static void run_flow(struct run *run, duite *rt, struct cloth_error *error)
                                        .before = phases_before(&run->phases),
                                        .end = last ? NULL : run->phases.end,
                                        .frame = run->wants_frames ? outputs_frame : NULL,
+                                       .beside = options->output ? outputs_beside : NULL,
                                        .force = options->output ? outputs_force : NULL,
                                        .row = options->output ? outputs_row : NULL,
                                        .system =
@@ -271,7 +272,9 @@ static int conclude(struct run *run)
             summary_print(stdout, &summary);
     }
     const int code = simulate_agree(run, &error);
-    return code ? code : simulate_agree(run, &run->untraced);
+    const int unwritten = simulate_agree(run, &run->outputs.hdf5.unwritten);
+    const int untraced = simulate_agree(run, &run->untraced);
+    return code ? code : unwritten ? unwritten : untraced;
 }
 
 /* The exit code of a run that began. done: if nothing failed. */

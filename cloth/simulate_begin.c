@@ -92,6 +92,10 @@ static int read_and_cut(struct run *run, struct cloth_error *error)
     run->phases.keeps_start = options->checkpoint > 0;
     if (!code && options->restart)
         code = outputs_lock(&run->outputs, options, error);
+    if (!code && options->restart && run->phases.models->hdf5.every)
+        code = model_fail(run->phases.models->hdf5_place, error,
+                          "output.hdf5: frames in HDF5 do not go on after --restart; start the run "
+                          "anew, or take the key out of the scene for both runs");
     if (!code && options->restart)
         code = restart_read(&run->restart, options->restart, &run->phases, error);
     run->model = phases_model(&run->phases);
@@ -158,6 +162,9 @@ static void open_outputs(struct run *run, struct cloth_error *error)
     if (run->model->n_probes && !options->output)
         fprintf(stderr, "duite-cloth: warning: the scene has probes, whose table is written into "
                         "the folder of --output; there is none\n");
+    if (run->model->hdf5.every && !options->output)
+        fprintf(stderr, "duite-cloth: warning: the scene asks for output.hdf5, whose frames are "
+                        "written into the folder of --output; there is none\n");
     if (options->output)
         room_check(run->phases.n, run->model, run->flow, options->output, error);
     if (!error->code && model_certifies(run->model))

@@ -21,7 +21,7 @@
     X(cg_pass) X(cg_pass_preconditioned) X(tie_pack) X(tie_pack_pass) X(tie_show_basis)            \
     X(cg_scalars) X(cg_scalars_of_parts) X(cg_scalars_coarse) X(piece_sums) X(piece_shift)         \
     X(stretch) X(energy) X(level) X(watch) X(seams) X(contact_force) X(probe) X(row)                         \
-    X(frame) X(frame_force) X(collect) X(seconds) X(broadcast) X(system_part) X(system_save)
+    X(frame) X(frame_beside) X(frame_force) X(collect) X(seconds) X(broadcast) X(system_part) X(system_save)
 /* clang-format on */
 
 #define FLOW_KERNEL_NUMBER(name) FLOW_KERNEL_##name,

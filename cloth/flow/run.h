@@ -110,6 +110,14 @@ struct flow_checkpoint {
     size_t n;
 };
 
+/* What scientific frames have of n vertices beside positions and forces, in the numbering of the
+ * input meshes. */
+struct flow_beside {
+    const double *velocity;      /* n x 3, m/s */
+    const int32_t *block, *rank; /* n: the block, and the rank that has it; -1 of vertices that no
+                                  * block has */
+};
+
 /* Where frames and systems go: handed over by the program. Called on rank 0 only, from one task at
  * a time. */
 struct flow_output {
@@ -127,6 +135,9 @@ struct flow_output {
     /* After it the force of contact on each vertex in the step that ended there, N, alike, of a run
      * whose contact is certified; NULL: it is not wanted. */
     int (*force)(void *context, uint64_t frame, const double *force, struct cloth_error *error);
+    /* After a frame that model.hdf5 takes, its other fields, unless none is wanted. The arrays are
+     * lent. */
+    int (*beside)(void *context, const struct flow_beside *beside, struct cloth_error *error);
     /* A row of the table of probes: n numbers, whose names are flow_header's, of the state after so
      * many steps, from 0 on. Returns 0 or a code and fills error. NULL: it is not wanted. */
     int (*row)(void *context, uint64_t step, double time, size_t n, const double *values,

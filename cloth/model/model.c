@@ -127,6 +127,7 @@ void model_free(struct model *model)
     free(model->warnings);
     free(model->name);
     free(model->h_place);
+    free(model->hdf5_place);
     free(model->fps_place);
     *model = (struct model){0};
 }

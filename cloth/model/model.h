@@ -6,6 +6,7 @@
 #include "cloth/contact/shape.h"
 #include "cloth/mesh/elastic.h"
 #include "cloth/model/cloth.h"
+#include "cloth/model/hdf5.h"
 #include "cloth/physics/air.h"
 #include "cloth/physics/curve.h"
 #include "cloth/physics/motion.h"
@@ -115,6 +116,8 @@ struct model {
     struct phys_air air;
     uint32_t wind_curve; /* that the wind is multiplied by, from 1; 0: it is constant */
     struct model_contact contact;
+    struct model_hdf5 hdf5;
+    char *hdf5_place;
     struct model_drape drape;
 
     double h;                  /* s; time is an integer count of h/1024 */

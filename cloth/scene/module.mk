@@ -14,6 +14,7 @@ libduite_cloth_la_SOURCES += \
 	cloth/scene/schema/rules.c \
 	cloth/scene/schema/rules_cloth.c \
 	cloth/scene/schema/rules_mannequin.c \
+	cloth/scene/schema/rules_output.c \
 	cloth/scene/schema/tables.h \
 	cloth/scene/schema/store.h \
 	cloth/scene/schema/store.c \
@@ -36,6 +37,7 @@ libduite_cloth_la_SOURCES += \
 	cloth/scene/build/drape.c \
 	cloth/scene/build/fold.c \
 	cloth/scene/build/frames.c \
+	cloth/scene/build/hdf5.c \
 	cloth/scene/build/idle.c \
 	cloth/scene/build/joint.c \
 	cloth/scene/build/load.c \

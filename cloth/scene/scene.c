@@ -35,6 +35,8 @@ static int read_tree(struct model *model, struct scene_tree *tree, uint32_t phas
     if (!code)
         scene_build_contact_idle(model);
     if (!code)
+        code = scene_build_hdf5(model, tree, error);
+    if (!code)
         code = scene_build_drape(model, tree, error);
     if (!code)
         code = scene_build_joints(model, tree, error);

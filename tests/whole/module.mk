@@ -74,3 +74,5 @@ TESTS += tests/whole/test_mannequin.sh
 dist_check_SCRIPTS += tests/whole/test_checkpoint.sh tests/whole/test_checkpoint_long.sh
 TESTS += tests/whole/test_checkpoint.sh
 LONG_TESTS += tests/whole/test_checkpoint_long.sh
+dist_check_SCRIPTS += tests/whole/test_hdf5.sh
+TESTS += tests/whole/test_hdf5.sh

@@ -58,6 +58,60 @@ static void put_unused(const struct flow *flow, bool force)
                 force ? 0 : flow->unused.position[i][c];
 }
 
+static void put_numbers(const struct flow *flow, uint32_t vertex, uint32_t block)
+{
+    flow->block_of[vertex] = (int32_t)block;
+    flow->rank_of[vertex] = flow->home[block];
+}
+
+/* Which blocks vertices are of, and who keeps these. */
+static void put_places(const struct flow *flow)
+{
+    for (uint32_t b = 0; b < flow->tables.n_blocks; b++) {
+        const struct flow_table *t = flow->tables.block + b;
+        const uint32_t end = flow_names_from(&flow->names, t->first + t->n);
+        for (uint32_t i = 0; i < t->n; i++)
+            put_numbers(flow, flow->vertex[t->first + i], b);
+        for (uint32_t i = flow_names_from(&flow->names, t->first); i < end; i++)
+            put_numbers(flow, flow->names.name[i][1], b);
+    }
+    for (uint32_t i = 0; i < flow->unused.n; i++)
+        flow->block_of[flow->unused.vertex[i]] = flow->rank_of[flow->unused.vertex[i]] = -1;
+}
+
+/* The other fields of a frame that is written. */
+FLOW_KERNEL_WITH(frame_beside, FLOW_OUTPUT, struct frame_args, (RW(token), ALL(v)),
+                 .side_effects = 1)
+static int frame_beside_body(const duite_call *call, const struct frame_beside_fields *on)
+{
+    struct flow *flow = flow_of(call);
+    const struct flow_beside beside = {flow->room, flow->block_of, flow->rank_of};
+    put_unused(flow, true);
+    put_all(flow, on->v);
+    put_places(flow);
+    const int failed = flow->output->beside(flow->output->context, &beside, &flow->trouble);
+    put_unused(flow, false);
+    return failed ? duite_fail(call, FLOW_NOT_WRITTEN, "%s", flow->trouble.text) : 0;
+}
+
+/* No frame is under way. */
+static void find_homes(struct flow_state *state)
+{
+    for (uint32_t b = 0; b < state->flow->tables.n_blocks; b++) {
+        const int home = duite_home(state->rt, state->block[b].x);
+        if (state->flow->home)
+            state->flow->home[b] = home;
+    }
+}
+
+static int fork_beside(struct flow_state *state, const struct frame_args *args, bool kept)
+{
+    if (!flow_shows_beside(state, args->frame))
+        return DUITE_OK;
+    return flow_fork_at(state, 0, &flow_kernel_frame_beside, args,
+                        kept ? FLOW_AS(FLOW_FOR(v, kept_v)) : NULL);
+}
+
 /* The forces of a frame that is written. */
 FLOW_KERNEL_WITH(frame_force, FLOW_OUTPUT, struct frame_args, (RW(token), ALL(contact_force)),
                  .side_effects = 1)
@@ -89,8 +143,11 @@ static int fork_frame(struct flow_state *state, double tick, bool kept)
         if (code)
             return code;
     }
-    const int code = flow_fork_at(state, 0, &flow_kernel_frame, &args,
-                                  kept ? FLOW_AS(FLOW_FOR(x, kept_x)) : NULL);
+    if (flow_shows_beside(state, args.frame))
+        find_homes(state);
+    int code = flow_fork_at(state, 0, &flow_kernel_frame, &args,
+                            kept ? FLOW_AS(FLOW_FOR(x, kept_x)) : NULL);
+    code = code ? code : fork_beside(state, &args, kept);
     if (code || !flow_shows_contact(state))
         return code;
     return flow_fork_at(state, 0, &flow_kernel_frame_force, &args,

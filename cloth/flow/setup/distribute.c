@@ -200,6 +200,7 @@ int flow_share_head(struct flow_state *state)
         return code;
     flow->received = head->model;
     flow->received.name = flow->received.h_place = flow->received.fps_place = NULL;
+    flow->received.hdf5_place = NULL;
     flow->received.n_materials = flow->received.n_cloths = 0;
     flow->received.n_joints = flow->received.n_welds = 0;
     flow->received.materials = NULL;

@@ -27,6 +27,11 @@ static void take_room(struct flow_state *state)
     struct flow *flow = state->flow;
     if (flow_shows(state))
         flow->room = cloth_alloc(flow->n_vertices, 3 * sizeof *flow->room, &flow->trouble);
+    if (flow_shows_beside(state, 0)) {
+        flow->block_of = cloth_alloc(flow->n_vertices, sizeof *flow->block_of, &flow->trouble);
+        flow->rank_of = cloth_alloc(flow->n_vertices, sizeof *flow->rank_of, &flow->trouble);
+        flow->home = cloth_alloc(state->head.n_blocks, sizeof *flow->home, &flow->trouble);
+    }
     const struct flow_watched *watched =
         &flow->source.watched; /* the tables are not distributed yet */
     if (state->output && state->output->row && watched->n_columns) {
@@ -141,6 +146,9 @@ void flow_memory_free(struct flow_state *state)
     free(flow->ghost_room);
     free(flow->forces);
     free(flow->room);
+    free(flow->block_of);
+    free(flow->rank_of);
+    free(flow->home);
     free(flow->row);
     free(flow->probe_values);
     free(state->block);

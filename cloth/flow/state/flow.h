@@ -124,8 +124,10 @@ struct flow {
     /* On rank 0: written by the tasks `frame`, one at a time, and by the main thread when no task
      * runs. */
     const struct flow_output *output;
-    double *room;         /* n_vertices x 3: positions of a frame; NULL: there is no output */
-    double *row;          /* of the table of probes; NULL: it is not written */
+    double *room; /* n_vertices x 3: positions of a frame; NULL: there is no output */
+    int32_t *block_of, *rank_of; /* n_vertices: of a frame; NULL: nobody asks for them */
+    int32_t *home; /* a block: its rank; changed by the main thread when no frame is under way */
+    double *row;   /* of the table of probes; NULL: it is not written */
     double *probe_values; /* watched x FLOW_PROBE_VALUES */
     uint64_t frames;      /* written */
     uint64_t hash;

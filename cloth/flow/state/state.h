@@ -318,6 +318,14 @@ static inline bool flow_feels_contact(const struct flow_state *state)
     return flow_shows_contact(state) || (state->flow->feels_contact && flow_writes_probes(state));
 }
 
+/* Whether a frame has other fields than these. */
+static inline bool flow_shows_beside(const struct flow_state *state, uint64_t frame)
+{
+    const struct model_hdf5 *hdf5 = &state->flow->model->hdf5;
+    return flow_shows(state) && state->output->beside && model_hdf5_takes(hdf5, frame) &&
+           (hdf5->velocity || hdf5->block || hdf5->rank);
+}
+
 /* s: of the steps accepted so far. */
 static inline double flow_time(const struct flow_state *state)
 {

@@ -42,6 +42,8 @@ int scene_build_cloths(struct model *model, struct scene_tree *tree, struct clot
 /* After the cloths, whose vertices they name. */
 int scene_build_probes(struct model *model, const struct scene_tree *tree,
                        struct cloth_error *error);
+/* The fields of output.hdf5; after contact and probes. */
+int scene_build_hdf5(struct model *model, const struct scene_tree *tree, struct cloth_error *error);
 int scene_build_drape(struct model *model, const struct scene_tree *tree,
                       struct cloth_error *error);
 int scene_build_joints(struct model *model, const struct scene_tree *tree,

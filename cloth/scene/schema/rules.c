@@ -429,6 +429,8 @@ static const struct scene_rule scene_keys[] = {
      ARRAY(struct model, joints, n_joints), .about = "springs between any two vertices"},
     {"welds", SCENE_LIST, .fallback = "[]", .inside = &weld, ARRAY(struct model, welds, n_welds),
      .about = "vertices of any cloths that are one"},
+    {"output", SCENE_MAP, .fallback = "{}", .inside = scene_output_keys,
+     .about = "files in the folder of --output that not every run has"},
     {"phases", SCENE_LIST, .filled = true, .inside = &phase, ARRAY(struct model, phases, n_phases),
      .about = "runs of the scene, each from where the one before ended; else it is one run"},
     {"grain", SCENE_INTEGER, .fallback = "1000", .min = 1, INTO(struct model, grain),

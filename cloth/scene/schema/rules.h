@@ -123,6 +123,7 @@ extern const struct model_word scene_holds[];        /* enum scene_constraint, i
 extern const struct model_word scene_rests[];        /* whether by uv */
 extern const struct model_word scene_meets[];        /* whether by maps */
 extern const struct model_word scene_views[];        /* an axis, or CONTACT_THINNEST */
+extern const struct model_word scene_hdf5_fields[];  /* offsets of flags in a struct model_hdf5 */
 extern const struct model_word scene_probe_values[]; /* offsets of flags in a struct model_probe */
 
 /* What a word among `words` means; *known: whether it is among them. */

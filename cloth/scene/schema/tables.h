@@ -31,5 +31,6 @@
 /* Shared by the tables. */
 extern const struct scene_rule scene_cloth, scene_probe;
 extern const struct scene_rule scene_curve_kinds[], scene_motion_keys[], scene_mannequin_keys[];
+extern const struct scene_rule scene_output_keys[];
 
 #endif

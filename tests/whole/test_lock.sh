@@ -88,8 +88,8 @@ replaced() {
     result && test "$(cat second)" = "duite-cloth: warning: frames: process $dead of this host left frames/duite.lock and runs no more; this run has the folder now"
 }
 ok "a lock of a dead process" replaced
-killed() { # SIGNAL: ends a run; whether it leaves its lock
-    begin env && kill -s "$1" $job && awaits $$ over $job
+killed() { # SIGNAL, which a shell has its background jobs ignore if it is INT: ends a run; whether it leaves its lock
+    begin env --default-signal && kill -s "$1" $job && awaits $$ over $job
     wait $job
     echo "exit status $?"
     test -e frames/duite.lock

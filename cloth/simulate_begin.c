@@ -166,7 +166,7 @@ static void open_outputs(struct run *run, struct cloth_error *error)
         fprintf(stderr, "duite-cloth: warning: the scene asks for output.hdf5, whose frames are "
                         "written into the folder of --output; there is none\n");
     if (options->output)
-        room_check(run->phases.n, run->model, run->flow, options->output, error);
+        room_check(run->phases.n, run->phases.models, run->flow, options->output, error);
     if (!error->code && model_certifies(run->model))
         start_check(run->model, run->flow, &run->apart, options->scene, error);
     if (!error->code)

@@ -8,6 +8,7 @@
 
 #include <mpi.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* Runs of a small scene in checking mode: the base, with sets of the case. For one test program. */
@@ -47,6 +48,13 @@ static inline int take_frame(void *context, uint64_t frame, double time, const d
     return CLOTH_OK;
 }
 
+static inline int take_beside(void *context, const struct flow_beside *beside,
+                              struct cloth_error *error)
+{
+    (void)context, (void)beside, (void)error;
+    return CLOTH_OK;
+}
+
 static inline int take_force(void *context, uint64_t frame, const double *force,
                              struct cloth_error *error)
 {
@@ -78,15 +86,36 @@ static inline void constrain_some(void *context, const struct flow_rows *rows)
 /* What a run is besides its scene. */
 struct how {
     bool system, own_filter;
-    struct flow_report report; /* of it */
+    bool saves;                   /* it makes checkpoints, */
+    struct flow_checkpoint saved; /* of which this is the last one, on rank 0; to be freed */
+    struct flow_checkpoint from;  /* it goes on from here, on rank 0; bytes NULL: it starts anew */
+    struct flow_report report;    /* of it */
 };
+
+static inline void take_checkpoint(void *context, struct flow_checkpoint state)
+{
+    struct how *how = context;
+    ck_assert_ptr_nonnull(state.bytes);
+    free(how->saved.bytes);
+    how->saved = state;
+}
+
+static inline int always(void *context)
+{
+    (void)context;
+    return 1;
+}
 
 static inline void run_checked(struct how *how, struct flow *flow, struct cloth_error *error)
 {
-    const struct flow_output output = {.frame = take_frame,
+    const struct flow_output output = {.context = how,
+                                       .frame = take_frame,
                                        .force = take_force,
+                                       .beside = take_beside,
                                        .row = take_row,
-                                       .system = how->system ? take_system : NULL};
+                                       .system = how->system ? take_system : NULL,
+                                       .save = how->saves ? take_checkpoint : NULL};
+    const struct flow_progress progress = {.due = how->saves ? always : NULL};
     duite_options options = duite_options_default();
     duite *rt = NULL;
     options.kernels = flow_kernels();
@@ -96,7 +125,7 @@ static inline void run_checked(struct how *how, struct flow *flow, struct cloth_
     options.check = 1;
     ck_assert_msg(!duite_start(&rt, &options), "%s", duite_message());
     flow_filter_by(flow, (struct flow_filter){.rows = constrain_some});
-    flow_run(flow, rt, &output, NULL, &how->report, error);
+    flow_run(flow, rt, &output, &progress, &how->report, error);
     ck_assert_msg(!duite_stop(&rt), "%s", duite_message());
 }
 
@@ -145,6 +174,8 @@ static inline bool run_how(struct how *how, const char *const sets[MAX_SETS])
         model = scene_read_right(base, n, some);
         model.own_filter = how->own_filter;
         flow_prepare(&flow, &model, ranks, &error);
+        if (!error.code && how->from.bytes)
+            flow_resume(flow, how->from, &(struct flow_resumed){0}, &error);
     }
     MPI_Bcast(&error, sizeof error, MPI_BYTE, 0, MPI_COMM_WORLD);
     if (!error.code)

@@ -325,7 +325,26 @@ START_TEST(velocity_correction)
 }
 END_TEST
 
-/* ---- All kernels ---- */
+/* A run that makes checkpoints, and one that goes on from the last of them: plain, with contacts,
+ * with ties. */
+START_TEST(checkpoints)
+{
+    static const char *const mode = "contact={mode: certified, self: on, thickness: 0.0005}";
+    static const char *const joint =
+        "joints=[{from: {vertex: 3}, to: {vertex: 20}, stiffness: 5, begin: 0.001}]";
+    static const char *const beside = "output={hdf5: {fields: [velocity, block, rank]}}";
+    const char *more[] = {mode, joint, NULL};
+    for (size_t i = 0; i < sizeof more / sizeof *more; i++) {
+        struct how first = {.saves = true}, next = {0};
+        asked = 0; /* both are run */
+        run_how(&first, SETS(beside, more[i]));
+        next.from = first.saved;
+        asked = 0;
+        run_how(&next, SETS(beside, "time.end=0.004", more[i]));
+        free(first.saved.bytes);
+    }
+}
+END_TEST
 
 START_TEST(pulled_seams)
 {
@@ -335,6 +354,8 @@ START_TEST(pulled_seams)
                  "cloths[0].seams={state: pulled, stiffness: 5, damping: 0.01}"));
 }
 END_TEST
+
+/* ---- All kernels ---- */
 
 START_TEST(every_kernel_was_run)
 {
@@ -380,6 +401,7 @@ int main(int argc, char **argv)
     tcase_add_test(cases, certified_contact);
     tcase_add_test(cases, repulsion);
     tcase_add_test(cases, velocity_correction);
+    tcase_add_test(cases, checkpoints);
     tcase_add_test(cases, pulled_seams);
     tcase_add_test(cases, maps);
     tcase_add_test(cases, every_kernel_was_run);

@@ -157,8 +157,9 @@ struct body {
     uint32_t n;      /* bodies, nested ones left out */
 };
 
-/* An open hash table. Task numbers are dense, and looked up in rising order; so are their places in
- * the table. */
+/* An open hash table. Task numbers come in dense runs, and are looked up in rising order: 64 of
+ * them are neighbours in the table, too. The next 64 are elsewhere, since runs that lie a multiple
+ * of the table's size apart, as of replays with many rounds at most, would heap up. */
 struct trace_bodies {
     struct body *body;
     size_t mask;
@@ -166,7 +167,8 @@ struct trace_bodies {
 
 static struct body *body_at(const struct trace_bodies *bodies, uint64_t number)
 {
-    size_t at = (size_t)number & bodies->mask;
+    const uint64_t scattered = (number >> 6) * UINT64_C(0x9E3779B97F4A7C15);
+    size_t at = (size_t)(scattered >> 26 << 6 | (number & 63)) & bodies->mask;
     while (bodies->body[at].number && bodies->body[at].number != number)
         at = (at + 1) & bodies->mask;
     return &bodies->body[at];

@@ -93,14 +93,17 @@ ok "no folder for them" aside
 in_the_way() { mkdir -p way/hdf5/frame-000001.vtkhdf && refused 'cannot replace way/hdf5/frame-000001.vtkhdf: Is a directory' pull.yaml --output way; }
 ok "a folder where a frame goes" in_the_way
 
-killed() { # every frame that has its name, and every one that the index names, is whole
+killed() { # every frame that has its name, and every one that the index names, is whole; the next run leaves nothing of it
     "$DUITE_CLOTH" pull.yaml --output cut --quiet --end 600 --set time.fps=1000 &
     pid=$!
     until test -e "$(frame cut 20)" || ! kill -0 $pid; do sleep 0.05; done
     kill -KILL $pid && ! wait $pid 2> /dev/null
     n=0
     for file in cut/hdf5/frame-*.vtkhdf; do h5dump -d /VTKHDF/CellData/stress "$file" > /dev/null || return 1; n=$((n + 1)); done
-    named=$(grep -c '"time"' cut/cloth.vtkhdf.series) && echo "# $n frames, $named in the index"
-    test "$n" -ge 20 && test "$named" -ge $((n - 1)) && test "$named" -le "$n" && test "$(tail -n 1 cut/cloth.vtkhdf.series)" = '}' && test "$(tail -n 1 cut/cloth.xmf)" = '</Xdmf>'
+    series=$(grep -c '"time"' cut/cloth.vtkhdf.series) && xmf=$(grep -c '<Time' cut/cloth.xmf)
+    echo "# $n frames; $series and $xmf in the indexes, which end with '$(tail -n 1 cut/cloth.vtkhdf.series)' and '$(tail -n 1 cut/cloth.xmf)'"
+    for named in "$series" "$xmf"; do test "$n" -ge 20 && test "$named" -ge $((n - 1)) && test "$named" -le "$n" || return 1; done
+    test "$(tail -n 1 cut/cloth.vtkhdf.series)" = '}' && test "$(tail -n 1 cut/cloth.xmf)" = '</Xdmf>' || return 1
+    run pull.yaml --output cut && ! ls cut/hdf5 | grep -v '^frame-00000[0-2].vtkhdf$'
 }
 ok "a run that is killed leaves whole frames" killed

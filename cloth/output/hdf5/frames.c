@@ -113,9 +113,10 @@ static int write_frame(struct output_hdf5 *frames, struct output_state *state,
     int code = output_image(setup, &frames->grid, state, &frames->bytes, error);
     if (!code)
         code = put_file(frames, name, error);
-    return code ? code
-                : output_indexes_add(&frames->indexes, setup, &frames->grid, name, state->time,
-                                     error);
+    if (!code)
+        code = output_indexes_add(&frames->indexes, setup, &frames->grid, name, state->time, error);
+    output_sync_folder(frames->folder);
+    return code;
 }
 
 /* The first one that is missing is said at once. */
@@ -238,7 +239,8 @@ int output_hdf5_open(struct output_hdf5 **frames, const struct output_hdf5_setup
     made->setup = *setup;
     made->folder = strdup(setup->folder);
     made->own = output_path(setup->folder, "hdf5", "");
-    made->indexes.of[OUTPUT_SERIES].file = made->indexes.of[OUTPUT_XMF].file = -1;
+    for (int i = 0; i < OUTPUT_INDEXES; i++)
+        made->indexes.of[i] = OUTPUT_INDEX_NONE;
     pthread_mutex_init(&made->lock, NULL);
     pthread_cond_init(&made->change, NULL);
     if (open_all(made, &own)) {

@@ -53,19 +53,32 @@ int output_image(const struct output_hdf5_setup *setup, const struct output_grid
                  const struct output_state *state, struct output_bytes *bytes,
                  struct cloth_error *error);
 
-/* An index: a text that is whole at any moment. */
-struct output_index {
-    char *path;
-    int file;        /* -1: none */
-    uint64_t body;   /* bytes before the end of the text */
-    const char *end; /* of the text */
-    uint32_t n;      /* entries */
+/* An index: a text that is whole at any moment, in a folder that has a folder hdf5. */
+struct output_index_file {
+    int file; /* -1: none */
+    size_t n; /* bytes of the text that it has */
 };
+struct output_index {
+    char *path, *hidden_path,
+        *spare_path; /* the last: a second name while two files change theirs */
+    struct output_index_file shown, hidden;
+    struct output_bytes text; /* all but its end */
+    const char *end;
+    uint32_t n; /* entries */
+};
+#define OUTPUT_INDEX_NONE                                                                          \
+    (struct output_index)                                                                          \
+    {                                                                                              \
+        .shown = {.file = -1}, .hidden = {.file = -1 }                                             \
+    }
+/* What ends the other two names, in the folder hdf5. */
+#define OUTPUT_INDEX_HIDDEN ".part"
+#define OUTPUT_INDEX_SPARE  ".spare"
 /* Whether there is a file that begins as an index of ours does. */
 bool output_index_is_ours(const char *path, const char *begin);
-/* Begins a new one, of a name that nobody has. path becomes the index's. Errors: output_refuse. */
-int output_index_open(struct output_index *index, char *path, const char *begin, const char *end,
-                      struct cloth_error *error);
+/* Begins a new one. begin and end stay the caller's. Errors: output_refuse. */
+int output_index_open(struct output_index *index, const char *folder, const char *name,
+                      const char *begin, const char *end, struct cloth_error *error);
 /* Adds an entry, n bytes. A failed one leaves the others. Error: CLOTH_E_IO. */
 int output_index_add(struct output_index *index, const char *entry, size_t n,
                      struct cloth_error *error);

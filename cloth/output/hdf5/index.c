@@ -1,6 +1,7 @@
-/* An index is whole at any moment: its end is written over by the next entry and a new end in one
- * write, after the frame has its name. When that fails the old end is put back, in its old place.
- * So a run that is killed leaves an index of the frames that are there. */
+/* Whoever opens an index finds a whole text, also after a run that was killed: the kernel stops a
+ * write between two pages, so nothing writes to the file that is shown. Two files take turns. The
+ * hidden one gets the entries that it lacks and the end of the text, then the two change names. So
+ * an entry costs no copy of those before it. */
 #include "cloth/output/hdf5/hdf5.h"
 
 #include "cloth/output/files/files.h"
@@ -23,58 +24,119 @@ bool output_index_is_ours(const char *path, const char *begin)
     return is;
 }
 
-int output_index_open(struct output_index *index, char *path, const char *begin, const char *end,
-                      struct cloth_error *error)
+/* ---- Two files ---- */
+
+static int append(struct output_bytes *text, const char *bytes, size_t n)
 {
-    *index = (struct output_index){.path = path, .file = -1, .body = strlen(begin), .end = end};
-    if (!path)
-        return cloth_fail(error, CLOTH_E_MEMORY, "no memory for the path of an index of frames");
-    index->file = open(path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    if (index->file < 0)
-        return output_refuse(error, "write", path);
-    return output_write_at(index->file, begin, index->body, 0) == 0 &&
-                   output_write_at(index->file, end, strlen(end), index->body) == 0
-               ? CLOTH_OK
-               : output_fail(error, "write", path);
+    if (n > text->room - text->n) {
+        const size_t room = 2 * (text->n + n);
+        unsigned char *data = realloc(text->data, room);
+        if (!data)
+            return -1;
+        text->data = data;
+        text->room = room;
+    }
+    memcpy(text->data + text->n, bytes, n);
+    text->n += n;
+    return 0;
 }
 
-/* Once the file is longer, nothing that it needs for its old text can fail. */
-static void put_back(const struct output_index *index)
+/* Makes the hidden file that of the whole text. 0, or -1 with errno set. */
+static int write_hidden(struct output_index *index)
 {
-    const uint64_t size = index->body + strlen(index->end);
-    output_write_at(index->file, index->end, strlen(index->end), index->body);
-    if (ftruncate(index->file, (off_t)size) == 0)
-        fdatasync(index->file);
+    struct output_index_file *file = &index->hidden;
+    const size_t n = index->text.n, end = strlen(index->end);
+    if (file->file < 0) {
+        file->file = open(index->hidden_path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+        file->n = 0;
+    }
+    if (file->file < 0 ||
+        output_write_at(file->file, index->text.data + file->n, n - file->n, file->n) != 0 ||
+        output_write_at(file->file, index->end, end, n) != 0 ||
+        ftruncate(file->file, (off_t)(n + end)) != 0)
+        return -1;
+    return output_sync(file->file);
+}
+
+/* The two change names. Where a file system gives a file one name only, the shown one is lost, and
+ * the next hidden one begins anew. 0, or -1 with errno set, and the shown one stays. */
+static int swap(struct output_index *index)
+{
+    struct output_index_file before = index->shown;
+    const bool is_kept = link(index->path, index->spare_path) == 0;
+    if (rename(index->hidden_path, index->path) != 0) {
+        const int reason = errno;
+        if (is_kept)
+            unlink(index->spare_path);
+        errno = reason;
+        return -1;
+    }
+    if (!(is_kept && rename(index->spare_path, index->hidden_path) == 0) && before.file >= 0) {
+        close(before.file);
+        before.file = -1;
+    }
+    index->shown = (struct output_index_file){.file = index->hidden.file, .n = index->text.n};
+    index->hidden = before;
+    return 0;
+}
+
+/* ---- An index ---- */
+
+static int begin_index(struct output_index *index, const char *begin, struct cloth_error *error)
+{
+    if (!index->path || !index->hidden_path || !index->spare_path ||
+        append(&index->text, begin, strlen(begin)) != 0)
+        return cloth_fail(error, CLOTH_E_MEMORY, "no memory for an index of frames");
+    return write_hidden(index) == 0 && swap(index) == 0
+               ? CLOTH_OK
+               : output_refuse(error, "write", index->path);
+}
+
+int output_index_open(struct output_index *index, const char *folder, const char *name,
+                      const char *begin, const char *end, struct cloth_error *error)
+{
+    char *hidden = output_path(folder, "hdf5", "");
+    *index = OUTPUT_INDEX_NONE;
+    index->end = end;
+    index->path = output_path(folder, name, "");
+    if (hidden) {
+        index->hidden_path = output_path(hidden, name, OUTPUT_INDEX_HIDDEN);
+        index->spare_path = output_path(hidden, name, OUTPUT_INDEX_SPARE);
+    }
+    free(hidden);
+    return begin_index(index, begin, error);
 }
 
 int output_index_add(struct output_index *index, const char *entry, size_t n,
                      struct cloth_error *error)
 {
+    const size_t before = index->text.n;
     const char *comma = index->n && index->end[0] == ']' ? ",\n" : "";
-    char *text = NULL;
-    const int size = asprintf(&text, "%s%.*s%s", comma, (int)n, entry, index->end);
-    if (size < 0)
-        return cloth_fail(error, CLOTH_E_MEMORY, "no memory for a line of %s", index->path);
-    int code = output_check_same(index->file, index->path, error);
-    if (!code && (output_write_at(index->file, text, (size_t)size, index->body) != 0 ||
-                  output_sync(index->file) != 0)) {
+    int code = output_check_same(index->shown.file, index->path, error);
+    if (!code &&
+        (append(&index->text, comma, strlen(comma)) != 0 || append(&index->text, entry, n) != 0 ||
+         write_hidden(index) != 0 || swap(index) != 0))
         code = output_fail(error, "write", index->path);
-        put_back(index);
-    }
-    if (!code) {
-        index->body += strlen(comma) + n;
+    if (code)
+        index->text.n = before;
+    else
         index->n++;
-    }
-    free(text);
     return code;
 }
 
 int output_index_close(struct output_index *index, struct cloth_error *error)
 {
     int code = CLOTH_OK;
-    if (index->file >= 0 && close(index->file) != 0)
+    if (index->shown.file >= 0 && close(index->shown.file) != 0)
         code = output_fail(error, "close", index->path);
+    if (index->hidden.file >= 0) {
+        close(index->hidden.file);
+        unlink(index->hidden_path);
+    }
     free(index->path);
-    *index = (struct output_index){.file = -1};
+    free(index->hidden_path);
+    free(index->spare_path);
+    free(index->text.data);
+    *index = OUTPUT_INDEX_NONE;
     return code;
 }

@@ -31,10 +31,10 @@ int output_indexes_open(struct output_indexes *indexes, const char *folder,
 {
     int code = CLOTH_OK;
     for (int i = 0; i < OUTPUT_INDEXES; i++)
-        indexes->of[i] = (struct output_index){.file = -1};
+        indexes->of[i] = OUTPUT_INDEX_NONE;
     for (int i = 0; i < OUTPUT_INDEXES && !code; i++)
-        code = output_index_open(indexes->of + i, output_path(folder, INDEX[i].name, ""),
-                                 INDEX[i].begin, INDEX[i].end, error);
+        code = output_index_open(indexes->of + i, folder, INDEX[i].name, INDEX[i].begin,
+                                 INDEX[i].end, error);
     return code;
 }
 
@@ -144,13 +144,26 @@ static bool is_frame(const char *name)
            (strcmp(name + digits, ".vtkhdf") == 0 || strcmp(name + digits, ".vtkhdf.part") == 0);
 }
 
+/* Whether it is a file of an index that nobody was to see. */
+static bool is_hidden_index(const char *name)
+{
+    for (int i = 0; i < OUTPUT_INDEXES; i++) {
+        const size_t n = strlen(INDEX[i].name);
+        if (strncmp(name, INDEX[i].name, n) == 0 && (strcmp(name + n, OUTPUT_INDEX_HIDDEN) == 0 ||
+                                                     strcmp(name + n, OUTPUT_INDEX_SPARE) == 0))
+            return true;
+    }
+    return false;
+}
+
 static int remove_frames(const char *folder, struct cloth_error *error)
 {
     char *frames = output_path(folder, "hdf5", "");
     DIR *all = frames ? opendir(frames) : NULL;
     int code = frames ? CLOTH_OK : cloth_fail(error, CLOTH_E_MEMORY, "no memory for a path");
     for (struct dirent *entry = NULL; all && !code && (entry = readdir(all));) {
-        char *path = is_frame(entry->d_name) ? output_path(frames, entry->d_name, "") : NULL;
+        const bool goes = is_frame(entry->d_name) || is_hidden_index(entry->d_name);
+        char *path = goes ? output_path(frames, entry->d_name, "") : NULL;
         if (path && unlink(path) != 0)
             code = output_refuse(error, "replace", path);
         free(path);

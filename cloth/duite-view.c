@@ -3,38 +3,44 @@
 
 #include "cloth/intersections.h"
 #include "cloth/output/output.h"
-#include "cloth/view/view.h"
+#include "cloth/view/film.h"
+#include "cloth/view/show.h"
 #include "cloth/view_trace.h"
 
 #include <argp.h>
+#include <errno.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 const char *argp_program_version = "duite-view " PACKAGE_VERSION;
 
-enum { LAST_FRAME = -1, FITTED_FRAMES = 100 };
+enum { LAST_FRAME = -1 };
 enum { EXIT_INTERSECTS = 4 }; /* as duite-cloth has it */
 
 struct options {
-    const char *folder, *png;
-    long long frame; /* LAST_FRAME: the last */
-    int width, height;
-    double azimuth, elevation, zoom;
+    struct view_wish wish;
+    const char *png, *mp4;
+    long long frame;       /* LAST_FRAME: the last, */
+    long long first, last; /* so is `last' of a film */
+    double fps;            /* of a film; 0: of the folder */
     bool check_intersections;
-    bool contact; /* coloured by its force */
     const char *trace, *svg;
-    struct chart_options chart;   /* of the trace */
-    bool sized, windowed, framed; /* --size was given; --window; an option of frames */
-    double most_force;            /* N: that has the hottest colour; 0: the largest of the frame */
+    struct chart_options chart; /* of the trace */
+    /* What was given: --size, --window, an option of frames, one of films. */
+    bool sized, windowed, framed, filmed;
 };
 
 static const struct argp_option OPTIONS[] = {
     {"png", 'o', "FILE", 0, "Write a picture to FILE", 0},
     {"frame", 'f', "N", 0, "Frame to show, counted from 0, or `last' (the default)", 0},
+    {"mp4", 'm', "FILE", 0, "Write a film to FILE, encoded by ffmpeg", 0},
+    {"frames", 'n', "A:B", 0, "Frames of the film, from A to B; either may be left out (all)", 0},
+    {"fps", 'r', "RATE", 0, "Frames a second of the film (those of the scene: its own time)", 0},
     {"size", 's', "WxH", 0,
-     "Pixels of the picture (1280x720; of a chart 1280, and as high as its rows)", 0},
+     "Pixels of a picture or film (1280x720; of a chart 1280, and as high as its rows)", 0},
     {"camera", 'c', "AZIMUTH,ELEVATION[,ZOOM]", 0,
      "Where to look from, in degrees: 0,0 is from +z, 90,0 from +x (32,20,1)", 0},
     {"colour", 'k', "contact[,MAX]", 0,
@@ -48,48 +54,76 @@ static const struct argp_option OPTIONS[] = {
      0},
     {0}};
 
+/* A number of a frame, from the text up to *end. */
+static int parse_number(const char *text, long long *frame, char **end)
+{
+    errno = 0;
+    *frame = strtoll(text, end, 10);
+    return *text < '0' || *text > '9' || errno;
+}
+
 static int parse_frame(const char *text, struct options *options)
 {
     char *end = NULL;
     options->frame = LAST_FRAME;
-    if (strcmp(text, "last") == 0)
-        return 0;
-    options->frame = strtoll(text, &end, 10);
-    return *text < '0' || *text > '9' || *end;
+    return strcmp(text, "last") != 0 && (parse_number(text, &options->frame, &end) || *end);
 }
 
-static int parse_size(const char *text, struct options *options)
+/* A:B, where A or B may be left out. */
+static int parse_frames(const char *text, struct options *options)
 {
-    int end = 0;
-    int n = sscanf(text, "%5dx%5d%n", &options->width, &options->height, &end);
-    return n != 2 || text[end] || options->width < 1 || options->height < 1;
+    char *end = (char *)(uintptr_t)text;
+    options->first = 0;
+    options->last = LAST_FRAME;
+    if (*text != ':' && parse_number(text, &options->first, &end))
+        return 1;
+    if (*end++ != ':')
+        return 1;
+    text = end;
+    if (*text && (parse_number(text, &options->last, &end) || *end))
+        return 1;
+    return options->last != LAST_FRAME && options->last < options->first;
 }
 
-static int parse_camera(const char *text, struct options *options)
+static int parse_fps(const char *text, struct options *options)
+{
+    char *end = NULL;
+    options->fps = strtod(text, &end);
+    return end == text || *end || !(options->fps >= 0.1 && options->fps <= 1000);
+}
+
+static int parse_size(const char *text, struct view_wish *wish)
 {
     int end = 0;
-    if (sscanf(text, "%lf,%lf%n", &options->azimuth, &options->elevation, &end) != 2)
+    int n = sscanf(text, "%5dx%5d%n", &wish->width, &wish->height, &end);
+    return n != 2 || text[end] || wish->width < 1 || wish->height < 1;
+}
+
+static int parse_camera(const char *text, struct view_wish *wish)
+{
+    int end = 0;
+    if (sscanf(text, "%lf,%lf%n", &wish->azimuth, &wish->elevation, &end) != 2)
         return 1;
     text += end;
-    options->zoom = 1;
-    if (*text && (sscanf(text, ",%lf%n", &options->zoom, &end) != 1 || text[end]))
+    wish->zoom = 1;
+    if (*text && (sscanf(text, ",%lf%n", &wish->zoom, &end) != 1 || text[end]))
         return 1;
-    return !isfinite(options->azimuth) || !(fabs(options->elevation) <= 89) ||
-           !(options->zoom > 0 && options->zoom <= 1000);
+    return !isfinite(wish->azimuth) || !(fabs(wish->elevation) <= 89) ||
+           !(wish->zoom > 0 && wish->zoom <= 1000);
 }
 
-static int parse_colour(const char *text, struct options *options)
+static int parse_colour(const char *text, struct view_wish *wish)
 {
     static const char word[] = "contact";
     int end = 0;
-    options->contact = true;
-    options->most_force = 0;
+    wish->contact = true;
+    wish->most_force = 0;
     if (strncmp(text, word, strlen(word)) != 0)
         return 1;
     text += strlen(word);
-    if (*text && (sscanf(text, ",%lf%n", &options->most_force, &end) != 1 || text[end]))
+    if (*text && (sscanf(text, ",%lf%n", &wish->most_force, &end) != 1 || text[end]))
         return 1;
-    return *text && !(options->most_force > 0 && isfinite(options->most_force));
+    return *text && !(wish->most_force > 0 && isfinite(wish->most_force));
 }
 
 /* What belongs together. */
@@ -97,15 +131,18 @@ static void check_together(const struct options *options, struct argp_state *sta
 {
     if (!options->trace && (options->svg || options->windowed))
         argp_error(state, "--svg and --window are of charts: --trace FILE");
-    if (options->trace && (options->folder || options->framed || options->check_intersections))
-        argp_error(state, "--trace draws a chart of a run: no folder, frame, camera, colour or "
-                          "check goes with it");
+    if (options->trace &&
+        (options->wish.folder || options->framed || options->mp4 || options->check_intersections))
+        argp_error(state, "--trace draws a chart of a run: no folder, frame, film, camera, colour "
+                          "or check goes with it");
+    if (options->filmed && !options->mp4)
+        argp_error(state, "--frames and --fps are of films: --mp4 FILE");
     if (options->trace && !options->png && !options->svg)
         argp_error(state, "say where the chart goes: --svg FILE or --png FILE");
-    if (!options->trace && !options->folder)
+    if (!options->trace && !options->wish.folder)
         argp_error(state, "say which folder of frames to show");
-    if (!options->png && !options->svg && !options->check_intersections)
-        argp_error(state, "say where the picture goes: --png FILE");
+    if (!options->png && !options->svg && !options->mp4 && !options->check_intersections)
+        argp_error(state, "say where the picture goes: --png FILE, or --mp4 FILE");
 }
 
 static error_t parse_chart(int key, char *arg, struct argp_state *state)
@@ -128,6 +165,30 @@ static error_t parse_chart(int key, char *arg, struct argp_state *state)
     }
 }
 
+static error_t parse_film(int key, char *arg, struct argp_state *state)
+{
+    struct options *options = state->input;
+    options->filmed |= key == 'n' || key == 'r';
+    switch (key) {
+    case 'm':
+        if (!*arg)
+            argp_error(state, "--mp4 takes the name of a file");
+        options->mp4 = arg;
+        return 0;
+    case 'n':
+        if (parse_frames(arg, options))
+            argp_error(state, "--frames takes A:B, A up to B, such as 0:24, 10: or :24, not `%s'",
+                       arg);
+        return 0;
+    case 'r':
+        if (parse_fps(arg, options))
+            argp_error(state, "--fps takes a rate from 0.1 to 1000 frames a second, not `%s'", arg);
+        return 0;
+    default:
+        return parse_chart(key, arg, state);
+    }
+}
+
 static error_t parse(int key, char *arg, struct argp_state *state)
 {
     struct options *options = state->input;
@@ -144,212 +205,129 @@ static error_t parse(int key, char *arg, struct argp_state *state)
             argp_error(state, "--frame takes a number from 0 or `last', not `%s'", arg);
         return 0;
     case 's':
-        if (parse_size(arg, options))
+        if (parse_size(arg, &options->wish))
             argp_error(state, "--size takes WIDTHxHEIGHT, such as 1280x720, not `%s'", arg);
         return 0;
     case 'c':
-        if (parse_camera(arg, options))
+        if (parse_camera(arg, &options->wish))
             argp_error(state,
                        "--camera takes AZIMUTH,ELEVATION[,ZOOM], the elevation within +-89 and "
                        "the zoom above 0 and up to 1000, not `%s'",
                        arg);
         return 0;
     case 'k':
-        if (parse_colour(arg, options))
+        if (parse_colour(arg, &options->wish))
             argp_error(state, "--colour takes contact[,MAX], MAX above 0 (N), not `%s'", arg);
         return 0;
     case 'i':
         options->check_intersections = true;
         return 0;
     case ARGP_KEY_ARG:
-        if (options->folder)
+        if (options->wish.folder)
             argp_error(state, "one folder at a time: `%s' is one too many", arg);
-        options->folder = arg;
+        options->wish.folder = arg;
         return 0;
     case ARGP_KEY_END:
         check_together(options, state);
         return 0;
     default:
-        return parse_chart(key, arg, state);
+        return parse_film(key, arg, state);
     }
 }
 
-/* A folder that is shown. */
-struct show {
-    struct output_cache *cache;
-    const struct options *options;
-    struct view_obstacles obstacles;
-    unsigned char *used; /* a vertex: whether a face or an edge uses it */
-    double *position;    /* of the frame read last */
-    float *heat;         /* a vertex, 0 .. 1; NULL: the cloth has its own colour */
-};
-
-/* Vertices that nothing uses are not to be seen, and neither camera nor light is to look for them:
- * they go where the first used one is. */
-static int read_frame(struct show *show, uint64_t frame, struct cloth_error *error)
+/* The number of a frame that is asked for. */
+static int find_frame(const struct output_cache *cache, const struct options *options,
+                      long long wanted, uint64_t *frame, struct cloth_error *error)
 {
-    const size_t n = show->cache->mesh.n_vertices;
-    size_t first = 0;
-    int code = output_cache_frame(show->cache, frame, show->position, error);
-    while (first < n && !show->used[first])
-        first++;
-    for (size_t v = 0; !code && first < n && v < n; v++)
-        if (!show->used[v])
-            memcpy(show->position + 3 * v, show->position + 3 * first, 3 * sizeof(double));
-    return code;
-}
-
-static double length_of(const double *v)
-{
-    return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-}
-
-/* How hot the forces of a frame are; says what the hottest is. */
-static void find_heat(struct show *show, const double *force)
-{
-    const size_t n = show->cache->mesh.n_vertices;
-    double most = show->options->most_force, largest = 0;
-    for (size_t v = 0; v < n; v++)
-        largest = fmax(largest, length_of(force + 3 * v));
-    most = most > 0 ? most : largest;
-    for (size_t v = 0; v < n; v++)
-        show->heat[v] = most > 0 ? (float)fmin(length_of(force + 3 * v) / most, 1) : 0;
-    printf("the largest force of contact on a vertex is %g N, the hottest colour %g N\n", largest,
-           most);
-}
-
-static int read_heat(struct show *show, uint64_t frame, struct cloth_error *error)
-{
-    const uint32_t n = show->cache->mesh.n_vertices;
-    double *force = malloc(3 * (size_t)n * sizeof *force);
-    show->heat = malloc(n * sizeof *show->heat);
-    int code = force && show->heat
-                   ? output_forces_read(show->options->folder, n, frame, force, error)
-                   : cloth_fail(error, CLOTH_E_MEMORY, "no memory for %u vertices", n);
-    if (!code)
-        find_heat(show, force);
-    free(force);
-    return code;
-}
-
-static uint64_t fitted_frames(const struct output_cache *cache)
-{
-    return cache->n_frames < FITTED_FRAMES ? cache->n_frames : FITTED_FRAMES;
-}
-
-static uint64_t fitted_frame(const struct output_cache *cache, uint64_t i)
-{
-    const uint64_t n = fitted_frames(cache);
-    return n > 1 ? i * (cache->n_frames - 1) / (n - 1) : 0;
-}
-
-/* Where they are in a frame. */
-static int place_obstacles(struct show *show, uint64_t frame, struct cloth_error *error)
-{
-    const int code = output_cache_pose(show->cache, frame, error);
-    if (!code)
-        view_obstacles_at(&show->obstacles, show->cache->time[frame]);
-    return code;
-}
-
-/* All frames share one camera: it is fitted to them all, or to a hundred spread evenly over a long
- * run. */
-static int fit_camera(struct show *show, struct view_camera *camera, struct cloth_error *error)
-{
-    const struct options *options = show->options;
-    const struct output_cache *cache = show->cache;
-    struct view_fit fit;
-    view_fit_start(&fit, options->azimuth, options->elevation,
-                   (double)options->width / options->height, options->zoom);
-    for (uint64_t i = 0; i < fitted_frames(cache); i++) {
-        int code = read_frame(show, fitted_frame(cache, i), error);
-        if (code)
-            return code;
-        view_fit_add(&fit, cache->mesh.n_vertices, show->position);
-    }
-    for (uint64_t i = 0; i < fitted_frames(cache); i++) {
-        const int code = place_obstacles(show, fitted_frame(cache, i), error);
-        if (code)
-            return code;
-        view_fit_planes(&fit, show->obstacles.n_planes, (const double(*)[6])show->obstacles.plane);
-        view_fit_near(&fit, show->obstacles.n_vertices, (const double(*)[6])show->obstacles.vertex);
-    }
-    view_fit_camera(&fit, camera);
+    const uint64_t n = cache->n_frames;
+    if (n == 0)
+        return cloth_fail(error, CLOTH_E_INPUT, "%s has no finished frame", options->wish.folder);
+    if (wanted != LAST_FRAME && (uint64_t)wanted >= n)
+        return cloth_fail(error, CLOTH_E_INPUT, "%s has %ju frames, 0 to %ju: no frame %lld",
+                          options->wish.folder, (uintmax_t)n, (uintmax_t)(n - 1), wanted);
+    *frame = wanted == LAST_FRAME ? n - 1 : (uint64_t)wanted;
     return 0;
 }
 
-static int draw(const struct show *show, const struct view_camera *camera,
-                struct cloth_error *error)
+static int write_picture(struct view_show *show, const struct output_cache *cache,
+                         const struct options *options, struct cloth_error *error)
 {
-    const struct options *options = show->options;
-    const struct output_cache *cache = show->cache;
-    struct view_shape shape = {.n_vertices = cache->mesh.n_vertices,
-                               .n_triangles = cache->mesh.n_triangles,
-                               .n_lines = cache->mesh.n_lone_edges,
-                               .triangle = cache->mesh.triangle,
-                               .line = cache->mesh.lone_edge,
-                               .obstacles = &show->obstacles,
-                               .n_cloths = cache->apart.n_cloths,
-                               .cloth_end = cache->apart.end};
-    struct view_picture picture = {options->width, options->height, NULL};
+    struct view_picture picture = {options->wish.width, options->wish.height, NULL};
     struct view_context *context = NULL;
-    struct view_scene *scene = NULL;
-    int code = view_context_open(&context, error);
-    code = code ? code : view_scene_new(&scene, &shape, error);
-    code = code ? code : view_scene_move(scene, show->position, error);
-    if (!code && show->heat)
-        view_scene_heat(scene, show->heat);
-    code = code ? code : view_picture_draw(&picture, scene, camera, error);
+    uint64_t frame = 0;
+    int code = find_frame(cache, options, options->frame, &frame, error);
+    code = code ? code : view_show_frame(show, frame, error);
+    code = code ? code : view_context_open(&context, error);
+    code = code ? code : view_show_picture(show, &picture, error);
     code = code ? code : view_picture_write(&picture, options->png, error);
+    if (!code)
+        view_show_say(show);
     view_picture_free(&picture);
-    view_scene_free(scene);
+    view_show_undraw(show);
     view_context_close(context);
     return code;
 }
 
-static int check_frame(const struct output_cache *cache, const struct options *options,
-                       struct cloth_error *error)
+static int film_frame(struct view_show *show, struct view_film *film, uint64_t frame,
+                      const struct options *options, struct cloth_error *error)
 {
-    uint64_t n = cache->n_frames;
-    if (n == 0)
-        return cloth_fail(error, CLOTH_E_INPUT, "%s has no finished frame", options->folder);
-    if (options->frame != LAST_FRAME && (uint64_t)options->frame >= n)
-        return cloth_fail(error, CLOTH_E_INPUT, "%s has %ju frames, 0 to %ju: no frame %lld",
-                          options->folder, (uintmax_t)n, (uintmax_t)(n - 1), options->frame);
-    return 0;
+    struct view_picture picture = {options->wish.width, options->wish.height, NULL};
+    int code = view_show_frame(show, frame, error);
+    code = code ? code : view_show_picture(show, &picture, error);
+    code = code ? code : view_film_add(film, &picture, error);
+    view_picture_free(&picture);
+    return code;
 }
 
-static int show_frame(struct output_cache *cache, const struct options *options,
-                      struct cloth_error *error)
+/* Says on a terminal how far it is. */
+static int film_frames(struct view_show *show, struct view_film *film, uint64_t first,
+                       uint64_t last, const struct options *options, struct cloth_error *error)
 {
-    int code = check_frame(cache, options, error);
-    if (code)
-        return code;
-    const size_t n = cache->mesh.n_vertices;
-    struct show show = {.cache = cache,
-                        .options = options,
-                        .used = malloc(n),
-                        .position = malloc(3 * n * sizeof(double))};
-    code = view_obstacles_make(&show.obstacles, cache->n_obstacles, cache->obstacles, cache->keys,
-                               &cache->bodies, error);
-    if (!code && !(show.used && show.position))
-        code = cloth_fail(error, CLOTH_E_MEMORY, "no memory for %zu vertices", n);
-    if (!code) {
-        const uint64_t frame =
-            options->frame == LAST_FRAME ? cache->n_frames - 1 : (uint64_t)options->frame;
-        struct view_camera camera;
-        mesh_used(&cache->mesh, show.used);
-        code = fit_camera(&show, &camera, error);
-        code = code ? code : read_frame(&show, frame, error);
-        if (!code && options->contact)
-            code = read_heat(&show, frame, error);
-        code = code ? code : place_obstacles(&show, frame, error);
-        code = code ? code : draw(&show, &camera, error);
+    const bool seen = isatty(STDERR_FILENO);
+    int code = 0;
+    for (uint64_t i = first; i <= last && !code; i++) {
+        if (seen)
+            fprintf(stderr, "\r%s: %ju of %ju frames ", options->mp4, (uintmax_t)(i - first),
+                    (uintmax_t)(last - first + 1));
+        code = film_frame(show, film, i, options, error);
     }
-    view_obstacles_free(&show.obstacles);
-    free(show.used);
-    free(show.position);
-    free(show.heat);
+    if (seen)
+        fprintf(stderr, "\r\033[K");
+    return code;
+}
+
+static int write_film(struct view_show *show, const struct output_cache *cache,
+                      const struct options *options, struct cloth_error *error)
+{
+    const struct view_wish *wish = &options->wish;
+    struct view_context *context = NULL;
+    struct view_film *film = NULL;
+    uint64_t first = 0, last = 0;
+    int code = find_frame(cache, options, options->last, &last, error);
+    code = code ? code : find_frame(cache, options, options->first, &first, error);
+    code = code ? code : view_context_open(&context, error);
+    if (!code)
+        code = view_film_open(&film, options->mp4, wish->width, wish->height,
+                              options->fps > 0 ? options->fps : cache->fps, error);
+    code = code ? code : film_frames(show, film, first, last, options, error);
+    const int closed = view_film_close(&film, !code, error);
+    view_show_undraw(show);
+    view_context_close(context);
+    return code ? code : closed;
+}
+
+static int show_frames(struct output_cache *cache, const struct options *options,
+                       struct cloth_error *error)
+{
+    struct view_show *show = NULL;
+    uint64_t any;
+    int code = find_frame(cache, options, LAST_FRAME, &any, error);
+    code = code ? code : view_show_open(&show, cache, &options->wish, error);
+    if (!code && options->png)
+        code = write_picture(show, cache, options, error);
+    if (!code && options->mp4)
+        code = write_film(show, cache, options, error);
+    view_show_close(show);
     return code;
 }
 
@@ -370,8 +348,8 @@ static int check_frames(struct output_cache *cache, int *exit_code, struct cloth
 static int draw_trace(struct options *options, struct cloth_error *error)
 {
     if (options->sized) {
-        options->chart.width = options->width;
-        options->chart.height = options->height;
+        options->chart.width = options->wish.width;
+        options->chart.height = options->wish.height;
     }
     const int code = view_trace(options->trace, &options->chart, options->svg, options->png, error);
     if (code)
@@ -381,22 +359,20 @@ static int draw_trace(struct options *options, struct cloth_error *error)
 
 int main(int argc, char **argv)
 {
-    static const struct argp argp = {OPTIONS,
-                                     parse,
-                                     "DIR\n--trace FILE",
-                                     "Makes a picture of a frame of a simulated cloth, or checks "
-                                     "all frames; DIR is what duite-cloth --output wrote. Or draws "
-                                     "the Gantt chart of a run.",
-                                     NULL,
-                                     NULL,
-                                     NULL};
-    struct options options = {.frame = LAST_FRAME,
-                              .chart = chart_options_default(),
-                              .width = 1280,
-                              .height = 720,
-                              .azimuth = 32,
-                              .elevation = 20,
-                              .zoom = 1};
+    static const struct argp argp = {
+        OPTIONS,
+        parse,
+        "DIR\n--trace FILE",
+        "Makes a picture of a frame of a simulated cloth, or a film, or checks all frames; DIR is "
+        "what duite-cloth --output wrote. Or draws the Gantt chart of a run.",
+        NULL,
+        NULL,
+        NULL};
+    struct options options = {
+        .frame = LAST_FRAME,
+        .last = LAST_FRAME,
+        .chart = chart_options_default(),
+        .wish = {.width = 1280, .height = 720, .azimuth = 32, .elevation = 20, .zoom = 1}};
     argp_err_exit_status = 2;
     argp_parse(&argp, argc, argv, 0, NULL, &options);
     struct cloth_error error = {0};
@@ -404,9 +380,9 @@ int main(int argc, char **argv)
     int exit_code = 0;
     if (options.trace)
         return draw_trace(&options, &error);
-    int code = output_cache_open(&cache, options.folder, &error);
-    if (!code && options.png)
-        code = show_frame(&cache, &options, &error);
+    int code = output_cache_open(&cache, options.wish.folder, &error);
+    if (!code && (options.png || options.mp4))
+        code = show_frames(&cache, &options, &error);
     if (!code && options.check_intersections)
         code = check_frames(&cache, &exit_code, &error);
     output_cache_close(&cache);

@@ -5,10 +5,12 @@ libduite_view_la_SOURCES = \
 	cloth/view/view.h \
 	cloth/view/camera.c \
 	cloth/view/context.c \
+	cloth/view/film.h cloth/view/film.c \
 	cloth/view/image.c \
 	cloth/view/obstacles.c \
 	cloth/view/picture.c \
 	cloth/view/scene.c \
+	cloth/view/show.h cloth/view/show.c \
 	cloth/view/draw/draw.h \
 	cloth/view/draw/lights.c \
 	cloth/view/draw/mesh.c \

@@ -97,3 +97,48 @@ ok "a picture with an unused vertex" view "$scratch/far" --size 64x48 --frame 1 
 ok "it is the same picture" cmp "$scratch/far.png" "$scratch/1.png"
 exits 1 "a folder that is not there for the picture" picture --png "$scratch/none/x.png"
 says "names it" "$scratch/none/x.png"
+
+# Films. A program in the place of ffmpeg keeps what it is sent, or fails.
+mkdir "$scratch/bin"
+PATH=$scratch/bin:$PATH
+stand_in() { # LINE...
+    printf '%s\n' '#!/bin/sh' "$@" > "$scratch/bin/ffmpeg"
+    chmod +x "$scratch/bin/ffmpeg"
+}
+film() { picture --mp4 "$scratch/film.mp4" "$@"; }
+size() { wc -c < "$scratch/film.mp4" | tr -d ' '; }
+stand_in 'for last; do continue; done' 'echo "$*" > "'"$scratch"'/asked"' 'exec cat > "${last#file:}"'
+ok "a film" film
+ok "it is two pictures" test "$(size)" = $((2 * 64 * 48 * 3))
+ok "at the rate of the frames" grep -q -e '-framerate 25 ' "$scratch/asked"
+ok "one frame of it, at another rate" film --frames 1: --fps 12.5
+ok "it is one picture" test "$(size)" = $((64 * 48 * 3))
+ok "at that rate" grep -q -e '-framerate 12.5 ' "$scratch/asked"
+ok "another frame" sh -c 'cp "$1" "$1.1" && shift && "$@"' sh "$scratch/film.mp4" "$DUITE_VIEW" "$dir" --size 64x48 \
+    --mp4 "$scratch/film.mp4" --frames :0
+not_ok_expected "is another picture" cmp "$scratch/film.mp4" "$scratch/film.mp4.1"
+exits 2 "frames that are not there" film --frames 1:2
+says "says how many there are" '2 frames, 0 to 1: no frame 2'
+exits 2 "an odd width" view "$dir" --size 63x48 --mp4 "$scratch/odd.mp4"
+says "says so" 'even width and height, not 63 x 48'
+for bad in --frames=1:0 --frames=1 --frames=-1: --frames=a: --frames=0:1x --fps=0 --fps=x --fps=nan --mp4=; do
+    exits 2 "refuses $bad" film "$bad"
+done
+rm "$scratch/film.mp4"
+stand_in 'echo first >&2' 'echo no such encoder >&2' 'exit 1'
+exits 1 "ffmpeg fails" film
+says "says what it said last" "cannot write $scratch/film.mp4: ffmpeg failed: no such encoder"
+ok "nothing is left" sh -c 'test ! -e "$1" && test ! -e "$1.part"' sh "$scratch/film.mp4"
+stand_in 'exit 0'
+exits 1 "ffmpeg ends before the pictures do" film --size 640x480
+says "says so" 'ffmpeg ended early'
+exits 1 "without ffmpeg" env PATH="$scratch/none" "$DUITE_VIEW" "$dir" --size 64x48 --mp4 "$scratch/film.mp4"
+says "says what to install" 'install ffmpeg'
+rm "$scratch/bin/ffmpeg"
+if command -v ffmpeg > /dev/null && command -v ffprobe > /dev/null; then
+    ok "a film by ffmpeg" film --fps 50
+    ok "it has the frames, the size and the rate" sh -c 'test "$(ffprobe -v error -count_frames -show_entries \
+        stream=codec_name,width,height,r_frame_rate,nb_read_frames -of csv=p=0 "$1")" = h264,64,48,50/1,2' sh "$scratch/film.mp4"
+else
+    skip "a film by ffmpeg" "there is none"
+fi

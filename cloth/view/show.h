@@ -1,0 +1,39 @@
+#ifndef CLOTH_VIEW_SHOW_H
+#define CLOTH_VIEW_SHOW_H
+
+#include "cloth/output/output.h"
+#include "cloth/view/view.h"
+
+#include <stdbool.h>
+
+/* Frames of a folder, ready to be drawn: whoever shows one, in a picture, a film or a window, does
+ * it by these functions. Local; one thread. */
+
+struct view_wish {
+    const char *folder;
+    int width, height;
+    double azimuth, elevation, zoom; /* as view_fit_start has them */
+    bool contact;                    /* coloured by its force */
+    double most_force; /* N: that has the hottest colour; 0: the largest of the first frame */
+};
+
+struct view_show;
+
+/* Fits the camera to all frames, or to a hundred spread evenly over a long run, so that pictures of
+ * a folder go together. cache and wish stay the caller's, and outlive the show. *show: to be
+ * closed in any case. Errors: CLOTH_E_INPUT, CLOTH_E_IO, CLOTH_E_MEMORY. */
+int view_show_open(struct view_show **show, struct output_cache *cache,
+                   const struct view_wish *wish, struct cloth_error *error);
+/* Reads a frame, which is the one to be drawn from now on. */
+int view_show_frame(struct view_show *show, uint64_t frame, struct cloth_error *error);
+/* Draws it off screen, as view_picture_draw does. An OpenGL context is current, the same one in all
+ * calls up to view_show_undraw. */
+int view_show_picture(struct view_show *show, struct view_picture *picture,
+                      struct cloth_error *error);
+/* On standard output: what colours mean in the frame. */
+void view_show_say(const struct view_show *show);
+/* Frees what drawing made, while its context is current. */
+void view_show_undraw(struct view_show *show);
+void view_show_close(struct view_show *show);
+
+#endif

@@ -5,6 +5,7 @@
 #include "cloth/output/output.h"
 #include "cloth/view/film.h"
 #include "cloth/view/show.h"
+#include "cloth/view/window.h"
 #include "cloth/view_trace.h"
 
 #include <argp.h>
@@ -35,16 +36,19 @@ struct options {
 
 static const struct argp_option OPTIONS[] = {
     {"png", 'o', "FILE", 0, "Write a picture to FILE", 0},
-    {"frame", 'f', "N", 0, "Frame to show, counted from 0, or `last' (the default)", 0},
+    {"frame", 'f', "N", 0,
+     "Frame of a picture, or the first one of a window, counted from 0, or `last' (the default)",
+     0},
     {"mp4", 'm', "FILE", 0, "Write a film to FILE, encoded by ffmpeg", 0},
     {"frames", 'n', "A:B", 0, "Frames of the film, from A to B; either may be left out (all)", 0},
     {"fps", 'r', "RATE", 0, "Frames a second of the film (those of the scene: its own time)", 0},
     {"size", 's', "WxH", 0,
-     "Pixels of a picture or film (1280x720; of a chart 1280, and as high as its rows)", 0},
+     "Pixels of a picture, film or window (1280x720; of a chart 1280, and as high as its rows)", 0},
     {"camera", 'c', "AZIMUTH,ELEVATION[,ZOOM]", 0,
      "Where to look from, in degrees: 0,0 is from +z, 90,0 from +x (32,20,1)", 0},
     {"colour", 'k', "contact[,MAX]", 0,
      "Colour the cloth by the force of contact on its vertices, up to MAX N (the largest)", 0},
+    {"wireframe", 'e', NULL, 0, "Draw the edges of the cloth's triangles, too", 0},
     {"trace", 't', "FILE", 0,
      "Draw the Gantt chart of a run from the trace that duite-cloth --trace wrote; no DIR then", 0},
     {"svg", 'v', "FILE", 0, "Write the chart of --trace to FILE as SVG", 0},
@@ -126,6 +130,11 @@ static int parse_colour(const char *text, struct view_wish *wish)
     return *text && !(wish->most_force > 0 && isfinite(wish->most_force));
 }
 
+static bool opens_window(const struct options *options)
+{
+    return !options->trace && !options->png && !options->mp4 && !options->check_intersections;
+}
+
 /* What belongs together. */
 static void check_together(const struct options *options, struct argp_state *state)
 {
@@ -141,8 +150,11 @@ static void check_together(const struct options *options, struct argp_state *sta
         argp_error(state, "say where the chart goes: --svg FILE or --png FILE");
     if (!options->trace && !options->wish.folder)
         argp_error(state, "say which folder of frames to show");
-    if (!options->png && !options->svg && !options->mp4 && !options->check_intersections)
-        argp_error(state, "say where the picture goes: --png FILE, or --mp4 FILE");
+#ifndef HAVE_WINDOW
+    if (opens_window(options))
+        argp_error(state, "this build opens no windows: say where the picture goes by --png FILE, "
+                          "or --mp4 FILE");
+#endif
 }
 
 static error_t parse_chart(int key, char *arg, struct argp_state *state)
@@ -192,7 +204,7 @@ static error_t parse_film(int key, char *arg, struct argp_state *state)
 static error_t parse(int key, char *arg, struct argp_state *state)
 {
     struct options *options = state->input;
-    options->framed |= key == 'f' || key == 'c' || key == 'k';
+    options->framed |= key == 'f' || key == 'c' || key == 'k' || key == 'e';
     options->sized |= key == 's';
     switch (key) {
     case 'o':
@@ -218,6 +230,9 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     case 'k':
         if (parse_colour(arg, &options->wish))
             argp_error(state, "--colour takes contact[,MAX], MAX above 0 (N), not `%s'", arg);
+        return 0;
+    case 'e':
+        options->wish.wire = true;
         return 0;
     case 'i':
         options->check_intersections = true;
@@ -316,6 +331,19 @@ static int write_film(struct view_show *show, const struct output_cache *cache,
     return code ? code : closed;
 }
 
+static int open_window(struct view_show *show, const struct output_cache *cache,
+                       const struct options *options, struct cloth_error *error)
+{
+#ifdef HAVE_WINDOW
+    uint64_t frame = 0;
+    const int code = find_frame(cache, options, options->frame, &frame, error);
+    return code ? code : view_window(show, cache, &options->wish, frame, error);
+#else
+    (void)show, (void)cache, (void)options;
+    return cloth_fail(error, CLOTH_E_LIBRARY, "this build opens no windows");
+#endif
+}
+
 static int show_frames(struct output_cache *cache, const struct options *options,
                        struct cloth_error *error)
 {
@@ -327,6 +355,8 @@ static int show_frames(struct output_cache *cache, const struct options *options
         code = write_picture(show, cache, options, error);
     if (!code && options->mp4)
         code = write_film(show, cache, options, error);
+    if (!code && opens_window(options))
+        code = open_window(show, cache, options, error);
     view_show_close(show);
     return code;
 }
@@ -363,8 +393,9 @@ int main(int argc, char **argv)
         OPTIONS,
         parse,
         "DIR\n--trace FILE",
-        "Makes a picture of a frame of a simulated cloth, or a film, or checks all frames; DIR is "
-        "what duite-cloth --output wrote. Or draws the Gantt chart of a run.",
+        "Shows a simulated cloth in a window, makes a picture or a film of it, or checks all "
+        "frames; DIR "
+        "is what duite-cloth --output wrote. Or draws the Gantt chart of a run.",
         NULL,
         NULL,
         NULL};
@@ -381,7 +412,7 @@ int main(int argc, char **argv)
     if (options.trace)
         return draw_trace(&options, &error);
     int code = output_cache_open(&cache, options.wish.folder, &error);
-    if (!code && (options.png || options.mp4))
+    if (!code && (options.png || options.mp4 || opens_window(&options)))
         code = show_frames(&cache, &options, &error);
     if (!code && options.check_intersections)
         code = check_frames(&cache, &exit_code, &error);

@@ -19,5 +19,12 @@ AC_DEFUN([DUITE_VIEW], [
     AM_CONDITIONAL([HAVE_VIEW], [test -z "$duite_view_missing"])
     VIEW_MISSING=$duite_view_missing
     AC_SUBST([VIEW_MISSING])
-    AS_IF([test -z "$duite_view_missing"], [duite_view_says=yes],
-        [duite_view_says="no   ($duite_view_missing: duite-view is not built, make demo leaves the pictures out)"])])
+    AS_IF([test -z "$duite_view_missing"], [
+        PKG_CHECK_MODULES([GLFW], [glfw3 >= 3.3], [duite_window=yes], [duite_window=no])
+        PKG_CHECK_MODULES([CAIRO], [cairo], [], [duite_window=no])
+        AS_IF([test $duite_window = yes], [
+            AC_DEFINE([HAVE_WINDOW], [1], [Define to 1 if duite-view opens windows.])
+            duite_view_says="pictures, films, windows"], [
+            duite_view_says="pictures, films   (no windows without libglfw3-dev and libcairo2-dev)"])],
+        [duite_view_says="no   ($duite_view_missing: duite-view is not built, make demo leaves the pictures out)"])
+    AM_CONDITIONAL([HAVE_WINDOW], [test "$duite_window" = yes])])

@@ -7,6 +7,7 @@
 #include <cglm/mat4.h>
 #include <math.h>
 #include <stdbool.h>
+#include <string.h>
 
 static const double HALF_ANGLE = 15.0; /* degrees, of the height */
 static const double MARGIN = 0.86;     /* of half the picture that the points may fill */
@@ -16,19 +17,28 @@ static double radians(double degrees)
     return degrees * (acos(-1.0) / 180.0);
 }
 
+/* Rows: right, up and back of a camera. */
+static void sides(double azimuth, double elevation, double side[3][3])
+{
+    const double a = radians(azimuth), e = radians(elevation);
+    const double rows[3][3] = {{cos(a), 0, -sin(a)},
+                               {-sin(e) * sin(a), cos(e), -sin(e) * cos(a)},
+                               {cos(e) * sin(a), sin(e), cos(e) * cos(a)}};
+    memcpy(side, rows, sizeof rows);
+}
+
 void view_fit_start(struct view_fit *fit, double azimuth, double elevation, double aspect,
                     double zoom)
 {
-    double a = radians(azimuth), e = radians(elevation);
     *fit = (struct view_fit){
-        .side = {{cos(a), 0, -sin(a)},
-                 {-sin(e) * sin(a), cos(e), -sin(e) * cos(a)},
-                 {cos(e) * sin(a), sin(e), cos(e) * cos(a)}},
+        .azimuth = azimuth,
+        .elevation = elevation,
         .aspect = aspect,
         .zoom = zoom,
         .near = -INFINITY,
         .far = INFINITY,
     };
+    sides(azimuth, elevation, fit->side);
     fit->tangent[1] = tan(radians(HALF_ANGLE)) * MARGIN;
     fit->tangent[0] = fit->tangent[1] * aspect;
     for (int i = 0; i < 4; i++)
@@ -118,23 +128,81 @@ static void place_eye(const struct view_fit *fit, double size, double eye[3])
     }
 }
 
+void view_fit_orbit(const struct view_fit *fit, struct view_orbit *orbit)
+{
+    const double size = fmax(extent(fit), 1e-3);
+    double eye[3], middle = 0, half = 0;
+    place_eye(fit, size, eye);
+    for (int k = 0; k < 3; k++) {
+        middle += fit->side[2][k] * 0.5 * (fit->low[k] + fit->high[k]);
+        half += (fit->high[k] - fit->low[k]) * (fit->high[k] - fit->low[k]) / 4;
+    }
+    *orbit = (struct view_orbit){.azimuth = fit->azimuth,
+                                 .elevation = fit->elevation,
+                                 .zoom = fit->zoom,
+                                 .distance = eye[2] - middle,
+                                 .front = fit->near - middle,
+                                 .behind = middle - fit->far,
+                                 .radius = sqrt(half),
+                                 .size = size};
+    eye[2] = middle;
+    for (int k = 0; k < 3; k++)
+        for (int i = 0; i < 3; i++)
+            orbit->target[k] += eye[i] * fit->side[i][k];
+}
+
+void view_orbit_camera(const struct view_orbit *orbit, double aspect, struct view_camera *camera)
+{
+    double side[3][3];
+    mat4 view = GLM_MAT4_IDENTITY_INIT, projection;
+    sides(orbit->azimuth, orbit->elevation, side);
+    for (int k = 0; k < 3; k++)
+        camera->eye[k] = (float)(orbit->target[k] + orbit->distance * side[2][k]);
+    for (int i = 0; i < 3; i++) {
+        for (int k = 0; k < 3; k++)
+            view[k][i] = (float)side[i][k];
+        view[3][i] = (float)-(dot(side[i], orbit->target) + (i == 2 ? orbit->distance : 0));
+    }
+    const double angle = 2 * atan(tan(radians(HALF_ANGLE)) / orbit->zoom);
+    const double near = fmax(0.3 * (orbit->distance - orbit->front), 0.01 * orbit->distance);
+    const double far = orbit->distance + orbit->behind + 40 * orbit->size;
+    glm_perspective((float)angle, (float)aspect, (float)near, (float)far, projection);
+    glm_mat4_mul(projection, view, camera->clip);
+    camera->reach = (float)orbit->size;
+}
+
+/* How near and far things are is known of the direction that was fitted. From another one a sphere
+ * around them must do. */
+static void lose_depths(struct view_orbit *orbit)
+{
+    orbit->front = fmax(orbit->front, orbit->radius);
+    orbit->behind = fmax(orbit->behind, orbit->radius);
+}
+
+void view_orbit_turn(struct view_orbit *orbit, double azimuth, double elevation)
+{
+    orbit->azimuth = remainder(orbit->azimuth + azimuth, 360);
+    orbit->elevation = fmin(fmax(orbit->elevation + elevation, -89), 89);
+    lose_depths(orbit);
+}
+
+void view_orbit_pan(struct view_orbit *orbit, double right, double up)
+{
+    const double height = 2 * orbit->distance * tan(radians(HALF_ANGLE)) / orbit->zoom;
+    double side[3][3];
+    sides(orbit->azimuth, orbit->elevation, side);
+    for (int k = 0; k < 3; k++)
+        orbit->target[k] -= height * (right * side[0][k] + up * side[1][k]);
+}
+
+void view_orbit_zoom(struct view_orbit *orbit, double factor)
+{
+    orbit->zoom = fmin(fmax(orbit->zoom * factor, 0.2), 1000);
+}
+
 void view_fit_camera(const struct view_fit *fit, struct view_camera *camera)
 {
-    double size = fmax(extent(fit), 1e-3), eye[3];
-    place_eye(fit, size, eye);
-    mat4 view = GLM_MAT4_IDENTITY_INIT, projection;
-    for (int k = 0; k < 3; k++) {
-        double place = 0;
-        for (int i = 0; i < 3; i++) {
-            place += eye[i] * fit->side[i][k];
-            view[k][i] = (float)fit->side[i][k];
-        }
-        camera->eye[k] = (float)place;
-        view[3][k] = (float)-eye[k];
-    }
-    double angle = 2 * atan(tan(radians(HALF_ANGLE)) / fit->zoom);
-    double near = 0.3 * (eye[2] - fit->near), far = eye[2] - fit->far + 40 * size;
-    glm_perspective((float)angle, (float)fit->aspect, (float)near, (float)far, projection);
-    glm_mat4_mul(projection, view, camera->clip);
-    camera->reach = (float)size;
+    struct view_orbit orbit;
+    view_fit_orbit(fit, &orbit);
+    view_orbit_camera(&orbit, fit->aspect, camera);
 }

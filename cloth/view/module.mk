@@ -9,6 +9,7 @@ libduite_view_la_SOURCES = \
 	cloth/view/image.c \
 	cloth/view/obstacles.c \
 	cloth/view/picture.c \
+	cloth/view/player.h cloth/view/player.c \
 	cloth/view/scene.c \
 	cloth/view/show.h cloth/view/show.c \
 	cloth/view/draw/draw.h \
@@ -16,9 +17,12 @@ libduite_view_la_SOURCES = \
 	cloth/view/draw/mesh.c \
 	cloth/view/draw/program.c \
 	cloth/view/draw/shaders.c
-libduite_view_la_CPPFLAGS = $(AM_CPPFLAGS) $(EPOXY_CFLAGS) $(EGL_CFLAGS) $(PNG_CFLAGS)
+if HAVE_WINDOW
+libduite_view_la_SOURCES += cloth/view/overlay.h cloth/view/overlay.c cloth/view/window.h cloth/view/window.c
+endif
+libduite_view_la_CPPFLAGS = $(AM_CPPFLAGS) $(EPOXY_CFLAGS) $(EGL_CFLAGS) $(PNG_CFLAGS) $(GLFW_CFLAGS) $(CAIRO_CFLAGS)
 # epoxy opens libEGL and libGL itself, so that their absence can be told.
-libduite_view_la_LIBADD = $(EPOXY_LIBS) $(PNG_LIBS) -ldl -lm
+libduite_view_la_LIBADD = $(EPOXY_LIBS) $(PNG_LIBS) $(GLFW_LIBS) $(CAIRO_LIBS) -ldl -lm
 
 bin_PROGRAMS += duite-view
 dist_man_MANS += cloth/duite-view.1

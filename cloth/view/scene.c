@@ -19,6 +19,7 @@ static const float CLOTH[N_COLOURS][2][3] = {{{0.40f, 0.030f, 0.028f}, {0.46f, 0
                                              {{0.50f, 0.48f, 0.43f}, {0.45f, 0.43f, 0.40f}},
                                              {{0.17f, 0.04f, 0.20f}, {0.24f, 0.10f, 0.26f}}};
 static const float PALE[2][3] = {{0.42f, 0.42f, 0.40f}, {0.36f, 0.36f, 0.35f}};
+static const float WIRE[2][3] = {{0.01f, 0.01f, 0.012f}, {0.01f, 0.01f, 0.012f}};
 static const float STONE[2][3] = {{0.22f, 0.25f, 0.28f}, {0.22f, 0.25f, 0.28f}};
 
 struct view_scene {
@@ -27,7 +28,7 @@ struct view_scene {
     struct draw_lights lights;
     GLuint program[N_PROGRAMS];
     GLuint nothing; /* a vertex array without attributes */
-    bool heated;
+    bool heated, wired;
     uint32_t n_parts;
     struct draw_part *part; /* n_parts: cloths */
 };
@@ -156,6 +157,11 @@ void view_scene_heat(struct view_scene *scene, const float *heat)
     scene->heated = true;
 }
 
+void view_scene_wire(struct view_scene *scene, bool wire)
+{
+    scene->wired = wire;
+}
+
 static GLuint use(const struct view_scene *scene, enum program which,
                   const struct view_camera *camera, int width, int height)
 {
@@ -256,6 +262,26 @@ static float behind(const struct view_scene *scene, const struct view_camera *ca
     return (float)(units * (depth_of(camera, far) - depth_of(camera, near)));
 }
 
+static void draw_cloths(const struct view_scene *scene, GLuint surface)
+{
+    if (scene->wired) { /* lines lie on top of the triangles that they bound */
+        glPolygonOffset(1, 1);
+        glEnable(GL_POLYGON_OFFSET_FILL);
+    }
+    for (uint32_t c = 0; c < scene->n_parts; c++) {
+        glUniform3fv(glGetUniformLocation(surface, "paint"), 2,
+                     scene->heated ? PALE[0] : CLOTH[c % N_COLOURS][0]);
+        draw_mesh_draw_part(&scene->mesh, scene->part + c);
+    }
+    if (!scene->wired)
+        return;
+    glDisable(GL_POLYGON_OFFSET_FILL);
+    glUniform3fv(glGetUniformLocation(surface, "paint"), 2, WIRE[0]);
+    glPolygonMode(GL_FRONT_AND_BACK, GL_LINE);
+    draw_mesh_draw(&scene->mesh);
+    glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
+}
+
 void view_scene_draw(const struct view_scene *scene, const struct view_camera *camera, int width,
                      int height)
 {
@@ -290,11 +316,7 @@ void view_scene_draw(const struct view_scene *scene, const struct view_camera *c
         glDisable(GL_CULL_FACE);
         glDisable(GL_POLYGON_OFFSET_FILL);
     }
-    for (uint32_t c = 0; c < scene->n_parts; c++) {
-        glUniform3fv(glGetUniformLocation(surface, "paint"), 2,
-                     scene->heated ? PALE[0] : CLOTH[c % N_COLOURS][0]);
-        draw_mesh_draw_part(&scene->mesh, scene->part + c);
-    }
+    draw_cloths(scene, surface);
 }
 
 void view_scene_free(struct view_scene *scene)

@@ -13,7 +13,8 @@ struct view_show {
     struct output_cache *cache;
     const struct view_wish *wish;
     struct view_obstacles obstacles;
-    struct view_camera camera;
+    struct view_orbit orbit;
+    bool wire;
     struct view_scene *scene; /* NULL until the first drawing */
     bool moved;               /* the scene has another frame than was read last */
     unsigned char *used;      /* a vertex: whether a face or an edge uses it */
@@ -106,7 +107,7 @@ static int fit_camera(struct view_show *show, struct cloth_error *error)
         view_fit_planes(&fit, show->obstacles.n_planes, (const double(*)[6])show->obstacles.plane);
         view_fit_near(&fit, show->obstacles.n_vertices, (const double(*)[6])show->obstacles.vertex);
     }
-    view_fit_camera(&fit, &show->camera);
+    view_fit_orbit(&fit, &show->orbit);
     return 0;
 }
 
@@ -132,6 +133,7 @@ int view_show_open(struct view_show **show, struct output_cache *cache,
     made->cache = cache;
     made->wish = wish;
     made->most = wish->most_force;
+    made->wire = wish->wire;
     int code = view_obstacles_make(&made->obstacles, cache->n_obstacles, cache->obstacles,
                                    cache->keys, &cache->bodies, error);
     code = code ? code : take_room(made, error);
@@ -167,6 +169,8 @@ static int make_scene(struct view_show *show, struct cloth_error *error)
 static int move_scene(struct view_show *show, struct cloth_error *error)
 {
     int code = show->scene ? 0 : make_scene(show, error);
+    if (!code)
+        view_scene_wire(show->scene, show->wire);
     if (code || !show->moved)
         return code;
     code = view_scene_move(show->scene, show->position, error);
@@ -179,8 +183,30 @@ static int move_scene(struct view_show *show, struct cloth_error *error)
 int view_show_picture(struct view_show *show, struct view_picture *picture,
                       struct cloth_error *error)
 {
+    struct view_camera camera;
+    view_orbit_camera(&show->orbit, (double)picture->width / picture->height, &camera);
     const int code = move_scene(show, error);
-    return code ? code : view_picture_draw(picture, show->scene, &show->camera, error);
+    return code ? code : view_picture_draw(picture, show->scene, &camera, error);
+}
+
+struct view_orbit *view_show_orbit(struct view_show *show)
+{
+    return &show->orbit;
+}
+
+void view_show_wire(struct view_show *show, bool wire)
+{
+    show->wire = wire;
+}
+
+int view_show_draw(struct view_show *show, int width, int height, struct cloth_error *error)
+{
+    struct view_camera camera;
+    view_orbit_camera(&show->orbit, (double)width / height, &camera);
+    const int code = move_scene(show, error);
+    if (!code)
+        view_scene_draw(show->scene, &camera, width, height);
+    return code;
 }
 
 void view_show_undraw(struct view_show *show)

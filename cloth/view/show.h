@@ -5,6 +5,7 @@
 #include "cloth/view/view.h"
 
 #include <stdbool.h>
+#include <stdint.h>
 
 /* Frames of a folder, ready to be drawn: whoever shows one, in a picture, a film or a window, does
  * it by these functions. Local; one thread. */
@@ -14,6 +15,7 @@ struct view_wish {
     int width, height;
     double azimuth, elevation, zoom; /* as view_fit_start has them */
     bool contact;                    /* coloured by its force */
+    bool wire;                       /* with the edges of the triangles */
     double most_force; /* N: that has the hottest colour; 0: the largest of the first frame */
 };
 
@@ -30,6 +32,11 @@ int view_show_frame(struct view_show *show, uint64_t frame, struct cloth_error *
  * calls up to view_show_undraw. */
 int view_show_picture(struct view_show *show, struct view_picture *picture,
                       struct cloth_error *error);
+/* The camera of view_show_picture, which turns around the cloth. */
+struct view_orbit *view_show_orbit(struct view_show *show);
+/* Draws the frame into the framebuffer that is bound, by that camera, in its size. */
+int view_show_draw(struct view_show *show, int width, int height, struct cloth_error *error);
+void view_show_wire(struct view_show *show, bool wire);
 /* On standard output: what colours mean in the frame. */
 void view_show_say(const struct view_show *show);
 /* Frees what drawing made, while its context is current. */

@@ -5,6 +5,7 @@
 #include "cloth/contact/shape.h"
 
 #include <cglm/types.h>
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -42,8 +43,9 @@ struct view_camera {
 
 /* Gathers points that the picture must show, seen from one direction. */
 struct view_fit {
-    double side[3][3]; /* right, up, back of the camera: orthonormal rows */
-    double tangent[2]; /* of half the angle of view that the points may fill, x and y */
+    double azimuth, elevation; /* degrees */
+    double side[3][3];         /* right, up, back of the camera: orthonormal rows */
+    double tangent[2];         /* of half the angle of view that the points may fill, x and y */
     double aspect, zoom;
     double
         max[4]; /* the largest x + tz, tz - x, y + tz, tz - y of the points, in the rows of side */
@@ -63,6 +65,24 @@ void view_fit_planes(struct view_fit *fit, size_t n, const double (*planes)[6]);
 void view_fit_near(struct view_fit *fit, size_t n, const double (*vertex)[6]);
 /* The nearest camera of that direction that has all points within its margins. */
 void view_fit_camera(const struct view_fit *fit, struct view_camera *camera);
+
+/* A camera that turns around a target. */
+struct view_orbit {
+    double azimuth, elevation, zoom; /* as view_fit_start has them */
+    double target[3], distance;      /* m; of the eye */
+    double front,
+        behind; /* m: how far what was fitted reaches from the target, to and from the eye */
+    double radius, size; /* m: of a sphere around it; its largest extent */
+};
+/* The one that view_fit_camera has. */
+void view_fit_orbit(const struct view_fit *fit, struct view_orbit *orbit);
+void view_orbit_camera(const struct view_orbit *orbit, double aspect, struct view_camera *camera);
+/* By degrees; the elevation stays within +-89. */
+void view_orbit_turn(struct view_orbit *orbit, double azimuth, double elevation);
+/* Moves what is at the target by parts of the picture's height. */
+void view_orbit_pan(struct view_orbit *orbit, double right, double up);
+/* The zoom stays within 0.2 and 1000. */
+void view_orbit_zoom(struct view_orbit *orbit, double factor);
 
 /* --- context.c: OpenGL without a display --- */
 
@@ -93,6 +113,8 @@ int view_scene_move(struct view_scene *scene, const double *position, struct clo
 /* Draws the cloth pale, and each vertex the redder, then yellow, the hotter it is: n_vertices, 0 ..
  * 1. */
 void view_scene_heat(struct view_scene *scene, const float *heat);
+/* Whether the edges of the cloth's triangles are drawn, too. */
+void view_scene_wire(struct view_scene *scene, bool wire);
 void view_scene_draw(const struct view_scene *scene, const struct view_camera *camera, int width,
                      int height);
 void view_scene_free(struct view_scene *scene);

@@ -1,14 +1,20 @@
-dist_check_SCRIPTS += tests/cloth/view/test_view.sh
-TESTS += tests/cloth/view/test_view.sh
+dist_check_SCRIPTS += tests/cloth/view/test_view.sh tests/cloth/view/test_window.sh
+TESTS += tests/cloth/view/test_view.sh tests/cloth/view/test_window.sh
 
 if HAVE_VIEW
+check_PROGRAMS += tests/cloth/view/alike
+tests_cloth_view_alike_SOURCES = tests/cloth/view/alike.c
+tests_cloth_view_alike_CPPFLAGS = $(AM_CPPFLAGS) $(PNG_CFLAGS)
+tests_cloth_view_alike_LDADD = $(PNG_LIBS)
 if HAVE_CHECK
-check_PROGRAMS += tests/cloth/view/test_camera tests/cloth/view/test_picture
+check_PROGRAMS += tests/cloth/view/test_player tests/cloth/view/test_camera tests/cloth/view/test_picture
 tests_cloth_view_test_camera_SOURCES = tests/cloth/view/test_camera.c
 tests_cloth_view_test_camera_LDADD = libduite_view.la $(CLOTH_TEST_LIBS)
 tests_cloth_view_test_picture_SOURCES = tests/cloth/view/test_picture.c
 tests_cloth_view_test_picture_CPPFLAGS = $(AM_CPPFLAGS) $(PNG_CFLAGS)
 tests_cloth_view_test_picture_LDADD = libduite_view.la $(CLOTH_TEST_LIBS) $(PNG_LIBS)
-TESTS += tests/cloth/view/test_camera tests/cloth/view/test_picture
+tests_cloth_view_test_player_SOURCES = tests/cloth/view/test_player.c
+tests_cloth_view_test_player_LDADD = libduite_view.la $(CLOTH_TEST_LIBS)
+TESTS += tests/cloth/view/test_player tests/cloth/view/test_camera tests/cloth/view/test_picture
 endif
 endif

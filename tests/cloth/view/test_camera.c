@@ -4,6 +4,7 @@
 #include "tests/support/unit.h"
 
 #include <math.h>
+#include <string.h>
 
 enum { POINTS = 50 };
 static const double MARGIN = 0.86; /* of half the picture, as camera.c has it */
@@ -150,6 +151,75 @@ START_TEST(shows_the_near_floor)
 }
 END_TEST
 
+static void orbit_cloud(struct view_orbit *orbit)
+{
+    struct view_fit fit;
+    double position[3 * POINTS];
+    cloud(position);
+    view_fit_start(&fit, 30, 20, 1.5, 1);
+    view_fit_add(&fit, POINTS, position);
+    view_fit_orbit(&fit, orbit);
+}
+
+/* A full turn ends where it began; the target stays in the middle, at the same distance. */
+START_TEST(turns_around_the_target)
+{
+    struct view_orbit orbit;
+    struct view_camera camera, first;
+    double at[3];
+    orbit_cloud(&orbit);
+    view_orbit_camera(&orbit, 1.5, &first);
+    for (int i = 0; i < 12; i++) {
+        view_orbit_turn(&orbit, 30, i % 2 ? 15 : -15);
+        view_orbit_camera(&orbit, 1.5, &camera);
+        project(&camera, orbit.target, at);
+        ck_assert(fabs(at[0]) < 1e-5 && fabs(at[1]) < 1e-5 && fabs(at[2]) < 1);
+        double square = 0;
+        for (int k = 0; k < 3; k++)
+            square += pow((double)camera.eye[k] - orbit.target[k], 2);
+        ck_assert_double_eq_tol(sqrt(square), orbit.distance, 1e-5 * orbit.distance);
+    }
+    for (int k = 0; k < 3; k++)
+        ck_assert_float_eq_tol(camera.eye[k], first.eye[k], 1e-5f);
+    view_orbit_turn(&orbit, 0, 500);
+    ck_assert_double_eq(orbit.elevation, 89);
+}
+END_TEST
+
+/* What is in the middle moves by the parts of the height that are asked for, at any zoom. */
+START_TEST(pans_by_parts_of_the_height)
+{
+    struct view_orbit orbit;
+    struct view_camera camera;
+    double before[3], at[3];
+    orbit_cloud(&orbit);
+    view_orbit_zoom(&orbit, _i ? 3 : 1);
+    memcpy(before, orbit.target, sizeof before);
+    view_orbit_pan(&orbit, 0.2, -0.1);
+    view_orbit_camera(&orbit, 1.5, &camera);
+    project(&camera, before, at);
+    ck_assert_double_eq_tol(at[0], 0.2 * 2 / 1.5, 1e-4);
+    ck_assert_double_eq_tol(at[1], -0.1 * 2, 1e-4);
+}
+END_TEST
+
+/* Whatever the direction, nothing that was fitted is cut off by the near or the far plane. */
+START_TEST(keeps_depths_when_it_turns)
+{
+    struct view_orbit orbit;
+    struct view_camera camera;
+    double position[3 * POINTS], at[3];
+    cloud(position);
+    orbit_cloud(&orbit);
+    view_orbit_turn(&orbit, 40 * _i, 30 * (_i % 3 - 1));
+    view_orbit_camera(&orbit, 1.5, &camera);
+    for (int v = 0; v < POINTS; v++) {
+        project(&camera, position + 3 * v, at);
+        ck_assert(at[2] > -1 && at[2] < 1);
+    }
+}
+END_TEST
+
 int main(void)
 {
     TCase *c = tcase_create("camera");
@@ -158,6 +228,9 @@ int main(void)
     tcase_add_loop_test(c, looks_from_where_it_is_told, 0, 4);
     tcase_add_test(c, one_point_is_enough);
     tcase_add_test(c, shows_the_near_floor);
+    tcase_add_test(c, turns_around_the_target);
+    tcase_add_loop_test(c, pans_by_parts_of_the_height, 0, 2);
+    tcase_add_loop_test(c, keeps_depths_when_it_turns, 0, 9);
     Suite *s = suite_create("camera");
     suite_add_tcase(s, c);
     return unit_run(s);

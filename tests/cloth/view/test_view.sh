@@ -32,7 +32,7 @@ says "help names the folder" 'DIR'
 ok "version" view --version
 says "version says the name" '^duite-view [0-9]'
 exits 2 "nothing to show" view
-exits 2 "no place for the picture" view "$dir"
+exits 1 "neither a place for the picture nor a display" env DISPLAY= WAYLAND_DISPLAY= "$DUITE_VIEW" "$dir"
 says "says the option" '--png'
 : > "$scratch/file"
 exits 2 "a file for a folder" view "$scratch/file" --png "$scratch/x.png"

@@ -1,0 +1,26 @@
+#ifndef CLOTH_VIEW_OVERLAY_H
+#define CLOTH_VIEW_OVERLAY_H
+
+#include "cloth/base/error.h"
+
+/* What a window shows on top of the cloth: a time line and lines of text. Cairo draws it, OpenGL
+ * lays it over the framebuffer that is bound. The context is current in all functions; one thread.
+ */
+
+struct view_overlay_text {
+    double part;             /* of the time line that is behind, 0 .. 1 */
+    const char *status;      /* one line beside the time line */
+    const char *const *help; /* pairs of key and meaning, up to a NULL; NULL: no help */
+};
+
+struct view_overlay;
+/* *overlay: to be freed in any case. Errors: CLOTH_E_MEMORY, CLOTH_E_LIBRARY. */
+int view_overlay_new(struct view_overlay **overlay, struct cloth_error *error);
+int view_overlay_draw(struct view_overlay *overlay, const struct view_overlay_text *text, int width,
+                      int height, struct cloth_error *error);
+/* Where x and y (pixels from the top left corner) are on the time line of a window: its part, 0 ..
+ * 1; -1: beside it. Pure. */
+double view_overlay_part(double x, double y, int width, int height);
+void view_overlay_free(struct view_overlay *overlay);
+
+#endif

@@ -1,0 +1,15 @@
+#ifndef CLOTH_VIEW_WINDOW_H
+#define CLOTH_VIEW_WINDOW_H
+
+#include "cloth/output/output.h"
+#include "cloth/view/show.h"
+
+/* Shows the frames of a folder in a window until it is closed: mouse and keys as its help (key h)
+ * says. It begins at `frame`, in wish's size; the cache's rate is that of playing. Pictures that
+ * key s asks for go to duite-view-FRAME.png in the current folder, and are named on standard
+ * output. Local; on the main thread. Errors: CLOTH_E_LIBRARY where there is no display or no OpenGL
+ * 3.3: what to do instead; those of view_show_frame. */
+int view_window(struct view_show *show, const struct output_cache *cache,
+                const struct view_wish *wish, uint64_t frame, struct cloth_error *error);
+
+#endif

@@ -1,0 +1,101 @@
+#!/bin/sh
+# The window of the viewer, on a screen that Xvfb keeps in a file: what it shows is what a picture of the frame has, and mouse
+# and keys do what the help says.
+. "${srcdir:-.}/tests/support/tap.sh"
+skip_unless "$DUITE_VIEW"
+grep -q '^#define HAVE_WINDOW 1' config.h || skip_all "built without windows"
+command -v Xvfb > /dev/null || skip_all "Xvfb is not installed"
+plan_later
+
+width=480 height=300
+size=${width}x$height
+dir=$scratch/frames
+screen=$scratch/screen/Xvfb_screen0
+mkdir "$scratch/screen"
+limited "$DUITE_CLOTH" "$srcdir/cloth/scenes/sheet.yaml" --set cloths.0.mesh.grid.nx=20 --set cloths.0.mesh.grid.ny=20 --end 0.16 \
+    --output "$dir" > "$scratch/run" 2>&1 || skip_all "no frames: $(tail -n 1 "$scratch/run")"
+picture() { limited "$DUITE_VIEW" "$dir" --size $size "$@"; }
+
+display=
+Xvfb -displayfd 3 -screen 0 ${width}x${height}x24 -fbdir "$scratch/screen" 3> "$scratch/display" > "$scratch/xvfb" 2>&1 &
+xvfb=$!
+trap 'kill $xvfb $viewer 2> /dev/null; tap_end' EXIT
+viewer=
+awaits $xvfb test -s "$scratch/display" || skip_all "Xvfb does not start"
+display=:$(cat "$scratch/display")
+
+# shows PICTURE: the screen comes to be like it, within 20 seconds: colours differ by 2 of 255 in the mean, and at most 0.5 % of
+# the pixels by more than 16.
+is_like() { ./tests/cloth/view/alike "$1" "$screen" | awk '{print; exit !($1 <= 2 && $2 <= 0.5)}'; }
+shows() {
+    for try in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20; do
+        is_like "$1" && return 0
+        sleep 1
+    done
+    return 1
+}
+comes_to_differ() {
+    for try in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20; do
+        is_like "$1" || return 0
+        sleep 1
+    done
+    return 1
+}
+opens() { # OPTION...
+    (cd "$scratch" && DISPLAY=$display exec "$DUITE_VIEW" "$dir" --size $size "$@") > "$scratch/window" 2>&1 &
+    viewer=$!
+}
+ends() { # STATUS
+    got=0
+    wait $viewer || got=$?
+    viewer=
+    test $got = "$1" || { echo "it ended with $got" && cat "$scratch/window" && return 1; }
+}
+
+tap_run picture --png "$scratch/last.png"
+if test $tap_got != 0; then
+    tap_plan=no
+    skip_all "no OpenGL 3.3 here"
+fi
+ok "a picture of the first frame" picture --frame 0 --png "$scratch/first.png"
+ok "one with edges" picture --wireframe --png "$scratch/wire.png"
+ok "one of another side" picture --camera=-60,40 --png "$scratch/side.png"
+not_ok_expected "edges are seen" cmp "$scratch/last.png" "$scratch/wire.png"
+
+opens
+ok "the window shows what the picture of the last frame has" shows "$scratch/last.png"
+kill $viewer
+ok "a signal ends it" ends 143
+opens --frame 0 --wireframe --camera=-60,40
+ok "a picture with these options" picture --frame 0 --wireframe --camera=-60,40 --png "$scratch/all.png"
+ok "the window shows them, too" shows "$scratch/all.png"
+kill $viewer
+ok "and ends" ends 143
+
+if ! command -v xdotool > /dev/null; then
+    skip "mouse and keys" "xdotool is not installed"
+    exit
+fi
+hand() { DISPLAY=$display xdotool "$@"; }
+opens
+ok "the window again" shows "$scratch/last.png"
+hand mousemove 200 150 key Home
+ok "Home goes to the first frame" shows "$scratch/first.png"
+hand key Right key Left key End
+ok "End to the last" shows "$scratch/last.png"
+hand key w
+ok "w shows the edges" shows "$scratch/wire.png"
+hand key w key r key s
+ok "s writes a picture" awaits $viewer grep -q 'duite-view-[0-9]*.png' "$scratch/window"
+ok "after w again there are no edges" shows "$scratch/last.png"
+ok "the picture is what the window shows" shows "$scratch/$(cat "$scratch/window")"
+hand mousemove 300 150 mousedown 1 mousemove 180 130 mouseup 1
+ok "a drag turns it" comes_to_differ "$scratch/last.png"
+hand click 4 key r
+ok "r brings the camera back" shows "$scratch/last.png"
+hand key h
+ok "h shows the help" comes_to_differ "$scratch/last.png"
+hand key h key space
+ok "after playing the last frame is there again" shows "$scratch/last.png"
+hand key q
+ok "q ends it" ends 0

@@ -4,6 +4,7 @@
 . "${srcdir:-.}/tests/support/tap.sh"
 garment=${DUITE_GARMENT:-$PWD/duite-garment}
 mannequin=${DUITE_MANNEQUIN:-$PWD/duite-mannequin}
+cloth=${DUITE_CLOTH:-$PWD/duite-cloth}
 skip_unless "$garment"
 plan_later
 patterns=$srcdir/tests/cloth/garment/patterns
@@ -125,6 +126,19 @@ if test -x "$mannequin" && limited "$mannequin" -o figure.obj -q; then
     ok "skirt: S is too small for the mannequin, M fits" worn skirt "XS S "
 else
     skip "garments on the mannequin" "no duite-mannequin"
+fi
+
+# ---- A T-shirt of the default measures closes around the default figure
+
+closes() {
+    "$cloth" "$srcdir/cloth/scenes/dressing.yaml" --quiet --threads 2 --set 'cloths[0].mesh.pattern={garment: tshirt, vertices: 5000}' \
+        --set "phases=[{name: sew, set: {gravity: [0, 0, 0], time.end: 0.8}},
+                       {name: close, set: {gravity: [0, 0, 0], time.end: 0.5, time.sewn: {distance: 0.002}, 'cloths[0].seams.stiffness': 3000}}]"
+}
+if test -x "$cloth"; then
+    ok "the default T-shirt is sewn around the default mannequin" closes
+else
+    skip "the default T-shirt is sewn" "no duite-cloth"
 fi
 ok "no such body" refused "none.obj: cannot be opened" --own skirt -e 0.05 -o x.obj --body none.obj
 ok "a body without a mesh" refused "--body needs --output" --own skirt --write-pattern x.json --body box.obj

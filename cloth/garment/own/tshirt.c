@@ -13,7 +13,7 @@ const struct garment_measure draw_tshirt_measures[] = {
     [SHOULDERS] = {"shoulders", 0.4, 0.012, 0.2, 0.7, "from one shoulder point to the other"},
     [NECK] = {"neck", 0.38, 0.01, 0.2, 0.7, "the girth of the body's neck"},
     [LENGTH] = {"length", 0.66, 0.015, 0.2, 1.3, "from the neck down to the hem"},
-    [ARMHOLE] = {"armhole", 0.2, 0.008, 0.1, 0.45,
+    [ARMHOLE] = {"armhole", 0.23, 0.008, 0.1, 0.45,
                  "from the shoulder down to the armhole's bottom"},
     [ARM] = {"arm", 0.3, 0.014, 0.15, 0.7, "the girth of the body's upper arm"},
     [SLEEVE] = {"sleeve", 0.22, 0.005, 0.05, 0.8, "from the shoulder to the sleeve's hem"},

@@ -12,8 +12,9 @@ size=${width}x$height
 dir=$scratch/frames
 screen=$scratch/screen/Xvfb_screen0
 mkdir "$scratch/screen"
-limited "$DUITE_CLOTH" "$srcdir/cloth/scenes/sheet.yaml" --set cloths.0.mesh.grid.nx=20 --set cloths.0.mesh.grid.ny=20 --end 0.16 \
-    --output "$dir" > "$scratch/run" 2>&1 || skip_all "no frames: $(tail -n 1 "$scratch/run")"
+sed 's/nx: 150, ny: 150/nx: 20, ny: 20/' "$srcdir/cloth/scenes/sheet.yaml" > "$scratch/small.yaml"
+limited "$DUITE_CLOTH" "$scratch/small.yaml" --end 0.16 --output "$dir" > "$scratch/run" 2>&1 ||
+    skip_all "no frames: $(tail -n 1 "$scratch/run")"
 picture() { limited "$DUITE_VIEW" "$dir" --size $size "$@"; }
 
 display=

@@ -83,6 +83,37 @@ static int check_size(const struct view_picture *picture, struct cloth_error *er
                       picture->width, picture->height);
 }
 
+/* Into a framebuffer with several samples a pixel, which is read from now on. */
+static int draw_fine(struct target *fine, const struct view_scene *scene,
+                     const struct view_camera *camera, const struct view_picture *picture,
+                     struct cloth_error *error)
+{
+    GLint samples = 0;
+    glGetIntegerv(GL_MAX_SAMPLES, &samples);
+    const int code = target_make(fine, picture, samples < SAMPLES ? samples : SAMPLES, error);
+    if (code)
+        return code;
+    view_scene_draw(scene, camera, picture->width, picture->height);
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, fine->frame);
+    return 0;
+}
+
+/* Averages the samples of the framebuffer that is read into another one. */
+static void average(GLuint frame, const struct view_picture *picture)
+{
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, frame);
+    glBlitFramebuffer(0, 0, picture->width, picture->height, 0, 0, picture->width, picture->height,
+                      GL_COLOR_BUFFER_BIT, GL_NEAREST);
+}
+
+static int fail_to_draw(struct cloth_error *error)
+{
+    const GLenum trouble = glGetError();
+    return trouble == GL_NO_ERROR
+               ? 0
+               : cloth_fail(error, CLOTH_E_LIBRARY, "OpenGL failed to draw (0x%x)", trouble);
+}
+
 int view_picture_draw(struct view_picture *picture, const struct view_scene *scene,
                       const struct view_camera *camera, struct cloth_error *error)
 {
@@ -91,25 +122,31 @@ int view_picture_draw(struct view_picture *picture, const struct view_scene *sce
     if (code)
         return code;
     struct target fine = {0}, plain = {0};
-    GLint samples = 0;
-    glGetIntegerv(GL_MAX_SAMPLES, &samples);
     code = target_make(&plain, picture, 0, error);
-    code = code ? code : target_make(&fine, picture, samples < SAMPLES ? samples : SAMPLES, error);
+    code = code ? code : draw_fine(&fine, scene, camera, picture, error);
     if (!code) {
-        view_scene_draw(scene, camera, picture->width, picture->height);
-        glBindFramebuffer(GL_READ_FRAMEBUFFER, fine.frame);
-        glBindFramebuffer(GL_DRAW_FRAMEBUFFER, plain.frame);
-        glBlitFramebuffer(0, 0, picture->width, picture->height, 0, 0, picture->width,
-                          picture->height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+        average(plain.frame, picture);
         glBindFramebuffer(GL_READ_FRAMEBUFFER, plain.frame);
         code = read_back(picture, error);
     }
-    GLenum trouble = glGetError();
-    if (!code && trouble != GL_NO_ERROR) {
+    code = code ? code : fail_to_draw(error);
+    if (code)
         view_picture_free(picture);
-        code = cloth_fail(error, CLOTH_E_LIBRARY, "OpenGL failed to draw (0x%x)", trouble);
-    }
     target_free(&fine);
     target_free(&plain);
     return code;
+}
+
+int view_window_draw(int width, int height, const struct view_scene *scene,
+                     const struct view_camera *camera, struct cloth_error *error)
+{
+    const struct view_picture picture = {width, height, NULL};
+    struct target fine = {0};
+    int code = check_size(&picture, error);
+    code = code ? code : draw_fine(&fine, scene, camera, &picture, error);
+    if (!code)
+        average(0, &picture);
+    target_free(&fine);
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+    return code ? code : fail_to_draw(error);
 }

@@ -199,14 +199,12 @@ void view_show_wire(struct view_show *show, bool wire)
     show->wire = wire;
 }
 
-int view_show_draw(struct view_show *show, int width, int height, struct cloth_error *error)
+int view_show_window(struct view_show *show, int width, int height, struct cloth_error *error)
 {
     struct view_camera camera;
     view_orbit_camera(&show->orbit, (double)width / height, &camera);
     const int code = move_scene(show, error);
-    if (!code)
-        view_scene_draw(show->scene, &camera, width, height);
-    return code;
+    return code ? code : view_window_draw(width, height, show->scene, &camera, error);
 }
 
 void view_show_undraw(struct view_show *show)

@@ -34,8 +34,8 @@ int view_show_picture(struct view_show *show, struct view_picture *picture,
                       struct cloth_error *error);
 /* The camera of view_show_picture, which turns around the cloth. */
 struct view_orbit *view_show_orbit(struct view_show *show);
-/* Draws the frame into the framebuffer that is bound, by that camera, in its size. */
-int view_show_draw(struct view_show *show, int width, int height, struct cloth_error *error);
+/* Draws the frame into a window of that size. */
+int view_show_window(struct view_show *show, int width, int height, struct cloth_error *error);
 void view_show_wire(struct view_show *show, bool wire);
 /* On standard output: what colours mean in the frame. */
 void view_show_say(const struct view_show *show);

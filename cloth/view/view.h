@@ -129,6 +129,9 @@ struct view_picture {
  * made here. */
 int view_picture_draw(struct view_picture *picture, const struct view_scene *scene,
                       const struct view_camera *camera, struct cloth_error *error);
+/* Draws the same into the framebuffer of a window of that size, which is bound after it. */
+int view_window_draw(int width, int height, const struct view_scene *scene,
+                     const struct view_camera *camera, struct cloth_error *error);
 /* A PNG file, written whole or not at all. */
 int view_picture_write(const struct view_picture *picture, const char *path,
                        struct cloth_error *error);

@@ -166,7 +166,6 @@ static int open_glfw(struct window *w, const struct view_wish *wish, struct clot
     glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
     glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
     glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
-    glfwWindowHint(GLFW_SAMPLES, 4);
     w->glfw = glfwCreateWindow(wish->width, wish->height, "duite-view", NULL, NULL);
     if (!w->glfw)
         return fail_as_glfw("this display gives no window with OpenGL 3.3", error);
@@ -222,7 +221,7 @@ static int draw(struct window *w, bool overlaid, struct cloth_error *error)
     glfwGetFramebufferSize(w->glfw, &width, &height);
     if (width <= 0 || height <= 0)
         return 0; /* as an icon */
-    int code = view_show_draw(w->show, width, height, error);
+    int code = view_show_window(w->show, width, height, error);
     if (!code && overlaid)
         code = draw_overlay(w, width, height, error);
     if (!code && glGetError() != GL_NO_ERROR)
@@ -239,7 +238,6 @@ static int save(struct window *w, struct cloth_error *error)
     snprintf(name, sizeof name, "duite-view-%" PRIu64 ".png", w->player.frame);
     glfwGetFramebufferSize(w->glfw, &picture.width, &picture.height);
     int code = view_show_picture(w->show, &picture, error);
-    glBindFramebuffer(GL_FRAMEBUFFER, 0);
     code = code ? code : view_picture_write(&picture, name, error);
     if (!code)
         printf("%s\n", name);

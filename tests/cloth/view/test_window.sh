@@ -13,8 +13,8 @@ dir=$scratch/frames
 screen=$scratch/screen/Xvfb_screen0
 mkdir "$scratch/screen"
 sed 's/nx: 150, ny: 150/nx: 20, ny: 20/' "$srcdir/cloth/scenes/sheet.yaml" > "$scratch/small.yaml"
-limited "$DUITE_CLOTH" "$scratch/small.yaml" --end 0.16 --output "$dir" > "$scratch/run" 2>&1 ||
-    skip_all "no frames: $(tail -n 1 "$scratch/run")"
+# What the simulator leaks is looked for in its own tests.
+ok "frames" env ASAN_OPTIONS="${ASAN_OPTIONS:-}:detect_leaks=0" "$DUITE_CLOTH" "$scratch/small.yaml" --end 0.16 --output "$dir"
 picture() { limited "$DUITE_VIEW" "$dir" --size $size "$@"; }
 
 display=
@@ -90,7 +90,7 @@ hand key w key r key s
 ok "s writes a picture" awaits $viewer grep -q 'duite-view-[0-9]*.png' "$scratch/window"
 ok "after w again there are no edges" shows "$scratch/last.png"
 ok "the picture is what the window shows" shows "$scratch/$(cat "$scratch/window")"
-hand mousemove 300 150 mousedown 1 mousemove 180 130 mouseup 1
+hand mousemove 300 150 sleep 0.3 mousedown 1 sleep 0.3 mousemove 180 130 sleep 0.3 mouseup 1
 ok "a drag turns it" comes_to_differ "$scratch/last.png"
 hand click 4 key r
 ok "r brings the camera back" shows "$scratch/last.png"

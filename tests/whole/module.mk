@@ -76,3 +76,7 @@ TESTS += tests/whole/test_checkpoint.sh
 LONG_TESTS += tests/whole/test_checkpoint_long.sh
 dist_check_SCRIPTS += tests/whole/test_hdf5.sh
 TESTS += tests/whole/test_hdf5.sh
+dist_check_SCRIPTS += tests/whole/test_dressing.sh tests/whole/test_dressing_long.sh
+EXTRA_DIST += tests/whole/dressing.sh tests/whole/garment.awk
+TESTS += tests/whole/test_dressing.sh
+LONG_TESTS += tests/whole/test_dressing_long.sh

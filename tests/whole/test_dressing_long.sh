@@ -1,0 +1,51 @@
+#!/bin/sh
+# The garment scenes whole, on the mannequin and, where its file is there, on a body of another source: sewn, at rest, no frame with an
+# intersection. One state_hash of each over ranks, threads, schedulers, mappings and balancers, coarser and with a drape of 0.1 s.
+. "${srcdir:-.}/tests/support/tap.sh"
+skip_unless "$DUITE_CLOTH"
+plan_later
+. "$srcdir/tests/whole/dressing.sh"
+cd "$scratch" || exit 99
+
+body=$srcdir/../shared/data/body/female_generic.obj
+one="end sewn rest" two="end sewn end sewn rest"
+rests() { # NAME WANTED
+    scene "$1" 5000 3 && dressed "$1" "$2"
+}
+ok "the T-shirt on the mannequin" rests dressing "$one"
+ok "the jeans on the mannequin" rests jeans "$one"
+ok "the T-shirt over the jeans on the mannequin" rests layers "$two"
+
+# The body is 1.605 m tall, in decimetres, with the origin 0.819 m above its feet, and stands 6 cm before the middle of the garments.
+other() { # NAME: NAME.yaml with the other body, and measures that fit it
+    sed -i.mannequin "s|body: {mannequin: {}|body: {obj: \"$body\", scale: 0.1, translate: [0, 0.819, 0]|
+        s|garment: trousers|garment: trousers, measures: {height: 1.605, waist: 0.72, hip: 0.94}|
+        s|measures: {armhole: 0.23, arm: 0.34|measures: {height: 1.605, chest: 0.88, shoulders: 0.37, neck: 0.40, armhole: 0.22|
+        s|^    material: |    transform: {translate: [0, 0, 0.06]}\\
+    material: |" "$1.yaml"
+}
+other_rests() { # NAME WANTED
+    scene "$1" 5000 3 && other "$1" && dressed "$1" "$2"
+}
+other_ok() { # NAME COMMAND...
+    if test -f "$body"; then ok "$@"; else skip "$1" "no $body"; fi
+}
+other_ok "the T-shirt on the other body" other_rests dressing "$one"
+other_ok "the jeans on the other body" other_rests jeans "$one"
+other_ok "the T-shirt over the jeans on the other body" other_rests layers "$two"
+
+alike_all() { # SCENE
+    rm -f "$1.hash"
+    alike "$1" 1 &&
+        alike "$1" 1 --threads 2 --scheduler fifo --mapping cyclic &&
+        alike "$1" 2 --scheduler locality --mapping taskgraph --balance delegate &&
+        alike "$1" 2 --threads 2 --scheduler steal --mapping metis --balance migrate &&
+        alike "$1" 3 --scheduler priority --mapping list --balance migrate &&
+        alike "$1" 3 --threads 2 --scheduler fifo --mapping cyclic --balance delegate
+}
+mannequin_alike() { scene "$1" 900 0.1 && alike_all "$1"; }
+other_alike() { scene "$1" 900 0.1 && other "$1" && alike_all "$1"; }
+for name in dressing jeans layers; do
+    ok "one hash of $name.yaml" mannequin_alike $name
+    other_ok "one hash of $name.yaml on the other body" other_alike $name
+done

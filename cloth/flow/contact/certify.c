@@ -223,7 +223,8 @@ static int again(struct flow_state *state, const double status[FLOW_STATUS])
     return code ? code : flow_step_again(state);
 }
 
-/* Cuts until nothing fails. */
+/* Cuts until nothing fails, or nothing can be cut: where no row moved, another look finds the same.
+ */
 static int cut(struct flow_state *state, struct flow_seen *seen)
 {
     struct flow_report *report = state->report;
@@ -231,6 +232,8 @@ static int cut(struct flow_state *state, struct flow_seen *seen)
     for (int round = 0; round < MAX_CUTS && seen->fails && !code; round++) {
         struct flow_cut cut;
         code = flow_contact_cut(state, &cut);
+        if (!cut.rows)
+            break;
         report->contact_cuts += cut.rows;
         state->contact.cut_momentum += cut.momentum;
         state->contact.cut += cut.rows;

@@ -85,11 +85,11 @@ static inline uint32_t flow_cloth_of(const struct contact_skin *skin, uint32_t n
         cloth = skin->cloth[point[k]] > cloth ? skin->cloth[point[k]] : cloth;
     return cloth;
 }
-/* Whether any two sides do not meet, or any feature does not meet an obstacle: one with a corner
- * whose pin follows it. */
-static inline bool flow_leaves_out(const struct model *model)
+/* Whether a block may leave out features of another block, or of itself; with an obstacle, of that:
+ * cloths that do not meet it, or features with a corner whose pin follows it. */
+static inline bool flow_leaves_out(const struct model *model, bool obstacle)
 {
-    return !model->contact.self || model->contact.apart.apart || model_follows(model);
+    return model->contact.apart.apart || (obstacle ? model_follows(model) : !model->contact.self);
 }
 /* Whether one of n points is attached to an obstacle, by number. attached: of their skin. */
 static inline bool flow_is_attached(const uint32_t *attached, uint32_t n, const uint32_t *point,

@@ -19,6 +19,7 @@ struct meeting {
     const struct contact_body *body;
     const uint32_t *fan;      /* of the body (contact_body_opens) */
     const uint32_t *attached; /* by point of the first skin */
+    bool leaves_out;          /* see flow_leaves_out */
     struct contact_skin skin[2];
     struct contact_side side[2]; /* of a block that meets itself: both */
     struct flow_near *near;
@@ -264,8 +265,6 @@ static bool is_left_out(const struct meeting *m, const struct contact_candidate 
 {
     uint32_t point[4];
     unsigned char side[4];
-    if (!flow_leaves_out(m->model))
-        return false;
     const enum contact_pair pair =
         contact_candidate_corners(m->skin, m->skin + 1, candidate, point, side);
     if (friction_of(m, pair, point, side) < 0)
@@ -279,7 +278,7 @@ static void visit(void *to, uint32_t n, const struct contact_candidate *candidat
 {
     struct meeting *m = to;
     for (uint32_t i = 0; i < n; i++)
-        if (!is_left_out(m, candidate + i))
+        if (!m->leaves_out || !is_left_out(m, candidate + i))
             look_at(m, candidate + i);
 }
 
@@ -321,13 +320,15 @@ static int meet(const duite_call *call)
 {
     const struct flow_meet_args *args = call->args;
     struct flow_list *list = duite_out(call, AT_LIST, struct flow_list);
-    struct meeting m = {.flow = flow_of(call),
-                        .model = flow_of(call)->model,
-                        .args = args,
-                        .near = (struct flow_near *)(list + 1),
-                        .room = args->room,
-                        .counts = duite_out(call, AT_COUNTS, double) +
-                                  (size_t)FLOW_COUNTS * args->number};
+    struct meeting m = {
+        .flow = flow_of(call),
+        .model = flow_of(call)->model,
+        .args = args,
+        .leaves_out =
+            flow_leaves_out(flow_of(call)->model, args->side[1] >= flow_of(call)->tables.n_blocks),
+        .near = (struct flow_near *)(list + 1),
+        .room = args->room,
+        .counts = duite_out(call, AT_COUNTS, double) + (size_t)FLOW_COUNTS * args->number};
     const bool alone = args->side[0] == args->side[1];
     open_sides(call, &m);
     contact_query(m.side, alone ? m.side : m.side + 1, flow_contact_reach(m.model), visit, &m);

@@ -232,7 +232,7 @@ static int cut(struct flow_state *state, struct flow_seen *seen)
     for (int round = 0; round < MAX_CUTS && seen->fails && !code; round++) {
         struct flow_cut cut;
         code = flow_contact_cut(state, &cut);
-        if (!cut.rows)
+        if (code || !cut.rows)
             break;
         report->contact_cuts += cut.rows;
         state->contact.cut_momentum += cut.momentum;
@@ -241,8 +241,7 @@ static int cut(struct flow_state *state, struct flow_seen *seen)
             state->contact.cut_run = cut.run;
         if (!flow_contact_is_last(state) && (double)cut.halved > TOO_MANY * (double)seen->contacts)
             state->contact.failed = true;
-        if (!code)
-            code = look(state, true, seen);
+        code = look(state, true, seen);
     }
     state->contact.failed = state->contact.failed || seen->fails;
     return !code && seen->fails ? note_pinch(state, seen->fails) : code;

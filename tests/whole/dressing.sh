@@ -1,10 +1,13 @@
 # Sourced by the tests of the garment scenes, after tap.sh, in $scratch:
-#     scene NAME VERTICES END          NAME.yaml of cloth/scenes, with panels of so many vertices, and a drape of at most END seconds
+#     scene NAME VERTICES END [PHASE]  NAME.yaml of cloth/scenes, with panels of so many vertices, and its last phase (drape) of at most END s
 #     dressed NAME WANTED              runs it into the folder NAME: its phases end as WANTED ("end sewn rest"), all seams are closed, and no
 #                                      frame has an intersection
 #     alike SCENE RANKS OPTION...      its state_hash is that of the first such call, which writes SCENE.hash; at least 4 blocks, with contacts
 
-scene() { sed "/name: drape/,\$s/set: {/set: {time.end: $3, /; s/vertices: 5000/vertices: $2/" "$srcdir/cloth/scenes/$1.yaml" > "$1.yaml"; }
+scene() {
+    sed "s/vertices: [0-9]*/vertices: $2/
+        /name: ${4:-drape}/,\${ s/ time.end: [0-9.]*,//; s/set: {/set: {time.end: $3, /; }" "$srcdir/cloth/scenes/$1.yaml" > "$1.yaml"
+}
 
 dressed() {
     mkdir -p "$1" && limited "$DUITE_CLOTH" "$1.yaml" --quiet --output "$1" --check-intersections --report "$1/report.json" || return 1

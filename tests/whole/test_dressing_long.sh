@@ -15,12 +15,15 @@ rests() { # NAME WANTED
 ok "the T-shirt on the mannequin" rests dressing "$one"
 ok "the jeans on the mannequin" rests jeans "$one"
 ok "the T-shirt over the jeans on the mannequin" rests layers "$two"
+# Nothing rests on who walks; the drape before the walk rests.
+walks() { scene walk 6000 3 walk && dressed walk "$two end"; }
+ok "both on the mannequin as it walks" walks
 
 # The body is 1.605 m tall, in decimetres, with the origin 0.819 m above its feet, and stands 6 cm before the middle of the garments.
 other() { # NAME: NAME.yaml with the other body, and measures that fit it
     sed -i.mannequin "s|body: {mannequin: {}|body: {obj: \"$body\", scale: 0.1, translate: [0, 0.819, 0]|
         s|garment: trousers|garment: trousers, measures: {height: 1.605, waist: 0.72, hip: 0.94}|
-        s|measures: {armhole: 0.23, arm: 0.34|measures: {height: 1.605, chest: 0.88, shoulders: 0.37, neck: 0.40, armhole: 0.22|
+        s|measures: {arm: 0.34|measures: {height: 1.605, chest: 0.88, shoulders: 0.37, neck: 0.40, armhole: 0.22|
         s|^    material: |    transform: {translate: [0, 0, 0.06]}\\
     material: |" "$1.yaml"
 }

@@ -18,6 +18,7 @@ bench_libbench_la_SOURCES = bench/bench.h bench/environment.h bench/load.c bench
 	cloth/intersections.c cloth/intersections.h cloth/intersections_model.c cloth/intersections_parts.c \
 	cloth/intersections_soup.c cloth/intersections_soup.h \
 	bench/garments/bench.c bench/garments/correction.c bench/garments/scenes.c bench/garments/worn.c bench/garments/garments.h \
+	bench/output/bench.c bench/output/folder.h bench/output/output.h bench/output/run.c \
 	bench/physics/bench.c bench/physics/ours.c bench/physics/physics.h \
 	bench/predict/bench.c bench/predict/errors.c bench/predict/many.c bench/predict/order.c bench/predict/predict.h bench/predict/sheet.c bench/sweep/median.c bench/sweep/compare.h \
 	tests/support/trace_file.c tests/support/trace_file.h \
@@ -25,6 +26,7 @@ bench_libbench_la_SOURCES = bench/bench.h bench/environment.h bench/load.c bench
 bench_libbench_la_CPPFLAGS = $(AM_CPPFLAGS) -DBENCH_MPIRUN='"$(MPIRUN)"' -DBENCH_CFLAGS='"$(CFLAGS)"' \
 	-DBENCH_HOSTS='"$(abs_top_srcdir)/tests/cluster/hosts.sh"' \
 	-DBENCH_BLENDER='"$(abs_top_srcdir)/bench/rivals/blender_sphere.py"' \
+	-DBENCH_VIEW_MISSING='"$(VIEW_MISSING)"' \
 	-DBENCH_SCENES='"$(abs_top_srcdir)/cloth/scenes"' \
 	-DBENCH_STATES_SCENE='"$(abs_top_srcdir)/bench/cg/states.yaml"' \
 	-DBENCH_WORN_SCENE='"$(abs_top_srcdir)/bench/garments/worn.yaml"' \
@@ -111,6 +113,14 @@ bench_rivals_embree_SOURCES = bench/rivals/embree.c bench/contact/shapes.c bench
 bench_rivals_embree_CFLAGS = $(RIVAL_CFLAGS)
 bench_rivals_embree_LDFLAGS =
 bench_rivals_embree_LDADD = -lembree3 -lm
+endif
+
+# What draws for `duite-bench output`.
+if HAVE_VIEW
+check_PROGRAMS += bench/output/draw
+BENCH_RIVALS += bench/output/draw$(EXEEXT)
+bench_output_draw_SOURCES = bench/output/draw.c bench/output/folder.h bench/serve.c bench/serve.h
+bench_output_draw_LDADD = libduite_view.la libduite_cloth.la libduite_core.la
 endif
 
 # Comparisons of policies: graph-run schedules graphs without an application, compare runs products of everything.

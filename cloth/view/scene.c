@@ -27,8 +27,8 @@ struct view_scene {
     struct draw_mesh mesh, shapes;          /* the cloth; the obstacles that have a surface */
     struct draw_lights lights;
     GLuint program[N_PROGRAMS];
-    GLuint nothing; /* a vertex array without attributes */
-    bool heated, wired;
+    GLuint nothing;            /* a vertex array without attributes */
+    bool heated, wired, plain; /* plain: without shadows */
     uint32_t n_parts;
     struct draw_part *part; /* n_parts: cloths */
 };
@@ -144,7 +144,7 @@ int view_scene_move(struct view_scene *scene, const double *position, struct clo
     GLuint program = scene->program[PROGRAM_CAST];
     glUseProgram(program);
     draw_lights_aim(&scene->lights, scene->mesh.center, lit_radius(scene),
-                    glGetUniformLocation(program, "map"), cast, scene);
+                    glGetUniformLocation(program, "map"), scene->plain ? NULL : cast, scene);
     GLenum trouble = glGetError();
     return trouble == GL_NO_ERROR
                ? 0
@@ -162,6 +162,11 @@ void view_scene_wire(struct view_scene *scene, bool wire)
     scene->wired = wire;
 }
 
+void view_scene_shadows(struct view_scene *scene, bool shadows)
+{
+    scene->plain = !shadows;
+}
+
 static GLuint use(const struct view_scene *scene, enum program which,
                   const struct view_camera *camera, int width, int height)
 {
@@ -171,6 +176,7 @@ static GLuint use(const struct view_scene *scene, enum program which,
     glUniform3fv(glGetUniformLocation(program, "eye"), 1, camera->eye);
     glUniform2f(glGetUniformLocation(program, "size"), (float)width, (float)height);
     glUniform1i(glGetUniformLocation(program, "maps"), 0);
+    glUniform1i(glGetUniformLocation(program, "looks"), scene->plain ? 0 : 4);
     return program;
 }
 

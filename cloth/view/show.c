@@ -14,7 +14,7 @@ struct view_show {
     const struct view_wish *wish;
     struct view_obstacles obstacles;
     struct view_orbit orbit;
-    bool wire;
+    bool wire, plain;         /* plain: without shadows */
     struct view_scene *scene; /* NULL until the first drawing */
     bool moved;               /* the scene has another frame than was read last */
     unsigned char *used;      /* a vertex: whether a face or an edge uses it */
@@ -171,6 +171,8 @@ static int move_scene(struct view_show *show, struct cloth_error *error)
     int code = show->scene ? 0 : make_scene(show, error);
     if (!code)
         view_scene_wire(show->scene, show->wire);
+    if (!code)
+        view_scene_shadows(show->scene, !show->plain);
     if (code || !show->moved)
         return code;
     code = view_scene_move(show->scene, show->position, error);
@@ -197,6 +199,11 @@ struct view_orbit *view_show_orbit(struct view_show *show)
 void view_show_wire(struct view_show *show, bool wire)
 {
     show->wire = wire;
+}
+
+void view_show_shadows(struct view_show *show, bool shadows)
+{
+    show->plain = !shadows;
 }
 
 int view_show_window(struct view_show *show, int width, int height, struct cloth_error *error)

@@ -37,6 +37,8 @@ struct view_orbit *view_show_orbit(struct view_show *show);
 /* Draws the frame into a window of that size. */
 int view_show_window(struct view_show *show, int width, int height, struct cloth_error *error);
 void view_show_wire(struct view_show *show, bool wire);
+/* Whether there are shadows in the frames read from now on; at first there are. */
+void view_show_shadows(struct view_show *show, bool shadows);
 /* On standard output: what colours mean in the frame. */
 void view_show_say(const struct view_show *show);
 /* Frees what drawing made, while its context is current. */

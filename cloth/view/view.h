@@ -115,6 +115,8 @@ int view_scene_move(struct view_scene *scene, const double *position, struct clo
 void view_scene_heat(struct view_scene *scene, const float *heat);
 /* Whether the edges of the cloth's triangles are drawn, too. */
 void view_scene_wire(struct view_scene *scene, bool wire);
+/* Whether there are shadows, from the next move on; a new scene has them. */
+void view_scene_shadows(struct view_scene *scene, bool shadows);
 void view_scene_draw(const struct view_scene *scene, const struct view_camera *camera, int width,
                      int height);
 void view_scene_free(struct view_scene *scene);

@@ -29,8 +29,9 @@ struct draw_lights {
 };
 int draw_lights_make(struct draw_lights *lights, struct cloth_error *error);
 /* Aims the maps at a sphere, fills them by `cast`, and hands the block to the shaders. `cast` draws
- * what throws shadows with the program that is in use, whose map's rows are set. Restores the
- * framebuffer and viewport that were bound. */
+ * what throws shadows with the program that is in use, whose map's rows are set; NULL: the maps
+ * stay as they are, for shaders that do not look. Restores the framebuffer and viewport that were
+ * bound. */
 void draw_lights_aim(struct draw_lights *lights, const float center[3], float radius,
                      GLint row_uniform, void (*cast)(const void *context), const void *context);
 void draw_lights_free(struct draw_lights *lights);

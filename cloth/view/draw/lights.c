@@ -134,6 +134,8 @@ void draw_lights_aim(struct draw_lights *lights, const float center[3], float ra
     radius *= 1.0f + 4.0f / DRAW_MAP; /* a rim for the blur */
     for (int i = 0; i < DRAW_LIGHTS; i++) {
         aim(&lights->block, i, center, radius);
+        if (!cast)
+            continue;
         glFramebufferTextureLayer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, lights->maps, 0, i);
         glClear(GL_DEPTH_BUFFER_BIT);
         glUniform4fv(row_uniform, 3, lights->block.row[3 * i]);

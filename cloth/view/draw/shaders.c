@@ -15,6 +15,7 @@ const char DRAW_COMMON[] =
     "    vec4 direction[LIGHTS]; vec4 colour[LIGHTS]; vec4 row[3 * LIGHTS]; vec4 bias;\n"
     "};\n"
     "uniform sampler2DArrayShadow maps;\n"
+    "uniform int looks;\n" /* into each map, 4; 0: without shadows */
     "float noise(vec2 p) { return fract(52.9829189 * fract(dot(p, vec2(0.06711056, 0.00583715)))); }\n"
     "vec3 background(vec2 p)\n"
     "{\n"
@@ -44,8 +45,8 @@ const char DRAW_COMMON[] =
     "        float a = 6.2831853 * fract(turn + 0.7548777 * float(i));\n"
     "        float r = sqrt(fract(grain + 0.5698403 * float(i)));\n"
     "        vec2 o = (i < SUN ? min(blur, 2.0) : blur) * bias.y * r * vec2(cos(a), sin(a));\n"
-    "        float seen = 0.0;\n"
-    "        for (int k = 0; k < 4; k++, o = vec2(-o.y, o.x))\n"
+    "        float seen = looks > 0 ? 0.0 : 1.0;\n"
+    "        for (int k = 0; k < looks; k++, o = vec2(-o.y, o.x))\n"
     "            seen += 0.25 * texture(maps, vec4(m.xy + o, float(i), m.z));\n"
     "        vec3 e = colour[i].rgb * (abs(c) * seen);\n"
     "        if (c < 0.0) back += e; else front += e;\n"

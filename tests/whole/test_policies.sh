@@ -77,7 +77,7 @@ talks() { TALKS=1 cloth "$@" > "$scratch/said" 2>&1 && for what in "a queue" hom
         grep -qx "asked for $what" "$scratch/said" || return 1; done; }
 says() { grep -q "^duite: scheduler hangs: its place has not returned for $1 s" "$scratch/said"; }
 named() { # COMMAND...: says who does not return, twice, and then, since that one does, ends as it should
-    rm -f "$scratch/named"
+    rm -f "$scratch/named" "$scratch/said" # what the command before said is not taken for this one's
     (export DUITE_POLICY_SECONDS=0.1 NAMED="$scratch/named" && "$@") > "$scratch/said" 2>&1 &
     pid=$!
     awaits $pid says 0.1 && awaits $pid says 0.2

@@ -276,8 +276,10 @@ int outputs_frame(void *context, uint64_t frame, double time, const double *posi
 {
     struct outputs *of = context;
     int code = CLOTH_OK;
-    if (of->frames)
+    if (of->frames) {
         code = output_frame(of->frames, frame, time, position, error);
+        of->frames_written = frame + (code ? 0 : 1);
+    }
     if (!code)
         outputs_hdf5_position(&of->hdf5, frame, time, position);
     if (!code && of->intersections)

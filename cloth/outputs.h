@@ -15,6 +15,7 @@ struct outputs {
     const struct simulate_options *options;
     struct output_lock *locks[2];        /* of the folders of frames and of the system */
     struct output_frames *frames;        /* if they are wanted */
+    _Atomic uint64_t frames_written;     /* with those of runs before; any thread may read it */
     struct output_probes *probes;        /* if the scene has any */
     struct outputs_hdf5 hdf5;            /* if the scene asks for them */
     struct output_forces *forces;        /* of frames; NULL: none */

@@ -2,10 +2,11 @@
 #define CLOTH_PROGRESS_H
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
-/* The progress line of a run on standard error: on a terminal rewritten ten times a second, else a
- * line every ten seconds. Local; called on rank 0. */
+/* The progress line of a run on standard error: on a terminal rewritten ten times a second and cut
+ * to its width, else a line every ten seconds. Local; called on rank 0. */
 struct progress {
     uint64_t first;      /* the step that was shown first; 0: none was */
     const char *phase;   /* that the line names; NULL: none */
@@ -14,14 +15,20 @@ struct progress {
 };
 
 void progress_begin(struct progress *progress, const char *phase);
-/* After step number `step`, from 1, of `steps`: what its solves took, how many contacts there are,
- * and how many pulled seams are open, by how much at most (m); 0: they are not mentioned. */
+/* After step number `step`, from 1, of `steps`: frames written so far, what the step's solves took,
+ * how many contacts there are, and how many pulled seams are open, by how much at most (m). What is
+ * 0 is not mentioned, but for iterations. */
 struct progress_counts {
-    uint64_t cg_iterations, contacts, seams_open;
+    uint64_t frames, cg_iterations, contacts, seams_open;
     double seam_distance;
 };
 void progress_step(struct progress *progress, uint64_t step, uint64_t steps,
                    const struct progress_counts *counts);
 void progress_end(struct progress *progress);
+
+/* The line itself, without its end: at most `columns` characters, and size - 1 bytes, of UTF-8.
+ * What matters most stands first: phase, step, time left (s). Returns its length in bytes. */
+size_t progress_line(char *line, size_t size, size_t columns, const char *phase, uint64_t step,
+                     uint64_t steps, double left, const struct progress_counts *counts);
 
 #endif

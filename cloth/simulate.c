@@ -12,6 +12,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
 static atomic_int stop_requested; /* read by all threads, written by the signal's handler */
 
@@ -64,7 +65,8 @@ static void forget_meshes(void *context)
 static void show_step(void *context, uint64_t step, uint64_t steps, uint64_t cg_iterations)
 {
     struct run *run = context;
-    const struct progress_counts counts = {.cg_iterations = cg_iterations,
+    const struct progress_counts counts = {.frames = run->outputs.frames_written,
+                                           .cg_iterations = cg_iterations,
                                            .contacts = run->report.contacts_now,
                                            .seams_open = run->report.seams_open,
                                            .seam_distance = run->report.seam_distance};
@@ -256,6 +258,7 @@ static int conclude(struct run *run)
             .drape = outputs->drape ? &outputs->drapes : NULL,
             .ranks = run->ranks,
             .threads = run->threads,
+            .cores = (unsigned)fmax(1, (double)sysconf(_SC_NPROCESSORS_ONLN)),
             .workers = workers,
             .memory_bytes = peak,
             .critical_path = path,

@@ -4,6 +4,7 @@
 #include "cloth/base/simd.h"
 #include "cloth/output/output.h"
 #include "cloth/summary_seams.h"
+#include "cloth/summary_time.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -36,23 +37,6 @@ static double solves_mean(const struct flow_report *report)
     const uint64_t solves =
         report->steps + report->steps_halved + report->steps_retaken + report->contact_solves;
     return ratio((double)solves, (double)report->steps);
-}
-
-static void print_times(FILE *file, const struct flow_report *report)
-{
-    const struct {
-        const char *name;
-        double seconds;
-    } rows[] = {
-        {"force", report->seconds_force},       {"acceleration", report->seconds_acceleration},
-        {"matrix", report->seconds_matrix},     {"CG", report->seconds_cg},
-        {"velocity", report->seconds_velocity}, {"position", report->seconds_position},
-        {"collide", report->seconds_collide},   {"correction", report->seconds_correction},
-        {"output", report->seconds_output}};
-    fprintf(file, "  seconds in tasks, over all workers\n");
-    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++)
-        if (!isnan(rows[i].seconds))
-            fprintf(file, "    %-14s %12.4f\n", rows[i].name, rows[i].seconds);
 }
 
 static void print_solves(FILE *file, const struct summary *summary)
@@ -182,7 +166,7 @@ void summary_print(FILE *file, const struct summary *summary)
         print_correction(file, report);
     fprintf(file, "  wall time        %.3f s, %.6f s a step\n", report->wall_seconds,
             ratio(report->wall_seconds, (double)report->steps));
-    print_times(file, report);
+    summary_time_print(file, report);
     if (model_is_implicit(model))
         print_solves(file, summary);
     if (summary->ranks > 1)
@@ -208,6 +192,7 @@ void summary_print(FILE *file, const struct summary *summary)
                 summary->drape->coefficient, summary->drape->shadow);
     if (summary->intersections)
         print_intersections(file, summary->intersections);
+    summary_limit_print(file, summary);
 }
 
 static void add_hash(struct output_report *json, const char *key, uint64_t hash)
@@ -374,6 +359,7 @@ static void add_runtime(struct output_report *json, const struct summary *summar
     output_report_number(json, "busy_fraction", ratio(counters->busy, total));
     output_report_number(json, "idle_fraction", ratio(counters->idle, total));
     output_report_number(json, "overhead_ns_per_task", ratio(overhead, (double)counters->tasks));
+    summary_limit_add(json, summary);
     output_report_number(json, "communication_hidden_fraction", hidden_fraction(summary));
     output_report_number(json, "critical_path_seconds", summary->critical_path);
     output_report_number(json, "lower_bound_seconds", summary->lower_bound);

@@ -65,6 +65,7 @@ tests_support_test_unit_LDADD = $(DUITE_TEST_LIBS)
 TESTS += tests/support/test_unit
 endif
 
+include tests/cloth/module.mk
 include tests/cloth/base/module.mk
 include tests/cloth/mesh/module.mk
 include tests/cloth/contact/module.mk

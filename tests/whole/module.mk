@@ -80,3 +80,5 @@ dist_check_SCRIPTS += tests/whole/test_dressing.sh tests/whole/test_dressing_lon
 EXTRA_DIST += tests/whole/dressing.sh tests/whole/garment.awk
 TESTS += tests/whole/test_dressing.sh
 LONG_TESTS += tests/whole/test_dressing_long.sh
+dist_check_SCRIPTS += tests/whole/test_summary.sh
+TESTS += tests/whole/test_summary.sh

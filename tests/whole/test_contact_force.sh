@@ -87,5 +87,5 @@ refused() { run two.yaml --output mine --set contact.force=on 2> said || status=
 ok "a file of the user's stays" refused
 
 # The line of a terminal says how many contacts there are.
-progress() { script -qec "$DUITE_CLOTH two.yaml --end 0.05" typed > /dev/null && tr '\r' '\n' < typed | grep 'step 10 of 10, [0-9]* iterations, [1-9][0-9]* contacts, '; }
+progress() { script -qec "$DUITE_CLOTH two.yaml --end 0.05" typed > /dev/null && tr '\r' '\n' < typed | grep 'step 10 of 10, 0 s left, [0-9]* iterations, [1-9][0-9]* contacts$'; }
 if command -v script > /dev/null; then ok "progress tells of contacts" progress; else skip "progress tells of contacts" "no script(1)"; fi

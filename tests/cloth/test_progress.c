@@ -1,0 +1,91 @@
+/* The line of progress says all that there is, and is cut where the terminal ends. */
+#include "cloth/progress.h"
+
+#include "tests/support/unit.h"
+
+#include <stdint.h>
+#include <string.h>
+
+static const struct progress_counts ALL = {13, 45, 120, 3, 0.0021};
+static char line[400];
+
+static size_t write_line(size_t columns, const char *phase, const struct progress_counts *counts)
+{
+    return progress_line(line, sizeof line, columns, phase, 120, 480, 75.4, counts);
+}
+
+START_TEST(says_all)
+{
+    write_line(SIZE_MAX, "sew", &ALL);
+    ck_assert_str_eq(line,
+                     "sew: step 120 of 480, 75 s left, 13 frames, 45 iterations, 120 contacts, "
+                     "3 seams open by 0.0021 m");
+}
+END_TEST
+
+START_TEST(leaves_out_what_is_not_there)
+{
+    write_line(SIZE_MAX, NULL, &(struct progress_counts){.cg_iterations = 7});
+    ck_assert_str_eq(line, "step 120 of 480, 75 s left, 7 iterations");
+    write_line(SIZE_MAX, NULL, &(struct progress_counts){.frames = 1, .contacts = 1});
+    ck_assert_str_eq(line, "step 120 of 480, 75 s left, 1 frame, 0 iterations, 1 contact");
+}
+END_TEST
+
+START_TEST(has_units_of_time)
+{
+    const struct progress_counts none = {0};
+    progress_line(line, sizeof line, SIZE_MAX, NULL, 1, 2, 119.4, &none);
+    ck_assert_ptr_nonnull(strstr(line, ", 119 s left"));
+    progress_line(line, sizeof line, SIZE_MAX, NULL, 1, 2, 7199, &none);
+    ck_assert_ptr_nonnull(strstr(line, ", 120 min left"));
+    progress_line(line, sizeof line, SIZE_MAX, NULL, 1, 2, 9000, &none);
+    ck_assert_ptr_nonnull(strstr(line, ", 2.5 h left"));
+}
+END_TEST
+
+START_TEST(fits_the_terminal)
+{
+    ck_assert_uint_eq(write_line(79, "sew", &ALL), 79);
+    ck_assert_uint_eq(strlen(line), 79);
+    ck_assert_ptr_nonnull(strstr(line, "75 s left"));
+    ck_assert_uint_eq(write_line(1, NULL, &ALL), 1);
+    ck_assert_str_eq(line, "s");
+}
+END_TEST
+
+/* A column has a character, of one byte or of several. */
+START_TEST(cuts_between_characters)
+{
+    write_line(6, "d\xc3\xa9j\xc3\xa0", &ALL);
+    ck_assert_str_eq(line, "d\xc3\xa9j\xc3\xa0: ");
+    write_line(2, "d\xc3\xa9j\xc3\xa0", &ALL);
+    ck_assert_str_eq(line, "d\xc3\xa9");
+    write_line(1, "\xf0\x9f\x98\x80", &ALL);
+    ck_assert_str_eq(line, "\xf0\x9f\x98\x80");
+}
+END_TEST
+
+START_TEST(shortens_long_phases)
+{
+    char phase[1000];
+    memset(phase, 'p', sizeof phase - 1);
+    phase[sizeof phase - 1] = '\0';
+    write_line(SIZE_MAX, phase, &ALL);
+    ck_assert_int_eq(strncmp(line + 39, "p: step 120 of 480", 18), 0);
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("progress");
+    TCase *lines = tcase_create("line");
+    tcase_add_test(lines, says_all);
+    tcase_add_test(lines, leaves_out_what_is_not_there);
+    tcase_add_test(lines, has_units_of_time);
+    tcase_add_test(lines, fits_the_terminal);
+    tcase_add_test(lines, cuts_between_characters);
+    tcase_add_test(lines, shortens_long_phases);
+    suite_add_tcase(suite, lines);
+    return unit_run(suite);
+}

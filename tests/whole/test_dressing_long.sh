@@ -37,14 +37,16 @@ other_ok "the T-shirt on the other body" other_rests dressing "$one"
 other_ok "the jeans on the other body" other_rests jeans "$one"
 other_ok "the T-shirt over the jeans on the other body" other_rests layers "$two"
 
-alike_all() { # SCENE
-    rm -f "$1.hash"
-    alike "$1" 1 &&
-        alike "$1" 1 --threads 2 --scheduler fifo --mapping cyclic &&
-        alike "$1" 2 --scheduler locality --mapping taskgraph --balance delegate &&
-        alike "$1" 2 --threads 2 --scheduler steal --mapping metis --balance migrate &&
-        alike "$1" 3 --scheduler priority --mapping list --balance migrate &&
-        alike "$1" 3 --threads 2 --scheduler fifo --mapping cyclic --balance delegate
+alike_all() { # SCENE OPTION...
+    all_of=$1
+    shift
+    rm -f "$all_of.hash"
+    alike "$all_of" 1 "$@" &&
+        alike "$all_of" 1 --threads 2 --scheduler fifo --mapping cyclic "$@" &&
+        alike "$all_of" 2 --scheduler locality --mapping taskgraph --balance delegate "$@" &&
+        alike "$all_of" 2 --threads 2 --scheduler steal --mapping metis --balance migrate "$@" &&
+        alike "$all_of" 3 --scheduler priority --mapping list --balance migrate "$@" &&
+        alike "$all_of" 3 --threads 2 --scheduler fifo --mapping cyclic --balance delegate "$@"
 }
 mannequin_alike() { scene "$1" 900 0.1 && alike_all "$1"; }
 other_alike() { scene "$1" 900 0.1 && other "$1" && alike_all "$1"; }
@@ -52,3 +54,9 @@ for name in dressing jeans layers; do
     ok "one hash of $name.yaml" mannequin_alike $name
     other_ok "one hash of $name.yaml on the other body" other_alike $name
 done
+walk_alike() { # a drape of 0.1 s; the walk begins after 0.2 s
+    scene walk 900 0.3 walk && sed -i '/name: drape/,/set: {/ s/set: {/set: {time.end: 0.1, /' walk.yaml && alike_all walk
+}
+ok "one hash of walk.yaml" walk_alike
+shirt_alike() { scene shirt 700 0 && alike_all shirt --set 'phases[1].set={time.end: 0.01}'; }
+ok "one hash of shirt.yaml" shirt_alike

@@ -43,6 +43,12 @@ implicit='--set integrator=implicit_euler --set solver.guess=zero --set solver.p
 three='phases=[{name: a, set: {time.end: 0.03}}, {name: b, set: {time.end: 0.03}}, {name: c, set: {time.end: 0.04}}]'
 ok "three phases of implicit Euler are one run, too" eval 'run $implicit && one=$(hash) && run $implicit --set "$three" && test "$one" = "$(hash)"'
 
+one_key() { # of a phase's set, from the command line: as if the phase had it
+    run --set "$two" --set 'phases[1].set.time.end=0.01' --set 'phases[1].set.materials.cloth.damping.mass=3' && one=$(hash) && test "$(value steps)" = 50 &&
+        run --set 'phases=[{name: one, set: {time.end: 0.04}}, {name: two, set: {time.end: 0.01, materials.cloth.damping.mass: 3}}]' && test "$one" = "$(hash)"
+}
+ok "one key of a phase's set is changed" one_key
+
 # Free flight of a cloth that nothing strains, by symplectic Euler: after n steps of weight g x = x0 + n h v0 + g h^2 n (n + 1) / 2.
 flies() {
     run --set 'cloths[0].pins=[]' --set 'cloths[0].velocity=[1, 2, 0]' --set materials.cloth.damping.mass=0 --output frames \

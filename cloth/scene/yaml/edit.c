@@ -14,7 +14,8 @@ struct edit {
     yaml_mark_t mark;
     const char *start, *at; /* text of the set, and the rest of its path */
     struct cloth_error *error;
-    int value; /* a node; 0: the text has it, behind the path */
+    int value;         /* a node; 0: the text has it, behind the path */
+    const char *whole; /* where a key begins that may have '.' and '[' in it; NULL: nowhere */
 };
 
 static int out_of_memory(struct cloth_error *error)
@@ -157,7 +158,7 @@ static int put_key(struct edit *edit, int node)
 {
     struct scene_tree *tree = edit->tree;
     const char *name = edit->at + (*edit->at == '.');
-    size_t length = strcspn(name, ".[=");
+    size_t length = strcspn(name, name == edit->whole ? "=" : ".[=");
     if (!length || (!name[length] && !edit->value))
         return no_path(edit);
     int map = own(edit, node, YAML_MAPPING_NODE);
@@ -232,12 +233,21 @@ static bool is_of_phases(const char *text)
     return !strncmp(text, "phases", n) && (!text[n] || strchr(".[=", text[n]));
 }
 
+/* Behind phases[N].set. the rest of the path is one key: a path of the scene. NULL for other paths.
+ */
+static const char *key_of_phase(const char *text)
+{
+    const char *at = is_of_phases(text) ? text + strcspn(text, "]=") : "";
+    return strncmp(at, "].set.", 6) ? NULL : at + 6;
+}
+
 /* Those of the tree's sets that change the phases themselves, or the others. */
 static int edit_by_options(struct scene_tree *tree, bool phases, struct cloth_error *error)
 {
     for (size_t i = 0; i < tree->n_sets; i++) {
         const char *text = tree->sets[i].text;
-        struct edit edit = {tree, {.index = SCENE_BY_SET, .line = i}, text, text, error, 0};
+        struct edit edit = {
+            tree, {.index = SCENE_BY_SET, .line = i}, text, text, error, 0, key_of_phase(text)};
         if (is_of_phases(text) != phases)
             continue;
         if (starts_no_path(text))
@@ -261,7 +271,7 @@ static int edit_by_phase(struct scene_tree *tree, uint32_t phase, struct cloth_e
         const char *key = scene_tree_scalar(tree, pair.key);
         const yaml_mark_t mark = {
             .index = SCENE_BY_PHASE, .line = (size_t)pair.key, .column = phase};
-        struct edit edit = {tree, mark, key, key, error, pair.value};
+        struct edit edit = {tree, mark, key, key, error, pair.value, NULL};
         if (key && is_of_phases(key))
             edit_fails(&edit, "a phase cannot change the phases");
         else if (key && starts_no_path(key))
@@ -283,7 +293,7 @@ int scene_edit_sets(struct scene_tree *tree, uint32_t phase, struct cloth_error 
 int scene_edit_default(struct scene_tree *tree, int map, const char *key, const char *value,
                        struct cloth_error *error)
 {
-    struct edit edit = {tree, {.index = SCENE_BY_DEFAULT}, value, value, error, 0};
+    struct edit edit = {tree, {.index = SCENE_BY_DEFAULT}, value, value, error, 0, NULL};
     int value_node = add_value(&edit, value);
     int key_node = value_node ? add_key(&edit, key, strlen(key)) : 0;
     if (key_node && !yaml_document_append_mapping_pair(&tree->document, map, key_node, value_node))

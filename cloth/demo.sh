@@ -1,10 +1,13 @@
 #!/bin/sh
-# make demo: sheet.yaml for 0.32 s on two ranks, and three pictures of it. Later than 0.36 s its two flaps meet and pass through
-# each other, since cloth does not feel itself. Called in the build folder with srcdir, MPIRUN and VIEW_MISSING (the packages
-# without which duite-view was not built) in the environment.
+# make demo: on two ranks a sheet falls and a T-shirt is sewn around a mannequin; then pictures of both, and a film of the second.
+# sheet.yaml runs for 0.32 s: later than 0.36 s its two flaps meet and pass through each other, since cloth does not feel itself
+# there. Called in the build folder with srcdir, MPIRUN and VIEW_MISSING (the packages without which duite-view was not built) in
+# the environment.
 set -eu
 ranks=2
-frames=demo/frames
+sheet=demo/frames
+shirt=demo/dressing
+views='--camera=25,5 --size 320x448'
 
 if test "$(id -u)" = 0; then # Open MPI refuses root unless told twice
     export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
@@ -12,32 +15,52 @@ fi
 # hwloc: silent about caches that a virtual machine reports wrongly, and no look for graphics cards on X displays.
 export HWLOC_HIDE_ERRORS=2 HWLOC_COMPONENTS="${HWLOC_COMPONENTS:--gl}"
 
-mkdir -p demo
-rm -f demo/sheet-*.png
-# More ranks than Open MPI counts slots are welcome, and the workers bind themselves.
-set -- "${MPIRUN:-mpirun}" --oversubscribe --bind-to none -n $ranks ./duite-cloth "$srcdir/cloth/scenes/sheet.yaml" \
-    --end 0.32 --output $frames --report demo/report.json
-echo "$*"
-"$@" < /dev/null
+says() {
+    echo "$*"
+    "$@" < /dev/null
+}
 
-last=$(tail -n 1 $frames/frames.csv | cut -d , -f 1)
+simulate() { # SCENE OPTION...: more ranks than Open MPI counts slots are welcome, and the workers bind themselves
+    scene=$1
+    shift
+    says "${MPIRUN:-mpirun}" --oversubscribe --bind-to none -n $ranks ./duite-cloth "$srcdir/cloth/scenes/$scene.yaml" "$@"
+    echo
+}
+
+mkdir -p demo
+rm -f demo/*.png demo/*.mp4
+simulate sheet --end 0.32 --output $sheet --report demo/report.json
+simulate dressing --output $shirt --report demo/dressing.json
+
+film="none: ffmpeg is not there"
 if test -x ./duite-view && test -z "${VIEW_MISSING:-}"; then
+    last=$(tail -n 1 $sheet/frames.csv | cut -d , -f 1)
     pictures=
     for frame in 0 $((last / 2)) "$last"; do
         picture=$(printf 'demo/sheet-%03d.png' "$frame")
-        ./duite-view $frames --frame "$frame" --png "$picture"
-        pictures="$pictures $picture"
+        says ./duite-view $sheet --frame "$frame" --png "$picture"
+        pictures="$pictures$picture "
     done
-    looks="pictures   $pictures"
+    # shellcheck disable=SC2086 # options
+    says ./duite-view $shirt $views --frame last --png demo/dressing.png
+    pictures="${pictures}demo/dressing.png"
+    if command -v ffmpeg > /dev/null; then
+        # shellcheck disable=SC2086
+        says ./duite-view $shirt $views --fps 10 --mp4 demo/dressing.mp4
+        film="demo/dressing.mp4, at 0.4 of its speed"
+    fi
 else
-    looks="pictures    none: duite-view was not built, since these packages are missing: ${VIEW_MISSING:-see ./configure}
-            (./bootstrap installs them)"
+    pictures="none: duite-view was not built, since these packages are missing: ${VIEW_MISSING:-see ./configure}
+                (./bootstrap installs them)"
+    film=none
 fi
 
-cat << EOF
+cat << END
 
-The sheet has fallen. Look at
-    $looks
-    animation   $frames/cloth.obj with $frames/cloth.pc2 (Blender: import the OBJ, add a Mesh Cache modifier)
-    figures     demo/report.json
-EOF
+The sheet has fallen, and the mannequin is dressed. Look at
+    pictures    $pictures
+    film        $film
+    window      ./duite-view $shirt
+    animation   $sheet/cloth.obj with $sheet/cloth.pc2 (Blender: import the OBJ, add a Mesh Cache modifier)
+    figures     demo/report.json, demo/dressing.json
+END

@@ -82,3 +82,6 @@ TESTS += tests/whole/test_dressing.sh
 LONG_TESTS += tests/whole/test_dressing_long.sh
 dist_check_SCRIPTS += tests/whole/test_summary.sh
 TESTS += tests/whole/test_summary.sh
+dist_check_SCRIPTS += tests/whole/test_paraview_long.sh tests/whole/test_blender_long.sh
+EXTRA_DIST += tests/whole/read_back.sh tests/whole/read_back.py tests/whole/read_paraview.py tests/whole/read_blender.py
+LONG_TESTS += tests/whole/test_paraview_long.sh tests/whole/test_blender_long.sh

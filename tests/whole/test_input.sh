@@ -187,6 +187,12 @@ ok "a report that is the scene" sh -c '
         grep -qx "duite-cloth: --report ./kept.yaml: this is the scene itself, which would be lost" said.err' "$DUITE_CLOTH"
 awk 'BEGIN { printf "schema: 1\na: "; for (i = 0; i < 100000; i++) printf "[" }' > deep.yaml
 ok "a scene of brackets" says 1 "deep.yaml:2: more than 1000 brackets [ and { are open here; a scene needs a few" deep.yaml
+awk 'BEGIN { printf "schema: 1\nphases:\n  - name: one\n    set:\n      ? "; for (i = 0; i < 200000; i++) printf "a."; print "b\n      : 1" }' > path.yaml
+ok "a scene of a key without end" says 1 "path.yaml:5:9: phases[0].set: a key of more than 100 parts; no scene is as deep" path.yaml
+awk 'BEGIN { print "schema: 1"; for (i = 0; i < 4096; i++) print "k" i ": 1" }' > keys.yaml
+ok "a scene of keys" says 1 "keys.yaml:1:1: a map of 4097 keys; a scene has at most 4096 in one map" keys.yaml
+awk 'BEGIN { print "schema: 1\na:"; for (i = 0; i < 1001; i++) print "  - &a" i " 1" }' > anchors.yaml
+ok "a scene of anchors" says 1 "anchors.yaml:1003: more than 1000 anchors, such as &name, are in the file; a scene needs a few" anchors.yaml
 likewise "a probe of nothing" \
     "--set probes=[{vertices: [1], values: []}]: probes[0].values is an empty list; a non-empty list of words is expected" \
     scene.yaml --set 'probes=[{vertices: [1], values: []}]'

@@ -16,7 +16,10 @@ struct edit {
     struct cloth_error *error;
     int value;         /* a node; 0: the text has it, behind the path */
     const char *whole; /* where a key begins that may have '.' and '[' in it; NULL: nowhere */
+    int parts;         /* of the path, so far */
 };
+/* No scene is as deep; each part of a path is a call. */
+enum { MAX_PARTS = 100 };
 
 static int out_of_memory(struct cloth_error *error)
 {
@@ -212,6 +215,8 @@ static int put(struct edit *edit, int node)
 {
     if (edit->value && !*edit->at)
         return edit->value;
+    if (edit->parts++ == MAX_PARTS)
+        return edit_fails(edit, "a key of more than 100 parts; no scene is as deep");
     if (edit->value && *edit->at == '=')
         return no_path(edit);
     if (*edit->at == '=')
@@ -247,7 +252,7 @@ static int edit_by_options(struct scene_tree *tree, bool phases, struct cloth_er
     for (size_t i = 0; i < tree->n_sets; i++) {
         const char *text = tree->sets[i].text;
         struct edit edit = {
-            tree, {.index = SCENE_BY_SET, .line = i}, text, text, error, 0, key_of_phase(text)};
+            tree, {.index = SCENE_BY_SET, .line = i}, text, text, error, 0, key_of_phase(text), 0};
         if (is_of_phases(text) != phases)
             continue;
         if (starts_no_path(text))
@@ -271,7 +276,7 @@ static int edit_by_phase(struct scene_tree *tree, uint32_t phase, struct cloth_e
         const char *key = scene_tree_scalar(tree, pair.key);
         const yaml_mark_t mark = {
             .index = SCENE_BY_PHASE, .line = (size_t)pair.key, .column = phase};
-        struct edit edit = {tree, mark, key, key, error, pair.value, NULL};
+        struct edit edit = {tree, mark, key, key, error, pair.value, NULL, 0};
         if (key && is_of_phases(key))
             edit_fails(&edit, "a phase cannot change the phases");
         else if (key && starts_no_path(key))
@@ -293,7 +298,7 @@ int scene_edit_sets(struct scene_tree *tree, uint32_t phase, struct cloth_error 
 int scene_edit_default(struct scene_tree *tree, int map, const char *key, const char *value,
                        struct cloth_error *error)
 {
-    struct edit edit = {tree, {.index = SCENE_BY_DEFAULT}, value, value, error, 0, NULL};
+    struct edit edit = {tree, {.index = SCENE_BY_DEFAULT}, value, value, error, 0, NULL, 0};
     int value_node = add_value(&edit, value);
     int key_node = value_node ? add_key(&edit, key, strlen(key)) : 0;
     if (key_node && !yaml_document_append_mapping_pair(&tree->document, map, key_node, value_node))

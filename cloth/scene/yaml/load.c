@@ -71,6 +71,30 @@ static int check_depth(const char *path, const struct scene_words *words, const 
     return CLOTH_OK;
 }
 
+/* The parser looks for each anchor among all that it has seen. */
+enum { MAX_ANCHORS = 1000 };
+
+static bool is_word(char c)
+{
+    return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || c == '_';
+}
+
+static int check_anchors(const char *path, const struct scene_words *words, const char *bytes,
+                         size_t size, struct cloth_error *error)
+{
+    size_t n = 0, line = 1;
+    for (size_t i = 0; i + 1 < size; i++) {
+        line += bytes[i] == '\n';
+        n += bytes[i] == '&' && is_word(bytes[i + 1]) && (i == 0 || !is_word(bytes[i - 1]));
+        if (n > MAX_ANCHORS)
+            return cloth_fail(error, CLOTH_E_INPUT,
+                              "%s:%zu: more than %d anchors, such as &name, are in the file; a %s "
+                              "needs a few",
+                              path, line, MAX_ANCHORS, words->noun);
+    }
+    return CLOTH_OK;
+}
+
 /* Characters, not bytes, are counted: a byte 10xxxxxx continues one. */
 static void line_and_column(const char *bytes, size_t offset, size_t *line, size_t *column)
 {
@@ -117,6 +141,22 @@ static int check_root(const struct scene_tree *tree, const struct scene_words *w
     return CLOTH_OK;
 }
 
+/* The keys of a map are compared with each other. */
+enum { MAX_KEYS = 4096 };
+
+static int check_maps(const struct scene_tree *tree, const struct scene_words *words,
+                      struct cloth_error *error)
+{
+    const int n = (int)(tree->document.nodes.top - tree->document.nodes.start);
+    for (int node = 1; node <= n; node++)
+        if (scene_tree_is(tree, node, YAML_MAPPING_NODE) &&
+            scene_tree_length(tree, node) > MAX_KEYS)
+            return scene_tree_fail(tree, node, error,
+                                   "a map of %zu keys; a %s has at most %d in one map",
+                                   scene_tree_length(tree, node), words->noun, MAX_KEYS);
+    return CLOTH_OK;
+}
+
 static int parse(struct scene_tree *tree, const struct scene_words *words, yaml_parser_t *parser,
                  const char *bytes, size_t size, struct cloth_error *error)
 {
@@ -125,6 +165,7 @@ static int parse(struct scene_tree *tree, const struct scene_words *words, yaml_
         return parser_fails(parser, tree->path, words, bytes, size, error);
     tree->loaded = true;
     int code = check_root(tree, words, error);
+    code = code ? code : check_maps(tree, words, error);
     if (code)
         return code;
     yaml_document_t second;
@@ -153,6 +194,8 @@ int scene_tree_load(struct scene_tree *tree, const char *path, const struct scen
     int code = read_file(path, words, &bytes, &size, error);
     if (!code)
         code = check_depth(path, words, bytes, size, error);
+    if (!code)
+        code = check_anchors(path, words, bytes, size, error);
     if (!code) {
         if (yaml_parser_initialize(&parser)) {
             code = parse(tree, words, &parser, bytes, size, error);

@@ -13,10 +13,12 @@ libduite_view_la_SOURCES = \
 	cloth/view/scene.c \
 	cloth/view/show.h cloth/view/show.c \
 	cloth/view/draw/draw.h \
+	cloth/view/draw/ground.c \
 	cloth/view/draw/lights.c \
 	cloth/view/draw/mesh.c \
 	cloth/view/draw/program.c \
-	cloth/view/draw/shaders.c
+	cloth/view/draw/shaders.c \
+	cloth/view/draw/sky.c
 if HAVE_WINDOW
 libduite_view_la_SOURCES += cloth/view/overlay.h cloth/view/overlay.c cloth/view/window.h cloth/view/window.c
 endif

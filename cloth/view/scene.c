@@ -7,7 +7,16 @@
 #include <stdbool.h>
 #include <stdlib.h>
 
-enum program { PROGRAM_CAST, PROGRAM_BACK, PROGRAM_CLOTH, PROGRAM_GROUND, N_PROGRAMS };
+enum program {
+    PROGRAM_CAST,
+    PROGRAM_BACK,
+    PROGRAM_CLOTH,
+    PROGRAM_GROUND,
+    PROGRAM_SKY,
+    PROGRAM_SKY_GROUND,
+    PROGRAM_SKY_BLUR,
+    N_PROGRAMS
+};
 
 /* Colours of fronts and backs, linear. Those of cloths go round. They differ in lightness, too, for
  * those who see no red or no green. */
@@ -25,6 +34,10 @@ static const float STONE[2][3] = {{0.22f, 0.25f, 0.28f}, {0.22f, 0.25f, 0.28f}};
 struct view_scene {
     const struct view_obstacles *obstacles; /* NULL: none */
     struct draw_mesh mesh, shapes;          /* the cloth; the obstacles that have a surface */
+    struct draw_sky mesh_sky, shapes_sky;
+    size_t n_grounds;
+    struct draw_ground *ground; /* n_grounds */
+    struct draw_sky unsmooth;   /* of one ground after the other */
     struct draw_lights lights;
     GLuint program[N_PROGRAMS];
     GLuint nothing;            /* a vertex array without attributes */
@@ -36,10 +49,13 @@ struct view_scene {
 static int make_programs(struct view_scene *scene, struct cloth_error *error)
 {
     static const char *const text[N_PROGRAMS][2] = {
-        {DRAW_CAST_VERTEX, DRAW_CAST_FRAGMENT},
-        {DRAW_BACK_VERTEX, DRAW_BACK_FRAGMENT},
-        {DRAW_CLOTH_VERTEX, DRAW_CLOTH_FRAGMENT},
-        {DRAW_GROUND_VERTEX, DRAW_GROUND_FRAGMENT},
+        [PROGRAM_CAST] = {DRAW_CAST_VERTEX, DRAW_CAST_FRAGMENT},
+        [PROGRAM_BACK] = {DRAW_BACK_VERTEX, DRAW_BACK_FRAGMENT},
+        [PROGRAM_CLOTH] = {DRAW_CLOTH_VERTEX, DRAW_CLOTH_FRAGMENT},
+        [PROGRAM_GROUND] = {DRAW_GROUND_VERTEX, DRAW_GROUND_FRAGMENT},
+        [PROGRAM_SKY] = {DRAW_BACK_VERTEX, DRAW_SKY_FRAGMENT},
+        [PROGRAM_SKY_GROUND] = {DRAW_BACK_VERTEX, DRAW_SKY_GROUND_FRAGMENT},
+        [PROGRAM_SKY_BLUR] = {DRAW_BACK_VERTEX, DRAW_SKY_BLUR_FRAGMENT},
     };
     for (int i = 0; i < N_PROGRAMS; i++) {
         int code = draw_program(&scene->program[i], text[i][0], text[i][1], error);
@@ -84,6 +100,27 @@ static bool has_shapes(const struct view_scene *scene)
     return scene->obstacles && scene->obstacles->n_vertices;
 }
 
+static int make_grounds(struct view_scene *scene, struct cloth_error *error)
+{
+    const size_t n = scene->obstacles ? scene->obstacles->n_planes : 0;
+    scene->ground = calloc(n + 1, sizeof *scene->ground);
+    if (!scene->ground)
+        return cloth_fail(error, CLOTH_E_MEMORY, "no memory for %zu planes", n);
+    int code = n ? draw_sky_make(&scene->unsmooth, 0, error) : CLOTH_OK;
+    for (; scene->n_grounds < n && !code; scene->n_grounds++)
+        code = draw_sky_make(&scene->ground[scene->n_grounds].sky, 0, error);
+    return code;
+}
+
+/* A mesh and the sky's light on it. */
+static int make_surface(struct draw_mesh *mesh, struct draw_sky *sky,
+                        const struct view_shape *shape, struct cloth_error *error)
+{
+    const int code = draw_mesh_make(mesh, shape->n_vertices, shape->n_triangles, shape->triangle,
+                                    shape->n_lines, shape->line, error);
+    return code ? code : draw_sky_make(sky, shape->n_vertices ? shape->n_vertices : 1, error);
+}
+
 int view_scene_new(struct view_scene **scene, const struct view_shape *shape,
                    struct cloth_error *error)
 {
@@ -96,13 +133,14 @@ int view_scene_new(struct view_scene **scene, const struct view_shape *shape,
     int code = make_programs(made, error);
     code = code ? code : make_parts(made, shape, error);
     code = code ? code : draw_lights_make(&made->lights, error);
-    code = code ? code
-                : draw_mesh_make(&made->mesh, shape->n_vertices, shape->n_triangles,
-                                 shape->triangle, shape->n_lines, shape->line, error);
-    if (!code && has_shapes(made))
-        code =
-            draw_mesh_make(&made->shapes, made->obstacles->n_vertices, made->obstacles->n_triangles,
-                           made->obstacles->triangle[0], 0, NULL, error);
+    code = code ? code : make_grounds(made, error);
+    code = code ? code : make_surface(&made->mesh, &made->mesh_sky, shape, error);
+    if (!code && has_shapes(made)) {
+        const struct view_shape shapes = {.n_vertices = made->obstacles->n_vertices,
+                                          .n_triangles = made->obstacles->n_triangles,
+                                          .triangle = made->obstacles->triangle[0]};
+        code = make_surface(&made->shapes, &made->shapes_sky, &shapes, error);
+    }
     if (code) {
         view_scene_free(made);
         return code;
@@ -111,12 +149,13 @@ int view_scene_new(struct view_scene **scene, const struct view_shape *shape,
     return 0;
 }
 
-static void cast(const void *context)
+static void cast(const void *context, bool coarse)
 {
     const struct view_scene *scene = context;
-    draw_mesh_draw(&scene->mesh);
+    void (*const draw)(const struct draw_mesh *) = coarse ? draw_mesh_draw_coarse : draw_mesh_draw;
+    draw(&scene->mesh);
     if (has_shapes(scene))
-        draw_mesh_draw(&scene->shapes);
+        draw(&scene->shapes);
 }
 
 /* Of a sphere around the cloth and what is near to it: shadows beyond are not worth their loss of
@@ -136,16 +175,83 @@ static float lit_radius(const struct view_scene *scene)
     return max;
 }
 
+static void bind_lights(const struct view_scene *scene)
+{
+    glBindBufferBase(GL_UNIFORM_BUFFER, 0, scene->lights.buffer);
+    glActiveTexture(GL_TEXTURE0 + DRAW_UNIT_SKIES);
+    glBindTexture(GL_TEXTURE_2D_ARRAY, scene->lights.skies);
+    glActiveTexture(GL_TEXTURE0 + DRAW_UNIT_SUNS);
+    glBindTexture(GL_TEXTURE_2D_ARRAY, scene->lights.suns);
+}
+
+static GLuint use(const struct view_scene *scene, enum program which, int width, int height)
+{
+    static const char *const units[] = {[DRAW_UNIT_SUNS] = "suns",
+                                        [DRAW_UNIT_SKIES] = "skies",
+                                        [DRAW_UNIT_FRONT] = "fronts",
+                                        [DRAW_UNIT_BACK] = "backs"};
+    const GLuint program = scene->program[which];
+    glUseProgram(program);
+    glUniform2f(glGetUniformLocation(program, "size"), (float)width, (float)height);
+    glUniform1i(glGetUniformLocation(program, "shadows"), !scene->plain);
+    for (int i = 0; i < (int)(sizeof units / sizeof *units); i++)
+        glUniform1i(glGetUniformLocation(program, units[i]), i);
+    return program;
+}
+
+static GLuint use_to_see(const struct view_scene *scene, enum program which,
+                         const struct view_camera *camera, int width, int height)
+{
+    const GLuint program = use(scene, which, width, height);
+    glUniformMatrix4fv(glGetUniformLocation(program, "clip"), 1, GL_FALSE, camera->clip[0]);
+    glUniform3fv(glGetUniformLocation(program, "eye"), 1, camera->eye);
+    return program;
+}
+
+static void light_ground(struct view_scene *scene, const struct draw_ground *ground)
+{
+    GLuint program = use(scene, PROGRAM_SKY_GROUND, DRAW_SKY_SQUARE, DRAW_SKY_SQUARE);
+    draw_ground_square(ground, program, ground->lit);
+    draw_sky_light(&scene->unsmooth, 0);
+    program = use(scene, PROGRAM_SKY_BLUR, DRAW_SKY_SQUARE, DRAW_SKY_SQUARE);
+    glUniform1f(glGetUniformLocation(program, "blur"), draw_ground_sky_blur(ground));
+    draw_sky_light(&ground->sky, scene->unsmooth.light[0]);
+}
+
+static void light_surface(const struct draw_mesh *mesh, const struct draw_sky *sky)
+{
+    draw_sky_place(sky, mesh->vertex, mesh->n_vertices);
+    draw_sky_light(sky, sky->source);
+}
+
+/* The sky's light where everything is now. */
+static void light(struct view_scene *scene)
+{
+    bind_lights(scene);
+    glBindVertexArray(scene->nothing);
+    use(scene, PROGRAM_SKY, 0, 0);
+    light_surface(&scene->mesh, &scene->mesh_sky);
+    if (has_shapes(scene))
+        light_surface(&scene->shapes, &scene->shapes_sky);
+    for (size_t i = 0; i < scene->n_grounds; i++) {
+        draw_ground_place(scene->ground + i, scene->obstacles->plane[i], scene->mesh.center,
+                          scene->mesh.radius);
+        light_ground(scene, scene->ground + i);
+    }
+}
+
 int view_scene_move(struct view_scene *scene, const double *position, struct cloth_error *error)
 {
     draw_mesh_move(&scene->mesh, position);
     if (has_shapes(scene))
         draw_mesh_place(&scene->shapes, (const double(*)[6])scene->obstacles->vertex);
-    GLuint program = scene->program[PROGRAM_CAST];
+    const GLuint program = scene->program[PROGRAM_CAST];
+    const struct draw_casting casting = {cast, scene, glGetUniformLocation(program, "map")};
     glUseProgram(program);
     draw_lights_aim(&scene->lights, scene->mesh.center, lit_radius(scene),
-                    glGetUniformLocation(program, "map"), scene->plain ? NULL : cast, scene);
-    GLenum trouble = glGetError();
+                    scene->plain ? NULL : &casting);
+    light(scene);
+    const GLenum trouble = glGetError();
     return trouble == GL_NO_ERROR
                ? 0
                : cloth_fail(error, CLOTH_E_LIBRARY, "OpenGL took no vertices (0x%x)", trouble);
@@ -165,80 +271,6 @@ void view_scene_wire(struct view_scene *scene, bool wire)
 void view_scene_shadows(struct view_scene *scene, bool shadows)
 {
     scene->plain = !shadows;
-}
-
-static GLuint use(const struct view_scene *scene, enum program which,
-                  const struct view_camera *camera, int width, int height)
-{
-    GLuint program = scene->program[which];
-    glUseProgram(program);
-    glUniformMatrix4fv(glGetUniformLocation(program, "clip"), 1, GL_FALSE, camera->clip[0]);
-    glUniform3fv(glGetUniformLocation(program, "eye"), 1, camera->eye);
-    glUniform2f(glGetUniformLocation(program, "size"), (float)width, (float)height);
-    glUniform1i(glGetUniformLocation(program, "maps"), 0);
-    glUniform1i(glGetUniformLocation(program, "looks"), scene->plain ? 0 : 4);
-    return program;
-}
-
-static void set_vector(GLuint program, const char *name, const double v[3], double scale)
-{
-    glUniform3f(glGetUniformLocation(program, name), (float)(v[0] * scale), (float)(v[1] * scale),
-                (float)(v[2] * scale));
-}
-
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-/* Directions u and v on a plane, square to each other and to its normal n; all of length 1. */
-static void span(const double n[3], double u[3], double v[3])
-{
-    double other[3] = {fabs(n[0]) < 0.7, 0, fabs(n[0]) >= 0.7}, along = dot(other, n);
-    for (int k = 0; k < 3; k++)
-        u[k] = other[k] - along * n[k];
-    double length = sqrt(dot(u, u));
-    for (int k = 0; k < 3; k++)
-        u[k] /= length;
-    for (int k = 0; k < 3; k++)
-        v[k] = n[(k + 1) % 3] * u[(k + 2) % 3] - n[(k + 2) % 3] * u[(k + 1) % 3];
-}
-
-/* The sky's directions are about sqrt(2 pi / n) radians apart. So on the ground the shadows of a
- * point are that fraction of its height apart. Blurred by 0.7 of this distance they melt into one.
- * In units of the lights' own blur. */
-static double ground_blur(const struct view_scene *scene, double height)
-{
-    const double apart = sqrt(2 * acos(-1.0) / DRAW_SKY) * fabs(height);
-    const double unit = (double)scene->lights.block.bias[1] * 2 * (double)scene->mesh.radius;
-    return fmax(5, 0.7 * apart / unit);
-}
-
-/* A square around the foot of the cloth's centre, which fades before its edges; floors reach
- * farther than slopes. */
-static void draw_plane(const struct view_scene *scene, GLuint program, const double plane[6],
-                       const struct view_camera *camera)
-{
-    double n[3], u[3], v[3], foot[3], eye[3], length = sqrt(dot(plane + 3, plane + 3));
-    for (int k = 0; k < 3; k++) {
-        n[k] = plane[3 + k] / length;
-        eye[k] = (double)camera->eye[k] - plane[k];
-        foot[k] = (double)scene->mesh.center[k];
-    }
-    if (dot(n, eye) <= 0)
-        return; /* seen from behind it would hide everything */
-    double height = dot(n, foot) - dot(n, plane);
-    for (int k = 0; k < 3; k++)
-        foot[k] -= height * n[k];
-    span(n, u, v);
-    double end = (n[1] > 0.95 ? 7 : 1.5) * (double)camera->reach;
-    set_vector(program, "centre", foot, 1);
-    set_vector(program, "u", u, end);
-    set_vector(program, "v", v, end);
-    set_vector(program, "n", n, 1);
-    glUniform1f(glGetUniformLocation(program, "blur"), (float)ground_blur(scene, height));
-    glUniform2f(glGetUniformLocation(program, "fade"), (float)(0.15 * end), (float)end);
-    glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
 }
 
 static double depth_of(const struct view_camera *camera, const double x[3])
@@ -262,7 +294,7 @@ static float behind(const struct view_scene *scene, const struct view_camera *ca
         near[k] = (double)scene->mesh.center[k];
         away[k] = near[k] - (double)camera->eye[k];
     }
-    const double distance = sqrt(dot(away, away));
+    const double distance = sqrt(away[0] * away[0] + away[1] * away[1] + away[2] * away[2]);
     for (int k = 0; k < 3; k++)
         far[k] = near[k] + part * (double)draw_mesh_edge(&scene->mesh) * away[k] / distance;
     return (float)(units * (depth_of(camera, far) - depth_of(camera, near)));
@@ -292,36 +324,36 @@ void view_scene_draw(const struct view_scene *scene, const struct view_camera *c
                      int height)
 {
     glViewport(0, 0, width, height);
-    glBindBufferBase(GL_UNIFORM_BUFFER, 0, scene->lights.buffer);
-    glActiveTexture(GL_TEXTURE0);
-    glBindTexture(GL_TEXTURE_2D_ARRAY, scene->lights.maps);
+    bind_lights(scene);
     glEnable(GL_DEPTH_TEST);
     glClear(GL_DEPTH_BUFFER_BIT);
 
     glBindVertexArray(scene->nothing);
     glDepthMask(GL_FALSE);
     glDepthFunc(GL_LEQUAL); /* the background lies at the far end */
-    use(scene, PROGRAM_BACK, camera, width, height);
+    use_to_see(scene, PROGRAM_BACK, camera, width, height);
     glDrawArrays(GL_TRIANGLES, 0, 3);
     glDepthMask(GL_TRUE);
 
-    GLuint ground = use(scene, PROGRAM_GROUND, camera, width, height);
+    const GLuint ground = use_to_see(scene, PROGRAM_GROUND, camera, width, height);
     glEnable(GL_POLYGON_OFFSET_FILL); /* cloth that lies on a plane lies on top of it */
     glPolygonOffset(1, 16);
-    for (size_t i = 0; scene->obstacles && i < scene->obstacles->n_planes; i++)
-        draw_plane(scene, ground, scene->obstacles->plane[i], camera);
+    for (size_t i = 0; i < scene->n_grounds; i++)
+        draw_ground(scene->ground + i, ground, &scene->lights, camera->eye, camera->reach);
     glDisable(GL_POLYGON_OFFSET_FILL);
 
-    const GLuint surface = use(scene, PROGRAM_CLOTH, camera, width, height);
+    const GLuint surface = use_to_see(scene, PROGRAM_CLOTH, camera, width, height);
     if (has_shapes(scene)) {
         glPolygonOffset(0, behind(scene, camera));
         glEnable(GL_POLYGON_OFFSET_FILL);
         glEnable(GL_CULL_FACE); /* a shape around the eye would hide everything */
         glUniform3fv(glGetUniformLocation(surface, "paint"), 2, STONE[0]);
+        draw_sky_bind(&scene->shapes_sky);
         draw_mesh_draw(&scene->shapes);
         glDisable(GL_CULL_FACE);
         glDisable(GL_POLYGON_OFFSET_FILL);
     }
+    draw_sky_bind(&scene->mesh_sky);
     draw_cloths(scene, surface);
 }
 
@@ -331,6 +363,12 @@ void view_scene_free(struct view_scene *scene)
         return;
     draw_mesh_free(&scene->mesh);
     draw_mesh_free(&scene->shapes);
+    draw_sky_free(&scene->mesh_sky);
+    draw_sky_free(&scene->shapes_sky);
+    draw_sky_free(&scene->unsmooth);
+    for (size_t i = 0; i < scene->n_grounds; i++)
+        draw_sky_free(&scene->ground[i].sky);
+    free(scene->ground);
     draw_lights_free(&scene->lights);
     for (int i = 0; i < N_PROGRAMS; i++)
         glDeleteProgram(scene->program[i]);

@@ -4,6 +4,7 @@
 #include "cloth/base/error.h"
 
 #include <epoxy/gl.h>
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -11,36 +12,101 @@
 
 /* --- lights.c: directions of light, each with a depth map of what the cloth keeps from it --- */
 
-/* A wide sun for soft shadows, and the sky. shaders.c counts on the same numbers. */
-enum { DRAW_SUN = 24, DRAW_SKY = 48, DRAW_LIGHTS = DRAW_SUN + DRAW_SKY, DRAW_MAP = 512 };
+/* A wide sun for soft shadows, and the sky. shaders.c counts on the same numbers. The maps' pixels
+ * along a side. */
+enum {
+    DRAW_SUN = 8,
+    DRAW_SKY = 48,
+    DRAW_LIGHTS = DRAW_SUN + DRAW_SKY,
+    DRAW_SUN_MAP = 512,
+    DRAW_SKY_MAP = 256
+};
+
+#define DRAW_SUN_RADIUS 0.13 /* tangent of half the angle that the sun fills */
 
 /* As the shaders see it (std140). */
 struct draw_light_block {
-    float direction[DRAW_LIGHTS][4]; /* towards the light, length 1 */
+    float direction[DRAW_LIGHTS][4]; /* towards the light, length 1; the sun's last ones are at its
+                                      * rim */
     float colour[DRAW_LIGHTS][4];    /* linear */
     float row[3 * DRAW_LIGHTS][4];   /* world to map: x, y, depth in 0 .. 1 */
-    /* x: metres off the surface where shadows are looked up; y: blur, of a map's width */
+    float toward[4], sunlight[4];    /* direction and colour of the whole sun */
+    /* Of the sun, then of the sky: metres off the surface where shadows are looked up; blur, of a
+     * map's width */
     float bias[4];
 };
 
 struct draw_lights {
     struct draw_light_block block;
-    GLuint maps, frame, buffer;
+    GLuint suns, skies, frame, buffer;
+};
+/* Draws what throws shadows, with the program that is in use, whose rows of a map are at
+ * row_uniform: few triangles where coarse ones do. */
+struct draw_casting {
+    void (*cast)(const void *context, bool coarse);
+    const void *context;
+    GLint row_uniform;
 };
 int draw_lights_make(struct draw_lights *lights, struct cloth_error *error);
-/* Aims the maps at a sphere, fills them by `cast`, and hands the block to the shaders. `cast` draws
- * what throws shadows with the program that is in use, whose map's rows are set; NULL: the maps
+/* Aims the maps at a sphere, fills them, and hands the block to the shaders. casting NULL: the maps
  * stay as they are, for shaders that do not look. Restores the framebuffer and viewport that were
  * bound. */
 void draw_lights_aim(struct draw_lights *lights, const float center[3], float radius,
-                     GLint row_uniform, void (*cast)(const void *context), const void *context);
+                     const struct draw_casting *casting);
 void draw_lights_free(struct draw_lights *lights);
+
+/* --- sky.c: the sky's light, worked out once for all pixels --- */
+
+/* What textures shaders find where: the maps of the sun and the sky; the light of the sky on both
+ * sides. */
+enum { DRAW_UNIT_SUNS, DRAW_UNIT_SKIES, DRAW_UNIT_FRONT, DRAW_UNIT_BACK };
+
+/* The light on both sides, a texel for each vertex of a mesh, or for each place of a square. */
+struct draw_sky {
+    GLuint light[2], frame; /* front, back */
+    GLuint source;          /* of a mesh: place and normal of each vertex; 0: of a square */
+    int width, height;
+};
+enum { DRAW_SKY_ROW = 1024, DRAW_SKY_SQUARE = 128 }; /* vertices a row; texels along a square */
+/* For n vertices; 0: for a square. */
+int draw_sky_make(struct draw_sky *sky, uint32_t n, struct cloth_error *error);
+/* vertex: n x (position, normal), where they are now. */
+void draw_sky_place(const struct draw_sky *sky, const float *vertex, uint32_t n);
+/* Runs the program in use over all texels, with what is bound: the lights' block, the maps, a
+ * vertex array; a texture to read is at DRAW_UNIT_FRONT. Restores the framebuffer and viewport that
+ * were bound. */
+void draw_sky_light(const struct draw_sky *sky, GLuint read);
+void draw_sky_bind(const struct draw_sky *sky);
+void draw_sky_free(struct draw_sky *sky);
+
+/* --- ground.c: planes --- */
+
+/* The foot of the cloth's centre on a plane, and directions square to each other, of length 1. */
+struct draw_ground {
+    double foot[3], u[3], v[3], n[3];
+    double height,
+        radius;          /* m: of the cloth's centre over the plane; of a sphere around the cloth */
+    double lit;          /* m: half the side of the square whose light of the sky is known, */
+    struct draw_sky sky; /* which is here */
+};
+/* plane: point, normal; center, radius: of a sphere around the cloth */
+void draw_ground_place(struct draw_ground *ground, const double plane[6], const float center[3],
+                       float radius);
+/* Sets the program's square around the foot. half: m, half its side */
+void draw_ground_square(const struct draw_ground *ground, GLuint program, double half);
+/* The radius, in parts of the square's side, in which its light is to be smoothed. */
+float draw_ground_sky_blur(const struct draw_ground *ground);
+/* Draws the plane, unless it is seen from behind: a square that fades before its edges; floors
+ * reach farther than slopes. The program is in use. eye: where the camera is; reach: m, the extent
+ * of what is shown */
+void draw_ground(const struct draw_ground *ground, GLuint program, const struct draw_lights *lights,
+                 const float eye[3], float reach);
 
 /* --- mesh.c: vertices of the cloth, or of obstacles, on the graphics card --- */
 
 enum { DRAW_HEAT = 2 }; /* the attribute: position and normal come before it */
 struct draw_mesh {
-    uint32_t n_vertices, n_triangles, n_lines;
+    uint32_t n_vertices, n_triangles, n_lines, n_coarse;
     const uint32_t *triangle;
     float *vertex; /* n_vertices x (position, normal) */
     GLuint array, vertices, indices, heats;
@@ -57,6 +123,9 @@ void draw_mesh_heat(struct draw_mesh *mesh, const float *heat);
 /* The mean length of the triangles' edges; 0 without triangles. */
 float draw_mesh_edge(const struct draw_mesh *mesh);
 void draw_mesh_draw(const struct draw_mesh *mesh);
+/* Few triangles over some of its vertices, which are about where it is; chosen in its first place.
+ */
+void draw_mesh_draw_coarse(const struct draw_mesh *mesh);
 /* A run of its triangles, and of its lines. */
 struct draw_part {
     uint32_t triangle, n_triangles, line, n_lines;
@@ -67,6 +136,12 @@ void draw_mesh_free(struct draw_mesh *mesh);
 void draw_normals(uint32_t n_vertices, float *vertex, uint32_t n_triangles,
                   const uint32_t *triangle);
 
+/* Joins vertices over edges shorter than `longest` (m), so that about a fifth of the triangles are
+ * left where all edges are: n of them are in and out. Returns how many are left. vertex: n_vertices
+ * x (position, normal); join: scratch, n_vertices. Pure. */
+uint32_t draw_coarsen(uint32_t n_vertices, const float *vertex, float longest, uint32_t *join,
+                      uint32_t n, uint32_t (*triangle)[3]);
+
 /* --- program.c --- */
 
 int draw_program(GLuint *program, const char *vertex, const char *fragment,
@@ -76,6 +151,7 @@ int draw_program(GLuint *program, const char *vertex, const char *fragment,
 
 extern const char DRAW_COMMON[], DRAW_CAST_VERTEX[], DRAW_CAST_FRAGMENT[], DRAW_BACK_VERTEX[],
     DRAW_BACK_FRAGMENT[], DRAW_CLOTH_VERTEX[], DRAW_CLOTH_FRAGMENT[], DRAW_GROUND_VERTEX[],
-    DRAW_GROUND_FRAGMENT[];
+    DRAW_GROUND_FRAGMENT[], DRAW_SKY_FRAGMENT[], DRAW_SKY_GROUND_FRAGMENT[],
+    DRAW_SKY_BLUR_FRAGMENT[];
 
 #endif

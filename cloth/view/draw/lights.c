@@ -1,6 +1,7 @@
 /* The light is a fixed set of directions: a disk of them around the sun and a spiral of them over
  * the sky. Each has its own layer of depths of the cloth, so that soft shadows and the darkening in
- * folds are one and the same sum. */
+ * folds are one and the same sum. The sun's are fine, and cast by all triangles; the sky's light
+ * varies slowly: its layers are coarse, and cast by few triangles. */
 #include "cloth/view/draw/draw.h"
 
 #include <math.h>
@@ -38,7 +39,7 @@ static void set_sun(struct draw_light_block *block)
     normalise(sun);
     across(sun, u, v);
     for (int i = 0; i < DRAW_SUN; i++) {
-        double r = 0.13 * sqrt((i + 0.5) / DRAW_SUN), a = GOLDEN * i, d[3];
+        double r = DRAW_SUN_RADIUS * sqrt((i + 0.5) / DRAW_SUN), a = GOLDEN * i, d[3];
         for (int k = 0; k < 3; k++)
             d[k] = sun[k] + r * (cos(a) * u[k] + sin(a) * v[k]);
         normalise(d);
@@ -46,6 +47,10 @@ static void set_sun(struct draw_light_block *block)
             block->direction[i][k] = (float)d[k];
             block->colour[i][k] = COLOUR[k] / DRAW_SUN;
         }
+    }
+    for (int k = 0; k < 3; k++) {
+        block->toward[k] = (float)sun[k];
+        block->sunlight[k] = COLOUR[k];
     }
 }
 
@@ -63,13 +68,14 @@ static void set_sky(struct draw_light_block *block)
     }
 }
 
-static void make_maps(struct draw_lights *lights)
+static GLuint make_maps(int size, int n)
 {
     static const float NOTHING[4] = {1, 1, 1, 1};
-    glGenTextures(1, &lights->maps);
-    glBindTexture(GL_TEXTURE_2D_ARRAY, lights->maps);
-    glTexImage3D(GL_TEXTURE_2D_ARRAY, 0, GL_DEPTH_COMPONENT24, DRAW_MAP, DRAW_MAP, DRAW_LIGHTS, 0,
-                 GL_DEPTH_COMPONENT, GL_UNSIGNED_INT, NULL);
+    GLuint maps;
+    glGenTextures(1, &maps);
+    glBindTexture(GL_TEXTURE_2D_ARRAY, maps);
+    glTexImage3D(GL_TEXTURE_2D_ARRAY, 0, GL_DEPTH_COMPONENT24, size, size, n, 0, GL_DEPTH_COMPONENT,
+                 GL_UNSIGNED_INT, NULL);
     glTexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
     glTexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
     glTexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_BORDER);
@@ -77,6 +83,7 @@ static void make_maps(struct draw_lights *lights)
     glTexParameterfv(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_BORDER_COLOR, NOTHING);
     glTexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
     glTexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
+    return maps;
 }
 
 int draw_lights_make(struct draw_lights *lights, struct cloth_error *error)
@@ -84,13 +91,14 @@ int draw_lights_make(struct draw_lights *lights, struct cloth_error *error)
     memset(lights, 0, sizeof *lights);
     set_sun(&lights->block);
     set_sky(&lights->block);
-    make_maps(lights);
+    lights->suns = make_maps(DRAW_SUN_MAP, DRAW_SUN);
+    lights->skies = make_maps(DRAW_SKY_MAP, DRAW_SKY);
     glGenBuffers(1, &lights->buffer);
     glGenFramebuffers(1, &lights->frame);
     GLint before = 0;
     glGetIntegerv(GL_FRAMEBUFFER_BINDING, &before);
     glBindFramebuffer(GL_FRAMEBUFFER, lights->frame);
-    glFramebufferTextureLayer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, lights->maps, 0, 0);
+    glFramebufferTextureLayer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, lights->suns, 0, 0);
     glDrawBuffer(GL_NONE);
     glReadBuffer(GL_NONE);
     GLenum status = glCheckFramebufferStatus(GL_FRAMEBUFFER);
@@ -122,36 +130,53 @@ static void aim(struct draw_light_block *block, int light, const float center[3]
     }
 }
 
-void draw_lights_aim(struct draw_lights *lights, const float center[3], float radius,
-                     GLint row_uniform, void (*cast)(const void *context), const void *context)
+/* Layer `layer` of the maps, of light `light`. */
+static void cast_layer(struct draw_lights *lights, int light, GLuint maps, int layer,
+                       const struct draw_casting *casting)
+{
+    glFramebufferTextureLayer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, maps, 0, layer);
+    glClear(GL_DEPTH_BUFFER_BIT);
+    glUniform4fv(casting->row_uniform, 3, lights->block.row[3 * light]);
+    casting->cast(casting->context, maps == lights->skies);
+}
+
+static void cast_all(struct draw_lights *lights, const struct draw_casting *casting)
 {
     GLint frame = 0, viewport[4];
     glGetIntegerv(GL_FRAMEBUFFER_BINDING, &frame);
     glGetIntegerv(GL_VIEWPORT, viewport);
     glBindFramebuffer(GL_FRAMEBUFFER, lights->frame);
-    glViewport(0, 0, DRAW_MAP, DRAW_MAP);
     glEnable(GL_DEPTH_TEST);
-    radius *= 1.0f + 4.0f / DRAW_MAP; /* a rim for the blur */
-    for (int i = 0; i < DRAW_LIGHTS; i++) {
-        aim(&lights->block, i, center, radius);
-        if (!cast)
-            continue;
-        glFramebufferTextureLayer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, lights->maps, 0, i);
-        glClear(GL_DEPTH_BUFFER_BIT);
-        glUniform4fv(row_uniform, 3, lights->block.row[3 * i]);
-        cast(context);
-    }
-    lights->block.bias[0] = 3.0f * 2 * radius / DRAW_MAP;
-    lights->block.bias[1] = 2.0f / DRAW_MAP;
-    glBindBuffer(GL_UNIFORM_BUFFER, lights->buffer);
-    glBufferData(GL_UNIFORM_BUFFER, sizeof lights->block, &lights->block, GL_DYNAMIC_DRAW);
+    glViewport(0, 0, DRAW_SUN_MAP, DRAW_SUN_MAP);
+    for (int i = 0; i < DRAW_SUN; i++)
+        cast_layer(lights, i, lights->suns, i, casting);
+    glViewport(0, 0, DRAW_SKY_MAP, DRAW_SKY_MAP);
+    for (int i = 0; i < DRAW_SKY; i++)
+        cast_layer(lights, DRAW_SUN + i, lights->skies, i, casting);
     glBindFramebuffer(GL_FRAMEBUFFER, (GLuint)frame);
     glViewport(viewport[0], viewport[1], viewport[2], viewport[3]);
 }
 
+void draw_lights_aim(struct draw_lights *lights, const float center[3], float radius,
+                     const struct draw_casting *casting)
+{
+    radius *= 1.0f + 4.0f / DRAW_SKY_MAP; /* a margin for the blur */
+    for (int i = 0; i < DRAW_LIGHTS; i++)
+        aim(&lights->block, i, center, radius);
+    lights->block.bias[0] = 3.0f * 2 * radius / DRAW_SUN_MAP;
+    lights->block.bias[1] = 2.0f / DRAW_SUN_MAP;
+    lights->block.bias[2] = 2.0f * 2 * radius / DRAW_SKY_MAP;
+    lights->block.bias[3] = 1.0f / DRAW_SKY_MAP;
+    if (casting)
+        cast_all(lights, casting);
+    glBindBuffer(GL_UNIFORM_BUFFER, lights->buffer);
+    glBufferData(GL_UNIFORM_BUFFER, sizeof lights->block, &lights->block, GL_DYNAMIC_DRAW);
+}
+
 void draw_lights_free(struct draw_lights *lights)
 {
-    glDeleteTextures(1, &lights->maps);
+    glDeleteTextures(1, &lights->suns);
+    glDeleteTextures(1, &lights->skies);
     glDeleteFramebuffers(1, &lights->frame);
     glDeleteBuffers(1, &lights->buffer);
 }

@@ -5,12 +5,94 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum { COARSE = 6000, MAX_ROUNDS = 3 }; /* triangles that are few enough */
+static const float SHORT = 0.04f;       /* edges that may vanish, in radii of the mesh */
+
+static bool is_short(const float *vertex, uint32_t a, uint32_t b, float longest)
+{
+    float square = 0;
+    for (size_t k = 0; k < 3; k++) {
+        const float way = vertex[6 * (size_t)a + k] - vertex[6 * (size_t)b + k];
+        square += way * way;
+    }
+    return square < longest * longest;
+}
+
+/* All three to the first one, where none is joined yet. */
+static void join_triangle(const float *vertex, float longest, uint32_t *join, const uint32_t of[3])
+{
+    for (int i = 0; i < 3; i++)
+        if (join[of[i]] != UINT32_MAX || !is_short(vertex, of[i], of[(i + 1) % 3], longest))
+            return;
+    join[of[0]] = join[of[1]] = join[of[2]] = of[0];
+}
+
+/* A corner that is not joined yet to where a neighbour is. */
+static void join_corner(const float *vertex, float longest, uint32_t *join, const uint32_t of[3],
+                        int corner)
+{
+    for (int k = 1; k < 3 && join[of[corner]] == UINT32_MAX; k++) {
+        const uint32_t other = of[(corner + k) % 3];
+        if (is_short(vertex, of[corner], other, longest))
+            join[of[corner]] = join[other];
+    }
+}
+
+uint32_t draw_coarsen(uint32_t n_vertices, const float *vertex, float longest, uint32_t *join,
+                      uint32_t n, uint32_t (*triangle)[3])
+{
+    uint32_t left = 0;
+    for (uint32_t v = 0; v < n_vertices; v++)
+        join[v] = UINT32_MAX;
+    for (uint32_t t = 0; t < n; t++)
+        join_triangle(vertex, longest, join, triangle[t]);
+    for (uint32_t t = 0; t < n; t++)
+        for (int corner = 0; corner < 3; corner++)
+            join_corner(vertex, longest, join, triangle[t], corner);
+    for (uint32_t t = 0; t < n; t++) {
+        uint32_t to[3];
+        for (int i = 0; i < 3; i++)
+            to[i] = join[triangle[t][i]] == UINT32_MAX ? triangle[t][i] : join[triangle[t][i]];
+        if (to[0] != to[1] && to[1] != to[2] && to[2] != to[0])
+            memcpy(triangle[left++], to, sizeof to);
+    }
+    return left;
+}
+
+static size_t behind_lines(const struct draw_mesh *mesh)
+{
+    return (size_t)12 * mesh->n_triangles + (size_t)8 * mesh->n_lines;
+}
+
 static void upload_indices(const struct draw_mesh *mesh, const uint32_t *line)
 {
-    size_t triangles = (size_t)12 * mesh->n_triangles, lines = (size_t)8 * mesh->n_lines;
-    glBufferData(GL_ELEMENT_ARRAY_BUFFER, (GLsizeiptr)(triangles + lines), NULL, GL_STATIC_DRAW);
+    const size_t triangles = (size_t)12 * mesh->n_triangles, lines = (size_t)8 * mesh->n_lines;
+    glBufferData(GL_ELEMENT_ARRAY_BUFFER, (GLsizeiptr)(2 * triangles + lines), NULL,
+                 GL_STATIC_DRAW);
     glBufferSubData(GL_ELEMENT_ARRAY_BUFFER, 0, (GLsizeiptr)triangles, mesh->triangle);
     glBufferSubData(GL_ELEMENT_ARRAY_BUFFER, (GLintptr)triangles, (GLsizeiptr)lines, line);
+}
+
+/* Adds the coarse triangles behind the others and the lines. What there is no memory for casts all
+ * its triangles. */
+static void make_coarse(struct draw_mesh *mesh)
+{
+    const size_t bytes = (size_t)12 * mesh->n_triangles;
+    uint32_t *join = malloc(((size_t)mesh->n_vertices + 1) * sizeof *join);
+    uint32_t(*triangle)[3] = malloc(bytes + 1);
+    mesh->n_coarse = mesh->n_triangles;
+    if (triangle)
+        memcpy(triangle, mesh->triangle, bytes);
+    for (int round = 0; round < MAX_ROUNDS && mesh->n_coarse > COARSE && join && triangle; round++)
+        mesh->n_coarse =
+            draw_coarsen(mesh->n_vertices, mesh->vertex, (float)(round + 1) * SHORT * mesh->radius,
+                         join, mesh->n_coarse, triangle);
+    glBindVertexArray(mesh->array);
+    glBufferSubData(GL_ELEMENT_ARRAY_BUFFER, (GLintptr)behind_lines(mesh),
+                    (GLsizeiptr)((size_t)12 * mesh->n_coarse),
+                    triangle ? (const void *)triangle : mesh->triangle);
+    free(join);
+    free(triangle);
 }
 
 int draw_mesh_make(struct draw_mesh *mesh, uint32_t n_vertices, uint32_t n_triangles,
@@ -89,6 +171,8 @@ static void upload_vertices(struct draw_mesh *mesh)
     glBindBuffer(GL_ARRAY_BUFFER, mesh->vertices);
     glBufferData(GL_ARRAY_BUFFER, (GLsizeiptr)((size_t)mesh->n_vertices * 6 * sizeof *mesh->vertex),
                  mesh->vertex, GL_DYNAMIC_DRAW);
+    if (!mesh->n_coarse && mesh->n_triangles)
+        make_coarse(mesh);
 }
 
 void draw_mesh_move(struct draw_mesh *mesh, const double *position)
@@ -148,6 +232,13 @@ void draw_mesh_draw_part(const struct draw_mesh *mesh, const struct draw_part *p
 void draw_mesh_draw(const struct draw_mesh *mesh)
 {
     draw_mesh_draw_part(mesh, &(struct draw_part){0, mesh->n_triangles, 0, mesh->n_lines});
+}
+
+void draw_mesh_draw_coarse(const struct draw_mesh *mesh)
+{
+    glBindVertexArray(mesh->array);
+    glDrawElements(GL_TRIANGLES, (GLsizei)(3 * mesh->n_coarse), GL_UNSIGNED_INT,
+                   (const void *)behind_lines(mesh));
 }
 
 void draw_mesh_free(struct draw_mesh *mesh)

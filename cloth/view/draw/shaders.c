@@ -6,16 +6,17 @@
 /* clang-format off */
 const char DRAW_COMMON[] =
     "#version 330 core\n"
-    "#define LIGHTS 72\n"
-    "#define SUN 24\n"
+    "#define SUN 8\n"
+    "#define SKY 48\n"
+    "#define LIGHTS (SUN + SKY)\n"
     "uniform mat4 clip;\n"
     "uniform vec3 eye;\n"
     "uniform vec2 size;\n"
     "layout(std140) uniform Lights {\n"
-    "    vec4 direction[LIGHTS]; vec4 colour[LIGHTS]; vec4 row[3 * LIGHTS]; vec4 bias;\n"
+    "    vec4 direction[LIGHTS]; vec4 colour[LIGHTS]; vec4 row[3 * LIGHTS]; vec4 toward; vec4 sunlight; vec4 bias;\n"
     "};\n"
-    "uniform sampler2DArrayShadow maps;\n"
-    "uniform int looks;\n" /* into each map, 4; 0: without shadows */
+    "uniform sampler2DArrayShadow suns, skies;\n"
+    "uniform bool shadows;\n"
     "float noise(vec2 p) { return fract(52.9829189 * fract(dot(p, vec2(0.06711056, 0.00583715)))); }\n"
     "vec3 background(vec2 p)\n"
     "{\n"
@@ -30,27 +31,51 @@ const char DRAW_COMMON[] =
     "    vec3 low = 12.92 * c, high = 1.055 * pow(max(c, 0.0), vec3(1.0 / 2.4)) - 0.055;\n"
     "    return vec4(mix(high, low, lessThan(c, vec3(0.0031308))) + (noise(p) - 0.5) / 255.0, 1.0);\n"
     "}\n"
-    /* Light that reaches both sides of a surface at `at`, as irradiance / pi. Sun and sky are few directions: where they fall
-     * on what throws no shadow itself, their maps are blurred so that their edges melt. Each light takes the mean of four places
-     * in a square around the point, which is turned and sized for each light otherwise, and for each pixel: what varies evenly
-     * then has no grain. */
-    "void gather(vec3 at, vec3 n, vec2 p, float blur, out vec3 front, out vec3 back)\n"
+    "vec3 in_map(int i, vec3 at)\n"
+    "{\n"
+    "    vec4 q = vec4(at, 1.0);\n"
+    "    return vec3(dot(row[3 * i], q), dot(row[3 * i + 1], q), dot(row[3 * i + 2], q));\n"
+    "}\n"
+    /* The sky's light on both sides of a surface, as irradiance / pi. */
+    "void sky(vec3 at, vec3 n, out vec3 front, out vec3 back)\n"
     "{\n"
     "    front = back = vec3(0.0);\n"
-    "    float turn = noise(p), grain = noise(p.yx + 37.0);\n"
-    "    for (int i = 0; i < LIGHTS; i++) {\n"
-    "        float c = dot(n, direction[i].xyz);\n"
-    "        vec4 q = vec4(at + n * (c < 0.0 ? -bias.x : bias.x), 1.0);\n"
-    "        vec3 m = vec3(dot(row[3 * i], q), dot(row[3 * i + 1], q), dot(row[3 * i + 2], q));\n"
-    "        float a = 6.2831853 * fract(turn + 0.7548777 * float(i));\n"
-    "        float r = sqrt(fract(grain + 0.5698403 * float(i)));\n"
-    "        vec2 o = (i < SUN ? min(blur, 2.0) : blur) * bias.y * r * vec2(cos(a), sin(a));\n"
-    "        float seen = looks > 0 ? 0.0 : 1.0;\n"
-    "        for (int k = 0; k < looks; k++, o = vec2(-o.y, o.x))\n"
-    "            seen += 0.25 * texture(maps, vec4(m.xy + o, float(i), m.z));\n"
+    "    for (int i = SUN; i < LIGHTS; i++) {\n"
+    "        float c = dot(n, direction[i].xyz), seen = 1.0;\n"
+    "        vec3 m = in_map(i, at + n * (c < 0.0 ? -bias.z : bias.z));\n"
+    "        if (shadows)\n"
+    "            seen = texture(skies, vec4(m.xy, float(i - SUN), m.z));\n"
     "        vec3 e = colour[i].rgb * (abs(c) * seen);\n"
     "        if (c < 0.0) back += e; else front += e;\n"
     "    }\n"
+    "}\n"
+    "float sun_at(int i, vec3 at, vec2 o)\n"
+    "{\n"
+    "    vec3 m = in_map(i, at);\n"
+    "    return texture(suns, vec4(m.xy + o, float(i), m.z));\n"
+    "}\n"
+    /* How much of the sun is seen. The last half of its lights are at its rim: where these agree there is no edge of a shadow.
+     * Elsewhere each light is looked at in four places of a square, which is turned and sized for each light otherwise, and for each
+     * pixel: so the edges of the lights' shadows melt. */
+    "float sun(vec3 at, vec3 n, vec2 p, float blur)\n"
+    "{\n"
+    "    if (!shadows)\n"
+    "        return 1.0;\n"
+    "    vec3 q = at + n * (dot(n, toward.xyz) < 0.0 ? -bias.x : bias.x);\n"
+    "    float turn = noise(p), grain = noise(p.yx + 37.0), sum = 0.0;\n"
+    "    vec2 o = bias.y * blur * vec2(1.2, 0.0);\n"
+    "    for (int i = SUN / 2; i < SUN; i++, o = vec2(-o.y, o.x))\n"
+    "        sum += sun_at(i, q, o);\n"
+    "    if (sum < 0.01 || sum > float(SUN / 2) - 0.01)\n"
+    "        return sum * 2.0 / float(SUN);\n"
+    "    sum = 0.0;\n"
+    "    for (int i = 0; i < SUN; i++) {\n"
+    "        float a = 6.2831853 * fract(turn + 0.7548777 * float(i));\n"
+    "        o = bias.y * blur * sqrt(fract(grain + 0.5698403 * float(i))) * vec2(cos(a), sin(a));\n"
+    "        for (int k = 0; k < 4; k++, o = vec2(-o.y, o.x))\n"
+    "            sum += sun_at(i, q, o);\n"
+    "    }\n"
+    "    return sum / float(4 * SUN);\n"
     "}\n";
 
 const char DRAW_CAST_VERTEX[] =
@@ -72,13 +97,55 @@ const char DRAW_BACK_FRAGMENT[] =
     "out vec4 shade;\n"
     "void main() { shade = encode(background(gl_FragCoord.xy), gl_FragCoord.xy); }\n";
 
+/* The sky's light on vertices, a texel for each. */
+const char DRAW_SKY_FRAGMENT[] =
+    "uniform sampler2D fronts;\n" /* place and normal of each vertex */
+    "layout(location = 0) out vec4 front;\n"
+    "layout(location = 1) out vec4 back;\n"
+    "void main()\n"
+    "{\n"
+    "    ivec2 texel = ivec2(gl_FragCoord.xy) * ivec2(2, 1);\n"
+    "    vec3 at = texelFetch(fronts, texel, 0).xyz, n = texelFetch(fronts, texel + ivec2(1, 0), 0).xyz;\n"
+    "    sky(at, n, front.rgb, back.rgb);\n"
+    "}\n";
+
+/* The sky's light on a square of a plane. */
+const char DRAW_SKY_GROUND_FRAGMENT[] =
+    "uniform vec3 centre, u, v, n;\n"
+    "layout(location = 0) out vec4 front;\n"
+    "layout(location = 1) out vec4 back;\n"
+    "void main()\n"
+    "{\n"
+    "    vec2 corner = 2.0 * gl_FragCoord.xy / size - 1.0;\n"
+    "    sky(centre + u * corner.x + v * corner.y, n, front.rgb, back.rgb);\n"
+    "}\n";
+
+/* The mean of that light in a disk. */
+const char DRAW_SKY_BLUR_FRAGMENT[] =
+    "uniform sampler2D fronts;\n"
+    "uniform float blur;\n" /* radius, in parts of the square */
+    "layout(location = 0) out vec4 front;\n"
+    "void main()\n"
+    "{\n"
+    "    const int PLACES = 32;\n"
+    "    front = vec4(0.0);\n"
+    "    for (int i = 0; i < PLACES; i++) {\n"
+    "        float r = blur * sqrt((float(i) + 0.5) / float(PLACES)), a = 2.3999632 * float(i);\n"
+    "        front += texture(fronts, gl_FragCoord.xy / size + r * vec2(cos(a), sin(a))) / float(PLACES);\n"
+    "    }\n"
+    "}\n";
+
 const char DRAW_CLOTH_VERTEX[] =
     "in vec3 position, normal;\n"
     "in float heat;\n"
-    "out vec3 at, up;\n"
+    "uniform sampler2D fronts, backs;\n" /* the sky's light on vertices */
+    "out vec3 at, up, above, below;\n"
     "out float hot;\n"
     "void main()\n"
     "{\n"
+    "    ivec2 texel = ivec2(gl_VertexID % 1024, gl_VertexID / 1024);\n"
+    "    above = texelFetch(fronts, texel, 0).rgb;\n"
+    "    below = texelFetch(backs, texel, 0).rgb;\n"
     "    at = position;\n"
     "    hot = heat;\n"
     "    up = normal;\n"
@@ -86,15 +153,18 @@ const char DRAW_CLOTH_VERTEX[] =
     "}\n";
 
 const char DRAW_CLOTH_FRAGMENT[] =
-    "in vec3 at, up;\n"
+    "in vec3 at, up, above, below;\n"
     "in float hot;\n"
     "out vec4 shade;\n"
     "uniform vec3 paint[2];\n" /* of the front and of the back */
     "void main()\n"
     "{\n"
     "    vec3 n = normalize(up) * (gl_FrontFacing ? 1.0 : -1.0);\n"
-    "    vec3 v = normalize(eye - at), lit, behind;\n"
-    "    gather(at, n, gl_FragCoord.xy, 1.0, lit, behind);\n"
+    "    vec3 v = normalize(eye - at);\n"
+    "    vec3 lit = gl_FrontFacing ? above : below, behind = gl_FrontFacing ? below : above;\n"
+    "    float facing = dot(n, toward.xyz);\n"
+    "    vec3 e = sunlight.rgb * (abs(facing) * sun(at, n, gl_FragCoord.xy, 1.0));\n"
+    "    if (facing < 0.0) behind += e; else lit += e;\n"
     "    vec3 albedo = gl_FrontFacing ? paint[0] : paint[1];\n"
     "    if (hot > 0.0)\n" /* red, then yellow */
     "        albedo = mix(mix(albedo, vec3(0.75, 0.04, 0.01), clamp(2.0 * hot, 0.0, 1.0)),\n"
@@ -118,17 +188,18 @@ const char DRAW_GROUND_VERTEX[] =
 
 const char DRAW_GROUND_FRAGMENT[] =
     "in vec3 at;\n"
-    "uniform vec3 centre, n;\n"
+    "uniform vec3 centre, n, u_map, v_map;\n" /* to places in the square of the sky's light */
     "uniform vec2 fade;\n"
     "uniform float blur;\n"
+    "uniform sampler2D fronts;\n"
     "out vec4 shade;\n"
     "void main()\n"
     "{\n"
     "    float far = smoothstep(fade.x, fade.y, distance(at, centre));\n"
     "    if (far >= 1.0)\n"
     "        discard;\n"
-    "    vec3 lit, behind;\n"
-    "    gather(at, n, gl_FragCoord.xy, blur, lit, behind);\n"
+    "    vec3 lit = texture(fronts, 0.5 + 0.5 * vec2(dot(at - centre, u_map), dot(at - centre, v_map))).rgb;\n"
+    "    lit += sunlight.rgb * (max(dot(n, toward.xyz), 0.0) * sun(at, n, gl_FragCoord.xy, blur));\n"
     "    vec3 c = vec3(0.36, 0.355, 0.345) * lit;\n"
     "    shade = encode(mix(c, background(gl_FragCoord.xy), far), gl_FragCoord.xy);\n"
     "}\n";

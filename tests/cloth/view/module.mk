@@ -7,14 +7,17 @@ tests_cloth_view_alike_SOURCES = tests/cloth/view/alike.c
 tests_cloth_view_alike_CPPFLAGS = $(AM_CPPFLAGS) $(PNG_CFLAGS)
 tests_cloth_view_alike_LDADD = $(PNG_LIBS)
 if HAVE_CHECK
-check_PROGRAMS += tests/cloth/view/test_player tests/cloth/view/test_camera tests/cloth/view/test_picture
+check_PROGRAMS += tests/cloth/view/test_coarse tests/cloth/view/test_player tests/cloth/view/test_camera tests/cloth/view/test_picture
 tests_cloth_view_test_camera_SOURCES = tests/cloth/view/test_camera.c
 tests_cloth_view_test_camera_LDADD = libduite_view.la $(CLOTH_TEST_LIBS)
+tests_cloth_view_test_coarse_SOURCES = tests/cloth/view/test_coarse.c
+tests_cloth_view_test_coarse_CPPFLAGS = $(AM_CPPFLAGS) $(EPOXY_CFLAGS)
+tests_cloth_view_test_coarse_LDADD = libduite_view.la $(CLOTH_TEST_LIBS)
 tests_cloth_view_test_picture_SOURCES = tests/cloth/view/test_picture.c
 tests_cloth_view_test_picture_CPPFLAGS = $(AM_CPPFLAGS) $(PNG_CFLAGS)
 tests_cloth_view_test_picture_LDADD = libduite_view.la $(CLOTH_TEST_LIBS) $(PNG_LIBS)
 tests_cloth_view_test_player_SOURCES = tests/cloth/view/test_player.c
 tests_cloth_view_test_player_LDADD = libduite_view.la $(CLOTH_TEST_LIBS)
-TESTS += tests/cloth/view/test_player tests/cloth/view/test_camera tests/cloth/view/test_picture
+TESTS += tests/cloth/view/test_coarse tests/cloth/view/test_player tests/cloth/view/test_camera tests/cloth/view/test_picture
 endif
 endif

@@ -2,6 +2,7 @@
  * rank 0 prints, so that a mistake is said once and every rank ends with the same code. */
 #include "cloth/base/simd.h"
 #include "cloth/environment.h"
+#include "cloth/shipped.h"
 #include "cloth/simulate.h"
 
 #include <config.h>
@@ -26,6 +27,7 @@ enum {
     REPORT,
     RESTART,
     SAVE_SYSTEM,
+    SCENES,
     SCHEDULER,
     SEED,
     SET,
@@ -73,21 +75,21 @@ static const struct argp_option OPTIONS[] = {
     {"threads", THREADS, "N", 0,
      "workers of each rank (default: DUITE_THREADS, else its share of the cores)", 3},
     {"scheduler", SCHEDULER, "NAME", 0,
-     "which worker runs which task next: a name, or a policy of your own as ./FILE.so (default: "
-     "DUITE_SCHEDULER, else steal)",
+     "which worker runs which task next: SCHEDULERS; or a policy of your own as ./FILE.so "
+     "(default: DUITE_SCHEDULER, else steal)",
      3},
     {"mapping", MAPPING, "NAME", 0,
-     "which rank keeps which block: a name, or a policy of your own as ./FILE.so (default: "
+     "which rank keeps which block: MAPPINGS; or a policy of your own as ./FILE.so (default: "
      "DUITE_MAPPING, else metis)",
      3},
     {"balance", BALANCE, "NAME", 0,
-     "which tasks or blocks go to other ranks: a name, or a policy of your own as ./FILE.so "
-     "(default: "
-     "DUITE_BALANCE, else none)",
+     "which tasks or blocks go to other ranks: BALANCERS; or a policy of your own as ./FILE.so "
+     "(default: DUITE_BALANCE, else none)",
      3},
     {"seed", SEED, "N", 0, "of all that is random in the policies (default: DUITE_SEED, else 1)",
      3},
     {"keys", KEYS, NULL, 0, "list the keys of scene files, with units, ranges and defaults", 4},
+    {"scenes", SCENES, NULL, 0, "list the scenes that came with duite, which are found by name", 4},
     {"help", '?', NULL, 0, "this text", 4},
     {"usage", USAGE, NULL, 0, "a short text", 4},
     {"version", 'V', NULL, 0, "the version", 4},
@@ -179,6 +181,12 @@ static void print_version(FILE *file)
     fprintf(file, "duite-cloth (%s)\n", PACKAGE_STRING);
 }
 
+static void print_scenes(FILE *file)
+{
+    if (!shipped_print(file))
+        fputs("no scenes are installed; those of the sources are in cloth/scenes\n", file);
+}
+
 /* Options that print and end the program. */
 static int answer(struct command *command, struct argp_state *state, int key)
 {
@@ -189,6 +197,8 @@ static int answer(struct command *command, struct argp_state *state, int key)
         print_version(stdout);
     else if (key == KEYS)
         scene_print_keys(stdout);
+    else if (key == SCENES)
+        print_scenes(stdout);
     else
         argp_state_help(state, stdout,
                         key == USAGE ? ARGP_HELP_USAGE
@@ -307,6 +317,7 @@ static error_t parse(int key, char *value, struct argp_state *state)
     case SEED:
         return parse_number(command, state, key, value);
     case KEYS:
+    case SCENES:
     case USAGE:
     case 'V':
     case '?':
@@ -321,6 +332,7 @@ static error_t parse(int key, char *value, struct argp_state *state)
 static const struct argp ARGP = {
     .options = OPTIONS,
     .parser = parse,
+    .help_filter = environment_help,
     .args_doc = "SCENE.yaml",
     .doc = "Simulates the cloths of a scene file. Run it under mpirun for several ranks; the "
            "result is the same, to the "

@@ -4,6 +4,7 @@
 #include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 static const char *name_of(const char *variable, const char *otherwise)
 {
@@ -53,4 +54,36 @@ int environment_check(const struct simulate_options *run, struct cloth_error *er
     if (run->trace && !*run->trace)
         return wrong_variable(error, "DUITE_TRACE", "the name of a file is expected");
     return CLOTH_OK;
+}
+
+static void print_names(FILE *file, const char *const *names)
+{
+    for (size_t i = 0; names[i]; i++)
+        fprintf(file, "%s%s", i == 0 ? "" : names[i + 1] ? ", " : " or ", names[i]);
+}
+
+char *environment_help(int key, const char *text, void *input)
+{
+    static const struct {
+        const char *word;
+        const char *const *(*names)(void);
+    } lists[] = {{"SCHEDULERS", duite_scheduler_names},
+                 {"MAPPINGS", duite_mapping_names},
+                 {"BALANCERS", duite_balancer_names}};
+    (void)key, (void)input;
+    for (size_t i = 0; text && i < sizeof lists / sizeof *lists; i++) {
+        const char *at = strstr(text, lists[i].word);
+        char *filled = NULL;
+        size_t size = 0;
+        FILE *file = at ? open_memstream(&filled, &size) : NULL;
+        if (!file)
+            continue;
+        fprintf(file, "%.*s", (int)(at - text), text);
+        print_names(file, lists[i].names());
+        fputs(at + strlen(lists[i].word), file);
+        if (fclose(file) == 0)
+            return filled;
+        free(filled);
+    }
+    return (char *)text;
 }

@@ -11,4 +11,8 @@ void environment_begin(struct simulate_options *run);
 /* Error: CLOTH_E_INPUT, which names the variable. Local. */
 int environment_check(const struct simulate_options *run, struct cloth_error *error);
 
+/* Of argp's form help_filter: SCHEDULERS, MAPPINGS and BALANCERS in a text become the names of the
+ * policies. Local. */
+char *environment_help(int key, const char *text, void *input);
+
 #endif

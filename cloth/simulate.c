@@ -3,6 +3,7 @@
 #include "cloth/simulate_run.h"
 
 #include "cloth/keeper.h"
+#include "cloth/shipped.h"
 #include "cloth/summary.h"
 
 #include <math.h>
@@ -292,10 +293,15 @@ static int code_of(int failure, int done)
 
 int simulate(const struct simulate_options *options)
 {
-    struct run run = {.options = options};
+    struct simulate_options found = *options;
+    struct run run = {.options = &found, .asked = options->scene};
     int code = SIMULATE_BAD_INPUT;
     MPI_Comm_rank(MPI_COMM_WORLD, &run.rank);
     MPI_Comm_size(MPI_COMM_WORLD, &run.ranks);
+    char *shipped =
+        run.rank == 0 ? shipped_scene(options->scene) : NULL; /* rank 0 alone reads it */
+    if (shipped)
+        found.scene = shipped;
     int failure = simulate_prepare(&run);
     if (failure == CLOTH_E_MEMORY || failure == CLOTH_E_LIBRARY || failure == CLOTH_E_IO)
         code = SIMULATE_FAILED;
@@ -316,5 +322,6 @@ int simulate(const struct simulate_options *options)
     free(run.elastic);
     phases_free(&run.phases);
     restart_free(&run.restart);
+    free(shipped);
     return code;
 }

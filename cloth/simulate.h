@@ -9,7 +9,7 @@
 /* What duite-cloth does once its command line is read: the whole run of one scene. */
 
 struct simulate_options {
-    const char *scene; /* path of the scene file */
+    const char *scene; /* path of the scene file, or the name of a shipped one */
     size_t n_sets;     /* changes to it, in the order given */
     struct scene_set *sets;
     const char *output, *report; /* folder of frames, JSON file; NULL: none */

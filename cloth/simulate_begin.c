@@ -36,7 +36,7 @@ static int check_file(const struct run *run, const char *option, const char *pat
 static int check_same(const struct run *run, struct cloth_error *error)
 {
     const struct simulate_options *options = run->options;
-    uint64_t asked = XXH64(options->scene, strlen(options->scene), 0), first;
+    uint64_t asked = XXH64(run->asked, strlen(run->asked), 0), first;
     for (size_t i = 0; i < options->n_sets; i++)
         asked = XXH64(options->sets[i].text, strlen(options->sets[i].text), asked);
     asked = XXH64(&options->checkpoint, sizeof options->checkpoint, asked + !options->restart);

@@ -12,6 +12,7 @@
 
 struct run {
     const struct simulate_options *options;
+    const char *asked; /* the scene as the command line names it */
     int rank, ranks;
     unsigned threads;
     struct phases phases;

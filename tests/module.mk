@@ -53,8 +53,8 @@ check-programs: $(check_PROGRAMS)
 
 EXTRA_DIST += tests/arrows.txt tests/support/policies.h tests/support/tap.sh tests/support/bodies.sh tests/support/probes.sh tests/support/dress.awk tests/support/mpi.sh tests/support/run.sh tests/support/count.sh \
     tests/support/lsan.supp tests/support/tsan.supp tests/support/valgrind.supp
-dist_check_SCRIPTS += tests/support/test_tap.sh tests/arrows.sh tests/documents.sh tests/install.sh tests/readme.sh
-TESTS += tests/support/test_tap.sh tests/arrows.sh tests/documents.sh tests/install.sh tests/readme.sh
+dist_check_SCRIPTS += tests/support/test_tap.sh tests/arrows.sh tests/documents.sh tests/install.sh tests/readme.sh tests/completion.sh
+TESTS += tests/support/test_tap.sh tests/arrows.sh tests/documents.sh tests/install.sh tests/readme.sh tests/completion.sh
 
 if HAVE_CHECK
 check_LTLIBRARIES += tests/support/libunit.la

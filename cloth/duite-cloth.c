@@ -18,6 +18,7 @@ enum {
     END = 256,
     GRAIN,
     KEYS,
+    LIVE,
     MAPPING,
     BALANCE,
     CHECK_INTERSECTIONS,
@@ -47,6 +48,10 @@ static const struct argp_option OPTIONS[] = {
     {"restart", RESTART, "DIR", 0,
      "go on from the last checkpoint of the run whose --output was DIR, and write there; --end may "
      "be later",
+     1},
+    {"live", LIVE, "[ADDRESS:]PORT", 0,
+     "publish frames for duite-view --connect, on this host alone, or at an ADDRESS of it (`*': "
+     "all)",
      1},
     {"report", REPORT, "FILE", 0, "write the figures of the run as flat JSON", 1},
     {"save-system", SAVE_SYSTEM, "DIR", 0,
@@ -289,6 +294,8 @@ static error_t parse(int key, char *value, struct argp_state *state)
         return parse_name(state, "--restart", value, &command->run.restart);
     case CHECKPOINT:
         return parse_checkpoint(command, state, value);
+    case LIVE:
+        return parse_name(state, "--live", value, &command->run.live);
     case SAVE_SYSTEM:
         return parse_name(state, "--save-system", value, &command->run.save_system);
     case TRACE:
@@ -335,12 +342,10 @@ static const struct argp ARGP = {
     .help_filter = environment_help,
     .args_doc = "SCENE.yaml",
     .doc = "Simulates the cloths of a scene file. Run it under mpirun for several ranks; the "
-           "result is the same, to the "
-           "last bit.\v"
-           "Exit codes: 0 done, 1 the run failed or "
-           "its files could not be written, 2 the input or the command line is wrong, 3 another "
-           "rank was lost, or MPI failed, 4 done, but --check-intersections found intersections, "
-           "5 stopped by SIGUSR1 or SIGTERM. "
+           "result is the same, to the last bit.\v"
+           "Exit codes: 0 done, 1 the run failed or its files could not be written, 2 the input or "
+           "the command line is wrong, 3 another rank was lost, or MPI failed, 4 done, but "
+           "--check-intersections found intersections, 5 stopped by SIGUSR1 or SIGTERM. "
            "Scene files are described in docs/scene.md and by --keys."};
 
 /* A run goes on in its own folder. */

@@ -3,9 +3,10 @@
 
 #include "cloth/intersections.h"
 #include "cloth/output/output.h"
-#include "cloth/view/film.h"
 #include "cloth/view/show.h"
 #include "cloth/view/window.h"
+#include "cloth/view_frames.h"
+#include "cloth/view_live.h"
 #include "cloth/view_trace.h"
 
 #include <argp.h>
@@ -14,7 +15,6 @@
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 const char *argp_program_version = "duite-view " PACKAGE_VERSION;
 
@@ -28,10 +28,12 @@ struct options {
     long long first, last; /* so is `last' of a film */
     double fps;            /* of a film; 0: of the folder */
     bool check_intersections;
+    struct view_live_wish live; /* of a run that goes on, instead of a folder */
     const char *trace, *svg;
     struct chart_options chart; /* of the trace */
-    /* What was given: --size, --window, an option of frames, one of films. */
-    bool sized, windowed, framed, filmed;
+    /* What was given: --size, --window, an option of frames, one of those of a folder, one of
+     * films. */
+    bool sized, windowed, framed, numbered, filmed;
 };
 
 static const struct argp_option OPTIONS[] = {
@@ -49,6 +51,10 @@ static const struct argp_option OPTIONS[] = {
     {"colour", 'k', "contact[,MAX]", 0,
      "Colour the cloth by the force of contact on its vertices, up to MAX N (the largest)", 0},
     {"wireframe", 'e', NULL, 0, "Draw the edges of the cloth's triangles, too", 0},
+    {"connect", VIEW_LIVE_CONNECT, "HOST:PORT", 0,
+     "Show the newest frame of a run that goes on: duite-cloth --live PORT; no DIR then", 0},
+    {"wait", VIEW_LIVE_WAIT, "SECONDS", 0, "How long --connect with --png waits for a frame (10)",
+     0},
     {"trace", 't', "FILE", 0,
      "Draw the Gantt chart of a run from the trace that duite-cloth --trace wrote; no DIR then", 0},
     {"svg", 'v', "FILE", 0, "Write the chart of --trace to FILE as SVG", 0},
@@ -135,6 +141,22 @@ static bool opens_window(const struct options *options)
     return !options->trace && !options->png && !options->mp4 && !options->check_intersections;
 }
 
+static void check_live(const struct options *options, struct argp_state *state)
+{
+    const char *lacks = live_lacks();
+    if (!options->live.host && options->live.waits)
+        argp_error(state, "--wait is of --connect HOST:PORT");
+    if (!options->live.host)
+        return;
+    if (lacks)
+        argp_error(state, "--connect: %s", lacks);
+    if (options->wish.folder || options->trace || options->mp4 || options->check_intersections ||
+        options->numbered)
+        argp_error(state,
+                   "--connect shows the newest frame of a run: no folder, trace, number of a "
+                   "frame, film, colour or check goes with it");
+}
+
 /* What belongs together. */
 static void check_together(const struct options *options, struct argp_state *state)
 {
@@ -148,13 +170,23 @@ static void check_together(const struct options *options, struct argp_state *sta
         argp_error(state, "--frames and --fps are of films: --mp4 FILE");
     if (options->trace && !options->png && !options->svg)
         argp_error(state, "say where the chart goes: --svg FILE or --png FILE");
-    if (!options->trace && !options->wish.folder)
-        argp_error(state, "say which folder of frames to show");
+    if (!options->trace && !options->live.host && !options->wish.folder)
+        argp_error(state, "say which folder of frames to show, or --connect HOST:PORT");
 #ifndef HAVE_WINDOW
     if (opens_window(options))
         argp_error(state, "this build opens no windows: say where the picture goes by --png FILE, "
                           "or --mp4 FILE");
 #endif
+}
+
+static error_t parse_live(int key, char *arg, struct argp_state *state)
+{
+    struct options *options = state->input;
+    const char *wrong = NULL;
+    const bool known = view_live_parse(key, arg, &options->live, &wrong);
+    if (wrong)
+        argp_error(state, "%s, not `%s'", wrong, arg);
+    return known ? 0 : ARGP_ERR_UNKNOWN;
 }
 
 static error_t parse_chart(int key, char *arg, struct argp_state *state)
@@ -173,7 +205,7 @@ static error_t parse_chart(int key, char *arg, struct argp_state *state)
             argp_error(state, "--window takes FROM:TO in seconds, such as 0.1:0.2, not `%s'", arg);
         return 0;
     default:
-        return ARGP_ERR_UNKNOWN;
+        return parse_live(key, arg, state);
     }
 }
 
@@ -205,6 +237,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 {
     struct options *options = state->input;
     options->framed |= key == 'f' || key == 'c' || key == 'k' || key == 'e';
+    options->numbered |= key == 'f' || key == 'k';
     options->sized |= key == 's';
     switch (key) {
     case 'o':
@@ -243,6 +276,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         options->wish.folder = arg;
         return 0;
     case ARGP_KEY_END:
+        check_live(options, state);
         check_together(options, state);
         return 0;
     default:
@@ -283,52 +317,16 @@ static int write_picture(struct view_show *show, const struct output_cache *cach
     return code;
 }
 
-static int film_frame(struct view_show *show, struct view_film *film, uint64_t frame,
-                      const struct options *options, struct cloth_error *error)
-{
-    struct view_picture picture = {options->wish.width, options->wish.height, NULL};
-    int code = view_show_frame(show, frame, error);
-    code = code ? code : view_show_picture(show, &picture, error);
-    code = code ? code : view_film_add(film, &picture, error);
-    view_picture_free(&picture);
-    return code;
-}
-
-/* Says on a terminal how far it is. */
-static int film_frames(struct view_show *show, struct view_film *film, uint64_t first,
-                       uint64_t last, const struct options *options, struct cloth_error *error)
-{
-    const bool seen = isatty(STDERR_FILENO);
-    int code = 0;
-    for (uint64_t i = first; i <= last && !code; i++) {
-        if (seen)
-            fprintf(stderr, "\r%s: %ju of %ju frames ", options->mp4, (uintmax_t)(i - first),
-                    (uintmax_t)(last - first + 1));
-        code = film_frame(show, film, i, options, error);
-    }
-    if (seen)
-        fprintf(stderr, "\r\033[K");
-    return code;
-}
-
 static int write_film(struct view_show *show, const struct output_cache *cache,
                       const struct options *options, struct cloth_error *error)
 {
-    const struct view_wish *wish = &options->wish;
-    struct view_context *context = NULL;
-    struct view_film *film = NULL;
-    uint64_t first = 0, last = 0;
-    int code = find_frame(cache, options, options->last, &last, error);
-    code = code ? code : find_frame(cache, options, options->first, &first, error);
-    code = code ? code : view_context_open(&context, error);
-    if (!code)
-        code = view_film_open(&film, options->mp4, wish->width, wish->height,
-                              options->fps > 0 ? options->fps : cache->fps, error);
-    code = code ? code : film_frames(show, film, first, last, options, error);
-    const int closed = view_film_close(&film, !code, error);
-    view_show_undraw(show);
-    view_context_close(context);
-    return code ? code : closed;
+    struct view_frames frames = {.path = options->mp4,
+                                 .width = options->wish.width,
+                                 .height = options->wish.height,
+                                 .fps = options->fps > 0 ? options->fps : cache->fps};
+    int code = find_frame(cache, options, options->last, &frames.last, error);
+    code = code ? code : find_frame(cache, options, options->first, &frames.first, error);
+    return code ? code : view_frames_film(show, &frames, error);
 }
 
 static int open_window(struct view_show *show, const struct output_cache *cache,
@@ -375,16 +373,31 @@ static int check_frames(struct output_cache *cache, int *exit_code, struct cloth
     return CLOTH_OK;
 }
 
+/* The exit code, after what failed. */
+static int say(int code, const struct cloth_error *error)
+{
+    if (code)
+        fprintf(stderr, "duite-view: %s\n", error->text);
+    return code ? code == CLOTH_E_INPUT ? 2 : 1 : 0;
+}
+
 static int draw_trace(struct options *options, struct cloth_error *error)
 {
     if (options->sized) {
         options->chart.width = options->wish.width;
         options->chart.height = options->wish.height;
     }
-    const int code = view_trace(options->trace, &options->chart, options->svg, options->png, error);
-    if (code)
-        fprintf(stderr, "duite-view: %s\n", error->text);
-    return code ? code == CLOTH_E_INPUT ? 2 : 1 : 0;
+    return say(view_trace(options->trace, &options->chart, options->svg, options->png, error),
+               error);
+}
+
+static int show_live(struct options *options, struct cloth_error *error)
+{
+    options->wish.folder = options->live.host;
+    return say(options->png
+                   ? view_live_picture(&options->wish, options->png, options->live.seconds, error)
+                   : view_live_window(&options->wish, error),
+               error);
 }
 
 int main(int argc, char **argv)
@@ -392,10 +405,11 @@ int main(int argc, char **argv)
     static const struct argp argp = {
         OPTIONS,
         parse,
-        "DIR\n--trace FILE",
+        "DIR\n--connect HOST:PORT\n--trace FILE",
         "Shows a simulated cloth in a window, makes a picture or a film of it, or checks all "
         "frames; DIR "
-        "is what duite-cloth --output wrote. Or draws the Gantt chart of a run.",
+        "is what duite-cloth --output wrote. Or shows a run that goes on, or draws the Gantt chart "
+        "of one.",
         NULL,
         NULL,
         NULL};
@@ -403,6 +417,7 @@ int main(int argc, char **argv)
         .frame = LAST_FRAME,
         .last = LAST_FRAME,
         .chart = chart_options_default(),
+        .live = {.seconds = 10},
         .wish = {.width = 1280, .height = 720, .azimuth = 32, .elevation = 20, .zoom = 1}};
     argp_err_exit_status = 2;
     argp_parse(&argp, argc, argv, 0, NULL, &options);
@@ -411,13 +426,13 @@ int main(int argc, char **argv)
     int exit_code = 0;
     if (options.trace)
         return draw_trace(&options, &error);
+    if (options.live.host)
+        return show_live(&options, &error);
     int code = output_cache_open(&cache, options.wish.folder, &error);
     if (!code && (options.png || options.mp4 || opens_window(&options)))
         code = show_frames(&cache, &options, &error);
     if (!code && options.check_intersections)
         code = check_frames(&cache, &exit_code, &error);
     output_cache_close(&cache);
-    if (code)
-        fprintf(stderr, "duite-view: %s\n", error.text);
-    return code ? code == CLOTH_E_INPUT ? 2 : 1 : exit_code;
+    return code ? say(code, &error) : exit_code;
 }

@@ -16,6 +16,7 @@ include cloth/element/module.mk
 include cloth/flow/module.mk
 include cloth/scene/module.mk
 include cloth/output/module.mk
+include cloth/live/module.mk
 include cloth/view/module.mk
 
 bin_PROGRAMS += duite-cloth
@@ -26,6 +27,7 @@ duite_cloth_SOURCES = \
 	cloth/drape.c cloth/environment.c cloth/intersections.c cloth/intersections_model.c cloth/intersections_parts.h cloth/intersections_parts.c \
 	cloth/intersections_soup.h cloth/intersections_soup.c cloth/keeper.c cloth/outputs.c cloth/outputs_hdf5.c cloth/phases.c cloth/phases_check.c cloth/phases_motions.c cloth/progress.c cloth/restart.c cloth/room.c cloth/simulate.c cloth/simulate_begin.c cloth/start.c cloth/start_welds.c cloth/start_welds.h \
 	cloth/shipped.h cloth/shipped.c \
+	cloth/outputs_setup.h cloth/outputs_setup.c \
 	cloth/summary.h cloth/summary.c cloth/summary_seams.h cloth/summary_seams.c cloth/summary_time.h cloth/summary_time.c
 duite_cloth_CPPFLAGS = $(AM_CPPFLAGS) -DSHIPPED_SCENES='"$(scenesdir)"'
 duite_cloth_LDADD = libduite_cloth.la libduite_core.la

@@ -5,10 +5,13 @@
 #include "cloth/base/memory.h"
 #include "cloth/keeper.h"
 #include "cloth/output/output.h"
+#include "cloth/outputs_setup.h"
 #include "cloth/restart.h"
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
 
 /* Another run may write into the same folder. */
 static int lock_folder(struct output_lock **lock, const char *folder, struct cloth_error *error)
@@ -18,6 +21,19 @@ static int lock_folder(struct output_lock **lock, const char *folder, struct clo
     if (note.code && !code)
         fprintf(stderr, "duite-cloth: warning: %s\n", note.text);
     return code;
+}
+
+/* Of the live view's thread, too. */
+static void warn(const char *text)
+{
+    fprintf(stderr, "duite-cloth: warning: %s\n", text);
+}
+
+/* Port 0. */
+static bool is_any_port(const char *address)
+{
+    const char *colon = strrchr(address, ':');
+    return strtoul(colon ? colon + 1 : address, NULL, 10) == 0;
 }
 
 static int open_system(struct outputs *to, const struct model *model, struct cloth_error *error)
@@ -58,65 +74,19 @@ static int open_forces(struct outputs *to, const struct model *model, const stru
                : output_forces_forget(folder, error);
 }
 
-/* Of each body whether it changes its shape in any phase; to be freed. NULL: no memory. */
-static bool *find_posed(const struct phases *phases, struct cloth_error *error)
-{
-    const uint32_t n = phases->models->bodies.n;
-    bool *posed = cloth_alloc(n, sizeof *posed, error);
-    for (uint32_t p = 0; posed && p < phases->n; p++)
-        for (uint32_t i = 0; i < n; i++)
-            posed[i] |= contact_bodies_at(&phases->models[p].bodies, i + 1)->n_frames > 0;
-    return posed;
-}
-
-/* Of the frames of a model; meshes and names are not in it yet. */
-static struct output_setup setup_of(const struct outputs *of, const struct model *model,
-                                    const struct contact_apart *apart)
-{
-    return (struct output_setup){.folder = of->options->output,
-                                 .n_meshes = model->n_cloths,
-                                 .fps = model->fps,
-                                 .n_obstacles = model->n_obstacles,
-                                 .obstacles = model->obstacles,
-                                 .keys = model->keys,
-                                 .bodies = &model->bodies,
-                                 .apart = apart,
-                                 .n_inputs = model->n_files,
-                                 .inputs = (const char *const *)model->files};
-}
-
 /* What stays of an earlier run, of all its phases: frames, rows. */
 struct stays {
     uint64_t frames, rows;
 };
 
 static int open_output(struct outputs *to, const struct phases *phases, const struct flow *flow,
-                       const struct contact_apart *apart, const struct stays *stays,
+                       struct output_setup *setup, const struct stays *stays,
                        struct cloth_error *error)
 {
     const struct model *model = phases_model(phases);
     const uint64_t *n_frames = stays ? &stays->frames : NULL;
-    const struct mesh **meshes = calloc(model->n_cloths, sizeof *meshes);
-    const char **names = calloc(model->n_cloths, sizeof *names);
-    bool *posed = find_posed(phases, error);
-    int code = CLOTH_E_MEMORY;
-    if (meshes && names && posed) {
-        for (uint32_t i = 0; i < model->n_cloths; i++) {
-            meshes[i] = &model->cloths[i].mesh;
-            names[i] = model->cloths[i].name;
-        }
-        struct output_setup setup = setup_of(to, model, apart);
-        setup.meshes = meshes;
-        setup.names = names;
-        setup.posed = posed;
-        setup.n_frames = n_frames;
-        code = output_open(&to->frames, &setup, error);
-    } else {
-        cloth_fail(error, code, "out of memory before the first frame");
-    }
-    free(meshes);
-    free(names);
-    free(posed);
+    setup->n_frames = n_frames;
+    int code = output_open(&to->frames, setup, error);
     code = code ? code : outputs_hdf5_open(&to->hdf5, model, to->options->output, error);
     code = code ? code : open_forces(to, model, flow, n_frames, error);
     return code ? code : open_probes(to, flow, stays ? &stays->rows : NULL, error);
@@ -146,15 +116,43 @@ static int open_keeper(struct outputs *to, const struct phases *phases, bool res
                : error->code;
 }
 
-int outputs_open(struct outputs *to, const struct simulate_options *options,
-                 const struct phases *phases, const struct flow *flow,
-                 const struct contact_apart *apart, const struct flow_resumed *resumed,
-                 struct cloth_error *error)
+/* Looks, before anything is written, whether the live view can listen. */
+static int open_live(struct outputs *to, struct cloth_error *error)
+{
+    const char *address = to->options->live;
+    char host[65] = "";
+    const int code = live_publish_open(&to->live, address, warn, error);
+    gethostname(host, sizeof host - 1);
+    if (!code && (!to->options->quiet || is_any_port(address)))
+        fprintf(stderr, "duite-cloth: live view: duite-view --connect %s on %s\n",
+                live_publish_address(to->live), host);
+    return code;
+}
+
+/* Files, and the scene of the live view, of the first phase of this run. */
+static int open_frames(struct outputs *to, const struct phases *phases, const struct flow *flow,
+                       const struct contact_apart *apart, const struct flow_resumed *resumed,
+                       struct cloth_error *error)
 {
     const struct flow_before before = phases_before(phases);
     const struct stays stays = {.frames =
                                     before.frames - before.shown + (resumed ? resumed->frames : 0),
                                 .rows = before.steps + (resumed ? resumed->steps : 0) + 1};
+    struct outputs_setup made;
+    int code = outputs_setup_make(&made, to->options, phases, apart, error);
+    if (!code && to->options->output)
+        code = open_output(to, phases, flow, &made.setup, resumed ? &stays : NULL, error);
+    if (!code && to->live)
+        code = live_publish_scene(to->live, &made.setup, phases->total.simulated_seconds, error);
+    outputs_setup_free(&made);
+    return code;
+}
+
+int outputs_open(struct outputs *to, const struct simulate_options *options,
+                 const struct phases *phases, const struct flow *flow,
+                 const struct contact_apart *apart, const struct flow_resumed *resumed,
+                 struct cloth_error *error)
+{
     const struct model *model = phases_model(phases), *last = phases->models + phases->n - 1;
     to->options = options;
     int code = CLOTH_OK;
@@ -162,12 +160,14 @@ int outputs_open(struct outputs *to, const struct simulate_options *options,
         code = intersections_of(&to->intersections, model, apart, "duite-cloth", false, error);
     if (!code)
         code = drape_of(&to->drape, last, error);
+    if (!code && options->live)
+        code = open_live(to, error);
     if (!code && options->save_system)
         code = open_system(to, last, error);
     if (!code)
         code = outputs_lock(to, options, error);
-    if (!code && options->output)
-        code = open_output(to, phases, flow, apart, resumed ? &stays : NULL, error);
+    if (!code && (options->output || options->live))
+        code = open_frames(to, phases, flow, apart, resumed, error);
     if (!code && options->output)
         code = open_keeper(to, phases, resumed, error);
     return code || !phases->now ? code : outputs_go_on(to, phases, apart, error);
@@ -177,24 +177,16 @@ int outputs_open(struct outputs *to, const struct simulate_options *options,
 static int write_scene(const struct outputs *of, const struct phases *phases,
                        const struct contact_apart *apart, struct cloth_error *error)
 {
-    struct phases_motions motions;
-    struct contact_apart all = *apart;
-    struct output_setup setup = setup_of(of, phases_model(phases), &all);
-    bool *posed = find_posed(phases, error);
-    int code = phases_motions(phases, &motions, error);
-    const int joins = phases_joined(phases, apart->n_vertices, &all.joined, error);
-    code = code ? code : joins;
-    setup.obstacles = motions.obstacles;
-    setup.keys = motions.keys;
-    setup.posed = posed;
-    code = code || posed ? code : error->code;
-    if (!code)
-        code = output_scene(of->frames, &setup, error);
-    phases_motions_free(&motions);
-    if (!code)
-        output_bodies_go_on(of->frames, setup.bodies, phases->total.simulated_seconds);
-    free(posed);
-    free(all.joined);
+    const double begin = phases->total.simulated_seconds;
+    struct outputs_setup made;
+    int code = outputs_setup_make(&made, of->options, phases, apart, error);
+    if (!code && of->frames)
+        code = output_scene(of->frames, &made.setup, error);
+    if (!code && of->frames)
+        output_bodies_go_on(of->frames, made.setup.bodies, begin);
+    if (!code && of->live)
+        code = live_publish_scene(of->live, &made.setup, begin, error);
+    outputs_setup_free(&made);
     return code;
 }
 
@@ -210,7 +202,7 @@ int outputs_go_on(struct outputs *to, const struct phases *phases,
         intersections_begin(to->intersections, phases->total.simulated_seconds);
     if (!code)
         code = outputs_hdf5_go_on(&to->hdf5, phases_model(phases), error);
-    return code || !to->frames ? code : write_scene(to, phases, apart, error);
+    return code || !(to->frames || to->live) ? code : write_scene(to, phases, apart, error);
 }
 
 struct intersections_found outputs_found(const struct outputs *of)
@@ -241,6 +233,7 @@ void outputs_close(struct outputs *of, struct cloth_error *error)
     output_forces_close(&of->forces, error);
     output_close(&of->frames, error);
     outputs_hdf5_close(&of->hdf5);
+    live_publish_close(&of->live);
 }
 
 void outputs_free(struct outputs *of)
@@ -282,6 +275,8 @@ int outputs_frame(void *context, uint64_t frame, double time, const double *posi
     }
     if (!code)
         outputs_hdf5_position(&of->hdf5, frame, time, position);
+    if (!code && of->live)
+        live_publish_frame(of->live, frame, time, position);
     if (!code && of->intersections)
         code = check_frame(of, frame, time, position, error);
     if (of->drape)

@@ -4,6 +4,7 @@
 #include "cloth/drape.h"
 #include "cloth/flow/run.h"
 #include "cloth/intersections.h"
+#include "cloth/live/live.h"
 #include "cloth/outputs_hdf5.h"
 #include "cloth/phases.h"
 #include "cloth/simulate.h"
@@ -18,6 +19,7 @@ struct outputs {
     _Atomic uint64_t frames_written;     /* with those of runs before; any thread may read it */
     struct output_probes *probes;        /* if the scene has any */
     struct outputs_hdf5 hdf5;            /* if the scene asks for them */
+    struct live_publisher *live;         /* if they are to be seen live */
     struct output_forces *forces;        /* of frames; NULL: none */
     struct intersections *intersections; /* if they are looked for */
     struct intersections_found found;    /* then, at the end; before it of the phases so far */

@@ -17,6 +17,7 @@ struct simulate_options {
                               * NULL:     none */
     double checkpoint;       /* s: between two checkpoints; 0: none */
     const char *save_system; /* folder; NULL: none */
+    const char *live;        /* address of the live view (live_is_address); NULL: none */
     const char *trace;       /* file; NULL: none */
     uint64_t trace_first, trace_end;         /* steps from .. to the one before */
     const struct duite_scheduler *scheduler; /* never NULL when it runs */

@@ -149,7 +149,8 @@ static void warn(const struct run *run)
 static void agree_on_frames(struct run *run)
 {
     const struct simulate_options *options = run->options;
-    int wanted = options->output || options->check_intersections || run->outputs.drape;
+    int wanted =
+        options->output || options->live || options->check_intersections || run->outputs.drape;
     MPI_Bcast(&wanted, 1, MPI_INT, 0, MPI_COMM_WORLD);
     run->wants_frames = wanted;
 }

@@ -51,7 +51,7 @@ check-threads-long:
 check-programs: $(check_PROGRAMS)
 .PHONY: check-long check-threads check-threads-long check-programs
 
-EXTRA_DIST += tests/arrows.txt tests/support/policies.h tests/support/tap.sh tests/support/bodies.sh tests/support/probes.sh tests/support/dress.awk tests/support/mpi.sh tests/support/run.sh tests/support/count.sh \
+EXTRA_DIST += tests/arrows.txt tests/support/policies.h tests/support/tap.sh tests/support/bodies.sh tests/support/probes.sh tests/support/dress.awk tests/support/mpi.sh tests/support/run.sh tests/support/screen.sh tests/support/count.sh \
     tests/support/lsan.supp tests/support/tsan.supp tests/support/valgrind.supp
 dist_check_SCRIPTS += tests/support/test_tap.sh tests/arrows.sh tests/documents.sh tests/install.sh tests/readme.sh tests/completion.sh
 TESTS += tests/support/test_tap.sh tests/arrows.sh tests/documents.sh tests/install.sh tests/readme.sh tests/completion.sh
@@ -78,6 +78,7 @@ include tests/cloth/element/module.mk
 include tests/cloth/solve/module.mk
 include tests/cloth/flow/module.mk
 include tests/cloth/output/module.mk
+include tests/cloth/live/module.mk
 include tests/cloth/scene/module.mk
 include tests/cloth/view/module.mk
 include tests/whole/module.mk

@@ -107,6 +107,8 @@ while IFS= read -r command; do
     case $command in
         'git clone '* | 'cd '*) skip "$command" "only for a machine of one's own" ;;
         '.ci/run'* | './bootstrap'*) ok "$command" sh -n "$srcdir/${command%% *}" ;;
+        *--live*)
+            if test -x "$build/duite-view" && grep -q '^#define HAVE_ZMQ 1' "$build/config.h"; then ok "$command" here "$command"; else skip "$command" "no live view"; fi ;;
         './duite-view '* | 'duite-view '*)
             if test -x "$build/duite-view"; then ok "$command" here "$command"; else skip "$command" "no viewer"; fi ;;
         *) ok "$command" here "$command" ;;

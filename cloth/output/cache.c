@@ -68,15 +68,33 @@ static void parse_scene(struct output_cache *cache, struct output_json *json)
     output_json_expect(json, '\0');
 }
 
+/* That cloths that do not meet others have the vertices of the mesh. */
+static int check_apart(const struct output_cache *cache, const char *name,
+                       struct cloth_error *error)
+{
+    const struct contact_apart *apart = &cache->apart;
+    if (!apart->n_cloths || !cache->mesh.n_vertices ||
+        apart->end[apart->n_cloths - 1] == cache->mesh.n_vertices)
+        return 0;
+    return cloth_fail(error, CLOTH_E_INPUT, "%s has cloths of %u vertices, cloth.obj beside it %u",
+                      name, apart->end[apart->n_cloths - 1], cache->mesh.n_vertices);
+}
+
+int output_cache_scene(struct output_cache *cache, const char *text, const char *name,
+                       struct cloth_error *error)
+{
+    struct output_json json = {.path = name, .text = text, .next = text, .error = error};
+    parse_scene(cache, &json);
+    if (json.failed)
+        return error ? error->code : CLOTH_E_INPUT;
+    return check_apart(cache, name, error);
+}
+
 static int read_scene(struct output_cache *cache, const char *path, struct cloth_error *error)
 {
     char *text = NULL;
     int code = read_text(path, &text, error);
-    if (!code) {
-        struct output_json json = {.path = path, .text = text, .next = text, .error = error};
-        parse_scene(cache, &json);
-        code = json.failed ? error ? error->code : CLOTH_E_INPUT : 0;
-    }
+    code = code ? code : output_cache_scene(cache, text, path, error);
     free(text);
     return code;
 }
@@ -226,18 +244,6 @@ static int read_bodies(struct output_cache *cache, const char *folder, struct cl
     return code;
 }
 
-/* That cloths that do not meet others have the vertices of the mesh. */
-static int check_apart(const struct output_cache *cache, const char *folder,
-                       struct cloth_error *error)
-{
-    const struct contact_apart *apart = &cache->apart;
-    if (!apart->n_cloths || apart->end[apart->n_cloths - 1] == cache->mesh.n_vertices)
-        return 0;
-    return cloth_fail(error, CLOTH_E_INPUT,
-                      "%s/scene.json has cloths of %u vertices, cloth.obj beside it %u", folder,
-                      apart->end[apart->n_cloths - 1], cache->mesh.n_vertices);
-}
-
 int output_cache_open(struct output_cache *cache, const char *folder, struct cloth_error *error)
 {
     static const struct {
@@ -258,7 +264,6 @@ int output_cache_open(struct output_cache *cache, const char *folder, struct clo
                     : cloth_fail(error, CLOTH_E_MEMORY, "no memory for paths");
         free(path);
     }
-    code = code ? code : check_apart(cache, folder, error);
     code = code ? code : read_bodies(cache, folder, error);
     if (code)
         output_cache_close(cache);
@@ -295,13 +300,17 @@ int output_cache_frame(struct output_cache *cache, uint64_t frame, double *posit
     if (frame >= cache->n_frames)
         return cloth_fail(error, CLOTH_E_INPUT, "there is no frame %ju: the run has %ju frames",
                           (uintmax_t)frame, (uintmax_t)cache->n_frames);
+    if (cache->held) {
+        memcpy(position, cache->held, 3 * (size_t)cache->mesh.n_vertices * sizeof *position);
+        return 0;
+    }
     return read_points(cache->pc2, cache->mesh.n_vertices, frame, position, error);
 }
 
 int output_cache_pose(struct output_cache *cache, uint64_t frame, struct cloth_error *error)
 {
     int code = 0;
-    for (uint32_t i = 0; i < cache->n_bodies && !code; i++) {
+    for (uint32_t i = 0; i < cache->n_bodies && cache->poses && !code; i++) {
         const uint32_t n = contact_bodies_at(&cache->bodies, i + 1)->n_vertices;
         double(*x)[3] = cache->poses[i] ? malloc(n * sizeof *x) : NULL;
         if (cache->poses[i])
@@ -330,6 +339,7 @@ void output_cache_close(struct output_cache *cache)
     free(cache->apart.apart);
     free(cache->apart.joined);
     free(cache->attached);
+    free(cache->held);
     if (cache->pc2)
         fclose(cache->pc2);
     memset(cache, 0, sizeof *cache);

@@ -35,9 +35,8 @@ struct output_frames {
     struct output_poses *poses; /* of bodies */
 };
 
-static int fill_scene(FILE *file, const void *what)
+void output_scene_text(FILE *file, const struct output_setup *setup)
 {
-    const struct output_setup *setup = what;
     fputs("{\n  \"fps\": ", file);
     output_json_number(file, setup->fps);
     fputs(",\n  \"obstacles\": ", file);
@@ -55,6 +54,11 @@ static int fill_scene(FILE *file, const void *what)
         output_sewn(file, setup->apart);
     }
     fputs("\n}\n", file);
+}
+
+static int fill_scene(FILE *file, const void *what)
+{
+    output_scene_text(file, what);
     return ferror(file);
 }
 

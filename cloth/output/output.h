@@ -65,6 +65,9 @@ int output_open(struct output_frames **frames, const struct output_setup *setup,
 int output_scene(const struct output_frames *frames, const struct output_setup *setup,
                  struct cloth_error *error);
 
+/* Writes what scene.json has of a setup. Failures are the file's. */
+void output_scene_text(FILE *file, const struct output_setup *setup);
+
 /* Bytes that files in a folder may have, which need not be there yet, with those of an earlier run
  * that would be replaced; infinite where the file system does not say. Local. */
 double output_room(const char *folder);
@@ -164,8 +167,14 @@ struct output_cache {
     struct contact_apart apart;   /* what does not meet */
     uint32_t *attached;           /* n_vertices; as apart.attached, which it is */
     FILE *pc2;
+    double *held; /* n_vertices x 3: the only frame of a cache in memory, which has no files; NULL:
+                   * it is of a folder */
 };
 int output_cache_open(struct output_cache *cache, const char *folder, struct cloth_error *error);
+/* Reads the text of a scene.json, ended by '\0', into a cache that has its mesh; `name` begins its
+ * errors. What is allocated is the cache's, also after an error: CLOTH_E_INPUT. */
+int output_cache_scene(struct output_cache *cache, const char *text, const char *name,
+                       struct cloth_error *error);
 /* Reads one frame: n_vertices x 3 doubles into position. */
 int output_cache_frame(struct output_cache *cache, uint64_t frame, double *position,
                        struct cloth_error *error);

@@ -78,13 +78,15 @@ static void draw_line(cairo_t *cairo, const struct view_overlay_text *text, int 
 {
     const double y = bar_height(height), end = width - MARGIN;
     const double now = MARGIN + text->part * (end - MARGIN);
+    say(cairo, MARGIN, text->part < 0 ? y : y - REACH, text->status);
+    if (text->part < 0)
+        return;
     cairo_set_line_cap(cairo, CAIRO_LINE_CAP_ROUND);
     cairo_set_line_width(cairo, BAR);
     line(cairo, MARGIN, end, y, 0.1, 0.5);
     line(cairo, MARGIN, now, y, 0.95, 0.9);
     cairo_arc(cairo, now, y, BAR, 0, 2 * acos(-1.0));
     cairo_fill(cairo);
-    say(cairo, MARGIN, y - REACH, text->status);
 }
 
 static void draw_help(cairo_t *cairo, const char *const *help)

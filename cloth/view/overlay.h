@@ -8,7 +8,7 @@
  */
 
 struct view_overlay_text {
-    double part;             /* of the time line that is behind, 0 .. 1 */
+    double part;             /* of the time line that is behind, 0 .. 1; -1: there is no line */
     const char *status;      /* one line beside the time line */
     const char *const *help; /* pairs of key and meaning, up to a NULL; NULL: no help */
 };

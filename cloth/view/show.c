@@ -13,7 +13,7 @@ struct view_show {
     struct output_cache *cache;
     const struct view_wish *wish;
     struct view_obstacles obstacles;
-    struct view_orbit orbit;
+    struct view_sight sight;
     bool wire, plain;         /* plain: without shadows */
     struct view_scene *scene; /* NULL until the first drawing */
     bool moved;               /* the scene has another frame than was read last */
@@ -87,27 +87,34 @@ static uint64_t fitted_frame(const struct output_cache *cache, uint64_t i)
     return n > 1 ? i * (cache->n_frames - 1) / (n - 1) : 0;
 }
 
+/* The obstacles, after the cloth. */
+static void fit_obstacles(struct view_show *show)
+{
+    const struct view_obstacles *obstacles = &show->obstacles;
+    view_fit_planes(&show->sight.fit, obstacles->n_planes, (const double(*)[6])obstacles->plane);
+    view_fit_near(&show->sight.fit, obstacles->n_vertices, (const double(*)[6])obstacles->vertex);
+}
+
 static int fit_camera(struct view_show *show, struct cloth_error *error)
 {
     const struct view_wish *wish = show->wish;
     const struct output_cache *cache = show->cache;
-    struct view_fit fit;
-    view_fit_start(&fit, wish->azimuth, wish->elevation, (double)wish->width / wish->height,
-                   wish->zoom);
+    view_fit_start(&show->sight.fit, wish->azimuth, wish->elevation,
+                   (double)wish->width / wish->height, wish->zoom);
     for (uint64_t i = 0; i < fitted_frames(cache); i++) {
         const int code = read_position(show, fitted_frame(cache, i), error);
         if (code)
             return code;
-        view_fit_add(&fit, cache->mesh.n_vertices, show->position);
+        view_fit_add(&show->sight.fit, cache->mesh.n_vertices, show->position);
     }
     for (uint64_t i = 0; i < fitted_frames(cache); i++) {
         const int code = place_obstacles(show, fitted_frame(cache, i), error);
         if (code)
             return code;
-        view_fit_planes(&fit, show->obstacles.n_planes, (const double(*)[6])show->obstacles.plane);
-        view_fit_near(&fit, show->obstacles.n_vertices, (const double(*)[6])show->obstacles.vertex);
+        fit_obstacles(show);
     }
-    view_fit_orbit(&fit, &show->orbit);
+    view_fit_orbit(&show->sight.fit, &show->sight.fitted);
+    view_show_recentre(show);
     return 0;
 }
 
@@ -186,14 +193,35 @@ int view_show_picture(struct view_show *show, struct view_picture *picture,
                       struct cloth_error *error)
 {
     struct view_camera camera;
-    view_orbit_camera(&show->orbit, (double)picture->width / picture->height, &camera);
+    view_orbit_camera(&show->sight.orbit, (double)picture->width / picture->height, &camera);
     const int code = move_scene(show, error);
     return code ? code : view_picture_draw(picture, show->scene, &camera, error);
 }
 
 struct view_orbit *view_show_orbit(struct view_show *show)
 {
-    return &show->orbit;
+    return &show->sight.orbit;
+}
+
+void view_show_recentre(struct view_show *show)
+{
+    show->sight.orbit = show->sight.fitted;
+}
+
+void view_show_follow(struct view_show *show)
+{
+    struct view_sight *sight = &show->sight;
+    const bool moved = memcmp(&sight->orbit, &sight->fitted, sizeof sight->fitted) != 0;
+    view_fit_add(&sight->fit, show->cache->mesh.n_vertices, show->position);
+    fit_obstacles(show);
+    view_fit_orbit(&sight->fit, &sight->fitted);
+    if (!moved)
+        sight->orbit = sight->fitted;
+}
+
+struct view_sight *view_show_sight(struct view_show *show)
+{
+    return &show->sight;
 }
 
 void view_show_wire(struct view_show *show, bool wire)
@@ -209,7 +237,7 @@ void view_show_shadows(struct view_show *show, bool shadows)
 int view_show_window(struct view_show *show, int width, int height, struct cloth_error *error)
 {
     struct view_camera camera;
-    view_orbit_camera(&show->orbit, (double)width / height, &camera);
+    view_orbit_camera(&show->sight.orbit, (double)width / height, &camera);
     const int code = move_scene(show, error);
     return code ? code : view_window_draw(width, height, show->scene, &camera, error);
 }

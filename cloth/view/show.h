@@ -34,6 +34,16 @@ int view_show_picture(struct view_show *show, struct view_picture *picture,
                       struct cloth_error *error);
 /* The camera of view_show_picture, which turns around the cloth. */
 struct view_orbit *view_show_orbit(struct view_show *show);
+/* The camera as it was fitted. */
+void view_show_recentre(struct view_show *show);
+/* Fits it to the frame read last, too; unless somebody moved it, it is as fitted then. */
+void view_show_follow(struct view_show *show);
+/* The camera with all that it was fitted to, for another show of the same cloth. */
+struct view_sight {
+    struct view_fit fit;
+    struct view_orbit orbit, fitted; /* as it is; as the fit has it */
+};
+struct view_sight *view_show_sight(struct view_show *show);
 /* Draws the frame into a window of that size. */
 int view_show_window(struct view_show *show, int width, int height, struct cloth_error *error);
 void view_show_wire(struct view_show *show, bool wire);

@@ -14,6 +14,7 @@
 
 static const double SEEN = 2.0;   /* s that the time line stays after the mouse has moved */
 static const double ASLEEP = 0.1; /* s between two looks at the clock */
+static const double AWAKE = 0.02; /* s between two looks for a frame that comes */
 static const double TURN = 180;   /* degrees that a drag across the window's height turns by */
 
 static const char *const HELP[] = {"space",       "play, pause",
@@ -36,9 +37,9 @@ struct window {
     const struct output_cache *cache;
     const char *folder;
     struct view_player player;
-    struct view_orbit first; /* the camera at the start */
-    double x, y;             /* of the mouse, where it was seen last */
-    double moved;            /* s: when that was; -SEEN: never */
+    struct view_live *live; /* NULL: a folder */
+    double x, y;            /* of the mouse, where it was seen last */
+    double moved;           /* s: when that was; -SEEN: never */
     bool wire, help, save, seeking, changed;
 };
 
@@ -50,7 +51,7 @@ static struct window *window_of(GLFWwindow *glfw)
 static void on_camera_key(struct window *w, int key)
 {
     if (key == GLFW_KEY_R)
-        *view_show_orbit(w->show) = w->first;
+        view_show_recentre(w->show);
     if (key == GLFW_KEY_W)
         view_show_wire(w->show, w->wire = !w->wire);
     if (key == GLFW_KEY_H || key == GLFW_KEY_F1)
@@ -182,6 +183,10 @@ static int open_glfw(struct window *w, const struct view_wish *wish, struct clot
 
 static void name_frame(const struct window *w, size_t size, char line[size])
 {
+    if (w->live) {
+        snprintf(line, size, "%s", w->live->line);
+        return;
+    }
     snprintf(line, size, "frame %" PRIu64 " of 0 to %" PRIu64 ", %.4g s, %.4g frames a second",
              w->player.frame, w->player.n_frames - 1, w->cache->time[w->player.frame],
              w->player.rate);
@@ -199,7 +204,7 @@ static void set_title(const struct window *w)
 
 static bool has_overlay(const struct window *w, double now)
 {
-    return w->help || w->player.playing || now - w->moved < SEEN;
+    return w->help || w->player.playing || now - w->moved < SEEN || (w->live && w->live->waits);
 }
 
 static int draw_overlay(struct window *w, int width, int height, struct cloth_error *error)
@@ -208,7 +213,9 @@ static int draw_overlay(struct window *w, int width, int height, struct cloth_er
     char line[120];
     name_frame(w, sizeof line, line);
     const struct view_overlay_text text = {
-        .part = last ? (double)w->player.frame / (double)last : 1,
+        .part = w->live ? -1
+                : last  ? (double)w->player.frame / (double)last
+                        : 1,
         .status = line,
         .help = w->help ? HELP : NULL,
     };
@@ -235,7 +242,8 @@ static int save(struct window *w, struct cloth_error *error)
 {
     struct view_picture picture = {.rgb = NULL};
     char name[64];
-    snprintf(name, sizeof name, "duite-view-%" PRIu64 ".png", w->player.frame);
+    snprintf(name, sizeof name, "duite-view-%" PRIu64 ".png",
+             w->live ? w->live->frame : w->player.frame);
     glfwGetFramebufferSize(w->glfw, &picture.width, &picture.height);
     int code = view_show_picture(w->show, &picture, error);
     code = code ? code : view_picture_write(&picture, name, error);
@@ -246,12 +254,27 @@ static int save(struct window *w, struct cloth_error *error)
     return code;
 }
 
+/* Takes what has come of a run, and what is to be said of it. */
+static int look(struct window *w, struct cloth_error *error)
+{
+    if (!w->live)
+        return 0;
+    const bool waited = w->live->waits;
+    const int code = w->live->look(w->live, error);
+    w->show = w->live->show;
+    if (w->live->fresh && !code)
+        view_show_wire(w->show, w->wire);
+    w->changed = w->changed || w->live->fresh || w->live->waits != waited;
+    return code;
+}
+
 static int run(struct window *w, struct cloth_error *error)
 {
     uint64_t seen = w->player.frame;
     bool overlaid = false;
     int code = view_show_frame(w->show, seen, error);
-    for (w->changed = true; !code && !glfwWindowShouldClose(w->glfw);) {
+    for (w->changed = true; !code && !glfwWindowShouldClose(w->glfw);
+         code = code ? code : look(w, error)) {
         const double now = glfwGetTime();
         const uint64_t frame = view_player_at(&w->player, now);
         const bool overlay = has_overlay(w, now);
@@ -269,28 +292,40 @@ static int run(struct window *w, struct cloth_error *error)
         if (w->player.playing)
             glfwPollEvents();
         else
-            glfwWaitEventsTimeout(ASLEEP);
+            glfwWaitEventsTimeout(w->live ? AWAKE : ASLEEP);
     }
+    return code;
+}
+
+static int open_and_run(struct window *w, const struct view_wish *wish, struct cloth_error *error)
+{
+    w->folder = wish->folder;
+    w->wire = wish->wire;
+    w->moved = -SEEN;
+    int code = open_glfw(w, wish, error);
+    code = code ? code : view_overlay_new(&w->overlay, error);
+    code = code ? code : run(w, error);
+    if (w->glfw) {
+        view_overlay_free(w->overlay);
+        if (w->show)
+            view_show_undraw(w->show);
+    }
+    glfwTerminate();
     return code;
 }
 
 int view_window(struct view_show *show, const struct output_cache *cache,
                 const struct view_wish *wish, uint64_t frame, struct cloth_error *error)
 {
-    struct window w = {.show = show,
-                       .cache = cache,
-                       .folder = wish->folder,
-                       .first = *view_show_orbit(show),
-                       .wire = wish->wire,
-                       .moved = -SEEN};
+    struct window w = {.show = show, .cache = cache};
     view_player_start(&w.player, cache->n_frames, frame, cache->fps);
-    int code = open_glfw(&w, wish, error);
-    code = code ? code : view_overlay_new(&w.overlay, error);
-    code = code ? code : run(&w, error);
-    if (w.glfw) {
-        view_overlay_free(w.overlay);
-        view_show_undraw(show);
-    }
-    glfwTerminate();
-    return code;
+    return open_and_run(&w, wish, error);
+}
+
+int view_window_live(struct view_live *live, const struct view_wish *wish,
+                     struct cloth_error *error)
+{
+    struct window w = {.show = live->show, .live = live};
+    view_player_start(&w.player, 1, 0, 1);
+    return open_and_run(&w, wish, error);
 }

@@ -16,6 +16,13 @@ dist_check_SCRIPTS += tests/whole/test_capstan.sh tests/whole/test_contact.sh te
 TESTS += tests/whole/test_capstan.sh tests/whole/test_contact.sh tests/whole/test_contact_force.sh tests/whole/test_contact_laws.sh tests/whole/test_input.sh tests/whole/test_intersections.sh tests/whole/test_options.sh
 dist_check_SCRIPTS += tests/whole/test_policies.sh
 TESTS += tests/whole/test_policies.sh
+dist_check_SCRIPTS += tests/whole/test_live.sh
+TESTS += tests/whole/test_live.sh
+if HAVE_ZMQ
+check_PROGRAMS += tests/whole/live_peer
+tests_whole_live_peer_SOURCES = tests/whole/live_peer.c
+tests_whole_live_peer_LDADD = libduite_cloth.la libduite_core.la $(ZMQ_LIBS) $(XXHASH_LIBS)
+endif
 dist_check_SCRIPTS += tests/whole/test_signals.sh tests/whole/test_lock.sh
 TESTS += tests/whole/test_signals.sh tests/whole/test_lock.sh
 dist_check_SCRIPTS += tests/whole/test_simd.sh

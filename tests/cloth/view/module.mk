@@ -1,5 +1,5 @@
-dist_check_SCRIPTS += tests/cloth/view/test_view.sh tests/cloth/view/test_window.sh
-TESTS += tests/cloth/view/test_view.sh tests/cloth/view/test_window.sh
+dist_check_SCRIPTS += tests/cloth/view/test_view.sh tests/cloth/view/test_window.sh tests/cloth/view/test_window_live.sh
+TESTS += tests/cloth/view/test_view.sh tests/cloth/view/test_window.sh tests/cloth/view/test_window_live.sh
 
 if HAVE_VIEW
 check_PROGRAMS += tests/cloth/view/alike

@@ -4,44 +4,17 @@
 . "${srcdir:-.}/tests/support/tap.sh"
 skip_unless "$DUITE_VIEW"
 grep -q '^#define HAVE_WINDOW 1' config.h || skip_all "built without windows"
-command -v Xvfb > /dev/null || skip_all "Xvfb is not installed"
+. "$srcdir/tests/support/screen.sh"
 plan_later
 
-width=480 height=300
-size=${width}x$height
 dir=$scratch/frames
-screen=$scratch/screen/Xvfb_screen0
-mkdir "$scratch/screen"
 sed 's/nx: 150, ny: 150/nx: 20, ny: 20/' "$srcdir/cloth/scenes/sheet.yaml" > "$scratch/small.yaml"
 # What the simulator leaks is looked for in its own tests.
 ok "frames" env ASAN_OPTIONS="${ASAN_OPTIONS:-}:detect_leaks=0" "$DUITE_CLOTH" "$scratch/small.yaml" --end 0.16 --output "$dir"
+viewer=
+trap 'kill $xvfb $viewer 2> /dev/null; tap_end' EXIT
 picture() { limited "$DUITE_VIEW" "$dir" --size $size "$@"; }
 
-display=
-Xvfb -displayfd 3 -screen 0 ${width}x${height}x24 -fbdir "$scratch/screen" 3> "$scratch/display" > "$scratch/xvfb" 2>&1 &
-xvfb=$!
-trap 'kill $xvfb $viewer 2> /dev/null; tap_end' EXIT
-viewer=
-awaits $xvfb test -s "$scratch/display" || skip_all "Xvfb does not start"
-display=:$(cat "$scratch/display")
-
-# shows PICTURE: the screen comes to be like it, within 20 seconds: colours differ by 2 of 255 in the mean, and at most 0.5 % of
-# the pixels by more than 16.
-is_like() { ./tests/cloth/view/alike "$1" "$screen" | awk '{print; exit !($1 <= 2 && $2 <= 0.5)}'; }
-shows() {
-    for try in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20; do
-        is_like "$1" && return 0
-        sleep 1
-    done
-    return 1
-}
-comes_to_differ() {
-    for try in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20; do
-        is_like "$1" || return 0
-        sleep 1
-    done
-    return 1
-}
 # Drivers of OpenGL are unloaded before leaks are looked for, so theirs cannot be told from ours; test_picture looks for ours.
 opens() { # OPTION...
     (cd "$scratch" && DISPLAY=$display ASAN_OPTIONS="${ASAN_OPTIONS:-}:detect_leaks=0" exec "$DUITE_VIEW" "$dir" --size $size "$@") > "$scratch/window" 2>&1 &

@@ -1,0 +1,270 @@
+/* One request is under way at most: the next one is sent when the caller looks again, so that it
+ * gets the frame that is newest then. A connection that is lost comes back by itself, and ZeroMQ's
+ * monitor tells of both. */
+#include "cloth/live/live.h"
+#include "cloth/live/scene.h"
+
+#include "cloth/base/memory.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <zmq.h>
+
+enum { PATH = 300, STATE = 500 };
+
+struct live_follower {
+    void *zmq, *socket, *monitor;
+    char host[PATH];
+    bool connected, asked; /* asked: an answer is due */
+    bool ended;            /* the run said so */
+    uint64_t run, scene;   /* had; 0: none */
+    uint64_t next;         /* the first frame that is not had */
+    double time;           /* s: of the one before it */
+    struct output_cache cache,
+        coming; /* coming: of a scene without a frame so far, or adopted yet */
+    bool is_coming;
+    char state[STATE];
+};
+
+static double now(void)
+{
+    struct timespec time;
+    clock_gettime(CLOCK_MONOTONIC, &time);
+    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
+}
+
+/* ---- Opening ---- */
+
+static int fail_zmq(const char *what, struct cloth_error *error)
+{
+    return cloth_fail(error, CLOTH_E_LIBRARY, "--connect: ZeroMQ cannot %s: %s", what,
+                      zmq_strerror(errno));
+}
+
+/* By ZMQ_IPV6 `localhost' would be ::1 alone, where a run does not listen. */
+static int set_options(void *socket, const char *host, struct cloth_error *error)
+{
+    const int none = 0, yes = 1, seldom = 1000, six = *host == '[';
+    const int64_t most = LIVE_MAX_BYTES;
+    if (zmq_setsockopt(socket, ZMQ_LINGER, &none, sizeof none) ||
+        zmq_setsockopt(socket, ZMQ_IMMEDIATE, &yes, sizeof yes) ||
+        zmq_setsockopt(socket, ZMQ_RECONNECT_IVL_MAX, &seldom, sizeof seldom) ||
+        zmq_setsockopt(socket, ZMQ_MAXMSGSIZE, &most, sizeof most) ||
+        zmq_setsockopt(socket, ZMQ_IPV6, &six, sizeof six) ||
+        zmq_setsockopt(socket, ZMQ_TCP_KEEPALIVE, &yes, sizeof yes))
+        return fail_zmq("set up its socket", error);
+    return 0;
+}
+
+static int watch_connection(struct live_follower *follower, struct cloth_error *error)
+{
+    static const char endpoint[] = "inproc://connection";
+    const int none = 0;
+    if (zmq_socket_monitor(follower->socket, endpoint,
+                           ZMQ_EVENT_HANDSHAKE_SUCCEEDED | ZMQ_EVENT_DISCONNECTED))
+        return fail_zmq("watch its socket", error);
+    follower->monitor = zmq_socket(follower->zmq, ZMQ_PAIR);
+    if (!follower->monitor || zmq_setsockopt(follower->monitor, ZMQ_LINGER, &none, sizeof none) ||
+        zmq_connect(follower->monitor, endpoint))
+        return fail_zmq("watch its socket", error);
+    return 0;
+}
+
+static int start(struct live_follower *follower, struct cloth_error *error)
+{
+    char endpoint[PATH + 10];
+    snprintf(endpoint, sizeof endpoint, "tcp://%s", follower->host);
+    follower->zmq = zmq_ctx_new();
+    follower->socket = follower->zmq ? zmq_socket(follower->zmq, ZMQ_DEALER) : NULL;
+    if (!follower->socket)
+        return fail_zmq("start", error);
+    int code = set_options(follower->socket, follower->host, error);
+    code = code ? code : watch_connection(follower, error);
+    if (!code && zmq_connect(follower->socket, endpoint))
+        code = cloth_fail(error, CLOTH_E_INPUT, "--connect %s: %s", follower->host,
+                          zmq_strerror(errno));
+    return code;
+}
+
+int live_follow_open(struct live_follower **follower, const char *host, struct cloth_error *error)
+{
+    struct live_follower *made = *follower = cloth_alloc(1, sizeof *made, error);
+    if (!made)
+        return CLOTH_E_MEMORY;
+    snprintf(made->host, sizeof made->host, "%s", host);
+    return start(made, error);
+}
+
+/* ---- What comes ---- */
+
+/* The monitor's events: a number, and a part with the address, which is not needed. */
+static void take_events(struct live_follower *follower)
+{
+    zmq_msg_t part;
+    zmq_msg_init(&part);
+    while (zmq_msg_recv(&part, follower->monitor, ZMQ_DONTWAIT) >= 0) {
+        uint16_t event = 0;
+        if (zmq_msg_size(&part) >= sizeof event)
+            memcpy(&event, zmq_msg_data(&part), sizeof event);
+        follower->connected = event == ZMQ_EVENT_HANDSHAKE_SUCCEEDED;
+        follower->asked = false;
+        follower->ended = follower->ended && !follower->connected;
+        while (zmq_msg_more(&part) && zmq_msg_recv(&part, follower->monitor, 0) >= 0)
+            continue;
+    }
+    zmq_msg_close(&part);
+}
+
+static void ask(struct live_follower *follower)
+{
+    const struct live_message request = {.kind = LIVE_REQUEST,
+                                         .run = follower->run,
+                                         .scene = follower->scene,
+                                         .number = follower->next};
+    unsigned char bytes[LIVE_REQUEST_BYTES];
+    const size_t n = live_message_write(bytes, &request);
+    follower->asked = zmq_send(follower->socket, bytes, n, ZMQ_DONTWAIT) >= 0;
+}
+
+static int take_scene(struct live_follower *follower, const struct live_message *scene,
+                      struct cloth_error *error)
+{
+    if (follower->is_coming)
+        output_cache_close(&follower->coming);
+    follower->is_coming = false;
+    const int code = live_scene_open(scene, &follower->coming, error);
+    if (code)
+        return code;
+    follower->is_coming = true;
+    follower->next = scene->run == follower->run ? follower->next : 0;
+    follower->run = scene->run;
+    follower->scene = scene->scene;
+    return 0;
+}
+
+/* One of a run that is not the scene's comes when runs change: the next answer is the scene. */
+static int take_frame(struct live_follower *follower, const struct live_message *frame,
+                      enum live_news *news, struct cloth_error *error)
+{
+    if (!follower->scene || frame->run != follower->run)
+        return 0;
+    const int code =
+        live_frame_show(frame, follower->is_coming ? &follower->coming : &follower->cache, error);
+    if (code)
+        return code;
+    follower->next = frame->number + 1;
+    follower->time = frame->time;
+    *news = follower->is_coming ? LIVE_NEW_SCENE : LIVE_NEW_FRAME;
+    return 0;
+}
+
+static int take_message(struct live_follower *follower, zmq_msg_t *message, enum live_news *news,
+                        struct cloth_error *error)
+{
+    struct cloth_error inner = {0};
+    struct live_message said;
+    int code = live_message_read(zmq_msg_data(message), zmq_msg_size(message), &said, &inner);
+    follower->asked = false;
+    if (!code && said.kind == LIVE_SCENE)
+        code = take_scene(follower, &said, &inner);
+    else if (!code && said.kind == LIVE_FRAME)
+        code = take_frame(follower, &said, news, &inner);
+    else if (!code && said.kind == LIVE_END)
+        follower->ended = follower->asked = true; /* no more answers come from there */
+    return code ? cloth_fail(error, code, "--connect %s: %s", follower->host, inner.text) : 0;
+}
+
+/* Parts beyond the first are no message of ours: each is read as one. */
+static int take_messages(struct live_follower *follower, enum live_news *news,
+                         struct cloth_error *error)
+{
+    zmq_msg_t message;
+    int code = 0;
+    zmq_msg_init(&message);
+    while (!code && *news == LIVE_NOTHING &&
+           zmq_msg_recv(&message, follower->socket, ZMQ_DONTWAIT) >= 0)
+        code = take_message(follower, &message, news, error);
+    zmq_msg_close(&message);
+    return code;
+}
+
+int live_follow(struct live_follower *follower, double seconds, enum live_news *news,
+                struct cloth_error *error)
+{
+    const double end = now() + seconds;
+    int code = 0;
+    for (*news = LIVE_NOTHING; !code && *news == LIVE_NOTHING;) {
+        zmq_pollitem_t item[2] = {{.socket = follower->socket, .events = ZMQ_POLLIN},
+                                  {.socket = follower->monitor, .events = ZMQ_POLLIN}};
+        take_events(follower);
+        code = take_messages(follower, news, error);
+        const double left = end - now();
+        if (!code && follower->connected && !follower->asked && *news == LIVE_NOTHING)
+            ask(follower);
+        if (!(left > 0) || code || *news != LIVE_NOTHING)
+            break;
+        if (zmq_poll(item, 2, (long)ceil(1e3 * left)) < 0 && errno != EINTR)
+            code = fail_zmq("wait", error);
+    }
+    return code;
+}
+
+/* ---- What it came to ---- */
+
+struct output_cache *live_follow_cache(struct live_follower *follower)
+{
+    if (follower->is_coming) {
+        output_cache_close(&follower->cache);
+        follower->cache = follower->coming;
+        follower->coming = (struct output_cache){0};
+        follower->is_coming = false;
+    }
+    return &follower->cache;
+}
+
+uint64_t live_follow_frame(const struct live_follower *follower)
+{
+    return follower->next ? follower->next - 1 : 0;
+}
+
+const char *live_follow_state(struct live_follower *follower, bool *waits)
+{
+    const bool sends = follower->connected && !follower->ended;
+    char *to = follower->state;
+    *waits = !sends || !follower->next;
+    if (!*waits)
+        snprintf(to, STATE, "frame %" PRIu64 ", %.4g s, live from %s", follower->next - 1,
+                 follower->time, follower->host);
+    else if (sends)
+        snprintf(to, STATE, "connected to %s: waits for the first frame", follower->host);
+    else if (!follower->next)
+        snprintf(to, STATE, "waits for a run at %s", follower->host);
+    else
+        snprintf(to, STATE, "the run %s at frame %" PRIu64 "; waits for the next one at %s",
+                 follower->ended ? "has ended" : "ended, or was lost,", follower->next - 1,
+                 follower->host);
+    return to;
+}
+
+void live_follow_close(struct live_follower **follower)
+{
+    struct live_follower *gone = *follower;
+    *follower = NULL;
+    if (!gone)
+        return;
+    if (gone->socket)
+        zmq_close(gone->socket);
+    if (gone->monitor)
+        zmq_close(gone->monitor);
+    if (gone->zmq)
+        zmq_ctx_term(gone->zmq);
+    output_cache_close(&gone->cache);
+    if (gone->is_coming)
+        output_cache_close(&gone->coming);
+    free(gone);
+}

@@ -1,0 +1,62 @@
+#ifndef CLOTH_LIVE_PUBLISHER_H
+#define CLOTH_LIVE_PUBLISHER_H
+
+#include "cloth/live/live.h"
+
+#include <pthread.h>
+#include <zmq.h>
+
+/* What publish.c, for the run, and serve.c, for the thread, share. */
+
+enum { LIVE_VIEWERS = 64, LIVE_ID = 255, LIVE_ADDRESS = 300 };
+
+/* Bytes on their way from the run to the thread. */
+struct live_bytes {
+    unsigned char *data;
+    size_t n;
+    uint64_t number; /* of the scene, from 1, or frame, from 0 */
+    bool fresh;      /* the thread has not taken them */
+};
+
+/* Who asked, and what it has. */
+struct live_viewer {
+    unsigned char id[LIVE_ID]; /* ZeroMQ's name of the connection */
+    size_t n_id;               /* 0: no viewer */
+    bool delimited;            /* its messages begin with an empty part, as those of REQ sockets */
+    bool waits;                /* for another scene, or a frame from `next` on */
+    uint64_t scene;            /* of this run that it has; 0: none */
+    uint64_t next;             /* the first frame that was not sent to it */
+    double asked;              /* s: when it did last */
+};
+
+struct live_publisher {
+    void *zmq, *socket;
+    int wake; /* an eventfd, which the run writes to when there is something new; -1: none */
+    char address[LIVE_ADDRESS];
+    void (*warn)(const char *text);
+    uint64_t run;
+    pthread_t thread;
+    bool has_thread;
+    /* the run's */
+    uint64_t scenes; /* so far */
+    const struct contact_bodies *bodies;
+    bool *posed; /* of each of them */
+    uint32_t n_bodies, n_vertices, n_body_vertices;
+    double begin;
+    phys_vec *place;      /* room for the vertices of the largest body that changes its shape */
+    unsigned char *spare; /* room for a frame */
+    pthread_mutex_t lock; /* of what follows */
+    struct live_bytes scene, frame;
+    bool ends;
+    /* the thread's; messages of no bytes: there is none */
+    unsigned char *own; /* room for a frame */
+    zmq_msg_t scene_message, frame_message;
+    uint64_t scene_number, frames; /* that it has; the newest one's number + 1 */
+    struct live_viewer viewer[LIVE_VIEWERS];
+    bool warned_version, warned_bytes;
+};
+
+/* The thread. context: the publisher. */
+void *live_serve(void *context);
+
+#endif

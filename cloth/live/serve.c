@@ -1,0 +1,246 @@
+/* The thread that has the socket. A viewer is answered when it asks and there is something that it
+ * has not: nothing is ever sent unasked, but that the run is over. Messages are made once for all
+ * viewers, when the first one wants them. */
+#include "cloth/live/publisher.h"
+#include "cloth/live/scene.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+static const double LATELY = 2; /* s: who asked within it is awake */
+static const double GRACE = 1;  /* s that viewers have at the end */
+enum { LINGER = 2000 };         /* ms that ZeroMQ has then to send what it took */
+
+static double now(void)
+{
+    struct timespec time;
+    clock_gettime(CLOCK_MONOTONIC, &time);
+    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
+}
+
+/* ---- What the run left ---- */
+
+/* A message of a copy of the bytes; without memory it stays without any. */
+static void fill(zmq_msg_t *message, const unsigned char *bytes, size_t n)
+{
+    zmq_msg_close(message);
+    if (zmq_msg_init_size(message, n))
+        zmq_msg_init(message);
+    else
+        memcpy(zmq_msg_data(message), bytes, n);
+}
+
+/* The frame's bytes are the thread's then, to be sealed and sent when somebody asks. */
+static void take_news(struct live_publisher *p)
+{
+    uint64_t wakes;
+    const bool woken = read(p->wake, &wakes, sizeof wakes) > 0;
+    if (!woken)
+        return;
+    pthread_mutex_lock(&p->lock);
+    if (p->scene.fresh) {
+        fill(&p->scene_message, p->scene.data, p->scene.n);
+        p->scene_number = p->scene.number;
+    }
+    if (p->frame.fresh) {
+        unsigned char *older = p->own;
+        p->own = p->frame.data;
+        p->frame.data = older;
+        zmq_msg_close(&p->frame_message);
+        zmq_msg_init(&p->frame_message);
+        p->frames = p->frame.number + 1;
+    }
+    p->scene.fresh = p->frame.fresh = false;
+    pthread_mutex_unlock(&p->lock);
+}
+
+static zmq_msg_t *frame_message(struct live_publisher *p)
+{
+    if (!zmq_msg_size(&p->frame_message)) {
+        live_message_seal(p->own, p->frame.n, LIVE_FRAME);
+        fill(&p->frame_message, p->own, p->frame.n);
+    }
+    return &p->frame_message;
+}
+
+/* ---- Answers ---- */
+
+/* The socket drops what a viewer has no room for; no call waits. */
+static void send_message(struct live_publisher *p, const struct live_viewer *to, zmq_msg_t *message)
+{
+    zmq_msg_t copy;
+    zmq_send(p->socket, to->id, to->n_id, ZMQ_SNDMORE | ZMQ_DONTWAIT);
+    if (to->delimited)
+        zmq_send(p->socket, "", 0, ZMQ_SNDMORE | ZMQ_DONTWAIT);
+    zmq_msg_init(&copy);
+    zmq_msg_copy(&copy, message);
+    if (zmq_msg_send(&copy, p->socket, ZMQ_DONTWAIT) < 0)
+        zmq_msg_close(&copy);
+}
+
+static void send_end(struct live_publisher *p, const struct live_viewer *to)
+{
+    const struct live_message end = {.kind = LIVE_END, .run = p->run, .number = p->frames};
+    unsigned char bytes[LIVE_REQUEST_BYTES];
+    zmq_msg_t message;
+    zmq_msg_init(&message);
+    fill(&message, bytes, live_message_write(bytes, &end));
+    send_message(p, to, &message);
+    zmq_msg_close(&message);
+}
+
+/* If there is something that it has not. */
+static void answer_viewer(struct live_publisher *p, struct live_viewer *viewer)
+{
+    const bool lacks_scene = viewer->scene != p->scene_number;
+    if (!viewer->waits || !p->scene_number || (!lacks_scene && p->frames <= viewer->next))
+        return;
+    send_message(p, viewer, lacks_scene ? &p->scene_message : frame_message(p));
+    viewer->waits = false;
+    if (!lacks_scene)
+        viewer->next = p->frames;
+}
+
+/* Who is known, or took part longest ago. */
+static struct live_viewer *find_viewer(struct live_publisher *p, const struct live_viewer *who)
+{
+    struct live_viewer *oldest = p->viewer;
+    for (int i = 0; i < LIVE_VIEWERS; i++) {
+        struct live_viewer *viewer = p->viewer + i;
+        if (viewer->n_id == who->n_id && !memcmp(viewer->id, who->id, who->n_id))
+            return viewer;
+        if (viewer->asked < oldest->asked)
+            oldest = viewer;
+    }
+    return oldest;
+}
+
+static void warn_once(struct live_publisher *p, bool *warned, const char *text)
+{
+    char line[400];
+    snprintf(line, sizeof line, "--live: what came to port %s is left without an answer: %.200s",
+             strrchr(p->address, ':') + 1, text);
+    if (!*warned)
+        p->warn(line);
+    *warned = true;
+}
+
+static void take_request(struct live_publisher *p, struct live_viewer *who, zmq_msg_t *body)
+{
+    struct cloth_error error = {0};
+    struct live_message request;
+    if (live_message_read(zmq_msg_data(body), zmq_msg_size(body), &request, &error) ||
+        request.kind != LIVE_REQUEST) {
+        cloth_fail(&error, CLOTH_E_INPUT, "it is no request of a viewer");
+        const bool other = request.version && request.version != LIVE_VERSION;
+        if (other)
+            send_end(p, who); /* its version tells the viewer */
+        warn_once(p, other ? &p->warned_version : &p->warned_bytes, error.text);
+        return;
+    }
+    struct live_viewer *viewer = find_viewer(p, who);
+    *viewer = *who;
+    viewer->asked = now();
+    viewer->scene = request.run == p->run ? request.scene : 0;
+    viewer->next = request.run == p->run ? request.number : 0;
+    viewer->waits = true;
+}
+
+/* ---- Requests ---- */
+
+/* Receives one: who sent it, and its last part. false: there is none. *good: it has the parts of a
+ * request. */
+static bool receive(struct live_publisher *p, struct live_viewer *who, zmq_msg_t *part, bool *good)
+{
+    int parts = 0;
+    bool more = true;
+    *who = (struct live_viewer){0};
+    for (; more; parts++) {
+        if (parts == 2)
+            who->delimited = !zmq_msg_size(part);
+        if (zmq_msg_recv(part, p->socket, ZMQ_DONTWAIT) < 0)
+            return false;
+        more = zmq_msg_more(part);
+        if (parts == 0 && zmq_msg_size(part) <= LIVE_ID) {
+            who->n_id = zmq_msg_size(part);
+            memcpy(who->id, zmq_msg_data(part), who->n_id);
+        }
+    }
+    *good = who->n_id && (parts == 2 || (parts == 3 && who->delimited));
+    return true;
+}
+
+/* As many as there are, but not for ever: frames come, too. */
+static void take_requests(struct live_publisher *p)
+{
+    struct live_viewer who;
+    zmq_msg_t part;
+    bool good = false;
+    zmq_msg_init(&part);
+    for (int i = 0; i < LIVE_VIEWERS && receive(p, &who, &part, &good); i++)
+        if (good)
+            take_request(p, &who, &part);
+    zmq_msg_close(&part);
+}
+
+/* ---- The end ---- */
+
+/* Whether a viewer that is awake has not asked for the last frame yet. */
+static bool is_behind(const struct live_publisher *p, double at)
+{
+    for (int i = 0; i < LIVE_VIEWERS; i++) {
+        const struct live_viewer *viewer = p->viewer + i;
+        if (viewer->n_id && !viewer->waits && viewer->next < p->frames &&
+            at - viewer->asked < LATELY)
+            return true;
+    }
+    return false;
+}
+
+static void end_all(struct live_publisher *p)
+{
+    const int linger = LINGER;
+    const double at = now();
+    for (int i = 0; i < LIVE_VIEWERS; i++) {
+        const struct live_viewer *viewer = p->viewer + i;
+        const bool lately = viewer->n_id && at - viewer->asked < LATELY;
+        if (viewer->waits || lately)
+            send_end(p, viewer);
+        if (lately)
+            zmq_setsockopt(p->socket, ZMQ_LINGER, &linger, sizeof linger);
+    }
+}
+
+static bool has_ended(struct live_publisher *p)
+{
+    pthread_mutex_lock(&p->lock);
+    const bool ends = p->ends;
+    pthread_mutex_unlock(&p->lock);
+    return ends;
+}
+
+void *live_serve(void *context)
+{
+    struct live_publisher *p = context;
+    double ended = 0;
+    for (;;) {
+        zmq_pollitem_t item[2] = {{.socket = p->socket, .events = ZMQ_POLLIN},
+                                  {.fd = p->wake, .events = ZMQ_POLLIN}};
+        const bool ending = ended > 0;
+        if (zmq_poll(item, 2, ending ? 10 : -1) < 0 && errno != EINTR)
+            break;
+        take_news(p);
+        take_requests(p);
+        for (int i = 0; i < LIVE_VIEWERS; i++)
+            answer_viewer(p, p->viewer + i);
+        if (!ending && has_ended(p))
+            ended = now();
+        if (ended > 0 && (!is_behind(p, ended) || now() - ended > GRACE))
+            break;
+    }
+    end_all(p);
+    return NULL;
+}

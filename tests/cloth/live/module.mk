@@ -1,0 +1,8 @@
+if HAVE_CHECK
+check_PROGRAMS += tests/cloth/live/test_message tests/cloth/live/test_scene
+tests_cloth_live_test_message_SOURCES = tests/cloth/live/test_message.c
+tests_cloth_live_test_message_LDADD = $(CLOTH_TEST_LIBS)
+tests_cloth_live_test_scene_SOURCES = tests/cloth/live/test_scene.c tests/cloth/contact/bodies.h
+tests_cloth_live_test_scene_LDADD = tests/cloth/output/libsample.la $(CLOTH_TEST_LIBS)
+TESTS += tests/cloth/live/test_message tests/cloth/live/test_scene
+endif

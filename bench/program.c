@@ -34,11 +34,18 @@
 #define HDF5_MISSING "libhdf5-openmpi-dev"
 #endif
 
+#ifdef HAVE_ZMQ
+#define ZMQ_MISSING ""
+#else
+#define ZMQ_MISSING "libzmq3-dev"
+#endif
+
 static const struct program PROGRAMS[] = {
     {"duite", NULL, "", NULL, NULL, false, {0}, {0}},
     {"duite_hosts", NULL, "", NULL, NULL, true, {0}, {0}},
     {"duite_valgrind", NULL, "", NULL, "valgrind", false, {0}, {0}},
     {"duite_hdf5", NULL, HDF5_MISSING, NULL, NULL, false, {0}, {0}},
+    {"duite_live", NULL, ZMQ_MISSING, NULL, NULL, false, {0}, {0}},
     {"view", "output/draw", BENCH_VIEW_MISSING, NULL, NULL, false, {0}, {0}},
     {"film", "output/draw", BENCH_VIEW_MISSING, NULL, "ffmpeg", false, {0}, {0}},
     {"blender", NULL, "", NULL, "blender", false, {0}, {0}},

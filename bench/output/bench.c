@@ -28,6 +28,16 @@ static void plan_checkpoints(struct measure *measure, const struct bench_options
     measure_ratio(measure, with, without, "checkpoint_slowdown");
 }
 
+static void plan_live(struct measure *measure, const struct bench_options *options)
+{
+    const struct measure_series *live = simulate(measure, options, "duite_live", "live");
+    const struct measure_series *stopped = simulate(measure, options, "duite_live", "stopped");
+    const struct measure_series *without = simulate(measure, options, "duite", "none");
+    measure_value(measure, without, 1, "s", "not_live_seconds");
+    measure_ratio(measure, live, without, "live_slowdown");
+    measure_ratio(measure, stopped, without, "live_stopped_slowdown");
+}
+
 static void plan_write(struct measure *measure, const struct bench_options *options)
 {
     const struct subject_shape ours = {"duite", 0, options->threads};
@@ -61,6 +71,9 @@ static void plan_film(struct measure *measure, const struct bench_options *optio
 static const struct bench_case FRAMES = {
     "frames", "duite-cloth on the sheet, 25 frames a second to HDF5 against no output", plan_frames,
     output_runs, 8};
+static const struct bench_case LIVE = {
+    "live", "the same published by --live, to a viewer that takes all, and to one that is stopped",
+    plan_live, NULL, 8};
 static const struct bench_case CHECKPOINTS = {
     "checkpoints", "the same with frames, a checkpoint a second against none", plan_checkpoints,
     NULL, 8};
@@ -75,11 +88,13 @@ static const struct bench_case FILM = {
     "film", "duite-view --mp4: 12 frames of the sheet, 1280 x 720, drawn and encoded", plan_film,
     NULL, 3};
 
-static const struct bench_case *const CASES[] = {&FRAMES,    &CHECKPOINTS, &WRITE,
-                                                 &OFFSCREEN, &FILM,        NULL};
+static const struct bench_case *const CASES[] = {&FRAMES,    &LIVE, &CHECKPOINTS, &WRITE,
+                                                 &OFFSCREEN, &FILM, NULL};
 
 /* For two threads and the full sizes. */
 static const struct measure_target TARGETS[] = {{"frames_slowdown", 1.03, false},
+                                                {"live_slowdown", 1.03, false},
+                                                {"live_stopped_slowdown", 1.01, false},
                                                 {"checkpoint_vs_write", 1.5, false},
                                                 {"checkpoint_slowdown", 1.02, false},
                                                 {"offscreen_vs_plain", 2.5, false},
@@ -96,7 +111,7 @@ static int serve_output(const struct bench *bench)
 }
 
 const struct bench bench_output = {
-    "output",       "what frames, checkpoints, pictures and films cost",
+    "output",       "what frames, the live view, checkpoints, pictures and films cost",
     CASES,          TARGETS,
     TARGET_THREADS, serve_output,
     output_prepare, NULL};

@@ -13,10 +13,10 @@ enum { OUTPUT_PATH = 4200 };
 int output_prepare(const struct bench_options *options,
                    void (*say)(const char *key, const char *text));
 
-/* simulate output=none|frames|hdf5|checkpoints threads= scheduler= quick=: seconds of duite-cloth,
- * from its start to its end. All runs must end with the same state_hash, and write what they
- * should. write as=checkpoint|plain times=: seconds of writing the bytes of a checkpoint of the
- * sheet, of the fastest of so many. */
+/* simulate output=none|frames|hdf5|checkpoints|live|stopped threads= scheduler= quick=: seconds of
+ * duite-cloth, from its start to its end. All runs must end with the same state_hash, and write
+ * what they should; live and stopped have a viewer (viewer.h). write as=checkpoint|plain times=:
+ * seconds of writing the bytes of a checkpoint of the sheet, of the fastest of so many. */
 extern const struct serve_run output_runs[];
 
 #endif

@@ -3,6 +3,7 @@
 
 #include "bench/cg/cg.h"
 #include "bench/output/folder.h"
+#include "bench/output/viewer.h"
 #include "bench/program.h"
 #include "cloth/output/checkpoint.h"
 
@@ -13,7 +14,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { COMMAND = 3 * OUTPUT_PATH, HASH = 24 };
+enum { COMMAND = 3 * OUTPUT_PATH, HASH = 24, LAST_FRAME = 3 };
 
 #define QUICK_SHEET "--set cloths[0].mesh.grid.nx=20 --set cloths[0].mesh.grid.ny=20"
 
@@ -80,15 +81,22 @@ static int check_run(const char *folder, const char *output)
     return 0;
 }
 
+static bool has_viewer(const char *output)
+{
+    return !strcmp(output, "live") || !strcmp(output, "stopped");
+}
+
 static void write_arguments(struct serve_request *request, const char *output, const char *folder,
-                            char arguments[COMMAND])
+                            unsigned port, char arguments[COMMAND])
 {
     const char *extra = !strcmp(output, "hdf5")          ? "--set output.hdf5={}"
                         : !strcmp(output, "checkpoints") ? "--checkpoint 1"
                                                          : "";
     char scheduler[40], frames[OUTPUT_PATH + 40] = "";
     serve_word(request, "scheduler", scheduler, sizeof scheduler);
-    if (strcmp(output, "none"))
+    if (has_viewer(output))
+        snprintf(frames, sizeof frames, "--live %u", port);
+    else if (strcmp(output, "none"))
         snprintf(frames, sizeof frames, "--output '%s/frames'", folder);
     snprintf(arguments, COMMAND,
              "--end 0.12 --threads %u --scheduler %s --report '%s/report.json' %s %s",
@@ -113,18 +121,25 @@ static int make_folder(char folder[OUTPUT_PATH])
 static int simulate(void *context, struct serve_request *request, double *value)
 {
     char output[20], folder[OUTPUT_PATH], arguments[COMMAND];
+    struct output_viewer viewer = {0};
     (void)context;
     serve_word(request, "output", output, sizeof output);
     const bool quick = serve_number(request, "quick") != 0;
     int code = make_folder(folder);
     if (code)
         return code;
-    write_arguments(request, output, folder, arguments);
+    if (has_viewer(output))
+        code = output_viewer_start(&viewer, !strcmp(output, "stopped"));
+    write_arguments(request, output, folder, viewer.port, arguments);
     sync(); /* what earlier runs left to the disk is not this one's */
     const double begin = serve_seconds();
-    if (run_cloth(arguments, quick))
+    if (!code && run_cloth(arguments, quick))
         code = serve_fail("duite-cloth fails: %.150s", arguments);
     *value = serve_seconds() - begin;
+    if (viewer.process > 0) {
+        const int seen = output_viewer_end(&viewer, !quick && !code, LAST_FRAME);
+        code = code ? code : seen;
+    }
     code = code ? code : check_run(folder, output);
     remove_folder(folder);
     return code;

@@ -49,11 +49,11 @@ static int fail_zmq(const char *what, struct cloth_error *error)
 /* By ZMQ_IPV6 `localhost' would be ::1 alone, where a run does not listen. */
 static int set_options(void *socket, const char *host, struct cloth_error *error)
 {
-    const int none = 0, yes = 1, seldom = 1000, six = *host == '[';
+    const int none = 0, yes = 1, again = 250, six = *host == '[';
     const int64_t most = LIVE_MAX_BYTES;
     if (zmq_setsockopt(socket, ZMQ_LINGER, &none, sizeof none) ||
         zmq_setsockopt(socket, ZMQ_IMMEDIATE, &yes, sizeof yes) ||
-        zmq_setsockopt(socket, ZMQ_RECONNECT_IVL_MAX, &seldom, sizeof seldom) ||
+        zmq_setsockopt(socket, ZMQ_RECONNECT_IVL, &again, sizeof again) ||
         zmq_setsockopt(socket, ZMQ_MAXMSGSIZE, &most, sizeof most) ||
         zmq_setsockopt(socket, ZMQ_IPV6, &six, sizeof six) ||
         zmq_setsockopt(socket, ZMQ_TCP_KEEPALIVE, &yes, sizeof yes))

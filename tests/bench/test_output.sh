@@ -17,6 +17,8 @@ targets_listed() {
     targets output > "$scratch/targets"
     diff - "$scratch/targets" << 'END'
 frames_slowdown <= 1.03
+live_slowdown <= 1.03
+live_stopped_slowdown <= 1.01
 checkpoint_slowdown <= 1.02
 checkpoint_vs_write <= 1.5
 offscreen_frame_ms <= 150

@@ -1,5 +1,5 @@
-/* Boxes of edges sort out most pairs of them; of the rest every segment is tried with every other.
- */
+/* Segments are sorted along the longer axis of the loop; each is tried with those that it overlaps
+ * there. */
 #include "cloth/garment/detail/meet.h"
 #include "cloth/base/memory.h"
 
@@ -76,37 +76,65 @@ static bool pair_meets(const struct meet_loop *loop, uint32_t i, uint32_t j, dou
     return segments_meet(a, b, c, d, near);
 }
 
-static bool edges_meet(const struct meet_loop *loop, uint32_t e, uint32_t f, double near)
+/* A segment of the loop, from its number i on. */
+struct segment {
+    struct box box;
+    uint32_t i, edge;
+};
+
+static int by_low(const void *va, const void *vb, void *context)
 {
-    for (uint32_t i = loop->start[e]; i < loop->start[e + 1]; i++)
-        for (uint32_t j = e == f ? i + 1 : loop->start[f]; j < loop->start[f + 1]; j++)
-            if (pair_meets(loop, i, j, near))
-                return true;
-    return false;
+    const int axis = *(const int *)context;
+    const struct segment *a = va, *b = vb;
+    const double x = a->box.low[axis], y = b->box.low[axis];
+    return x < y ? -1 : x > y ? 1 : (a->i > b->i) - (a->i < b->i);
+}
+
+/* Makes the segments. Returns the axis along which the loop is longer. */
+static int take_segments(const struct meet_loop *loop, struct segment *segment)
+{
+    struct box all = {{INFINITY, INFINITY}, {-INFINITY, -INFINITY}};
+    for (uint32_t e = 0; e < loop->n_edges; e++)
+        for (uint32_t i = loop->start[e]; i < loop->start[e + 1]; i++) {
+            const struct box box = box_of(place_of(loop, i), place_of(loop, i + 1));
+            segment[i] = (struct segment){box, i, e};
+            for (int k = 0; k < 2; k++) {
+                all.low[k] = fmin(all.low[k], box.low[k]);
+                all.high[k] = fmax(all.high[k], box.high[k]);
+            }
+        }
+    return all.high[1] - all.low[1] > all.high[0] - all.low[0];
+}
+
+/* Keeps the first pair of edges that meets. */
+static void note(const struct segment *a, const struct segment *b, bool *found, uint32_t edge[2])
+{
+    const uint32_t e = a->edge < b->edge ? a->edge : b->edge, f = a->edge + b->edge - e;
+    if (*found && (edge[0] < e || (edge[0] == e && edge[1] <= f)))
+        return;
+    *found = true;
+    edge[0] = e;
+    edge[1] = f;
 }
 
 int meet_find(const struct meet_loop *loop, double near, bool *found, uint32_t edge[2],
               struct cloth_error *error)
 {
-    struct box *box = cloth_alloc(loop->n_edges, sizeof *box, error);
+    const uint32_t n = loop->start[loop->n_edges];
+    struct segment *segment = cloth_alloc(n, sizeof *segment, error);
     *found = false;
-    if (!box)
+    if (!segment)
         return CLOTH_E_MEMORY;
-    for (uint32_t e = 0; e < loop->n_edges; e++) {
-        box[e] = (struct box){{INFINITY, INFINITY}, {-INFINITY, -INFINITY}};
-        for (uint32_t i = loop->start[e]; i <= loop->start[e + 1]; i++)
-            for (int k = 0; k < 2; k++) {
-                box[e].low[k] = fmin(box[e].low[k], place_of(loop, i)[k]);
-                box[e].high[k] = fmax(box[e].high[k], place_of(loop, i)[k]);
-            }
-    }
-    for (uint32_t e = 0; e < loop->n_edges && !*found; e++)
-        for (uint32_t f = e; f < loop->n_edges && !*found; f++)
-            if (!apart(&box[e], &box[f], near) && edges_meet(loop, e, f, near)) {
-                *found = true;
-                edge[0] = e;
-                edge[1] = f;
-            }
-    free(box);
+    int axis = take_segments(loop, segment);
+    qsort_r(segment, n, sizeof *segment, by_low, &axis);
+    for (uint32_t k = 0; k < n; k++)
+        for (uint32_t m = k + 1;
+             m < n && segment[m].box.low[axis] - near <= segment[k].box.high[axis]; m++) {
+            const struct segment *a = segment + k, *b = segment + m;
+            if (!apart(&a->box, &b->box, near) &&
+                pair_meets(loop, a->i < b->i ? a->i : b->i, a->i < b->i ? b->i : a->i, near))
+                note(a, b, found, edge);
+        }
+    free(segment);
     return CLOTH_OK;
 }

@@ -88,3 +88,4 @@ include tests/model/module.mk
 include tests/examples/module.mk
 include tests/bench/module.mk
 include tests/cluster/module.mk
+include tests/fuzz/module.mk

@@ -35,7 +35,7 @@ static int read_text(const char *path, char **text, struct cloth_error *error)
         size_t n = fread(*text, 1, size, file);
         (*text)[n] = '\0';
         if (ferror(file))
-            code = output_fail(error, "read", path);
+            code = open_fail(error, path);
     }
     fclose(file);
     return code;

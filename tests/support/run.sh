@@ -9,7 +9,7 @@ case $1 in
     # fontconfig, which cairo draws text with, keeps what it found.
     *tests/runtime/test_chart.sh) export ASAN_OPTIONS="$ASAN_OPTIONS:detect_leaks=0" ;;
     # Without Open MPI the fast unwinder sees enough, and takes a tenth of the time.
-    *tests/cloth/base/* | *tests/cloth/mesh/* | *tests/cloth/garment/* | *tests/cloth/contact/* | *tests/cloth/verify/* | *tests/cloth/physics/* | *tests/cloth/solve/* | *tests/model/*)
+    *tests/fuzz/* | *tests/cloth/base/* | *tests/cloth/mesh/* | *tests/cloth/garment/* | *tests/cloth/contact/* | *tests/cloth/verify/* | *tests/cloth/physics/* | *tests/cloth/solve/* | *tests/model/*)
         export ASAN_OPTIONS="$ASAN_OPTIONS:fast_unwind_on_malloc=1" ;;
     # With the slow unwinder a rank takes six times as long to start, and a run, which takes memory millions of times, up to ten times as
     # long. Only the slow one can tell leaks from those of Open MPI. These look for them: what runs, what it reads and writes, how it

@@ -4,6 +4,9 @@
 
 #include <stdlib.h>
 
+/* A byte each: a short file may count many cloths. */
+enum { MAX_PAIRS = 1 << 26 };
+
 void output_apart(FILE *file, const struct contact_apart *apart)
 {
     const char *before = "";
@@ -104,9 +107,11 @@ void output_apart_read(struct output_cache *cache, struct output_json *json)
     apart->n_obstacles = cache->n_obstacles;
     if (json->failed)
         return;
-    apart->apart = calloc((size_t)apart->n_cloths * (apart->n_cloths + apart->n_obstacles), 1);
+    const uint64_t n_pairs =
+        (uint64_t)apart->n_cloths * ((uint64_t)apart->n_cloths + apart->n_obstacles);
+    apart->apart = n_pairs <= MAX_PAIRS ? calloc(n_pairs, 1) : NULL;
     if (!apart->apart)
-        output_json_fail(json, "fewer cloths than fit in memory");
+        output_json_fail(json, "fewer cloths and obstacles, which fit in memory");
     if (!output_json_take(json, ']')) {
         do
             take_pair(apart, json);

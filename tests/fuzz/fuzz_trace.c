@@ -1,0 +1,61 @@
+/* Traces of up to three ranks: read, summed up, written in each form, drawn, and predicted. */
+#include "runtime/chart/chart.h"
+#include "runtime/predict/predict.h"
+#include "runtime/trace/export.h"
+#include "runtime/trace/sums.h"
+#include "tests/fuzz/fuzz.h"
+
+#include <math.h>
+#include <stdio.h>
+
+static void predict_run(const struct trace_run *run)
+{
+    struct predict_cluster cluster = {.hosts = run->n_ranks,
+                                      .cores = 2,
+                                      .latency = 5e-6,
+                                      .bandwidth = 1e9,
+                                      .capacity = (double)INFINITY,
+                                      .core_speed = 1,
+                                      .overhead = -1,
+                                      .message = 5e-7,
+                                      .scheduler = duite_scheduler_find("steal"),
+                                      .seed = 1};
+    struct predict_result result;
+    predict(run, &cluster, &result, NULL);
+    cluster.mapping = duite_mapping_find("metis");
+    cluster.hosts = 2;
+    cluster.steady = true;
+    predict(run, &cluster, &result, NULL);
+}
+
+static void write_forms(const struct trace_run *run, FILE *file)
+{
+    const struct chart_options options = chart_options_default();
+    trace_print(run, file);
+    trace_sums_agree(run, file);
+    trace_export_paje.write(run, file);
+    trace_export_chrome.write(run, file);
+    trace_export_csv.write(run, file);
+    predict_write_dot(run, file);
+    predict_write_graph(run, file);
+    chart_write_svg(run, &options, file);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    static const char *const names[] = {"trace", "trace.1", "trace.2"};
+    static FILE *nowhere;
+    char path[256];
+    struct trace_run *run;
+    if (!nowhere && !(nowhere = fopen("/dev/null", "w")))
+        return 0;
+    fuzz_files(3, names, data, size);
+    snprintf(path, sizeof path, "%s/trace", fuzz_folder());
+    for (int partial = 0; partial < 2; partial++)
+        if (!trace_read(&run, path, partial)) {
+            write_forms(run, nowhere);
+            predict_run(run);
+            trace_run_free(run);
+        }
+    return 0;
+}

@@ -1,0 +1,36 @@
+# Harnesses of what reads files (fuzz.h). `make check` runs them over the committed corpus. `make fuzz` builds them by clang with
+# libFuzzer, and lets each look for FUZZ_SECONDS; FUZZ='obj trace' names some of them.
+FUZZ_FILES = tests/fuzz/fit.h tests/fuzz/fuzz.h tests/fuzz/fuzz.c tests/fuzz/drive.c
+FUZZ_LIBS = libduite_chart.la libduite_predict.la libduite_cloth.la libduite_core.la
+FUZZ_HARNESSES = tests/fuzz/fuzz_checkpoint tests/fuzz/fuzz_obj tests/fuzz/fuzz_output tests/fuzz/fuzz_pattern tests/fuzz/fuzz_pc2 tests/fuzz/fuzz_scene tests/fuzz/fuzz_seams tests/fuzz/fuzz_trace
+check_PROGRAMS += $(FUZZ_HARNESSES) tests/fuzz/mutate
+tests_fuzz_mutate_SOURCES = tests/fuzz/mutate.c tests/fuzz/fit.h tests/support/random.h
+tests_fuzz_mutate_LDADD = $(XXHASH_LIBS)
+tests_fuzz_fuzz_checkpoint_SOURCES = tests/fuzz/fuzz_checkpoint.c $(FUZZ_FILES)
+tests_fuzz_fuzz_checkpoint_LDADD = $(FUZZ_LIBS)
+tests_fuzz_fuzz_obj_SOURCES = tests/fuzz/fuzz_obj.c $(FUZZ_FILES)
+tests_fuzz_fuzz_obj_LDADD = $(FUZZ_LIBS)
+tests_fuzz_fuzz_output_SOURCES = tests/fuzz/fuzz_output.c $(FUZZ_FILES)
+tests_fuzz_fuzz_output_LDADD = $(FUZZ_LIBS)
+tests_fuzz_fuzz_pattern_SOURCES = tests/fuzz/fuzz_pattern.c $(FUZZ_FILES)
+tests_fuzz_fuzz_pattern_LDADD = $(FUZZ_LIBS)
+tests_fuzz_fuzz_pc2_SOURCES = tests/fuzz/fuzz_pc2.c $(FUZZ_FILES)
+tests_fuzz_fuzz_pc2_LDADD = $(FUZZ_LIBS)
+tests_fuzz_fuzz_scene_SOURCES = tests/fuzz/fuzz_scene.c $(FUZZ_FILES)
+tests_fuzz_fuzz_scene_LDADD = $(FUZZ_LIBS)
+tests_fuzz_fuzz_seams_SOURCES = tests/fuzz/fuzz_seams.c $(FUZZ_FILES)
+tests_fuzz_fuzz_seams_LDADD = $(FUZZ_LIBS)
+tests_fuzz_fuzz_trace_SOURCES = tests/fuzz/fuzz_trace.c $(FUZZ_FILES)
+tests_fuzz_fuzz_trace_LDADD = $(FUZZ_LIBS)
+dist_check_SCRIPTS += tests/fuzz/run.sh tests/fuzz/test_corpus.sh tests/fuzz/test_programs_long.sh
+EXTRA_DIST += tests/fuzz/corpus
+TESTS += tests/fuzz/test_corpus.sh
+LONG_TESTS += tests/fuzz/test_programs_long.sh
+
+FUZZ_SECONDS = 600
+fuzz:
+	$(MAKE) $(AM_MAKEFLAGS) distdir distdir=fuzz-source
+	MAKE='$(MAKE)' $(SHELL) $(srcdir)/tests/fuzz/run.sh $(FUZZ_SECONDS) $(FUZZ)
+fuzz-clean:
+	rm -rf fuzz-source fuzz-build
+.PHONY: fuzz

@@ -118,10 +118,12 @@ static void say_repeats(char *text, size_t size, const struct flow_report *repor
 static void say_tasks(char *text, size_t size, const struct summary *summary)
 {
     if (summary->threads > summary->cores)
-        snprintf(text, size, "%u workers share %u cores", summary->threads, summary->cores);
+        snprintf(text, size, "%u workers on %u core%s", summary->threads, summary->cores,
+                 summary->cores == 1 ? "" : "s");
     else
-        snprintf(text, size, "%" PRIu64 " blocks are for %" PRIu64 " workers",
-                 summary->report->blocks, summary->workers);
+        snprintf(text, size, "%" PRIu64 " block%s for %" PRIu64 " worker%s",
+                 summary->report->blocks, summary->report->blocks == 1 ? "" : "s", summary->workers,
+                 summary->workers == 1 ? "" : "s");
 }
 
 static void say_fact(char *text, size_t size, enum limit limit, const struct summary *summary,
@@ -142,7 +144,8 @@ static void say_fact(char *text, size_t size, enum limit limit, const struct sum
         break;
     case STARVED:
         say_tasks(more, sizeof more, summary);
-        snprintf(text, size, "the workers had no task for %.0f %% of the time; %s", percent, more);
+        snprintf(text, size, "the workers had no task for %.0f %% of the time, with %s", percent,
+                 more);
         break;
     default:
         snprintf(text, size,

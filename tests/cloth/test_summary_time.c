@@ -93,11 +93,11 @@ END_TEST
 START_TEST(starved)
 {
     takes(8, 11, 1);
-    check_says("Limited by too few ready tasks: the workers had no task for 50 % of the time; "
-               "24 blocks are for 2 workers.\n");
+    check_says("Limited by too few ready tasks: the workers had no task for 50 % of the time, with "
+               "24 blocks for 2 workers.\n");
     summary.threads = 8;
-    check_says("Limited by too few ready tasks: the workers had no task for 50 % of the time; "
-               "8 workers share 2 cores.\n");
+    check_says("Limited by too few ready tasks: the workers had no task for 50 % of the time, with "
+               "8 workers on 2 cores.\n");
 }
 END_TEST
 

@@ -5,10 +5,10 @@ BENCH_RIVALS =
 BENCH_STATE = bench/cg/state.c bench/cg/state.h
 BENCH_SHARED = bench/problem.c bench/problem.h bench/serve.c bench/serve.h
 check_LTLIBRARIES += bench/libbench.la
-bench_libbench_la_SOURCES = bench/bench.h bench/environment.h bench/load.c bench/load.h bench/loops.c bench/loops.h bench/measure.c bench/measure.h \
+bench_libbench_la_SOURCES = bench/bench.h bench/environment.h bench/instructions.c bench/instructions.h bench/load.c bench/load.h bench/loops.c bench/loops.h bench/measure.c bench/measure.h \
 	bench/program.c bench/program.h bench/report.c bench/report.h bench/subject.c bench/subject.h \
 	bench/tasks/tasks.c bench/tasks/tasks.h bench/tasks/bytes.c bench/tasks/chain.c bench/tasks/fib.c \
-	bench/tasks/granularity.c bench/tasks/growth.c bench/tasks/independent.c bench/tasks/stencil.c \
+	bench/tasks/granularity.c bench/tasks/growth.c bench/tasks/independent.c bench/tasks/instructions.c bench/tasks/stencil.c \
 	bench/tasks/wake.c bench/ranks/cg.c bench/ranks/delegate.c bench/ranks/forks.c bench/ranks/loaded.c bench/ranks/memory.c bench/ranks/migrate.c bench/ranks/ranks.c \
 	bench/ranks/ranks.h bench/ranks/sheet.c bench/ranks/sheet.h bench/ranks/stencil.c bench/ranks/twin.c \
 	bench/cg/bench.c bench/cg/cg.h bench/cg/frames.c bench/cg/make.c bench/cg/ours.c bench/cg/plans.c bench/cg/states.c bench/sets.h \
@@ -131,6 +131,12 @@ bench_compare_SOURCES = bench/environment.h bench/load.c bench/load.h bench/swee
 bench_compare_CPPFLAGS = $(AM_CPPFLAGS) -DBENCH_MPIRUN='"$(MPIRUN)"' -DBENCH_CFLAGS='"$(CFLAGS)"'
 bench_compare_LDADD = libduite_core.la -lm
 
+# What `duite-bench tasks` counts the instructions of: with the library of users, not with libduite_core.
+check_PROGRAMS += bench/tasks/counted
+bench_tasks_counted_SOURCES = bench/tasks/counted.c bench/problem.c bench/problem.h
+bench_tasks_counted_LDFLAGS = $(AM_LDFLAGS) -no-install
+bench_tasks_counted_LDADD = libduite.la
+
 # What bench/experiments contact-partition runs.
 check_PROGRAMS += bench/contact-partition
 bench_contact_partition_SOURCES = bench/contact/partition.c
@@ -142,6 +148,6 @@ bench_vassilev_vassilev_SOURCES = bench/vassilev/vassilev.c bench/vassilev/loops
 	bench/vassilev/take.c bench/serve.c bench/serve.h
 bench_vassilev_vassilev_LDADD = libduite_cloth.la libduite_core.la -lm
 
-bench: bench/vassilev/vassilev$(EXEEXT) bench/contact-partition$(EXEEXT) bench/duite-bench$(EXEEXT) bench/graph-run$(EXEEXT) bench/compare$(EXEEXT) duite-cloth$(EXEEXT) $(BENCH_RIVALS)
+bench: bench/tasks/counted$(EXEEXT) bench/vassilev/vassilev$(EXEEXT) bench/contact-partition$(EXEEXT) bench/duite-bench$(EXEEXT) bench/graph-run$(EXEEXT) bench/compare$(EXEEXT) duite-cloth$(EXEEXT) $(BENCH_RIVALS)
 check_DATA += $(BENCH_RIVALS)
 .PHONY: bench

@@ -1,45 +1,26 @@
 /* Instructions of a step by valgrind, which counts those of a run of so many steps and of one of
- * more. One thread; without wide instructions, some of which valgrind does not know. */
+ * more. One thread. */
 #include "bench/contact/contact.h"
 
+#include "bench/instructions.h"
 #include "bench/program.h"
 
 #include <limits.h>
 #include <stdio.h>
-#include <string.h>
 
 /* A sheet of 900 vertices in free fall from its pins, in five blocks: nothing can touch. */
 #define SHEET                                                                                      \
     "--quiet --threads 1 --grain 200 --set 'obstacles=[]' --set 'cloths[0].mesh.grid.nx=30' "      \
     "--set 'cloths[0].mesh.grid.ny=30'"
 #define NO_TOUCH "--set 'contact={mode: certified, self: off}'"
-#define COUNT                                                                                      \
-    "DUITE_SIMD=none valgrind --tool=cachegrind --cache-sim=no --cachegrind-out-file=/dev/null"
-
-/* The number, with commas, that a line of the command's output has behind "I refs:". */
-static int read_count(const char *command, double *number)
-{
-    char line[1000];
-    FILE *said = popen(command, "r");
-    if (!said)
-        return serve_fail("valgrind does not start");
-    *number = 0;
-    while (fgets(line, sizeof line, said)) {
-        const char *refs = strstr(line, " refs:");
-        for (const char *c = refs ? refs : ""; *c; c++)
-            if (*c >= '0' && *c <= '9')
-                *number = 10 * *number + (*c - '0');
-    }
-    return pclose(said) || !(*number > 0) ? serve_fail("valgrind counts nothing") : 0;
-}
 
 static int count(unsigned steps, bool contact, double *number)
 {
     char command[3 * PATH_MAX], folder[PATH_MAX];
     program_folder(folder, sizeof folder);
-    snprintf(command, sizeof command, "%s '%s/../duite-cloth' '%s/sheet.yaml' --end %g %s %s 2>&1",
-             COUNT, folder, BENCH_SCENES, 0.001 * steps, SHEET, contact ? NO_TOUCH : "");
-    return read_count(command, number);
+    snprintf(command, sizeof command, "'%s/../duite-cloth' '%s/sheet.yaml' --end %g %s %s", folder,
+             BENCH_SCENES, 0.001 * steps, SHEET, contact ? NO_TOUCH : "");
+    return instructions_count(command, number);
 }
 
 /* contact=0: the scene has no map `contact`; contact=1: it has one. */

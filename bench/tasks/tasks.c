@@ -6,9 +6,8 @@
 #include <string.h>
 
 static const struct bench_case *const CASES[] = {
-    &tasks_stencil,     &tasks_chain,  &tasks_independent,
-    &tasks_fib_case,    &tasks_growth, &tasks_bytes,
-    &tasks_granularity, &tasks_wake,   NULL};
+    &tasks_stencil, &tasks_chain,       &tasks_independent, &tasks_fib_case,     &tasks_growth,
+    &tasks_bytes,   &tasks_granularity, &tasks_wake,        &tasks_instructions, NULL};
 enum { N_CASES = sizeof CASES / sizeof *CASES - 1 };
 
 /* For two cores and the full sizes. */
@@ -25,6 +24,11 @@ static const struct measure_target TARGETS[] = {
     {"bytes_per_pending_task", 256, false},
     {"granularity_50_w2_vs_mpi", 1.2, false},
     {"granularity_50_w16_vs_mpi", 2, false},
+    {"instructions_per_task_stencil", 1000, false},
+    {"instructions_per_task_chain", 750, false},
+    {"instructions_per_task_independent", 700, false},
+    {"instructions_per_task_fib", 1200, false},
+    {"instructions_per_task_replay", 300, false},
     {0}};
 enum { TARGET_THREADS = 2 };
 

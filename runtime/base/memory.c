@@ -115,8 +115,15 @@ struct shelf {
     struct magazine *loaded, *spare;
 };
 
-static _Thread_local struct shelf shelves[N_SIZES];
-static _Thread_local char *region, *region_end;
+/* What a thread has at hand. By the initial-exec model it is reached without a call. For variables
+ * of that model a program that loads this library late has room for some hundred bytes only. So the
+ * shelves themselves are cut from a region when the thread first needs them (shelves_own). Until
+ * then it has those that stay empty. */
+#define THREAD_OWN static _Thread_local __attribute__((tls_model("initial-exec")))
+
+static struct shelf no_shelves[N_SIZES];
+THREAD_OWN struct shelf *shelves = no_shelves;
+THREAD_OWN char *region, *region_end;
 
 static void pool_lock(void)
 {
@@ -177,21 +184,33 @@ static void *region_cut(size_t bytes)
     }
 }
 
-static void region_leave(void)
+/* What lies from `begin` to `end` is for the next thread, if it is worth it. */
+static void region_leave(char *begin, char *end)
 {
-    size_t skip = -(uintptr_t)region % BASE_LINE;
-    if ((size_t)(region_end - region) >= skip + LARGEST) {
-        struct region *left = (struct region *)(void *)(region + skip);
-        left->end = region_end;
-        pool_lock();
-        left->next = regions;
-        regions = left;
-        pool_unlock();
-    }
-    region = region_end = NULL;
+    size_t skip = -(uintptr_t)begin % BASE_LINE;
+    if ((size_t)(end - begin) < skip + LARGEST)
+        return;
+    struct region *left = (struct region *)(void *)(begin + skip);
+    left->end = end;
+    pool_lock();
+    left->next = regions;
+    regions = left;
+    pool_unlock();
 }
 
 /* ---- Magazines ---- */
+
+/* The calling thread's shelves; NULL without memory. */
+static struct shelf *shelves_own(void)
+{
+    if (shelves != no_shelves)
+        return shelves;
+    struct shelf *own = region_cut(sizeof no_shelves);
+    if (!own)
+        return NULL;
+    memset(own, 0, sizeof no_shelves);
+    return shelves = own;
+}
 
 /* Blocks of an odd number of grains come in pairs, so that nothing is lost between them and others.
  */
@@ -225,7 +244,10 @@ static void *store_take(size_t size)
 
 static void *magazine_take(size_t size)
 {
-    struct shelf *shelf = &shelves[size];
+    struct shelf *shelf = shelves_own();
+    if (!shelf)
+        return NULL;
+    shelf += size;
     struct magazine *spare = shelf->spare;
     if (!spare || !spare->n)
         return store_take(size);
@@ -234,8 +256,8 @@ static void *magazine_take(size_t size)
     return spare->block[--spare->n];
 }
 
-/* Both magazines are full, or not there yet. Without memory for one more the block is lost until
- * the last runtime ends. */
+/* Both magazines are full, or not there yet. Without memory for one more, or for the shelves, the
+ * block is lost until the last runtime ends. */
 static void store_give(void *block, size_t size)
 {
     struct shelf *shelf = &shelves[size];
@@ -260,7 +282,10 @@ static void store_give(void *block, size_t size)
 
 static void magazine_give(void *block, size_t size)
 {
-    struct shelf *shelf = &shelves[size];
+    struct shelf *shelf = shelves_own();
+    if (!shelf)
+        return;
+    shelf += size;
     struct magazine *spare = shelf->spare;
     if (!spare || spare->n) {
         store_give(block, size);
@@ -321,15 +346,19 @@ void base_pool_enter(void)
 
 void base_pool_thread_end(void)
 {
-    pool_lock();
-    for (size_t size = 0; size < N_SIZES; size++) {
-        magazine_put_away(shelves[size].loaded, size);
-        magazine_put_away(shelves[size].spare, size);
-        shelves[size] = (struct shelf){NULL, NULL};
+    struct shelf *own = shelves;
+    shelves = no_shelves;
+    if (own != no_shelves) {
+        pool_lock();
+        for (size_t size = 0; size < N_SIZES; size++) {
+            magazine_put_away(own[size].loaded, size);
+            magazine_put_away(own[size].spare, size);
+        }
+        pool_unlock();
+        region_leave((char *)own, (char *)(own + N_SIZES));
     }
-    pool_unlock();
-    if (region)
-        region_leave();
+    region_leave(region, region_end);
+    region = region_end = NULL;
 }
 
 void base_pool_leave(void)

@@ -94,7 +94,8 @@ struct work_pool {
     struct worker *worker; /* setup.threads of them */
     unsigned char *states;
     double tick; /* seconds */
-    uint64_t poll_ticks, spin_ticks, yield_ticks, await_ticks;
+    uint64_t poll_ticks, spin_ticks, yield_ticks, await_ticks, affinity_ticks;
+    bool by_affinity; /* the scheduler's `chain` is sched_chain_affinity */
     unsigned started; /* threads, worker 0 among them */
     pthread_t main;
     struct work_near near;
@@ -282,7 +283,7 @@ static inline void work_set_affinity(const struct worker *worker, const struct t
 {
     if (task->type != TASK_NODE)
         return;
-    if ((double)took * worker->pool->tick >= PLAN_AFFINITY_SECONDS)
+    if (took >= worker->pool->affinity_ticks)
         plan_task_set_affinity(task, worker->index + 1);
     else if (atomic_load_explicit(&task->node->plan->affinity, memory_order_relaxed))
         plan_task_set_affinity(task, 0);

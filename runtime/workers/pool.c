@@ -5,7 +5,9 @@
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
 #include "runtime/base/thread.h"
+#include "runtime/sched/sched.h"
 #include "runtime/workers/internal.h"
+
 #include <sched.h>
 #include <stdio.h>
 /* Between polls while there is work. */
@@ -74,6 +76,7 @@ static void pool_set_ticks(struct work_pool *pool)
     pool->spin_ticks = (uint64_t)(pool->setup.spin_seconds / pool->tick);
     pool->yield_ticks = (uint64_t)(YIELD_SECONDS / pool->tick);
     pool->await_ticks = (uint64_t)(AWAIT_SECONDS / pool->tick);
+    pool->affinity_ticks = (uint64_t)(PLAN_AFFINITY_SECONDS / pool->tick);
 }
 
 int work_start(struct work_pool **out, const struct work_setup *setup)
@@ -86,6 +89,7 @@ int work_start(struct work_pool **out, const struct work_setup *setup)
     pool->setup = *setup;
     pool->setup.cores = NULL; /* the caller's: copied to the workers */
     pool->main = pthread_self();
+    pool->by_affinity = setup->scheduler->chain == sched_chain_affinity;
     pool_set_ticks(pool);
     pool->worker = base_alloc_zero(n * sizeof pool->worker[0]);
     pool->states = base_alloc_zero(n * lines * BASE_LINE);

@@ -55,6 +55,12 @@ static bool ready_runs_inline(const struct worker *worker, const duite_ready *re
     return is_inline;
 }
 
+/* The same without asking: whether a scheduler that goes by affinity alone would want it. */
+static bool ready_goes_on(const struct worker *worker, const struct task *task)
+{
+    return worker->pool->by_affinity && !plan_task_affinity(task);
+}
+
 /* Whether the task went to another rank. */
 static bool ready_goes_away(struct worker *worker, struct task *task)
 {
@@ -77,8 +83,13 @@ void work_ready(struct work_pool *pool, struct worker *worker, struct task *task
     }
     if (pool->balance && ready_goes_away(worker, task))
         return;
+    const bool may_run = worker->may_chain && !worker->next;
+    if (may_run && !worker->waits && ready_goes_on(worker, task)) {
+        worker->next = task;
+        return;
+    }
     duite_ready ready = ready_describe(pool->setup.graph, task);
-    if (worker->may_chain && !worker->next && ready_runs_inline(worker, &ready) &&
+    if (may_run && ready_runs_inline(worker, &ready) &&
         (!worker->waits || task_may_run(worker->waits, task)))
         worker->next = task;
     else

@@ -8,13 +8,16 @@
 #include "runtime/data/reduce.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 struct data_sum *data_sum_new(int n_ranks, const duite_law *law, duite_type type, size_t count)
 {
-    size_t words = base_ranks_words(n_ranks);
-    struct data_sum *sum = base_alloc_zero(sizeof *sum + words * sizeof *sum->contributors);
+    const size_t bytes = sizeof(struct data_sum) + base_ranks_words(n_ranks) * sizeof(uint64_t);
+    struct data_sum *sum = base_pool_take(bytes);
     if (!sum)
         return NULL;
+    memset(sum, 0, bytes);
+    sum->bytes = bytes;
     sum->law = law;
     sum->type = type;
     sum->count = count;
@@ -78,7 +81,7 @@ void data_sum_free(struct data_sum *sum)
 {
     pieces_free(sum->pieces);
     pieces_free(atomic_load_explicit(&sum->arrived, memory_order_acquire));
-    base_free(sum);
+    base_pool_give(sum, sum->bytes);
 }
 
 void data_sum_sender(struct data_sum *sum, int rank)
@@ -130,66 +133,90 @@ static int piece_compare_first(const void *a, const void *b)
     return (l->first > r->first) - (l->first < r->first);
 }
 
-/* All pieces, local and arrived, in one array by `first`; NULL without memory. */
-static struct data_piece **pieces_collect(struct data_sum *sum, size_t *n)
+static size_t pieces_count(const struct data_piece *piece)
 {
-    struct data_piece *lists[2] = {sum->pieces,
-                                   atomic_load_explicit(&sum->arrived, memory_order_acquire)};
-    size_t total = 0;
-    for (int i = 0; i < 2; i++)
-        for (const struct data_piece *p = lists[i]; p; p = p->next)
-            total++;
-    struct data_piece **all = base_alloc(total * sizeof(struct data_piece *));
-    *n = 0;
-    for (int i = 0; all && i < 2; i++)
-        for (struct data_piece *p = lists[i]; p; p = p->next)
-            all[(*n)++] = p;
-    if (all)
-        qsort(all, *n, sizeof all[0], piece_compare_first);
-    return all;
+    size_t n = 0;
+    for (; piece; piece = piece->next)
+        n++;
+    return n;
 }
 
-/* Reduces all pieces; `fold`: and what is left into the first one. */
-static const struct data_failure *sum_reduce(struct data_sum *sum, bool fold,
-                                             struct data_piece ***out, size_t *n, int *code)
+/* All pieces, local and arrived, in one array by `first`; false without memory. Leaves were put at
+ * the front of their list: so they stand in order, from the end of their part on. */
+static bool pieces_collect(struct data_sum *sum, struct data_pieces *pieces)
 {
-    size_t total, left = 0;
-    struct data_piece **all = *out = pieces_collect(sum, &total);
-    struct data_subtree *tree = base_alloc((total + 1) * sizeof *tree);
+    struct data_piece *arrived = atomic_load_explicit(&sum->arrived, memory_order_acquire);
+    size_t at = pieces_count(sum->pieces);
+    pieces->n = at + pieces_count(arrived);
+    pieces->room = (pieces->n + 1) * sizeof *pieces->piece;
+    pieces->piece = base_pool_take(pieces->room);
+    if (!pieces->piece)
+        return false;
+    struct data_piece **behind = pieces->piece + at;
+    for (struct data_piece *p = sum->pieces; p; p = p->next)
+        pieces->piece[--at] = p;
+    for (struct data_piece *p = arrived; p; p = p->next)
+        *behind++ = p;
+    if (arrived)
+        qsort(pieces->piece, pieces->n, sizeof *pieces->piece, piece_compare_first);
+    return true;
+}
+
+void data_pieces_free(struct data_pieces *pieces)
+{
+    base_pool_give(pieces->piece, pieces->room);
+}
+
+/* Reduces all pieces; `fold`: and what is left into the first one. `row`: room for all. */
+static void pieces_reduce(struct data_sum *sum, bool fold, struct data_pieces *pieces,
+                          struct data_subtree *row)
+{
+    struct data_piece **all = pieces->piece;
     struct reduced reduced = {sum, all};
-    const struct data_failure *failure = atomic_load_explicit(&sum->lost, memory_order_relaxed);
-    *n = 0;
-    *code = all && tree ? DUITE_OK : DUITE_E_MEMORY;
-    for (size_t i = 0; i < total && !*code; i++)
-        failure = data_failure_first(failure, all[i]->failure);
-    for (uint32_t i = 0; i < total && !*code && !failure; i++) {
-        tree[left] = (struct data_subtree){all[i]->first, all[i]->level, i};
-        left = data_reduce_push(tree, left, pieces_combine_numbered, &reduced);
+    size_t left = 0;
+    for (uint32_t i = 0; i < pieces->n; i++) {
+        row[left] = (struct data_subtree){all[i]->first, all[i]->level, i};
+        left = data_reduce_push(row, left, pieces_combine_numbered, &reduced);
     }
     if (fold)
-        data_reduce_fold(tree, left, pieces_combine_numbered, &reduced);
+        data_reduce_fold(row, left, pieces_combine_numbered, &reduced);
     for (size_t i = 0; i < left; i++) { /* from where it stands, or behind that */
-        all[i] = all[tree[i].where];
-        all[i]->level = tree[i].level;
+        all[i] = all[row[i].where];
+        all[i]->level = row[i].level;
     }
-    *n = left;
-    base_free(tree);
+    pieces->n = left;
+}
+
+static const struct data_failure *sum_reduce(struct data_sum *sum, bool fold,
+                                             struct data_pieces *pieces, int *code)
+{
+    const struct data_failure *failure = atomic_load_explicit(&sum->lost, memory_order_relaxed);
+    const bool fine = pieces_collect(sum, pieces);
+    const size_t bytes = (pieces->n + 1) * sizeof(struct data_subtree);
+    struct data_subtree *row = fine ? base_pool_take(bytes) : NULL;
+    *code = row ? DUITE_OK : DUITE_E_MEMORY;
+    for (size_t i = 0; i < pieces->n && row; i++)
+        failure = data_failure_first(failure, pieces->piece[i]->failure);
+    if (row && !failure)
+        pieces_reduce(sum, fold, pieces, row);
+    else
+        pieces->n = 0;
+    base_pool_give(row, bytes);
     return *code ? NULL : failure;
 }
 
-const struct data_failure *data_sum_reduce(struct data_sum *sum, struct data_piece ***out,
-                                           size_t *n, int *code)
+const struct data_failure *data_sum_reduce(struct data_sum *sum, struct data_pieces *pieces,
+                                           int *code)
 {
-    return sum_reduce(sum, false, out, n, code);
+    return sum_reduce(sum, false, pieces, code);
 }
 
 const struct data_failure *data_sum_fold(struct data_sum *sum, struct data_piece **whole, int *code)
 {
-    struct data_piece **pieces;
-    size_t n;
-    const struct data_failure *failure = sum_reduce(sum, true, &pieces, &n, code);
-    *whole = n && pieces[0]->value ? pieces[0] : NULL;
-    base_free(pieces);
+    struct data_pieces pieces;
+    const struct data_failure *failure = sum_reduce(sum, true, &pieces, code);
+    *whole = pieces.n && pieces.piece[0]->value ? pieces.piece[0] : NULL;
+    data_pieces_free(&pieces);
     return failure;
 }
 

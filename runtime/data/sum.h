@@ -4,6 +4,8 @@
 #include "runtime/data/law.h"
 #include "runtime/data/version.h"
 
+#pragma GCC visibility push(hidden)
+
 /* Contributions (cw) to an object between two other accesses, the leaves of a reduction tree in
  * fork order (reduce.h). A piece is the value of a complete subtree: leaves first .. first +
  * 2^level - 1. A rank combines what it has into the largest complete subtrees and sends only these.
@@ -30,6 +32,7 @@ struct data_sum {
     struct data_waiter
         *reducer; /* the task that combines or sends; set before the open hold is released */
     struct data_sum *next;   /* its owner's */
+    size_t bytes;            /* of all this */
     uint64_t contributors[]; /* the set of these ranks (base/rank_set.h) */
 };
 
@@ -57,12 +60,18 @@ void data_sum_arrive(struct data_sum *sum, struct data_piece *piece);
 /* Takes one from `pending`. Returns the reducer if that was the last one. */
 struct data_waiter *data_sum_release(struct data_sum *sum);
 
+/* Pieces in order of `first`. The array is the holder's, the pieces are the sum's. */
+struct data_pieces {
+    struct data_piece **piece;
+    size_t n, room;
+};
+void data_pieces_free(struct data_pieces *pieces);
+
 /* Combines the pieces (pending is 0) as far as complete subtrees go, in place. Writes them into
- * *out in order of `first`, and their number into *n. *out is an array of the caller, freed by
- * base_free. Returns the first failure among them, which poisons the whole; DUITE_E_MEMORY in *code
- * without memory. */
-const struct data_failure *data_sum_reduce(struct data_sum *sum, struct data_piece ***out,
-                                           size_t *n, int *code);
+ * *pieces, which data_pieces_free ends in any case. Returns the first failure among them, which
+ * poisons the whole; DUITE_E_MEMORY in *code without memory. */
+const struct data_failure *data_sum_reduce(struct data_sum *sum, struct data_pieces *pieces,
+                                           int *code);
 
 /* Combines the pieces of a whole sum (pending is 0) into one of them, in place: *whole; NULL: all
  * are absent. Failures and *code as of data_sum_reduce; *whole is NULL then. */
@@ -71,5 +80,7 @@ const struct data_failure *data_sum_fold(struct data_sum *sum, struct data_piece
 
 /* `leaf` gets the value of `piece` (NULL: it is absent), which is made of this rank's leaves. */
 void data_piece_take(struct data_piece *leaf, struct data_piece *piece);
+
+#pragma GCC visibility pop
 
 #endif

@@ -213,9 +213,9 @@ void task_run_gather(struct task *task)
     data_sum_free(sum);
 }
 
-static struct data_packet *pieces_pack(const struct task_sum *sum, struct data_piece *const *pieces,
-                                       size_t n)
+static struct data_packet *pieces_pack(const struct task_sum *sum, const struct data_pieces *pieces)
 {
+    const size_t n = pieces->n;
     size_t bytes = sum->sum->count * data_type_size(sum->sum->type);
     size_t stride = (bytes + 15) / 16 * 16;
     struct data_packet *packet = data_packet_new(n * (sizeof(struct piece_place) + stride), false);
@@ -227,10 +227,11 @@ static struct data_packet *pieces_pack(const struct task_sum *sum, struct data_p
     struct piece_place *places = data_payload(packet);
     char *values = (char *)(places + n);
     for (size_t i = 0; i < n; i++) {
-        size_t present = pieces[i]->value ? bytes : 0;
-        places[i] = (struct piece_place){pieces[i]->first, pieces[i]->level, !present};
+        size_t present = pieces->piece[i]->value ? bytes : 0;
+        places[i] =
+            (struct piece_place){pieces->piece[i]->first, pieces->piece[i]->level, !present};
         if (present)
-            memcpy(values + i * stride, pieces[i]->value, bytes);
+            memcpy(values + i * stride, pieces->piece[i]->value, bytes);
         memset(values + i * stride + present, 0, stride - present);
     }
     return packet;
@@ -239,16 +240,15 @@ static struct data_packet *pieces_pack(const struct task_sum *sum, struct data_p
 void task_run_pieces(struct task *task)
 {
     struct task_sum *sum = task->sum;
-    struct data_piece **pieces;
+    struct data_pieces pieces;
     struct data_packet *packet = NULL;
-    size_t n;
     int code;
-    const struct data_failure *failure = data_sum_reduce(sum->sum, &pieces, &n, &code);
+    const struct data_failure *failure = data_sum_reduce(sum->sum, &pieces, &code);
     if (!code && !failure)
-        packet = pieces_pack(sum, pieces, n);
+        packet = pieces_pack(sum, &pieces);
     if (!packet)
         packet = task_poison_packet(sum->send.key, failure ? failure : task_fail_memory(task));
-    base_free(pieces);
+    data_pieces_free(&pieces);
     data_sum_free(sum->sum);
     sum->send.packet = packet; /* NULL is noticed by whoever sends */
     task->state = TASK_LEAVES;

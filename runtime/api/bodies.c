@@ -8,11 +8,6 @@
 #include <stdio.h>
 #include <string.h>
 
-struct duite_call_private *api_body(const duite *rt)
-{
-    return rt ? task_running(&rt->graph) : NULL;
-}
-
 static int body_remember(struct duite_call_private *body, int code)
 {
     if (!code || body->remembered)
@@ -133,12 +128,10 @@ static int body_get(struct duite_call_private *body, duite_object object, void *
     struct data_version *version = NULL;
     size_t bytes = 0, size;
     int code = body_enter(body, call);
-    if (!code)
-        code = task_check_call(body, call, object, DUITE_R);
     if (!code && !values && !count)
         code = base_error(DUITE_E_ARGUMENT, "%s: nowhere to put the answer", call);
     if (!code)
-        code = task_see(task_inside(body), body->worker, object, &version, &size);
+        code = task_see(body, call, object, &version, &size);
     if (code)
         return code;
     code = body_read(body, version, values, &bytes);

@@ -138,7 +138,10 @@ void api_graphs_stop(duite *rt);
 /* ---- bodies.c ---- */
 
 /* The body that runs on this thread, or NULL; and its calls. */
-struct duite_call_private *api_body(const duite *rt);
+static inline struct duite_call_private *api_body(const duite *rt)
+{
+    return rt ? task_running(&rt->graph) : NULL;
+}
 int api_body_new(struct duite_call_private *body, duite_type type, size_t count, size_t max,
                  bool sized, duite_object *object);
 int api_body_free(struct duite_call_private *body, duite_object object);

@@ -110,15 +110,16 @@ static int fork_task(duite *rt, const struct task_options *options, const duite_
 {
     if (rt->building)
         return api_remember(rt, plan_record_fork(rt->building, options, kernel, args, n, objects));
-    int code = api_settle(rt);
+    int code = rt->graph.table.n_unsettled ? api_settle(rt) : DUITE_OK;
     if (!code)
         code = task_fork(&rt->graph.root, work_main(rt->pool), options, kernel, args, n, objects);
-    if (!code)
+    if (!code && rt->trace)
         trace_fork(rt->trace, kernel, options, n, objects);
-    work_tick(rt->pool);
+    if (rt->comm)
+        work_tick(rt->pool);
     if (!code)
         api_throttle(rt);
-    return api_remember(rt, code);
+    return code || rt->graph.broken ? api_remember(rt, code) : DUITE_OK;
 }
 
 /* Whether the task may be forked and touches nothing of this rank: then no more is to be done for

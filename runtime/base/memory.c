@@ -242,7 +242,8 @@ static void *store_take(size_t size)
     return full->block[--full->n];
 }
 
-static void *magazine_take(size_t size)
+/* This and magazine_give stand apart, so that the short way to `loaded` saves no registers. */
+__attribute__((noinline)) static void *magazine_take(size_t size)
 {
     struct shelf *shelf = shelves_own();
     if (!shelf)
@@ -280,7 +281,7 @@ static void store_give(void *block, size_t size)
     empty->n = 1;
 }
 
-static void magazine_give(void *block, size_t size)
+__attribute__((noinline)) static void magazine_give(void *block, size_t size)
 {
     struct shelf *shelf = shelves_own();
     if (!shelf)

@@ -3,6 +3,8 @@
 
 #include <stddef.h>
 
+#pragma GCC visibility push(hidden) /* called directly: no program can come in between */
+
 /* All memory of the runtime: large blocks, growing arrays, and a pool of small blocks. */
 
 enum { BASE_LINE = 64 }; /* bytes of a cache line: the alignment of everything allocated here */
@@ -48,5 +50,7 @@ void base_pool_leave(void);
 
 /* The calling thread ends: what it has at hand goes to the others. */
 void base_pool_thread_end(void);
+
+#pragma GCC visibility pop
 
 #endif

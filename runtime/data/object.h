@@ -3,6 +3,8 @@
 
 #include "runtime/data/sum.h"
 
+#pragma GCC visibility push(hidden) /* called directly: no program can come in between */
+
 /* Shared objects as every rank knows them. The main thread alone reads and writes this table. What
  * the table says about other ranks follows from the forks, which are the same everywhere: no rank
  * is ever asked. */
@@ -70,13 +72,18 @@ int data_object_new_sized(struct data_table *table, duite_type type, size_t coun
 /* Sets the message of the error that no object has this name. Returns NULL. */
 struct data_object *data_object_missing(const struct data_table *table, duite_object name);
 
-/* The object of that name, or NULL with the error's message set. */
-static inline struct data_object *data_object_find(struct data_table *table, duite_object name)
+/* The object of that name, or NULL; and the same with the error's message set. */
+static inline struct data_object *data_object_here(struct data_table *table, duite_object name)
 {
     struct data_object *object = &table->object[name.slot];
-    if (name.slot < table->n_slots && object->generation == name.generation && name.generation % 2)
-        return object;
-    return data_object_missing(table, name);
+    const bool here =
+        name.slot < table->n_slots && object->generation == name.generation && name.generation % 2;
+    return here ? object : NULL;
+}
+static inline struct data_object *data_object_find(struct data_table *table, duite_object name)
+{
+    struct data_object *object = data_object_here(table, name);
+    return object ? object : data_object_missing(table, name);
 }
 
 /* Takes the name out of use. The caller has released `current`. */
@@ -153,5 +160,7 @@ static inline struct data_view *data_view_hold(struct data_view *view)
 }
 
 void data_view_release(struct data_view *view); /* NULL is fine */
+
+#pragma GCC visibility pop
 
 #endif

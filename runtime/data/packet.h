@@ -5,6 +5,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#pragma GCC visibility push(hidden) /* called directly: no program can come in between */
+
 /* The bytes of one version of an object, with room for a message header in front of them, so that
  * they are sent and received where they lie. */
 enum data_packet_kind {
@@ -67,5 +69,7 @@ static inline void *data_payload(struct data_packet *packet)
 {
     return packet + 1;
 }
+
+#pragma GCC visibility pop
 
 #endif

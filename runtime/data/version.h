@@ -10,6 +10,8 @@
 #include <stdint.h>
 #include <string.h>
 
+#pragma GCC visibility push(hidden) /* called directly: no program can come in between */
+
 /* ---- Poison ---- */
 
 /* Why a value is poisoned: the task that failed. Plain bytes: it travels between ranks in place of
@@ -180,5 +182,7 @@ static inline struct data_waiter *data_version_release(struct data_version *vers
         return NULL;
     return data_version_end(version);
 }
+
+#pragma GCC visibility pop
 
 #endif

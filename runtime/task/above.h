@@ -6,6 +6,8 @@
 
 #include <duite.h>
 
+#pragma GCC visibility push(hidden) /* called directly: no program can come in between */
+
 /* What task/, plan/ and offload/ ask of the workers and of the communication. They know these by
  * their names alone: workers/ defines the functions. `worker` is whoever calls. */
 struct plan_channels;
@@ -49,5 +51,7 @@ int work_open(struct work_pool *pool, struct plan_channels *channels);
 
 /* Memory ran out for something that other ranks wait for: the work of all ends. */
 void work_starved(struct work_pool *pool, const char *what);
+
+#pragma GCC visibility pop
 
 #endif

@@ -3,6 +3,8 @@
 
 #include "runtime/task/task.h"
 
+#pragma GCC visibility push(hidden) /* called directly: no program can come in between */
+
 /* A running body, and what the calls ask for that it makes. On the thread that runs it. */
 
 struct duite_call_private {
@@ -18,8 +20,14 @@ struct duite_call_private {
     char text[sizeof((struct data_failure *)0)->text]; /* what it says of its failure */
 };
 
-/* The body that runs on this thread for this graph, or NULL. */
-struct duite_call_private *task_running(const struct task_graph *graph);
+/* The innermost body on this thread, or NULL; and that if it runs for this graph. */
+extern _Thread_local struct duite_call_private *task_innermost
+    __attribute__((tls_model("initial-exec")));
+static inline struct duite_call_private *task_running(const struct task_graph *graph)
+{
+    struct duite_call_private *body = task_innermost;
+    return body && body->graph == graph ? body : NULL;
+}
 
 /* Whether a body, running or just over, forked a task or made an object. */
 static inline bool task_body_forked(const duite_call *call)
@@ -28,7 +36,11 @@ static inline bool task_body_forked(const duite_call *call)
 }
 
 /* The scope of a running body, made when it is first asked for. NULL without memory. */
-struct task_scope *task_inside(struct duite_call_private *body);
+struct task_scope *task_scope_begin(struct duite_call_private *body);
+static inline struct task_scope *task_inside(struct duite_call_private *body)
+{
+    return body->scope ? body->scope : task_scope_begin(body);
+}
 
 /* Makes an object of `count` zeros, and at most `max` elements if its size changes, that belongs
  * to the task. Errors: type, count, memory. */
@@ -49,6 +61,11 @@ const struct data_failure *task_first_failure(struct task_scope *scope);
  */
 int task_check_call(struct duite_call_private *body, const char *call, duite_object object,
                     duite_mode wanted);
+/* The version of the object that the forks so far leave, and the size of an element in bytes. The
+ * version is or will be here, and stays the object's until the body's next call. Errors: those of
+ * task_check_call for a child that reads; memory. */
+int task_see(struct duite_call_private *body, const char *call, duite_object name,
+             struct data_version **version, size_t *size);
 /* Whether the object, whose name was checked, is a parameter of the body. */
 bool task_lent(const struct duite_call_private *body, duite_object object);
 
@@ -56,5 +73,7 @@ bool task_lent(const struct duite_call_private *body, duite_object object);
  * descendant. If its descendants may wait for tasks outside, it also may if the task comes earlier
  * in the reference order. And a body that is not an offloaded task's may have any task of these. */
 bool task_may_run(const struct task_scope *scope, const struct task *task);
+
+#pragma GCC visibility pop
 
 #endif

@@ -201,7 +201,8 @@ static int access_write(struct task_fork_call *call, size_t i, struct data_objec
                : task_overwrite(graph, call->task, i, object, version, &call->done);
 }
 
-static int access_depend(struct task_fork_call *call, size_t i, duite_mode declared)
+__attribute__((noinline)) static int access_depend(struct task_fork_call *call, size_t i,
+                                                   duite_mode declared)
 {
     struct task_graph *graph = call->scope->graph;
     struct data_object *object = task_fork_object(call, i);
@@ -226,23 +227,60 @@ static int access_depend(struct task_fork_call *call, size_t i, duite_mode decla
     return DUITE_OK;
 }
 
+/* All accesses. *made: those before the one that failed. */
+static int depend_each(struct task_fork_call *call, size_t *made)
+{
+    const size_t n_listed = call->scope->graph->fixed[call->index].n;
+    int code = DUITE_OK;
+    for (*made = 0; *made < call->n && !code; *made += !code) {
+        /* As data_mode_of, without a look for the end of the list. */
+        duite_mode mode = *made < n_listed ? call->kernel->access[*made] : call->kernel->variadic;
+        if (call->task)
+            call->task->access[*made].waiter.mode = mode;
+        code = access_depend(call, *made, mode);
+    }
+    return code;
+}
+
+/* The short way of the same, for most tasks: the kernel is plain, and no other rank has part in the
+ * task. It does as depend_each would; an access that needs more, as contributions do, goes to
+ * access_depend, which stands apart so that this way stays short. */
+static int depend_here(struct task_fork_call *call, size_t *made)
+{
+    struct task_graph *const graph = call->scope->graph;
+    struct task *const task = call->task;
+    const duite_mode *const mode = call->kernel->access;
+    const size_t n = call->n;
+    int code = DUITE_OK;
+    for (size_t i = 0; i < n && !code; i++) {
+        struct data_object *object = call->object[i];
+        struct data_version *version = object->current;
+        task->access[i].waiter.mode = mode[i];
+        *made = i;
+        if (object->leaves || (!version && mode[i] != DUITE_W)) {
+            code = access_depend(call, i, mode[i]);
+        } else if (mode[i] == DUITE_R) {
+            task_read(task, i, version, &call->done);
+        } else {
+            task_note_version(object, graph->rank);
+            if (mode[i] == DUITE_W && graph->rename_max)
+                version = task_rename(graph, call->worker, object);
+            code = task_overwrite(graph, task, i, object, version, &call->done);
+        }
+    }
+    return code;
+}
+
 int task_depend(struct task_fork_call *call)
 {
     struct task *task = call->task;
     struct task_graph *graph = call->scope->graph;
-    const size_t n_listed = graph->fixed[call->index].n;
-    for (size_t i = 0; i < call->n; i++) {
-        /* As data_mode_of, without a look for the end of the list. */
-        duite_mode mode = i < n_listed ? call->kernel->access[i] : call->kernel->variadic;
-        if (task)
-            task->access[i].waiter.mode = mode;
-        int code = access_depend(call, i, mode);
-        if (code && task)
-            task_void(graph, call->worker, task, i, call->done);
-        if (code)
-            return code;
-    }
-    if (task)
+    const bool here = task && call->plain && (graph->n_ranks == 1 || call->scope->depth);
+    size_t made = 0;
+    const int code = here ? depend_here(call, &made) : depend_each(call, &made);
+    if (code && task)
+        task_void(graph, call->worker, task, made, call->done);
+    else if (task)
         task_settled(graph, call->worker, task, call->done);
-    return DUITE_OK;
+    return code;
 }

@@ -26,7 +26,8 @@ static void access_release(struct task_graph *graph, struct worker *worker,
 
 void task_finish(struct task_graph *graph, struct worker *worker, struct task *task)
 {
-    for (uint32_t i = 0; i < task->n; i++)
+    const uint32_t n = task->n;
+    for (uint32_t i = 0; i < n; i++)
         access_release(graph, worker, &task->access[i]);
     struct task_scope *scope = task->scope;
     struct task_scope *inner =

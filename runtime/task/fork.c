@@ -121,10 +121,33 @@ static int fork_check_rights(const struct task_fork_call *call)
     return code;
 }
 
+/* Whether each object needs no second look: it may be used so, and nothing is to be done for that.
+ * Most forks are such. Else nothing was done, and fork_check_object says what is wrong. */
+static bool fork_take_objects(struct task_fork_call *call)
+{
+    struct task_scope *const scope = call->scope;
+    struct data_table *const table = scope->depth ? NULL : &scope->graph->table;
+    const duite_mode *const mode = call->kernel->access;
+    const duite_object *const name = call->objects;
+    const uint64_t mark = scope->forks + 1;
+    const size_t n = call->plain ? call->n : 0;
+    for (size_t i = 0; i < n; i++) {
+        struct data_object *object =
+            table ? data_object_here(table, name[i]) : task_find_given(scope, name[i], mode[i]);
+        if (object && object->mark != mark && !object->view) {
+            object->mark = mark;
+            call->object[i] = object;
+            continue;
+        }
+        while (i > 0)
+            call->object[--i]->mark = 0;
+        return false;
+    }
+    return call->plain;
+}
+
 static int fork_check_objects(struct task_fork_call *call)
 {
-    const struct task_fixed *fixed = &call->scope->graph->fixed[call->index];
-    call->owner = fixed->owner[call->n > fixed->n];
     for (size_t i = 0; i < call->n; i++) {
         int code = fork_check_object(call, i);
         if (code) {
@@ -142,7 +165,14 @@ static int fork_check(struct task_fork_call *call, int at, const void *args)
     int code = fork_kernel(graph, call->kernel, &call->index);
     if (!code)
         code = fork_check_call(graph, at, call->index, args, call->n, call->objects);
-    if (!code && call->scope->depth)
+    if (code)
+        return code;
+    const struct task_fixed *fixed = &graph->fixed[call->index];
+    call->owner = fixed->owner[call->n > fixed->n];
+    call->plain = fixed->plain;
+    if (fork_take_objects(call))
+        return DUITE_OK;
+    if (call->scope->depth)
         code = fork_check_rights(call);
     return code ? code : fork_check_objects(call);
 }

@@ -3,6 +3,8 @@
 
 #include "runtime/task/body.h"
 
+#pragma GCC visibility push(hidden) /* called directly: no program can come in between */
+
 /* Shared by the files of this folder only. */
 
 struct task_fork_call;
@@ -133,6 +135,10 @@ void task_left(struct task_graph *graph, struct task_scope *scope, struct worker
 /* The object of that name, with the right held on it; NULL with the error's message set. */
 struct data_object *task_find_object(struct task_scope *scope, duite_object name,
                                      duite_mode *right);
+/* The object of that name, if a child of the body may have it with this mode and nothing is to be
+ * done for that. Else NULL; task_check_right says why, or does it. */
+struct data_object *task_find_given(struct task_scope *scope, duite_object name, duite_mode wanted);
+
 /* A fork under way. fork.c checks it, and says where its task runs; depend.c goes through its
  * objects. Passed on by pointer: what a fork costs is mostly what its stages hand to one another.
  */
@@ -149,6 +155,7 @@ struct task_fork_call {
     uint32_t owner;                       /* the parameter it runs for, or TASK_NOBODY */
     uint32_t done;                        /* accesses that have nothing to wait for, so far */
     bool views;                           /* some objects are views */
+    bool plain;                           /* its kernel is */
     struct data_object *object[TASK_FEW]; /* the first ones */
 };
 
@@ -253,5 +260,7 @@ static inline int task_break(struct task_graph *graph)
     graph->broken = DUITE_E_MEMORY;
     return DUITE_E_MEMORY;
 }
+
+#pragma GCC visibility pop
 
 #endif

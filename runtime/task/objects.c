@@ -62,15 +62,20 @@ int task_copy(struct task_graph *graph, struct worker *worker, duite_object name
     return DUITE_OK;
 }
 
-int task_see(struct task_scope *scope, struct worker *worker, duite_object name,
+int task_see(struct duite_call_private *body, const char *call, duite_object name,
              struct data_version **version, size_t *size)
 {
+    struct task_scope *scope = task_inside(body);
+    struct data_object *object = scope ? task_find_given(scope, name, DUITE_R) : NULL;
+    int code = object ? DUITE_OK : task_check_call(body, call, name, DUITE_R);
     duite_mode right;
-    struct data_object *object = task_find_object(scope, name, &right);
+    if (!object && !code)
+        object = task_find_object(scope, name, &right);
     if (!object)
-        return DUITE_E_OBJECT;
+        return code ? code : DUITE_E_OBJECT;
     *size = data_type_size(object->type);
-    int code = object->leaves ? task_reduce(scope, worker, object) : DUITE_OK;
+    if (object->leaves)
+        code = task_reduce(scope, body->worker, object);
     if (!code && !(*version = task_local(scope->graph, object)))
         code = DUITE_E_MEMORY;
     return code;

@@ -43,7 +43,9 @@ static void heir_wake(struct task_graph *graph, struct worker *worker, struct da
 
 void task_release(struct task_graph *graph, struct worker *worker, struct data_version *version)
 {
-    heir_wake(graph, worker, data_version_release(version));
+    struct data_waiter *heir = data_version_release(version);
+    if (heir)
+        heir_wake(graph, worker, heir);
 }
 
 struct data_waiter *task_produced(struct task_graph *graph, struct worker *worker,

@@ -33,13 +33,15 @@ static const struct data_failure *version_take_over(const struct task *task,
 }
 
 /* What the body gets of a version; `fresh`: it finds unspecified bytes there. */
-static void param_describe(duite_param *param, const struct data_version *version, bool fresh)
+static inline void param_describe(duite_param *param, const struct data_version *version,
+                                  bool fresh)
 {
     duite_type type = (duite_type)version->type;
     struct data_packet *packet = data_version_packet(version);
     param->data = packet ? data_payload(packet) : NULL;
-    param->count =
-        version->sized && packet && !fresh ? packet->bytes / data_type_size(type) : version->max;
+    param->count = version->max;
+    if (version->sized && packet && !fresh)
+        param->count = packet->bytes / data_type_size(type);
     param->type = type;
     param->max = version->max;
 }
@@ -63,30 +65,33 @@ static const struct data_failure *leaf_open(const struct task *task,
     return failure;
 }
 
+/* What contributes, or belongs to the children. */
+static const struct data_failure *
+param_prepare_other(const struct task *task, const struct task_access *access, duite_param *param)
+{
+    if (access->waiter.mode == DUITE_CW)
+        return leaf_open(task, access, param);
+    param_describe_lent(param, task_lent_object(task->inner, access->lent));
+    return NULL;
+}
+
 /* Gives the body its parameters; returns the poison among them, or NULL. */
 static const struct data_failure *params_prepare(struct task *task, duite_param *param, bool *sized)
 {
     const struct data_failure *failure = NULL, *new = NULL;
-    uint32_t stamp = task->n ? task_new_stamp() : 0;
-    for (uint32_t i = 0; i < task->n; i++) {
+    const uint32_t n = task->n, stamp = n ? task_new_stamp() : 0;
+    for (uint32_t i = 0; i < n; i++) {
         struct task_access *access = &task->access[i];
-        switch (access->waiter.mode) {
-        case DUITE_R:
+        const uint32_t mode = access->waiter.mode;
+        if (mode == DUITE_R) {
             new = data_version_failure(access->in);
             param_describe(&param[i], access->in, false);
-            break;
-        case DUITE_W:
-        case DUITE_RW:
+        } else if (mode == DUITE_W || mode == DUITE_RW) {
             new = version_take_over(task, access);
             *sized |= access->out->sized;
-            param_describe(&param[i], access->out, access->waiter.mode == DUITE_W);
-            break;
-        case DUITE_CW:
-            new = leaf_open(task, access, &param[i]);
-            break;
-        default:
-            new = NULL;
-            param_describe_lent(&param[i], task_lent_object(task->inner, access->lent));
+            param_describe(&param[i], access->out, mode == DUITE_W);
+        } else {
+            new = param_prepare_other(task, access, &param[i]);
         }
         if (new)
             failure = data_failure_first(failure, new);

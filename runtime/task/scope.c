@@ -15,25 +15,19 @@
 
 #include <string.h>
 
-/* The calling thread's innermost body. */
-static _Thread_local struct duite_call_private *running __attribute__((tls_model("initial-exec")));
-
-struct duite_call_private *task_running(const struct task_graph *graph)
-{
-    return running && running->graph == graph ? running : NULL;
-}
+_Thread_local struct duite_call_private *task_innermost;
 
 void task_body_begins(struct duite_call_private *body)
 {
-    body->outer = running;
-    running = body;
+    body->outer = task_innermost;
+    task_innermost = body;
     if (body->scope)
         task_nest_of(body->scope)->body = body;
 }
 
 void task_body_ends(struct duite_call_private *body)
 {
-    running = body->outer;
+    task_innermost = body->outer;
 }
 
 /* ---- Names ---- */
@@ -122,19 +116,17 @@ const struct data_object *task_lent_object(const struct task_scope *scope, size_
     return &((const struct task_nest *)scope)->local[lent];
 }
 
-struct task_scope *task_inside(struct duite_call_private *body)
+struct task_scope *task_scope_begin(struct duite_call_private *body)
 {
     const struct task *task = body->task;
+    body->scope = task_scope_new(task, 0);
     if (!body->scope) {
-        body->scope = task_scope_new(task, 0);
-        if (!body->scope) {
-            base_no_memory("what a task forks");
-            return NULL;
-        }
-        task_nest_of(body->scope)->body = body;
-        if (task->type == TASK_NODE) /* the main program waits for what it forks, too */
-            work_over(body->graph->pool, body->worker, -1);
+        base_no_memory("what a task forks");
+        return NULL;
     }
+    task_nest_of(body->scope)->body = body;
+    if (task->type == TASK_NODE) /* the main program waits for what it forks, too */
+        work_over(body->graph->pool, body->worker, -1);
     return body->scope;
 }
 
@@ -334,6 +326,13 @@ int task_check_right(struct task_scope *scope, const char *call, size_t i, duite
                       "kernel %s, and %s is wanted",
                       call, i, task_mode_name(held), name.slot, name.generation,
                       name.slot - TASK_LOCAL_NAME, forker, mode);
+}
+
+struct data_object *task_find_given(struct task_scope *scope, duite_object name, duite_mode wanted)
+{
+    struct data_object *local;
+    duite_mode held;
+    return task_known(scope, name, &held, &local) && right_gives(held, wanted) ? local : NULL;
 }
 
 int task_wrong_law(const struct task_scope *scope, const duite_kernel *kernel, size_t i,

@@ -3,6 +3,8 @@
 
 #include "runtime/task/internal.h"
 
+#pragma GCC visibility push(hidden) /* called directly: no program can come in between */
+
 /* What a task's scope consists of; shared by scope.c and scope_end.c. */
 
 /* Where a lent parameter goes back to. */
@@ -45,5 +47,7 @@ bool task_known(struct task_scope *scope, duite_object name, duite_mode *right,
 
 /* The children may read what the body reads: the scope gets the objects. Errors: memory. */
 int task_lend_reads(struct task_scope *scope);
+
+#pragma GCC visibility pop
 
 #endif

@@ -10,6 +10,8 @@
 #include <pthread.h>
 #include <stdatomic.h>
 
+#pragma GCC visibility push(hidden) /* called directly: no program can come in between */
+
 /* Tasks and what they wait for, on one rank.
  *
  * The main thread forks: it derives from the accesses, in fork order, which rank runs a task, which
@@ -186,6 +188,7 @@ struct task_graph {
     const duite_kernel **kernels;
     struct task_fixed { /* parameters in each kernel's `access` */
         uint32_t n, postponed;
+        bool plain;        /* r, w and rw alone, few of them, no others; and it is not replicated */
         uint32_t owner[2]; /* which of n objects, of more than n, a task runs for: see owner.h */
     } * fixed;
     uint32_t n_kernels;
@@ -285,10 +288,6 @@ int task_free_object(struct task_scope *scope, struct worker *worker, duite_obje
  * waits for copy->done on the ranks it goes to. Main thread only. */
 int task_copy(struct task_graph *graph, struct worker *worker, duite_object object, int to,
               struct task_copy *copy);
-/* The version of the object that the forks so far leave, and the size of an element in bytes. The
- * version is or will be here, and stays the object's until the body's next call. Body only. */
-int task_see(struct task_scope *scope, struct worker *worker, duite_object object,
-             struct data_version **version, size_t *size);
 /* Releases a hold and wakes the heir. */
 void task_release(struct task_graph *graph, struct worker *worker, struct data_version *version);
 
@@ -391,5 +390,7 @@ struct data_key task_version_of(const struct task_graph *graph, duite_object obj
 
 /* Sets the message of a failure; returns its code. */
 int task_failure_error(const struct task_graph *graph, const struct data_failure *failure);
+
+#pragma GCC visibility pop
 
 #endif

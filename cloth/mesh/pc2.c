@@ -8,6 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 enum { HEADER = 32, POINT = 12 }; /* bytes */
 
@@ -66,12 +67,27 @@ static int read_frame(FILE *file, const char *path, uint32_t n_vertices, uint32_
     return CLOTH_OK;
 }
 
+/* How many whole frames the file has, whatever its header says. */
+static uint64_t count_whole(FILE *file, uint32_t n_vertices)
+{
+    struct stat status;
+    const uint64_t size =
+        fstat(fileno(file), &status) == 0 && status.st_size > 0 ? (uint64_t)status.st_size : 0;
+    if (!n_vertices || size < HEADER)
+        return 0;
+    return (size - HEADER) / ((uint64_t)POINT * n_vertices);
+}
+
 /* Reads the frames from `first` on, before `end`; both are numbers of frames that the header
  * counts. */
 static int read_frames(FILE *file, const char *path, uint32_t n_vertices, uint32_t first,
                        uint32_t end, double **place, struct cloth_error *error)
 {
     struct cloth_list list = {0};
+    const uint64_t n_whole = count_whole(file, n_vertices);
+    if (n_whole < end)
+        return cloth_fail(error, CLOTH_E_INPUT, "%s: it ends within frame %ju", path,
+                          (uintmax_t)n_whole + 1);
     unsigned char *bytes = cloth_alloc(n_vertices, POINT, error);
     int code = bytes ? CLOTH_OK : CLOTH_E_MEMORY;
     if (!code && fseeko(file, HEADER + (off_t)POINT * n_vertices * first, SEEK_SET) != 0)

@@ -1,11 +1,11 @@
-/* mutate SEED FROM TO [fit]: copies a file with one to four changes, the same for the same seed: a
+/* mutate SEED FROM TO: copies a file with one to four changes, the same for the same seed: a
  * bit turned over, a number of four bytes replaced by an extreme one, a piece left out, doubled or
- * moved, or the end cut off. fit: a checkpoint gets the hash of what it is now. */
-#include "tests/fuzz/fit.h"
+ * moved, or the end cut off. */
 #include "tests/support/random.h"
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum { MAX = 1 << 24 }; /* bytes of a file */
 
@@ -46,7 +46,7 @@ int main(int argc, char **argv)
     FILE *from = argc > 3 ? fopen(argv[2], "rb") : NULL;
     FILE *to = from && bytes ? fopen(argv[3], "wb") : NULL;
     if (!to) {
-        fprintf(stderr, "usage: mutate SEED FROM TO [fit], both of them files\n");
+        fprintf(stderr, "usage: mutate SEED FROM TO, both of them files\n");
         return 99;
     }
     size_t n = fread(bytes, 1, MAX, from);
@@ -54,8 +54,6 @@ int main(int argc, char **argv)
     uniform(0, 1);
     for (size_t i = 1 + below(4); i > 0; i--)
         n = change(bytes, n);
-    if (argc > 4)
-        fit_checkpoint(bytes, n);
     const int bad = ferror(from) || fwrite(bytes, 1, n, to) != n;
     free(bytes);
     return fclose(from) || fclose(to) || bad ? 99 : 0;

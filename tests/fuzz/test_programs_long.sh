@@ -32,15 +32,14 @@ checkpoint=run/checkpoints/000001.checkpoint
 fine() { # STATUS: a run may last longer than the limit if a scene wants it to, but hears TERM then
     case $1 in 0 | 1 | 2 | 4 | 124 | 143) ;; *) return 1 ;; esac
 }
-# A mutant of FILE is in its place when COMMAND runs on `again`, a copy of the folder. WORD: fit, or plain.
-each() { # FILE WORD COMMAND...
-    of=$1 word=$2 bad=no
-    shift 2
-    test "$word" = fit || word=
+# A mutant of FILE is in its place when COMMAND runs on `again`, a copy of the folder.
+each() { # FILE COMMAND...
+    of=$1 bad=no
+    shift
     cp "$of" whole
     for seed in $(seq "$first" $((first + mutants - 1))); do
         rm -rf again && cp -r run again
-        "$bin"/tests/fuzz/mutate "$seed" whole "$of" $word || return 1
+        "$bin"/tests/fuzz/mutate "$seed" whole "$of" || return 1
         status=0
         timeout --kill-after=30 30 "$@" > said 2>&1 || status=$?
         fine $status || { tail -n 30 said; echo "seed $seed of $of: status $status"; bad=yes; }
@@ -48,24 +47,23 @@ each() { # FILE WORD COMMAND...
     cp whole "$of"
     test $bad = no
 }
-mutants() { # NAME FILE WORD COMMAND...
+mutants() { # NAME FILE COMMAND...
     name=$1
     shift
     ok "$mutants mutants of $name" each "$@"
 }
 cloth="$DUITE_CLOTH scene.yaml --quiet"
-mutants "a scene" scene.yaml plain $cloth
-mutants "a mesh" mesh.obj plain $cloth
-mutants "a body" body.obj plain $cloth
-mutants "a pattern" panels.json plain $cloth
-mutants "a checkpoint" $checkpoint plain $cloth --restart again --end 0.012
-mutants "a checkpoint with its hash" $checkpoint fit $cloth --restart again --end 0.012
+mutants "a scene" scene.yaml $cloth
+mutants "a mesh" mesh.obj $cloth
+mutants "a body" body.obj $cloth
+mutants "a pattern" panels.json $cloth
+mutants "a checkpoint" $checkpoint $cloth --restart again --end 0.012
 for file in cloth.pc2 frames.csv probes.csv scene.json cloth.obj contact.pc2; do
-    mutants "$file, for a restart" run/$file plain $cloth --restart again --end 0.012
-    mutants "$file, for duite-view" run/$file plain "$DUITE_VIEW" again --check-intersections
+    mutants "$file, for a restart" run/$file $cloth --restart again --end 0.012
+    mutants "$file, for duite-view" run/$file "$DUITE_VIEW" again --check-intersections
 done
-mutants "a trace" trace plain "$bin"/duite-trace trace --partial --csv all.csv --paje all.paje --chrome all.json --dot all.dot --graph all.graph --svg all.svg
-mutants "a trace, summed up" trace plain "$bin"/duite-trace trace
-mutants "a trace, predicted" trace plain "$bin"/duite-predict trace --hosts 2
-mutants "a pattern, for duite-garment" panels.json plain "$bin"/duite-garment panels.json -o made.obj --edge 0.05 --body body.obj
-mutants "a body, for duite-garment" body.obj plain "$bin"/duite-garment panels.json -o made.obj --edge 0.05 --body body.obj
+mutants "a trace" trace "$bin"/duite-trace trace --partial --csv all.csv --paje all.paje --chrome all.json --dot all.dot --graph all.graph --svg all.svg
+mutants "a trace, summed up" trace "$bin"/duite-trace trace
+mutants "a trace, predicted" trace "$bin"/duite-predict trace --hosts 2
+mutants "a pattern, for duite-garment" panels.json "$bin"/duite-garment panels.json -o made.obj --edge 0.05 --body body.obj
+mutants "a body, for duite-garment" body.obj "$bin"/duite-garment panels.json -o made.obj --edge 0.05 --body body.obj

@@ -46,7 +46,7 @@ END
 
 # What a report has that neither times nor the machine decide.
 totals() {
-    sed -E '/"(ranks|threads|[a-z_]*seconds_[a-z_]*|wall_seconds|tasks[a-z_]*|messages|bytes_moved|[a-z_]*fraction|overhead_ns_per_task|peak_memory_bytes|delegated_tasks|migrated_objects|critical_path_seconds|lower_bound_seconds|graphs_recorded)":/ { /"phases"/ !{ /"name":/ !d } }; s/"wall_seconds": [^,}]*/"wall_seconds": 0/' "$1"
+    sed -E '/"(ranks|threads|limited_by|[a-z_]*seconds_[a-z_]*|wall_seconds|tasks[a-z_]*|messages|bytes_moved|[a-z_]*fraction|overhead_ns_per_task|peak_memory_bytes|delegated_tasks|migrated_objects|critical_path_seconds|lower_bound_seconds|graphs_recorded)":/ { /"phases"/ !{ /"name":/ !d } }; s/"wall_seconds": [^,}]*/"wall_seconds": 0/' "$1"
 }
 same_as() { # SCENE FOLDER REPORT: as the run that was left alone
     for file in cloth.pc2 frames.csv probes.csv contact.pc2 cloth.obj scene.json; do

@@ -12,11 +12,17 @@
  * It never pulls. Friction slows what slides by Coulomb's law, and what sticks creeps as through a
  * fluid. Along v it does not change with |v|, so its slope is 0 there. By that a step would turn
  * around what is slow. So the slope is what rub has beyond `spare`: with m / h or less no friction
- * turns around a mass m in a step of h. Pure functions; N, m, N/m, N s/m. */
+ * turns around a mass m in a step of h.
+ *
+ * Where nothing pushes, the slope by the point is still k up to the thickness, and falls to 0 over
+ * the band behind it. An implicit step pushes what is stiff out to where the force ends; a step
+ * that did not know of it then would let it fall back in. So what is to rest would hop for ever. A
+ * slope without a force leaves rest where it is. Pure functions; N, m, N/m, N s/m. */
 struct contact_spring {
     double stiffness, damping; /* k, c */
     double hold;               /* the most that friction resists a velocity by, k h or less */
     double spare;
+    double band; /* m, >= 0 */
 };
 
 /* The force on the first side, and its negative derivatives: by the point stiffness n n', by its
@@ -36,13 +42,14 @@ PHYS_INLINE void contact_repel(const struct contact_spring *spring, const struct
     const double along = phys_dot(&row->normal, speed);
     const double push = spring->stiffness * depth - spring->damping * along;
     *to = (struct contact_repelled){0};
+    if (depth > -spring->band)
+        to->stiffness = spring->stiffness * (depth < 0 ? 1 + depth / spring->band : 1);
     if (!(depth > 0 && push > 0))
         return;
     const phys_vec across = *speed - along * row->normal;
     const double length = sqrt(phys_dot(&across, &across)), most = row->friction * push;
     const double hold = most > 0 ? spring->hold : 0;
     const double rub = most < spring->hold * length ? most / length : hold;
-    to->stiffness = spring->stiffness;
     to->damping = spring->damping;
     to->rub = rub > spring->spare ? rub - spring->spare : 0;
     to->force = push * row->normal - rub * across;

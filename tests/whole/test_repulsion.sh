@@ -1,6 +1,6 @@
 #!/bin/sh
 # Contact by springs, contact.mode: repulsion: what rests on a plane, slides and creeps on it against closed forms, also where the plane is carried
-# along; two cloths that meet keep their momentum; a sheet stays out of a ball; one state_hash.
+# along; a sheet comes to rest; two cloths that meet keep their momentum; a sheet stays out of a ball; one state_hash.
 . "${srcdir:-.}/tests/support/tap.sh"
 . "$srcdir/tests/support/bodies.sh"
 . "$srcdir/tests/support/probes.sh"
@@ -111,6 +111,14 @@ time: {h: 0.004, end: 0.4, fps: 50}
 grain: 60
 END
 ok "a sheet on a ball" limited "$DUITE_CLOTH" ball.yaml --check-intersections --quiet
+# By long implicit steps, with contacts far stiffer than a vertex is heavy, it comes to rest.
+settles() {
+    limited "$DUITE_CLOTH" ball.yaml --quiet --report report.json --threads 1 --set contact.self=off \
+        --set 'obstacles=[{capsule: {from: [-1, 0, 0], to: [1, 0, 0], radius: 0.1}}]' \
+        --set 'materials.m.damping={stiffness: 0.004, mass: 10}' --set 'time={h: 0.02, end: 3, energy_growth: 0, rest: {speed: 0.01}}' || return 1
+    below "comes to rest, s" "$(sed -n 's/.*"rest_seconds": \([0-9.]*\).*/\1/p' report.json)" 2.9
+}
+ok "comes to rest on a bar" settles
 # A block as a body, which moves up.
 box_obj -1 0 -1 1 1 1 > block.obj
 block='obstacles[0]={body: {obj: block.obj, translate: [0, -1, 0], motion: {times: [0, 1], translate: [[0, 0, 0], [0, 0.1, 0]]}}}'

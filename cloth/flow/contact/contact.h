@@ -170,10 +170,11 @@ void flow_contact_ahead(const struct flow *flow, double from, double to,
 /* N/m: the k of contact_row.h in a step of h. */
 double flow_contact_stiffness(const struct flow *flow, double h);
 
-/* m: nearer features are contacts. */
+/* m: nearer features are contacts. Implicit steps know of what may come near, too: rows that hardly
+ * open (row.h), the band of springs (repulse.h). */
 static inline double flow_contact_reach(const struct model *model)
 {
-    return (model_certifies(model) ? 1.3 : 1) * model->contact.thickness;
+    return (model_is_implicit(model) ? 1.3 : 1) * model->contact.thickness;
 }
 
 #endif

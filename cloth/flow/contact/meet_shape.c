@@ -214,25 +214,42 @@ static void look_at_vertex(struct meeting *m, uint32_t vertex)
 
 /* ---- What is not certified ---- */
 
-/* Vertices are put out of whatever they are in. What the shape carries along in the step is taken
- * off the slip, as flow_contact_ahead does. */
-static void look_at_place(struct meeting *m, uint32_t vertex)
+/* What the shape carries along in the step is taken off the slip, as flow_contact_ahead does. */
+static void list_place(struct meeting *m, uint32_t vertex, const struct contact_hit *hit)
 {
     const uint32_t point = m->skin.vertex[vertex];
-    struct contact_solid_point on = {.weight = {1}};
-    struct contact_hit hit;
+    const struct contact_solid_point on = {.weight = {1}, .normal = hit->normal, .gap = hit->gap};
     struct flow_near near;
-    contact_closest(m->shape, &m->pose, 1, m->y + point, &hit);
-    if (!(hit.gap < flow_contact_reach(m->model)))
+    if (!(hit->gap < flow_contact_reach(m->model)))
         return;
-    on.normal = hit.normal;
-    on.gap = hit.gap;
     memset(&near, 0, sizeof near);
     describe(m, 1, &point, m->y + point, &on, &near);
     near.contact.feature[0] = vertex;
     near.contact.feature[1] = FLOW_ON_VERTEX;
-    near.contact.row.slip = (m->args->from - m->args->to) * hit.velocity;
+    near.contact.row.slip = (m->args->from - m->args->to) * hit->velocity;
     append(m, &near);
+}
+
+/* Vertices are put out of whatever they are in. Those that follow each other are near to each
+ * other, so many at once are found sooner. */
+static void look_at_vertices(struct meeting *m)
+{
+    enum { AT_ONCE = 64 };
+    uint32_t vertex[AT_ONCE], n = 0;
+    phys_vec place[AT_ONCE];
+    struct contact_hit hit[AT_ONCE];
+    for (uint32_t i = 0; i < m->skin.n_vertices; i++) {
+        if (!is_left_out(m, 1, m->skin.vertex + i)) {
+            vertex[n] = i;
+            place[n++] = m->y[m->skin.vertex[i]];
+        }
+        if (n < AT_ONCE && i + 1 < m->skin.n_vertices)
+            continue;
+        contact_closest(m->shape, &m->pose, n, place, hit);
+        for (uint32_t k = 0; k < n; k++)
+            list_place(m, vertex[k], hit + k);
+        n = 0;
+    }
 }
 
 /* Edges and triangles that are near a shape from outside; of bodies vertices alone count. */
@@ -244,9 +261,7 @@ static void look_at_places(struct meeting *m)
         if (!is_left_out(m, 3, point))
             list_triangle(m, i, y);
     }
-    for (uint32_t i = 0; i < m->skin.n_vertices; i++)
-        if (!is_left_out(m, 1, m->skin.vertex + i))
-            look_at_place(m, i);
+    look_at_vertices(m);
 }
 
 static void look(struct meeting *m)

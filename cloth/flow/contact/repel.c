@@ -22,11 +22,13 @@ static double stiffness_of(const struct flow *flow)
 struct contact_spring flow_repulsion_of(const struct flow *flow, double h)
 {
     const double stiffness = stiffness_of(flow);
+    const double band = flow_contact_reach(flow->model) - flow->model->contact.thickness;
     return (struct contact_spring){.stiffness = stiffness,
                                    .damping = 2 * flow->model->contact.damping *
                                               sqrt(stiffness * flow->vertex_mass),
                                    .hold = stiffness * h,
-                                   .spare = h > 0 ? LIGHT * flow->vertex_mass / h : 0};
+                                   .spare = h > 0 ? LIGHT * flow->vertex_mass / h : 0,
+                                   .band = band};
 }
 
 int flow_repulsion_start(struct flow_state *state)

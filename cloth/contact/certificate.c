@@ -1,4 +1,4 @@
-/* Nothing is said to be certain but by contact_certify's two comparisons, each with its bound on
+/* Nothing is said to be certain but by contact_pass's two comparisons, each with its bound on
  * rounding. Which direction and which plane are taken decides how often, never whether truly. */
 #include "cloth/contact/certificate.h"
 
@@ -73,6 +73,13 @@ PHYS_INLINE bool along_enough(const struct along *a, double gap, double thicknes
     return is_proof & (a->after >= a->length * (asked < gap ? asked : gap));
 }
 
+/* Whether both are more than so much, m. */
+PHYS_INLINE bool along_beyond(const struct along *a, double far)
+{
+    const double least = a->before < a->after ? a->before : a->after;
+    return (a->length > CONTACT_TINY) & (least > a->length * far);
+}
+
 /* ---- Certify ---- */
 
 /* Across both features, turned as they lie, with lanes z x y. Works for both kinds without a
@@ -118,19 +125,26 @@ PHYS_INLINE bool find_directions(enum contact_pair pair, const phys_vec p[4],
     return !(square > CONTACT_NEAR * CONTACT_NEAR * contact_square(at));
 }
 
+/* What f is at both ends where features are surely farther apart than reach, m: nearest points,
+ * found with other roundings, say so as well. */
+PHYS_INLINE double far_of(double reach)
+{
+    return reach * (1 + 1e-9) + 1e-9;
+}
+
 /* The closest directions at the start and at the end; then the best ones of features that are very
  * near. */
-PHYS_INLINE bool certify(enum contact_pair pair, const phys_vec x[4], const phys_vec y[4],
-                         double thickness)
+PHYS_INLINE enum contact_passing pass_closely(enum contact_pair pair, const phys_vec x[4],
+                                              const phys_vec y[4], double thickness, double reach)
 {
     struct ends ends;
     struct along along[6];
     phys_vec n[6];
     double gap = 0;
-    bool enough = false;
+    bool enough = false, by = false;
     contact_lanes_of(x, x, &ends.x);
     contact_lanes_of(y, y, &ends.y);
-    const double off = ROUNDING * lanes_size(&ends.x, &ends.y);
+    const double off = ROUNDING * lanes_size(&ends.x, &ends.y), far = far_of(reach) + off;
     const bool near_x = find_directions(pair, x, &ends.x, n);
     const bool near_y = find_directions(pair, y, &ends.y, n + 2);
     PHYS_UNROLL
@@ -149,27 +163,30 @@ PHYS_INLINE bool certify(enum contact_pair pair, const phys_vec x[4], const phys
         enough |= along_enough(along + 5, gap, thickness, off);
     }
     PHYS_UNROLL
-    for (int i = 0; i < 4; i++)
+    for (int i = 0; i < 4; i++) {
         enough |= along_enough(along + i, gap, thickness, off);
-    return enough;
+        by |= along_beyond(along + i, far);
+    }
+    return enough ? (by ? CONTACT_PASSES_BY : CONTACT_PASSES) : CONTACT_MAY_TOUCH;
 }
 
-PHYS_KERNEL_OF(bool, contact_certify_closely,
-               (enum contact_pair pair, const phys_vec x[4], const phys_vec y[4], double thickness),
-               (pair, x, y, thickness))
+PHYS_KERNEL_OF(enum contact_passing, contact_pass_closely,
+               (enum contact_pair pair, const phys_vec x[4], const phys_vec y[4], double thickness,
+                double reach),
+               (pair, x, y, thickness, reach))
 {
     if (pair == CONTACT_VT)
-        return certify(CONTACT_VT, x, y, thickness);
-    return certify(CONTACT_EE, x, y, thickness);
+        return pass_closely(CONTACT_VT, x, y, thickness, reach);
+    return pass_closely(CONTACT_EE, x, y, thickness, reach);
 }
 
 /* Whether the sum of what lies across both features at the start and at the end proves the pair,
  * and f(1) is enough after any gap. Most calls do nothing else. */
-PHYS_INLINE bool certify_quickly(bool is_edges, const phys_vec x[4], const phys_vec y[4],
-                                 double thickness)
+PHYS_INLINE enum contact_passing pass_quickly(bool is_edges, const phys_vec x[4],
+                                              const phys_vec y[4], double thickness, double reach)
 {
     static const double OFF = 36 * ROUNDING; /* m: of 18 differences below 2 m */
-    const double part = 0.1 * thickness;
+    const double part = 0.1 * thickness, far = far_of(reach) + OFF;
     const double least = part > CONTACT_MARGIN + OFF ? part : CONTACT_MARGIN + OFF;
     struct ends ends;
     phys_vec n, m, along_x, along_y;
@@ -183,17 +200,30 @@ PHYS_INLINE bool certify_quickly(bool is_edges, const phys_vec x[4], const phys_
     contact_along(&ends.x, &n, &along_x);
     contact_along(&ends.y, &n, &along_y);
     const double before = quick_apart(is_edges, &along_x), after = quick_apart(is_edges, &along_y);
-    return (before > CONTACT_TINY) & (before * before > square * ((LEAST + OFF) * (LEAST + OFF))) &
-           (after > 0) & (after * after >= square * (least * least)) & quick_small(&ends);
+    const bool passes = (before > CONTACT_TINY) &
+                        (before * before > square * ((LEAST + OFF) * (LEAST + OFF))) & (after > 0) &
+                        (after * after >= square * (least * least)) & quick_small(&ends);
+    const double nearer = before < after ? before : after;
+    if (!passes)
+        return CONTACT_MAY_TOUCH;
+    return nearer * nearer > square * (far * far) ? CONTACT_PASSES_BY : CONTACT_PASSES;
 }
 
-PHYS_KERNEL_OF(bool, contact_certify,
-               (enum contact_pair pair, const phys_vec x[4], const phys_vec y[4], double thickness),
-               (pair, x, y, thickness))
+PHYS_KERNEL_OF(enum contact_passing, contact_pass,
+               (enum contact_pair pair, const phys_vec x[4], const phys_vec y[4], double thickness,
+                double reach),
+               (pair, x, y, thickness, reach))
 {
-    if (certify_quickly(pair == CONTACT_EE, x, y, thickness))
-        return true;
-    return contact_certify_closely(pair, x, y, thickness);
+    const enum contact_passing quickly = pass_quickly(pair == CONTACT_EE, x, y, thickness, reach);
+    if (quickly != CONTACT_MAY_TOUCH)
+        return quickly;
+    return contact_pass_closely(pair, x, y, thickness, reach);
+}
+
+bool contact_certify(enum contact_pair pair, const phys_vec x[4], const phys_vec y[4],
+                     double thickness)
+{
+    return contact_pass(pair, x, y, thickness, INFINITY) != CONTACT_MAY_TOUCH;
 }
 
 /* ---- Cut ---- */

@@ -29,6 +29,12 @@
 bool contact_certify(enum contact_pair pair, const phys_vec x[4], const phys_vec y[4],
                      double thickness);
 
+/* The same; and whether the features are surely farther apart than reach (m, 0 or more) at all
+ * times of the step, which this says at no more cost of most pairs that are. */
+enum contact_passing { CONTACT_PASSES_BY, CONTACT_PASSES, CONTACT_MAY_TOUCH };
+enum contact_passing contact_pass(enum contact_pair pair, const phys_vec x[4], const phys_vec y[4],
+                                  double thickness, double reach);
+
 /* For a pair that contact_certify does not pass: lowers t[4] so that it passes with the ends
  *
  *     x + t (y - x)       by corner, rounded as it may be; exactly x where t is 0.

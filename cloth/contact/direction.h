@@ -1,6 +1,7 @@
 #ifndef CLOTH_CONTACT_DIRECTION_H
 #define CLOTH_CONTACT_DIRECTION_H
 
+#include "cloth/contact/certificate.h"
 #include "cloth/contact/pair.h"
 #include "cloth/contact/shape.h"
 
@@ -185,9 +186,9 @@ PHYS_INLINE double contact_between(enum contact_pair pair, const struct contact_
  * 1, or 0 if there is none. x: as contact_nearest_of has it. */
 void contact_direction_best(enum contact_pair pair, const phys_vec x[4], phys_vec *n);
 
-/* contact_certify by the closest directions alone: a function of its own, so that what most calls
- * need is small. */
-bool contact_certify_closely(enum contact_pair pair, const phys_vec x[4], const phys_vec y[4],
-                             double thickness);
+/* contact_pass by the closest directions alone: a function of its own, so that what most calls need
+ * is small. */
+enum contact_passing contact_pass_closely(enum contact_pair pair, const phys_vec x[4],
+                                          const phys_vec y[4], double thickness, double reach);
 
 #endif

@@ -88,19 +88,29 @@ PHYS_INLINE void put_lanes(const struct contact_point_box box[4], struct contact
     turn(high, to->high);
 }
 
-/* The box around four. */
+/* The same back. */
+PHYS_INLINE void turn_each(const contact_lanes from[3], contact_lanes to[4])
+{
+    const contact_lanes z = from[2];
+    const contact_lanes xy01 = SHUFFLE(from[0], from[1], 0, 4, 1, 5);
+    const contact_lanes xy23 = SHUFFLE(from[0], from[1], 2, 6, 3, 7);
+    to[0] = SHUFFLE(xy01, z, 0, 1, 4, 4);
+    to[1] = SHUFFLE(xy01, z, 2, 3, 5, 5);
+    to[2] = SHUFFLE(xy23, z, 0, 1, 6, 6);
+    to[3] = SHUFFLE(xy23, z, 2, 3, 7, 7);
+}
+
+/* The box around four; its last lane means nothing. */
 PHYS_INLINE void lanes_whole(const struct contact_boxes *boxes, struct contact_point_box *whole)
 {
-    *whole = (struct contact_point_box){{0}, {0}};
+    contact_lanes low[4], high[4];
+    turn_each(boxes->low, low);
+    turn_each(boxes->high, high);
+    *whole = (struct contact_point_box){low[0], high[0]};
     PHYS_UNROLL
-    for (int c = 0; c < 3; c++) {
-        const contact_lanes low = boxes->low[c], high = boxes->high[c];
-        const float low01 = low[0] < low[1] ? low[0] : low[1];
-        const float low23 = low[2] < low[3] ? low[2] : low[3];
-        const float high01 = high[0] > high[1] ? high[0] : high[1];
-        const float high23 = high[2] > high[3] ? high[2] : high[3];
-        whole->low[c] = low01 < low23 ? low01 : low23;
-        whole->high[c] = high01 > high23 ? high01 : high23;
+    for (int k = 1; k < 4; k++) {
+        lower(low + k, &whole->low);
+        upper(high + k, &whole->high);
     }
 }
 

@@ -70,7 +70,6 @@ bool contact_solid_certify(const struct contact_solid *solid, const phys_vec x[3
 
 /* The same; and whether it is surely farther than reach (m, 0 or more) from the shape at all times
  * of the step, which this says at no more cost of most triangles that are. */
-enum contact_passing { CONTACT_PASSES_BY, CONTACT_PASSES, CONTACT_MAY_TOUCH };
 enum contact_passing contact_solid_pass(const struct contact_solid *solid, const phys_vec x[3],
                                         const phys_vec y[3], double thickness, double reach);
 

@@ -41,13 +41,19 @@ static void find_corners(const struct meeting *m, const struct contact_candidate
                          struct corners *to)
 {
     to->pair = contact_candidate_corners(m->skin, m->skin + 1, candidate, to->point, to->side);
-    to->held = 0;
     for (unsigned k = 0; k < 4; k++) {
         const struct contact_side *side = m->side + to->side[k];
         to->x[k] = side->x[to->point[k]];
         to->y[k] = side->y[to->point[k]];
-        to->held |= (unsigned)(side->skin->held[to->point[k]] != 0) << k;
     }
+}
+
+/* Only what is listed needs it. */
+static void find_held(const struct meeting *m, struct corners *to)
+{
+    to->held = 0;
+    for (unsigned k = 0; k < 4; k++)
+        to->held |= (unsigned)(m->skin[to->side[k]].held[to->point[k]] != 0) << k;
 }
 
 /* The cloth, or behind all cloths the obstacle, that n corners are of, from one on. */
@@ -204,10 +210,11 @@ static bool presses(const struct meeting *m, const struct contact_candidate *can
 
 /* What is near at the end of the step. */
 static void list(struct meeting *m, const struct contact_candidate *candidate,
-                 const struct corners *corners, const struct contact_nearest *nearest)
+                 struct corners *corners, const struct contact_nearest *nearest)
 {
     struct flow_near near;
     memset(&near, 0, sizeof near); /* padding, too: lists are compared byte by byte */
+    find_held(m, corners);
     describe(m, candidate, corners, corners->y, nearest, &near.contact);
     for (uint32_t k = 0; k < 4; k++)
         near.part[k] = 1;
@@ -226,12 +233,13 @@ static double gap_ahead(const struct corners *corners, const struct contact_near
 /* What the step drives into each other. Where no cut will do, the parts stay 1: the pair fails
  * again in the next look, and after the last one the step is given up. */
 static void fail(struct meeting *m, const struct contact_candidate *candidate,
-                 const struct corners *corners)
+                 struct corners *corners)
 {
     double part[4] = {1, 1, 1, 1};
     struct contact_nearest nearest;
     struct flow_near near;
     memset(&near, 0, sizeof near);
+    find_held(m, corners);
     contact_nearest_of(corners->pair, corners->x, &nearest);
     describe(m, candidate, corners, corners->x, &nearest, &near.contact);
     near.fails = true;
@@ -244,20 +252,29 @@ static void fail(struct meeting *m, const struct contact_candidate *candidate,
     append(m, &near);
 }
 
-static void look_at(struct meeting *m, const struct contact_candidate *candidate)
+static enum contact_passing passing_of(const struct meeting *m, const struct corners *corners)
+{
+    if (!model_certifies(m->model))
+        return CONTACT_PASSES;
+    return contact_pass(corners->pair, corners->x, corners->y, m->model->contact.thickness,
+                        flow_contact_reach(m->model));
+}
+
+static void look_at(struct meeting *m, const struct contact_candidate *candidate,
+                    struct corners *corners)
 {
     struct contact_nearest nearest;
-    struct corners corners;
-    find_corners(m, candidate, &corners);
-    if (model_certifies(m->model) &&
-        !contact_certify(corners.pair, corners.x, corners.y, m->model->contact.thickness)) {
-        fail(m, candidate, &corners);
+    const enum contact_passing passing = passing_of(m, corners);
+    if (passing == CONTACT_MAY_TOUCH) {
+        fail(m, candidate, corners);
         return;
     }
     m->passes++;
-    contact_nearest_of(corners.pair, corners.y, &nearest);
-    if (presses(m, candidate, &corners, &nearest))
-        list(m, candidate, &corners, &nearest);
+    if (passing == CONTACT_PASSES_BY)
+        return;
+    contact_nearest_of(corners->pair, corners->y, &nearest);
+    if (presses(m, candidate, corners, &nearest))
+        list(m, candidate, corners, &nearest);
 }
 
 /* Whether the two sides do not meet, or the feature of the block is attached to the body. */
@@ -274,12 +291,21 @@ static bool is_left_out(const struct meeting *m, const struct contact_candidate 
                                        m->args->side[1] - m->flow->tables.n_blocks);
 }
 
+/* Corners of several candidates are brought before the first is looked at: a processor that has
+ * just written halves of a vector waits where it reads the whole. */
 static void visit(void *to, uint32_t n, const struct contact_candidate *candidate)
 {
+    enum { AT_ONCE = 16 };
     struct meeting *m = to;
-    for (uint32_t i = 0; i < n; i++)
-        if (!m->leaves_out || !is_left_out(m, candidate + i))
-            look_at(m, candidate + i);
+    struct corners corners[AT_ONCE];
+    for (uint32_t i = 0; i < n; i += AT_ONCE) {
+        const uint32_t some = n - i < AT_ONCE ? n - i : AT_ONCE;
+        for (uint32_t k = 0; k < some; k++)
+            find_corners(m, candidate + i + k, corners + k);
+        for (uint32_t k = 0; k < some; k++)
+            if (!m->leaves_out || !is_left_out(m, candidate + i + k))
+                look_at(m, candidate + i + k, corners + k);
+    }
 }
 
 /* Parameters: w the list, cw the counts, then of each block, or of all bodies, skins, points,

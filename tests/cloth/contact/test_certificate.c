@@ -154,6 +154,30 @@ START_TEST(cuts)
 }
 END_TEST
 
+/* What passes by is farther apart than the reach at both ends, as nearest points are, and all that
+ * passes is certified. */
+START_TEST(passes_by)
+{
+    const struct pairs_sort *sort = PAIRS_SORTS + _i;
+    int by = 0, far = 0, n = pairs_count();
+    for (int i = 0; i < n; i++) {
+        const enum contact_pair pair = KINDS[i & 1];
+        struct contact_nearest begin, end;
+        phys_vec x[4], y[4];
+        pairs_draw(pair, sort, x, y);
+        contact_nearest_of(pair, x, &begin);
+        contact_nearest_of(pair, y, &end);
+        const double nearer = fmin(begin.gap, end.gap), reach = uniform(0, 1.5) * nearer;
+        const enum contact_passing is = contact_pass(pair, x, y, THICKNESS, reach);
+        PAIRS_CHECK((is != CONTACT_MAY_TOUCH) == contact_certify(pair, x, y, THICKNESS));
+        PAIRS_CHECK(is != CONTACT_PASSES_BY || nearer > reach);
+        by += is == CONTACT_PASSES_BY;
+        far += is == CONTACT_PASSES && nearer > reach;
+    }
+    printf("# %s: %d of %d pass by, %d more are as far\n", sort->name, by, n, far);
+}
+END_TEST
+
 /* Steps towards each other without end: each is certified after its cut, and the gap stays. */
 START_TEST(again_and_again)
 {
@@ -238,6 +262,7 @@ int main(void)
     tcase_add_test(cases, known);
     tcase_add_test(cases, not_finite);
     tcase_add_loop_test(cut_cases, cuts, 0, PAIRS_SORTS_N);
+    tcase_add_loop_test(cut_cases, passes_by, 0, PAIRS_SORTS_N);
     tcase_add_test(cut_cases, again_and_again);
     tcase_add_test(cut_cases, lowered);
     tcase_add_test(cut_cases, flown);

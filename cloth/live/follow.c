@@ -16,12 +16,13 @@
 #include <zmq.h>
 
 enum { PATH = 300, STATE = 500 };
+static const double END_OLD = 2; /* s: a run that ends is gone by then */
 
 struct live_follower {
     void *zmq, *socket, *monitor;
     char host[PATH];
     bool connected, asked; /* asked: an answer is due */
-    bool ended;            /* the run said so */
+    double ended;          /* s: when the run said so; 0: it has not */
     uint64_t run, scene;   /* had; 0: none */
     uint64_t next;         /* the first frame that is not had */
     double time;           /* s: of the one before it */
@@ -46,13 +47,13 @@ static int fail_zmq(const char *what, struct cloth_error *error)
                       zmq_strerror(errno));
 }
 
-/* By ZMQ_IPV6 `localhost' would be ::1 alone, where a run does not listen. */
+/* ZMQ_IMMEDIATE would drop what came before a connection ended, such as the last frame. By ZMQ_IPV6
+ * `localhost' would be ::1 alone, where a run does not listen. */
 static int set_options(void *socket, const char *host, struct cloth_error *error)
 {
     const int none = 0, yes = 1, again = 250, six = *host == '[';
     const int64_t most = LIVE_MAX_BYTES;
     if (zmq_setsockopt(socket, ZMQ_LINGER, &none, sizeof none) ||
-        zmq_setsockopt(socket, ZMQ_IMMEDIATE, &yes, sizeof yes) ||
         zmq_setsockopt(socket, ZMQ_RECONNECT_IVL, &again, sizeof again) ||
         zmq_setsockopt(socket, ZMQ_MAXMSGSIZE, &most, sizeof most) ||
         zmq_setsockopt(socket, ZMQ_IPV6, &six, sizeof six) ||
@@ -113,15 +114,23 @@ static void take_events(struct live_follower *follower)
             memcpy(&event, zmq_msg_data(&part), sizeof event);
         follower->connected = event == ZMQ_EVENT_HANDSHAKE_SUCCEEDED;
         follower->asked = false;
-        follower->ended = follower->ended && !follower->connected;
+        follower->ended = follower->connected ? 0 : follower->ended;
         while (zmq_msg_more(&part) && zmq_msg_recv(&part, follower->monitor, 0) >= 0)
             continue;
     }
     zmq_msg_close(&part);
 }
 
+/* A run that has ended is asked no more, unless it is the one before that said so. */
+static bool may_ask(const struct live_follower *follower)
+{
+    return follower->connected && !follower->asked &&
+           (!(follower->ended > 0) || now() - follower->ended > END_OLD);
+}
+
 static void ask(struct live_follower *follower)
 {
+    follower->ended = 0;
     const struct live_message request = {.kind = LIVE_REQUEST,
                                          .run = follower->run,
                                          .scene = follower->scene,
@@ -175,7 +184,7 @@ static int take_message(struct live_follower *follower, zmq_msg_t *message, enum
     else if (!code && said.kind == LIVE_FRAME)
         code = take_frame(follower, &said, news, &inner);
     else if (!code && said.kind == LIVE_END)
-        follower->ended = follower->asked = true; /* no more answers come from there */
+        follower->ended = now();
     return code ? cloth_fail(error, code, "--connect %s: %s", follower->host, inner.text) : 0;
 }
 
@@ -201,14 +210,15 @@ int live_follow(struct live_follower *follower, double seconds, enum live_news *
     for (*news = LIVE_NOTHING; !code && *news == LIVE_NOTHING;) {
         zmq_pollitem_t item[2] = {{.socket = follower->socket, .events = ZMQ_POLLIN},
                                   {.socket = follower->monitor, .events = ZMQ_POLLIN}};
+        code = take_messages(follower, news, error); /* what is here came before what is said */
         take_events(follower);
-        code = take_messages(follower, news, error);
         const double left = end - now();
-        if (!code && follower->connected && !follower->asked && *news == LIVE_NOTHING)
+        if (!code && may_ask(follower) && *news == LIVE_NOTHING)
             ask(follower);
         if (!(left > 0) || code || *news != LIVE_NOTHING)
             break;
-        if (zmq_poll(item, 2, (long)ceil(1e3 * left)) < 0 && errno != EINTR)
+        const double nap = follower->ended > 0 ? fmin(left, END_OLD) : left;
+        if (zmq_poll(item, 2, (long)ceil(1e3 * nap)) < 0 && errno != EINTR)
             code = fail_zmq("wait", error);
     }
     return code;
@@ -234,7 +244,7 @@ uint64_t live_follow_frame(const struct live_follower *follower)
 
 const char *live_follow_state(struct live_follower *follower, bool *waits)
 {
-    const bool sends = follower->connected && !follower->ended;
+    const bool sends = follower->connected && !(follower->ended > 0);
     char *to = follower->state;
     *waits = !sends || !follower->next;
     if (!*waits)
@@ -246,7 +256,7 @@ const char *live_follow_state(struct live_follower *follower, bool *waits)
         snprintf(to, STATE, "waits for a run at %s", follower->host);
     else
         snprintf(to, STATE, "the run %s at frame %" PRIu64 "; waits for the next one at %s",
-                 follower->ended ? "has ended" : "ended, or was lost,", follower->next - 1,
+                 follower->ended > 0 ? "has ended" : "was lost", follower->next - 1,
                  follower->host);
     return to;
 }

@@ -36,7 +36,8 @@ files() {
 }
 
 home() {
-    mkdir -p "$1" && ln -s "$srcdir/cloth" "$srcdir/tests" "$srcdir/docs" "$srcdir/bootstrap" "$build/bench" "$1" || return
+    mkdir -p "$1/bench" && ln -s "$srcdir/cloth" "$srcdir/tests" "$srcdir/docs" "$srcdir/bootstrap" "$1" &&
+        ln -s "$srcdir"/bench/* "$1/bench" && ln -sfn "$build"/bench/* "$1/bench" || return
     for program in duite-cloth duite-garment duite-mannequin duite-view duite-trace duite-predict; do
         test ! -x "$build/$program" || ln -s "$build/$program" "$1"
     done
@@ -83,7 +84,7 @@ run_command() { # COMMAND NAME
         pvpython* | blender*) if command -v "${1%% *}" > /dev/null; then ok "$2" here "$1"; else skip "$2" "not installed"; fi ;;
         *duite-view\ *--mp4*) if has duite-view && command -v ffmpeg > /dev/null; then ok "$2" here "$1"; else skip "$2" "no viewer, or no ffmpeg"; fi ;;
         duite-view* | ./duite-view*) if has duite-view; then ok "$2" here "$1"; else skip "$2" "no viewer"; fi ;;
-        bench/duite-bench* | bench/experiments*) if has bench/duite-bench; then ok "$2" here "$1 --quick"; else skip "$2" "no benches (make bench)"; fi ;;
+        bench/duite-bench* | bench/experiments*) if has bench/duite-bench; then ok "$2" here "${1%% *} --quick ${1#* }"; else skip "$2" "no benches (make bench)"; fi ;;
         bench/*) if has "${1%% *}"; then ok "$2" here "$1"; else skip "$2" "no benches (make bench)"; fi ;;
         tests/cluster/hosts.sh*)
             if why=$("$srcdir/tests/cluster/hosts.sh" 2 true 2>&1 < /dev/null); then ok "$2" here "$1"; else skip "$2" "${why:-no hosts}"; fi ;;

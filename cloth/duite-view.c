@@ -48,8 +48,10 @@ static const struct argp_option OPTIONS[] = {
      "Pixels of a picture, film or window (1280x720; of a chart 1280, and as high as its rows)", 0},
     {"camera", 'c', "AZIMUTH,ELEVATION[,ZOOM]", 0,
      "Where to look from, in degrees: 0,0 is from +z, 90,0 from +x (32,20,1)", 0},
-    {"colour", 'k', "contact[,MAX]", 0,
-     "Colour the cloth by the force of contact on its vertices, up to MAX N (the largest)", 0},
+    {"colour", 'k', "WORD[,[MIN:]MAX]", 0,
+     "Colour the cloth by block, rank, strain (m/m), stress (N/m), contact (N) or as cloth; the "
+     "numbers on a scale from MIN (0) to MAX (the largest of all frames)",
+     0},
     {"wireframe", 'e', NULL, 0, "Draw the edges of the cloth's triangles, too", 0},
     {"connect", VIEW_LIVE_CONNECT, "HOST:PORT", 0,
      "Show the newest frame of a run that goes on: duite-cloth --live PORT; no DIR then", 0},
@@ -120,20 +122,6 @@ static int parse_camera(const char *text, struct view_wish *wish)
         return 1;
     return !isfinite(wish->azimuth) || !(fabs(wish->elevation) <= 89) ||
            !(wish->zoom > 0 && wish->zoom <= 1000);
-}
-
-static int parse_colour(const char *text, struct view_wish *wish)
-{
-    static const char word[] = "contact";
-    int end = 0;
-    wish->contact = true;
-    wish->most_force = 0;
-    if (strncmp(text, word, strlen(word)) != 0)
-        return 1;
-    text += strlen(word);
-    if (*text && (sscanf(text, ",%lf%n", &wish->most_force, &end) != 1 || text[end]))
-        return 1;
-    return *text && !(wish->most_force > 0 && isfinite(wish->most_force));
 }
 
 static bool opens_window(const struct options *options)
@@ -236,6 +224,7 @@ static error_t parse_film(int key, char *arg, struct argp_state *state)
 static error_t parse(int key, char *arg, struct argp_state *state)
 {
     struct options *options = state->input;
+    const char *wrong;
     options->framed |= key == 'f' || key == 'c' || key == 'k' || key == 'e';
     options->numbered |= key == 'f' || key == 'k';
     options->sized |= key == 's';
@@ -261,8 +250,9 @@ static error_t parse(int key, char *arg, struct argp_state *state)
                        arg);
         return 0;
     case 'k':
-        if (parse_colour(arg, &options->wish))
-            argp_error(state, "--colour takes contact[,MAX], MAX above 0 (N), not `%s'", arg);
+        wrong = view_colouring_parse(arg, &options->wish.colouring);
+        if (wrong)
+            argp_error(state, "--colour %s, not `%s'", wrong, arg);
         return 0;
     case 'e':
         options->wish.wire = true;

@@ -64,6 +64,17 @@ static int open_probes(struct outputs *to, const struct flow *flow, const uint64
                   : output_probes_forget(to->options->output, error);
 }
 
+/* The shapes of a later phase follow when it begins. */
+static int open_colours(struct outputs *to, const struct phases *phases, const struct flow *flow,
+                        const uint64_t *n_frames, struct cloth_error *error)
+{
+    const int code = output_colours_open(&to->colours, to->options->output,
+                                         (uint32_t)flow_vertices(flow), n_frames, error);
+    return code || phases->now ? code
+                               : outputs_colours_rest(&to->colours, phases_model(phases),
+                                                      n_frames ? *n_frames : 0, error);
+}
+
 static int open_forces(struct outputs *to, const struct model *model, const struct flow *flow,
                        const uint64_t *n_frames, struct cloth_error *error)
 {
@@ -87,6 +98,7 @@ static int open_output(struct outputs *to, const struct phases *phases, const st
     const uint64_t *n_frames = stays ? &stays->frames : NULL;
     setup->n_frames = n_frames;
     int code = output_open(&to->frames, setup, error);
+    code = code ? code : open_colours(to, phases, flow, n_frames, error);
     code = code ? code : outputs_hdf5_open(&to->hdf5, model, to->options->output, error);
     code = code ? code : open_forces(to, model, flow, n_frames, error);
     return code ? code : open_probes(to, flow, stays ? &stays->rows : NULL, error);
@@ -201,6 +213,9 @@ int outputs_go_on(struct outputs *to, const struct phases *phases,
     if (to->intersections)
         intersections_begin(to->intersections, phases->total.simulated_seconds);
     if (!code)
+        code = outputs_colours_rest(&to->colours, phases_model(phases),
+                                    phases_before(phases).frames, error);
+    if (!code)
         code = outputs_hdf5_go_on(&to->hdf5, phases_model(phases), error);
     return code || !(to->frames || to->live) ? code : write_scene(to, phases, apart, error);
 }
@@ -231,6 +246,7 @@ void outputs_close(struct outputs *of, struct cloth_error *error)
     keeper_close(&of->keeper);
     output_probes_close(&of->probes, error);
     output_forces_close(&of->forces, error);
+    output_colours_close(&of->colours, error);
     output_close(&of->frames, error);
     outputs_hdf5_close(&of->hdf5);
     live_publish_close(&of->live);
@@ -282,6 +298,13 @@ int outputs_frame(void *context, uint64_t frame, double time, const double *posi
     if (of->drape)
         drape_frame(of->drape, position);
     return code;
+}
+
+int outputs_places(void *context, uint64_t frame, const struct flow_places *places,
+                   struct cloth_error *error)
+{
+    struct outputs *of = context;
+    return outputs_colours_places(&of->colours, frame, places, error);
 }
 
 int outputs_beside(void *context, const struct flow_beside *beside, struct cloth_error *error)

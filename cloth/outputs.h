@@ -5,6 +5,7 @@
 #include "cloth/flow/run.h"
 #include "cloth/intersections.h"
 #include "cloth/live/live.h"
+#include "cloth/outputs_colours.h"
 #include "cloth/outputs_hdf5.h"
 #include "cloth/phases.h"
 #include "cloth/simulate.h"
@@ -20,6 +21,7 @@ struct outputs {
     struct output_probes *probes;        /* if the scene has any */
     struct outputs_hdf5 hdf5;            /* if the scene asks for them */
     struct live_publisher *live;         /* if they are to be seen live */
+    struct output_colours *colours;      /* as the frames */
     struct output_forces *forces;        /* of frames; NULL: none */
     struct intersections *intersections; /* if they are looked for */
     struct intersections_found found;    /* then, at the end; before it of the phases so far */
@@ -55,6 +57,8 @@ void outputs_free(struct outputs *of);
 /* Functions of a struct flow_output whose context is a struct outputs. */
 int outputs_frame(void *context, uint64_t frame, double time, const double *position,
                   struct cloth_error *error);
+int outputs_places(void *context, uint64_t frame, const struct flow_places *places,
+                   struct cloth_error *error);
 int outputs_beside(void *context, const struct flow_beside *beside, struct cloth_error *error);
 int outputs_force(void *context, uint64_t frame, const double *force, struct cloth_error *error);
 int outputs_row(void *context, uint64_t step, double time, size_t n, const double *values,

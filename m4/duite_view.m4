@@ -7,7 +7,8 @@ AC_DEFUN([DUITE_CHART], [
     PKG_CHECK_MODULES([CAIRO], [cairo],
         [AC_DEFINE([HAVE_CAIRO], [1], [Define to 1 if cairo draws charts as PNG.])
          duite_chart_says="SVG, PNG"],
-        [duite_chart_says="SVG   (no PNG without libcairo2-dev)"])])
+        [duite_chart_says="SVG   (no PNG without libcairo2-dev)"])
+    AM_CONDITIONAL([HAVE_CAIRO], [test "$duite_chart_says" = "SVG, PNG"])])
 
 AC_DEFUN([DUITE_VIEW], [
     duite_view_missing=

@@ -118,6 +118,13 @@ struct flow_beside {
                                   * block has */
 };
 
+/* Where vertices and blocks are when a frame is shown. */
+struct flow_places {
+    const int32_t *block; /* of each vertex; -1 of those that no block has */
+    uint32_t n_blocks;
+    const int32_t *rank; /* n_blocks: that keeps each */
+};
+
 /* Where frames and systems go: handed over by the program. Called on rank 0 only, from one task at
  * a time. */
 struct flow_output {
@@ -132,6 +139,9 @@ struct flow_output {
      * seconds. Returns 0 or a code and fills error. */
     int (*frame)(void *context, uint64_t frame, double time, const double *position,
                  struct cloth_error *error);
+    /* Before it the places in it. The arrays are lent. NULL: they are not wanted. */
+    int (*places)(void *context, uint64_t frame, const struct flow_places *places,
+                  struct cloth_error *error);
     /* After it the force of contact on each vertex in the step that ended there, N, alike, of a run
      * whose contact is certified; NULL: it is not wanted. */
     int (*force)(void *context, uint64_t frame, const double *force, struct cloth_error *error);

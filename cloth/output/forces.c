@@ -180,26 +180,38 @@ static int read_floats(FILE *file, uint32_t n_points, uint64_t frame, double *fo
     return 0;
 }
 
+static int read_count(FILE *file, const char *path, uint32_t n_vertices, uint64_t *n_frames,
+                      struct cloth_error *error)
+{
+    unsigned char header[OUTPUT_PC2_HEADER];
+    uint32_t n_points, n;
+    if (fread(header, sizeof header, 1, file) != 1 || !output_pc2_parse(header, &n_points, &n) ||
+        n_points != n_vertices)
+        return cloth_fail(error, CLOTH_E_INPUT, "%s is not a point cache of %u vertices", path,
+                          n_vertices);
+    *n_frames = n;
+    return CLOTH_OK;
+}
+
 static int read_frame(FILE *file, const char *path, uint32_t n_vertices, uint64_t frame,
                       double *force, struct cloth_error *error)
 {
-    unsigned char header[OUTPUT_PC2_HEADER];
-    uint32_t n_points, n_frames;
-    if (fread(header, sizeof header, 1, file) != 1 ||
-        !output_pc2_parse(header, &n_points, &n_frames) || n_points != n_vertices)
-        return cloth_fail(error, CLOTH_E_INPUT, "%s is not a point cache of %u vertices", path,
-                          n_vertices);
+    uint64_t n_frames;
+    const int code = read_count(file, path, n_vertices, &n_frames, error);
+    if (code)
+        return code;
     if (frame >= n_frames)
-        return cloth_fail(error, CLOTH_E_INPUT, "%s has %u frames: no frame %ju", path, n_frames,
-                          (uintmax_t)frame);
-    return read_floats(file, n_points, frame, force) == 0
+        return cloth_fail(error, CLOTH_E_INPUT, "%s has %ju frames: no frame %ju", path,
+                          (uintmax_t)n_frames, (uintmax_t)frame);
+    return read_floats(file, n_vertices, frame, force) == 0
                ? 0
                : cloth_fail(error, CLOTH_E_INPUT, "%s is cut off before frame %ju ends", path,
                             (uintmax_t)frame);
 }
 
-int output_forces_read(const char *folder, uint32_t n_vertices, uint64_t frame, double *force,
-                       struct cloth_error *error)
+/* force: NULL where the count is asked for. */
+static int read_forces(const char *folder, uint32_t n_vertices, uint64_t frame, double *force,
+                       uint64_t *n_frames, struct cloth_error *error)
 {
     char *path = output_path(folder, NAME, "");
     FILE *file = path ? fopen(path, "rbe") : NULL;
@@ -212,9 +224,22 @@ int output_forces_read(const char *folder, uint32_t n_vertices, uint64_t frame, 
                           "on}",
                           path, strerror(errno));
     else
-        code = read_frame(file, path, n_vertices, frame, force, error);
+        code = force ? read_frame(file, path, n_vertices, frame, force, error)
+                     : read_count(file, path, n_vertices, n_frames, error);
     if (file)
         fclose(file);
     free(path);
     return code;
+}
+
+int output_forces_read(const char *folder, uint32_t n_vertices, uint64_t frame, double *force,
+                       struct cloth_error *error)
+{
+    return read_forces(folder, n_vertices, frame, force, NULL, error);
+}
+
+int output_forces_count(const char *folder, uint32_t n_vertices, uint64_t *n_frames,
+                        struct cloth_error *error)
+{
+    return read_forces(folder, n_vertices, 0, NULL, n_frames, error);
 }

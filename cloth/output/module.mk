@@ -1,5 +1,6 @@
 libduite_cloth_la_SOURCES += \
 	cloth/output/output.h \
+	cloth/output/colours.h cloth/output/colours.c cloth/output/colours_read.c \
 	cloth/output/checkpoint.c cloth/output/checkpoint.h \
 	cloth/output/forces.c \
 	cloth/output/frames.c \
@@ -26,4 +27,5 @@ libduite_cloth_la_SOURCES += \
 	cloth/output/files/obstacles.c \
 	cloth/output/files/obstacles.h \
 	cloth/output/files/pc2.c \
+	cloth/output/files/records.c cloth/output/files/records.h \
 	cloth/output/files/poses.c cloth/output/files/poses.h

@@ -17,6 +17,7 @@
  *   cloth.pc2      PC2 point cache: header, then one float x y z a vertex and frame
  *   frames.csv     frame,time: the true time of each frame
  *   contact.pc2    where it is asked for: the force of contact on each vertex (output_forces)
+ *   colours.bin    what a viewer colours by: blocks, ranks, shapes at rest (colours.h)
  *   body-K.obj     the bodies among the obstacles, K from 0, without their motion
  *   body-K.pc2     of those that change their shape: a PC2 point cache of these vertices, frame by
  *                  frame as cloth.pc2 is
@@ -110,6 +111,10 @@ int output_forces_forget(const char *folder, struct cloth_error *error);
 /* Reads a frame back. Errors: CLOTH_E_INPUT, there is none, or it cannot be read. */
 int output_forces_read(const char *folder, uint32_t n_vertices, uint64_t frame, double *force,
                        struct cloth_error *error);
+
+/* How many frames it has. Errors alike. */
+int output_forces_count(const char *folder, uint32_t n_vertices, uint64_t *n_frames,
+                        struct cloth_error *error);
 
 /* A folder's lock: DIR/duite.lock, which names the host and the process of the run that writes into
  * the folder. Local functions, on rank 0. */

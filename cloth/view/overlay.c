@@ -3,6 +3,7 @@
 #include "cloth/view/overlay.h"
 
 #include "cloth/view/draw/draw.h"
+#include "cloth/view/letters.h"
 
 #include <cairo.h>
 #include <math.h>
@@ -62,23 +63,11 @@ static void line(cairo_t *cairo, double from, double to, double y, double grey, 
     cairo_stroke(cairo);
 }
 
-/* White on a dark rim: it is read on any ground. */
-static void say(cairo_t *cairo, double x, double y, const char *text)
-{
-    cairo_move_to(cairo, x, y);
-    cairo_text_path(cairo, text);
-    cairo_set_line_width(cairo, 3);
-    cairo_set_source_rgba(cairo, 0, 0, 0, 0.6);
-    cairo_stroke_preserve(cairo);
-    cairo_set_source_rgba(cairo, 1, 1, 1, 1);
-    cairo_fill(cairo);
-}
-
 static void draw_line(cairo_t *cairo, const struct view_overlay_text *text, int width, int height)
 {
     const double y = bar_height(height), end = width - MARGIN;
     const double now = MARGIN + text->part * (end - MARGIN);
-    say(cairo, MARGIN, text->part < 0 ? y : y - REACH, text->status);
+    view_letters_from(cairo, MARGIN, text->part < 0 ? y : y - REACH, text->status);
     if (text->part < 0)
         return;
     cairo_set_line_cap(cairo, CAIRO_LINE_CAP_ROUND);
@@ -91,16 +80,19 @@ static void draw_line(cairo_t *cairo, const struct view_overlay_text *text, int 
 
 static void draw_help(cairo_t *cairo, const char *const *help)
 {
+    double keys = 0, wide = 0;
     size_t n = 0;
-    while (help[2 * n])
-        n++;
-    cairo_rectangle(cairo, MARGIN, MARGIN, 30 * LETTER, ((double)n + 0.7) * LINE);
+    for (; help[2 * n]; n++) {
+        keys = fmax(keys, view_letters_width(cairo, help[2 * n]));
+        wide = fmax(wide, view_letters_width(cairo, help[2 * n + 1]));
+    }
+    cairo_rectangle(cairo, MARGIN, MARGIN, keys + wide + 4 * LETTER, ((double)n + 0.7) * LINE);
     cairo_set_source_rgba(cairo, 0, 0, 0, 0.55);
     cairo_fill(cairo);
     for (size_t i = 0; i < n; i++) {
         const double y = MARGIN + ((double)i + 1) * LINE;
-        say(cairo, MARGIN + LETTER, y, help[2 * i]);
-        say(cairo, MARGIN + 11 * LETTER, y, help[2 * i + 1]);
+        view_letters_from(cairo, MARGIN + LETTER, y, help[2 * i]);
+        view_letters_from(cairo, MARGIN + keys + 3 * LETTER, y, help[2 * i + 1]);
     }
 }
 
@@ -108,9 +100,10 @@ static int paint(cairo_surface_t *surface, const struct view_overlay_text *text,
                  int height, struct cloth_error *error)
 {
     cairo_t *cairo = cairo_create(surface);
-    cairo_select_font_face(cairo, "sans-serif", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
-    cairo_set_font_size(cairo, LETTER);
-    draw_line(cairo, text, width, height);
+    view_legend_paint(text->legend, cairo, width, height);
+    view_letters(cairo, LETTER);
+    if (text->status)
+        draw_line(cairo, text, width, height);
     if (text->help)
         draw_help(cairo, text->help);
     const cairo_status_t status = cairo_status(cairo);

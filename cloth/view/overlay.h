@@ -1,16 +1,18 @@
 #ifndef CLOTH_VIEW_OVERLAY_H
 #define CLOTH_VIEW_OVERLAY_H
 
-#include "cloth/base/error.h"
+#include "cloth/view/legend.h"
 
-/* What a window shows on top of the cloth: a time line and lines of text. Cairo draws it, OpenGL
- * lays it over the framebuffer that is bound. The context is current in all functions; one thread.
+/* What a window shows on top of the cloth: what colours mean, a time line and lines of text. Cairo
+ * draws it, OpenGL lays it over the framebuffer that is bound. The context is current in all
+ * functions; one thread.
  */
 
 struct view_overlay_text {
     double part;             /* of the time line that is behind, 0 .. 1; -1: there is no line */
-    const char *status;      /* one line beside the time line */
+    const char *status;      /* one line beside the time line; NULL: neither is shown */
     const char *const *help; /* pairs of key and meaning, up to a NULL; NULL: no help */
+    const struct view_legend *legend;
 };
 
 struct view_overlay;

@@ -27,7 +27,6 @@ static const float CLOTH[N_COLOURS][2][3] = {{{0.40f, 0.030f, 0.028f}, {0.46f, 0
                                              {{0.03f, 0.20f, 0.13f}, {0.09f, 0.26f, 0.19f}},
                                              {{0.50f, 0.48f, 0.43f}, {0.45f, 0.43f, 0.40f}},
                                              {{0.17f, 0.04f, 0.20f}, {0.24f, 0.10f, 0.26f}}};
-static const float PALE[2][3] = {{0.42f, 0.42f, 0.40f}, {0.36f, 0.36f, 0.35f}};
 static const float WIRE[2][3] = {{0.01f, 0.01f, 0.012f}, {0.01f, 0.01f, 0.012f}};
 static const float STONE[2][3] = {{0.22f, 0.25f, 0.28f}, {0.22f, 0.25f, 0.28f}};
 
@@ -40,8 +39,11 @@ struct view_scene {
     struct draw_sky unsmooth;   /* of one ground after the other */
     struct draw_lights lights;
     GLuint program[N_PROGRAMS];
-    GLuint nothing;            /* a vertex array without attributes */
-    bool heated, wired, plain; /* plain: without shadows */
+    GLuint nothing;    /* a vertex array without attributes */
+    bool wired, plain; /* plain: without shadows */
+    enum view_paint paint;
+    int n_map; /* colours of the map, unless each cloth has its own */
+    const float (*map)[3];
     uint32_t n_parts;
     struct draw_part *part; /* n_parts: cloths */
 };
@@ -257,10 +259,14 @@ int view_scene_move(struct view_scene *scene, const double *position, struct clo
                : cloth_fail(error, CLOTH_E_LIBRARY, "OpenGL took no vertices (0x%x)", trouble);
 }
 
-void view_scene_heat(struct view_scene *scene, const float *heat)
+void view_scene_paint(struct view_scene *scene, enum view_paint paint, int n, const float (*map)[3],
+                      const float *value)
 {
-    draw_mesh_heat(&scene->mesh, heat);
-    scene->heated = true;
+    scene->paint = paint;
+    scene->n_map = n;
+    scene->map = map;
+    if (paint != VIEW_PAINT_CLOTH)
+        draw_mesh_values(&scene->mesh, value);
 }
 
 void view_scene_wire(struct view_scene *scene, bool wire)
@@ -300,24 +306,50 @@ static float behind(const struct view_scene *scene, const struct view_camera *ca
     return (float)(units * (depth_of(camera, far) - depth_of(camera, near)));
 }
 
+/* How many pixels an edge of the cloth is long, in the mean, where the middle of the cloth is. */
+static double edge_pixels(const struct view_scene *scene, const struct view_camera *camera,
+                          int height)
+{
+    double up = 0, away = (double)camera->clip[3][3];
+    for (int k = 0; k < 3; k++) {
+        up += (double)(camera->clip[k][1] * camera->clip[k][1]);
+        away += (double)(camera->clip[k][3] * scene->mesh.center[k]);
+    }
+    return away > 0 ? (double)draw_mesh_edge(&scene->mesh) * sqrt(up) / away * height / 2 : 1;
+}
+
+/* Lines are paler where they are dense, so that they do not hide the cloth. */
+static void draw_edges(const struct view_scene *scene, GLuint surface,
+                       const struct view_camera *camera, int height)
+{
+    const double pixels = edge_pixels(scene, camera, height);
+    glBlendColor(0, 0, 0, (float)fmin(fmax(pixels / 10, 0.05), 1));
+    glBlendFuncSeparate(GL_CONSTANT_ALPHA, GL_ONE_MINUS_CONSTANT_ALPHA, GL_ZERO, GL_ONE);
+    glEnable(GL_BLEND);
+    glUniform3fv(glGetUniformLocation(surface, "paint"), 2, WIRE[0]);
+    glPolygonMode(GL_FRONT_AND_BACK, GL_LINE);
+    draw_mesh_draw(&scene->mesh);
+    glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
+    glDisable(GL_BLEND);
+}
+
 static void draw_cloths(const struct view_scene *scene, GLuint surface)
 {
     if (scene->wired) { /* lines lie on top of the triangles that they bound */
         glPolygonOffset(1, 1);
         glEnable(GL_POLYGON_OFFSET_FILL);
     }
+    glUniform1i(glGetUniformLocation(surface, "colours"), (GLint)scene->paint);
+    if (scene->paint != VIEW_PAINT_CLOTH) {
+        glUniform1i(glGetUniformLocation(surface, "colours_n"), scene->n_map);
+        glUniform3fv(glGetUniformLocation(surface, "map"), scene->n_map, scene->map[0]);
+    }
     for (uint32_t c = 0; c < scene->n_parts; c++) {
-        glUniform3fv(glGetUniformLocation(surface, "paint"), 2,
-                     scene->heated ? PALE[0] : CLOTH[c % N_COLOURS][0]);
+        glUniform3fv(glGetUniformLocation(surface, "paint"), 2, CLOTH[c % N_COLOURS][0]);
         draw_mesh_draw_part(&scene->mesh, scene->part + c);
     }
-    if (!scene->wired)
-        return;
+    glUniform1i(glGetUniformLocation(surface, "colours"), VIEW_PAINT_CLOTH);
     glDisable(GL_POLYGON_OFFSET_FILL);
-    glUniform3fv(glGetUniformLocation(surface, "paint"), 2, WIRE[0]);
-    glPolygonMode(GL_FRONT_AND_BACK, GL_LINE);
-    draw_mesh_draw(&scene->mesh);
-    glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
 }
 
 void view_scene_draw(const struct view_scene *scene, const struct view_camera *camera, int width,
@@ -347,6 +379,7 @@ void view_scene_draw(const struct view_scene *scene, const struct view_camera *c
         glPolygonOffset(0, behind(scene, camera));
         glEnable(GL_POLYGON_OFFSET_FILL);
         glEnable(GL_CULL_FACE); /* a shape around the eye would hide everything */
+        glUniform1i(glGetUniformLocation(surface, "colours"), VIEW_PAINT_CLOTH);
         glUniform3fv(glGetUniformLocation(surface, "paint"), 2, STONE[0]);
         draw_sky_bind(&scene->shapes_sky);
         draw_mesh_draw(&scene->shapes);
@@ -355,6 +388,8 @@ void view_scene_draw(const struct view_scene *scene, const struct view_camera *c
     }
     draw_sky_bind(&scene->mesh_sky);
     draw_cloths(scene, surface);
+    if (scene->wired)
+        draw_edges(scene, surface, camera, height);
 }
 
 void view_scene_free(struct view_scene *scene)

@@ -2,8 +2,8 @@
  * before there is an OpenGL context; the scene gets it when it is drawn. */
 #include "cloth/view/show.h"
 
-#include <math.h>
-#include <stdio.h>
+#include "cloth/view/colours.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -18,9 +18,9 @@ struct view_show {
     struct view_scene *scene; /* NULL until the first drawing */
     bool moved;               /* the scene has another frame than was read last */
     unsigned char *used;      /* a vertex: whether a face or an edge uses it */
-    double *position, *force; /* of the frame read last; force: NULL unless asked for */
-    float *heat;              /* a vertex, 0 .. 1; NULL: the cloth has its own colour */
-    double largest, most;     /* N: of the frame; that has the hottest colour */
+    uint64_t frame;           /* read last */
+    double *position;         /* of it */
+    struct view_colours *colours;
 };
 
 /* Vertices that nothing uses are not to be seen, and neither camera nor light is to look for them:
@@ -38,33 +38,9 @@ static int read_position(struct view_show *show, uint64_t frame, struct cloth_er
     return code;
 }
 
-static double length_of(const double *v)
-{
-    return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-}
-
-static int read_heat(struct view_show *show, uint64_t frame, struct cloth_error *error)
-{
-    const uint32_t n = show->cache->mesh.n_vertices;
-    const int code = output_forces_read(show->wish->folder, n, frame, show->force, error);
-    if (code)
-        return code;
-    show->largest = 0;
-    for (size_t v = 0; v < n; v++)
-        show->largest = fmax(show->largest, length_of(show->force + 3 * v));
-    if (!(show->most > 0))
-        show->most = show->largest;
-    for (size_t v = 0; v < n; v++)
-        show->heat[v] =
-            show->most > 0 ? (float)fmin(length_of(show->force + 3 * v) / show->most, 1) : 0;
-    return 0;
-}
-
 void view_show_say(const struct view_show *show)
 {
-    if (show->heat)
-        printf("the largest force of contact on a vertex is %g N, the hottest colour %g N\n",
-               show->largest, show->most);
+    view_colours_say(show->colours);
 }
 
 /* Where they are in a frame. */
@@ -121,12 +97,9 @@ static int fit_camera(struct view_show *show, struct cloth_error *error)
 static int take_room(struct view_show *show, struct cloth_error *error)
 {
     const size_t n = show->cache->mesh.n_vertices;
-    const bool heated = show->wish->contact;
     show->used = malloc(n);
     show->position = malloc(3 * n * sizeof *show->position);
-    show->force = heated ? malloc(3 * n * sizeof *show->force) : NULL;
-    show->heat = heated ? malloc(n * sizeof *show->heat) : NULL;
-    return show->used && show->position && (!heated || (show->force && show->heat))
+    return show->used && show->position
                ? 0
                : cloth_fail(error, CLOTH_E_MEMORY, "no memory for %zu vertices", n);
 }
@@ -139,21 +112,22 @@ int view_show_open(struct view_show **show, struct output_cache *cache,
         return cloth_fail(error, CLOTH_E_MEMORY, "no memory to show %s", wish->folder);
     made->cache = cache;
     made->wish = wish;
-    made->most = wish->most_force;
     made->wire = wish->wire;
     int code = view_obstacles_make(&made->obstacles, cache->n_obstacles, cache->obstacles,
                                    cache->keys, &cache->bodies, error);
     code = code ? code : take_room(made, error);
     if (!code)
         mesh_used(&cache->mesh, made->used);
-    return code ? code : fit_camera(made, error);
+    code = code ? code : fit_camera(made, error);
+    return code ? code
+                : view_colours_open(&made->colours, cache, wish->folder, &wish->colouring, error);
 }
 
 int view_show_frame(struct view_show *show, uint64_t frame, struct cloth_error *error)
 {
     int code = read_position(show, frame, error);
-    if (!code && show->heat)
-        code = read_heat(show, frame, error);
+    code = code ? code : view_colours_frame(show->colours, frame, show->position, error);
+    show->frame = frame;
     show->moved = true;
     return code ? code : place_obstacles(show, frame, error);
 }
@@ -183,8 +157,8 @@ static int move_scene(struct view_show *show, struct cloth_error *error)
     if (code || !show->moved)
         return code;
     code = view_scene_move(show->scene, show->position, error);
-    if (!code && show->heat)
-        view_scene_heat(show->scene, show->heat);
+    if (!code)
+        view_colours_paint(show->colours, show->scene);
     show->moved = code;
     return code;
 }
@@ -194,8 +168,9 @@ int view_show_picture(struct view_show *show, struct view_picture *picture,
 {
     struct view_camera camera;
     view_orbit_camera(&show->sight.orbit, (double)picture->width / picture->height, &camera);
-    const int code = move_scene(show, error);
-    return code ? code : view_picture_draw(picture, show->scene, &camera, error);
+    int code = move_scene(show, error);
+    code = code ? code : view_picture_draw(picture, show->scene, &camera, error);
+    return code ? code : view_legend_lay(view_show_legend(show), picture, error);
 }
 
 struct view_orbit *view_show_orbit(struct view_show *show)
@@ -229,6 +204,29 @@ void view_show_wire(struct view_show *show, bool wire)
     show->wire = wire;
 }
 
+const struct view_legend *view_show_legend(const struct view_show *show)
+{
+    return view_colours_legend(show->colours);
+}
+
+/* What the folder does not say is left out; the cloth's own colours are always there. */
+int view_show_next_colour(struct view_show *show, struct cloth_error *error)
+{
+    enum view_colour by = view_colours_by(show->colours);
+    int code = CLOTH_E_INPUT;
+    while (code == CLOTH_E_INPUT) {
+        struct cloth_error left_out = {0};
+        by = (by + 1) % VIEW_COLOURS;
+        code = view_colours_pick(show->colours, by, &left_out);
+        if (!code)
+            code = view_colours_frame(show->colours, show->frame, show->position, &left_out);
+        if (code && code != CLOTH_E_INPUT)
+            *error = left_out;
+    }
+    show->moved = true;
+    return code;
+}
+
 void view_show_shadows(struct view_show *show, bool shadows)
 {
     show->plain = !shadows;
@@ -256,7 +254,6 @@ void view_show_close(struct view_show *show)
     view_obstacles_free(&show->obstacles);
     free(show->used);
     free(show->position);
-    free(show->force);
-    free(show->heat);
+    view_colours_close(show->colours);
     free(show);
 }

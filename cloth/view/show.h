@@ -2,6 +2,7 @@
 #define CLOTH_VIEW_SHOW_H
 
 #include "cloth/output/output.h"
+#include "cloth/view/legend.h"
 #include "cloth/view/view.h"
 
 #include <stdbool.h>
@@ -14,9 +15,8 @@ struct view_wish {
     const char *folder;
     int width, height;
     double azimuth, elevation, zoom; /* as view_fit_start has them */
-    bool contact;                    /* coloured by its force */
+    struct view_colouring colouring; /* of the first frame */
     bool wire;                       /* with the edges of the triangles */
-    double most_force; /* N: that has the hottest colour; 0: the largest of the first frame */
 };
 
 struct view_show;
@@ -44,12 +44,16 @@ struct view_sight {
     struct view_orbit orbit, fitted; /* as it is; as the fit has it */
 };
 struct view_sight *view_show_sight(struct view_show *show);
-/* Draws the frame into a window of that size. */
+/* Draws the frame into a window of that size, without what its colours mean. */
 int view_show_window(struct view_show *show, int width, int height, struct cloth_error *error);
 void view_show_wire(struct view_show *show, bool wire);
+/* Colours by what is next in the order of enum view_colour, and can be shown of the folder. */
+int view_show_next_colour(struct view_show *show, struct cloth_error *error);
+/* What colours mean in the frame. */
+const struct view_legend *view_show_legend(const struct view_show *show);
 /* Whether there are shadows in the frames read from now on; at first there are. */
 void view_show_shadows(struct view_show *show, bool shadows);
-/* On standard output: what colours mean in the frame. */
+/* The same on standard output. */
 void view_show_say(const struct view_show *show);
 /* Frees what drawing made, while its context is current. */
 void view_show_undraw(struct view_show *show);

@@ -110,9 +110,19 @@ int view_scene_new(struct view_scene **scene, const struct view_shape *shape,
                    struct cloth_error *error);
 /* position: n_vertices x 3 of the frame to be drawn; obstacles are drawn where they are now. */
 int view_scene_move(struct view_scene *scene, const double *position, struct cloth_error *error);
-/* Draws the cloth pale, and each vertex the redder, then yellow, the hotter it is: n_vertices, 0 ..
- * 1. */
-void view_scene_heat(struct view_scene *scene, const float *heat);
+/* What the cloth is coloured by. A colour that is mapped gets lighter and darker by light and
+ * shadow, but is the same otherwise. */
+enum view_paint {
+    VIEW_PAINT_CLOTH, /* each cloth has a colour of its own */
+    VIEW_PAINT_SCALE, /* a vertex has the colour of a map that is as far along it as its number, 0
+                         .. 1 */
+    VIEW_PAINT_PARTS  /* a triangle has the colour of a map that its last corner's number counts */
+};
+enum { VIEW_MAP_MAX = 16 };
+/* map: n colours (sRGB, 0 .. 1; at most VIEW_MAP_MAX), which outlives the scene; value: n_vertices;
+ * negative: there is none, which is grey. Neither is read of VIEW_PAINT_CLOTH. */
+void view_scene_paint(struct view_scene *scene, enum view_paint paint, int n, const float (*map)[3],
+                      const float *value);
 /* Whether the edges of the cloth's triangles are drawn, too. */
 void view_scene_wire(struct view_scene *scene, bool wire);
 /* Whether there are shadows, from the next move on; a new scene has them. */

@@ -24,6 +24,7 @@ static const char *const HELP[] = {"space",       "play, pause",
                                    "drag",        "turn (left button), move (right button)",
                                    "wheel",       "zoom",
                                    "r",           "camera as it was",
+                                   "c",           "next colours: block, rank, strain, ...",
                                    "w",           "edges of triangles",
                                    "s",           "write a picture, duite-view-FRAME.png",
                                    "h",           "this help",
@@ -40,6 +41,7 @@ struct window {
     struct view_live *live; /* NULL: a folder */
     double x, y;            /* of the mouse, where it was seen last */
     double moved;           /* s: when that was; -SEEN: never */
+    unsigned recolour;      /* how often the next colours were asked for */
     bool wire, help, save, seeking, changed;
 };
 
@@ -54,6 +56,8 @@ static void on_camera_key(struct window *w, int key)
         view_show_recentre(w->show);
     if (key == GLFW_KEY_W)
         view_show_wire(w->show, w->wire = !w->wire);
+    if (key == GLFW_KEY_C)
+        w->recolour++;
     if (key == GLFW_KEY_H || key == GLFW_KEY_F1)
         w->help = !w->help;
     if (key == GLFW_KEY_S)
@@ -202,12 +206,13 @@ static void set_title(const struct window *w)
     glfwSetWindowTitle(w->glfw, title);
 }
 
-static bool has_overlay(const struct window *w, double now)
+static bool has_line(const struct window *w, double now)
 {
     return w->help || w->player.playing || now - w->moved < SEEN || (w->live && w->live->waits);
 }
 
-static int draw_overlay(struct window *w, int width, int height, struct cloth_error *error)
+static int draw_overlay(struct window *w, bool lined, int width, int height,
+                        struct cloth_error *error)
 {
     const uint64_t last = w->player.n_frames - 1;
     char line[120];
@@ -216,21 +221,22 @@ static int draw_overlay(struct window *w, int width, int height, struct cloth_er
         .part = w->live ? -1
                 : last  ? (double)w->player.frame / (double)last
                         : 1,
-        .status = line,
+        .status = lined ? line : NULL,
         .help = w->help ? HELP : NULL,
+        .legend = view_show_legend(w->show),
     };
     return view_overlay_draw(w->overlay, &text, width, height, error);
 }
 
-static int draw(struct window *w, bool overlaid, struct cloth_error *error)
+static int draw(struct window *w, bool lined, struct cloth_error *error)
 {
     int width, height;
     glfwGetFramebufferSize(w->glfw, &width, &height);
     if (width <= 0 || height <= 0)
         return 0; /* as an icon */
     int code = view_show_window(w->show, width, height, error);
-    if (!code && overlaid)
-        code = draw_overlay(w, width, height, error);
+    if (!code && (lined || view_show_legend(w->show)->by != VIEW_COLOUR_CLOTH))
+        code = draw_overlay(w, lined, width, height, error);
     if (!code && glGetError() != GL_NO_ERROR)
         code = cloth_fail(error, CLOTH_E_LIBRARY, "OpenGL failed to draw the window");
     glfwSwapBuffers(w->glfw);
@@ -271,24 +277,26 @@ static int look(struct window *w, struct cloth_error *error)
 static int run(struct window *w, struct cloth_error *error)
 {
     uint64_t seen = w->player.frame;
-    bool overlaid = false;
+    bool lined = false;
     int code = view_show_frame(w->show, seen, error);
     for (w->changed = true; !code && !glfwWindowShouldClose(w->glfw);
          code = code ? code : look(w, error)) {
         const double now = glfwGetTime();
         const uint64_t frame = view_player_at(&w->player, now);
-        const bool overlay = has_overlay(w, now);
+        const bool line = has_line(w, now);
         if (frame != seen)
             code = view_show_frame(w->show, frame, error);
-        if (!code && (w->changed || frame != seen || overlay != overlaid)) {
+        for (; !code && w->recolour; w->recolour--)
+            code = view_show_next_colour(w->show, error);
+        if (!code && (w->changed || frame != seen || line != lined)) {
             w->changed = false;
-            code = draw(w, overlay, error);
+            code = draw(w, line, error);
         }
         if (!code && w->save)
             code = save(w, error);
         w->save = false;
         seen = frame;
-        overlaid = overlay;
+        lined = line;
         if (w->player.playing)
             glfwPollEvents();
         else

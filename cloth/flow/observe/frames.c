@@ -31,33 +31,6 @@ static void put_all(struct flow *flow, const duite_param *vector)
     }
 }
 
-struct frame_args {
-    uint32_t block; /* none */
-    uint64_t frame;
-    double time; /* s */
-};
-
-FLOW_KERNEL_WITH(frame, FLOW_OUTPUT, struct frame_args, (RW(token), ALL(x)), .side_effects = 1)
-static int frame_body(const duite_call *call, const struct frame_fields *on)
-{
-    struct flow *flow = flow_of(call);
-    put_all(flow, on->x);
-    if (flow->output->frame(flow->output->context, on->args->frame, on->args->time, flow->room,
-                            &flow->trouble))
-        return duite_fail(call, FLOW_NOT_WRITTEN, "%s", flow->trouble.text);
-    flow->frames = on->args->frame + 1;
-    return 0;
-}
-
-/* Of the vertices that no block has: no force; then again their places. */
-static void put_unused(const struct flow *flow, bool force)
-{
-    for (uint32_t i = 0; i < flow->unused.n; i++)
-        for (size_t c = 0; c < 3; c++)
-            flow->room[3 * (size_t)flow->unused.vertex[i] + c] =
-                force ? 0 : flow->unused.position[i][c];
-}
-
 static void put_numbers(const struct flow *flow, uint32_t vertex, uint32_t block)
 {
     flow->block_of[vertex] = (int32_t)block;
@@ -77,6 +50,45 @@ static void put_places(const struct flow *flow)
     }
     for (uint32_t i = 0; i < flow->unused.n; i++)
         flow->block_of[flow->unused.vertex[i]] = flow->rank_of[flow->unused.vertex[i]] = -1;
+}
+
+/* Those of a frame that is written next. */
+static int show_places(struct flow *flow, uint64_t frame)
+{
+    const struct flow_places places = {flow->block_of, flow->tables.n_blocks, flow->home};
+    if (!flow->output->places)
+        return 0;
+    put_places(flow);
+    return flow->output->places(flow->output->context, frame, &places, &flow->trouble);
+}
+
+struct frame_args {
+    uint32_t block; /* none */
+    uint64_t frame;
+    double time; /* s */
+};
+
+FLOW_KERNEL_WITH(frame, FLOW_OUTPUT, struct frame_args, (RW(token), ALL(x)), .side_effects = 1)
+static int frame_body(const duite_call *call, const struct frame_fields *on)
+{
+    struct flow *flow = flow_of(call);
+    put_all(flow, on->x);
+    if (show_places(flow, on->args->frame))
+        return duite_fail(call, FLOW_NOT_WRITTEN, "%s", flow->trouble.text);
+    if (flow->output->frame(flow->output->context, on->args->frame, on->args->time, flow->room,
+                            &flow->trouble))
+        return duite_fail(call, FLOW_NOT_WRITTEN, "%s", flow->trouble.text);
+    flow->frames = on->args->frame + 1;
+    return 0;
+}
+
+/* Of the vertices that no block has: no force; then again their places. */
+static void put_unused(const struct flow *flow, bool force)
+{
+    for (uint32_t i = 0; i < flow->unused.n; i++)
+        for (size_t c = 0; c < 3; c++)
+            flow->room[3 * (size_t)flow->unused.vertex[i] + c] =
+                force ? 0 : flow->unused.position[i][c];
 }
 
 /* The other fields of a frame that is written. */
@@ -143,7 +155,7 @@ static int fork_frame(struct flow_state *state, double tick, bool kept)
         if (code)
             return code;
     }
-    if (flow_shows_beside(state, args.frame))
+    if (flow_shows_places(state))
         find_homes(state);
     int code = flow_fork_at(state, 0, &flow_kernel_frame, &args,
                             kept ? FLOW_AS(FLOW_FOR(x, kept_x)) : NULL);

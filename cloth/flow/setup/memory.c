@@ -27,7 +27,7 @@ static void take_room(struct flow_state *state)
     struct flow *flow = state->flow;
     if (flow_shows(state))
         flow->room = cloth_alloc(flow->n_vertices, 3 * sizeof *flow->room, &flow->trouble);
-    if (flow_shows_beside(state, 0)) {
+    if (flow_shows_places(state)) {
         flow->block_of = cloth_alloc(flow->n_vertices, sizeof *flow->block_of, &flow->trouble);
         flow->rank_of = cloth_alloc(flow->n_vertices, sizeof *flow->rank_of, &flow->trouble);
         flow->home = cloth_alloc(state->head.n_blocks, sizeof *flow->home, &flow->trouble);

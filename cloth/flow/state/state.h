@@ -326,6 +326,12 @@ static inline bool flow_shows_beside(const struct flow_state *state, uint64_t fr
            (hdf5->velocity || hdf5->block || hdf5->rank);
 }
 
+/* Whether anybody asks where blocks are. */
+static inline bool flow_shows_places(const struct flow_state *state)
+{
+    return flow_shows(state) && (state->output->places || flow_shows_beside(state, 0));
+}
+
 /* s: of the steps accepted so far. */
 static inline double flow_time(const struct flow_state *state)
 {

@@ -57,6 +57,7 @@ void output_pc2_header(unsigned char header[OUTPUT_PC2_HEADER], uint32_t n_point
 bool output_pc2_parse(const unsigned char header[OUTPUT_PC2_HEADER], uint32_t *n_points,
                       uint32_t *n_frames);
 void output_put_u32(unsigned char bytes[4], uint32_t value);
+uint32_t output_get_u32(const unsigned char bytes[4]);
 void output_put_float(unsigned char bytes[4], float value);
 float output_get_float(const unsigned char bytes[4]);
 

@@ -11,7 +11,7 @@ void output_put_u32(unsigned char bytes[4], uint32_t value)
         bytes[i] = (unsigned char)(value >> (8 * i) & 0xff);
 }
 
-static uint32_t get_u32(const unsigned char bytes[4])
+uint32_t output_get_u32(const unsigned char bytes[4])
 {
     uint32_t value = 0;
     for (int i = 0; i < 4; i++)
@@ -28,7 +28,7 @@ void output_put_float(unsigned char bytes[4], float value)
 
 float output_get_float(const unsigned char bytes[4])
 {
-    uint32_t bits = get_u32(bytes);
+    uint32_t bits = output_get_u32(bytes);
     float value;
     memcpy(&value, &bits, sizeof value);
     return value;
@@ -48,8 +48,8 @@ void output_pc2_header(unsigned char header[OUTPUT_PC2_HEADER], uint32_t n_point
 bool output_pc2_parse(const unsigned char header[OUTPUT_PC2_HEADER], uint32_t *n_points,
                       uint32_t *n_frames)
 {
-    *n_points = get_u32(header + 16);
-    *n_frames = get_u32(header + OUTPUT_PC2_COUNT);
-    return memcmp(header, "POINTCACHE2", 12) == 0 && get_u32(header + 12) == 1 &&
+    *n_points = output_get_u32(header + 16);
+    *n_frames = output_get_u32(header + OUTPUT_PC2_COUNT);
+    return memcmp(header, "POINTCACHE2", 12) == 0 && output_get_u32(header + 12) == 1 &&
            *n_points <= INT32_MAX && *n_frames <= INT32_MAX;
 }

@@ -104,12 +104,12 @@ void draw_ground(const struct draw_ground *ground, GLuint program, const struct 
 
 /* --- mesh.c: vertices of the cloth, or of obstacles, on the graphics card --- */
 
-enum { DRAW_HEAT = 2 }; /* the attribute: position and normal come before it */
+enum { DRAW_VALUE = 2 }; /* the attribute: position and normal come before it */
 struct draw_mesh {
     uint32_t n_vertices, n_triangles, n_lines, n_coarse;
     const uint32_t *triangle;
     float *vertex; /* n_vertices x (position, normal) */
-    GLuint array, vertices, indices, heats;
+    GLuint array, vertices, indices, values;
     float center[3], radius; /* a sphere around the vertices */
 };
 int draw_mesh_make(struct draw_mesh *mesh, uint32_t n_vertices, uint32_t n_triangles,
@@ -118,8 +118,8 @@ int draw_mesh_make(struct draw_mesh *mesh, uint32_t n_vertices, uint32_t n_trian
 void draw_mesh_move(struct draw_mesh *mesh, const double *position);
 /* The same with normals given. vertex: n_vertices x (position, normal) */
 void draw_mesh_place(struct draw_mesh *mesh, const double (*vertex)[6]);
-/* How hot each vertex is drawn, 0 .. 1: n_vertices; 0 until this is called. */
-void draw_mesh_heat(struct draw_mesh *mesh, const float *heat);
+/* The number that each vertex is coloured by: n_vertices; 0 until this is called. */
+void draw_mesh_values(struct draw_mesh *mesh, const float *value);
 /* The mean length of the triangles' edges; 0 without triangles. */
 float draw_mesh_edge(const struct draw_mesh *mesh);
 void draw_mesh_draw(const struct draw_mesh *mesh);

@@ -192,16 +192,16 @@ void draw_mesh_place(struct draw_mesh *mesh, const double (*vertex)[6])
     upload_vertices(mesh);
 }
 
-void draw_mesh_heat(struct draw_mesh *mesh, const float *heat)
+void draw_mesh_values(struct draw_mesh *mesh, const float *value)
 {
     glBindVertexArray(mesh->array);
-    if (!mesh->heats)
-        glGenBuffers(1, &mesh->heats);
-    glBindBuffer(GL_ARRAY_BUFFER, mesh->heats);
-    glBufferData(GL_ARRAY_BUFFER, (GLsizeiptr)(mesh->n_vertices * sizeof *heat), heat,
+    if (!mesh->values)
+        glGenBuffers(1, &mesh->values);
+    glBindBuffer(GL_ARRAY_BUFFER, mesh->values);
+    glBufferData(GL_ARRAY_BUFFER, (GLsizeiptr)(mesh->n_vertices * sizeof *value), value,
                  GL_DYNAMIC_DRAW);
-    glEnableVertexAttribArray(DRAW_HEAT);
-    glVertexAttribPointer(DRAW_HEAT, 1, GL_FLOAT, GL_FALSE, 0, NULL);
+    glEnableVertexAttribArray(DRAW_VALUE);
+    glVertexAttribPointer(DRAW_VALUE, 1, GL_FLOAT, GL_FALSE, 0, NULL);
 }
 
 float draw_mesh_edge(const struct draw_mesh *mesh)
@@ -246,7 +246,7 @@ void draw_mesh_free(struct draw_mesh *mesh)
     glDeleteVertexArrays(1, &mesh->array);
     glDeleteBuffers(1, &mesh->vertices);
     glDeleteBuffers(1, &mesh->indices);
-    glDeleteBuffers(1, &mesh->heats);
+    glDeleteBuffers(1, &mesh->values);
     free(mesh->vertex);
     mesh->vertex = NULL;
 }

@@ -44,7 +44,7 @@ int draw_program(GLuint *program, const char *vertex, const char *fragment,
         glAttachShader(*program, shader[1]);
         glBindAttribLocation(*program, 0, "position");
         glBindAttribLocation(*program, 1, "normal");
-        glBindAttribLocation(*program, DRAW_HEAT, "heat");
+        glBindAttribLocation(*program, DRAW_VALUE, "value");
         code = link_program(*program, error);
     }
     glDeleteShader(shader[0]);

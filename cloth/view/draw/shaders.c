@@ -1,6 +1,6 @@
-/* Colours are linear until `encode`, which every fragment passes through last. What lies far away
- * on the ground takes the background's colour at its pixel, so nothing has to be blended and the
- * order of drawing is free. */
+/* Colours are linear until `encode` or `display`, which every fragment passes through last. What
+ * lies far away on the ground takes the background's colour at its pixel, so nothing but edges,
+ * which come last, has to be blended, and the order of drawing is free. */
 #include "cloth/view/draw/draw.h"
 
 /* clang-format off */
@@ -24,13 +24,14 @@ const char DRAW_COMMON[] =
     "    vec3 c = mix(vec3(0.60, 0.60, 0.585), vec3(0.30, 0.37, 0.45), smoothstep(-0.35, 0.75, q.y));\n"
     "    return c * (1.0 - 0.35 * dot(q, q));\n"
     "}\n"
-    /* A soft shoulder, the display's curve, and half a step of noise against bands. */
-    "vec4 encode(vec3 c, vec2 p)\n"
+    /* The display's curve, and half a step of noise against bands. */
+    "vec4 display(vec3 c, vec2 p)\n"
     "{\n"
-    "    c = 1.05 * c / (1.0 + 0.40 * c);\n"
     "    vec3 low = 12.92 * c, high = 1.055 * pow(max(c, 0.0), vec3(1.0 / 2.4)) - 0.055;\n"
     "    return vec4(mix(high, low, lessThan(c, vec3(0.0031308))) + (noise(p) - 0.5) / 255.0, 1.0);\n"
     "}\n"
+    /* With a soft shoulder before it. */
+    "vec4 encode(vec3 c, vec2 p) { return display(1.05 * c / (1.0 + 0.40 * c), p); }\n"
     "vec3 in_map(int i, vec3 at)\n"
     "{\n"
     "    vec4 q = vec4(at, 1.0);\n"
@@ -137,26 +138,47 @@ const char DRAW_SKY_BLUR_FRAGMENT[] =
 
 const char DRAW_CLOTH_VERTEX[] =
     "in vec3 position, normal;\n"
-    "in float heat;\n"
+    "in float value;\n"
     "uniform sampler2D fronts, backs;\n" /* the sky's light on vertices */
     "out vec3 at, up, above, below;\n"
-    "out float hot;\n"
+    "out float number;\n"
+    "flat out float corner;\n" /* the number of the triangle's last corner */
     "void main()\n"
     "{\n"
     "    ivec2 texel = ivec2(gl_VertexID % 1024, gl_VertexID / 1024);\n"
     "    above = texelFetch(fronts, texel, 0).rgb;\n"
     "    below = texelFetch(backs, texel, 0).rgb;\n"
     "    at = position;\n"
-    "    hot = heat;\n"
+    "    number = corner = value;\n"
     "    up = normal;\n"
     "    gl_Position = clip * vec4(position, 1.0);\n"
     "}\n";
 
+/* Light and shadow change how light a colour of a scale or a part is, between half and whole, and nothing else of it, so that it
+ * is found on the scale again. A triangle has one part, the one of its last corner. */
 const char DRAW_CLOTH_FRAGMENT[] =
     "in vec3 at, up, above, below;\n"
-    "in float hot;\n"
+    "in float number;\n"
+    "flat in float corner;\n"
     "out vec4 shade;\n"
     "uniform vec3 paint[2];\n" /* of the front and of the back */
+    "uniform int colours;\n" /* 0: paint; 1: of `map`, by the number, 0 .. 1; 2: of `map`, the one of the corner's number */
+    "uniform int colours_n;\n"
+    "uniform vec3 map[16];\n" /* colours_n, sRGB */
+    "vec3 decode(vec3 c)\n"
+    "{\n"
+    "    return mix(pow((c + 0.055) / 1.055, vec3(2.4)), c / 12.92, lessThan(c, vec3(0.04045)));\n"
+    "}\n"
+    "vec3 mapped()\n"
+    "{\n"
+    "    if (corner < 0.0)\n" /* it has no number */
+    "        return vec3(0.5);\n"
+    "    if (colours == 2)\n"
+    "        return map[min(int(corner + 0.5), colours_n - 1)];\n"
+    "    float p = clamp(number, 0.0, 1.0) * float(colours_n - 1);\n"
+    "    int i = min(int(p), colours_n - 2);\n"
+    "    return mix(map[i], map[i + 1], p - float(i));\n"
+    "}\n"
     "void main()\n"
     "{\n"
     "    vec3 n = normalize(up) * (gl_FrontFacing ? 1.0 : -1.0);\n"
@@ -165,11 +187,13 @@ const char DRAW_CLOTH_FRAGMENT[] =
     "    float facing = dot(n, toward.xyz);\n"
     "    vec3 e = sunlight.rgb * (abs(facing) * sun(at, n, gl_FragCoord.xy, 1.0));\n"
     "    if (facing < 0.0) behind += e; else lit += e;\n"
-    "    vec3 albedo = gl_FrontFacing ? paint[0] : paint[1];\n"
-    "    if (hot > 0.0)\n" /* red, then yellow */
-    "        albedo = mix(mix(albedo, vec3(0.75, 0.04, 0.01), clamp(2.0 * hot, 0.0, 1.0)),\n"
-    "                     vec3(0.95, 0.80, 0.10), clamp(2.0 * hot - 1.0, 0.0, 1.0));\n"
     "    lit += vec3(0.26, 0.25, 0.24) * (0.5 - 0.5 * n.y);\n" /* from the floor */
+    "    if (colours != 0) {\n"
+    "        float light = dot(lit + 0.22 * behind, vec3(0.2126, 0.7152, 0.0722));\n"
+    "        shade = display(decode(mapped()) * mix(0.5, 1.0, clamp(light / 1.6, 0.0, 1.0)), gl_FragCoord.xy);\n"
+    "        return;\n"
+    "    }\n"
+    "    vec3 albedo = gl_FrontFacing ? paint[0] : paint[1];\n"
     "    float rim = pow(1.0 - clamp(dot(n, v), 0.0, 1.0), 4.0);\n"
     "    vec3 c = albedo * (lit + 0.22 * behind);\n"
     "    c += rim * 0.22 * mix(albedo, vec3(0.6), 0.25) * lit;\n"

@@ -3,9 +3,11 @@ check_LTLIBRARIES += tests/cloth/output/libsample.la
 tests_cloth_output_libsample_la_SOURCES = tests/cloth/output/sample.c tests/cloth/output/sample.h
 
 check_PROGRAMS += tests/cloth/output/test_frames tests/cloth/output/test_report tests/cloth/output/test_replace tests/cloth/output/test_crash \
-	tests/cloth/output/test_market tests/cloth/output/test_checkpoint
+	tests/cloth/output/test_market tests/cloth/output/test_checkpoint tests/cloth/output/test_colours
 tests_cloth_output_test_checkpoint_SOURCES = tests/cloth/output/test_checkpoint.c
 tests_cloth_output_test_checkpoint_LDADD = tests/cloth/output/libsample.la $(CLOTH_TEST_LIBS)
+tests_cloth_output_test_colours_SOURCES = tests/cloth/output/test_colours.c
+tests_cloth_output_test_colours_LDADD = tests/cloth/output/libsample.la $(CLOTH_TEST_LIBS)
 tests_cloth_output_test_market_SOURCES = tests/cloth/output/test_market.c
 tests_cloth_output_test_market_LDADD = tests/cloth/output/libsample.la $(CLOTH_TEST_LIBS)
 tests_cloth_output_test_frames_SOURCES = tests/cloth/output/test_frames.c
@@ -23,5 +25,5 @@ tests_cloth_output_test_hdf5_LDADD = tests/cloth/output/libsample.la $(CLOTH_TES
 TESTS += tests/cloth/output/test_hdf5
 endif
 TESTS += tests/cloth/output/test_frames tests/cloth/output/test_report tests/cloth/output/test_replace tests/cloth/output/test_crash \
-	tests/cloth/output/test_market tests/cloth/output/test_checkpoint
+	tests/cloth/output/test_market tests/cloth/output/test_checkpoint tests/cloth/output/test_colours
 endif

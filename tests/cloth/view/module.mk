@@ -2,12 +2,17 @@ dist_check_SCRIPTS += tests/cloth/view/test_view.sh tests/cloth/view/test_window
 TESTS += tests/cloth/view/test_view.sh tests/cloth/view/test_window.sh tests/cloth/view/test_window_live.sh
 
 if HAVE_VIEW
-check_PROGRAMS += tests/cloth/view/alike
+check_PROGRAMS += tests/cloth/view/alike tests/cloth/view/hues
+tests_cloth_view_hues_SOURCES = tests/cloth/view/hues.c
+tests_cloth_view_hues_CPPFLAGS = $(AM_CPPFLAGS) $(PNG_CFLAGS)
+tests_cloth_view_hues_LDADD = libduite_view.la libduite_cloth.la libduite_core.la $(PNG_LIBS)
 tests_cloth_view_alike_SOURCES = tests/cloth/view/alike.c
 tests_cloth_view_alike_CPPFLAGS = $(AM_CPPFLAGS) $(PNG_CFLAGS)
 tests_cloth_view_alike_LDADD = $(PNG_LIBS)
 if HAVE_CHECK
-check_PROGRAMS += tests/cloth/view/test_coarse tests/cloth/view/test_player tests/cloth/view/test_camera tests/cloth/view/test_picture
+check_PROGRAMS += tests/cloth/view/test_coarse tests/cloth/view/test_colour tests/cloth/view/test_player tests/cloth/view/test_camera tests/cloth/view/test_picture
+tests_cloth_view_test_colour_SOURCES = tests/cloth/view/test_colour.c
+tests_cloth_view_test_colour_LDADD = libduite_view.la $(CLOTH_TEST_LIBS)
 tests_cloth_view_test_camera_SOURCES = tests/cloth/view/test_camera.c
 tests_cloth_view_test_camera_LDADD = libduite_view.la $(CLOTH_TEST_LIBS)
 tests_cloth_view_test_coarse_SOURCES = tests/cloth/view/test_coarse.c
@@ -18,6 +23,6 @@ tests_cloth_view_test_picture_CPPFLAGS = $(AM_CPPFLAGS) $(PNG_CFLAGS)
 tests_cloth_view_test_picture_LDADD = libduite_view.la $(CLOTH_TEST_LIBS) $(PNG_LIBS)
 tests_cloth_view_test_player_SOURCES = tests/cloth/view/test_player.c
 tests_cloth_view_test_player_LDADD = libduite_view.la $(CLOTH_TEST_LIBS)
-TESTS += tests/cloth/view/test_coarse tests/cloth/view/test_player tests/cloth/view/test_camera tests/cloth/view/test_picture
+TESTS += tests/cloth/view/test_coarse tests/cloth/view/test_colour tests/cloth/view/test_player tests/cloth/view/test_camera tests/cloth/view/test_picture
 endif
 endif

@@ -41,9 +41,16 @@ says "names the folder" "$scratch/none: No such file"
 exits 2 "a frame that is not there" picture --png "$scratch/x.png" --frame 2
 says "says how many there are" '2 frames, 0 to 1'
 for bad in --frame=-1 --frame=1x --frame= --size=0x10 --size=10 --size=10x10x --camera=1 --camera=0,90 --camera=0,0,0 \
-    --camera=0,0x --camera=nan,0 --colour=red --colour=contact,0 --colour=contact,1x --colour=contacts --png=; do
+    --camera=0,0x --camera=nan,0 --colour=red --colour=contact,0 --colour=contact,1x --colour=contacts --colour=strain,0.2:0.1 \
+    --colour=strain,1:1 --colour=rank,2 --png=; do
     exits 2 "refuses $bad" picture --png "$scratch/x.png" "$bad"
 done
+exits 2 "a colour that there is not" picture --colour green
+says "says which there are" '--colour takes block, rank, strain, stress, contact or cloth, not .green'
+exits 2 "a scale that goes down" picture --colour strain,0.2:0.1
+says "says so" 'MAX is above its MIN'
+exits 2 "strain of a folder that does not say it" picture --png "$scratch/x.png" --colour strain
+says "says who writes it" 'colours.bin: No such file or directory; duite-cloth --output writes it'
 exits 1 "without a driver" env __EGL_VENDOR_LIBRARY_FILENAMES=/dev/null "$DUITE_VIEW" "$dir" --png "$scratch/x.png"
 says "says which packages are missing" 'libegl-mesa0'
 # An empty file in front of a library hides it.
@@ -79,7 +86,7 @@ says "says how they are" 'contact.pc2: No such file or directory; .* contact: {f
 exits 2 "forces of fewer frames" picture --png "$scratch/hot.png" --frame 1 --colour contact
 says "says how many there are" 'contact.pc2 has 1 frames: no frame 1'
 ok "forces" picture --png "$scratch/hot.png" --frame 0 --colour contact
-says "says what is hottest" 'largest force of contact on a vertex is 1 N, the hottest colour 1 N'
+says "says what the scale is and what the frame has" 'force of contact on a vertex, N, from 0 to 1; this frame has 0 to 1$'
 not_ok_expected "they show" cmp "$scratch/hot.png" "$scratch/0.png"
 ok "forces on another scale" picture --png "$scratch/warm.png" --frame 0 --colour contact,4
 not_ok_expected "it shows" cmp "$scratch/hot.png" "$scratch/warm.png"

@@ -36,6 +36,8 @@ ok "a picture of the first frame" picture --frame 0 --png "$scratch/first.png"
 ok "one with edges" picture --wireframe --png "$scratch/wire.png"
 ok "one of another side" picture --camera=-60,40 --png "$scratch/side.png"
 not_ok_expected "edges are seen" cmp "$scratch/last.png" "$scratch/wire.png"
+ok "one by blocks" picture --colour block --png "$scratch/block.png"
+ok "one by strain, with a scale" picture --colour strain,0.02 --png "$scratch/strain.png"
 
 opens
 ok "the window shows what the picture of the last frame has" shows "$scratch/last.png"
@@ -46,6 +48,10 @@ ok "a picture with these options" picture --frame 0 --wireframe --camera=-60,40 
 ok "the window shows them, too" shows "$scratch/all.png"
 kill $viewer
 ok "and ends" ends 143
+opens --colour strain,0.02
+ok "the window shows the strain and its scale" shows "$scratch/strain.png"
+kill $viewer
+ok "and ends again" ends 143
 
 if ! command -v xdotool > /dev/null; then
     skip "mouse and keys" "xdotool is not installed"
@@ -60,9 +66,13 @@ hand key Right key Left key End
 ok "End to the last" shows "$scratch/last.png"
 hand key w
 ok "w shows the edges" shows "$scratch/wire.png"
-hand key w key r key s
+hand key w key c
+ok "c colours by blocks" shows "$scratch/block.png"
+hand key c key c key c
+ok "after all that there are, c comes to the cloth's own colours" shows "$scratch/last.png"
+hand key r key s
 ok "s writes a picture" awaits $viewer grep -q 'duite-view-[0-9]*.png' "$scratch/window"
-ok "after w again there are no edges" shows "$scratch/last.png"
+ok "they are still there" shows "$scratch/last.png"
 ok "the picture is what the window shows" shows "$scratch/$(cat "$scratch/window")"
 hand mousemove 300 150 sleep 0.3 mousedown 1 sleep 0.3 mousemove 180 130 sleep 0.3 mouseup 1
 ok "a drag turns it" comes_to_differ "$scratch/last.png"

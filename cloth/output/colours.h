@@ -1,0 +1,79 @@
+#ifndef CLOTH_OUTPUT_COLOURS_H
+#define CLOTH_OUTPUT_COLOURS_H
+
+#include "cloth/base/error.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* What a viewer colours cloth by, beside the positions: DIR/colours.bin, in a folder of frames
+ * (output.h). It says which block has each vertex, which rank keeps each block, and what strain and
+ * stress follow from. Records are written once, and again when what they say changes: each counts
+ * from a frame on, until the next of its kind. Little-endian whatever the machine:
+ *   header  16 bytes "DUITE COLOURS 1\n"
+ *   record  u32 kind, u32 frame, u64 bytes that follow; then of kind
+ *     0     i32 a vertex: its block, -1 of one that no block has
+ *     1     i32 a block: the rank that keeps it
+ *     2     u32 triangles, edges, materials; of each triangle u32 its three vertices and its
+ *           material, float the gradient g_1u g_1v g_2u g_2v (1/m) and the area (m^2; 0: none) of
+ *           its shape at rest; of each edge that no triangle has u32 two vertices, float its length
+ *           at rest (m); of each material float the moduli C11 C12 C22 C33 (N/m; C33 of the shear
+ *           angle), u32 whether stress follows from them
+ * A last record that is not whole was never finished. Local functions. */
+
+/* Shapes at rest; how strain and stress follow is said in cloth/element/strain.h. */
+struct output_rest {
+    uint32_t n_triangles, n_edges, n_materials;
+    uint32_t (*corner)[4]; /* n_triangles: vertices, material */
+    double (*gradient)[4]; /* n_triangles, 1/m */
+    double *area;          /* n_triangles, m^2 */
+    uint32_t (*edge)[2];   /* n_edges: vertices */
+    double *length;        /* n_edges, m */
+    double (*modulus)[4];  /* n_materials, N/m */
+    bool *has_stress;      /* n_materials */
+};
+/* Room for what is counted. To be freed in any case. Error: CLOTH_E_MEMORY. */
+int output_rest_make(struct output_rest *rest, struct cloth_error *error);
+void output_rest_free(struct output_rest *rest);
+
+/* --- Writing, on rank 0 --- */
+
+struct output_colours;
+
+/* Begins the file in a folder of frames, which is there. Replaces the one of an earlier run,
+ * nothing else, or goes on with its records before frame *n_frames; NULL: none stays. Errors as of
+ * output_open. */
+int output_colours_open(struct output_colours **colours, const char *folder, uint32_t n_vertices,
+                        const uint64_t *n_frames, struct cloth_error *error);
+/* From this frame on. Error: CLOTH_E_IO, also of the other one. */
+int output_colours_rest(struct output_colours *colours, uint64_t frame,
+                        const struct output_rest *rest, struct cloth_error *error);
+/* Blocks of vertices (n_vertices) and ranks of blocks; written where they are not as they were. */
+int output_colours_places(struct output_colours *colours, uint64_t frame, const int32_t *block,
+                          uint32_t n_blocks, const int32_t *rank, struct cloth_error *error);
+/* Closes; *colours becomes NULL. */
+int output_colours_close(struct output_colours **colours, struct cloth_error *error);
+
+/* --- Reading --- */
+
+struct output_colours_read;
+
+/* Of a mesh of so many vertices. *colours: to be closed in any case. Errors: CLOTH_E_INPUT, there
+ * is no such file, or it is of another mesh; CLOTH_E_MEMORY. */
+int output_colours_load(struct output_colours_read **colours, const char *folder,
+                        uint32_t n_vertices, struct cloth_error *error);
+/* In a frame: n_vertices blocks, or ranks; -1 of vertices that no block has. Error: CLOTH_E_INPUT.
+ */
+int output_colours_blocks(const struct output_colours_read *colours, uint64_t frame, int32_t *block,
+                          struct cloth_error *error);
+int output_colours_ranks(const struct output_colours_read *colours, uint64_t frame, int32_t *rank,
+                         struct cloth_error *error);
+/* The first frame from which on the shapes of a frame count; UINT64_MAX: there are none. */
+uint64_t output_colours_rest_since(const struct output_colours_read *colours, uint64_t frame);
+/* These shapes; to be freed in any case. */
+int output_colours_rest_at(const struct output_colours_read *colours, uint64_t frame,
+                           struct output_rest *rest, struct cloth_error *error);
+void output_colours_unload(struct output_colours_read *colours);
+
+#endif

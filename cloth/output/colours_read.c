@@ -1,0 +1,203 @@
+/* What is read is the whole file as it was when it was opened, cut into records that are whole and
+ * as large as their kind, and the mesh, say. Nothing beyond them is looked at. */
+#include "cloth/base/memory.h"
+#include "cloth/output/files/files.h"
+#include "cloth/output/files/records.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+struct output_colours_read {
+    char *path;
+    unsigned char *bytes;
+    size_t size;
+    uint32_t n_vertices;
+    struct cloth_list at; /* size_t: where each record begins */
+};
+
+static int read_bytes(struct output_colours_read *colours, struct cloth_error *error)
+{
+    FILE *file = fopen(colours->path, "rbe");
+    struct stat status;
+    if (!file)
+        return cloth_fail(error, CLOTH_E_INPUT,
+                          "cannot read %s: %s; duite-cloth --output writes it beside the frames",
+                          colours->path, strerror(errno));
+    int code =
+        fstat(fileno(file), &status) == 0 ? CLOTH_OK : output_fail(error, "read", colours->path);
+    const size_t size = code ? 0 : (size_t)status.st_size;
+    colours->bytes = code ? NULL : cloth_alloc(size, 1, error);
+    if (!code)
+        code = colours->bytes ? CLOTH_OK : CLOTH_E_MEMORY;
+    if (!code)
+        colours->size = fread(colours->bytes, 1, size, file);
+    fclose(file);
+    if (!code && (colours->size < OUTPUT_COLOURS_HEADER ||
+                  memcmp(colours->bytes, output_colours_header, OUTPUT_COLOURS_HEADER) != 0))
+        code = cloth_fail(error, CLOTH_E_INPUT, "%s is not what duite-cloth writes (version 1)",
+                          colours->path);
+    return code;
+}
+
+static struct output_rest counts_of(const unsigned char *bytes)
+{
+    return (struct output_rest){.n_triangles = output_get_u32(bytes),
+                                .n_edges = output_get_u32(bytes + 4),
+                                .n_materials = output_get_u32(bytes + 8)};
+}
+
+/* Whether a record is as large as it must be. bytes: what is behind its header. */
+static bool is_sound(const struct output_colours_read *colours, const struct output_record *record,
+                     const unsigned char *bytes)
+{
+    if (record->kind == OUTPUT_RECORD_BLOCKS)
+        return record->size == (uint64_t)4 * colours->n_vertices;
+    if (record->kind == OUTPUT_RECORD_RANKS)
+        return record->size % 4 == 0;
+    if (record->kind != OUTPUT_RECORD_REST || record->size < OUTPUT_REST_COUNTS)
+        return false;
+    const struct output_rest rest = counts_of(bytes);
+    return record->size == output_rest_size(&rest);
+}
+
+static int find_records(struct output_colours_read *colours, struct cloth_error *error)
+{
+    size_t at = OUTPUT_COLOURS_HEADER;
+    while (colours->size - at >= OUTPUT_RECORD_HEADER) {
+        const struct output_record record = output_record_get(colours->bytes + at);
+        const size_t left = colours->size - at - OUTPUT_RECORD_HEADER;
+        if (record.size > left)
+            break; /* it is being written */
+        if (!is_sound(colours, &record, colours->bytes + at + OUTPUT_RECORD_HEADER))
+            return cloth_fail(error, CLOTH_E_INPUT,
+                              "%s is damaged at byte %zu, or of another mesh than cloth.obj beside "
+                              "it: run the scene again",
+                              colours->path, at);
+        size_t *next = cloth_list_add(&colours->at, sizeof at, 1, error);
+        if (!next)
+            return CLOTH_E_MEMORY;
+        *next = at;
+        at += OUTPUT_RECORD_HEADER + (size_t)record.size;
+    }
+    return CLOTH_OK;
+}
+
+int output_colours_load(struct output_colours_read **colours, const char *folder,
+                        uint32_t n_vertices, struct cloth_error *error)
+{
+    struct output_colours_read *made = *colours = cloth_alloc(1, sizeof *made, error);
+    if (!made)
+        return CLOTH_E_MEMORY;
+    made->n_vertices = n_vertices;
+    made->path = output_path(folder, output_colours_name, "");
+    if (!made->path)
+        return cloth_fail(error, CLOTH_E_MEMORY, "no memory for paths");
+    const int code = read_bytes(made, error);
+    return code ? code : find_records(made, error);
+}
+
+/* The record of a kind that counts in a frame; NULL: none. */
+static const unsigned char *find(const struct output_colours_read *colours,
+                                 enum output_record_kind kind, uint64_t frame,
+                                 struct output_record *record)
+{
+    const size_t *at = colours->at.items;
+    for (size_t i = colours->at.n; i > 0; i--) {
+        const unsigned char *bytes = colours->bytes + at[i - 1];
+        *record = output_record_get(bytes);
+        if (record->kind == kind && record->frame <= frame)
+            return bytes + OUTPUT_RECORD_HEADER;
+    }
+    return NULL;
+}
+
+static int fail(const struct output_colours_read *colours, const char *what, uint64_t frame,
+                struct cloth_error *error)
+{
+    return cloth_fail(error, CLOTH_E_INPUT, "%s does not say %s of frame %ju", colours->path, what,
+                      (uintmax_t)frame);
+}
+
+static int fail_as_damaged(const struct output_colours_read *colours, const char *what,
+                           struct cloth_error *error)
+{
+    return cloth_fail(error, CLOTH_E_INPUT,
+                      "%s is damaged: it has a number of %s that is none: run the scene again",
+                      colours->path, what);
+}
+
+/* -1, or less than there are vertices: of a block, or of a rank, which has a block. */
+static bool get_number(const struct output_colours_read *colours, const unsigned char bytes[4],
+                       int32_t *number)
+{
+    const uint32_t value = output_get_u32(bytes);
+    *number = value == UINT32_MAX ? -1 : (int32_t)value;
+    return value == UINT32_MAX || value < colours->n_vertices;
+}
+
+int output_colours_blocks(const struct output_colours_read *colours, uint64_t frame, int32_t *block,
+                          struct cloth_error *error)
+{
+    struct output_record record;
+    const unsigned char *bytes = find(colours, OUTPUT_RECORD_BLOCKS, frame, &record);
+    if (!bytes)
+        return fail(colours, "the blocks", frame, error);
+    for (size_t v = 0; v < colours->n_vertices; v++)
+        if (!get_number(colours, bytes + 4 * v, block + v))
+            return fail_as_damaged(colours, "a block", error);
+    return CLOTH_OK;
+}
+
+int output_colours_ranks(const struct output_colours_read *colours, uint64_t frame, int32_t *rank,
+                         struct cloth_error *error)
+{
+    struct output_record record;
+    int code = output_colours_blocks(colours, frame, rank, error);
+    const unsigned char *bytes = find(colours, OUTPUT_RECORD_RANKS, frame, &record);
+    if (code || !bytes)
+        return code ? code : fail(colours, "the ranks", frame, error);
+    const uint64_t n_blocks = record.size / 4;
+    for (size_t v = 0; v < colours->n_vertices; v++) {
+        if (rank[v] < 0)
+            continue;
+        if ((uint64_t)rank[v] >= n_blocks)
+            return fail(colours, "the ranks of all blocks", frame, error);
+        if (!get_number(colours, bytes + (size_t)4 * (size_t)rank[v], rank + v))
+            return fail_as_damaged(colours, "a rank", error);
+    }
+    return CLOTH_OK;
+}
+
+uint64_t output_colours_rest_since(const struct output_colours_read *colours, uint64_t frame)
+{
+    struct output_record record;
+    return find(colours, OUTPUT_RECORD_REST, frame, &record) ? record.frame : UINT64_MAX;
+}
+
+int output_colours_rest_at(const struct output_colours_read *colours, uint64_t frame,
+                           struct output_rest *rest, struct cloth_error *error)
+{
+    struct output_record record;
+    const unsigned char *bytes = find(colours, OUTPUT_RECORD_REST, frame, &record);
+    *rest = (struct output_rest){0};
+    if (!bytes)
+        return fail(colours, "the shapes at rest", frame, error);
+    *rest = counts_of(bytes);
+    if (output_rest_make(rest, error))
+        return CLOTH_E_MEMORY;
+    return output_rest_get(bytes, colours->n_vertices, rest)
+               ? CLOTH_OK
+               : fail_as_damaged(colours, "a shape at rest", error);
+}
+
+void output_colours_unload(struct output_colours_read *colours)
+{
+    if (!colours)
+        return;
+    free(colours->path);
+    free(colours->bytes);
+    free(colours->at.items);
+    free(colours);
+}

@@ -1,0 +1,19 @@
+#ifndef CLOTH_OUTPUTS_COLOURS_H
+#define CLOTH_OUTPUTS_COLOURS_H
+
+#include "cloth/flow/run.h"
+#include "cloth/output/colours.h"
+
+/* What viewers colour the cloth of a run by, on rank 0. A disk that takes no more of it does not
+ * end the run: a warning says so, once, and *colours becomes NULL; of NULL nothing is written.
+ * Local functions. */
+
+/* Shapes at rest of the cloths of a model, from a frame on. While there are meshes. Errors:
+ * CLOTH_E_MEMORY. */
+int outputs_colours_rest(struct output_colours **colours, const struct model *model, uint64_t frame,
+                         struct cloth_error *error);
+/* The places of a frame. Error: CLOTH_E_MEMORY. */
+int outputs_colours_places(struct output_colours **colours, uint64_t frame,
+                           const struct flow_places *places, struct cloth_error *error);
+
+#endif

@@ -1,0 +1,213 @@
+/* The numbers are those of the frame that was found last, by what colours it now. */
+#include "cloth/view/colours.h"
+
+#include "cloth/base/memory.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+enum { SCALED_FRAMES = 100, SAMPLE = 20000 };
+
+struct view_colours {
+    struct output_cache *cache;
+    struct view_values *values;
+    struct view_legend legend;    /* what they are by now, and how */
+    bool has_scale[VIEW_COLOURS]; /* it is known, */
+    struct view_scale scale[VIEW_COLOURS];
+    double *value, *position; /* n_vertices: of the frame; room for the positions of another */
+    double low, high;         /* the least and largest of the frame; NaN: it has none */
+    float *number;            /* of each vertex, for the scene */
+    unsigned char *hue;       /* of each part */
+    unsigned *near;
+    int32_t *part; /* of each vertex */
+};
+
+static int take_room(struct view_colours *colours, struct cloth_error *error)
+{
+    const size_t n = colours->cache->mesh.n_vertices;
+    colours->value = cloth_alloc(n, sizeof *colours->value, error);
+    colours->position = cloth_alloc(3 * n, sizeof *colours->position, error);
+    colours->number = cloth_alloc(n, sizeof *colours->number, error);
+    colours->part = cloth_alloc(n, sizeof *colours->part, error);
+    return colours->value && colours->position && colours->number && colours->part ? CLOTH_OK
+                                                                                   : CLOTH_E_MEMORY;
+}
+
+int view_colours_open(struct view_colours **colours, struct output_cache *cache, const char *folder,
+                      const struct view_colouring *first, struct cloth_error *error)
+{
+    struct view_colours *made = *colours = cloth_alloc(1, sizeof *made, error);
+    if (!made)
+        return CLOTH_E_MEMORY;
+    made->cache = cache;
+    made->has_scale[first->by] = first->has_scale;
+    made->scale[first->by] = first->scale;
+    int code = take_room(made, error);
+    code = code ? code : view_values_open(&made->values, cache, folder, error);
+    return code ? code : view_colours_pick(made, first->by, error);
+}
+
+/* ---- Scales ---- */
+
+static void find_range(const double *value, size_t n, double *low, double *high)
+{
+    *low = *high = (double)NAN;
+    for (size_t v = 0; v < n; v++) {
+        *low = fmin(*low, value[v]); /* a NaN beside a number counts as none */
+        *high = fmax(*high, value[v]);
+    }
+}
+
+static int compare(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* The number that one in twenty of those above 0 is above, so that the few vertices at a pin do
+ * not leave one colour for all others; of many vertices, from an even sample. Sorts `value`. NaN:
+ * none is above 0. */
+static double find_high(double *value, size_t n)
+{
+    const size_t stride = n / SAMPLE + 1;
+    size_t found = 0;
+    for (size_t v = 0; v < n; v += stride)
+        if (value[v] > 0)
+            value[found++] = value[v];
+    qsort(value, found, sizeof *value, compare);
+    return found ? value[found - 1 - found / 20] : (double)NAN;
+}
+
+/* Over the frames that have numbers. */
+static int find_scale(struct view_colours *colours, enum view_colour by, struct cloth_error *error)
+{
+    const size_t n = colours->cache->mesh.n_vertices;
+    double max = 0;
+    uint64_t n_frames = 0;
+    int code = view_values_frames(colours->values, by, &n_frames, error);
+    n_frames = n_frames < colours->cache->n_frames ? n_frames : colours->cache->n_frames;
+    const uint64_t looked = n_frames < SCALED_FRAMES ? n_frames : SCALED_FRAMES;
+    for (uint64_t i = 0; i < looked && !code; i++) {
+        const uint64_t frame = looked > 1 ? i * (n_frames - 1) / (looked - 1) : 0;
+        code = output_cache_frame(colours->cache, frame, colours->position, error);
+        if (!code)
+            code = view_values_at(colours->values, by, frame, colours->position, colours->value,
+                                  error);
+        if (!code)
+            max = fmax(max, find_high(colours->value, n));
+    }
+    colours->has_scale[by] = !code;
+    colours->scale[by] = view_scale_up_to(max);
+    return code;
+}
+
+int view_colours_pick(struct view_colours *colours, enum view_colour by, struct cloth_error *error)
+{
+    int code = CLOTH_OK;
+    if (view_colour_has_scale(by) && !colours->has_scale[by])
+        code = find_scale(colours, by, error);
+    if (!code)
+        colours->legend = (struct view_legend){.by = by, .scale = colours->scale[by]};
+    return code;
+}
+
+enum view_colour view_colours_by(const struct view_colours *colours)
+{
+    return colours->legend.by;
+}
+
+/* ---- Frames ---- */
+
+/* Room for as many parts as there are. */
+static int take_parts(struct view_colours *colours, uint32_t n, struct cloth_error *error)
+{
+    free(colours->hue);
+    free(colours->near);
+    colours->hue = cloth_alloc(n, sizeof *colours->hue, error);
+    colours->near = cloth_alloc(n, sizeof *colours->near, error);
+    return colours->hue && colours->near ? CLOTH_OK : CLOTH_E_MEMORY;
+}
+
+static int find_hues(struct view_colours *colours, struct cloth_error *error)
+{
+    const struct mesh *mesh = &colours->cache->mesh;
+    int32_t last = 0;
+    for (size_t v = 0; v < mesh->n_vertices; v++) {
+        colours->part[v] = isnan(colours->value[v]) ? -1 : (int32_t)colours->value[v];
+        last = colours->part[v] > last ? colours->part[v] : last;
+    }
+    const uint32_t n = (uint32_t)last + 1;
+    const int code = take_parts(colours, n, error);
+    if (code)
+        return code;
+    view_hues_spread(mesh->n_triangles, mesh->triangle, colours->part, n, colours->hue,
+                     colours->near);
+    colours->legend.n_parts = n;
+    colours->legend.hue = colours->hue;
+    for (size_t v = 0; v < mesh->n_vertices; v++)
+        colours->number[v] = colours->part[v] < 0 ? -1 : colours->hue[colours->part[v]];
+    return CLOTH_OK;
+}
+
+int view_colours_frame(struct view_colours *colours, uint64_t frame, const double *position,
+                       struct cloth_error *error)
+{
+    const enum view_colour by = colours->legend.by;
+    const size_t n = colours->cache->mesh.n_vertices;
+    if (by == VIEW_COLOUR_CLOTH)
+        return CLOTH_OK;
+    const int code = view_values_at(colours->values, by, frame, position, colours->value, error);
+    if (code)
+        return code;
+    find_range(colours->value, n, &colours->low, &colours->high);
+    if (view_colour_is_of_parts(by))
+        return find_hues(colours, error);
+    for (size_t v = 0; v < n; v++)
+        colours->number[v] =
+            isnan(colours->value[v])
+                ? -1
+                : (float)view_scale_part(&colours->legend.scale, colours->value[v]);
+    return CLOTH_OK;
+}
+
+void view_colours_paint(const struct view_colours *colours, struct view_scene *scene)
+{
+    const enum view_colour by = colours->legend.by;
+    if (by == VIEW_COLOUR_CLOTH)
+        view_scene_paint(scene, VIEW_PAINT_CLOTH, 0, NULL, NULL);
+    else if (view_colour_is_of_parts(by))
+        view_scene_paint(scene, VIEW_PAINT_PARTS, VIEW_HUES, view_hue, colours->number);
+    else
+        view_scene_paint(scene, VIEW_PAINT_SCALE, VIEW_MAP, view_map, colours->number);
+}
+
+const struct view_legend *view_colours_legend(const struct view_colours *colours)
+{
+    return &colours->legend;
+}
+
+void view_colours_say(const struct view_colours *colours)
+{
+    const struct view_legend *legend = &colours->legend;
+    const char *title = view_colour_title(legend->by);
+    if (view_colour_is_of_parts(legend->by))
+        printf("colours: %s, 0 to %u\n", title, legend->n_parts - 1);
+    else if (view_colour_has_scale(legend->by))
+        printf("colours: %s, from %g to %g; this frame has %.4g to %.4g\n", title,
+               legend->scale.min, legend->scale.max, colours->low, colours->high);
+}
+
+void view_colours_close(struct view_colours *colours)
+{
+    if (!colours)
+        return;
+    view_values_close(colours->values);
+    free(colours->value);
+    free(colours->position);
+    free(colours->number);
+    free(colours->part);
+    free(colours->hue);
+    free(colours->near);
+    free(colours);
+}

@@ -1,0 +1,251 @@
+/* Shapes at rest are those that count in the frame that was asked for last. */
+#include "cloth/view/values.h"
+
+#include "cloth/base/memory.h"
+#include "cloth/element/strain.h"
+#include "cloth/output/colours.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct view_values {
+    struct output_cache *cache;
+    const char *folder;
+    struct output_colours_read *colours; /* NULL until it is asked for */
+    struct element_strains strains;
+    uint64_t since;             /* from which frame on they count; UINT64_MAX: there are none */
+    double *cell, (*stress)[3]; /* of each triangle and edge */
+    double *weight;             /* of each vertex */
+    int32_t *number;            /* as this; */
+    double *force;              /* x 3 */
+};
+
+int view_values_open(struct view_values **values, struct output_cache *cache, const char *folder,
+                     struct cloth_error *error)
+{
+    const size_t n = cache->mesh.n_vertices;
+    struct view_values *made = *values = cloth_alloc(1, sizeof *made, error);
+    if (!made)
+        return CLOTH_E_MEMORY;
+    made->cache = cache;
+    made->folder = folder;
+    made->since = UINT64_MAX;
+    made->weight = cloth_alloc(n, sizeof *made->weight, error);
+    made->number = cloth_alloc(n, sizeof *made->number, error);
+    made->force = cloth_alloc(3 * n, sizeof *made->force, error);
+    return made->weight && made->number && made->force ? CLOTH_OK : CLOTH_E_MEMORY;
+}
+
+static int open_colours(struct view_values *values, struct cloth_error *error)
+{
+    if (values->colours)
+        return CLOTH_OK;
+    const int code = output_colours_load(&values->colours, values->folder,
+                                         values->cache->mesh.n_vertices, error);
+    if (code) {
+        output_colours_unload(values->colours);
+        values->colours = NULL;
+    }
+    return code;
+}
+
+static int find_parts(const struct view_values *values, enum view_colour by, uint64_t frame,
+                      double *value, struct cloth_error *error)
+{
+    const int code = by == VIEW_COLOUR_BLOCK
+                         ? output_colours_blocks(values->colours, frame, values->number, error)
+                         : output_colours_ranks(values->colours, frame, values->number, error);
+    for (size_t v = 0; v < values->cache->mesh.n_vertices && !code; v++)
+        value[v] = values->number[v] < 0 ? (double)NAN : values->number[v];
+    return code;
+}
+
+static int find_forces(const struct view_values *values, uint64_t frame, double *value,
+                       struct cloth_error *error)
+{
+    const uint32_t n = values->cache->mesh.n_vertices;
+    const int code = output_forces_read(values->folder, n, frame, values->force, error);
+    for (size_t v = 0; v < n && !code; v++) {
+        const double *f = values->force + 3 * v;
+        value[v] = sqrt(f[0] * f[0] + f[1] * f[1] + f[2] * f[2]);
+    }
+    return code;
+}
+
+/* ---- Strain and stress ---- */
+
+static int take_strains(struct element_strains *strains, uint32_t n_vertices,
+                        const struct output_rest *rest, struct cloth_error *error)
+{
+    const size_t vector = sizeof(phys_vec);
+    *strains = (struct element_strains){
+        .n_vertices = n_vertices, .n_triangles = rest->n_triangles, .n_edges = rest->n_edges};
+    strains->corner = cloth_alloc(rest->n_triangles, sizeof *strains->corner, error);
+    strains->gradient = aligned_alloc(vector, ((size_t)rest->n_triangles + 1) * vector);
+    strains->area = cloth_alloc(rest->n_triangles, sizeof *strains->area, error);
+    strains->edge = cloth_alloc(rest->n_edges, sizeof *strains->edge, error);
+    strains->length = cloth_alloc(rest->n_edges, sizeof *strains->length, error);
+    strains->membrane =
+        aligned_alloc(vector, ((size_t)rest->n_materials + 1) * sizeof *strains->membrane);
+    strains->has_stress = cloth_alloc(rest->n_materials, sizeof *strains->has_stress, error);
+    strains->x = aligned_alloc(vector, ((size_t)n_vertices + 1) * vector);
+    return strains->corner && strains->gradient && strains->area && strains->edge &&
+                   strains->length && strains->membrane && strains->has_stress && strains->x
+               ? CLOTH_OK
+               : cloth_fail(error, CLOTH_E_MEMORY, "no memory for the strains of %u triangles",
+                            rest->n_triangles);
+}
+
+static void copy_strains(struct element_strains *strains, const struct output_rest *rest)
+{
+    for (uint32_t t = 0; t < rest->n_triangles; t++) {
+        const double *g = rest->gradient[t];
+        memcpy(strains->corner[t], rest->corner[t], sizeof *rest->corner);
+        strains->gradient[t] = (phys_vec){g[0], g[1], g[2], g[3]};
+        strains->area[t] = rest->area[t];
+    }
+    for (uint32_t e = 0; e < rest->n_edges; e++) {
+        memcpy(strains->edge[e], rest->edge[e], sizeof *rest->edge);
+        strains->length[e] = rest->length[e];
+    }
+    for (uint32_t m = 0; m < rest->n_materials; m++) {
+        const double *c = rest->modulus[m];
+        strains->membrane[m] = (struct phys_membrane){.modulus = {c[0], c[1], c[2], c[3]}};
+        strains->has_stress[m] = rest->has_stress[m];
+    }
+}
+
+/* Those of the frame. */
+static int make_strains(struct view_values *values, uint64_t frame, struct cloth_error *error)
+{
+    struct output_rest rest = {0};
+    const uint64_t since = output_colours_rest_since(values->colours, frame);
+    if (since == values->since && since != UINT64_MAX)
+        return CLOTH_OK;
+    element_strains_free(&values->strains);
+    free(values->cell);
+    free(values->stress);
+    values->cell = NULL;
+    values->stress = NULL;
+    values->since = UINT64_MAX;
+    int code = output_colours_rest_at(values->colours, frame, &rest, error);
+    const size_t n = (size_t)rest.n_triangles + rest.n_edges;
+    if (!code)
+        code = take_strains(&values->strains, values->cache->mesh.n_vertices, &rest, error);
+    if (!code) {
+        copy_strains(&values->strains, &rest);
+        values->cell = cloth_alloc(n, sizeof *values->cell, error);
+        values->stress = cloth_alloc(n, sizeof *values->stress, error);
+        code = values->cell && values->stress ? CLOTH_OK : CLOTH_E_MEMORY;
+    }
+    output_rest_free(&rest);
+    values->since = code ? UINT64_MAX : since;
+    return code;
+}
+
+/* The larger eigenvalue. */
+static double principal(const double stress[3])
+{
+    const double half = 0.5 * (stress[0] - stress[1]);
+    return 0.5 * (stress[0] + stress[1]) + sqrt(half * half + stress[2] * stress[2]);
+}
+
+static void add(struct view_values *values, double *value, const uint32_t *corner, int corners,
+                double cell, double weight)
+{
+    for (int i = 0; i < corners && !isnan(cell); i++) {
+        value[corner[i]] += weight * cell;
+        values->weight[corner[i]] += weight;
+    }
+}
+
+/* From cells to vertices. Edges count where no triangle does. */
+static void gather(struct view_values *values, double *value)
+{
+    const struct element_strains *strains = &values->strains;
+    const size_t n = strains->n_vertices;
+    memset(value, 0, n * sizeof *value);
+    memset(values->weight, 0, n * sizeof *values->weight);
+    for (size_t t = 0; t < strains->n_triangles; t++)
+        add(values, value, strains->corner[t], 3, values->cell[t], strains->area[t]);
+    for (size_t v = 0; v < n; v++)
+        values->number[v] = values->weight[v] > 0;
+    for (size_t e = 0; e < strains->n_edges; e++)
+        for (int i = 0; i < 2; i++)
+            if (!values->number[strains->edge[e][i]])
+                add(values, value, strains->edge[e] + i, 1, values->cell[strains->n_triangles + e],
+                    strains->length[e]);
+    for (size_t v = 0; v < n; v++)
+        value[v] = values->weight[v] > 0 ? value[v] / values->weight[v] : (double)NAN;
+}
+
+static bool has_stress(const struct element_strains *strains)
+{
+    for (size_t t = 0; t < strains->n_triangles; t++)
+        if (strains->has_stress[strains->corner[t][3]])
+            return true;
+    return false;
+}
+
+static int find_strains(struct view_values *values, bool stress, uint64_t frame,
+                        const double *position, double *value, struct cloth_error *error)
+{
+    const int code = make_strains(values, frame, error);
+    if (code)
+        return code;
+    if (stress && !has_stress(&values->strains))
+        return cloth_fail(error, CLOTH_E_INPUT,
+                          "%s: nothing has a stress, since all cloths are of springs; a material "
+                          "with model: triangles has one, and strain is known of both",
+                          values->folder);
+    element_strains_find(&values->strains, position, values->cell, values->stress);
+    const size_t n = (size_t)values->strains.n_triangles + values->strains.n_edges;
+    for (size_t i = 0; i < n && stress; i++)
+        values->cell[i] = principal(values->stress[i]);
+    gather(values, value);
+    return CLOTH_OK;
+}
+
+/* ---- All of them ---- */
+
+int view_values_at(struct view_values *values, enum view_colour by, uint64_t frame,
+                   const double *position, double *value, struct cloth_error *error)
+{
+    if (values->cache->held)
+        return cloth_fail(error, CLOTH_E_INPUT,
+                          "a run that goes on shows its cloth's own colours: it sends positions "
+                          "alone; other colours are of a folder of frames");
+    if (by == VIEW_COLOUR_CONTACT)
+        return find_forces(values, frame, value, error);
+    const int code = open_colours(values, error);
+    if (code)
+        return code;
+    return view_colour_is_of_parts(by)
+               ? find_parts(values, by, frame, value, error)
+               : find_strains(values, by == VIEW_COLOUR_STRESS, frame, position, value, error);
+}
+
+int view_values_frames(struct view_values *values, enum view_colour by, uint64_t *n_frames,
+                       struct cloth_error *error)
+{
+    *n_frames = values->cache->n_frames;
+    return by == VIEW_COLOUR_CONTACT
+               ? output_forces_count(values->folder, values->cache->mesh.n_vertices, n_frames,
+                                     error)
+               : CLOTH_OK;
+}
+
+void view_values_close(struct view_values *values)
+{
+    if (!values)
+        return;
+    output_colours_unload(values->colours);
+    element_strains_free(&values->strains);
+    free(values->cell);
+    free(values->stress);
+    free(values->weight);
+    free(values->number);
+    free(values->force);
+    free(values);
+}

@@ -1,0 +1,277 @@
+/* What is written of blocks, ranks and shapes is read again for the frames that it counts from,
+ * whatever becomes of the run; what is damaged is refused. */
+#include "cloth/output/colours.h"
+#include "tests/cloth/output/sample.h"
+#include "tests/support/unit.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { N = 5, BLOCKS = 2 };
+static const int32_t BLOCK[N] = {0, 1, -1, 1, 0};
+
+static struct sample sample;
+static struct output_colours *writer;
+static struct output_colours_read *reader;
+static struct cloth_error error;
+static char path[200];
+
+static void make(void)
+{
+    sample_make(&sample);
+    snprintf(path, sizeof path, "%s/colours.bin", sample.folder);
+}
+
+static void end(void)
+{
+    output_colours_unload(reader);
+    sample_free(&sample);
+}
+
+static void begins(const uint64_t *n_frames)
+{
+    ck_assert_msg(!output_colours_open(&writer, sample.folder, N, n_frames, &error), "%s",
+                  error.text);
+}
+
+static void ends(void)
+{
+    ck_assert_int_eq(output_colours_close(&writer, &error), 0);
+    ck_assert_ptr_null(writer);
+}
+
+static void places(uint64_t frame, int32_t first, int32_t second)
+{
+    const int32_t rank[BLOCKS] = {first, second};
+    ck_assert_int_eq(output_colours_places(writer, frame, BLOCK, BLOCKS, rank, &error), 0);
+}
+
+static long size_of(void)
+{
+    FILE *file = fopen(path, "r");
+    ck_assert_ptr_nonnull(file);
+    fseek(file, 0, SEEK_END);
+    const long size = ftell(file);
+    fclose(file);
+    return size;
+}
+
+static void opens(void)
+{
+    output_colours_unload(reader);
+    ck_assert_msg(!output_colours_load(&reader, sample.folder, N, &error), "%s", error.text);
+}
+
+static void has_ranks(uint64_t frame, int32_t first, int32_t second)
+{
+    int32_t rank[N];
+    const int32_t expected[N] = {first, second, -1, second, first};
+    ck_assert_msg(!output_colours_ranks(reader, frame, rank, &error), "%s", error.text);
+    ck_assert_mem_eq(rank, expected, sizeof rank);
+}
+
+START_TEST(places_are_read_again)
+{
+    int32_t block[N];
+    begins(NULL);
+    places(0, 0, 3);
+    ends();
+    opens();
+    ck_assert_int_eq(output_colours_blocks(reader, 7, block, &error), 0);
+    ck_assert_mem_eq(block, BLOCK, sizeof block);
+    has_ranks(0, 0, 3);
+    has_ranks(7, 0, 3);
+}
+END_TEST
+
+START_TEST(only_what_changes_is_written_again)
+{
+    begins(NULL);
+    places(0, 0, 1);
+    const long size = size_of();
+    places(1, 0, 1);
+    ck_assert_int_eq(size_of(), size);
+    places(2, 1, 1);
+    ck_assert_int_eq(size_of(), size + 16 + 4 * BLOCKS);
+    ends();
+    opens();
+    has_ranks(1, 0, 1);
+    has_ranks(2, 1, 1);
+    has_ranks(1, 0, 1);
+}
+END_TEST
+
+START_TEST(a_run_that_goes_on_keeps_what_came_before)
+{
+    const uint64_t two = 2;
+    begins(NULL);
+    places(0, 0, 1);
+    places(2, 1, 0);
+    ends();
+    begins(&two);
+    places(2, 2, 2);
+    ends();
+    opens();
+    has_ranks(1, 0, 1);
+    has_ranks(2, 2, 2);
+    begins(NULL);
+    ends();
+    ck_assert_int_eq(size_of(), 16);
+}
+END_TEST
+
+START_TEST(what_is_not_whole_was_not_written)
+{
+    begins(NULL);
+    places(0, 0, 1);
+    const long size = size_of();
+    places(1, 1, 0);
+    ends();
+    for (long cut = size_of() - 1; cut >= size; cut--) {
+        ck_assert_int_eq(truncate(path, cut), 0);
+        opens();
+        has_ranks(1, 0, 1);
+    }
+    ck_assert_int_eq(truncate(path, 16), 0);
+    opens();
+    int32_t block[N];
+    ck_assert_int_eq(output_colours_blocks(reader, 0, block, &error), CLOTH_E_INPUT);
+    ck_assert_ptr_nonnull(strstr(error.text, "does not say the blocks of frame 0"));
+}
+END_TEST
+
+/* A triangle, an edge, two materials. */
+static void fill(struct output_rest *rest)
+{
+    *rest = (struct output_rest){.n_triangles = 1, .n_edges = 1, .n_materials = 2};
+    ck_assert_int_eq(output_rest_make(rest, &error), 0);
+    memcpy(rest->corner[0], (uint32_t[]){2, 0, 4, 1}, sizeof *rest->corner);
+    memcpy(rest->gradient[0], (double[]){1, -2, 0.5, 4}, sizeof *rest->gradient);
+    rest->area[0] = 0.125;
+    memcpy(rest->edge[0], (uint32_t[]){1, 3}, sizeof *rest->edge);
+    rest->length[0] = 0.75;
+    memcpy(rest->modulus[1], (double[]){1000, 300, 900, 50}, sizeof *rest->modulus);
+    rest->has_stress[1] = true;
+}
+
+static void write_rest(uint64_t frame)
+{
+    struct output_rest rest;
+    fill(&rest);
+    ck_assert_int_eq(output_colours_rest(writer, frame, &rest, &error), 0);
+    output_rest_free(&rest);
+}
+
+START_TEST(shapes_are_read_again)
+{
+    struct output_rest rest, read;
+    begins(NULL);
+    write_rest(0);
+    write_rest(3);
+    ends();
+    opens();
+    fill(&rest);
+    ck_assert_uint_eq(output_colours_rest_since(reader, 2), 0);
+    ck_assert_uint_eq(output_colours_rest_since(reader, 9), 3);
+    ck_assert_int_eq(output_colours_rest_at(reader, 2, &read, &error), 0);
+    ck_assert_uint_eq(read.n_triangles, 1);
+    ck_assert_mem_eq(read.corner, rest.corner, sizeof *rest.corner);
+    ck_assert_mem_eq(read.gradient, rest.gradient, sizeof *rest.gradient);
+    ck_assert_double_eq(read.area[0], rest.area[0]);
+    ck_assert_mem_eq(read.edge, rest.edge, sizeof *rest.edge);
+    ck_assert_double_eq(read.length[0], rest.length[0]);
+    ck_assert_mem_eq(read.modulus, rest.modulus, 2 * sizeof *rest.modulus);
+    ck_assert(!read.has_stress[0] && read.has_stress[1]);
+    output_rest_free(&rest);
+    output_rest_free(&read);
+}
+END_TEST
+
+static void put(long at, unsigned char byte)
+{
+    FILE *file = fopen(path, "r+");
+    ck_assert_ptr_nonnull(file);
+    ck_assert_int_eq(fseek(file, at, SEEK_SET), 0);
+    ck_assert_int_eq(fputc(byte, file), byte);
+    ck_assert_int_eq(fclose(file), 0);
+}
+
+/* Any byte may be any other: what is read then is in range, or refused. */
+START_TEST(damage_does_no_harm)
+{
+    begins(NULL);
+    places(0, 0, 1);
+    write_rest(0);
+    ends();
+    const long size = size_of();
+    for (long at = 16; at < size; at++)
+        for (int value = 0; value < 256; value += 51) {
+            int32_t number[N];
+            struct output_rest rest = {0};
+            FILE *file = fopen(path, "r");
+            ck_assert_int_eq(fseek(file, at, SEEK_SET), 0);
+            const int before = fgetc(file);
+            fclose(file);
+            put(at, (unsigned char)value);
+            output_colours_unload(reader);
+            if (!output_colours_load(&reader, sample.folder, N, &error)) {
+                if (!output_colours_ranks(reader, 0, number, &error))
+                    for (int v = 0; v < N; v++)
+                        ck_assert(number[v] >= -1 && number[v] < N);
+                if (!output_colours_rest_at(reader, 0, &rest, &error))
+                    for (uint32_t t = 0; t < rest.n_triangles; t++)
+                        ck_assert(rest.corner[t][0] < N && rest.corner[t][3] < rest.n_materials &&
+                                  isfinite(rest.area[t]));
+                output_rest_free(&rest);
+            }
+            put(at, (unsigned char)before);
+        }
+    put(0, 'd');
+    output_colours_unload(reader);
+    ck_assert_int_eq(output_colours_load(&reader, sample.folder, N, &error), CLOTH_E_INPUT);
+    put(0, 'D');
+    output_colours_unload(reader);
+    ck_assert_int_eq(output_colours_load(&reader, sample.folder, N + 1, &error), CLOTH_E_INPUT);
+    ck_assert_ptr_nonnull(strstr(error.text, "of another mesh than cloth.obj"));
+}
+END_TEST
+
+START_TEST(a_file_of_somebody_else_stays)
+{
+    FILE *file = fopen(path, "w");
+    ck_assert_ptr_nonnull(file);
+    fputs("mine\n", file);
+    fclose(file);
+    ck_assert_int_eq(output_colours_open(&writer, sample.folder, N, NULL, &error), CLOTH_E_INPUT);
+    ck_assert_ptr_nonnull(strstr(error.text, "colours.bin is in the way"));
+    output_colours_close(&writer, &error);
+    ck_assert_int_eq(size_of(), 5);
+}
+END_TEST
+
+START_TEST(without_a_file_it_says_who_writes_it)
+{
+    ck_assert_int_eq(output_colours_load(&reader, sample.folder, N, &error), CLOTH_E_INPUT);
+    ck_assert_ptr_nonnull(strstr(error.text, "duite-cloth --output writes it"));
+}
+END_TEST
+
+int main(void)
+{
+    TCase *tests = tcase_create("colours");
+    tcase_add_checked_fixture(tests, make, end);
+    tcase_add_test(tests, places_are_read_again);
+    tcase_add_test(tests, only_what_changes_is_written_again);
+    tcase_add_test(tests, a_run_that_goes_on_keeps_what_came_before);
+    tcase_add_test(tests, what_is_not_whole_was_not_written);
+    tcase_add_test(tests, shapes_are_read_again);
+    tcase_add_test(tests, damage_does_no_harm);
+    tcase_add_test(tests, a_file_of_somebody_else_stays);
+    tcase_add_test(tests, without_a_file_it_says_who_writes_it);
+    Suite *suite = suite_create("colours");
+    suite_add_tcase(suite, tests);
+    return unit_run(suite);
+}

@@ -26,8 +26,7 @@ enum {
 
 /* As the shaders see it (std140). */
 struct draw_light_block {
-    float direction[DRAW_LIGHTS][4]; /* towards the light, length 1; the sun's last ones are at its
-                                      * rim */
+    float direction[DRAW_LIGHTS][4]; /* towards the light, length 1 */
     float colour[DRAW_LIGHTS][4];    /* linear */
     float row[3 * DRAW_LIGHTS][4];   /* world to map: x, y, depth in 0 .. 1 */
     float toward[4], sunlight[4];    /* direction and colour of the whole sun */

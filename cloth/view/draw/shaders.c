@@ -55,20 +55,20 @@ const char DRAW_COMMON[] =
     "    vec3 m = in_map(i, at);\n"
     "    return texture(suns, vec4(m.xy + o, float(i), m.z));\n"
     "}\n"
-    /* How much of the sun is seen. The last half of its lights are at its rim: where these agree there is no edge of a shadow.
-     * Elsewhere each light is looked at in four places of a square, which is turned and sized for each light otherwise, and for each
-     * pixel: so the edges of the lights' shadows melt. */
+    /* How much of the sun is seen. Where one look at each of its lights says the same there is no edge of a shadow. Elsewhere each
+     * light is looked at in four places of a square, which is turned and sized for each light otherwise, and for each pixel: so the
+     * edges of the lights' shadows melt. */
     "float sun(vec3 at, vec3 n, vec2 p, float blur)\n"
     "{\n"
     "    if (!shadows)\n"
     "        return 1.0;\n"
     "    vec3 q = at + n * (dot(n, toward.xyz) < 0.0 ? -bias.x : bias.x);\n"
     "    float turn = noise(p), grain = noise(p.yx + 37.0), sum = 0.0;\n"
-    "    vec2 o = bias.y * blur * vec2(1.2, 0.0);\n"
-    "    for (int i = SUN / 2; i < SUN; i++, o = vec2(-o.y, o.x))\n"
+    "    vec2 o = bias.y * blur * vec2(0.7, 0.0);\n"
+    "    for (int i = 0; i < SUN; i++, o = vec2(-o.y, o.x))\n"
     "        sum += sun_at(i, q, o);\n"
-    "    if (sum < 0.01 || sum > float(SUN / 2) - 0.01)\n"
-    "        return sum * 2.0 / float(SUN);\n"
+    "    if (sum < 0.01 || sum > float(SUN) - 0.01)\n"
+    "        return sum / float(SUN);\n"
     "    sum = 0.0;\n"
     "    for (int i = 0; i < SUN; i++) {\n"
     "        float a = 6.2831853 * fract(turn + 0.7548777 * float(i));\n"

@@ -55,8 +55,8 @@ const char DRAW_COMMON[] =
     "    vec3 m = in_map(i, at);\n"
     "    return texture(suns, vec4(m.xy + o, float(i), m.z));\n"
     "}\n"
-    /* How much of the sun is seen. Where one look at each of its lights says the same there is no edge of a shadow. Elsewhere each
-     * light is looked at in four places of a square, which is turned and sized for each light otherwise, and for each pixel: so the
+    /* How much of the sun is seen. Where one look at each of its lights says the same there is no edge of a shadow; under a wide
+     * blur that holds where all of the sun is seen, since what is dark may be narrow. Elsewhere each light is looked at in four places of a square, which is turned and sized for each light otherwise, and for each pixel: so the
      * edges of the lights' shadows melt. */
     "float sun(vec3 at, vec3 n, vec2 p, float blur)\n"
     "{\n"
@@ -67,7 +67,7 @@ const char DRAW_COMMON[] =
     "    vec2 o = bias.y * blur * vec2(0.7, 0.0);\n"
     "    for (int i = 0; i < SUN; i++, o = vec2(-o.y, o.x))\n"
     "        sum += sun_at(i, q, o);\n"
-    "    if (sum < 0.01 || sum > float(SUN) - 0.01)\n"
+    "    if (sum > float(SUN) - 0.01 || sum < 0.01 && blur <= 1.0)\n"
     "        return sum / float(SUN);\n"
     "    sum = 0.0;\n"
     "    for (int i = 0; i < SUN; i++) {\n"

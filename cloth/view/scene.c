@@ -352,44 +352,63 @@ static void draw_cloths(const struct view_scene *scene, GLuint surface)
     glDisable(GL_POLYGON_OFFSET_FILL);
 }
 
+static void draw_shapes(const struct view_scene *scene, GLuint surface,
+                        const struct view_camera *camera)
+{
+    glPolygonOffset(0, behind(scene, camera));
+    glEnable(GL_POLYGON_OFFSET_FILL);
+    glEnable(GL_CULL_FACE); /* a shape around the eye would hide everything */
+    glUniform1i(glGetUniformLocation(surface, "colours"), VIEW_PAINT_CLOTH);
+    glUniform3fv(glGetUniformLocation(surface, "paint"), 2, STONE[0]);
+    draw_sky_bind(&scene->shapes_sky);
+    draw_mesh_draw(&scene->shapes);
+    glDisable(GL_CULL_FACE);
+    glDisable(GL_POLYGON_OFFSET_FILL);
+}
+
+static void draw_grounds(const struct view_scene *scene, GLuint program,
+                         const struct view_camera *camera)
+{
+    glBindVertexArray(scene->nothing);
+    glEnable(GL_POLYGON_OFFSET_FILL); /* cloth that lies on a plane lies on top of it */
+    glPolygonOffset(1, 16);
+    for (size_t i = 0; i < scene->n_grounds; i++)
+        draw_ground(scene->ground + i, program, &scene->lights, camera->eye, camera->reach);
+    glDisable(GL_POLYGON_OFFSET_FILL);
+}
+
+/* The background lies at the far end. */
+static void draw_background(const struct view_scene *scene)
+{
+    glBindVertexArray(scene->nothing);
+    glDepthMask(GL_FALSE);
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    glDepthMask(GL_TRUE);
+}
+
+/* What is near comes first, so that nothing is shaded which is then hidden. */
 void view_scene_draw(const struct view_scene *scene, const struct view_camera *camera, int width,
                      int height)
 {
     glViewport(0, 0, width, height);
     bind_lights(scene);
     glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_LEQUAL);
     glClear(GL_DEPTH_BUFFER_BIT);
 
-    glBindVertexArray(scene->nothing);
-    glDepthMask(GL_FALSE);
-    glDepthFunc(GL_LEQUAL); /* the background lies at the far end */
-    use_to_see(scene, PROGRAM_BACK, camera, width, height);
-    glDrawArrays(GL_TRIANGLES, 0, 3);
-    glDepthMask(GL_TRUE);
-
-    const GLuint ground = use_to_see(scene, PROGRAM_GROUND, camera, width, height);
-    glEnable(GL_POLYGON_OFFSET_FILL); /* cloth that lies on a plane lies on top of it */
-    glPolygonOffset(1, 16);
-    for (size_t i = 0; i < scene->n_grounds; i++)
-        draw_ground(scene->ground + i, ground, &scene->lights, camera->eye, camera->reach);
-    glDisable(GL_POLYGON_OFFSET_FILL);
-
-    const GLuint surface = use_to_see(scene, PROGRAM_CLOTH, camera, width, height);
-    if (has_shapes(scene)) {
-        glPolygonOffset(0, behind(scene, camera));
-        glEnable(GL_POLYGON_OFFSET_FILL);
-        glEnable(GL_CULL_FACE); /* a shape around the eye would hide everything */
-        glUniform1i(glGetUniformLocation(surface, "colours"), VIEW_PAINT_CLOTH);
-        glUniform3fv(glGetUniformLocation(surface, "paint"), 2, STONE[0]);
-        draw_sky_bind(&scene->shapes_sky);
-        draw_mesh_draw(&scene->shapes);
-        glDisable(GL_CULL_FACE);
-        glDisable(GL_POLYGON_OFFSET_FILL);
-    }
+    GLuint surface = use_to_see(scene, PROGRAM_CLOTH, camera, width, height);
     draw_sky_bind(&scene->mesh_sky);
     draw_cloths(scene, surface);
-    if (scene->wired)
-        draw_edges(scene, surface, camera, height);
+    if (has_shapes(scene))
+        draw_shapes(scene, surface, camera);
+    draw_grounds(scene, use_to_see(scene, PROGRAM_GROUND, camera, width, height), camera);
+    use_to_see(scene, PROGRAM_BACK, camera, width, height);
+    draw_background(scene);
+    if (!scene->wired)
+        return;
+    surface = use_to_see(scene, PROGRAM_CLOTH, camera, width, height);
+    draw_sky_bind(&scene->mesh_sky);
+    draw_edges(scene, surface, camera, height);
 }
 
 void view_scene_free(struct view_scene *scene)

@@ -129,7 +129,7 @@ static void print_phases(FILE *file, const struct phases *phases)
     }
 }
 
-void summary_print(FILE *file, const struct summary *summary)
+static void print_what_ran(FILE *file, const struct summary *summary)
 {
     const struct flow_report *report = summary->report;
     const struct model *model = summary->model;
@@ -147,6 +147,12 @@ void summary_print(FILE *file, const struct summary *summary)
     fprintf(file, "  instructions     %s\n", cloth_simd_name());
     fprintf(file, "  steps            %" PRIu64 " of %g s, %g s simulated\n", report->steps,
             model->h, report->simulated_seconds);
+}
+
+static void print_events(FILE *file, const struct summary *summary)
+{
+    const struct flow_report *report = summary->report;
+    const struct model *model = summary->model;
     print_phases(file, summary->phases);
     summary_seams_print(file, model, report);
     if (model->n_obstacles || model_seeks(model))
@@ -164,6 +170,12 @@ void summary_print(FILE *file, const struct summary *summary)
         print_contact(file, model, report);
     if (!isnan(report->correction_excess))
         print_correction(file, report);
+}
+
+static void print_effort(FILE *file, const struct summary *summary)
+{
+    const struct flow_report *report = summary->report;
+    const struct model *model = summary->model;
     fprintf(file, "  wall time        %.3f s, %.6f s a step\n", report->wall_seconds,
             ratio(report->wall_seconds, (double)report->steps));
     summary_time_print(file, report);
@@ -176,6 +188,11 @@ void summary_print(FILE *file, const struct summary *summary)
                 "tasks\n",
                 report->counters.messages, 1e-6 * (double)report->counters.bytes,
                 100 * hidden_fraction(summary));
+}
+
+static void print_results(FILE *file, const struct summary *summary)
+{
+    const struct flow_report *report = summary->report;
     fprintf(file, "  largest stretch  %.6f times the length at rest at the end",
             report->max_stretch);
     if (!isnan(report->stretch_highest))
@@ -192,6 +209,14 @@ void summary_print(FILE *file, const struct summary *summary)
                 summary->drape->coefficient, summary->drape->shadow);
     if (summary->intersections)
         print_intersections(file, summary->intersections);
+}
+
+void summary_print(FILE *file, const struct summary *summary)
+{
+    print_what_ran(file, summary);
+    print_events(file, summary);
+    print_effort(file, summary);
+    print_results(file, summary);
     summary_limit_print(file, summary);
 }
 

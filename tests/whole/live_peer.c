@@ -1,6 +1,7 @@
 /* The other side of a live view, for tests.
  *
- *   live_peer follow HOST:PORT          each frame that comes, until the run ends: number and hash
+ *   live_peer follow HOST:PORT          each frame that comes, until the run ends: number and hash;
+ *                                       fails where none comes for two minutes
  *   live_peer frames DIR                the same of a folder of frames
  *   live_peer send HOST:PORT WHAT       sends WHAT ten times; prints the version of an answer
  *   live_peer serve WHAT                prints a free port, and answers each request there by WHAT
@@ -17,7 +18,7 @@
 #include <xxhash.h>
 #include <zmq.h>
 
-enum { LARGE = 1 << 20, REPEAT = 10, PATIENCE = 5000, LINGER = 100 /* ms */ };
+enum { LARGE = 1 << 20, REPEAT = 10, PATIENCE = 5000, LINGER = 100 /* ms */, LOOKS = 1200 };
 
 static int fail(const char *what)
 {
@@ -38,9 +39,11 @@ static int follow(const char *host)
     struct cloth_error error = {0};
     bool waits = true, begun = false;
     int code = live_follow_open(&follower, host, &error);
-    while (!code && !(begun && waits)) {
+    for (int looks = 0; !code && !(begun && waits); looks++) {
         enum live_news news;
         code = live_follow(follower, 0.1, &news, &error);
+        if (!code && !begun && looks == LOOKS)
+            code = cloth_fail(&error, CLOTH_E_INPUT, "no frame comes from %s", host);
         live_follow_state(follower, &waits);
         if (code || news == LIVE_NOTHING)
             continue;

@@ -9,15 +9,13 @@ plan_later
 
 dir=$scratch/frames
 sed 's/nx: 150, ny: 150/nx: 20, ny: 20/' "$srcdir/cloth/scenes/sheet.yaml" > "$scratch/small.yaml"
-# What the simulator leaks is looked for in its own tests.
-ok "frames" env ASAN_OPTIONS="${ASAN_OPTIONS:-}:detect_leaks=0" "$DUITE_CLOTH" "$scratch/small.yaml" --end 0.16 --output "$dir"
+ok "frames" "$DUITE_CLOTH" "$scratch/small.yaml" --end 0.16 --output "$dir"
 viewer=
 trap 'kill $xvfb $viewer 2> /dev/null; tap_end' EXIT
 picture() { limited "$DUITE_VIEW" "$dir" --size $size "$@"; }
 
-# Drivers of OpenGL are unloaded before leaks are looked for, so theirs cannot be told from ours; test_picture looks for ours.
 opens() { # OPTION...
-    (cd "$scratch" && DISPLAY=$display ASAN_OPTIONS="${ASAN_OPTIONS:-}:detect_leaks=0" exec "$DUITE_VIEW" "$dir" --size $size "$@") > "$scratch/window" 2>&1 &
+    (cd "$scratch" && DISPLAY=$display exec "$DUITE_VIEW" "$dir" --size $size "$@") > "$scratch/window" 2>&1 &
     viewer=$!
 }
 ends() { # STATUS

@@ -38,7 +38,7 @@ fi
 ok "a picture of the run" picture
 ok "the run stops" stops
 
-(cd "$scratch" && DISPLAY=$display ASAN_OPTIONS="${ASAN_OPTIONS:-}:detect_leaks=0" exec "$DUITE_VIEW" --connect 127.0.0.1:$port --size $size) > "$scratch/window" 2>&1 &
+(cd "$scratch" && DISPLAY=$display exec "$DUITE_VIEW" --connect 127.0.0.1:$port --size $size) > "$scratch/window" 2>&1 &
 viewer=$!
 ok "it says that it waits for a run" says "^duite-view: waits for a run at 127.0.0.1:$port\$"
 simulate

@@ -28,7 +28,7 @@ duite_cloth_SOURCES = \
 	cloth/intersections_soup.h cloth/intersections_soup.c cloth/keeper.c cloth/outputs.c cloth/outputs_colours.c cloth/outputs_hdf5.c cloth/phases.c cloth/phases_check.c cloth/phases_motions.c cloth/progress.c cloth/restart.c cloth/room.c cloth/simulate.c cloth/simulate_begin.c cloth/start.c cloth/start_welds.c cloth/start_welds.h \
 	cloth/shipped.h cloth/shipped.c \
 	cloth/outputs_setup.h cloth/outputs_setup.c \
-	cloth/summary.h cloth/summary.c cloth/summary_seams.h cloth/summary_seams.c cloth/summary_time.h cloth/summary_time.c
+	cloth/summary.h cloth/summary.c cloth/summary_numbers.h cloth/summary_numbers.c cloth/summary_print.c cloth/summary_seams.h cloth/summary_seams.c cloth/summary_time.h cloth/summary_time.c
 duite_cloth_CPPFLAGS = $(AM_CPPFLAGS) -DSHIPPED_SCENES='"$(scenesdir)"'
 duite_cloth_LDADD = libduite_cloth.la libduite_core.la
 

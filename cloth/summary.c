@@ -1,8 +1,9 @@
-/* Everything printed here comes from the report of the run; nothing is measured. */
+/* The report as JSON: everything in it comes from the run; nothing is measured. */
 #include "cloth/summary.h"
 
 #include "cloth/base/simd.h"
 #include "cloth/output/output.h"
+#include "cloth/summary_numbers.h"
 #include "cloth/summary_seams.h"
 #include "cloth/summary_time.h"
 
@@ -10,215 +11,6 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* NaN where there is nothing to divide by: printed as null. */
-static double ratio(double a, double b)
-{
-    return b > 0 ? a / b : NAN;
-}
-
-/* The share of the time in which messages were awaited that workers had tasks in. */
-static double hidden_fraction(const struct summary *summary)
-{
-    const duite_counters *counters = &summary->report->counters;
-    return 1 - ratio(counters->exposed, counters->awaited);
-}
-
-static double iterations_mean(const struct summary *summary)
-{
-    const struct flow_report *report = summary->report;
-    bool implicit = model_is_implicit(summary->model);
-    return implicit ? ratio((double)report->cg_iterations_total, (double)report->steps) : NAN;
-}
-
-/* Solves a step; those of steps that were given up count, too. */
-static double solves_mean(const struct flow_report *report)
-{
-    const uint64_t solves =
-        report->steps + report->steps_halved + report->steps_retaken + report->contact_solves;
-    return ratio((double)solves, (double)report->steps);
-}
-
-static void print_solves(FILE *file, const struct summary *summary)
-{
-    const struct flow_report *report = summary->report;
-    fprintf(file, "  CG iterations    %.2f a step on average, %" PRIu64 " at most\n",
-            iterations_mean(summary), report->cg_iterations_max);
-    fprintf(file, "  error of dv      %.3e of it at most in a step, in the mass norm (estimate)\n",
-            report->mass_norm_error);
-    if (report->cg_restarts)
-        fprintf(file,
-                "  CG restarts      %" PRIu64
-                ", where the true residual was larger than its recurrence said\n",
-                report->cg_restarts);
-    if (report->factors_shifted)
-        fprintf(file,
-                "  IC(0)            made with a shift %" PRIu64 " times, of blocks times steps\n",
-                report->factors_shifted);
-    fprintf(file, "  momentum lost    %.3e kg m/s at most in a step\n", report->momentum_lost);
-}
-
-static void print_correction(FILE *file, const struct flow_report *r)
-{
-    fprintf(file, "  correction       %" PRIu64 " rounds, which left an excess of %.4g at most\n",
-            r->correction_rounds, r->correction_excess);
-}
-
-/* With every cause that there was. */
-static void print_halved(FILE *file, const struct summary *summary)
-{
-    static const char *const causes[FLOW_CAUSES] = {
-        [FLOW_CAUSE_SOLVE] = "for a solve that failed",
-        [FLOW_CAUSE_BOUNDS] = "for what left all bounds",
-        [FLOW_CAUSE_STRETCH] = "for stretch (time.stretch_growth, time.stretch_limit)",
-        [FLOW_CAUSE_ENERGY] = "for energy gained (time.energy_growth)",
-        [FLOW_CAUSE_CONTACT] = "for ways that contact cut (contact)"};
-    const struct flow_report *report = summary->report;
-    fprintf(file, "  shorter steps    down to h / %.0f; halved %" PRIu64 " times",
-            summary->model->h / report->shortest_step, report->steps_halved);
-    const char *before = ": ";
-    for (int i = 0; i < FLOW_CAUSES; i++) {
-        if (!report->halved_by[i])
-            continue;
-        fprintf(file, "%s%" PRIu64 " %s", before, report->halved_by[i], causes[i]);
-        before = ", ";
-    }
-    fputc('\n', file);
-}
-
-static void print_intersections(FILE *file, const struct intersections_found *found)
-{
-    fprintf(file, "  intersections    ");
-    if (found->bad)
-        fprintf(file,
-                "in %" PRIu64 " of %" PRIu64 " frames, from frame %" PRIu64 " on; at most %" PRIu64
-                " of cloth, %" PRIu64 " with obstacles\n",
-                found->bad, found->frames, found->first, found->pairs, found->with_shapes);
-    else
-        fprintf(file, "none in %" PRIu64 " frames\n", found->frames);
-}
-
-static void print_contact(FILE *file, const struct model *model, const struct flow_report *report)
-{
-    fprintf(file, "  contacts         %" PRIu64 " at most", report->contacts);
-    if (model_certifies(model))
-        fprintf(file, "; %.2f solves a step, %" PRIu64 " pairs certified", solves_mean(report),
-                report->contact_pairs);
-    fputc('\n', file);
-    if (report->contact_cuts && report->contact_cut_run)
-        fprintf(file,
-                "  ways cut         %" PRIu64 ", of one vertex in %" PRIu64
-                " steps in a row at most\n",
-                report->contact_cuts, report->contact_cut_run);
-    else if (report->contact_cuts)
-        fprintf(file, "  ways cut         %" PRIu64 ", all in steps that were given up\n",
-                report->contact_cuts);
-    if (report->contact_pinches)
-        fprintf(file, "  pinched          %" PRIu64 " pairs, in steps that were halved; first %s\n",
-                report->contact_pinches, report->contact_pinch);
-}
-
-static void print_phases(FILE *file, const struct phases *phases)
-{
-    for (uint32_t i = 0; i < phases->n && phases->named; i++) {
-        const struct phase_done *done = phases->done + i;
-        if (done->ended)
-            fprintf(file, "  phase %-10.40s %" PRIu64 " steps, %g s simulated in %.3f s, %s\n",
-                    done->name, done->steps, done->simulated_seconds, done->wall_seconds,
-                    strcmp(done->ended, "rest") == 0 ? "to rest" : done->ended);
-    }
-}
-
-static void print_what_ran(FILE *file, const struct summary *summary)
-{
-    const struct flow_report *report = summary->report;
-    const struct model *model = summary->model;
-    fprintf(file, "%s\n", model->name);
-    fprintf(file, "  vertices         %" PRIu64 ", triangles %" PRIu64 "\n", report->vertices,
-            report->triangles);
-    fprintf(file,
-            "  blocks           %" PRIu64 " of about %" PRIu64 " vertices, partition %016" PRIx64
-            "\n",
-            report->blocks, report->grain, report->partition_hash);
-    fprintf(file,
-            "  ran on           %d ranks x %u threads, scheduler %s, mapping %s, balance %s\n",
-            summary->ranks, summary->threads, summary->options->scheduler_name,
-            summary->options->mapping_name, summary->options->balance_name);
-    fprintf(file, "  instructions     %s\n", cloth_simd_name());
-    fprintf(file, "  steps            %" PRIu64 " of %g s, %g s simulated\n", report->steps,
-            model->h, report->simulated_seconds);
-}
-
-static void print_events(FILE *file, const struct summary *summary)
-{
-    const struct flow_report *report = summary->report;
-    const struct model *model = summary->model;
-    print_phases(file, summary->phases);
-    summary_seams_print(file, model, report);
-    if (model->n_obstacles || model_seeks(model))
-        fprintf(file, "  contact          %s%s\n", model_contact_name(model),
-                model->contact.assumed ? ", by default" : "");
-    if (!isnan(report->rest_seconds))
-        fprintf(file, "  at rest          after %g s\n", report->rest_seconds);
-    if (report->steps_halved)
-        print_halved(file, summary);
-    if (report->steps_retaken)
-        fprintf(file,
-                "  gained energy    %" PRIu64 " steps by bdf2, made again by implicit_euler\n",
-                report->steps_retaken);
-    if (report->contacts)
-        print_contact(file, model, report);
-    if (!isnan(report->correction_excess))
-        print_correction(file, report);
-}
-
-static void print_effort(FILE *file, const struct summary *summary)
-{
-    const struct flow_report *report = summary->report;
-    const struct model *model = summary->model;
-    fprintf(file, "  wall time        %.3f s, %.6f s a step\n", report->wall_seconds,
-            ratio(report->wall_seconds, (double)report->steps));
-    summary_time_print(file, report);
-    if (model_is_implicit(model))
-        print_solves(file, summary);
-    if (summary->ranks > 1)
-        fprintf(file,
-                "  messages         %" PRIu64
-                ", %.3f MB; %.0f %% of the wait for them hidden behind "
-                "tasks\n",
-                report->counters.messages, 1e-6 * (double)report->counters.bytes,
-                100 * hidden_fraction(summary));
-}
-
-static void print_results(FILE *file, const struct summary *summary)
-{
-    const struct flow_report *report = summary->report;
-    fprintf(file, "  largest stretch  %.6f times the length at rest at the end",
-            report->max_stretch);
-    if (!isnan(report->stretch_highest))
-        fprintf(file, ", %.6f at most", report->stretch_highest);
-    fputc('\n', file);
-    fprintf(file, "  state hash       %016" PRIx64 "\n", report->state_hash);
-    if (summary->options->output)
-        fprintf(file, "  frames           %" PRIu64 " in %s\n", report->frames,
-                summary->options->output);
-    else
-        fprintf(file, "  frames           not written (--output DIR)\n");
-    if (summary->drape)
-        fprintf(file, "  drape            coefficient %.2f %%, shadow %.6f m2\n",
-                summary->drape->coefficient, summary->drape->shadow);
-    if (summary->intersections)
-        print_intersections(file, summary->intersections);
-}
-
-void summary_print(FILE *file, const struct summary *summary)
-{
-    print_what_ran(file, summary);
-    print_events(file, summary);
-    print_effort(file, summary);
-    print_results(file, summary);
-    summary_limit_print(file, summary);
-}
 
 static void add_hash(struct output_report *json, const char *key, uint64_t hash)
 {
@@ -279,9 +71,9 @@ static void add_times(struct output_report *json, const struct flow_report *repo
     output_report_number(json, "rest_seconds", report->rest_seconds);
     output_report_number(json, "wall_seconds", report->wall_seconds);
     output_report_number(json, "seconds_per_step",
-                         ratio(report->wall_seconds, (double)report->steps));
+                         summary_ratio(report->wall_seconds, (double)report->steps));
     output_report_number(json, "seconds_per_frame",
-                         ratio(report->wall_seconds, (double)report->frames));
+                         summary_ratio(report->wall_seconds, (double)report->frames));
     output_report_number(json, "seconds_force", report->seconds_force);
     output_report_number(json, "seconds_acceleration", report->seconds_acceleration);
     output_report_number(json, "seconds_matrix", report->seconds_matrix);
@@ -296,7 +88,7 @@ static void add_times(struct output_report *json, const struct flow_report *repo
 static void add_solver(struct output_report *json, const struct summary *summary)
 {
     const struct flow_report *report = summary->report;
-    output_report_number(json, "cg_iterations_mean", iterations_mean(summary));
+    output_report_number(json, "cg_iterations_mean", summary_iterations_mean(summary));
     if (model_is_implicit(summary->model))
         output_report_integer(json, "cg_iterations_max", report->cg_iterations_max);
     else
@@ -353,7 +145,7 @@ static void add_contact(struct output_report *json, const struct summary *summar
     output_report_integer(json, "contact_pairs", report->contact_pairs);
     output_report_integer(json, "contact_solves", report->contact_solves);
     output_report_number(json, "contact_solves_mean",
-                         model_certifies(summary->model) ? solves_mean(report) : NAN);
+                         model_certifies(summary->model) ? summary_solves_mean(report) : NAN);
     output_report_integer(json, "contact_cuts", report->contact_cuts);
     output_report_number(json, "contact_cut_momentum", report->contact_cut_momentum);
     output_report_integer(json, "contact_cut_run", report->contact_cut_run);
@@ -381,11 +173,12 @@ static void add_runtime(struct output_report *json, const struct summary *summar
     output_report_integer(json, "bytes_moved", counters->bytes);
     output_report_integer(json, "delegated_tasks", counters->delegated);
     output_report_integer(json, "migrated_objects", counters->migrated);
-    output_report_number(json, "busy_fraction", ratio(counters->busy, total));
-    output_report_number(json, "idle_fraction", ratio(counters->idle, total));
-    output_report_number(json, "overhead_ns_per_task", ratio(overhead, (double)counters->tasks));
+    output_report_number(json, "busy_fraction", summary_ratio(counters->busy, total));
+    output_report_number(json, "idle_fraction", summary_ratio(counters->idle, total));
+    output_report_number(json, "overhead_ns_per_task",
+                         summary_ratio(overhead, (double)counters->tasks));
     summary_limit_add(json, summary);
-    output_report_number(json, "communication_hidden_fraction", hidden_fraction(summary));
+    output_report_number(json, "communication_hidden_fraction", summary_hidden_fraction(summary));
     output_report_number(json, "critical_path_seconds", summary->critical_path);
     output_report_number(json, "lower_bound_seconds", summary->lower_bound);
     add_halved(json, summary->report);

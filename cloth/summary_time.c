@@ -54,7 +54,8 @@ static void find_shares(const struct summary *summary, double share[LIMITS])
 {
     const struct flow_report *report = summary->report;
     const duite_counters *counters = &report->counters;
-    const double all = report->wall_seconds * (double)summary->workers;
+    const double wall = report->wall_seconds * (double)summary->workers;
+    const double all = fmax(wall, counters->busy + counters->idle); /* no share is above 1 */
     const double exposed = fmin(counters->exposed, counters->idle);
     share[WORK] = counters->busy / all;
     share[MESSAGES] = exposed / all;

@@ -23,6 +23,7 @@ enum {
     MAPPING,
     MESSAGE,
     OVERHEAD,
+    PACKED,
     PAJE,
     SCHEDULER,
     SEED,
@@ -49,6 +50,10 @@ static const struct argp_option OPTIONS[] = {
     {"message", MESSAGE, "SECONDS", 0, "of a core, to send or to take a message (default: 5e-7)",
      1},
     {"overhead", OVERHEAD, "SECONDS", 0, "between two tasks (default: as it was traced)", 1},
+    {"packed", PACKED, NULL, 0,
+     "in replays blocks send what their hints say at most: for a trace of one rank whose program "
+     "packs what other ranks read",
+     1},
     {"steady", STEADY, NULL, 0,
      "bodies take the median of their kernel, without what the traced machine did meanwhile", 1},
     {"scheduler", SCHEDULER, "NAME", 0, "as of duite-cloth (default: steal)", 2},
@@ -140,6 +145,9 @@ static error_t option_read(int key, char *value, struct argp_state *state)
         return option_policy(state, key, value);
     case SEED:
         cluster->seed = option_whole(state, "seed", value, 0, UINT64_MAX);
+        return 0;
+    case PACKED:
+        cluster->packed = true;
         return 0;
     case STEADY:
         cluster->steady = true;

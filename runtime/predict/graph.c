@@ -97,11 +97,40 @@ uint32_t predict_own_node(struct predict_graph *graph, enum predict_kind kind, u
 
 /* ---- Reading ---- */
 
+void predict_hint_add(struct predict_graph *graph, uint32_t object, uint32_t other, double bytes)
+{
+    for (int turn = 0; turn < 2; turn++) {
+        const uint32_t from = turn ? other : object, to = turn ? object : other;
+        if (!graph_room(graph, &graph->hint, &graph->hints_capacity, graph->n_hints,
+                        sizeof *graph->hint))
+            return;
+        graph->hint[graph->n_hints] =
+            (struct predict_hint){to, graph->object[from].hints, 0.5 * bytes};
+        graph->object[from].hints = (uint32_t)graph->n_hints++;
+    }
+}
+
+/* Of an object, what a host gets. Blocks there that read the same element count it once each. */
+static uint64_t transfer_bytes(const struct predict_graph *graph, uint32_t object, uint32_t host)
+{
+    const uint64_t whole = graph->object[object].bytes;
+    double packed = 0;
+    if (!graph->cluster->packed || !graph->replays)
+        return whole;
+    for (size_t i = 0; graph->object[object].leader != PREDICT_NONE && i < graph->n_objects; i++)
+        object = graph->object[object].leader;
+    for (uint32_t i = graph->object[object].hints; i != PREDICT_NONE; i = graph->hint[i].next)
+        if (graph->object[graph->hint[i].object].home == (int)host)
+            packed += graph->hint[i].bytes;
+    return packed > 0 && packed < (double)whole ? (uint64_t)(packed + 0.5) : whole;
+}
+
 /* A message with the object's value, to a host. */
 static uint32_t transfer_add(struct predict_graph *graph, uint32_t object, uint32_t host)
 {
     struct predict_object *o = &graph->object[object];
-    uint32_t message = predict_own_node(graph, PREDICT_MESSAGE, (uint32_t)o->holder, 0, o->bytes);
+    uint32_t message = predict_own_node(graph, PREDICT_MESSAGE, (uint32_t)o->holder, 0,
+                                        transfer_bytes(graph, object, host));
     if (graph->failed)
         return PREDICT_NONE;
     graph->node[message].block = host;
@@ -280,6 +309,8 @@ void predict_graph_free(struct predict_graph *graph)
     free(graph->op);
     free(graph->object);
     free(graph->link);
+    free(graph->hint);
+    base_free(graph->count);
     base_free(graph->piece);
     base_free(graph->began);
     base_free(graph->among);

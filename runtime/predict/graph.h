@@ -63,6 +63,8 @@ struct predict_object {
     uint32_t readers, copies, leaves; /* lists in `link` */
     uint64_t bytes;
     uint32_t parent;   /* of a view: object; else NONE */
+    uint32_t leader;   /* that it follows, or NONE */
+    uint32_t hints;    /* list in `hint` */
     uint32_t gathered; /* a view: the writer of its object then */
     uint32_t place;    /* in the record that is replayed, plus 1, while its round is compiled */
     bool shown;        /* counted among what its writer shows */
@@ -72,6 +74,12 @@ enum { PREDICT_ALL = -1 }; /* holder */
 
 struct predict_link {
     uint32_t node, host, next;
+};
+
+/* Bytes that a block sends to another one, which the object leads. */
+struct predict_hint {
+    uint32_t object, next;
+    double bytes;
 };
 
 /* What a round of a replay says of the value, or of the sum, that comes next. */
@@ -97,11 +105,15 @@ struct predict_graph {
     size_t n_objects, objects_capacity;
     struct predict_link *link;
     size_t n_links, links_capacity;
+    struct predict_hint *hint;
+    size_t n_hints, hints_capacity;
     uint64_t *packet; /* of this round: phase, from, to of each, plus 1; a power of two */
     size_t n_packets, packets_capacity;
     uint32_t *piece; /* by host: this rank's part of a sum that is being closed */
     uint32_t *began; /* by host: the node that begins or ends a replay there */
-    double own[64];  /* by task_type: s of the runtime's own tasks */
+    uint32_t *count; /* by host: zeros, but for a moment */
+    double own[64];  /* by task_type: s of the runtime's own tasks, those of sums left out */
+    double merges;   /* that the sums of the trace took */
     uint64_t *among; /* a set of hosts, for a moment */
     uint32_t *phase; /* by host: that its pieces of a sum move in */
     struct predict_travel travel;
@@ -146,6 +158,11 @@ void predict_gather(struct predict_graph *graph, uint32_t view, int host);
 void predict_set(struct predict_graph *graph, uint32_t object, int host);
 /* The object has another home from now on: its value goes there. */
 void predict_rehome(struct predict_graph *graph, uint32_t object, int host);
+/* All nodes are there: those of sums, whose seconds are numbers of merges so far, get seconds of so
+ * many for each. */
+void predict_sums_take(struct predict_graph *graph, double seconds);
+/* The hint of a block for mappings: what it and another one send each other, in bytes. */
+void predict_hint_add(struct predict_graph *graph, uint32_t object, uint32_t other, double bytes);
 /* Called when all edges to the node are there, which began with `linked` false. A node waits for
  * what decided on its round, if nothing of the round comes before it. */
 void predict_hold(struct predict_graph *graph, uint32_t node);
@@ -180,6 +197,8 @@ bool predict_times_steady(struct predict_times *times, const struct trace_run *r
  * two tasks. */
 double predict_times_kernel(const struct predict_times *times, uint32_t kernel);
 double predict_times_own(const struct predict_times *times, uint32_t kind);
+/* All seconds of the runtime's own tasks that combine contributions. */
+double predict_times_sums(const struct predict_times *times);
 double predict_times_gap(const struct predict_times *times);
 
 #endif

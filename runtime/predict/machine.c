@@ -194,6 +194,7 @@ static bool machine_prepare(struct predict_machine *m, bool paje)
     m->last = base_alloc(hosts * sizeof *m->last);
     m->idle = base_alloc(hosts * sizeof *m->idle);
     m->looked = base_alloc_zero(workers * sizeof *m->looked);
+    m->handler = base_alloc_zero(hosts * sizeof *m->handler);
     m->handled = base_alloc_zero(hosts * sizeof *m->handled);
     m->paid = base_alloc_zero(hosts * sizeof *m->paid);
     m->network.out = base_alloc_zero(hosts * sizeof(double));
@@ -203,9 +204,9 @@ static bool machine_prepare(struct predict_machine *m, bool paje)
     m->cause = base_alloc_zero(n * sizeof *m->cause + 1);
     m->runs_on = paje ? base_alloc_zero(n * sizeof *m->runs_on + 1) : NULL;
     return m->states && m->queue && m->shared && m->state && m->next && m->ran && m->affinity &&
-           m->last && m->idle && m->looked && m->handled && m->paid && m->network.out &&
-           m->network.in && m->begin && m->end && m->cause && (m->runs_on || !paje) &&
-           machine_near(m);
+           m->last && m->idle && m->looked && m->handler && m->handled && m->paid &&
+           m->network.out && m->network.in && m->begin && m->end && m->cause &&
+           (m->runs_on || !paje) && machine_near(m);
 }
 
 static void machine_scheduler(struct predict_machine *m, uint32_t worker)
@@ -260,10 +261,10 @@ void predict_machine_stop(struct predict_machine *m)
     for (uint32_t h = 0; h < m->cluster->hosts && m->shared; h++)
         free(m->shared[h].node);
     free(m->events.event);
-    void *const all[] = {m->states,  m->queue,       m->shared,     m->state, m->next,  m->ran,
-                         m->last,    m->network.out, m->network.in, m->begin, m->end,   m->cause,
-                         m->idle,    m->runs_on,     m->near,       m->other, m->level, m->looked,
-                         m->handled, m->paid,        m->affinity};
+    void *const all[] = {m->states,  m->queue,       m->shared,     m->state,   m->next,  m->ran,
+                         m->last,    m->network.out, m->network.in, m->begin,   m->end,   m->cause,
+                         m->idle,    m->runs_on,     m->near,       m->other,   m->level, m->looked,
+                         m->handler, m->handled,     m->paid,       m->affinity};
     for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
         base_free(all[i]);
 }

@@ -21,8 +21,10 @@ bool predict_queue_put(struct predict_queue *queue, const struct predict_node *n
 uint32_t predict_queue_take(struct predict_queue *queue, const struct predict_node *nodes,
                             duite_end end);
 
-/* At a time a node is over, on a worker or (NONE) on none. Of the events of one time the one that
- * was put first comes first. */
+#define PREDICT_COMES (PREDICT_NONE - 1) /* in place of a worker */
+
+/* At a time a node is over, on a worker or (NONE) on none; or a message COMES to its host. Of the
+ * events of one time the one that was put first comes first. */
 struct predict_event {
     double time;
     uint64_t order;
@@ -80,6 +82,7 @@ struct predict_machine {
     struct predict_events events;
     struct predict_network network;
     double *looked;              /* by worker: when it looked for messages */
+    double *handler;             /* by host: until when it handles messages, one after the other */
     double *handled;             /* by host: s that messages take of its cores from now on, */
     double handled_by_all;       /* of each host: to be added, */
     double *paid;                /* by host: as far as this was */

@@ -61,6 +61,8 @@ void predict_make(struct predict_program *p, bool view)
                                  .copies = PREDICT_NONE,
                                  .leaves = PREDICT_NONE,
                                  .parent = parent,
+                                 .leader = PREDICT_NONE,
+                                 .hints = PREDICT_NONE,
                                  .gathered = PREDICT_NONE - 1};
     p->name[graph->n_objects] = DUITE_NO_OBJECT;
     if (view) {
@@ -87,16 +89,19 @@ void predict_hint(struct predict_program *p, size_t n)
     double weight = trace_words_double(&p->words);
     duite_object *names = malloc((n + 1) * sizeof *names);
     double *weights = malloc((n + 1) * sizeof *weights);
+    const uint32_t own = predict_object_at(p, slot);
     p->graph->failed |= !names || !weights;
     for (size_t i = 0; i < n && !p->graph->failed && !p->words.short_of; i++) {
         uint32_t other = predict_object_at(p, trace_words_next(&p->words));
         weights[i] = trace_words_double(&p->words);
-        if (!p->damaged)
-            names[i] = p->name[other];
+        if (p->damaged)
+            continue;
+        names[i] = p->name[other];
+        if (p->graph->cluster->packed)
+            predict_hint_add(p->graph, own, other, weights[i]);
     }
     if (!p->graph->failed && !p->damaged && !p->words.short_of)
-        p->code =
-            map_hint(&p->table, p->name[predict_object_at(p, slot)], weight, n, names, weights);
+        p->code = map_hint(&p->table, p->name[own], weight, n, names, weights);
     free(names);
     free(weights);
 }
@@ -105,8 +110,10 @@ void predict_follow(struct predict_program *p)
 {
     uint32_t own = predict_object_at(p, trace_words_next(&p->words)),
              leader = predict_object_at(p, trace_words_next(&p->words));
-    if (!p->damaged)
-        p->code = map_colocate(&p->table, p->name[own], p->name[leader]);
+    if (p->damaged)
+        return;
+    p->graph->object[own].leader = leader;
+    p->code = map_colocate(&p->table, p->name[own], p->name[leader]);
 }
 
 /* Blocks with homes that were traced: numbered on their host in the order in which they came there.

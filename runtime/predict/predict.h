@@ -19,6 +19,8 @@ struct predict_cluster {
     double overhead;       /* s, of the runtime between two tasks; < 0: as it was seen */
     double message; /* s of a core, to send or to take one, or (5e-7 at most) to look for one */
     bool steady;    /* bodies take the median of their kernel, not what each took */
+    bool
+        packed; /* in replays a block sends a host no more than the hints of its blocks there say */
     const duite_scheduler *scheduler;
     const duite_mapping
         *mapping; /* NULL: the homes that were traced; as many hosts as ranks then */

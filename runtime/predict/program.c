@@ -13,6 +13,9 @@
 
 #define MAX_LOOK                                                                                   \
     5e-7 /* s: a look that finds no message takes no longer, however long messages take */
+/* What a fork costs a rank that has no part in it, over the cost of one that runs there: 20 to 34
+ * ns over about 300 (docs/measuring.md, prune_ns_per_task and stencil_dynamic). */
+#define FOREIGN_FORK 0.1
 
 /* ---- Tasks ---- */
 
@@ -165,8 +168,34 @@ void predict_op_wait(struct predict_program *p)
         last->waits = true;
 }
 
+/* Over one fork of a rank's own: what a fork takes on the average where so many of n are its own.
+ */
+static double op_share(double own, double n)
+{
+    return n > 0 ? (own + FOREIGN_FORK * (n - own)) / n : 1;
+}
+
+/* Each host forks what is its own, and passes over what is others'. What the busiest takes for each
+ * node of an op, over a fork of its own. */
+static double op_busiest(struct predict_graph *graph, size_t op)
+{
+    const uint32_t begin = op ? graph->op[op - 1].end : 0, end = graph->op[op].end;
+    uint32_t all = 0, most = 0;
+    for (uint32_t i = begin; i < end; i++) {
+        const struct predict_node *node = &graph->node[i];
+        const bool everywhere =
+            node->kind == PREDICT_EVERYWHERE || (node->kind == PREDICT_EXCHANGE && node->block);
+        const uint32_t n = everywhere ? 0 : ++graph->count[node->host];
+        all += everywhere;
+        most = n > most ? n : most;
+    }
+    for (uint32_t i = begin; i < end; i++)
+        graph->count[graph->node[i].host] = 0;
+    return op_share(all + most, end - begin);
+}
+
 /* The main program forked until `from`, and waits until `to`: each fork takes its share of the
- * time. */
+ * time, in which the traced rank passed over those of others, too. */
 static void op_end(struct predict_program *p, uint64_t from, uint64_t to, uint32_t node, bool waits)
 {
     struct predict_graph *graph = p->graph;
@@ -177,8 +206,10 @@ static void op_end(struct predict_program *p, uint64_t from, uint64_t to, uint32
     last->waits = waits;
     double tick = graph->run->rank[0].header->tick / graph->cluster->core_speed;
     double seconds = from > p->since ? tick * (double)(from - p->since) : 0;
+    const double own = p->forked ? seconds / (double)p->forked : 0;
     for (size_t i = p->first_op; i < graph->n_ops; i++)
-        graph->op[i].each *= p->forked ? seconds / (double)p->forked : 0;
+        if (graph->op[i].each > 0)
+            graph->op[i].each = own / op_share(1, graph->run->n_ranks) * op_busiest(graph, i);
     p->first_op = graph->n_ops;
     p->forked = 0;
     p->since = to;
@@ -305,14 +336,15 @@ static bool program_prepare(struct predict_program *p)
     p->times = predict_times_new(graph->run);
     graph->piece = base_alloc(hosts * sizeof *graph->piece);
     graph->began = base_alloc(hosts * sizeof *graph->began);
+    graph->count = base_alloc_zero(hosts * sizeof *graph->count);
     graph->phase = base_alloc_zero(hosts * sizeof *graph->phase);
     graph->among = base_alloc(base_ranks_words((int)hosts) * sizeof *graph->among);
     graph->round = PREDICT_NONE;
     graph->flag = PREDICT_NONE;
     if (p->times && graph->cluster->steady && !predict_times_steady(p->times, graph->run))
         return false;
-    if (!p->times || !graph->piece || !graph->began || !graph->phase || !graph->among ||
-        !(p->blocks_on = base_alloc_zero(hosts * sizeof *p->blocks_on)) ||
+    if (!p->times || !graph->piece || !graph->began || !graph->count || !graph->phase ||
+        !graph->among || !(p->blocks_on = base_alloc_zero(hosts * sizeof *p->blocks_on)) ||
         data_table_start(&p->table, graph->cluster->mapping ? (int)hosts : 1) ||
         !predict_moves_start(p))
         return false;
@@ -334,6 +366,9 @@ int predict_build(struct predict_graph *graph)
                                 .max_replayed = program_max_replayed(graph->run)};
     int code = program_prepare(&p) ? program_walk(&p) : base_no_memory("the graph of a trace");
     graph->n_tasks = p.tasks;
+    if (!code && graph->merges > 0)
+        predict_sums_take(graph,
+                          predict_times_sums(p.times) / graph->merges / graph->cluster->core_speed);
     predict_moves_stop(&p);
     data_table_stop(&p.table);
     base_free(p.blocks_on);

@@ -13,27 +13,45 @@
 
 #define LOOK_SECONDS 5e-6 /* between two looks for messages of a worker that has tasks */
 
-/* ---- What messages take of the cores: it delays the next task of the host ---- */
+/* ---- What messages take of the cores ---- */
 
-static void message_charge(struct predict_machine *m, const struct predict_node *message)
+/* A host handles one message after the other, whichever core does it, and the latency has what the
+ * handling of a single one takes: so a message waits for those before it. Returns when the host
+ * comes to what is there now. */
+static double message_handle(struct predict_machine *m, uint32_t host, int32_t packets)
 {
-    const double each = m->cluster->message * (double)message->priority;
-    if (message->kind == PREDICT_MESSAGE) {
-        m->handled[message->host] += each;
-        m->handled[message->block] += each;
-    } else if (message->block) {
-        m->handled_by_all += 2 * each / m->cluster->hosts;
-    } else {
-        m->handled[message->host] += each;
-        m->handled_by_all += each / m->cluster->hosts;
-    }
+    if (packets <= 0) /* it travels with another message */
+        return m->now;
+    const double begins = fmax(m->now, m->handler[host]);
+    m->handler[host] = begins + m->cluster->message * (double)packets;
+    m->handled[host] += m->cluster->message * (double)packets;
+    return begins;
 }
 
-/* A worker begins a task. Before that it does what is left to do for messages, and now and then it
- * looks for more. */
+/* Of all that a host sends or takes at once the last waits for the others. */
+static double exchange_send(struct predict_machine *m, const struct predict_node *exchange,
+                            double *flight)
+{
+    const double all = m->cluster->message * (double)exchange->priority;
+    const double share = all / m->cluster->hosts;
+    double own = share, goes = m->now;
+    if (exchange->block) {
+        m->handled_by_all += 2 * share;
+    } else {
+        goes = message_handle(m, exchange->host, exchange->priority);
+        m->handled_by_all += share;
+        own = all;
+    }
+    return predict_exchange(&m->network, goes, exchange, flight) +
+           fmax(0, own - m->cluster->message);
+}
+
+/* A worker begins a task. Before that it does what is left to do for messages, if no core was idle,
+ * and now and then it looks for more. */
 static double worker_pay(struct predict_machine *m, uint32_t worker, uint32_t host)
 {
-    double seconds = m->handled[host] + m->handled_by_all - m->paid[host];
+    const bool none_idle = m->state[worker] != IDLE && !m->idle[host];
+    double seconds = none_idle ? m->handled[host] + m->handled_by_all - m->paid[host] : 0;
     m->handled[host] = 0;
     m->paid[host] = m->handled_by_all;
     if (m->graph->look > 0 && m->now - m->looked[worker] >= LOOK_SECONDS) {
@@ -151,6 +169,7 @@ static void machine_ready(struct predict_machine *m, uint32_t node, uint32_t wor
 {
     const struct predict_node *n = &m->graph->node[node];
     double flight = 0, end = m->now;
+    const uint32_t on = n->kind == PREDICT_MESSAGE ? PREDICT_COMES : PREDICT_NONE;
     m->begin[node] = m->now;
     switch (n->kind) {
     case PREDICT_TASK:
@@ -160,18 +179,26 @@ static void machine_ready(struct predict_machine *m, uint32_t node, uint32_t wor
         end = m->now + m->graph->overhead + (double)n->seconds;
         break;
     case PREDICT_MESSAGE:
-        end = predict_message(&m->network, m->now, n, &flight);
-        message_charge(m, n);
+        end = predict_message(&m->network, message_handle(m, n->host, n->priority), n, &flight);
         break;
     case PREDICT_EXCHANGE:
-        end = predict_exchange(&m->network, m->now, n, &flight);
-        message_charge(m, n);
+        end = exchange_send(m, n, &flight);
         break;
     default:
         break;
     }
     m->cause[node].flight = (float)flight;
-    m->failed |= !predict_event_put(&m->events, end, node, PREDICT_NONE);
+    m->failed |= !predict_event_put(&m->events, end, node, on);
+}
+
+/* A message is in its host's card: there it waits until the host comes to it. */
+static bool message_waits(struct predict_machine *m, uint32_t node)
+{
+    const struct predict_node *n = &m->graph->node[node];
+    const double begins = message_handle(m, n->block, n->priority);
+    if (begins > m->now)
+        m->failed |= !predict_event_put(&m->events, begins, node, PREDICT_NONE);
+    return begins > m->now;
 }
 
 static void node_count_down(struct predict_machine *m, uint32_t node, uint32_t by, uint32_t worker)
@@ -308,7 +335,10 @@ static int machine_run(struct predict_machine *m)
         if (m->events.n && m->events.event[0].time < next) {
             predict_event_take(&m->events, &event);
             m->now = event.time;
-            node_over(m, event.node, event.worker);
+            if (event.worker != PREDICT_COMES)
+                node_over(m, event.node, event.worker);
+            else if (!message_waits(m, event.node))
+                node_over(m, event.node, PREDICT_NONE);
         } else if (next < INFINITY) {
             main_step(m);
         } else {

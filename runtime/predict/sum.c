@@ -1,9 +1,39 @@
-/* Sums of a predicted run: each host that contributes sends one piece to the host that adds up. A
- * replay whose result is read on several hosts exchanges pieces, and each of these hosts adds. */
+/* Sums of a predicted run: each host that contributes combines its contributions, and sends one
+ * piece to the host that adds up. A replay whose result is read on several hosts exchanges pieces,
+ * and each of these hosts adds. What a sum costs a host follows from the contributions and pieces
+ * that it combines, whatever it cost where it was traced. */
 #include "runtime/predict/graph.h"
 
 #include "runtime/base/rank_set.h"
 #include "runtime/task/task.h"
+
+/* How many contributions each host has, in graph->count; returns the most that one has. */
+static uint32_t leaves_count(struct predict_graph *graph, uint32_t object)
+{
+    const struct predict_object *o = &graph->object[object];
+    uint32_t most = 0;
+    for (uint32_t i = o->leaves; i != PREDICT_NONE; i = graph->link[i].next) {
+        const uint32_t n = ++graph->count[graph->link[i].host];
+        most = n > most ? n : most;
+    }
+    return most;
+}
+
+/* Zeros again. Adds the merges that the sum took where it was traced: as many as contributions, and
+ * one for what each other rank sent to each that added up. Returns how many hosts contribute. */
+static uint32_t leaves_forget(struct predict_graph *graph, uint32_t object, bool all)
+{
+    const struct predict_object *o = &graph->object[object];
+    const double ranks = graph->run->n_ranks;
+    uint32_t hosts = 0;
+    for (uint32_t i = o->leaves; i != PREDICT_NONE; i = graph->link[i].next) {
+        hosts += graph->count[graph->link[i].host] != 0;
+        graph->count[graph->link[i].host] = 0;
+        graph->merges++;
+    }
+    graph->merges += (ranks - 1) * (all ? ranks : 1);
+    return hosts;
+}
 
 /* A piece for each other host that contributes, and its message: in graph->piece by host. */
 static void pieces_make(struct predict_graph *graph, uint32_t object, uint32_t home)
@@ -15,8 +45,11 @@ static void pieces_make(struct predict_graph *graph, uint32_t object, uint32_t h
         uint32_t host = graph->link[i].host;
         if (host == home)
             continue;
-        if (graph->piece[host] == PREDICT_NONE)
+        if (graph->piece[host] == PREDICT_NONE) {
             graph->piece[host] = predict_own_node(graph, PREDICT_TASK, host, TASK_PIECES, 0);
+            if (!graph->failed)
+                graph->node[graph->piece[host]].seconds = (float)graph->count[host];
+        }
         predict_edge(graph, graph->link[i].node, graph->piece[host]);
     }
 }
@@ -100,10 +133,24 @@ static uint32_t pieces_exchange(struct predict_graph *graph, uint32_t object)
     return exchange;
 }
 
+/* The seconds of a sum are merges until all sums of the trace are counted. */
+void predict_sums_take(struct predict_graph *graph, double seconds)
+{
+    const uint32_t first = graph->run->n_kernels;
+    for (size_t i = 0; i < graph->n_nodes; i++) {
+        struct predict_node *node = &graph->node[i];
+        if (node->kernel >= first &&
+            (node->kernel - first == TASK_COMBINE || node->kernel - first == TASK_PIECES ||
+             node->kernel - first == TASK_NODE_SUM))
+            node->seconds *= (float)seconds;
+    }
+}
+
 void predict_reduce(struct predict_graph *graph, uint32_t object, int host)
 {
     const bool all = host == PREDICT_ALL;
-    const uint32_t home = all ? 0 : (uint32_t)host;
+    const uint32_t home = all ? 0 : (uint32_t)host, most = leaves_count(graph, object);
+    const uint32_t own = all ? most : graph->count[home];
     uint32_t fetched = predict_fetch(graph, object, host), exchange = PREDICT_NONE;
     if (all) {
         exchange = pieces_exchange(graph, object);
@@ -113,8 +160,10 @@ void predict_reduce(struct predict_graph *graph, uint32_t object, int host)
     }
     uint32_t sum = predict_own_node(graph, all ? PREDICT_EVERYWHERE : PREDICT_TASK, home,
                                     graph->replays ? TASK_NODE_SUM : TASK_COMBINE, 0);
+    const uint32_t hosts = leaves_forget(graph, object, all);
     if (graph->failed)
         return;
+    graph->node[sum].seconds = (float)(own + hosts - (own > 0));
     predict_edge_value(graph, fetched, sum, object);
     predict_edge(graph, exchange, sum);
     if (!all)

@@ -3,6 +3,7 @@
 #include "runtime/predict/graph.h"
 
 #include "runtime/base/memory.h"
+#include "runtime/task/task.h"
 #include "runtime/trace/sums.h"
 
 #include <stdlib.h>
@@ -163,6 +164,12 @@ double predict_times_kernel(const struct predict_times *times, uint32_t kernel)
 double predict_times_own(const struct predict_times *times, uint32_t kind)
 {
     return kind < OWN_KINDS ? mean_value(&times->own[kind]) : 0;
+}
+
+double predict_times_sums(const struct predict_times *times)
+{
+    return times->own[TASK_COMBINE].seconds + times->own[TASK_PIECES].seconds +
+           times->own[TASK_NODE_SUM].seconds + times->own[TASK_NODE_PARTIAL].seconds;
 }
 
 double predict_times_gap(const struct predict_times *times)

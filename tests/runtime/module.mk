@@ -122,13 +122,15 @@ tests_runtime_test_rename_SOURCES = tests/runtime/test_rename.c tests/negative/m
 tests_runtime_test_rename_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_window_SOURCES = tests/runtime/test_window.c tests/negative/misuse.c tests/negative/misuse.h
 tests_runtime_test_window_LDADD = $(DUITE_TEST_LIBS)
-RUNTIME_TESTS = tests/runtime/test_late tests/runtime/test_predict tests/runtime/test_predict_replays tests/runtime/test_pool tests/runtime/test_owner tests/runtime/test_offload_names tests/runtime/test_laws tests/runtime/test_settle tests/runtime/test_balance tests/runtime/test_sched tests/runtime/test_sched_knowing tests/runtime/test_makespan tests/runtime/test_watchdog tests/runtime/test_traced tests/runtime/test_check tests/runtime/test_environment \
+RUNTIME_TESTS = tests/runtime/test_late tests/runtime/test_predict tests/runtime/test_predict_replays tests/runtime/test_predict_costs tests/runtime/test_pool tests/runtime/test_owner tests/runtime/test_offload_names tests/runtime/test_laws tests/runtime/test_settle tests/runtime/test_balance tests/runtime/test_sched tests/runtime/test_sched_knowing tests/runtime/test_makespan tests/runtime/test_watchdog tests/runtime/test_traced tests/runtime/test_check tests/runtime/test_environment \
     tests/runtime/test_nested_tasks tests/runtime/test_graphs tests/runtime/test_graphs_change tests/runtime/test_graphs_refused tests/runtime/test_graph_print tests/runtime/test_views
 check_PROGRAMS += $(RUNTIME_TESTS)
 TESTS += $(RUNTIME_TESTS)
 PREDICTED_FILES = tests/runtime/predicted.c tests/runtime/predicted.h tests/support/trace_file.c tests/support/trace_file.h
 tests_runtime_test_predict_SOURCES = tests/runtime/test_predict.c $(PREDICTED_FILES)
 tests_runtime_test_predict_LDADD = libduite_predict.la $(DUITE_TEST_LIBS)
+tests_runtime_test_predict_costs_SOURCES = tests/runtime/test_predict_costs.c $(PREDICTED_FILES)
+tests_runtime_test_predict_costs_LDADD = libduite_predict.la $(DUITE_TEST_LIBS)
 tests_runtime_test_predict_replays_SOURCES = tests/runtime/test_predict_replays.c $(PREDICTED_FILES)
 tests_runtime_test_predict_replays_LDADD = libduite_predict.la $(DUITE_TEST_LIBS)
 RUNTIME_TESTS += tests/runtime/test_shares

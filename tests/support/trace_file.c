@@ -48,12 +48,36 @@ void trace_file_begin(struct trace_file *file, uint32_t n_slots)
         put_long(file, 0);
 }
 
+static void put_double(struct trace_file *file, double value)
+{
+    uint64_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    put_long(file, bits);
+}
+
+void trace_file_hint(struct trace_file *file, uint32_t slot, uint32_t other, double bytes)
+{
+    trace_file_word(file, TRACE_HINT | 1 << 8);
+    trace_file_word(file, slot);
+    put_double(file, 1);
+    trace_file_word(file, other);
+    put_double(file, bytes);
+}
+
 static void put_event(struct trace_file *file, enum trace_file_kernel kernel, double seconds)
 {
     const struct trace_event event = {.took = (uint64_t)(1e9 * seconds + 0.5),
                                       .number = ++file->forks,
                                       .kernel = kernel,
                                       .kind = TRACE_TASK};
+    file->event = room(file->event, &file->events_capacity, file->n_events, sizeof event);
+    file->event[file->n_events++] = event;
+}
+
+void trace_file_own(struct trace_file *file, uint32_t type, double seconds)
+{
+    const struct trace_event event = {
+        .took = (uint64_t)(1e9 * seconds + 0.5), .kernel = type, .kind = TRACE_OWN};
     file->event = room(file->event, &file->events_capacity, file->n_events, sizeof event);
     file->event[file->n_events++] = event;
 }
@@ -113,6 +137,13 @@ void trace_file_wait(struct trace_file *file)
     trace_file_word(file, TRACE_WAIT);
     put_long(file, 0);
     put_long(file, 0);
+}
+
+void trace_file_forked(struct trace_file *file, double seconds)
+{
+    trace_file_word(file, TRACE_WAIT);
+    put_long(file, (uint64_t)(1e9 * seconds + 0.5));
+    put_long(file, (uint64_t)(1e9 * seconds + 0.5));
 }
 
 void trace_file_get(struct trace_file *file, uint32_t slot)

@@ -32,6 +32,8 @@ enum trace_file_kernel {
 
 /* An object of `slot` (from 1 on), at home where the mapping wants it. */
 void trace_file_object(struct trace_file *file, uint32_t slot, uint64_t bytes);
+/* What the object exchanges with another one; before trace_file_begin. */
+void trace_file_hint(struct trace_file *file, uint32_t slot, uint32_t other, double bytes);
 /* All objects up to a slot have homes from now on; then steps are recorded. */
 void trace_file_begin(struct trace_file *file, uint32_t n_slots);
 /* A task of so many seconds. */
@@ -48,8 +50,11 @@ void trace_file_graph(struct trace_file *file, uint32_t n_objects, uint32_t n,
                       const struct trace_file_node *nodes);
 void trace_file_replay(struct trace_file *file, uint32_t n_objects, uint32_t n,
                        const struct trace_file_node *nodes, uint32_t rounds);
-/* The main program waits for all, or for an object. */
+/* One of the runtime's own tasks: by its number among those. */
+void trace_file_own(struct trace_file *file, uint32_t type, double seconds);
+/* The main program waits for all, or for an object; until then it forked for so many seconds. */
 void trace_file_wait(struct trace_file *file);
+void trace_file_forked(struct trace_file *file, double seconds);
 void trace_file_get(struct trace_file *file, uint32_t slot);
 void trace_file_word(struct trace_file *file, uint32_t word);
 /* Writes it, and frees all. False: it could not. */

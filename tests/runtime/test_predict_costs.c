@@ -1,0 +1,135 @@
+/* What the predictor charges for the runtime itself, against closed forms: messages where they are
+ * handled, sums where they are made, forks of tasks that other hosts run, and packed values. */
+#include "runtime/map/map.h"
+#include "runtime/predict/predict.h"
+#include "runtime/task/task.h"
+#include "tests/runtime/predicted.h"
+#include "tests/support/unit.h"
+
+#include <math.h>
+
+/* Up to the looks for messages, of 5e-7 s each. */
+static void nearly(double value, double expected)
+{
+    ck_assert_msg(value > expected - 1e-9 && value < expected + 1e-5, "%.9g, not %.9g", value,
+                  expected);
+}
+
+/* Two messages come at once, after 1 ms: the host takes one after the other, 0.2 ms each, and its
+ * task of 1 ms begins when it comes to the second one. Hosts 1 and 2 send one each. */
+START_TEST(messages_wait_for_one_another)
+{
+    struct trace_file file = predicted_trace(3, 8);
+    trace_file_fork(&file, FILE_W, 1 * MS, 0, 1, SLOTS(2));
+    trace_file_fork(&file, FILE_W, 1 * MS, 0, 1, SLOTS(3));
+    trace_file_fork(&file, FILE_RR_W, 1 * MS, 0, 3, SLOTS(2, 3, 1));
+    struct predict_cluster three = predicted_machine(3, 1);
+    three.message = 0.2 * MS;
+    nearly(predicted(&file, &three).makespan, 2.2 * MS);
+}
+END_TEST
+
+/* Host 1 sends to two hosts after 1 ms: the second message leaves 0.2 ms later. Its only core sends
+ * both before its next task, of 2 ms; a second core has nothing else to do, and delays nothing. */
+START_TEST(idle_cores_handle_messages)
+{
+    for (uint32_t cores = 1; cores <= 2; cores++) {
+        struct trace_file file = predicted_trace(8, 8);
+        trace_file_fork(&file, FILE_W, 1 * MS, 0, 1, SLOTS(3));
+        trace_file_fork(&file, FILE_R_W, 1 * MS, 0, 2, SLOTS(3, 5));
+        trace_file_fork(&file, FILE_R_W, 1 * MS, 0, 2, SLOTS(3, 7));
+        trace_file_fork(&file, FILE_RW, 2 * MS, 0, 1, SLOTS(4));
+        struct predict_cluster four = predicted_machine(4, cores);
+        four.message = 0.2 * MS;
+        nearly(predicted(&file, &four).makespan, cores == 1 ? 3.4 * MS : 2.2 * MS);
+    }
+}
+END_TEST
+
+/* Four contributions took 4 ms to combine on the one rank of the trace. On two hosts each combines
+ * two of them; then the one with the object takes the other's piece, too: 2 + (2 + 1) ms. */
+START_TEST(hosts_combine_their_own_contributions)
+{
+    for (uint32_t hosts = 1; hosts <= 2; hosts++) {
+        struct trace_file file = predicted_trace(6, 8);
+        for (uint32_t i = 0; i < 4; i++)
+            trace_file_fork(&file, FILE_R_CW, 0, 0, 2, SLOTS(i < 2 ? 1 + i : 2 + i, 3));
+        trace_file_fork(&file, FILE_RW, 1 * MS, 0, 1, SLOTS(3));
+        trace_file_own(&file, TASK_COMBINE, 4 * MS);
+        const struct predict_cluster cluster = predicted_machine(hosts, 1);
+        nearly(predicted(&file, &cluster).makespan, hosts == 1 ? 5 * MS : 6 * MS);
+    }
+}
+END_TEST
+
+/* The same in a replay, whose sum each host makes that reads it: 2 ms for its own contributions and
+ * 1 ms for the other's piece, at once on both. */
+START_TEST(each_host_adds_what_it_has)
+{
+    static const struct trace_file_node nodes[] = {
+        {FILE_SET, 0, 0, 1, {2}},        {FILE_R_CW, 0, 0, 2, {0, 2}},
+        {FILE_R_CW, 0, 0, 2, {1, 2}},    {FILE_R_CW, 0, 0, 2, {3, 2}},
+        {FILE_R_CW, 0, 0, 2, {4, 2}},    {FILE_R_W, 1 * MS, 0, 2, {2, 0}},
+        {FILE_R_W, 1 * MS, 0, 2, {2, 5}}};
+    struct trace_file file = predicted_trace(6, 8);
+    trace_file_graph(&file, 6, 7, nodes);
+    trace_file_replay(&file, 6, 7, nodes, 1);
+    trace_file_own(&file, TASK_NODE_SUM, 4 * MS);
+    const struct predict_cluster two = predicted_machine(2, 1);
+    nearly(predicted(&file, &two).makespan, 4 * MS);
+}
+END_TEST
+
+/* Twenty forks in 10 ms. On two hosts each forks ten of its own, 0.5 ms each, and passes over the
+ * ten others for a tenth of that. */
+START_TEST(forks_of_others_are_cheap)
+{
+    for (uint32_t hosts = 1; hosts <= 2; hosts++) {
+        struct trace_file file = predicted_trace(20, 8);
+        for (uint32_t i = 1; i <= 20; i++)
+            trace_file_fork(&file, FILE_W, 0, 0, 1, SLOTS(i));
+        trace_file_forked(&file, 10 * MS);
+        const struct predict_cluster cluster = predicted_machine(hosts, 1);
+        nearly(predicted(&file, &cluster).makespan, hosts == 1 ? 10 * MS : 5.5 * MS);
+    }
+}
+END_TEST
+
+/* Object 1 of host 0 exchanges 200 bytes with object 3 and 100 with object 4, both on host 1: half
+ * of that goes there, however large it is, if what hosts send is packed. */
+START_TEST(packed_values)
+{
+    static const struct trace_file_node nodes[] = {{FILE_W, 1 * MS, 0, 1, {0}},
+                                                   {FILE_R_W, 1 * MS, 0, 2, {0, 2}},
+                                                   {FILE_R_W, 1 * MS, 0, 2, {0, 3}}};
+    for (int packed = 0; packed < 2; packed++) {
+        struct trace_file file = {0};
+        for (uint32_t slot = 1; slot <= 4; slot++)
+            trace_file_object(&file, slot, 1000);
+        trace_file_hint(&file, 1, 3, 200);
+        trace_file_hint(&file, 4, 1, 100);
+        trace_file_begin(&file, 4);
+        trace_file_graph(&file, 4, 3, nodes);
+        trace_file_replay(&file, 4, 3, nodes, 5);
+        struct predict_cluster two = predicted_machine(2, 1);
+        two.packed = packed;
+        const struct predict_result r = predicted(&file, &two);
+        ck_assert_uint_eq(r.messages, 5);
+        ck_assert_uint_eq(r.bytes, packed ? 5 * 150 : 5 * 1000);
+    }
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("predicted costs");
+    TCase *cases = tcase_create("costs");
+    tcase_add_test(cases, messages_wait_for_one_another);
+    tcase_add_test(cases, idle_cores_handle_messages);
+    tcase_add_test(cases, hosts_combine_their_own_contributions);
+    tcase_add_test(cases, each_host_adds_what_it_has);
+    tcase_add_test(cases, forks_of_others_are_cheap);
+    tcase_add_test(cases, packed_values);
+    suite_add_tcase(suite, cases);
+    return unit_run(suite);
+}

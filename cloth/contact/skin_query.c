@@ -20,6 +20,7 @@ struct query {
     const struct contact_boxes *node[2], *group[2];
     contact_lanes below[3], above[3]; /* m: what boxes of the first are widened by */
     bool self;
+    struct contact_slab slab; /* of the first leaf that was met last */
     contact_visit *visit;
     void *to;
     uint32_t n;
@@ -164,7 +165,7 @@ static void add_edges(struct query *query, uint32_t a, uint32_t b)
 struct leaf_near {
     const struct contact_leaf *leaf;
     const struct contact_boxes *group;
-    uint32_t vertices, triangles, edges;
+    struct contact_features is;
 };
 
 /* Which of n boxes meet a wide one. */
@@ -181,12 +182,13 @@ static void look_at_leaf(const struct query *query, int k, const struct contact_
                          const struct contact_boxes *wide, struct leaf_near *near)
 {
     const struct contact_boxes *group = query->group[k];
-    *near = (struct leaf_near){leaf, group, UINT32_MAX, UINT32_MAX, UINT32_MAX};
+    *near = (struct leaf_near){leaf, group, {UINT32_MAX, UINT32_MAX, UINT32_MAX}};
     if (!wide)
         return;
-    near->vertices = meeting_all(wide, group + contact_vertex_group(leaf), leaf->n_vertices);
-    near->triangles = meeting_all(wide, group + leaf->group, leaf->n_triangles);
-    near->edges = meeting_all(wide, group + contact_edge_group(leaf), leaf->n_edges);
+    near->is = (struct contact_features){
+        meeting_all(wide, group + contact_vertex_group(leaf), leaf->n_vertices),
+        meeting_all(wide, group + leaf->group, leaf->n_triangles),
+        meeting_all(wide, group + contact_edge_group(leaf), leaf->n_edges)};
 }
 
 /* The first n bits. */
@@ -199,12 +201,12 @@ PHYS_INLINE uint32_t bits_below(uint32_t bits, uint32_t n)
 static void meet_vertices(struct query *query, const struct leaf_near *a, const struct leaf_near *b)
 {
     const struct contact_leaf *of = a->leaf, *other = b->leaf;
-    for (uint32_t left = bits_below(a->vertices, of->n_vertices); left; left &= left - 1) {
+    for (uint32_t left = bits_below(a->is.vertices, of->n_vertices); left; left &= left - 1) {
         const uint32_t i = (uint32_t)__builtin_ctz(left);
         struct contact_boxes wide;
         widen(query, a->group + contact_vertex_group(of) + i / 4, i % 4, &wide);
         for (uint32_t k = 0; k < other->n_triangles; k += 4) {
-            unsigned bits = meeting(&wide, b->group + other->group + k / 4) & b->triangles >> k;
+            unsigned bits = meeting(&wide, b->group + other->group + k / 4) & b->is.triangles >> k;
             for (; bits; bits &= bits - 1)
                 add_vertex(query, 0, of->vertex + i,
                            other->triangle + k + (uint32_t)__builtin_ctz(bits));
@@ -217,13 +219,13 @@ static void meet_triangles(struct query *query, const struct leaf_near *a,
                            const struct leaf_near *b)
 {
     const struct contact_leaf *of = a->leaf, *other = b->leaf;
-    for (uint32_t left = bits_below(a->triangles, of->n_triangles); left; left &= left - 1) {
+    for (uint32_t left = bits_below(a->is.triangles, of->n_triangles); left; left &= left - 1) {
         const uint32_t i = (uint32_t)__builtin_ctz(left);
         struct contact_boxes wide;
         widen(query, a->group + of->group + i / 4, i % 4, &wide);
         for (uint32_t k = 0; k < other->n_vertices; k += 4) {
-            unsigned bits =
-                meeting(&wide, b->group + contact_vertex_group(other) + k / 4) & b->vertices >> k;
+            unsigned bits = meeting(&wide, b->group + contact_vertex_group(other) + k / 4) &
+                            b->is.vertices >> k;
             for (; bits; bits &= bits - 1)
                 add_vertex(query, 1, other->vertex + k + (uint32_t)__builtin_ctz(bits),
                            of->triangle + i);
@@ -235,14 +237,14 @@ static void meet_triangles(struct query *query, const struct leaf_near *a,
 static void meet_edges(struct query *query, const struct leaf_near *a, const struct leaf_near *b)
 {
     const struct contact_leaf *of = a->leaf, *other = b->leaf;
-    for (uint32_t left = bits_below(a->edges, of->n_edges); left; left &= left - 1) {
+    for (uint32_t left = bits_below(a->is.edges, of->n_edges); left; left &= left - 1) {
         const uint32_t i = (uint32_t)__builtin_ctz(left);
         const bool self = a == b;
         struct contact_boxes wide;
         widen(query, a->group + contact_edge_group(of) + i / 4, i % 4, &wide);
         for (uint32_t k = self ? i / 4 * 4 : 0; k < other->n_edges; k += 4) {
             unsigned bits =
-                meeting(&wide, b->group + contact_edge_group(other) + k / 4) & b->edges >> k;
+                meeting(&wide, b->group + contact_edge_group(other) + k / 4) & b->is.edges >> k;
             if (self && k <= i)
                 bits &= ~1u << i % 4;
             for (; bits; bits &= bits - 1)
@@ -264,15 +266,32 @@ static const struct contact_leaf *leaf_of(const struct query *query, int k, stru
     return query->skin[k]->leaf + (child & ~CONTACT_IS_LEAF);
 }
 
-/* What is near to the other leaf's box alone is looked at. */
+/* Whether two leaves are out of reach, as seen along the normals of the first. Those of one skin
+ * that meet have most often a border in common: to try them costs more than it saves. */
+static bool leaves_part(struct query *query, struct part a, const struct contact_leaf *other)
+{
+    struct contact_slab *slab = &query->slab;
+    if (query->self)
+        return false;
+    if (slab->node != a.node || slab->lane != a.lane)
+        contact_slab_begin(query->side[0], a.node, a.lane, slab);
+    return contact_slab_parts(query->side[1], other, slab);
+}
+
+/* What is near to the other leaf's box alone is looked at, and within reach along the normals. */
 static void meet_leaves(struct query *query, struct part a, struct part b)
 {
+    const struct contact_leaf *of = leaf_of(query, 0, a), *other = leaf_of(query, 1, b);
     struct contact_boxes wide[2];
     struct leaf_near near[2];
+    if (leaves_part(query, a, other))
+        return;
     widen(query, query->node[0] + a.node, a.lane, wide);
     widen_other(query, query->node[1] + b.node, b.lane, wide + 1);
-    look_at_leaf(query, 0, leaf_of(query, 0, a), wide + 1, near);
-    look_at_leaf(query, 1, leaf_of(query, 1, b), wide, near + 1);
+    look_at_leaf(query, 0, of, wide + 1, near);
+    look_at_leaf(query, 1, other, wide, near + 1);
+    contact_slab_keep(&query->slab, 0, query->side[0], of, &near[0].is);
+    contact_slab_keep(&query->slab, 1, query->side[1], other, &near[1].is);
     meet_vertices(query, near, near + 1);
     meet_triangles(query, near, near + 1);
     meet_edges(query, near, near + 1);
@@ -371,6 +390,9 @@ void contact_query(const struct contact_side *a, const struct contact_side *b, d
     query.visit = visit;
     query.to = to;
     query.n = 0;
+    query.slab.node = ALL;
+    query.slab.is = false;
+    query.slab.most = contact_slab_most(a, b, reach);
     set_reach(&query, a, b, reach);
     if (query.self && !part_is_flat(&query, whole))
         meet_self(&query, 0);

@@ -103,6 +103,37 @@ PHYS_INLINE const struct contact_boxes *contact_boxes_groups(const void *boxes)
 int contact_loops_make(const struct contact_skin *skin, uint64_t room, struct contact_loop *loop,
                        uint32_t *along, struct cloth_error *error);
 
+/* Features of a leaf, a bit each. */
+struct contact_features {
+    uint32_t vertices, triangles, edges;
+};
+
+/* Heights along a direction of what a leaf has, m, at the begin and at the end of a step. */
+struct contact_heights {
+    double low[2], high[2];
+};
+
+/* Two leaves as seen along the normals of the first (skin_slab.c). */
+struct contact_slab {
+    uint32_t node, lane; /* the first leaf is that child */
+    bool is;             /* its normals have a middle, n */
+    bool above;          /* the first leaf is above the second */
+    phys_vec n;          /* of length 1 */
+    double most;         /* m: what is farther is out of reach */
+    struct contact_heights of[2];
+};
+/* What is surely out of a reach (m) is farther than that, m. */
+double contact_slab_most(const struct contact_side *a, const struct contact_side *b, double reach);
+/* Makes one of the first leaf, whose `most` stays. Other leaves are then tried one by one. */
+void contact_slab_begin(const struct contact_side *side, uint32_t node, uint32_t lane,
+                        struct contact_slab *slab);
+/* Whether a second leaf is out of reach of the first in the whole step. */
+bool contact_slab_parts(const struct contact_side *side, const struct contact_leaf *leaf,
+                        struct contact_slab *slab);
+/* Clears the bits of features of leaf k, 0 or 1, that are out of reach of all of the other one. */
+void contact_slab_keep(const struct contact_slab *slab, int k, const struct contact_side *side,
+                       const struct contact_leaf *leaf, struct contact_features *bits);
+
 /* A part of a skin in a step. */
 struct contact_patch {
     const struct contact_side *side;

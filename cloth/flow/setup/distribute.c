@@ -7,6 +7,7 @@
 #include "cloth/flow/observe/observe.h"
 #include "cloth/flow/setup/setup.h"
 
+#include <stddef.h>
 #include <string.h>
 
 enum {
@@ -15,15 +16,8 @@ enum {
     TRAVEL = 16 /* tables on their way */
 };
 
-/* What is broadcast of a block; the neighbours of all blocks follow. */
-struct shape {
-    uint32_t n_corrected, n_corrected_cut;
-    uint32_t n, n_inner, n_cut, n_entries, n_cut_entries, n_halo, n_held, lowest, highest;
-    struct flow_skin_size skin;
-    uint32_t joined, halo_start[SOLVE_MAX_PATCHES + 1];
-    uint32_t n_watched, n_moved, n_sliding, n_loose, n_varying, n_neighbours, n_ghosts, n_stiff,
-        n_pulled, n_elements[ELEMENT_KINDS], n_materials;
-};
+/* Bytes of a block's table that are broadcast: its shape; the neighbours of all blocks follow. */
+static const size_t SHAPE = offsetof(struct flow_table, neighbour);
 
 /* ---- Broadcasts ---- */
 
@@ -66,18 +60,17 @@ static int broadcast_head(const duite_call *call)
     head->n_blocks = source->blocks.n_blocks;
     head->n_neighbours = source->neighbours.n_neighbours;
     head->n_ghosts = source->neighbours.n_ghosts;
-    head->shared_bytes = flow->model->bodies.bytes +
-                         flow->model->n_obstacles * sizeof *flow->model->obstacles +
-                         flow->model->n_keys * sizeof *flow->model->keys +
-                         flow->model->n_motions * sizeof *flow->model->motions +
-                         n_frictions(flow->model) * sizeof *flow->friction +
-                         apart_bytes(flow->model) + head->n_anchors * sizeof *flow->anchor +
-                         flow->model->n_sliders * sizeof *flow->model->sliders +
-                         flow->model->n_curve_keys * sizeof *flow->model->curve_keys +
-                         flow->model->n_curves * sizeof *flow->model->curves +
-                         head->n_ties * sizeof(struct flow_tie) +
-                         head->n_blocks * (sizeof(struct shape) + sizeof(uint32_t)) +
-                         (3 * (uint64_t)head->n_neighbours + head->n_ghosts) * sizeof(uint32_t);
+    head->shared_bytes =
+        flow->model->bodies.bytes + flow->model->n_obstacles * sizeof *flow->model->obstacles +
+        flow->model->n_keys * sizeof *flow->model->keys +
+        flow->model->n_motions * sizeof *flow->model->motions +
+        n_frictions(flow->model) * sizeof *flow->friction + apart_bytes(flow->model) +
+        head->n_anchors * sizeof *flow->anchor +
+        flow->model->n_sliders * sizeof *flow->model->sliders +
+        flow->model->n_curve_keys * sizeof *flow->model->curve_keys +
+        flow->model->n_curves * sizeof *flow->model->curves +
+        head->n_ties * sizeof(struct flow_tie) + head->n_blocks * (SHAPE + sizeof(uint32_t)) +
+        (3 * (uint64_t)head->n_neighbours + head->n_ghosts) * sizeof(uint32_t);
     for (uint32_t b = 0; b < head->n_blocks; b++) {
         const struct flow_table *t = source->shape + b;
         head->max_rows = larger(t->n, head->max_rows);
@@ -111,12 +104,20 @@ static char *put_frictions(char *to, const struct model *model)
     return to;
 }
 
-static int broadcast_shared(const duite_call *call)
+static char *put_ties(char *to, const struct flow_source *source)
 {
-    const struct flow *flow = flow_of(call);
-    const struct flow_source *source = &flow->source;
-    char *to = duite_out(call, 0, char);
+    for (uint32_t i = 0; i < source->springs.n_timed; i++) {
+        const struct flow_tie tie = flow_joints_tie(source, source->springs.timed + i);
+        to = put(to, &tie, sizeof tie);
+    }
+    return to;
+}
+
+/* What is not of blocks. */
+static char *put_model(char *to, const struct flow *flow)
+{
     const struct model *model = flow->model;
+    const struct flow_source *source = &flow->source;
     to = put(to, model->bodies.memory, model->bodies.bytes); /* first, as it is aligned */
     to = put(to, model->obstacles, model->n_obstacles * sizeof *model->obstacles);
     to = put(to, model->keys, model->n_keys * sizeof *model->keys);
@@ -127,49 +128,31 @@ static int broadcast_shared(const duite_call *call)
     to = put_frictions(to, model);
     to = put(to, source->particles.anchor,
              source->particles.n_anchors * sizeof *source->particles.anchor);
-    for (uint32_t i = 0; i < source->springs.n_timed; i++) {
-        const struct flow_tie tie = flow_joints_tie(source, source->springs.timed + i);
-        to = put(to, &tie, sizeof tie);
-    }
-    for (uint32_t b = 0; b < source->blocks.n_blocks; b++) {
-        const struct flow_table *t = source->shape + b;
-        struct shape shape = {.n = t->n,
-                              .n_inner = t->n_inner,
-                              .n_cut = t->n_cut,
-                              .n_corrected = t->n_corrected,
-                              .n_corrected_cut = t->n_corrected_cut,
-                              .n_entries = t->n_entries,
-                              .n_cut_entries = t->n_cut_entries,
-                              .n_halo = t->n_halo,
-                              .n_held = t->n_held,
-                              .n_watched = t->n_watched,
-                              .n_moved = t->n_moved,
-                              .n_sliding = t->n_sliding,
-                              .n_loose = t->n_loose,
-                              .n_varying = t->n_varying,
-                              .lowest = t->lowest,
-                              .highest = t->highest,
-                              .n_neighbours = t->n_neighbours,
-                              .n_ghosts = t->n_ghosts,
-                              .n_stiff = t->n_stiff,
-                              .n_pulled = t->n_pulled,
-                              .n_materials = t->n_materials,
-                              .skin = t->skin,
-                              .joined = t->joined};
-        memcpy(shape.n_elements, t->n_elements, sizeof shape.n_elements);
-        memcpy(shape.halo_start, t->halo_start, sizeof shape.halo_start);
-        to = put(to, &shape, sizeof shape);
-    }
+    return put_ties(to, source);
+}
+
+static char *put_blocks(char *to, const struct flow_source *source)
+{
+    const uint32_t n_blocks = source->blocks.n_blocks;
     const struct flow_neighbours *all = &source->neighbours;
+    for (uint32_t b = 0; b < n_blocks; b++)
+        to = put(to, source->shape + b, SHAPE);
     to = put(to, all->neighbour, all->n_neighbours * sizeof *all->neighbour);
     to = put(to, all->ghost_start,
-             ((size_t)all->n_neighbours + source->blocks.n_blocks) * sizeof *all->ghost_start);
+             ((size_t)all->n_neighbours + n_blocks) * sizeof *all->ghost_start);
     to = put(to, all->ghost, all->n_ghosts * sizeof *all->ghost);
-    to = put(to, all->joins, all->n_neighbours * sizeof *all->joins);
-    const struct contact_apart *apart = &model->contact.apart;
+    return put(to, all->joins, all->n_neighbours * sizeof *all->joins);
+}
+
+static int broadcast_shared(const duite_call *call)
+{
+    const struct flow *flow = flow_of(call);
+    const struct contact_apart *apart = &flow->model->contact.apart;
+    char *to = put_model(duite_out(call, 0, char), flow);
+    to = put_blocks(to, &flow->source);
     if (apart->apart) {
-        to = put(to, apart->end, model->n_cloths * sizeof *apart->end);
-        put(to, apart->apart, n_frictions(model));
+        to = put(to, apart->end, flow->model->n_cloths * sizeof *apart->end);
+        put(to, apart->apart, n_frictions(flow->model));
     }
     return 0;
 }
@@ -256,8 +239,8 @@ static void unpack(struct flow_state *state)
 {
     struct flow *flow = state->flow;
     struct flow_tables *tables = &flow->tables;
-    const struct shape *shape = unpack_model(state);
-    const uint32_t *neighbour = (const void *)(shape + tables->n_blocks);
+    const char *shape = unpack_model(state);
+    const uint32_t *neighbour = (const void *)(shape + tables->n_blocks * SHAPE);
     const uint32_t *ghost_start = neighbour + state->head.n_neighbours;
     const uint32_t *ghost = ghost_start + state->head.n_neighbours + tables->n_blocks;
     const uint32_t *joins = ghost + state->head.n_ghosts;
@@ -269,43 +252,18 @@ static void unpack(struct flow_state *state)
     }
     tables->neighbour = neighbour;
     tables->ghost = ghost;
-    for (uint32_t b = 0; b < tables->n_blocks; b++, shape++) {
-        tables->block[b] = (struct flow_table){.n = shape->n,
-                                               .first = first,
-                                               .n_inner = shape->n_inner,
-                                               .n_cut = shape->n_cut,
-                                               .n_corrected = shape->n_corrected,
-                                               .n_corrected_cut = shape->n_corrected_cut,
-                                               .n_entries = shape->n_entries,
-                                               .n_cut_entries = shape->n_cut_entries,
-                                               .format = flow->model->format,
-                                               .n_halo = shape->n_halo,
-                                               .n_held = shape->n_held,
-                                               .n_watched = shape->n_watched,
-                                               .n_moved = shape->n_moved,
-                                               .n_sliding = shape->n_sliding,
-                                               .n_loose = shape->n_loose,
-                                               .n_varying = shape->n_varying,
-                                               .lowest = shape->lowest,
-                                               .highest = shape->highest,
-                                               .n_neighbours = shape->n_neighbours,
-                                               .n_ghosts = shape->n_ghosts,
-                                               .n_stiff = shape->n_stiff,
-                                               .n_pulled = shape->n_pulled,
-                                               .n_materials = shape->n_materials,
-                                               .skin = shape->skin,
-                                               .joined = shape->joined,
-                                               .joins = joins,
-                                               .neighbour = neighbour,
-                                               .ghost_start = ghost_start,
-                                               .ghost = ghost};
-        memcpy(tables->block[b].n_elements, shape->n_elements, sizeof shape->n_elements);
-        memcpy(tables->block[b].halo_start, shape->halo_start, sizeof shape->halo_start);
-        joins += shape->n_neighbours;
-        first += shape->n;
-        neighbour += shape->n_neighbours;
-        ghost_start += shape->n_neighbours + 1;
-        ghost += shape->n_ghosts;
+    for (uint32_t b = 0; b < tables->n_blocks; b++) {
+        struct flow_table *table = tables->block + b;
+        *table = (struct flow_table){
+            .joins = joins, .neighbour = neighbour, .ghost_start = ghost_start, .ghost = ghost};
+        memcpy(table, shape + b * SHAPE, SHAPE);
+        table->first = first;
+        table->format = flow->model->format;
+        joins += table->n_neighbours;
+        first += table->n;
+        neighbour += table->n_neighbours;
+        ghost_start += table->n_neighbours + 1;
+        ghost += table->n_ghosts;
     }
 }
 

@@ -36,7 +36,7 @@ struct flow_cut_edge {
  * storage, the pairs of rows that anything joins, each once. What elements join has a spring
  * without stiffness, a link. */
 struct flow_table {
-    /* Its shape, known to every rank. */
+    /* Its shape, known to every rank: all before `neighbour` is broadcast as it stands. */
     uint32_t n, first;                               /* rows, place of row 0 */
     uint32_t n_inner, n_cut;                         /* springs */
     uint32_t n_corrected, n_corrected_cut;           /* edges whose velocities are corrected */

@@ -102,6 +102,14 @@ struct model scene_read_set(const char *set)
     return scene_read_right(scene_right, 1, &(struct scene_set){.text = set});
 }
 
+struct model scene_read_changed(const char *from, const char *to)
+{
+    char *text = scene_changed(scene_right, from, to);
+    struct model model = scene_read_right(text, 0, NULL);
+    free(text);
+    return model;
+}
+
 /* An expected text that ends with "..." says how the text begins. */
 static void check_text(char *text, const char *expected)
 {

@@ -21,6 +21,8 @@ int scene_read_text(struct model *model, const char *text, size_t n_sets,
 struct model scene_read_right(const char *text, size_t n_sets, const struct scene_set *sets);
 /* The scene that is right, with a set. */
 struct model scene_read_set(const char *set);
+/* The scene that is right, with the first `from` replaced by `to`. */
+struct model scene_read_changed(const char *from, const char *to);
 
 /* Writes a further file beside it. */
 void scene_write_file(const char *name, const char *bytes, size_t size);

@@ -197,6 +197,12 @@ static void emit_node(struct plan *plan, const struct emit *emit, size_t i)
         task->path = emit->path[from->fork];
 }
 
+/* Whether the runtime runs it by itself: no body, and no message, which the communication runs. */
+static bool emit_is_own(enum plan_kind kind)
+{
+    return kind != PLAN_TASK && kind != PLAN_SEND && kind != PLAN_RECEIVE;
+}
+
 /* Successors in one row, those of the next round before those of the same. */
 static void emit_next(struct plan *plan, const struct plan_round *round)
 {
@@ -213,7 +219,7 @@ static void emit_next(struct plan *plan, const struct plan_round *round)
             struct plan_node *node = plan_task(plan, edge->from)->node;
             bool sends = round->node[edge->to].kind == PLAN_SEND;
             if (sends && !edge->cyclic)
-                node->runs_inline = round->node[edge->from].kind != PLAN_TASK;
+                node->runs_inline = emit_is_own(round->node[edge->from].kind);
             if (edge->cyclic != within)
                 node->next[node->n_next++] = plan_task(plan, edge->to);
         }

@@ -12,6 +12,8 @@
 struct finding {
     struct plan_messages *m;
     uint32_t *heads; /* by pair of ranks, see message_head: the last message, plus 1 */
+    int *ring;       /* scratch, by rank */
+    uint32_t leaves; /* the phase of the last leaf of the sum that is gone through */
     bool failed;
 };
 
@@ -40,12 +42,15 @@ struct phase_past {
     uint32_t here, any; /* there; on all ranks */
 };
 
-/* Runs the node on a rank that does not have the version? */
-static bool phase_crosses(const struct plan_assignment *a, size_t n, uint32_t version)
+/* How many messages one after the other the version takes to the node: none, if the node runs on no
+ * rank that does not have it. */
+static uint32_t phase_crosses(const struct plan_assignment *a, size_t n, uint32_t version)
 {
-    uint32_t maker = plan_maker(a, version);
-    return maker != PLAN_NONE &&
-           message_is_outside(a, plan_runs_set(a, n), plan_runs_set(a, maker));
+    const uint32_t maker = plan_maker(a, version);
+    if (maker == PLAN_NONE || !message_is_outside(a, plan_runs_set(a, n), plan_runs_set(a, maker)))
+        return 0;
+    const uint32_t rounds = plan_relay_version(a, version, NULL, NULL);
+    return rounds ? rounds : 1;
 }
 
 static uint32_t phase_of_leaves(const struct plan_messages *m, size_t n,
@@ -55,10 +60,11 @@ static uint32_t phase_of_leaves(const struct plan_messages *m, size_t n,
     uint32_t phase = 0;
     for (size_t i = node->first_use + 1; i < node->first_use + node->n_uses; i++) {
         uint32_t leaf = message_leaf(m, &a->round->use[i]);
-        bool crosses = message_is_outside(a, plan_runs_set(a, n), plan_runs_set(a, leaf));
+        bool crosses =
+            !m->rounds[n] && message_is_outside(a, plan_runs_set(a, n), plan_runs_set(a, leaf));
         phase = phase_later(phase, m->phase[leaf] + crosses);
     }
-    return phase;
+    return phase + m->rounds[n];
 }
 
 static uint32_t phase_of(const struct plan_messages *m, size_t n, const struct phase_past *pasts)
@@ -123,7 +129,7 @@ static bool message_find_phases(struct plan_messages *m)
 
 static bool pieces_join(const struct plan_piece *l, const struct plan_piece *r)
 {
-    return l->rank == r->rank && data_subtree_are_halves(&l->tree, &r->tree);
+    return l->rank == r->rank && plan_leaves_are_halves(&l->leaves, &r->leaves);
 }
 
 /* One rank contributes alone; and it reads alone. */
@@ -168,11 +174,12 @@ static void pieces_of_sum(struct plan_messages *m, size_t n, uint32_t *latest)
     size_t first = m->n_pieces;
     for (uint32_t i = 0; i + 1 < node->n_uses; i++) {
         struct plan_piece *row = &m->piece[m->n_pieces++];
-        *row = (struct plan_piece){
-            .node = (uint32_t)n, .tree.first = i, .n = 1, .rank = a->at[message_leaf(m, &use[i])]};
+        *row = (struct plan_piece){.node = (uint32_t)n,
+                                   .leaves = {.tree.first = i, .n = 1},
+                                   .rank = a->at[message_leaf(m, &use[i])]};
         for (; !alone && m->n_pieces - first > 1 && (one || pieces_join(row - 1, row)); row--) {
-            row[-1].tree.level++;
-            row[-1].n += row->n;
+            row[-1].leaves.tree.level++;
+            row[-1].leaves.n += row->leaves.n;
             m->n_pieces--;
         }
     }
@@ -263,6 +270,16 @@ static void message_add_to_set(struct finding *f, int from, const uint64_t *set,
             message_add(f, from, to, phase, item);
 }
 
+/* The version goes from rank to rank. */
+static void message_version_relay(struct finding *f, const struct plan_item *item, uint32_t phase)
+{
+    size_t n = 0;
+    const uint32_t rounds = plan_relay_version(f->m->assignment, item->version, f->ring, &n);
+    for (uint32_t round = 0; round < rounds; round++)
+        for (size_t far = (size_t)1 << round, i = 0; i < far && i + far < n; i++)
+            message_add(f, f->ring[i], f->ring[i + far], phase + round, *item);
+}
+
 /* What is made on several ranks is made wherever it is needed. */
 static void message_version(struct finding *f, uint32_t version)
 {
@@ -274,9 +291,27 @@ static void message_version(struct finding *f, uint32_t version)
     struct plan_item item = {.object = found->object,
                              .version = version,
                              .piece = PLAN_NONE,
-                             .made = found->maker ? 2 * (plan_moment)maker + 2 : 0};
-    message_add_to_set(f, a->at[maker], plan_needs_set(a, version),
-                       found->maker ? f->m->phase[maker] : 0, item);
+                             .made = found->maker ? plan_moment_over(maker) : 0};
+    const uint32_t phase = found->maker ? f->m->phase[maker] : 0;
+    if (plan_relay_version(a, version, NULL, NULL))
+        message_version_relay(f, &item, phase);
+    else
+        message_add_to_set(f, a->at[maker], plan_needs_set(a, version), phase, item);
+}
+
+/* What a sum's relay passes on; its rounds are as many phases, after that of the last leaf. */
+static void message_hop(void *context, const struct plan_hop *hop)
+{
+    struct finding *f = context;
+    const struct plan_round *round = f->m->assignment->round;
+    const struct plan_round_node *node = &round->node[hop->node];
+    for (size_t i = 0; i < hop->n; i++)
+        message_add(f, hop->from, hop->to, f->leaves + hop->round,
+                    (struct plan_item){.object = round->use[node->first_use].place,
+                                       .version = PLAN_NONE,
+                                       .piece = PLAN_NONE,
+                                       .leaves = hop->leaves[i],
+                                       .made = plan_moment_sum(hop->node, hop->round)});
 }
 
 /* The pieces of each rank go to those that add them all up. */
@@ -284,12 +319,18 @@ static void message_pieces(struct finding *f, size_t n)
 {
     const struct plan_messages *m = f->m;
     const struct plan_assignment *a = m->assignment;
-    uint32_t object = a->round->use[a->round->node[n].first_use].place;
+    const struct plan_round_node *node = &a->round->node[n];
+    uint32_t object = a->round->use[node->first_use].place;
+    if (m->rounds[n]) {
+        f->leaves = phase_of_leaves(m, n, node) - m->rounds[n];
+        f->failed |= !plan_relay_walk(m, n, message_hop, f);
+        return;
+    }
     for (size_t i = m->first_piece[n]; i < m->first_piece[n + 1]; i++) {
         struct plan_item item = {.object = object,
                                  .version = PLAN_NONE,
                                  .piece = (uint32_t)i,
-                                 .made = 2 * (plan_moment)n + 1};
+                                 .made = plan_moment_sum(n, 0)};
         message_add_to_set(f, m->piece[i].rank, plan_runs_set(a, n), m->piece[i].phase, item);
     }
 }
@@ -314,6 +355,7 @@ static void message_find_all(struct finding *f)
 void plan_messages_free(struct plan_messages *m)
 {
     base_free(m->phase);
+    base_free(m->rounds);
     base_free(m->leaf);
     base_free(m->piece);
     base_free(m->first_piece);
@@ -326,10 +368,11 @@ static bool message_room(struct plan_messages *m)
     const struct plan_round *round = m->assignment->round;
     size_t leaves = round->n_places - round->n_objects + 1;
     m->phase = base_alloc((round->n_nodes + 1) * sizeof *m->phase);
+    m->rounds = base_alloc_zero(round->n_nodes + 1);
     m->leaf = base_alloc(leaves * sizeof *m->leaf);
     m->piece = base_alloc(leaves * sizeof *m->piece);
     m->first_piece = base_alloc_zero((round->n_nodes + 1) * sizeof *m->first_piece);
-    return m->phase && m->leaf && m->piece && m->first_piece;
+    return m->phase && m->rounds && m->leaf && m->piece && m->first_piece;
 }
 
 static void message_find_leaves(struct plan_messages *m)
@@ -349,13 +392,15 @@ bool plan_messages_find(struct plan_messages *m, const struct plan_assignment *a
     const size_t ranks = (size_t)a->n_ranks, pairs = rank == PLAN_ALL ? ranks * ranks : 2 * ranks;
     *m = (struct plan_messages){.assignment = a, .rank = rank};
     f.heads = base_alloc_zero((rank == PLAN_NO_RANK ? 1 : pairs) * sizeof *f.heads);
-    bool fine = f.heads && message_room(m);
+    f.ring = base_alloc(ranks * sizeof *f.ring);
+    bool fine = f.heads && f.ring && message_room(m);
     if (fine) {
         message_find_leaves(m);
-        fine = message_find_phases(m) && message_find_pieces(m);
+        fine = plan_relay_find(m) && message_find_phases(m) && message_find_pieces(m);
     }
     if (fine && rank != PLAN_NO_RANK)
         message_find_all(&f);
     base_free(f.heads);
+    base_free(f.ring);
     return fine && !f.failed;
 }

@@ -19,13 +19,17 @@ struct parting {
     struct plan_round *part;
     uint32_t *replica;   /* by version: the buffer that it is received in */
     uint32_t *arrival;   /* by piece: likewise */
-    uint32_t *place;     /* by item that is sent: where it lies when its message goes */
+    uint32_t *place;     /* by item: where it lies when its message goes; where it comes */
     uint32_t *leaf;      /* by buffer of the round, less n_objects: its place here, plus 1; or 0 */
     plan_moment *spoilt; /* by version: when the rank overwrites it */
     size_t next_item;    /* the first that is not made */
     uint32_t *order;     /* the messages that go, by the moment they are ready */
     size_t n_sends, next_send;
     struct data_subtree *row; /* scratch: of one sum */
+    /* What this rank has of the sum that is gone through; where: its place. */
+    struct plan_leaves *state, *joined, *came;
+    uint32_t *param; /* by entry of `state`: of the PARTIAL that is being made, or PLAN_NONE */
+    size_t n_state;
 };
 
 static bool part_sends(const struct parting *p, uint32_t message)
@@ -55,7 +59,7 @@ static uint32_t part_version(const struct parting *p, uint32_t version)
 static uint32_t part_piece(struct parting *p, const struct plan_piece *piece)
 {
     const struct plan_round_node *sum = &p->round->node[piece->node];
-    return part_leaf(p, p->round->use[sum->first_use + 1 + piece->tree.first].place);
+    return part_leaf(p, p->round->use[sum->first_use + 1 + piece->leaves.tree.first].place);
 }
 
 static void part_find_spoilt(struct parting *p, uint32_t *own)
@@ -71,7 +75,7 @@ static void part_find_spoilt(struct parting *p, uint32_t *own)
         for (size_t i = node->first_use; i < node->first_use + node->n_uses; i++) {
             if (p->a->makes[i] == PLAN_NONE)
                 continue;
-            p->spoilt[own[p->round->use[i].place]] = 2 * n + 2;
+            p->spoilt[own[p->round->use[i].place]] = plan_moment_over(n);
             own[p->round->use[i].place] = p->a->makes[i];
         }
     }
@@ -115,19 +119,12 @@ static void part_channels(struct parting *p)
         if (part_sends(p, item->message))
             continue;
         uint32_t buffer = plan_round_buffer(p->part, item->object, NULL);
+        p->place[i] = buffer;
         if (item->version != PLAN_NONE)
             p->replica[item->version] = buffer;
-        else
+        else if (item->piece != PLAN_NONE)
             p->arrival[item->piece] = buffer;
     }
-}
-
-static uint32_t part_item(const struct parting *p, size_t i)
-{
-    const struct plan_item *item = &p->m->item[i];
-    if (part_sends(p, item->message))
-        return p->place[i];
-    return item->version != PLAN_NONE ? p->replica[item->version] : p->arrival[item->piece];
 }
 
 /* The node of a message. */
@@ -137,7 +134,16 @@ static void part_message(struct parting *p, uint32_t message, size_t fork)
     struct plan_round_node *node = plan_round_add(p->part, sends ? PLAN_SEND : PLAN_RECEIVE, fork);
     node->channel = message;
     for (size_t i = p->m->message[message].first; i; i = p->m->item[i - 1].next)
-        plan_round_use(p->part, node, part_item(p, i - 1), sends, !sends);
+        plan_round_use(p->part, node, p->place[i - 1], sends, !sends);
+}
+
+/* What a sum's relay passes on: until the next round joins it with what comes. */
+static uint32_t part_passed(const struct parting *p, const struct plan_leaves *leaves)
+{
+    size_t i = 0;
+    while (p->state[i].tree.first != leaves->tree.first)
+        i++;
+    return p->state[i].tree.where;
 }
 
 /* Where an item lies that was made just now: copied aside if it is overwritten too soon. */
@@ -146,8 +152,11 @@ static void part_made(struct parting *p, size_t i, size_t fork)
     const struct plan_item *item = &p->m->item[i];
     plan_moment spoilt;
     if (item->version != PLAN_NONE) {
-        p->place[i] = item->object;
-        spoilt = p->spoilt[item->version];
+        p->place[i] = part_version(p, item->version); /* received, if this rank passes it on */
+        spoilt = p->place[i] == item->object ? p->spoilt[item->version] : NEVER;
+    } else if (item->piece == PLAN_NONE) {
+        p->place[i] = part_passed(p, &item->leaves);
+        spoilt = item->made + 1;
     } else {
         const struct plan_piece *piece = &p->m->piece[item->piece];
         p->place[i] = part_piece(p, piece);
@@ -194,14 +203,14 @@ static void part_partial(struct parting *p, size_t n)
     struct plan_round_node *made = NULL;
     for (size_t i = p->m->first_piece[n]; i < p->m->first_piece[n + 1]; i++) {
         const struct plan_piece *piece = &p->m->piece[i];
-        if (piece->rank != p->m->rank || piece->n == 1)
+        if (piece->rank != p->m->rank || piece->leaves.n == 1)
             continue;
         if (!made)
             made = plan_round_add(p->part, PLAN_PARTIAL, node->fork);
         made->law = node->law;
         size_t rows = 0;
-        for (uint32_t k = 0; k < piece->n; k++) {
-            uint64_t first = piece->tree.first + k;
+        for (uint32_t k = 0; k < piece->leaves.n; k++) {
+            uint64_t first = piece->leaves.tree.first + k;
             p->row[rows] = (struct data_subtree){.first = first, .where = (uint32_t)made->n_uses};
             plan_round_use(p->part, made, part_leaf(p, leaf[first].place), true, true);
             rows = plan_reduce_push(p->part, made, p->row, rows);
@@ -210,7 +219,73 @@ static void part_partial(struct parting *p, size_t n)
     }
 }
 
-/* All pieces, own ones and received ones, and the object. */
+/* Of a sum that goes from rank to rank this rank begins with its own pieces; of others all are
+ * there at once. */
+static void part_begin_sum(struct parting *p, size_t n)
+{
+    p->n_state = 0;
+    for (size_t i = p->m->first_piece[n]; i < p->m->first_piece[n + 1]; i++) {
+        const struct plan_piece *piece = &p->m->piece[i];
+        const bool own = piece->rank == p->m->rank;
+        if (!own && (p->m->rounds[n] || !plan_runs(p->a, n, p->m->rank)))
+            continue;
+        struct plan_leaves *entry = &p->state[p->n_state++];
+        *entry = piece->leaves;
+        entry->tree.where = own ? part_piece(p, piece) : p->arrival[i];
+    }
+}
+
+/* The parameter of the PARTIAL that is an entry's place. */
+static uint32_t part_param(struct parting *p, struct plan_round_node *made, size_t entry)
+{
+    if (p->param[entry] == PLAN_NONE) {
+        p->param[entry] = (uint32_t)made->n_uses;
+        plan_round_use(p->part, made, p->state[entry].tree.where, true, true);
+    }
+    return p->param[entry];
+}
+
+/* The last two of so many entries are halves. */
+static void part_combine(struct parting *p, struct plan_round_node *made, size_t entries)
+{
+    struct plan_leaves *left = &p->state[entries - 2], *right = left + 1;
+    const struct data_subtree halves[2] = {{.where = part_param(p, made, entries - 2)},
+                                           {.where = part_param(p, made, entries - 1)}};
+    plan_reduce_fold(p->part, made, halves, 2);
+    left->tree.level++;
+    left->n += right->n;
+}
+
+/* What came in this round, in items from `first` on, joins what is there. */
+static void part_join(struct parting *p, size_t n, size_t first)
+{
+    const struct plan_round_node *node = &p->round->node[n];
+    struct plan_round_node *made = NULL;
+    size_t came = 0, entries = 0;
+    for (size_t i = first; i < p->next_item; i++) {
+        const struct plan_item *item = &p->m->item[i];
+        if (part_sends(p, item->message))
+            continue;
+        p->came[came] = item->leaves;
+        p->came[came++].tree.where = p->place[i];
+    }
+    const size_t joined = plan_leaves_join(p->state, p->n_state, p->came, came, p->joined);
+    for (size_t i = 0; i < joined; i++) {
+        p->param[entries] = PLAN_NONE;
+        p->state[entries++] = p->joined[i];
+        for (;
+             entries > 1 && plan_leaves_are_halves(&p->state[entries - 2], &p->state[entries - 1]);
+             entries--) {
+            if (!made)
+                made = plan_round_add(p->part, PLAN_PARTIAL, node->fork);
+            made->law = node->law;
+            part_combine(p, made, entries);
+        }
+    }
+    p->n_state = entries;
+}
+
+/* All that there is of the sum, and the object. */
 static void part_sum(struct parting *p, size_t n)
 {
     const struct plan_round_node *node = &p->round->node[n];
@@ -219,12 +294,10 @@ static void part_sum(struct parting *p, size_t n)
     made->owner = node->owner;
     made->law = node->law;
     plan_round_use(p->part, made, p->round->use[node->first_use].place, true, true);
-    for (size_t i = p->m->first_piece[n]; i < p->m->first_piece[n + 1]; i++) {
-        const struct plan_piece *piece = &p->m->piece[i];
-        bool own = piece->rank == p->m->rank;
-        p->row[rows] = piece->tree;
+    for (size_t i = 0; i < p->n_state; i++) {
+        p->row[rows] = p->state[i].tree;
         p->row[rows].where = (uint32_t)made->n_uses;
-        plan_round_use(p->part, made, own ? part_piece(p, piece) : p->arrival[i], true, true);
+        plan_round_use(p->part, made, p->state[i].tree.where, true, true);
         rows = plan_reduce_push(p->part, made, p->row, rows);
     }
     plan_reduce_fold(p->part, made, p->row, rows);
@@ -247,6 +320,21 @@ static void part_plain(struct parting *p, size_t n)
     }
 }
 
+/* Until all is there that this rank adds up. */
+static void part_before_sum(struct parting *p, size_t n)
+{
+    const uint32_t rounds = p->m->rounds[n];
+    const size_t fork = p->round->node[n].fork;
+    part_partial(p, n);
+    part_begin_sum(p, n);
+    for (uint32_t round = 0; round <= rounds; round++) {
+        const size_t first = p->next_item;
+        part_moment(p, plan_moment_sum(n, round), fork);
+        if (round < rounds)
+            part_join(p, n, first);
+    }
+}
+
 static void part_nodes(struct parting *p)
 {
     for (uint32_t i = 0; i < p->m->n_messages; i++)
@@ -256,8 +344,7 @@ static void part_nodes(struct parting *p)
     for (size_t n = 0; n < p->round->n_nodes; n++) {
         const struct plan_round_node *node = &p->round->node[n];
         if (node->kind == PLAN_SUM)
-            part_partial(p, n);
-        part_moment(p, 2 * n + 1, node->fork);
+            part_before_sum(p, n);
         if (plan_runs(p->a, n, p->m->rank)) {
             part_bring_home(p, n);
             if (node->kind == PLAN_SUM)
@@ -265,7 +352,7 @@ static void part_nodes(struct parting *p)
             else
                 part_plain(p, n);
         }
-        part_moment(p, 2 * n + 2, node->fork);
+        part_moment(p, plan_moment_over(n), node->fork);
     }
 }
 
@@ -283,11 +370,16 @@ static bool part_room(struct parting *p)
     p->spoilt = base_alloc(p->a->n_versions * sizeof *p->spoilt + 1);
     p->order = base_alloc((m->n_messages + 1) * sizeof *p->order);
     p->row = base_alloc(leaves * sizeof *p->row);
+    p->state = base_alloc((leaves + items) * sizeof *p->state);
+    p->joined = base_alloc((leaves + items) * sizeof *p->joined);
+    p->came = base_alloc((items + 1) * sizeof *p->came);
+    p->param = base_alloc((leaves + items) * sizeof *p->param);
     p->part->channel = base_alloc((m->n_messages + 1) * sizeof *p->part->channel);
     return p->replica && p->arrival && p->place && p->leaf && p->spoilt && p->order && p->row &&
-           p->part->channel &&
-           plan_round_room(p->part, 2 * nodes + uses + items + m->n_messages, 5 * uses + 3 * items,
-                           p->round->n_places + 2 * items, 2 * uses + 1);
+           p->state && p->joined && p->came && p->param && p->part->channel &&
+           plan_round_room(p->part, 2 * nodes + uses + 2 * items + m->n_messages,
+                           8 * uses + 6 * items, p->round->n_places + 2 * items,
+                           2 * uses + items + 1);
 }
 
 bool plan_part(struct plan_round *part, const struct plan_messages *messages)
@@ -310,5 +402,9 @@ bool plan_part(struct plan_round *part, const struct plan_messages *messages)
     base_free(p.spoilt);
     base_free(p.order);
     base_free(p.row);
+    base_free(p.state);
+    base_free(p.joined);
+    base_free(p.came);
+    base_free(p.param);
     return fine;
 }

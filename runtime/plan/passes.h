@@ -8,6 +8,7 @@
  *   lower    lower.c    plan_source                 -> plan_round: nodes and what they use
  *   assign   assign.c   plan_round, homes           -> plan_assignment: who runs and who needs what
  *   messages messages.c plan_assignment             -> plan_messages: phases, and what each carries
+ *            relay.c    plan_messages               -> the way of sums that go from rank to rank
  *   part     part.c     plan_messages of a rank     -> plan_round: the nodes of that rank
  *   edges    edges.c    plan_round                  -> its edges, within a round and to the next
  *   emit     emit.c     plan_round                  -> plan: flat arrays (plan.h)
@@ -256,18 +257,40 @@ bool plan_is_there(const struct plan_assignment *assignment, uint32_t version, i
 
 /* ---- Messages: what moves, and when ---- */
 
-/* A moment in the round: 2 n + 1 when the pieces of the sum at node n are made, 2 n + 2 when node n
- * is over; 0 is its beginning. */
+/* A moment in the round: its beginning, 0; when the pieces of the sum at node n are made; after
+ * some rounds of its way from rank to rank; when node n is over. */
 typedef uint64_t plan_moment;
+static inline plan_moment plan_moment_sum(size_t n, uint32_t rounds)
+{
+    return 64 * (plan_moment)n + 1 + rounds;
+}
+static inline plan_moment plan_moment_over(size_t n)
+{
+    return 64 * (plan_moment)n + 64;
+}
 
-/* Contributions of one rank to one sum: some leaves in a row, combined. */
-struct plan_piece {
-    uint32_t node;            /* the sum */
-    struct data_subtree tree; /* but for `where` */
-    uint32_t n;               /* leaves: from tree.first on */
-    int rank;                 /* that has all of them */
-    uint32_t phase;           /* that it moves in */
+/* Some leaves of a sum in a row, combined: a complete subtree, or all leaves. */
+struct plan_leaves {
+    struct data_subtree tree; /* where: for whoever has a use for it */
+    uint32_t n;               /* leaves, from tree.first on */
 };
+
+/* Contributions of one rank to one sum. */
+struct plan_piece {
+    uint32_t node; /* the sum */
+    struct plan_leaves leaves;
+    int rank;       /* that has all of them */
+    uint32_t phase; /* that it moves in, if it goes directly */
+};
+
+/* What a rank sends another one in a round of a sum's way from rank to rank. */
+struct plan_hop {
+    uint32_t node, round; /* of the sum */
+    int from, to;
+    const struct plan_leaves *leaves; /* n > 0, in order */
+    size_t n;
+};
+typedef void plan_relay_visit(void *context, const struct plan_hop *hop);
 
 /* A message a round: all that goes from one rank to another in one phase. */
 struct plan_message {
@@ -278,10 +301,11 @@ struct plan_message {
     uint32_t next;      /* another between the two ranks, plus 1 */
 };
 
-/* One thing in one message: a version or a piece. */
+/* One thing in one message: a version, a piece, or what a sum's relay passes on. */
 struct plan_item {
     uint32_t message, object;
-    uint32_t version, piece; /* ids; the other one is PLAN_NONE */
+    uint32_t version, piece;   /* ids, or PLAN_NONE */
+    struct plan_leaves leaves; /* if both are none: of the sum whose moment `made` is */
     plan_moment made;
     size_t next; /* of the same message, plus 1 */
 };
@@ -290,6 +314,7 @@ struct plan_messages {
     const struct plan_assignment *assignment;
     int rank;                 /* whose messages these are, or PLAN_ALL */
     uint32_t *phase;          /* by node: rank crossings on the longest path to it, at most */
+    uint8_t *rounds;          /* by node: of a sum that goes from rank to rank; 0: directly */
     uint32_t *leaf;           /* by buffer, less n_objects: the node that fills it */
     struct plan_piece *piece; /* of all sums and ranks, in order */
     size_t n_pieces;
@@ -309,13 +334,36 @@ struct plan_messages {
  *   subtree, or all leaves. A sum that one rank contributes to and reads alone has a piece a leaf,
  *   one that nobody runs has none;
  * - a version that one rank makes is an item for each other rank that needs it; so is a piece for
- *   each other rank that runs its sum;
+ *   each other rank that runs its sum. Where these are more than four ranks, versions and pieces go
+ *   from rank to rank in rounds, in as many phases (relay.c);
  * - items are in order of `made`, the same from the sender's and the receiver's side.
  * Messages and items are those from and to `rank`, or all, or none (PLAN_NO_RANK). False without
  * memory; plan_messages_free is due all the same. */
 bool plan_messages_find(struct plan_messages *messages, const struct plan_assignment *assignment,
                         int rank);
 void plan_messages_free(struct plan_messages *messages);
+
+/* Of sums that go from rank to rank; of plan_messages_find. The first finds messages->rounds, when
+ * leaves are known; the second walks through the hops of one, round by round, when pieces are. Both
+ * are false without memory. */
+bool plan_relay_find(struct plan_messages *messages);
+bool plan_relay_walk(const struct plan_messages *messages, size_t node, plan_relay_visit *visit,
+                     void *context);
+/* Rounds in which a value goes from the rank that has it, and on from rank to rank, to a set of
+ * ranks; 0: directly. The ring (NULL: it is not wanted; room for all ranks) begins with that rank:
+ * in round s the first 2^s of the ring send to the 2^s after them. The second asks for a version.
+ */
+uint32_t plan_relay_ring(const uint64_t *set, int n_ranks, int from, int *ring, size_t *n);
+uint32_t plan_relay_version(const struct plan_assignment *assignment, uint32_t version, int *ring,
+                            size_t *n);
+/* Lists of leaves, in order and without a leaf in two of them. What a list has that another one has
+ * not; both in one, of which what lies in something larger is left out. `out` has room for all.
+ * Return how many. */
+size_t plan_leaves_missing(const struct plan_leaves *has, size_t n_has,
+                           const struct plan_leaves *from, size_t n_from, struct plan_leaves *out);
+size_t plan_leaves_join(const struct plan_leaves *a, size_t n_a, const struct plan_leaves *b,
+                        size_t n_b, struct plan_leaves *out);
+bool plan_leaves_are_halves(const struct plan_leaves *left, const struct plan_leaves *right);
 
 /* ---- Part: the nodes of one rank ---- */
 
@@ -324,11 +372,12 @@ void plan_messages_free(struct plan_messages *messages);
  * a SEND for each from it as soon as the last thing that it carries is made; the uses of both are
  *   its items in order, so that both sides agree on the layout;
  * - what the rank writes lies in the objects' own places, what it receives in a buffer for each
- *   version or piece, which nobody but the RECEIVE and a sum writes;
+ *   version or piece, which nobody but the RECEIVE, a PARTIAL and a sum writes;
  * - a COPY comes before a node that writes on from a received version, and keeps aside what is
  *   overwritten before its message goes;
- * - a PARTIAL combines this rank's contributions to pieces of more than one leaf.
- * False without memory; plan_round_free is due all the same. *part is zero before. */
+ * - a PARTIAL combines this rank's contributions to pieces of more than one leaf; and, of a sum
+ * that goes from rank to rank, what came in a round with what is there. False without memory;
+ * plan_round_free is due all the same. *part is zero before. */
 bool plan_part(struct plan_round *part, const struct plan_messages *messages);
 
 /* ---- Edges ---- */

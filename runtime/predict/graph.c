@@ -6,6 +6,7 @@
 
 #include "runtime/base/memory.h"
 #include "runtime/base/rank_set.h"
+#include "runtime/plan/passes.h"
 #include "runtime/task/task.h"
 
 #include <stdlib.h>
@@ -125,21 +126,42 @@ static uint64_t transfer_bytes(const struct predict_graph *graph, uint32_t objec
     return packed > 0 && packed < (double)whole ? (uint64_t)(packed + 0.5) : whole;
 }
 
+/* Who sends a host the object's value, in a round of a replay, and in which phase: the holder, or,
+ * where it goes from host to host, one that has it before. */
+static int transfer_source(struct predict_graph *graph, uint32_t object, uint32_t host,
+                           uint32_t *phase)
+{
+    const struct predict_object *o = &graph->object[object];
+    size_t n = 0, at = 1, far = 1;
+    *phase = graph->travel.phase;
+    if (!graph->replays || !graph->travel.need ||
+        !plan_relay_ring(graph->travel.need, (int)graph->cluster->hosts, o->holder, graph->ring,
+                         &n))
+        return o->holder;
+    while (at < n && graph->ring[at] != (int)host)
+        at++;
+    for (; 2 * far <= at; far *= 2)
+        ++*phase;
+    return at < n ? graph->ring[at - far] : o->holder;
+}
+
 /* A message with the object's value, to a host. */
 static uint32_t transfer_add(struct predict_graph *graph, uint32_t object, uint32_t host)
 {
     struct predict_object *o = &graph->object[object];
-    uint32_t message = predict_own_node(graph, PREDICT_MESSAGE, (uint32_t)o->holder, 0,
+    uint32_t phase;
+    const int from = transfer_source(graph, object, host, &phase);
+    const uint32_t before = from == o->holder ? o->writer : predict_fetch(graph, object, from);
+    uint32_t message = predict_own_node(graph, PREDICT_MESSAGE, (uint32_t)from, 0,
                                         transfer_bytes(graph, object, host));
     if (graph->failed)
         return PREDICT_NONE;
     graph->node[message].block = host;
     graph->linked = false;
-    predict_edge(graph, o->writer, message);
+    predict_edge(graph, before, message);
     predict_hold(graph, message);
-    graph->node[message].priority =
-        predict_packet(graph, graph->travel.phase, (uint32_t)o->holder, host);
-    link_push(graph, &o->readers, message, (uint32_t)o->holder);
+    graph->node[message].priority = predict_packet(graph, phase, (uint32_t)from, host);
+    link_push(graph, &o->readers, message, (uint32_t)from);
     return message;
 }
 
@@ -152,6 +174,28 @@ static uint32_t exchange_receivers(struct predict_graph *graph, const struct pre
     for (uint32_t i = o->copies; i != PREDICT_NONE; i = graph->link[i].next)
         base_ranks_remove(graph->among, (int)graph->link[i].host);
     return base_ranks_count(graph->among, words);
+}
+
+/* The packets of a value that goes to n hosts, the set graph->among: from host to host, where those
+ * that get it another way send it on, too; or directly. */
+static int32_t exchange_packets(struct predict_graph *graph, struct predict_node *node, uint32_t n)
+{
+    const uint64_t *need = graph->replays ? graph->travel.need : NULL;
+    const uint32_t phase = graph->travel.phase;
+    size_t ring = 0;
+    int32_t packets = 0;
+    node->hops = need ? plan_relay_ring(need, (int)graph->cluster->hosts, (int)node->host,
+                                        graph->ring, &ring)
+                      : 0;
+    for (uint32_t round = 0; round < node->hops; round++)
+        for (size_t far = (size_t)1 << round, i = 0; i < far && i + far < ring; i++)
+            if (base_ranks_has(graph->among, graph->ring[i + far]))
+                packets += predict_packet(graph, phase + round, (uint32_t)graph->ring[i],
+                                          (uint32_t)graph->ring[i + far]);
+    if (node->hops)
+        return packets;
+    node->hops = 1;
+    return predict_packets(graph, phase, node->host, graph->among, n);
 }
 
 /* All that need the object's value have it after this. */
@@ -170,8 +214,9 @@ static uint32_t exchange_value(struct predict_graph *graph, uint32_t object)
     for (uint32_t i = o->copies; i != PREDICT_NONE && graph->travel.need; i = graph->link[i].next)
         predict_edge(graph, graph->link[i].node, exchange);
     predict_hold(graph, exchange);
-    node->priority =
-        predict_packets(graph, graph->travel.phase, node->host, graph->among, node->placed);
+    node->priority = exchange_packets(graph, node, node->placed);
+    if (node->hops > 1) /* the first host sends once in each round */
+        node->placed = node->hops;
     link_push(graph, &o->readers, exchange, (uint32_t)o->holder);
     return exchange;
 }
@@ -314,6 +359,7 @@ void predict_graph_free(struct predict_graph *graph)
     base_free(graph->piece);
     base_free(graph->began);
     base_free(graph->among);
+    base_free(graph->ring);
     base_free(graph->phase);
     free(graph->packet);
 }

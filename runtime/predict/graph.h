@@ -27,6 +27,7 @@ struct predict_node {
     uint32_t host, block;
     int32_t priority; /* of messages: packets that it adds */
     float seconds;
+    uint32_t hops; /* of exchanges: messages one after the other */
     union {
         struct {
             float cost, path;
@@ -87,6 +88,15 @@ struct predict_travel {
     const uint64_t *need; /* the hosts that read it; NULL: outside of rounds, all */
     const uint64_t *runs; /* of a sum: the hosts that make it */
     uint32_t phase;       /* it moves in */
+    /* Of a sum that goes from host to host: n_hops in so many rounds, the first one in a phase. */
+    const struct predict_hop *hop;
+    size_t n_hops;
+    uint32_t rounds, sum_phase;
+};
+
+/* What a host sends another one of a sum, in a round of its way: so many subtrees. */
+struct predict_hop {
+    uint32_t round, from, to, n;
 };
 
 struct predict_graph {
@@ -115,6 +125,7 @@ struct predict_graph {
     double own[64];  /* by task_type: s of the runtime's own tasks, those of sums left out */
     double merges;   /* that the sums of the trace took */
     uint64_t *among; /* a set of hosts, for a moment */
+    int *ring;       /* hosts, for a moment */
     uint32_t *phase; /* by host: that its pieces of a sum move in */
     struct predict_travel travel;
     uint32_t round;  /* the first node of this round of a replay, or NONE */

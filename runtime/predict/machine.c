@@ -132,11 +132,12 @@ double predict_exchange(struct predict_network *network, double now,
     if (!message->copies)
         return now;
     double takes = (double)(message->placed * bytes) / cluster->bandwidth;
+    const double latency = (double)message->hops * cluster->latency;
     double fabric = (double)(message->copies * bytes) / cluster->capacity;
     network->messages += (uint64_t)message->priority;
     network->bytes += message->copies * bytes;
-    *flight = cluster->latency;
-    return now + cluster->latency + fmax(takes, fabric);
+    *flight = latency;
+    return now + latency + fmax(takes, fabric);
 }
 
 /* ---- Tasks as schedulers see them ---- */

@@ -338,13 +338,15 @@ static bool program_prepare(struct predict_program *p)
     graph->began = base_alloc(hosts * sizeof *graph->began);
     graph->count = base_alloc_zero(hosts * sizeof *graph->count);
     graph->phase = base_alloc_zero(hosts * sizeof *graph->phase);
+    graph->ring = base_alloc(hosts * sizeof *graph->ring);
     graph->among = base_alloc(base_ranks_words((int)hosts) * sizeof *graph->among);
     graph->round = PREDICT_NONE;
     graph->flag = PREDICT_NONE;
     if (p->times && graph->cluster->steady && !predict_times_steady(p->times, graph->run))
         return false;
     if (!p->times || !graph->piece || !graph->began || !graph->count || !graph->phase ||
-        !graph->among || !(p->blocks_on = base_alloc_zero(hosts * sizeof *p->blocks_on)) ||
+        !graph->among || !graph->ring ||
+        !(p->blocks_on = base_alloc_zero(hosts * sizeof *p->blocks_on)) ||
         data_table_start(&p->table, graph->cluster->mapping ? (int)hosts : 1) ||
         !predict_moves_start(p))
         return false;

@@ -40,10 +40,14 @@ struct predict_round {
     struct plan_round nodes;
     struct plan_assignment assignment;
     struct plan_messages messages;
-    float *path;   /* by fork; NULL: the scheduler does not ask */
-    int *home;     /* by object of the source */
-    uint32_t flag; /* an object of the program, or NONE */
-    bool forked;   /* it has no plan: nothing behind `home` is there */
+    struct predict_hop *hop; /* of all sums that go from host to host */
+    size_t n_hops, hops_capacity;
+    size_t *first_hop; /* by node, n_nodes + 1 */
+    bool hops_failed;  /* no memory */
+    float *path;       /* by fork; NULL: the scheduler does not ask */
+    int *home;         /* by object of the source */
+    uint32_t flag;     /* an object of the program, or NONE */
+    bool forked;       /* it has no plan: nothing behind `home` is there */
 };
 
 /* Where a task runs: for which object or NONE, and on which host or PREDICT_ALL. */

@@ -213,8 +213,15 @@ static void round_reduce(struct predict_graph *graph, const struct predict_round
                          uint32_t object, int host)
 {
     const struct plan_messages *m = &round->messages;
-    for (size_t i = m->first_piece[n]; i < m->first_piece[n + 1]; i++)
-        graph->phase[m->piece[i].rank] = m->piece[i].phase;
+    struct predict_travel *travel = &graph->travel;
+    travel->sum_phase = 0;
+    for (size_t i = m->first_piece[n]; i < m->first_piece[n + 1]; i++) {
+        const uint32_t phase = graph->phase[m->piece[i].rank] = m->piece[i].phase;
+        travel->sum_phase = phase > travel->sum_phase ? phase : travel->sum_phase;
+    }
+    travel->hop = round->hop + round->first_hop[n];
+    travel->n_hops = round->first_hop[n + 1] - round->first_hop[n];
+    travel->rounds = m->rounds[n];
     if (host == ROUND_NOWHERE)
         graph->object[object].leaves = PREDICT_NONE;
     else

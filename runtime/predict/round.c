@@ -151,6 +151,8 @@ void predict_round_free(struct predict_round *round)
 {
     if (!round)
         return;
+    free(round->hop);
+    base_free(round->first_hop);
     plan_messages_free(&round->messages);
     plan_assignment_free(&round->assignment);
     plan_round_free(&round->nodes);
@@ -171,6 +173,34 @@ static bool round_fits(const struct predict_round *there, const struct predict_r
     return fits;
 }
 
+static void hops_note(void *context, const struct plan_hop *hop)
+{
+    struct predict_round *round = context;
+    void *moved =
+        base_grow(round->hop, &round->hops_capacity, round->n_hops + 1, sizeof *round->hop);
+    round->hops_failed |= !moved;
+    if (!moved)
+        return;
+    round->hop = moved;
+    round->hop[round->n_hops++] =
+        (struct predict_hop){hop->round, (uint32_t)hop->from, (uint32_t)hop->to, (uint32_t)hop->n};
+}
+
+/* The ways of sums that go from host to host. */
+static bool round_hops(struct predict_round *round)
+{
+    const size_t n = round->nodes.n_nodes;
+    round->first_hop = base_alloc_zero((n + 1) * sizeof *round->first_hop);
+    bool fine = round->first_hop;
+    for (size_t i = 0; i < n && fine; i++) {
+        round->first_hop[i] = round->n_hops;
+        if (round->messages.rounds[i])
+            fine = plan_relay_walk(&round->messages, i, hops_note, round);
+        round->first_hop[i + 1] = round->n_hops;
+    }
+    return fine && !round->hops_failed;
+}
+
 /* All passes but those of one rank; edges are for paths alone. */
 static bool round_compile(const struct predict_program *p, const struct predict_recorded *recorded,
                           struct predict_round *round)
@@ -186,7 +216,8 @@ static bool round_compile(const struct predict_program *p, const struct predict_
         return ends;
     bool fine = plan_lower(&round->nodes, source) &&
                 plan_assign(&round->assignment, &round->nodes, round->home, (int)cluster->hosts) &&
-                plan_messages_find(&round->messages, &round->assignment, PLAN_NO_RANK);
+                plan_messages_find(&round->messages, &round->assignment, PLAN_NO_RANK) &&
+                round_hops(round);
     if (fine && cluster->scheduler->paths)
         fine = plan_edges(&round->nodes) && (round->path = plan_paths_find(&round->nodes));
     return fine;

@@ -28,7 +28,8 @@ static double message_handle(struct predict_machine *m, uint32_t host, int32_t p
     return begins;
 }
 
-/* Of all that a host sends or takes at once the last waits for the others. */
+/* Of all that a host sends or takes at once the last waits for the others; what goes from host to
+ * host comes one at a time. */
 static double exchange_send(struct predict_machine *m, const struct predict_node *exchange,
                             double *flight)
 {
@@ -43,7 +44,7 @@ static double exchange_send(struct predict_machine *m, const struct predict_node
         own = all;
     }
     return predict_exchange(&m->network, goes, exchange, flight) +
-           fmax(0, own - m->cluster->message);
+           (exchange->hops > 1 ? 0 : fmax(0, own - m->cluster->message));
 }
 
 /* A worker begins a task. Before that it does what is left to do for messages, if no core was idle,

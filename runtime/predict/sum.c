@@ -94,8 +94,31 @@ static void pieces_send(struct predict_graph *graph, uint32_t object, uint32_t h
     }
 }
 
-/* What each host that contributes sends to those that add up. */
-static void exchange_count(struct predict_graph *graph, uint32_t object, struct predict_node *node)
+/* What goes from host to host. Returns the most subtrees that one host takes. */
+static uint32_t hops_count(struct predict_graph *graph, struct predict_node *node)
+{
+    const struct predict_travel *travel = &graph->travel;
+    uint32_t most = 0;
+    int32_t packets = 0;
+    node->copies = 0;
+    for (size_t i = 0; i < travel->n_hops; i++) {
+        const struct predict_hop *hop = &travel->hop[i];
+        const uint32_t n = graph->count[hop->to] += hop->n;
+        most = n > most ? n : most;
+        node->copies += hop->n;
+        packets += predict_packet(graph, travel->sum_phase + hop->round, hop->from, hop->to);
+    }
+    for (size_t i = 0; i < travel->n_hops; i++)
+        graph->count[travel->hop[i].to] = 0;
+    node->placed = most;
+    node->priority = packets;
+    node->hops = travel->rounds;
+    return most;
+}
+
+/* What each host that contributes sends to those that add up. Returns the most that one takes. */
+static uint32_t exchange_count(struct predict_graph *graph, uint32_t object,
+                               struct predict_node *node)
 {
     const struct predict_object *o = &graph->object[object];
     const size_t words = base_ranks_words((int)graph->cluster->hosts);
@@ -117,10 +140,12 @@ static void exchange_count(struct predict_graph *graph, uint32_t object, struct 
     node->copies = (uint64_t)senders * receivers - within;
     node->placed = out > in ? out : in;
     node->priority = (int32_t)packets;
+    node->hops = 1;
+    return in;
 }
 
-/* Each host sends what it has to all others that add up. */
-static uint32_t pieces_exchange(struct predict_graph *graph, uint32_t object)
+/* Each host sends what it has to all others that add up. *most: what one of them takes. */
+static uint32_t pieces_exchange(struct predict_graph *graph, uint32_t object, uint32_t *most)
 {
     const struct predict_object *o = &graph->object[object];
     uint32_t exchange = predict_own_node(graph, PREDICT_EXCHANGE, 0, 0, o->bytes);
@@ -129,7 +154,8 @@ static uint32_t pieces_exchange(struct predict_graph *graph, uint32_t object)
     graph->node[exchange].block = 1; /* all send */
     for (uint32_t i = o->leaves; i != PREDICT_NONE; i = graph->link[i].next)
         predict_edge(graph, graph->link[i].node, exchange);
-    exchange_count(graph, object, &graph->node[exchange]);
+    *most = graph->travel.n_hops ? hops_count(graph, &graph->node[exchange])
+                                 : exchange_count(graph, object, &graph->node[exchange]);
     return exchange;
 }
 
@@ -152,18 +178,18 @@ void predict_reduce(struct predict_graph *graph, uint32_t object, int host)
     const uint32_t home = all ? 0 : (uint32_t)host, most = leaves_count(graph, object);
     const uint32_t own = all ? most : graph->count[home];
     uint32_t fetched = predict_fetch(graph, object, host), exchange = PREDICT_NONE;
-    if (all) {
-        exchange = pieces_exchange(graph, object);
-    } else {
+    if (!all) {
         pieces_make(graph, object, home);
         pieces_send(graph, object, home);
     }
+    uint32_t taken = leaves_forget(graph, object, all) - (own > 0);
+    if (all)
+        exchange = pieces_exchange(graph, object, &taken);
     uint32_t sum = predict_own_node(graph, all ? PREDICT_EVERYWHERE : PREDICT_TASK, home,
                                     graph->replays ? TASK_NODE_SUM : TASK_COMBINE, 0);
-    const uint32_t hosts = leaves_forget(graph, object, all);
     if (graph->failed)
         return;
-    graph->node[sum].seconds = (float)(own + hosts - (own > 0));
+    graph->node[sum].seconds = (float)(own + taken);
     predict_edge_value(graph, fetched, sum, object);
     predict_edge(graph, exchange, sum);
     if (!all)

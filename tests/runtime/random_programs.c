@@ -304,10 +304,11 @@ int main(int argc, char **argv)
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
     MPI_Comm_size(MPI_COMM_WORLD, &size);
     if (read_options(argc, argv, &settings) || settings.ranks > size || settings.ranks < 1 ||
-        (!settings.one && size > 8)) {
+        (!settings.one && size > 16)) {
         fprintf(
             stderr,
-            "%s: --base SEED --programs N, on 1 to 8 ranks; or --seed SEED --ranks R [--threads T] "
+            "%s: --base SEED --programs N, on 1 to 16 ranks; or --seed SEED --ranks R [--threads "
+            "T] "
             "[--scheduler S] [--mapping M] [--balance B] [--window W] [--rename BYTES] [--repeat "
             "N] [--verbose], "
             "on R ranks or "

@@ -211,7 +211,10 @@ const char *rounds_messages(const struct plan_messages *m)
         for (size_t k = message->first; k; k = m->item[k - 1].next) {
             const struct plan_item *item = &m->item[k - 1];
             bool version = item->version != PLAN_NONE;
-            put(&text, " %c%u", version ? 'v' : 'p', version ? item->version : item->piece);
+            if (version || item->piece != PLAN_NONE)
+                put(&text, " %c%u", version ? 'v' : 'p', version ? item->version : item->piece);
+            else
+                put(&text, " %u+%u", (unsigned)item->leaves.tree.first, item->leaves.n);
         }
     }
     return text.bytes;

@@ -36,7 +36,8 @@ const char *rounds_edges(const struct plan_round *round);
 const char *rounds_ranks(const struct plan_assignment *assignment);
 /* "0:1 5:01": by version that some rank needs, these ranks. */
 const char *rounds_needs(const struct plan_assignment *assignment);
-/* "0>1 in 0: v4 p0; ...": from, to, phase, items by version or piece. */
+/* "0>1 in 0: v4 p0 2+1; ...": from, to, phase, items by version or piece; of what goes from rank to
+ * rank its first leaf and their number. */
 const char *rounds_messages(const struct plan_messages *messages);
 /* "0 0 1": by node. */
 const char *rounds_phases(const struct plan_messages *messages);

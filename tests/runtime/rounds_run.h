@@ -10,7 +10,7 @@
  * in random order, rounds overlapping, and each task must find there what it found in the
  * reference. */
 
-enum { ROUNDS = 3, MAX_RANKS = 5, PLACES = 1024, QUEUE = 2048, PHASES = 64 };
+enum { ROUNDS = 3, MAX_RANKS = 16, PLACES = 1024, QUEUE = 256, PHASES = 64 };
 
 struct reference {
     const struct plan_source *source;

@@ -168,6 +168,49 @@ START_TEST(assign_sums)
 }
 END_TEST
 
+/* Five ranks have a leaf each, and all add up: in three rounds each sends one message to the rank
+ * 1, 2 and 4 places before it. Halves combine on the way; what the other one has is not sent again.
+ */
+START_TEST(sums_by_rounds)
+{
+    struct assigned s;
+    assign(&s, "8 8 8 8 8 8",
+           "r1 c0; r2 c0; r3 c0; r4 c0; r5 c0; r0 u1; r0 u2; r0 u3; r0 u4; r0 u5;",
+           (const int[]){0, 0, 1, 2, 3, 4}, 5);
+    ck_assert_str_eq(rounds_phases(&s.messages), "0 0 0 0 0 3 3 3 3 3 3");
+    ck_assert_str_eq(rounds_messages(&s.messages),
+                     "1>0 in 0: 1+1; 2>1 in 0: 2+1; 3>2 in 0: 3+1; 4>3 in 0: 4+1; 0>4 in 0: 0+1; "
+                     "2>0 in 1: 2+2; 3>1 in 1: 3+1 4+1; 4>2 in 1: 0+1 4+1; 0>3 in 1: 0+2; "
+                     "1>4 in 1: 1+1 2+1; "
+                     "4>0 in 2: 4+1; 0>1 in 2: 0+4; 1>2 in 2: 1+1; 2>3 in 2: 2+2; 3>4 in 2: 3+1");
+    part_is(&s, 0,
+            "receive from 1 in 0(w6) receive from 2 in 1(w7) receive from 4 in 2(w8) "
+            "task(r1 w9) send to 4 in 0(r9) partial(u9 u6 | 0+1) send to 3 in 1(r9) "
+            "partial(u9 u7 | 0+1) send to 1 in 2(r9) sum(u0 u9 u8 | 1+2) task(r0 u1)");
+    assigned_free(&s);
+}
+END_TEST
+
+/* What one of five ranks makes and all read goes on from those that have it; the value of the round
+ * before does, too. */
+START_TEST(values_by_rounds)
+{
+    struct assigned s;
+    assign(&s, "8 8 8 8 8 8", "w0; r0 u1; r0 u2; r0 u3; r0 u4; r0 u5;",
+           (const int[]){2, 0, 1, 2, 3, 4}, 5);
+    ck_assert_str_eq(rounds_phases(&s.messages), "0 3 3 0 3 3");
+    ck_assert_str_eq(rounds_messages(&s.messages),
+                     "2>1 in 0: v6; 2>0 in 1: v6; 1>4 in 1: v6; 2>3 in 2: v6");
+    part_is(&s, 1, "receive from 2 in 0(w6) send to 4 in 1(r6) task(r6 u2)");
+    assigned_free(&s);
+    assign(&s, "8 8 8 8 8 8", "r0 u1; r0 u2; r0 u3; r0 u4; r0 u5; w0;",
+           (const int[]){2, 0, 1, 2, 3, 4}, 5);
+    ck_assert_str_eq(rounds_messages(&s.messages),
+                     "2>1 in 0: v0; 2>0 in 1: v0; 1>4 in 1: v0; 2>3 in 2: v0");
+    assigned_free(&s);
+}
+END_TEST
+
 /* A rank combines what it has alone before it sends. */
 START_TEST(part_of_pieces)
 {
@@ -224,6 +267,8 @@ int main(void)
     tcase_add_test(test, exchange);
     tcase_add_test(test, assign_where_read);
     tcase_add_test(test, assign_sums);
+    tcase_add_test(test, sums_by_rounds);
+    tcase_add_test(test, values_by_rounds);
     tcase_add_test(test, part_of_pieces);
     tcase_add_test(test, part_copies);
     tcase_add_test(test, phases);

@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { OBJECTS = 8, FORKS = 14, GARBAGE = 0xbad };
+enum { OBJECTS = 8, FORKS = 14, FEW_RANKS = 5, GARBAGE = 0xbad };
 
 /* ---- Random rounds ---- */
 
@@ -60,6 +60,33 @@ static void random_round(struct rounds_made *made, uint64_t *random, int n_ranks
         made->source.flag = (uint32_t)draw(random, objects);
     if (made->source.flag != PLAN_NONE && made->object[made->source.flag].parent)
         made->source.flag = PLAN_NONE;
+}
+
+/* Sums of many ranks: contributions in random order, then tasks on some ranks that read the sum. A
+ * large one is made at one rank, from which its value goes to the others. */
+static void wide_sum(struct rounds_made *made, uint64_t *random, uint32_t sum)
+{
+    const uint64_t leaves = 1 + draw(random, 18), readers = 1 + draw(random, 12);
+    const uint32_t objects = (uint32_t)made->source.n_objects;
+    for (uint64_t i = 0; i < leaves + readers; i++) {
+        const uint32_t other = 2 + (uint32_t)draw(random, objects - 2);
+        const bool reads = i >= leaves;
+        rounds_fork(made);
+        rounds_access(made, reads ? sum : other, DUITE_R, 0);
+        rounds_access(made, reads ? other : sum, reads ? DUITE_RW : DUITE_CW, 0);
+        rounds_own(made);
+    }
+}
+
+static void wide_round(struct rounds_made *made, uint64_t *random)
+{
+    rounds_make(made, "", "");
+    made->source.n_objects = 6 + draw(random, 15);
+    for (size_t i = 0; i < made->source.n_objects; i++)
+        made->object[i].bytes = draw(random, 2) ? 8 : 4096;
+    const uint64_t sums = 1 + draw(random, 2);
+    for (uint64_t i = 0; i < sums; i++)
+        wide_sum(made, random, (uint32_t)draw(random, 2));
 }
 
 /* ---- What passes promise of their output alone ---- */
@@ -226,14 +253,17 @@ static void queues_begin(struct run *run)
                     run->queue[from][to][phase].messages = 0;
 }
 
-static void random_passes(struct run *run, uint64_t seed)
+static void random_passes(struct run *run, uint64_t seed, bool wide)
 {
     struct rounds_made made;
     struct plan_round round = {0};
     static struct reference reference;
     uint64_t random = seed;
-    int n_ranks = 1 + (int)draw(&random, MAX_RANKS), home[ROUNDS_MAX];
-    random_round(&made, &random, n_ranks);
+    int n_ranks = 1 + (int)draw(&random, wide ? MAX_RANKS : FEW_RANKS), home[ROUNDS_MAX];
+    if (wide)
+        wide_round(&made, &random);
+    else
+        random_round(&made, &random, n_ranks);
     for (size_t i = 0; i < made.source.n_objects; i++)
         home[i] = (int)draw(&random, (uint64_t)n_ranks);
     reference_run(&reference, &made.source);
@@ -261,7 +291,9 @@ START_TEST(random_rounds)
             ck_assert_ptr_nonnull(run->queue[from][to]);
         }
     for (uint64_t seed = 1; seed <= (unit_quick() ? 300 : 3000); seed++)
-        random_passes(run, seed);
+        random_passes(run, seed, false);
+    for (uint64_t seed = 1; seed <= (unit_quick() ? 100 : 1000); seed++)
+        random_passes(run, seed, true);
     for (int from = 0; from < MAX_RANKS; from++)
         for (int to = 0; to < MAX_RANKS; to++)
             free(run->queue[from][to]);

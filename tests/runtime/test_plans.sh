@@ -8,3 +8,4 @@ for n in 1 2 3; do
     ok "plans of $n ranks" ranks $n tests/runtime/ranks_plans
     ok "few tags on $n ranks" ranks $n tests/runtime/ranks_tags
 done
+for n in 5 8 16; do ok "plans of $n ranks, whose sums go from rank to rank" ranks $n tests/runtime/ranks_plans; done

@@ -120,6 +120,47 @@ START_TEST(packed_values)
 }
 END_TEST
 
+/* Eight hosts with two objects each: a graph of 16 tasks, two on each host. */
+static struct predict_result eight_hosts(struct trace_file_node *nodes, uint32_t n)
+{
+    struct trace_file file = predicted_trace(16, 8);
+    trace_file_graph(&file, 16, n, nodes);
+    trace_file_replay(&file, 16, n, nodes, 1);
+    struct predict_cluster eight = predicted_machine(8, 1);
+    eight.latency = 1 * MS;
+    return predicted(&file, &eight);
+}
+
+/* A sum of eight contributions, one a host, that each host reads: three messages a host, one after
+ * the other. In the rounds lists of 1, 2 and 4 leaves go; those that begin at an even place, or one
+ * divisible by four, are combined: 8 + (4 + 4 * 2) + (2 + 2 * 2 + 4 * 3) values. */
+START_TEST(sums_from_host_to_host)
+{
+    struct trace_file_node nodes[17] = {{FILE_SET, 0, 0, 1, {0}}};
+    for (uint32_t i = 0; i < 8; i++) {
+        nodes[1 + i] = (struct trace_file_node){FILE_R_CW, 1 * MS, 0, 2, {2 * i + 1, 0}};
+        nodes[9 + i] = (struct trace_file_node){FILE_R_W, 1 * MS, 0, 2, {0, 2 * i + 1}};
+    }
+    const struct predict_result r = eight_hosts(nodes, 17);
+    ck_assert_uint_eq(r.messages, 8 * 3);
+    ck_assert_uint_eq(r.bytes, 8 * (8 + 12 + 18));
+    nearly(r.makespan, (1 + 3 + 1) * MS);
+}
+END_TEST
+
+/* A value of one host that all read: seven messages, three one after the other to the last host. */
+START_TEST(values_from_host_to_host)
+{
+    struct trace_file_node nodes[9] = {{FILE_W, 1 * MS, 0, 1, {0}}};
+    for (uint32_t i = 0; i < 8; i++)
+        nodes[1 + i] = (struct trace_file_node){FILE_R_W, 1 * MS, 0, 2, {0, 2 * i + 1}};
+    const struct predict_result r = eight_hosts(nodes, 9);
+    ck_assert_uint_eq(r.messages, 7);
+    ck_assert_uint_eq(r.bytes, 7 * 8);
+    nearly(r.makespan, (1 + 3 + 1) * MS);
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("predicted costs");
@@ -130,6 +171,8 @@ int main(void)
     tcase_add_test(cases, each_host_adds_what_it_has);
     tcase_add_test(cases, forks_of_others_are_cheap);
     tcase_add_test(cases, packed_values);
+    tcase_add_test(cases, sums_from_host_to_host);
+    tcase_add_test(cases, values_from_host_to_host);
     suite_add_tcase(suite, cases);
     return unit_run(suite);
 }

@@ -1,6 +1,7 @@
 #!/bin/sh
 # Random programs on groups of 1 to 4 ranks with 1 to 4 threads, every scheduler, mapping and balancer, against the
-# interpreter; some on 2 ranks, where a sanitizer looks for leaks, and on 5 and 8.
+# interpreter; some on 2 ranks, where a sanitizer looks for leaks, and on 5, 7, 8 and 16,
+# where small sums go from rank to rank.
 # A program that goes wrong is printed with the options that run it again.
 . "${srcdir:-.}/tests/support/tap.sh"
 plan_later
@@ -9,6 +10,6 @@ programs=1500
 if quick; then programs=200; fi
 ok "$programs random programs" ranks 4 tests/runtime/random_programs --base 1 --programs $programs
 ok "$((programs / 10)) on 2 ranks" ranks 2 tests/runtime/random_programs --base 802000 --programs $((programs / 10))
-for n in 5 8; do
+for n in 5 7 8 16; do
     ok "$((programs / 100)) on $n ranks" ranks $n tests/runtime/random_programs --base 80${n}000 --programs $((programs / 100))
 done

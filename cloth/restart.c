@@ -156,7 +156,7 @@ static const double *numbers_in(const struct restart *restart, const struct save
     return (const double *)((const struct saved_phase *)phases_in(restart) + saved->n_phases);
 }
 
-/* Its sizes agree. */
+/* Its sizes agree, and its text ends. */
 static int open_saved(const struct restart *restart, struct saved *saved, struct cloth_error *error)
 {
     const struct output_part *part = restart->checkpoint.part + 1;
@@ -166,17 +166,19 @@ static int open_saved(const struct restart *restart, struct saved *saved, struct
     const uint64_t most = part->n / sizeof(double);
     if (saved->n_start > most || saved->n_drape > most || saved->now >= saved->n_phases ||
         part->n != sizeof *saved + saved->n_phases * sizeof(struct saved_phase) +
-                       (saved->n_start + saved->n_drape) * sizeof(double))
+                       (saved->n_start + saved->n_drape) * sizeof(double) ||
+        !memchr(saved->total.contact_pinch, 0, sizeof saved->total.contact_pinch))
         return refuse(restart, error);
     return CLOTH_OK;
 }
 
-static const char *word_of(const char *ended)
+/* NULL: it is none of them. */
+static const char *word_of(const char ended[16])
 {
     static const char *const words[] = {"stopped", "sewn", "end", "rest"};
     const char *found = NULL;
     for (size_t i = 0; i < sizeof words / sizeof *words; i++)
-        if (!strcmp(words[i], ended))
+        if (!strncmp(words[i], ended, 16))
             found = words[i];
     return found;
 }
@@ -208,6 +210,8 @@ static int take_phases(const struct restart *restart, struct phases *phases,
         done->simulated_seconds = of[i].simulated_seconds;
         done->wall_seconds = of[i].wall_seconds;
         done->ended = word_of(of[i].ended);
+        if (!code && !done->ended)
+            code = refuse(restart, error);
     }
     if (code)
         return code;

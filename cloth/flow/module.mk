@@ -2,6 +2,7 @@
 # seen of it.
 libduite_cloth_la_SOURCES += \
     cloth/flow/bodies.h \
+    cloth/flow/checkpoint/check.c \
     cloth/flow/checkpoint/checkpoint.h \
     cloth/flow/checkpoint/resume.c \
     cloth/flow/checkpoint/save.c \

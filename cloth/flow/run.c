@@ -292,7 +292,7 @@ static int code_of_cloth(int code)
         return CLOTH_E_MEMORY;
     if (code == DUITE_E_LOST || code == DUITE_E_MPI)
         return CLOTH_E_LOST;
-    if (code == FLOW_TANGLED)
+    if (code == FLOW_TANGLED || code == FLOW_UNFIT)
         return CLOTH_E_INPUT;
     return code > 0 ? CLOTH_E_RUN : CLOTH_E_LIBRARY;
 }

@@ -21,6 +21,9 @@ TESTS += tests/whole/test_policies.sh
 dist_check_SCRIPTS += tests/whole/test_live.sh
 TESTS += tests/whole/test_live.sh
 if HAVE_ZMQ
+check_PROGRAMS += tests/whole/spoil
+tests_whole_spoil_SOURCES = tests/whole/spoil.c tests/fuzz/fit.h
+tests_whole_spoil_LDADD = libduite_cloth.la libduite_core.la $(XXHASH_LIBS)
 check_PROGRAMS += tests/whole/live_peer
 tests_whole_live_peer_SOURCES = tests/whole/live_peer.c
 tests_whole_live_peer_LDADD = libduite_cloth.la libduite_core.la $(ZMQ_LIBS) $(XXHASH_LIBS)

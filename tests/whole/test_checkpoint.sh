@@ -5,6 +5,7 @@
 . "${srcdir:-.}/tests/support/tap.sh"
 skip_unless "$DUITE_CLOTH"
 plan_later
+here=$PWD
 cd "$scratch" || exit 99
 kills=${DUITE_KILLS:-2}
 mpi="${MPIRUN:-mpirun} --oversubscribe --bind-to none -n"
@@ -166,6 +167,44 @@ all() { for file in short/checkpoints/*; do : > "$file"; done; again sheet.yaml 
 ok "none that is whole" all
 fresh() { many && again sheet.yaml --quiet --end 0.01 --output short && test ! -e short/checkpoints; }
 ok "a run from the start leaves no checkpoints of an earlier one" fresh
+
+# What a hash does not show: a checkpoint made by hand, or by a fault of ours. Each is refused by a sentence, before a frame is written.
+spoil=$here/tests/whole/spoil
+spoilt() { # SCENE WHAT
+    rm -rf short && cp -r "kept.$1" short && "$spoil" "$(ls short/checkpoints/*.checkpoint | tail -n 1)" "$2" || return 1
+    end=
+    test "$1" = pile || end='--end 0.5' # of phases that are over
+    again "$1.yaml" --quiet --threads 1 $end --restart short --report spoilt.json
+    status=$?
+    cat said
+}
+by_hand() { # SCENE SENTENCE WHAT
+    spoilt "$1" "$3" && test $status = 2 && grep -qF -e "$2" said && cmp "kept.$1/cloth.pc2" short/cloth.pc2
+}
+part() { # SCENE END: a run up to there, with its checkpoint
+    rm -rf "kept.$1" && again "$1.yaml" --quiet --threads 1 --end "$2" --output "kept.$1" --checkpoint 100
+}
+ok "a part of a pile and of a run in phases" eval 'part pile 0.12 && part phases 0.5'
+while read -r scene what sentence; do
+    ok "spoilt by hand, $what" by_hand $scene "$sentence" $what
+done << 'END'
+pile length has a time or a length of a step that no run comes to
+pile time has a time or a length of a step that no run comes to
+pile flag has a flag that is neither on nor off
+pile frames counts steps or frames that cannot be
+pile ties has ties between blocks that this scene cannot have
+pile other has ties between blocks that this scene cannot have
+pile side has contacts between blocks or obstacles that this scene does not have
+pile kept has contacts between blocks or obstacles that this scene does not have
+pile point has places or contacts that no run comes to
+pile row has places or contacts that no run comes to
+pile corners has places or contacts that no run comes to
+pile place has places or contacts that no run comes to
+pile size has a block of another size
+phases word does not fit this scene
+END
+healed() { spoilt pile index && test $status = 0 && same_as pile short spoilt.json; }
+ok "an index that is spoilt is made again" healed
 
 # A limit on the size of files stands for a full disk: checkpoints are larger than all else. The last good one stays, and the run goes on.
 full() {

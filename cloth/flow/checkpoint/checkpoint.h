@@ -32,9 +32,27 @@ struct flow_saved {
 struct flow_saved_side {
     uint32_t side[2], room;
 };
+/* Where the arrays are in the bytes of a main program. */
+struct flow_saved_arrays {
+    struct flow_tied_blocks tied; /* all NULL: there are none */
+    const struct flow_saved_side *side;
+    const uint32_t *kept;
+};
 
-/* Bytes of main program of a checkpoint. Pure. */
+/* Bytes of main program of a checkpoint; its arrays, in bytes that are aligned to 8. Pure. */
 size_t flow_saved_main_bytes(const struct flow_saved *saved);
+struct flow_saved_arrays flow_saved_arrays(const struct flow_saved *saved,
+                                           const unsigned char *bytes);
+
+/* What is wrong with what the main program knew, as the end of a sentence; NULL: it may be that of
+ * a run of this flow, which is prepared. bytes: all of main_bytes, aligned to 8. Pure. (check.c) */
+const char *flow_saved_wrong(const struct flow *flow, const unsigned char *bytes);
+/* Whether n numbers are rows of places or speeds that a run may come to. Pure. (check.c) */
+bool flow_saved_is_place(const double *numbers, size_t n);
+/* Whether n bytes begin as a list of contacts that a block may keep (contact.h); its index is not
+ * looked at. On any rank of a run. Pure. (check.c) */
+bool flow_saved_are_contacts(const struct flow *flow, uint32_t block, const unsigned char *bytes,
+                             size_t n);
 
 /* What a checkpoint of a model has: fields, types and structures. Another version has another one.
  * Pure. */

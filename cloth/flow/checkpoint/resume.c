@@ -50,6 +50,9 @@ int flow_resume(struct flow *flow, struct flow_checkpoint from, struct flow_resu
                           "the run of the checkpoint is to end at %g s: an end may be later, not "
                           "%g s",
                           (double)saved.end * tick, (double)end * tick);
+    const char *wrong = flow_saved_wrong(flow, from.bytes);
+    if (wrong)
+        return refuse(error, wrong);
     flow->from = from;
     *at = (struct flow_resumed){.steps = saved.report.steps,
                                 .frames = is_complete(&saved, end) ? saved.lasting.next_frame
@@ -105,24 +108,14 @@ static void take_report(struct flow_state *state, const struct flow_saved *saved
 static int take_main(struct flow_state *state, const unsigned char *from)
 {
     struct flow_saved saved;
-    struct flow_tied_blocks tied = {0};
     memcpy(&saved, from, sizeof saved);
-    from += sizeof saved;
+    const struct flow_saved_arrays arrays = flow_saved_arrays(&saved, from);
     take_report(state, &saved);
-    if (saved.has_ties) {
-        tied.room = (void *)from;
-        tied.first = (void *)(tied.room + saved.n_blocks);
-        tied.other = tied.first + saved.n_blocks + 1;
-        tied.place = tied.other + saved.n_others;
-        from = (const void *)(tied.place + saved.n_others);
-    }
-    int code = saved.has_ties ? flow_ties_again(state, &tied) : DUITE_OK;
-    const struct flow_saved_side *side = (const void *)from;
+    int code = saved.has_ties ? flow_ties_again(state, &arrays.tied) : DUITE_OK;
     if (!code && model_seeks(state->flow->model))
-        code = flow_contact_meet_again(state, saved.n_meetings, side);
-    const uint32_t *kept = (const void *)(side + saved.n_meetings);
+        code = flow_contact_meet_again(state, saved.n_meetings, arrays.side);
     for (uint32_t b = 0; b < saved.n_kept; b++)
-        flow_contact_keep_again(state, b, kept[b]);
+        flow_contact_keep_again(state, b, arrays.kept[b]);
     return code;
 }
 
@@ -144,36 +137,68 @@ int flow_resume_main(struct flow_state *state)
 /* Where the objects of the next block are, on rank 0: bytes of the checkpoint. */
 struct load_args {
     uint64_t at;
+    uint32_t block; /* n_blocks: those of the run */
+    bool keeps;     /* the last one is the list of its contacts */
 };
 
+/* How many bytes an object has; UINT64_MAX: there are not so many. */
 static uint64_t bytes_at(const struct flow_checkpoint *from, uint64_t at)
 {
-    uint64_t bytes = UINT64_MAX;
-    if (at + sizeof bytes <= from->n)
-        memcpy(&bytes, from->bytes + at, sizeof bytes);
-    return bytes;
+    uint64_t bytes;
+    if (at > from->n || from->n - at < sizeof bytes)
+        return UINT64_MAX;
+    memcpy(&bytes, from->bytes + at, sizeof bytes);
+    return bytes <= from->n - at - sizeof bytes ? bytes : UINT64_MAX;
 }
 
-/* Where the object behind that one is. */
+/* Where the object behind that one is; UINT64_MAX: there is none. */
 static uint64_t next_at(uint64_t at, uint64_t bytes)
 {
-    return at + sizeof bytes + (bytes + 7) / 8 * 8;
+    return bytes == UINT64_MAX ? bytes : at + sizeof bytes + (bytes + 7) / 8 * 8;
+}
+
+/* Its index is made again. */
+static bool is_list(const duite_call *call, size_t i, uint64_t bytes)
+{
+    const struct load_args *args = call->args;
+    const duite_param *to = call->param + i;
+    const struct flow *flow = flow_of(call);
+    struct flow_list *list = to->data;
+    const uint32_t n_blocks = flow->tables.n_blocks;
+    if (bytes > to->max || !flow_saved_are_contacts(flow, args->block, to->data, bytes))
+        return false;
+    return !list->n || (flow_contact_index_room(list->n, n_blocks) <= to->max &&
+                        flow_contact_index(list, n_blocks) == bytes);
+}
+
+/* Of a block x and v come first. */
+static bool is_field(const duite_call *call, size_t i)
+{
+    const struct load_args *args = call->args;
+    const duite_param *to = call->param + i;
+    return args->block == flow_of(call)->tables.n_blocks || i > 1 ||
+           flow_saved_is_place(to->data, to->count);
 }
 
 /* Parameters: w what was saved. */
 static int load(const duite_call *call)
 {
+    const struct load_args *args = call->args;
     const struct flow_checkpoint *from = &flow_of(call)->from;
-    uint64_t at = ((const struct load_args *)call->args)->at;
+    uint64_t at = args->at;
     for (size_t i = 0; i < call->n_params; i++) {
         const duite_param *to = call->param + i;
         const size_t width = flow_saved_width(to->type);
         const uint64_t bytes = bytes_at(from, at);
-        if (bytes > to->max * width || next_at(at, bytes) > from->n)
-            return duite_fail(call, FLOW_NO_MEMORY, "the checkpoint has no whole block");
+        const bool list = args->keeps && i == call->n_params - 1;
+        if (list ? bytes > to->max : bytes != to->count * width)
+            return duite_fail(call, FLOW_UNFIT, "the checkpoint has a block of another size");
         memcpy(to->data, from->bytes + at + sizeof bytes, bytes);
-        if (bytes / width != to->count && duite_resize(call, i, bytes / width))
-            return duite_fail(call, FLOW_NO_MEMORY, "the checkpoint has a block of another size");
+        if (list ? !is_list(call, i, bytes) : !is_field(call, i))
+            return duite_fail(call, FLOW_UNFIT,
+                              "the checkpoint has places or contacts that no run comes to");
+        if (list && bytes != to->count && duite_resize(call, i, bytes))
+            return duite_fail(call, FLOW_NO_MEMORY, "out of memory for the contacts of a block");
         at = next_at(at, bytes);
     }
     return 0;
@@ -211,6 +236,8 @@ static int load_all(struct flow_state *state)
     int code = DUITE_OK;
     for (uint32_t b = 0; b <= n_blocks && !code; b++) {
         const struct flow_block_args block = {b};
+        args.block = b;
+        args.keeps = b < n_blocks && model_certifies(state->flow->model);
         const size_t n = (size_t)(flow_saved_objects(state, b, refs) - refs);
         if (n)
             code = duite_fork_at(state->rt, 0, &flow_load_block, &args, n, refs);

@@ -31,6 +31,23 @@ size_t flow_saved_main_bytes(const struct flow_saved *saved)
     return (bytes + 7) / 8 * 8;
 }
 
+struct flow_saved_arrays flow_saved_arrays(const struct flow_saved *saved,
+                                           const unsigned char *bytes)
+{
+    struct flow_saved_arrays arrays = {0};
+    const void *at = bytes + sizeof *saved;
+    if (saved->has_ties) {
+        arrays.tied.room = (void *)at; /* who has const arrays does not write */
+        arrays.tied.first = (void *)(arrays.tied.room + saved->n_blocks);
+        arrays.tied.other = arrays.tied.first + saved->n_blocks + 1;
+        arrays.tied.place = arrays.tied.other + saved->n_others;
+        at = arrays.tied.place + saved->n_others;
+    }
+    arrays.side = at;
+    arrays.kept = (const void *)(arrays.side + saved->n_meetings);
+    return arrays;
+}
+
 /* One that takes turns is the object whose turn it is. */
 static bool is_saved(const struct model *model, int field)
 {

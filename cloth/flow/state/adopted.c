@@ -9,14 +9,11 @@
 
 /* ---- Memory ---- */
 
-/* How many pairs (block, other block) there are at most: those of now, and of before, of three
- * corners each. */
-static size_t max_others(const struct flow_state *state)
+/* Those of now, and of before, of three corners each. */
+size_t flow_tied_others(uint32_t n_blocks, uint32_t n_joints, bool seeks)
 {
-    const struct flow_head *head = &state->head;
-    const size_t joints = 12 * (size_t)head->n_ties;
-    const size_t all = (size_t)head->n_blocks * head->n_blocks;
-    return joints < all && !model_seeks(state->flow->model) ? joints : all;
+    const size_t joints = 12 * (size_t)n_joints, all = (size_t)n_blocks * n_blocks;
+    return joints < all && !seeks ? joints : all;
 }
 
 static void take(struct flow_tied_blocks *blocks, size_t n_blocks, size_t n_others,
@@ -33,7 +30,8 @@ void flow_ties_take(struct flow_state *state)
     const struct flow_head *head = &state->head;
     struct flow_tied *tied = &state->tied;
     struct cloth_error *trouble = &state->flow->trouble;
-    const size_t others = max_others(state);
+    const size_t others =
+        flow_tied_others(head->n_blocks, head->n_ties, model_seeks(state->flow->model));
     if (!head->n_ties && !model_seeks(state->flow->model))
         return;
     tied->parent = cloth_alloc((size_t)head->n_pieces + 1, sizeof *tied->parent, trouble);

@@ -44,7 +44,8 @@ enum {
     FLOW_NO_FILTER,
     FLOW_TANGLED,
     FLOW_PINCHED,
-    FLOW_UNSEWN
+    FLOW_UNSEWN,
+    FLOW_UNFIT
 };
 
 /* Rows of a block's halo that blocks on one other rank read. */

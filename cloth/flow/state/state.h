@@ -362,6 +362,9 @@ void flow_ties_free(struct flow_state *state);
 int flow_ties_adopt(struct flow_state *state);
 /* What a checkpoint has of tied.now becomes that, before the first step. */
 int flow_ties_again(struct flow_state *state, const struct flow_tied_blocks *tied);
+/* How many pairs (block, other block) share ties at most, in a run with so many joints that come
+ * and go; seeks: contacts are ties, too. Pure. */
+size_t flow_tied_others(uint32_t n_blocks, uint32_t n_joints, bool seeks);
 /* Sets which free pieces of cloth are one for what a solve left of their momentum: those that the
  * joints of the step join; none is free where the records say that there are contacts. */
 int flow_ties_group(struct flow_state *state);

@@ -1,0 +1,132 @@
+/* spoil FILE WHAT: changes one thing in a checkpoint, whose length and hash fit again. So a restart
+ * sees what only its own checks keep away. */
+#include "cloth/flow/checkpoint/checkpoint.h"
+#include "cloth/flow/contact/contact.h"
+#include "cloth/output/checkpoint.h"
+#include "tests/fuzz/fit.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+struct opened {
+    unsigned char *phases, *flow; /* the second and the third part */
+    size_t n_phases, n_flow;
+    struct flow_saved *saved;
+    struct flow_saved_arrays arrays;
+};
+
+/* The payload of the first object that begins as a list with contacts does. NULL: none does. */
+static struct flow_list *find_list(const struct opened *of)
+{
+    for (size_t at = of->saved->main_bytes; at + sizeof(uint64_t) < of->n_flow;) {
+        uint64_t bytes;
+        memcpy(&bytes, of->flow + at, sizeof bytes);
+        struct flow_list *list = (void *)(of->flow + at + sizeof bytes);
+        const size_t contacts = flow_list_bytes(1, sizeof(struct flow_contact));
+        if (bytes > contacts && list->n && list->n < 1000 &&
+            flow_list_bytes(list->n, sizeof(struct flow_contact)) < bytes)
+            return list;
+        at += sizeof bytes + (bytes + 7) / 8 * 8;
+    }
+    return NULL;
+}
+
+/* Of the first contact. */
+static bool spoil_contact(const struct opened *of, const char *what)
+{
+    struct flow_list *list = find_list(of);
+    if (!list)
+        return false;
+    struct flow_contact *contact = (void *)(list + 1);
+    if (!strcmp(what, "point"))
+        contact->point[0] = UINT32_MAX;
+    else if (!strcmp(what, "row"))
+        contact->at.row[0] = 1u << 30;
+    else if (!strcmp(what, "corners"))
+        contact->at.n = 77;
+    else if (!strcmp(what, "index"))
+        ((uint32_t *)(void *)(contact + list->n))[1] = 1u << 30;
+    else
+        return false;
+    return true;
+}
+
+static bool spoil_main(const struct opened *of, const char *what)
+{
+    struct flow_saved *saved = of->saved;
+    if (!strcmp(what, "length"))
+        saved->lasting.grid.length = 0;
+    else if (!strcmp(what, "time"))
+        saved->lasting.grid.now = UINT64_MAX;
+    else if (!strcmp(what, "flag"))
+        *(unsigned char *)&saved->lasting.over = 7;
+    else if (!strcmp(what, "frames"))
+        saved->lasting.certain.next = UINT64_MAX;
+    else if (!strcmp(what, "ties"))
+        saved->has_ties = !saved->has_ties;
+    else if (!strcmp(what, "other") && saved->n_others)
+        of->arrays.tied.other[0] = saved->n_blocks;
+    else if (!strcmp(what, "side") && saved->n_meetings)
+        ((struct flow_saved_side *)of->arrays.side)->side[1] = 1u << 30;
+    else if (!strcmp(what, "kept") && saved->n_kept)
+        *(uint32_t *)of->arrays.kept = UINT32_MAX;
+    else
+        return false;
+    saved->main_bytes = flow_saved_main_bytes(saved);
+    return true;
+}
+
+/* Of the first object of the first block, its places; of the phases, the word for how one ended. */
+static bool spoil_rest(const struct opened *of, const char *what)
+{
+    unsigned char *first = of->flow + of->saved->main_bytes;
+    const double none = NAN;
+    const uint64_t much = UINT64_MAX - 2;
+    if (!strcmp(what, "size")) {
+        memcpy(first, &much, sizeof much);
+    } else if (!strcmp(what, "place")) {
+        memcpy(first + sizeof much, &none, sizeof none);
+    } else if (!strcmp(what, "word")) {
+        unsigned char *word = memmem(of->phases, of->n_phases, "end\0\0\0\0\0", 8);
+        if (word)
+            memset(word, 'x', 16);
+        return word;
+    } else {
+        return false;
+    }
+    return true;
+}
+
+static bool write_back(const struct output_checkpoint *checkpoint, const char *path)
+{
+    const struct output_part *last = checkpoint->part + OUTPUT_CHECKPOINT_PARTS - 1;
+    const unsigned char *end = (const unsigned char *)last->bytes + (last->n + 7) / 8 * 8;
+    const size_t n = (size_t)(end + sizeof(uint64_t) - checkpoint->bytes);
+    FILE *file = fopen(path, "wb");
+    fit_checkpoint(checkpoint->bytes, n);
+    const bool whole = file && fwrite(checkpoint->bytes, 1, n, file) == n;
+    return file && fclose(file) == 0 && whole;
+}
+
+int main(int argc, char **argv)
+{
+    struct output_checkpoint checkpoint;
+    struct cloth_error error = {0};
+    if (argc != 3 || output_checkpoint_read(&checkpoint, argv[1], &error)) {
+        fprintf(stderr, "usage: spoil CHECKPOINT WHAT: %s\n", error.text);
+        return 99;
+    }
+    struct opened of = {.phases = (unsigned char *)checkpoint.part[1].bytes,
+                        .n_phases = checkpoint.part[1].n,
+                        .flow = (unsigned char *)checkpoint.part[2].bytes,
+                        .n_flow = checkpoint.part[2].n};
+    of.saved = (void *)of.flow;
+    of.arrays = flow_saved_arrays(of.saved, of.flow);
+    const bool spoilt =
+        spoil_main(&of, argv[2]) || spoil_contact(&of, argv[2]) || spoil_rest(&of, argv[2]);
+    const bool written = spoilt && write_back(&checkpoint, argv[1]);
+    output_checkpoint_free(&checkpoint);
+    fprintf(stderr, "%s: %s\n", argv[2], written ? "spoilt" : "not there");
+    return written ? 0 : 99;
+}

@@ -56,40 +56,16 @@ void *base_grow(void *array, size_t *capacity, size_t needed, size_t element)
 /* A free block is in one place: a magazine, which one thread or the common store holds. Blocks are
  * named by pointers in magazines, not linked, so that taking and giving never touch a block's own
  * memory: it may still lie in another core's cache. After Bonwick & Adams, Magazines and vmem,
- * USENIX 2001. `lock` is held for a few instructions, once per MAGAZINE blocks.
+ * USENIX 2001. `lock` is held for a few instructions, once per magazine.
  *
  * New blocks are cut one after another from a thread's region, so that what is taken together lies
  * together. */
 
-/* Sanitizers must see when each block is taken and given back. */
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define DIRECT 1
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-#define DIRECT 1
-#endif
-#endif
-#ifndef DIRECT
-#define DIRECT 0
-#endif
-
-enum {
-    GRAIN = 8,
-    LARGEST = 1536, /* bytes of a block */
-    N_SIZES = LARGEST / GRAIN + 1,
-    AHEAD = 2,
-    MAGAZINE = 30 /* blocks: a magazine takes four cache lines */
-};
+enum { N_SIZES = BASE_POOL_LARGEST / BASE_POOL_GRAIN + 1 };
 
 /* A new chunk is as large as all chunks before it together, within these limits. */
 #define SMALLEST_CHUNK ((size_t)1 << 16)
 #define LARGEST_CHUNK  ((size_t)1 << 22)
-
-struct magazine {
-    struct magazine *next; /* in the store */
-    size_t n;
-    void *block[MAGAZINE];
-};
 
 struct chunk {
     struct chunk *next;
@@ -102,27 +78,20 @@ struct region {
 };
 
 static atomic_flag lock = ATOMIC_FLAG_INIT;
-static struct magazine *store[N_SIZES]; /* with blocks */
-static struct magazine *empties;
+static _Atomic(struct base_magazine *) store[N_SIZES]; /* with blocks; written under `lock` */
+static struct base_magazine *empties;
 static struct chunk *chunks;
 static struct region *regions;
 static size_t chunk_bytes; /* of all chunks */
 static unsigned runtimes;
 
-/* The magazines of one size that a thread holds. Blocks are taken from and given to `loaded`;
- * `spare` is full or empty. */
-struct shelf {
-    struct magazine *loaded, *spare;
-};
-
-/* What a thread has at hand. By the initial-exec model it is reached without a call. For variables
- * of that model a program that loads this library late has room for some hundred bytes only. So the
- * shelves themselves are cut from a region when the thread first needs them (shelves_own). Until
- * then it has those that stay empty. */
+/* What a thread has at hand. For variables of the initial-exec model a program that loads this
+ * library late has room for some hundred bytes only. So the shelves themselves are cut from a
+ * region when the thread first needs them (shelves_own). Until then it has those that stay empty.
+ */
+static struct base_shelf no_shelves[N_SIZES];
+_Thread_local struct base_shelf *base_shelves = no_shelves;
 #define THREAD_OWN static _Thread_local __attribute__((tls_model("initial-exec")))
-
-static struct shelf no_shelves[N_SIZES];
-THREAD_OWN struct shelf *shelves = no_shelves;
 THREAD_OWN char *region, *region_end;
 
 static void pool_lock(void)
@@ -171,7 +140,7 @@ static bool region_next(void)
 /* Blocks of whole cache lines begin with one, all others with a multiple of 16 bytes. */
 static void *region_cut(size_t bytes)
 {
-    size_t align = bytes % BASE_LINE ? 2 * GRAIN : BASE_LINE;
+    size_t align = bytes % BASE_LINE ? 2 * BASE_POOL_GRAIN : BASE_LINE;
     for (;;) {
         size_t skip = -(uintptr_t)region % align;
         if ((size_t)(region_end - region) >= skip + bytes) {
@@ -188,7 +157,7 @@ static void *region_cut(size_t bytes)
 static void region_leave(char *begin, char *end)
 {
     size_t skip = -(uintptr_t)begin % BASE_LINE;
-    if ((size_t)(end - begin) < skip + LARGEST)
+    if ((size_t)(end - begin) < skip + BASE_POOL_LARGEST)
         return;
     struct region *left = (struct region *)(void *)(begin + skip);
     left->end = end;
@@ -201,69 +170,67 @@ static void region_leave(char *begin, char *end)
 /* ---- Magazines ---- */
 
 /* The calling thread's shelves; NULL without memory. */
-static struct shelf *shelves_own(void)
+static struct base_shelf *shelves_own(void)
 {
-    if (shelves != no_shelves)
-        return shelves;
-    struct shelf *own = region_cut(sizeof no_shelves);
+    if (base_shelves != no_shelves)
+        return base_shelves;
+    struct base_shelf *own = region_cut(sizeof no_shelves);
     if (!own)
         return NULL;
     memset(own, 0, sizeof no_shelves);
-    return shelves = own;
+    return base_shelves = own;
 }
 
 /* Blocks of an odd number of grains come in pairs, so that nothing is lost between them and others.
  */
 static void *block_new(size_t size)
 {
-    size_t bytes = size * GRAIN;
+    size_t bytes = size * BASE_POOL_GRAIN;
     char *block = region_cut(size % 2 ? 2 * bytes : bytes);
     if (block && size % 2)
         base_pool_give(block + bytes, bytes);
     return block;
 }
 
-static void *store_take(size_t size)
+/* A full magazine of the store, or NULL; `empty`, which may be NULL, goes there for it. */
+static struct base_magazine *store_exchange(struct base_magazine *empty, size_t size)
 {
-    struct shelf *shelf = &shelves[size];
+    /* While blocks get more and more nothing is there: seen without the lock. */
+    if (!atomic_load_explicit(&store[size], memory_order_relaxed))
+        return NULL;
     pool_lock();
-    struct magazine *full = store[size];
+    struct base_magazine *full = atomic_load_explicit(&store[size], memory_order_relaxed);
     if (full)
-        store[size] = full->next;
-    if (full && shelf->spare) {
-        shelf->spare->next = empties;
-        empties = shelf->spare;
+        atomic_store_explicit(&store[size], full->next, memory_order_relaxed);
+    if (full && empty) {
+        empty->next = empties;
+        empties = empty;
     }
     pool_unlock();
-    if (!full)
+    return full;
+}
+
+void *base_pool_take_more(size_t size)
+{
+    struct base_shelf *shelf = shelves_own();
+    if (!shelf)
+        return NULL;
+    shelf += size;
+    struct base_magazine *full = shelf->spare;
+    if ((!full || !full->n) && !(full = store_exchange(full, size)))
         return block_new(size);
     shelf->spare = shelf->loaded;
     shelf->loaded = full;
     return full->block[--full->n];
 }
 
-/* This and magazine_give stand apart, so that the short way to `loaded` saves no registers. */
-__attribute__((noinline)) static void *magazine_take(size_t size)
-{
-    struct shelf *shelf = shelves_own();
-    if (!shelf)
-        return NULL;
-    shelf += size;
-    struct magazine *spare = shelf->spare;
-    if (!spare || !spare->n)
-        return store_take(size);
-    shelf->spare = shelf->loaded;
-    shelf->loaded = spare;
-    return spare->block[--spare->n];
-}
-
 /* Both magazines are full, or not there yet. Without memory for one more, or for the shelves, the
  * block is lost until the last runtime ends. */
 static void store_give(void *block, size_t size)
 {
-    struct shelf *shelf = &shelves[size];
+    struct base_shelf *shelf = &base_shelves[size];
     pool_lock();
-    struct magazine *empty = empties;
+    struct base_magazine *empty = empties;
     if (empty)
         empties = empty->next;
     pool_unlock();
@@ -271,8 +238,8 @@ static void store_give(void *block, size_t size)
         return;
     if (shelf->spare) {
         pool_lock();
-        shelf->spare->next = store[size];
-        store[size] = shelf->spare;
+        shelf->spare->next = atomic_load_explicit(&store[size], memory_order_relaxed);
+        atomic_store_explicit(&store[size], shelf->spare, memory_order_relaxed);
         pool_unlock();
     }
     shelf->spare = shelf->loaded;
@@ -281,13 +248,13 @@ static void store_give(void *block, size_t size)
     empty->n = 1;
 }
 
-__attribute__((noinline)) static void magazine_give(void *block, size_t size)
+void base_pool_give_more(void *block, size_t size)
 {
-    struct shelf *shelf = shelves_own();
+    struct base_shelf *shelf = shelves_own();
     if (!shelf)
         return;
     shelf += size;
-    struct magazine *spare = shelf->spare;
+    struct base_magazine *spare = shelf->spare;
     if (!spare || spare->n) {
         store_give(block, size);
         return;
@@ -297,45 +264,20 @@ __attribute__((noinline)) static void magazine_give(void *block, size_t size)
     spare->block[spare->n++] = block;
 }
 
-void *base_pool_take(size_t bytes)
-{
-    size_t size = (bytes + GRAIN - 1) / GRAIN;
-    if (DIRECT || bytes > LARGEST)
-        return base_alloc(bytes);
-    struct magazine *loaded = shelves[size].loaded;
-    if (!loaded || !loaded->n)
-        return magazine_take(size);
-    /* A block that will be taken soon may lie in another core's cache: fetch it. */
-    if (loaded->n > AHEAD)
-        for (size_t line = 0; line < bytes; line += BASE_LINE)
-            base_prefetch((char *)loaded->block[loaded->n - 1 - AHEAD] + line);
-    return loaded->block[--loaded->n];
-}
-
-void base_pool_give(void *block, size_t bytes)
-{
-    size_t size = (bytes + GRAIN - 1) / GRAIN;
-    if (DIRECT || bytes > LARGEST || !block) {
-        base_free(block);
-        return;
-    }
-    struct magazine *loaded = shelves[size].loaded;
-    if (loaded && loaded->n < MAGAZINE)
-        loaded->block[loaded->n++] = block;
-    else
-        magazine_give(block, size);
-}
-
 /* ---- Threads and runtimes ---- */
 
 /* The calling thread holds the lock. */
-static void magazine_put_away(struct magazine *magazine, size_t size)
+static void magazine_put_away(struct base_magazine *magazine, size_t size)
 {
     if (!magazine)
         return;
-    struct magazine **list = magazine->n ? &store[size] : &empties;
-    magazine->next = *list;
-    *list = magazine;
+    if (magazine->n) {
+        magazine->next = atomic_load_explicit(&store[size], memory_order_relaxed);
+        atomic_store_explicit(&store[size], magazine, memory_order_relaxed);
+    } else {
+        magazine->next = empties;
+        empties = magazine;
+    }
 }
 
 void base_pool_enter(void)
@@ -347,8 +289,8 @@ void base_pool_enter(void)
 
 void base_pool_thread_end(void)
 {
-    struct shelf *own = shelves;
-    shelves = no_shelves;
+    struct base_shelf *own = base_shelves;
+    base_shelves = no_shelves;
     if (own != no_shelves) {
         pool_lock();
         for (size_t size = 0; size < N_SIZES; size++) {
@@ -371,7 +313,7 @@ void base_pool_leave(void)
         chunk = chunks;
         chunks = NULL;
         for (size_t size = 0; size < N_SIZES; size++)
-            store[size] = NULL;
+            atomic_store_explicit(&store[size], NULL, memory_order_relaxed);
         empties = NULL;
         regions = NULL;
         chunk_bytes = 0;

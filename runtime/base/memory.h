@@ -36,13 +36,96 @@ static inline void base_prefetch(const void *line)
 
 /* Small blocks that live briefly and are often freed on another thread than the one that took them:
  * tasks, versions, messages. Each thread keeps some of each size at hand, and whole batches move
- * between threads. (The general allocator would lock, and a futex costs more than a task.) */
+ * between threads. (The general allocator would lock, and a futex costs more than a task.)
+ *
+ * Taking and giving are inline as far as they end with what the thread has at hand: most sizes are
+ * constants, and little is left then. */
+
+/* Sanitizers must see when each block is taken and given back. */
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define BASE_POOL_DIRECT 1
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+#define BASE_POOL_DIRECT 1
+#endif
+#endif
+#ifndef BASE_POOL_DIRECT /* the tests in tests/model set it, too */
+#define BASE_POOL_DIRECT 0
+#endif
+
+enum {
+    BASE_POOL_GRAIN = 8,
+    BASE_POOL_LARGEST = 1536, /* bytes of a block */
+    BASE_POOL_AHEAD = 2,
+    BASE_POOL_MAGAZINE = 30 /* blocks: a magazine takes four cache lines */
+};
+
+struct base_magazine {
+    struct base_magazine *next; /* in the store */
+    size_t n;
+    void *block[BASE_POOL_MAGAZINE];
+};
+
+/* The magazines of one size that a thread holds. Blocks are taken from and given to `loaded`;
+ * `spare` is full or empty. */
+struct base_shelf {
+    struct base_magazine *loaded, *spare;
+};
+
+/* By size, in grains. By the initial-exec model they are reached without a call. */
+extern _Thread_local struct base_shelf *base_shelves __attribute__((tls_model("initial-exec")));
+
+/* What is left when nothing fitting is at hand; sizes in grains. */
+void *base_pool_take_more(size_t size);
+void base_pool_give_more(void *memory, size_t size);
+
+#if !BASE_POOL_DIRECT
+static inline void *pool_take_size(size_t size)
+{
+    struct base_magazine *loaded = base_shelves[size].loaded;
+    if (!loaded || !loaded->n)
+        return base_pool_take_more(size);
+    /* A block that will be taken soon may lie in another core's cache: fetch it. */
+    if (loaded->n > BASE_POOL_AHEAD)
+        for (size_t line = 0; line < size * BASE_POOL_GRAIN; line += BASE_LINE)
+            base_prefetch((char *)loaded->block[loaded->n - 1 - BASE_POOL_AHEAD] + line);
+    return loaded->block[--loaded->n];
+}
+
+static inline void pool_give_size(void *block, size_t size)
+{
+    struct base_magazine *loaded = base_shelves[size].loaded;
+    if (loaded && loaded->n < BASE_POOL_MAGAZINE)
+        loaded->block[loaded->n++] = block;
+    else
+        base_pool_give_more(block, size);
+}
+#endif
 
 /* size bytes, not cleared, aligned to a cache line if they are whole lines, to 16 bytes if they are
  * a multiple of that, else to 8. NULL without memory. */
-void *base_pool_take(size_t size);
+static inline void *base_pool_take(size_t bytes)
+{
+#if !BASE_POOL_DIRECT
+    if (bytes <= BASE_POOL_LARGEST)
+        return pool_take_size((bytes + BASE_POOL_GRAIN - 1) / BASE_POOL_GRAIN);
+#endif
+    return base_alloc(bytes);
+}
+
 /* Gives back what was taken with the same size, on any thread. NULL is fine. */
-void base_pool_give(void *memory, size_t size);
+static inline void base_pool_give(void *block, size_t bytes)
+{
+#if !BASE_POOL_DIRECT
+    if (block && bytes <= BASE_POOL_LARGEST) {
+        pool_give_size(block, (bytes + BASE_POOL_GRAIN - 1) / BASE_POOL_GRAIN);
+        return;
+    }
+#else
+    (void)bytes;
+#endif
+    base_free(block);
+}
 
 /* A runtime begins, and ends; with the last one all memory goes back. */
 void base_pool_enter(void);

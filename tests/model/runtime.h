@@ -13,6 +13,7 @@
 
 #include "tests/model/atomics.h"
 
+#define BASE_POOL_DIRECT 1
 #include "runtime/base/memory.h"
 
 void *base_alloc(size_t size)
@@ -41,12 +42,16 @@ void *base_grow(void *array, size_t *capacity, size_t needed, size_t element)
     return larger;
 }
 
-void *base_pool_take(size_t size)
+/* What of the library is linked as it is finds nothing at hand. */
+static struct base_shelf no_shelves[BASE_POOL_LARGEST / BASE_POOL_GRAIN + 1];
+_Thread_local struct base_shelf *base_shelves = no_shelves;
+
+void *base_pool_take_more(size_t size)
 {
-    return explore_alloc(size);
+    return explore_alloc(size * BASE_POOL_GRAIN);
 }
 
-void base_pool_give(void *memory, size_t size)
+void base_pool_give_more(void *memory, size_t size)
 {
     (void)memory;
     (void)size;

@@ -10,7 +10,7 @@ tests_negative_ranks_blocking_LDADD = libduite_core.la
 tests_negative_ranks_groups_SOURCES = tests/negative/ranks_groups.c $(MISUSE)
 tests_negative_ranks_groups_LDADD = libduite_core.la
 STARVE = tests/negative/starve.c tests/negative/starve.h
-STARVE_WRAPS = -Wl,--wrap=malloc,--wrap=realloc,--wrap=aligned_alloc,--wrap=base_pool_take
+STARVE_WRAPS = -Wl,--wrap=malloc,--wrap=realloc,--wrap=aligned_alloc,--wrap=base_pool_take_more,--wrap=base_pool_give_more
 tests_negative_ranks_memory_SOURCES = tests/negative/ranks_memory.c $(MISUSE) $(STARVE)
 tests_negative_ranks_memory_LDADD = libduite_core.la
 tests_negative_ranks_memory_LDFLAGS = $(STARVE_WRAPS)

@@ -1,8 +1,10 @@
-/* The linker puts the functions below in place of those of the C library, and of the pool of small
- * blocks, which rarely asks it (module.mk). */
+/* The linker puts the functions below in place of those of the C library, and of what the pool of
+ * small blocks does when nothing is at hand (module.mk). The latter come from the C library here
+ * and go back to it. So nothing ever is at hand, and each block may fail. */
 
 #include "tests/negative/starve.h"
 
+#include "runtime/base/memory.h"
 #include "tests/negative/misuse.h"
 
 #include <limits.h>
@@ -20,18 +22,25 @@ static int fails(void)
     return atomic_fetch_sub(&left, 1) == 1;
 }
 
-void *__real_base_pool_take(size_t size);
 void *__real_malloc(size_t size);
 void *__real_realloc(void *memory, size_t size);
 void *__real_aligned_alloc(size_t alignment, size_t size);
-void *__wrap_base_pool_take(size_t size);
+void *__wrap_base_pool_take_more(size_t size);
+void __wrap_base_pool_give_more(void *memory, size_t size);
 void *__wrap_malloc(size_t size);
 void *__wrap_realloc(void *memory, size_t size);
 void *__wrap_aligned_alloc(size_t alignment, size_t size);
 
-void *__wrap_base_pool_take(size_t size)
+void *__wrap_base_pool_take_more(size_t size)
 {
-    return fails() ? NULL : __real_base_pool_take(size);
+    const size_t lines = (size * BASE_POOL_GRAIN + BASE_LINE - 1) / BASE_LINE;
+    return fails() ? NULL : __real_aligned_alloc(BASE_LINE, lines * BASE_LINE);
+}
+
+void __wrap_base_pool_give_more(void *memory, size_t size)
+{
+    (void)size;
+    free(memory);
 }
 
 void *__wrap_malloc(size_t size)

@@ -9,6 +9,8 @@
 #include "runtime/trace/trace.h"
 #include "runtime/workers/workers.h"
 
+#include <pthread.h>
+
 /* A running runtime: its parts, and the error that the next get, wait or stop still has to return.
  * Main thread only. */
 struct duite {
@@ -17,6 +19,8 @@ struct duite {
     struct comm *comm;   /* NULL: one rank */
     struct check *check; /* NULL: not in checking mode */
     struct work_pool *pool;
+    struct worker *worker; /* the main thread's; as is: */
+    pthread_t thread;
     struct trace *trace; /* NULL: nothing is written down */
     bool traced;         /* the trace is closed */
     struct base_monitor monitor;

@@ -138,18 +138,41 @@ static bool fork_is_pruned(duite *rt, const duite_kernel *kernel, const void *ar
     return true;
 }
 
-int duite_fork(duite *rt, const duite_kernel *kernel, const void *args, size_t n,
-               const duite_object *objects)
+/* Whether a fork outside of bodies may be made and nothing is to be done for it beside the task, as
+ * for most: by the main program, on one rank, without a trace, while nothing is recorded or to be
+ * settled. */
+static inline bool fork_is_direct(const duite *rt)
+{
+    return rt && !rt->comm && !rt->trace && !rt->building && !rt->graph.table.n_unsettled &&
+           !rt->graph.broken && !rt->mpi_held && pthread_equal(pthread_self(), rt->thread);
+}
+
+static int fork_other(duite *rt, const duite_kernel *kernel, const void *args, size_t n,
+                      const duite_object *objects)
 {
     if (fork_is_pruned(rt, kernel, args, n, objects))
         return DUITE_OK;
-    struct duite_call_private *body = api_body(rt);
-    if (body)
-        return api_body_fork(body, NULL, kernel, args, n, objects);
     int code = api_enter_any(rt, "duite_fork");
     return code ? code
                 : fork_task(rt, &(struct task_options){.at = TASK_ANYWHERE}, kernel, args, n,
                             objects);
+}
+
+int duite_fork(duite *rt, const duite_kernel *kernel, const void *args, size_t n,
+               const duite_object *objects)
+{
+    static const struct task_options plain = {.at = TASK_ANYWHERE};
+    struct duite_call_private *body = api_body(rt);
+    if (body)
+        return api_body_fork(body, NULL, kernel, args, n, objects);
+    if (!fork_is_direct(rt))
+        return fork_other(rt, kernel, args, n, objects);
+    const int code = task_fork(&rt->graph.root, rt->worker, &plain, kernel, args, n, objects);
+    if (code || rt->graph.broken)
+        return api_remember(rt, code);
+    if (rt->window)
+        api_throttle(rt);
+    return DUITE_OK;
 }
 
 int duite_fork_at(duite *rt, int rank, const duite_kernel *kernel, const void *args, size_t n,

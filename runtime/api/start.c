@@ -113,6 +113,8 @@ static int instance_start_workers(duite *rt, const duite_options *options, int c
                                  .spin_seconds = rt->oversubscribed ? 0 : options->spin_seconds,
                                  .cores = bind ? cores.unit + host.before : NULL});
     work_cores_free(&cores);
+    rt->worker = code ? NULL : work_main(rt->pool);
+    rt->thread = pthread_self();
     return code;
 }
 

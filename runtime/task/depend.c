@@ -242,42 +242,12 @@ static int depend_each(struct task_fork_call *call, size_t *made)
     return code;
 }
 
-/* The short way of the same, for most tasks: the kernel is plain, and no other rank has part in the
- * task. It does as depend_each would; an access that needs more, as contributions do, goes to
- * access_depend, which stands apart so that this way stays short. */
-static int depend_here(struct task_fork_call *call, size_t *made)
-{
-    struct task_graph *const graph = call->scope->graph;
-    struct task *const task = call->task;
-    const duite_mode *const mode = call->kernel->access;
-    const size_t n = call->n;
-    int code = DUITE_OK;
-    for (size_t i = 0; i < n && !code; i++) {
-        struct data_object *object = call->object[i];
-        struct data_version *version = object->current;
-        task->access[i].waiter.mode = mode[i];
-        *made = i;
-        if (object->leaves || (!version && mode[i] != DUITE_W)) {
-            code = access_depend(call, i, mode[i]);
-        } else if (mode[i] == DUITE_R) {
-            task_read(task, i, version, &call->done);
-        } else {
-            task_note_version(object, graph->rank);
-            if (mode[i] == DUITE_W && graph->rename_max)
-                version = task_rename(graph, call->worker, object);
-            code = task_overwrite(graph, task, i, object, version, &call->done);
-        }
-    }
-    return code;
-}
-
 int task_depend(struct task_fork_call *call)
 {
     struct task *task = call->task;
     struct task_graph *graph = call->scope->graph;
-    const bool here = task && call->plain && (graph->n_ranks == 1 || call->scope->depth);
     size_t made = 0;
-    const int code = here ? depend_here(call, &made) : depend_each(call, &made);
+    const int code = depend_each(call, &made);
     if (code && task)
         task_void(graph, call->worker, task, made, call->done);
     else if (task)

@@ -1,20 +1,18 @@
 /* Finishing, the last stage of a task: what it wrote is published once, what it read is released,
  * and the task is freed. What comes from other ranks, or does not, is published by the same means.
  */
-#include "runtime/task/internal.h"
+#include "runtime/task/ready.h"
 
-#include "runtime/base/memory.h"
-
-static void access_release(struct task_graph *graph, struct worker *worker,
+static inline void access_release(struct task_graph *graph, struct worker *worker,
                            const struct task_access *access)
 {
     switch (access->waiter.mode) {
     case DUITE_R:
-        task_release(graph, worker, access->in);
+        ready_release(graph, worker, access->in);
         break;
     case DUITE_W:
     case DUITE_RW:
-        task_publish(graph, worker, access->out);
+        ready_publish(graph, worker, access->out);
         break;
     case DUITE_CW:
         task_wake(graph, worker, data_sum_release(access->sum));

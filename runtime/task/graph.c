@@ -35,7 +35,8 @@ static int kernel_check(const duite_kernel *kernel, uint32_t index, struct task_
         return base_error(DUITE_E_KERNEL, "kernel %u of the list has no name", index);
     if (!kernel->body)
         return base_error(DUITE_E_KERNEL, "kernel %s has no body", kernel->name);
-    *fixed = (struct task_fixed){.plain = kernel->variadic == DUITE_NONE && !kernel->replicated};
+    *fixed = (struct task_fixed){.kernel = kernel,
+                                 .plain = kernel->variadic == DUITE_NONE && !kernel->replicated};
     for (uint32_t i = 0; i < DUITE_MAX_ACCESS; i++) {
         duite_mode mode = kernel->access[i];
         if ((int)mode < DUITE_NONE || mode > DUITE_CWP)
@@ -51,7 +52,9 @@ static int kernel_check(const duite_kernel *kernel, uint32_t index, struct task_
     if ((int)kernel->variadic < DUITE_NONE || kernel->variadic > DUITE_CWP)
         return base_error(DUITE_E_KERNEL, "kernel %s: `variadic` has no such mode: %d",
                           kernel->name, (int)kernel->variadic);
-    fixed->plain &= fixed->n <= TASK_FEW;
+    const size_t grains = task_grains(fixed->n, kernel->args_size);
+    fixed->plain &= fixed->n <= TASK_FEW && grains <= UINT32_MAX;
+    fixed->grains = (uint32_t)grains;
     fixed->owner[0] = task_owner(kernel->access, kernel->variadic, fixed->n);
     fixed->owner[1] = task_owner(kernel->access, kernel->variadic, (size_t)fixed->n + 1);
     return kernel_check_replicated(kernel);

@@ -16,6 +16,13 @@ struct task *task_new(struct task_scope *scope, enum task_type type, size_t n, s
 /* The same, not counted. NULL without memory: nothing else happened. */
 struct task *task_make(struct task_scope *scope, enum task_type type, size_t n, size_t extra);
 
+/* How large such a task is, in units of TASK_GRAIN. */
+static inline size_t task_grains(size_t n, size_t extra)
+{
+    return (sizeof(struct task) + n * sizeof(struct task_access) + extra + TASK_GRAIN - 1) /
+           TASK_GRAIN;
+}
+
 /* Takes `done` and the hold of the fork from `pending`; at 0 the task is ready. */
 void task_settled(struct task_graph *graph, struct worker *worker, struct task *task,
                   uint32_t done);
@@ -158,6 +165,14 @@ struct task_fork_call {
     bool plain;                           /* its kernel is */
     struct data_object *object[TASK_FEW]; /* the first ones */
 };
+
+/* The short way of a fork: of a plain kernel with its arguments and as many objects as it lists,
+ * which names no rank, and in which no other rank has part. TASK_NOT_PLAIN: nothing was done, and
+ * the general way has to look. Errors: memory. */
+enum { TASK_NOT_PLAIN = 1 };
+int task_fork_plain(struct task_scope *scope, struct worker *worker,
+                    const struct task_options *options, const struct task_fixed *fixed,
+                    const void *args, const duite_object *objects);
 
 /* Object i of the fork, whose name was checked: the first ones were looked up then. */
 static inline struct data_object *task_fork_object(const struct task_fork_call *call, size_t i)

@@ -187,9 +187,11 @@ struct task_graph {
     int rank, n_ranks;
     const duite_kernel **kernels;
     struct task_fixed { /* parameters in each kernel's `access` */
+        const duite_kernel *kernel;
         uint32_t n, postponed;
-        bool plain;        /* r, w and rw alone, few of them, no others; and it is not replicated */
         uint32_t owner[2]; /* which of n objects, of more than n, a task runs for: see owner.h */
+        uint32_t grains;   /* of a task with n objects */
+        bool plain;        /* r, w and rw alone, few of them, no others; and it is not replicated */
     } * fixed;
     uint32_t n_kernels;
     uint32_t *kernel_place, kernel_mask; /* by address, open addressing: index in `kernels` + 1 */

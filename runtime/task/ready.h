@@ -1,0 +1,80 @@
+#ifndef DUITE_TASK_READY_H
+#define DUITE_TASK_READY_H
+
+#include "runtime/task/internal.h"
+
+#include "runtime/base/memory.h"
+
+#pragma GCC visibility push(hidden) /* called directly: no program can come in between */
+
+/* What ready.c says of versions and those that wait for them, inline for the files that do it with
+ * every access. */
+
+/* An heir that is no task passes the value on to the scope above. Not inline: it is rare. */
+void task_wake_heir(struct task_graph *graph, struct worker *worker, struct data_waiter *heir);
+
+static inline void ready_take(struct task_graph *graph, struct worker *worker, struct task *task,
+                              uint32_t taken)
+{
+    if (atomic_load_explicit(&task->pending, memory_order_acquire) == taken ||
+        atomic_fetch_sub_explicit(&task->pending, taken, memory_order_acq_rel) == taken)
+        work_ready(graph->pool, worker, task);
+}
+
+static inline struct task *ready_waiter_task(struct data_waiter *waiter)
+{
+    return (struct task *)(void *)((char *)waiter - waiter->back);
+}
+
+static inline void ready_wake(struct task_graph *graph, struct worker *worker,
+                              struct data_waiter *waiter)
+{
+    if (waiter)
+        ready_take(graph, worker, ready_waiter_task(waiter), 1);
+}
+
+/* As task_wake_heir. */
+static inline void ready_wake_heir(struct task_graph *graph, struct worker *worker,
+                                   struct data_waiter *heir)
+{
+    if (!heir)
+        return;
+    if (!heir->back) {
+        task_wake_heir(graph, worker, heir);
+        return;
+    }
+    /* An access: another core wrote what its task will need next. */
+    base_prefetch(((struct task_access *)(void *)heir)->out);
+    ready_take(graph, worker, ready_waiter_task(heir), 1);
+}
+
+/* As task_release. */
+static inline void ready_release(struct task_graph *graph, struct worker *worker,
+                                 struct data_version *version)
+{
+    ready_wake_heir(graph, worker, data_version_release(version));
+}
+
+/* As task_produced. */
+static inline struct data_waiter *ready_produced(struct task_graph *graph, struct worker *worker,
+                                                 struct data_version *version)
+{
+    struct data_waiter *waiter = data_version_produced(version);
+    while (waiter) {
+        struct data_waiter *next = waiter->next; /* the task may run and be freed once woken */
+        ready_take(graph, worker, ready_waiter_task(waiter), 1);
+        waiter = next;
+    }
+    return data_version_release(version);
+}
+
+/* As task_publish. */
+static inline void ready_publish(struct task_graph *graph, struct worker *worker,
+                                 struct data_version *version)
+{
+    ready_wake_heir(graph, worker, ready_produced(graph, worker, version));
+}
+
+#pragma GCC visibility pop
+
+#endif

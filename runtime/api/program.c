@@ -143,8 +143,9 @@ static bool fork_is_pruned(duite *rt, const duite_kernel *kernel, const void *ar
  * settled. */
 static inline bool fork_is_direct(const duite *rt)
 {
-    return rt && !rt->comm && !rt->trace && !rt->building && !rt->graph.table.n_unsettled &&
-           !rt->graph.broken && !rt->mpi_held && pthread_equal(pthread_self(), rt->thread);
+    const uint64_t more = (uintptr_t)rt->comm | (uintptr_t)rt->trace | (uintptr_t)rt->building |
+                          rt->graph.table.n_unsettled | rt->mpi_held;
+    return !more && !rt->graph.broken && pthread_equal(pthread_self(), rt->thread);
 }
 
 static int fork_other(duite *rt, const duite_kernel *kernel, const void *args, size_t n,
@@ -165,7 +166,7 @@ int duite_fork(duite *rt, const duite_kernel *kernel, const void *args, size_t n
     struct duite_call_private *body = api_body(rt);
     if (body)
         return api_body_fork(body, NULL, kernel, args, n, objects);
-    if (!fork_is_direct(rt))
+    if (!rt || !fork_is_direct(rt))
         return fork_other(rt, kernel, args, n, objects);
     const int code = task_fork(&rt->graph.root, rt->worker, &plain, kernel, args, n, objects);
     if (code || rt->graph.broken)

@@ -6,6 +6,7 @@
 
 #include "runtime/base/memory.h"
 #include "runtime/data/law.h"
+#include "runtime/task/call.h"
 
 #include <string.h>
 

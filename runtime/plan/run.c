@@ -9,7 +9,7 @@
  * Poison is kept by place, under the same dependences as the bytes. Workers look at it only once
  * something failed: what sees the effects of a failure sees `tainted`. */
 #include "runtime/plan/plan.h"
-#include "runtime/task/internal.h"
+#include "runtime/task/call.h"
 
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"

@@ -4,7 +4,7 @@
 #include "runtime/task/ready.h"
 
 static inline void access_release(struct task_graph *graph, struct worker *worker,
-                           const struct task_access *access)
+                                  const struct task_access *access)
 {
     switch (access->waiter.mode) {
     case DUITE_R:
@@ -89,10 +89,4 @@ void task_pieces_lost(struct task_graph *graph, struct worker *worker, struct da
 {
     atomic_store_explicit(&sum->lost, &communication_lost, memory_order_relaxed);
     task_wake(graph, worker, data_sum_release(sum));
-}
-
-const struct data_failure *task_given_up(struct task_graph *graph)
-{
-    return atomic_load_explicit(&graph->given_up, memory_order_relaxed) ? &communication_lost
-                                                                        : NULL;
 }

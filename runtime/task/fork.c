@@ -328,29 +328,13 @@ static int fork_checked(struct task_fork_call *call, const struct task_options *
     return task_depend(call);
 }
 
-/* Whether the short way may look at the fork. */
-static inline bool fork_is_plain(const struct task_scope *scope, const struct task_fixed *fixed,
-                                 int at, const void *args, size_t n, const duite_object *objects)
-{
-    return fixed->plain && n == fixed->n && at == TASK_ANYWHERE &&
-           (scope->graph->n_ranks == 1 || scope->depth) && (args || !fixed->kernel->args_size) &&
-           (objects || !n);
-}
-
-int task_fork(struct task_scope *scope, struct worker *worker, const struct task_options *options,
-              const duite_kernel *kernel, const void *args, size_t n, const duite_object *objects)
+int task_fork_any(struct task_scope *scope, struct worker *worker,
+                  const struct task_options *options, const duite_kernel *kernel, const void *args,
+                  size_t n, const duite_object *objects)
 {
     struct task_fork_call call;
-    const uint32_t index = task_kernel_index(scope->graph, kernel);
-    const struct task_fixed *fixed = &scope->graph->fixed[index];
-    int code = TASK_NOT_PLAIN;
-    if (index < scope->graph->n_kernels &&
-        fork_is_plain(scope, fixed, options->at, args, n, objects))
-        code = task_fork_plain(scope, worker, options, fixed, args, objects);
-    if (code != TASK_NOT_PLAIN)
-        return code;
     fork_call_init(&call, scope, worker, kernel, n, objects);
-    code = fork_check(&call, options->at, args);
+    int code = fork_check(&call, options->at, args);
     if (code)
         return code;
     scope->forks++;

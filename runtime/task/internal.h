@@ -166,13 +166,10 @@ struct task_fork_call {
     struct data_object *object[TASK_FEW]; /* the first ones */
 };
 
-/* The short way of a fork: of a plain kernel with its arguments and as many objects as it lists,
- * which names no rank, and in which no other rank has part. TASK_NOT_PLAIN: nothing was done, and
- * the general way has to look. Errors: memory. */
-enum { TASK_NOT_PLAIN = 1 };
-int task_fork_plain(struct task_scope *scope, struct worker *worker,
-                    const struct task_options *options, const struct task_fixed *fixed,
-                    const void *args, const duite_object *objects);
+/* task_fork in the general way, which is due where the short one of plain.c does not do. */
+int task_fork_any(struct task_scope *scope, struct worker *worker,
+                  const struct task_options *options, const duite_kernel *kernel, const void *args,
+                  size_t n, const duite_object *objects);
 
 /* Object i of the fork, whose name was checked: the first ones were looked up then. */
 static inline struct data_object *task_fork_object(const struct task_fork_call *call, size_t i)
@@ -191,7 +188,13 @@ void task_drop(struct task_scope *scope, struct data_object *object);
 #define TASK_LOCAL_NAME UINT32_C(0x80000000)
 /* Their generations: numbers that no other task or object of this process has had for 2^32 of them.
  * Threads draw them in batches. */
-uint32_t task_new_stamp(void);
+enum { TASK_STAMPS = 1 << 20 /* a batch */ };
+extern _Thread_local uint32_t task_stamp __attribute__((tls_model("initial-exec")));
+uint32_t task_new_stamps(void);
+static inline uint32_t task_new_stamp(void)
+{
+    return (task_stamp + 1) % TASK_STAMPS ? ++task_stamp : task_new_stamps();
+}
 /* Passes the value on to which the waiter of a version without task belongs. Returns the heir of
  * the version it became, if that has no more holds. */
 struct data_waiter *task_pass(struct worker *worker, struct data_waiter *waiter);
@@ -202,9 +205,8 @@ int task_check_right(struct task_scope *scope, const char *call, size_t i, duite
 /* DUITE_E_RIGHT: a child contributes by another law than that of the contribution it is part of. */
 int task_wrong_law(const struct task_scope *scope, const duite_kernel *kernel, size_t i,
                    duite_object name);
-/* A body begins, and ends: meanwhile calls on this thread are this body's. */
-void task_body_begins(struct duite_call_private *body);
-void task_body_ends(struct duite_call_private *body);
+/* The body, which begins, has a scope already. */
+void task_body_enters(struct duite_call_private *body);
 
 /* ---- Failures ---- */
 
@@ -248,18 +250,8 @@ int task_set_check(const struct task_graph *graph, const struct data_object *obj
 void task_void(struct task_graph *graph, struct worker *worker, struct task *task, size_t made,
                uint32_t done);
 
-/* Why nothing runs any more, or NULL. */
-const struct data_failure *task_given_up(struct task_graph *graph);
 /* What did not come since communication broke. */
 const struct data_failure *task_lost_failure(void);
-
-/* Calls the body; returns its failure, or NULL. An error of its calls that it did not look at is
- * one. *scope is what its children may use: NULL if it has none, also afterwards if it did not get
- * one. */
-const struct data_failure *task_call_body(struct task_graph *graph, struct worker *worker,
-                                          struct task *task, const void *args,
-                                          const duite_param *param, struct task_scope **scope,
-                                          const duite_call *call);
 
 /* Of an object of the main program. */
 static inline struct data_key task_key(const struct task_graph *graph,

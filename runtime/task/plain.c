@@ -118,28 +118,38 @@ static int plain_no_memory(struct task_graph *graph, const char *what)
     return task_break(graph);
 }
 
-int task_fork_plain(struct task_scope *scope, struct worker *worker,
-                    const struct task_options *options, const struct task_fixed *fixed,
-                    const void *args, const duite_object *objects)
+/* The objects are found. */
+static inline int plain_fork(const struct plain_fork *fork, const struct task_options *options,
+                             const void *args)
 {
-    struct plain_fork fork;
-    struct task_graph *graph = scope->graph;
+    struct task_graph *graph = fork->scope->graph;
     uint32_t made;
-    fork.scope = scope; /* `object` stays unset, which would take time */
-    fork.worker = worker;
-    fork.fixed = fixed;
-    if (!plain_take_objects(&fork, objects))
-        return TASK_NOT_PLAIN;
-    scope->forks++;
-    struct task *task = plain_make(&fork, options, args);
+    fork->scope->forks++;
+    struct task *task = plain_make(fork, options, args);
     if (!task)
         return plain_no_memory(graph, "a task");
-    const uint32_t done = plain_depend(&fork, task, &made);
-    if (made == fixed->n) {
-        ready_take(graph, worker, task, done + 1);
+    const uint32_t done = plain_depend(fork, task, &made);
+    if (made == fork->fixed->n) {
+        ready_take(graph, fork->worker, task, done + 1);
         return DUITE_OK;
     }
     const int code = plain_no_memory(graph, "a version");
-    task_void(graph, worker, task, made, done);
+    task_void(graph, fork->worker, task, made, done);
     return code;
+}
+
+int task_fork(struct task_scope *scope, struct worker *worker, const struct task_options *options,
+              const duite_kernel *kernel, const void *args, size_t n, const duite_object *objects)
+{
+    const struct task_graph *graph = scope->graph;
+    const uint32_t index = task_kernel_index(graph, kernel);
+    struct plain_fork fork; /* `object` stays unset, which would take time */
+    fork.scope = scope;
+    fork.worker = worker;
+    fork.fixed = &graph->fixed[index];
+    if (index < graph->n_kernels && fork.fixed->plain && n == fork.fixed->n &&
+        options->at == TASK_ANYWHERE && (graph->n_ranks == 1 || scope->depth) &&
+        (args || !kernel->args_size) && (objects || !n) && plain_take_objects(&fork, objects))
+        return plain_fork(&fork, options, args);
+    return task_fork_any(scope, worker, options, kernel, args, n, objects);
 }

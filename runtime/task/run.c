@@ -1,7 +1,7 @@
 /* Running, the fourth stage of a task: a ready task alone accesses the bytes of what it writes.
  * Poison among what it reads goes on to what it writes, and its body does not run. Nothing is
  * published here: finish.c. */
-#include "runtime/task/internal.h"
+#include "runtime/task/call.h"
 
 #include "runtime/base/memory.h"
 #include "runtime/data/object.h"
@@ -12,38 +12,49 @@
 
 /* ---- What a body is given ---- */
 
-/* The new version takes over the bytes of the old one. */
-static const struct data_failure *version_take_over(const struct task *task,
-                                                    struct task_access *access)
+/* The version that is written gets bytes where it found none that fit. */
+static const struct data_failure *version_make_room(const struct task *task,
+                                                    struct data_version *out, bool keep)
 {
-    const struct data_failure *failure = NULL;
-    struct data_version *in = access->in, *out = access->out;
-    bool keep = access->waiter.mode == DUITE_RW;
-    if (in) {
-        out->packet = data_version_packet(in);
-        failure = keep ? data_version_failure(in) : NULL;
-        data_version_free(in);
-        access->in = NULL;
-    }
-    if (out->sized && out->packet)
+    if (out->packet && out->sized)
         out->packet = data_packet_room(out->packet, data_version_room(out), keep);
-    if (!out->packet && !failure && !(out->packet = data_packet_new(data_version_room(out), false)))
-        failure = task_fail_memory(task);
-    return failure;
+    if (!out->packet)
+        out->packet = data_packet_new(data_version_room(out), false);
+    return out->packet ? NULL : task_fail_memory(task);
 }
 
-/* What the body gets of a version; `fresh`: it finds unspecified bytes there. */
-static inline void param_describe(duite_param *param, const struct data_version *version,
-                                  bool fresh)
+/* The new version takes over the bytes of the old one. */
+static inline const struct data_failure *version_take_over(const struct task *task,
+                                                           struct task_access *access)
 {
-    duite_type type = (duite_type)version->type;
-    struct data_packet *packet = data_version_packet(version);
-    param->data = packet ? data_payload(packet) : NULL;
+    struct data_version *in = access->in, *out = access->out;
+    const bool keep = access->waiter.mode == DUITE_RW;
+    if (in) {
+        const struct data_failure *failure = keep ? data_version_failure(in) : NULL;
+        out->packet = data_version_packet(in);
+        data_version_free(in);
+        access->in = NULL;
+        if (failure)
+            return failure;
+    }
+    return out->packet && !out->sized ? NULL : version_make_room(task, out, keep);
+}
+
+/* What the body gets of a version that has bytes; `fresh`: it finds unspecified ones there. Returns
+ * the poison in place of bytes, or NULL. */
+static inline const struct data_failure *
+param_describe(duite_param *param, const struct data_version *version, bool fresh)
+{
+    if (version->poisoned)
+        return version->failure;
+    struct data_packet *packet = version->packet;
+    param->data = data_payload(packet);
     param->count = version->max;
-    if (version->sized && packet && !fresh)
-        param->count = packet->bytes / data_type_size(type);
-    param->type = type;
+    param->type = (duite_type)version->type;
     param->max = version->max;
+    if (version->sized && !fresh)
+        param->count = packet->bytes / data_type_size(param->type);
+    return NULL;
 }
 
 static void param_describe_lent(duite_param *param, const struct data_object *object)
@@ -76,26 +87,27 @@ param_prepare_other(const struct task *task, const struct task_access *access, d
 }
 
 /* Gives the body its parameters; returns the poison among them, or NULL. */
-static const struct data_failure *params_prepare(struct task *task, duite_param *param, bool *sized)
+static inline const struct data_failure *params_prepare(struct task *task, duite_param *param,
+                                                        bool *sized)
 {
     const struct data_failure *failure = NULL, *new = NULL;
     const uint32_t n = task->n, stamp = n ? task_new_stamp() : 0;
-    for (uint32_t i = 0; i < n; i++) {
-        struct task_access *access = &task->access[i];
+    struct task_access *access = task->access;
+    for (uint32_t i = 0; i < n; i++, access++, param++) {
         const uint32_t mode = access->waiter.mode;
         if (mode == DUITE_R) {
-            new = data_version_failure(access->in);
-            param_describe(&param[i], access->in, false);
+            new = param_describe(param, access->in, false);
         } else if (mode == DUITE_W || mode == DUITE_RW) {
             new = version_take_over(task, access);
+            if (!new)
+                new = param_describe(param, access->out, mode == DUITE_W);
             *sized |= access->out->sized;
-            param_describe(&param[i], access->out, mode == DUITE_W);
         } else {
-            new = param_prepare_other(task, access, &param[i]);
+            new = param_prepare_other(task, access, param);
         }
         if (new)
             failure = data_failure_first(failure, new);
-        param[i].object = (duite_object){TASK_LOCAL_NAME | i, stamp};
+        param->object = (duite_object){TASK_LOCAL_NAME | i, stamp};
     }
     return failure;
 }
@@ -111,8 +123,8 @@ int duite_fail(const duite_call *call, int code, const char *format, ...)
     return code;
 }
 
-/* What the body says of its failure: its own message, or that of the call whose code it returns. */
-static const struct data_failure *body_failure(const struct duite_call_private *body, int code)
+/* Its own message, or that of the call whose code it returns. */
+const struct data_failure *task_body_failure(const struct duite_call_private *body, int code)
 {
     struct data_failure failure = {.code = code};
     if (!body->text[0] && code == body->remembered)
@@ -120,38 +132,6 @@ static const struct data_failure *body_failure(const struct duite_call_private *
     else
         memcpy(failure.text, body->text, sizeof failure.text);
     return task_fail_task(body->task, body->scope, &failure);
-}
-
-const struct data_failure *task_call_body(struct task_graph *graph, struct worker *worker,
-                                          struct task *task, const void *args,
-                                          const duite_param *param, struct task_scope **scope,
-                                          const duite_call *template)
-{
-    struct duite_call_private body;
-    const duite_kernel *kernel = graph->kernels[task->kernel];
-    duite_call call = *template;
-    body.graph = graph;
-    body.worker = worker;
-    body.task = task;
-    body.param = param;
-    body.scope = *scope;
-    body.refused = DUITE_OK;
-    body.remembered = DUITE_OK;
-    body.text[0] = '\0';
-    call.args = args;
-    call.param = param;
-    call.n_params = task->n;
-    call.own = &body;
-    task_body_begins(&body);
-    int code = graph->checks ? work_check_body(graph->pool, kernel, task->number, &call)
-                             : kernel->body(&call);
-    task_body_ends(&body);
-    *scope = body.scope;
-    if (!code)
-        code = body.refused;
-    if (!code)
-        code = body.remembered;
-    return code ? body_failure(&body, code) : NULL;
 }
 
 /* What it writes is poisoned, and the bytes of what it overwrites are taken over. */
@@ -190,10 +170,11 @@ struct body_elsewhere {
     struct data_packet *result;
 };
 
-/* Whether the body ran; `elsewhere` NULL: it is to run here. */
-static bool body_run(struct task_graph *graph, struct worker *worker, struct task *task,
-                     duite_param *param, const duite_call *call,
-                     const struct body_elsewhere *elsewhere)
+/* Whether the body ran; `elsewhere` NULL: it is to run here. Inline, for the sake of its callers
+ * that pass constants. */
+static inline bool body_run(struct task_graph *graph, struct worker *worker, struct task *task,
+                            duite_param *param, const duite_call *call,
+                            const struct body_elsewhere *elsewhere)
 {
     bool sized = false; /* it writes an object that changes its size */
     const struct data_failure *failure = params_prepare(task, param, &sized);
@@ -213,26 +194,33 @@ static bool body_run(struct task_graph *graph, struct worker *worker, struct tas
     return runs;
 }
 
-/* The same with memory for the parameters. */
-static bool body_run_params(struct task_graph *graph, struct worker *worker, struct task *task,
-                            const duite_call *call, const struct body_elsewhere *elsewhere)
+/* The same with memory for any number of parameters. */
+static bool body_run_any(struct task_graph *graph, struct worker *worker, struct task *task,
+                         const duite_call *call, const struct body_elsewhere *elsewhere)
 {
-    enum { FEW = 8 };
-    duite_param few[FEW], *param = few;
-    if (task->n > FEW && !(param = base_pool_take(task->n * sizeof *param))) {
+    duite_param *param = base_pool_take((task->n ? task->n : 1) * sizeof *param);
+    if (!param) {
         outputs_poison(task, task_fail_memory(task));
         return false;
     }
     bool ran = body_run(graph, worker, task, param, call, elsewhere);
-    if (param != few)
-        base_pool_give(param, task->n * sizeof *param);
+    base_pool_give(param, (task->n ? task->n : 1) * sizeof *param);
     return ran;
+}
+
+bool task_run_body(struct task_graph *graph, struct worker *worker, struct task *task,
+                   const duite_call *call)
+{
+    enum { FEW = 8 };
+    duite_param param[FEW];
+    return task->n <= FEW ? body_run(graph, worker, task, param, call, NULL)
+                          : body_run_any(graph, worker, task, call, NULL);
 }
 
 void task_run_result(struct task_graph *graph, struct task *task, task_take_result *take,
                      struct data_packet *result)
 {
-    body_run_params(graph, NULL, task, NULL, &(struct body_elsewhere){take, result});
+    body_run_any(graph, NULL, task, NULL, &(struct body_elsewhere){take, result});
 }
 
 /* ---- By type ---- */
@@ -274,7 +262,7 @@ bool task_run(struct task_graph *graph, struct worker *worker, struct task *task
     }
     switch (task->type) {
     case TASK_BODY:
-        return body_run_params(graph, worker, task, call, NULL);
+        return task_run_body(graph, worker, task, call);
     case TASK_COMBINE:
         task_run_combine(task);
         break;

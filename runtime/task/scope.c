@@ -17,29 +17,21 @@
 
 _Thread_local struct duite_call_private *task_innermost;
 
-void task_body_begins(struct duite_call_private *body)
+void task_body_enters(struct duite_call_private *body)
 {
-    body->outer = task_innermost;
-    task_innermost = body;
-    if (body->scope)
-        task_nest_of(body->scope)->body = body;
-}
-
-void task_body_ends(struct duite_call_private *body)
-{
-    task_innermost = body->outer;
+    task_nest_of(body->scope)->body = body;
 }
 
 /* ---- Names ---- */
 
-uint32_t task_new_stamp(void)
+_Thread_local uint32_t task_stamp = UINT32_MAX; /* the last one of no batch */
+
+/* Multiples of a batch are left out, and with them 0, which is no name's. */
+uint32_t task_new_stamps(void)
 {
-    enum { BATCH = 1 << 20 };
     static _Atomic uint32_t batches;
-    static _Thread_local uint32_t next __attribute__((tls_model("initial-exec")));
-    if (next % BATCH == 0)
-        next = BATCH * atomic_fetch_add_explicit(&batches, 1, memory_order_relaxed);
-    return ++next ? next : ++next; /* 0 is no name's */
+    task_stamp = TASK_STAMPS * atomic_fetch_add_explicit(&batches, 1, memory_order_relaxed);
+    return ++task_stamp;
 }
 
 bool task_known(struct task_scope *scope, duite_object name, duite_mode *right,

@@ -1,0 +1,68 @@
+#ifndef DUITE_TASK_CALL_H
+#define DUITE_TASK_CALL_H
+
+#include "runtime/task/internal.h"
+
+#pragma GCC visibility push(hidden) /* called directly: no program can come in between */
+
+/* Calling a body: inline, for whatever runs the tasks of the program. */
+
+/* What the body says of its failure with this code. */
+const struct data_failure *task_body_failure(const struct duite_call_private *body, int code);
+
+/* Why nothing runs any more, or NULL. */
+static inline const struct data_failure *task_given_up(struct task_graph *graph)
+{
+    return task_has_given_up(graph) ? task_lost_failure() : NULL;
+}
+
+/* A body begins, and ends: meanwhile calls on this thread are this body's. */
+static inline void task_body_begins(struct duite_call_private *body)
+{
+    body->outer = task_innermost;
+    task_innermost = body;
+    if (body->scope)
+        task_body_enters(body);
+}
+static inline void task_body_ends(const struct duite_call_private *body)
+{
+    task_innermost = body->outer;
+}
+
+/* Calls the body; returns its failure, or NULL. An error of its calls that it did not look at is
+ * one. *scope is what its children may use: NULL if it has none, also afterwards if it did not get
+ * one. */
+static inline const struct data_failure *
+task_call_body(struct task_graph *graph, struct worker *worker, struct task *task, const void *args,
+               const duite_param *param, struct task_scope **scope, const duite_call *template)
+{
+    struct duite_call_private body;
+    const duite_kernel *kernel = graph->kernels[task->kernel];
+    duite_call call = *template;
+    body.graph = graph;
+    body.worker = worker;
+    body.task = task;
+    body.param = param;
+    body.scope = *scope;
+    body.refused = DUITE_OK;
+    body.remembered = DUITE_OK;
+    body.text[0] = '\0';
+    call.args = args;
+    call.param = param;
+    call.n_params = task->n;
+    call.own = &body;
+    task_body_begins(&body);
+    int code = graph->checks ? work_check_body(graph->pool, kernel, task->number, &call)
+                             : kernel->body(&call);
+    task_body_ends(&body);
+    *scope = body.scope;
+    if (!code)
+        code = body.refused;
+    if (!code)
+        code = body.remembered;
+    return code ? task_body_failure(&body, code) : NULL;
+}
+
+#pragma GCC visibility pop
+
+#endif

@@ -163,7 +163,7 @@ int duite_get_at(duite *rt, duite_object object, int rank, void *values)
 
 static bool wait_is_drained(void *context)
 {
-    return !work_unfinished(context);
+    return work_is_drained(context);
 }
 
 /* The failure that is first in fork order among those of n ranks, or NULL. */

@@ -44,7 +44,9 @@ static void finish_changed(struct task_graph *graph, struct worker *worker, stru
 
 void work_finish(struct task_graph *graph, struct worker *worker, struct task *task)
 {
-    if (task->state != TASK_LOCAL)
+    if (task->type == TASK_BODY && task->state == TASK_LOCAL)
+        task_finish(graph, worker, task);
+    else if (task->state != TASK_LOCAL)
         finish_changed(graph, worker, task);
     else if (task_is_node(task))
         plan_node_finish(graph, worker, task);

@@ -95,7 +95,7 @@ struct work_pool {
     unsigned char *states;
     double tick; /* seconds */
     uint64_t poll_ticks, spin_ticks, yield_ticks, await_ticks, affinity_ticks;
-    bool by_affinity; /* the scheduler's `chain` is sched_chain_affinity */
+    bool by_affinity; /* the scheduler's `place` and `chain` are those of sched.h by affinity */
     unsigned started; /* threads, worker 0 among them */
     pthread_t main;
     struct work_near near;

@@ -89,7 +89,8 @@ int work_start(struct work_pool **out, const struct work_setup *setup)
     pool->setup = *setup;
     pool->setup.cores = NULL; /* the caller's: copied to the workers */
     pool->main = pthread_self();
-    pool->by_affinity = setup->scheduler->chain == sched_chain_affinity;
+    pool->by_affinity = setup->scheduler->chain == sched_chain_affinity &&
+                        setup->scheduler->place == sched_place_affinity;
     pool_set_ticks(pool);
     pool->worker = base_alloc_zero(n * sizeof pool->worker[0]);
     pool->states = base_alloc_zero(n * lines * BASE_LINE);

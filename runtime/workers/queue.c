@@ -64,12 +64,15 @@ static struct work_ring *ring_grow(struct work_deque *deque, struct work_ring *r
     return larger;
 }
 
-int64_t work_deque_end(const struct work_deque *deque)
+/* Where the next task goes. */
+static inline int64_t deque_end(const struct work_deque *deque)
 {
     return atomic_load_explicit(&deque->newest, memory_order_relaxed);
 }
 
-bool work_deque_fill(struct work_deque *deque, int64_t newest, struct task *task)
+/* Slots from the end on are filled, and shown to others all at once with the new end. False without
+ * memory. */
+static inline bool deque_fill(struct work_deque *deque, int64_t newest, struct task *task)
 {
     struct work_ring *ring = atomic_load_explicit(&deque->ring, memory_order_relaxed);
     if (newest - deque->seen > (int64_t)ring->mask) {
@@ -82,7 +85,7 @@ bool work_deque_fill(struct work_deque *deque, int64_t newest, struct task *task
     return true;
 }
 
-void work_deque_show(struct work_deque *deque, int64_t newest)
+static inline void deque_show(struct work_deque *deque, int64_t newest)
 {
     /* Sequentially consistent: whoever pushes looks for sleepers next. */
     atomic_exchange_explicit(&deque->newest, newest, memory_order_seq_cst);
@@ -90,10 +93,10 @@ void work_deque_show(struct work_deque *deque, int64_t newest)
 
 bool work_deque_push(struct work_deque *deque, struct task *task)
 {
-    int64_t newest = work_deque_end(deque);
-    if (!work_deque_fill(deque, newest, task))
+    int64_t newest = deque_end(deque);
+    if (!deque_fill(deque, newest, task))
         return false;
-    work_deque_show(deque, newest + 1);
+    deque_show(deque, newest + 1);
     return true;
 }
 
@@ -244,11 +247,11 @@ static struct task *inbox_take_all(struct work_queue *queue)
  * bound. */
 static void queue_push_all(struct work_queue *queue, struct task *task)
 {
-    int64_t newest = work_deque_end(&queue->deque);
-    for (; task && work_deque_fill(&queue->deque, newest, task); newest++)
+    int64_t newest = deque_end(&queue->deque);
+    for (; task && deque_fill(&queue->deque, newest, task); newest++)
         task = task->next;
-    if (newest != work_deque_end(&queue->deque))
-        work_deque_show(&queue->deque, newest);
+    if (newest != deque_end(&queue->deque))
+        deque_show(&queue->deque, newest);
     while (task) {
         struct task *next = task->next;
         work_queue_put(queue, task);

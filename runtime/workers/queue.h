@@ -35,11 +35,6 @@ void work_deque_stop(struct work_deque *deque);
 
 /* Owner only. False without memory: nothing was pushed. */
 bool work_deque_push(struct work_deque *deque, struct task *task);
-/* The same for many, owner only: slots from the end on are filled, and shown to others all at once
- * with the new end. */
-int64_t work_deque_end(const struct work_deque *deque);
-bool work_deque_fill(struct work_deque *deque, int64_t newest, struct task *task);
-void work_deque_show(struct work_deque *deque, int64_t newest);
 /* Owner only. NULL if it is empty. */
 struct task *work_deque_take_newest(struct work_deque *deque);
 /* Anybody. NULL if it is empty or another thief was faster (*again is set then). */

@@ -35,6 +35,12 @@ uint64_t work_unfinished(const struct work_pool *pool)
     return pool->setup.graph->tasks - tasks_over(pool);
 }
 
+bool work_is_drained(struct work_pool *pool)
+{
+    /* What lies in its own queue is not over: the others' counters need not be read. */
+    return work_queue_is_empty(&pool->worker[0].queue) && !work_unfinished(pool);
+}
+
 /* Whether the main thread waits, and for no more than is over. */
 static bool main_has_enough(const struct work_pool *pool)
 {

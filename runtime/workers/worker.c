@@ -28,12 +28,9 @@ static duite_ready ready_describe(const struct task_graph *graph, const struct t
                          .affinity = plan_task_affinity(task)};
 }
 
-static void ready_place(struct worker *worker, struct task *task, const duite_ready *ready)
+static void ready_put(struct worker *worker, struct task *task, unsigned queue)
 {
     struct work_pool *pool = worker->pool;
-    base_mark_begin(worker->mark, BASE_SCHEDULER_PLACE);
-    unsigned queue = pool->setup.scheduler->place(worker->state, ready);
-    base_mark_end(worker->mark);
     work_bump(&worker->counts.placed, 1);
     /* What the main thread forks is left for others to take all at once, which costs both sides
      * less than a deque that one fills as the other empties it. */
@@ -46,6 +43,15 @@ static void ready_place(struct worker *worker, struct task *task, const duite_re
     work_wake_one(pool, queue);
 }
 
+/* The queue that the scheduler names. */
+static unsigned ready_place(const struct worker *worker, const duite_ready *ready)
+{
+    base_mark_begin(worker->mark, BASE_SCHEDULER_PLACE);
+    const unsigned queue = worker->pool->setup.scheduler->place(worker->state, ready);
+    base_mark_end(worker->mark);
+    return queue;
+}
+
 /* Whether the scheduler wants the task to run inline after the one that made it ready. */
 static bool ready_runs_inline(const struct worker *worker, const duite_ready *ready)
 {
@@ -55,10 +61,28 @@ static bool ready_runs_inline(const struct worker *worker, const duite_ready *re
     return is_inline;
 }
 
-/* The same without asking: whether a scheduler that goes by affinity alone would want it. */
-static bool ready_goes_on(const struct worker *worker, const struct task *task)
+/* Whether it need not be asked: a scheduler that goes by affinity alone keeps a task without any
+ * with the worker that made it ready. */
+static bool ready_stays(const struct worker *worker, const struct task *task)
 {
     return worker->pool->by_affinity && !plan_task_affinity(task);
+}
+
+/* Whether the task may run on top of the body that waits, if one does. */
+static inline bool ready_fits(const struct worker *worker, const struct task *task)
+{
+    return !worker->waits || task_may_run(worker->waits, task);
+}
+
+/* Apart from the rest, since most tasks stay and need no description. */
+__attribute__((noinline)) static void ready_ask(struct worker *worker, struct task *task,
+                                                bool may_run)
+{
+    const duite_ready ready = ready_describe(worker->pool->setup.graph, task);
+    if (may_run && ready_runs_inline(worker, &ready) && ready_fits(worker, task))
+        worker->next = task;
+    else
+        ready_put(worker, task, ready_place(worker, &ready));
 }
 
 /* Whether the task went to another rank. */
@@ -84,16 +108,12 @@ void work_ready(struct work_pool *pool, struct worker *worker, struct task *task
     if (pool->balance && ready_goes_away(worker, task))
         return;
     const bool may_run = worker->may_chain && !worker->next;
-    if (may_run && !worker->waits && ready_goes_on(worker, task)) {
-        worker->next = task;
-        return;
-    }
-    duite_ready ready = ready_describe(pool->setup.graph, task);
-    if (may_run && ready_runs_inline(worker, &ready) &&
-        (!worker->waits || task_may_run(worker->waits, task)))
+    if (!ready_stays(worker, task))
+        ready_ask(worker, task, may_run);
+    else if (may_run && ready_fits(worker, task))
         worker->next = task;
     else
-        ready_place(worker, task, &ready);
+        ready_put(worker, task, worker->index);
 }
 
 /* ---- Find ---- */

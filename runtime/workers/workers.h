@@ -89,6 +89,9 @@ void work_tick(struct work_pool *pool);
 /* Tasks of this rank that are not over. Main thread. */
 uint64_t work_unfinished(const struct work_pool *pool);
 
+/* Whether there are none; asked after each task by the main thread, which waits for just that. */
+bool work_is_drained(struct work_pool *pool);
+
 /* The name of the scheduler if it named victims without an end, which is an error; else NULL. */
 const char *work_endless(const struct work_pool *pool);
 

@@ -114,7 +114,7 @@ static const struct {
      {"the last one is not contended for", 2, 1, {"T", "O"}, 0}},
     {{"work_deque_take_oldest", "&deque->oldest", EXPLORE_RELAX},
      {"thieves do not look at one another", 2, 1, {"", "O", "O"}, 0}},
-    {{"work_deque_show", "&deque->newest", EXPLORE_RELAX},
+    {{"deque_show", "&deque->newest", EXPLORE_RELAX},
      {"a task is announced before it is there", 2, 0, {"P", "O"}, 0}},
     {{"ring_grow", "&deque->ring", EXPLORE_RELAX},
      {"a ring is shown before it is filled", 1, 1, {"P", "O"}, 0}},

@@ -285,7 +285,7 @@ END_TEST
 
 START_TEST(other_sizes)
 {
-    check_all(&(struct mannequin){.edge = 0.012});
+    check_all(&(struct mannequin){.edge = unit_quick() ? 0.02 : 0.012});
     check_all(&(struct mannequin){.edge = 0.025});
     check_all(&(struct mannequin){.height = 1.2, .edge = 0.015});
     check_all(&(struct mannequin){.height = 2.0});
@@ -301,8 +301,9 @@ static double random_part(uint64_t *state)
 /* Measures that do not go together are refused before anything is made. */
 START_TEST(random_measures)
 {
+    const int wanted = unit_quick() ? 5 : 50;
     uint64_t state = 1;
-    for (int made = 0; made < 50;) {
+    for (int made = 0; made < wanted;) {
         struct mannequin mannequin = {.height = 1.5 + 0.5 * random_part(&state), .edge = 0.021};
         struct cloth_error error = {0};
         struct mesh mesh;

@@ -72,7 +72,8 @@ START_TEST(walk_keeps_room)
     const struct mannequin_walk walk = {0};
     struct figure_at figure;
     make(&figure, &(struct mannequin){0});
-    for (int frame = 0; frame <= (int)(FPS * (MANNEQUIN_WALK_RAMP + 4)); frame++) {
+    const int end = (int)(FPS * (MANNEQUIN_WALK_RAMP + 4)), stride = unit_quick() ? 15 : 1;
+    for (int frame = 0; frame <= end; frame += stride) {
         place(&figure, &walk, frame / FPS);
         ck_assert_uint_eq(crossings(&figure.mesh, figure.x[0]), 0);
         check_stretch(&figure);
@@ -105,7 +106,7 @@ START_TEST(walk_of_others)
     const struct mannequin_walk walk = {.speed = 2};
     struct figure_at figure;
     make(&figure, &other[_i]);
-    for (int frame = 30; frame <= 80; frame += 2) {
+    for (int frame = 30; frame <= 80; frame += unit_quick() ? 20 : 2) {
         place(&figure, &walk, frame / FPS);
         ck_assert_uint_eq(crossings(&figure.mesh, figure.x[0]), 0);
         check_stretch(&figure);

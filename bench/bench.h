@@ -38,6 +38,6 @@ struct bench {
 };
 
 extern const struct bench bench_tasks, bench_ranks, bench_cg, bench_physics, bench_contact,
-    bench_garments, bench_compare, bench_output;
+    bench_garments, bench_compare, bench_output, bench_scale;
 
 #endif

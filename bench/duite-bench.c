@@ -15,7 +15,7 @@
 
 static const struct bench *const BENCHES[] = {&bench_tasks,   &bench_ranks,   &bench_cg,
                                               &bench_physics, &bench_contact, &bench_garments,
-                                              &bench_compare, &bench_output};
+                                              &bench_compare, &bench_output,  &bench_scale};
 enum { N_BENCHES = sizeof BENCHES / sizeof *BENCHES, MOST_ONLY = 32 };
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || !defined(__OPTIMIZE__)

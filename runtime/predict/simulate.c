@@ -36,7 +36,7 @@ static double exchange_send(struct predict_machine *m, const struct predict_node
     const double all = m->cluster->message * (double)exchange->priority;
     const double share = all / m->cluster->hosts;
     double own = share, goes = m->now;
-    if (exchange->block) {
+    if (exchange->block || exchange->hops > 1) {
         m->handled_by_all += 2 * share;
     } else {
         goes = message_handle(m, exchange->host, exchange->priority);

@@ -18,7 +18,8 @@ struct times_mean {
 struct predict_times {
     struct trace_bodies *bodies;
     struct times_mean *kernel, own[OWN_KINDS];
-    float *median; /* by kernel; NULL: not asked for */
+    float *median; /* by kernel, then by kind of the runtime's own tasks; NULL: not asked for */
+    uint32_t n_kernels;
     float *gap;
     size_t n_gaps;
 };
@@ -75,20 +76,29 @@ static int times_compare_bodies(const void *a, const void *b)
     return (x->seconds > y->seconds) - (x->seconds < y->seconds);
 }
 
+/* Of the runtime's own tasks, too; false: it is another event. */
+static bool times_body_of(const struct predict_times *times, const struct trace_event *event,
+                          double tick, struct times_body *body)
+{
+    double seconds = tick * (double)(event->took - event->within);
+    const bool own = event->kind == TRACE_OWN && event->kernel < OWN_KINDS;
+    if (!own && (event->kind != TRACE_TASK || event->flags & TRACE_NESTED))
+        return false;
+    if (!own)
+        predict_times_find(times, event->number, &seconds);
+    *body = (struct times_body){event->kernel + (own ? times->n_kernels : 0), (float)seconds};
+    return true;
+}
+
 static size_t times_bodies(const struct predict_times *times, const struct trace_run *run,
                            struct times_body *body)
 {
     size_t n = 0;
-    double seconds;
     for (uint32_t r = 0; r < run->n_ranks; r++)
         for (size_t p = 0; p < run->rank[r].n_pieces; p++)
-            for (size_t i = 0; i < run->rank[r].piece[p].n; i++) {
-                const struct trace_event *event = &run->rank[r].piece[p].event[i];
-                if (event->kind != TRACE_TASK || event->flags & TRACE_NESTED)
-                    continue;
-                predict_times_find(times, event->number, &seconds);
-                body[n++] = (struct times_body){event->kernel, (float)seconds};
-            }
+            for (size_t i = 0; i < run->rank[r].piece[p].n; i++)
+                n += times_body_of(times, &run->rank[r].piece[p].event[i],
+                                   run->rank[r].header->tick, &body[n]);
     return n;
 }
 
@@ -98,7 +108,7 @@ bool predict_times_steady(struct predict_times *times, const struct trace_run *r
     for (uint32_t r = 0; r < run->n_ranks; r++)
         n += run->rank[r].n_events;
     struct times_body *body = base_alloc(n * sizeof *body);
-    times->median = base_alloc_zero((run->n_kernels + 1) * sizeof *times->median);
+    times->median = base_alloc_zero((run->n_kernels + OWN_KINDS) * sizeof *times->median);
     if (body && times->median) {
         n = times_bodies(times, run, body);
         if (n)
@@ -125,6 +135,7 @@ struct predict_times *predict_times_new(const struct trace_run *run)
         predict_times_free(times);
         return NULL;
     }
+    times->n_kernels = run->n_kernels;
     for (uint32_t r = 0; r < run->n_ranks; r++)
         for (size_t p = 0; p < run->rank[r].n_pieces; p++) {
             const struct trace_piece *piece = &run->rank[r].piece[p];
@@ -163,13 +174,19 @@ double predict_times_kernel(const struct predict_times *times, uint32_t kernel)
 
 double predict_times_own(const struct predict_times *times, uint32_t kind)
 {
-    return kind < OWN_KINDS ? mean_value(&times->own[kind]) : 0;
+    if (kind >= OWN_KINDS)
+        return 0;
+    return times->median ? (double)times->median[times->n_kernels + kind]
+                         : mean_value(&times->own[kind]);
 }
 
 double predict_times_sums(const struct predict_times *times)
 {
-    return times->own[TASK_COMBINE].seconds + times->own[TASK_PIECES].seconds +
-           times->own[TASK_NODE_SUM].seconds + times->own[TASK_NODE_PARTIAL].seconds;
+    static const uint32_t kinds[] = {TASK_COMBINE, TASK_PIECES, TASK_NODE_SUM, TASK_NODE_PARTIAL};
+    double seconds = 0;
+    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++)
+        seconds += predict_times_own(times, kinds[i]) * (double)times->own[kinds[i]].n;
+    return seconds;
 }
 
 double predict_times_gap(const struct predict_times *times)

@@ -1,0 +1,97 @@
+/* A step of a large sheet by the default solver, traced on this machine and predicted on hosts of
+ * 16 cores. Efficiency is against the same trace on one core. Bodies take the median of their
+ * kernel: what this machine does beside them belongs to no other. */
+#include "bench/scale/scale.h"
+
+#include "runtime/predict/predict.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { SIDE = 1000, GRAIN = 1000, QUICK_SIDE = 60, QUICK_GRAIN = 50, CORES = 16 };
+
+static const struct network {
+    const char *name;
+    double latency, bandwidth, message; /* s, bytes/s, s of a core for each message */
+} NETWORKS[] = {{"tcp", 1e-5, 1.25e9, 5e-6}, {"fast", 1.5e-6, 1.25e10, 5e-7}};
+enum { N_NETWORKS = sizeof NETWORKS / sizeof *NETWORKS };
+
+static void plan(struct measure *measure, const struct bench_options *options)
+{
+    const unsigned side = options->quick ? QUICK_SIDE : SIDE;
+    const unsigned grain = options->quick ? QUICK_GRAIN : GRAIN;
+    measure->cold = true;
+    for (int i = 0; i < N_NETWORKS; i++)
+        for (unsigned hosts = 1; hosts <= 16; hosts *= 2) {
+            const struct measure_series *series =
+                measure_series(measure, (struct subject_shape){"duite", 0, options->threads},
+                               "scaling side=%u grain=%u threads=%u hosts=%u network=%s", side,
+                               grain, options->threads, hosts, NETWORKS[i].name);
+            measure_value(measure, series, 1, "", "scaling_%ux%d_%s", hosts, CORES,
+                          NETWORKS[i].name);
+        }
+}
+
+/* The trace of a step, made when it is asked for first; NULL, and serve_fail. */
+static struct trace_run *trace_of(struct serve_request *request)
+{
+    static struct trace_run *run;
+    char folder[SCALE_PATH], arguments[SCALE_PATH + 200], path[SCALE_PATH + 20];
+    if (run || scale_folder(folder))
+        return run;
+    snprintf(path, sizeof path, "%s/trace", folder);
+    snprintf(arguments, sizeof arguments, "--threads %u --end 0.003 --trace-steps 1:2 --trace '%s'",
+             (unsigned)serve_number(request, "threads"), path);
+    if (!scale_cloth("", (unsigned)serve_number(request, "side"),
+                     (unsigned)serve_number(request, "grain"), arguments) &&
+        trace_read(&run, path, false)) {
+        run = NULL;
+        serve_fail("%s", duite_message());
+    }
+    scale_folder_remove(folder);
+    return run;
+}
+
+static double makespan(const struct trace_run *run, uint32_t hosts, uint32_t cores,
+                       const struct network *network)
+{
+    const struct predict_cluster cluster = {.hosts = hosts,
+                                            .cores = cores,
+                                            .latency = network->latency,
+                                            .bandwidth = network->bandwidth,
+                                            .capacity = INFINITY,
+                                            .core_speed = 1,
+                                            .overhead = -1,
+                                            .message = network->message,
+                                            .steady = true,
+                                            .packed = true,
+                                            .scheduler = duite_scheduler_find("steal"),
+                                            .mapping = duite_mapping_find("metis"),
+                                            .seed = 1};
+    struct predict_result result;
+    return predict(run, &cluster, &result, NULL) ? NAN : result.makespan;
+}
+
+/* scaling side= grain= threads= hosts= network=: the efficiency. */
+static int run_scaling(void *context, struct serve_request *request, double *value)
+{
+    const struct network *network = NETWORKS;
+    const uint32_t hosts = (uint32_t)serve_number(request, "hosts");
+    char name[20];
+    (void)context;
+    serve_word(request, "network", name, sizeof name);
+    while (network < NETWORKS + N_NETWORKS - 1 && strcmp(network->name, name))
+        network++;
+    const struct trace_run *run = trace_of(request);
+    if (!run)
+        return 1;
+    *value = makespan(run, 1, 1, network) / (hosts * CORES * makespan(run, hosts, CORES, network));
+    return isnan(*value) ? serve_fail("%s", duite_message()) : 0;
+}
+
+static const struct serve_run RUNS[] = {{"scaling", run_scaling}, {0}};
+
+const struct bench_case scale_predicted = {
+    "predicted", "a step of a million vertices on 1 to 16 hosts of 16 cores, predicted", plan, RUNS,
+    1};

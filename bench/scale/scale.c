@@ -1,0 +1,70 @@
+/* The bench "scale": what limits runs beyond a few hosts. Messages are counted on hosts that this
+ * machine plays; times on hosts that it cannot play are predicted. */
+#include "bench/scale/scale.h"
+
+#include "bench/program.h"
+
+#include <ftw.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+static const struct bench_case *const CASES[] = {&scale_messages, &scale_wait, &scale_predicted,
+                                                 NULL};
+
+/* 8 ranks have 3 rounds: 3 messages of a sum and 2 for each of about 5 neighbours. A wait: 2
+ * log2 8.
+ */
+static const struct measure_target TARGETS[] = {{"messages_per_iteration_r8", 13, false},
+                                                {"wait_messages_r8", 6, false},
+                                                {"scaling_16x16_tcp", 0.55, true},
+                                                {"scaling_16x16_fast", 0.65, true},
+                                                {0}};
+enum { TARGET_THREADS = 2 };
+
+int scale_cloth(const char *before, unsigned side, unsigned grain, const char *arguments)
+{
+    static char command[SCALE_COMMAND];
+    char programs[SCALE_PATH];
+    program_folder(programs, sizeof programs);
+    const int length =
+        snprintf(command, sizeof command,
+                 "%s '%s/../duite-cloth' '%s/sheet.yaml' --quiet --grain %u "
+                 "--set cloths[0].mesh.grid.nx=%u --set cloths[0].mesh.grid.ny=%u %s >&2",
+                 before, programs, BENCH_SCENES, grain, side, side, arguments);
+    if (length < 0 || (size_t)length >= sizeof command)
+        return serve_fail("the folder of duite-bench has too long a name");
+    return system(command) ? serve_fail("duite-cloth fails: %.150s", arguments) : 0;
+}
+
+int scale_folder(char folder[SCALE_PATH])
+{
+    const char *temporary = getenv("TMPDIR");
+    snprintf(folder, SCALE_PATH, "%s/duite-scale.XXXXXX", temporary ? temporary : "/tmp");
+    return mkdtemp(folder) ? 0 : serve_fail("no folder %s", folder);
+}
+
+static int remove_one(const char *path, const struct stat *status, int kind, struct FTW *where)
+{
+    (void)status, (void)kind, (void)where;
+    return remove(path);
+}
+
+void scale_folder_remove(const char *folder)
+{
+    if (nftw(folder, remove_one, 8, FTW_DEPTH | FTW_PHYS))
+        fprintf(stderr, "duite-bench: %s stays\n", folder);
+}
+
+static int serve_scale(const struct bench *bench)
+{
+    const struct serve_run *runs[sizeof CASES / sizeof *CASES] = {NULL};
+    for (size_t i = 0; bench->cases[i]; i++)
+        runs[i] = bench->cases[i]->runs;
+    return serve("duite-cloth with its defaults", runs, NULL);
+}
+
+const struct bench bench_scale = {
+    "scale",        "messages on eight hosts, and efficiency predicted on more",
+    CASES,          TARGETS,
+    TARGET_THREADS, serve_scale,
+    NULL,           NULL};

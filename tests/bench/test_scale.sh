@@ -1,0 +1,26 @@
+#!/bin/sh
+# duite-bench scale runs in tiny sizes, and has its figures; counts of messages are exact, where eight hosts can be played.
+. "${srcdir:-.}/tests/support/tap.sh"
+skip_unless bench/duite-bench
+plan_later
+
+rows() { # each metric with a number, or why there are no hosts
+    limited bench/duite-bench scale --quick --repeats 1 > "$scratch/said" 2>&1 || { cat "$scratch/said"; return 1; }
+    cat "$scratch/said"
+    for metric in messages_per_iteration_r8 wait_messages_r8 scaling_1x16_tcp scaling_16x16_tcp scaling_1x16_fast scaling_16x16_fast; do
+        grep -Eq "^$metric: ([0-9]|not measured)" "$scratch/said" || return 1
+    done
+}
+
+waits() { # the rank in the middle of both trees sends log2 8 messages
+    sed -n 's/^wait_messages_r8: \([0-9.]*\).*/\1/p' "$scratch/said" | awk '{ wrong = $1 < 2.5 || $1 > 6 } END { exit wrong }'
+}
+
+none_left() { # the traces and reports of the rows above
+    ls -A "$scratch/temporary" > "$scratch/left" && cat "$scratch/left" && test ! -s "$scratch/left"
+}
+mkdir "$scratch/temporary"
+export TMPDIR="$scratch/temporary"
+ok "messages and predictions are measured" rows
+ok "a wait sends few messages" waits
+ok "traces and reports are removed at the end" none_left

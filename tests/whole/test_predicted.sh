@@ -1,6 +1,7 @@
 #!/bin/sh
 # Runs of the sheet on several ranks against what duite-predict makes of their traces: as many messages, and as many bytes, of which the
-# runtime counts the 8 or 64 before the values of a message, and what fills these up, too. On more than four ranks sums go from rank to rank.
+# runtime counts the 8 or 64 before the values of a message, and what fills these up, too. On more than four ranks sums go from rank to rank:
+# the state is the same on any number of ranks.
 . "${srcdir:-.}/tests/support/tap.sh"
 plan_later
 
@@ -17,4 +18,16 @@ same_messages() { # RANKS
         }'
 }
 
+state() { # RANKS: the state_hash
+    ranks "$1" "$DUITE_CLOTH" "$srcdir/cloth/scenes/sheet.yaml" --quiet --threads 1 --grain 500 --end 0.002 --report "$scratch/report" &&
+        sed -n 's/^ *"state_hash": "\(.*\)".*/\1/p' "$scratch/report"
+}
+one_state() {
+    one=$(state 1) && test -n "$one" || return
+    for n in 3 5 7 8 16; do
+        other=$(state $n) && echo "$one on 1 rank, $other on $n" && test "$one" = "$other" || return
+    done
+}
+
+ok "one state on 1, 3, 5, 7, 8 and 16 ranks" one_state
 for n in 2 4 5 8; do ok "messages and bytes on $n ranks" same_messages $n; done

@@ -70,6 +70,13 @@ int api_gather(duite *rt, const struct work_why *why, struct comm_word *own,
     return collective_end(rt, comm_gather(rt->comm, own, words, wait_work_once, rt->pool));
 }
 
+/* The word of the first failure of all ranks, of which some has one. */
+static int wait_find_first(duite *rt, const struct work_why *why, struct comm_word *own)
+{
+    collective_begin(rt, why, own);
+    return collective_end(rt, comm_first(rt->comm, own, wait_work_once, rt->pool));
+}
+
 /* This rank makes a call that blocks, as all do; `kind` is what must be the same on all. */
 static int wait_enter(duite *rt, const char *kind, const char *call)
 {
@@ -166,16 +173,6 @@ static bool wait_is_drained(void *context)
     return work_is_drained(context);
 }
 
-/* The failure that is first in fork order among those of n ranks, or NULL. */
-static const struct data_failure *wait_first_failure(const struct comm_word *words, int n)
-{
-    const struct comm_word *first = NULL;
-    for (int i = 0; i < n; i++)
-        if (words[i].failed && (!first || words[i].failed < first->failed))
-            first = &words[i];
-    return first ? &first->failure : NULL;
-}
-
 /* No task's: after all that are. */
 #define POLICY_FAILED UINT64_MAX
 
@@ -219,21 +216,22 @@ int api_meet(duite *rt, const char *call)
     return code || !rt->comm ? code : api_agree(rt, &why, &own);
 }
 
-/* All ranks have ended their tasks; *words, one a rank, are gathered only if something failed. */
-static int wait_meet(duite *rt, const char *call, struct comm_word *own, struct comm_word **words)
+/* All ranks have ended their tasks. *word has the first failure of all ranks, if there is one; it
+ * is looked for only then. */
+static int wait_meet(duite *rt, const char *call, struct comm_word *word)
 {
     const struct work_why why = {call, "the tasks of other ranks", NULL};
     int code = wait_for_own_tasks(rt, call);
     if (code)
         return code;
-    *own = wait_last_word(rt);
+    *word = wait_last_word(rt);
     if (!rt->comm)
         return DUITE_OK;
-    struct comm_word first = *own;
+    struct comm_word first = *word;
     code = api_agree(rt, &why, &first);
     if (code || !first.failed)
         return code;
-    return api_gather(rt, &why, own, words);
+    return wait_find_first(rt, &why, word);
 }
 
 int api_wait(duite *rt, const char *call)
@@ -244,15 +242,14 @@ int api_wait(duite *rt, const char *call)
     int code = api_enter(rt, call);
     if (code)
         return code;
-    struct comm_word own, *words = NULL;
-    code = wait_meet(rt, call, &own, &words);
+    struct comm_word first;
+    code = wait_meet(rt, call, &first);
     if (code)
         return code;
     work_idle_ends(rt->pool);
     code = wait_recall(rt);
-    const struct data_failure *failure =
-        words ? wait_first_failure(words, rt->graph.n_ranks) : wait_first_failure(&own, 1);
-    if (code || !failure)
+    const struct data_failure *failure = &first.failure;
+    if (code || !first.failed)
         return code;
     if (failure->number == POLICY_FAILED)
         return base_error(failure->code,

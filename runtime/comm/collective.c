@@ -1,7 +1,7 @@
-/* Collective calls of the main thread. There are three kinds: a small reduction, by which all ranks
- * find whether they forked the same; a gathering of words; and a sum. The last two only follow a
- * reduction that told all ranks alike to go on. So ranks that run different programs are in the
- * same kind of call nevertheless.
+/* Collective calls of the main thread. There are four kinds: a small reduction, by which all ranks
+ * find whether they forked the same; a gathering of words; a sum; and a search for the word of the
+ * first failure. The last three only follow a reduction that told all ranks alike to go on. So
+ * ranks that run different programs are in the same kind of call nevertheless.
  *
  * A rank leaves a call before it is over when communication broke; MPI goes on using the buffers,
  * which therefore are the comm's own. No rank is more than one call ahead of another: at stop the
@@ -11,6 +11,37 @@
 #include "runtime/comm/internal.h"
 
 #include <string.h>
+
+/* ---- Words ---- */
+
+/* Of two words the one whose failure is first in fork order; of equal ones that of the lower rank.
+ */
+static void word_first(void *from, void *to, int *n, MPI_Datatype *type)
+{
+    const struct comm_word *one = from;
+    struct comm_word *other = to;
+    (void)type;
+    for (int i = 0; i < *n; i++) {
+        const bool same = one[i].failed == other[i].failed;
+        if (one[i].failed && (!other[i].failed || one[i].failed < other[i].failed ||
+                              (same && one[i].failure.rank < other[i].failure.rank)))
+            other[i] = one[i];
+    }
+}
+
+bool comm_collective_start(struct comm *comm)
+{
+    return !MPI_Type_contiguous(sizeof(struct comm_word), MPI_BYTE, &comm->word) &&
+           !MPI_Type_commit(&comm->word) && !MPI_Op_create(word_first, 1, &comm->first);
+}
+
+void comm_collective_stop(struct comm *comm)
+{
+    if (comm->word != MPI_DATATYPE_NULL)
+        MPI_Type_free(&comm->word);
+    if (comm->first != MPI_OP_NULL)
+        MPI_Op_free(&comm->first);
+}
 
 /* ---- Entering and waiting ---- */
 
@@ -25,6 +56,11 @@ static bool collective_enter(struct comm *comm, enum comm_collective kind)
                            MPI_Iallgather(own, sizeof *own, MPI_BYTE, comm->words, sizeof *own,
                                           MPI_BYTE, comm->mpi, &comm->request),
                            "MPI_Iallgather");
+    if (kind == COMM_FIRSTS)
+        return comm_mpi_ok(
+            comm,
+            MPI_Iallreduce(own, comm->words, 1, comm->word, comm->first, comm->mpi, &comm->request),
+            "MPI_Iallreduce");
     if (kind == COMM_SUMS)
         return comm_mpi_ok(comm,
                            MPI_Iallreduce(comm->addend, comm->sums, COMM_SUMMED, MPI_DOUBLE,
@@ -79,6 +115,18 @@ int comm_gather(struct comm *comm, const struct comm_word *own, struct comm_word
         return comm_broken(comm);
     comm->words[comm->n_ranks] = *own;
     return collective_run(comm, COMM_GATHERS, NULL, between, context);
+}
+
+int comm_first(struct comm *comm, struct comm_word *own, void (*between)(void *context),
+               void *context)
+{
+    if (!collective_lock(comm, between, context))
+        return comm_broken(comm);
+    comm->words[comm->n_ranks] = *own;
+    const int code = collective_run(comm, COMM_FIRSTS, NULL, between, context);
+    if (!code)
+        *own = comm->words[0];
+    return code;
 }
 
 int comm_sum(struct comm *comm, double *numbers, int n, void (*between)(void *context),

@@ -25,8 +25,8 @@ static int comm_prepare(struct comm *comm, struct base_monitor *monitor)
     if (MPI_Type_contiguous(sizeof(struct data_packet), MPI_BYTE, &comm->line) ||
         MPI_Type_commit(&comm->line))
         return base_error(DUITE_E_MPI, "MPI_Type_contiguous failed");
-    if (!comm_channels_start(comm))
-        return base_error(DUITE_E_MPI, "MPI_Comm_get_attr failed");
+    if (!comm_channels_start(comm) || !comm_collective_start(comm))
+        return base_error(DUITE_E_MPI, "MPI_Comm_get_attr or MPI_Op_create failed");
     return comm_heartbeat_start(comm, monitor);
 }
 
@@ -38,7 +38,8 @@ int comm_start(struct comm **out, MPI_Comm mpi, struct task_graph *graph,
         return base_no_memory("communication");
     comm->graph = graph;
     comm->mpi = mpi;
-    comm->line = MPI_DATATYPE_NULL;
+    comm->line = comm->word = MPI_DATATYPE_NULL;
+    comm->first = MPI_OP_NULL;
     comm->request = MPI_REQUEST_NULL;
     atomic_flag_test_and_set(&comm->lock); /* until comm_open */
     atomic_init(&comm->posts, NULL);
@@ -92,6 +93,7 @@ bool comm_stop(struct comm *comm)
         return false;
     if (comm->line != MPI_DATATYPE_NULL)
         MPI_Type_free(&comm->line);
+    comm_collective_stop(comm);
     comm_requests_free(&comm->sends);
     comm_requests_free(&comm->receives);
     comm_control_stop(&comm->control);

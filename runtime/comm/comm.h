@@ -166,6 +166,11 @@ int comm_agree(struct comm *comm, struct comm_word *own, void (*between)(void *c
 int comm_gather(struct comm *comm, const struct comm_word *own, struct comm_word **all,
                 void (*between)(void *context), void *context);
 
+/* Of all ranks' words the one whose failed task is first in fork order: *own, the same on all. Some
+ * rank has one: comm_agree said so. As comm_gather, by one reduction. */
+int comm_first(struct comm *comm, struct comm_word *own, void (*between)(void *context),
+               void *context);
+
 /* Sums n <= COMM_SUMMED numbers over all ranks, in place: one reduction. As comm_gather. */
 int comm_sum(struct comm *comm, double *numbers, int n, void (*between)(void *context),
              void *context);

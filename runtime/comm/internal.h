@@ -151,13 +151,15 @@ struct comm_reduced {
 enum { COMM_REDUCED = sizeof(struct comm_reduced) / sizeof(uint64_t) };
 
 /* The kinds of collective calls. */
-enum comm_collective { COMM_AGREES, COMM_GATHERS, COMM_SUMS };
+enum comm_collective { COMM_AGREES, COMM_GATHERS, COMM_SUMS, COMM_FIRSTS };
 
 /* ---- The comm ---- */
 
 struct comm {
     MPI_Comm mpi;
     MPI_Datatype line; /* 64 bytes: see data_packet_lines */
+    MPI_Datatype word; /* struct comm_word */
+    MPI_Op first;      /* of two words: see comm_first */
     struct task_graph *graph;
     int rank, n_ranks;
     atomic_flag lock;
@@ -186,6 +188,9 @@ struct comm {
     _Atomic uint64_t messages, bytes, came; /* sent, and of these the bytes; received */
 };
 
+/* Makes what collective calls need of MPI, and frees it. False: MPI failed. */
+bool comm_collective_start(struct comm *comm);
+void comm_collective_stop(struct comm *comm);
 /* Joins the collective calls that other ranks entered before communication broke. All ranks are at
  * their end. */
 void comm_catch_up(struct comm *comm);

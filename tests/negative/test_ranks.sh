@@ -18,4 +18,5 @@ for n in 2 3; do
     ok "different programs on $n ranks" ranks $n tests/negative/ranks_different
     ok "different calls on $n ranks" ranks $n tests/negative/ranks_blocking
 done
+ok "failures on 5 ranks" ranks 5 tests/negative/ranks_failures
 quick || ok "groups of 4 ranks" ranks 4 tests/negative/ranks_groups

@@ -58,9 +58,21 @@ int api_body_free(struct duite_call_private *body, duite_object object)
     return body_remember(body, code);
 }
 
-int api_body_fork(struct duite_call_private *body, const duite_task_options *options,
-                  const duite_kernel *kernel, const void *args, size_t n,
-                  const duite_object *objects)
+int api_body_fork(struct duite_call_private *body, const duite_kernel *kernel, const void *args,
+                  size_t n, const duite_object *objects)
+{
+    static const struct task_options plain = {.at = TASK_ANYWHERE};
+    int code = body_enter(body, "duite_fork");
+    if (!code)
+        code = task_inside(body)
+                   ? task_fork(body->scope, body->worker, &plain, kernel, args, n, objects)
+                   : DUITE_E_MEMORY;
+    return body_remember(body, code);
+}
+
+int api_body_fork_with(struct duite_call_private *body, const duite_task_options *options,
+                       const duite_kernel *kernel, const void *args, size_t n,
+                       const duite_object *objects)
 {
     struct task_options own = {.at = TASK_ANYWHERE};
     int code = body_enter(body, "duite_fork");

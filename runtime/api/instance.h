@@ -149,9 +149,11 @@ static inline struct duite_call_private *api_body(const duite *rt)
 int api_body_new(struct duite_call_private *body, duite_type type, size_t count, size_t max,
                  bool sized, duite_object *object);
 int api_body_free(struct duite_call_private *body, duite_object object);
-int api_body_fork(struct duite_call_private *body, const duite_task_options *options,
-                  const duite_kernel *kernel, const void *args, size_t n,
-                  const duite_object *objects);
+int api_body_fork(struct duite_call_private *body, const duite_kernel *kernel, const void *args,
+                  size_t n, const duite_object *objects);
+int api_body_fork_with(struct duite_call_private *body, const duite_task_options *options,
+                       const duite_kernel *kernel, const void *args, size_t n,
+                       const duite_object *objects);
 int api_body_set(struct duite_call_private *body, duite_object object, const void *values,
                  const size_t *count, const char *call);
 /* Copies the bytes to `values`, or the number of elements to `count`. */

@@ -165,7 +165,7 @@ int duite_fork(duite *rt, const duite_kernel *kernel, const void *args, size_t n
     static const struct task_options plain = {.at = TASK_ANYWHERE};
     struct duite_call_private *body = api_body(rt);
     if (body)
-        return api_body_fork(body, NULL, kernel, args, n, objects);
+        return api_body_fork(body, kernel, args, n, objects);
     if (!rt || !fork_is_direct(rt))
         return fork_other(rt, kernel, args, n, objects);
     const int code = task_fork(&rt->graph.root, rt->worker, &plain, kernel, args, n, objects);
@@ -193,7 +193,7 @@ int duite_fork_with(duite *rt, const duite_task_options *options, const duite_ke
 {
     struct duite_call_private *body = api_body(rt);
     if (body)
-        return api_body_fork(body, options, kernel, args, n, objects);
+        return api_body_fork_with(body, options, kernel, args, n, objects);
     int code = api_enter_any(rt, "duite_fork_with");
     if (code)
         return code;

@@ -65,6 +65,15 @@ int data_object_check(duite_type type, size_t count, size_t max);
 /* Makes an object without home. Errors: type, count, memory. */
 int data_object_new(struct data_table *table, duite_type type, size_t count, duite_object *name);
 
+/* All zero. In two parts: for so many bytes at once gcc takes a string instruction, which takes
+ * longer to begin than these few words to write. */
+static inline void data_object_clear(struct data_object *object)
+{
+    enum { HALF = sizeof *object / 2 };
+    memset(object, 0, HALF);
+    memset((char *)object + HALF, 0, sizeof *object - HALF);
+}
+
 /* The same with versions of 0 to `max` elements, count of them to begin with. */
 int data_object_new_sized(struct data_table *table, duite_type type, size_t count, size_t max,
                           duite_object *name);

@@ -34,8 +34,10 @@ uint32_t task_new_stamps(void)
     return ++task_stamp;
 }
 
-bool task_known(struct task_scope *scope, duite_object name, duite_mode *right,
-                struct data_object **local)
+/* Whether the name means something in the scope of a running body: then the right held on it and,
+ * unless the body uses it itself, the object. */
+static inline bool name_known(struct task_scope *scope, duite_object name, duite_mode *right,
+                              struct data_object **local)
 {
     struct task_nest *nest = task_nest_of(scope);
     const struct duite_call_private *body = nest->body;
@@ -66,7 +68,7 @@ struct data_object *task_find_object(struct task_scope *scope, duite_object name
     if (!scope->depth)
         return data_object_find(&scope->graph->table, name);
     struct data_object *local;
-    if (task_known(scope, name, right, &local) && local)
+    if (name_known(scope, name, right, &local) && local)
         return local;
     base_error(DUITE_E_OBJECT,
                "object %u.%u is none of this task's: it was freed, or belongs to "
@@ -89,17 +91,22 @@ struct task_scope *task_scope_new(const struct task *task, size_t n)
     struct task_nest *nest = base_pool_take(size);
     if (!nest)
         return NULL;
-    *nest = (struct task_nest){.scope = {.graph = task->scope->graph,
-                                         .parent = task->scope,
-                                         .top = task->scope->top,
-                                         .number = task->number,
-                                         .block = task->block,
-                                         .placed = task->placed,
-                                         .depth = task->scope->depth + 1},
-                               .room = (uint32_t)(n + SPARE),
-                               .size = size,
-                               .local = (void *)((char *)nest + exits)};
-    atomic_init(&nest->scope.unfinished, 1);
+    nest->scope = (struct task_scope){.graph = task->scope->graph,
+                                      .parent = task->scope,
+                                      .top = task->scope->top,
+                                      .unfinished = 1,
+                                      .number = task->number,
+                                      .block = task->block,
+                                      .placed = task->placed,
+                                      .depth = task->scope->depth + 1};
+    nest->body = NULL;
+    nest->failure = NULL;
+    nest->n_lent = nest->n_local = 0;
+    nest->room = (uint32_t)(n + SPARE);
+    nest->vacant = nest->first_read = 0;
+    nest->local = (void *)((char *)nest + exits);
+    nest->moved = false;
+    nest->size = size;
     return &nest->scope;
 }
 
@@ -194,18 +201,19 @@ int task_make_object(struct duite_call_private *body, duite_type type, size_t co
         return code;
     size_t size = data_type_size(type);
     int rank = scope->graph->rank;
-    nest->local[at] = (struct data_object){.generation = task_new_stamp(),
-                                           .type = type,
-                                           .sized = sized,
-                                           .count = count,
-                                           .bytes = count * size,
-                                           .max = max,
-                                           .room = max * size,
-                                           .home = rank,
-                                           .holder = rank,
-                                           .block = (uint32_t)scope->forks};
+    struct data_object *object = &nest->local[at];
+    data_object_clear(object);
+    object->generation = task_new_stamp();
+    object->type = type;
+    object->sized = sized;
+    object->count = count;
+    object->bytes = count * size;
+    object->max = max;
+    object->room = max * size;
+    object->home = object->holder = rank;
+    object->block = (uint32_t)scope->forks;
     uint32_t slot = TASK_LOCAL_NAME | (body->task->n + at - nest->n_lent);
-    *name = (duite_object){slot, nest->local[at].generation};
+    *name = (duite_object){slot, object->generation};
     return DUITE_OK;
 }
 
@@ -300,7 +308,7 @@ int task_check_right(struct task_scope *scope, const char *call, size_t i, duite
     const char *mode = task_mode_name(wanted);
     struct data_object *local;
     duite_mode held;
-    if (!task_known(scope, name, &held, &local)) {
+    if (!name_known(scope, name, &held, &local)) {
         if (name.slot && name.slot < TASK_LOCAL_NAME)
             return base_error(DUITE_E_RIGHT,
                               "%s, parameter %zu: the task (kernel %s) holds no right on object "
@@ -324,7 +332,7 @@ struct data_object *task_find_given(struct task_scope *scope, duite_object name,
 {
     struct data_object *local;
     duite_mode held;
-    return task_known(scope, name, &held, &local) && right_gives(held, wanted) ? local : NULL;
+    return name_known(scope, name, &held, &local) && right_gives(held, wanted) ? local : NULL;
 }
 
 int task_wrong_law(const struct task_scope *scope, const duite_kernel *kernel, size_t i,

@@ -40,11 +40,6 @@ static inline struct task_nest *task_nest_of(struct task_scope *scope)
     return (struct task_nest *)scope;
 }
 
-/* Whether the name means something in the scope of a running body: then the right held on it and,
- * unless the body uses it itself, the object. */
-bool task_known(struct task_scope *scope, duite_object name, duite_mode *right,
-                struct data_object **local);
-
 /* The children may read what the body reads: the scope gets the objects. Errors: memory. */
 int task_lend_reads(struct task_scope *scope);
 

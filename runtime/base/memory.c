@@ -181,14 +181,16 @@ static struct base_shelf *shelves_own(void)
     return base_shelves = own;
 }
 
-/* Blocks of an odd number of grains come in pairs, so that nothing is lost between them and others.
- */
-static void *block_new(size_t size)
+/* Small ones are cut several at a time: the others are at hand then, and come in the order in which
+ * they lie. So blocks of an odd number of grains come in even numbers, and nothing is lost between
+ * them and others. */
+static void *blocks_new(size_t size)
 {
-    size_t bytes = size * BASE_POOL_GRAIN;
-    char *block = region_cut(size % 2 ? 2 * bytes : bytes);
-    if (block && size % 2)
-        base_pool_give(block + bytes, bytes);
+    enum { AT_ONCE = 8, SMALL = 256 /* bytes */ };
+    const size_t bytes = size * BASE_POOL_GRAIN, n = bytes <= SMALL ? AT_ONCE : 1 + size % 2;
+    char *block = region_cut(n * bytes);
+    for (size_t i = n - 1; block && i > 0; i--)
+        base_pool_give(block + i * bytes, bytes);
     return block;
 }
 
@@ -218,7 +220,7 @@ void *base_pool_take_more(size_t size)
     shelf += size;
     struct base_magazine *full = shelf->spare;
     if ((!full || !full->n) && !(full = store_exchange(full, size)))
-        return block_new(size);
+        return blocks_new(size);
     shelf->spare = shelf->loaded;
     shelf->loaded = full;
     return full->block[--full->n];

@@ -1,10 +1,12 @@
 /* A body that writes one number beyond its object, whose bytes fill their place in memory: what
- * lies behind is duite's own. The program then stands still for ever. */
+ * lies behind is duite's own. Tasks take as much memory as the bytes of an object here. So the
+ * first task lies behind the last object, and runs for it: it forgets what it has to publish. The
+ * program then stands still for ever. */
 #include <duite.h>
 
 #include <stdio.h>
 
-enum { NUMBERS = 8, OBJECTS = 8, ROUNDS = 20 };
+enum { NUMBERS = 8, OBJECTS = 7, ROUNDS = 20, ARGS = 32 /* bytes */ };
 
 static int step(const duite_call *call)
 {
@@ -16,7 +18,9 @@ static int step(const duite_call *call)
 
 int main(void)
 {
-    static const duite_kernel STEP = {.name = "step", .body = step, .access = {DUITE_RW}};
+    static const duite_kernel STEP = {
+        .name = "step", .body = step, .access = {DUITE_RW}, .args_size = ARGS};
+    static const char args[ARGS];
     static const duite_kernel *const KERNELS[] = {&STEP, NULL};
     duite_options options = duite_options_default();
     duite_object object[OBJECTS];
@@ -30,8 +34,8 @@ int main(void)
         duite_set(rt, object[i], NULL);
     }
     for (int r = 0; r < ROUNDS; r++)
-        for (int i = 0; i < OBJECTS; i++)
-            duite_fork(rt, &STEP, NULL, 1, &object[i]);
+        for (int i = OBJECTS; i-- > 0;)
+            duite_fork(rt, &STEP, args, 1, &object[i]);
     const int code = duite_wait(rt);
     if (code)
         fprintf(stderr, "%s\n", duite_message());

@@ -32,7 +32,7 @@ static inline void task_body_ends(const struct duite_call_private *body)
 /* Calls the body; returns its failure, or NULL. An error of its calls that it did not look at is
  * one. *scope is what its children may use: NULL if it has none, also afterwards if it did not get
  * one. */
-static inline const struct data_failure *
+__attribute__((always_inline)) static inline const struct data_failure *
 task_call_body(struct task_graph *graph, struct worker *worker, struct task *task, const void *args,
                const duite_param *param, struct task_scope **scope, const duite_call *template)
 {

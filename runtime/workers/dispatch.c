@@ -10,13 +10,14 @@ bool work_run_task(struct task_graph *graph, struct worker *worker, struct task 
 {
     if (task->type == TASK_BODY && task->state == TASK_LOCAL) /* most are */
         return task_run_body(graph, worker, task, call);
+    if (task->type == TASK_NODE)
+        return plan_node_run(graph, worker, task, call);
     if (task->state == TASK_VOID)
         return task_run(graph, worker, task, call);
     switch (task->type) {
     case TASK_REPLAY:
         plan_replay_run(task);
         return false;
-    case TASK_NODE:
     case TASK_NODE_SET:
     case TASK_NODE_SUM:
     case TASK_NODE_PARTIAL:
@@ -46,6 +47,8 @@ void work_finish(struct task_graph *graph, struct worker *worker, struct task *t
 {
     if (task->type == TASK_BODY && task->state == TASK_LOCAL)
         task_finish(graph, worker, task);
+    else if (task->type == TASK_NODE)
+        plan_node_finish(graph, worker, task);
     else if (task->state != TASK_LOCAL)
         finish_changed(graph, worker, task);
     else if (task_is_node(task))

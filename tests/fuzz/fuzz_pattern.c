@@ -7,15 +7,32 @@
 
 enum { ACROSS = 8 }; /* edges, in the largest panel */
 
+static double larger(double largest, const double from[2], const double to[2])
+{
+    return fmax(largest, hypot(to[0] - from[0], to[1] - from[1]));
+}
+
+/* Where a panel's corners and curves lead to, from its first corner, m: curves may go far away. */
+static double reach_of(const struct garment_panel *panel, double largest)
+{
+    for (uint32_t i = 1; i < panel->n_corners; i++)
+        largest = larger(largest, panel->corner[0], panel->corner[i]);
+    for (uint32_t i = 0; i < panel->n_edges; i++) {
+        const struct garment_edge *edge = panel->edge + i;
+        const uint32_t n = edge->curve == GARMENT_CUBIC ? 2 : edge->curve == GARMENT_QUADRATIC;
+        for (uint32_t k = 0; k < n; k++)
+            largest = larger(largest, panel->corner[0], edge->control[k]);
+        if (edge->curve == GARMENT_CIRCLE)
+            largest = fmax(largest, edge->radius);
+    }
+    return largest;
+}
+
 static double fineness_of(const struct garment_pattern *pattern)
 {
     double largest = 1e-6;
-    for (uint32_t p = 0; p < pattern->n_panels; p++) {
-        const struct garment_panel *panel = pattern->panel + p;
-        for (uint32_t i = 1; i < panel->n_corners; i++)
-            largest = fmax(largest, hypot(panel->corner[i][0] - panel->corner[0][0],
-                                          panel->corner[i][1] - panel->corner[0][1]));
-    }
+    for (uint32_t p = 0; p < pattern->n_panels; p++)
+        largest = reach_of(pattern->panel + p, largest);
     return largest / ACROSS;
 }
 

@@ -189,8 +189,11 @@ static double op_busiest(struct predict_graph *graph, size_t op)
         all += everywhere;
         most = n > most ? n : most;
     }
-    for (uint32_t i = begin; i < end; i++)
-        graph->count[graph->node[i].host] = 0;
+    if (end - begin < graph->cluster->hosts)
+        for (uint32_t i = begin; i < end; i++)
+            graph->count[graph->node[i].host] = 0;
+    else
+        memset(graph->count, 0, graph->cluster->hosts * sizeof *graph->count);
     return op_share(all + most, end - begin);
 }
 

@@ -16,7 +16,7 @@
     X(edge_start) X(edge_begin) X(edge_round) X(edge_next) X(edge_end)                             \
     X(velocity_implicit) X(position) X(predict) X(correct) X(shift) X(residual)                    \
     X(system) X(system_of_forces) X(matrix) X(factor)                                              \
-    X(basis) X(basis_ghosts) X(couple) X(factor_coarse)                                            \
+    X(basis) X(basis_ghosts) X(patch_frame) X(lift) X(couple) X(factor_coarse)                     \
     X(cg_begin) X(cg_begin_coarse) X(cg_start) X(cg_start_preconditioned) X(cg_guess)              \
     X(cg_pass) X(cg_pass_preconditioned) X(tie_pack) X(tie_pack_pass) X(tie_show_basis)            \
     X(cg_scalars) X(cg_scalars_of_parts) X(cg_scalars_coarse) X(piece_sums) X(piece_shift)         \
@@ -36,6 +36,9 @@ extern const duite_kernel
 extern const duite_kernel flow_ready; /* cw ready: fails if this rank cannot begin */
 extern const duite_kernel flow_pack;  /* r halo of s, w packed halo */
 
+/* Of groups in the coarse part of a preconditioner: solver/levels.h. */
+extern const duite_kernel flow_group_factor, flow_group_start, flow_group_solve;
+
 /* Of sides that meet: contact/contact.h. */
 extern const duite_kernel flow_meet, flow_meet_shape, flow_touch, flow_cut_ways, flow_count_ties,
     flow_tie_contacts;
@@ -43,6 +46,6 @@ extern const duite_kernel flow_meet, flow_meet_shape, flow_touch, flow_cut_ways,
 /* Of checkpoints: checkpoint/checkpoint.h. */
 extern const duite_kernel flow_save_block, flow_send_main, flow_load_block;
 
-enum { FLOW_KERNELS_LISTED = FLOW_KERNELS_OF_ALL + 13 }; /* by flow_kernels (run.h) */
+enum { FLOW_KERNELS_LISTED = FLOW_KERNELS_OF_ALL + 16 }; /* by flow_kernels (run.h) */
 
 #endif

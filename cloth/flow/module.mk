@@ -110,6 +110,9 @@ libduite_cloth_la_SOURCES += \
     cloth/flow/solver/pass.c \
     cloth/flow/solver/preconditioner.c \
     cloth/flow/solver/coarse.c \
+    cloth/flow/solver/groups.c \
+    cloth/flow/solver/levels.c \
+    cloth/flow/solver/levels.h \
     cloth/flow/solver/pattern.c \
     cloth/flow/solver/halo.c \
     cloth/flow/solver/pieces.c \

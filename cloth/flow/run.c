@@ -8,6 +8,7 @@
 #include "cloth/flow/contact/repel.h"
 #include "cloth/flow/observe/observe.h"
 #include "cloth/flow/setup/setup.h"
+#include "cloth/flow/solver/levels.h"
 #include "cloth/flow/solver/solve.h"
 #include "cloth/flow/state/state.h"
 #include "cloth/flow/step/step.h"
@@ -33,6 +34,9 @@ const duite_kernel *const *flow_kernels(void)
                                                                      &flow_broadcast_shared,
                                                                      &flow_ready,
                                                                      &flow_pack,
+                                                                     &flow_group_factor,
+                                                                     &flow_group_start,
+                                                                     &flow_group_solve,
                                                                      &flow_meet,
                                                                      &flow_meet_shape,
                                                                      &flow_touch,
@@ -221,6 +225,7 @@ static int make(struct flow_state *state)
     flow_objects_make(state);
     if (model_is_implicit(state->flow->model))
         flow_halo_make(state);
+    flow_levels_make(state);
     int code = flow_distribute(state);
     if (!code)
         code = duite_count_all(state->rt, &state->before);

@@ -318,16 +318,16 @@ bool model_is_coarse(const struct model *model)
 
 uint32_t model_patches(const struct model *model, uint32_t n_blocks)
 {
-    enum { MAX_IN_ALL = 256, LEAST_VERTICES = 100 };
+    enum { LEAST_VERTICES = 100 };
+    const uint64_t all = n_blocks;
     uint32_t n = model->patches ? model->patches : SOLVE_MAX_PATCHES;
     if (!model_is_coarse(model))
         return 1;
-    while (!model->patches && n > 1 &&
-           (n * n_blocks > MAX_IN_ALL || model->grain / n < LEAST_VERTICES))
+    while (!model->patches && n > 1 && model->grain / n < LEAST_VERTICES)
         n /= 2;
-    while (n > 1 && n * n_blocks > SOLVE_MAX_BLOCKS)
-        n--;
-    return n;
+    /* Half of them in one factor are better than all of them by groups, a quarter is not. */
+    const bool halved = n * all > MODEL_ONE_FACTOR && n / 2 * all <= MODEL_ONE_FACTOR;
+    return halved && n > 1 && !model->patches ? n / 2 : n;
 }
 
 double model_curve_at(const struct model *model, uint32_t curve, double time)

@@ -152,7 +152,8 @@ struct model {
     uint32_t max_iterations; /* count: exactly so many */
     enum model_guess guess;  /* of dv */
     enum model_preconditioner preconditioner;
-    uint32_t patches; /* of a block, for the coarse space, at most 4; 0: as model_patches finds */
+    uint32_t patches;  /* of a block, for the coarse space, at most 4; 0: as model_patches finds */
+    bool exact_coarse; /* one factor of it, however many patches there are: not in scenes */
     enum solve_format format; /* of the matrix; springs alone can be SOLVE_SPRINGS */
     int own_filter;           /* solves are filtered by the program's flow_filter, too */
     int full_slope; /* enum phys_slope, of the matrix; only springs know PHYS_ABSOLUTE, which is
@@ -278,9 +279,10 @@ static inline int model_stops_by_norms(const struct model *model)
 }
 
 /* Whether its solves have a coarse space, and how many patches a block has in it. Without a number
- * of the model's own these are as many as keep the coarse system small against the blocks' work:
- * one task solves it after theirs. */
+ * of the model's own these are four, or two where one factor then takes all of them: a task solves
+ * with it after those of the blocks. */
 bool model_is_coarse(const struct model *model);
+enum { MODEL_ONE_FACTOR = 256 }; /* more patches are solved by groups (cloth/solve/levels.h) */
 uint32_t model_patches(const struct model *model, uint32_t n_blocks);
 
 /* Their names in scenes. */

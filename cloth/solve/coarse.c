@@ -95,8 +95,10 @@ void solve_coarse_fill(const struct solve_pattern *pattern, const uint32_t *firs
     for (uint32_t i = first[b]; i < first[b + 1]; i++) {
         if (neighbour[i] < b)
             continue;
-        const uint32_t there = pattern->place[neighbour[i]];
         coupling += SOLVE_COUPLING;
+        if (neighbour[i] == SOLVE_LEFT_OUT)
+            continue;
+        const uint32_t there = pattern->place[neighbour[i]];
         if (there < here) /* rows of what comes later, columns of what comes first */
             fill(coupling, false, entry_of(pattern, parts.entry, there, here));
         else

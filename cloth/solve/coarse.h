@@ -65,11 +65,12 @@ struct solve_pattern {
     uint32_t *row;   /* places, ascending in a column */
 };
 
-/* More blocks are too many for one factor. */
-enum { SOLVE_MAX_BLOCKS = 4096 };
+/* A neighbour that the pattern does not have: what couples a block with it is left out. */
+#define SOLVE_LEFT_OUT UINT32_MAX
 
 /* From the neighbours of each block: those of block b are neighbour[first[b]] .. neighbour[first[b
- * + 1] - 1]. At most SOLVE_MAX_BLOCKS. Error: CLOTH_E_MEMORY. Local. */
+ * + 1] - 1]. Time grows as n^3: many blocks are solved by parts (cloth/solve/levels.h). Error:
+ * CLOTH_E_MEMORY. Local. */
 int solve_pattern_make(struct solve_pattern *pattern, uint32_t n, const uint32_t *first,
                        const uint32_t *neighbour, struct cloth_error *error);
 void solve_pattern_free(struct solve_pattern *pattern);

@@ -2,8 +2,8 @@
  * symmetric, and phi the rows of P. It adds (phi_a - phi_b)(phi_a - phi_b)' times K, and (phi_b
  * phi_a' - phi_a phi_b') times [w]x, since the [w]x of a row sum to zero. The sums go over
  * symmetric 3 x 3 blocks, six for one block, nine for two, and over vectors w, three and nine. */
-#include "cloth/base/axes.h"
 #include "cloth/solve/coarse.h"
+#include "cloth/solve/frame.h"
 #include "cloth/solve/matrix3.h"
 
 #include <math.h>
@@ -11,32 +11,17 @@
 
 /* ---- The basis ---- */
 
-/* The two axes of a cloud of points in which it is largest, each divided by its extent; zero if
- * there is none. */
+/* The two axes of a cloud of points, as solve_axes has them. */
 static void axes_of(size_t n, const phys_vec *position, const phys_vec *centre, phys_vec axis[2])
 {
-    double m[3][3] = {{0}}, axes[3][3];
+    double m[3][3] = {{0}};
     for (size_t a = 0; a < n; a++) {
         const phys_vec d = position[a] - *centre;
         for (int i = 0; i < 3; i++)
             for (int j = 0; j < 3; j++)
                 m[i][j] += d[i] * d[j] / (double)n;
     }
-    cloth_axes(1e-300, m, axes);
-    int order[3] = {0, 1, 2};
-    for (int i = 0; i < 2; i++)
-        for (int j = i + 1; j < 3; j++)
-            if (m[order[j]][order[j]] > m[order[i]][order[i]]) {
-                const int other = order[i];
-                order[i] = order[j];
-                order[j] = other;
-            }
-    const double largest = m[order[0]][order[0]];
-    for (int i = 0; i < 2; i++) {
-        const double *e = axes[order[i]], square = m[order[i]][order[i]];
-        const double scale = square > 1e-12 * largest ? 1 / sqrt(square) : 0;
-        axis[i] = (phys_vec){scale * e[0], scale * e[1], scale * e[2], 0};
-    }
+    solve_axes(m, axis);
 }
 
 void solve_basis(size_t n, const double *free, const phys_vec *position, phys_vec *basis)

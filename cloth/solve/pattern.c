@@ -105,7 +105,8 @@ int solve_pattern_make(struct solve_pattern *pattern, uint32_t n, const uint32_t
         goto done;
     for (uint32_t b = 0; b < n; b++) {
         for (uint32_t i = first[b]; i < first[b + 1]; i++)
-            row_of(&graph, b)[neighbour[i] / 64] |= UINT64_C(1) << neighbour[i] % 64;
+            if (neighbour[i] != SOLVE_LEFT_OUT)
+                row_of(&graph, b)[neighbour[i] / 64] |= UINT64_C(1) << neighbour[i] % 64;
         graph.degree[b] = count_bits(&graph, b);
     }
     order(&graph, pattern);

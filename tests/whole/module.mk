@@ -1,10 +1,10 @@
 check_PROGRAMS += tests/whole/same_hash
 tests_whole_same_hash_SOURCES = tests/whole/same_hash.c
 tests_whole_same_hash_LDADD = libduite_cloth.la libduite_core.la
-dist_check_SCRIPTS += tests/whole/test_same_hash.sh tests/whole/test_same_hash_long.sh tests/whole/test_dress.sh \
+dist_check_SCRIPTS += tests/whole/test_same_hash.sh tests/whole/test_same_hash_long.sh tests/whole/test_levels_long.sh tests/whole/test_dress.sh \
 	tests/whole/test_demo.sh
 TESTS += tests/whole/test_same_hash.sh tests/whole/test_dress.sh
-LONG_TESTS += tests/whole/test_same_hash_long.sh tests/whole/test_demo.sh
+LONG_TESTS += tests/whole/test_same_hash_long.sh tests/whole/test_levels_long.sh tests/whole/test_demo.sh
 dist_check_SCRIPTS += tests/whole/test_probes.sh
 dist_check_SCRIPTS += tests/whole/test_world.sh
 dist_check_SCRIPTS += tests/whole/test_colours.sh

@@ -48,6 +48,8 @@ else
     done
     # shellcheck disable=SC2086
     ok "40 x 40, three patches a block, some" ranks 4 tests/whole/same_hash "$scene" some 0 $small solver.patches=3
+    # shellcheck disable=SC2086
+    ok "40 x 40, 400 blocks, whose coarse space is solved by groups, few" ranks 4 tests/whole/same_hash "$scene" few 0 $small grain=4
     for format in half_float half; do
         # shellcheck disable=SC2086
         ok "40 x 40, format $format, some" ranks 4 tests/whole/same_hash "$scene" some 0 $small solver.format=$format

@@ -8,6 +8,7 @@
 #include "cloth/flow/contact/contact.h"
 #include "cloth/flow/contact/repel.h"
 #include "cloth/flow/setup/setup.h"
+#include "cloth/flow/solver/levels.h"
 #include "cloth/flow/solver/solve.h"
 
 #include "cloth/base/memory.h"
@@ -254,6 +255,8 @@ int flow_resume_blocks(struct flow_state *state)
 {
     const struct model *model = state->flow->model;
     int code = load_all(state);
+    if (!code)
+        code = flow_levels_initialise(state);
     if (!code && !model_is_filtered(model))
         code = flow_coarse_initialise(state);
     if (!code && model_certifies(model))

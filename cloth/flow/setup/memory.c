@@ -4,6 +4,7 @@
 #include "cloth/flow/contact/certify.h"
 #include "cloth/flow/observe/observe.h"
 #include "cloth/flow/setup/setup.h"
+#include "cloth/flow/solver/levels.h"
 #include "cloth/flow/solver/solve.h"
 
 #include "cloth/base/memory.h"
@@ -67,8 +68,9 @@ static void take(struct flow_state *state)
     const size_t tied = model_seeks(flow->model) /* others of a block, at most */
                             ? head->n_blocks
                             : smaller(head->n_blocks, 2 * (size_t)head->n_ties);
-    const size_t refs =
-        larger(head->n_blocks, 2 * (size_t)head->max_neighbours) + 4 * tied + DUITE_MAX_ACCESS;
+    const size_t groups = head->n_blocks; /* fewer than that, on all levels */
+    const size_t refs = larger(head->n_blocks, 2 * (size_t)head->max_neighbours) + 4 * tied +
+                        groups + DUITE_MAX_ACCESS;
     flow->n_clocks = duite_threads(state->rt);
     flow->clock = aligned_alloc(sizeof *flow->clock, flow->n_clocks * sizeof *flow->clock);
     if (flow->clock)
@@ -140,6 +142,7 @@ int flow_memory_take(struct flow_state *state)
 void flow_memory_free(struct flow_state *state)
 {
     struct flow *flow = state->flow;
+    flow_levels_free(state);
     flow_preconditioner_free(flow);
     free(flow->clock);
     free(flow->sums);

@@ -6,6 +6,7 @@
  * round, the second one does nothing.
  *
  * In reading order: a solve, its recorded round, the scalars. */
+#include "cloth/flow/solver/levels.h"
 #include "cloth/flow/solver/solve.h"
 #include "cloth/flow/solver/solver.h"
 #include "cloth/flow/step/step.h"
@@ -39,8 +40,10 @@ static int fork_begin(struct flow_state *state, bool guess)
     const bool moves = flow_is_coarse(state->flow) && !guess;
     const struct begin_args args = {.step = flow_attempt_args(state),
                                     .phase = guess ? SOLVE_OPEN : SOLVE_ON};
-    return flow_fork_one(state, moves ? &flow_kernel_cg_begin_coarse : &flow_kernel_cg_begin,
-                         &args);
+    if (!moves)
+        return flow_fork_one(state, &flow_kernel_cg_begin, &args);
+    const int code = flow_levels_start(state);
+    return code ? code : flow_levels_fork_top(state, &flow_kernel_cg_begin_coarse, &args, false);
 }
 
 int flow_cg_start(struct flow_state *state)
@@ -75,12 +78,13 @@ int flow_cg(struct flow_state *state)
 static int fork_scalars(struct flow_state *state)
 {
     const struct flow_block_args args = {0};
-    const struct flow_kernel *kernel = &flow_kernel_cg_scalars;
-    if (flow_is_coarse(state->flow))
-        kernel = &flow_kernel_cg_scalars_coarse;
-    else if (flow_is_preconditioned(state->flow))
-        kernel = &flow_kernel_cg_scalars_of_parts;
-    return flow_fork_one(state, kernel, &args);
+    if (!flow_is_coarse(state->flow))
+        return flow_fork_one(state,
+                             flow_is_preconditioned(state->flow) ? &flow_kernel_cg_scalars_of_parts
+                                                                 : &flow_kernel_cg_scalars,
+                             &args);
+    const int code = flow_levels_solve(state);
+    return code ? code : flow_levels_fork_top(state, &flow_kernel_cg_scalars_coarse, &args, false);
 }
 
 static int build(duite *rt, void *context)
@@ -207,10 +211,10 @@ static int cg_scalars_body(const duite_call *call, const struct cg_scalars_field
     return next_scalars(call, dots, on->scalars, on->scalars_next);
 }
 
-/* The dots of all blocks. */
+/* The dots of all blocks, which groups have summed if there are levels. */
 static void add_parts(const struct flow *flow, const duite_param *part, double dots[SOLVE_DOTS])
 {
-    for (uint32_t b = 0; b < flow->tables.n_blocks; b++)
+    for (uint32_t b = 0; b < flow_parts(flow); b++)
         for (int i = 0; i < SOLVE_DOTS; i++)
             dots[i] += flow_numbers_of(part, b)[i];
 }
@@ -232,10 +236,9 @@ FLOW_KERNEL_WITH(cg_scalars_coarse, FLOW_CG, struct flow_block_args,
 static int cg_scalars_coarse_body(const duite_call *call, const struct cg_scalars_coarse_fields *on)
 {
     const struct flow *flow = flow_of(call);
-    const double phase = on->scalars->phase;
     double dots[SOLVE_DOTS] = {0};
     add_parts(flow, on->part, dots);
-    if (phase == SOLVE_ON || phase == SOLVE_AGAIN)
+    if (flow_coarse_moves(on->scalars))
         dots[SOLVE_QQ] += flow_coarse_motion(flow, on->coarse, on->part, on->motion_next);
     else
         memset(on->motion_next, 0, flow_motion_doubles(flow) * sizeof *on->motion_next);

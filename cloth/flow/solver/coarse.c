@@ -7,6 +7,7 @@
  * In reading order: the space P, once a run or, where the solve is filtered, in each step; C and
  * its factor, in each step; what a pass and its scalars do with them. Its pattern is made once a
  * run (pattern.c). */
+#include "cloth/flow/solver/levels.h"
 #include "cloth/flow/solver/solve.h"
 #include "cloth/flow/solver/solver.h"
 
@@ -215,12 +216,14 @@ FLOW_KERNEL_WITH(factor_coarse, FLOW_CG, struct flow_block_args, (W(coarse), ALL
 static int factor_coarse_body(const duite_call *call, const struct factor_coarse_fields *on)
 {
     const struct flow *flow = flow_of(call);
+    const struct flow_graph graph = flow_levels_graph(flow);
     solve_coarse_clear(&flow->pattern, on->coarse);
     for (uint32_t p = 0; p < flow->pattern.n; p++)
-        solve_coarse_fill(&flow->pattern, flow->patch_first, flow->patch_neighbour, p,
-                          flow_numbers_of(on->coupling, p / flow->patches) +
-                              SOLVE_COUPLING * flow_coupling_at(flow, p, p),
-                          on->coarse);
+        solve_coarse_fill(
+            &flow->pattern, graph.first, graph.neighbour, p,
+            flow_numbers_of(on->coupling, flow_levels_holder(flow, flow->n_levels, p)) +
+                flow_levels_coupling_at(flow, flow->n_levels, p),
+            on->coarse);
     solve_coarse_factor(&flow->pattern, on->coarse);
     return 0;
 }
@@ -229,9 +232,11 @@ static int factor_coarse_body(const duite_call *call, const struct factor_coarse
 static int fork_factor(struct flow_state *state)
 {
     struct flow_block_args args;
-    const int code = flow_fork_each(state, &flow_kernel_couple, &args);
+    int code = flow_fork_each(state, &flow_kernel_couple, &args);
     args.block = 0;
-    return code ? code : flow_fork_one(state, &flow_kernel_factor_coarse, &args);
+    if (!code)
+        code = flow_levels_factor(state);
+    return code ? code : flow_levels_fork_top(state, &flow_kernel_factor_coarse, &args, true);
 }
 
 int flow_coarse_start(struct flow_state *state)
@@ -255,18 +260,24 @@ void flow_coarse_restrict(const struct flow_preconditioner *m, const phys_vec *q
     }
 }
 
-/* Of patch k of a block. */
-static const double *motion_of(const struct flow_preconditioner *m, uint32_t block, uint32_t k)
+/* Of patch k of a block. room: for it, where it is a sum. */
+static const double *motion_of(const struct flow_preconditioner *m, uint32_t block, uint32_t k,
+                               double room[SOLVE_COARSE])
 {
-    return m->motion + solve_coarse_at(&m->flow->pattern, m->flow->patches * block + k);
+    const uint32_t patch = m->flow->patches * block + k;
+    if (!m->flow->n_levels)
+        return m->motion + solve_coarse_at(&m->flow->pattern, patch);
+    flow_levels_motion(m, patch, room);
+    return room;
 }
 
 void flow_coarse_prolong(const struct flow_preconditioner *m, phys_vec *s)
 {
     const struct solve_patches patches = solve_patches_of(m->table->n, m->flow->patches);
+    double x[SOLVE_COARSE];
     for (uint32_t k = 0; k < patches.n; k++) {
         const uint32_t from = patches.start[k], n = patches.start[k + 1] - from;
-        solve_prolong(n, m->basis + from, motion_of(m, m->block, k), s + from);
+        solve_prolong(n, m->basis + from, motion_of(m, m->block, k, x), s + from);
     }
 }
 
@@ -277,13 +288,14 @@ void flow_coarse_advance_ghosts(const struct flow_preconditioner *m, uint32_t ne
 {
     const struct flow_table *t = m->table, *other = m->flow->tables.block + t->neighbour[neighbour];
     const uint32_t first = t->ghost_start[neighbour], end = t->ghost_start[neighbour + 1];
+    double x[SOLVE_COARSE];
     for (uint32_t k = 0, i = first; k < m->flow->patches; k++) {
         const uint32_t from = i;
         while (i < end && t->ghost[i] < other->halo_start[k + 1])
             i++;
         solve_advance_ghosts_coarse(i - from, scalars->alpha, scalars->beta, halo,
                                     at + (from - first), m->basis_ghosts + from,
-                                    motion_of(m, t->neighbour[neighbour], k), z + (from - first),
+                                    motion_of(m, t->neighbour[neighbour], k, x), z + (from - first),
                                     p + (from - first));
     }
 }
@@ -296,22 +308,24 @@ void flow_coarse_advance_ties(const struct flow_preconditioner *m, const struct 
     const uint32_t *row = ties->ghost_row + ties->start[k];
     const struct solve_patches patches =
         solve_patches_of(m->flow->tables.block[block].n, m->flow->patches);
+    double x[SOLVE_COARSE];
     for (uint32_t patch = 0, i = 0; patch < patches.n; patch++) {
         const uint32_t from = i;
         while (i < n && row[i] < patches.start[patch + 1])
             i++;
         solve_advance_ghosts_coarse(i - from, scalars->alpha, scalars->beta, s, ties->at + from,
-                                    basis + from, motion_of(m, block, patch), z + from, p + from);
+                                    basis + from, motion_of(m, block, patch, x), z + from,
+                                    p + from);
     }
 }
 
 /* ---- In the task of the scalars ---- */
 
-/* The right side of a patch. */
-static const double *right_of(const struct flow *flow, const duite_param *part, uint32_t patch)
+/* The right side of a node on top. */
+static const double *right_of(const struct flow *flow, const duite_param *part, uint32_t node)
 {
-    const double *all = flow_numbers_of(part, patch / flow->patches) + FLOW_PART_COARSE;
-    return all + SOLVE_COARSE * (patch % flow->patches);
+    const uint32_t holder = flow_levels_holder(flow, flow->n_levels, node);
+    return flow_levels_right(flow, flow->n_levels, node, flow_numbers_of(part, holder));
 }
 
 double flow_coarse_motion(const struct flow *flow, const double *factor, const duite_param *part,

@@ -5,6 +5,7 @@
  * blocks; with one the block's own, with the coarse right side P' q behind the dots.
  *
  * In reading order: what a solve begins with, a pass by its phases, its kernels, the forks. */
+#include "cloth/flow/solver/levels.h"
 #include "cloth/flow/solver/solve.h"
 #include "cloth/flow/solver/solver.h"
 
@@ -299,7 +300,7 @@ static int cg_pass_body(const duite_call *call, const struct cg_pass_fields *on)
 FLOW_KERNEL(cg_pass_preconditioned, FLOW_CG, struct flow_block_args,
             (R(table), R(scalars), R(a), R(f), RW(dv), RW(r), RW(p), RW(q), RW(ghosts),
              RW(halo_q_next), RW(part), RW(z), RW(s), R(factor), NEIGHBOURS(halo_q), IF_MADE(basis),
-             IF_MADE(basis_ghosts), IF_MADE(motion), IF_MADE(tie_table), TIED(tie_q),
+             IF_MADE(basis_ghosts), IF_MADE(motion), IF_MADE(lift), IF_MADE(tie_table), TIED(tie_q),
              TIED(tie_basis)))
 static int cg_pass_preconditioned_body(const duite_call *call,
                                        const struct cg_pass_preconditioned_fields *on)
@@ -329,6 +330,11 @@ static int cg_pass_preconditioned_body(const duite_call *call,
     pass.m.basis = on->basis;
     pass.m.basis_ghosts = on->basis_ghosts;
     pass.m.motion = on->motion;
+    pass.m.lift = on->lift;
+    pass.m.seen = on->tied_tie_basis;
+    if (pass.m.flow->made[FLOW_FIELD_tie_basis])
+        pass.m.seen += flow_ties_others(on->tie_table);
+    pass.m.n_seen = (size_t)(call->param + call->n_params - pass.m.seen);
     pass.tied_basis = on->tied_tie_basis;
     run_phase(&pass);
     return 0;
@@ -360,7 +366,8 @@ int flow_pass_start(struct flow_state *state, uint32_t block, double guess)
     return code ? code : flow_halo_pack(state, block, 0);
 }
 
-/* What it reads of the neighbours are their halos or packed ones (halo.c). */
+/* What it reads of the neighbours are their halos or packed ones (halo.c). Behind all else come
+ * motions of groups, if there are any. */
 static int fork_block(struct flow_state *state, const struct flow_block_args *args)
 {
     const struct flow_table *t = state->flow->tables.block + args->block;
@@ -368,10 +375,11 @@ static int fork_block(struct flow_state *state, const struct flow_block_args *ar
     const struct flow_kernel *kernel =
         preconditioned ? &flow_kernel_cg_pass_preconditioned : &flow_kernel_cg_pass;
     const size_t halos = preconditioned ? cg_pass_preconditioned_at_end : cg_pass_at_end;
-    const size_t n = flow_kernel_objects(state, kernel, args->block, NULL);
+    size_t n = flow_kernel_objects(state, kernel, args->block, NULL);
     const duite_object *read =
         state->packed.read[state->pass] + (t->neighbour - state->flow->tables.neighbour);
     memcpy(state->refs + halos, read, t->n_neighbours * sizeof *read);
+    n = flow_levels_seen(state, args->block, n);
     return duite_fork(state->rt, &kernel->task, args, n, state->refs);
 }
 

@@ -1,6 +1,7 @@
 /* The pattern of the coarse matrix (coarse.c): which patches anything joins, ties that come later
  * too. It is the same on every rank, and is made once a run. */
 #include "cloth/flow/setup/setup.h"
+#include "cloth/flow/solver/levels.h"
 #include "cloth/flow/solver/solver.h"
 
 #include "cloth/base/memory.h"
@@ -81,15 +82,17 @@ static size_t max_patch_neighbours(const struct flow *flow)
     return neighbours * flow->patches * flow->patches;
 }
 
-static void make_pattern(struct flow *flow)
+/* Returns whether it has memory for the graph of all patches. */
+static bool join_patches(struct flow *flow)
 {
-    const uint32_t n_blocks = flow->tables.n_blocks, n = flow->patches * n_blocks;
+    const uint32_t n_blocks = flow->tables.n_blocks;
+    const size_t n = (size_t)flow->patches * n_blocks;
     struct cloth_error *trouble = &flow->trouble;
-    flow->patch_first = cloth_alloc((size_t)n + 1, sizeof *flow->patch_first, trouble);
+    flow->patch_first = cloth_alloc(n + 1, sizeof *flow->patch_first, trouble);
     flow->patch_neighbour =
         cloth_alloc(max_patch_neighbours(flow), sizeof *flow->patch_neighbour, trouble);
     if (!flow->patch_first || !flow->patch_neighbour)
-        return;
+        return false;
     for (uint32_t b = 0; b < n_blocks; b++)
         for (uint32_t k = 0; k < flow->patches; k++) {
             const uint32_t p = flow->patches * b + k;
@@ -98,7 +101,102 @@ static void make_pattern(struct flow *flow)
             end = insert_tied(flow, b, p, from, end);
             flow->patch_first[p + 1] = (uint32_t)(end - flow->patch_neighbour);
         }
-    solve_pattern_make(&flow->pattern, n, flow->patch_first, flow->patch_neighbour, trouble);
+    return true;
+}
+
+/* ---- Levels ---- */
+
+/* Writes the first blocks of runs of at most so many blocks, as METIS' bisections made them
+ * (cloth/mesh/blocks.h): the lower half is the smaller one. So runs of more blocks are made of
+ * whole runs of fewer. Returns the end. */
+static uint32_t *split(uint32_t from, uint32_t to, uint64_t most, uint32_t *start)
+{
+    const uint32_t middle = from + (to - from) / 2;
+    if (to - from > most)
+        return split(middle, to, most, split(from, middle, most, start));
+    *start = from;
+    return start + 1;
+}
+
+/* The node of a level that the first patch of a block is in. */
+static uint32_t node_of(const struct flow *flow, uint32_t level, uint32_t block)
+{
+    uint32_t node = flow->patches * block;
+    for (uint32_t l = 0; l < level; l++)
+        node = flow->level[l].cluster.of[node];
+    return node;
+}
+
+/* Splits the nodes of a level by blocks, n in all. Returns how many runs there are. */
+static uint32_t split_nodes(const struct flow *flow, uint32_t level, uint32_t n, uint64_t most,
+                            uint32_t *start)
+{
+    const uint32_t runs = (uint32_t)(split(0, flow->tables.n_blocks, most, start) - start);
+    for (uint32_t k = 0; k < runs; k++)
+        start[k] = node_of(flow, level, start[k]);
+    start[runs] = n;
+    return runs;
+}
+
+/* Where holders of the nodes of the next level start: blocks, or groups of the level below. */
+static uint32_t list_holders(const struct flow *flow, uint32_t *start)
+{
+    const uint32_t l = flow->n_levels;
+    const uint32_t n = l ? flow->level[l - 1].group.n : flow->tables.n_blocks;
+    for (uint32_t k = 0; k <= n; k++)
+        start[k] = l ? flow->level[l - 1].first_cluster[k] : flow->patches * k;
+    return n;
+}
+
+/* Makes the next level, of clusters of at most so many blocks. */
+static int add_level(struct flow *flow, uint64_t most)
+{
+    enum { CLUSTERS_OF_GROUP = 4 };
+    const uint32_t l = flow->n_levels;
+    const size_t room = (size_t)flow->tables.n_blocks + 1;
+    const struct flow_graph nodes = flow_levels_graph(flow);
+    uint32_t *start = cloth_alloc(3 * room, sizeof *start, &flow->trouble);
+    if (!start)
+        return CLOTH_E_MEMORY;
+    uint32_t *group = start + room, *cluster = group + room;
+    const struct solve_starts starts = {
+        .n_holders = list_holders(flow, start),
+        .n_groups = split_nodes(flow, l, nodes.n, CLUSTERS_OF_GROUP * most, group),
+        .n_clusters = split_nodes(flow, l, nodes.n, most, cluster),
+        .holder = start,
+        .group = group,
+        .cluster = cluster};
+    flow->n_levels++;
+    flow->first_group[l + 1] = flow->first_group[l] + starts.n_groups;
+    flow->first_lifted[l + 1] = flow->first_lifted[l] + nodes.n;
+    const int code = solve_level_make(flow->level + l, nodes.n, nodes.first, nodes.neighbour,
+                                      &starts, &flow->trouble);
+    free(start);
+    return code;
+}
+
+/* As many levels as it takes until few nodes are on top; none if patches are few. */
+static int make_levels(struct flow *flow)
+{
+    enum { BLOCKS_OF_CLUSTER = 4, MOST_ON_TOP = 100 };
+    uint32_t most = MODEL_ONE_FACTOR;
+    uint64_t blocks = 1;
+    int code = CLOTH_OK;
+    while (flow_levels_graph(flow).n > most && !flow->model->exact_coarse &&
+           flow->n_levels < FLOW_MAX_LEVELS && !code) {
+        blocks *= BLOCKS_OF_CLUSTER;
+        code = add_level(flow, blocks);
+        most = MOST_ON_TOP;
+    }
+    return code;
+}
+
+static void make_pattern(struct flow *flow)
+{
+    if (!join_patches(flow) || make_levels(flow))
+        return;
+    const struct flow_graph top = flow_levels_graph(flow);
+    solve_pattern_make(&flow->pattern, top.n, top.first, top.neighbour, &flow->trouble);
 }
 
 /* How many neighbours of patch p are behind it and before `end`. */
@@ -128,13 +226,19 @@ size_t flow_coupling_at(const struct flow *flow, uint32_t p, uint32_t q)
 
 int flow_coarse_prepare(struct flow_state *state)
 {
-    make_pattern(state->flow);
+    struct flow *flow = state->flow;
+    make_pattern(flow);
+    if (flow->n_levels && !flow->trouble.code)
+        flow_levels_take(state);
     return flow_memory_agree(state);
 }
 
 void flow_coarse_free(struct flow *flow)
 {
     solve_pattern_free(&flow->pattern);
+    for (uint32_t l = 0; l < flow->n_levels; l++)
+        solve_level_free(flow->level + l);
+    flow->n_levels = 0;
     free(flow->patch_first);
     free(flow->patch_neighbour);
     flow->patch_first = flow->patch_neighbour = NULL;

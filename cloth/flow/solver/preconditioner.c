@@ -6,27 +6,12 @@
 #include "cloth/flow/solver/solve.h"
 #include "cloth/flow/solver/solver.h"
 
-#include <stdio.h>
-
 /* ---- Which one ---- */
-
-static void without_coarse(struct flow *flow, uint32_t n_blocks)
-{
-    const bool ic0 = flow->preconditioner == MODEL_IC0_COARSE;
-    flow->preconditioner = ic0 ? MODEL_IC0 : MODEL_JACOBI;
-    snprintf(
-        flow->warning[3], sizeof flow->warning[3],
-        "%u blocks are too many for a coarse space, which has at most %d: conjugate gradients do "
-        "without; a grain of %u would have one",
-        n_blocks, SOLVE_MAX_BLOCKS, flow->n_vertices / SOLVE_MAX_BLOCKS * 5 / 4 + 1);
-}
 
 void flow_preconditioner_choose(struct flow *flow, uint32_t n_blocks)
 {
     flow->preconditioner =
         model_is_implicit(flow->model) ? flow->model->preconditioner : MODEL_PLAIN;
-    if (flow_is_coarse(flow) && n_blocks > SOLVE_MAX_BLOCKS)
-        without_coarse(flow, n_blocks);
     flow->patches = model_patches(flow->model, n_blocks);
 }
 

@@ -26,8 +26,7 @@ void flow_halo_free(struct flow_state *state);
 void flow_halo_make(struct flow_state *state); /* flow_run_begin does */
 int flow_halo_pack(struct flow_state *state, uint32_t block, int to);
 
-/* Decides on the preconditioner of a run: the model's, but no coarse part of more than
- * SOLVE_MAX_BLOCKS blocks; and on patches. Local. */
+/* Decides on the preconditioner of a run, the model's, and on patches. Local. */
 void flow_preconditioner_choose(struct flow *flow, uint32_t n_blocks);
 /* That once more on all ranks, and the pattern of the coarse factor, if there is one. */
 int flow_preconditioner_prepare(struct flow_state *state);

@@ -47,7 +47,11 @@ struct flow_preconditioner {
     uint32_t block;
     const double *factor;                 /* NULL: there is no preconditioner */
     const phys_vec *basis, *basis_ghosts; /* of rows, ghosts; NULL: there is no coarse part */
-    const double *motion;                 /* of all patches: the coarse part of s */
+    const double *motion;                 /* of all patches: the coarse part of s; or with levels
+                                           * (levels.h) of the groups on top, and then */
+    const double *lift;                   /* how all nodes lie in their groups, */
+    const duite_param *seen;              /* n_seen motions of groups, ascending */
+    size_t n_seen;
 };
 
 /* s = M^-1 q but for the coarse part, of which `right` gets the right side, P' q of each patch.
@@ -69,8 +73,18 @@ void flow_coarse_advance_ties(const struct flow_preconditioner *m, const struct 
 /* P' q of each patch. */
 void flow_coarse_restrict(const struct flow_preconditioner *m, const phys_vec *q, double *right);
 
-/* In the task of the scalars: the coarse part of s, of the parts of all blocks. Returns its
- * share in q.s. (coarse.c) */
+/* Whether a pass with these scalars makes a new q, for which there is a coarse part of s. */
+static inline bool flow_coarse_moves(const struct solve_scalars *scalars)
+{
+    return scalars->phase == SOLVE_ON || scalars->phase == SOLVE_AGAIN;
+}
+
+/* In the task of the scalars: the coarse part of s, of the parts of all blocks, or with levels of
+ * the groups on top; how many parts there are. Returns its share in q.s. (coarse.c) */
+static inline uint32_t flow_parts(const struct flow *flow)
+{
+    return flow->n_levels ? flow->level[flow->n_levels - 1].group.n : flow->tables.n_blocks;
+}
 double flow_coarse_motion(const struct flow *flow, const double *factor, const duite_param *part,
                           double *motion);
 

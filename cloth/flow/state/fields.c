@@ -202,6 +202,18 @@ static size_t coarse_factor(const struct flow_state *state, uint32_t block)
     return solve_coarse_doubles(&state->flow->pattern);
 }
 
+static size_t patches(const struct flow_state *state, uint32_t block)
+{
+    (void)block;
+    return state->flow->patches;
+}
+
+static size_t lifted(const struct flow_state *state, uint32_t block)
+{
+    (void)block;
+    return state->flow->first_lifted[state->flow->n_levels];
+}
+
 static size_t motion(const struct flow_state *state, uint32_t block)
 {
     (void)block;
@@ -334,6 +346,12 @@ static bool coarse_run(const struct flow_state *state, uint32_t block)
 {
     (void)block;
     return flow_is_coarse(state->flow);
+}
+
+static bool by_levels(const struct flow_state *state, uint32_t block)
+{
+    (void)block;
+    return state->flow->n_levels;
 }
 
 static bool may_be_tied(const struct flow_state *state, uint32_t block)

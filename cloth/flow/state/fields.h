@@ -5,6 +5,7 @@
 #include "cloth/physics/vec.h"
 #include "cloth/solve/cg.h"
 #include "cloth/solve/correction.h"
+#include "cloth/solve/frame.h"
 
 #include <duite.h>
 #include <stdbool.h>
@@ -24,8 +25,12 @@
  * pass, that of the pass under way (flow_state.pass). */
 
 /* Of each block; they live where its x lives. */
-/* Numbers of a row of a contact. */
-enum { FLOW_ROW_NUMBERS = sizeof(struct contact_row) / sizeof(double) };
+/* Numbers of a row of a contact; of a frame; those that say how a node lies in its group. */
+enum {
+    FLOW_ROW_NUMBERS = sizeof(struct contact_row) / sizeof(double),
+    FLOW_FRAME = sizeof(struct solve_frame) / sizeof(double),
+    FLOW_LIFT = 9
+};
 
 /* clang-format off */
 #define FLOW_BLOCK_FIELDS(X)                                                                       \
@@ -107,6 +112,7 @@ enum { FLOW_ROW_NUMBERS = sizeof(struct contact_row) / sizeof(double) };
     X(halo_basis,   ONE,     phys_vec,      4, halo,          coarse_run,   is_derived_once)       \
     X(basis_ghosts, ONE,     phys_vec,      4, ghosts,        coarse_run,   is_derived_once)       \
     X(coupling,     ONE,     double,        1, couplings,     coarse_run,   is_work)               \
+    X(patch_frame,  ONE,     struct solve_frame, FLOW_FRAME, patches, by_levels, is_derived)       \
     /* where probes are: the force on each row; what is reported of them */                        \
     X(probe_force,  ONE,     phys_vec,      4, rows,          probed,       is_work)               \
     X(probe_values, ONE,     double,        FLOW_PROBE_VALUES, watched,       probed,       is_work) \
@@ -139,11 +145,13 @@ enum { FLOW_ROW_NUMBERS = sizeof(struct contact_row) / sizeof(double) };
     /* its rounds, and what the last one found */                                                  \
     X(edge_rounds,  BY_PASS, struct solve_rounds, SOLVE_ROUNDS_NUMBERS, one, corrected, is_work)   \
     X(edge_excess,  BY_PASS, double,        2, one,           corrected,    is_work)               \
-    /* a solve; pieces: what it left of free pieces; coarse, motion: factor, and its part of s */  \
+    /* a solve; pieces: what it left of free pieces; coarse, motion: factor, and its part of s;    \
+     * lift: how patches lie in groups, and these in those of the level above */                   \
     X(sums,         BY_PASS, double,        1, dots,          plain_solve,  is_work)               \
     X(scalars,      BY_PASS, struct solve_scalars, SOLVE_SCALARS, one,           implicit_run, is_work) \
     X(coarse,       ONE,     double,        1, coarse_factor, coarse_run,   is_work)               \
     X(motion,       BY_PASS, double,        1, motion,        coarse_run,   is_work)               \
+    X(lift,         ONE,     double,        FLOW_LIFT, lifted, by_levels,   is_derived)            \
     X(pieces,       ONE,     double,        FLOW_PIECE_SUMS, pieces,        in_pieces,    is_work) \
     /* a piece: the lowest one that ties join it with, counted from 1; 0: they join it with what a  \
      * pin holds */                                                                                \

@@ -6,7 +6,8 @@
 #include "cloth/flow/state/fields.h"
 #include "cloth/flow/state/tables.h"
 #include "cloth/flow/state/ties.h"
-#include "cloth/solve/coarse.h"
+#include "cloth/solve/frame.h"
+#include "cloth/solve/levels.h"
 #include "cloth/solve/local.h"
 
 /* What the bodies of tasks share, the runtime's context. Bodies see objects, arguments and the
@@ -62,6 +63,9 @@ struct flow_unused {
 
 #define FLOW_APART (-1.0)
 
+/* Levels of groups; nodes of a cluster: four patches of four blocks. */
+enum { FLOW_MAX_LEVELS = 8, FLOW_MAX_NODES = 16 };
+
 /* On rank 0 as flow_prepare left it; elsewhere what it received from rank 0. */
 struct flow {
     const struct model *model; /* rank 0: the program's; else &received */
@@ -116,10 +120,15 @@ struct flow {
     struct flow_packed_halo *packed_halo; /* of halo.c */
     uint32_t *packed_row;
     enum model_preconditioner preconditioner;
-    uint32_t patches;             /* of a block; patch k of block b is number patches * b + k */
-    struct solve_pattern pattern; /* of the coarse factor, if there is one: of patches */
-    uint32_t *patch_first;        /* then: pattern.n + 1, of each patch's neighbours among all */
-    uint32_t *patch_neighbour;    /* of all patches, patch after patch, ascending in each */
+    uint32_t patches;          /* of a block; patch k of block b is number patches * b + k */
+    uint32_t *patch_first;     /* if there is a coarse part: patches + 1, of each patch's
+                                * neighbours among all */
+    uint32_t *patch_neighbour; /* of all patches, patch after patch, ascending in each */
+    uint32_t n_levels;         /* of groups; 0: patches are few enough for one factor */
+    struct solve_level level[FLOW_MAX_LEVELS];  /* of patches, then of groups of the level below */
+    uint32_t first_group[FLOW_MAX_LEVELS + 1];  /* of a level, among the groups of all levels; */
+    uint32_t first_lifted[FLOW_MAX_LEVELS + 1]; /* its first node among those of all levels */
+    struct solve_pattern pattern; /* of the factor on top: of patches, or of clusters */
     struct cloth_error trouble;   /* of this rank: why it cannot begin, why a frame was not written;
                                    * changed by the main thread when no task runs, and by `frame` */
     /* On rank 0: written by the tasks `frame`, one at a time, and by the main thread when no task

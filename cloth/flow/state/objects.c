@@ -90,6 +90,12 @@ int flow_objects_free(struct flow_state *state)
         const int failed = free_objects(state->rt, 2, state->packed.halo[i].object);
         code = code ? code : failed;
     }
+    for (uint32_t g = 0; g < state->groups.n; g++) {
+        const struct flow_group *group = state->groups.all + g;
+        const duite_object all[] = {group->factor, group->coupling, group->part, group->motion};
+        const int failed = free_objects(state->rt, sizeof all / sizeof *all, all);
+        code = code ? code : failed;
+    }
     for (uint32_t b = 0; state->block && b < state->flow->tables.n_blocks; b++) {
         const int failed = free_objects(state->rt, FLOW_FIELDS_OF_BLOCK, state->block[b].of);
         code = code ? code : failed;

@@ -2,6 +2,7 @@
  * step is accepted. Restoring the copy makes the step undone. */
 #include "cloth/flow/bodies.h"
 #include "cloth/flow/integrators/integrator.h"
+#include "cloth/flow/solver/levels.h"
 #include "cloth/flow/solver/solve.h"
 #include "cloth/flow/step/step.h"
 
@@ -22,8 +23,10 @@ static int initial_body(const duite_call *call, const struct initial_fields *on)
 int flow_initialise(struct flow_state *state)
 {
     struct flow_block_args args;
-    const int code = flow_fork_each(state, &flow_kernel_initial, &args);
+    int code = flow_fork_each(state, &flow_kernel_initial, &args);
     state->settled_forces = false;
+    if (!code)
+        code = flow_levels_initialise(state);
     return code || model_is_filtered(state->flow->model) ? code : flow_coarse_initialise(state);
 }
 

@@ -114,6 +114,17 @@ struct flow_packed {
     uint32_t *number; /* room for the rows of any halo */
 };
 
+/* The groups of the coarse part (cloth/flow/solver/levels.h), level after level: n, 0 if there is
+ * no level. */
+struct flow_groups {
+    uint32_t n;
+    struct flow_group {
+        duite_object factor, coupling; /* of what it covers; as a node of the level above */
+        duite_object part, motion;     /* what a pass leaves of it; its part of s */
+    } * all;
+    unsigned char *mark; /* n: room */
+};
+
 /* What ties ask of the blocks. Arrays are NULL where the run has no ties. */
 struct flow_tied_blocks {
     struct flow_tie_room *room; /* a block */
@@ -258,6 +269,7 @@ struct flow_state {
     struct cloth_error *error;
     struct flow_objects *block;
     struct flow_packed packed;
+    struct flow_groups groups;
     struct flow_tied tied;
     struct flow_contact_state contact;
     struct flow_maps_now maps;

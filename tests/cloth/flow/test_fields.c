@@ -38,6 +38,15 @@ static void conditioned(struct session *s)
     s->setup.model.preconditioner = MODEL_IC0_COARSE;
 }
 
+/* So many patches that groups solve the coarse space. */
+static void grouped(struct session *s)
+{
+    *s = (struct session){0};
+    setup_sheet(&s->setup, 17);
+    s->setup.model.preconditioner = MODEL_IC0_COARSE;
+    s->setup.model.grain = 1;
+}
+
 /* Each solve begins with what the step before left. */
 static void guessed(struct session *s)
 {
@@ -178,6 +187,7 @@ static void corrected_explicitly(struct session *s)
 
 static void (*const kinds[])(struct session *) = {plain,
                                                   conditioned,
+                                                  grouped,
                                                   guessed,
                                                   newton,
                                                   bdf2,

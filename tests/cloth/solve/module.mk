@@ -25,5 +25,9 @@ tests_cloth_solve_test_coarse_SOURCES = tests/cloth/solve/test_coarse.c $(SOLVE_
 tests_cloth_solve_test_coarse_LDADD = $(CLOTH_TEST_LIBS)
 tests_cloth_solve_test_preconditioned_SOURCES = tests/cloth/solve/test_preconditioned.c $(SOLVE_TEST_TWO_LEVEL)
 tests_cloth_solve_test_preconditioned_LDADD = $(CLOTH_TEST_LIBS)
+check_PROGRAMS += tests/cloth/solve/test_levels
+tests_cloth_solve_test_levels_SOURCES = tests/cloth/solve/test_levels.c
+tests_cloth_solve_test_levels_LDADD = $(CLOTH_TEST_LIBS)
+TESTS += tests/cloth/solve/test_levels
 TESTS += tests/cloth/solve/test_local tests/cloth/solve/test_coarse tests/cloth/solve/test_patches tests/cloth/solve/test_preconditioned
 endif

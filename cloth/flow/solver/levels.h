@@ -1,0 +1,68 @@
+#ifndef CLOTH_FLOW_SOLVER_LEVELS_H
+#define CLOTH_FLOW_SOLVER_LEVELS_H
+
+#include "cloth/flow/bodies.h"
+#include "cloth/flow/solver/solver.h"
+
+/* The coarse part by groups, on as many levels as there are (flow->n_levels): cloth/solve/levels.h.
+ * Without levels nothing is done. Collective, but for what is local; they return what the runtime
+ * does. */
+
+/* Memory of groups: its error is in flow->trouble. Their objects, when those of blocks are made;
+ * the next get returns a failure. Local. */
+int flow_levels_take(struct flow_state *state);
+void flow_levels_free(struct flow_state *state);
+void flow_levels_make(struct flow_state *state);
+
+/* Fork the tasks of all groups: once a run, how nodes lie in their groups; in each step the
+ * factors; before the first pass of a solve, and after a pass that is recorded, their motions. */
+int flow_levels_initialise(struct flow_state *state);
+int flow_levels_factor(struct flow_state *state);
+int flow_levels_start(struct flow_state *state);
+int flow_levels_solve(struct flow_state *state);
+
+/* Forks a kernel on top, whose last parameter is ALL of `part`, or of `coupling`: it gets those of
+ * the groups on the highest level in their place, if there are levels. */
+int flow_levels_fork_top(struct flow_state *state, const struct flow_kernel *kernel,
+                         const void *args, bool couplings);
+
+/* Appends to the n objects in state->refs the motions that a pass over a block needs, of its own
+ * patches, its neighbours' and those that ties join it with. Returns how many there are then. */
+size_t flow_levels_seen(struct flow_state *state, uint32_t block, size_t n);
+
+/* The graph of the nodes on top: patches, or clusters of the highest level. Local. */
+struct flow_graph {
+    uint32_t n;
+    const uint32_t *first, *neighbour; /* n + 1 */
+};
+static inline struct flow_graph flow_levels_graph(const struct flow *flow)
+{
+    if (!flow->n_levels)
+        return (struct flow_graph){flow->patches * flow->tables.n_blocks, flow->patch_first,
+                                   flow->patch_neighbour};
+    const struct solve_level *top = flow->level + flow->n_levels - 1;
+    return (struct flow_graph){top->cluster.n, top->cluster_first, top->cluster_neighbour};
+}
+
+/* Of a node of a level, or of one on top: whose parameter has its numbers, where its coupling
+ * begins there, its right side of a part. Local. */
+uint32_t flow_levels_holder(const struct flow *flow, uint32_t level, uint32_t node);
+size_t flow_levels_coupling_at(const struct flow *flow, uint32_t level, uint32_t node);
+const double *flow_levels_right(const struct flow *flow, uint32_t level, uint32_t node,
+                                const double *part);
+
+/* A motion of a group begins with its number among all; the solution follows. */
+enum { FLOW_MOTION = 4 };
+
+/* How the nodes of a level lie in their clusters (solve_lift); lift: of all levels. Local. */
+static inline const double (*flow_lifts_of(const struct flow *flow, uint32_t level,
+                                           const double *lift))[FLOW_LIFT]
+{
+    return (const double(*)[FLOW_LIFT])lift + flow->first_lifted[level];
+}
+
+/* In a pass: the motion of a patch, of all levels. Local. */
+void flow_levels_motion(const struct flow_preconditioner *m, uint32_t patch,
+                        double x[SOLVE_COARSE]);
+
+#endif

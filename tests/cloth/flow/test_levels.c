@@ -1,0 +1,108 @@
+/* Runs whose coarse space is solved by groups of blocks, on one level or two: they take few
+ * iterations more than with the exact coarse space, and move alike, whatever is held. */
+#include "tests/cloth/flow/session.h"
+#include "tests/support/unit.h"
+
+#include <math.h>
+
+/* Blocks of few vertices, a patch each: on how many levels their groups are, and how many times the
+ * iterations that takes at most. */
+static const struct {
+    uint32_t grain, levels;
+    double more;
+} kinds[] = {{6, 1, 1.6}, {3, 2, 1.75}};
+enum { SIDE = 40, KINDS = sizeof kinds / sizeof *kinds };
+
+/* Stiff, pulled at, in steps that cloth is animated by. */
+static void setup_stiff(struct setup *setup, int kind)
+{
+    setup_sheet(setup, SIDE);
+    setup->material.stretch = 5000;
+    setup->material.shear = 2500;
+    setup->cloth.velocity[0] = 2;
+    setup->model.preconditioner = MODEL_IC0_COARSE;
+    setup->model.grain = kinds[kind].grain;
+    setup->model.h = 0.004;
+    setup->model.end = 0.012;
+    setup->model.tolerance = 1e-8;
+    setup_pin(setup, 2, (const uint32_t[]){0, SIDE - 1});
+}
+
+START_TEST(groups_are_on_so_many_levels)
+{
+    struct session s = {0};
+    setup_stiff(&s.setup, _i);
+    session_start(&s);
+    ck_assert_uint_eq(s.flow->n_levels, kinds[_i].levels);
+    ck_assert_uint_le(s.flow->pattern.n, 100);
+    session_end(&s);
+}
+END_TEST
+
+static double farthest(const struct record *a, const struct record *b)
+{
+    double max = 0;
+    ck_assert_uint_eq(a->frames, b->frames);
+    for (size_t i = 0; i < 3 * a->frames * a->vertices; i++)
+        max = fmax(max, fabs(a->position[i] - b->position[i]));
+    return max;
+}
+
+static void run(struct setup *setup, bool exact, struct record *record)
+{
+    setup->model.exact_coarse = exact;
+    record_run(record, &setup->model);
+    ck_assert_msg(record->code == 0, "%s", record->error.text);
+}
+
+/* Against the exact space, and two threads against one. */
+static void compare(struct setup *setup, double more)
+{
+    struct record exact = {0}, one = {.threads = 1}, two = {.threads = 2};
+    run(setup, true, &exact);
+    run(setup, false, &one);
+    run(setup, false, &two);
+    const double iterations = (double)exact.report.cg_iterations_total;
+    ck_assert_double_le((double)one.report.cg_iterations_total, more * iterations);
+    ck_assert_uint_eq(one.report.state_hash, two.report.state_hash);
+    ck_assert_double_le(farthest(&exact, &one), 1e-6);
+    record_free(&exact);
+    record_free(&one);
+    record_free(&two);
+    setup_free(setup);
+}
+
+START_TEST(a_sheet_moves_as_by_one_factor)
+{
+    struct setup setup;
+    setup_stiff(&setup, _i);
+    compare(&setup, kinds[_i].more);
+}
+END_TEST
+
+/* Whole groups are held, and have no column on any level. */
+START_TEST(groups_may_be_held)
+{
+    enum { HELD = 15 * SIDE };
+    static uint32_t held[HELD];
+    struct setup setup;
+    setup_stiff(&setup, _i);
+    for (uint32_t i = 0; i < HELD; i++)
+        held[i] = i;
+    setup.pin.pick.n_vertices = HELD;
+    setup.pin.pick.vertices = held;
+    compare(&setup, kinds[_i].more);
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("levels");
+    TCase *cases = tcase_create("levels");
+    tcase_set_timeout(cases, 120);
+    tcase_add_loop_test(cases, groups_are_on_so_many_levels, 0, KINDS);
+    tcase_add_loop_test(cases, a_sheet_moves_as_by_one_factor, 0, KINDS);
+    tcase_add_loop_test(cases, groups_may_be_held, 0, KINDS);
+    suite_add_tcase(suite, cases);
+    return unit_run(suite);
+}

@@ -1,0 +1,24 @@
+#!/bin/sh
+# The coarse space by groups on one, two and three levels has one state_hash on 1 to 16 ranks, on more of them than there are cores.
+. "${srcdir:-.}/tests/support/tap.sh"
+skip_unless "$DUITE_CLOTH"
+plan_later
+DUITE_TIMEOUT=600
+export DUITE_TIMEOUT
+scene=$srcdir/cloth/scenes/sheet.yaml
+
+# one_hash GRAIN: of a sheet of 80 x 80 vertices, three steps.
+one_hash() {
+    first=
+    for count in 1 2 3 4 5 7 8 16; do
+        ranks $count "$DUITE_CLOTH" "$scene" --set 'cloths[0].mesh.grid.nx=80' --set 'cloths[0].mesh.grid.ny=80' --set "grain=$1" \
+            --set time.end=0.003 --threads 1 --quiet --report "$scratch/report.json" || return 1
+        hash=$(sed -n 's/.*"state_hash": "\([0-9a-f]*\)".*/\1/p' "$scratch/report.json")
+        echo "$count ranks: $hash"
+        test -n "$hash" && test "${first:=$hash}" = "$hash" || return 1
+    done
+}
+
+ok "320 blocks: groups, and one factor on top" one_hash 20
+ok "640 blocks: two levels of groups" one_hash 10
+ok "2,132 blocks: three levels of groups" one_hash 3

@@ -355,6 +355,14 @@ START_TEST(pulled_seams)
 }
 END_TEST
 
+/* So many blocks that groups of them solve the coarse part. */
+START_TEST(groups)
+{
+    run(SETS("cloths[0].mesh.grid.nx=30", "cloths[0].mesh.grid.ny=30", "grain=6",
+             "solver.patches=2", "time.end=0.001", preconditioners[4]));
+}
+END_TEST
+
 /* ---- All kernels ---- */
 
 START_TEST(every_kernel_was_run)
@@ -404,6 +412,7 @@ int main(int argc, char **argv)
     tcase_add_test(cases, checkpoints);
     tcase_add_test(cases, pulled_seams);
     tcase_add_test(cases, maps);
+    tcase_add_test(cases, groups);
     tcase_add_test(cases, every_kernel_was_run);
     suite_add_tcase(suite, integrations);
     suite_add_tcase(suite, cases);

@@ -290,8 +290,10 @@ static void meet_leaves(struct query *query, struct part a, struct part b)
     widen_other(query, query->node[1] + b.node, b.lane, wide + 1);
     look_at_leaf(query, 0, of, wide + 1, near);
     look_at_leaf(query, 1, other, wide, near + 1);
-    contact_slab_keep(&query->slab, 0, query->side[0], of, &near[0].is);
-    contact_slab_keep(&query->slab, 1, query->side[1], other, &near[1].is);
+    if (query->slab.is) {
+        contact_slab_keep(&query->slab, 0, query->side[0], of, &near[0].is);
+        contact_slab_keep(&query->slab, 1, query->side[1], other, &near[1].is);
+    }
     meet_vertices(query, near, near + 1);
     meet_triangles(query, near, near + 1);
     meet_edges(query, near, near + 1);

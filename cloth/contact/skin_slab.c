@@ -131,8 +131,6 @@ PHYS_KERNEL(contact_slab_keep,
     const struct contact_heights *other = slab->of + !k;
     const double *at = is_above ? other->high : other->low, sign = is_above ? 1 : -1;
     const phys_vec ends = {at[0], at[1], at[0], at[1]}, *end = &ends;
-    if (!slab->is)
-        return;
     bits->vertices =
         near_bits(slab, end, sign, side, bits->vertices, 1, skin->vertex + leaf->vertex);
     bits->triangles =

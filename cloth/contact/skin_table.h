@@ -130,7 +130,8 @@ void contact_slab_begin(const struct contact_side *side, uint32_t node, uint32_t
 /* Whether a second leaf is out of reach of the first in the whole step. */
 bool contact_slab_parts(const struct contact_side *side, const struct contact_leaf *leaf,
                         struct contact_slab *slab);
-/* Clears the bits of features of leaf k, 0 or 1, that are out of reach of all of the other one. */
+/* Clears the bits of features of leaf k, 0 or 1, that are out of reach of all of the other one.
+ * There are normals (slab->is). */
 void contact_slab_keep(const struct contact_slab *slab, int k, const struct contact_side *side,
                        const struct contact_leaf *leaf, struct contact_features *bits);
 

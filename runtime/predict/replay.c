@@ -219,8 +219,8 @@ static void round_reduce(struct predict_graph *graph, const struct predict_round
         const uint32_t phase = graph->phase[m->piece[i].rank] = m->piece[i].phase;
         travel->sum_phase = phase > travel->sum_phase ? phase : travel->sum_phase;
     }
-    travel->hop = round->hop + round->first_hop[n];
     travel->n_hops = round->first_hop[n + 1] - round->first_hop[n];
+    travel->hop = travel->n_hops ? round->hop + round->first_hop[n] : NULL;
     travel->rounds = m->rounds[n];
     if (host == ROUND_NOWHERE)
         graph->object[object].leaves = PREDICT_NONE;

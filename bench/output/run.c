@@ -5,6 +5,7 @@
 #include "bench/output/folder.h"
 #include "bench/output/viewer.h"
 #include "bench/program.h"
+#include "bench/temporary.h"
 #include "cloth/output/checkpoint.h"
 
 #include <fcntl.h>
@@ -103,29 +104,15 @@ static void write_arguments(struct serve_request *request, const char *output, c
              (unsigned)serve_number(request, "threads"), scheduler, folder, frames, extra);
 }
 
-static void remove_folder(const char *folder)
-{
-    char command[OUTPUT_PATH + 40];
-    snprintf(command, sizeof command, "rm -rf '%s'", folder);
-    if (system(command))
-        fprintf(stderr, "duite-bench: %s stays\n", folder);
-}
-
-static int make_folder(char folder[OUTPUT_PATH])
-{
-    const char *states = getenv(STATE_FOLDER);
-    snprintf(folder, OUTPUT_PATH, "%s/output.XXXXXX", states ? states : ".");
-    return mkdtemp(folder) ? 0 : serve_fail("no folder %s", folder);
-}
-
 static int simulate(void *context, struct serve_request *request, double *value)
 {
-    char output[20], folder[OUTPUT_PATH], arguments[COMMAND];
+    char output[20], folder[TEMPORARY_PATH], arguments[COMMAND];
     struct output_viewer viewer = {0};
     (void)context;
     serve_word(request, "output", output, sizeof output);
     const bool quick = serve_number(request, "quick") != 0;
-    int code = make_folder(folder);
+    const char *states = getenv(STATE_FOLDER);
+    int code = temporary_make(states ? states : ".", "output", folder);
     if (code)
         return code;
     if (has_viewer(output))
@@ -141,7 +128,7 @@ static int simulate(void *context, struct serve_request *request, double *value)
         code = code ? code : seen;
     }
     code = code ? code : check_run(folder, output);
-    remove_folder(folder);
+    temporary_remove(folder);
     return code;
 }
 
@@ -223,7 +210,8 @@ static int write_run(void *context, struct serve_request *request, double *value
     (void)context;
     serve_word(request, "as", as, sizeof as);
     output_folder(frames, sizeof frames);
-    int code = make_folder(folder);
+    const char *states = getenv(STATE_FOLDER);
+    int code = temporary_make(states ? states : ".", "output", folder);
     if (code)
         return code;
     if (output_checkpoint_newest(&source, frames, &error, &error) || stat(source.path, &about))
@@ -233,7 +221,7 @@ static int write_run(void *context, struct serve_request *request, double *value
     else
         code = write_checkpoints(&source, folder, times, value);
     output_checkpoint_free(&source);
-    remove_folder(folder);
+    temporary_remove(folder);
     return code;
 }
 

@@ -1,12 +1,10 @@
 /* The bench "compare": what traces cost, and what predictions are worth. */
 #include "bench/predict/predict.h"
+#include "bench/temporary.h"
 
-#include <errno.h>
-#include <ftw.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 static const struct bench_case *const CASES[] = {&predict_trace, &predict_many, &predict_errors,
                                                  &predict_order, NULL};
@@ -33,27 +31,16 @@ char *predict_path(const char *name)
 
 static int make_folder(void)
 {
-    const char *temporary = getenv("TMPDIR");
-    char *folder = NULL;
-    if (asprintf(&folder, "%s/duite-traces.XXXXXX", temporary ? temporary : "/tmp") < 0)
-        return serve_no_memory();
-    const bool made = mkdtemp(folder) && !setenv(FOLDER, folder, 1);
-    const int code = made ? 0 : serve_fail("no folder %s for traces: %s", folder, strerror(errno));
-    free(folder);
-    return code;
-}
-
-static int remove_one(const char *path, const struct stat *status, int kind, struct FTW *where)
-{
-    (void)status, (void)kind, (void)where;
-    return remove(path);
+    char folder[TEMPORARY_PATH];
+    const int code = temporary_make(NULL, "duite-traces", folder);
+    return code || !setenv(FOLDER, folder, 1) ? code : serve_no_memory();
 }
 
 static void finish(void)
 {
     const char *folder = getenv(FOLDER);
-    if (folder && nftw(folder, remove_one, 8, FTW_DEPTH | FTW_PHYS))
-        fprintf(stderr, "duite-bench: %s cannot be removed: %s\n", folder, strerror(errno));
+    if (folder)
+        temporary_remove(folder);
 }
 
 static int prepare(const struct bench_options *options,

@@ -1,6 +1,7 @@
 /* What a rank sends: in an iteration of the default solver, by the counters of a run of so many
  * iterations more; and in a wait, by what the network of its host counts. */
 #include "bench/scale/scale.h"
+#include "bench/temporary.h"
 
 #include <duite.h>
 #include <math.h>
@@ -55,10 +56,10 @@ static int read_messages(const char *folder, double *messages)
 /* iterations hosts= side= grain= count=: the messages of all ranks in a step of so many. */
 static int run_iterations(void *context, struct serve_request *request, double *value)
 {
-    char folder[SCALE_PATH], before[SCALE_PATH], arguments[SCALE_PATH + 200];
+    char folder[TEMPORARY_PATH], before[SCALE_PATH], arguments[SCALE_PATH + 200];
     const unsigned hosts = (unsigned)serve_number(request, "hosts");
     (void)context;
-    int code = scale_folder(folder);
+    int code = temporary_make(NULL, "duite-scale", folder);
     if (code)
         return code;
     snprintf(before, sizeof before, "sh '%s' %u '%s' --bind-to none -n %u", BENCH_HOSTS, hosts,
@@ -70,7 +71,7 @@ static int run_iterations(void *context, struct serve_request *request, double *
                        (unsigned)serve_number(request, "grain"), arguments);
     if (!code)
         code = read_messages(folder, value);
-    scale_folder_remove(folder);
+    temporary_remove(folder);
     return code;
 }
 

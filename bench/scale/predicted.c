@@ -2,6 +2,7 @@
  * 16 cores. Efficiency is against the same trace on one core. Bodies take the median of their
  * kernel: what this machine does beside them belongs to no other. */
 #include "bench/scale/scale.h"
+#include "bench/temporary.h"
 
 #include "runtime/predict/predict.h"
 
@@ -37,8 +38,8 @@ static void plan(struct measure *measure, const struct bench_options *options)
 static struct trace_run *trace_of(struct serve_request *request)
 {
     static struct trace_run *run;
-    char folder[SCALE_PATH], arguments[SCALE_PATH + 200], path[SCALE_PATH + 20];
-    if (run || scale_folder(folder))
+    char folder[TEMPORARY_PATH], arguments[SCALE_PATH + 200], path[SCALE_PATH + 20];
+    if (run || temporary_make(NULL, "duite-scale", folder))
         return run;
     snprintf(path, sizeof path, "%s/trace", folder);
     snprintf(arguments, sizeof arguments, "--threads %u --end 0.003 --trace-steps 1:2 --trace '%s'",
@@ -49,7 +50,7 @@ static struct trace_run *trace_of(struct serve_request *request)
         run = NULL;
         serve_fail("%s", duite_message());
     }
-    scale_folder_remove(folder);
+    temporary_remove(folder);
     return run;
 }
 

@@ -4,7 +4,6 @@
 
 #include "bench/program.h"
 
-#include <ftw.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -34,25 +33,6 @@ int scale_cloth(const char *before, unsigned side, unsigned grain, const char *a
     if (length < 0 || (size_t)length >= sizeof command)
         return serve_fail("the folder of duite-bench has too long a name");
     return system(command) ? serve_fail("duite-cloth fails: %.150s", arguments) : 0;
-}
-
-int scale_folder(char folder[SCALE_PATH])
-{
-    const char *temporary = getenv("TMPDIR");
-    snprintf(folder, SCALE_PATH, "%s/duite-scale.XXXXXX", temporary ? temporary : "/tmp");
-    return mkdtemp(folder) ? 0 : serve_fail("no folder %s", folder);
-}
-
-static int remove_one(const char *path, const struct stat *status, int kind, struct FTW *where)
-{
-    (void)status, (void)kind, (void)where;
-    return remove(path);
-}
-
-void scale_folder_remove(const char *folder)
-{
-    if (nftw(folder, remove_one, 8, FTW_DEPTH | FTW_PHYS))
-        fprintf(stderr, "duite-bench: %s stays\n", folder);
 }
 
 static int serve_scale(const struct bench *bench)

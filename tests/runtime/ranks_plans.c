@@ -168,13 +168,13 @@ static unsigned sent_for_sum(unsigned n)
     return n <= DIRECT_RANKS ? n * (n - 1) : n * rounds;
 }
 
-/* What one round sends: the rims twice, and the contributions once; the rims of the second way are
- * there when the contributions of the first are. */
+/* What one round sends: the halos twice, and the contributions once; the halos of the second way
+ * are there when the contributions of the first are. */
 static void count(duite *rt, struct rod *rod, duite_graph graph)
 {
-    const uint64_t rims = 2 * neighbours(rt, rod);
-    const uint64_t more = rims + sent_for_sum(holders(rt, rod));
-    const uint64_t most = rims + sent_for_sum((unsigned)duite_ranks(rt));
+    const uint64_t halos = 2 * neighbours(rt, rod);
+    const uint64_t more = halos + sent_for_sum(holders(rt, rod));
+    const uint64_t most = halos + sent_for_sum((unsigned)duite_ranks(rt));
     const int64_t many = 1000;
     uint64_t before, once, thrice;
 

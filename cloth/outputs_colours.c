@@ -7,6 +7,17 @@
 #include <stdio.h>
 #include <string.h>
 
+double outputs_colours_bytes(const struct model *model, uint64_t n_vertices)
+{
+    struct output_rest rest = {.n_materials = model->n_materials};
+    for (uint32_t c = 0; c < model->n_cloths; c++) {
+        rest.n_triangles += model->cloths[c].mesh.n_triangles;
+        rest.n_edges += model->cloths[c].mesh.n_bare_edges;
+    }
+    const uint64_t blocks = n_vertices / model->grain + 1;
+    return (double)output_colours_bytes((uint32_t)n_vertices, (uint32_t)blocks, &rest);
+}
+
 static void copy(const struct element_strains *strains, const struct output_rest *rest)
 {
     for (uint32_t t = 0; t < rest->n_triangles; t++) {

@@ -8,6 +8,9 @@
  * end the run: a warning says so, once, and *colours becomes NULL; of NULL nothing is written.
  * Local functions. */
 
+/* What it takes on the disk of a run of this model alone, bytes, about. While there are meshes. */
+double outputs_colours_bytes(const struct model *model, uint64_t n_vertices);
+
 /* Shapes at rest of the cloths of a model, from a frame on. While there are meshes. Errors:
  * CLOTH_E_MEMORY. */
 int outputs_colours_rest(struct output_colours **colours, const struct model *model, uint64_t frame,

@@ -1,9 +1,10 @@
-/* An estimate: steps that are halved add rows of probes, and a run that comes to rest ends early.
- */
+/* An estimate: steps that are halved add rows of probes, blocks that move to other ranks add to
+ * what viewers colour by, and a run that comes to rest ends early. */
 #include "cloth/room.h"
 
 #include "cloth/flow/run.h"
 #include "cloth/output/output.h"
+#include "cloth/outputs_colours.h"
 #include "cloth/outputs_hdf5.h"
 
 #include <math.h>
@@ -12,22 +13,24 @@
 /* What a run of several phases takes at most. */
 struct extent {
     double frames, steps, seconds;
-    bool may_rest; /* and so take less */
+    double colours; /* bytes: what a viewer colours by, which each phase writes */
+    bool may_rest;  /* and so take less */
 };
 
-static struct extent extent_of(uint32_t n, const struct model *phases)
+static struct extent extent_of(uint32_t n, const struct model *phases, const struct flow *flow)
 {
     struct extent all = {.frames = 1};
     for (uint32_t i = 0; i < n; i++) {
         all.frames += floor(phases[i].fps * phases[i].end);
         all.steps += phases[i].end / phases[i].h;
         all.seconds += phases[i].end;
+        all.colours += outputs_colours_bytes(phases + i, flow_vertices(flow));
         all.may_rest = all.may_rest || phases[i].rest.speed > 0;
     }
     return all;
 }
 
-/* What frames and rows of probes take on the disk, bytes. */
+/* What frames, their colours and rows of probes take on the disk, bytes. */
 static double output_bytes(const struct extent *all, const struct model *model,
                            const struct flow *flow)
 {
@@ -39,7 +42,7 @@ static double output_bytes(const struct extent *all, const struct model *model,
     const double vectors = model->contact.force && model_certifies(model) ? 2 : 1;
     return all->frames * (vectors * 3 * sizeof(float) * (double)flow_vertices(flow) + INDEX +
                           outputs_hdf5_bytes(model)) +
-           all->steps * columns * NUMBER;
+           all->steps * columns * NUMBER + all->colours;
 }
 
 int room_check(uint32_t n, const struct model *phases, const struct flow *flow, const char *folder,
@@ -47,7 +50,7 @@ int room_check(uint32_t n, const struct model *phases, const struct flow *flow, 
 {
     const double MUCH = 10e9, OFTEN = 10;
     const struct model *model = phases; /* all have its frames a second, and its columns */
-    const struct extent all = extent_of(n, phases);
+    const struct extent all = extent_of(n, phases, flow);
     const char *place = model->fps_place ? model->fps_place : "fps";
     const double bytes = output_bytes(&all, model, flow), room = output_room(folder);
     const double frames = all.frames, steps = all.steps;

@@ -48,6 +48,13 @@ void output_rest_free(struct output_rest *rest)
     *rest = (struct output_rest){0};
 }
 
+uint64_t output_colours_bytes(uint32_t n_vertices, uint32_t n_blocks,
+                              const struct output_rest *rest)
+{
+    return OUTPUT_COLOURS_HEADER + 3 * OUTPUT_RECORD_HEADER + output_rest_size(rest) +
+           4 * ((uint64_t)n_vertices + n_blocks);
+}
+
 /* ---- Beginning ---- */
 
 /* Reads n bytes at an offset. Returns false where there are fewer. */

@@ -37,6 +37,10 @@ struct output_rest {
 int output_rest_make(struct output_rest *rest, struct cloth_error *error);
 void output_rest_free(struct output_rest *rest);
 
+/* Bytes of the file of a run whose places do not change: with shapes of these counts. Pure. */
+uint64_t output_colours_bytes(uint32_t n_vertices, uint32_t n_blocks,
+                              const struct output_rest *rest);
+
 /* --- Writing, on rank 0 --- */
 
 struct output_colours;

@@ -12,7 +12,7 @@
 /* Bytes of the files of an earlier run, which are replaced. */
 static double replaced(const char *folder)
 {
-    static const char *const name[] = {"cloth.pc2", "probes.csv"};
+    static const char *const name[] = {"cloth.pc2", "contact.pc2", "colours.bin", "probes.csv"};
     double bytes = 0;
     for (size_t i = 0; i < sizeof name / sizeof *name; i++) {
         struct stat status;

@@ -165,6 +165,19 @@ static void write_rest(uint64_t frame)
     output_rest_free(&rest);
 }
 
+START_TEST(the_size_is_known_before)
+{
+    struct output_rest rest;
+    begins(NULL);
+    write_rest(0);
+    places(0, 0, 1);
+    ends();
+    fill(&rest);
+    ck_assert_int_eq(size_of(), (long)output_colours_bytes(N, BLOCKS, &rest));
+    output_rest_free(&rest);
+}
+END_TEST
+
 START_TEST(shapes_are_read_again)
 {
     struct output_rest rest, read;
@@ -267,6 +280,7 @@ int main(void)
     tcase_add_test(tests, only_what_changes_is_written_again);
     tcase_add_test(tests, a_run_that_goes_on_keeps_what_came_before);
     tcase_add_test(tests, what_is_not_whole_was_not_written);
+    tcase_add_test(tests, the_size_is_known_before);
     tcase_add_test(tests, shapes_are_read_again);
     tcase_add_test(tests, damage_does_no_harm);
     tcase_add_test(tests, a_file_of_somebody_else_stays);

@@ -1,4 +1,7 @@
-/* What a name ends with .checkpoint is whole, or the disk lost some of it: then its hash tells. */
+/* What a name ends with .checkpoint is whole, or the disk lost some of it: then its hash tells. The
+ * oldest one gives its room to the next one: it is renamed, and written over. So a checkpoint takes
+ * no new blocks of the disk, and its bytes get there without a word in the file system's journal.
+ */
 #include "cloth/output/checkpoint.h"
 
 #include "cloth/output/files/files.h"
@@ -155,7 +158,7 @@ static int write_all(struct writing *to, const struct output_part part[OUTPUT_CH
         bad = write_bytes(to, part[i].bytes, part[i].n);
     const uint64_t digest = XXH64_digest(to->hash);
     return bad || output_write_at(to->file, &digest, sizeof digest, to->at) != 0 ||
-           output_sync(to->file) != 0;
+           ftruncate(to->file, (off_t)header.size) != 0 || output_sync(to->file) != 0;
 }
 
 /* The file beside its name. Returns 0, or -1 with errno set. */
@@ -167,7 +170,7 @@ static int write_file(const char *path, const struct output_part part[OUTPUT_CHE
         return -1;
     }
     XXH64_reset(to.hash, 0);
-    to.file = open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    to.file = open(path, O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
     int bad = to.file < 0 || write_all(&to, part), reason = errno;
     if (to.file >= 0 && close(to.file) != 0 && !bad) {
         bad = 1;
@@ -180,17 +183,29 @@ static int write_file(const char *path, const struct output_part part[OUTPUT_CHE
     return bad ? -1 : 0;
 }
 
-/* The newest is complete: the oldest goes. What cannot be removed stays. */
+/* The room of a checkpoint is the next one's, unless somebody else has a name for it. What cannot
+ * be removed stays. */
+static void pass_on(const struct output_checkpoints *checkpoints, uint64_t number)
+{
+    struct stat status;
+    char *gone = path_of(checkpoints->folder, number, "");
+    char *next = path_of(checkpoints->folder, checkpoints->next, ".part");
+    if (gone && next && lstat(gone, &status) == 0 &&
+        !(S_ISREG(status.st_mode) && status.st_nlink == 1 && rename(gone, next) == 0))
+        unlink(gone);
+    free(gone);
+    free(next);
+}
+
+/* The newest is complete: the oldest goes. */
 static void keep(struct output_checkpoints *checkpoints, char *path)
 {
     uint64_t *kept = checkpoints->kept;
     const uint64_t oldest = kept[OUTPUT_CHECKPOINTS_KEPT - 1];
-    char *gone = oldest ? path_of(checkpoints->folder, oldest, "") : NULL;
     memmove(kept + 1, kept, (OUTPUT_CHECKPOINTS_KEPT - 1) * sizeof *kept);
     kept[0] = checkpoints->next++;
-    if (gone)
-        unlink(gone);
-    free(gone);
+    if (oldest)
+        pass_on(checkpoints, oldest);
     free(checkpoints->last);
     checkpoints->last = path;
 }
@@ -227,6 +242,10 @@ void output_checkpoints_close(struct output_checkpoints **checkpoints)
     *checkpoints = NULL;
     if (!gone)
         return;
+    char *room = gone->folder ? path_of(gone->folder, gone->next, ".part") : NULL;
+    if (room)
+        unlink(room);
+    free(room);
     free(gone->folder);
     free(gone->last);
     free(gone);

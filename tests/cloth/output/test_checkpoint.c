@@ -92,6 +92,69 @@ START_TEST(three_are_kept)
 }
 END_TEST
 
+static void part_of(unsigned number, char path[160])
+{
+    path_of(number, path);
+    strcat(path, ".part");
+}
+
+static ino_t file_at(const char *path)
+{
+    struct stat status;
+    ck_assert_int_eq(stat(path, &status), 0);
+    return status.st_ino;
+}
+
+/* The first part is as long as `length`. */
+static void write_long(size_t length)
+{
+    static char bytes[5000];
+    const struct output_part part[OUTPUT_CHECKPOINT_PARTS] = {{bytes, length}, {"b", 1}, {"c", 1}};
+    ck_assert_msg(!output_checkpoints_write(checkpoints, part, &error), "%s", error.text);
+    ck_assert_msg(!read_newest(), "%s", error.text);
+    ck_assert_uint_eq(read_back.part[0].n, length);
+    ck_assert_int_eq(note.code, 0);
+}
+
+/* Longer or shorter, whichever was there; and nothing is left of it at the end. */
+START_TEST(the_oldest_gives_its_room)
+{
+    char path[160], part[160], fifth[160];
+    write_long(4000);
+    path_of(1, path);
+    const ino_t first = file_at(path);
+    write_long(100);
+    write_long(3000);
+    write_long(50);
+    part_of(5, part);
+    ck_assert(file_at(part) == first);
+    write_long(10);
+    path_of(5, fifth);
+    ck_assert(file_at(fifth) == first);
+    write_long(5000);
+    part_of(7, part);
+    ck_assert_int_eq(access(part, F_OK), 0);
+    output_checkpoints_close(&checkpoints);
+    ck_assert_int_ne(access(part, F_OK), 0);
+}
+END_TEST
+
+START_TEST(what_has_another_name_stays)
+{
+    char path[160], other[160];
+    write_one(1);
+    path_of(1, path);
+    snprintf(other, sizeof other, "%s/other", sample.folder);
+    ck_assert_int_eq(link(path, other), 0);
+    for (unsigned char i = 2; i <= 6; i++)
+        write_one(i);
+    ck_assert(!is_there(1));
+    ck_assert_int_eq(output_checkpoint_read(&read_back, other, &error), 0);
+    ck_assert_uint_eq(*(const uint64_t *)read_back.part[2].bytes, 1);
+    ck_assert_int_eq(unlink(other), 0);
+}
+END_TEST
+
 /* A run that goes on counts on, and still three are kept. */
 START_TEST(counts_on)
 {
@@ -235,6 +298,8 @@ int main(void)
     tcase_add_checked_fixture(tcase, start, end);
     tcase_add_test(tcase, reads_back);
     tcase_add_test(tcase, three_are_kept);
+    tcase_add_test(tcase, the_oldest_gives_its_room);
+    tcase_add_test(tcase, what_has_another_name_stays);
     tcase_add_test(tcase, counts_on);
     tcase_add_test(tcase, every_length);
     tcase_add_test(tcase, every_bit);

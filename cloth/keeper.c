@@ -14,6 +14,7 @@
 
 struct keeper {
     struct output_checkpoints *checkpoints;
+    struct output_settler *settler;
     char *folder;
     double seconds, next; /* s: between two; when the next one is due */
     struct output_part part[OUTPUT_CHECKPOINT_PARTS];
@@ -46,13 +47,14 @@ static void warn(struct keeper *keeper, const char *why)
     keeper->warned = true;
 }
 
-/* Rows of probes before it are on the disk first; frames are anyway. */
+/* Frames and rows of probes before it are on the disk first. */
 static void write_one(struct keeper *keeper)
 {
     struct cloth_error error = {0};
     if (!keeper->part[1].bytes || !keeper->part[2].bytes)
         cloth_fail(&error, CLOTH_E_MEMORY, "no memory for a checkpoint");
-    else if (!output_probes_sync(keeper->folder, &error))
+    else if (!output_settler_wait(keeper->settler, &error) &&
+             !output_probes_sync(keeper->folder, &error))
         output_checkpoints_write(keeper->checkpoints, keeper->part, &error);
     if (error.code)
         warn(keeper, error.text);
@@ -104,13 +106,14 @@ static void drop(struct keeper *keeper)
 }
 
 int keeper_open(struct keeper **keeper, const char *folder, double seconds, const char *settings,
-                struct cloth_error *error)
+                struct output_settler *settler, struct cloth_error *error)
 {
     *keeper = NULL;
     struct keeper *made = calloc(1, sizeof *made);
     if (!made)
         return cloth_fail(error, CLOTH_E_MEMORY, "no memory for checkpoints");
     made->seconds = seconds;
+    made->settler = settler;
     made->next = now() + seconds;
     made->part[0] = (struct output_part){settings, strlen(settings)};
     made->folder = strdup(folder);

@@ -81,7 +81,7 @@ static int open_forces(struct outputs *to, const struct model *model, const stru
     const char *folder = to->options->output;
     return model->contact.force && model_certifies(model)
                ? output_forces_open(&to->forces, folder, (uint32_t)flow_vertices(flow), n_frames,
-                                    error)
+                                    to->settler, error)
                : output_forces_forget(folder, error);
 }
 
@@ -97,7 +97,9 @@ static int open_output(struct outputs *to, const struct phases *phases, const st
     const struct model *model = phases_model(phases);
     const uint64_t *n_frames = stays ? &stays->frames : NULL;
     setup->n_frames = n_frames;
-    int code = output_open(&to->frames, setup, error);
+    int code = output_settler_open(&to->settler, error);
+    setup->settler = to->settler;
+    code = code ? code : output_open(&to->frames, setup, error);
     code = code ? code : open_colours(to, phases, flow, n_frames, error);
     code = code ? code : outputs_hdf5_open(&to->hdf5, model, to->options->output, error);
     code = code ? code : open_forces(to, model, flow, n_frames, error);
@@ -123,9 +125,9 @@ static int open_keeper(struct outputs *to, const struct phases *phases, bool res
     if (!(options->checkpoint > 0))
         return CLOTH_OK;
     to->settings = restart_settings(phases, error);
-    return to->settings
-               ? keeper_open(&to->keeper, options->output, options->checkpoint, to->settings, error)
-               : error->code;
+    return to->settings ? keeper_open(&to->keeper, options->output, options->checkpoint,
+                                      to->settings, to->settler, error)
+                        : error->code;
 }
 
 /* Looks, before anything is written, whether the live view can listen. */
@@ -244,6 +246,7 @@ void outputs_count(struct outputs *of)
 void outputs_close(struct outputs *of, struct cloth_error *error)
 {
     keeper_close(&of->keeper);
+    output_settler_close(&of->settler, error);
     output_probes_close(&of->probes, error);
     output_forces_close(&of->forces, error);
     output_colours_close(&of->colours, error);
@@ -298,6 +301,12 @@ int outputs_frame(void *context, uint64_t frame, double time, const double *posi
     if (of->drape)
         drape_frame(of->drape, position);
     return code;
+}
+
+uint64_t outputs_written(void *context)
+{
+    const struct outputs *of = context;
+    return of->frames ? output_frames_settled(of->frames) : of->frames_written;
 }
 
 int outputs_places(void *context, uint64_t frame, const struct flow_places *places,

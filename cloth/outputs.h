@@ -16,7 +16,8 @@ struct untangle_result;
 struct outputs {
     const struct simulate_options *options;
     struct output_lock *locks[2];        /* of the folders of frames and of the system */
-    struct output_frames *frames;        /* if they are wanted */
+    struct output_frames *frames;        /* if they are wanted; */
+    struct output_settler *settler;      /* brings them to the disk */
     _Atomic uint64_t frames_written;     /* with those of runs before; any thread may read it */
     struct output_probes *probes;        /* if the scene has any */
     struct outputs_hdf5 hdf5;            /* if the scene asks for them */
@@ -57,6 +58,7 @@ void outputs_free(struct outputs *of);
 /* Functions of a struct flow_output whose context is a struct outputs. */
 int outputs_frame(void *context, uint64_t frame, double time, const double *position,
                   struct cloth_error *error);
+uint64_t outputs_written(void *context);
 int outputs_places(void *context, uint64_t frame, const struct flow_places *places,
                    struct cloth_error *error);
 int outputs_beside(void *context, const struct flow_beside *beside, struct cloth_error *error);

@@ -112,6 +112,7 @@ static void run_flow(struct run *run, duite *rt, struct cloth_error *error)
                                        .before = phases_before(&run->phases),
                                        .end = last ? NULL : run->phases.end,
                                        .frame = run->wants_frames ? outputs_frame : NULL,
+                                       .written = outputs_written,
                                        .places = options->output ? outputs_places : NULL,
                                        .beside = options->output ? outputs_beside : NULL,
                                        .force = options->output ? outputs_force : NULL,

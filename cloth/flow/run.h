@@ -139,6 +139,9 @@ struct flow_output {
      * seconds. Returns 0 or a code and fills error. */
     int (*frame)(void *context, uint64_t frame, double time, const double *position,
                  struct cloth_error *error);
+    /* How many there are for certain when one failed, which may be one before that. NULL: all that
+     * were handed over before. */
+    uint64_t (*written)(void *context);
     /* Before it the places in it. The arrays are lent. NULL: they are not wanted. */
     int (*places)(void *context, uint64_t frame, const struct flow_places *places,
                   struct cloth_error *error);

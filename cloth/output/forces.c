@@ -19,7 +19,8 @@ struct output_forces {
     char *path;
     int file; /* -1: none */
     uint32_t n_points, n_frames;
-    unsigned char *bytes; /* of one frame */
+    struct output_member member; /* settled after the frames of cloth.pc2 */
+    unsigned char *bytes;        /* of one frame */
 };
 
 static uint64_t frame_at(uint32_t n_points, uint64_t frame)
@@ -89,8 +90,22 @@ static int go_on(struct output_forces *forces, uint64_t n_frames, struct cloth_e
                : output_cut_cache(forces->file, forces->path, forces->n_points, n_frames, error);
 }
 
+static int settle(void *context, uint32_t n, struct cloth_error *error)
+{
+    const struct output_forces *forces = context;
+    unsigned char count[4];
+    output_put_u32(count, n);
+    if (output_sync(forces->file) != 0)
+        return output_fail(error, "write a frame to", forces->path);
+    if (output_write_at(forces->file, count, sizeof count, OUTPUT_PC2_COUNT) != 0 ||
+        output_sync(forces->file) != 0)
+        return output_fail(error, "count a frame in", forces->path);
+    return 0;
+}
+
 int output_forces_open(struct output_forces **forces, const char *folder, uint32_t n_vertices,
-                       const uint64_t *n_frames, struct cloth_error *error)
+                       const uint64_t *n_frames, struct output_settler *settler,
+                       struct cloth_error *error)
 {
     *forces = NULL;
     struct output_forces *made = calloc(1, sizeof *made);
@@ -98,6 +113,7 @@ int output_forces_open(struct output_forces **forces, const char *folder, uint32
         return cloth_fail(error, CLOTH_E_MEMORY, "no memory for the forces of %s", folder);
     made->file = -1;
     made->n_points = n_vertices;
+    made->member = (struct output_member){.settle = settle, .context = made};
     made->path = output_path(folder, NAME, "");
     made->bytes = malloc((size_t)12 * n_vertices + 1);
     int code = CLOTH_OK;
@@ -110,6 +126,7 @@ int output_forces_open(struct output_forces **forces, const char *folder, uint32
         output_forces_close(&made, &ignored);
         return code;
     }
+    output_member_add(&made->member, settler, made->n_frames);
     *forces = made;
     return 0;
 }
@@ -117,17 +134,10 @@ int output_forces_open(struct output_forces **forces, const char *folder, uint32
 static int write_frame(struct output_forces *forces, struct cloth_error *error)
 {
     const size_t size = (size_t)12 * forces->n_points;
-    unsigned char count[4];
-    output_put_u32(count, forces->n_frames + 1);
     if (output_write_at(forces->file, forces->bytes, size,
-                        frame_at(forces->n_points, forces->n_frames)) != 0 ||
-        output_sync(forces->file) != 0)
+                        frame_at(forces->n_points, forces->n_frames)) != 0)
         return output_fail(error, "write a frame to", forces->path);
-    if (output_write_at(forces->file, count, sizeof count, OUTPUT_PC2_COUNT) != 0 ||
-        output_sync(forces->file) != 0)
-        return output_fail(error, "count a frame in", forces->path);
-    forces->n_frames++;
-    return 0;
+    return output_member_wrote(&forces->member, ++forces->n_frames, error);
 }
 
 int output_forces_frame(void *context, uint64_t frame, const double *force,

@@ -1,12 +1,13 @@
 /* At any moment the folder holds whole frames. PC2's count says how many; it is rewritten only
- * after the floats and the line of the index that it counts are on the disk. Bytes beyond the
- * counted frames mean nothing; a frame that fails takes its own away again. When a folder is
- * opened, the cache of an earlier run is removed first and the new one is made last. So cache and
- * mesh always belong together. First of all scene.json is made: where there is none, a cloth.obj is
- * not ours. */
+ * after the floats and the line of the index that it counts are on the disk: by the settler, which
+ * alone has `settled`. Bytes beyond the counted frames mean nothing; what fails is taken away
+ * again. When a folder is opened, the cache of an earlier run is removed first and the new one is
+ * made last. So cache and mesh always belong together. First of all scene.json is made: where there
+ * is none, a cloth.obj is not ours. */
 #include "cloth/output/files/bodies.h"
 #include "cloth/output/files/cut.h"
 #include "cloth/output/files/files.h"
+#include "cloth/output/files/inputs.h"
 #include "cloth/output/files/json.h"
 #include "cloth/output/files/obstacles.h"
 #include "cloth/output/files/poses.h"
@@ -24,13 +25,19 @@ enum part { PART_SCENE, PART_OBJ, PART_INDEX, PART_CACHE, N_PARTS };
 static const char *const PART_NAME[N_PARTS] = {"scene.json", "cloth.obj", "frames.csv",
                                                "cloth.pc2"};
 
+enum { REMEMBERED = 8 }; /* more frames than the disk may be behind */
+
 struct output_frames {
     char *folder;
     char *path[N_PARTS];
     int index, cache; /* open files, -1: none */
-    uint32_t n_points, n_frames;
-    uint32_t n_bodies_before;   /* of the earlier run that is replaced */
-    uint64_t index_size;        /* bytes of the index that belong to whole frames */
+    uint32_t n_points;
+    uint32_t n_frames;               /* written, */
+    _Atomic uint32_t settled;        /* and of these on the disk, and counted */
+    uint32_t n_bodies_before;        /* of the earlier run that is replaced */
+    uint64_t index_size[REMEMBERED]; /* bytes of the index with the first k frames, at k modulo
+                                      * REMEMBERED, from `settled` on */
+    struct output_member member;
     unsigned char *bytes;       /* of one frame */
     struct output_poses *poses; /* of bodies */
 };
@@ -93,45 +100,6 @@ static uint32_t count_bodies(const struct output_setup *setup)
 
 /* ---- What may be replaced ---- */
 
-/* A file that the run reads, by what it is, not by its path. */
-struct input {
-    bool is_there;
-    dev_t device;
-    ino_t number;
-};
-
-static struct input *find_inputs(const struct output_setup *setup)
-{
-    struct input *inputs = calloc(setup->n_inputs + 1, sizeof *inputs);
-    for (size_t i = 0; inputs && i < setup->n_inputs; i++) {
-        struct stat status;
-        if (stat(setup->inputs[i], &status) == 0)
-            inputs[i] = (struct input){true, status.st_dev, status.st_ino};
-    }
-    return inputs;
-}
-
-/* What stands where a file goes can be replaced, and the run does not read it. */
-static int check_target(const char *path, const struct output_setup *setup,
-                        const struct input *inputs, struct cloth_error *error)
-{
-    struct stat status;
-    if (stat(path, &status) != 0)
-        return 0;
-    if (S_ISDIR(status.st_mode)) {
-        errno = EISDIR;
-        return output_refuse(error, "replace", path);
-    }
-    for (size_t i = 0; i < setup->n_inputs; i++)
-        if (inputs[i].is_there && inputs[i].device == status.st_dev &&
-            inputs[i].number == status.st_ino)
-            return cloth_fail(error, CLOTH_E_INPUT,
-                              "%.300s would be replaced, but this run reads it, as %.300s; give "
-                              "another folder, or move the file away",
-                              path, setup->inputs[i]);
-    return 0;
-}
-
 /* A mesh of the user's must not be taken for one of an earlier run. */
 static int check_mesh(const struct output_frames *frames, const char *path,
                       struct cloth_error *error)
@@ -147,14 +115,14 @@ static int check_mesh(const struct output_frames *frames, const char *path,
 
 /* A file of the folder, and what is written beside it first. */
 static int check_file(const struct output_frames *frames, const char *name, bool is_mesh,
-                      const struct output_setup *setup, const struct input *inputs,
+                      const struct output_setup *setup, const struct output_input *inputs,
                       struct cloth_error *error)
 {
     char *path = output_path(frames->folder, name, "");
     char *fresh = output_path(frames->folder, name, ".part");
-    int code = path && fresh ? check_target(path, setup, inputs, error)
+    int code = path && fresh ? output_input_check(path, setup, inputs, error)
                              : cloth_fail(error, CLOTH_E_MEMORY, "no memory for paths");
-    code = code ? code : check_target(fresh, setup, inputs, error);
+    code = code ? code : output_input_check(fresh, setup, inputs, error);
     if (!code && is_mesh)
         code = check_mesh(frames, path, error);
     free(path);
@@ -166,7 +134,7 @@ static int check_ours(const struct output_frames *frames, const struct output_se
                       struct cloth_error *error)
 {
     const uint32_t n = count_bodies(setup), before = frames->n_bodies_before;
-    struct input *inputs = find_inputs(setup);
+    struct output_input *inputs = output_inputs_find(setup);
     int code = inputs ? 0 : cloth_fail(error, CLOTH_E_MEMORY, "no memory for the files read");
     for (int i = 0; i < N_PARTS && !code; i++)
         code = check_file(frames, PART_NAME[i], i == PART_OBJ, setup, inputs, error);
@@ -248,11 +216,12 @@ static int go_on(struct output_frames *frames, const struct output_setup *setup,
             return output_refuse(error, "go on with", frames->path[parts[i]]);
     }
     frames->n_frames = (uint32_t)n;
+    frames->settled = (uint32_t)n;
     int code =
         output_cut_cache(frames->cache, frames->path[PART_CACHE], frames->n_points, n, error);
     if (!code)
-        code = output_cut_lines(frames->index, frames->path[PART_INDEX], 1 + n, &frames->index_size,
-                                error);
+        code = output_cut_lines(frames->index, frames->path[PART_INDEX], 1 + n,
+                                frames->index_size + n % REMEMBERED, error);
     return code ? code : output_poses_open(&frames->poses, setup, 0, error);
 }
 
@@ -297,6 +266,56 @@ static void free_frames(struct output_frames *frames)
     free(frames);
 }
 
+/* ---- Bringing frames to the disk ---- */
+
+/* To the first n frames. A shorter file needs no room. */
+static void cut(const struct output_frames *frames, uint32_t n)
+{
+    const uint64_t whole = OUTPUT_PC2_HEADER + (uint64_t)12 * frames->n_points * n;
+    if (ftruncate(frames->cache, (off_t)whole) == 0)
+        fdatasync(frames->cache);
+    if (ftruncate(frames->index, (off_t)frames->index_size[n % REMEMBERED]) == 0)
+        fdatasync(frames->index);
+}
+
+/* The order is what keeps the folder whole: floats and index, both on the disk, then the count. */
+static int count_frames(const struct output_frames *frames, uint32_t n, struct cloth_error *error)
+{
+    const char *cache = frames->path[PART_CACHE], *index = frames->path[PART_INDEX];
+    unsigned char count[4];
+    output_put_u32(count, n);
+    if (output_sync(frames->cache) != 0)
+        return output_fail(error, "write a frame to", cache);
+    if (output_sync(frames->index) != 0)
+        return output_fail(error, "write a frame to", index);
+    if (output_write_at(frames->cache, count, sizeof count, OUTPUT_PC2_COUNT) != 0 ||
+        output_sync(frames->cache) != 0)
+        return output_fail(error, "count a frame in", cache);
+    return 0;
+}
+
+static void forget_frames(const struct output_frames *frames)
+{
+    unsigned char count[4];
+    output_put_u32(count, frames->settled);
+    output_write_at(frames->cache, count, sizeof count, OUTPUT_PC2_COUNT);
+    cut(frames, frames->settled);
+}
+
+static int settle(void *context, uint32_t n, struct cloth_error *error)
+{
+    struct output_frames *frames = context;
+    int code = output_poses_settle(frames->poses, n, error);
+    code = code ? code : count_frames(frames, n, error);
+    if (code)
+        forget_frames(frames);
+    else
+        frames->settled = n;
+    return code;
+}
+
+/* ---- The run ---- */
+
 int output_open(struct output_frames **frames, const struct output_setup *setup,
                 struct cloth_error *error)
 {
@@ -305,7 +324,8 @@ int output_open(struct output_frames **frames, const struct output_setup *setup,
     if (!made)
         return cloth_fail(error, CLOTH_E_MEMORY, "no memory for the frames of %s", setup->folder);
     made->index = made->cache = -1;
-    made->index_size = strlen("frame,time\n");
+    made->index_size[0] = strlen("frame,time\n");
+    made->member = (struct output_member){.settle = settle, .context = made};
     int code = count_points(setup, &made->n_points, error);
     code = code ? code : allocate(made, setup->folder, error);
     code = code ? code : output_make_folder(setup->folder, error);
@@ -317,6 +337,7 @@ int output_open(struct output_frames **frames, const struct output_setup *setup,
         output_close(&made, &ignored);
         return code;
     }
+    output_member_add(&made->member, setup->settler, made->n_frames);
     *frames = made;
     return 0;
 }
@@ -346,38 +367,17 @@ static int encode(struct output_frames *frames, uint64_t frame, const double *po
     return 0;
 }
 
-/* The order is what keeps the folder whole: floats, index, both on the disk, then the count. */
 static int write_frame(struct output_frames *frames, const char *line, size_t n,
                        struct cloth_error *error)
 {
-    size_t size = (size_t)12 * frames->n_points;
-    unsigned char count[4];
-    output_put_u32(count, frames->n_frames + 1);
-    const char *cache = frames->path[PART_CACHE], *index = frames->path[PART_INDEX];
+    const size_t size = (size_t)12 * frames->n_points;
     if (output_write_at(frames->cache, frames->bytes, size,
-                        OUTPUT_PC2_HEADER + (uint64_t)size * frames->n_frames) != 0 ||
-        output_sync(frames->cache) != 0)
-        return output_fail(error, "write a frame to", cache);
-    if (output_write_at(frames->index, line, n, frames->index_size) != 0 ||
-        output_sync(frames->index) != 0)
-        return output_fail(error, "write a frame to", index);
-    if (output_write_at(frames->cache, count, sizeof count, OUTPUT_PC2_COUNT) != 0 ||
-        output_sync(frames->cache) != 0)
-        return output_fail(error, "count a frame in", cache);
+                        OUTPUT_PC2_HEADER + (uint64_t)size * frames->n_frames) != 0)
+        return output_fail(error, "write a frame to", frames->path[PART_CACHE]);
+    if (output_write_at(frames->index, line, n,
+                        frames->index_size[frames->n_frames % REMEMBERED]) != 0)
+        return output_fail(error, "write a frame to", frames->path[PART_INDEX]);
     return 0;
-}
-
-/* Takes away what a failed frame left beyond the whole ones; a shorter file needs no room. */
-static void forget_frame(const struct output_frames *frames)
-{
-    unsigned char count[4];
-    output_put_u32(count, frames->n_frames);
-    output_write_at(frames->cache, count, sizeof count, OUTPUT_PC2_COUNT);
-    uint64_t whole = OUTPUT_PC2_HEADER + (uint64_t)12 * frames->n_points * frames->n_frames;
-    if (ftruncate(frames->cache, (off_t)whole) == 0)
-        fdatasync(frames->cache);
-    if (ftruncate(frames->index, (off_t)frames->index_size) == 0)
-        fdatasync(frames->index);
 }
 
 int output_frame(void *context, uint64_t frame, double time, const double *position,
@@ -397,12 +397,20 @@ int output_frame(void *context, uint64_t frame, double time, const double *posit
     int n = snprintf(line, sizeof line, "%ju,%.17g\n", (uintmax_t)frame, time);
     code = write_frame(frames, line, (size_t)n, error);
     if (code) {
-        forget_frame(frames);
+        cut(frames, frames->n_frames);
         return code;
     }
-    frames->n_frames++;
-    frames->index_size += (size_t)n;
-    return 0;
+    const uint64_t end = frames->index_size[frame % REMEMBERED] + (uint64_t)n;
+    frames->index_size[++frames->n_frames % REMEMBERED] = end;
+    code = output_member_wrote(&frames->member, frames->n_frames, error);
+    if (code && !frames->member.settler)
+        frames->n_frames = frames->settled;
+    return code;
+}
+
+uint64_t output_frames_settled(const struct output_frames *frames)
+{
+    return frames->settled;
 }
 
 int output_close(struct output_frames **frames, struct cloth_error *error)
@@ -412,6 +420,8 @@ int output_close(struct output_frames **frames, struct cloth_error *error)
     if (!gone)
         return 0;
     int code = 0;
+    if (gone->settled < gone->n_frames) /* written while one before them failed */
+        forget_frames(gone);
     if (gone->index >= 0 && close(gone->index) != 0)
         code = output_fail(error, "close", gone->path[PART_INDEX]);
     if (gone->cache >= 0 && close(gone->cache) != 0)

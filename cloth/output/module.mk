@@ -14,12 +14,14 @@ libduite_cloth_la_SOURCES += \
 	cloth/output/cache.c \
 	cloth/output/report.c \
 	cloth/output/room.c \
+	cloth/output/settle.c cloth/output/settle.h \
 	cloth/output/files/apart.c \
 	cloth/output/files/bodies.c \
 	cloth/output/files/cut.c cloth/output/files/cut.h \
 	cloth/output/files/bodies.h \
 	cloth/output/files/files.h \
 	cloth/output/files/files.c \
+	cloth/output/files/inputs.h cloth/output/files/inputs.c \
 	cloth/output/files/json.h \
 	cloth/output/files/json.c \
 	cloth/output/files/market.c \

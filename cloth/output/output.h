@@ -5,6 +5,7 @@
 #include "cloth/contact/apart.h"
 #include "cloth/contact/shape.h"
 #include "cloth/mesh/mesh.h"
+#include "cloth/output/settle.h"
 #include "cloth/solve/system.h"
 
 #include <stdbool.h>
@@ -30,8 +31,8 @@
  * follow obstacles, "attached": [[obstacle, vertex, ...], ...]: vertices whose triangles do not
  * meet it. Where seams are pulled, "sewn": [[a, b], ...]: vertices whose triangles do not meet
  *
- * PC2's count of frames is rewritten after each frame and the file synced, so that a run that is
- * killed leaves whole files up to the last finished frame. */
+ * PC2's count of frames is rewritten when their bytes are on the disk, and synced, so that a run
+ * that is killed leaves whole files up to the last finished frame. */
 struct output_frames;
 
 struct output_setup {
@@ -52,6 +53,7 @@ struct output_setup {
     const char *const *inputs; /* paths of what the run reads, which is not replaced */
     const uint64_t *n_frames; /* how many of an earlier run stay, whose files go on; NULL: none, and
                                * the files are new */
+    struct output_settler *settler; /* brings frames to the disk; NULL: who writes them does */
 };
 
 /* Opens a folder for frames. Files of an earlier run in it are replaced. A cloth.obj or body-K.obj
@@ -79,11 +81,15 @@ void output_bodies_go_on(const struct output_frames *frames, const struct contac
                          double begin);
 
 /* Appends a frame: position is (all vertices) x 3, metres. Has the form of flow_output.frame,
- * context = frames. A frame that fails leaves the ones before it whole. */
+ * context = frames. A frame that fails leaves the ones before it whole. Where a settler brings them
+ * to the disk, the failure may be that of a frame before. */
 int output_frame(void *context, uint64_t frame, double time, const double *position,
                  struct cloth_error *error);
 
-/* Closes; *frames becomes NULL. */
+/* How many are counted, on the disk. From any thread. */
+uint64_t output_frames_settled(const struct output_frames *frames);
+
+/* Closes, when the settler is closed; *frames becomes NULL. */
 int output_close(struct output_frames **frames, struct cloth_error *error);
 
 /* The force of contact on each vertex in each frame, DIR/contact.pc2: a PC2 cache like cloth.pc2,
@@ -92,10 +98,11 @@ int output_close(struct output_frames **frames, struct cloth_error *error);
 struct output_forces;
 
 /* Begins it in a folder of frames, which is there. Replaces the one of an earlier run, nothing
- * else, or goes on with its first frames (n_frames as of struct output_setup). Errors as of
- * output_open. */
+ * else, or goes on with its first frames (n_frames and settler as of struct output_setup). Errors
+ * as of output_open. */
 int output_forces_open(struct output_forces **forces, const char *folder, uint32_t n_vertices,
-                       const uint64_t *n_frames, struct cloth_error *error);
+                       const uint64_t *n_frames, struct output_settler *settler,
+                       struct cloth_error *error);
 
 /* Appends a frame: force is (all vertices) x 3. Has the form of flow_output.force, context =
  * forces. A frame that fails leaves the ones before it whole. */

@@ -62,6 +62,13 @@ static int show_places(struct flow *flow, uint64_t frame)
     return flow->output->places(flow->output->context, frame, &places, &flow->trouble);
 }
 
+static int not_written(const duite_call *call, struct flow *flow)
+{
+    if (flow->output->written)
+        flow->frames = flow->output->written(flow->output->context);
+    return duite_fail(call, FLOW_NOT_WRITTEN, "%s", flow->trouble.text);
+}
+
 struct frame_args {
     uint32_t block; /* none */
     uint64_t frame;
@@ -74,10 +81,10 @@ static int frame_body(const duite_call *call, const struct frame_fields *on)
     struct flow *flow = flow_of(call);
     put_all(flow, on->x);
     if (show_places(flow, on->args->frame))
-        return duite_fail(call, FLOW_NOT_WRITTEN, "%s", flow->trouble.text);
+        return not_written(call, flow);
     if (flow->output->frame(flow->output->context, on->args->frame, on->args->time, flow->room,
                             &flow->trouble))
-        return duite_fail(call, FLOW_NOT_WRITTEN, "%s", flow->trouble.text);
+        return not_written(call, flow);
     flow->frames = on->args->frame + 1;
     return 0;
 }
@@ -103,7 +110,7 @@ static int frame_beside_body(const duite_call *call, const struct frame_beside_f
     put_places(flow);
     const int failed = flow->output->beside(flow->output->context, &beside, &flow->trouble);
     put_unused(flow, false);
-    return failed ? duite_fail(call, FLOW_NOT_WRITTEN, "%s", flow->trouble.text) : 0;
+    return failed ? not_written(call, flow) : 0;
 }
 
 /* No frame is under way. */
@@ -135,7 +142,7 @@ static int frame_force_body(const duite_call *call, const struct frame_force_fie
     const int failed =
         flow->output->force(flow->output->context, on->args->frame, flow->room, &flow->trouble);
     put_unused(flow, false);
-    return failed ? duite_fail(call, FLOW_NOT_WRITTEN, "%s", flow->trouble.text) : 0;
+    return failed ? not_written(call, flow) : 0;
 }
 
 /* Forks a frame of the state at a tick, kept or not. */

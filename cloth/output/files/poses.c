@@ -143,16 +143,25 @@ static int write_pose(const struct output_poses *poses, const struct pose_file *
                       struct cloth_error *error)
 {
     const size_t size = 12 * (size_t)of->n_points;
-    unsigned char count[4];
-    output_put_u32(count, poses->n_frames + 1);
     if (output_check_same(of->file, of->path, error))
         return error->code;
     if (output_write_at(of->file, poses->bytes, size,
-                        OUTPUT_PC2_HEADER + (uint64_t)size * poses->n_frames) != 0 ||
-        output_sync(of->file) != 0 ||
-        output_write_at(of->file, count, sizeof count, OUTPUT_PC2_COUNT) != 0 ||
-        output_sync(of->file) != 0)
+                        OUTPUT_PC2_HEADER + (uint64_t)size * poses->n_frames) != 0)
         return output_fail(error, "write a frame to", of->path);
+    return 0;
+}
+
+int output_poses_settle(const struct output_poses *poses, uint32_t n, struct cloth_error *error)
+{
+    unsigned char count[4];
+    output_put_u32(count, n);
+    for (uint32_t i = 0; i < poses->n; i++) {
+        const struct pose_file *of = poses->of + i;
+        if (output_sync(of->file) != 0 ||
+            output_write_at(of->file, count, sizeof count, OUTPUT_PC2_COUNT) != 0 ||
+            output_sync(of->file) != 0)
+            return output_fail(error, "write a frame to", of->path);
+    }
     return 0;
 }
 

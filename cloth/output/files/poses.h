@@ -17,8 +17,11 @@ int output_poses_open(struct output_poses **poses, const struct output_setup *se
 void output_poses_go_on(struct output_poses *poses, const struct contact_bodies *bodies,
                         double begin);
 
-/* Appends a frame, before the one of the cloth is counted. */
+/* Appends a frame. */
 int output_poses_frame(struct output_poses *poses, double time, struct cloth_error *error);
+
+/* Brings the first n frames to the disk and counts them, before those of the cloth are. */
+int output_poses_settle(const struct output_poses *poses, uint32_t n, struct cloth_error *error);
 
 /* Closes; *poses becomes NULL. */
 int output_poses_close(struct output_poses **poses, struct cloth_error *error);

@@ -92,12 +92,16 @@ void sample_run(struct sample *sample, unsigned run, uint64_t n)
     struct cloth_error error = {0};
     struct output_frames *frames = NULL;
     double position[3 * SAMPLE_POINTS];
+    struct output_settler **settler = &sample->setup.settler;
+    if (sample->settles)
+        ck_assert_int_eq(output_settler_open(settler, &error), 0);
     ck_assert_msg(output_open(&frames, &sample->setup, &error) == 0, "%s", error.text);
     for (uint64_t i = 0; i < n; i++) {
         sample_positions(run, i, position);
         ck_assert_msg(output_frame(frames, i, (double)i / 25, position, &error) == 0, "%s",
                       error.text);
     }
+    ck_assert_msg(output_settler_close(settler, &error) == 0, "%s", error.text);
     ck_assert_msg(output_close(&frames, &error) == 0, "%s", error.text);
     ck_assert_ptr_null(frames);
 }

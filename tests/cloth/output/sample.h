@@ -13,6 +13,7 @@ struct sample {
     struct mesh mesh[2];
     const struct mesh *meshes[2];
     struct output_setup setup;
+    bool settles; /* sample_run has a settler */
 };
 
 /* A grid of 4 x 3 with uv, and a quadrilateral without; one plane. */

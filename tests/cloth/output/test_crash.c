@@ -13,9 +13,9 @@
 #include <unistd.h>
 
 enum mode { OFF, DIE, FULL };
-static enum mode mode = OFF;
+static _Atomic enum mode mode = OFF;
 static int reason = ENOSPC; /* why calls fail */
-static long calls_left;
+static _Atomic long calls_left;
 
 /* Whether this call is the one that fails; a dying process does not come back. */
 static int strikes(void)
@@ -68,13 +68,15 @@ static void end(void)
     sample_free(&sample);
 }
 
-/* Runs 3 frames of run 2, to die at call n. Returns whether it got through. */
-static int survives(long n)
+/* Runs 3 frames of run 2, to die at call n. settles: a thread brings them to the disk. Returns
+ * whether it got through. */
+static int survives(long n, bool settles)
 {
     fflush(NULL);
     pid_t child = fork();
     ck_assert_int_ge(child, 0);
     if (child == 0) {
+        sample.settles = settles;
         mode = DIE;
         calls_left = n;
         sample_run(&sample, 2, 3);
@@ -113,11 +115,24 @@ START_TEST(dies_anywhere)
     for (long n = 0; !through; n++) {
         ck_assert_int_lt(n, 200);
         sample_run(&sample, 1, 4);
-        through = survives(n);
+        through = survives(n, false);
         seen[check_folder() + 1]++;
     }
     for (int i = 0; i < 6; i++) /* none, 0 .. 3 of the new run, 4 of the old one */
         ck_assert_msg(seen[i] > 0, "never ended with %d frames", i - 1);
+}
+END_TEST
+
+START_TEST(dies_anywhere_with_a_thread)
+{
+    int through = 0;
+    for (long n = 0; !through; n++) {
+        ck_assert_int_lt(n, 200);
+        sample_run(&sample, 1, 4);
+        through = survives(n, true);
+        check_folder();
+    }
+    ck_assert_int_eq(check_folder(), 3);
 }
 END_TEST
 
@@ -204,6 +219,45 @@ START_TEST(full_disk_keeps_whole_frames)
 }
 END_TEST
 
+/* What a thread cannot bring to the disk is said by what follows, which is taken away, too. */
+START_TEST(full_disk_is_said_later)
+{
+    int through = 0;
+    for (long n = 0; !through; n++) {
+        ck_assert_int_lt(n, 50);
+        struct cloth_error error = {0};
+        struct output_frames *frames = NULL;
+        double position[3 * SAMPLE_POINTS];
+        ck_assert_int_eq(output_settler_open(&sample.setup.settler, &error), 0);
+        ck_assert_int_eq(output_open(&frames, &sample.setup, &error), 0);
+        sample_positions(2, 0, position);
+        ck_assert_int_eq(output_frame(frames, 0, 0, position, &error), 0);
+        ck_assert_int_eq(output_settler_wait(sample.setup.settler, &error), 0);
+        sample_positions(2, 1, position);
+        mode = FULL;
+        calls_left = n;
+        const int written = output_frame(frames, 1, 0.04, position, &error);
+        const int settled = output_settler_wait(sample.setup.settler, &error);
+        through = calls_left >= 0;
+        mode = OFF;
+        ck_assert_int_eq(written || settled, !through);
+        ck_assert_uint_eq(output_frames_settled(frames), through ? 2 : 1);
+        ck_assert_int_eq(check_folder(), through ? 2 : 1);
+        if (settled) {
+            ck_assert_ptr_nonnull(strstr(error.text, "No space left"));
+            sample_positions(2, 2, position);
+            ck_assert_int_eq(output_frame(frames, 2, 0.08, position, &error), CLOTH_E_IO);
+        }
+        ck_assert_int_eq(output_settler_close(&sample.setup.settler, &error), settled);
+        output_close(&frames, &error);
+        struct stat status;
+        stat(sample_path(&sample, "frames.csv"), &status);
+        ck_assert_int_eq(status.st_size, through ? 38 : 15);
+        ck_assert_int_eq(check_folder(), through ? 2 : 1);
+    }
+}
+END_TEST
+
 START_TEST(report_is_whole_or_not_at_all)
 {
     char path[96], part[144], text[64];
@@ -236,6 +290,8 @@ int main(void)
     TCase *c = tcase_create("crash");
     tcase_add_checked_fixture(c, start, end);
     tcase_add_test(c, dies_anywhere);
+    tcase_add_test(c, dies_anywhere_with_a_thread);
+    tcase_add_test(c, full_disk_is_said_later);
     tcase_add_test(c, fails_to_open_whole);
     tcase_add_test(c, tells_whose_fault);
     tcase_add_test(c, full_disk_keeps_whole_frames);

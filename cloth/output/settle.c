@@ -1,0 +1,169 @@
+/* Under the lock is how far each member is. The thread alone counts up `settled`; it takes all
+ * frames that are there at once, so a slow disk is asked less often. After a failure it settles
+ * nothing more. */
+#include "cloth/output/settle.h"
+
+#include <pthread.h>
+#include <signal.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { BEHIND = 3 }; /* frames that the disk may be behind */
+
+struct output_settler {
+    pthread_t thread;
+    pthread_mutex_t lock; /* of what follows */
+    pthread_cond_t change;
+    struct output_member member[OUTPUT_MEMBERS];
+    uint32_t written[OUTPUT_MEMBERS], settled[OUTPUT_MEMBERS];
+    uint32_t n;
+    struct cloth_error trouble; /* the first */
+    bool ends;
+};
+
+static bool is_settled(const struct output_settler *settler)
+{
+    bool is = true;
+    for (uint32_t i = 0; i < settler->n; i++)
+        is = is && settler->settled[i] == settler->written[i];
+    return is || settler->trouble.code;
+}
+
+/* ---- The thread ---- */
+
+/* With the lock, which is free meanwhile. What counts is what was written before it began, so no
+ * member gets ahead of one before it. */
+static void settle_all(struct output_settler *settler)
+{
+    uint32_t goal[OUTPUT_MEMBERS];
+    struct cloth_error why = {0};
+    memcpy(goal, settler->written, sizeof goal);
+    for (uint32_t i = 0; i < settler->n && !why.code; i++) {
+        const struct output_member member = settler->member[i];
+        if (settler->settled[i] == goal[i])
+            continue;
+        pthread_mutex_unlock(&settler->lock);
+        member.settle(member.context, goal[i], &why);
+        pthread_mutex_lock(&settler->lock);
+        if (!why.code)
+            settler->settled[i] = goal[i];
+    }
+    settler->trouble = why;
+    pthread_cond_broadcast(&settler->change);
+}
+
+static void *run(void *context)
+{
+    struct output_settler *settler = context;
+    pthread_mutex_lock(&settler->lock);
+    while (!(settler->ends && is_settled(settler)))
+        if (is_settled(settler))
+            pthread_cond_wait(&settler->change, &settler->lock);
+        else
+            settle_all(settler);
+    pthread_mutex_unlock(&settler->lock);
+    return NULL;
+}
+
+/* Signals are the other threads'. */
+static int start(struct output_settler *settler)
+{
+    sigset_t all, before;
+    sigfillset(&all);
+    pthread_sigmask(SIG_SETMASK, &all, &before);
+    const int failed = pthread_create(&settler->thread, NULL, run, settler);
+    pthread_sigmask(SIG_SETMASK, &before, NULL);
+    return failed;
+}
+
+static void drop(struct output_settler *settler)
+{
+    pthread_cond_destroy(&settler->change);
+    pthread_mutex_destroy(&settler->lock);
+    free(settler);
+}
+
+/* ---- For the run ---- */
+
+int output_settler_open(struct output_settler **settler, struct cloth_error *error)
+{
+    *settler = NULL;
+    struct output_settler *made = calloc(1, sizeof *made);
+    if (!made)
+        return cloth_fail(error, CLOTH_E_MEMORY, "no memory for frames");
+    pthread_mutex_init(&made->lock, NULL);
+    pthread_cond_init(&made->change, NULL);
+    const int failed = start(made);
+    if (failed) {
+        drop(made);
+        return cloth_fail(error, CLOTH_E_LIBRARY, "no thread to bring frames to the disk: %s",
+                          strerror(failed));
+    }
+    *settler = made;
+    return CLOTH_OK;
+}
+
+/* With the lock. */
+static int tell(const struct output_settler *settler, struct cloth_error *error)
+{
+    const struct cloth_error *trouble = &settler->trouble;
+    return trouble->code ? cloth_fail(error, trouble->code, "%s", trouble->text) : CLOTH_OK;
+}
+
+int output_settler_wait(struct output_settler *settler, struct cloth_error *error)
+{
+    if (!settler)
+        return CLOTH_OK;
+    pthread_mutex_lock(&settler->lock);
+    while (!is_settled(settler))
+        pthread_cond_wait(&settler->change, &settler->lock);
+    const int code = tell(settler, error);
+    pthread_mutex_unlock(&settler->lock);
+    return code;
+}
+
+int output_settler_close(struct output_settler **settler, struct cloth_error *error)
+{
+    struct output_settler *gone = *settler;
+    *settler = NULL;
+    if (!gone)
+        return CLOTH_OK;
+    pthread_mutex_lock(&gone->lock);
+    gone->ends = true;
+    pthread_cond_broadcast(&gone->change);
+    pthread_mutex_unlock(&gone->lock);
+    pthread_join(gone->thread, NULL);
+    const int code = tell(gone, error);
+    drop(gone);
+    return code;
+}
+
+/* ---- Members ---- */
+
+void output_member_add(struct output_member *member, struct output_settler *settler, uint32_t n)
+{
+    member->settler = settler;
+    if (!settler)
+        return;
+    pthread_mutex_lock(&settler->lock);
+    member->place = settler->n++;
+    settler->member[member->place] = *member;
+    settler->written[member->place] = settler->settled[member->place] = n;
+    pthread_mutex_unlock(&settler->lock);
+}
+
+int output_member_wrote(const struct output_member *member, uint32_t n, struct cloth_error *error)
+{
+    struct output_settler *settler = member->settler;
+    if (!settler)
+        return member->settle(member->context, n, error);
+    pthread_mutex_lock(&settler->lock);
+    settler->written[member->place] = n;
+    pthread_cond_broadcast(&settler->change);
+    while (n - settler->settled[member->place] > BEHIND && !settler->trouble.code)
+        pthread_cond_wait(&settler->change, &settler->lock);
+    const int code = tell(settler, error);
+    pthread_mutex_unlock(&settler->lock);
+    return code;
+}

@@ -9,8 +9,8 @@
 /* Checkpoints in a folder of frames: DIR/checkpoints/000001.checkpoint and so on, the last
  * OUTPUT_CHECKPOINTS_KEPT of them. A file holds opaque parts. It is written beside its name,
  * brought to the disk and renamed; only then the oldest one is removed, or renamed to be written
- * over by the next. So the folder never holds less than it did. Local functions, on rank 0; a struct output_checkpoints may be used by another
- * thread than the one that opened it.
+ * over by the next. So the folder never holds less than it did. Local functions, on rank 0; a
+ * struct output_checkpoints may be used by another thread than the one that opened it.
  *
  * A file: the numbers of struct header (checkpoint.c), the parts, each up to a multiple of 8 bytes,
  * and the XXH64 of all that. Numbers are as the machine has them. */

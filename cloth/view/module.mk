@@ -13,7 +13,7 @@ libduite_view_la_SOURCES = \
 	cloth/view/obstacles.c \
 	cloth/view/picture.c \
 	cloth/view/player.h cloth/view/player.c \
-	cloth/view/scene.c \
+	cloth/view/scene.h cloth/view/scene.c cloth/view/scene_draw.c \
 	cloth/view/show.h cloth/view/show.c \
 	cloth/view/values.h cloth/view/values.c \
 	cloth/view/draw/draw.h \
@@ -22,7 +22,8 @@ libduite_view_la_SOURCES = \
 	cloth/view/draw/mesh.c \
 	cloth/view/draw/program.c \
 	cloth/view/draw/shaders.c \
-	cloth/view/draw/sky.c
+	cloth/view/draw/sky.c \
+	cloth/view/draw/surfaces.c
 if HAVE_CAIRO
 libduite_view_la_SOURCES += cloth/view/letters.h cloth/view/letters.c
 endif

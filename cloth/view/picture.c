@@ -1,32 +1,24 @@
-/* A picture is drawn into a framebuffer with several samples a pixel, which is averaged into a
- * plain one and read. All that is made here is deleted here, whatever fails. */
+/* A picture is drawn into a framebuffer and read. All that is made here is deleted here, whatever
+ * fails. */
 #include "cloth/view/view.h"
 
 #include <epoxy/gl.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { SAMPLES = 4 };
-
 struct target {
-    GLuint frame, color, depth;
+    GLuint frame, color;
 };
 
-static int target_make(struct target *target, const struct view_picture *picture, int samples,
+static int target_make(struct target *target, const struct view_picture *picture,
                        struct cloth_error *error)
 {
     glGenFramebuffers(1, &target->frame);
     glBindFramebuffer(GL_FRAMEBUFFER, target->frame);
     glGenRenderbuffers(1, &target->color);
     glBindRenderbuffer(GL_RENDERBUFFER, target->color);
-    glRenderbufferStorageMultisample(GL_RENDERBUFFER, samples, GL_RGBA8, picture->width,
-                                     picture->height);
+    glRenderbufferStorage(GL_RENDERBUFFER, GL_RGBA8, picture->width, picture->height);
     glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, target->color);
-    glGenRenderbuffers(1, &target->depth);
-    glBindRenderbuffer(GL_RENDERBUFFER, target->depth);
-    glRenderbufferStorageMultisample(GL_RENDERBUFFER, samples, GL_DEPTH_COMPONENT24, picture->width,
-                                     picture->height);
-    glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, target->depth);
     GLenum status = glCheckFramebufferStatus(GL_FRAMEBUFFER);
     return status == GL_FRAMEBUFFER_COMPLETE
                ? 0
@@ -38,7 +30,6 @@ static void target_free(const struct target *target)
 {
     glDeleteFramebuffers(1, &target->frame);
     glDeleteRenderbuffers(1, &target->color);
-    glDeleteRenderbuffers(1, &target->depth);
 }
 
 /* OpenGL's rows go up, ours go down. */
@@ -83,29 +74,6 @@ static int check_size(const struct view_picture *picture, struct cloth_error *er
                       picture->width, picture->height);
 }
 
-/* Into a framebuffer with several samples a pixel, which is read from now on. */
-static int draw_fine(struct target *fine, const struct view_scene *scene,
-                     const struct view_camera *camera, const struct view_picture *picture,
-                     struct cloth_error *error)
-{
-    GLint samples = 0;
-    glGetIntegerv(GL_MAX_SAMPLES, &samples);
-    const int code = target_make(fine, picture, samples < SAMPLES ? samples : SAMPLES, error);
-    if (code)
-        return code;
-    view_scene_draw(scene, camera, picture->width, picture->height);
-    glBindFramebuffer(GL_READ_FRAMEBUFFER, fine->frame);
-    return 0;
-}
-
-/* Averages the samples of the framebuffer that is read into another one. */
-static void average(GLuint frame, const struct view_picture *picture)
-{
-    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, frame);
-    glBlitFramebuffer(0, 0, picture->width, picture->height, 0, 0, picture->width, picture->height,
-                      GL_COLOR_BUFFER_BIT, GL_NEAREST);
-}
-
 static int fail_to_draw(struct cloth_error *error)
 {
     const GLenum trouble = glGetError();
@@ -114,39 +82,30 @@ static int fail_to_draw(struct cloth_error *error)
                : cloth_fail(error, CLOTH_E_LIBRARY, "OpenGL failed to draw (0x%x)", trouble);
 }
 
-int view_picture_draw(struct view_picture *picture, const struct view_scene *scene,
+int view_picture_draw(struct view_picture *picture, struct view_scene *scene,
                       const struct view_camera *camera, struct cloth_error *error)
 {
     picture->rgb = NULL;
     int code = check_size(picture, error);
     if (code)
         return code;
-    struct target fine = {0}, plain = {0};
-    code = target_make(&plain, picture, 0, error);
-    code = code ? code : draw_fine(&fine, scene, camera, picture, error);
-    if (!code) {
-        average(plain.frame, picture);
-        glBindFramebuffer(GL_READ_FRAMEBUFFER, plain.frame);
-        code = read_back(picture, error);
-    }
+    struct target target = {0};
+    code = target_make(&target, picture, error);
+    code = code ? code : view_scene_draw(scene, camera, picture->width, picture->height, error);
+    code = code ? code : read_back(picture, error);
     code = code ? code : fail_to_draw(error);
     if (code)
         view_picture_free(picture);
-    target_free(&fine);
-    target_free(&plain);
+    target_free(&target);
     return code;
 }
 
-int view_window_draw(int width, int height, const struct view_scene *scene,
+int view_window_draw(int width, int height, struct view_scene *scene,
                      const struct view_camera *camera, struct cloth_error *error)
 {
     const struct view_picture picture = {width, height, NULL};
-    struct target fine = {0};
     int code = check_size(&picture, error);
-    code = code ? code : draw_fine(&fine, scene, camera, &picture, error);
-    if (!code)
-        average(0, &picture);
-    target_free(&fine);
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
+    code = code ? code : view_scene_draw(scene, camera, width, height, error);
     return code ? code : fail_to_draw(error);
 }

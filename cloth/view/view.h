@@ -92,7 +92,7 @@ struct view_context;
 int view_context_open(struct view_context **context, struct cloth_error *error);
 void view_context_close(struct view_context *context);
 
-/* --- scene.c: what is drawn, into whatever framebuffer is bound --- */
+/* --- scene.c: what is drawn --- */
 
 struct view_shape {
     uint32_t n_vertices, n_triangles, n_lines;
@@ -127,8 +127,9 @@ void view_scene_paint(struct view_scene *scene, enum view_paint paint, int n, co
 void view_scene_wire(struct view_scene *scene, bool wire);
 /* Whether there are shadows, from the next move on; a new scene has them. */
 void view_scene_shadows(struct view_scene *scene, bool shadows);
-void view_scene_draw(const struct view_scene *scene, const struct view_camera *camera, int width,
-                     int height);
+/* Into whatever framebuffer is bound, with four samples a pixel. */
+int view_scene_draw(struct view_scene *scene, const struct view_camera *camera, int width,
+                    int height, struct cloth_error *error);
 void view_scene_free(struct view_scene *scene);
 
 /* --- picture.c, image.c --- */
@@ -137,12 +138,11 @@ struct view_picture {
     int width, height;
     unsigned char *rgb; /* height x width x 3, from the top */
 };
-/* Draws off screen with four samples a pixel; picture->width and height are the caller's, rgb is
- * made here. */
-int view_picture_draw(struct view_picture *picture, const struct view_scene *scene,
+/* Draws off screen; picture->width and height are the caller's, rgb is made here. */
+int view_picture_draw(struct view_picture *picture, struct view_scene *scene,
                       const struct view_camera *camera, struct cloth_error *error);
 /* Draws the same into the framebuffer of a window of that size, which is bound after it. */
-int view_window_draw(int width, int height, const struct view_scene *scene,
+int view_window_draw(int width, int height, struct view_scene *scene,
                      const struct view_camera *camera, struct cloth_error *error);
 /* A PNG file, written whole or not at all. */
 int view_picture_write(const struct view_picture *picture, const char *path,

@@ -51,8 +51,8 @@ struct plan_place {
 struct plan {
     _Atomic uint32_t refs; /* the record, and each replay on its way */
     struct task_graph *graph;
-    _Atomic bool affinity; /* some place got one in this replay */
-    size_t n_filled;       /* nodes that were made so far */
+    _Atomic uint32_t n_affine; /* places with an affinity */
+    size_t n_filled;           /* nodes that were made so far */
     size_t n_nodes, n_calls, n_uses, n_roots, n_sinks, n_places;
     size_t n_objects;     /* places that are objects */
     unsigned char *nodes; /* the tasks: PLAN_NODE_BYTES each */
@@ -121,17 +121,25 @@ static inline struct plan_place *plan_node_place(const struct task *task)
 static inline void plan_task_set_affinity(const struct task *task, uint32_t affinity)
 {
     struct plan_place *place = plan_node_place(task);
-    if (place && atomic_load_explicit(&place->affinity, memory_order_relaxed) != affinity)
-        atomic_store_explicit(&place->affinity, affinity, memory_order_relaxed);
-    if (affinity && !atomic_load_explicit(&task->node->plan->affinity, memory_order_relaxed))
-        atomic_store_explicit(&task->node->plan->affinity, true, memory_order_relaxed);
+    if (!place || atomic_load_explicit(&place->affinity, memory_order_relaxed) == affinity)
+        return;
+    const bool had =
+        atomic_exchange_explicit(&place->affinity, affinity, memory_order_relaxed) != 0;
+    if (had != (affinity != 0))
+        atomic_fetch_add_explicit(&task->node->plan->n_affine, affinity ? 1 : UINT32_MAX,
+                                  memory_order_relaxed);
+}
+
+/* Whether nodes of the plan may have an affinity. Short ones have none, and are not looked up. */
+static inline bool plan_is_affine(const struct plan *plan)
+{
+    return atomic_load_explicit(&plan->n_affine, memory_order_relaxed) != 0;
 }
 
 /* See duite_ready.affinity. */
 static inline uint32_t plan_task_affinity(const struct task *task)
 {
-    if (task->type != TASK_NODE ||
-        !atomic_load_explicit(&task->node->plan->affinity, memory_order_relaxed))
+    if (task->type != TASK_NODE || !plan_is_affine(task->node->plan))
         return 0;
     const struct plan_place *place = plan_node_place(task);
     return place ? atomic_load_explicit(&place->affinity, memory_order_relaxed) : 0;

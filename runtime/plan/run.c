@@ -8,18 +8,13 @@
  *
  * Poison is kept by place, under the same dependences as the bytes. Workers look at it only once
  * something failed: what sees the effects of a failure sees `tainted`. */
-#include "runtime/plan/plan.h"
-#include "runtime/task/call.h"
+#include "runtime/plan/node.h"
 
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
 #include "runtime/data/object.h"
 
 #include <string.h>
-
-/* With a flag the number of rounds is not known beforehand. Each sink of each round takes one from
- * this, and the node that decides to stop takes the remainder. */
-static const int64_t UNKNOWN = INT64_C(1) << 62;
 
 /* ---- Beginning and end ---- */
 
@@ -96,9 +91,8 @@ void plan_replay_run(struct task *task)
     plan->replay = task;
     plan->last = replay->rounds - 1;
     plan->stop = false;
-    atomic_store_explicit(&plan->affinity, false, memory_order_relaxed);
     atomic_store_explicit(&plan->tainted, 0, memory_order_relaxed);
-    atomic_store_explicit(&plan->left, plan->decides ? UNKNOWN : (int64_t)plan->n_sinks,
+    atomic_store_explicit(&plan->left, plan->decides ? PLAN_UNKNOWN : (int64_t)plan->n_sinks,
                           memory_order_relaxed);
     run_change_args(plan, replay->changes);
     for (size_t i = plan->n_objects; i < plan->n_places; i++)
@@ -119,8 +113,8 @@ void plan_replay_run(struct task *task)
         work_starved(plan->graph->pool, "a replay");
 }
 
-static void run_end(struct task_graph *graph, struct worker *worker, struct plan *plan,
-                    uint64_t rounds)
+void plan_replay_end(struct task_graph *graph, struct worker *worker, struct plan *plan,
+                     uint64_t rounds)
 {
     struct task *task = plan->replay;
     for (size_t i = 0; i < plan->n_objects; i++)
@@ -133,9 +127,7 @@ static void run_end(struct task_graph *graph, struct worker *worker, struct plan
     plan_release(plan);
 }
 
-/* What a message waits for is not queued behind other tasks: it runs here and now. (What it makes
- * ready is a node that sends, and tasks.) */
-static void node_ready(struct task_graph *graph, struct worker *worker, struct task *task)
+void plan_node_ready(struct task_graph *graph, struct worker *worker, struct task *task)
 {
     if (!task->node->runs_inline) {
         work_ready(graph->pool, worker, task);
@@ -150,14 +142,14 @@ void plan_replay_start(struct task_graph *graph, struct worker *worker, struct t
     struct plan *plan = task->replay->plan;
     size_t n = task->replay->rounds ? plan->n_roots : 0;
     if (!n)
-        run_end(graph, worker, plan, task->replay->rounds);
+        plan_replay_end(graph, worker, plan, task->replay->rounds);
     for (size_t i = 0; i < n; i++)
-        node_ready(graph, worker, plan->root[i]);
+        plan_node_ready(graph, worker, plan->root[i]);
 }
 
 /* ---- Nodes ---- */
 
-static const struct data_failure *node_find_poison(const struct plan *plan, const struct task *task)
+const struct data_failure *plan_node_poison(const struct plan *plan, const struct task *task)
 {
     const struct plan_node_use *use = plan->use + task->node->first_use;
     const struct data_failure *failure = NULL;
@@ -167,9 +159,8 @@ static const struct data_failure *node_find_poison(const struct plan *plan, cons
     return failure;
 }
 
-/* Poisons, or heals, what the node writes. */
-static void node_set_poison(struct plan *plan, const struct task *task,
-                            const struct data_failure *failure)
+void plan_node_set_poison(struct plan *plan, const struct task *task,
+                          const struct data_failure *failure)
 {
     const struct plan_node_use *use = plan->use + task->node->first_use;
     for (uint32_t i = 0; i < task->n; i++)
@@ -177,8 +168,7 @@ static void node_set_poison(struct plan *plan, const struct task *task,
             plan->place[use[i].place].failure = failure;
 }
 
-/* What bodies find under cw. */
-static void node_clear_leaves(const struct plan *plan, const struct task *task)
+void plan_node_clear_leaves(const struct plan *plan, const struct task *task)
 {
     const struct plan_node_use *use = plan->use + task->node->first_use;
     for (uint32_t i = 0; i < task->n; i++) {
@@ -192,37 +182,11 @@ static void node_clear_leaves(const struct plan *plan, const struct task *task)
     }
 }
 
-/* The body forked tasks on objects of its own and on what it read. */
-static void node_leave_scope(struct task_scope *scope, struct worker *worker,
-                             const struct data_failure *failure)
+void plan_node_leave_scope(struct task_scope *scope, struct worker *worker,
+                           const struct data_failure *failure)
 {
     task_scope_fail(scope, failure);
     task_scope_end(scope, worker);
-}
-
-static bool node_run_body(struct task_graph *graph, struct worker *worker, struct task *task,
-                          const duite_call *call)
-{
-    const struct plan_node *node = task->node;
-    struct plan *plan = node->plan;
-    bool tainted = atomic_load_explicit(&plan->tainted, memory_order_relaxed);
-    const struct data_failure *failure = tainted ? node_find_poison(plan, task) : NULL;
-    if (!failure)
-        failure = task_given_up(graph);
-    bool runs = !failure;
-    if (runs) {
-        if (node->n_leaves)
-            node_clear_leaves(plan, task);
-        struct task_scope *scope = NULL;
-        failure = task_call_body(graph, worker, task, node->args, node->param, &scope, call);
-        if (scope)
-            node_leave_scope(scope, worker, failure);
-    }
-    if (failure)
-        atomic_store_explicit(&plan->tainted, 1, memory_order_relaxed);
-    if (tainted || failure)
-        node_set_poison(plan, task, failure);
-    return runs;
 }
 
 static void node_run_set(struct task *task)
@@ -253,9 +217,9 @@ static void node_run_sum(struct task *task)
     struct plan *plan = node->plan;
     const duite_param *param = node->param;
     bool tainted = atomic_load_explicit(&plan->tainted, memory_order_relaxed);
-    const struct data_failure *failure = tainted ? node_find_poison(plan, task) : NULL;
+    const struct data_failure *failure = tainted ? plan_node_poison(plan, task) : NULL;
     if (failure) {
-        node_set_poison(plan, task, failure);
+        plan_node_set_poison(plan, task, failure);
         return;
     }
     node_merge(node);
@@ -269,9 +233,9 @@ static void node_run_view(struct task *task)
     struct plan_node *node = task->node;
     const duite_param *param = node->param; /* from, to */
     bool tainted = atomic_load_explicit(&node->plan->tainted, memory_order_relaxed);
-    const struct data_failure *failure = tainted ? node_find_poison(node->plan, task) : NULL;
+    const struct data_failure *failure = tainted ? plan_node_poison(node->plan, task) : NULL;
     if (tainted)
-        node_set_poison(node->plan, task, failure);
+        plan_node_set_poison(node->plan, task, failure);
     if (failure)
         return;
     if (task->type == TASK_NODE_VIEW)
@@ -298,7 +262,7 @@ static void node_run_flag(struct task_graph *graph, struct task *task)
     struct plan *plan = task->node->plan;
     bool tainted = atomic_load_explicit(&plan->tainted, memory_order_relaxed);
     plan->stop = task->node->round == plan->last || task_given_up(graph) ||
-                 (tainted && node_find_poison(plan, task)) ||
+                 (tainted && plan_node_poison(plan, task)) ||
                  !plan_flag_holds(task->node->param->type, task->node->param->data);
     if (plan->stop)
         plan->last = task->node->round;
@@ -307,9 +271,12 @@ static void node_run_flag(struct task_graph *graph, struct task *task)
 bool plan_node_run(struct task_graph *graph, struct worker *worker, struct task *task,
                    const duite_call *call)
 {
+    if (task->type == TASK_NODE) {
+        struct task_frame frame;
+        task_frame_init(&frame, graph, worker, call);
+        return plan_node_run_body(&frame, task);
+    }
     atomic_store_explicit(&task->pending, task->node->steady, memory_order_relaxed);
-    if (task->type == TASK_NODE)
-        return node_run_body(graph, worker, task, call);
     if (task->type == TASK_NODE_SET)
         node_run_set(task);
     else if (task->type == TASK_NODE_SUM || task->type == TASK_NODE_PARTIAL)
@@ -323,23 +290,5 @@ bool plan_node_run(struct task_graph *graph, struct worker *worker, struct task 
 
 void plan_node_finish(struct task_graph *graph, struct worker *worker, struct task *task)
 {
-    struct plan_node *node = task->node;
-    struct plan *plan = node->plan;
-    struct task **next = node->next, **stop = next + node->n_next;
-    uint64_t round = node->round++;
-    bool decides = task->type == TASK_NODE_FLAG;
-    bool last = plan->decides ? decides && plan->stop : round == plan->last;
-    int64_t counts = node->sink && (plan->decides || last);
-    if (decides && last) /* the other sinks take one a round, and so did this one until now */
-        counts = UNKNOWN - (int64_t)((round + 1) * plan->n_sinks - 1);
-    task->number += plan->n_calls;
-    for (next += last ? node->n_cyclic : 0; next < stop; next++) {
-        _Atomic uint32_t *pending = &(*next)->pending;
-        /* The last one needs no atomic subtraction: nobody else has the counter then. */
-        if (atomic_load_explicit(pending, memory_order_acquire) == 1 ||
-            atomic_fetch_sub_explicit(pending, 1, memory_order_acq_rel) == 1)
-            node_ready(graph, worker, *next);
-    }
-    if (counts && atomic_fetch_sub_explicit(&plan->left, counts, memory_order_acq_rel) == counts)
-        run_end(graph, worker, plan, plan->last + 1);
+    plan_node_count_down(graph, worker, task, plan_node_ready);
 }

@@ -29,38 +29,62 @@ static inline void task_body_ends(const struct duite_call_private *body)
     task_innermost = body->outer;
 }
 
-/* Calls the body; returns its failure, or NULL. An error of its calls that it did not look at is
- * one. *scope is what its children may use: NULL if it has none, also afterwards if it did not get
- * one. */
+/* What a body is called with, and what its calls go by. One frame may serve many bodies, one after
+ * another. */
+struct task_frame {
+    struct duite_call_private body;
+    duite_call call;
+};
+
+/* What is the same for all bodies of a worker. The rest stays unset until a body is called. */
+static inline void task_frame_init(struct task_frame *frame, struct task_graph *graph,
+                                   struct worker *worker, const duite_call *template)
+{
+    frame->call = *template;
+    frame->call.own = &frame->body;
+    frame->body.graph = graph;
+    frame->body.worker = worker;
+}
+
+/* Calls the task's body; returns its failure, or NULL. An error of its calls that it did not look
+ * at is one. *scope is what its children may use: NULL if it has none, also afterwards if it did
+ * not get one. */
+__attribute__((always_inline)) static inline const struct data_failure *
+task_frame_call(struct task_frame *frame, struct task *task, const void *args,
+                const duite_param *param, struct task_scope **scope)
+{
+    struct duite_call_private *body = &frame->body;
+    struct task_graph *graph = body->graph;
+    const duite_kernel *kernel = graph->kernels[task->kernel];
+    body->task = task;
+    body->param = param;
+    body->scope = *scope;
+    body->refused = DUITE_OK;
+    body->remembered = DUITE_OK;
+    body->text[0] = '\0';
+    frame->call.args = args;
+    frame->call.param = param;
+    frame->call.n_params = task->n;
+    task_body_begins(body);
+    int code = graph->checks ? work_check_body(graph->pool, kernel, task->number, &frame->call)
+                             : kernel->body(&frame->call);
+    task_body_ends(body);
+    *scope = body->scope;
+    if (!code)
+        code = body->refused;
+    if (!code)
+        code = body->remembered;
+    return code ? task_body_failure(body, code) : NULL;
+}
+
+/* The same with a frame of its own. */
 __attribute__((always_inline)) static inline const struct data_failure *
 task_call_body(struct task_graph *graph, struct worker *worker, struct task *task, const void *args,
                const duite_param *param, struct task_scope **scope, const duite_call *template)
 {
-    struct duite_call_private body;
-    const duite_kernel *kernel = graph->kernels[task->kernel];
-    duite_call call = *template;
-    body.graph = graph;
-    body.worker = worker;
-    body.task = task;
-    body.param = param;
-    body.scope = *scope;
-    body.refused = DUITE_OK;
-    body.remembered = DUITE_OK;
-    body.text[0] = '\0';
-    call.args = args;
-    call.param = param;
-    call.n_params = task->n;
-    call.own = &body;
-    task_body_begins(&body);
-    int code = graph->checks ? work_check_body(graph->pool, kernel, task->number, &call)
-                             : kernel->body(&call);
-    task_body_ends(&body);
-    *scope = body.scope;
-    if (!code)
-        code = body.refused;
-    if (!code)
-        code = body.remembered;
-    return code ? task_body_failure(&body, code) : NULL;
+    struct task_frame frame;
+    task_frame_init(&frame, graph, worker, template);
+    return task_frame_call(&frame, task, args, param, scope);
 }
 
 #pragma GCC visibility pop

@@ -74,6 +74,7 @@ struct worker {
     uint64_t within;                /* ticks of tasks, messages and idling inside the body that
                                        runs */
     uint64_t gap;                   /* ticks between inline tasks, when last looked at */
+    unsigned brief;                 /* nodes in turn that took next to nothing, see nodes.c */
     struct task *next;              /* inline: to run directly after this one */
     uint64_t polled, idle_since;    /* when, in ticks; 0: busy */
     uint64_t messaging;             /* when it began with messages, in ticks; 0: it does not */
@@ -96,6 +97,7 @@ struct work_pool {
     double tick; /* seconds */
     uint64_t poll_ticks, spin_ticks, yield_ticks, await_ticks, affinity_ticks;
     bool by_affinity; /* the scheduler's `place` and `chain` are those of sched.h by affinity */
+    bool plain_nodes; /* ... and there is neither another rank nor a trace: see nodes.c */
     unsigned started; /* threads, worker 0 among them */
     pthread_t main;
     struct work_near near;
@@ -175,8 +177,24 @@ bool work_is_endless(struct work_pool *pool, unsigned attempt);
 void work_look(struct worker *worker, const struct work_wish *wish);
 /* Runs the task and those that run inline after it. */
 void work_run(struct worker *worker, struct task *task);
+/* Whether one more task may run inline after `length` of them; when it begins, if the last one
+ * ended then. */
+bool work_goes_on(const struct worker *worker, unsigned length);
+uint64_t work_inline_start(struct worker *worker, unsigned length, uint64_t end);
 /* Sends and receives; whether anything happened. */
 bool work_poll(struct worker *worker);
+
+/* ---- nodes.c: nodes of a replay that have bodies. They own no versions and no memory, so most of
+ * what work_run does with a task is not needed ---- */
+
+/* Whether the worker may run the task so. */
+static inline bool work_is_plain_node(const struct worker *worker, const struct task *task)
+{
+    return task->type == TASK_NODE && worker->pool->plain_nodes && !worker->waits;
+}
+/* Runs the node and the nodes that run inline after it; *length counts them. Returns what is to run
+ * inline next and is no such node, or NULL. */
+struct task *work_run_nodes(struct worker *worker, struct task *task, unsigned *length);
 
 /* ---- idle.c ---- */
 
@@ -276,8 +294,7 @@ static inline unsigned work_victim(struct worker *worker, unsigned attempt)
     return victim;
 }
 
-/* Notes the affinity that a task leaves, which took so many ticks. In a replay of short tasks no
- * place has an affinity, and none is looked up. */
+/* Notes the affinity that a task leaves, which took so many ticks. */
 static inline void work_set_affinity(const struct worker *worker, const struct task *task,
                                      uint64_t took)
 {
@@ -285,7 +302,7 @@ static inline void work_set_affinity(const struct worker *worker, const struct t
         return;
     if (took >= worker->pool->affinity_ticks)
         plan_task_set_affinity(task, worker->index + 1);
-    else if (atomic_load_explicit(&task->node->plan->affinity, memory_order_relaxed))
+    else if (plan_is_affine(task->node->plan))
         plan_task_set_affinity(task, 0);
 }
 

@@ -173,7 +173,7 @@ bool work_poll(struct worker *worker)
 
 /* Tasks that run inline, moved to another worker, take all their data along: they stay as long as
  * this one has nothing else to do. */
-static bool inline_goes_on(struct worker *worker, unsigned length)
+bool work_goes_on(const struct worker *worker, unsigned length)
 {
     return length % LONGEST_INLINE ||
            (worker->index && !worker->waits && work_queue_is_empty(&worker->queue) &&
@@ -182,7 +182,7 @@ static bool inline_goes_on(struct worker *worker, unsigned length)
 
 /* When the inline task after this one begins. Reading the clock costs as much as all else that lies
  * between two short tasks. So mostly that time is taken to be what it was before. */
-static uint64_t inline_start(struct worker *worker, unsigned length, uint64_t end)
+uint64_t work_inline_start(struct worker *worker, unsigned length, uint64_t end)
 {
     if (!worker->pool->setup.comm && length % CLOCKED)
         return end + worker->gap;
@@ -220,7 +220,7 @@ static void run_finish(struct worker *worker, struct task *task, unsigned length
 {
     struct work_pool *pool = worker->pool;
     worker->finishing = true;
-    worker->may_chain = inline_goes_on(worker, length);
+    worker->may_chain = work_goes_on(worker, length);
     if (task_to_send(task))
         comm_send(pool->setup.comm, task);
     else
@@ -251,6 +251,11 @@ void work_run(struct worker *worker, struct task *task)
     worker->left_some = false;
     uint64_t start = base_ticks();
     for (unsigned length = 1; task; length++) {
+        if (work_is_plain_node(worker, task)) {
+            task = work_run_nodes(worker, task, &length);
+            start = base_ticks();
+            continue;
+        }
         if (pool->balance && work_begins(worker, task))
             start = base_ticks();
         uint64_t end = run_body(worker, task, start, length > 1);
@@ -261,7 +266,7 @@ void work_run(struct worker *worker, struct task *task)
         worker->next = NULL;
         work_bump(&worker->counts.chained, task != NULL);
         bool wrote = worker->ring && work_note_relieve(worker);
-        start = wrote ? base_ticks() : inline_start(worker, length, end);
+        start = wrote ? base_ticks() : work_inline_start(worker, length, end);
     }
 }
 

@@ -191,7 +191,7 @@ int comm_expect(struct comm *comm, struct worker *worker, struct data_key key,
 #include "tests/model/plain_queue.h"
 #endif
 
-/* Nobody watches for a standstill here, and nothing moves between ranks. */
+/* Nobody watches for a standstill here, nothing moves between ranks, and no replay runs. */
 #include "runtime/workers/internal.h"
 #define work_balance_start(balance, pool)    nothing()
 #define work_balance_stop(pool)              nothing()
@@ -205,6 +205,7 @@ int comm_expect(struct comm *comm, struct worker *worker, struct data_key key,
 #define work_standstill_stop(pool)           nothing()
 #define work_waits(pool, why)                ((void)(why))
 #define work_enters(worker, task)            NULL
+#define work_run_nodes(worker, task, length) ((void)(length), task)
 #define work_leaves(worker, below)           ((void)(below))
 
 /* No other program runs on these cores. */

@@ -37,6 +37,7 @@ struct draw_light_block {
 
 struct draw_lights {
     struct draw_light_block block;
+    float radius; /* m: of the sphere that they are aimed at, and a margin */
     GLuint suns, skies, frame, buffer;
 };
 /* Draws what throws shadows, with the program that is in use, whose rows of a map are at
@@ -52,13 +53,14 @@ int draw_lights_make(struct draw_lights *lights, struct cloth_error *error);
  * bound. */
 void draw_lights_aim(struct draw_lights *lights, const float center[3], float radius,
                      const struct draw_casting *casting);
+/* For all programs: the block, and the maps. */
+void draw_lights_bind(const struct draw_lights *lights);
 void draw_lights_free(struct draw_lights *lights);
 
-/* --- sky.c: the sky's light, worked out once for all pixels --- */
+/* --- sky.c: light that is worked out once for all pixels --- */
 
-/* What textures shaders find where: the maps of the sun and the sky; the light of the sky on both
- * sides. */
-enum { DRAW_UNIT_SUNS, DRAW_UNIT_SKIES, DRAW_UNIT_FRONT, DRAW_UNIT_BACK };
+/* What textures shaders find where: the maps of the sun and the sky; two of light; surfaces. */
+enum { DRAW_UNIT_SUNS, DRAW_UNIT_SKIES, DRAW_UNIT_FRONT, DRAW_UNIT_BACK, DRAW_UNIT_SURFACES };
 
 /* The light on both sides, a texel for each vertex of a mesh, or for each place of a square. */
 struct draw_sky {
@@ -66,9 +68,11 @@ struct draw_sky {
     GLuint source;          /* of a mesh: place and normal of each vertex; 0: of a square */
     int width, height;
 };
-enum { DRAW_SKY_ROW = 1024, DRAW_SKY_SQUARE = 128 }; /* vertices a row; texels along a square */
-/* For n vertices; 0: for a square. */
+enum { DRAW_SKY_ROW = 1024 }; /* vertices a row */
+/* For n vertices. */
 int draw_sky_make(struct draw_sky *sky, uint32_t n, struct cloth_error *error);
+/* For a square of n x n places. */
+int draw_sky_make_square(struct draw_sky *sky, int n, struct cloth_error *error);
 /* vertex: n x (position, normal), where they are now. */
 void draw_sky_place(const struct draw_sky *sky, const float *vertex, uint32_t n);
 /* Runs the program in use over all texels, with what is bound: the lights' block, the maps, a
@@ -80,26 +84,51 @@ void draw_sky_free(struct draw_sky *sky);
 
 /* --- ground.c: planes --- */
 
+/* The light of the sky, or how much of the sun is seen, on a square of a plane. */
+struct draw_square {
+    double centre[3], half; /* m: half its side */
+    float blur;             /* the radius, in parts of the side, that it is to be smoothed in */
+    struct draw_sky light;
+};
+enum { DRAW_BY_SKY, DRAW_BY_SUN, DRAW_SQUARES };
+extern const int DRAW_SQUARE_SIZE[DRAW_SQUARES]; /* texels along a side */
+
 /* The foot of the cloth's centre on a plane, and directions square to each other, of length 1. */
 struct draw_ground {
     double foot[3], u[3], v[3], n[3];
-    double height,
-        radius;          /* m: of the cloth's centre over the plane; of a sphere around the cloth */
-    double lit;          /* m: half the side of the square whose light of the sky is known, */
-    struct draw_sky sky; /* which is here */
+    struct draw_square square[DRAW_SQUARES];
 };
-/* plane: point, normal; center, radius: of a sphere around the cloth */
+int draw_ground_make(struct draw_ground *ground, struct cloth_error *error);
+/* plane: point, normal; center, radius: of a sphere around the cloth; lights: aimed at it */
 void draw_ground_place(struct draw_ground *ground, const double plane[6], const float center[3],
-                       float radius);
-/* Sets the program's square around the foot. half: m, half its side */
-void draw_ground_square(const struct draw_ground *ground, GLuint program, double half);
-/* The radius, in parts of the square's side, in which its light is to be smoothed. */
-float draw_ground_sky_blur(const struct draw_ground *ground);
+                       float radius, const struct draw_lights *lights);
+/* Sets the program's square. half: m, half its side */
+void draw_ground_square(const struct draw_ground *ground, GLuint program, const double centre[3],
+                        double half);
 /* Draws the plane, unless it is seen from behind: a square that fades before its edges; floors
  * reach farther than slopes. The program is in use. eye: where the camera is; reach: m, the extent
  * of what is shown */
-void draw_ground(const struct draw_ground *ground, GLuint program, const struct draw_lights *lights,
-                 const float eye[3], float reach);
+void draw_ground(const struct draw_ground *ground, GLuint program, const float eye[3], float reach);
+void draw_ground_free(struct draw_ground *ground);
+
+/* --- surfaces.c: what a picture shows, before it is shaded --- */
+
+/* Surface: normal towards the eye and paint, or colour of the ground (linear) and its paint; the
+ * light of the sky; depth. All have several samples a pixel. Edges of triangles make surfaces
+ * shorter: the length of a normal is what is left of the surface. */
+enum { DRAW_SURFACES = 3 };
+struct draw_surfaces {
+    GLuint frame, texture[DRAW_SURFACES];
+    int width, height, samples;
+};
+/* Paints: those of a table (linear), front and back. Further ones are between shaders: the place on
+ * a scale, as -1 - place (0 .. 1); 0 for ready colours; from 16 on those of parts; 32 for grey. */
+enum { DRAW_PAINT_NOTHING = -16, DRAW_PAINT_FIRST = 1, DRAW_PAINTS = 14 };
+/* Binds their framebuffer, of that size, with nothing in it. Zero before the first time. */
+int draw_surfaces_start(struct draw_surfaces *surfaces, int width, int height,
+                        struct cloth_error *error);
+void draw_surfaces_bind(const struct draw_surfaces *surfaces);
+void draw_surfaces_free(struct draw_surfaces *surfaces);
 
 /* --- mesh.c: vertices of the cloth, or of obstacles, on the graphics card --- */
 
@@ -148,9 +177,9 @@ int draw_program(GLuint *program, const char *vertex, const char *fragment,
 
 /* --- shaders.c --- */
 
-extern const char DRAW_COMMON[], DRAW_CAST_VERTEX[], DRAW_CAST_FRAGMENT[], DRAW_BACK_VERTEX[],
-    DRAW_BACK_FRAGMENT[], DRAW_CLOTH_VERTEX[], DRAW_CLOTH_FRAGMENT[], DRAW_GROUND_VERTEX[],
-    DRAW_GROUND_FRAGMENT[], DRAW_SKY_FRAGMENT[], DRAW_SKY_GROUND_FRAGMENT[],
-    DRAW_SKY_BLUR_FRAGMENT[];
+extern const char DRAW_COMMON[], DRAW_CAST_VERTEX[], DRAW_CAST_FRAGMENT[], DRAW_ALL_VERTEX[],
+    DRAW_SURFACE_VERTEX[], DRAW_SURFACE_FRAGMENT[], DRAW_GROUND_VERTEX[], DRAW_GROUND_FRAGMENT[],
+    DRAW_SHADE_FRAGMENT[], DRAW_SKY_FRAGMENT[], DRAW_SKY_SQUARE_FRAGMENT[],
+    DRAW_SUN_SQUARE_FRAGMENT[], DRAW_BLUR_FRAGMENT[];
 
 #endif

@@ -161,6 +161,7 @@ void draw_lights_aim(struct draw_lights *lights, const float center[3], float ra
                      const struct draw_casting *casting)
 {
     radius *= 1.0f + 4.0f / DRAW_SKY_MAP; /* a margin for the blur */
+    lights->radius = radius;
     for (int i = 0; i < DRAW_LIGHTS; i++)
         aim(&lights->block, i, center, radius);
     lights->block.bias[0] = 3.0f * 2 * radius / DRAW_SUN_MAP;
@@ -171,6 +172,15 @@ void draw_lights_aim(struct draw_lights *lights, const float center[3], float ra
         cast_all(lights, casting);
     glBindBuffer(GL_UNIFORM_BUFFER, lights->buffer);
     glBufferData(GL_UNIFORM_BUFFER, sizeof lights->block, &lights->block, GL_DYNAMIC_DRAW);
+}
+
+void draw_lights_bind(const struct draw_lights *lights)
+{
+    glBindBufferBase(GL_UNIFORM_BUFFER, 0, lights->buffer);
+    glActiveTexture(GL_TEXTURE0 + DRAW_UNIT_SKIES);
+    glBindTexture(GL_TEXTURE_2D_ARRAY, lights->skies);
+    glActiveTexture(GL_TEXTURE0 + DRAW_UNIT_SUNS);
+    glBindTexture(GL_TEXTURE_2D_ARRAY, lights->suns);
 }
 
 void draw_lights_free(struct draw_lights *lights)

@@ -1,6 +1,7 @@
-/* Colours are linear until `encode` or `display`, which every fragment passes through last. What
- * lies far away on the ground takes the background's colour at its pixel, so nothing but edges,
- * which come last, has to be blended, and the order of drawing is free. */
+/* Surfaces are drawn first, and shaded a pixel at a time: draw.h says what they hold. Colours are
+ * linear until `display`, which every pixel passes through last. What lies far away on the ground
+ * takes the background's colour at its pixel, so nothing but edges, which come last, has to be
+ * blended, and the order of drawing is free. */
 #include "cloth/view/draw/draw.h"
 
 /* clang-format off */
@@ -9,6 +10,11 @@ const char DRAW_COMMON[] =
     "#define SUN 8\n"
     "#define SKY 48\n"
     "#define LIGHTS (SUN + SKY)\n"
+    "#define THROUGH 0.22\n" /* of the light on the other side */
+    "#define NOTHING -16.0\n"
+    "#define READY 0.0\n"
+    "#define PARTS 16.0\n"
+    "#define GREY 32.0\n"
     "uniform mat4 clip;\n"
     "uniform vec3 eye;\n"
     "uniform vec2 size;\n"
@@ -17,21 +23,12 @@ const char DRAW_COMMON[] =
     "};\n"
     "uniform sampler2DArrayShadow suns, skies;\n"
     "uniform bool shadows;\n"
-    "float noise(vec2 p) { return fract(52.9829189 * fract(dot(p, vec2(0.06711056, 0.00583715)))); }\n"
     "vec3 background(vec2 p)\n"
     "{\n"
     "    vec2 q = p / size - 0.5;\n"
     "    vec3 c = mix(vec3(0.60, 0.60, 0.585), vec3(0.30, 0.37, 0.45), smoothstep(-0.35, 0.75, q.y));\n"
     "    return c * (1.0 - 0.35 * dot(q, q));\n"
     "}\n"
-    /* The display's curve, and half a step of noise against bands. */
-    "vec4 display(vec3 c, vec2 p)\n"
-    "{\n"
-    "    vec3 low = 12.92 * c, high = 1.055 * pow(max(c, 0.0), vec3(1.0 / 2.4)) - 0.055;\n"
-    "    return vec4(mix(high, low, lessThan(c, vec3(0.0031308))) + (noise(p) - 0.5) / 255.0, 1.0);\n"
-    "}\n"
-    /* With a soft shoulder before it. */
-    "vec4 encode(vec3 c, vec2 p) { return display(1.05 * c / (1.0 + 0.40 * c), p); }\n"
     "vec3 in_map(int i, vec3 at)\n"
     "{\n"
     "    vec4 q = vec4(at, 1.0);\n"
@@ -55,28 +52,28 @@ const char DRAW_COMMON[] =
     "    vec3 m = in_map(i, at);\n"
     "    return texture(suns, vec4(m.xy + o, float(i), m.z));\n"
     "}\n"
-    /* How much of the sun is seen. Where one look at each of its lights says the same there is no edge of a shadow; under a wide
-     * blur that holds where all of the sun is seen, since what is dark may be narrow. Elsewhere each light is looked at in four places of a square, which is turned and sized for each light otherwise, and for each pixel: so the
-     * edges of the lights' shadows melt. */
-    "float sun(vec3 at, vec3 n, vec2 p, float blur)\n"
+    "float noise(vec2 p) { return fract(52.9829189 * fract(dot(p, vec2(0.06711056, 0.00583715)))); }\n"
+    /* How much of the sun is seen. Where one look at each of its lights says the same there is no edge of a shadow. Elsewhere each
+     * light is looked at in four places of a square, which is turned and sized for each light otherwise, and for each pixel: so
+     * the edges of the lights' shadows melt. Loops have ends that no compiler knows: it would unroll them, and software renderers
+     * run what is unrolled for all pixels. */
+    "float sun(vec3 at, vec3 n, vec2 p, bool looked)\n"
     "{\n"
-    "    if (!shadows)\n"
-    "        return 1.0;\n"
     "    vec3 q = at + n * (dot(n, toward.xyz) < 0.0 ? -bias.x : bias.x);\n"
-    "    float turn = noise(p), grain = noise(p.yx + 37.0), sum = 0.0;\n"
-    "    vec2 o = bias.y * blur * vec2(0.7, 0.0);\n"
-    "    for (int i = 0; i < SUN; i++, o = vec2(-o.y, o.x))\n"
-    "        sum += sun_at(i, q, o);\n"
-    "    if (sum > float(SUN) - 0.01 || sum < 0.01 && blur <= 1.0)\n"
-    "        return sum / float(SUN);\n"
-    "    sum = 0.0;\n"
-    "    for (int i = 0; i < SUN; i++) {\n"
+    "    float turn = noise(p), grain = noise(p.yx + 37.0), sum = 0.0, fine = 0.0;\n"
+    "    vec2 o = bias.y * vec2(0.7, 0.0);\n"
+    "    int suns_n = looked ? SUN : 0;\n"
+    "    for (int i = 0; i < suns_n; i++, o = vec2(-o.y, o.x))\n"
+    "        sum += sun_at(i, q, o) / float(SUN);\n"
+    "    bool edge = looked && sum > 0.001 && sum < 0.999;\n"
+    "    suns_n = edge ? SUN : 0;\n"
+    "    for (int i = 0; i < suns_n; i++) {\n"
     "        float a = 6.2831853 * fract(turn + 0.7548777 * float(i));\n"
-    "        o = bias.y * blur * sqrt(fract(grain + 0.5698403 * float(i))) * vec2(cos(a), sin(a));\n"
+    "        o = bias.y * sqrt(fract(grain + 0.5698403 * float(i))) * vec2(cos(a), sin(a));\n"
     "        for (int k = 0; k < 4; k++, o = vec2(-o.y, o.x))\n"
-    "            sum += sun_at(i, q, o);\n"
+    "            fine += sun_at(i, q, o) / float(4 * SUN);\n"
     "    }\n"
-    "    return sum / float(4 * SUN);\n"
+    "    return edge ? fine : looked ? sum : 1.0;\n"
     "}\n";
 
 const char DRAW_CAST_VERTEX[] =
@@ -91,14 +88,11 @@ const char DRAW_CAST_VERTEX[] =
 const char DRAW_CAST_FRAGMENT[] =
     "void main() {}\n";
 
-const char DRAW_BACK_VERTEX[] =
+/* One triangle over everything. */
+const char DRAW_ALL_VERTEX[] =
     "void main() { gl_Position = vec4(vec2(gl_VertexID & 1, gl_VertexID >> 1) * 4.0 - 1.0, 1.0, 1.0); }\n";
 
-const char DRAW_BACK_FRAGMENT[] =
-    "out vec4 shade;\n"
-    "void main() { shade = encode(background(gl_FragCoord.xy), gl_FragCoord.xy); }\n";
-
-/* The sky's light on vertices, a texel for each. */
+/* The sky's light on vertices, a texel for each. Some of it shines through. */
 const char DRAW_SKY_FRAGMENT[] =
     "uniform sampler2D fronts;\n" /* place and normal of each vertex */
     "layout(location = 0) out vec4 front;\n"
@@ -107,11 +101,14 @@ const char DRAW_SKY_FRAGMENT[] =
     "{\n"
     "    ivec2 texel = ivec2(gl_FragCoord.xy) * ivec2(2, 1);\n"
     "    vec3 at = texelFetch(fronts, texel, 0).xyz, n = texelFetch(fronts, texel + ivec2(1, 0), 0).xyz;\n"
-    "    sky(at, n, front.rgb, back.rgb);\n"
+    "    vec3 e[2];\n"
+    "    sky(at, n, e[0], e[1]);\n"
+    "    front = vec4(e[0] + THROUGH * e[1], 1.0);\n"
+    "    back = vec4(e[1] + THROUGH * e[0], 1.0);\n"
     "}\n";
 
 /* The sky's light on a square of a plane. */
-const char DRAW_SKY_GROUND_FRAGMENT[] =
+const char DRAW_SKY_SQUARE_FRAGMENT[] =
     "uniform vec3 centre, u, v, n;\n"
     "layout(location = 0) out vec4 front;\n"
     "layout(location = 1) out vec4 back;\n"
@@ -121,8 +118,21 @@ const char DRAW_SKY_GROUND_FRAGMENT[] =
     "    sky(centre + u * corner.x + v * corner.y, n, front.rgb, back.rgb);\n"
     "}\n";
 
-/* The mean of that light in a disk. */
-const char DRAW_SKY_BLUR_FRAGMENT[] =
+/* How much of the sun is seen from there. */
+const char DRAW_SUN_SQUARE_FRAGMENT[] =
+    "uniform vec3 centre, u, v, n;\n"
+    "layout(location = 0) out vec4 front;\n"
+    "void main()\n"
+    "{\n"
+    "    vec2 corner = 2.0 * gl_FragCoord.xy / size - 1.0;\n"
+    "    vec3 at = centre + u * corner.x + v * corner.y + n * bias.x;\n"
+    "    front = vec4(0.0);\n"
+    "    for (int i = 0; i < SUN; i++)\n"
+    "        front += sun_at(i, at, vec2(0.0)) / float(SUN);\n"
+    "}\n";
+
+/* The mean of such a square in a disk. */
+const char DRAW_BLUR_FRAGMENT[] =
     "uniform sampler2D fronts;\n"
     "uniform float blur;\n" /* radius, in parts of the square */
     "layout(location = 0) out vec4 front;\n"
@@ -136,11 +146,11 @@ const char DRAW_SKY_BLUR_FRAGMENT[] =
     "    }\n"
     "}\n";
 
-const char DRAW_CLOTH_VERTEX[] =
+const char DRAW_SURFACE_VERTEX[] =
     "in vec3 position, normal;\n"
     "in float value;\n"
     "uniform sampler2D fronts, backs;\n" /* the sky's light on vertices */
-    "out vec3 at, up, above, below;\n"
+    "out vec3 up, above, below;\n"
     "out float number;\n"
     "flat out float corner;\n" /* the number of the triangle's last corner */
     "void main()\n"
@@ -148,56 +158,31 @@ const char DRAW_CLOTH_VERTEX[] =
     "    ivec2 texel = ivec2(gl_VertexID % 1024, gl_VertexID / 1024);\n"
     "    above = texelFetch(fronts, texel, 0).rgb;\n"
     "    below = texelFetch(backs, texel, 0).rgb;\n"
-    "    at = position;\n"
     "    number = corner = value;\n"
     "    up = normal;\n"
     "    gl_Position = clip * vec4(position, 1.0);\n"
     "}\n";
 
-/* Light and shadow change how light a colour of a scale or a part is, between half and whole, and nothing else of it, so that it
- * is found on the scale again. A triangle has one part, the one of its last corner. */
-const char DRAW_CLOTH_FRAGMENT[] =
-    "in vec3 at, up, above, below;\n"
+/* A triangle has one part, the one of its last corner. */
+const char DRAW_SURFACE_FRAGMENT[] =
+    "in vec3 up, above, below;\n"
     "in float number;\n"
     "flat in float corner;\n"
-    "out vec4 shade;\n"
-    "uniform vec3 paint[2];\n" /* of the front and of the back */
-    "uniform int colours;\n" /* 0: paint; 1: of `map`, by the number, 0 .. 1; 2: of `map`, the one of the corner's number */
-    "uniform int colours_n;\n"
-    "uniform vec3 map[16];\n" /* colours_n, sRGB */
-    "vec3 decode(vec3 c)\n"
-    "{\n"
-    "    return mix(pow((c + 0.055) / 1.055, vec3(2.4)), c / 12.92, lessThan(c, vec3(0.04045)));\n"
-    "}\n"
-    "vec3 mapped()\n"
-    "{\n"
-    "    if (corner < 0.0)\n" /* it has no number */
-    "        return vec3(0.5);\n"
-    "    if (colours == 2)\n"
-    "        return map[min(int(corner + 0.5), colours_n - 1)];\n"
-    "    float p = clamp(number, 0.0, 1.0) * float(colours_n - 1);\n"
-    "    int i = min(int(p), colours_n - 2);\n"
-    "    return mix(map[i], map[i + 1], p - float(i));\n"
-    "}\n"
+    "layout(location = 0) out vec4 surface;\n"
+    "layout(location = 1) out vec4 light;\n"
+    "uniform int colours;\n" /* 0: paint; 1: of a scale, by the number, 0 .. 1; 2: of parts, by the corner's number */
+    "uniform float paint, parts;\n" /* of the front; the last part's number */
     "void main()\n"
     "{\n"
-    "    vec3 n = normalize(up) * (gl_FrontFacing ? 1.0 : -1.0);\n"
-    "    vec3 v = normalize(eye - at);\n"
-    "    vec3 lit = gl_FrontFacing ? above : below, behind = gl_FrontFacing ? below : above;\n"
-    "    float facing = dot(n, toward.xyz);\n"
-    "    vec3 e = sunlight.rgb * (abs(facing) * sun(at, n, gl_FragCoord.xy, 1.0));\n"
-    "    if (facing < 0.0) behind += e; else lit += e;\n"
-    "    lit += vec3(0.26, 0.25, 0.24) * (0.5 - 0.5 * n.y);\n" /* from the floor */
-    "    if (colours != 0) {\n"
-    "        float light = dot(lit + 0.22 * behind, vec3(0.2126, 0.7152, 0.0722));\n"
-    "        shade = display(decode(mapped()) * mix(0.5, 1.0, clamp(light / 1.6, 0.0, 1.0)), gl_FragCoord.xy);\n"
-    "        return;\n"
-    "    }\n"
-    "    vec3 albedo = gl_FrontFacing ? paint[0] : paint[1];\n"
-    "    float rim = pow(1.0 - clamp(dot(n, v), 0.0, 1.0), 4.0);\n"
-    "    vec3 c = albedo * (lit + 0.22 * behind);\n"
-    "    c += rim * 0.22 * mix(albedo, vec3(0.6), 0.25) * lit;\n"
-    "    shade = encode(c, gl_FragCoord.xy);\n"
+    "    float code = gl_FrontFacing ? paint : paint + 1.0;\n"
+    "    if (colours == 1)\n"
+    "        code = -1.0 - clamp(number, 0.0, 1.0);\n"
+    "    if (colours == 2)\n"
+    "        code = PARTS + min(floor(corner + 0.5), parts);\n"
+    "    if (colours != 0 && corner < 0.0)\n" /* it has no number */
+    "        code = GREY;\n"
+    "    surface = vec4(normalize(gl_FrontFacing ? up : -up), code);\n"
+    "    light = vec4(gl_FrontFacing ? above : below, 1.0);\n"
     "}\n";
 
 const char DRAW_GROUND_VERTEX[] =
@@ -212,19 +197,108 @@ const char DRAW_GROUND_VERTEX[] =
 
 const char DRAW_GROUND_FRAGMENT[] =
     "in vec3 at;\n"
-    "uniform vec3 centre, n, u_map, v_map;\n" /* to places in the square of the sky's light */
+    "uniform vec3 centre, u, v, n;\n"
+    "uniform vec3 sky_square, sun_square;\n" /* offset and scale, to places in the squares of light */
     "uniform vec2 fade;\n"
-    "uniform float blur;\n"
-    "uniform sampler2D fronts;\n"
-    "out vec4 shade;\n"
+    "uniform sampler2D fronts, backs;\n" /* of the sky; of the sun */
+    "layout(location = 0) out vec4 surface;\n"
     "void main()\n"
     "{\n"
     "    float far = smoothstep(fade.x, fade.y, distance(at, centre));\n"
     "    if (far >= 1.0)\n"
     "        discard;\n"
-    "    vec3 lit = texture(fronts, 0.5 + 0.5 * vec2(dot(at - centre, u_map), dot(at - centre, v_map))).rgb;\n"
-    "    lit += sunlight.rgb * (max(dot(n, toward.xyz), 0.0) * sun(at, n, gl_FragCoord.xy, blur));\n"
+    "    vec2 place = vec2(dot(at, normalize(u)), dot(at, normalize(v)));\n"
+    "    vec3 lit = texture(fronts, sky_square.xy + sky_square.z * place).rgb;\n"
+    "    float seen = shadows ? texture(backs, sun_square.xy + sun_square.z * place).r : 1.0;\n"
+    "    lit += sunlight.rgb * (max(dot(n, toward.xyz), 0.0) * seen);\n"
     "    vec3 c = vec3(0.36, 0.355, 0.345) * lit;\n"
-    "    shade = encode(mix(c, background(gl_FragCoord.xy), far), gl_FragCoord.xy);\n"
+    "    surface = vec4(mix(c, background(gl_FragCoord.xy), far), 0.0);\n"
+    "}\n";
+
+/* Where all samples of a pixel are of one surface it is shaded once, as their mean. Light and shadow change how light a colour of a
+ * scale or a part is, between half and whole, and nothing else of it, so that it is found on the scale again. */
+const char DRAW_SHADE_FRAGMENT[] =
+    "uniform sampler2DMS surfaces, lights, depths;\n"
+    "uniform int samples, map_n;\n"
+    "uniform bool wired;\n"
+    "uniform mat4 world;\n" /* the inverse of clip */
+    "uniform float pixel;\n" /* its width, of its distance */
+    "uniform vec3 paint[14];\n" /* linear */
+    "uniform vec3 map[16];\n" /* map_n, sRGB */
+    "out vec4 shade;\n"
+    /* The display's curve, and half a step of noise against bands. */
+    "vec3 display(vec3 c)\n"
+    "{\n"
+    "    vec3 low = 12.92 * c, high = 1.055 * pow(max(c, 0.0), vec3(1.0 / 2.4)) - 0.055;\n"
+    "    return mix(high, low, lessThan(c, vec3(0.0031308))) + (noise(gl_FragCoord.xy) - 0.5) / 255.0;\n"
+    "}\n"
+    "vec4 place(float depth)\n"
+    "{\n"
+    "    return world * vec4(vec3(gl_FragCoord.xy / size, depth) * 2.0 - 1.0, 1.0);\n"
+    "}\n"
+    "vec3 decode(vec3 c)\n"
+    "{\n"
+    "    return mix(pow((c + 0.055) / 1.055, vec3(2.4)), c / 12.92, lessThan(c, vec3(0.04045)));\n"
+    "}\n"
+    "vec3 mapped(float code)\n"
+    "{\n"
+    "    if (code >= GREY)\n"
+    "        return vec3(0.5);\n"
+    "    if (code >= PARTS)\n"
+    "        return map[int(code - PARTS)];\n"
+    "    float p = (-1.0 - code) * float(map_n - 1);\n"
+    "    int i = clamp(int(p), 0, map_n - 2);\n"
+    "    return mix(map[i], map[i + 1], p - float(i));\n"
+    "}\n"
+    "vec3 shaded(vec4 surface, vec3 light, float depth)\n"
+    "{\n"
+    "    float code = surface.a;\n"
+    "    bool solid = code != NOTHING && code != READY;\n"
+    "    vec4 q = place(depth);\n"
+    "    vec3 at = q.xyz / q.w, n = normalize(surface.rgb), v = normalize(eye - at);\n"
+    "    float facing = dot(n, toward.xyz);\n"
+    "    light += sunlight.rgb * (abs(facing) * sun(at, n, gl_FragCoord.xy, solid && shadows) * (facing < 0.0 ? THROUGH : 1.0));\n"
+    "    light += vec3(0.26, 0.25, 0.24) * (0.5 - 0.5 * n.y);\n" /* from the floor */
+    "    vec3 c = code == NOTHING ? background(gl_FragCoord.xy) : surface.rgb;\n"
+    "    if (solid && code < PARTS && code > 0.0) {\n"
+    "        vec3 albedo = paint[int(code) - 1];\n"
+    "        float rim = pow(1.0 - clamp(dot(n, v), 0.0, 1.0), 4.0);\n"
+    "        c = (albedo + rim * 0.22 * mix(albedo, vec3(0.6), 0.25)) * light;\n"
+    "    }\n"
+    "    c = 1.05 * c / (1.0 + 0.40 * c);\n" /* a soft shoulder */
+    "    if (solid && (code >= PARTS || code < 0.0))\n"
+    "        c = decode(mapped(code)) * mix(0.5, 1.0, clamp(dot(light, vec3(0.2126, 0.7152, 0.0722)) / 1.6, 0.0, 1.0));\n"
+    "    c = display(c);\n"
+    "    return wired && code != READY ? mix(vec3(0.12), c, length(surface.rgb)) : c;\n"
+    "}\n"
+    "float kind(float code) { return code < 0.0 && code > NOTHING ? -1.0 : code; }\n"
+    /* Whether samples of one kind, with this mean, lie no farther apart than a pixel of the surface reaches. */
+    "bool joined(vec4 surface, float depth, float near, float far)\n"
+    "{\n"
+    "    vec4 q = place(depth);\n"
+    "    float facing = abs(dot(normalize(surface.rgb), normalize(eye - q.xyz / q.w)));\n"
+    "    return surface.a == NOTHING || surface.a == READY || (far - near) * max(facing, 0.05) < 3.0 * pixel * near;\n"
+    "}\n"
+    "void main()\n"
+    "{\n"
+    "    ivec2 p = ivec2(gl_FragCoord.xy);\n"
+    "    vec4 mean = texelFetch(surfaces, p, 0);\n"
+    "    float depth = texelFetch(depths, p, 0).r, code = kind(mean.a), near = 1.0 / place(depth).w, far = near;\n"
+    "    bool same = true;\n"
+    "    for (int i = 1; i < samples; i++) {\n"
+    "        vec4 other = texelFetch(surfaces, p, i);\n"
+    "        float away = 1.0 / place(texelFetch(depths, p, i).r).w;\n"
+    "        same = same && kind(other.a) == code;\n"
+    "        near = min(near, away);\n"
+    "        far = max(far, away);\n"
+    "        mean += other;\n"
+    "    }\n"
+    "    mean /= float(samples);\n"
+    "    same = same && joined(mean, depth, near, far);\n"
+    "    int n = same ? 1 : samples;\n"
+    "    vec3 sum = vec3(0.0);\n"
+    "    for (int i = 0; i < n; i++)\n"
+    "        sum += shaded(same ? mean : texelFetch(surfaces, p, i), texelFetch(lights, p, i).rgb, texelFetch(depths, p, i).r);\n"
+    "    shade = vec4(sum / float(n), 1.0);\n"
     "}\n";
 /* clang-format on */

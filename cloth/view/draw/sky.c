@@ -1,4 +1,4 @@
-/* The sky's light varies slowly over a surface: it is worked out for vertices, and for a square of
+/* The sky's light varies slowly over a surface: it is worked out for vertices, and for squares of
  * each plane, and pixels take what lies between. Front and back are textures of one size. */
 #include "cloth/view/draw/draw.h"
 
@@ -15,14 +15,12 @@ static GLuint make_texture(GLint format, int width, int height, GLint filter)
     return texture;
 }
 
-int draw_sky_make(struct draw_sky *sky, uint32_t n, struct cloth_error *error)
+static int make_light(struct draw_sky *sky, int width, int height, struct cloth_error *error)
 {
     static const GLenum both[2] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1};
     GLint before = 0;
-    sky->width = n ? DRAW_SKY_ROW : DRAW_SKY_SQUARE;
-    sky->height = n ? (int)((n + DRAW_SKY_ROW - 1) / DRAW_SKY_ROW) : DRAW_SKY_SQUARE;
-    if (n)
-        sky->source = make_texture(GL_RGB32F, 2 * sky->width, sky->height, GL_NEAREST);
+    sky->width = width;
+    sky->height = height;
     glGetIntegerv(GL_FRAMEBUFFER_BINDING, &before);
     glGenFramebuffers(1, &sky->frame);
     glBindFramebuffer(GL_FRAMEBUFFER, sky->frame);
@@ -36,7 +34,20 @@ int draw_sky_make(struct draw_sky *sky, uint32_t n, struct cloth_error *error)
     if (status == GL_FRAMEBUFFER_COMPLETE)
         return CLOTH_OK;
     return cloth_fail(error, CLOTH_E_LIBRARY,
-                      "OpenGL gives no room for the light on %u vertices (0x%x)", n, status);
+                      "OpenGL gives no room for the light on %d x %d places (0x%x)", width, height,
+                      status);
+}
+
+int draw_sky_make(struct draw_sky *sky, uint32_t n, struct cloth_error *error)
+{
+    const int height = (int)((n + DRAW_SKY_ROW - 1) / DRAW_SKY_ROW);
+    sky->source = make_texture(GL_RGB32F, 2 * DRAW_SKY_ROW, height, GL_NEAREST);
+    return make_light(sky, DRAW_SKY_ROW, height, error);
+}
+
+int draw_sky_make_square(struct draw_sky *sky, int n, struct cloth_error *error)
+{
+    return make_light(sky, n, n, error);
 }
 
 void draw_sky_place(const struct draw_sky *sky, const float *vertex, uint32_t n)

@@ -1,0 +1,183 @@
+/* A picture of a scene: all surfaces first, then the light on what is seen of them. */
+#include "cloth/view/scene.h"
+
+#include <cglm/mat4.h>
+#include <math.h>
+
+/* Colours of fronts and backs, linear, of cloths and of obstacles. Those of cloths go round. They
+ * differ in lightness, too, for those who see no red or no green. */
+enum { N_COLOURS = 6, STONE = DRAW_PAINT_FIRST + 2 * N_COLOURS };
+static const float PAINT[DRAW_PAINTS][3] = {
+    {0.40f, 0.030f, 0.028f}, {0.46f, 0.120f, 0.050f}, {0.035f, 0.085f, 0.24f},
+    {0.09f, 0.15f, 0.30f},   {0.55f, 0.38f, 0.07f},   {0.52f, 0.42f, 0.18f},
+    {0.03f, 0.20f, 0.13f},   {0.09f, 0.26f, 0.19f},   {0.50f, 0.48f, 0.43f},
+    {0.45f, 0.43f, 0.40f},   {0.17f, 0.04f, 0.20f},   {0.24f, 0.10f, 0.26f},
+    {0.22f, 0.25f, 0.28f},   {0.22f, 0.25f, 0.28f}};
+
+static GLuint use_to_see(const struct view_scene *scene, enum view_program which,
+                         const struct view_camera *camera, int width, int height)
+{
+    const GLuint program = view_scene_use(scene, which, width, height);
+    glUniformMatrix4fv(glGetUniformLocation(program, "clip"), 1, GL_FALSE, camera->clip[0]);
+    glUniform3fv(glGetUniformLocation(program, "eye"), 1, camera->eye);
+    return program;
+}
+
+static double depth_of(const struct view_camera *camera, const double x[3])
+{
+    double clip[4];
+    for (int i = 0; i < 4; i++) {
+        clip[i] = (double)camera->clip[3][i];
+        for (int k = 0; k < 3; k++)
+            clip[i] += (double)camera->clip[k][i] * x[k];
+    }
+    return 0.5 * clip[2] / clip[3];
+}
+
+/* Vertices of cloth lie on an obstacle, so that its triangles cut through what is round. Obstacles
+ * are drawn as if they were a part of an edge of the cloth farther away, in units of the depth. */
+static float behind(const struct view_scene *scene, const struct view_camera *camera)
+{
+    const double part = 0.3, units = 1 << 24;
+    double near[3], far[3], away[3];
+    for (int k = 0; k < 3; k++) {
+        near[k] = (double)scene->mesh.center[k];
+        away[k] = near[k] - (double)camera->eye[k];
+    }
+    const double distance = sqrt(away[0] * away[0] + away[1] * away[1] + away[2] * away[2]);
+    for (int k = 0; k < 3; k++)
+        far[k] = near[k] + part * (double)draw_mesh_edge(&scene->mesh) * away[k] / distance;
+    return (float)(units * (depth_of(camera, far) - depth_of(camera, near)));
+}
+
+/* A pixel's width, of its distance. */
+static double pixel_width(const struct view_camera *camera, int height)
+{
+    double up = 0;
+    for (int k = 0; k < 3; k++)
+        up += (double)(camera->clip[k][1] * camera->clip[k][1]);
+    return 2 / (sqrt(up) * height);
+}
+
+/* How many pixels an edge of the cloth is long, in the mean, where the middle of the cloth is. */
+static double edge_pixels(const struct view_scene *scene, const struct view_camera *camera,
+                          int height)
+{
+    double away = (double)camera->clip[3][3];
+    for (int k = 0; k < 3; k++)
+        away += (double)(camera->clip[k][3] * scene->mesh.center[k]);
+    return away > 0 ? (double)draw_mesh_edge(&scene->mesh) / (away * pixel_width(camera, height))
+                    : 1;
+}
+
+/* Lines take away from what is there. They are paler where they are dense, so that they do not hide
+ * the cloth. */
+static void draw_edges(const struct view_scene *scene, const struct view_camera *camera, int height)
+{
+    const double pixels = edge_pixels(scene, camera, height);
+    glBlendColor(0, 0, 0, (float)fmin(fmax(pixels / 10, 0.05), 1));
+    glBlendFuncSeparate(GL_ZERO, GL_ONE_MINUS_CONSTANT_ALPHA, GL_ZERO, GL_ONE);
+    glEnable(GL_BLEND);
+    glColorMaski(1, GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+    glPolygonMode(GL_FRONT_AND_BACK, GL_LINE);
+    draw_mesh_draw(&scene->mesh);
+    glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
+    glColorMaski(1, GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    glDisable(GL_BLEND);
+}
+
+static void draw_cloths(const struct view_scene *scene, GLuint program)
+{
+    if (scene->wired) { /* lines lie on top of the triangles that they bound */
+        glPolygonOffset(1, 1);
+        glEnable(GL_POLYGON_OFFSET_FILL);
+    }
+    glUniform1i(glGetUniformLocation(program, "colours"), (GLint)scene->paint);
+    glUniform1f(glGetUniformLocation(program, "parts"), (float)(scene->n_map - 1));
+    for (uint32_t c = 0; c < scene->n_parts; c++) {
+        glUniform1f(glGetUniformLocation(program, "paint"),
+                    (float)(DRAW_PAINT_FIRST + 2 * (c % N_COLOURS)));
+        draw_mesh_draw_part(&scene->mesh, scene->part + c);
+    }
+    glDisable(GL_POLYGON_OFFSET_FILL);
+}
+
+static void draw_shapes(const struct view_scene *scene, GLuint program,
+                        const struct view_camera *camera)
+{
+    glPolygonOffset(0, behind(scene, camera));
+    glEnable(GL_POLYGON_OFFSET_FILL);
+    glEnable(GL_CULL_FACE); /* a shape around the eye would hide everything */
+    glUniform1i(glGetUniformLocation(program, "colours"), VIEW_PAINT_CLOTH);
+    glUniform1f(glGetUniformLocation(program, "paint"), (float)STONE);
+    draw_sky_bind(&scene->shapes_sky);
+    draw_mesh_draw(&scene->shapes);
+    glDisable(GL_CULL_FACE);
+    glDisable(GL_POLYGON_OFFSET_FILL);
+}
+
+static void draw_grounds(const struct view_scene *scene, GLuint program,
+                         const struct view_camera *camera)
+{
+    glBindVertexArray(scene->nothing);
+    glEnable(GL_POLYGON_OFFSET_FILL); /* cloth that lies on a plane lies on top of it */
+    glPolygonOffset(1, 16);
+    for (size_t i = 0; i < scene->n_grounds; i++)
+        draw_ground(scene->ground + i, program, camera->eye, camera->reach);
+    glDisable(GL_POLYGON_OFFSET_FILL);
+}
+
+static void draw_surfaces(const struct view_scene *scene, const struct view_camera *camera,
+                          int width, int height)
+{
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_LEQUAL);
+    const GLuint program = use_to_see(scene, VIEW_SURFACE, camera, width, height);
+    draw_sky_bind(&scene->mesh_sky);
+    draw_cloths(scene, program);
+    if (scene->wired)
+        draw_edges(scene, camera, height);
+    if (view_scene_has_shapes(scene))
+        draw_shapes(scene, program, camera);
+    glColorMaski(1, GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+    draw_grounds(scene, use_to_see(scene, VIEW_GROUND, camera, width, height), camera);
+    glColorMaski(1, GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    glDisable(GL_DEPTH_TEST);
+}
+
+/* Into the framebuffer that is bound. */
+static void shade(const struct view_scene *scene, const struct view_camera *camera, int width,
+                  int height)
+{
+    const GLuint program = use_to_see(scene, VIEW_SHADE, camera, width, height);
+    mat4 clip, world;
+    glm_mat4_copy((vec4 *)camera->clip, clip);
+    glm_mat4_inv(clip, world);
+    glUniformMatrix4fv(glGetUniformLocation(program, "world"), 1, GL_FALSE, world[0]);
+    glUniform1f(glGetUniformLocation(program, "pixel"), (float)pixel_width(camera, height));
+    glUniform1i(glGetUniformLocation(program, "samples"), scene->surfaces.samples);
+    glUniform1i(glGetUniformLocation(program, "wired"), scene->wired);
+    glUniform3fv(glGetUniformLocation(program, "paint"), DRAW_PAINTS, PAINT[0]);
+    if (scene->paint != VIEW_PAINT_CLOTH) {
+        glUniform1i(glGetUniformLocation(program, "map_n"), scene->n_map);
+        glUniform3fv(glGetUniformLocation(program, "map"), scene->n_map, scene->map[0]);
+    }
+    draw_surfaces_bind(&scene->surfaces);
+    glBindVertexArray(scene->nothing);
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+int view_scene_draw(struct view_scene *scene, const struct view_camera *camera, int width,
+                    int height, struct cloth_error *error)
+{
+    GLint frame = 0;
+    glGetIntegerv(GL_FRAMEBUFFER_BINDING, &frame);
+    const int code = draw_surfaces_start(&scene->surfaces, width, height, error);
+    draw_lights_bind(&scene->lights);
+    if (!code)
+        draw_surfaces(scene, camera, width, height);
+    glBindFramebuffer(GL_FRAMEBUFFER, (GLuint)frame);
+    if (!code)
+        shade(scene, camera, width, height);
+    return code;
+}

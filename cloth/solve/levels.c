@@ -10,23 +10,15 @@
 
 /* ---- What groups cover ---- */
 
-/* Marks a holder's nodes. */
-static void mark_holder(const struct solve_level *level, uint32_t node, unsigned char *mark)
-{
-    const struct solve_runs *holder = &level->holder;
-    const uint32_t *start = holder->start + holder->of[node];
-    memset(mark + start[0], 1, start[1] - start[0]);
-}
-
 /* Marks what group g covers. Returns how many nodes that are. */
 static uint32_t mark_cover(const struct solve_level *level, uint32_t g, unsigned char *mark)
 {
     uint32_t n = 0;
     memset(mark, 0, level->n);
-    for (uint32_t p = level->group.start[g]; p < level->group.start[g + 1]; p++) {
-        mark_holder(level, p, mark);
+    for (uint32_t p = level->start[g]; p < level->start[g + 1]; p++) {
+        mark[p] = 1;
         for (uint32_t i = level->first[p]; i < level->first[p + 1]; i++)
-            mark_holder(level, level->neighbour[i], mark);
+            mark[level->neighbour[i]] = 1;
     }
     for (uint32_t p = 0; p < level->n; p++)
         n += mark[p];
@@ -87,7 +79,7 @@ static int make_covers(struct solve_level *level, struct cloth_error *error)
     unsigned char *mark = cloth_alloc(level->n, sizeof *mark, error);
     uint32_t *place = cloth_alloc(level->n, sizeof *place, error);
     int code = mark && place ? CLOTH_OK : CLOTH_E_MEMORY;
-    for (uint32_t g = 0; g < level->group.n && !code; g++)
+    for (uint32_t g = 0; g < level->n_groups && !code; g++)
         code = make_cover(level, g, mark, place, error);
     free(mark);
     free(place);
@@ -98,7 +90,7 @@ static int make_covers(struct solve_level *level, struct cloth_error *error)
 static int find_covering(struct solve_level *level, struct cloth_error *error)
 {
     uint32_t *first = level->covering_first;
-    for (uint32_t g = 0; g < level->group.n; g++)
+    for (uint32_t g = 0; g < level->n_groups; g++)
         for (uint32_t i = 0; i < level->cover[g].n; i++)
             first[level->cover[g].node[i] + 1]++;
     for (uint32_t p = 0; p < level->n; p++)
@@ -106,7 +98,7 @@ static int find_covering(struct solve_level *level, struct cloth_error *error)
     level->covering = cloth_alloc(first[level->n], sizeof *level->covering, error);
     if (!level->covering)
         return CLOTH_E_MEMORY;
-    for (uint32_t g = 0; g < level->group.n; g++)
+    for (uint32_t g = 0; g < level->n_groups; g++)
         for (uint32_t i = 0; i < level->cover[g].n; i++)
             level->covering[first[level->cover[g].node[i]]++] = (struct solve_covering){g, i};
     for (uint32_t p = level->n; p > 0; p--) /* each was moved on to the next one's */
@@ -115,139 +107,114 @@ static int find_covering(struct solve_level *level, struct cloth_error *error)
     return CLOTH_OK;
 }
 
-/* ---- The graph of the clusters ---- */
+/* ---- The graph of the groups ---- */
 
-/* Marks by k + 1 the clusters that cluster k is joined with. Returns how many. */
-static uint32_t mark_joined(const struct solve_level *level, uint32_t k, uint32_t *mark)
+/* Marks by g + 1 the groups that group g is joined with. Returns how many. */
+static uint32_t mark_joined(const struct solve_level *level, uint32_t g, uint32_t *mark)
 {
-    const struct solve_runs *cluster = &level->cluster;
-    const uint32_t from = level->first[cluster->start[k]];
-    const uint32_t to = level->first[cluster->start[k + 1]];
+    const uint32_t from = level->first[level->start[g]];
+    const uint32_t to = level->first[level->start[g + 1]];
     uint32_t n = 0;
     for (uint32_t i = from; i < to; i++) {
-        const uint32_t other = cluster->of[level->neighbour[i]];
-        n += other != k && mark[other] != k + 1;
-        mark[other] = k + 1;
+        const uint32_t other = level->group[level->neighbour[i]];
+        n += other != g && mark[other] != g + 1;
+        mark[other] = g + 1;
     }
-    mark[k] = 0;
+    mark[g] = 0;
     return n;
 }
 
-static int join_clusters(struct solve_level *level, struct cloth_error *error)
+static int join_groups(struct solve_level *level, struct cloth_error *error)
 {
-    const uint32_t n = level->cluster.n;
-    uint32_t *mark = cloth_alloc(n, sizeof *mark, error), *first = level->cluster_first;
+    const uint32_t n = level->n_groups;
+    uint32_t *mark = cloth_alloc(n, sizeof *mark, error), *first = level->group_first;
     if (!mark)
         return CLOTH_E_MEMORY;
-    for (uint32_t k = 0; k < n; k++)
-        first[k + 1] = first[k] + mark_joined(level, k, mark);
-    level->cluster_neighbour = cloth_alloc(first[n], sizeof *level->cluster_neighbour, error);
+    for (uint32_t g = 0; g < n; g++)
+        first[g + 1] = first[g] + mark_joined(level, g, mark);
+    level->group_neighbour = cloth_alloc(first[n], sizeof *level->group_neighbour, error);
     memset(mark, 0, n * sizeof *mark);
-    for (uint32_t k = 0; k < n && level->cluster_neighbour; k++) {
-        uint32_t *to = level->cluster_neighbour + first[k];
-        mark_joined(level, k, mark);
+    for (uint32_t g = 0; g < n && level->group_neighbour; g++) {
+        uint32_t *to = level->group_neighbour + first[g];
+        mark_joined(level, g, mark);
         for (uint32_t other = 0; other < n; other++)
-            if (mark[other] == k + 1)
+            if (mark[other] == g + 1)
                 *to++ = other;
     }
     free(mark);
-    return level->cluster_neighbour ? CLOTH_OK : CLOTH_E_MEMORY;
+    return level->group_neighbour ? CLOTH_OK : CLOTH_E_MEMORY;
 }
 
 /* ---- Both ---- */
 
-static int make_runs(struct solve_runs *runs, uint32_t n, uint32_t n_runs, const uint32_t *start,
-                     struct cloth_error *error)
-{
-    const size_t starts = (size_t)n_runs + 1;
-    runs->start = cloth_alloc(starts, sizeof *runs->start, error);
-    runs->of = cloth_alloc(n, sizeof *runs->of, error);
-    if (!runs->start || !runs->of)
-        return CLOTH_E_MEMORY;
-    runs->n = n_runs;
-    memcpy(runs->start, start, starts * sizeof *start);
-    for (uint32_t k = 0; k < n_runs; k++)
-        for (uint32_t p = start[k]; p < start[k + 1]; p++)
-            runs->of[p] = k;
-    return CLOTH_OK;
-}
-
 static int make_room(struct solve_level *level, struct cloth_error *error)
 {
-    const size_t groups = level->group.n, clusters = level->cluster.n, n = level->n;
-    level->first_cluster = cloth_alloc(groups + 1, sizeof *level->first_cluster, error);
+    const size_t groups = level->n_groups, n = level->n;
+    level->start = cloth_alloc(groups + 1, sizeof *level->start, error);
+    level->group = cloth_alloc(n, sizeof *level->group, error);
     level->cover = cloth_alloc(groups, sizeof *level->cover, error);
     level->covering_first = cloth_alloc(n + 1, sizeof *level->covering_first, error);
-    level->cluster_first = cloth_alloc(clusters + 1, sizeof *level->cluster_first, error);
-    return level->first_cluster && level->cover && level->covering_first && level->cluster_first
+    level->group_first = cloth_alloc(groups + 1, sizeof *level->group_first, error);
+    return level->start && level->group && level->cover && level->covering_first &&
+                   level->group_first
                ? CLOTH_OK
                : CLOTH_E_MEMORY;
 }
 
 int solve_level_make(struct solve_level *level, uint32_t n, const uint32_t *first,
-                     const uint32_t *neighbour, const struct solve_starts *starts,
+                     const uint32_t *neighbour, uint32_t n_groups, const uint32_t *start,
                      struct cloth_error *error)
 {
-    *level = (struct solve_level){.n = n, .first = first, .neighbour = neighbour};
-    int code = make_runs(&level->holder, n, starts->n_holders, starts->holder, error);
-    if (!code)
-        code = make_runs(&level->group, n, starts->n_groups, starts->group, error);
-    if (!code)
-        code = make_runs(&level->cluster, n, starts->n_clusters, starts->cluster, error);
-    if (!code)
-        code = make_room(level, error);
+    *level =
+        (struct solve_level){.n = n, .first = first, .neighbour = neighbour, .n_groups = n_groups};
+    int code = make_room(level, error);
     if (code)
         return code;
-    for (uint32_t k = 0; k < starts->n_clusters; k++)
-        level->first_cluster[level->group.of[starts->cluster[k]] + 1] = k + 1;
+    memcpy(level->start, start, ((size_t)n_groups + 1) * sizeof *start);
+    for (uint32_t g = 0; g < n_groups; g++)
+        for (uint32_t p = start[g]; p < start[g + 1]; p++)
+            level->group[p] = g;
     code = make_covers(level, error);
     if (!code)
         code = find_covering(level, error);
-    return code ? code : join_clusters(level, error);
+    return code ? code : join_groups(level, error);
 }
 
 void solve_level_free(struct solve_level *level)
 {
-    for (uint32_t g = 0; level->cover && g < level->group.n; g++) {
+    for (uint32_t g = 0; level->cover && g < level->n_groups; g++) {
         solve_pattern_free(&level->cover[g].pattern);
         free(level->cover[g].node);
         free(level->cover[g].first);
         free(level->cover[g].neighbour);
     }
-    free(level->holder.start);
-    free(level->holder.of);
-    free(level->group.start);
-    free(level->group.of);
-    free(level->cluster.start);
-    free(level->cluster.of);
-    free(level->first_cluster);
+    free(level->start);
+    free(level->group);
     free(level->cover);
     free(level->covering_first);
     free(level->covering);
-    free(level->cluster_first);
-    free(level->cluster_neighbour);
+    free(level->group_first);
+    free(level->group_neighbour);
     *level = (struct solve_level){0};
 }
 
 /* ---- In a step ---- */
 
-size_t solve_level_coupling_at(const struct solve_level *level, uint32_t group, uint32_t cluster)
+/* The block of groups g <= other in the coupling of g. */
+static uint32_t coupling_of(const struct solve_level *level, uint32_t g, uint32_t other)
 {
-    const uint32_t from = level->first_cluster[group];
-    size_t n = cluster - from;
-    for (uint32_t k = from; k < cluster; k++)
-        for (uint32_t i = level->cluster_first[k]; i < level->cluster_first[k + 1]; i++)
-            n += level->cluster_neighbour[i] > k;
-    return n;
+    uint32_t at = g < other;
+    for (uint32_t i = level->group_first[g]; g < other && level->group_neighbour[i] != other; i++)
+        at += level->group_neighbour[i] > g;
+    return at;
 }
 
-/* Where the block of clusters k <= l is in the couplings of a group. */
-static size_t coupling_of(const struct solve_level *level, uint32_t group, uint32_t k, uint32_t l)
+uint32_t solve_level_couplings(const struct solve_level *level, uint32_t group)
 {
-    size_t at = solve_level_coupling_at(level, group, k) + (k < l);
-    for (uint32_t i = level->cluster_first[k]; k < l && level->cluster_neighbour[i] != l; i++)
-        at += level->cluster_neighbour[i] > k;
-    return SOLVE_COUPLING * at;
+    uint32_t n = 1;
+    for (uint32_t i = level->group_first[group]; i < level->group_first[group + 1]; i++)
+        n += level->group_neighbour[i] > group;
+    return n;
 }
 
 /* M = T' C, then M T', in terms of functions: T of nine by nine is `lift` for each axis. */
@@ -282,19 +249,19 @@ static void add_block(const double m[SOLVE_COUPLING], bool transposed, double *t
 void solve_level_couple(const struct solve_level *level, uint32_t node, const double *coupling,
                         const double (*lift)[9], double *to)
 {
-    const uint32_t group = level->group.of[node], cluster = level->cluster.of[node];
+    const uint32_t group = level->group[node];
     double lifted[SOLVE_COUPLING];
     lift_block(coupling, lift[node], lift[node], lifted);
-    add_block(lifted, false, to + coupling_of(level, group, cluster, cluster));
+    add_block(lifted, false, to);
     for (uint32_t i = level->first[node]; i < level->first[node + 1]; i++) {
         const uint32_t other = level->neighbour[i];
         if (other < node)
             continue;
-        double *block = to + coupling_of(level, group, cluster, level->cluster.of[other]);
+        double *block = to + SOLVE_COUPLING * coupling_of(level, group, level->group[other]);
         coupling += SOLVE_COUPLING;
         lift_block(coupling, lift[node], lift[other], lifted);
         add_block(lifted, false, block);
-        if (level->cluster.of[other] == cluster)
+        if (level->group[other] == group)
             add_block(lifted, true, block);
     }
 }
@@ -303,7 +270,7 @@ void solve_level_solve(const struct solve_level *level, uint32_t group, const do
                        double *x)
 {
     const struct solve_cover *cover = level->cover + group;
-    const double weight = level->group.n > 1 ? 0.5 : 1;
+    const double weight = level->n_groups > 1 ? 0.2 : 1;
     solve_coarse_solve(&cover->pattern, factor, x);
     for (size_t i = 0; i < SOLVE_COARSE_STRIDE * (size_t)cover->n; i++)
         x[i] *= weight;

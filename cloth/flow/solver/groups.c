@@ -1,7 +1,7 @@
 /* The tasks of groups (levels.c). In each step one makes the factor of what a group covers, and
- * what its clusters have of their matrix. After a pass one reads what its blocks and those of the
+ * what it has of the matrix of all groups. After a pass one reads what its blocks and those of the
  * layer leave. It solves for the motion of what the group covers, and hands on the dots of its own
- * blocks, with its share of q.s, and nine numbers a cluster, in the form of a block's part. On
+ * blocks, with its share of q.s, and nine numbers, in the form of a block's part. On
  * higher levels the same tasks read the parts of groups. */
 #include "cloth/flow/solver/levels.h"
 #include "cloth/flow/solver/solver.h"
@@ -51,7 +51,7 @@ static const double *numbers_at(const struct group *group, const duite_param *pa
 
 static bool is_own(const struct group *group, uint32_t place)
 {
-    return group->level->group.of[group->cover->node[place]] == group->number;
+    return group->level->group[group->cover->node[place]] == group->number;
 }
 
 /* Appends the objects of what a group covers to refs: parts of blocks or of groups below, or
@@ -84,7 +84,7 @@ static int fork_groups(struct flow_state *state, const duite_kernel *kernel)
     const bool factor = kernel == &flow_group_factor;
     int code = DUITE_OK;
     for (uint32_t level = 0; level < flow->n_levels; level++)
-        for (uint32_t g = 0; g < flow->level[level].group.n && !code; g++) {
+        for (uint32_t g = 0; g < flow->level[level].n_groups && !code; g++) {
             const struct group_args args = {level, g};
             const struct flow_group *group = state->groups.all + flow->first_group[level] + g;
             size_t n = 0;
@@ -159,13 +159,6 @@ static void add_dots(const struct group *group, const duite_param *param, double
     }
 }
 
-/* The number of the cluster of one of the group's own nodes in the group. */
-static uint32_t cluster_at(const struct group *group, uint32_t place)
-{
-    return group->level->cluster.of[group->cover->node[place]] -
-           group->level->first_cluster[group->number];
-}
-
 /* Solves for the motion. Adds its share of q.s to the dots, and the right side of what covers the
  * group to the part. */
 static void solve_group(const struct group *group, const double *factor, const duite_param *param,
@@ -177,8 +170,7 @@ static void solve_group(const struct group *group, const double *factor, const d
         const double *right = right_at(group, param, i, &at);
         memcpy(motion + solve_coarse_at(&cover->pattern, i), right, SOLVE_COARSE * sizeof *right);
         if (is_own(group, i))
-            solve_level_restrict(group->lift[cover->node[i]], right,
-                                 part + FLOW_PART_COARSE + SOLVE_COARSE * cluster_at(group, i));
+            solve_level_restrict(group->lift[cover->node[i]], right, part + FLOW_PART_COARSE);
     }
     solve_level_solve(group->level, group->number, factor, motion);
     for (uint32_t i = 0, at = 0; i < cover->n; i++) {

@@ -2,7 +2,7 @@
  * groups are, and what comes before and behind their tasks (groups.c). A group's objects live with
  * its first block.
  *
- * In reading order: objects; how nodes lie in their clusters, once a run; where the numbers of a
+ * In reading order: objects; how nodes lie in their groups, once a run; where the numbers of a
  * node are; the top, which the task of the scalars solves as it does for patches where they are
  * few; what a pass reads, which adds up what all levels have of the motion of a patch. */
 #include "cloth/flow/solver/levels.h"
@@ -39,9 +39,9 @@ void flow_levels_free(struct flow_state *state)
 
 static uint32_t first_block(const struct flow *flow, uint32_t level, uint32_t group)
 {
-    uint32_t node = flow->level[level].group.start[group];
+    uint32_t node = flow->level[level].start[group];
     for (uint32_t l = level; l-- > 0;)
-        node = flow->level[l].cluster.start[node];
+        node = flow->level[l].start[node];
     return node / flow->patches;
 }
 
@@ -56,9 +56,8 @@ static void make_group(struct flow_state *state, uint32_t level, uint32_t g)
         size_t numbers;
     } made[] = {
         {&group->factor, solve_coarse_doubles(&cover->pattern)},
-        {&group->coupling, SOLVE_COUPLING * solve_level_coupling_at(l, g, l->first_cluster[g + 1])},
-        {&group->part,
-         FLOW_PART_COARSE + SOLVE_COARSE * (l->first_cluster[g + 1] - l->first_cluster[g])},
+        {&group->coupling, SOLVE_COUPLING * (size_t)solve_level_couplings(l, g)},
+        {&group->part, FLOW_PART_COARSE + SOLVE_COARSE},
         {&group->motion, FLOW_MOTION + SOLVE_COARSE_STRIDE * (size_t)cover->n},
     };
     for (size_t i = 0; i < sizeof made / sizeof *made; i++) {
@@ -70,11 +69,11 @@ static void make_group(struct flow_state *state, uint32_t level, uint32_t g)
 void flow_levels_make(struct flow_state *state)
 {
     for (uint32_t level = 0; level < state->flow->n_levels; level++)
-        for (uint32_t g = 0; g < state->flow->level[level].group.n; g++)
+        for (uint32_t g = 0; g < state->flow->level[level].n_groups; g++)
             make_group(state, level, g);
 }
 
-/* ---- How nodes lie in their clusters ---- */
+/* ---- How nodes lie in their groups ---- */
 
 FLOW_KERNEL(patch_frame, FLOW_NO_PART, struct flow_block_args, (R(table), W(patch_frame)))
 static int patch_frame_body(const duite_call *call, const struct patch_frame_fields *on)
@@ -96,7 +95,7 @@ static struct solve_frame frame_of(const struct flow *flow, const duite_param *p
     if (level == 0)
         return ((const struct solve_frame *)patch[node / flow->patches].data)[node % flow->patches];
     const struct solve_level *below = flow->level + level - 1;
-    for (uint32_t p = below->cluster.start[node]; p < below->cluster.start[node + 1]; p++)
+    for (uint32_t p = below->start[node]; p < below->start[node + 1]; p++)
         part[n++] = frame_of(flow, patch, level - 1, p);
     return solve_frame_of_group(n, part);
 }
@@ -108,12 +107,12 @@ static int lift_body(const duite_call *call, const struct lift_fields *on)
     const struct flow *flow = flow_of(call);
     double *to = on->lift;
     for (uint32_t level = 0; level < flow->n_levels; level++)
-        for (uint32_t k = 0; k < flow->level[level].cluster.n; k++) {
-            const struct solve_frame cluster = frame_of(flow, on->patch_frame, level + 1, k);
-            const uint32_t *start = flow->level[level].cluster.start + k;
+        for (uint32_t g = 0; g < flow->level[level].n_groups; g++) {
+            const struct solve_frame group = frame_of(flow, on->patch_frame, level + 1, g);
+            const uint32_t *start = flow->level[level].start + g;
             for (uint32_t p = start[0]; p < start[1]; p++, to += FLOW_LIFT) {
                 const struct solve_frame part = frame_of(flow, on->patch_frame, level, p);
-                solve_lift(&part, &cluster, to);
+                solve_lift(&part, &group, to);
             }
         }
     return 0;
@@ -133,32 +132,19 @@ int flow_levels_initialise(struct flow_state *state)
 
 uint32_t flow_levels_holder(const struct flow *flow, uint32_t level, uint32_t node)
 {
-    if (level == 0)
-        return node / flow->patches;
-    const struct solve_level *below = flow->level + level - 1;
-    return below->group.of[below->cluster.start[node]];
-}
-
-/* The number of the node there. */
-static uint32_t place_in_holder(const struct flow *flow, uint32_t level, uint32_t node)
-{
-    return level
-               ? node - flow->level[level - 1].first_cluster[flow_levels_holder(flow, level, node)]
-               : node % flow->patches;
+    return level ? node : node / flow->patches;
 }
 
 size_t flow_levels_coupling_at(const struct flow *flow, uint32_t level, uint32_t node)
 {
-    return SOLVE_COUPLING *
-           (level ? solve_level_coupling_at(flow->level + level - 1,
-                                            flow_levels_holder(flow, level, node), node)
-                  : flow_coupling_at(flow, node, node));
+    return level ? 0 : SOLVE_COUPLING * flow_coupling_at(flow, node, node);
 }
 
 const double *flow_levels_right(const struct flow *flow, uint32_t level, uint32_t node,
                                 const double *part)
 {
-    return part + FLOW_PART_COARSE + SOLVE_COARSE * place_in_holder(flow, level, node);
+    const uint32_t place = level ? 0 : node % flow->patches;
+    return part + FLOW_PART_COARSE + SOLVE_COARSE * place;
 }
 
 /* ---- The top ---- */
@@ -190,7 +176,7 @@ static void mark_block(struct flow_state *state, uint32_t block)
             const struct solve_level *level = flow->level + l;
             for (uint32_t i = level->covering_first[node]; i < level->covering_first[node + 1]; i++)
                 state->groups.mark[flow->first_group[l] + level->covering[i].group] = 1;
-            node = level->cluster.of[node];
+            node = level->group[node];
         }
     }
 }
@@ -234,7 +220,7 @@ void flow_levels_motion(const struct flow_preconditioner *m, uint32_t patch, dou
     const struct flow *flow = m->flow;
     uint32_t node[FLOW_MAX_LEVELS + 1] = {patch};
     for (uint32_t l = 0; l < flow->n_levels; l++)
-        node[l + 1] = flow->level[l].cluster.of[node[l]];
+        node[l + 1] = flow->level[l].group[node[l]];
     memcpy(x, m->motion + solve_coarse_at(&flow->pattern, node[flow->n_levels]),
            SOLVE_COARSE * sizeof *x);
     for (uint32_t l = flow->n_levels; l-- > 0;) {

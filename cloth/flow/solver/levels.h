@@ -30,7 +30,7 @@ int flow_levels_fork_top(struct flow_state *state, const struct flow_kernel *ker
  * patches, its neighbours' and those that ties join it with. Returns how many there are then. */
 size_t flow_levels_seen(struct flow_state *state, uint32_t block, size_t n);
 
-/* The graph of the nodes on top: patches, or clusters of the highest level. Local. */
+/* The graph of the nodes on top: patches, or groups of the highest level. Local. */
 struct flow_graph {
     uint32_t n;
     const uint32_t *first, *neighbour; /* n + 1 */
@@ -41,7 +41,7 @@ static inline struct flow_graph flow_levels_graph(const struct flow *flow)
         return (struct flow_graph){flow->patches * flow->tables.n_blocks, flow->patch_first,
                                    flow->patch_neighbour};
     const struct solve_level *top = flow->level + flow->n_levels - 1;
-    return (struct flow_graph){top->cluster.n, top->cluster_first, top->cluster_neighbour};
+    return (struct flow_graph){top->n_groups, top->group_first, top->group_neighbour};
 }
 
 /* Of a node of a level, or of one on top: whose parameter has its numbers, where its coupling
@@ -54,7 +54,7 @@ const double *flow_levels_right(const struct flow *flow, uint32_t level, uint32_
 /* A motion of a group begins with its number among all; the solution follows. */
 enum { FLOW_MOTION = 4 };
 
-/* How the nodes of a level lie in their clusters (solve_lift); lift: of all levels. Local. */
+/* How the nodes of a level lie in their groups (solve_lift); lift: of all levels. Local. */
 static inline const double (*flow_lifts_of(const struct flow *flow, uint32_t level,
                                            const double *lift))[FLOW_LIFT]
 {

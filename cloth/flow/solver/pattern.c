@@ -123,54 +123,27 @@ static uint32_t node_of(const struct flow *flow, uint32_t level, uint32_t block)
 {
     uint32_t node = flow->patches * block;
     for (uint32_t l = 0; l < level; l++)
-        node = flow->level[l].cluster.of[node];
+        node = flow->level[l].group[node];
     return node;
 }
 
-/* Splits the nodes of a level by blocks, n in all. Returns how many runs there are. */
-static uint32_t split_nodes(const struct flow *flow, uint32_t level, uint32_t n, uint64_t most,
-                            uint32_t *start)
-{
-    const uint32_t runs = (uint32_t)(split(0, flow->tables.n_blocks, most, start) - start);
-    for (uint32_t k = 0; k < runs; k++)
-        start[k] = node_of(flow, level, start[k]);
-    start[runs] = n;
-    return runs;
-}
-
-/* Where holders of the nodes of the next level start: blocks, or groups of the level below. */
-static uint32_t list_holders(const struct flow *flow, uint32_t *start)
-{
-    const uint32_t l = flow->n_levels;
-    const uint32_t n = l ? flow->level[l - 1].group.n : flow->tables.n_blocks;
-    for (uint32_t k = 0; k <= n; k++)
-        start[k] = l ? flow->level[l - 1].first_cluster[k] : flow->patches * k;
-    return n;
-}
-
-/* Makes the next level, of clusters of at most so many blocks. */
+/* Makes the next level, of groups of at most so many blocks. */
 static int add_level(struct flow *flow, uint64_t most)
 {
-    enum { CLUSTERS_OF_GROUP = 4 };
-    const uint32_t l = flow->n_levels;
-    const size_t room = (size_t)flow->tables.n_blocks + 1;
+    const uint32_t l = flow->n_levels, n_blocks = flow->tables.n_blocks;
     const struct flow_graph nodes = flow_levels_graph(flow);
-    uint32_t *start = cloth_alloc(3 * room, sizeof *start, &flow->trouble);
+    uint32_t *start = cloth_alloc((size_t)n_blocks + 1, sizeof *start, &flow->trouble);
     if (!start)
         return CLOTH_E_MEMORY;
-    uint32_t *group = start + room, *cluster = group + room;
-    const struct solve_starts starts = {
-        .n_holders = list_holders(flow, start),
-        .n_groups = split_nodes(flow, l, nodes.n, CLUSTERS_OF_GROUP * most, group),
-        .n_clusters = split_nodes(flow, l, nodes.n, most, cluster),
-        .holder = start,
-        .group = group,
-        .cluster = cluster};
+    const uint32_t n_groups = (uint32_t)(split(0, n_blocks, most, start) - start);
+    for (uint32_t g = 0; g < n_groups; g++)
+        start[g] = node_of(flow, l, start[g]);
+    start[n_groups] = nodes.n;
     flow->n_levels++;
-    flow->first_group[l + 1] = flow->first_group[l] + starts.n_groups;
+    flow->first_group[l + 1] = flow->first_group[l] + n_groups;
     flow->first_lifted[l + 1] = flow->first_lifted[l] + nodes.n;
     const int code = solve_level_make(flow->level + l, nodes.n, nodes.first, nodes.neighbour,
-                                      &starts, &flow->trouble);
+                                      n_groups, start, &flow->trouble);
     free(start);
     return code;
 }
@@ -178,14 +151,14 @@ static int add_level(struct flow *flow, uint64_t most)
 /* As many levels as it takes until few nodes are on top; none if patches are few. */
 static int make_levels(struct flow *flow)
 {
-    enum { BLOCKS_OF_CLUSTER = 4, MOST_ON_TOP = 100 };
+    enum { MOST_ON_TOP = 100 };
     uint32_t most = MODEL_ONE_FACTOR;
-    uint64_t blocks = 1;
+    uint64_t blocks = FLOW_MAX_NODES / flow->patches;
     int code = CLOTH_OK;
     while (flow_levels_graph(flow).n > most && !flow->model->exact_coarse &&
            flow->n_levels < FLOW_MAX_LEVELS && !code) {
-        blocks *= BLOCKS_OF_CLUSTER;
         code = add_level(flow, blocks);
+        blocks *= FLOW_MAX_NODES;
         most = MOST_ON_TOP;
     }
     return code;

@@ -83,7 +83,7 @@ static inline bool flow_coarse_moves(const struct solve_scalars *scalars)
  * the groups on top; how many parts there are. Returns its share in q.s. (coarse.c) */
 static inline uint32_t flow_parts(const struct flow *flow)
 {
-    return flow->n_levels ? flow->level[flow->n_levels - 1].group.n : flow->tables.n_blocks;
+    return flow->n_levels ? flow->level[flow->n_levels - 1].n_groups : flow->tables.n_blocks;
 }
 double flow_coarse_motion(const struct flow *flow, const double *factor, const duite_param *part,
                           double *motion);

@@ -1,5 +1,5 @@
 /* The coarse system by groups: it is the system itself where one group covers all, symmetric and
- * positive definite otherwise, with held nodes, too; its matrix of clusters is Q' C Q, and Q is
+ * positive definite otherwise, with held nodes, too; its matrix of groups is Q' C Q, and Q is
  * exact for motions that are affine on what is flat. */
 #include "cloth/solve/frame.h"
 #include "cloth/solve/levels.h"
@@ -10,7 +10,7 @@
 #include <string.h>
 
 /* A grid of nodes; each meets the eight around it. */
-enum { SIDE = 8, NODES = SIDE * SIDE, ALL = SOLVE_COARSE * NODES, CLUSTER = 4 };
+enum { SIDE = 8, NODES = SIDE * SIDE, ALL = SOLVE_COARSE * NODES, GROUP = 16 };
 static uint32_t first[NODES + 1], neighbour[8 * NODES];
 static double coupling[NODES][9][SOLVE_COUPLING]; /* of a node: its own, those of later ones */
 static double dense[ALL][ALL], lift[NODES][9];
@@ -66,25 +66,21 @@ static void draw_matrix(uint32_t held)
     }
 }
 
-/* Groups of so many nodes, holders of two. */
+/* Groups of so many nodes. */
 static void make(uint32_t of_group)
 {
-    uint32_t holder[NODES + 1], group[NODES + 1], cluster[NODES + 1];
+    uint32_t start[NODES + 1];
     struct cloth_error error = {0};
-    for (uint32_t k = 0; k <= NODES; k++) {
-        holder[k] = 2 * k;
-        group[k] = of_group * k;
-        cluster[k] = CLUSTER * k;
-    }
-    const struct solve_starts starts = {NODES / 2, NODES / of_group, NODES / CLUSTER, holder,
-                                        group,     cluster};
-    ck_assert_int_eq(solve_level_make(&level, NODES, first, neighbour, &starts, &error), 0);
+    for (uint32_t g = 0; g <= NODES / of_group; g++)
+        start[g] = of_group * g;
+    ck_assert_int_eq(
+        solve_level_make(&level, NODES, first, neighbour, NODES / of_group, start, &error), 0);
 }
 
 /* y += the sum over groups of what they solve. */
 static void add_groups(const double *x, double *y)
 {
-    for (uint32_t g = 0; g < level.group.n; g++) {
+    for (uint32_t g = 0; g < level.n_groups; g++) {
         const struct solve_cover *cover = level.cover + g;
         double *factor = aligned_alloc(32, solve_coarse_doubles(&cover->pattern) * sizeof *factor);
         double *z = aligned_alloc(32, SOLVE_COARSE_STRIDE * cover->n * sizeof *z);
@@ -147,7 +143,7 @@ START_TEST(groups_are_symmetric_and_definite)
     srand(2);
     join();
     draw_matrix(helds[_i]);
-    make(16);
+    make(GROUP);
     for (int k = 0; k < 10; k++) {
         for (uint32_t i = 0; i < ALL; i++) {
             x[i] = draw();
@@ -166,22 +162,19 @@ START_TEST(groups_are_symmetric_and_definite)
 }
 END_TEST
 
-START_TEST(a_cover_is_whole_holders)
+START_TEST(a_cover_has_one_layer_more)
 {
     join();
-    make(16);
-    for (uint32_t g = 0; g < level.group.n; g++) {
+    make(GROUP);
+    for (uint32_t g = 0; g < level.n_groups; g++) {
         const struct solve_cover *cover = level.cover + g;
         bool has[NODES] = {false};
         for (uint32_t i = 0; i < cover->n; i++)
             has[cover->node[i]] = true;
         for (uint32_t p = 0; p < NODES; p++) {
-            bool wanted = false;
-            for (uint32_t q = p - p % 2; q < p - p % 2 + 2; q++) {
-                wanted = wanted || q / 16 == g;
-                for (uint32_t k = first[q]; k < first[q + 1]; k++)
-                    wanted = wanted || neighbour[k] / 16 == g;
-            }
+            bool wanted = p / GROUP == g;
+            for (uint32_t k = first[p]; k < first[p + 1]; k++)
+                wanted = wanted || neighbour[k] / GROUP == g;
             ck_assert(has[p] == wanted);
         }
     }
@@ -189,17 +182,17 @@ START_TEST(a_cover_is_whole_holders)
 }
 END_TEST
 
-/* Column j of Q: of cluster j / 9. */
+/* Column j of Q: of group j / 9. */
 static void column_of(uint32_t j, double *y)
 {
     memset(y, 0, ALL * sizeof *y);
-    for (uint32_t p = CLUSTER * (j / SOLVE_COARSE); p < CLUSTER * (j / SOLVE_COARSE + 1); p++) {
+    for (uint32_t p = GROUP * (j / SOLVE_COARSE); p < GROUP * (j / SOLVE_COARSE + 1); p++) {
         y[SOLVE_COARSE * p + j % SOLVE_COARSE] = 1;
         solve_level_prolong(lift[p], y + SOLVE_COARSE * p);
     }
 }
 
-static void check_cluster_block(uint32_t k, uint32_t l, const double *block)
+static void check_block(uint32_t k, uint32_t l, const double *block)
 {
     static double a[ALL], b[ALL], product[ALL];
     for (uint32_t j = 0; j < SOLVE_COARSE; j++) {
@@ -208,7 +201,7 @@ static void check_cluster_block(uint32_t k, uint32_t l, const double *block)
         for (uint32_t i = 0; i < SOLVE_COARSE; i++) {
             double sum[SOLVE_COARSE] = {0};
             column_of(SOLVE_COARSE * k + i, a);
-            for (uint32_t p = CLUSTER * k; p < CLUSTER * (k + 1); p++)
+            for (uint32_t p = GROUP * k; p < GROUP * (k + 1); p++)
                 solve_level_restrict(lift[p], product + SOLVE_COARSE * p, sum);
             ck_assert_double_eq_tol(sum[i], dot(a, product), 1e-10);
             ck_assert_double_eq_tol(block[SOLVE_COARSE * i + j], sum[i], 1e-10);
@@ -216,28 +209,25 @@ static void check_cluster_block(uint32_t k, uint32_t l, const double *block)
     }
 }
 
-START_TEST(clusters_have_the_matrix_of_their_motions)
+START_TEST(groups_have_the_matrix_of_their_motions)
 {
     srand(3);
     join();
     draw_matrix(7);
-    make(16);
-    for (uint32_t g = 0; g < level.group.n; g++) {
-        const uint32_t from = level.first_cluster[g], to = level.first_cluster[g + 1];
-        const size_t n = SOLVE_COUPLING * solve_level_coupling_at(&level, g, to);
+    make(GROUP);
+    for (uint32_t g = 0; g < level.n_groups; g++) {
+        const size_t n = SOLVE_COUPLING * (size_t)solve_level_couplings(&level, g);
         double *all = calloc(n, sizeof *all), *at = all;
         ck_assert(all != NULL);
-        for (uint32_t p = level.group.start[g]; p < level.group.start[g + 1]; p++)
+        for (uint32_t p = level.start[g]; p < level.start[g + 1]; p++)
             solve_level_couple(&level, p, coupling[p][0], (const double(*)[9])lift, all);
-        for (uint32_t k = from; k < to; k++) {
-            check_cluster_block(k, k, at);
+        check_block(g, g, at);
+        at += SOLVE_COUPLING;
+        for (uint32_t i = level.group_first[g]; i < level.group_first[g + 1]; i++) {
+            if (level.group_neighbour[i] < g)
+                continue;
+            check_block(g, level.group_neighbour[i], at);
             at += SOLVE_COUPLING;
-            for (uint32_t i = level.cluster_first[k]; i < level.cluster_first[k + 1]; i++) {
-                if (level.cluster_neighbour[i] < k)
-                    continue;
-                check_cluster_block(k, level.cluster_neighbour[i], at);
-                at += SOLVE_COUPLING;
-            }
         }
         ck_assert_ptr_eq(at, all + n);
         free(all);
@@ -296,8 +286,8 @@ int main(void)
     TCase *cases = tcase_create("levels");
     tcase_add_test(cases, one_group_is_the_system_itself);
     tcase_add_loop_test(cases, groups_are_symmetric_and_definite, 0, 3);
-    tcase_add_test(cases, a_cover_is_whole_holders);
-    tcase_add_test(cases, clusters_have_the_matrix_of_their_motions);
+    tcase_add_test(cases, a_cover_has_one_layer_more);
+    tcase_add_test(cases, groups_have_the_matrix_of_their_motions);
     tcase_add_test(cases, motions_that_are_affine_are_lifted_exactly);
     suite_add_tcase(suite, cases);
     return unit_run(suite);

@@ -190,6 +190,26 @@ static double share_of(double a, double b)
     return b > 0 ? a / b : 0;
 }
 
+/* The kernels with most seconds on the chain, of those with a hundredth of the makespan. */
+static void kernels_print(const struct trace_run *run, double makespan, double *chain)
+{
+    enum { MOST = 5 };
+    const char *comma = "";
+    printf("  in bodies of  ");
+    for (int i = 0; i < MOST; i++) {
+        uint32_t most = 0;
+        for (uint32_t k = 1; k < run->n_kernels; k++)
+            most = chain[k] > chain[most] ? k : most;
+        if (!run->n_kernels || chain[most] < 0.01 * makespan)
+            break;
+        printf("%s %s %.1f %%", comma, run->kernel_name[most],
+               100 * share_of(chain[most], makespan));
+        chain[most] = 0;
+        comma = ",";
+    }
+    printf("%s\n", *comma ? "" : " none");
+}
+
 static void result_print(const struct command *command, const struct predict_result *r)
 {
     const struct predict_cluster *c = &command->cluster;
@@ -230,23 +250,31 @@ static int output_failed(const char *file)
 static int command_run(struct command *command, const struct trace_run *run)
 {
     struct predict_result result;
-    FILE *paje = command->paje ? fopen(command->paje, "w") : NULL;
+    struct predict_more more = {
+        .paje = command->paje ? fopen(command->paje, "w") : NULL,
+        .chain = calloc(run->n_kernels + 1u, sizeof(double)),
+    };
+    int code = 0;
     command_complete(command, run);
-    if (command->paje && !paje)
-        return output_failed(command->paje);
-    int code = predict(run, &command->cluster, &result, paje) ? BAD_INPUT : 0;
-    if (code)
-        fprintf(stderr, "duite-predict: %s: %s\n", command->file, duite_message());
-    if (paje) {
-        bool fine = !ferror(paje);
-        fine = !fclose(paje) && fine;
-        if (!fine && !code)
-            return output_failed(command->paje);
+    if (command->paje && !more.paje)
+        code = output_failed(command->paje);
+    if (!code && !more.chain) {
+        fprintf(stderr, "duite-predict: out of memory\n");
+        code = FAILED;
     }
-    if (!code)
+    if (!code && predict(run, &command->cluster, &result, &more)) {
+        fprintf(stderr, "duite-predict: %s: %s\n", command->file, duite_message());
+        code = BAD_INPUT;
+    }
+    if (more.paje && (ferror(more.paje) | fclose(more.paje)) && !code)
+        code = output_failed(command->paje);
+    if (!code) {
         result_print(command, &result);
+        kernels_print(run, result.makespan, more.chain);
+    }
     if (!code && (fflush(stdout) || ferror(stdout)))
         code = output_failed("standard output");
+    free(more.chain);
     return code;
 }
 

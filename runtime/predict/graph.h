@@ -194,7 +194,8 @@ int predict_build(struct predict_graph *graph);
 void predict_graph_free(struct predict_graph *graph);
 
 /* Runs it. */
-int predict_simulate(struct predict_graph *graph, struct predict_result *result, FILE *paje);
+int predict_simulate(struct predict_graph *graph, struct predict_result *result,
+                     const struct predict_more *more);
 
 /* Seconds of tasks by their numbers. */
 struct predict_times;

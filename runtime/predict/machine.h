@@ -111,7 +111,8 @@ static inline void *predict_worker_state(const struct predict_machine *machine, 
 duite_ready predict_describe(const struct predict_machine *machine, uint32_t node);
 
 /* What came of a run that is over. Uses `begin` for other things. */
-void predict_conclude(struct predict_machine *machine, struct predict_result *result);
+void predict_conclude(struct predict_machine *machine, struct predict_result *result,
+                      double *kernels);
 int predict_write_paje(const struct predict_machine *machine, FILE *file);
 
 #endif

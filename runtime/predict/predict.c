@@ -79,24 +79,28 @@ static double conclude_path(const struct predict_graph *graph, double *path)
     return longest;
 }
 
-/* From the last node back along what each waited for. */
-static void conclude_chain(const struct predict_machine *m, double *chain)
+/* From the last node back along what each waited for. kernels: NULL, or its bodies by kernels. */
+static void conclude_chain(const struct predict_machine *m, double *chain, double *kernels)
 {
     const struct predict_graph *graph = m->graph;
     uint32_t at = m->latest;
+    for (uint32_t k = 0; kernels && k < graph->run->n_kernels; k++)
+        kernels[k] = 0;
     while (at != PREDICT_NONE) {
         const struct predict_node *node = &graph->node[at];
         const struct predict_cause *cause = &m->cause[at];
         double since = cause->by == PREDICT_NONE ? 0 : m->end[cause->by];
         bool travels = node->kind == PREDICT_MESSAGE || node->kind == PREDICT_EXCHANGE;
         double all = m->end[at] - since;
+        double own = travels ? m->end[at] - m->begin[at] : fmin(all, (double)node->seconds);
+        chain[cause->kind == FORKED ? PREDICT_MAIN : PREDICT_OVERHEAD] += all - own;
         if (travels) {
             chain[PREDICT_LATENCY] += (double)cause->flight;
-            chain[PREDICT_BANDWIDTH] += all - (double)cause->flight;
+            chain[PREDICT_BANDWIDTH] += own - (double)cause->flight;
         } else {
-            double own = fmin(all, (double)node->seconds);
             chain[cause->kind == LEFT_WORKER ? PREDICT_WORK : PREDICT_PATH] += own;
-            chain[cause->kind == FORKED ? PREDICT_MAIN : PREDICT_OVERHEAD] += all - own;
+            if (kernels && node->kernel < graph->run->n_kernels)
+                kernels[node->kernel] += own;
         }
         at = cause->by;
     }
@@ -131,7 +135,7 @@ int predict_write_paje(const struct predict_machine *m, FILE *file)
     return code;
 }
 
-void predict_conclude(struct predict_machine *m, struct predict_result *result)
+void predict_conclude(struct predict_machine *m, struct predict_result *result, double *kernels)
 {
     const struct predict_graph *graph = m->graph;
     double makespan = 0;
@@ -148,7 +152,7 @@ void predict_conclude(struct predict_machine *m, struct predict_result *result)
                                       .idle = all > 0 ? 1 - m->busy / all : 0};
     for (size_t i = 0; i < graph->n_nodes; i++)
         result->work += (double)graph->node[i].seconds;
-    conclude_chain(m, result->chain);
+    conclude_chain(m, result->chain, kernels);
     result->critical_path = conclude_path(graph, m->begin);
     result->limit = conclude_limit(result);
 }
@@ -170,8 +174,9 @@ static int watch_policies(struct predict_graph *graph, struct base_monitor *moni
 }
 
 int predict(const struct trace_run *run, const struct predict_cluster *cluster,
-            struct predict_result *result, FILE *paje)
+            struct predict_result *result, const struct predict_more *more)
 {
+    static const struct predict_more nothing = {0};
     struct base_monitor monitor = {0};
     struct predict_graph graph = {.run = run, .cluster = cluster};
     int code = predict_check(run, cluster);
@@ -180,7 +185,7 @@ int predict(const struct trace_run *run, const struct predict_cluster *cluster,
     if (!code)
         code = predict_build(&graph);
     if (!code)
-        code = predict_simulate(&graph, result, paje);
+        code = predict_simulate(&graph, result, more ? more : &nothing);
     predict_graph_free(&graph);
     base_watchdog_stop(graph.watchdog);
     return code;

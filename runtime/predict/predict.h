@@ -51,14 +51,20 @@ struct predict_result {
     enum predict_limit limit; /* the largest of them */
 };
 
+/* What a prediction may say beside its result; all is the caller's. */
+struct predict_more {
+    FILE *paje;    /* the predicted run as a Paje trace; NULL: not written */
+    double *chain; /* room for the trace's n_kernels: s of the bodies of each on the chain; NULL */
+};
+
 /* The names of the limits, for people. */
 const char *predict_limit_name(enum predict_limit limit);
 
-/* `paje`: NULL, or where the predicted run is written as a Paje trace. Deterministic. Errors:
+/* `more`: NULL, or what else is wanted. Deterministic. Errors:
  * memory; DUITE_E_ARGUMENT for a trace with losses or without a whole program, a mapping that
  * fails, and an invalid cluster. */
 int predict(const struct trace_run *run, const struct predict_cluster *cluster,
-            struct predict_result *result, FILE *paje);
+            struct predict_result *result, const struct predict_more *more);
 
 /* The tasks, and what each waited for, in the language of Graphviz' dot; the homes are those that
  * were traced. Errors as of predict. */

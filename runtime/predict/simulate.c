@@ -356,7 +356,8 @@ static int machine_run(struct predict_machine *m)
     return DUITE_OK;
 }
 
-int predict_simulate(struct predict_graph *graph, struct predict_result *result, FILE *paje)
+int predict_simulate(struct predict_graph *graph, struct predict_result *result,
+                     const struct predict_more *more)
 {
     struct predict_machine m = {.graph = graph,
                                 .cluster = graph->cluster,
@@ -367,13 +368,13 @@ int predict_simulate(struct predict_graph *graph, struct predict_result *result,
                                 .latest = PREDICT_NONE,
                                 .went_on = PREDICT_NONE};
     int code =
-        predict_machine_start(&m, paje != NULL) ? DUITE_OK : base_no_memory("the prediction");
+        predict_machine_start(&m, more->paje != NULL) ? DUITE_OK : base_no_memory("the prediction");
     if (!code)
         code = machine_run(&m);
-    if (!code && paje)
-        code = predict_write_paje(&m, paje);
+    if (!code && more->paje)
+        code = predict_write_paje(&m, more->paje);
     if (!code)
-        predict_conclude(&m, result);
+        predict_conclude(&m, result, more->chain);
     predict_machine_stop(&m);
     return code;
 }

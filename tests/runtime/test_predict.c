@@ -36,6 +36,29 @@ START_TEST(chain)
 }
 END_TEST
 
+/* Of the same three, and one beside them: what is on the chain is listed by kernels. */
+START_TEST(bodies_of_the_chain)
+{
+    struct trace_file file = predicted_trace(2, 8);
+    trace_file_fork(&file, FILE_W, 1 * MS, 0, 1, SLOTS(2));
+    for (int i = 1; i <= 3; i++)
+        trace_file_fork(&file, FILE_RW, i * MS, 0, 1, SLOTS(1));
+    struct trace_run *run = predicted_run(&file);
+    double *kernels = malloc((run->n_kernels + 1) * sizeof *kernels);
+    ck_assert(kernels != NULL);
+    for (uint32_t k = 0; k < run->n_kernels; k++)
+        kernels[k] = 7;
+    const struct predict_cluster two = predicted_machine(1, 2);
+    const struct predict_more more = {.chain = kernels};
+    struct predict_result result;
+    ck_assert_int_eq(predict(run, &two, &result, &more), DUITE_OK);
+    for (uint32_t k = 0; k < run->n_kernels; k++)
+        is(kernels[k], k == FILE_RW ? 6 * MS : 0);
+    free(kernels);
+    trace_run_free(run);
+}
+END_TEST
+
 /* Tasks of 3, 3, 2, 2, 2 ms on two cores, first come, first served: 3 + 2 + 2 and 3 + 2. */
 START_TEST(independent)
 {
@@ -403,6 +426,7 @@ int main(void)
     Suite *suite = suite_create("predict");
     TCase *cases = tcase_create("predict");
     tcase_add_test(cases, chain);
+    tcase_add_test(cases, bodies_of_the_chain);
     tcase_add_test(cases, independent);
     tcase_add_test(cases, the_largest_share_limits);
     tcase_add_test(cases, readers);

@@ -111,7 +111,8 @@ uint32_t plan_relay_ring(const uint64_t *set, int n_ranks, int from, int *ring, 
 {
     const size_t ranks =
         base_ranks_count(set, base_ranks_words(n_ranks)) + !base_ranks_has(set, from);
-    if (ranks <= DIRECT_RANKS)
+    /* What goes to neighbours alone rides with what they are sent anyway. */
+    if (ranks <= DIRECT_RANKS || 2 * ranks <= (size_t)n_ranks)
         return 0;
     if (!ring)
         return relay_rounds(ranks);

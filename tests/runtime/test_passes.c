@@ -1,5 +1,6 @@
 /* Each pass of the compiler of recorded graphs, on rounds made by hand, against its output worked
  * out by hand. */
+#include "runtime/base/rank_set.h"
 #include "tests/runtime/rounds.h"
 #include "tests/support/unit.h"
 
@@ -212,6 +213,25 @@ START_TEST(values_by_rounds)
 END_TEST
 
 /* A rank combines what it has alone before it sends. */
+/* Values of up to four ranks, or of half of them, go directly. */
+START_TEST(values_by_rounds_of_many)
+{
+    static const struct {
+        int n_ranks, readers;
+        uint32_t rounds;
+    } all[] = {{4, 3, 0}, {5, 3, 0}, {5, 4, 3}, {8, 4, 3}, {16, 7, 0}, {16, 8, 4}, {64, 31, 0}};
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
+        uint64_t set[2] = {0};
+        int ring[64];
+        size_t n = 0;
+        for (int rank = 1; rank <= all[i].readers; rank++)
+            base_ranks_add(set, rank);
+        ck_assert_uint_eq(plan_relay_ring(set, all[i].n_ranks, 0, ring, &n), all[i].rounds);
+        ck_assert_uint_eq(n, all[i].rounds ? (size_t)all[i].readers + 1 : 0);
+    }
+}
+END_TEST
+
 START_TEST(part_of_pieces)
 {
     struct assigned s;
@@ -269,6 +289,7 @@ int main(void)
     tcase_add_test(test, assign_sums);
     tcase_add_test(test, sums_by_rounds);
     tcase_add_test(test, values_by_rounds);
+    tcase_add_test(test, values_by_rounds_of_many);
     tcase_add_test(test, part_of_pieces);
     tcase_add_test(test, part_copies);
     tcase_add_test(test, phases);

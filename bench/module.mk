@@ -20,7 +20,7 @@ bench_libbench_la_SOURCES = bench/bench.h bench/environment.h bench/instructions
 	bench/garments/bench.c bench/garments/correction.c bench/garments/scenes.c bench/garments/worn.c bench/garments/garments.h \
 	bench/output/bench.c bench/output/folder.h bench/output/output.h bench/output/run.c bench/output/viewer.c bench/output/viewer.h \
 	bench/physics/bench.c bench/physics/ours.c bench/physics/physics.h \
-	bench/predict/bench.c bench/predict/errors.c bench/predict/many.c bench/predict/order.c bench/predict/predict.h bench/predict/sheet.c bench/scale/messages.c bench/scale/predicted.c bench/scale/scale.c bench/scale/scale.h bench/sweep/median.c bench/sweep/compare.h \
+	bench/predict/bench.c bench/predict/errors.c bench/predict/many.c bench/predict/order.c bench/predict/predict.h bench/predict/sheet.c bench/scale/coarse.c bench/scale/messages.c bench/scale/predicted.c bench/scale/scale.c bench/scale/scale.h bench/sweep/median.c bench/sweep/compare.h \
 	tests/support/trace_file.c tests/support/trace_file.h \
 	$(BENCH_STATE) $(BENCH_SHARED)
 bench_libbench_la_CPPFLAGS = $(AM_CPPFLAGS) -DBENCH_MPIRUN='"$(MPIRUN)"' -DBENCH_CFLAGS='"$(CFLAGS)"' \

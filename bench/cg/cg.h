@@ -10,9 +10,11 @@
 
 /* ---- States ---- */
 
-/* The names of all states; of those that stand for what simulations meet; ended by NULL. */
+/* The names of all states of "cg"; of those of them that stand for what simulations meet; of those
+ * of "scale", whose coarse space has many patches. Each list is ended by NULL. */
 const char *const *states_all(void);
 const char *const *states_met(void);
+const char *const *states_large(void);
 /* Why a state cannot be made here, or NULL. */
 const char *states_missing(const char *name);
 
@@ -23,7 +25,6 @@ struct states_plan {
     bool moves;          /* if anything does */
     const char *moved;   /* states of the same motion have the same one */
     uint32_t count;      /* iterations whose answer the state keeps */
-    bool solved;         /* it keeps the solution, too */
 };
 /* 0, or what serve_fail returns. */
 int states_plan_make(struct states_plan *plan, const char *name, bool quick);
@@ -32,6 +33,10 @@ void states_plan_free(struct states_plan *plan);
 /* Makes the folder of the states and sets STATE_FOLDER for all processes. Small states have their
  * own. 1 after a sentence on stderr. */
 int cg_make_folder(const struct bench_options *options);
+/* Makes those of the named states that are not there, after the folder; says of each what it is. 1
+ * after a sentence on stderr. */
+int cg_make_states(const struct bench_options *options, const char *const *name,
+                   void (*say)(const char *key, const char *text));
 
 /* Waves the start of the model's cloth, sets it moving and shakes it a little, by a seed. */
 int states_wave(struct model *model);
@@ -109,6 +114,13 @@ struct measure_series *cg_series(struct measure *measure, const struct bench_opt
  * solves on one rank only: messages between ranks that lack cores take forever. */
 struct measure_series *cg_petsc(struct measure *measure, const struct bench_options *options,
                                 const char *run, const char *state, const char *more);
+
+/* Solves to an error of 1 % in the mass norm, with words of a request more, of all states of a list
+ * that can be made here; how many. Returns the first of the series. */
+const struct measure_series *cg_solves(struct measure *measure, const struct bench_options *options,
+                                       const char *const *name, const char *words, size_t *n);
+/* The largest ratio of a metric's series. */
+double cg_worst(const struct measure_metric *metric, size_t round);
 
 extern const struct bench_case cg_spring_150, cg_spring_400, cg_half_150, cg_solve, cg_jacobi,
     cg_error, cg_step, cg_realtime;

@@ -139,7 +139,7 @@ static int complete(struct state *state, const struct states_plan *plan)
     int code = state->after ? cg_order(state, plan->model.grain) : serve_no_memory();
     if (!code)
         code = state_iterate(s, state->count, state->after);
-    if (!code && plan->solved)
+    if (!code)
         code = state_solve(s, s->dv);
     return code;
 }

@@ -131,13 +131,16 @@ static void stop_by_default(struct cg_session *s)
 
 static void settings_of(struct serve_request *request, char *settings, size_t size)
 {
-    char state[40], scheduler[40], solver[16], format[16];
+    char state[40], scheduler[40], solver[16], format[16], coarse[16], grain[16];
     const unsigned threads = (unsigned)serve_number(request, "threads");
     serve_word(request, "state", state, sizeof state);
     serve_word(request, "scheduler", scheduler, sizeof scheduler);
     serve_word(request, "solver", solver, sizeof solver);
     serve_word(request, "format", format, sizeof format);
-    snprintf(settings, size, "%s %u %s %s %s", state, threads, scheduler, solver, format);
+    serve_word(request, "coarse", coarse, sizeof coarse);
+    serve_word(request, "grain", grain, sizeof grain);
+    snprintf(settings, size, "%s %u %s %s %s %s %s", state, threads, scheduler, solver, format,
+             coarse, grain);
 }
 
 /* States may be older than what they are cut by now. */
@@ -147,17 +150,37 @@ static int cut_again(struct cg_session *s)
     return cg_order(&s->state, s->plan.model.grain);
 }
 
-/* solver=plain or jacobi: that preconditioner; format=half or half_float: that format; without the
- * words the default ones. */
+/* solver=plain or jacobi: that preconditioner; format=half or half_float: that format;
+ * coarse=exact: one factor of the coarse space with four patches a block, coarse=one: with one
+ * patch a block; grain=: vertices a block; without the words the default ones. */
+static void choose(const struct serve_request *request, struct model *model)
+{
+    char solver[16], format[16], coarse[16], grain[16];
+    serve_word(request, "solver", solver, sizeof solver);
+    serve_word(request, "format", format, sizeof format);
+    serve_word(request, "coarse", coarse, sizeof coarse);
+    serve_word(request, "grain", grain, sizeof grain);
+    if (!strcmp(solver, "plain"))
+        model->preconditioner = MODEL_PLAIN;
+    if (!strcmp(solver, "jacobi"))
+        model->preconditioner = MODEL_JACOBI;
+    if (*format)
+        model->format = strcmp(format, "half") ? SOLVE_HALF_FLOAT : SOLVE_HALF;
+    if (*coarse) {
+        model->exact_coarse = true;
+        model->patches = strcmp(coarse, "one") ? SOLVE_MAX_PATCHES : 1;
+    }
+    if (*grain)
+        model->grain = (uint32_t)atoi(grain);
+}
+
 static int ready(struct cg_session *s, struct serve_request *request)
 {
-    char settings[sizeof s->settings], solver[16], format[16];
+    char settings[sizeof s->settings];
     const struct model *model = &s->plan.model;
     const uint64_t quick = serve_number(request, "quick");
     int code = state_ready(&s->state, request);
     settings_of(request, settings, sizeof settings);
-    serve_word(request, "solver", solver, sizeof solver);
-    serve_word(request, "format", format, sizeof format);
     if (code || !strcmp(settings, s->settings))
         return code;
     code = end(s, code);
@@ -165,12 +188,7 @@ static int ready(struct cg_session *s, struct serve_request *request)
         code = states_plan_make(&s->plan, s->state.name, quick != 0);
     if (!code)
         code = states_start(&s->plan.model, s->state.system.x, s->state.system.v);
-    if (!strcmp(solver, "plain"))
-        s->plan.model.preconditioner = MODEL_PLAIN;
-    if (!strcmp(solver, "jacobi"))
-        s->plan.model.preconditioner = MODEL_JACOBI;
-    if (*format)
-        s->plan.model.format = strcmp(format, "half") ? SOLVE_HALF_FLOAT : SOLVE_HALF;
+    choose(request, &s->plan.model);
     s->stop = model->stop;
     s->tolerance = model->tolerance;
     s->most = model->max_iterations;

@@ -157,7 +157,7 @@ static double geometric(const struct measure_metric *metric, size_t round)
     return exp(sum / (double)metric->n);
 }
 
-static double worst(const struct measure_metric *metric, size_t round)
+double cg_worst(const struct measure_metric *metric, size_t round)
 {
     double most = 0;
     for (size_t i = 0; i < metric->n; i++)
@@ -165,13 +165,13 @@ static double worst(const struct measure_metric *metric, size_t round)
     return most;
 }
 
-/* Solves of all states to the error; the first of the series. */
-static const struct measure_series *
-plan_all(struct measure *measure, const struct bench_options *options, const char *more, size_t *n)
+const struct measure_series *cg_solves(struct measure *measure, const struct bench_options *options,
+                                       const char *const *name, const char *words, size_t *n)
 {
     const struct measure_series *first = NULL;
-    *n = 0;
-    for (const char *const *name = states_met(); *name; name++) {
+    char more[80];
+    snprintf(more, sizeof more, " error=%d%s", ERROR, words);
+    for (*n = 0; *name; name++) {
         if (states_missing(*name))
             continue;
         const struct measure_series *one =
@@ -187,15 +187,14 @@ static void plan_jacobi(struct measure *measure, const struct bench_options *opt
     static const char *const what[] = {" what=iterations", ""};
     static const char *const name[] = {"iterations", "solve_time"};
     for (int i = 0; i < 2; i++) {
-        char more[80];
+        char more[60];
         size_t n;
-        snprintf(more, sizeof more, " error=%d%s", ERROR, what[i]);
-        const struct measure_series *ours = plan_all(measure, options, more, &n);
-        snprintf(more, sizeof more, " error=%d solver=jacobi%s", ERROR, what[i]);
-        const struct measure_series *jacobi = plan_all(measure, options, more, &n);
+        const struct measure_series *ours = cg_solves(measure, options, states_met(), what[i], &n);
+        snprintf(more, sizeof more, " solver=jacobi%s", what[i]);
+        const struct measure_series *jacobi = cg_solves(measure, options, states_met(), more, &n);
         struct measure_metric *metric[] = {
             measure_metric(measure, "x", geometric, "%s_vs_jacobi_geo", name[i]),
-            measure_metric(measure, "x", worst, "%s_vs_jacobi_worst", name[i])};
+            measure_metric(measure, "x", cg_worst, "%s_vs_jacobi_worst", name[i])};
         for (int k = 0; k < 2; k++) {
             metric[k]->of = ours;
             metric[k]->against = jacobi;

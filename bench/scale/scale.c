@@ -2,22 +2,23 @@
  * machine plays; times on hosts that it cannot play are predicted. */
 #include "bench/scale/scale.h"
 
+#include "bench/cg/cg.h"
 #include "bench/program.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 
-static const struct bench_case *const CASES[] = {&scale_messages, &scale_wait, &scale_predicted,
-                                                 NULL};
+static const struct bench_case *const CASES[] = {&scale_messages, &scale_wait,  &scale_predicted,
+                                                 &scale_large,    &scale_small, NULL};
 
 /* 8 ranks have 3 rounds: 3 messages of a sum and 2 for each of about 5 neighbours. A wait: 2
  * log2 8.
  */
-static const struct measure_target TARGETS[] = {{"messages_per_iteration_r8", 13, false},
-                                                {"wait_messages_r8", 6, false},
-                                                {"scaling_16x16_tcp", 0.55, true},
-                                                {"scaling_16x16_fast", 0.65, true},
-                                                {0}};
+static const struct measure_target TARGETS[] = {
+    {"messages_per_iteration_r8", 13, false},    {"wait_messages_r8", 6, false},
+    {"scaling_16x16_tcp", 0.55, true},           {"scaling_16x16_fast", 0.65, true},
+    {"coarse_path_share", 0.15, false},          {"iterations_large_vs_exact", 1.6, false},
+    {"iterations_large_vs_one_patch", 1, false}, {0}};
 enum { TARGET_THREADS = 2 };
 
 int scale_cloth(const char *before, unsigned side, unsigned grain, const char *arguments)
@@ -37,14 +38,26 @@ int scale_cloth(const char *before, unsigned side, unsigned grain, const char *a
 
 static int serve_scale(const struct bench *bench)
 {
-    const struct serve_run *runs[sizeof CASES / sizeof *CASES] = {NULL};
+    static struct cg_session session;
+    const struct serve_run *runs[sizeof CASES / sizeof *CASES + 1] = {cg_make_runs};
+    size_t n = 1;
     for (size_t i = 0; bench->cases[i]; i++)
-        runs[i] = bench->cases[i]->runs;
-    return serve("duite-cloth with its defaults", runs, NULL);
+        if (bench->cases[i]->runs)
+            runs[n++] = bench->cases[i]->runs;
+    const int status = serve("duite-cloth with its defaults", runs, &session);
+    const int code = cg_end(&session);
+    return status || code;
+}
+
+static int prepare(const struct bench_options *options,
+                   void (*say)(const char *key, const char *text))
+{
+    return cg_make_states(options, states_met(), say) ||
+           cg_make_states(options, states_large(), say);
 }
 
 const struct bench bench_scale = {
     "scale",        "messages on eight hosts, and efficiency predicted on more",
     CASES,          TARGETS,
     TARGET_THREADS, serve_scale,
-    NULL,           NULL};
+    prepare,        NULL};

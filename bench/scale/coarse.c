@@ -1,0 +1,70 @@
+/* Iterations to an error of 1 % with the coarse space as it is, by groups of blocks, against one
+ * exact factor of it: of states that are so large that the groups are what runs take, and of those
+ * of the bench "cg", in blocks so small that there are groups. */
+#include "bench/cg/cg.h"
+#include "bench/scale/scale.h"
+
+#include <stdio.h>
+
+enum { GRAIN = 64, QUICK_GRAIN = 4 }; /* small blocks, of a patch each */
+
+/* coarse: "exact", "one" (one patch a block), or "" (groups). grain: 0: the default one. */
+static const struct measure_series *iterations(struct measure *measure,
+                                               const struct bench_options *options,
+                                               const char *const *state, const char *coarse,
+                                               unsigned grain, size_t *n)
+{
+    char words[60];
+    int used = snprintf(words, sizeof words, " what=iterations");
+    if (*coarse)
+        used += snprintf(words + used, sizeof words - (size_t)used, " coarse=%s", coarse);
+    if (grain)
+        snprintf(words + used, sizeof words - (size_t)used, " grain=%u", grain);
+    return cg_solves(measure, options, state, words, n);
+}
+
+static void plan_worst(struct measure *measure, const char *name,
+                       const struct measure_series *groups, const struct measure_series *against,
+                       size_t n)
+{
+    struct measure_metric *metric = measure_metric(measure, "x", cg_worst, "%s", name);
+    metric->of = groups;
+    metric->against = against;
+    metric->n = n;
+}
+
+/* One patch a block in one factor is what such states had before there were groups. */
+static void plan_large(struct measure *measure, const struct bench_options *options)
+{
+    const char *const *name = states_large();
+    const unsigned grain = options->quick ? QUICK_GRAIN : 0;
+    size_t n;
+    const struct measure_series *groups = iterations(measure, options, name, "", grain, &n);
+    const struct measure_series *exact = iterations(measure, options, name, "exact", grain, &n);
+    const struct measure_series *one = iterations(measure, options, name, "one", grain, &n);
+    measure->cold = true;
+    for (size_t i = 0; i < n; i++) {
+        measure_value(measure, groups + i, 1, "iterations", "iterations_%s", name[i]);
+        measure_value(measure, exact + i, 1, "iterations", "iterations_%s_exact", name[i]);
+        measure_value(measure, one + i, 1, "iterations", "iterations_%s_one_patch", name[i]);
+    }
+    plan_worst(measure, "iterations_large_vs_exact", groups, exact, n);
+    plan_worst(measure, "iterations_large_vs_one_patch", groups, one, n);
+}
+
+static void plan_small(struct measure *measure, const struct bench_options *options)
+{
+    const unsigned grain = options->quick ? QUICK_GRAIN : GRAIN;
+    size_t n;
+    const struct measure_series *groups = iterations(measure, options, states_met(), "", grain, &n);
+    const struct measure_series *one = iterations(measure, options, states_met(), "one", grain, &n);
+    measure->cold = true;
+    plan_worst(measure, "iterations_small_vs_one_factor", groups, one, n);
+}
+
+const struct bench_case scale_large = {
+    "large", "iterations of 160,000 and 1,000,000 vertices, by groups and by one factor",
+    plan_large, cg_runs, 1};
+const struct bench_case scale_small = {
+    "small", "iterations of the states of cg in small blocks, by groups and by one factor",
+    plan_small, NULL, 1};

@@ -1,3 +1,3 @@
 #!/bin/sh
-# The long commands of the pages of docs/.
-CLASS=long exec "${SHELL:-/bin/sh}" "${srcdir:-.}/tests/pages.sh"
+# All commands of the pages of docs/, in their order: long ones go on with what short ones leave.
+CLASS=every exec "${SHELL:-/bin/sh}" "${srcdir:-.}/tests/pages.sh"

@@ -37,8 +37,7 @@ if test "${LONG:-}" = 1; then
     home=$scratch/installed
     mkdir "$home" && cp "$scratch/home/first.c" "$home"
     sed 's|\./duite-|duite-|g; s|cloth/scenes/||g; /^make check$/d; /^\.ci\/run$/d' "$readme" > "$scratch/installed.md"
-    run_commands "$scratch/installed.md" "" installed
-    run_commands "$scratch/installed.md" long installed
+    run_commands "$scratch/installed.md" every installed
     exit
 fi
 ok "the first program compiles against the library as built" compile

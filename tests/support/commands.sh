@@ -1,7 +1,8 @@
 # shellcheck shell=sh
 # The commands of documents, which tests run as they are written. Sourced after tests/support/tap.sh.
 #
-#     commands FILE [CLASS]   the commands of its blocks "```sh", or "```sh CLASS", one a line: continued lines joined, comments left out
+#     commands FILE [CLASS]   the commands of its blocks "```sh", or "```sh CLASS", or of both (CLASS every: "sh" and "sh long"), one a
+#                             line: continued lines joined, comments left out
 #     files FILE FOLDER       writes the blocks that stand after a line <!-- NAME --> there, under this name; NAME has no slash
 #     prepare                 installs duite into $usr, and puts it into PATH and PKG_CONFIG_PATH, with a make that installs there and
 #                             only looks up other targets, and a sudo that does nothing
@@ -18,7 +19,7 @@ unset MAKEFLAGS MFLAGS MAKELEVEL # the makes in here are nobody's children
 
 commands() {
     awk -v class="${2:-}" '
-        /^```sh( [a-z]*)?$/ { inside = substr($0, 7) == class; next }
+        /^```sh( [a-z]*)?$/ { is = substr($0, 7); inside = is == class || (class == "every" && (is == "" || is == "long")); next }
         /^```/ { inside = 0; next }
         inside { sub(/^\$ /, ""); sub(/(^|[[:space:]]+)#([[:space:]].*)?$/, "")
                  if (sub(/\\$/, "")) { held = held $0; next }

@@ -335,8 +335,7 @@ struct plan_messages {
  *   one that nobody runs has none;
  * - a version that one rank makes is an item for each other rank that needs it; so is a piece for
  *   each other rank that runs its sum. Where these are more than four ranks, and for a version more
- *   than half of all, versions and pieces go from rank to rank in rounds, in as many phases
- * (relay.c);
+ *   than half of all, they go from rank to rank in rounds, in as many phases (relay.c);
  * - items are in order of `made`, the same from the sender's and the receiver's side.
  * Messages and items are those from and to `rank`, or all, or none (PLAN_NO_RANK). False without
  * memory; plan_messages_free is due all the same. */

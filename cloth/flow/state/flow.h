@@ -128,9 +128,9 @@ struct flow {
     struct solve_level level[FLOW_MAX_LEVELS];  /* of patches, then of groups of the level below */
     uint32_t first_group[FLOW_MAX_LEVELS + 1];  /* of a level, among the groups of all levels; */
     uint32_t first_lifted[FLOW_MAX_LEVELS + 1]; /* its first node among those of all levels */
-    struct solve_pattern pattern; /* of the factor on top: of patches, or of groups */
-    struct cloth_error trouble;   /* of this rank: why it cannot begin, why a frame was not written;
-                                   * changed by the main thread when no task runs, and by `frame` */
+    struct solve_pattern pattern;               /* of the factor on top: of patches, or of groups */
+    struct cloth_error trouble; /* of this rank: why it cannot begin, why a frame was not written;
+                                 * changed by the main thread when no task runs, and by `frame` */
     /* On rank 0: written by the tasks `frame`, one at a time, and by the main thread when no task
      * runs. */
     const struct flow_output *output;

@@ -8,23 +8,37 @@
 #include <stdio.h>
 #include <string.h>
 
-static int body_remember(struct duite_call_private *body, int code)
+/* The errors of the calls that bodies make most often are out of their way, or each call would save
+ * registers for them. */
+#define BODY_ERROR __attribute__((noinline, cold)) static int
+
+BODY_ERROR body_keep(struct duite_call_private *body, int code)
 {
-    if (!code || body->remembered)
+    if (body->remembered)
         return code;
     body->remembered = code;
     snprintf(body->message, sizeof body->message, "%s", duite_message());
     return code;
 }
+static inline int body_remember(struct duite_call_private *body, int code)
+{
+    return code ? body_keep(body, code) : DUITE_OK;
+}
 
 /* Whether the body may make a call. It may not after memory ran out in a fork of any task. */
-static int body_enter(const struct duite_call_private *body, const char *call)
+static inline bool body_may_call(const struct duite_call_private *body)
 {
-    int broken = atomic_load_explicit(&body->graph->broken, memory_order_relaxed);
-    if (!broken)
-        return DUITE_OK;
+    return !atomic_load_explicit(&body->graph->broken, memory_order_relaxed);
+}
+BODY_ERROR body_refuse(int broken, const char *call)
+{
     return base_error(broken, "%s: an earlier call failed beyond repair (%s)", call,
                       duite_code_text(broken));
+}
+static inline int body_enter(const struct duite_call_private *body, const char *call)
+{
+    const int broken = atomic_load_explicit(&body->graph->broken, memory_order_relaxed);
+    return broken ? body_refuse(broken, call) : DUITE_OK;
 }
 
 static int body_recall(struct duite_call_private *body)
@@ -34,16 +48,19 @@ static int body_recall(struct duite_call_private *body)
     return code ? base_error(code, "%s", body->message) : DUITE_OK;
 }
 
+BODY_ERROR new_refuse(struct duite_call_private *body, const char *call)
+{
+    const int code = body_enter(body, call);
+    return body_remember(
+        body, code ? code : base_error(DUITE_E_ARGUMENT, "%s: nowhere to put the object", call));
+}
+
 int api_body_new(struct duite_call_private *body, duite_type type, size_t count, size_t max,
                  bool sized, duite_object *object)
 {
-    if (!object)
-        return body_remember(body, base_error(DUITE_E_ARGUMENT, "%s: nowhere to put the object",
-                                              sized ? "duite_new_sized" : "duite_new"));
-    int code = body_enter(body, sized ? "duite_new_sized" : "duite_new");
-    if (!code)
-        code = task_make_object(body, type, count, max, sized, object);
-    return body_remember(body, code);
+    if (!object || !body_may_call(body))
+        return new_refuse(body, sized ? "duite_new_sized" : "duite_new");
+    return body_remember(body, task_make_object(body, type, count, max, sized, object));
 }
 
 int api_body_free(struct duite_call_private *body, duite_object object)
@@ -58,16 +75,28 @@ int api_body_free(struct duite_call_private *body, duite_object object)
     return body_remember(body, code);
 }
 
-int api_body_fork(struct duite_call_private *body, const duite_kernel *kernel, const void *args,
-                  size_t n, const duite_object *objects)
+static const struct task_options fork_plain = {.at = TASK_ANYWHERE};
+
+/* The first fork of a body that has no scope yet. */
+__attribute__((noinline)) static int fork_first(struct duite_call_private *body,
+                                                const duite_kernel *kernel, const void *args,
+                                                size_t n, const duite_object *objects)
 {
-    static const struct task_options plain = {.at = TASK_ANYWHERE};
     int code = body_enter(body, "duite_fork");
     if (!code)
         code = task_inside(body)
-                   ? task_fork(body->scope, body->worker, &plain, kernel, args, n, objects)
+                   ? task_fork(body->scope, body->worker, &fork_plain, kernel, args, n, objects)
                    : DUITE_E_MEMORY;
     return body_remember(body, code);
+}
+
+int api_body_fork(struct duite_call_private *body, const duite_kernel *kernel, const void *args,
+                  size_t n, const duite_object *objects)
+{
+    if (!body->scope || !body_may_call(body))
+        return fork_first(body, kernel, args, n, objects);
+    return body_remember(
+        body, task_fork(body->scope, body->worker, &fork_plain, kernel, args, n, objects));
 }
 
 int api_body_fork_with(struct duite_call_private *body, const duite_task_options *options,
@@ -129,7 +158,9 @@ static int body_read(struct duite_call_private *body, struct data_version *versi
     if (version->poisoned)
         return task_failure_error(body->graph, version->failure);
     *bytes = version->packet->bytes;
-    if (values)
+    if (values && *bytes == sizeof(uint64_t)) /* most are: copied without a call */
+        memcpy(values, data_payload(version->packet), sizeof(uint64_t));
+    else if (values)
         memcpy(values, data_payload(version->packet), *bytes);
     return DUITE_OK;
 }

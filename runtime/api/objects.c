@@ -8,13 +8,9 @@
 
 #include <string.h>
 
-int duite_new(duite *rt, duite_type type, size_t count, duite_object *object)
+/* By the main program. */
+static int main_new(duite *rt, duite_type type, size_t count, duite_object *object)
 {
-    struct duite_call_private *body = api_body(rt);
-    if (object)
-        *object = DUITE_NO_OBJECT;
-    if (body)
-        return api_body_new(body, type, count, count, false, object);
     int code = api_enter(rt, "duite_new");
     if (code)
         return code;
@@ -28,6 +24,15 @@ int duite_new(duite *rt, duite_type type, size_t count, duite_object *object)
     if (!code)
         trace_object(rt->trace, &rt->graph.table, *object);
     return api_remember(rt, code);
+}
+
+int duite_new(duite *rt, duite_type type, size_t count, duite_object *object)
+{
+    struct duite_call_private *body = api_body(rt);
+    if (object)
+        *object = DUITE_NO_OBJECT;
+    return body ? api_body_new(body, type, count, count, false, object)
+                : main_new(rt, type, count, object);
 }
 
 int duite_new_sized(duite *rt, duite_type type, size_t count, size_t max, duite_object *object)

@@ -73,7 +73,7 @@ static int table_reserve(struct data_table *table)
     return DUITE_OK;
 }
 
-int data_object_check(duite_type type, size_t count, size_t max)
+int data_object_refuse(duite_type type, size_t count, size_t max)
 {
     size_t size = data_type_size(type);
     if (!size)

@@ -59,8 +59,15 @@ struct data_table {
 int data_table_start(struct data_table *table, int n_ranks);
 void data_table_stop(struct data_table *table);
 
-/* Whether an object may have this type and these counts. Errors: type, count. */
-int data_object_check(duite_type type, size_t count, size_t max);
+/* Whether an object may have this type and these counts. Errors: type, count. The second is the
+ * whole check, the first ends at once for what is beyond doubt. */
+int data_object_refuse(duite_type type, size_t count, size_t max);
+static inline int data_object_check(duite_type type, size_t count, size_t max)
+{
+    enum { LARGEST_TYPE = 8 };
+    const bool fits = data_type_size(type) && max && max <= DATA_MAX_BYTES / LARGEST_TYPE;
+    return fits && count <= max ? 0 : data_object_refuse(type, count, max);
+}
 
 /* Makes an object without home. Errors: type, count, memory. */
 int data_object_new(struct data_table *table, duite_type type, size_t count, duite_object *name);

@@ -58,6 +58,19 @@ struct data_waiter {
     uint32_t mode; /* of the access it is embedded in */
 };
 
+/* A packet for one line of values at most, not zeroed. Most have no more: inline, and of a constant
+ * size. NULL without memory. */
+static inline struct data_packet *data_packet_line(size_t bytes)
+{
+    struct data_packet *packet = base_pool_take(2 * sizeof *packet);
+    if (!packet)
+        return NULL;
+    memset(packet, 0, 2 * sizeof *packet); /* the last line is sent whole */
+    packet->bytes = bytes;
+    packet->lines = 2;
+    return packet;
+}
+
 /* The value of an object between two writes, on one rank.
  *
  * A version is held by its producer (a task, or a message on its way), by the object while it is

@@ -16,10 +16,11 @@
 static const struct data_failure *version_make_room(const struct task *task,
                                                     struct data_version *out, bool keep)
 {
+    const size_t room = data_version_room(out);
     if (out->packet && out->sized)
-        out->packet = data_packet_room(out->packet, data_version_room(out), keep);
+        out->packet = data_packet_room(out->packet, room, keep);
     if (!out->packet)
-        out->packet = data_packet_new(data_version_room(out), false);
+        out->packet = room <= BASE_LINE ? data_packet_line(room) : data_packet_new(room, false);
     return out->packet ? NULL : task_fail_memory(task);
 }
 

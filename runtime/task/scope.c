@@ -84,7 +84,8 @@ static size_t nest_size(size_t n_lent)
     return sizeof(struct task_nest) + n_lent * sizeof(struct task_exit);
 }
 
-struct task_scope *task_scope_new(const struct task *task, size_t n)
+/* Inline, for the sake of the caller that passes a constant. */
+static inline struct task_scope *nest_new(const struct task *task, size_t n)
 {
     enum { SPARE = 3 };
     size_t exits = nest_size(n), size = exits + (n + SPARE) * sizeof(struct data_object);
@@ -110,6 +111,11 @@ struct task_scope *task_scope_new(const struct task *task, size_t n)
     return &nest->scope;
 }
 
+struct task_scope *task_scope_new(const struct task *task, size_t n)
+{
+    return nest_new(task, n);
+}
+
 const struct data_object *task_lent_object(const struct task_scope *scope, size_t lent)
 {
     return &((const struct task_nest *)scope)->local[lent];
@@ -118,7 +124,7 @@ const struct data_object *task_lent_object(const struct task_scope *scope, size_
 struct task_scope *task_scope_begin(struct duite_call_private *body)
 {
     const struct task *task = body->task;
-    body->scope = task_scope_new(task, 0);
+    body->scope = nest_new(task, 0);
     if (!body->scope) {
         base_no_memory("what a task forks");
         return NULL;
@@ -160,26 +166,31 @@ void task_lend(struct task *task, size_t i, const struct data_object *object,
     nest->scope.outward |= access->waiter.mode != DUITE_CWP;
 }
 
-/* Places for n more objects, one after the other. */
-static int nest_take_places(struct task_nest *nest, uint32_t n, uint32_t *first)
+/* The objects move to a block with room for n more. */
+static int nest_grow(struct task_nest *nest, uint32_t n)
 {
     uint32_t room = nest->room;
-    *first = nest->n_local;
     while (room - nest->n_local < n)
         room *= 2;
-    if (room > nest->room) {
-        struct data_object *more = base_pool_take(room * sizeof *more);
-        if (!more)
-            return base_no_memory("an object");
-        memcpy(more, nest->local, nest->n_local * sizeof *more);
-        if (nest->moved)
-            base_pool_give(nest->local, nest->room * sizeof *more);
-        nest->local = more;
-        nest->room = room;
-        nest->moved = true;
-    }
-    nest->n_local += n;
+    struct data_object *more = base_pool_take(room * sizeof *more);
+    if (!more)
+        return base_no_memory("an object");
+    memcpy(more, nest->local, nest->n_local * sizeof *more);
+    if (nest->moved)
+        base_pool_give(nest->local, nest->room * sizeof *more);
+    nest->local = more;
+    nest->room = room;
+    nest->moved = true;
     return DUITE_OK;
+}
+
+/* Places for n more objects, one after the other. */
+static inline int nest_take_places(struct task_nest *nest, uint32_t n, uint32_t *first)
+{
+    const int code = nest->room - nest->n_local < n ? nest_grow(nest, n) : DUITE_OK;
+    *first = nest->n_local;
+    nest->n_local += code ? 0 : n;
+    return code;
 }
 
 int task_make_object(struct duite_call_private *body, duite_type type, size_t count, size_t max,

@@ -133,6 +133,12 @@ static inline const struct task *work_enters(struct worker *worker, const struct
     return below;
 }
 
+/* Whether a body runs on the worker's thread. */
+static inline bool work_in_body(const struct worker *worker)
+{
+    return atomic_load_explicit(&worker->runs, memory_order_relaxed) != NULL;
+}
+
 /* The worker's task is over, but nothing of it was published or freed yet. */
 static inline void work_leaves(struct worker *worker, const struct task *below)
 {

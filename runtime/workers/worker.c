@@ -32,9 +32,10 @@ static void ready_put(struct worker *worker, struct task *task, unsigned queue)
 {
     struct work_pool *pool = worker->pool;
     work_bump(&worker->counts.placed, 1);
-    /* What the main thread forks is left for others to take all at once, which costs both sides
-     * less than a deque that one fills as the other empties it. */
-    if (queue == worker->index && worker->finishing)
+    /* What the main program forks is left for others to take all at once, which costs both sides
+     * less than a deque that one fills as the other empties it. What a body forks it mostly waits
+     * for itself. */
+    if (queue == worker->index && (worker->finishing || work_in_body(worker)))
         work_queue_push(&worker->queue, task);
     else if (queue < pool->setup.threads)
         work_queue_put(&pool->worker[queue].queue, task);
@@ -252,7 +253,9 @@ void work_run(struct worker *worker, struct task *task)
     uint64_t start = base_ticks();
     for (unsigned length = 1; task; length++) {
         if (work_is_plain_node(worker, task)) {
-            task = work_run_nodes(worker, task, &length);
+            unsigned nodes = length;
+            task = work_run_nodes(worker, task, &nodes);
+            length = nodes;
             start = base_ticks();
             continue;
         }
@@ -265,8 +268,9 @@ void work_run(struct worker *worker, struct task *task)
         task = worker->next;
         worker->next = NULL;
         work_bump(&worker->counts.chained, task != NULL);
-        bool wrote = worker->ring && work_note_relieve(worker);
-        start = wrote ? base_ticks() : work_inline_start(worker, length, end);
+        const bool wrote = worker->ring && work_note_relieve(worker);
+        if (task)
+            start = wrote ? base_ticks() : work_inline_start(worker, length, end);
     }
 }
 

@@ -70,28 +70,8 @@ static double edge_pixels(const struct view_scene *scene, const struct view_came
                     : 1;
 }
 
-/* Lines take away from what is there. They are paler where they are dense, so that they do not hide
- * the cloth. */
-static void draw_edges(const struct view_scene *scene, const struct view_camera *camera, int height)
-{
-    const double pixels = edge_pixels(scene, camera, height);
-    glBlendColor(0, 0, 0, (float)fmin(fmax(pixels / 10, 0.05), 1));
-    glBlendFuncSeparate(GL_ZERO, GL_ONE_MINUS_CONSTANT_ALPHA, GL_ZERO, GL_ONE);
-    glEnable(GL_BLEND);
-    glColorMaski(1, GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
-    glPolygonMode(GL_FRONT_AND_BACK, GL_LINE);
-    draw_mesh_draw(&scene->mesh);
-    glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
-    glColorMaski(1, GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-    glDisable(GL_BLEND);
-}
-
 static void draw_cloths(const struct view_scene *scene, GLuint program)
 {
-    if (scene->wired) { /* lines lie on top of the triangles that they bound */
-        glPolygonOffset(1, 1);
-        glEnable(GL_POLYGON_OFFSET_FILL);
-    }
     glUniform1i(glGetUniformLocation(program, "colours"), (GLint)scene->paint);
     glUniform1f(glGetUniformLocation(program, "parts"), (float)(scene->n_map - 1));
     for (uint32_t c = 0; c < scene->n_parts; c++) {
@@ -99,7 +79,21 @@ static void draw_cloths(const struct view_scene *scene, GLuint program)
                     (float)(DRAW_PAINT_FIRST + 2 * (c % N_COLOURS)));
         draw_mesh_draw_part(&scene->mesh, scene->part + c);
     }
+}
+
+/* Lines lie on top of the triangles that they bound. */
+static void draw_wired(const struct view_scene *scene, GLuint program)
+{
+    const GLint edge = glGetUniformLocation(program, "edge");
+    glPolygonOffset(1, 1);
+    glEnable(GL_POLYGON_OFFSET_FILL);
+    draw_cloths(scene, program);
     glDisable(GL_POLYGON_OFFSET_FILL);
+    glUniform1f(edge, 1);
+    glPolygonMode(GL_FRONT_AND_BACK, GL_LINE);
+    draw_cloths(scene, program);
+    glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
+    glUniform1f(edge, 0);
 }
 
 static void draw_shapes(const struct view_scene *scene, GLuint program,
@@ -134,9 +128,10 @@ static void draw_surfaces(const struct view_scene *scene, const struct view_came
     glDepthFunc(GL_LEQUAL);
     const GLuint program = use_to_see(scene, VIEW_SURFACE, camera, width, height);
     draw_sky_bind(&scene->mesh_sky);
-    draw_cloths(scene, program);
     if (scene->wired)
-        draw_edges(scene, camera, height);
+        draw_wired(scene, program);
+    else
+        draw_cloths(scene, program);
     if (view_scene_has_shapes(scene))
         draw_shapes(scene, program, camera);
     glColorMaski(1, GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
@@ -150,13 +145,16 @@ static void shade(const struct view_scene *scene, const struct view_camera *came
                   int height)
 {
     const GLuint program = use_to_see(scene, VIEW_SHADE, camera, width, height);
+    double ink = 0; /* edges are paler where they are dense, so that they do not hide the cloth */
     mat4 clip, world;
     glm_mat4_copy((vec4 *)camera->clip, clip);
     glm_mat4_inv(clip, world);
     glUniformMatrix4fv(glGetUniformLocation(program, "world"), 1, GL_FALSE, world[0]);
     glUniform1f(glGetUniformLocation(program, "pixel"), (float)pixel_width(camera, height));
     glUniform1i(glGetUniformLocation(program, "samples"), scene->surfaces.samples);
-    glUniform1i(glGetUniformLocation(program, "wired"), scene->wired);
+    if (scene->wired)
+        ink = fmin(fmax(edge_pixels(scene, camera, height) / 10, 0.05), 1);
+    glUniform1f(glGetUniformLocation(program, "ink"), (float)ink);
     glUniform3fv(glGetUniformLocation(program, "paint"), DRAW_PAINTS, PAINT[0]);
     if (scene->paint != VIEW_PAINT_CLOTH) {
         glUniform1i(glGetUniformLocation(program, "map_n"), scene->n_map);

@@ -14,24 +14,17 @@
 
 /* A wide sun for soft shadows, and the sky. shaders.c counts on the same numbers. The maps' pixels
  * along a side. */
-enum {
-    DRAW_SUN = 8,
-    DRAW_SKY = 48,
-    DRAW_LIGHTS = DRAW_SUN + DRAW_SKY,
-    DRAW_SUN_MAP = 512,
-    DRAW_SKY_MAP = 256
-};
+enum { DRAW_SUN = 8, DRAW_SKY = 48, DRAW_SUN_MAP = 512, DRAW_SKY_MAP = 256 };
 
-#define DRAW_SUN_RADIUS 0.13 /* tangent of half the angle that the sun fills */
+#define DRAW_SUN_RADIUS 0.13 /* tangent of half the angle that the sun fills; shaders.c, too */
 
 /* As the shaders see it (std140). */
 struct draw_light_block {
-    float direction[DRAW_LIGHTS][4]; /* towards the light, length 1 */
-    float colour[DRAW_LIGHTS][4];    /* linear */
-    float row[3 * DRAW_LIGHTS][4];   /* world to map: x, y, depth in 0 .. 1 */
-    float toward[4], sunlight[4];    /* direction and colour of the whole sun */
-    /* Of the sun, then of the sky: metres off the surface where shadows are looked up; blur, of a
-     * map's width */
+    float sky[2 * DRAW_SKY][4]; /* of each: towards it, and to the right in its map; of length 1 */
+    float right[4], up[4], toward[4]; /* those of the sun, in all its maps */
+    float sphere[4];                  /* that all maps hold: centre (m), 1 / diameter (1/m) */
+    /* Of the sun: metres off the surface where shadows are looked up; blur, of a map's width. The
+     * former of the sky. */
     float bias[4];
 };
 
@@ -113,17 +106,15 @@ void draw_ground_free(struct draw_ground *ground);
 
 /* --- surfaces.c: what a picture shows, before it is shaded --- */
 
-/* Surface: normal towards the eye and paint, or colour of the ground (linear) and its paint; the
- * light of the sky; depth. All have several samples a pixel. Edges of triangles make surfaces
- * shorter: the length of a normal is what is left of the surface. */
+/* Normal towards the eye, and paint; light of the sky, and whether it is an edge that is drawn;
+ * depth. All have several samples a pixel. */
 enum { DRAW_SURFACES = 3 };
 struct draw_surfaces {
     GLuint frame, texture[DRAW_SURFACES];
     int width, height, samples;
 };
-/* Paints: those of a table (linear), front and back. Further ones are between shaders: the place on
- * a scale, as -1 - place (0 .. 1); 0 for ready colours; from 16 on those of parts; 32 for grey. */
-enum { DRAW_PAINT_NOTHING = -16, DRAW_PAINT_FIRST = 1, DRAW_PAINTS = 14 };
+/* Paints of a table, front and back. shaders.c has further ones. */
+enum { DRAW_PAINT_FIRST = 2, DRAW_PAINTS = 14 };
 /* Binds their framebuffer, of that size, with nothing in it. Zero before the first time. */
 int draw_surfaces_start(struct draw_surfaces *surfaces, int width, int height,
                         struct cloth_error *error);

@@ -28,7 +28,7 @@ static void span(const double n[3], double u[3], double v[3])
         v[k] = n[(k + 1) % 3] * u[(k + 2) % 3] - n[(k + 2) % 3] * u[(k + 1) % 3];
 }
 
-const int DRAW_SQUARE_SIZE[DRAW_SQUARES] = {128, 256};
+const int DRAW_SQUARE_SIZE[DRAW_SQUARES] = {96, 256};
 
 int draw_ground_make(struct draw_ground *ground, struct cloth_error *error)
 {
@@ -105,7 +105,6 @@ void draw_ground(const struct draw_ground *ground, GLuint program, const float e
         return; /* seen from behind it would hide everything */
     const double end = (ground->n[1] > 0.95 ? 7 : 1.5) * (double)reach;
     draw_ground_square(ground, program, ground->foot, end);
-    glUniform2f(glGetUniformLocation(program, "fade"), (float)(0.15 * end), (float)end);
     for (int i = 0; i < DRAW_SQUARES; i++) {
         const struct draw_square *square = ground->square + i;
         const double scale = 0.5 / square->half;

@@ -1,7 +1,9 @@
 /* The light is a fixed set of directions: a disk of them around the sun and a spiral of them over
  * the sky. Each has its own layer of depths of the cloth, so that soft shadows and the darkening in
  * folds are one and the same sum. The sun's are fine, and cast by all triangles; the sky's light
- * varies slowly: its layers are coarse, and cast by few triangles. */
+ * varies slowly: its layers are coarse, and cast by few triangles. Shaders find the place in a
+ * layer from few numbers, since reading many takes longer than a look into the layer: the sun's
+ * layers are slanted views along one direction. */
 #include "cloth/view/draw/draw.h"
 
 #include <math.h>
@@ -32,39 +34,31 @@ static void across(const double d[3], double u[3], double v[3])
     cross(d, u, v);
 }
 
+static void set_vector(float to[4], const double from[3])
+{
+    for (int k = 0; k < 3; k++)
+        to[k] = (float)from[k];
+}
+
 static void set_sun(struct draw_light_block *block)
 {
-    static const float COLOUR[3] = {1.62f, 1.48f, 1.27f};
-    double sun[3] = {-0.50, 1.0, 0.38}, u[3], v[3];
-    normalise(sun);
-    across(sun, u, v);
-    for (int i = 0; i < DRAW_SUN; i++) {
-        double r = DRAW_SUN_RADIUS * sqrt((i + 0.5) / DRAW_SUN), a = GOLDEN * i, d[3];
-        for (int k = 0; k < 3; k++)
-            d[k] = sun[k] + r * (cos(a) * u[k] + sin(a) * v[k]);
-        normalise(d);
-        for (int k = 0; k < 3; k++) {
-            block->direction[i][k] = (float)d[k];
-            block->colour[i][k] = COLOUR[k] / DRAW_SUN;
-        }
-    }
-    for (int k = 0; k < 3; k++) {
-        block->toward[k] = (float)sun[k];
-        block->sunlight[k] = COLOUR[k];
-    }
+    double toward[3] = {-0.50, 1.0, 0.38}, right[3], up[3];
+    normalise(toward);
+    across(toward, right, up);
+    set_vector(block->toward, toward);
+    set_vector(block->right, right);
+    set_vector(block->up, up);
 }
 
 static void set_sky(struct draw_light_block *block)
 {
-    static const float HORIZON[3] = {0.78f, 0.76f, 0.74f}, ZENITH[3] = {0.62f, 0.76f, 0.98f};
     for (int i = 0; i < DRAW_SKY; i++) {
-        double y = (i + 0.5) / DRAW_SKY, r = sqrt(1 - y * y), a = GOLDEN * i;
-        float *d = block->direction[DRAW_SUN + i], *colour = block->colour[DRAW_SUN + i];
-        d[0] = (float)(r * cos(a));
-        d[1] = (float)y;
-        d[2] = (float)(r * sin(a));
-        for (int k = 0; k < 3; k++) /* a level surface sees half the sum of the weights */
-            colour[k] = (HORIZON[k] + (ZENITH[k] - HORIZON[k]) * d[1]) * 2 / DRAW_SKY;
+        const double y = (i + 0.5) / DRAW_SKY, r = sqrt(1 - y * y), a = GOLDEN * i;
+        const double d[3] = {r * cos(a), y, r * sin(a)};
+        double right[3], up[3];
+        across(d, right, up);
+        set_vector(block->sky[2 * i], d);
+        set_vector(block->sky[2 * i + 1], right);
     }
 }
 
@@ -109,50 +103,71 @@ int draw_lights_make(struct draw_lights *lights, struct cloth_error *error)
                             status);
 }
 
-/* A map's square just holds the sphere, seen along -d; depth runs from the light's side of it to
- * the other. */
-static void aim(struct draw_light_block *block, int light, const float center[3], float radius)
+/* From the world to a layer whose square just holds the lights' sphere: x, y, and depth, which runs
+ * from the light's side of it to the other. axis: x, y, towards the light; slant: how far x and y
+ * move a unit towards it */
+static void make_rows(const struct draw_lights *lights, const float *const axis[3],
+                      const double slant[2], float row[3][4])
 {
-    double axis[3][3], d[3];
-    for (int k = 0; k < 3; k++)
-        d[k] = (double)block->direction[light][k];
-    across(d, axis[0], axis[1]);
-    for (int k = 0; k < 3; k++)
-        axis[2][k] = -d[k];
+    const float *sphere = lights->block.sphere;
     for (int i = 0; i < 3; i++) {
         double offset = 0.5;
         for (int k = 0; k < 3; k++) {
-            double part = axis[i][k] / (2 * (double)radius);
-            block->row[3 * light + i][k] = (float)part;
-            offset -= part * (double)center[k];
+            const double toward = (double)axis[2][k];
+            const double part =
+                (double)sphere[3] * (i < 2 ? (double)axis[i][k] - slant[i] * toward : -toward);
+            row[i][k] = (float)part;
+            offset -= part * (double)sphere[k];
         }
-        block->row[3 * light + i][3] = (float)offset;
+        row[i][3] = (float)offset;
     }
 }
 
-/* Layer `layer` of the maps, of light `light`. */
-static void cast_layer(struct draw_lights *lights, int light, GLuint maps, int layer,
+static void sun_rows(const struct draw_lights *lights, int i, float row[3][4])
+{
+    const struct draw_light_block *block = &lights->block;
+    const double r = DRAW_SUN_RADIUS * sqrt((i + 0.5) / DRAW_SUN), a = GOLDEN * i;
+    make_rows(lights, (const float *const[3]){block->right, block->up, block->toward},
+              (const double[2]){r * cos(a), r * sin(a)}, row);
+}
+
+static void sky_rows(const struct draw_lights *lights, int i, float row[3][4])
+{
+    static const double STRAIGHT[2];
+    const float *d = lights->block.sky[2 * i], *right = lights->block.sky[2 * i + 1];
+    float up[3];
+    for (int k = 0; k < 3; k++)
+        up[k] = d[(k + 1) % 3] * right[(k + 2) % 3] - d[(k + 2) % 3] * right[(k + 1) % 3];
+    make_rows(lights, (const float *const[3]){right, up, d}, STRAIGHT, row);
+}
+
+static void cast_layer(GLuint maps, int layer, float row[3][4], bool coarse,
                        const struct draw_casting *casting)
 {
     glFramebufferTextureLayer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, maps, 0, layer);
     glClear(GL_DEPTH_BUFFER_BIT);
-    glUniform4fv(casting->row_uniform, 3, lights->block.row[3 * light]);
-    casting->cast(casting->context, maps == lights->skies);
+    glUniform4fv(casting->row_uniform, 3, row[0]);
+    casting->cast(casting->context, coarse);
 }
 
-static void cast_all(struct draw_lights *lights, const struct draw_casting *casting)
+static void cast_all(const struct draw_lights *lights, const struct draw_casting *casting)
 {
     GLint frame = 0, viewport[4];
+    float row[3][4];
     glGetIntegerv(GL_FRAMEBUFFER_BINDING, &frame);
     glGetIntegerv(GL_VIEWPORT, viewport);
     glBindFramebuffer(GL_FRAMEBUFFER, lights->frame);
     glEnable(GL_DEPTH_TEST);
     glViewport(0, 0, DRAW_SUN_MAP, DRAW_SUN_MAP);
-    for (int i = 0; i < DRAW_SUN; i++)
-        cast_layer(lights, i, lights->suns, i, casting);
+    for (int i = 0; i < DRAW_SUN; i++) {
+        sun_rows(lights, i, row);
+        cast_layer(lights->suns, i, row, false, casting);
+    }
     glViewport(0, 0, DRAW_SKY_MAP, DRAW_SKY_MAP);
-    for (int i = 0; i < DRAW_SKY; i++)
-        cast_layer(lights, DRAW_SUN + i, lights->skies, i, casting);
+    for (int i = 0; i < DRAW_SKY; i++) {
+        sky_rows(lights, i, row);
+        cast_layer(lights->skies, i, row, true, casting);
+    }
     glBindFramebuffer(GL_FRAMEBUFFER, (GLuint)frame);
     glViewport(viewport[0], viewport[1], viewport[2], viewport[3]);
 }
@@ -160,14 +175,13 @@ static void cast_all(struct draw_lights *lights, const struct draw_casting *cast
 void draw_lights_aim(struct draw_lights *lights, const float center[3], float radius,
                      const struct draw_casting *casting)
 {
-    radius *= 1.0f + 4.0f / DRAW_SKY_MAP; /* a margin for the blur */
+    radius *= 1.0f + 6.0f / DRAW_SKY_MAP; /* a margin for the blur, and for what is slanted */
     lights->radius = radius;
-    for (int i = 0; i < DRAW_LIGHTS; i++)
-        aim(&lights->block, i, center, radius);
+    memcpy(lights->block.sphere, center, 3 * sizeof *center);
+    lights->block.sphere[3] = 0.5f / radius;
     lights->block.bias[0] = 3.0f * 2 * radius / DRAW_SUN_MAP;
     lights->block.bias[1] = 2.0f / DRAW_SUN_MAP;
     lights->block.bias[2] = 2.0f * 2 * radius / DRAW_SKY_MAP;
-    lights->block.bias[3] = 1.0f / DRAW_SKY_MAP;
     if (casting)
         cast_all(lights, casting);
     glBindBuffer(GL_UNIFORM_BUFFER, lights->buffer);

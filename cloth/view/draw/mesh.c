@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { COARSE = 6000, MAX_ROUNDS = 3 }; /* triangles that are few enough */
+enum { COARSE = 3000, MAX_ROUNDS = 3 }; /* triangles that are few enough */
 static const float SHORT = 0.04f;       /* edges that may vanish, in radii of the mesh */
 
 static bool is_short(const float *vertex, uint32_t a, uint32_t b, float longest)

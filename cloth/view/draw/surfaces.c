@@ -17,7 +17,7 @@ static GLint max_samples(void)
 
 static void make(struct draw_surfaces *surfaces)
 {
-    static const GLint format[DRAW_SURFACES] = {GL_RGBA16F, GL_RGBA16F, GL_DEPTH_COMPONENT24};
+    static const GLint format[DRAW_SURFACES] = {GL_RGBA8, GL_RGBA8, GL_DEPTH_COMPONENT24};
     static const GLenum attachment[DRAW_SURFACES] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1,
                                                      GL_DEPTH_ATTACHMENT};
     glGenFramebuffers(1, &surfaces->frame);
@@ -36,7 +36,7 @@ static void make(struct draw_surfaces *surfaces)
 int draw_surfaces_start(struct draw_surfaces *surfaces, int width, int height,
                         struct cloth_error *error)
 {
-    static const float NOTHING[4] = {0, 0, 1, DRAW_PAINT_NOTHING}, FAR = 1;
+    static const float NOTHING[4], FAR = 1;
     if (width != surfaces->width || height != surfaces->height) {
         draw_surfaces_free(surfaces);
         *surfaces =

@@ -184,7 +184,7 @@ START_TEST(shadows_are_smooth)
     const double grain = sqrt(sum / n);
     printf("# grain of the ground: %.2f of 255 on %d pixels\n", grain, n);
     ck_assert_int_gt(n, 5000);
-    ck_assert_double_lt(grain, 1.5);
+    ck_assert_double_lt(grain, 0.8);
 }
 END_TEST
 

@@ -154,6 +154,7 @@ typedef struct duite_call {
     duite *rt;        /* for the calls a body may make: see "Tasks that fork" */
     const duite_param *param; /* n_params of them, in the order of the fork */
     size_t n_params;
+    uint64_t round;  /* of the replay that forked the task, from 0; of all other tasks 0 */
     int rank;        /* where the task runs */
     unsigned worker; /* 0 is the main thread */
     struct duite_call_private *own;

@@ -223,11 +223,12 @@ static int graph_prepare(duite *rt, struct recorded_graph *slot, uint64_t rounds
     return code;
 }
 
-static int replay_fork_rounds(duite *rt, struct plan_record *record, uint64_t rounds)
+static int replay_fork_rounds(duite *rt, struct plan_record *record, uint64_t first,
+                              uint64_t rounds)
 {
     int code = DUITE_OK;
     for (uint64_t i = 0; i < rounds && !code; i++) {
-        code = plan_replay_fork(record, work_main(rt->pool));
+        code = plan_replay_fork(record, work_main(rt->pool), first + i);
         record->rounds += !code;
         work_tick(rt->pool);
         if (!code)
@@ -274,10 +275,10 @@ static int replay_all_rounds(duite *rt, struct plan_record *record, uint64_t rou
     plan_replay_split(record, NULL, rounds, &before, &after);
     record->rounds = 0;
     record->by_plan = false;
-    int code = replay_fork_rounds(rt, record, before);
+    int code = replay_fork_rounds(rt, record, 0, before);
     if (!code && rounds > before + after)
         code = replay_by_plan(rt, record, NULL, rounds - before - after);
-    return code ? code : replay_fork_rounds(rt, record, after);
+    return code ? code : replay_fork_rounds(rt, record, rounds - after, after);
 }
 
 int duite_replay(duite *rt, duite_graph graph, uint64_t rounds)
@@ -306,7 +307,7 @@ static int replay_fork_while(duite *rt, struct plan_record *record, duite_object
     size_t count;
     int code = values ? DUITE_OK : base_no_memory("a flag");
     while (!code && holds && record->rounds < max) {
-        code = replay_fork_rounds(rt, record, 1);
+        code = replay_fork_rounds(rt, record, record->rounds, 1);
         if (!code) /* the next wait returns a failure */
             holds = !api_get(rt, flag, TASK_ANYWHERE, values, &count, "duite_replay_while") &&
                     count && plan_flag_holds(type, values);

@@ -17,6 +17,7 @@
 struct offload_message {
     uint64_t number; /* of the main program's task that it is or descends from */
     uint64_t index;  /* in its scope */
+    uint64_t round;  /* of the replay that forked it */
     uint32_t kernel, n, block;
     int32_t priority;
     float cost;

@@ -150,7 +150,9 @@ static bool offloaded_run_body(struct task_graph *graph, struct worker *worker, 
         return false;
     if (!graph->kernels[task->kernel]->args_size)
         args = NULL;
-    own->failure = task_call_body(graph, worker, task, args, param, &own->inner, call);
+    duite_call template = *call;
+    template.round = ((const struct offload_message *)data_payload(own->message))->round;
+    own->failure = task_call_body(graph, worker, task, args, param, &own->inner, &template);
     if (!own->failure)
         result_close_up(task, param);
     return true;

@@ -77,6 +77,7 @@ static struct offload_message message_of_task(const struct task *task)
     task_failure_place(&place, task, NULL);
     struct offload_message message = {.number = place.number,
                                       .index = task->number,
+                                      .round = task->later ? task_later_round(task) : 0,
                                       .kernel = task->kernel,
                                       .n = task->n,
                                       .block = task->block,

@@ -46,6 +46,7 @@ __attribute__((always_inline)) static inline bool plan_node_run_body(struct task
         if (node->n_leaves)
             plan_node_clear_leaves(plan, task);
         struct task_scope *scope = NULL;
+        frame->call.round = plan->first_round + node->round;
         failure = task_frame_call(frame, task, node->args, node->param, &scope);
         if (scope)
             plan_node_leave_scope(scope, frame->body.worker, failure);

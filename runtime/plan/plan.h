@@ -81,6 +81,7 @@ struct plan {
     uint64_t started;        /* replays */
     /* Of the replay that runs. */
     struct task *replay;
+    uint64_t first_round;          /* as the program counts; the plan's own rounds begin with 0 */
     uint64_t last;                 /* the last round, or the last that the flag can ask for */
     bool stop;                     /* said by the deciding node */
     _Atomic uint64_t over, rounds; /* replays that are over; rounds of the last of them */
@@ -91,6 +92,7 @@ struct plan {
 /* A replay on its way: what its task carries. */
 struct plan_replay {
     struct plan *plan;
+    uint64_t first_round;        /* as the program counts */
     uint64_t rounds;             /* with a flag: the maximum of them */
     uint64_t number;             /* of the first task */
     struct plan_change *changes; /* oldest last; owned */

@@ -149,8 +149,8 @@ int plan_record_distinct(struct plan_record *record);
 void plan_replay_split(const struct plan_record *record, const duite_object *flag, uint64_t rounds,
                        uint64_t *before, uint64_t *after);
 
-/* Forks all tasks once. */
-int plan_replay_fork(struct plan_record *record, struct worker *worker);
+/* Forks all tasks once, as round `round` of the replay. */
+int plan_replay_fork(struct plan_record *record, struct worker *worker, uint64_t round);
 
 /* Replays the plan: so many rounds, or while the first element of the flag is not zero, at most so
  * many. PLAN_NEEDS_TAGS: nothing is done yet. */

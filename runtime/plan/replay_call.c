@@ -48,12 +48,14 @@ void plan_replay_split(const struct plan_record *record, const duite_object *fla
     *after = !flag && !forked && record->trails && rounds > *before;
 }
 
-int plan_replay_fork(struct plan_record *record, struct worker *worker)
+int plan_replay_fork(struct plan_record *record, struct worker *worker, uint64_t round)
 {
     struct task_graph *graph = record->graph;
     int code = DUITE_OK;
     for (size_t i = 0; i < record->n_forks && !code; i++) {
         const struct plan_recorded_fork *fork = &record->fork[i];
+        struct task_options options = fork->options;
+        options.round = round;
         unsigned char *args = record->args + fork->args;
         duite_object *objects = record->names;
         for (uint32_t k = 0; k < fork->n; k++)
@@ -62,8 +64,8 @@ int plan_replay_fork(struct plan_record *record, struct worker *worker)
             code = task_set_object(&graph->root, worker, objects[0], fork->zeros ? NULL : args,
                                    &fork->count);
         else
-            code = task_fork(&graph->root, worker, &fork->options, graph->kernels[fork->kernel],
-                             args, fork->n, objects);
+            code = task_fork_any(&graph->root, worker, &options, graph->kernels[fork->kernel], args,
+                                 fork->n, objects);
     }
     return code;
 }
@@ -184,7 +186,11 @@ int plan_replay_plan(struct plan_record *record, struct worker *worker, const du
                  sizeof *task->replay + plan->n_objects * sizeof task->replay->block[0]);
     if (!task)
         return DUITE_E_MEMORY;
-    *task->replay = (struct plan_replay){plan, rounds, graph->root.forks + 1, record->changes};
+    *task->replay = (struct plan_replay){.plan = plan,
+                                         .first_round = record->rounds,
+                                         .rounds = rounds,
+                                         .number = graph->root.forks + 1,
+                                         .changes = record->changes};
     graph->root.forks += rounds * record->n_calls;
     return replay_use_all(record, worker, task, flag);
 }

@@ -89,6 +89,7 @@ void plan_replay_run(struct task *task)
     struct plan *plan = replay->plan;
     bool fine = true;
     plan->replay = task;
+    plan->first_round = replay->first_round;
     plan->last = replay->rounds - 1;
     plan->stop = false;
     atomic_store_explicit(&plan->tainted, 0, memory_order_relaxed);

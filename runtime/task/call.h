@@ -84,6 +84,8 @@ task_call_body(struct task_graph *graph, struct worker *worker, struct task *tas
 {
     struct task_frame frame;
     task_frame_init(&frame, graph, worker, template);
+    if (task->later)
+        frame.call.round = task_later_round(task);
     return task_frame_call(&frame, task, args, param, scope);
 }
 

@@ -258,15 +258,30 @@ void task_void(struct task_graph *graph, struct worker *worker, struct task *tas
     task_settled(graph, worker, task, done + missing);
 }
 
+uint64_t task_later_round(const struct task *task)
+{
+    uint64_t round;
+    const size_t args_size = task->scope->graph->kernels[task->kernel]->args_size;
+    const char *rest = (const char *)task + sizeof *task + task->n * sizeof task->access[0];
+    memcpy(&round, rest + task_round_at(args_size), sizeof round);
+    return round;
+}
+
 /* NULL without memory. */
 static struct task *fork_body(const struct task_fork_call *call, const struct task_options *options,
                               const void *args)
 {
     struct task_scope *scope = call->scope;
     const duite_kernel *kernel = call->kernel;
-    struct task *task = task_new(scope, TASK_BODY, call->n, kernel->args_size);
+    const size_t round_at = task_round_at(kernel->args_size);
+    struct task *task =
+        task_new(scope, TASK_BODY, call->n,
+                 options->round ? round_at + sizeof options->round : kernel->args_size);
     if (!task)
         return NULL;
+    task->later = options->round != 0;
+    if (task->later)
+        memcpy((char *)task_rest(task, call->n) + round_at, &options->round, sizeof options->round);
     task->kernel = call->index;
     task->priority = options->priority;
     task->cost = (float)options->cost;

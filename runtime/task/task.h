@@ -102,6 +102,7 @@ struct task {
     enum task_state state : 8;
     unsigned at_rank : 1; /* its fork named a rank: no other one runs it */
     unsigned placed : 1;  /* by the home of an object, whose block it has: it moves with that */
+    unsigned later : 1; /* a BODY of a later round than the first of a replay: see task_round_at */
     struct task_access access[];
 };
 
@@ -112,6 +113,13 @@ static inline void *task_rest(struct task *task, size_t n)
 {
     return (char *)task + sizeof *task + n * sizeof task->access[0];
 }
+
+/* Where behind the arguments a BODY that is `later` has its round; and the round. */
+static inline size_t task_round_at(size_t args_size)
+{
+    return (args_size + sizeof(uint64_t) - 1) / sizeof(uint64_t) * sizeof(uint64_t);
+}
+uint64_t task_later_round(const struct task *task);
 
 /* Whether it is one of these types; each is named. */
 #define TASK_IS(task, types) ((types) >> (task)->type & 1)
@@ -268,7 +276,8 @@ static inline void task_mix_fork(struct task_graph *graph, uint64_t hash, uint32
 struct task_options {
     int at; /* a rank, or TASK_ANYWHERE */
     int32_t priority;
-    double cost; /* seconds; 0: not said */
+    double cost;    /* seconds; 0: not said */
+    uint64_t round; /* of the replay that forks it; task_fork_any alone looks at it */
 };
 
 /* Forks a task of the main program if neither the task nor anything it names is on this rank: then

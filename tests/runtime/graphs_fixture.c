@@ -18,6 +18,17 @@ static int limit(const duite_call *call)
     return x < 100 ? 0 : duite_fail(call, *(const int32_t *)call->args, "x is %d", (int)x);
 }
 
+static int round_digit(const duite_call *call)
+{
+    duite_out(call, 0, int64_t)[0] = 10 * duite_in(call, 0, int64_t)[0] + (int64_t)call->round;
+    return 0;
+}
+
+static int lend(const duite_call *call)
+{
+    return DUITE_FORK(call->rt, &ROUND_DIGIT, NULL, call->param[0].object);
+}
+
 static int copy(const duite_call *call)
 {
     duite_out(call, 1, int64_t)[0] = duite_in(call, 0, int64_t)[0];
@@ -28,6 +39,8 @@ const duite_kernel DIGIT = {
     .name = "digit", .body = digit, .access = {DUITE_RW}, .args_size = sizeof(int32_t)};
 const duite_kernel LIMIT = {
     .name = "limit", .body = limit, .access = {DUITE_R, DUITE_W}, .args_size = sizeof(int32_t)};
+const duite_kernel ROUND_DIGIT = {.name = "round digit", .body = round_digit, .access = {DUITE_RW}};
+const duite_kernel LEND = {.name = "lend", .body = lend, .access = {DUITE_RWP}};
 const duite_kernel COPY = {.name = "copy", .body = copy, .access = {DUITE_R, DUITE_W}};
 
 int graphs_build(duite *rt, void *context)
@@ -60,7 +73,7 @@ int64_t graphs_value_of(duite *rt, duite_object object)
 
 struct graphs_fixture graphs_begin(duite_build *builds)
 {
-    static const duite_kernel *const KERNELS[] = {&DIGIT, &LIMIT, &COPY, NULL};
+    static const duite_kernel *const KERNELS[] = {&DIGIT, &LIMIT, &COPY, &ROUND_DIGIT, &LEND, NULL};
     duite_options options = duite_options_default();
     static struct graphs_fixture f; /* build sees the fields of its time */
 

@@ -1,6 +1,7 @@
 /* The body of every random kernel. What it writes depends on every byte it reads, on their order
- * and on its seed; floating-point values differ in magnitude so much that another summation tree
- * leaves other bits, and stay far from infinity, since the bits of a NaN are nobody's promise. */
+ * and on its seed and round; floating-point values differ in magnitude so much that another
+ * summation tree leaves other bits, and stay far from infinity, since the bits of a NaN are
+ * nobody's promise. */
 
 #include "tests/runtime/random_program.h"
 
@@ -216,7 +217,7 @@ static int exceed(const duite_call *call, const struct prog_args *args)
 int prog_body(const duite_call *call)
 {
     const struct prog_args *args = call->args;
-    uint64_t hash = args->seed;
+    uint64_t hash = args->seed + call->round;
 
     if (call->context)
         watch(call, args, call->context);

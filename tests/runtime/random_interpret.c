@@ -21,6 +21,7 @@ struct machine {
     struct prog_answers *answers;
     struct prog_cell *cells;
     struct graph *graphs;
+    uint64_t round;             /* of the replay that runs, or 0 */
     unsigned forks;             /* that came before: failures are compared by these */
     struct prog_failure failed; /* since the last wait */
     int refused;                /* the first refused call since the last get or wait */
@@ -54,7 +55,7 @@ static void run_body(struct machine *m, const struct prog_op *op, duite_param *p
                      struct prog_failure *failure)
 {
     struct prog_args args;
-    duite_call call = {.args = &args, .param = param, .n_params = op->n};
+    duite_call call = {.args = &args, .param = param, .n_params = op->n, .round = m->round};
 
     prog_args_fill(m->prog, op, &args);
     m->answers->runs[op->number]++;
@@ -233,12 +234,14 @@ static int replay(struct machine *m, struct graph *graph, const struct prog_op *
         return refuse(m, code);
     graph->rounds = 0;
     while (going && graph->rounds < op->count) {
+        m->round = graph->rounds;
         if (run_round(m, graph))
             return DUITE_E_MEMORY;
         graph->rounds++;
         if (op->kind == PROG_REPLAY_WHILE)
             going = holds(&m->cells[op->object]);
     }
+    m->round = 0;
     return DUITE_OK;
 }
 

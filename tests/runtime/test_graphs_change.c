@@ -44,6 +44,42 @@ START_TEST(objects_change)
 }
 END_TEST
 
+static int round_build(duite *rt, void *context)
+{
+    const struct graphs_fixture *f = context;
+
+    DUITE_FORK(rt, &ROUND_DIGIT, NULL, f->a);
+    if (f->wrong) /* its rounds are forked then */
+        DUITE_FORK(rt, &LEND, NULL, f->b);
+    return 0;
+}
+
+/* A body learns its round: of each replay from 0, run from the compiled form or forked. What it
+ * forks itself has none, and neither has what the main program forks. */
+START_TEST(rounds_are_told)
+{
+    struct graphs_fixture f = graphs_begin(round_build), forked = f;
+    duite_graph graph;
+
+    ck_assert_int_eq(duite_set(f.rt, f.a, &(int64_t){7}), 0);
+    ck_assert_int_eq(duite_replay(f.rt, f.graph, 4), 0);
+    ck_assert_int_eq(duite_replay(f.rt, f.graph, 2), 0);
+    ck_assert_int_eq(DUITE_FORK(f.rt, &ROUND_DIGIT, NULL, f.a), 0);
+    ck_assert_int_eq(graphs_value_of(f.rt, f.a), 70123010);
+
+    forked.wrong = 1;
+    ck_assert_int_eq(duite_graph_new(f.rt, round_build, &forked, &graph), 0);
+    ck_assert_int_eq(duite_set(f.rt, f.b, &(int64_t){3}), 0);
+    ck_assert_int_eq(duite_replay(f.rt, graph, 3), 0);
+    ck_assert_int_eq(graphs_value_of(f.rt, f.a), 70123010012);
+    ck_assert_int_eq(graphs_value_of(f.rt, f.b), 3000);
+    ck_assert_int_eq(duite_replay_while(f.rt, graph, f.a, 2), 0);
+    ck_assert_int_eq(graphs_value_of(f.rt, f.a), 7012301001201);
+    ck_assert_int_eq(duite_graph_free(f.rt, graph), 0);
+    graphs_end(&f, 0);
+}
+END_TEST
+
 /* An object of the graph is freed: build is called again, and finds another one. */
 START_TEST(recorded_anew)
 {
@@ -225,6 +261,7 @@ int main(void)
 
     tcase_add_test(changes, arguments_change);
     tcase_add_test(changes, objects_change);
+    tcase_add_test(changes, rounds_are_told);
     tcase_add_test(changes, recorded_anew);
     tcase_add_test(changes, cannot_be_recorded_anew);
     tcase_add_test(changes, graphs_between_tasks);

@@ -15,7 +15,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { COMMAND = 3 * OUTPUT_PATH, HASH = 24, LAST_FRAME = 3 };
+enum { COMMAND = 3 * OUTPUT_PATH, HASH = 24, LAST_FRAME = 12 };
 
 #define QUICK_SHEET "--set cloths[0].mesh.grid.nx=20 --set cloths[0].mesh.grid.ny=20"
 
@@ -100,7 +100,7 @@ static void write_arguments(struct serve_request *request, const char *output, c
     else if (strcmp(output, "none"))
         snprintf(frames, sizeof frames, "--output '%s/frames'", folder);
     snprintf(arguments, COMMAND,
-             "--end 0.12 --threads %u --scheduler %s --report '%s/report.json' %s %s",
+             "--threads %u --scheduler %s --report '%s/report.json' %s %s",
              (unsigned)serve_number(request, "threads"), scheduler, folder, frames, extra);
 }
 

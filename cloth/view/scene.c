@@ -92,6 +92,7 @@ int view_scene_new(struct view_scene **scene, const struct view_shape *shape,
         return cloth_fail(error, CLOTH_E_MEMORY, "no memory for a scene");
     made->obstacles = shape->obstacles;
     glGenVertexArrays(1, &made->nothing);
+    glGenTextures(1, &made->paints);
     int code = make_programs(made, error);
     code = code ? code : make_parts(made, shape, error);
     code = code ? code : draw_lights_make(&made->lights, error);
@@ -212,7 +213,7 @@ void view_scene_paint(struct view_scene *scene, enum view_paint paint, int n, co
                       const float *value)
 {
     scene->paint = paint;
-    scene->n_map = n;
+    scene->n_map = paint == VIEW_PAINT_CLOTH ? 0 : n;
     scene->map = map;
     if (paint != VIEW_PAINT_CLOTH)
         draw_mesh_values(&scene->mesh, value);
@@ -246,6 +247,7 @@ void view_scene_free(struct view_scene *scene)
     for (int i = 0; i < VIEW_PROGRAMS; i++)
         glDeleteProgram(scene->program[i]);
     glDeleteVertexArrays(1, &scene->nothing);
+    glDeleteTextures(1, &scene->paints);
     free(scene->part);
     free(scene);
 }

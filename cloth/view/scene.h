@@ -29,9 +29,10 @@ struct view_scene {
     struct draw_lights lights;
     GLuint program[VIEW_PROGRAMS];
     GLuint nothing;    /* a vertex array without attributes */
+    GLuint paints;     /* a texture of their colours */
     bool wired, plain; /* plain: without shadows */
     enum view_paint paint;
-    int n_map; /* colours of the map, unless each cloth has its own */
+    int n_map; /* colours of the map; 0: each cloth has its own */
     const float (*map)[3];
     uint32_t n_parts;
     struct draw_part *part; /* n_parts: cloths */

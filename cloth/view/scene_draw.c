@@ -3,16 +3,47 @@
 
 #include <cglm/mat4.h>
 #include <math.h>
+#include <string.h>
 
 /* Colours of fronts and backs, linear, of cloths and of obstacles. Those of cloths go round. They
  * differ in lightness, too, for those who see no red or no green. */
 enum { N_COLOURS = 6, STONE = DRAW_PAINT_FIRST + 2 * N_COLOURS };
-static const float PAINT[DRAW_PAINTS][3] = {
+static const float PAINT[2 * (N_COLOURS + 1)][3] = {
     {0.40f, 0.030f, 0.028f}, {0.46f, 0.120f, 0.050f}, {0.035f, 0.085f, 0.24f},
     {0.09f, 0.15f, 0.30f},   {0.55f, 0.38f, 0.07f},   {0.52f, 0.42f, 0.18f},
     {0.03f, 0.20f, 0.13f},   {0.09f, 0.26f, 0.19f},   {0.50f, 0.48f, 0.43f},
     {0.45f, 0.43f, 0.40f},   {0.17f, 0.04f, 0.20f},   {0.24f, 0.10f, 0.26f},
     {0.22f, 0.25f, 0.28f},   {0.22f, 0.25f, 0.28f}};
+
+/* From sRGB, so much of the way from one colour to another. */
+static void decode(float linear[3], const float from[3], const float to[3], float way)
+{
+    for (int k = 0; k < 3; k++) {
+        const float c = from[k] + way * (to[k] - from[k]);
+        linear[k] = c < 0.04045f ? c / 12.92f : powf((c + 0.055f) / 1.055f, 2.4f);
+    }
+}
+
+static void upload_paints(const struct view_scene *scene)
+{
+    static const float GREY[3] = {0.5f, 0.5f, 0.5f};
+    float paint[DRAW_PAINTS][3] = {{0}};
+    memcpy(paint[DRAW_PAINT_FIRST], PAINT, sizeof PAINT);
+    decode(paint[DRAW_PAINT_GREY], GREY, GREY, 0);
+    for (int i = 0; i < scene->n_map; i++)
+        decode(paint[DRAW_PAINT_PARTS + i], scene->map[i], scene->map[i], 0);
+    for (int i = DRAW_PAINT_SCALE; i < DRAW_PAINTS && scene->n_map > 1; i++) {
+        const float at = (float)((i - DRAW_PAINT_SCALE) * (scene->n_map - 1)) /
+                         (DRAW_PAINTS - 1 - DRAW_PAINT_SCALE);
+        const int before = at < (float)(scene->n_map - 1) ? (int)at : scene->n_map - 2;
+        decode(paint[i], scene->map[before], scene->map[before + 1], at - (float)before);
+    }
+    glActiveTexture(GL_TEXTURE0 + DRAW_UNIT_FRONT);
+    glBindTexture(GL_TEXTURE_2D, scene->paints);
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGB32F, DRAW_PAINTS, 1, 0, GL_RGB, GL_FLOAT, paint);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+}
 
 static GLuint use_to_see(const struct view_scene *scene, enum view_program which,
                          const struct view_camera *camera, int width, int height)
@@ -155,11 +186,7 @@ static void shade(const struct view_scene *scene, const struct view_camera *came
     if (scene->wired)
         ink = fmin(fmax(edge_pixels(scene, camera, height) / 10, 0.05), 1);
     glUniform1f(glGetUniformLocation(program, "ink"), (float)ink);
-    glUniform3fv(glGetUniformLocation(program, "paint"), DRAW_PAINTS, PAINT[0]);
-    if (scene->paint != VIEW_PAINT_CLOTH) {
-        glUniform1i(glGetUniformLocation(program, "map_n"), scene->n_map);
-        glUniform3fv(glGetUniformLocation(program, "map"), scene->n_map, scene->map[0]);
-    }
+    upload_paints(scene);
     draw_surfaces_bind(&scene->surfaces);
     glBindVertexArray(scene->nothing);
     glDrawArrays(GL_TRIANGLES, 0, 3);

@@ -113,8 +113,16 @@ struct draw_surfaces {
     GLuint frame, texture[DRAW_SURFACES];
     int width, height, samples;
 };
-/* Paints of a table, front and back. shaders.c has further ones. */
-enum { DRAW_PAINT_FIRST = 2, DRAW_PAINTS = 14 };
+/* Paints: those of cloths and obstacles, front and back; of parts; grey; places on a scale, to the
+ * end. The two before are no surface, and a colour that is ready. shaders.c has the same numbers.
+ */
+enum {
+    DRAW_PAINT_FIRST = 2,
+    DRAW_PAINT_PARTS = 16,
+    DRAW_PAINT_GREY = 32,
+    DRAW_PAINT_SCALE = 33,
+    DRAW_PAINTS = 256
+};
 /* Binds their framebuffer, of that size, with nothing in it. Zero before the first time. */
 int draw_surfaces_start(struct draw_surfaces *surfaces, int width, int height,
                         struct cloth_error *error);

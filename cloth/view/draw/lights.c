@@ -1,9 +1,8 @@
 /* The light is a fixed set of directions: a disk of them around the sun and a spiral of them over
  * the sky. Each has its own layer of depths of the cloth, so that soft shadows and the darkening in
  * folds are one and the same sum. The sun's are fine, and cast by all triangles; the sky's light
- * varies slowly: its layers are coarse, and cast by few triangles. Shaders find the place in a
- * layer from few numbers, since reading many takes longer than a look into the layer: the sun's
- * layers are slanted views along one direction. */
+ * varies slowly: its layers are coarse, and cast by few triangles. The sun's layers are slanted
+ * views along one direction, so that a place has the same depth in all of them. */
 #include "cloth/view/draw/draw.h"
 
 #include <math.h>

@@ -15,8 +15,6 @@ const char DRAW_COMMON[] =
     "#define HORIZON vec3(0.78, 0.76, 0.74)\n"
     "#define ZENITH vec3(0.62, 0.76, 0.98)\n"
     "#define THROUGH 0.22\n" /* of the light on the other side */
-    /* Paints: no surface; a colour that is ready; from FIRST on those of a table; from PARTS on those of parts; grey; from SCALE on,
-     * to 255, places on the scale. */
     "#define NOTHING 0.0\n"
     "#define READY 1.0\n"
     "#define FIRST 2.0\n"
@@ -229,12 +227,11 @@ const char DRAW_GROUND_FRAGMENT[] =
  * scale or a part is, between half and whole, and nothing else of it, so that it is found on the scale again. */
 const char DRAW_SHADE_FRAGMENT[] =
     "uniform sampler2DMS surfaces, lights, depths;\n"
-    "uniform int samples, map_n;\n"
+    "uniform int samples;\n"
     "uniform float ink;\n" /* how dark edges are */
     "uniform mat4 world;\n" /* the inverse of clip */
     "uniform float pixel;\n" /* its width, of its distance */
-    "uniform vec3 paint[14];\n" /* from FIRST on, linear */
-    "uniform vec3 map[16];\n" /* map_n, sRGB */
+    "uniform sampler2D fronts;\n" /* the colours of paints, linear */
     "out vec4 shade;\n"
     "vec3 display(vec3 c)\n"
     "{\n"
@@ -244,20 +241,6 @@ const char DRAW_SHADE_FRAGMENT[] =
     "vec4 place(float depth)\n"
     "{\n"
     "    return world * vec4(vec3(gl_FragCoord.xy / size, depth) * 2.0 - 1.0, 1.0);\n"
-    "}\n"
-    "vec3 decode(vec3 c)\n"
-    "{\n"
-    "    return mix(pow((c + 0.055) / 1.055, vec3(2.4)), c / 12.92, lessThan(c, vec3(0.04045)));\n"
-    "}\n"
-    "vec3 mapped(float code)\n"
-    "{\n"
-    "    if (code == GREY)\n"
-    "        return vec3(0.5);\n"
-    "    if (code < GREY)\n"
-    "        return map[int(code - PARTS)];\n"
-    "    float p = (code - SCALE) / (255.0 - SCALE) * float(map_n - 1);\n"
-    "    int i = clamp(int(p), 0, map_n - 2);\n"
-    "    return mix(map[i], map[i + 1], p - float(i));\n"
     "}\n"
     /* surface: its paint in whole numbers */
     "vec3 shaded(vec4 surface, vec4 kept, float depth)\n"
@@ -270,14 +253,14 @@ const char DRAW_SHADE_FRAGMENT[] =
     "    light += SUNLIGHT * (abs(facing) * sun(at, n, gl_FragCoord.xy, solid && shadows) * (facing < 0.0 ? THROUGH : 1.0));\n"
     "    light += vec3(0.26, 0.25, 0.24) * (0.5 - 0.5 * n.y);\n" /* from the floor */
     "    vec3 c = code == NOTHING ? background(gl_FragCoord.xy) : surface.rgb * surface.rgb;\n"
+    "    vec3 albedo = texelFetch(fronts, ivec2(code + 0.5, 0), 0).rgb;\n"
     "    if (solid && code < PARTS) {\n"
-    "        vec3 albedo = paint[int(code - FIRST)];\n"
     "        float rim = pow(1.0 - clamp(dot(n, v), 0.0, 1.0), 4.0);\n"
     "        c = (albedo + rim * 0.22 * mix(albedo, vec3(0.6), 0.25)) * light;\n"
     "    }\n"
     "    c = 1.05 * c / (1.0 + 0.40 * c);\n" /* a soft shoulder */
     "    if (code >= PARTS)\n"
-    "        c = decode(mapped(code)) * mix(0.5, 1.0, clamp(dot(light, vec3(0.2126, 0.7152, 0.0722)) / 1.6, 0.0, 1.0));\n"
+    "        c = albedo * mix(0.5, 1.0, clamp(dot(light, vec3(0.2126, 0.7152, 0.0722)) / 1.6, 0.0, 1.0));\n"
     "    c = display(c);\n"
     "    if (code == NOTHING)\n"
     "        c += (noise(gl_FragCoord.xy) - 0.5) / 255.0;\n"
@@ -285,29 +268,30 @@ const char DRAW_SHADE_FRAGMENT[] =
     "}\n"
     "float kind(float code) { return min(code, SCALE); }\n"
     /* Whether samples of one kind, with this mean, lie no farther apart than a pixel of the surface reaches. */
-    "bool joined(vec4 surface, float depth, float near, float far)\n"
+    "bool joined(vec4 surface, float near, float far)\n"
     "{\n"
-    "    vec4 q = place(depth);\n"
+    "    vec4 q = place(near);\n"
     "    float facing = abs(dot(normalize(2.0 * surface.rgb - 1.0), normalize(eye - q.xyz / q.w)));\n"
-    "    return surface.a < FIRST || (far - near) * max(facing, 0.05) < 3.0 * pixel * near;\n"
+    "    float apart = 2.0 * abs(world[2][3]) * (far - near) / q.w;\n" /* of the distance, which is 1 / w */
+    "    return surface.a < FIRST || apart * max(facing, 0.05) < 3.0 * pixel;\n"
     "}\n"
     "vec4 surface_at(ivec2 p, int i) { return texelFetch(surfaces, p, i) * vec4(1.0, 1.0, 1.0, 255.0); }\n"
     "void main()\n"
     "{\n"
     "    ivec2 p = ivec2(gl_FragCoord.xy);\n"
     "    vec4 mean = surface_at(p, 0);\n"
-    "    float depth = texelFetch(depths, p, 0).r, code = kind(mean.a), near = 1.0 / place(depth).w, far = near;\n"
+    "    float code = kind(mean.a), near = texelFetch(depths, p, 0).r, far = near;\n"
     "    bool same = ink == 0.0;\n"
     "    for (int i = 1; i < samples; i++) {\n"
     "        vec4 other = surface_at(p, i);\n"
-    "        float away = 1.0 / place(texelFetch(depths, p, i).r).w;\n"
+    "        float depth = texelFetch(depths, p, i).r;\n"
     "        same = same && kind(other.a) == code;\n"
-    "        near = min(near, away);\n"
-    "        far = max(far, away);\n"
+    "        near = min(near, depth);\n"
+    "        far = max(far, depth);\n"
     "        mean += other;\n"
     "    }\n"
     "    mean /= float(samples);\n"
-    "    same = same && joined(mean, depth, near, far);\n"
+    "    same = same && joined(mean, near, far);\n"
     "    vec3 sum = vec3(0.0);\n"
     "    int i = 0, n = same ? 1 : samples;\n"
     "    do\n"

@@ -7,8 +7,8 @@ BENCH_SHARED = bench/problem.c bench/problem.h bench/serve.c bench/serve.h
 check_LTLIBRARIES += bench/libbench.la
 bench_libbench_la_SOURCES = bench/bench.h bench/environment.h bench/instructions.c bench/instructions.h bench/load.c bench/load.h bench/loops.c bench/loops.h bench/measure.c bench/measure.h bench/temporary.c bench/temporary.h \
 	bench/program.c bench/program.h bench/report.c bench/report.h bench/subject.c bench/subject.h \
-	bench/tasks/tasks.c bench/tasks/tasks.h bench/tasks/bytes.c bench/tasks/chain.c bench/tasks/fib.c \
-	bench/tasks/granularity.c bench/tasks/growth.c bench/tasks/independent.c bench/tasks/instructions.c bench/tasks/stencil.c \
+	bench/tasks/tasks.c bench/tasks/tasks.h bench/tasks/bytes.c bench/tasks/chain.c bench/tasks/fib.c bench/tasks/fib.h \
+	bench/tasks/granularity.c bench/tasks/growth.c bench/tasks/independent.c bench/tasks/instructions.c bench/tasks/stencil.c bench/tasks/tree.c \
 	bench/tasks/wake.c bench/ranks/cg.c bench/ranks/delegate.c bench/ranks/forks.c bench/ranks/loaded.c bench/ranks/memory.c bench/ranks/migrate.c bench/ranks/ranks.c \
 	bench/ranks/ranks.h bench/ranks/sheet.c bench/ranks/sheet.h bench/ranks/stencil.c bench/ranks/twin.c \
 	bench/cg/bench.c bench/cg/cg.h bench/cg/frames.c bench/cg/make.c bench/cg/ours.c bench/cg/plans.c bench/cg/states.c bench/sets.h \
@@ -133,7 +133,7 @@ bench_compare_LDADD = libduite_core.la -lm
 
 # What `duite-bench tasks` counts the instructions of: with the library of users, not with libduite_core.
 check_PROGRAMS += bench/tasks/counted
-bench_tasks_counted_SOURCES = bench/tasks/counted.c bench/problem.c bench/problem.h
+bench_tasks_counted_SOURCES = bench/tasks/counted.c bench/problem.c bench/problem.h bench/tasks/fib.h
 bench_tasks_counted_LDFLAGS = $(AM_LDFLAGS) -no-install
 bench_tasks_counted_LDADD = libduite.la
 

@@ -109,6 +109,78 @@ uint64_t problem_fib_calls(unsigned n)
     return calls;
 }
 
+/* ---- The unbalanced tree ---- */
+
+static inline uint32_t rotated(uint32_t x, unsigned by)
+{
+    return x << by | x >> (32 - by);
+}
+
+/* SHA-1 (FIPS 180-4) of a message of at most 13 words. */
+static void sha1(const uint32_t *message, size_t words, uint32_t digest[5])
+{
+    static const uint32_t add[] = {0x5a827999, 0x6ed9eba1, 0x8f1bbcdc, 0xca62c1d6};
+    uint32_t w[80] = {0}, h[5] = {0x67452301, 0xefcdab89, 0x98badcfe, 0x10325476, 0xc3d2e1f0};
+    uint32_t a = h[0], b = h[1], c = h[2], d = h[3], e = h[4];
+    memcpy(w, message, words * sizeof *w);
+    w[words] = 0x80000000;
+    w[15] = (uint32_t)(32 * words);
+    for (size_t t = 16; t < 80; t++)
+        w[t] = rotated(w[t - 3] ^ w[t - 8] ^ w[t - 14] ^ w[t - 16], 1);
+    for (size_t t = 0; t < 80; t++) {
+        const uint32_t choice = (b & c) | (~b & d), parity = b ^ c ^ d;
+        const uint32_t majority = (b & c) | (b & d) | (c & d);
+        const uint32_t f = t < 20 ? choice : t >= 40 && t < 60 ? majority : parity;
+        const uint32_t next = rotated(a, 5) + f + e + w[t] + add[t / 20];
+        e = d, d = c, c = rotated(b, 30), b = a, a = next;
+    }
+    const uint32_t end[5] = {a, b, c, d, e};
+    for (size_t i = 0; i < 5; i++)
+        digest[i] = h[i] + end[i];
+}
+
+struct problem_node problem_tree_root(void)
+{
+    enum { SEED = 19 };
+    const uint32_t message[5] = {0, 0, 0, 0, SEED};
+    struct problem_node root = {.depth = 0};
+    sha1(message, 5, root.state);
+    return root;
+}
+
+/* floor(log(1 - u) / log(1 - p)), where u in [0, 1) is random and 1 / p = 1 + the 4 children. */
+uint32_t problem_tree_children(const struct problem_node *node, uint32_t levels)
+{
+    const double q = 1 - 1.0 / 5, rest = 1 - (node->state[4] & 0x7fffffff) / 2147483648.0;
+    uint32_t n = 0;
+    if (node->depth >= levels)
+        return 0;
+    for (double power = q; power >= rest; power *= q)
+        n++;
+    return n;
+}
+
+struct problem_node problem_tree_child(const struct problem_node *node, uint32_t place)
+{
+    uint32_t message[6];
+    struct problem_node child = {.depth = node->depth + 1};
+    memcpy(message, node->state, sizeof node->state);
+    message[5] = place;
+    sha1(message, 6, child.state);
+    return child;
+}
+
+uint64_t problem_tree_nodes(const struct problem_node *node, uint32_t levels)
+{
+    uint64_t nodes = 1;
+    const uint32_t n = problem_tree_children(node, levels);
+    for (uint32_t i = 0; i < n; i++) {
+        const struct problem_node child = problem_tree_child(node, i);
+        nodes += problem_tree_nodes(&child, levels);
+    }
+    return nodes;
+}
+
 void problem_work(uint64_t iterations)
 {
     uint64_t x = iterations;

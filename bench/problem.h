@@ -45,6 +45,21 @@ int problem_marks_wrong(uint64_t *mark, uint64_t n);
 int64_t problem_fib(unsigned n);
 uint64_t problem_fib_calls(unsigned n);
 
+/* An unbalanced tree: T1 of the benchmark UTS (Olivier et al., LCPC 2006), which is geometric with
+ * 4 children a node on average, seed 19 and 10 levels below the root, with as many levels as asked
+ * for. A node is a state of 20 bytes; each of its children has the SHA-1 of it and of its own place
+ * among them. */
+struct problem_node {
+    uint32_t state[5];
+    uint32_t depth;
+};
+struct problem_node problem_tree_root(void);
+/* How many children it has in a tree of so many levels; the child at that place. */
+uint32_t problem_tree_children(const struct problem_node *node, uint32_t levels);
+struct problem_node problem_tree_child(const struct problem_node *node, uint32_t place);
+/* Nodes of the tree below, this one among them. */
+uint64_t problem_tree_nodes(const struct problem_node *node, uint32_t levels);
+
 /* A body that takes time: so many steps, each of which waits for the one before. */
 void problem_work(uint64_t iterations);
 

@@ -169,13 +169,62 @@ static int fibonacci(void *context, struct serve_request *request, double *value
     return warm == right && result == right ? 0 : serve_fail("wrong answer");
 }
 
+/* ---- The unbalanced tree ---- */
+
+static uint64_t tree_nodes; /* by thread */
+#pragma omp threadprivate(tree_nodes)
+
+static void tree_node(struct problem_node node, uint32_t levels)
+{
+    const uint32_t n = problem_tree_children(&node, levels);
+    tree_nodes++;
+    for (uint32_t i = 0; i < n; i++) {
+        const struct problem_node child = problem_tree_child(&node, i);
+#pragma omp task firstprivate(child, levels)
+        tree_node(child, levels);
+    }
+}
+
+static double time_tree(uint32_t levels, int threads, uint64_t *nodes)
+{
+    double seconds = 0;
+    uint64_t sum = 0;
+#pragma omp parallel num_threads(threads) reduction(+ : sum)
+    {
+        tree_nodes = 0;
+#pragma omp barrier
+#pragma omp master
+        {
+            double start = serve_seconds();
+#pragma omp taskgroup
+            tree_node(problem_tree_root(), levels);
+            seconds = serve_seconds() - start;
+        }
+#pragma omp barrier
+        sum += tree_nodes;
+    }
+    *nodes = sum;
+    return seconds;
+}
+
+static int tree(void *context, struct serve_request *request, double *value)
+{
+    const uint32_t levels = (uint32_t)serve_number(request, "levels");
+    const struct problem_node root = problem_tree_root();
+    int threads = (int)serve_number(request, "threads");
+    uint64_t warm = 0, nodes = 0;
+    (void)context;
+    time_tree(levels, threads, &warm);
+    *value = time_tree(levels, threads, &nodes);
+    uint64_t right = problem_tree_nodes(&root, levels);
+    return warm == right && nodes == right ? 0 : serve_fail("wrong answer");
+}
+
 int main(void)
 {
-    static const struct serve_run runs[] = {{"stencil", stencil},
-                                            {"chain", chain},
-                                            {"independent", independent},
-                                            {"fib", fibonacci},
-                                            {0}};
+    static const struct serve_run runs[] = {
+        {"stencil", stencil}, {"chain", chain}, {"independent", independent},
+        {"fib", fibonacci},   {"tree", tree},   {0}};
     const struct serve_run *const all[] = {runs, NULL};
     return serve(RIVAL_SETTINGS, all, NULL);
 }

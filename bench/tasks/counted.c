@@ -2,6 +2,7 @@
  * of a case on one thread and checks the answer. A program of its own with the shared library, as
  * programs of users have it. */
 #include "bench/problem.h"
+#include "bench/tasks/fib.h"
 
 #include <duite.h>
 #include <stdbool.h>
@@ -50,23 +51,7 @@ static const duite_kernel *const KERNELS[] = {&COMBINE, &NEXT, &MARK, &FIB, NULL
 
 static int fib(const duite_call *call)
 {
-    const unsigned n = *(const unsigned *)call->args;
-    int64_t first, second;
-    duite_object a, b;
-    if (n < 2) {
-        *duite_out(call, 0, int64_t) = n;
-        return 0;
-    }
-    duite_new(call->rt, DUITE_I64, 1, &a);
-    duite_new(call->rt, DUITE_I64, 1, &b);
-    DUITE_FORK(call->rt, &FIB, DUITE_ARGS(unsigned, n - 1), a);
-    DUITE_FORK(call->rt, &FIB, DUITE_ARGS(unsigned, n - 2), b);
-    int code = duite_get(call->rt, a, &first);
-    if (!code)
-        code = duite_get(call->rt, b, &second);
-    if (!code)
-        *duite_out(call, 0, int64_t) = first + second;
-    return code;
+    return fib_wait(call, &FIB);
 }
 
 /* ---- Cases: each returns whether its answer is right ---- */

@@ -1,6 +1,7 @@
 /* Tasks that fork tasks: Fibonacci numbers by the book. Once as OpenMP does it, a task waits for
  * the two it forked and adds what they left in two shared objects; once by handing on the right to
  * write the result, without any waiting ("flow"). A figure is the time of a call. */
+#include "bench/tasks/fib.h"
 #include "bench/tasks/tasks.h"
 
 #include <stdio.h>
@@ -29,23 +30,7 @@ static void plan(struct measure *measure, const struct bench_options *options)
 
 static int fib(const duite_call *call)
 {
-    unsigned n = *(const unsigned *)call->args;
-    int64_t first, second;
-    duite_object a, b;
-    if (n < 2) {
-        *duite_out(call, 0, int64_t) = n;
-        return 0;
-    }
-    duite_new(call->rt, DUITE_I64, 1, &a);
-    duite_new(call->rt, DUITE_I64, 1, &b);
-    DUITE_FORK(call->rt, &tasks_fib, DUITE_ARGS(unsigned, n - 1), a);
-    DUITE_FORK(call->rt, &tasks_fib, DUITE_ARGS(unsigned, n - 2), b);
-    int code = duite_get(call->rt, a, &first);
-    if (!code)
-        code = duite_get(call->rt, b, &second);
-    if (!code)
-        *duite_out(call, 0, int64_t) = first + second;
-    return code;
+    return fib_wait(call, &tasks_fib);
 }
 
 static int flow(const duite_call *call)

@@ -5,9 +5,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const struct bench_case *const CASES[] = {
-    &tasks_stencil, &tasks_chain,       &tasks_independent, &tasks_fib_case,     &tasks_growth,
-    &tasks_bytes,   &tasks_granularity, &tasks_wake,        &tasks_instructions, NULL};
+static const struct bench_case *const CASES[] = {&tasks_stencil,
+                                                 &tasks_chain,
+                                                 &tasks_independent,
+                                                 &tasks_fib_case,
+                                                 &tasks_tree,
+                                                 &tasks_growth,
+                                                 &tasks_bytes,
+                                                 &tasks_granularity,
+                                                 &tasks_wake,
+                                                 &tasks_instructions,
+                                                 NULL};
 enum { N_CASES = sizeof CASES / sizeof *CASES - 1 };
 
 /* For two cores and the full sizes. */
@@ -20,6 +28,7 @@ static const struct measure_target TARGETS[] = {
     {"independent_dynamic_ns_per_task_vs_libomp", 0.7, false},
     {"fib_ns_per_task_vs_libgomp", 0.5, false},
     {"fib_speedup_t2", 1.8, true},
+    {"tree_vs_libomp", 1.3, false},
     {"independent_growth", 1.5, false},
     {"bytes_per_pending_task", 256, false},
     {"granularity_50_w2_vs_mpi", 1.2, false},
@@ -44,6 +53,7 @@ static const duite_kernel *const KERNELS[] = {&tasks_gate,
                                               &tasks_fib_flow,
                                               &tasks_fib_put,
                                               &tasks_fib_add,
+                                              &tasks_tree_node,
                                               &tasks_wake_up,
                                               NULL};
 
@@ -189,7 +199,8 @@ static void plan_ours(struct measure *measure, const struct bench_options *optio
         add(measure, contest, tasks_ours(options->threads), key, scheduler);
     measure_value(measure, ours, 1e9 / contest->tasks, "ns", "%s_ns_per_task", key);
     for (size_t i = 0; contest->rivals[i]; i++)
-        measure_ratio(measure, ours, rival[i], "%s_ns_per_task_vs_%s", key, contest->rivals[i]);
+        measure_ratio(measure, ours, rival[i], "%s%s_vs_%s", key,
+                      contest->brief ? "" : "_ns_per_task", contest->rivals[i]);
 }
 
 void tasks_plan_contest(struct measure *measure, const struct bench_options *options,

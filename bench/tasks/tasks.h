@@ -10,14 +10,19 @@
 /* Shared by the cases of the bench "tasks". Each case is a file: its plan, its kernels, our runs
  * and the sequential twin's. */
 
+enum { TASKS_WORKERS = 256 }; /* that a tree can be counted by */
+
 /* Our process keeps one runtime from run to run; bodies find this as their context. */
 struct tasks_session {
     duite *rt; /* NULL: not started */
     unsigned threads;
     char scheduler[40];
-    uint64_t *mark;      /* of the independent tasks */
-    atomic_int gate;     /* tasks_gate runs until it is not 0 */
-    atomic_uint waiting; /* gates that run */
+    uint64_t *mark; /* of the independent tasks */
+    struct {
+        _Alignas(64) uint64_t nodes;
+    } counted[TASKS_WORKERS]; /* of the tree, by worker */
+    atomic_int gate;          /* tasks_gate runs until it is not 0 */
+    atomic_uint waiting;      /* gates that run */
     _Atomic uint64_t woken;
     double began; /* when a task began, once woken says so */
 };
@@ -56,11 +61,12 @@ extern const duite_kernel tasks_gate_write, tasks_gate;
 
 /* One problem solved in several ways: metrics NAME_VARIANT_ns_per_task for ours, the twin's
  * NAME_sequential_ns_per_task, the rivals' NAME_RIVAL_ns_per_task, and the ratios of each of ours
- * to each rival. */
+ * to each rival, NAME_VARIANT_ns_per_task_vs_RIVAL, or if they are brief NAME_VARIANT_vs_RIVAL. */
 struct tasks_contest {
     const char *name;
     const char *size;                            /* "points=64 steps=200" */
     double tasks;                                /* in a run */
+    bool brief;                                  /* names of ratios */
     const char *const *variants, *const *rivals; /* ended by NULL; a variant "" has no name */
 };
 void tasks_plan_contest(struct measure *measure, const struct bench_options *options,
@@ -73,9 +79,9 @@ struct subject_shape tasks_twin(void);
 /* ---- Cases ---- */
 
 extern const struct bench_case tasks_stencil, tasks_chain, tasks_independent, tasks_fib_case,
-    tasks_growth, tasks_bytes, tasks_granularity, tasks_wake, tasks_instructions;
+    tasks_tree, tasks_growth, tasks_bytes, tasks_granularity, tasks_wake, tasks_instructions;
 extern const duite_kernel tasks_stencil_combine, tasks_stencil_empty, tasks_stencil_padded,
     tasks_chain_next, tasks_independent_mark, tasks_granularity_point, tasks_wake_up, tasks_fib,
-    tasks_fib_flow, tasks_fib_put, tasks_fib_add;
+    tasks_fib_flow, tasks_fib_put, tasks_fib_add, tasks_tree_node;
 
 #endif

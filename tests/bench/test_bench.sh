@@ -72,6 +72,7 @@ chain_dynamic_ns_per_task_vs_libomp <= 0.08
 independent_dynamic_ns_per_task_vs_libomp <= 0.7
 fib_ns_per_task_vs_libgomp <= 0.5
 fib_speedup_t2 >= 1.8
+tree_vs_libomp <= 1.3
 independent_growth <= 1.5
 bytes_per_pending_task <= 256
 granularity_50_w2_vs_mpi <= 1.2

@@ -93,6 +93,15 @@ START_TEST(test_fib)
 }
 END_TEST
 
+/* The published size of T1, with all 10 levels. */
+START_TEST(test_tree)
+{
+    const struct problem_node root = problem_tree_root();
+    ck_assert_uint_eq(problem_tree_nodes(&root, 0), 1);
+    ck_assert_uint_eq(problem_tree_nodes(&root, 10), 4130071);
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("bench/problem");
@@ -103,6 +112,7 @@ int main(void)
     tcase_add_test(one, test_marks);
     tcase_add_test(one, test_line);
     tcase_add_test(one, test_fib);
+    tcase_add_test(one, test_tree);
     suite_add_tcase(suite, one);
     return unit_run(suite);
 }

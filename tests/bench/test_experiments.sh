@@ -25,7 +25,7 @@ unknown() {
 ok "an unknown experiment" unknown
 ok "resolution" table resolution 3
 ok "grain" table grain 8
-ok "scaling" table scaling 24
+ok "scaling" table scaling 22
 ok "contact-partition" table contact-partition 17
 ok "vassilev" table vassilev 17
 # Panels of so many vertices that joints pull together around the figure.

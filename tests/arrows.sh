@@ -47,12 +47,10 @@ arrows() {
         END { exit bad }'
 }
 
-# plant FILE HEADER: whether the check finds that include, planted in a copy of the tree.
+# plant FILE HEADER: whether the check finds that include, alone in a tree.
 plant() {
     rm -rf "$scratch/tree"
-    mkdir -p "$scratch/tree/$(dirname "$1")"
-    cp -R "$srcdir/runtime" "$srcdir/cloth" "$scratch/tree"
-    chmod -R u+w "$scratch/tree"
+    mkdir -p "$scratch/tree/runtime" "$scratch/tree/cloth" "$scratch/tree/$(dirname "$1")"
     printf '#include %s\n' "$2" >> "$scratch/tree/$1"
     if arrows "$scratch/tree" > "$scratch/found"; then
         echo "not found: $1 including $2"

@@ -1,12 +1,15 @@
 /* metis: equal weights, few bytes between ranks: METIS' recursive bisection of the hinted graph
  * (Karypis & Kumar, SIAM J. Sci. Comput. 20(1), 1998), with the seed of the run. A graph without
- * edges, or with no more objects than ranks, goes to `block`. */
+ * edges, or with no more objects than ranks, goes to `block`; but to `cyclic` if nothing at all was
+ * hinted. Then nobody knows which objects the program's loops work on together, and work that moves
+ * on over the objects, as a factorisation does, keeps all ranks busy. */
 #include "runtime/map/map.h"
 
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
 
 #include <metis.h>
+#include <stdbool.h>
 #include <string.h>
 
 /* METIS counts in integers: weights are scaled so that their sum stays far below its range. */
@@ -45,9 +48,20 @@ static int metis_partition(const duite_object_graph *graph, int n_ranks, uint64_
     return DUITE_OK;
 }
 
+/* Neither edges nor weights. */
+static bool metis_knows_nothing(const duite_object_graph *graph)
+{
+    bool equal = !graph->start[graph->n];
+    for (size_t i = 1; i < graph->n && equal; i++)
+        equal = !(graph->weight[i] < graph->weight[0] || graph->weight[i] > graph->weight[0]);
+    return equal;
+}
+
 int map_by_metis(const duite_object_graph *graph, int n_ranks, uint64_t seed, int *home)
 {
     size_t n = graph->n, edges = graph->start[n];
+    if (metis_knows_nothing(graph))
+        return map_cyclic.map(graph, n_ranks, seed, home);
     if (!edges || n <= (size_t)n_ranks)
         return map_block.map(graph, n_ranks, seed, home);
     if (edges > 0x3fffffff)

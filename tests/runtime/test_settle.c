@@ -179,6 +179,31 @@ static int map_wrongly(const duite_object_graph *graph, int n_ranks, uint64_t se
     return 0;
 }
 
+/* The homes by the default mapping of the next n objects, as digits. */
+static uint32_t homes_by_default(int first, int n)
+{
+    uint32_t digits = 0;
+
+    ck_assert_int_eq(map_settle(&table, &(struct map_policy){&map_metis, NULL}, 1), DUITE_OK);
+    for (int i = first; i < first + n; i++)
+        digits = 10 * digits + 1 + (uint32_t)at(i)->home;
+    return digits;
+}
+
+/* Objects of which nothing was hinted go round, also from one time to the next; with weights alone
+ * they are cut into ranges. */
+START_TEST(without_hints)
+{
+    make(0, 7);
+    ck_assert_uint_eq(homes_by_default(0, 7), 1231231);
+    make(7, 4);
+    ck_assert_uint_eq(homes_by_default(7, 4), 2312);
+    make(11, 6);
+    ck_assert_int_eq(map_hint(&table, object[11], 4, 0, NULL, NULL), DUITE_OK);
+    ck_assert_uint_eq(homes_by_default(11, 6), 122333);
+}
+END_TEST
+
 START_TEST(wrong_mapping)
 {
     const duite_mapping wrong = {.name = "wrong", .summary = "", .map = map_wrongly};
@@ -203,6 +228,7 @@ int main(void)
     tcase_add_test(test, of_settled_ones);
     tcase_add_test(test, blocks);
     tcase_add_test(test, long_chain);
+    tcase_add_test(test, without_hints);
     tcase_add_test(test, wrong_mapping);
     suite_add_tcase(suite, test);
     return unit_run(suite);

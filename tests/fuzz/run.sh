@@ -40,12 +40,12 @@ sources() { # NAME
 }
 
 limits='-timeout=60 -rss_limit_mb=2048 -malloc_limit_mb=256 -print_final_stats=1 -verbosity=1 -reload=0'
-options() { # NAME: a scene may well ask for a mesh of gigabytes, and gets none here
+options() { # NAME: a scene may well ask for a mesh of gigabytes, a checkpoint for room, and they get none here
     case $1 in
-        scene) ASAN_OPTIONS=max_allocation_size_mb=64:allocator_may_return_null=1 ;;
+        scene | resume) ASAN_OPTIONS=max_allocation_size_mb=64:allocator_may_return_null=1 ;;
         *) ASAN_OPTIONS= ;;
     esac
-    export ASAN_OPTIONS="$ASAN_OPTIONS:detect_leaks=1"
+    export ASAN_OPTIONS="$ASAN_OPTIONS:detect_leaks=1" LSAN_OPTIONS="suppressions=$source/tests/support/lsan.supp"
     (cd "$source" && sources "$1") > "words-$1"
 }
 

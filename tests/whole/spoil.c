@@ -69,6 +69,9 @@ static bool spoil_main(const struct opened *of, const char *what)
         of->arrays.tied.other[0] = saved->n_blocks;
     else if (!strcmp(what, "side") && saved->n_meetings)
         ((struct flow_saved_side *)of->arrays.side)->side[1] = 1u << 30;
+    else if (!strcmp(what, "room") && saved->n_meetings)
+        for (uint32_t i = 0; i < saved->n_meetings; i++)
+            ((struct flow_saved_side *)of->arrays.side)[i].room = 0;
     else if (!strcmp(what, "kept") && saved->n_kept)
         *(uint32_t *)of->arrays.kept = UINT32_MAX;
     else

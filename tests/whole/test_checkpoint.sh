@@ -195,6 +195,7 @@ pile frames counts steps or frames that cannot be
 pile ties has ties between blocks that this scene cannot have
 pile other has ties between blocks that this scene cannot have
 pile side has contacts between blocks or obstacles that this scene does not have
+pile room has contacts between blocks or obstacles that this scene does not have
 pile kept has contacts between blocks or obstacles that this scene does not have
 pile point has places or contacts that no run comes to
 pile row has places or contacts that no run comes to

@@ -57,7 +57,8 @@ static bool has_bools(const struct flow_saved *saved)
            is_bool(&saved->report.stopped);
 }
 
-/* Of one block: the others that it shares ties with ascend, and there is room for them. */
+/* Of one block: the others that it shares ties with ascend, and there is room for them. Places only
+ * say whether links changed: flow_ties_adopt finds them anew before a table is made with them. */
 static bool has_others(const struct flow_saved *saved, const struct flow_tied_blocks *tied,
                        uint32_t b)
 {
@@ -105,7 +106,8 @@ static bool has_meetings(const struct flow *flow, const struct flow_saved *saved
         return false;
     for (uint32_t i = 0; i < saved->n_meetings; i++)
         if (side[i].side[0] >= saved->n_blocks || side[i].side[1] < side[i].side[0] ||
-            side[i].side[1] >= n_sides || side[i].room > MOST_ITEMS)
+            side[i].side[1] >= n_sides || side[i].room > MOST_ITEMS ||
+            !is_power_of_two(side[i].room))
             return false;
     for (uint32_t b = 0; b < saved->n_kept; b++)
         if (kept[b] > MOST_ITEMS)

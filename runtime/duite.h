@@ -255,6 +255,9 @@ typedef struct duite_options {
                                         trace_end. Default: all, and what comes before them */
     int check; /* 1: checking mode, below. Default 0, or 1 with DUITE_CHECK=accesses in the
                   environment */
+    int memo;  /* 1: repeated forks are recognised, see duite_fork; 0: they are not; 2: even where
+                  bodies are long, for tests. Default 1, or 0 or 2 with DUITE_MEMO=0 or
+                  DUITE_MEMO=always in the environment */
 } duite_options;
 
 /* The defaults, as the fields say. What the program sets afterwards counts first, then the
@@ -464,7 +467,14 @@ int duite_is_local(duite *rt, duite_object object);
  * are at most so many. Tasks that the runtime adds to combine, send and copy count. A replay is one
  * task, but the tasks of a round that is forked count each. The window bounds the memory of a
  * program that forks far ahead, and changes no result. Such a fork may wait for other ranks, as a
- * get does: they must not wait for this one outside of duite. */
+ * get does: they must not wait for this one outside of duite.
+ *
+ * A program of one rank that forks the same tasks round after round has them replayed, as if it had
+ * recorded them: same results, failures and task numbers, in less time. Recognised are up to 4,096
+ * forks a round without options, of kernels of up to 16 parameters under r, w and rw that write
+ * something, on objects of fixed size that are no views; arguments may change. Any other call of
+ * the main program ends it, and it begins again after two equal rounds. Not in checking mode, not
+ * with a trace, and not with renaming. options.memo switches it off. */
 int duite_fork(duite *rt, const duite_kernel *kernel, const void *args, size_t n,
                const duite_object *objects);
 
@@ -665,6 +675,8 @@ typedef struct duite_counters {
     uint64_t migrated;   /* objects that got another home; the same on every rank, counted once */
     uint64_t stolen_far; /* those of `stolen` that came from a worker farther away than the nearest
                             one (duite_near) */
+    uint64_t recognised; /* tasks whose forks were recognised as those of an earlier round */
+    uint64_t recognised_rounds; /* whole rounds of these */
 } duite_counters;
 
 /* Sums over all workers and ranks since start. After a duite_wait the counts are exact. Collective.

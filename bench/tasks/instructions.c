@@ -8,6 +8,7 @@
 
 #include <limits.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 static const char *const COUNTED[] = {"stencil", "chain", "independent", "fib", "replay"};
@@ -43,6 +44,7 @@ static int instructions(void *context, struct serve_request *request, double *va
     double less, more;
     (void)context;
     serve_word(request, "what", what, sizeof what);
+    setenv("DUITE_MEMO", "0", 1); /* of each fork and its task, not of rounds of them */
     int code = count(what, few, &less);
     if (!code)
         code = count(what, many, &more);

@@ -4,6 +4,7 @@
 #include "runtime/base/policy.h"
 #include "runtime/comm/comm.h"
 #include "runtime/map/map.h"
+#include "runtime/plan/memo.h"
 #include "runtime/plan/record.h"
 #include "runtime/task/body.h"
 #include "runtime/trace/trace.h"
@@ -21,8 +22,9 @@ struct duite {
     struct work_pool *pool;
     struct worker *worker; /* the main thread's; as is: */
     pthread_t thread;
-    struct trace *trace; /* NULL: nothing is written down */
-    bool traced;         /* the trace is closed */
+    struct plan_memo *memo; /* recognises repeated forks; NULL: they stay forks */
+    struct trace *trace;    /* NULL: nothing is written down */
+    bool traced;            /* the trace is closed */
     struct base_monitor monitor;
     struct base_watchdog *watchdog; /* NULL: all policies are built in, or nobody watches them */
     struct map_policy mapping;

@@ -54,6 +54,14 @@ static uint64_t environment_seed(void)
     return environment_number(getenv("DUITE_SEED"), 1, NO_SEED - 1, NO_SEED);
 }
 
+static int environment_memo(void)
+{
+    const char *text = getenv("DUITE_MEMO");
+    if (!text || !strcmp(text, "1"))
+        return 1;
+    return !strcmp(text, "0") ? 0 : !strcmp(text, "always") ? 2 : -1;
+}
+
 duite_options duite_options_default(void)
 {
     const char *scheduler = getenv("DUITE_SCHEDULER"), *mapping = getenv("DUITE_MAPPING"),
@@ -64,6 +72,7 @@ duite_options duite_options_default(void)
         .check = !check                       ? 0
                  : !strcmp(check, "accesses") ? 1
                                               : -1,
+        .memo = environment_memo(),
         .threads = environment_threads(),
         .scheduler = duite_scheduler_find(scheduler ? scheduler : duite_scheduler_names()[0]),
         .mapping = duite_mapping_find(mapping ? mapping : duite_mapping_names()[0]),
@@ -185,6 +194,11 @@ int api_check_options_rest(const duite_options *options)
     if (options->check < 0)
         return base_error(DUITE_E_ARGUMENT,
                           "duite_start: DUITE_CHECK has no such mode; there is \"accesses\"");
+    if (options->memo < 0)
+        return base_error(
+            DUITE_E_ARGUMENT,
+            "duite_start: DUITE_MEMO=%s in the environment: 0, 1 or always is expected",
+            getenv("DUITE_MEMO") ? getenv("DUITE_MEMO") : "");
     if (options->trace && !*options->trace)
         return base_error(
             DUITE_E_ARGUMENT,

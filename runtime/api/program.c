@@ -14,6 +14,8 @@ int api_enter_any(duite *rt, const char *call)
         return base_error(DUITE_E_ARGUMENT, "%s: no runtime", call);
     if (!work_may_fork(rt->pool))
         return base_error(DUITE_E_STATE, "%s is for the main thread, outside of bodies", call);
+    if (rt->memo)
+        plan_memo_break(rt->memo);
     if (rt->graph.broken)
         return base_error(rt->graph.broken,
                           "%s: an earlier call failed beyond repair (%s); only duite_stop is left",
@@ -168,9 +170,11 @@ int duite_fork(duite *rt, const duite_kernel *kernel, const void *args, size_t n
         return api_body_fork(body, kernel, args, n, objects);
     if (!rt || !fork_is_direct(rt))
         return fork_other(rt, kernel, args, n, objects);
-    const int code = task_fork(&rt->graph.root, rt->worker, &plain, kernel, args, n, objects);
-    if (code || rt->graph.broken)
-        return api_remember(rt, code);
+    if (!rt->memo || !plan_memo_fork(rt->memo, kernel, args, n, objects)) {
+        const int code = task_fork(&rt->graph.root, rt->worker, &plain, kernel, args, n, objects);
+        if (code || rt->graph.broken)
+            return api_remember(rt, code);
+    }
     if (rt->window)
         api_throttle(rt);
     return DUITE_OK;

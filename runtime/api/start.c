@@ -75,6 +75,15 @@ static int instance_start_graph(duite *rt, const duite_options *options)
     return code;
 }
 
+/* Where repeated forks are to be recognised and can be. */
+static int instance_start_memo(duite *rt, const duite_options *options)
+{
+    if (!options->memo || rt->comm || rt->trace || options->check || options->rename_bytes)
+        return DUITE_OK;
+    rt->memo = plan_memo_new(&rt->graph, rt->worker, options->memo > 1);
+    return rt->memo ? DUITE_OK : base_no_memory("the runtime");
+}
+
 static int instance_start_workers(duite *rt, const duite_options *options, int code)
 {
     struct work_cores cores = {0};
@@ -115,7 +124,7 @@ static int instance_start_workers(duite *rt, const duite_options *options, int c
     work_cores_free(&cores);
     rt->worker = code ? NULL : work_main(rt->pool);
     rt->thread = pthread_self();
-    return code;
+    return code ? code : instance_start_memo(rt, options);
 }
 
 /* ---- The end ---- */
@@ -160,6 +169,7 @@ static void instance_end(duite *rt)
         api_give_up(rt);
     work_stop(rt->pool);
     base_watchdog_stop(rt->watchdog);
+    plan_memo_free(rt->memo);
     api_graphs_stop(rt); /* closes their channels */
     bool whole = comm_stop(rt->comm);
     trace_free(rt->trace, whole);

@@ -322,6 +322,8 @@ int duite_count_all(duite *rt, duite_counters *counters)
                                  .exposed = sums[11],
                                  .stolen_far = (uint64_t)sums[12],
                                  .graphs_recorded = rt->graphs_recorded,
-                                 .migrated = rt->migration.objects};
+                                 .migrated = rt->migration.objects,
+                                 .recognised = rt->memo ? rt->memo->tasks : 0,
+                                 .recognised_rounds = rt->memo ? rt->memo->rounds : 0};
     return code;
 }

@@ -114,7 +114,7 @@ static void channel_unpack_failures(struct plan *plan, const struct task *task,
         plan->place[use[failed.use].place].failure = task_fail(plan->graph, &failed.failure, false);
     }
     if (message->failures)
-        atomic_store_explicit(&plan->tainted, 1, memory_order_relaxed);
+        atomic_store_explicit(&plan->tainted, PLAN_POISONED, memory_order_relaxed);
 }
 
 void plan_channel_unpack(struct task *task, const void *bytes)
@@ -136,7 +136,7 @@ void plan_channel_lost(struct task *task)
 {
     struct plan *plan = channel_begin(task);
     const struct plan_node_use *use = plan->use + task->node->first_use;
-    atomic_store_explicit(&plan->tainted, 1, memory_order_relaxed);
+    atomic_store_explicit(&plan->tainted, PLAN_POISONED, memory_order_relaxed);
     for (uint32_t i = 0; i < task->n; i++)
         if (use[i].writes)
             plan->place[use[i].place].failure = &channel_lost;

@@ -30,6 +30,46 @@ void plan_node_ready(struct task_graph *graph, struct worker *worker, struct tas
 void plan_replay_end(struct task_graph *graph, struct worker *worker, struct plan *plan,
                      uint64_t rounds);
 
+static inline void plan_taint(struct plan *plan, uint32_t bit)
+{
+    if (!(atomic_load_explicit(&plan->tainted, memory_order_relaxed) & bit))
+        atomic_fetch_or_explicit(&plan->tainted, bit, memory_order_relaxed);
+}
+
+/* Of an open replay, a task that was never forked, or any for want of memory. */
+static inline bool plan_node_is_void(const struct plan *plan, const struct task *task,
+                                     uint32_t taint)
+{
+    return taint & PLAN_STARVED ||
+           task->number >= atomic_load_explicit(&plan->unforked, memory_order_relaxed);
+}
+
+/* Those of its round. */
+static inline const void *plan_node_args(const struct plan *plan, const struct plan_node *node)
+{
+    const unsigned char *args = node->args;
+    if (!plan->ring_mask || !args)
+        return args;
+    const uint64_t round = atomic_load_explicit(&node->round, memory_order_relaxed);
+    return args + (round & plan->ring_mask) * plan->stride;
+}
+
+/* As the body counts: to those of an open replay there is no replay. */
+static inline uint64_t plan_node_round(const struct plan *plan, const struct plan_node *node)
+{
+    if (plan->gate)
+        return 0;
+    return plan->first_round + atomic_load_explicit(&node->round, memory_order_relaxed);
+}
+
+/* Whether a node that waits for nothing else may run; if not, it is not the caller's any more. */
+static inline bool plan_node_may_run(struct plan *plan, struct task *task)
+{
+    return !plan->gate ||
+           task->number < atomic_load_explicit(&plan->gate->seen, memory_order_acquire) ||
+           plan_passes(plan, task);
+}
+
 /* Runs a NODE; returns whether its body ran. */
 __attribute__((always_inline)) static inline bool plan_node_run_body(struct task_frame *frame,
                                                                      struct task *task)
@@ -37,7 +77,10 @@ __attribute__((always_inline)) static inline bool plan_node_run_body(struct task
     const struct plan_node *node = task->node;
     struct plan *plan = node->plan;
     atomic_store_explicit(&task->pending, node->steady, memory_order_relaxed);
-    const bool tainted = atomic_load_explicit(&plan->tainted, memory_order_relaxed);
+    const uint32_t taint = atomic_load_explicit(&plan->tainted, memory_order_relaxed);
+    if (taint > PLAN_POISONED && plan_node_is_void(plan, task, taint))
+        return false;
+    const bool tainted = taint & PLAN_POISONED;
     const struct data_failure *failure = tainted ? plan_node_poison(plan, task) : NULL;
     if (!failure)
         failure = task_given_up(frame->body.graph);
@@ -46,13 +89,13 @@ __attribute__((always_inline)) static inline bool plan_node_run_body(struct task
         if (node->n_leaves)
             plan_node_clear_leaves(plan, task);
         struct task_scope *scope = NULL;
-        frame->call.round = plan->first_round + node->round;
-        failure = task_frame_call(frame, task, node->args, node->param, &scope);
+        frame->call.round = plan_node_round(plan, node);
+        failure = task_frame_call(frame, task, plan_node_args(plan, node), node->param, &scope);
         if (scope)
             plan_node_leave_scope(scope, frame->body.worker, failure);
     }
     if (failure)
-        atomic_store_explicit(&plan->tainted, 1, memory_order_relaxed);
+        plan_taint(plan, PLAN_POISONED);
     if (tainted || failure)
         plan_node_set_poison(plan, task, failure);
     return runs;
@@ -69,22 +112,28 @@ __attribute__((always_inline)) static inline void plan_node_count_down(struct ta
     struct plan_node *node = task->node;
     struct plan *plan = node->plan;
     struct task **next = node->next, **stop = next + node->n_next;
-    const uint64_t round = node->round++;
+    const uint64_t round = atomic_load_explicit(&node->round, memory_order_relaxed);
+    const uint64_t end = atomic_load_explicit(&plan->last, memory_order_relaxed);
     const bool decides = task->type == TASK_NODE_FLAG;
-    const bool last = plan->decides ? decides && plan->stop : round == plan->last;
+    const bool last = plan->decides ? decides && plan->stop : round == end;
     int64_t counts = node->sink && (plan->decides || last);
     if (decides && last) /* the other sinks take one a round, and so did this one until now */
         counts = PLAN_UNKNOWN - (int64_t)((round + 1) * plan->n_sinks - 1);
+    if (plan->gate && task->number < atomic_load_explicit(&plan->unforked, memory_order_relaxed))
+        work_over(graph->pool, worker, 1); /* a task that was forked */
+    atomic_store_explicit(&node->round, round + 1, memory_order_release);
     task->number += plan->n_calls;
     for (next += last ? node->n_cyclic : 0; next < stop; next++) {
         _Atomic uint32_t *pending = &(*next)->pending;
         /* The last one needs no atomic subtraction: nobody else has the counter then. */
-        if (atomic_load_explicit(pending, memory_order_acquire) == 1 ||
-            atomic_fetch_sub_explicit(pending, 1, memory_order_acq_rel) == 1)
+        const bool was_last = atomic_load_explicit(pending, memory_order_acquire) == 1 ||
+                              atomic_fetch_sub_explicit(pending, 1, memory_order_acq_rel) == 1;
+        if (was_last && plan_node_may_run(plan, *next))
             ready(graph, worker, *next);
     }
     if (counts && atomic_fetch_sub_explicit(&plan->left, counts, memory_order_acq_rel) == counts)
-        plan_replay_end(graph, worker, plan, plan->last + 1);
+        plan_replay_end(graph, worker, plan,
+                        atomic_load_explicit(&plan->last, memory_order_relaxed) + 1);
 }
 
 #pragma GCC visibility pop

@@ -26,12 +26,12 @@ struct plan_node {
     duite_param *param; /* task->n */
     struct task **next; /* n_next tasks that wait for it, those of the next round first */
     uint32_t n_next, n_cyclic;
-    uint32_t steady;    /* predecessors in this round and the last one */
-    uint32_t first_use; /* its uses, one a parameter: task->n */
-    uint32_t n_leaves;  /* parameters to be cleared: contributions */
-    bool sink;          /* nothing of its round waits for it */
-    bool runs_inline;   /* no task of the program, and a message waits for it */
-    uint64_t round;     /* the one it runs next */
+    uint32_t steady;        /* predecessors in this round and the last one */
+    uint32_t first_use;     /* its uses, one a parameter: task->n */
+    uint32_t n_leaves;      /* parameters to be cleared: contributions */
+    bool sink;              /* nothing of its round waits for it */
+    bool runs_inline;       /* no task of the program, and a message waits for it */
+    _Atomic uint64_t round; /* the one it runs next; written by whoever has it */
 };
 
 /* Bytes that nodes use: first the objects of the record and the flag, if it is none of them, then
@@ -46,6 +46,24 @@ struct plan_place {
     const duite_law *law;         /* of a contribution */
     size_t first_param, n_params; /* in param_of: those that point here */
     _Atomic uint32_t affinity;    /* see duite_ready.affinity */
+};
+
+/* A replay that is open: its rounds are not known beforehand, and a node may run once the main
+ * program forked it. It outlives all plans that use it one after the other, since a worker may look
+ * here after the replay is over. See open.c. */
+enum { PLAN_OPEN_MAX = 4096 /* nodes of a round */ };
+struct plan_gate {
+    _Alignas(64) _Atomic uint64_t forked; /* tasks below this number are; the main thread's */
+    _Alignas(64) _Atomic uint64_t seen;   /* what workers last saw of it */
+    _Alignas(64) _Atomic uint64_t parked[PLAN_OPEN_MAX]; /* by node: its task's number, if it waits
+                                                            for nothing but its fork; or 0 */
+};
+
+/* What is wrong in the replay that runs: bits of `tainted`. */
+enum {
+    PLAN_POISONED = 1, /* something is */
+    PLAN_CLOSED = 2,   /* it was open: tasks from `unforked` on were not forked, and do not run */
+    PLAN_STARVED = 4   /* there was no memory to begin it: no task runs */
 };
 
 struct plan {
@@ -81,11 +99,16 @@ struct plan {
     uint64_t started;        /* replays */
     /* Of the replay that runs. */
     struct task *replay;
-    uint64_t first_round;          /* as the program counts; the plan's own rounds begin with 0 */
-    uint64_t last;                 /* the last round, or the last that the flag can ask for */
-    bool stop;                     /* said by the deciding node */
-    _Atomic uint64_t over, rounds; /* replays that are over; rounds of the last of them */
-    _Alignas(64) _Atomic uint32_t tainted; /* something is poisoned */
+    struct plan_gate *gate;   /* it is open, or was; NULL: it is not */
+    size_t ring_mask, stride; /* round r finds its arguments r & mask strides on; 0: there is one */
+    _Atomic uint64_t begun;   /* replays of which nodes may run */
+    _Atomic uint64_t unforked; /* the number of the first task that was not forked */
+    uint64_t first_round;      /* as the program counts; the plan's own rounds begin with 0 */
+    _Atomic uint64_t last; /* the last round, or the last that the flag can ask for; of an open one
+                              a round whose tasks were not forked */
+    bool stop;             /* said by the deciding node */
+    _Atomic uint64_t over, rounds;         /* replays that are over; rounds of the last of them */
+    _Alignas(64) _Atomic uint32_t tainted; /* bits, see above */
     _Alignas(64) _Atomic int64_t left;     /* sinks to come, see plan_node_finish */
 };
 
@@ -177,6 +200,36 @@ void plan_release(struct plan *plan);
 /* A replay: binds the objects; starts the first round. */
 void plan_replay_run(struct task *task);
 void plan_replay_start(struct task_graph *graph, struct worker *worker, struct task *task);
+/* Open replays. Open: begins one of the record's plan, of which no other one is on its way; the
+ * next task that is forked will be its first. Errors: memory. Forked: the main program forked its
+ * next task, node i. Close: no more are to come; `first` was its first task. All three by the main
+ * thread. */
+int plan_replay_open(struct plan_record *record, struct worker *worker, struct plan_gate *gate);
+static inline void plan_forked(struct plan *plan, struct worker *worker, uint32_t i);
+void plan_replay_close(struct plan *plan, struct worker *worker, uint64_t first);
+/* Of plan_replay_open: no task from `first` on is forked yet. */
+void plan_gate_close(struct plan *plan, struct plan_gate *gate, uint64_t first);
+/* Of plan_forked: the node may wait for that, with its task of this number. */
+void plan_unpark(struct plan *plan, struct worker *worker, uint32_t i, uint64_t number);
+/* Of plan_node_may_run: workers have not seen yet that the task was forked. */
+bool plan_passes(struct plan *plan, struct task *task);
+/* Room for the arguments of so many rounds, a power of 2, `stride` bytes each; no replay is on its
+ * way. False without memory. Then, for the main program: those of node i in this round; rounds,
+ * beginning with the first, whose arguments nobody needs any more. */
+bool plan_ring(struct plan *plan, size_t rounds, size_t stride);
+uint64_t plan_rounds_over(const struct plan *plan);
+bool plan_is_over(const struct plan *plan);
+
+static inline void plan_forked(struct plan *plan, struct worker *worker, uint32_t i)
+{
+    struct task_graph *const graph = plan->graph;
+    const uint64_t number = ++graph->root.forks;
+    graph->tasks++;
+    atomic_exchange_explicit(&plan->gate->forked, number + 1, memory_order_seq_cst);
+    if (atomic_load_explicit(&plan->gate->parked[i], memory_order_seq_cst) == number)
+        plan_unpark(plan, worker, i, number);
+}
+
 /* A node of a replay: runs it, and returns whether a body ran; counts its successors down. */
 bool plan_node_run(struct task_graph *graph, struct worker *worker, struct task *task,
                    const duite_call *call);

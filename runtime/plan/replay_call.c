@@ -195,6 +195,23 @@ int plan_replay_plan(struct plan_record *record, struct worker *worker, const du
     return replay_use_all(record, worker, task, flag);
 }
 
+int plan_replay_open(struct plan_record *record, struct worker *worker, struct plan_gate *gate)
+{
+    struct task_graph *graph = record->graph;
+    struct plan *plan = record->plan;
+    const uint64_t first = graph->root.forks + 1;
+    struct task *task =
+        task_new(&graph->root, TASK_REPLAY, plan->n_objects + 1,
+                 sizeof *task->replay + plan->n_objects * sizeof task->replay->block[0]);
+    if (!task)
+        return DUITE_E_MEMORY;
+    *task->replay = (struct plan_replay){.plan = plan, .rounds = UINT64_MAX, .number = first};
+    plan_gate_close(plan, gate, first);
+    const int code = replay_use_all(record, worker, task, NULL);
+    graph->tasks -= !code; /* until it is closed */
+    return code;
+}
+
 bool plan_replay_over(const struct plan_record *record)
 {
     const struct plan *plan = record->plan;

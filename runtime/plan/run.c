@@ -37,7 +37,7 @@ static bool place_bind(struct plan *plan, struct task_access *access, struct pla
     if (place->mode == DUITE_NONE)
         return true;
     if (place->failure)
-        atomic_store_explicit(&plan->tainted, 1, memory_order_relaxed);
+        plan_taint(plan, PLAN_POISONED);
     if (place->mode != DUITE_R) {
         if (in)
             data_version_free(in);
@@ -79,8 +79,29 @@ static void run_reset_nodes(struct plan *plan, const struct plan_replay *replay)
         atomic_store_explicit(&task->pending, plan->first[i], memory_order_relaxed);
         task->number = replay->number + plan->call[i];
         task->block = owner == PLAN_NONE ? (uint32_t)task->number : replay->block[owner];
-        task->node->round = 0;
+        atomic_store_explicit(&task->node->round, 0, memory_order_relaxed);
     }
+    atomic_fetch_add_explicit(&plan->begun, 1, memory_order_release);
+}
+
+/* What the main thread sets when it opens a replay. */
+static void run_reset_bounds(struct plan *plan, uint64_t rounds)
+{
+    atomic_store_explicit(&plan->last, rounds - 1, memory_order_relaxed);
+    atomic_store_explicit(&plan->tainted, 0, memory_order_relaxed);
+}
+
+/* There is no memory: nothing runs. */
+static void run_starve(struct plan *plan, struct task *task)
+{
+    const struct data_failure *failure = task_fail_memory(task);
+    for (size_t i = 0; i < plan->n_objects; i++)
+        plan->place[i].failure = failure;
+    task->replay->rounds = 0;
+    if (plan->gate)
+        plan_taint(plan, PLAN_STARVED);
+    if (plan->words)
+        work_starved(plan->graph->pool, "a replay");
 }
 
 void plan_replay_run(struct task *task)
@@ -90,9 +111,9 @@ void plan_replay_run(struct task *task)
     bool fine = true;
     plan->replay = task;
     plan->first_round = replay->first_round;
-    plan->last = replay->rounds - 1;
     plan->stop = false;
-    atomic_store_explicit(&plan->tainted, 0, memory_order_relaxed);
+    if (!plan->gate)
+        run_reset_bounds(plan, replay->rounds);
     atomic_store_explicit(&plan->left, plan->decides ? PLAN_UNKNOWN : (int64_t)plan->n_sinks,
                           memory_order_relaxed);
     run_change_args(plan, replay->changes);
@@ -104,14 +125,8 @@ void plan_replay_run(struct task *task)
         data_version_free(task->access[plan->n_objects].in);
     task->access[plan->n_objects].in = NULL;
     run_reset_nodes(plan, replay);
-    if (fine)
-        return;
-    const struct data_failure *failure = task_fail_memory(task);
-    for (size_t i = 0; i < plan->n_objects; i++)
-        plan->place[i].failure = failure;
-    replay->rounds = 0;
-    if (plan->words)
-        work_starved(plan->graph->pool, "a replay");
+    if (!fine)
+        run_starve(plan, task);
 }
 
 void plan_replay_end(struct task_graph *graph, struct worker *worker, struct plan *plan,
@@ -141,11 +156,12 @@ void plan_node_ready(struct task_graph *graph, struct worker *worker, struct tas
 void plan_replay_start(struct task_graph *graph, struct worker *worker, struct task *task)
 {
     struct plan *plan = task->replay->plan;
-    size_t n = task->replay->rounds ? plan->n_roots : 0;
+    size_t n = task->replay->rounds || plan->gate ? plan->n_roots : 0;
     if (!n)
         plan_replay_end(graph, worker, plan, task->replay->rounds);
     for (size_t i = 0; i < n; i++)
-        plan_node_ready(graph, worker, plan->root[i]);
+        if (plan_node_may_run(plan, plan->root[i]))
+            plan_node_ready(graph, worker, plan->root[i]);
 }
 
 /* ---- Nodes ---- */
@@ -262,11 +278,12 @@ static void node_run_flag(struct task_graph *graph, struct task *task)
 {
     struct plan *plan = task->node->plan;
     bool tainted = atomic_load_explicit(&plan->tainted, memory_order_relaxed);
-    plan->stop = task->node->round == plan->last || task_given_up(graph) ||
-                 (tainted && plan_node_poison(plan, task)) ||
+    const uint64_t round = atomic_load_explicit(&task->node->round, memory_order_relaxed);
+    plan->stop = round == atomic_load_explicit(&plan->last, memory_order_relaxed) ||
+                 task_given_up(graph) || (tainted && plan_node_poison(plan, task)) ||
                  !plan_flag_holds(task->node->param->type, task->node->param->data);
     if (plan->stop)
-        plan->last = task->node->round;
+        atomic_store_explicit(&plan->last, round, memory_order_relaxed);
 }
 
 bool plan_node_run(struct task_graph *graph, struct worker *worker, struct task *task,

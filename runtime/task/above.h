@@ -34,6 +34,9 @@ void work_offloaded_over(struct task_scope *top, struct worker *worker);
 /* So many more tasks of the main program are over; -1: there is one more to come. */
 void work_over(struct work_pool *pool, struct worker *worker, int tasks);
 
+/* Bodies that ran on this rank so far, and the seconds in them: about. Main thread. */
+void work_bodies(struct work_pool *pool, uint64_t *bodies, double *seconds);
+
 /* Something the main program may be waiting for happened. pool NULL: nobody waits any more. */
 void work_notify(struct work_pool *pool);
 

@@ -191,6 +191,18 @@ void work_count(struct work_pool *pool, duite_counters *counters)
             pool->setup.threads * pool->tick * (double)comm_awaited_ticks(pool->setup.comm);
 }
 
+void work_bodies(struct work_pool *pool, uint64_t *bodies, double *seconds)
+{
+    uint64_t ticks = 0;
+    *bodies = 0;
+    for (unsigned i = 0; i < pool->setup.threads; i++) {
+        const struct work_counts *counts = &pool->worker[i].counts;
+        *bodies += atomic_load_explicit(&counts->tasks, memory_order_relaxed);
+        ticks += atomic_load_explicit(&counts->busy, memory_order_relaxed);
+    }
+    *seconds = pool->tick * (double)ticks;
+}
+
 const char *work_endless(const struct work_pool *pool)
 {
     bool endless = atomic_load_explicit(&pool->endless, memory_order_relaxed);

@@ -3,7 +3,7 @@ tests_runtime_random_programs_SOURCES = tests/runtime/random_programs.c tests/ru
     tests/runtime/random_make.c tests/runtime/random_make.h tests/runtime/random_graphs.c tests/runtime/random_cells.c \
     tests/runtime/random_cells.h tests/runtime/random_print.c tests/runtime/random_views.c tests/runtime/random_laws.c \
     tests/runtime/random_bodies.c tests/runtime/random_interpret.c tests/runtime/random_run.c tests/runtime/random_run.h \
-    tests/runtime/random_places.c
+    tests/runtime/random_places.c tests/runtime/random_rounds.c
 tests_runtime_random_programs_LDADD = libduite_core.la
 check_PROGRAMS += tests/runtime/ranks_sizes
 tests_runtime_ranks_sizes_SOURCES = tests/runtime/ranks_sizes.c tests/negative/misuse.c tests/negative/misuse.h
@@ -115,11 +115,13 @@ TESTS += tests/runtime/test_chart.sh
 TESTS += tests/runtime/test_vite.sh
 
 if HAVE_CHECK
-AHEAD_TESTS = tests/runtime/test_window tests/runtime/test_rename
+AHEAD_TESTS = tests/runtime/test_window tests/runtime/test_rename tests/runtime/test_memo
 check_PROGRAMS += $(AHEAD_TESTS)
 TESTS += $(AHEAD_TESTS)
 tests_runtime_test_rename_SOURCES = tests/runtime/test_rename.c tests/negative/misuse.c tests/negative/misuse.h
 tests_runtime_test_rename_LDADD = $(DUITE_TEST_LIBS)
+tests_runtime_test_memo_SOURCES = tests/runtime/test_memo.c tests/negative/misuse.c tests/negative/misuse.h
+tests_runtime_test_memo_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_window_SOURCES = tests/runtime/test_window.c tests/negative/misuse.c tests/negative/misuse.h
 tests_runtime_test_window_LDADD = $(DUITE_TEST_LIBS)
 RUNTIME_TESTS = tests/runtime/test_late tests/runtime/test_predict tests/runtime/test_predict_replays tests/runtime/test_predict_costs tests/runtime/test_pool tests/runtime/test_owner tests/runtime/test_offload_names tests/runtime/test_laws tests/runtime/test_settle tests/runtime/test_balance tests/runtime/test_sched tests/runtime/test_sched_knowing tests/runtime/test_makespan tests/runtime/test_watchdog tests/runtime/test_traced tests/runtime/test_check tests/runtime/test_environment \

@@ -347,14 +347,18 @@ static void make_other(struct maker *m)
 static void make_operations(struct maker *m, size_t n)
 {
     struct prog *prog = m->prog;
+    unsigned rounds = m->repeats ? 1 + make_below(m, MOST_ROUNDS) : 0;
 
     while (prog->n_ops < n) {
         const unsigned choice = make_below(m, 100);
+        const size_t before = prog->n_ops;
 
         if (m->n_live < 2 || (choice < 8 && m->n_live < m->most_live))
             make_new(m);
         else if (make_one_in(m, m->viewing))
             make_view(m);
+        else if (rounds && make_one_in(m, 12) && rounds--)
+            make_rounds(m), n += prog->n_ops - before;
         else if (choice < 12)
             make_follow(m);
         else if (choice < 14)
@@ -380,6 +384,7 @@ static void draw_character(struct maker *m)
     m->graphs = make_one_in(m, 2);
     m->viewing = make_one_in(m, 2) ? 4 + make_below(m, 12) : 0;
     m->sized = m->graphs && !make_one_in(m, 4) ? 0 : 4; /* such graphs have no plan */
+    m->repeats = m->prog->n_ranks == 1 && make_one_in(m, 2);
 }
 
 struct prog *prog_make(uint64_t seed, int n_ranks)
@@ -391,7 +396,9 @@ struct prog *prog_make(uint64_t seed, int n_ranks)
         return NULL;
     prog->seed = seed;
     prog->n_ranks = n_ranks;
-    prog->ops = calloc(MAX_OPS + MAX_MADE + 2 * MOST_BURST + MOST_RECORDED, sizeof *prog->ops);
+    prog->ops =
+        calloc(MAX_OPS + MAX_MADE + 2 * MOST_BURST + MOST_RECORDED + MOST_ROUNDS * MOST_REPEATED,
+               sizeof *prog->ops);
     prog->objects = calloc(MAX_MADE, sizeof *prog->objects);
     if (!prog->ops || !prog->objects) {
         prog_free(prog);

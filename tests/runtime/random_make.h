@@ -6,7 +6,7 @@
 /* What the files that make programs share. */
 
 enum { MAX_LIVE = 20, MAX_MADE = 48, MAX_OPS = 420, MOST_BURST = 24, MOST_RECORDED = 24 };
-enum { MAX_GRAPHS = 4 };
+enum { MAX_GRAPHS = 4, MOST_REPEATED = 1000, MOST_ROUNDS = 3 };
 
 struct maker {
     struct prog *prog;
@@ -22,6 +22,7 @@ struct maker {
     unsigned viewing;         /* one operation in so many makes a view; 0: none */
     unsigned sized;           /* one object in so many changes its size; 0: none */
     int graphs;               /* records and replays graphs */
+    int repeats;              /* forks the same tasks again and again */
     size_t graph[MAX_GRAPHS]; /* what each graph recorded last: an operation; SIZE_MAX: freed */
 };
 
@@ -41,6 +42,9 @@ void make_set(struct maker *m, enum prog_kind kind, int zeros);
 
 /* Makes a view of some object. */
 void make_view(struct maker *m);
+
+/* Forks the same tasks again and again, MOST_REPEATED operations at most. */
+void make_rounds(struct maker *m);
 
 /* One operation on graphs; frees those that are left. */
 void make_graph_operation(struct maker *m);

@@ -134,6 +134,7 @@ struct prog_setup {
 /* What a run found: an empty text if all is as it should be. */
 struct prog_report {
     size_t op;
+    uint64_t recognised; /* tasks, on this rank */
     char text[600];
 };
 

@@ -22,6 +22,7 @@ struct settings {
 
 static char running[256]; /* the program that runs, for the handler */
 static volatile size_t where;
+static unsigned long recognised; /* tasks, of all programs of this process */
 
 /* Says what was running when the job hangs. */
 static void last_words(int number)
@@ -101,9 +102,10 @@ static int try_program(const struct prog *prog, const struct prog_setup *setup,
 
     for (unsigned long i = 0; i < repeat && !wrong; i++) {
         alarm(120);
-        *report = (struct prog_report){0, "out of memory"};
+        *report = (struct prog_report){.text = "out of memory"};
         if (answers)
             prog_run(prog, answers, setup, report, &where);
+        recognised += report->recognised;
         wrong = finder(setup, report) >= 0;
     }
     prog_answers_free(prog, answers);
@@ -294,7 +296,7 @@ static int run_one(const struct settings *settings, int rank)
 int main(int argc, char **argv)
 {
     struct settings settings = {.seed = 1, .ranks = 1, .window = -1, .programs = 500, .repeat = 1};
-    unsigned long mine[2] = {0, 0}, sum[2];
+    unsigned long mine[3] = {0, 0, 0}, sum[3];
     int rank, size, given;
 
     signal(SIGALRM, last_words);
@@ -322,10 +324,11 @@ int main(int argc, char **argv)
     } else {
         run_many(&settings, rank, size, mine);
     }
-    MPI_Allreduce(mine, sum, 2, MPI_UNSIGNED_LONG, MPI_SUM, MPI_COMM_WORLD);
+    mine[2] = recognised;
+    MPI_Allreduce(mine, sum, 3, MPI_UNSIGNED_LONG, MPI_SUM, MPI_COMM_WORLD);
     if (rank == 0)
-        printf("%sok 1 - %lu random programs, %lu wrong\n1..1\n", sum[1] ? "not " : "", sum[0],
-               sum[1]);
+        printf("%sok 1 - %lu random programs, %lu wrong\n1..1\n# %lu tasks recognised\n",
+               sum[1] ? "not " : "", sum[0], sum[1], sum[2]);
     MPI_Finalize();
     return sum[1] != 0;
 }

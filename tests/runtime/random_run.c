@@ -340,6 +340,7 @@ static void run_operations(struct run *run, const struct prog_setup *setup,
     duite_counters counters = {0};
 
     expect(run, "count_all", duite_count_all(run->rt, &counters), DUITE_OK);
+    run->report->recognised = counters.recognised;
     if (counters.graphs_recorded != run->answers->n_recorded)
         prog_found(run, "%llu graphs recorded, expected %llu",
                    (unsigned long long)counters.graphs_recorded,

@@ -13,3 +13,13 @@ ok "$((programs / 10)) on 2 ranks" ranks 2 tests/runtime/random_programs --base 
 for n in 5 7 8 16; do
     ok "$((programs / 100)) on $n ranks" ranks $n tests/runtime/random_programs --base 80${n}000 --programs $((programs / 100))
 done
+
+# On one rank half of the programs fork the same tasks again and again; with renaming they stay forks.
+repeated() {
+    limited env DUITE_MEMO="$1" tests/runtime/random_programs --base "$2" --programs $programs --rename 0 > "$scratch/repeated" &&
+        cat "$scratch/repeated" && if [ "$1" = 0 ]; then grep -x '# 0 tasks recognised' "$scratch/repeated"
+        else grep -x '# [1-9][0-9]* tasks recognised' "$scratch/repeated"; fi
+}
+ok "$programs whose repeated forks are recognised" repeated always 9000000
+ok "$programs where bodies are short" repeated 1 9100000
+ok "the same, which stay forks" repeated 0 9100000

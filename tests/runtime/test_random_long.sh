@@ -19,3 +19,7 @@ for seed in 1 2 3 4; do
     ok "25000 on 2 ranks, part $seed" ranks 2 tests/runtime/nested_programs --seed 2${seed}000000 --programs 25000
     ok "12500 on 3 ranks, part $seed" ranks 3 tests/runtime/nested_programs --seed 3${seed}000000 --programs 12500
 done
+for part in 0 1 2 3 4 5 6 7; do
+    ok "10000 on one rank, repeated forks recognised, part $part" \
+        limited env DUITE_MEMO=always tests/runtime/random_programs --base 13${part}00000 --programs 10000 --rename 0
+done

@@ -23,4 +23,7 @@ repeat "without a window, renaming everything" --base 54000000 --programs $progr
 for scheduler in steal fifo lifo priority static shuffle; do
     repeat "by $scheduler on four threads" --base 55000000 --programs $programs --threads 4 --scheduler $scheduler
 done
+DUITE_MEMO=always
+export DUITE_MEMO
+repeat "with repeated forks" --base 57000000 --programs $programs --ranks 1 --rename 0
 ok "random trees of tasks" limited tests/runtime/nested_programs --seed 56000000 --programs $((100 * programs))

@@ -1,0 +1,164 @@
+#ifndef DUITE_PLAN_MEMO_H
+#define DUITE_PLAN_MEMO_H
+
+#include "runtime/plan/plan.h"
+
+#include <pthread.h>
+#include <string.h>
+
+/* Repeated forks are recognised: a main program that forks the same tasks round after round, but
+ * for their arguments, has them replayed without asking for it. Same bytes, failures, numbers and
+ * windows as without. Main thread of a runtime of one rank.
+ *
+ * Each fork is hashed (kernel and objects). When the last forks repeat those before them, and
+ * bodies are short, the next round is recorded while it is forked, and a thread compiles it to a
+ * plan. Then each fork that is the expected one becomes a run of its node, in an open replay. Any
+ * other fork or call closes that.
+ * Recognised are forks without options of plain kernels that write something, on objects of fixed
+ * size that are not views. */
+
+enum {
+    MEMO_HISTORY = 2 * PLAN_OPEN_MAX, /* hashes kept; a power of 2 */
+    MEMO_HASHED = 16,                 /* objects of a fork at most, else it is like no other */
+    MEMO_ANCHORS = 8,
+    MEMO_PLANS = 8
+};
+
+/* A fork of a round. */
+struct plan_memo_step {
+    const duite_kernel *kernel;
+    size_t n, bytes, args;             /* objects; of arguments, and where they lie in a round's */
+    const struct plan_memo_step *next; /* the last one's: the first */
+    duite_object object[];
+};
+
+/* A round that was recognised. */
+struct plan_memo_round {
+    struct plan_record *record;   /* with its plan; NULL: free */
+    struct plan_memo_step *first; /* they follow one another */
+    uint32_t *hash;               /* of each fork */
+    uint64_t key;                 /* of the hashes, whichever comes first */
+    size_t n;
+    uint64_t used;          /* when it was opened last, in openings */
+    struct plan_gate *gate; /* stays when the round goes: see plan_gate */
+    pthread_t thread;       /* compiles the plan; */
+    bool compiles;          /* it has not ended, as far as the main thread knows */
+    _Atomic int made;       /* 1: the plan is there; -1: there is none for it */
+};
+
+enum plan_memo_state { MEMO_WATCH, MEMO_RECORD, MEMO_SEEK };
+
+struct plan_memo {
+    struct task_graph *graph;
+    struct worker *worker;
+    /* The open replay. */
+    const struct plan_memo_step *step; /* the fork expected; NULL: none is open */
+    struct plan *plan;
+    unsigned char *args;         /* of this round */
+    uint32_t at;                 /* the node of `step` */
+    uint64_t round, room, first; /* rounds forked; rounds with room for arguments; first task */
+    uint64_t tasks, rounds;      /* recognised in all, those of closed replays */
+    /* The watch. */
+    uint64_t skip;       /* forks that are not looked at */
+    uint64_t begin, pos; /* forks since `begin` are in the history, this is the next one */
+    uint64_t due;        /* from this one on each fork is looked at */
+    uint32_t anchor;     /* so is each with this hash */
+    uint32_t n_anchors;
+    uint64_t anchored[MEMO_ANCHORS]; /* where it was, newest first */
+    uint64_t spent;                  /* comparisons since `begin` */
+    uint64_t penalty;                /* forks to skip after the next failure */
+    bool always;                     /* see plan_memo_new */
+    uint64_t bodies;                 /* that ran when it was looked last; they took */
+    double seconds, mean;            /* so long; and each one lately */
+    enum plan_memo_state state;
+    size_t period;
+    uint64_t since, seen; /* where this state began; MEMO_SEEK: forks until the round began last */
+    struct plan_memo_round *found; /* MEMO_SEEK: its round */
+    struct plan_record *record;    /* MEMO_RECORD */
+    uint64_t openings;
+    struct plan_memo_round rounds_kept[MEMO_PLANS];
+    uint32_t hash[MEMO_HISTORY];
+};
+
+/* Always: even where bodies take so long that forks do not matter, and plans are compiled at once.
+ * NULL without memory. */
+struct plan_memo *plan_memo_new(struct task_graph *graph, struct worker *worker, bool always);
+/* No task is left; NULL is fine. */
+void plan_memo_free(struct plan_memo *memo);
+
+/* Something else than the expected fork: an open replay is closed, and the history begins again. */
+void plan_memo_break(struct plan_memo *memo);
+
+/* Of plan_memo_fork: a fork that may end a period, or is to be recorded. True: it is made. */
+bool plan_memo_look(struct plan_memo *memo, uint32_t hash, const duite_kernel *kernel,
+                    const void *args, size_t n, const duite_object *objects);
+/* A round was forked: room for the arguments of the next one, or the replay is closed. */
+void plan_memo_next_round(struct plan_memo *memo);
+
+/* Sums of products: no multiplication waits for another one. */
+static inline uint32_t plan_memo_hash(const struct plan_memo *memo, const duite_kernel *kernel,
+                                      size_t n, const duite_object *objects)
+{
+    uint64_t odd = 0x9e3779b97f4a7c15u, sum = (uint64_t)(uintptr_t)kernel * odd;
+    if (n > MEMO_HASHED || (n && !objects))
+        return (uint32_t)(memo->pos * odd >> 32);
+    for (size_t i = 0; i < n; i++) {
+        uint64_t name;
+        memcpy(&name, &objects[i], sizeof name);
+        odd += UINT64_C(0x3c6ef372fe94f82a);
+        sum += name * odd;
+    }
+    return (uint32_t)(sum >> 32);
+}
+
+static inline bool plan_memo_is_step(const struct plan_memo_step *step, const duite_kernel *kernel,
+                                     const void *args, size_t n, const duite_object *objects)
+{
+    if (step->kernel != kernel || step->n != n || (step->bytes && !args) || !objects)
+        return false;
+    uint64_t different = 0;
+    for (size_t i = 0; i < n; i++)
+        different |= (uint64_t)(step->object[i].slot ^ objects[i].slot) |
+                     (step->object[i].generation ^ objects[i].generation);
+    return !different;
+}
+
+/* The expected fork becomes the next run of its node. */
+static inline void plan_memo_take(struct plan_memo *memo, const struct plan_memo_step *step,
+                                  const void *args)
+{
+    const uint32_t at = memo->at;
+    if (step->bytes)
+        memcpy(memo->args + step->args, args, step->bytes);
+    plan_forked(memo->plan, memo->worker, at);
+    memo->step = step->next;
+    memo->at = at + 1;
+    if (memo->at == memo->plan->n_calls)
+        plan_memo_next_round(memo);
+}
+
+/* A fork without options by the main program, while nothing is recorded or to be settled. True: it
+ * is made. False: it is to be made. */
+static inline bool plan_memo_fork(struct plan_memo *memo, const duite_kernel *kernel,
+                                  const void *args, size_t n, const duite_object *objects)
+{
+    const struct plan_memo_step *step = memo->step;
+    if (step) {
+        if (plan_memo_is_step(step, kernel, args, n, objects)) {
+            plan_memo_take(memo, step, args);
+            return true;
+        }
+        plan_memo_break(memo);
+    }
+    if (memo->skip) {
+        memo->skip--;
+        return false;
+    }
+    const uint32_t hash = plan_memo_hash(memo, kernel, n, objects);
+    memo->hash[memo->pos++ % MEMO_HISTORY] = hash;
+    if (hash != memo->anchor && memo->pos <= memo->due)
+        return false;
+    return plan_memo_look(memo, hash, kernel, args, n, objects);
+}
+
+#endif

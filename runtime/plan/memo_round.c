@@ -9,6 +9,10 @@
 #include "runtime/data/object.h"
 #include "runtime/task/internal.h"
 
+/* Rounds of so many forks are compiled at once, in about 0.1 ms, which is less than it takes until
+ * a thread does it beside workers that have all cores. */
+enum { ROUND_SHORT = 256 };
+
 /* Bytes of a ring; rounds in it, at least and at most. */
 enum { RING_BYTES = 1 << 20, RING_LEAST = 4, RING_MOST = 1 << 16 };
 

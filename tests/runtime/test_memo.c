@@ -408,6 +408,24 @@ START_TEST(rounds_take_turns)
 }
 END_TEST
 
+/* So long that a thread compiles them; how many forks come before it has done so is anybody's
+ * guess. */
+START_TEST(long_rounds_are_right)
+{
+    const duite_options options = memo_options(1);
+    struct program program;
+
+    start(&program, &options);
+    for (int i = 0; i < 200; i++)
+        for (int k = 0; k < 300; k++) {
+            const int to = k * k / 3 % OBJECTS;
+
+            fork_mix(&program, k % 7 ? &MIX : &TWIN, to, (to + 1 + k % 5) % OBJECTS, 0);
+        }
+    stop(&program);
+}
+END_TEST
+
 START_TEST(tasks_that_write_nothing_stay_forks)
 {
     const duite_options options = memo_options(ALWAYS);
@@ -435,6 +453,7 @@ int main(void)
     tcase_add_test(memo, forks_go_ahead);
     tcase_add_test(memo, forks_are_not_held_back);
     tcase_add_test(memo, rounds_take_turns);
+    tcase_add_test(memo, long_rounds_are_right);
     tcase_add_test(memo, tasks_that_write_nothing_stay_forks);
     suite_add_tcase(suite, memo);
     return unit_run(suite);

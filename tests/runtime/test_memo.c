@@ -17,8 +17,8 @@ struct argument {
     char padding[56];
 };
 
-static atomic_int n_over; /* bodies */
-static atomic_int held;
+static atomic_int n_over;        /* bodies */
+static atomic_int held, held_at; /* the number of the task that is held; 0: none */
 
 static uint32_t mixed(uint32_t to, uint32_t from, uint32_t number)
 {
@@ -31,6 +31,8 @@ static int mix(const duite_call *call)
     uint32_t *to = duite_out(call, 0, uint32_t);
 
     *to = mixed(*to, *duite_in(call, 1, uint32_t), args->number);
+    while (args->number && args->number == (uint32_t)atomic_load(&held_at))
+        ;
     atomic_fetch_add(&n_over, 1);
     if (call->round)
         return duite_fail(call, 18, "there is no replay");
@@ -353,6 +355,21 @@ START_TEST(rings_turn)
 }
 END_TEST
 
+/* A task in the middle of a replay is held until a ring is full; its slot is not written again. */
+START_TEST(a_full_ring_is_left)
+{
+    const duite_options options = memo_options(ALWAYS);
+    struct program program;
+
+    start(&program, &options);
+    atomic_store(&held_at, 300 * OBJECTS);
+    for (int i = 0; i < 6000; i++)
+        fork_round(&program);
+    atomic_store(&held_at, 0);
+    ck_assert_uint_ge(stop(&program), 1000);
+}
+END_TEST
+
 /* More arguments than a ring has room for, and no task of theirs can run. */
 START_TEST(forks_go_ahead)
 {
@@ -450,6 +467,7 @@ int main(void)
     tcase_add_test(memo, failures_are_the_same);
     tcase_add_test(memo, a_round_may_end_anywhere);
     tcase_add_test(memo, rings_turn);
+    tcase_add_test(memo, a_full_ring_is_left);
     tcase_add_test(memo, forks_go_ahead);
     tcase_add_test(memo, forks_are_not_held_back);
     tcase_add_test(memo, rounds_take_turns);

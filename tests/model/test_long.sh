@@ -3,6 +3,6 @@
 . "${srcdir:-.}/tests/support/tap.sh"
 plan_later
 
-for model in explorer deque queue handover version sleep sleep_queues; do
+for model in explorer deque queue handover version gate sleep sleep_queues; do
     ok "test_$model --deep" "tests/model/test_$model" --deep
 done

@@ -64,19 +64,20 @@ targets_listed() {
     "$bench" tasks --list > "$scratch/list" || return 1
     targets "$bench" tasks > "$scratch/targets"
     diff - "$scratch/targets" << 'END' && grep -q '^    wake_us (us)$' "$scratch/list" &&
-stencil_replay_ns_per_task_vs_libomp <= 0.05
+stencil_replay_ns_per_task_vs_libomp <= 0.06
 stencil_dynamic_ns_per_task_vs_libomp <= 0.15
 stencil_dynamic_ns_per_task_vs_starpu <= 0.04
+stencil_once_ns_per_task_vs_libomp <= 0.3
 chain_replay_ns_per_task_vs_libomp <= 0.03
-chain_dynamic_ns_per_task_vs_libomp <= 0.08
+chain_dynamic_ns_per_task_vs_libomp <= 0.12
 independent_dynamic_ns_per_task_vs_libomp <= 0.7
-fib_ns_per_task_vs_libgomp <= 0.5
+fib_ns_per_task_vs_libomp <= 1
 fib_speedup_t2 >= 1.8
 tree_vs_libomp <= 1.3
 independent_growth <= 1.5
-bytes_per_pending_task <= 256
+bytes_per_pending_task <= 192
 granularity_50_w2_vs_mpi <= 1.2
-granularity_50_w16_vs_mpi <= 2
+granularity_50_w16_vs_mpi <= 4.5
 instructions_per_task_stencil <= 1000
 instructions_per_task_chain <= 750
 instructions_per_task_independent <= 700
@@ -129,9 +130,9 @@ judged() { # ROLE VERDICT PASSED MISSED
     lied_to_in_full "$1" --repeats 2 --json "$scratch/judged" > "$scratch/lines" || return 1
     cat "$scratch/lines"
     grep -q "^stencil_dynamic_ns_per_task_vs_starpu: [-0-9.e]* x .*\], target <= 0.04: $2\$" "$scratch/lines" &&
-        grep -q '^stencil_replay_ns_per_task_vs_libomp: not built: .*, target <= 0.05: not measured$' "$scratch/lines" &&
+        grep -q '^stencil_replay_ns_per_task_vs_libomp: not built: .*, target <= 0.06: not measured$' "$scratch/lines" &&
         grep -q "^# targets_passed: $3\$" "$scratch/lines" && grep -q "^# targets_missed: $4\$" "$scratch/lines" &&
-        grep -q '^# targets_not_measured: 2$' "$scratch/lines" && well_formed "$scratch/judged" &&
+        grep -q '^# targets_not_measured: 3$' "$scratch/lines" && well_formed "$scratch/judged" &&
         grep -q '"stencil_dynamic_ns_per_task_vs_starpu_target": 0.04,' "$scratch/judged"
 }
 # 48 tasks; the first round, which is left out, and four that count take 1, 2, 3, 4, 5 ms.

@@ -25,7 +25,6 @@ static const struct motion {
 } MOTIONS[] = {
     {"reference", 0, {0}},
     {"large", 0, {"cloths[0].mesh.grid.nx=400", "cloths[0].mesh.grid.ny=400"}},
-    {"million", 0, {"cloths[0].mesh.grid.nx=1000", "cloths[0].mesh.grid.ny=1000"}},
     {"hanging", 0.4, {0}},
     {"falling", 0.08, {FREE, "cloths[0].transform.translate=[0, 3, 0]"}},
     {"crumpled", 0.64, {FREE, PLACE}},
@@ -55,8 +54,6 @@ static const struct spec {
     {"dress_h1", "dress", 1, false, 50},         {"dress_h8_bend", "dress", 8, true, 50},
     {"dress_h20", "dress", 20, false, 50},       {"large_h1", "large", 1, false, 50},
     {"large_h8", "large", 8, false, 50},         {"large_h20", "large", 20, false, 50},
-    {"million_h1", "million", 1, false, 50},     {"million_h8", "million", 8, false, 50},
-    {"million_h20", "million", 20, false, 50},
 };
 enum { N_SPECS = sizeof SPECS / sizeof *SPECS, FIRST_MET = 2, FIRST_LARGE = 17 };
 

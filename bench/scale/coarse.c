@@ -63,8 +63,7 @@ static void plan_small(struct measure *measure, const struct bench_options *opti
 }
 
 const struct bench_case scale_large = {
-    "large", "iterations of 160,000 and 1,000,000 vertices, by groups and by one factor",
-    plan_large, cg_runs, 1};
+    "large", "iterations of 160,000 vertices, by groups and by one factor", plan_large, cg_runs, 1};
 const struct bench_case scale_small = {
     "small", "iterations of the states of cg in small blocks, by groups and by one factor",
     plan_small, NULL, 1};

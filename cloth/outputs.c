@@ -303,9 +303,12 @@ int outputs_frame(void *context, uint64_t frame, double time, const double *posi
     return code;
 }
 
+/* Those before a frame that failed may be on their way to the disk still. */
 uint64_t outputs_written(void *context)
 {
     const struct outputs *of = context;
+    struct cloth_error said = {0};
+    output_settler_wait(of->settler, &said);
     return of->frames ? output_frames_settled(of->frames) : of->frames_written;
 }
 

@@ -66,12 +66,12 @@ int cg_make_folder(const struct bench_options *options)
     return 1;
 }
 
-int cg_make_states(const struct bench_options *options, const char *const *name,
+static int prepare(const struct bench_options *options,
                    void (*say)(const char *key, const char *text))
 {
     struct subject *maker = NULL;
     int code = cg_make_folder(options);
-    for (; *name && !code; name++) {
+    for (const char *const *name = states_all(); *name && !code; name++) {
         struct state state = {0};
         char key[60], text[100];
         const char *missing = states_missing(*name);
@@ -89,12 +89,6 @@ int cg_make_states(const struct bench_options *options, const char *const *name,
         state_free(&state);
     }
     return subject_stop(maker) || code;
-}
-
-static int prepare(const struct bench_options *options,
-                   void (*say)(const char *key, const char *text))
-{
-    return cg_make_states(options, states_all(), say);
 }
 
 static int serve_cg(const struct bench *bench)

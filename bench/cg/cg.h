@@ -33,10 +33,6 @@ void states_plan_free(struct states_plan *plan);
 /* Makes the folder of the states and sets STATE_FOLDER for all processes. Small states have their
  * own. 1 after a sentence on stderr. */
 int cg_make_folder(const struct bench_options *options);
-/* Makes those of the named states that are not there, after the folder; says of each what it is. 1
- * after a sentence on stderr. */
-int cg_make_states(const struct bench_options *options, const char *const *name,
-                   void (*say)(const char *key, const char *text));
 
 /* Waves the start of the model's cloth, sets it moving and shakes it a little, by a seed. */
 int states_wave(struct model *model);
@@ -53,7 +49,8 @@ uint64_t cg_hash(const struct solve_system *system);
 int cg_make_system(struct states_plan *plan, struct serve_request *request,
                    struct solve_system *system);
 
-/* The run "make": makes a state that is not there, in full or quick. */
+/* The run "make": makes a state (state=) that is not there, in full or quick; how many vertices. */
+int cg_make_state(void *context, struct serve_request *request, double *value);
 extern const struct serve_run cg_make_runs[];
 
 /* ---- Ours ---- */
@@ -96,6 +93,7 @@ int cg_run(const struct model *model, struct serve_request *request,
            struct flow_report *report);
 
 extern const struct serve_run cg_runs[];
+int cg_solve_state(void *session, struct serve_request *request, double *value); /* run "solve" */
 /* Frames of a sheet that falls (bench/cg/frames.c). */
 int cg_frames(void *session, struct serve_request *request, double *value);
 

@@ -144,7 +144,7 @@ static int complete(struct state *state, const struct states_plan *plan)
     return code;
 }
 
-static int make(void *context, struct serve_request *request, double *value)
+int cg_make_state(void *context, struct serve_request *request, double *value)
 {
     struct state state = {0};
     struct states_plan plan = {0};
@@ -165,4 +165,4 @@ static int make(void *context, struct serve_request *request, double *value)
     return code;
 }
 
-const struct serve_run cg_make_runs[] = {{"make", make}, {0}};
+const struct serve_run cg_make_runs[] = {{"make", cg_make_state}, {0}};

@@ -346,7 +346,7 @@ static int find_needed(struct cg_session *s, double wanted, uint32_t *needed)
 
 /* Seconds of a whole solve to an error (error=, millionths, in the mass norm). what=iterations: how
  * many it takes, which is found once. */
-static int solve(void *context, struct serve_request *request, double *value)
+int cg_solve_state(void *context, struct serve_request *request, double *value)
 {
     struct cg_session *s = context;
     const double wanted = 1e-6 * (double)serve_number(request, "error");
@@ -407,5 +407,5 @@ static int step(void *context, struct serve_request *request, double *value)
     return code;
 }
 
-const struct serve_run cg_runs[] = {{"cg", cg},     {"solve", solve},        {"error", error},
-                                    {"step", step}, {"realtime", cg_frames}, {0}};
+const struct serve_run cg_runs[] = {{"cg", cg},     {"solve", cg_solve_state}, {"error", error},
+                                    {"step", step}, {"realtime", cg_frames},   {0}};

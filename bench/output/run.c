@@ -99,8 +99,7 @@ static void write_arguments(struct serve_request *request, const char *output, c
         snprintf(frames, sizeof frames, "--live %u", port);
     else if (strcmp(output, "none"))
         snprintf(frames, sizeof frames, "--output '%s/frames'", folder);
-    snprintf(arguments, COMMAND,
-             "--threads %u --scheduler %s --report '%s/report.json' %s %s",
+    snprintf(arguments, COMMAND, "--threads %u --scheduler %s --report '%s/report.json' %s %s",
              (unsigned)serve_number(request, "threads"), scheduler, folder, frames, extra);
 }
 

@@ -58,7 +58,7 @@ static bool has_bools(const struct flow_saved *saved)
 }
 
 /* Of one block: the others that it shares ties with ascend, and there is room for them. Places only
- * say whether links changed: flow_ties_adopt finds them anew before a table is made with them. */
+ * say whether links changed: flow_ties_adopt finds them again before a table is made with them. */
 static bool has_others(const struct flow_saved *saved, const struct flow_tied_blocks *tied,
                        uint32_t b)
 {

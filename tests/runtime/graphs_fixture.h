@@ -8,8 +8,8 @@
 #include <stdint.h>
 
 /* Kernels: DIGIT appends its argument, a digit, to a number; LIMIT copies a number and fails, with
- * its argument, if that is 100 or more; COPY copies. ROUND_DIGIT appends its round; LEND forks that,
- * with its right. */
+ * its argument, if that is 100 or more; COPY copies. ROUND_DIGIT appends its round; LEND forks
+ * that, with its right. */
 extern const duite_kernel DIGIT, LIMIT, COPY, ROUND_DIGIT, LEND;
 
 /* A runtime of two workers, three numbers that are 0, and a graph. */

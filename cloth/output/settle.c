@@ -22,11 +22,11 @@ struct output_settler {
     bool ends;
 };
 
-static bool is_settled(const struct output_settler *settler)
+static bool is_settled(const struct output_settler *settler, const uint32_t *goal)
 {
     bool is = true;
     for (uint32_t i = 0; i < settler->n; i++)
-        is = is && settler->settled[i] == settler->written[i];
+        is = is && settler->settled[i] >= goal[i];
     return is || settler->trouble.code;
 }
 
@@ -57,8 +57,8 @@ static void *run(void *context)
 {
     struct output_settler *settler = context;
     pthread_mutex_lock(&settler->lock);
-    while (!(settler->ends && is_settled(settler)))
-        if (is_settled(settler))
+    while (!(settler->ends && is_settled(settler, settler->written)))
+        if (is_settled(settler, settler->written))
             pthread_cond_wait(&settler->change, &settler->lock);
         else
             settle_all(settler);
@@ -116,7 +116,9 @@ int output_settler_wait(struct output_settler *settler, struct cloth_error *erro
     if (!settler)
         return CLOTH_OK;
     pthread_mutex_lock(&settler->lock);
-    while (!is_settled(settler))
+    uint32_t goal[OUTPUT_MEMBERS]; /* of now: on a slow disk there are always newer frames */
+    memcpy(goal, settler->written, sizeof goal);
+    while (!is_settled(settler, goal))
         pthread_cond_wait(&settler->change, &settler->lock);
     const int code = tell(settler, error);
     pthread_mutex_unlock(&settler->lock);

@@ -345,7 +345,6 @@ int main(void)
     Suite *suite = suite_create("body");
     TCase *cases = tcase_create("body");
     tcase_add_checked_fixture(cases, start, end);
-    tcase_set_timeout(cases, 120);
     tcase_add_loop_test(cases, nearest_of_all, 0, N_MADE);
     tcase_add_test(cases, lies_anywhere);
     tcase_add_loop_test(cases, boxes, 0, N_MADE);

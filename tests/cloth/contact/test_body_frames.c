@@ -258,7 +258,6 @@ int main(void)
 {
     Suite *suite = suite_create("body_frames");
     TCase *cases = tcase_create("frames");
-    tcase_set_timeout(cases, 60);
     tcase_add_test(cases, is_a_body_of_its_places);
     tcase_add_test(cases, the_surface_has_its_velocity);
     tcase_add_test(cases, times_alone_say_the_bytes);

@@ -293,7 +293,6 @@ int main(void)
     Suite *suite = suite_create("body_skin");
     TCase *cases = tcase_create("body_skin");
     tcase_add_checked_fixture(cases, start, end);
-    tcase_set_timeout(cases, 60);
     tcase_add_test(cases, all_features_once);
     tcase_add_test(cases, steps_join);
     tcase_add_test(cases, pairs_with_a_cloth);

@@ -342,7 +342,6 @@ int main(void)
     Suite *suite = suite_create("image");
     TCase *cases = tcase_create("maps");
     FILE *real = fopen(real_body_path(), "r");
-    tcase_set_timeout(cases, 60);
     tcase_add_loop_test(cases, ball_is_seen_as_a_ball, 0, 3);
     tcase_add_test(cases, gaps_near_a_ball);
     tcase_add_loop_test(cases, inside_of_convex_bodies, 1, 4);

@@ -331,7 +331,6 @@ int main(void)
     Suite *suite = suite_create("shape");
     TCase *cases = tcase_create("shape");
     const int n = (int)contact_n_kinds - 1; /* the last are bodies: test_body.c */
-    tcase_set_timeout(cases, 60);
     tcase_add_loop_test(cases, nearest_of_all, 0, n);
     tcase_add_loop_test(cases, the_slope_is_the_normal, 0, n);
     tcase_add_loop_test(cases, the_surface_has_its_velocity, 0, n);

@@ -239,7 +239,6 @@ int main(void)
     Suite *suite = suite_create("skin");
     TCase *cases = tcase_create("skin");
     tcase_add_checked_fixture(cases, NULL, end);
-    tcase_set_timeout(cases, 120);
     for (int i = 0; i < 3 * SHAPES; i++) /* the quick subset cuts each shape in one way */
         if (!unit_quick() || i % 3 == i / 3 % 3)
             tcase_add_loop_test(cases, meets_all, i, i + 1);

@@ -287,7 +287,6 @@ int main(void)
     Suite *suite = suite_create("solid");
     TCase *cases = tcase_create("solid");
     const int n = (int)contact_n_kinds - 1; /* bodies are not convex */
-    tcase_set_timeout(cases, 120);
     tcase_add_loop_test(cases, nearest, 0, n);
     tcase_add_loop_test(cases, features, 0, n);
     tcase_add_loop_test(cases, certified_never_touches, 0, n);

@@ -99,7 +99,6 @@ int main(void)
 {
     Suite *suite = suite_create("levels");
     TCase *cases = tcase_create("levels");
-    tcase_set_timeout(cases, 120);
     tcase_add_loop_test(cases, groups_are_on_so_many_levels, 0, KINDS);
     tcase_add_loop_test(cases, a_sheet_moves_as_by_one_factor, 0, KINDS);
     tcase_add_loop_test(cases, groups_may_be_held, 0, KINDS);

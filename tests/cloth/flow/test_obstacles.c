@@ -395,7 +395,6 @@ int main(void)
 {
     Suite *suite = suite_create("obstacles");
     TCase *cases = tcase_create("obstacles");
-    tcase_set_timeout(cases, 120);
     tcase_add_loop_test(cases, carries_a_row, 0, N_WAYS * N_SHAPES);
     tcase_add_loop_test(cases, gives_momentum, 0, N_SHAPES);
     tcase_add_test(cases, halved_steps_see_their_time);

@@ -3,7 +3,7 @@ check_LTLIBRARIES += tests/cloth/output/libsample.la
 tests_cloth_output_libsample_la_SOURCES = tests/cloth/output/sample.c tests/cloth/output/sample.h
 
 check_PROGRAMS += tests/cloth/output/test_frames tests/cloth/output/test_report tests/cloth/output/test_replace tests/cloth/output/test_crash \
-	tests/cloth/output/test_market tests/cloth/output/test_checkpoint tests/cloth/output/test_colours
+	tests/cloth/output/test_market tests/cloth/output/test_checkpoint tests/cloth/output/test_colours tests/cloth/output/test_settle
 tests_cloth_output_test_checkpoint_SOURCES = tests/cloth/output/test_checkpoint.c
 tests_cloth_output_test_checkpoint_LDADD = tests/cloth/output/libsample.la $(CLOTH_TEST_LIBS)
 tests_cloth_output_test_colours_SOURCES = tests/cloth/output/test_colours.c
@@ -16,6 +16,8 @@ tests_cloth_output_test_replace_SOURCES = tests/cloth/output/test_replace.c test
 tests_cloth_output_test_replace_LDADD = tests/cloth/output/libsample.la $(CLOTH_TEST_LIBS)
 tests_cloth_output_test_report_SOURCES = tests/cloth/output/test_report.c
 tests_cloth_output_test_report_LDADD = tests/cloth/output/libsample.la $(CLOTH_TEST_LIBS)
+tests_cloth_output_test_settle_SOURCES = tests/cloth/output/test_settle.c
+tests_cloth_output_test_settle_LDADD = $(CLOTH_TEST_LIBS)
 tests_cloth_output_test_crash_SOURCES = tests/cloth/output/test_crash.c
 tests_cloth_output_test_crash_LDADD = tests/cloth/output/libsample.la $(CLOTH_TEST_LIBS)
 if HAVE_HDF5
@@ -25,5 +27,5 @@ tests_cloth_output_test_hdf5_LDADD = tests/cloth/output/libsample.la $(CLOTH_TES
 TESTS += tests/cloth/output/test_hdf5
 endif
 TESTS += tests/cloth/output/test_frames tests/cloth/output/test_report tests/cloth/output/test_replace tests/cloth/output/test_crash \
-	tests/cloth/output/test_market tests/cloth/output/test_checkpoint tests/cloth/output/test_colours
+	tests/cloth/output/test_market tests/cloth/output/test_checkpoint tests/cloth/output/test_colours tests/cloth/output/test_settle
 endif

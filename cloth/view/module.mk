@@ -36,7 +36,9 @@ libduite_view_la_LIBADD = $(EPOXY_LIBS) $(PNG_LIBS) $(GLFW_LIBS) $(CAIRO_LIBS) -
 
 bin_PROGRAMS += duite-view
 dist_man_MANS += cloth/duite-view.1
-duite_view_SOURCES = cloth/duite-view.c cloth/view_frames.c cloth/view_frames.h cloth/view_live.c cloth/view_live.h cloth/view_trace.c cloth/view_trace.h cloth/intersections.h cloth/intersections.c cloth/intersections_folder.c cloth/intersections_parts.h cloth/intersections_parts.c cloth/intersections_soup.h cloth/intersections_soup.c
+duite_view_SOURCES = cloth/duite-view.c cloth/view_frames.c cloth/view_frames.h cloth/view_live.c cloth/view_live.h cloth/view_trace.c \
+	cloth/view_trace.h cloth/intersections.h cloth/intersections.c cloth/intersections_folder.c cloth/intersections_parts.h \
+	cloth/intersections_parts.c cloth/intersections_soup.h cloth/intersections_soup.c
 duite_view_LDADD = libduite_view.la libduite_cloth.la libduite_chart.la libduite_core.la
 endif
 EXTRA_DIST += cloth/duite-view.1

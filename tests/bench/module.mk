@@ -16,8 +16,12 @@ tests_bench_test_load_LDADD = tests/support/libunit.la $(CHECK_LIBS)
 TESTS += tests/bench/test_load tests/bench/test_problem tests/bench/test_sheet tests/bench/test_states
 endif
 EXTRA_DIST += tests/bench/bench.sh
-dist_check_SCRIPTS += tests/bench/test_output.sh tests/bench/test_bench.sh tests/bench/test_cg.sh tests/bench/test_compare.sh tests/bench/test_contact.sh tests/bench/test_experiments.sh tests/bench/test_garments.sh tests/bench/test_physics.sh tests/bench/test_ranks.sh tests/bench/test_scale.sh
-TESTS += tests/bench/test_compare.sh tests/bench/test_bench.sh tests/bench/test_cg.sh tests/bench/test_contact.sh tests/bench/test_experiments.sh tests/bench/test_garments.sh tests/bench/test_output.sh tests/bench/test_physics.sh tests/bench/test_ranks.sh tests/bench/test_scale.sh
+dist_check_SCRIPTS += tests/bench/test_output.sh tests/bench/test_bench.sh tests/bench/test_cg.sh tests/bench/test_compare.sh \
+	tests/bench/test_contact.sh tests/bench/test_experiments.sh tests/bench/test_garments.sh tests/bench/test_physics.sh \
+	tests/bench/test_ranks.sh tests/bench/test_scale.sh
+TESTS += tests/bench/test_compare.sh tests/bench/test_bench.sh tests/bench/test_cg.sh tests/bench/test_contact.sh \
+	tests/bench/test_experiments.sh tests/bench/test_garments.sh tests/bench/test_output.sh tests/bench/test_physics.sh \
+	tests/bench/test_ranks.sh tests/bench/test_scale.sh
 dist_check_SCRIPTS += tests/bench/test_experiments_long.sh
 LONG_TESTS += tests/bench/test_experiments_long.sh
 dist_check_SCRIPTS += tests/bench/test_predict.sh

@@ -2,7 +2,9 @@
 # libFuzzer, and lets each look for FUZZ_SECONDS; FUZZ='obj trace' names some of them.
 FUZZ_FILES = tests/fuzz/fit.h tests/fuzz/fuzz.h tests/fuzz/fuzz.c tests/fuzz/drive.c
 FUZZ_LIBS = libduite_chart.la libduite_predict.la libduite_cloth.la libduite_core.la
-FUZZ_HARNESSES = tests/fuzz/fuzz_checkpoint tests/fuzz/fuzz_colours tests/fuzz/fuzz_live tests/fuzz/fuzz_obj tests/fuzz/fuzz_output tests/fuzz/fuzz_pattern tests/fuzz/fuzz_pc2 tests/fuzz/fuzz_resume tests/fuzz/fuzz_scene tests/fuzz/fuzz_seams tests/fuzz/fuzz_trace
+FUZZ_HARNESSES = tests/fuzz/fuzz_checkpoint tests/fuzz/fuzz_colours tests/fuzz/fuzz_live tests/fuzz/fuzz_obj tests/fuzz/fuzz_output \
+	tests/fuzz/fuzz_pattern tests/fuzz/fuzz_pc2 tests/fuzz/fuzz_resume tests/fuzz/fuzz_scene tests/fuzz/fuzz_seams \
+	tests/fuzz/fuzz_trace
 check_PROGRAMS += $(FUZZ_HARNESSES) tests/fuzz/mutate
 tests_fuzz_mutate_SOURCES = tests/fuzz/mutate.c tests/support/random.h
 tests_fuzz_fuzz_checkpoint_SOURCES = tests/fuzz/fuzz_checkpoint.c $(FUZZ_FILES)

@@ -47,7 +47,8 @@ tests_runtime_nested_programs_SOURCES = tests/runtime/nested_programs.c tests/ru
 tests_runtime_nested_programs_LDADD = libduite_core.la
 dist_check_SCRIPTS += tests/runtime/test_random.sh tests/runtime/test_random_long.sh tests/runtime/test_sizes.sh tests/runtime/test_homes.sh \
     tests/runtime/test_nested.sh tests/runtime/test_memcheck.sh tests/runtime/test_memcheck_long.sh tests/runtime/test_threads_long.sh
-TESTS += tests/runtime/random_programs tests/runtime/test_random.sh tests/runtime/test_sizes.sh tests/runtime/test_homes.sh tests/runtime/test_nested.sh \
+TESTS += tests/runtime/random_programs tests/runtime/test_random.sh tests/runtime/test_sizes.sh tests/runtime/test_homes.sh \
+	tests/runtime/test_nested.sh \
     tests/runtime/test_memcheck.sh
 LONG_TESTS += tests/runtime/test_random_long.sh tests/runtime/test_memcheck_long.sh tests/runtime/test_threads_long.sh
 SAID_FILES = tests/support/said.c tests/support/said.h
@@ -124,7 +125,11 @@ tests_runtime_test_memo_SOURCES = tests/runtime/test_memo.c tests/negative/misus
 tests_runtime_test_memo_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_window_SOURCES = tests/runtime/test_window.c tests/negative/misuse.c tests/negative/misuse.h
 tests_runtime_test_window_LDADD = $(DUITE_TEST_LIBS)
-RUNTIME_TESTS = tests/runtime/test_late tests/runtime/test_predict tests/runtime/test_predict_replays tests/runtime/test_predict_costs tests/runtime/test_predict_refused tests/runtime/test_pool tests/runtime/test_owner tests/runtime/test_offload_names tests/runtime/test_laws tests/runtime/test_settle tests/runtime/test_balance tests/runtime/test_sched tests/runtime/test_sched_knowing tests/runtime/test_sched_told tests/runtime/test_makespan tests/runtime/test_watchdog tests/runtime/test_traced tests/runtime/test_check tests/runtime/test_environment \
+RUNTIME_TESTS = tests/runtime/test_late tests/runtime/test_predict tests/runtime/test_predict_replays tests/runtime/test_predict_costs \
+	tests/runtime/test_predict_refused tests/runtime/test_pool tests/runtime/test_owner tests/runtime/test_offload_names \
+	tests/runtime/test_laws tests/runtime/test_settle tests/runtime/test_balance tests/runtime/test_sched \
+	tests/runtime/test_sched_knowing tests/runtime/test_sched_told tests/runtime/test_makespan tests/runtime/test_watchdog \
+	tests/runtime/test_traced tests/runtime/test_check tests/runtime/test_environment \
     tests/runtime/test_nested_tasks tests/runtime/test_graphs tests/runtime/test_graphs_change tests/runtime/test_graphs_refused tests/runtime/test_graph_print tests/runtime/test_views
 check_PROGRAMS += $(RUNTIME_TESTS)
 TESTS += $(RUNTIME_TESTS)

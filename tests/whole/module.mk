@@ -14,8 +14,10 @@ dist_check_SCRIPTS += tests/whole/test_momentum.sh
 TESTS += tests/whole/test_momentum.sh
 dist_check_SCRIPTS += tests/whole/test_memory.sh tests/whole/test_predicted.sh
 TESTS += tests/whole/test_memory.sh tests/whole/test_predicted.sh
-dist_check_SCRIPTS += tests/whole/test_capstan.sh tests/whole/test_contact.sh tests/whole/test_contact_force.sh tests/whole/test_contact_laws.sh tests/whole/test_input.sh tests/whole/test_intersections.sh tests/whole/test_options.sh
-TESTS += tests/whole/test_capstan.sh tests/whole/test_contact.sh tests/whole/test_contact_force.sh tests/whole/test_contact_laws.sh tests/whole/test_input.sh tests/whole/test_intersections.sh tests/whole/test_options.sh
+dist_check_SCRIPTS += tests/whole/test_capstan.sh tests/whole/test_contact.sh tests/whole/test_contact_force.sh \
+	tests/whole/test_contact_laws.sh tests/whole/test_input.sh tests/whole/test_intersections.sh tests/whole/test_options.sh
+TESTS += tests/whole/test_capstan.sh tests/whole/test_contact.sh tests/whole/test_contact_force.sh tests/whole/test_contact_laws.sh \
+	tests/whole/test_input.sh tests/whole/test_intersections.sh tests/whole/test_options.sh
 dist_check_SCRIPTS += tests/whole/test_policies.sh
 TESTS += tests/whole/test_policies.sh
 dist_check_SCRIPTS += tests/whole/test_live.sh
@@ -38,10 +40,16 @@ dist_check_SCRIPTS += tests/whole/test_system.sh
 TESTS += tests/whole/test_system.sh
 dist_check_SCRIPTS += tests/whole/test_fabrics.sh tests/whole/test_cells.sh
 TESTS += tests/whole/test_fabrics.sh tests/whole/test_cells.sh
-dist_check_SCRIPTS += tests/whole/test_joints.sh tests/whole/test_phases.sh tests/whole/test_timed_joints.sh tests/whole/test_joints_edges.sh tests/whole/test_folds.sh tests/whole/test_welds.sh tests/whole/test_seams.sh tests/whole/test_seams_tube.sh
-TESTS += tests/whole/test_joints.sh tests/whole/test_phases.sh tests/whole/test_timed_joints.sh tests/whole/test_joints_edges.sh tests/whole/test_folds.sh tests/whole/test_welds.sh tests/whole/test_seams.sh tests/whole/test_seams_tube.sh
-dist_check_SCRIPTS += tests/whole/test_bodies.sh tests/whole/test_contact_bodies.sh tests/whole/test_contact_scenes.sh tests/whole/test_pins.sh tests/whole/test_follow.sh tests/whole/test_settled.sh tests/whole/test_sides.sh tests/whole/test_slope.sh
-TESTS += tests/whole/test_bodies.sh tests/whole/test_contact_bodies.sh tests/whole/test_contact_scenes.sh tests/whole/test_pins.sh tests/whole/test_follow.sh tests/whole/test_settled.sh tests/whole/test_sides.sh tests/whole/test_slope.sh
+dist_check_SCRIPTS += tests/whole/test_joints.sh tests/whole/test_phases.sh tests/whole/test_timed_joints.sh \
+	tests/whole/test_joints_edges.sh tests/whole/test_folds.sh tests/whole/test_welds.sh tests/whole/test_seams.sh \
+	tests/whole/test_seams_tube.sh
+TESTS += tests/whole/test_joints.sh tests/whole/test_phases.sh tests/whole/test_timed_joints.sh tests/whole/test_joints_edges.sh \
+	tests/whole/test_folds.sh tests/whole/test_welds.sh tests/whole/test_seams.sh tests/whole/test_seams_tube.sh
+dist_check_SCRIPTS += tests/whole/test_bodies.sh tests/whole/test_contact_bodies.sh tests/whole/test_contact_scenes.sh \
+	tests/whole/test_pins.sh tests/whole/test_follow.sh tests/whole/test_settled.sh tests/whole/test_sides.sh \
+	tests/whole/test_slope.sh
+TESTS += tests/whole/test_bodies.sh tests/whole/test_contact_bodies.sh tests/whole/test_contact_scenes.sh tests/whole/test_pins.sh \
+	tests/whole/test_follow.sh tests/whole/test_settled.sh tests/whole/test_sides.sh tests/whole/test_slope.sh
 dist_check_SCRIPTS += tests/whole/test_repulsion.sh
 TESTS += tests/whole/test_repulsion.sh
 dist_check_SCRIPTS += tests/whole/test_correction.sh

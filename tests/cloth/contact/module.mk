@@ -32,7 +32,8 @@ tests_cloth_contact_test_row_SOURCES = tests/cloth/contact/test_row.c
 tests_cloth_contact_test_row_LDADD = $(CLOTH_TEST_LIBS)
 tests_cloth_contact_test_shape_SOURCES = tests/cloth/contact/test_shape.c $(CONTACT_TEST_RANDOM)
 tests_cloth_contact_test_shape_LDADD = $(CLOTH_TEST_LIBS)
-tests_cloth_contact_test_skin_SOURCES = tests/cloth/contact/test_skin.c tests/cloth/contact/skin_sheet.h tests/cloth/contact/distances.h tests/support/random.h
+tests_cloth_contact_test_skin_SOURCES = tests/cloth/contact/test_skin.c tests/cloth/contact/skin_sheet.h tests/cloth/contact/distances.h \
+	tests/support/random.h
 tests_cloth_contact_test_skin_LDADD = $(CLOTH_TEST_LIBS)
 tests_cloth_contact_test_solid_SOURCES = tests/cloth/contact/test_solid.c tests/cloth/contact/solids.h $(CONTACT_TEST_RANDOM)
 tests_cloth_contact_test_solid_LDADD = $(CLOTH_TEST_LIBS)

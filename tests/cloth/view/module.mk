@@ -10,7 +10,8 @@ tests_cloth_view_alike_SOURCES = tests/cloth/view/alike.c
 tests_cloth_view_alike_CPPFLAGS = $(AM_CPPFLAGS) $(PNG_CFLAGS)
 tests_cloth_view_alike_LDADD = $(PNG_LIBS)
 if HAVE_CHECK
-check_PROGRAMS += tests/cloth/view/test_coarse tests/cloth/view/test_colour tests/cloth/view/test_player tests/cloth/view/test_camera tests/cloth/view/test_picture
+check_PROGRAMS += tests/cloth/view/test_coarse tests/cloth/view/test_colour tests/cloth/view/test_player tests/cloth/view/test_camera \
+	tests/cloth/view/test_picture
 tests_cloth_view_test_colour_SOURCES = tests/cloth/view/test_colour.c
 tests_cloth_view_test_colour_LDADD = libduite_view.la $(CLOTH_TEST_LIBS)
 tests_cloth_view_test_camera_SOURCES = tests/cloth/view/test_camera.c
@@ -23,6 +24,7 @@ tests_cloth_view_test_picture_CPPFLAGS = $(AM_CPPFLAGS) $(PNG_CFLAGS)
 tests_cloth_view_test_picture_LDADD = libduite_view.la $(CLOTH_TEST_LIBS) $(PNG_LIBS)
 tests_cloth_view_test_player_SOURCES = tests/cloth/view/test_player.c
 tests_cloth_view_test_player_LDADD = libduite_view.la $(CLOTH_TEST_LIBS)
-TESTS += tests/cloth/view/test_coarse tests/cloth/view/test_colour tests/cloth/view/test_player tests/cloth/view/test_camera tests/cloth/view/test_picture
+TESTS += tests/cloth/view/test_coarse tests/cloth/view/test_colour tests/cloth/view/test_player tests/cloth/view/test_camera \
+	tests/cloth/view/test_picture
 endif
 endif

@@ -158,9 +158,7 @@ static int body_read(struct duite_call_private *body, struct data_version *versi
     if (version->poisoned)
         return task_failure_error(body->graph, version->failure);
     *bytes = version->packet->bytes;
-    if (values && *bytes == sizeof(uint64_t)) /* most are: copied without a call */
-        memcpy(values, data_payload(version->packet), sizeof(uint64_t));
-    else if (values)
+    if (values)
         memcpy(values, data_payload(version->packet), *bytes);
     return DUITE_OK;
 }
@@ -183,12 +181,30 @@ static int body_get(struct duite_call_private *body, duite_object object, void *
     return code;
 }
 
-int api_body_get(struct duite_call_private *body, duite_object object, void *values, size_t *count,
-                 const char *call)
+__attribute__((noinline)) static int get_any(struct duite_call_private *body, duite_object object,
+                                             void *values, size_t *count, const char *call)
 {
     int code = body_get(body, object, values, count, call);
     int before = body_recall(body);
     return before ? before : code;
+}
+
+/* The short way of most gets: of one number that a child writes, or wrote. */
+int api_body_get(struct duite_call_private *body, duite_object object, void *values, size_t *count,
+                 const char *call)
+{
+    struct data_version *version =
+        values && body_may_call(body) ? task_see_given(body, object) : NULL;
+    if (!version || body->remembered)
+        return get_any(body, object, values, count, call);
+    if (!data_version_ready(version))
+        work_inside(body->worker, body->scope, version_is_there, version);
+    if (!data_version_ready(version) || version->poisoned ||
+        version->packet->bytes != sizeof(uint64_t))
+        return get_any(body, object, values, count, call);
+    task_close_segment(body->scope);
+    memcpy(values, data_payload(version->packet), sizeof(uint64_t));
+    return DUITE_OK;
 }
 
 static bool body_is_alone(void *context)

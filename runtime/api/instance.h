@@ -12,6 +12,8 @@
 
 #include <pthread.h>
 
+#pragma GCC visibility push(hidden) /* called directly: no program can come in between */
+
 /* A running runtime: its parts, and the error that the next get, wait or stop still has to return.
  * Main thread only. */
 struct duite {
@@ -162,5 +164,7 @@ int api_body_set(struct duite_call_private *body, duite_object object, const voi
 int api_body_get(struct duite_call_private *body, duite_object object, void *values, size_t *count,
                  const char *call);
 int api_body_wait(struct duite_call_private *body);
+
+#pragma GCC visibility pop
 
 #endif

@@ -67,17 +67,18 @@ void data_version_poison(struct data_version *version, const struct data_failure
     version->failure = failure;
 }
 
-struct data_waiter *data_version_end(struct data_version *version)
+void data_version_drop(struct data_version *version)
 {
-    if (!version->renamed && version->heir)
-        return version->heir;
     if (version->renamed)
         atomic_fetch_sub_explicit(version->rename_bytes,
                                   data_packet_memory(data_version_room(version)),
                                   memory_order_relaxed);
-    data_packet_free(data_version_packet(version));
+    struct data_packet *packet = data_version_packet(version);
+    if (packet && packet->lines == 2) /* most are of one line: of a constant size */
+        base_pool_give(packet, 2 * sizeof *packet);
+    else
+        data_packet_free(packet);
     data_version_free(version);
-    return NULL;
 }
 
 /* ---- Places of failures ---- */

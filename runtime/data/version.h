@@ -65,7 +65,8 @@ static inline struct data_packet *data_packet_line(size_t bytes)
     struct data_packet *packet = base_pool_take(2 * sizeof *packet);
     if (!packet)
         return NULL;
-    memset(packet, 0, 2 * sizeof *packet); /* the last line is sent whole */
+    memset(packet, 0, sizeof *packet);     /* in two parts, as data_object_clear */
+    memset(packet + 1, 0, sizeof *packet); /* the last line is sent whole */
     packet->bytes = bytes;
     packet->lines = 2;
     return packet;
@@ -184,8 +185,17 @@ static inline bool data_version_is_alone(const struct data_version *version)
     return atomic_load_explicit(&version->holds, memory_order_relaxed) == 1;
 }
 
+/* No hold is left, and there is no heir: frees it with its bytes. */
+void data_version_drop(struct data_version *version);
+
 /* No hold is left: returns the heir, or frees a version without one. */
-struct data_waiter *data_version_end(struct data_version *version);
+static inline struct data_waiter *data_version_end(struct data_version *version)
+{
+    if (!version->renamed && version->heir)
+        return version->heir;
+    data_version_drop(version);
+    return NULL;
+}
 
 /* Releases a hold. Returns the heir if this was the last one, and NULL otherwise; frees a version
  * without heir. The last release sees every access to the bytes. */

@@ -51,7 +51,10 @@ int task_make_object(struct duite_call_private *body, duite_type type, size_t co
 bool task_alone(struct task_scope *scope);
 
 /* What a body does from now on comes after the tasks it forked so far. */
-void task_close_segment(struct task_scope *scope);
+static inline void task_close_segment(struct task_scope *scope)
+{
+    scope->segment = ++scope->forks;
+}
 
 /* The first failure among the tasks of this scope and their descendants since the last time, or
  * NULL. */
@@ -66,13 +69,19 @@ int task_check_call(struct duite_call_private *body, const char *call, duite_obj
  * task_check_call for a child that reads; memory. */
 int task_see(struct duite_call_private *body, const char *call, duite_object name,
              struct data_version **version, size_t *size);
+/* The same version if nothing is to be done for it; else NULL. */
+struct data_version *task_see_given(struct duite_call_private *body, duite_object name);
 /* Whether the object, whose name was checked, is a parameter of the body. */
 bool task_lent(const struct duite_call_private *body, duite_object object);
 
 /* Whether a body that waits in `scope` may have this task run on top of it. It may if the task is a
  * descendant. If its descendants may wait for tasks outside, it also may if the task comes earlier
  * in the reference order. And a body that is not an offloaded task's may have any task of these. */
-bool task_may_run(const struct task_scope *scope, const struct task *task);
+bool task_may_run_other(const struct task_scope *scope, const struct task *task);
+static inline bool task_may_run(const struct task_scope *scope, const struct task *task)
+{
+    return task->scope == scope || task_may_run_other(scope, task); /* most are its children */
+}
 
 #pragma GCC visibility pop
 

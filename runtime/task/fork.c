@@ -4,7 +4,7 @@
  * rules in its own scope, whose objects are here and nowhere else. What is wrong is refused before
  * anything is changed; afterwards nothing but memory can be missing. The next stage is depend.c;
  * prune.c is the short way for tasks of which nothing is here. */
-#include "runtime/task/internal.h"
+#include "runtime/task/scope.h"
 
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"

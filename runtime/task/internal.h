@@ -142,9 +142,6 @@ void task_left(struct task_graph *graph, struct task_scope *scope, struct worker
 /* The object of that name, with the right held on it; NULL with the error's message set. */
 struct data_object *task_find_object(struct task_scope *scope, duite_object name,
                                      duite_mode *right);
-/* The object of that name, if a child of the body may have it with this mode and nothing is to be
- * done for that. Else NULL; task_check_right says why, or does it. */
-struct data_object *task_find_given(struct task_scope *scope, duite_object name, duite_mode wanted);
 
 /* A fork under way. fork.c checks it, and says where its task runs; depend.c goes through its
  * objects. Passed on by pointer: what a fork costs is mostly what its stages hand to one another.

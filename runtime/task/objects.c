@@ -1,7 +1,7 @@
 /* What the program does to objects without forking a task of its own: it frees, reads, sets, views
  * and resizes them, and their homes move. Each of these leaves a version, or a task of the runtime
  * that makes one, as if it had been forked; every rank concludes the same. */
-#include "runtime/task/internal.h"
+#include "runtime/task/scope.h"
 
 #include "runtime/base/error.h"
 #include "runtime/data/object.h"
@@ -79,6 +79,13 @@ int task_see(struct duite_call_private *body, const char *call, duite_object nam
     if (!code && !(*version = task_local(scope->graph, object)))
         code = DUITE_E_MEMORY;
     return code;
+}
+
+struct data_version *task_see_given(struct duite_call_private *body, duite_object name)
+{
+    struct task_scope *scope = body->scope;
+    struct data_object *object = scope ? task_find_given(scope, name, DUITE_R) : NULL;
+    return object && !object->leaves ? object->current : NULL;
 }
 
 /* ---- duite_set: a version that nobody has to wait for, so no task is needed and the old one is

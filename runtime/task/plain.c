@@ -4,6 +4,7 @@
  * know it leaves to them, before anything is changed: views, contributions, values that are not
  * here, and all errors but want of memory. So no rule stands here alone. */
 #include "runtime/task/ready.h"
+#include "runtime/task/scope.h"
 
 #include "runtime/base/error.h"
 

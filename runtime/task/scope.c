@@ -15,7 +15,9 @@
 
 #include <string.h>
 
-_Thread_local struct duite_call_private *task_innermost;
+/* By the initial-exec model, also for this file: no call then stands between a thread and these. */
+#define THREAD_OWN _Thread_local __attribute__((tls_model("initial-exec")))
+THREAD_OWN struct duite_call_private *task_innermost;
 
 void task_body_enters(struct duite_call_private *body)
 {
@@ -24,7 +26,7 @@ void task_body_enters(struct duite_call_private *body)
 
 /* ---- Names ---- */
 
-_Thread_local uint32_t task_stamp = UINT32_MAX; /* the last one of no batch */
+THREAD_OWN uint32_t task_stamp = UINT32_MAX; /* the last one of no batch */
 
 /* Multiples of a batch are left out, and with them 0, which is no name's. */
 uint32_t task_new_stamps(void)
@@ -34,41 +36,13 @@ uint32_t task_new_stamps(void)
     return ++task_stamp;
 }
 
-/* Whether the name means something in the scope of a running body: then the right held on it and,
- * unless the body uses it itself, the object. */
-static inline bool name_known(struct task_scope *scope, duite_object name, duite_mode *right,
-                              struct data_object **local)
-{
-    struct task_nest *nest = task_nest_of(scope);
-    const struct duite_call_private *body = nest->body;
-    const struct task *task = body->task;
-    uint32_t i = name.slot & ~TASK_LOCAL_NAME;
-    *local = NULL;
-    if (name.slot < TASK_LOCAL_NAME)
-        return false;
-    if (i < task->n) {
-        *right = data_mode_of(scope->graph->kernels[task->kernel], i);
-        if (task_postponed(*right))
-            *local = &nest->local[task->access[i].lent];
-        else if (*right == DUITE_R && nest->first_read)
-            *local = &nest->local[nest->first_read - 1 + i];
-        return name.generation == body->param[i].object.generation;
-    }
-    uint32_t at = i - task->n + nest->n_lent;
-    if (at >= nest->n_local)
-        return false;
-    *right = DUITE_RWP;
-    *local = &nest->local[at];
-    return (*local)->generation == name.generation;
-}
-
 struct data_object *task_find_object(struct task_scope *scope, duite_object name, duite_mode *right)
 {
     *right = DUITE_RWP;
     if (!scope->depth)
         return data_object_find(&scope->graph->table, name);
     struct data_object *local;
-    if (name_known(scope, name, right, &local) && local)
+    if (task_name_known(scope, name, right, &local) && local)
         return local;
     base_error(DUITE_E_OBJECT,
                "object %u.%u is none of this task's: it was freed, or belongs to "
@@ -193,23 +167,31 @@ static inline int nest_take_places(struct task_nest *nest, uint32_t n, uint32_t 
     return code;
 }
 
+/* A place for an object: of one that was freed, or a new one. */
+__attribute__((noinline)) static int nest_place(struct task_nest *nest, uint32_t *at)
+{
+    if (!nest->vacant)
+        return nest_take_places(nest, 1, at);
+    *at = nest->vacant - 1;
+    nest->vacant = nest->local[*at].hint;
+    return DUITE_OK;
+}
+
 int task_make_object(struct duite_call_private *body, duite_type type, size_t count, size_t max,
                      bool sized, duite_object *name)
 {
     struct task_scope *scope = task_inside(body);
     struct task_nest *nest = task_nest_of(scope);
-    uint32_t at;
     int code = data_object_check(type, count, max);
-    if (!code && !scope)
-        code = DUITE_E_MEMORY;
-    if (!code && nest->vacant) {
-        at = nest->vacant - 1;
-        nest->vacant = nest->local[at].hint;
-    } else if (!code) {
-        code = nest_take_places(nest, 1, &at);
+    if (code || !scope)
+        return code ? code : DUITE_E_MEMORY;
+    uint32_t at = nest->n_local;
+    if (nest->vacant || at == nest->room) {
+        if ((code = nest_place(nest, &at)))
+            return code;
+    } else {
+        nest->n_local++;
     }
-    if (code)
-        return code;
     size_t size = data_type_size(type);
     int rank = scope->graph->rank;
     struct data_object *object = &nest->local[at];
@@ -303,14 +285,6 @@ const char *task_mode_name(duite_mode mode)
     return names[mode];
 }
 
-static bool right_gives(duite_mode held, duite_mode wanted)
-{
-    if (held == DUITE_RWP)
-        return true;
-    return (task_postponed(held) || held == DUITE_R) &&
-           task_immediate(wanted) == task_immediate(held);
-}
-
 int task_check_right(struct task_scope *scope, const char *call, size_t i, duite_object name,
                      duite_mode wanted)
 {
@@ -319,7 +293,7 @@ int task_check_right(struct task_scope *scope, const char *call, size_t i, duite
     const char *mode = task_mode_name(wanted);
     struct data_object *local;
     duite_mode held;
-    if (!name_known(scope, name, &held, &local)) {
+    if (!task_name_known(scope, name, &held, &local)) {
         if (name.slot && name.slot < TASK_LOCAL_NAME)
             return base_error(DUITE_E_RIGHT,
                               "%s, parameter %zu: the task (kernel %s) holds no right on object "
@@ -330,20 +304,13 @@ int task_check_right(struct task_scope *scope, const char *call, size_t i, duite
                           name.slot, name.generation,
                           name.slot ? "was freed, or is another task's" : "names nothing", forker);
     }
-    if (right_gives(held, wanted))
+    if (task_right_gives(held, wanted))
         return local ? DUITE_OK : task_lend_reads(scope);
     return base_error(DUITE_E_RIGHT,
                       "%s, parameter %zu: the task holds %s on object %u.%u, parameter %u of its "
                       "kernel %s, and %s is wanted",
                       call, i, task_mode_name(held), name.slot, name.generation,
                       name.slot - TASK_LOCAL_NAME, forker, mode);
-}
-
-struct data_object *task_find_given(struct task_scope *scope, duite_object name, duite_mode wanted)
-{
-    struct data_object *local;
-    duite_mode held;
-    return name_known(scope, name, &held, &local) && right_gives(held, wanted) ? local : NULL;
 }
 
 int task_wrong_law(const struct task_scope *scope, const duite_kernel *kernel, size_t i,

@@ -40,6 +40,56 @@ static inline struct task_nest *task_nest_of(struct task_scope *scope)
     return (struct task_nest *)scope;
 }
 
+/* Whether the name means something in the scope of a running body: then the right held on it and,
+ * unless the body uses it itself, the object. */
+static inline bool task_name_known(struct task_scope *scope, duite_object name, duite_mode *right,
+                                   struct data_object **local)
+{
+    struct task_nest *nest = task_nest_of(scope);
+    const struct duite_call_private *body = nest->body;
+    const struct task *task = body->task;
+    uint32_t i = name.slot & ~TASK_LOCAL_NAME;
+    *local = NULL;
+    if (name.slot < TASK_LOCAL_NAME)
+        return false;
+    if (i < task->n) {
+        *right = data_mode_of(scope->graph->kernels[task->kernel], i);
+        if (task_postponed(*right))
+            *local = &nest->local[task->access[i].lent];
+        else if (*right == DUITE_R && nest->first_read)
+            *local = &nest->local[nest->first_read - 1 + i];
+        return name.generation == body->param[i].object.generation;
+    }
+    uint32_t at = i - task->n + nest->n_lent;
+    if (at >= nest->n_local)
+        return false;
+    *right = DUITE_RWP;
+    *local = &nest->local[at];
+    return (*local)->generation == name.generation;
+}
+
+/* Whether a task that holds a right on an object may give a child the other one. */
+static inline bool task_right_gives(duite_mode held, duite_mode wanted)
+{
+    if (held == DUITE_RWP)
+        return true;
+    return (task_postponed(held) || held == DUITE_R) &&
+           task_immediate(wanted) == task_immediate(held);
+}
+
+/* The object of that name, if a child of the body may have it with this mode and nothing is to be
+ * done for that. Else NULL; task_check_right says why, or does it. Inline: each fork and get asks.
+ */
+static inline struct data_object *task_find_given(struct task_scope *scope, duite_object name,
+                                                  duite_mode wanted)
+{
+    struct data_object *local;
+    duite_mode held;
+    return task_name_known(scope, name, &held, &local) && task_right_gives(held, wanted)
+               ? local
+               : NULL;
+}
+
 /* The children may read what the body reads: the scope gets the objects. Errors: memory. */
 int task_lend_reads(struct task_scope *scope);
 

@@ -3,6 +3,7 @@
  * bytes on to the version that the scope above has waited for since the fork. The exits belong to
  * whoever releases the last hold on a version. The scope is freed with the last count of
  * `unfinished`. */
+#include "runtime/task/ready.h"
 #include "runtime/task/scope.h"
 
 #include "runtime/base/memory.h"
@@ -113,8 +114,8 @@ void task_scope_end(struct task_scope *scope, struct worker *worker)
         if (exit && exit->out) {
             exit->untouched = exit->overwrites && !object->number;
             exit_give_back(exit, worker, object, lost ? &scope_no_memory : failure);
-        } else {
-            task_forget(graph, worker, object);
+        } else if (object->current) {
+            ready_release(graph, worker, object->current);
         }
     }
     task_left(graph, scope, worker);
@@ -128,11 +129,6 @@ bool task_alone(struct task_scope *scope)
     return atomic_load_explicit(&scope->unfinished, memory_order_acquire) == (scope->depth > 0);
 }
 
-void task_close_segment(struct task_scope *scope)
-{
-    scope->segment = ++scope->forks;
-}
-
 const struct data_failure *task_first_failure(struct task_scope *scope)
 {
     struct task_graph *graph = scope->graph;
@@ -143,7 +139,7 @@ const struct data_failure *task_first_failure(struct task_scope *scope)
     return failure;
 }
 
-bool task_may_run(const struct task_scope *scope, const struct task *task)
+bool task_may_run_other(const struct task_scope *scope, const struct task *task)
 {
     const struct task_scope *a = task->scope, *b = scope->parent;
     uint64_t a_number = task->number, b_number = scope->number;

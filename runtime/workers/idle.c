@@ -130,7 +130,7 @@ static bool poller_take(struct worker *worker)
     return worker->polls;
 }
 
-void work_busy_again(struct worker *worker)
+void work_idle_over(struct worker *worker)
 {
     work_stir(worker);
     if (!worker->polls)

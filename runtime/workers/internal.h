@@ -16,6 +16,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#pragma GCC visibility push(hidden) /* called directly: no program can come in between */
+
 /* Shared by the files of this folder only. */
 
 /* A worker that sleeps for short pauses begins with this one; each is twice as long as the last. */
@@ -226,8 +228,13 @@ void work_idles(struct worker *worker, uint64_t now);
 /* Something happened: a new idle time begins. */
 void work_stir(struct worker *worker);
 /* The worker has something to do again. If it was the poller it wakes a sleeper, which becomes the
- * poller. */
-void work_busy_again(struct worker *worker);
+ * poller. Inline as far as it did not idle. */
+void work_idle_over(struct worker *worker);
+static inline void work_busy_again(struct worker *worker)
+{
+    if (worker->idle_since || worker->polls)
+        work_idle_over(worker);
+}
 /* One idle look, now in ticks. Returns whether other programs use this worker's core; then it
  * should sleep instead of spinning. */
 bool work_is_crowded(struct worker *worker, uint64_t now);
@@ -311,5 +318,7 @@ static inline void work_set_affinity(const struct worker *worker, const struct t
     else if (plan_is_affine(task->node->plan))
         plan_task_set_affinity(task, 0);
 }
+
+#pragma GCC visibility pop
 
 #endif

@@ -91,7 +91,7 @@ static inline void deque_show(struct work_deque *deque, int64_t newest)
     atomic_exchange_explicit(&deque->newest, newest, memory_order_seq_cst);
 }
 
-bool work_deque_push(struct work_deque *deque, struct task *task)
+static inline bool deque_push(struct work_deque *deque, struct task *task)
 {
     int64_t newest = deque_end(deque);
     if (!deque_fill(deque, newest, task))
@@ -100,7 +100,12 @@ bool work_deque_push(struct work_deque *deque, struct task *task)
     return true;
 }
 
-struct task *work_deque_take_newest(struct work_deque *deque)
+bool work_deque_push(struct work_deque *deque, struct task *task)
+{
+    return deque_push(deque, task);
+}
+
+static inline struct task *deque_take_newest(struct work_deque *deque)
 {
     int64_t newest = atomic_load_explicit(&deque->newest, memory_order_relaxed) - 1;
     struct work_ring *ring = atomic_load_explicit(&deque->ring, memory_order_relaxed);
@@ -121,6 +126,11 @@ struct task *work_deque_take_newest(struct work_deque *deque)
         task = NULL; /* a thief got the last one */
     atomic_store_explicit(&deque->newest, newest + 1, memory_order_relaxed);
     return task;
+}
+
+struct task *work_deque_take_newest(struct work_deque *deque)
+{
+    return deque_take_newest(deque);
 }
 
 struct task *work_deque_take_oldest(struct work_deque *deque, bool *again)
@@ -229,7 +239,7 @@ void work_queue_put(struct work_queue *queue, struct task *task)
 
 void work_queue_push(struct work_queue *queue, struct task *task)
 {
-    if (!work_deque_push(&queue->deque, task))
+    if (!deque_push(&queue->deque, task))
         work_queue_put(queue, task); /* no memory for a larger ring: the inbox has no bound */
 }
 
@@ -295,11 +305,13 @@ static struct task *queue_take_highest(struct work_queue *queue)
  * in the heap. Whoever goes round the queue from its old end to the new one comes by all of it. */
 static struct task *queue_take(struct work_queue *queue, duite_end end)
 {
-    queue_push_all(queue, inbox_take_all(queue));
+    struct task *came = inbox_take_all(queue);
+    if (came)
+        queue_push_all(queue, came);
     if (end == DUITE_HIGHEST)
         return queue_take_highest(queue);
     if (end == DUITE_NEWEST) {
-        struct task *task = work_deque_take_newest(&queue->deque);
+        struct task *task = deque_take_newest(&queue->deque);
         return task ? task : heap_take(&queue->heap);
     }
     struct task *task = heap_take(&queue->heap);

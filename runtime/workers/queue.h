@@ -9,6 +9,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#pragma GCC visibility push(hidden) /* called directly: no program can come in between */
+
 /* Queues of ready tasks, and the two things that they are made of: a deque and a heap. */
 
 /* ---- Deque ---- */
@@ -119,5 +121,7 @@ static inline bool work_queue_ranks(struct work_queue *queue)
 {
     return atomic_load_explicit(&queue->heap.n, memory_order_relaxed) != 0;
 }
+
+#pragma GCC visibility pop
 
 #endif

@@ -94,8 +94,21 @@ static bool ready_goes_away(struct worker *worker, struct task *task)
     return work_placed_away(worker, task);
 }
 
+/* Whether a body of this worker forked the task, and nothing is asked where it goes: its own queue.
+ * Most of what a body forks is such. */
+static inline bool ready_is_child(const struct worker *worker, const struct task *task)
+{
+    const struct work_pool *pool = worker->pool;
+    return task->type == TASK_BODY && task->state == TASK_LOCAL && pool->by_affinity &&
+           !pool->balance && !worker->may_chain && work_in_body(worker);
+}
+
 void work_ready(struct work_pool *pool, struct worker *worker, struct task *task)
 {
+    if (ready_is_child(worker, task)) {
+        ready_put(worker, task, worker->index);
+        return;
+    }
     if (task_to_send(task)) {
         comm_send(pool->setup.comm, task);
         return;

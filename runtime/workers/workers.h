@@ -9,6 +9,8 @@
 
 #include <duite_policy.h>
 
+#pragma GCC visibility push(hidden) /* called directly: no program can come in between */
+
 /* The workers of a rank: worker 0 is the main thread, which works while the main program waits; the
  * others are threads of ours. A worker runs what it finds in its own queue, the shared one, or
  * those of the victims that the scheduler names. Between tasks it polls for messages. When it finds
@@ -115,5 +117,7 @@ void work_note_counters(struct work_pool *pool, struct trace_counters *counters)
 
 /* True if the calling thread is the main thread and not inside a body. */
 bool work_may_fork(struct work_pool *pool);
+
+#pragma GCC visibility pop
 
 #endif

@@ -108,9 +108,9 @@ static const struct {
     struct explore_plant plant;
     struct play play;
 } plants[] = {
-    {{"work_deque_take_newest", "&deque->newest", EXPLORE_RELAX},
+    {{"deque_take_newest", "&deque->newest", EXPLORE_RELAX},
      {"the claim is seen late", 2, 2, {"TT", "OO"}, 0}},
-    {{"work_deque_take_newest", "&deque->oldest", EXPLORE_RELAX},
+    {{"deque_take_newest", "&deque->oldest", EXPLORE_RELAX},
      {"the last one is not contended for", 2, 1, {"T", "O"}, 0}},
     {{"work_deque_take_oldest", "&deque->oldest", EXPLORE_RELAX},
      {"thieves do not look at one another", 2, 1, {"", "O", "O"}, 0}},

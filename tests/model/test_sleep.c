@@ -436,11 +436,11 @@ static const struct {
     {SERVED("one task for another", leave_one), {"work_queue_put", "the put", EXPLORE_RELAX}},
     {SERVED("one task waited for", wait_one), {"main_has_enough", "&pool->awaited", EXPLORE_DROP}},
     {SERVED("main polled, and leaves", idle_then_leave),
-     {"work_busy_again", "&worker->pool->poller", EXPLORE_RELAX}},
+     {"work_idle_over", "&worker->pool->poller", EXPLORE_RELAX}},
     {SERVED("main polled, and leaves", idle_then_leave),
-     {"work_busy_again", "&worker->pool->poller", EXPLORE_DROP}},
+     {"work_idle_over", "&worker->pool->poller", EXPLORE_DROP}},
     {LARGE("the poller gets busy", wait_beside),
-     {"work_busy_again", "&worker->pool->poller", EXPLORE_DROP}},
+     {"work_idle_over", "&worker->pool->poller", EXPLORE_DROP}},
 #endif
 };
 

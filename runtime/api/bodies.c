@@ -75,8 +75,6 @@ int api_body_free(struct duite_call_private *body, duite_object object)
     return body_remember(body, code);
 }
 
-static const struct task_options fork_plain = {.at = TASK_ANYWHERE};
-
 /* The first fork of a body that has no scope yet. */
 __attribute__((noinline)) static int fork_first(struct duite_call_private *body,
                                                 const duite_kernel *kernel, const void *args,
@@ -85,7 +83,7 @@ __attribute__((noinline)) static int fork_first(struct duite_call_private *body,
     int code = body_enter(body, "duite_fork");
     if (!code)
         code = task_inside(body)
-                   ? task_fork(body->scope, body->worker, &fork_plain, kernel, args, n, objects)
+                   ? task_fork_nested(body->scope, body->worker, kernel, args, n, objects)
                    : DUITE_E_MEMORY;
     return body_remember(body, code);
 }
@@ -96,7 +94,7 @@ int api_body_fork(struct duite_call_private *body, const duite_kernel *kernel, c
     if (!body->scope || !body_may_call(body))
         return fork_first(body, kernel, args, n, objects);
     return body_remember(
-        body, task_fork(body->scope, body->worker, &fork_plain, kernel, args, n, objects));
+        body, task_fork_nested(body->scope, body->worker, kernel, args, n, objects));
 }
 
 int api_body_fork_with(struct duite_call_private *body, const duite_task_options *options,

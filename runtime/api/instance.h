@@ -10,7 +10,6 @@
 #include "runtime/trace/trace.h"
 #include "runtime/workers/workers.h"
 
-#include <pthread.h>
 
 #pragma GCC visibility push(hidden) /* called directly: no program can come in between */
 
@@ -23,7 +22,7 @@ struct duite {
     struct check *check; /* NULL: not in checking mode */
     struct work_pool *pool;
     struct worker *worker; /* the main thread's; as is: */
-    pthread_t thread;
+    const void *thread;    /* task_thread_mark() */
     struct plan_memo *memo; /* recognises repeated forks; NULL: they stay forks */
     struct trace *trace;    /* NULL: nothing is written down */
     bool traced;            /* the trace is closed */

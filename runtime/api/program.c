@@ -147,7 +147,7 @@ static inline bool fork_is_direct(const duite *rt)
 {
     const uint64_t more = (uintptr_t)rt->comm | (uintptr_t)rt->trace | (uintptr_t)rt->building |
                           rt->graph.table.n_unsettled | rt->mpi_held;
-    return !more && !rt->graph.broken && pthread_equal(pthread_self(), rt->thread);
+    return !more && !rt->graph.broken && task_thread_mark() == rt->thread;
 }
 
 static int fork_other(duite *rt, const duite_kernel *kernel, const void *args, size_t n,
@@ -164,15 +164,14 @@ static int fork_other(duite *rt, const duite_kernel *kernel, const void *args, s
 int duite_fork(duite *rt, const duite_kernel *kernel, const void *args, size_t n,
                const duite_object *objects)
 {
-    static const struct task_options plain = {.at = TASK_ANYWHERE};
     struct duite_call_private *body = api_body(rt);
     if (body)
         return api_body_fork(body, kernel, args, n, objects);
     if (!rt || !fork_is_direct(rt))
         return fork_other(rt, kernel, args, n, objects);
     if (!rt->memo || !plan_memo_fork(rt->memo, kernel, args, n, objects)) {
-        const int code = task_fork(&rt->graph.root, rt->worker, &plain, kernel, args, n, objects);
-        if (code || rt->graph.broken)
+        const int code = task_fork_main(&rt->graph, rt->worker, kernel, args, n, objects);
+        if (code)
             return api_remember(rt, code);
     }
     if (rt->window)

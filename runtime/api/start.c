@@ -123,7 +123,7 @@ static int instance_start_workers(duite *rt, const duite_options *options, int c
                                  .cores = bind ? cores.unit + host.before : NULL});
     work_cores_free(&cores);
     rt->worker = code ? NULL : work_main(rt->pool);
-    rt->thread = pthread_self();
+    rt->thread = task_thread_mark();
     return code ? code : instance_start_memo(rt, options);
 }
 

@@ -181,16 +181,34 @@ static struct base_shelf *shelves_own(void)
     return base_shelves = own;
 }
 
+/* Empty; NULL without memory. */
+static struct base_magazine *magazine_new(void)
+{
+    pool_lock();
+    struct base_magazine *empty = empties;
+    if (empty)
+        empties = empty->next;
+    pool_unlock();
+    if (!empty && (empty = region_cut(sizeof *empty)))
+        empty->n = 0;
+    return empty;
+}
+
 /* Small ones are cut several at a time: the others are at hand then, and come in the order in which
  * they lie. So blocks of an odd number of grains come in even numbers, and nothing is lost between
  * them and others. */
-static void *blocks_new(size_t size)
+static void *blocks_new(struct base_shelf *shelf, size_t size)
 {
-    enum { AT_ONCE = 8, SMALL = 256 /* bytes */ };
+    enum { AT_ONCE = 16, SMALL = 256 /* bytes */ };
     const size_t bytes = size * BASE_POOL_GRAIN, n = bytes <= SMALL ? AT_ONCE : 1 + size % 2;
+    struct base_magazine *loaded = shelf->loaded;
+    if (!loaded && !(loaded = shelf->loaded = magazine_new()))
+        return NULL;
     char *block = region_cut(n * bytes);
-    for (size_t i = n - 1; block && i > 0; i--)
-        base_pool_give(block + i * bytes, bytes);
+    if (!block)
+        return NULL;
+    for (size_t i = n - 1; i > 0; i--)
+        loaded->block[loaded->n++] = block + i * bytes;
     return block;
 }
 
@@ -220,7 +238,7 @@ void *base_pool_take_more(size_t size)
     shelf += size;
     struct base_magazine *full = shelf->spare;
     if ((!full || !full->n) && !(full = store_exchange(full, size)))
-        return blocks_new(size);
+        return blocks_new(shelf, size);
     shelf->spare = shelf->loaded;
     shelf->loaded = full;
     return full->block[--full->n];
@@ -231,12 +249,8 @@ void *base_pool_take_more(size_t size)
 static void store_give(void *block, size_t size)
 {
     struct base_shelf *shelf = &base_shelves[size];
-    pool_lock();
-    struct base_magazine *empty = empties;
-    if (empty)
-        empties = empty->next;
-    pool_unlock();
-    if (!empty && !(empty = region_cut(sizeof *empty)))
+    struct base_magazine *empty = magazine_new();
+    if (!empty)
         return;
     if (shelf->spare) {
         pool_lock();

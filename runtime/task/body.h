@@ -23,6 +23,11 @@ struct duite_call_private {
 /* The innermost body on this thread, or NULL; and that if it runs for this graph. */
 extern _Thread_local struct duite_call_private *task_innermost
     __attribute__((tls_model("initial-exec")));
+/* What tells the calling thread from all others, without a call. */
+static inline const void *task_thread_mark(void)
+{
+    return &task_innermost;
+}
 static inline struct duite_call_private *task_running(const struct task_graph *graph)
 {
     struct duite_call_private *body = task_innermost;

@@ -69,6 +69,21 @@ static int kernel_check_unique(const duite_kernel *const kernels[], uint32_t ind
     return DUITE_OK;
 }
 
+/* What a fork finds out about each kernel, found out once. */
+static void kernel_prepare(struct task_graph *graph, uint32_t index)
+{
+    struct task_fixed *fixed = &graph->fixed[index];
+    struct task *head = &graph->heads[index];
+    fixed->direct = fixed->plain && graph->n_ranks == 1;
+    fixed->head = head;
+    *head = (struct task){.pending = fixed->n + 1,
+                          .n = fixed->n,
+                          .kernel = index,
+                          .grains = fixed->grains,
+                          .type = TASK_BODY,
+                          .placed = fixed->owner[0] != TASK_NOBODY};
+}
+
 /* The places of all kernels by their addresses; at most half of them are taken. */
 static int kernels_index(struct task_graph *graph)
 {
@@ -96,7 +111,8 @@ static int kernels_take(struct task_graph *graph, const duite_kernel *const *ker
         n++;
     graph->kernels = base_alloc(n * sizeof graph->kernels[0]);
     graph->fixed = base_alloc(n * sizeof *graph->fixed);
-    if (!graph->kernels || !graph->fixed)
+    graph->heads = base_alloc(n * sizeof *graph->heads);
+    if (!graph->kernels || !graph->fixed || !graph->heads)
         return base_no_memory("the list of kernels");
     memcpy(graph->kernels, kernels, n * sizeof graph->kernels[0]);
     graph->n_kernels = (uint32_t)n;
@@ -108,6 +124,7 @@ static int kernels_take(struct task_graph *graph, const duite_kernel *const *ker
             code = data_law_check_kernel(graph->kernels[i], laws);
         if (code)
             return code;
+        kernel_prepare(graph, i);
     }
     return kernels_index(graph);
 }
@@ -151,6 +168,7 @@ void task_graph_stop(struct task_graph *graph)
     }
     base_free(graph->history);
     base_free(graph->fixed);
+    base_free(graph->heads);
     base_free(graph->kernels);
     base_free(graph->kernel_place);
     data_table_stop(&graph->table);

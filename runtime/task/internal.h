@@ -106,7 +106,7 @@ static inline uint32_t task_kernel_index(const struct task_graph *graph, const d
         const uint32_t found = graph->kernel_place[at & graph->kernel_mask];
         if (!found)
             return graph->n_kernels;
-        if (graph->kernels[found - 1] == kernel)
+        if (graph->fixed[found - 1].kernel == kernel)
             return found - 1;
     }
 }

@@ -200,9 +200,12 @@ struct task_graph {
         uint32_t owner[2]; /* which of n objects, of more than n, a task runs for: see owner.h */
         uint32_t grains;   /* of a task with n objects */
         bool plain;        /* r, w and rw alone, few of them, no others; and it is not replicated */
+        bool direct;       /* ... and there is one rank */
+        const struct task *head; /* plain: a task that was just forked, but for what differs */
     } * fixed;
+    struct task *heads; /* of all kernels */
     uint32_t n_kernels;
-    uint32_t *kernel_place, kernel_mask; /* by address, open addressing: index in `kernels` + 1 */
+    uint32_t *kernel_place, kernel_mask; /* by address, open addressing: index in `fixed` + 1 */
     bool paths; /* plans are to know the paths of their tasks; set before the first of them */
     _Atomic int given_up;   /* bodies do not run any more */
     bool checks;            /* bodies are called by work_check_body */
@@ -288,6 +291,11 @@ bool task_prune(struct task_graph *graph, const duite_kernel *kernel, const void
 
 int task_fork(struct task_scope *scope, struct worker *worker, const struct task_options *options,
               const duite_kernel *kernel, const void *args, size_t n, const duite_object *objects);
+/* The same without options: of the main program, and of a body. */
+int task_fork_main(struct task_graph *graph, struct worker *worker, const duite_kernel *kernel,
+                   const void *args, size_t n, const duite_object *objects);
+int task_fork_nested(struct task_scope *scope, struct worker *worker, const duite_kernel *kernel,
+                     const void *args, size_t n, const duite_object *objects);
 /* Overwrites with a copy of *count values, or with zeros if they are NULL, without waiting for
  * anything. count NULL: as many as the object has at most. Errors: objects, DUITE_E_SIZE, memory.
  */

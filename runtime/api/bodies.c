@@ -93,8 +93,8 @@ int api_body_fork(struct duite_call_private *body, const duite_kernel *kernel, c
 {
     if (!body->scope || !body_may_call(body))
         return fork_first(body, kernel, args, n, objects);
-    return body_remember(
-        body, task_fork_nested(body->scope, body->worker, kernel, args, n, objects));
+    return body_remember(body,
+                         task_fork_nested(body->scope, body->worker, kernel, args, n, objects));
 }
 
 int api_body_fork_with(struct duite_call_private *body, const duite_task_options *options,

@@ -10,7 +10,6 @@
 #include "runtime/trace/trace.h"
 #include "runtime/workers/workers.h"
 
-
 #pragma GCC visibility push(hidden) /* called directly: no program can come in between */
 
 /* A running runtime: its parts, and the error that the next get, wait or stop still has to return.
@@ -21,8 +20,8 @@ struct duite {
     struct comm *comm;   /* NULL: one rank */
     struct check *check; /* NULL: not in checking mode */
     struct work_pool *pool;
-    struct worker *worker; /* the main thread's; as is: */
-    const void *thread;    /* task_thread_mark() */
+    struct worker *worker;  /* the main thread's; as is: */
+    const void *thread;     /* task_thread_mark() */
     struct plan_memo *memo; /* recognises repeated forks; NULL: they stay forks */
     struct trace *trace;    /* NULL: nothing is written down */
     bool traced;            /* the trace is closed */

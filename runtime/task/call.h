@@ -77,7 +77,11 @@ task_frame_call(struct task_frame *frame, struct task *task, const void *args,
     return code ? task_body_failure(body, code) : NULL;
 }
 
-/* The same with a frame of its own. */
+/* Runs a ready BODY that is LOCAL, in a frame that is set: its body is called, or it is known why
+ * not. Returns whether it was. task_finish then ends the task. */
+bool task_run_body(struct task_frame *frame, struct task *task);
+
+/* Calls a body with a frame of its own. */
 __attribute__((always_inline)) static inline const struct data_failure *
 task_call_body(struct task_graph *graph, struct worker *worker, struct task *task, const void *args,
                const duite_param *param, struct task_scope **scope, const duite_call *template)

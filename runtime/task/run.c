@@ -88,8 +88,8 @@ param_prepare_other(const struct task *task, const struct task_access *access, d
 }
 
 /* Gives the body its parameters; returns the poison among them, or NULL. */
-static inline const struct data_failure *params_prepare(struct task *task, duite_param *param,
-                                                        bool *sized)
+__attribute__((always_inline)) static inline const struct data_failure *
+params_prepare(struct task *task, duite_param *param, bool *sized)
 {
     const struct data_failure *failure = NULL, *new = NULL;
     const uint32_t n = task->n, stamp = n ? task_new_stamp() : 0;
@@ -171,23 +171,26 @@ struct body_elsewhere {
     struct data_packet *result;
 };
 
-/* Whether the body ran; `elsewhere` NULL: it is to run here. Inline, for the sake of its callers
- * that pass constants. */
-static inline bool body_run(struct task_graph *graph, struct worker *worker, struct task *task,
-                            duite_param *param, const duite_call *call,
-                            const struct body_elsewhere *elsewhere)
+/* Whether the body ran; `elsewhere` NULL: it is to run here, in the frame. Inline, for the sake of
+ * its callers that pass constants. */
+__attribute__((always_inline)) static inline bool body_run(struct task_graph *graph,
+                                                           struct task_frame *frame,
+                                                           struct task *task, duite_param *param,
+                                                           const struct body_elsewhere *elsewhere)
 {
     bool sized = false; /* it writes an object that changes its size */
     const struct data_failure *failure = params_prepare(task, param, &sized);
     if (!failure && !elsewhere)
         failure = task_given_up(graph);
-    bool runs = !failure && !elsewhere;
-    size_t args_size = graph->kernels[task->kernel]->args_size;
-    if (runs)
-        failure = task_call_body(graph, worker, task, args_size ? task_rest(task, task->n) : NULL,
-                                 param, &task->inner, call);
-    else if (!failure)
+    const bool runs = !failure && !elsewhere;
+    if (runs) {
+        const bool has_args = graph->kernels[task->kernel]->args_size != 0;
+        frame->call.round = task->later ? task_later_round(task) : 0;
+        failure = task_frame_call(frame, task, has_args ? task_rest(task, task->n) : NULL, param,
+                                  &task->inner);
+    } else if (!failure) {
         failure = elsewhere->take(task, param, elsewhere->result);
+    }
     if (failure)
         outputs_poison(task, failure);
     else if (sized)
@@ -196,32 +199,32 @@ static inline bool body_run(struct task_graph *graph, struct worker *worker, str
 }
 
 /* The same with memory for any number of parameters. */
-static bool body_run_any(struct task_graph *graph, struct worker *worker, struct task *task,
-                         const duite_call *call, const struct body_elsewhere *elsewhere)
+static bool body_run_any(struct task_graph *graph, struct task_frame *frame, struct task *task,
+                         const struct body_elsewhere *elsewhere)
 {
     duite_param *param = base_pool_take((task->n ? task->n : 1) * sizeof *param);
     if (!param) {
         outputs_poison(task, task_fail_memory(task));
         return false;
     }
-    bool ran = body_run(graph, worker, task, param, call, elsewhere);
+    bool ran = body_run(graph, frame, task, param, elsewhere);
     base_pool_give(param, (task->n ? task->n : 1) * sizeof *param);
     return ran;
 }
 
-bool task_run_body(struct task_graph *graph, struct worker *worker, struct task *task,
-                   const duite_call *call)
+bool task_run_body(struct task_frame *frame, struct task *task)
 {
     enum { FEW = 8 };
     duite_param param[FEW];
-    return task->n <= FEW ? body_run(graph, worker, task, param, call, NULL)
-                          : body_run_any(graph, worker, task, call, NULL);
+    if (task->n > FEW)
+        return body_run_any(frame->body.graph, frame, task, NULL);
+    return body_run(frame->body.graph, frame, task, param, NULL);
 }
 
 void task_run_result(struct task_graph *graph, struct task *task, task_take_result *take,
                      struct data_packet *result)
 {
-    body_run_any(graph, NULL, task, NULL, &(struct body_elsewhere){take, result});
+    body_run_any(graph, NULL, task, &(struct body_elsewhere){take, result});
 }
 
 /* ---- By type ---- */
@@ -261,9 +264,11 @@ bool task_run(struct task_graph *graph, struct worker *worker, struct task *task
         outputs_poison(task, &fork_no_memory);
         return false;
     }
+    struct task_frame frame; /* of a body; not set otherwise */
     switch (task->type) {
     case TASK_BODY:
-        return task_run_body(graph, worker, task, call);
+        task_frame_init(&frame, graph, worker, call);
+        return task_run_body(&frame, task);
     case TASK_COMBINE:
         task_run_combine(task);
         break;

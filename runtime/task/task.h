@@ -316,9 +316,6 @@ void task_release(struct task_graph *graph, struct worker *worker, struct data_v
  * tasks of all types. `call` has context, rt, rank and worker set. Returns whether a body ran. */
 bool task_run(struct task_graph *graph, struct worker *worker, struct task *task,
               const duite_call *call);
-/* The same of a BODY that is LOCAL: its body runs, or it is known why not. */
-bool task_run_body(struct task_graph *graph, struct worker *worker, struct task *task,
-                   const duite_call *call);
 /* The task is over: publishes what it wrote, releases what it read, makes its successors ready,
  * frees it. */
 void task_finish(struct task_graph *graph, struct worker *worker, struct task *task);

@@ -8,8 +8,6 @@
 bool work_run_task(struct task_graph *graph, struct worker *worker, struct task *task,
                    const duite_call *call)
 {
-    if (task->type == TASK_BODY && task->state == TASK_LOCAL) /* most are */
-        return task_run_body(graph, worker, task, call);
     if (task->type == TASK_NODE)
         return plan_node_run(graph, worker, task, call);
     if (task->state == TASK_VOID)

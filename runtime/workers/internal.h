@@ -72,15 +72,15 @@ struct worker {
     bool may_chain; /* ... and may run one of them inline, as its next */
     bool polls;     /* is the poller */
     bool left_some; /* the heap from which it took a task has more: another worker is to be woken */
-    const struct task_scope *waits; /* of the body that waits on top; NULL: none does */
-    uint64_t within;                /* ticks of tasks, messages and idling inside the body that
-                                       runs */
-    uint64_t gap;                   /* ticks between inline tasks, when last looked at */
-    unsigned brief;                 /* nodes in turn that took next to nothing, see nodes.c */
-    struct task *next;              /* inline: to run directly after this one */
-    uint64_t polled, idle_since;    /* when, in ticks; 0: busy */
-    uint64_t messaging;             /* when it began with messages, in ticks; 0: it does not */
-    uint64_t looked, crowded_until; /* in ticks, see idle.c */
+    const struct task_scope *waits;     /* of the body that waits on top; NULL: none does */
+    uint64_t within;                    /* ticks of tasks, messages and idling inside the body that
+                                           runs */
+    uint64_t gap;                       /* ticks between inline tasks, when last looked at */
+    unsigned brief_bodies, brief_nodes; /* in turn, see work_batch */
+    struct task *next;                  /* inline: to run directly after this one */
+    uint64_t polled, idle_since;        /* when, in ticks; 0: busy */
+    uint64_t messaging;                 /* when it began with messages, in ticks; 0: it does not */
+    uint64_t looked, crowded_until;     /* in ticks, see idle.c */
     long switches;         /* involuntary context switches of its thread; -1: not counted yet */
     uint64_t awaited_then; /* comm_awaited_ticks when it began to idle */
     double pause;
@@ -99,7 +99,8 @@ struct work_pool {
     double tick; /* seconds */
     uint64_t poll_ticks, spin_ticks, yield_ticks, await_ticks, affinity_ticks;
     bool by_affinity; /* the scheduler's `place` and `chain` are those of sched.h by affinity */
-    bool plain_nodes; /* ... and there is neither another rank nor a trace: see nodes.c */
+    bool plain;       /* there is neither another rank nor a trace: see bodies.c */
+    bool plain_nodes; /* both: see nodes.c */
     unsigned started; /* threads, worker 0 among them */
     pthread_t main;
     struct work_near near;
@@ -203,6 +204,30 @@ static inline bool work_is_plain_node(const struct worker *worker, const struct 
 /* Runs the node and the nodes that run inline after it; *length counts them. Returns what is to run
  * inline next and is no such node, or NULL. */
 struct task *work_run_nodes(struct worker *worker, struct task *task, unsigned *length);
+
+/* ---- bodies.c: tasks that were forked, with bodies. Where there is one rank and no trace, most of
+ * what run_any does with a task is not needed ---- */
+
+/* Whether the worker may run the task so. */
+static inline bool work_is_plain_body(const struct worker *worker, const struct task *task)
+{
+    return task->type == TASK_BODY && task->state == TASK_LOCAL && worker->pool->plain;
+}
+/* Runs the task, those that run inline after it, and while they are brief a few more of the queue;
+ * *length counts those that run inline in turn. Returns what is to run inline next and is no such
+ * task, or NULL. */
+struct task *work_run_bodies(struct worker *worker, struct task *task, unsigned *length);
+
+/* Tasks since the clock was read, in these two loops. It is read after each of them, until so many
+ * in turn were brief; then once for so many, until these take longer. */
+struct work_batch {
+    uint64_t start;
+    uint64_t limit;  /* ticks of a brief task; */
+    unsigned *brief; /* so many in turn were */
+    unsigned tasks;
+};
+/* Reads the clock after the last task of a batch, which ends. Returns what it took. */
+uint64_t work_batch_ends(struct worker *worker, struct work_batch *batch);
 
 /* ---- idle.c ---- */
 

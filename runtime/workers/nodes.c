@@ -8,26 +8,6 @@
 
 enum { BATCH = 4 };
 
-/* Nodes since the clock was read. */
-struct nodes_time {
-    uint64_t start;
-    unsigned nodes;
-};
-
-/* Reads the clock after a node, the last one of `time`; NULL: it may be gone. */
-static void nodes_clock(struct worker *worker, const struct task *task, struct nodes_time *time)
-{
-    const uint64_t end = base_ticks(), took = end > time->start ? end - time->start : 0;
-    const uint64_t outside = worker->within + (time->nodes - 1) * worker->gap;
-    const bool brief = took < worker->pool->affinity_ticks / BATCH * time->nodes;
-    if (task && time->nodes == 1)
-        work_set_affinity(worker, task, took);
-    worker->brief = brief ? worker->brief + time->nodes : 0;
-    worker->within = 0;
-    work_bump(&worker->counts.busy, took > outside ? took - outside : 0);
-    *time = (struct nodes_time){.start = end};
-}
-
 /* The first node that becomes ready is the next one, if the scheduler need not be asked. */
 static inline void nodes_ready(struct task_graph *graph, struct worker *worker, struct task *task)
 {
@@ -39,7 +19,7 @@ static inline void nodes_ready(struct task_graph *graph, struct worker *worker, 
 
 /* Runs a node; what it leaves becomes ready. */
 static inline void nodes_run(struct worker *worker, struct task_frame *frame, struct task *task,
-                             struct nodes_time *time, unsigned length)
+                             struct work_batch *batch, unsigned length)
 {
     const struct task *below = atomic_load_explicit(&worker->runs, memory_order_relaxed);
     const bool affine = plan_is_affine(task->node->plan);
@@ -47,8 +27,12 @@ static inline void nodes_run(struct worker *worker, struct task_frame *frame, st
     const bool body = plan_node_run_body(frame, task);
     work_leaves(worker, below);
     work_bump(&worker->counts.tasks, body);
-    if (++time->nodes == BATCH || worker->brief < BATCH || affine)
-        nodes_clock(worker, task, time);
+    if (++batch->tasks == BATCH || worker->brief_nodes < BATCH || affine) {
+        const bool alone = batch->tasks == 1;
+        const uint64_t took = work_batch_ends(worker, batch);
+        if (alone)
+            work_set_affinity(worker, task, took);
+    }
     worker->finishing = true;
     worker->may_chain = work_goes_on(worker, length);
     plan_node_count_down(frame->body.graph, worker, task, nodes_ready);
@@ -59,22 +43,24 @@ static inline void nodes_run(struct worker *worker, struct task_frame *frame, st
 struct task *work_run_nodes(struct worker *worker, struct task *task, unsigned *length)
 {
     const uint64_t outer = worker->within, begin = base_ticks();
-    struct nodes_time time = {.start = begin};
+    struct work_batch batch = {.start = begin,
+                               .limit = worker->pool->affinity_ticks / BATCH,
+                               .brief = &worker->brief_nodes};
     struct task_frame frame;
     task_frame_init(&frame, worker->pool->setup.graph, worker, &worker->call);
     worker->within = 0;
     for (;; ++*length) {
-        nodes_run(worker, &frame, task, &time, *length);
+        nodes_run(worker, &frame, task, &batch, *length);
         task = worker->next;
         worker->next = NULL;
         work_bump(&worker->counts.chained, task != NULL);
         if (!task || task->type != TASK_NODE)
             break;
-        if (!time.nodes)
-            time.start = work_inline_start(worker, *length, time.start);
+        if (!batch.tasks)
+            batch.start = work_inline_start(worker, *length, batch.start);
     }
-    if (time.nodes)
-        nodes_clock(worker, NULL, &time);
-    worker->within = outer + (time.start - begin);
+    if (batch.tasks)
+        work_batch_ends(worker, &batch);
+    worker->within = outer + (batch.start - begin);
     return task;
 }

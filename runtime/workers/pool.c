@@ -91,7 +91,8 @@ int work_start(struct work_pool **out, const struct work_setup *setup)
     pool->main = pthread_self();
     pool->by_affinity = setup->scheduler->chain == sched_chain_affinity &&
                         setup->scheduler->place == sched_place_affinity;
-    pool->plain_nodes = pool->by_affinity && !setup->comm && !setup->trace;
+    pool->plain = !setup->comm && !setup->trace;
+    pool->plain_nodes = pool->by_affinity && pool->plain;
     pool_set_ticks(pool);
     pool->worker = base_alloc_zero(n * sizeof pool->worker[0]);
     pool->states = base_alloc_zero(n * lines * BASE_LINE);

@@ -94,21 +94,15 @@ static bool ready_goes_away(struct worker *worker, struct task *task)
     return work_placed_away(worker, task);
 }
 
-/* Whether a body of this worker forked the task, and nothing is asked where it goes: its own queue.
- * Most of what a body forks is such. */
-static inline bool ready_is_child(const struct worker *worker, const struct task *task)
+/* Whether nothing is asked where the task goes, as for most. */
+static inline bool ready_is_straight(const struct work_pool *pool, const struct task *task)
 {
-    const struct work_pool *pool = worker->pool;
     return task->type == TASK_BODY && task->state == TASK_LOCAL && pool->by_affinity &&
-           !pool->balance && !worker->may_chain && work_in_body(worker);
+           !pool->balance;
 }
 
-void work_ready(struct work_pool *pool, struct worker *worker, struct task *task)
+static void ready_any(struct work_pool *pool, struct worker *worker, struct task *task)
 {
-    if (ready_is_child(worker, task)) {
-        ready_put(worker, task, worker->index);
-        return;
-    }
     if (task_to_send(task)) {
         comm_send(pool->setup.comm, task);
         return;
@@ -125,6 +119,16 @@ void work_ready(struct work_pool *pool, struct worker *worker, struct task *task
     if (!ready_stays(worker, task))
         ready_ask(worker, task, may_run);
     else if (may_run && ready_fits(worker, task))
+        worker->next = task;
+    else
+        ready_put(worker, task, worker->index);
+}
+
+void work_ready(struct work_pool *pool, struct worker *worker, struct task *task)
+{
+    if (!ready_is_straight(pool, task))
+        ready_any(pool, worker, task);
+    else if (worker->may_chain && !worker->next && ready_fits(worker, task))
         worker->next = task;
     else
         ready_put(worker, task, worker->index);
@@ -254,36 +258,44 @@ static void run_poll(struct worker *worker, struct comm *comm, uint64_t now)
         work_grant(worker);
 }
 
-void work_run(struct worker *worker, struct task *task)
+/* Runs the task and those that run inline after it; *length counts them. Returns what is to run
+ * inline next in another loop, or NULL. */
+static struct task *run_any(struct worker *worker, struct task *task, unsigned *length)
 {
     struct work_pool *pool = worker->pool;
     struct comm *comm = pool->setup.comm;
-    if (worker->left_some) {
-        atomic_thread_fence(memory_order_seq_cst);
-        work_wake_one(pool, DUITE_NO_QUEUE);
-    }
-    worker->left_some = false;
     uint64_t start = base_ticks();
-    for (unsigned length = 1; task; length++) {
-        if (work_is_plain_node(worker, task)) {
-            unsigned nodes = length;
-            task = work_run_nodes(worker, task, &nodes);
-            length = nodes;
-            start = base_ticks();
-            continue;
-        }
+    for (;; ++*length) {
         if (pool->balance && work_begins(worker, task))
             start = base_ticks();
-        uint64_t end = run_body(worker, task, start, length > 1);
-        run_finish(worker, task, length);
+        uint64_t end = run_body(worker, task, start, *length > 1);
+        run_finish(worker, task, *length);
         if (comm)
             run_poll(worker, comm, end);
         task = worker->next;
         worker->next = NULL;
         work_bump(&worker->counts.chained, task != NULL);
         const bool wrote = worker->ring && work_note_relieve(worker);
-        if (task)
-            start = wrote ? base_ticks() : work_inline_start(worker, length, end);
+        if (!task || work_is_plain_node(worker, task) || work_is_plain_body(worker, task))
+            return task;
+        start = wrote ? base_ticks() : work_inline_start(worker, *length, end);
+    }
+}
+
+void work_run(struct worker *worker, struct task *task)
+{
+    if (worker->left_some) {
+        atomic_thread_fence(memory_order_seq_cst);
+        work_wake_one(worker->pool, DUITE_NO_QUEUE);
+    }
+    worker->left_some = false;
+    for (unsigned length = 1; task; length++) {
+        if (work_is_plain_body(worker, task))
+            task = work_run_bodies(worker, task, &length);
+        else if (work_is_plain_node(worker, task))
+            task = work_run_nodes(worker, task, &length);
+        else
+            task = run_any(worker, task, &length);
     }
 }
 

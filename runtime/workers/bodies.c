@@ -1,0 +1,80 @@
+/* Tasks that were forked, one after another, as run_any of worker.c runs all of them. They are
+ * nobody's but the worker's until they are finished. The counters of tasks are exact after each of
+ * them, the time in bodies after each batch. */
+#include "runtime/base/clock.h"
+#include "runtime/task/call.h"
+#include "runtime/workers/internal.h"
+
+enum {
+    BATCH = 16, /* tasks */
+    BRIEF = 5, /* times what leaves an affinity: a batch delays nobody who waits by a millisecond */
+    IN_TURN =
+        16 /* tasks of the queue, before the worker looks whether what it waits for is there */
+};
+
+uint64_t work_batch_ends(struct worker *worker, struct work_batch *batch)
+{
+    const uint64_t end = base_ticks(), took = end > batch->start ? end - batch->start : 0;
+    const uint64_t outside = worker->within + (batch->tasks - 1) * worker->gap;
+    *batch->brief = took < batch->limit * batch->tasks ? *batch->brief + batch->tasks : 0;
+    worker->within = 0;
+    work_bump(&worker->counts.busy, took > outside ? took - outside : 0);
+    batch->start = end;
+    batch->tasks = 0;
+    return took;
+}
+
+/* Runs a task; what it leaves becomes ready. */
+static inline void bodies_run(struct worker *worker, struct task_frame *frame, struct task *task,
+                              struct work_batch *batch, unsigned length)
+{
+    const struct task *below = work_enters(worker, task);
+    const bool body = task_run_body(frame, task);
+    work_leaves(worker, below);
+    work_bump(&worker->counts.tasks, body);
+    if (++batch->tasks == BATCH || worker->brief_bodies < BATCH)
+        work_batch_ends(worker, batch);
+    worker->finishing = true;
+    worker->may_chain = work_goes_on(worker, length);
+    task_finish(frame->body.graph, worker, task);
+    worker->finishing = false;
+    worker->may_chain = false;
+}
+
+/* Nothing runs inline: the next task of the worker's own queue, if that is what it would take.
+ * NULL: let it look around. */
+static inline struct task *bodies_take(struct worker *worker, unsigned in_turn)
+{
+    struct work_queue *queue = &worker->queue;
+    if (in_turn > IN_TURN || worker->brief_bodies < BATCH || worker->waits ||
+        !worker->pool->by_affinity || work_queue_ranks(queue))
+        return NULL;
+    return work_queue_take(queue, DUITE_NEWEST);
+}
+
+struct task *work_run_bodies(struct worker *worker, struct task *task, unsigned *length)
+{
+    const uint64_t outer = worker->within, begin = base_ticks();
+    struct work_batch batch = {.start = begin,
+                               .limit = worker->pool->affinity_ticks * BRIEF,
+                               .brief = &worker->brief_bodies};
+    struct task_frame frame;
+    task_frame_init(&frame, worker->pool->setup.graph, worker, &worker->call);
+    worker->within = 0;
+    for (unsigned in_turn = 1;; ++*length) {
+        bodies_run(worker, &frame, task, &batch, *length);
+        task = worker->next;
+        worker->next = NULL;
+        work_bump(&worker->counts.chained, task != NULL);
+        if (!task && (task = bodies_take(worker, in_turn++)))
+            *length = 0;
+        if (!task || !work_is_plain_body(worker, task))
+            break;
+        if (!batch.tasks)
+            batch.start = work_inline_start(worker, *length, batch.start);
+    }
+    if (batch.tasks)
+        work_batch_ends(worker, &batch);
+    worker->within = outer + (batch.start - begin);
+    return task;
+}

@@ -43,8 +43,8 @@ int live_publish_scene(struct live_publisher *publisher, const struct output_set
  * 3, m, is copied. */
 void live_publish_frame(struct live_publisher *publisher, uint64_t frame, double time,
                         const double *position);
-/* Viewers that asked in the last 2 s have a second to take the last frame, and hear that it is the
- * last. *publisher becomes NULL. */
+/* Viewers that wait for a frame, or asked or got one in the last 2 s, have a second to take the
+ * last one, and hear that it is the last. *publisher becomes NULL. */
 void live_publish_close(struct live_publisher **publisher);
 
 /* ---- A viewer ---- */

@@ -26,7 +26,7 @@ struct live_viewer {
     bool waits;                /* for another scene, or a frame from `next` on */
     uint64_t scene;            /* of this run that it has; 0: none */
     uint64_t next;             /* the first frame that was not sent to it */
-    double asked;              /* s: when it did last */
+    double seen;               /* s: when it asked last, or was answered */
 };
 
 struct live_publisher {

@@ -10,7 +10,7 @@
 #include <time.h>
 #include <unistd.h>
 
-static const double LATELY = 2; /* s: who asked within it is awake */
+static const double LATELY = 2; /* s: who asked, or was answered, within it is awake */
 static const double GRACE = 1;  /* s that viewers have at the end */
 enum { LINGER = 2000 };         /* ms that ZeroMQ has then to send what it took */
 
@@ -100,6 +100,7 @@ static void answer_viewer(struct live_publisher *p, struct live_viewer *viewer)
         return;
     send_message(p, viewer, lacks_scene ? &p->scene_message : frame_message(p));
     viewer->waits = false;
+    viewer->seen = now();
     if (!lacks_scene)
         viewer->next = p->frames;
 }
@@ -112,7 +113,7 @@ static struct live_viewer *find_viewer(struct live_publisher *p, const struct li
         struct live_viewer *viewer = p->viewer + i;
         if (viewer->n_id == who->n_id && !memcmp(viewer->id, who->id, who->n_id))
             return viewer;
-        if (viewer->asked < oldest->asked)
+        if (viewer->seen < oldest->seen)
             oldest = viewer;
     }
     return oldest;
@@ -143,7 +144,7 @@ static void take_request(struct live_publisher *p, struct live_viewer *who, zmq_
     }
     struct live_viewer *viewer = find_viewer(p, who);
     *viewer = *who;
-    viewer->asked = now();
+    viewer->seen = now();
     viewer->scene = request.run == p->run ? request.scene : 0;
     viewer->next = request.run == p->run ? request.number : 0;
     viewer->waits = true;
@@ -194,7 +195,7 @@ static bool is_behind(const struct live_publisher *p, double at)
     for (int i = 0; i < LIVE_VIEWERS; i++) {
         const struct live_viewer *viewer = p->viewer + i;
         if (viewer->n_id && !viewer->waits && viewer->next < p->frames &&
-            at - viewer->asked < LATELY)
+            at - viewer->seen < LATELY)
             return true;
     }
     return false;
@@ -206,11 +207,10 @@ static void end_all(struct live_publisher *p)
     const double at = now();
     for (int i = 0; i < LIVE_VIEWERS; i++) {
         const struct live_viewer *viewer = p->viewer + i;
-        const bool lately = viewer->n_id && at - viewer->asked < LATELY;
-        if (viewer->waits || lately)
-            send_end(p, viewer);
-        if (lately)
-            zmq_setsockopt(p->socket, ZMQ_LINGER, &linger, sizeof linger);
+        if (!viewer->waits && !(viewer->n_id && at - viewer->seen < LATELY))
+            continue;
+        send_end(p, viewer);
+        zmq_setsockopt(p->socket, ZMQ_LINGER, &linger, sizeof linger);
     }
 }
 

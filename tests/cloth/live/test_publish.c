@@ -120,6 +120,20 @@ START_TEST(the_end_and_another_run)
 }
 END_TEST
 
+/* Frames of a slow run come more than 2 s apart, and a viewer waits for each as long. */
+START_TEST(the_last_frame_of_a_slow_run)
+{
+    publish(0);
+    expect(LIVE_NEW_SCENE, 0);
+    for (int i = 0; i < 12; i++)
+        expect(LIVE_NOTHING, 0);
+    publish(1);
+    live_publish_close(&publisher);
+    expect(LIVE_NEW_FRAME, 1);
+    expect_state("the run has ended at frame 1; ", true);
+}
+END_TEST
+
 START_TEST(a_frame_that_is_not_finite)
 {
     double x[3 * SAMPLE_POINTS];
@@ -177,6 +191,7 @@ int main(void)
     tcase_add_test(c, the_newest_frame);
     tcase_add_test(c, another_scene_of_the_run);
     tcase_add_test(c, the_end_and_another_run);
+    tcase_add_test(c, the_last_frame_of_a_slow_run);
     tcase_add_test(c, a_frame_that_is_not_finite);
     tcase_add_test(c, an_address_that_is_taken);
     tcase_add_test(c, a_viewer_of_another_kind);

@@ -278,13 +278,15 @@ const char *const *duite_mapping_names(void);
 const char *const *duite_balancer_names(void);
 
 /* Delegation: with the balancer `delegate` a rank that has nothing to do asks others for ready
- * tasks, one rank at a time and ever less often. It is given tasks whose bodies are thought to take
- * longer than to send their inputs there and their outputs back. Tasks that may go are those whose
- * fork named no rank and whose kernel postpones nothing, has no side effects and does not say
- * `fixed`; in recorded graphs, those of rounds that are forked. Such a body runs on whichever rank
- * is idle. What it finds by its context must serve on each rank, and be there before the first such
- * fork of any rank (set up on all of them, then a duite_wait). Results and failures are the same; a
- * failure names the rank on which the body ran. `scatter` sends leaves anywhere, for tests. */
+ * tasks, one rank at a time and ever less often. It is given tasks that are thought to take longer
+ * than to send their inputs there and their outputs back. Tasks that may go are those whose fork
+ * named no rank and whose kernel has no side effects and does not say `fixed`; in recorded graphs,
+ * those of rounds that are forked. One with postponed parameters goes once what its children may
+ * read is there. All that such a task forks, whatever its kernel says, runs on the same rank, and
+ * what the children left goes home when they are over. Bodies so run on whichever rank is idle.
+ * What they find by their context must serve on each rank, and be there before the first such fork
+ * of any rank (set up on all of them, then a duite_wait). Results and failures are the same; a
+ * failure names the rank on which the body ran. `scatter` sends tasks anywhere, for tests. */
 
 /* Migration: with the balancer `migrate` objects get other homes when the bodies of one rank's
  * tasks take longer than those of the others. A leader moves with all that follow it, and with all
@@ -294,7 +296,7 @@ const char *const *duite_balancer_names(void);
  * so far, on all ranks. Recorded graphs stay as they are; what a rank has of objects that leave is
  * freed. Objects keep their home if a task of the main program ran for them whose kernel says
  * `fixed`; tasks whose fork named a rank run there whatever moves. Results are the same. `wander`
- * moves objects, and leaves, anywhere at any replay, for tests. */
+ * moves objects, and tasks, anywhere at any replay, for tests. */
 
 /* Renaming: a task may overwrite an object (w) which earlier tasks still read, write or send. With
  * renaming it is given fresh memory and does not wait for them. All such memory of a rank, headers

@@ -154,9 +154,10 @@ typedef struct duite_mapping {
 
 /* ---- Balancers: which ready tasks run on another rank, and which objects move there ---- */
 
-/* A ready task that may run on any rank. It is a leaf: no parameter of its kernel is postponed; the
- * main program or a task forked it. Its fork named no rank, and its kernel is not fixed
- * (duite_kernel.fixed) and has no side effects. Its inputs travel there and its outputs back. */
+/* A ready task that may run on any rank, with all that it forks: to its home it is a leaf, whatever
+ * grows there. The main program or a task forked it. Its fork named no rank, and its kernel is not
+ * fixed (duite_kernel.fixed) and has no side effects. What it and its children read travels there,
+ * and is there to travel; what they leave travels back. */
 typedef struct duite_leaf {
     const char *kernel;
     uint64_t number; /* its place in fork order */

@@ -46,7 +46,7 @@ static int delegate_grant(void *state, const duite_request *request, const duite
 
 const duite_balancer balance_delegate = {
     .name = "delegate",
-    .summary = "idle ranks get ready leaf tasks that cost more than their transfer",
+    .summary = "idle ranks get ready tasks that cost more than their transfer",
     .state_size = sizeof(struct delegate_state),
     .start = delegate_start,
     .victim = delegate_victim,

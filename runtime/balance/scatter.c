@@ -1,5 +1,5 @@
-/* scatter: an adversary for tests. Every leaf runs on a random rank from the seed, whatever it
- * costs and whoever has time. */
+/* scatter: an adversary for tests. Every task that may go runs on a random rank from the seed,
+ * whatever it costs and whoever has time. */
 #include "runtime/balance/balance.h"
 
 struct scatter_state {
@@ -22,7 +22,7 @@ static int scatter_place(void *state, const duite_leaf *leaf)
 
 const duite_balancer balance_scatter = {
     .name = "scatter",
-    .summary = "leaf tasks on random ranks from the seed, for tests",
+    .summary = "tasks on random ranks from the seed, for tests",
     .state_size = sizeof(struct scatter_state),
     .start = scatter_start,
     .place = scatter_place,

@@ -37,7 +37,7 @@ static uint64_t wander_migrate(void *state, const duite_blocks *blocks, int *hom
 
 const duite_balancer balance_wander = {
     .name = "wander",
-    .summary = "blocks of objects and leaf tasks on random ranks from the seed, for tests",
+    .summary = "blocks of objects and tasks on random ranks from the seed, for tests",
     .state_size = sizeof(struct wander_state),
     .start = wander_start,
     .place = wander_place,

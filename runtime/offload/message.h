@@ -11,9 +11,10 @@
  * there: names.h): an offload_message, an offload_param for each parameter, the arguments, and the
  * values that the body reads.
  *
- * Back, DATA_RESULT (key.number: that name). A body that did not fail: for each parameter a count
- * of bytes (0 under r), then these values; then, with MESSAGE_FAILED_BELOW, the first failure among
- * its descendants. One that failed, MESSAGE_FAILED: its failure, then that first one. */
+ * Back, DATA_RESULT (key.number: that name): an offload_answer. A body that did not fail: in it an
+ * offload_left for each parameter, then their values, those that the body wrote before those that
+ * its children left; then, with MESSAGE_FAILED_BELOW, the first failure among its descendants. One
+ * that failed, MESSAGE_FAILED: its failure, then that first one. */
 struct offload_message {
     uint64_t number; /* of the main program's task that it is or descends from */
     uint64_t index;  /* in its scope */
@@ -30,6 +31,20 @@ struct offload_param {
     uint32_t type, sized;
 };
 
+/* What there is of a parameter behind all this: its value; nothing, where it was only read and
+ * where no child contributed; its failure. */
+enum offload_what { LEFT_VALUE, LEFT_NOTHING, LEFT_POISON };
+struct offload_left {
+    uint64_t bytes;
+    uint64_t what;
+};
+
+struct offload_answer {
+    uint64_t busy; /* nanoseconds of its bodies and those of its descendants, if it is measured */
+    uint64_t unused;
+    struct offload_left left[];
+};
+
 enum { MESSAGE_FAILED = 1, MESSAGE_FAILED_BELOW = 2 }; /* packet->pieces */
 
 static inline size_t message_lines(size_t bytes)
@@ -38,8 +53,9 @@ static inline size_t message_lines(size_t bytes)
 }
 
 /* Of a value that is read: each has an address of its own, even if it is empty. */
-static inline size_t message_value(uint32_t mode, size_t bytes)
+static inline size_t message_value(uint32_t declared, size_t bytes)
 {
+    const duite_mode mode = task_immediate((duite_mode)declared);
     return mode == DUITE_R || mode == DUITE_RW ? message_lines(bytes ? bytes : 1) : 0;
 }
 
@@ -52,7 +68,7 @@ static inline size_t message_args_at(size_t n)
 /* Where the values of a result begin. */
 static inline size_t message_values_at(size_t n)
 {
-    return message_lines(n * sizeof(uint64_t));
+    return message_lines(sizeof(struct offload_answer) + n * sizeof(struct offload_left));
 }
 
 /* Copies bytes to a place in a packet's payload, and clears the rest of the last line; returns the
@@ -63,6 +79,7 @@ size_t offload_message_put(struct data_packet *packet, size_t at, const void *fr
 struct offload_pending {
     struct task_send send; /* first: the task's */
     struct task *task;
+    struct task_scope *inner;   /* the task's, while `send` has its place */
     _Atomic int left;           /* it is sent; it came back */
     struct data_packet *result; /* NULL: lost */
 };
@@ -75,7 +92,7 @@ struct offload_task {
     struct data_packet *message; /* what came; the body reads there */
     struct data_packet *result;  /* what goes; the body writes there */
     struct task *task;
-    struct task_scope *inner; /* of its children, or NULL */
+    struct task_scope *inner; /* of its children, or NULL; gone once they are over */
     const struct data_failure *failure;
     struct task_send send;
 };

@@ -3,10 +3,10 @@
 
 #include "runtime/task/task.h"
 
-/* Offloading: leaf tasks that run on another rank than the one that forked them.
+/* Offloading: tasks that run on another rank than the one that forked them, with their subtrees.
  *
- * At home (send.c) such a task is delegated: it stays unfinished until the result of its body
- * comes; then it does what the body would have done. On the other rank (receive.c) it is an
+ * At home (send.c) such a task is delegated: it stays unfinished until its result comes; then it
+ * does what its body and its children would have done. On the other rank (receive.c) it is an
  * offloaded task, with a small reference order of its own. It waits for nothing, its descendants
  * wait for nothing but one another, and no rank's count of tasks has it. The layers above decide
  * which tasks go, and measure. Any worker may call these functions. */

@@ -69,12 +69,20 @@ bool offload_arrived(struct task_graph *graph, struct worker *worker, struct dat
 
 /* ---- Running ---- */
 
+static bool access_is_postponed(const struct task *task, size_t i)
+{
+    return task_postponed((duite_mode)task->access[i].waiter.mode);
+}
+
+/* For what the body, or its children, leave of a parameter. */
 static size_t result_room(const struct task *task, size_t i)
 {
     const struct offload_param *param = &param_of(task->offloaded)[i];
-    return task->access[i].waiter.mode == DUITE_R
-               ? 0
-               : param->max * data_type_size((duite_type)param->type);
+    const duite_mode mode = (duite_mode)task->access[i].waiter.mode;
+    const size_t bytes =
+        task_immediate(mode) == DUITE_R ? 0 : param->max * data_type_size((duite_type)param->type);
+    return mode > DUITE_RP && bytes < sizeof(struct data_failure) ? sizeof(struct data_failure)
+                                                                  : bytes;
 }
 
 /* What the body finds under w is unspecified; under rw it is what came, under cw the law's neutral
@@ -89,8 +97,38 @@ static void result_fill(const struct task *task, size_t i, const void *came, voi
         data_law_neutral(data_law_of(kernel, i), data, param->max, (duite_type)param->type);
 }
 
+/* What the children are given, and the body does not see. False without memory. */
+static bool param_lend(struct task *task, size_t i, const void *came, duite_param *param)
+{
+    const struct offload_param *from = &param_of(task->offloaded)[i];
+    const duite_kernel *kernel = task->scope->graph->kernels[task->kernel];
+    const size_t room = from->max * data_type_size((duite_type)from->type);
+    const struct data_object object = {
+        .type = (duite_type)from->type,
+        .sized = from->sized,
+        .count = from->max,
+        .bytes = room,
+        .max = from->max,
+        .room = room,
+        .block = task->block,
+        .law = task->access[i].waiter.mode == DUITE_CWP ? data_law_of(kernel, i) : NULL};
+    *param = (duite_param){.count = from->max, .type = object.type, .max = from->max};
+    return task_lend_value(task->offloaded->inner, &task->access[i], &object, came, from->bytes);
+}
+
+/* Makes the scope of a task with postponed parameters. False without memory. */
+static bool scope_make(const struct task *task)
+{
+    size_t n = 0;
+    for (size_t i = 0; i < task->n; i++)
+        n += access_is_postponed(task, i);
+    if (n)
+        task->offloaded->inner = task_scope_new(task, n);
+    return !n || task->offloaded->inner;
+}
+
 /* Gives the body its parameters. False without memory. */
-static bool params_lay_out(const struct task *task, duite_param *param, const void **args)
+static bool params_lay_out(struct task *task, duite_param *param, const void **args)
 {
     struct offload_task *own = task->offloaded;
     uint32_t stamp = task->n ? task_new_stamp() : 0;
@@ -98,7 +136,7 @@ static bool params_lay_out(const struct task *task, duite_param *param, const vo
     for (size_t i = 0; i < task->n; i++)
         bytes += message_lines(result_room(task, i));
     own->result = data_packet_new(bytes, false);
-    if (!own->result)
+    if (!own->result || !scope_make(task))
         return false;
     char *in = (char *)data_payload(own->message) + message_args_at(task->n);
     char *out = (char *)data_payload(own->result) + message_values_at(task->n);
@@ -109,31 +147,40 @@ static bool params_lay_out(const struct task *task, duite_param *param, const vo
         duite_type type = (duite_type)came->type;
         duite_mode mode = (duite_mode)task->access[i].waiter.mode;
         bool fresh = !came->sized || mode == DUITE_W;
-        param[i] = (duite_param){.data = mode == DUITE_R ? in : out,
-                                 .count = fresh ? came->max : came->bytes / data_type_size(type),
-                                 .type = type,
-                                 .max = came->max,
-                                 .object = {TASK_LOCAL_NAME | i, stamp}};
-        result_fill(task, i, in, out);
+        if (task_postponed(mode)) {
+            if (!param_lend(task, i, in, &param[i]))
+                return false;
+        } else {
+            param[i] =
+                (duite_param){.data = mode == DUITE_R ? in : out,
+                              .count = fresh ? came->max : came->bytes / data_type_size(type),
+                              .type = type,
+                              .max = came->max};
+            result_fill(task, i, in, out);
+            out += message_lines(result_room(task, i));
+        }
+        param[i].object = (duite_object){TASK_LOCAL_NAME | i, stamp};
         in += message_value(mode, came->bytes);
-        out += message_lines(result_room(task, i));
     }
     return true;
 }
 
 /* The values move together: those of objects that change their size may be smaller than their room.
- */
+ * What the children will leave is to follow. */
 static void result_close_up(const struct task *task, const duite_param *param)
 {
     struct data_packet *result = task->offloaded->result;
-    uint64_t *bytes = data_payload(result);
+    struct offload_answer *answer = data_payload(result);
     size_t at = message_values_at(task->n);
-    memset(bytes, 0, at);
+    memset(answer, 0, at);
     for (uint32_t i = 0; i < task->n; i++) {
-        if (task->access[i].waiter.mode == DUITE_R)
+        const duite_mode mode = (duite_mode)task->access[i].waiter.mode;
+        answer->left[i].what = LEFT_NOTHING;
+        if (mode == DUITE_R || task_postponed(mode))
             continue;
-        bytes[i] = param[i].count * data_type_size(param[i].type);
-        at = offload_message_put(result, at, param[i].data, bytes[i]);
+        const size_t bytes = param[i].count * data_type_size(param[i].type);
+        answer->left[i] = (struct offload_left){.bytes = bytes, .what = LEFT_VALUE};
+        at = offload_message_put(result, at, param[i].data, bytes);
     }
     data_packet_resize(result, at);
 }
@@ -155,6 +202,8 @@ static bool offloaded_run_body(struct task_graph *graph, struct worker *worker, 
     own->failure = task_call_body(graph, worker, task, args, param, &own->inner, &template);
     if (!own->failure)
         result_close_up(task, param);
+    else if (own->inner)
+        task_scope_fail(own->inner, own->failure);
     return true;
 }
 
@@ -190,10 +239,11 @@ void offload_body_over(struct worker *worker, struct task *task)
 static struct data_packet *result_failures(const struct offload_task *own,
                                            const struct data_failure *below)
 {
-    struct data_packet *packet = data_packet_new(2 * sizeof *below, true);
+    const size_t at = message_values_at(0);
+    struct data_packet *packet = data_packet_new(at + 2 * sizeof *below, true);
     if (!packet)
         return NULL;
-    struct data_failure *both = data_payload(packet);
+    struct data_failure *both = (void *)((char *)data_payload(packet) + at);
     both[0] = *own->failure;
     if (below)
         both[1] = *below;
@@ -201,12 +251,38 @@ static struct data_packet *result_failures(const struct offload_task *own,
     return packet;
 }
 
-static void result_append(struct data_packet *packet, const struct data_failure *below)
+/* There is room. */
+static void result_append(struct data_packet *packet, const void *from, size_t bytes)
 {
-    size_t at = packet->bytes;
-    data_packet_resize(packet, at + sizeof *below);
-    offload_message_put(packet, at, below, sizeof *below);
-    packet->pieces = MESSAGE_FAILED_BELOW;
+    const size_t at = packet->bytes;
+    data_packet_resize(packet, at + message_lines(bytes));
+    offload_message_put(packet, at, from, bytes);
+}
+
+/* What the children left of the parameters that were lent to them. */
+static void result_append_lent(const struct task *task, struct data_packet *result)
+{
+    struct offload_answer *answer = data_payload(result);
+    for (uint32_t i = 0; i < task->n; i++) {
+        if (!access_is_postponed(task, i))
+            continue;
+        const struct task_left_value left = task_lent_left(&task->access[i]);
+        struct offload_left *to = &answer->left[i];
+        if (left.failure)
+            *to = (struct offload_left){sizeof *left.failure, LEFT_POISON};
+        else if (left.values)
+            *to = (struct offload_left){left.bytes, LEFT_VALUE};
+        if (left.failure || left.values)
+            result_append(result, left.failure ? left.failure : left.values, to->bytes);
+    }
+}
+
+/* Nobody needs what was lent any more. */
+static void lent_drop(struct task *task)
+{
+    for (uint32_t i = 0; i < task->n; i++)
+        if (access_is_postponed(task, i))
+            task_lent_drop(&task->access[i]);
 }
 
 void offload_over(struct task_scope *above, struct worker *worker)
@@ -218,9 +294,13 @@ void offload_over(struct task_scope *above, struct worker *worker)
     if (own->failure) {
         data_packet_free(own->result);
         own->result = result_failures(own, below);
-    } else if (below) {
-        result_append(own->result, below);
+    } else {
+        result_append_lent(task, own->result);
+        if (below)
+            result_append(own->result, below, sizeof *below);
+        own->result->pieces = below ? MESSAGE_FAILED_BELOW : 0;
     }
+    lent_drop(task);
     struct data_packet *result = own->result;
     own->send =
         (struct task_send){.key = own->message->key, .to = offload_home(task), .packet = result};

@@ -21,16 +21,43 @@ size_t offload_message_put(struct data_packet *packet, size_t at, const void *fr
     return end;
 }
 
-/* The value that is sent along: under r and rw. */
-static const struct data_version *access_value(const struct task_access *access)
+/* What became of access i if it is postponed, else NULL. */
+static const struct data_object *access_lent(const struct task *task, size_t i)
 {
-    bool reads = access->waiter.mode == DUITE_R || access->waiter.mode == DUITE_RW;
-    return reads ? access->in : NULL;
+    const struct task_access *access = &task->access[i];
+    return task_postponed((duite_mode)access->waiter.mode)
+               ? task_lent_object(task->inner, access->lent)
+               : NULL;
 }
 
-static size_t access_room(const struct task_access *access)
+static bool access_reads(const struct task_access *access)
 {
+    const duite_mode mode = task_immediate((duite_mode)access->waiter.mode);
+    return mode == DUITE_R || mode == DUITE_RW;
+}
+
+/* The value that is sent along: of what the body, or a child, may read. */
+static const struct data_version *access_value(const struct task *task, size_t i)
+{
+    const struct data_object *lent = access_lent(task, i);
+    if (!access_reads(&task->access[i]))
+        return NULL;
+    return lent ? lent->current : task->access[i].in;
+}
+
+/* A body waits for what it reads; one whose children read does not. */
+static bool value_may_go(const struct data_version *value)
+{
+    return data_version_ready(value) && data_version_packet(value);
+}
+
+static size_t access_room(const struct task *task, size_t i)
+{
+    const struct task_access *access = &task->access[i];
+    const struct data_object *lent = access_lent(task, i);
     const struct data_version *out = task_written(access);
+    if (lent)
+        return access->waiter.mode == DUITE_RP ? 0 : lent->room;
     if (out)
         return data_version_room(out);
     return access->waiter.mode == DUITE_CW ? access->sum->count * data_type_size(access->sum->type)
@@ -39,7 +66,7 @@ static size_t access_room(const struct task_access *access)
 
 bool offload_may_go(const struct task_graph *graph, const struct task *task, size_t *bytes)
 {
-    if (task->type != TASK_BODY || task->state != TASK_LOCAL || task->inner || task->at_rank)
+    if (task->type != TASK_BODY || task->state != TASK_LOCAL || task->at_rank)
         return false;
     /* What an offloaded task forks stays with it: it waits for nothing on another rank. */
     if (task->scope->top != &graph->root)
@@ -49,20 +76,27 @@ bool offload_may_go(const struct task_graph *graph, const struct task *task, siz
         return false;
     size_t there = message_args_at(task->n) + kernel->args_size, back = message_values_at(task->n);
     for (uint32_t i = 0; i < task->n; i++) {
-        const struct data_version *in = access_value(&task->access[i]);
-        if (in && !data_version_packet(in))
+        const struct data_version *in = access_value(task, i);
+        if (in && !value_may_go(in))
             return false;
         there += in ? message_lines(in->packet->bytes) + 64 : 0;
-        back += message_lines(access_room(&task->access[i]));
+        back += message_lines(access_room(task, i));
     }
     *bytes = there + back + 2 * sizeof(struct data_packet);
     return there < DATA_MAX_BYTES && back < DATA_MAX_BYTES;
 }
 
-static struct offload_param access_param(const struct task_access *access)
+static struct offload_param access_param(const struct task *task, size_t i)
 {
-    const struct data_version *in = access_value(access), *out = task_written(access);
+    const struct task_access *access = &task->access[i];
+    const struct data_object *lent = access_lent(task, i);
+    const struct data_version *in = access_value(task, i), *out = task_written(access);
     const struct data_version *version = in ? in : out;
+    if (lent)
+        return (struct offload_param){.bytes = in ? in->packet->bytes : 0,
+                                      .max = lent->max,
+                                      .type = lent->type,
+                                      .sized = lent->sized};
     if (!version)
         return (struct offload_param){.max = access->sum->count, .type = access->sum->type};
     return (struct offload_param){.bytes = in ? in->packet->bytes : 0,
@@ -95,7 +129,7 @@ static struct data_packet *message_pack(const struct task_graph *graph, struct t
     size_t args = graph->kernels[task->kernel]->args_size, n = task->n;
     size_t bytes = message_args_at(n) + message_lines(args);
     for (size_t i = 0; i < n; i++)
-        bytes += message_value(task->access[i].waiter.mode, access_param(&task->access[i]).bytes);
+        bytes += message_value(task->access[i].waiter.mode, access_param(task, i).bytes);
     struct data_packet *packet = data_packet_new(bytes, false);
     if (!packet)
         return NULL;
@@ -104,8 +138,8 @@ static struct data_packet *message_pack(const struct task_graph *graph, struct t
     memcpy(data_payload(packet), &message, sizeof message);
     size_t at = offload_message_put(packet, message_args_at(n), task_rest(task, n), args);
     for (size_t i = 0; i < n; i++) {
-        const struct data_version *in = access_value(&task->access[i]);
-        param[i] = access_param(&task->access[i]);
+        const struct data_version *in = access_value(task, i);
+        param[i] = access_param(task, i);
         if (in)
             offload_message_put(packet, at, data_payload(in->packet), in->packet->bytes);
         at += message_value(task->access[i].waiter.mode, param[i].bytes);
@@ -135,8 +169,8 @@ bool offload_send(struct task_graph *graph, struct worker *worker, struct task *
         data_packet_free(packet);
         return false;
     }
-    *pending =
-        (struct offload_pending){.send = {.to = to, .packet = packet}, .task = task, .left = 2};
+    *pending = (struct offload_pending){
+        .send = {.to = to, .packet = packet}, .task = task, .inner = task->inner, .left = 2};
     uint64_t name = pending_enter(graph, pending);
     if (!name) {
         data_packet_free(packet);
@@ -154,31 +188,69 @@ bool offload_send(struct task_graph *graph, struct worker *worker, struct task *
 
 /* ---- Coming home ---- */
 
-/* Gives the parameters what the body left. Returns its failure, if it failed, as if it had failed
- * here. */
+/* The body failed: as if it had failed here. */
+static const struct data_failure *result_unpack_failures(const struct task *task,
+                                                         struct data_packet *packet)
+{
+    struct task_graph *graph = task->scope->graph;
+    const struct data_failure *both =
+        (const void *)((char *)data_payload(packet) + message_values_at(0));
+    if (packet->pieces & MESSAGE_FAILED_BELOW)
+        task_fail_below(graph, &both[1], task->scope);
+    return task_fail(graph, &both[0], false);
+}
+
+/* Gives the parameters what the body left. Returns its failure, if it failed. */
 static const struct data_failure *result_unpack(const struct task *task, duite_param *param,
                                                 struct data_packet *packet)
 {
-    struct task_graph *graph = task->scope->graph;
-    char *payload = data_payload(packet);
-    const uint64_t *bytes = (const void *)payload;
-    size_t at = message_values_at(task->n);
-    if (packet->pieces & MESSAGE_FAILED) {
-        const struct data_failure *both = (const void *)payload;
-        if (packet->pieces & MESSAGE_FAILED_BELOW)
-            task_fail_below(graph, &both[1], task->scope);
-        return task_fail(graph, &both[0], false);
-    }
+    const struct offload_answer *answer = data_payload(packet);
+    const char *from = (const char *)answer + message_values_at(task->n);
+    if (packet->pieces & MESSAGE_FAILED)
+        return result_unpack_failures(task, packet);
     for (uint32_t i = 0; i < task->n; i++) {
-        if (bytes[i])
-            memcpy(param[i].data, payload + at, bytes[i]);
+        const uint64_t bytes = answer->left[i].bytes;
+        if (access_lent(task, i))
+            continue;
+        if (bytes)
+            memcpy(param[i].data, from, bytes);
         if (task->access[i].waiter.mode != DUITE_R)
-            param[i].count = bytes[i] / data_type_size(param[i].type);
-        at += message_lines(bytes[i]);
+            param[i].count = bytes / data_type_size(param[i].type);
+        from += message_lines(bytes);
+    }
+    return NULL;
+}
+
+static struct task_left_value left_unpack(struct task_graph *graph, const struct offload_left *left,
+                                          const char *from)
+{
+    if (left->what == LEFT_NOTHING)
+        return (struct task_left_value){0};
+    if (left->what == LEFT_POISON)
+        return (struct task_left_value){.failure = task_fail(graph, (const void *)from, false)};
+    return (struct task_left_value){.values = from, .bytes = left->bytes};
+}
+
+/* What the descendants left, of a task whose body did not fail: values, and their first failure.
+ * The task's own scope is there again. */
+static void result_unpack_below(struct task *task, struct worker *worker,
+                                struct data_packet *packet)
+{
+    struct task_graph *graph = task->scope->graph;
+    const struct offload_answer *answer = data_payload(packet);
+    const char *from = (const char *)answer + message_values_at(task->n);
+    for (uint32_t i = 0; i < task->n; i++)
+        from += access_lent(task, i) ? 0 : message_lines(answer->left[i].bytes);
+    for (uint32_t i = 0; i < task->n; i++) {
+        if (!access_lent(task, i))
+            continue;
+        const struct task_left_value left = left_unpack(graph, &answer->left[i], from);
+        if (task->access[i].waiter.mode != DUITE_RP)
+            task_lent_comes_home(task->inner, worker, task->access[i].lent, &left);
+        from += message_lines(answer->left[i].bytes);
     }
     if (packet->pieces & MESSAGE_FAILED_BELOW)
-        task_fail_below(graph, (const void *)(payload + at), task->scope);
-    return NULL;
+        task_fail_below(graph, (const void *)from, task->scope);
 }
 
 static const struct data_failure *result_take(const struct task *task, duite_param *param,
@@ -196,10 +268,12 @@ static void pending_one_less(struct task_graph *graph, struct worker *worker,
     if (atomic_fetch_sub_explicit(&pending->left, 1, memory_order_acq_rel) != 1)
         return;
     result = pending->result;
-    base_pool_give(pending, sizeof *pending);
     task->state = TASK_LOCAL;
-    task->inner = NULL;
+    task->inner = pending->inner;
+    base_pool_give(pending, sizeof *pending);
     task_run_result(graph, task, result_take, result);
+    if (result && !(result->pieces & MESSAGE_FAILED))
+        result_unpack_below(task, worker, result);
     data_packet_free(result);
     task_finish(graph, worker, task);
 }

@@ -144,7 +144,7 @@ static void access_read(struct task_fork_call *call, size_t i, const struct data
         return;
     }
     data_version_hold(version);
-    task_lend(call->task, i, object, version, NULL);
+    task_lend(call->task->inner, &call->task->access[i], object, version, NULL);
     call->done++;
 }
 
@@ -158,7 +158,7 @@ static int access_lend(struct task_fork_call *call, size_t i, struct data_object
         base_no_memory("a version");
         return task_break(call->scope->graph);
     }
-    task_lend(call->task, i, object, version, out);
+    task_lend(call->task->inner, &call->task->access[i], object, version, out);
     object->current = out;
     call->done++;
     return DUITE_OK;
@@ -169,7 +169,7 @@ static int access_contribute(struct task_fork_call *call, size_t i, struct data_
 {
     int code = task_contribute(call, object, i);
     if (!code && call->task && postponed)
-        task_lend(call->task, i, object, NULL, NULL);
+        task_lend(call->task->inner, &call->task->access[i], object, NULL, NULL);
     call->done += !code;
     return code;
 }

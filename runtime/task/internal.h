@@ -126,10 +126,26 @@ const char *task_mode_name(duite_mode mode);
 
 /* The scope of a task that has room for n postponed parameters. NULL without memory. */
 struct task_scope *task_scope_new(const struct task *task, size_t n);
-/* Access i of the task, a postponed parameter, moves into its scope: the object with its version,
- * and `out` or a leaf of `sum`, to be passed back at the end. */
-void task_lend(struct task *task, size_t i, const struct data_object *object,
-               struct data_version *version, struct data_version *out);
+/* An access of a task, a postponed parameter, moves into the task's scope: the object with its
+ * version, and `out` or a leaf of `sum`, to be passed back at the end. */
+void task_lend(struct task_scope *inner, struct task_access *access,
+               const struct data_object *object, struct data_version *version,
+               struct data_version *out);
+/* Of a task that runs on another rank (away.c). There: the same, for an object with this value; its
+ * `current` does not count. Later what is left of it: no values where it was only read, where
+ * nobody contributed, and of poison. The values are the access's until it is dropped, which is due
+ * for all that was lent. At home: the scope gets what was left there, of which it keeps a copy. */
+struct task_left_value {
+    const void *values;
+    size_t bytes;
+    const struct data_failure *failure;
+};
+bool task_lend_value(struct task_scope *inner, struct task_access *access,
+                     const struct data_object *object, const void *values, size_t bytes);
+struct task_left_value task_lent_left(const struct task_access *access);
+void task_lent_drop(struct task_access *access);
+void task_lent_comes_home(struct task_scope *inner, struct worker *worker, size_t lent,
+                          const struct task_left_value *left);
 /* The object that became of a postponed parameter: access->lent. */
 const struct data_object *task_lent_object(const struct task_scope *scope, size_t lent);
 /* The task of the scope failed, or read poison: all that it leaves is poisoned. */

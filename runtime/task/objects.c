@@ -262,15 +262,16 @@ int task_move_object(struct task_graph *graph, struct worker *worker, struct dat
  * ---- */
 
 /* Of parameter i; false in a plan, whose objects have fixed sizes. */
-static bool param_is_sized(const struct task *task, size_t i)
+static bool param_is_sized(const duite_call *call, size_t i)
 {
+    const struct task *task = call->own->task;
     const struct task_access *access = &task->access[i];
-    if (task->type == TASK_OFFLOADED)
-        return access->sized;
-    if (task->type != TASK_BODY || access->waiter.mode == DUITE_CW)
+    if (TASK_IS(task, TASK_TYPE_BIT(TASK_NODE)) || access->waiter.mode == DUITE_CW)
         return false;
     if (task_postponed((duite_mode)access->waiter.mode))
-        return task_lent_object(task->inner, access->lent)->sized;
+        return task_lent_object(call->own->scope, access->lent)->sized;
+    if (task->type == TASK_OFFLOADED)
+        return access->sized;
     return access->out ? access->out->sized : access->in->sized;
 }
 
@@ -300,7 +301,7 @@ static int resize_refuse(const duite_call *call, size_t i, bool sized, size_t co
 int duite_resize(const duite_call *call, size_t i, size_t count)
 {
     struct task *task = call->own->task;
-    bool sized = i < call->n_params && param_is_sized(task, i);
+    bool sized = i < call->n_params && param_is_sized(call, i);
     if (!sized || !param_is_written(task, i) || count > call->param[i].max)
         return resize_refuse(call, i, sized, count);
     duite_param *param = (duite_param *)&call->param[i]; /* ours to write */

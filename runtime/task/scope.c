@@ -109,13 +109,13 @@ struct task_scope *task_scope_begin(struct duite_call_private *body)
     return body->scope;
 }
 
-void task_lend(struct task *task, size_t i, const struct data_object *object,
-               struct data_version *version, struct data_version *out)
+void task_lend(struct task_scope *inner, struct task_access *access,
+               const struct data_object *object, struct data_version *version,
+               struct data_version *out)
 {
-    struct task_nest *nest = task_nest_of(task->inner);
-    struct task_access *access = &task->access[i];
+    struct task_nest *nest = task_nest_of(inner);
     struct task_exit *exit = &nest->exit[nest->n_lent];
-    *exit = (struct task_exit){.scope = task->inner,
+    *exit = (struct task_exit){.scope = inner,
                                .out = out,
                                .bytes = object->room,
                                .overwrites = access->waiter.mode == DUITE_WP};

@@ -85,13 +85,15 @@ static inline struct data_object *task_find_given(struct task_scope *scope, duit
 {
     struct data_object *local;
     duite_mode held;
-    return task_name_known(scope, name, &held, &local) && task_right_gives(held, wanted)
-               ? local
-               : NULL;
+    return task_name_known(scope, name, &held, &local) && task_right_gives(held, wanted) ? local
+                                                                                         : NULL;
 }
 
 /* The children may read what the body reads: the scope gets the objects. Errors: memory. */
 int task_lend_reads(struct task_scope *scope);
+
+/* The failure of what a task leaves for want of memory. */
+const struct data_failure *task_nest_no_memory(void);
 
 #pragma GCC visibility pop
 

@@ -32,6 +32,11 @@ void task_left(struct task_graph *graph, struct task_scope *scope, struct worker
 static const struct data_failure scope_no_memory = {
     .code = DUITE_E_MEMORY, .kernel = UINT32_MAX, .text = "no memory for what a task leaves"};
 
+const struct data_failure *task_nest_no_memory(void)
+{
+    return &scope_no_memory;
+}
+
 /* Nobody wrote the version: zeros, as many as there can be. */
 static void exit_give_zeros(const struct task_exit *exit)
 {
@@ -84,7 +89,7 @@ static void exit_contribute(struct task_exit *exit, struct worker *worker,
                             struct data_object *object, const struct data_failure *failure)
 {
     struct task_scope *scope = exit->scope;
-    exit->leaf->failure = failure;
+    exit->leaf->failure = data_failure_first(failure, exit->leaf->failure);
     if (object->leaves) {
         if (!task_gather(scope, worker, object, exit->sum, exit->leaf))
             return;

@@ -42,9 +42,17 @@ static const duite_kernel NAP = {
     .name = "nap", .body = nap_body, .access = {DUITE_RW}, .args_size = sizeof(double)};
 static const duite_kernel ASK = {.name = "ask", .body = ask_body, .access = {DUITE_RP, DUITE_WP}};
 
+/* With all that it forks it runs anywhere. */
+static int tree_body(const duite_call *call)
+{
+    return duite_fork(call->rt, &SET, &(int32_t){1}, 1, &call->param[0].object);
+}
+
+static const duite_kernel TREE = {.name = "tree", .body = tree_body, .access = {DUITE_WP}};
+
 static duite *start(const char *how)
 {
-    static const duite_kernel *const LIST[] = {&NAP, &ASK, &SET, &COPY, &ADD, &MANY, NULL};
+    static const duite_kernel *const LIST[] = {&NAP, &ASK, &TREE, &SET, &COPY, &ADD, &MANY, NULL};
     duite_options options = misuse_options(MPI_COMM_WORLD);
     duite *rt = NULL;
     options.kernels = LIST;
@@ -54,6 +62,8 @@ static duite *start(const char *how)
     options.window = strcmp(how, "window") ? 0 : 2;
     if (!strcmp(how, "replay")) /* which waits for all ranks, to move objects */
         options.balance = duite_balancer_find("migrate");
+    if (!strcmp(how, "subtree"))
+        options.balance = duite_balancer_find("scatter");
     if (duite_start(&rt, &options))
         fprintf(stderr, "start: %s\n", duite_message());
     return rt;
@@ -104,6 +114,8 @@ static int wait_for_it(duite **rt, const char *how, const duite_object *object)
     duite_counters counters;
     if (!strcmp(how, "send"))
         return wait_behind_a_send(*rt, &object[2]);
+    for (int i = 0; i < 20 && !strcmp(how, "subtree"); i++)
+        duite_fork(*rt, &TREE, NULL, 1, &object[0]);
     int code = fork_all(*rt, object);
     if (code || !strcmp(how, "window"))
         return code ? code : duite_fork(*rt, &ADD, NULL, 1, &object[0]);
@@ -198,7 +210,8 @@ static int none_lost(duite *rt, const char *how, const duite_object *object, con
     return duite_stop(&rt) || code || early;
 }
 
-/* ranks_lost get|send|later|wait|replay|count|stop|window|body|bodies|stopped, on 3 ranks */
+/* ranks_lost get|send|later|subtree|wait|replay|count|stop|window|body|bodies|stopped, on 3 ranks
+ */
 int main(int argc, char **argv)
 {
     const char *how = argc > 1 ? argv[1] : "";

@@ -10,8 +10,8 @@ lost() { # HOW: both ranks that are left are right; that mpirun ends the job is 
 }
 
 plan_later
-ways="get send later"
-if test "${DUITE_LONG:-}" = 1; then ways="get send later body wait replay count stop window"; fi
+ways="get send later subtree"
+if test "${DUITE_LONG:-}" = 1; then ways="get send later subtree body wait replay count stop window"; fi
 for how in $ways; do ok "lost during: $how" lost "$how"; done
 ok "not lost: all its workers are in long bodies" ranks 3 tests/negative/ranks_lost bodies
 if test "${DUITE_LONG:-}" = 1; then ok "not lost: stopped for a while" ranks 3 tests/negative/ranks_lost stopped; fi

@@ -1,0 +1,131 @@
+/* Postponed parameters of a task that runs on another rank, with all that it forks. There the
+ * scope begins with the values that came, and each parameter goes back to a version, or to a leaf,
+ * that nobody waits for: whoever answers reads it when the subtree is over. At home nothing is ever
+ * forked in the scope. It gets what was left there, as a duite_set would, and ends like any other.
+ */
+#include "runtime/task/scope.h"
+
+#include "runtime/data/law.h"
+
+#include <string.h>
+
+/* ---- On the other rank ---- */
+
+/* The value that came, held by the object alone. NULL without memory. */
+static struct data_version *version_of_value(const struct data_object *object, const void *values,
+                                             size_t bytes)
+{
+    struct data_version *version = data_object_version(object);
+    struct data_packet *packet = version ? data_packet_new(bytes, false) : NULL;
+    if (!packet) {
+        if (version)
+            data_version_free(version);
+        return NULL;
+    }
+    if (bytes)
+        memcpy(data_payload(packet), values, bytes);
+    version->packet = packet;
+    data_version_produced(version);
+    data_version_release(version);
+    return version;
+}
+
+static bool lend_contribution(struct task_scope *inner, struct task_access *access,
+                              const struct data_object *object)
+{
+    struct data_sum *sum =
+        data_sum_new(inner->graph->n_ranks, object->law, object->type, object->count);
+    struct data_piece *leaf = sum ? data_sum_leaf(sum, 0) : NULL;
+    if (!leaf) {
+        if (sum)
+            data_sum_free(sum);
+        return false;
+    }
+    access->sum = sum;
+    access->leaf = leaf;
+    task_lend(inner, access, object, NULL, NULL);
+    return true;
+}
+
+bool task_lend_value(struct task_scope *inner, struct task_access *access,
+                     const struct data_object *object, const void *values, size_t bytes)
+{
+    const duite_mode mode = task_immediate((duite_mode)access->waiter.mode);
+    if (mode == DUITE_CW)
+        return lend_contribution(inner, access, object);
+    struct data_version *in = mode == DUITE_W ? NULL : version_of_value(object, values, bytes);
+    struct data_version *out = mode == DUITE_R ? NULL : data_object_version(object);
+    if ((!in && mode != DUITE_W) || (!out && mode != DUITE_R)) {
+        if (in)
+            data_version_release(in);
+        if (out)
+            data_version_free(out);
+        return false;
+    }
+    access->out = out;
+    task_lend(inner, access, object, in, out);
+    return true;
+}
+
+struct task_left_value task_lent_left(const struct task_access *access)
+{
+    const bool contributes = access->waiter.mode == DUITE_CWP;
+    struct task_left_value left = {0};
+    if (contributes && access->sum) {
+        const struct data_piece *leaf = access->sum->pieces;
+        left.failure = leaf->failure;
+        left.values = leaf->value;
+        left.bytes = access->sum->count * data_type_size(access->sum->type);
+    } else if (!contributes && access->out) {
+        struct data_packet *packet = data_version_packet(access->out);
+        left.failure = data_version_failure(access->out);
+        left.values = packet ? data_payload(packet) : NULL;
+        left.bytes = packet ? packet->bytes : 0;
+    }
+    return left;
+}
+
+void task_lent_drop(struct task_access *access)
+{
+    if (access->waiter.mode == DUITE_CWP && access->sum)
+        data_sum_free(access->sum);
+    else if (access->waiter.mode != DUITE_CWP && access->out)
+        data_version_release(access->out);
+    access->out = NULL;
+}
+
+/* ---- At home ---- */
+
+static void leaf_comes_home(struct data_piece *leaf, const struct task_left_value *left)
+{
+    leaf->failure = left->failure;
+    if (!left->values)
+        return;
+    leaf->packet = data_packet_new(left->bytes, false);
+    if (!leaf->packet) {
+        leaf->failure = task_nest_no_memory();
+        return;
+    }
+    leaf->value = data_payload(leaf->packet);
+    memcpy(leaf->value, left->values, left->bytes);
+}
+
+void task_lent_comes_home(struct task_scope *inner, struct worker *worker, size_t lent,
+                          const struct task_left_value *left)
+{
+    struct task_nest *nest = task_nest_of(inner);
+    struct data_object *object = &nest->local[lent];
+    if (nest->exit[lent].sum) {
+        leaf_comes_home(nest->exit[lent].leaf, left);
+        return;
+    }
+    struct data_version *version = version_of_value(object, left->values, left->bytes);
+    if (!version) {
+        task_scope_fail(inner, task_nest_no_memory());
+        return;
+    }
+    data_version_poison(version, left->failure);
+    task_note_version(object, object->holder);
+    task_forget(inner->graph, worker, object);
+    object->current = version;
+}

@@ -1,0 +1,271 @@
+/* Tasks with postponed rights that run on other ranks with all that they fork: what comes home of
+ * them, also of failures, of nothing and of other sizes. All objects of a case live on one rank. */
+#include "tests/negative/misuse.h"
+
+#include <stdatomic.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { TASKS = 40, ROUNDS = 16 };
+
+static atomic_int wholes, mixes; /* on this rank */
+static int rank;
+
+/* Adds what it reads and its argument: a sum over what all kinds of parameters hold. */
+static int mix_body(const duite_call *call)
+{
+    const int32_t add = *(const int32_t *)call->args;
+    atomic_fetch_add(&mixes, 1);
+    duite_out(call, 1, int32_t)[0] += duite_in(call, 0, int32_t)[0] + add;
+    duite_out(call, 2, int32_t)[0] = add;
+    duite_out(call, 3, int32_t)[0] += add;
+    return 0;
+}
+static const duite_kernel MIX = {.name = "mix",
+                                 .body = mix_body,
+                                 .access = {DUITE_R, DUITE_RW, DUITE_W, DUITE_CW},
+                                 .args_size = sizeof(int32_t)};
+
+/* All that it may touch its children do. */
+static int whole_body(const duite_call *call)
+{
+    const int32_t i = *(const int32_t *)call->args;
+    duite_object lent[4];
+    atomic_fetch_add(&wholes, 1);
+    for (size_t k = 0; k < 4; k++)
+        lent[k] = call->param[k].object;
+    for (int32_t times = 1; times <= 3; times++)
+        duite_fork(call->rt, &MIX, &(int32_t){times * i}, 4, lent);
+    return 0;
+}
+static const duite_kernel WHOLE = {.name = "whole",
+                                   .body = whole_body,
+                                   .access = {DUITE_RP, DUITE_RWP, DUITE_WP, DUITE_CWP},
+                                   .args_size = sizeof(int32_t)};
+
+static int one_more_body(const duite_call *call)
+{
+    duite_out(call, 0, int32_t)[0] += 1;
+    return 0;
+}
+static const duite_kernel ONE_MORE = {
+    .name = "one_more", .body = one_more_body, .access = {DUITE_RW}};
+
+/* Its first child fails, its second one does not. */
+static int torn_body(const duite_call *call)
+{
+    DUITE_FORK(call->rt, &FAIL, DUITE_ARGS(int32_t, 41), call->param[0].object);
+    DUITE_FORK(call->rt, &ONE_MORE, NULL, call->param[1].object);
+    return 0;
+}
+static const duite_kernel TORN = {
+    .name = "torn", .body = torn_body, .access = {DUITE_RWP, DUITE_RWP}};
+
+/* A contribution of 1, or one that fails. */
+static int drop_body(const duite_call *call)
+{
+    duite_out(call, 0, int32_t)[0] = 1;
+    return *(const int32_t *)call->args;
+}
+static const duite_kernel DROP = {
+    .name = "drop", .body = drop_body, .access = {DUITE_CW}, .args_size = sizeof(int32_t)};
+
+static int spill_body(const duite_call *call)
+{
+    DUITE_FORK(call->rt, &DROP, DUITE_ARGS(int32_t, 0), call->param[0].object);
+    DUITE_FORK(call->rt, &DROP, DUITE_ARGS(int32_t, 43), call->param[0].object);
+    return 0;
+}
+static const duite_kernel SPILL = {.name = "spill", .body = spill_body, .access = {DUITE_CWP}};
+
+/* Nobody contributes, nobody overwrites, and nobody changes the third. */
+static int idle_body(const duite_call *call)
+{
+    (void)call;
+    return 0;
+}
+static const duite_kernel IDLE = {
+    .name = "idle", .body = idle_body, .access = {DUITE_CWP, DUITE_WP, DUITE_RWP}};
+
+/* The body itself fails, after a child that does not. */
+static int fall_body(const duite_call *call)
+{
+    DUITE_FORK(call->rt, &ONE_MORE, NULL, call->param[0].object);
+    return duite_fail(call, 44, "falls");
+}
+static const duite_kernel FALL = {.name = "fall", .body = fall_body, .access = {DUITE_RWP}};
+
+/* One element more than there were, each as large as their number. */
+static int grow_body(const duite_call *call)
+{
+    const size_t n = duite_count(call, 0) + 1;
+    const int code = duite_resize(call, 0, n);
+    for (size_t i = 0; !code && i < n; i++)
+        duite_out(call, 0, int32_t)[i] = (int32_t)n;
+    return code;
+}
+static const duite_kernel GROW = {.name = "grow", .body = grow_body, .access = {DUITE_RW}};
+
+static int grows_body(const duite_call *call)
+{
+    for (int i = 0; i < 3; i++)
+        DUITE_FORK(call->rt, &GROW, NULL, call->param[0].object);
+    return 0;
+}
+static const duite_kernel GROWS = {.name = "grows", .body = grows_body, .access = {DUITE_RWP}};
+
+static const duite_kernel *const LIST[] = {&MIX,  &WHOLE, &ONE_MORE, &TORN,  &DROP, &SPILL,
+                                           &IDLE, &FALL,  &GROW,     &GROWS, &FAIL, NULL};
+
+static duite *start(const char *balance)
+{
+    duite_options options = misuse_options(MPI_COMM_WORLD);
+    duite *rt = NULL;
+    options.kernels = LIST;
+    options.threads = 1;
+    options.balance = duite_balancer_find(balance);
+    if (duite_start(&rt, &options))
+        printf("# %s\n", duite_message());
+    atomic_store(&wholes, 0);
+    atomic_store(&mixes, 0);
+    return rt;
+}
+
+static duite_object new_beside(duite *rt, duite_object leader)
+{
+    const duite_object object = misuse_new(rt, 1);
+    duite_colocate(rt, object, leader);
+    return object;
+}
+
+static int32_t value_of(duite *rt, duite_object object)
+{
+    int32_t value = -1;
+    duite_get(rt, object, &value);
+    return value;
+}
+
+static uint64_t delegated(duite *rt)
+{
+    duite_counters counters;
+    duite_wait(rt);
+    return duite_count_all(rt, &counters) ? 0 : counters.delegated;
+}
+
+static void say(const char *balance, const char *what, int right)
+{
+    char name[100];
+    snprintf(name, sizeof name, "%s: %s", balance, what);
+    tap_case(right, name);
+}
+
+/* All values are those of fork order. */
+static void values(const char *balance)
+{
+    duite *rt = start(balance);
+    duite_object in = misuse_new(rt, 1), object[TASKS], last = new_beside(rt, in),
+                 sum = new_beside(rt, in);
+    const int here = duite_home(rt, in) == rank;
+    const int moves = !strcmp(balance, "scatter") && duite_ranks(rt) > 1;
+    int right = 1;
+    duite_set(rt, in, &(int32_t){7});
+    for (int32_t i = 0; i < TASKS; i++)
+        object[i] = new_beside(rt, in);
+    for (int32_t i = 0; i < TASKS; i++)
+        DUITE_FORK(rt, &WHOLE, &i, in, object[i], last, sum);
+    for (int32_t i = 0; i < TASKS; i++)
+        right &= value_of(rt, object[i]) == 3 * 7 + 6 * i;
+    say(balance, "every subtree has its value", right);
+    say(balance, "the last write is left", value_of(rt, last) == 3 * (TASKS - 1));
+    say(balance, "contributions come home", value_of(rt, sum) == 3 * TASKS * (TASKS - 1));
+    say(balance, "tasks ran elsewhere if they could", (delegated(rt) > 0) == moves);
+    say(balance, "whole", here || (atomic_load(&wholes) > 0) == moves);
+    say(balance, "with their children", /* some of those of home came by themselves */
+        here || atomic_load(&mixes) >= 3 * atomic_load(&wholes));
+    for (int i = 0; i < TASKS; i++)
+        duite_free(rt, object[i]);
+    duite_free(rt, in);
+    duite_free(rt, last);
+    duite_free(rt, sum);
+    say(balance, "stop", duite_stop(&rt) == DUITE_OK);
+}
+
+static void failures(void)
+{
+    duite *rt = start("scatter");
+    duite_object a = misuse_new(rt, 1), b = new_beside(rt, a);
+    int torn = 1, spilt = 1, fallen = 1;
+    for (int i = 0; i < ROUNDS; i++) {
+        duite_set(rt, a, NULL);
+        duite_set(rt, b, NULL);
+        DUITE_FORK(rt, &TORN, NULL, a, b);
+        torn &= duite_get(rt, a, &(int32_t){0}) == 41 &&
+                strstr(duite_message(), ".1 (kernel fail)") && value_of(rt, b) == 1;
+        torn &= duite_wait(rt) == 41 && duite_wait(rt) == DUITE_OK;
+        duite_set(rt, a, NULL);
+        DUITE_FORK(rt, &SPILL, NULL, a);
+        spilt &= duite_get(rt, a, &(int32_t){0}) == 43 && duite_wait(rt) == 43;
+        DUITE_FORK(rt, &FALL, NULL, b);
+        fallen &= duite_get(rt, b, &(int32_t){0}) == 44 && strstr(duite_message(), "falls");
+        fallen &= duite_wait(rt) == 44;
+    }
+    tap_case(torn, "a child's failure poisons what it wrote, and no more");
+    tap_case(spilt, "so does a contribution that fails");
+    tap_case(fallen, "the body's own failure poisons all that it was lent");
+    duite_free(rt, a);
+    duite_free(rt, b);
+    tap_case(duite_stop(&rt) == DUITE_OK, "stop after failures");
+}
+
+static void nothing(void)
+{
+    duite *rt = start("scatter");
+    duite_object sum = misuse_new(rt, 1), over = new_beside(rt, sum), kept = new_beside(rt, sum);
+    int right = 1;
+    for (int i = 0; i < ROUNDS; i++) {
+        duite_set(rt, sum, &(int32_t){3});
+        duite_set(rt, over, &(int32_t){4});
+        duite_set(rt, kept, &(int32_t){5});
+        DUITE_FORK(rt, &IDLE, NULL, sum, over, kept);
+        right &= value_of(rt, sum) == 3 && value_of(rt, over) == 0 && value_of(rt, kept) == 5;
+    }
+    tap_case(right, "a subtree that does nothing leaves the sum, zeros, and the old value");
+    duite_free(rt, sum);
+    duite_free(rt, over);
+    duite_free(rt, kept);
+    tap_case(duite_stop(&rt) == DUITE_OK, "stop after nothing");
+}
+
+static void sizes(void)
+{
+    duite *rt = start("scatter");
+    duite_object object;
+    int32_t value[3 * ROUNDS] = {0};
+    size_t count = 0;
+    duite_new_sized(rt, DUITE_I32, 0, 3 * ROUNDS, &object);
+    for (int i = 0; i < ROUNDS; i++) {
+        DUITE_FORK(rt, &GROWS, NULL, object);
+        duite_wait(rt); /* what the next one's children read is there */
+    }
+    const int code = duite_get_count(rt, object, &count);
+    tap_case(!code && count == 3 * ROUNDS && !duite_get(rt, object, value) &&
+                 value[count - 1] == 3 * ROUNDS,
+             "sizes come home");
+    DUITE_FORK(rt, &GROWS, NULL, object);
+    tap_case(duite_get(rt, object, value) == DUITE_E_SIZE, "too large a size is an error");
+    duite_free(rt, object);
+    duite_wait(rt);
+    tap_case(duite_stop(&rt) == DUITE_OK, "stop after sizes");
+}
+
+int main(void)
+{
+    misuse_mpi();
+    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+    values("none");
+    values("scatter");
+    failures();
+    nothing();
+    sizes();
+    return tap_done();
+}

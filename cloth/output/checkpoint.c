@@ -18,6 +18,7 @@
 static const char MAGIC[8] = "duiteCP", FOLDER[] = "checkpoints", SUFFIX[] = ".checkpoint";
 enum { VERSION = 1, DIGITS = 6 };
 static const uint64_t ORDER = 0x0102030405060708; /* of bytes */
+enum { FOUND = OUTPUT_CHECKPOINTS_KEPT + 1 };     /* a run that is killed may leave one more */
 
 struct header {
     char magic[8];
@@ -27,9 +28,9 @@ struct header {
 
 struct output_checkpoints {
     char *folder;
-    char *last;                             /* the path of the newest; NULL: none was written */
-    uint64_t next;                          /* the number of the next one */
-    uint64_t kept[OUTPUT_CHECKPOINTS_KEPT]; /* numbers, the newest first; 0: none */
+    char *last;           /* the path of the newest; NULL: none was written */
+    uint64_t next;        /* the number of the next one */
+    uint64_t kept[FOUND]; /* numbers, the newest first; 0: none */
 };
 
 static size_t padded(size_t n)
@@ -114,7 +115,7 @@ int output_checkpoints_open(struct output_checkpoints **checkpoints, const char 
                    : cloth_fail(error, CLOTH_E_MEMORY, "no memory for checkpoints");
     if (!code && access(made->folder, W_OK | X_OK) != 0)
         code = output_refuse(error, "write checkpoints into", made->folder);
-    if (!code && scan(made->folder, true, false, OUTPUT_CHECKPOINTS_KEPT, made->kept) != 0)
+    if (!code && scan(made->folder, true, false, FOUND, made->kept) != 0)
         code = output_refuse(error, "remove half a checkpoint in", made->folder);
     if (code)
         output_checkpoints_close(checkpoints);
@@ -197,13 +198,16 @@ static void pass_on(const struct output_checkpoints *checkpoints, uint64_t numbe
     free(next);
 }
 
-/* The newest is complete: the oldest goes. */
+/* The newest is complete: the oldest goes, and before it one that should have gone earlier. */
 static void keep(struct output_checkpoints *checkpoints, char *path)
 {
     uint64_t *kept = checkpoints->kept;
-    const uint64_t oldest = kept[OUTPUT_CHECKPOINTS_KEPT - 1];
+    const uint64_t oldest = kept[OUTPUT_CHECKPOINTS_KEPT - 1], left = kept[FOUND - 1];
     memmove(kept + 1, kept, (OUTPUT_CHECKPOINTS_KEPT - 1) * sizeof *kept);
     kept[0] = checkpoints->next++;
+    kept[FOUND - 1] = 0;
+    if (left)
+        pass_on(checkpoints, left);
     if (oldest)
         pass_on(checkpoints, oldest);
     free(checkpoints->last);

@@ -92,6 +92,26 @@ START_TEST(three_are_kept)
 }
 END_TEST
 
+/* That is killed when the next one is there, and the oldest is not gone yet. */
+START_TEST(three_are_kept_after_a_run_that_was_killed)
+{
+    char first[160], second[160];
+    for (unsigned char i = 1; i <= 4; i++)
+        write_one(i);
+    output_checkpoints_close(&checkpoints);
+    path_of(1, first);
+    path_of(2, second);
+    ck_assert_int_eq(link(second, first), 0);
+    ck_assert_msg(!output_checkpoints_open(&checkpoints, sample.folder, &error), "%s", error.text);
+    for (unsigned number = 1; number <= 4; number++)
+        ck_assert(is_there(number));
+    write_one(5);
+    for (unsigned number = 1; number <= 5; number++)
+        ck_assert_int_eq(is_there(number), number > 2);
+    check_mark(5);
+}
+END_TEST
+
 static void part_of(unsigned number, char path[160])
 {
     path_of(number, path);
@@ -298,6 +318,7 @@ int main(void)
     tcase_add_checked_fixture(tcase, start, end);
     tcase_add_test(tcase, reads_back);
     tcase_add_test(tcase, three_are_kept);
+    tcase_add_test(tcase, three_are_kept_after_a_run_that_was_killed);
     tcase_add_test(tcase, the_oldest_gives_its_room);
     tcase_add_test(tcase, what_has_another_name_stays);
     tcase_add_test(tcase, counts_on);

@@ -93,8 +93,8 @@ uint64_t output_frames_settled(const struct output_frames *frames);
 int output_close(struct output_frames **frames, struct cloth_error *error);
 
 /* The force of contact on each vertex in each frame, DIR/contact.pc2: a PC2 cache like cloth.pc2,
- * with forces, N, in the place of positions. It may have a frame less, of a run that was killed.
- * Local functions, on rank 0. */
+ * with forces, N, in the place of positions. It may have fewer frames, of a run that goes on or was
+ * killed. Local functions, on rank 0. */
 struct output_forces;
 
 /* Begins it in a folder of frames, which is there. Replaces the one of an earlier run, nothing

@@ -193,6 +193,9 @@ void view_colours_say(const struct view_colours *colours)
     const char *title = view_colour_title(legend->by);
     if (view_colour_is_of_parts(legend->by))
         printf("colours: %s, 0 to %u\n", title, legend->n_parts - 1);
+    else if (view_colour_has_scale(legend->by) && isnan(colours->low))
+        printf("colours: %s, from %g to %g; this frame has none\n", title, legend->scale.min,
+               legend->scale.max);
     else if (view_colour_has_scale(legend->by))
         printf("colours: %s, from %g to %g; this frame has %.4g to %.4g\n", title,
                legend->scale.min, legend->scale.max, colours->low, colours->high);

@@ -61,14 +61,19 @@ static int find_parts(const struct view_values *values, enum view_colour by, uin
     return code;
 }
 
+/* A run that goes on, or was killed, has the forces of its last frames not yet, or never. */
 static int find_forces(const struct view_values *values, uint64_t frame, double *value,
                        struct cloth_error *error)
 {
     const uint32_t n = values->cache->mesh.n_vertices;
-    const int code = output_forces_read(values->folder, n, frame, values->force, error);
+    uint64_t n_frames = 0;
+    int code = output_forces_count(values->folder, n, &n_frames, error);
+    const bool there = frame < n_frames;
+    if (!code && there)
+        code = output_forces_read(values->folder, n, frame, values->force, error);
     for (size_t v = 0; v < n && !code; v++) {
         const double *f = values->force + 3 * v;
-        value[v] = sqrt(f[0] * f[0] + f[1] * f[1] + f[2] * f[2]);
+        value[v] = there ? sqrt(f[0] * f[0] + f[1] * f[1] + f[2] * f[2]) : (double)NAN;
     }
     return code;
 }

@@ -87,6 +87,16 @@ exits 2 "springs have no stress" view "$scratch/two" --colour stress --png "$scr
 says "says what has" 'all cloths are of springs; a material with model: triangles has one'
 exits 2 "no forces of contact were written" view "$scratch/two" --colour contact --png "$scratch/none.png"
 
+# Forces come after their frames: a run that was killed, or goes on, has those of the last frames not yet.
+sed 's/obstacles:.*/obstacles: [{plane: {point: [0, 0, 0], normal: [0, 1, 0]}}]/; s/^gravity:.*/contact: {mode: certified, thickness: 0.002, force: on}/; s/start:.*/transform: {translate: [0, 0.0021, 0]}/; /pins:/d' "$scratch/taut.yaml" > "$scratch/lies.yaml"
+ok "a sheet that lies on a plane" cloth lies 1 "$scratch/lies.yaml"
+ok "its force of contact" view "$scratch/lies" --colour contact --png "$scratch/forces.png"
+says "has a range" 'colours: force of contact on a vertex, N, from 0 to [0-9.]*; this frame has 0*[0-9.e-]* to [0-9.e-]*$'
+printf '\001' | dd of="$scratch/lies/contact.pc2" bs=1 seek=28 conv=notrunc 2> "$scratch/output"
+ok "a frame whose forces are not there yet" view "$scratch/lies" --colour contact --png "$scratch/forces.png"
+says "has none" 'colours: force of contact on a vertex, N, from 0 to [0-9.]*; this frame has none$'
+ok "one whose forces are" view "$scratch/lies" --colour contact --frame 0 --png "$scratch/forces.png"
+
 # A run of one rank goes on with two: frames have the ranks that there were.
 ok "a run to be gone on with" free goes 1 --checkpoint 100 --end 0.05
 ok "goes on with two ranks" free goes 2 --restart "$scratch/goes" --end 0.1

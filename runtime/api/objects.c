@@ -9,7 +9,8 @@
 #include <string.h>
 
 /* By the main program; apart, or each call of a body would save registers for it. */
-__attribute__((noinline)) static int main_new(duite *rt, duite_type type, size_t count, duite_object *object)
+__attribute__((noinline)) static int main_new(duite *rt, duite_type type, size_t count,
+                                              duite_object *object)
 {
     int code = api_enter(rt, "duite_new");
     if (code)

@@ -57,7 +57,8 @@ enum {
     BASE_POOL_GRAIN = 8,
     BASE_POOL_LARGEST = 1536, /* bytes of a block */
     BASE_POOL_AHEAD = 2,
-    BASE_POOL_MAGAZINE = 30 /* blocks: a magazine takes four cache lines */
+    BASE_POOL_AHEAD_LINES = 4, /* of a block: what most write at once */
+    BASE_POOL_MAGAZINE = 30    /* blocks: a magazine takes four cache lines */
 };
 
 struct base_magazine {
@@ -82,12 +83,14 @@ void base_pool_give_more(void *memory, size_t size);
 #if !BASE_POOL_DIRECT
 static inline void *pool_take_size(size_t size)
 {
+    enum { MOST = BASE_POOL_AHEAD_LINES * BASE_LINE };
+    const size_t ahead = size < MOST / BASE_POOL_GRAIN ? size * BASE_POOL_GRAIN : MOST;
     struct base_magazine *loaded = base_shelves[size].loaded;
     if (!loaded || !loaded->n)
         return base_pool_take_more(size);
     /* A block that will be taken soon may lie in another core's cache: fetch it. */
     if (loaded->n > BASE_POOL_AHEAD)
-        for (size_t line = 0; line < size * BASE_POOL_GRAIN; line += BASE_LINE)
+        for (size_t line = 0; line < ahead; line += BASE_LINE)
             base_prefetch((char *)loaded->block[loaded->n - 1 - BASE_POOL_AHEAD] + line);
     return loaded->block[--loaded->n];
 }

@@ -29,7 +29,8 @@ struct data_packet {
     uint32_t kind;
     uint32_t pieces;          /* DATA_PIECES: how many */
     struct data_packet *next; /* for whoever holds it; means nothing to the receiver */
-    uint64_t lines;           /* of memory, this one among them; means nothing to the receiver */
+    uint64_t lines;           /* of memory, this one among them; 0: it is a scope's, see task_cell;
+                                 means nothing to the receiver */
     uint64_t unused[2];
 };
 _Static_assert(sizeof(struct data_packet) == 64, "a header takes one cache line");

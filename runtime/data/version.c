@@ -29,7 +29,7 @@ struct data_packet *data_packet_new(size_t bytes, bool zero)
 
 void data_packet_free(struct data_packet *packet)
 {
-    if (packet)
+    if (packet && packet->lines)
         base_pool_give(packet, packet->lines * sizeof *packet);
 }
 

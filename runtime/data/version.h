@@ -85,9 +85,10 @@ struct data_version {
     _Atomic uint32_t holds;
     bool sized, renamed; /* its size is its own; other bytes took its place, see rename_bytes */
     bool poisoned;       /* in place of bytes; set before it is produced */
-    uint8_t type;
-    size_t max; /* elements there may be; there are as many, or fewer if it is sized */
-    union {     /* set before the object's hold is released */
+    uint8_t type : 7;
+    uint8_t lent : 1; /* its memory is that of a scope, which lives longer: see task_cell */
+    size_t max;       /* elements there may be; there are as many, or fewer if it is sized */
+    union {           /* set before the object's hold is released */
         struct data_waiter *heir;
         _Atomic uint64_t *rename_bytes; /* renamed: there its room is counted until it dies */
     };
@@ -108,14 +109,15 @@ static inline struct data_version *data_version_new(duite_type type, size_t max,
     if (!version)
         return NULL;
     *version = (struct data_version){
-        .holds = 2, .type = (uint8_t)type, .max = max, .sized = sized, .heir = NULL};
+        .holds = 2, .type = type & 0x7f, .max = max, .sized = sized, .heir = NULL};
     return version;
 }
 
 /* Frees a version whose bytes were taken over by its heir, or that never had any. */
 static inline void data_version_free(struct data_version *version)
 {
-    base_pool_give(version, sizeof *version);
+    if (!version->lent)
+        base_pool_give(version, sizeof *version);
 }
 
 /* Bytes of the largest version. */

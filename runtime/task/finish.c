@@ -33,8 +33,6 @@ void task_finish(struct task_graph *graph, struct worker *worker, struct task *t
     base_pool_give(task, (size_t)task->grains * TASK_GRAIN);
     if (inner)
         task_scope_end(inner, worker); /* it leaves `scope` when its children have */
-    else if (scope == &graph->root)    /* as task_left, for most */
-        work_over(graph->pool, worker, 1);
     else
         task_left(graph, scope, worker);
 }

@@ -153,8 +153,19 @@ void task_scope_fail(struct task_scope *scope, const struct data_failure *failur
 /* The body is over, or never ran: what the children leave goes to the scope above, poisoned if the
  * scope was told of a failure. */
 void task_scope_end(struct task_scope *scope, struct worker *worker);
-/* A task of the scope is over with its descendants, or a value was passed on. */
-void task_left(struct task_graph *graph, struct task_scope *scope, struct worker *worker);
+/* A task of the scope is over with its descendants, or a value was passed on. Whoever leaves a
+ * task's scope last frees it, and leaves the one above: that is not inline. */
+void task_left_last(struct task_graph *graph, struct task_scope *scope, struct worker *worker);
+static inline void task_left(struct task_graph *graph, struct task_scope *scope,
+                             struct worker *worker)
+{
+    /* No look into the root: the main thread writes its line with every fork. */
+    if (scope == &graph->root)
+        work_over(graph->pool, worker, 1);
+    else if (!scope->parent ||
+             atomic_fetch_sub_explicit(&scope->unfinished, 1, memory_order_acq_rel) == 1)
+        task_left_last(graph, scope, worker);
+}
 /* The object of that name, with the right held on it; NULL with the error's message set. */
 struct data_object *task_find_object(struct task_scope *scope, duite_object name,
                                      duite_mode *right);

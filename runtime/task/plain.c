@@ -102,7 +102,9 @@ PLAIN_INLINE uint32_t plain_depend(const struct plain_fork *fork, struct task *t
         task_note_version(object, graph->rank);
         if (*mode == DUITE_W && graph->rename_max)
             access->in = version = task_rename(graph, fork->worker, object);
-        if (!(out = data_object_version(object)))
+        out = fork->nested ? task_child_version(fork->scope, object, !version)
+                           : data_object_version(object);
+        if (!out)
             break;
         access->out = object->current = out;
         if (version)

@@ -58,11 +58,21 @@ static size_t nest_size(size_t n_lent)
     return sizeof(struct task_nest) + n_lent * sizeof(struct task_exit);
 }
 
+/* In whole cache lines, at which cells begin. */
+static size_t nest_lines(size_t bytes)
+{
+    return (bytes + BASE_LINE - 1) / BASE_LINE * BASE_LINE;
+}
+
+enum { CELLS = 2 }; /* of a scope to which nothing is lent */
+
 /* Inline, for the sake of the caller that passes a constant. */
 static inline struct task_scope *nest_new(const struct task *task, size_t n)
 {
     enum { SPARE = 3 };
-    size_t exits = nest_size(n), size = exits + (n + SPARE) * sizeof(struct data_object);
+    const size_t exits = nest_size(n);
+    const size_t cells = nest_lines(exits + (n + SPARE) * sizeof(struct data_object));
+    const size_t size = n ? cells : cells + CELLS * sizeof(struct task_cell);
     struct task_nest *nest = base_pool_take(size);
     if (!nest)
         return NULL;
@@ -78,6 +88,7 @@ static inline struct task_scope *nest_new(const struct task *task, size_t n)
     nest->failure = NULL;
     nest->n_lent = nest->n_local = 0;
     nest->room = (uint32_t)(n + SPARE);
+    nest->cells = n ? 0 : (uint32_t)cells;
     nest->vacant = nest->first_read = 0;
     nest->local = (void *)((char *)nest + exits);
     nest->moved = false;
@@ -185,12 +196,14 @@ int task_make_object(struct duite_call_private *body, duite_type type, size_t co
     int code = data_object_check(type, count, max);
     if (code || !scope)
         return code ? code : DUITE_E_MEMORY;
-    uint32_t at = nest->n_local;
+    uint32_t at = nest->n_local, cell = 0;
     if (nest->vacant || at == nest->room) {
         if ((code = nest_place(nest, &at)))
             return code;
     } else {
         nest->n_local++;
+        if (at < CELLS && nest->cells && !sized)
+            cell = nest->cells + at * (uint32_t)sizeof(struct task_cell);
     }
     size_t size = data_type_size(type);
     int rank = scope->graph->rank;
@@ -205,6 +218,7 @@ int task_make_object(struct duite_call_private *body, duite_type type, size_t co
     object->room = max * size;
     object->home = object->holder = rank;
     object->block = (uint32_t)scope->forks;
+    object->hint = object->room <= BASE_LINE ? cell : 0;
     uint32_t slot = TASK_LOCAL_NAME | (body->task->n + at - nest->n_lent);
     *name = (duite_object){slot, object->generation};
     return DUITE_OK;

@@ -26,18 +26,47 @@ struct task_nest {
     uint32_t n_lent;                    /* parameters: the first objects */
     uint32_t n_local;                   /* objects; freed ones are among them */
     uint32_t room;
-    uint32_t vacant;     /* index + 1 of the first freed object, or 0 */
+    uint32_t cells;  /* bytes from here to the cells of the first objects made; 0: it has none */
+    uint32_t vacant; /* index + 1 of the first freed object, or 0 */
     uint32_t first_read; /* index + 1 of the first of n objects, one a parameter: those under r
                             are the children's, too; 0 until one is asked for */
-    struct data_object *local; /* generation 0: freed, and `hint` links it to the next of these */
+    struct data_object *local; /* generation 0: freed, and `hint` links it to the next of these;
+                                  else `hint` is 0, or bytes from here to its cell */
     bool moved;                /* `local` is a block of its own */
     size_t size;               /* of this block */
-    struct task_exit exit[];   /* n_lent; then the first `room` of local */
+    struct task_exit exit[];   /* n_lent; then the first `room` of local, and the cells */
+};
+
+/* The first version of a small object that a body made, and its bytes. They lie in the scope, which
+ * all tasks that use them keep alive: most objects of a body are written once and read by get. */
+struct task_cell {
+    struct data_version version;
+    _Alignas(BASE_LINE) struct data_packet packet;
+    char bytes[BASE_LINE];
 };
 
 static inline struct task_nest *task_nest_of(struct task_scope *scope)
 {
     return (struct task_nest *)scope;
+}
+
+/* A version of the object, to be written by a child; `fresh`: there is none yet. NULL without
+ * memory. */
+static inline struct data_version *task_child_version(struct task_scope *scope,
+                                                      struct data_object *object, bool fresh)
+{
+    if (!fresh || !object->hint)
+        return data_object_version(object);
+    struct task_cell *cell = (void *)((char *)scope + object->hint);
+    object->hint = 0;
+    cell->packet.bytes = object->room;
+    cell->packet.lines = 0;
+    cell->version = (struct data_version){.holds = 2,
+                                          .type = object->type & 0x7f,
+                                          .lent = true,
+                                          .max = object->max,
+                                          .packet = &cell->packet};
+    return &cell->version;
 }
 
 /* Whether the name means something in the scope of a running body: then the right held on it and,

@@ -10,23 +10,24 @@
 
 /* ---- The end ---- */
 
-void task_left(struct task_graph *graph, struct task_scope *scope, struct worker *worker)
+void task_left_last(struct task_graph *graph, struct task_scope *scope, struct worker *worker)
 {
     struct task_scope *parent;
-    /* No look into the root: the main thread writes its line with every fork. */
-    while (scope != &graph->root && (parent = scope->parent)) {
-        if (atomic_fetch_sub_explicit(&scope->unfinished, 1, memory_order_acq_rel) != 1)
-            return;
+    while ((parent = scope->parent)) {
         struct task_nest *nest = task_nest_of(scope);
         if (nest->moved)
             base_pool_give(nest->local, nest->room * sizeof *nest->local);
         base_pool_give(nest, nest->size);
         scope = parent;
+        if (scope == &graph->root) {
+            work_over(graph->pool, worker, 1);
+            return;
+        }
+        if (scope->parent &&
+            atomic_fetch_sub_explicit(&scope->unfinished, 1, memory_order_acq_rel) != 1)
+            return;
     }
-    if (scope == &graph->root)
-        work_over(graph->pool, worker, 1);
-    else
-        work_offloaded_over(scope, worker);
+    work_offloaded_over(scope, worker);
 }
 
 static const struct data_failure scope_no_memory = {

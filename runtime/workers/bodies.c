@@ -24,15 +24,16 @@ uint64_t work_batch_ends(struct worker *worker, struct work_batch *batch)
     return took;
 }
 
-/* Runs a task; what it leaves becomes ready. */
-static inline void bodies_run(struct worker *worker, struct task_frame *frame, struct task *task,
-                              struct work_batch *batch, unsigned length)
+/* Runs a task; what it leaves becomes ready. `batch` NULL: its time is that of a body below. */
+__attribute__((always_inline)) static inline void
+bodies_run(struct worker *worker, struct task_frame *frame, struct task *task,
+           struct work_batch *batch, unsigned length)
 {
     const struct task *below = work_enters(worker, task);
     const bool body = task_run_body(frame, task);
     work_leaves(worker, below);
     work_bump(&worker->counts.tasks, body);
-    if (++batch->tasks == BATCH || worker->brief_bodies < BATCH)
+    if (batch && (++batch->tasks == BATCH || worker->brief_bodies < BATCH))
         work_batch_ends(worker, batch);
     worker->finishing = true;
     worker->may_chain = work_goes_on(worker, length);
@@ -77,4 +78,35 @@ struct task *work_run_bodies(struct worker *worker, struct task *task, unsigned 
         work_batch_ends(worker, &batch);
     worker->within = outer + (batch.start - begin);
     return task;
+}
+
+/* The newest of the worker's own queue, if the body that waits forked it. */
+static inline struct task *bodies_take_child(struct worker *worker)
+{
+    struct work_queue *queue = &worker->queue;
+    struct task *task = work_queue_ranks(queue) ? NULL : work_queue_take(queue, DUITE_NEWEST);
+    if (!task || task->scope == worker->waits)
+        return task;
+    work_queue_push(queue, task);
+    work_wake_one(worker->pool, DUITE_NO_QUEUE); /* who did not find it meanwhile looks again */
+    return NULL;
+}
+
+void work_run_children(struct worker *worker, bool (*done)(void *context), void *context)
+{
+    struct task *task = bodies_take_child(worker);
+    struct task_frame frame;
+    task_frame_init(&frame, worker->pool->setup.graph, worker, &worker->call);
+    for (unsigned length = 1; task; length++) {
+        if (!work_is_plain_body(worker, task)) {
+            work_run(worker, task);
+            return;
+        }
+        bodies_run(worker, &frame, task, NULL, length);
+        task = worker->next;
+        worker->next = NULL;
+        work_bump(&worker->counts.chained, task != NULL);
+        if (!task && !done(context))
+            task = bodies_take_child(worker);
+    }
 }

@@ -218,6 +218,12 @@ static inline bool work_is_plain_body(const struct worker *worker, const struct 
  * task, or NULL. */
 struct task *work_run_bodies(struct worker *worker, struct task *task, unsigned *length);
 
+/* Where a scheduler goes by affinity, too: on top of the body that waits on this worker, runs
+ * children of that body from the worker's own queue, newest first, until what it waits for is there
+ * or another task is the newest. All that runs so is part of the time of the body that waits: the
+ * clock is not read. */
+void work_run_children(struct worker *worker, bool (*done)(void *context), void *context);
+
 /* Tasks since the clock was read, in these two loops. It is read after each of them, until so many
  * in turn were brief; then once for so many, until these take longer. */
 struct work_batch {

@@ -314,13 +314,13 @@ static struct task *inside_find(struct worker *worker, struct inside_wait *wait)
     return task;
 }
 
-void work_inside(struct worker *worker, const struct task_scope *scope, bool (*done)(void *context),
-                 void *context)
+/* The body waits longer than for children that lie in its worker's own queue. */
+__attribute__((noinline)) static void inside_wait(struct worker *worker,
+                                                  const struct task_scope *scope,
+                                                  bool (*done)(void *context), void *context)
 {
-    const struct task_scope *outer = worker->waits;
     struct comm *comm = worker->pool->setup.comm;
     struct inside_wait wait = {.scope = scope, .barren = NOT_BARREN};
-    worker->waits = scope;
     while (!done(context) && !(comm && comm_broken(comm))) {
         struct task *task = inside_find(worker, &wait);
         if (task) {
@@ -334,5 +334,16 @@ void work_inside(struct worker *worker, const struct task_scope *scope, bool (*d
         }
     }
     work_busy_again(worker);
+}
+
+void work_inside(struct worker *worker, const struct task_scope *scope, bool (*done)(void *context),
+                 void *context)
+{
+    const struct task_scope *outer = worker->waits;
+    worker->waits = scope;
+    if (worker->pool->plain && worker->pool->by_affinity)
+        work_run_children(worker, done, context);
+    if (!done(context))
+        inside_wait(worker, scope, done, context);
     worker->waits = outer;
 }

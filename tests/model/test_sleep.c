@@ -193,21 +193,22 @@ int comm_expect(struct comm *comm, struct worker *worker, struct data_key key,
 
 /* Nobody watches for a standstill here, nothing moves between ranks, and no replay runs. */
 #include "runtime/workers/internal.h"
-#define work_balance_start(balance, pool)     nothing()
-#define work_balance_stop(pool)               nothing()
-#define work_offloaded_came(balance, guest)   ((void)(guest))
-#define work_placed_away(worker, task)        ((void)(worker), false)
-#define work_begins(worker, task)             ((void)(task), false)
-#define work_learn(worker, task, ticks)       ((void)(task))
-#define work_grant(worker)                    ((void)(worker))
-#define work_request(worker, idle)            ((void)(idle))
-#define work_standstill_start(pool, seconds)  nothing()
-#define work_standstill_stop(pool)            nothing()
-#define work_waits(pool, why)                 ((void)(why))
-#define work_enters(worker, task)             NULL
-#define work_run_nodes(worker, task, length)  ((void)(length), task)
-#define work_run_bodies(worker, task, length) ((void)(length), task)
-#define work_leaves(worker, below)            ((void)(below))
+#define work_balance_start(balance, pool)        nothing()
+#define work_balance_stop(pool)                  nothing()
+#define work_offloaded_came(balance, guest)      ((void)(guest))
+#define work_placed_away(worker, task)           ((void)(worker), false)
+#define work_begins(worker, task)                ((void)(task), false)
+#define work_learn(worker, task, ticks)          ((void)(task))
+#define work_grant(worker)                       ((void)(worker))
+#define work_request(worker, idle)               ((void)(idle))
+#define work_standstill_start(pool, seconds)     nothing()
+#define work_standstill_stop(pool)               nothing()
+#define work_waits(pool, why)                    ((void)(why))
+#define work_enters(worker, task)                NULL
+#define work_run_nodes(worker, task, length)     ((void)(length), task)
+#define work_run_bodies(worker, task, length)    ((void)(length), task)
+#define work_run_children(worker, done, context) ((void)(worker), (void)(done), (void)(context))
+#define work_leaves(worker, below)               ((void)(below))
 
 /* No other program runs on these cores. */
 #include <sys/resource.h>

@@ -270,7 +270,7 @@ void solve_level_solve(const struct solve_level *level, uint32_t group, const do
                        double *x)
 {
     const struct solve_cover *cover = level->cover + group;
-    const double weight = level->n_groups > 1 ? 0.2 : 1;
+    const double weight = level->n_groups > 1 ? 0.25 : 1;
     solve_coarse_solve(&cover->pattern, factor, x);
     for (size_t i = 0; i < SOLVE_COARSE_STRIDE * (size_t)cover->n; i++)
         x[i] *= weight;

@@ -1,6 +1,6 @@
 #!/bin/sh
-# The coarse space by groups on one and two levels, below one factor, has one state_hash on 1 to 16 ranks, on more of them than there are
-# cores.
+# A preconditioner of three and four levels (blocks, groups of them, groups of groups, one factor on top) has one state_hash on 1 to 16
+# ranks, on more of them than there are cores.
 . "${srcdir:-.}/tests/support/tap.sh"
 skip_unless "$DUITE_CLOTH"
 plan_later
@@ -20,5 +20,5 @@ one_hash() {
     done
 }
 
-ok "320 blocks: groups, and one factor on top" one_hash 20
-ok "2,132 blocks: two levels of groups" one_hash 3
+ok "320 blocks: three levels, one of groups" one_hash 20
+ok "2,132 blocks: four levels, two of groups" one_hash 3

@@ -1,21 +1,13 @@
 #!/bin/sh
-# Runs of the sheet on several ranks against what duite-predict makes of their traces: as many messages, and as many bytes, of which the
-# runtime counts the 8 or 64 before the values of a message, and what fills these up, too. On more than four ranks sums go from rank to rank:
-# the state is the same on any number of ranks.
+# Runs of the sheet on several ranks against what duite-predict makes of their traces: as many messages, and as many bytes. On more than
+# four ranks sums go from rank to rank: the state is the same on any number of ranks.
 . "${srcdir:-.}/tests/support/tap.sh"
+. "$srcdir/tests/support/predicted.sh"
 plan_later
-
-number() { sed -n "s/^ *messages *\\([0-9]*\\), *\\([0-9.]*\\).*/\\$1/p" "$2" | head -n 1; }
 
 same_messages() { # RANKS
     ranks "$1" "$DUITE_CLOTH" "$srcdir/cloth/scenes/sheet.yaml" --quiet --threads 1 --grain 500 --end 0.002 --trace "$scratch/trace" &&
-        ./duite-trace "$scratch/trace" > "$scratch/run" && ./duite-predict "$scratch/trace" > "$scratch/predicted" || return
-    echo "$(number 1 "$scratch/run") messages, $(number 2 "$scratch/run") MB; predicted $(number 1 "$scratch/predicted"), $(number 2 "$scratch/predicted") bytes"
-    awk -v "sent=$(number 1 "$scratch/run")" -v "megabytes=$(number 2 "$scratch/run")" -v "messages=$(number 1 "$scratch/predicted")" \
-        -v "bytes=$(number 2 "$scratch/predicted")" 'BEGIN {
-            before = (1e6 * megabytes - bytes) / messages
-            exit !(messages > 100 && sent == messages && before >= 8 && before < 96)
-        }'
+        as_predicted "$scratch/trace"
 }
 
 state() { # RANKS: the state_hash

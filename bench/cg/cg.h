@@ -10,10 +10,12 @@
 
 /* ---- States ---- */
 
-/* The names of all states of "cg"; of those of them that stand for what simulations meet; of those
- * of "scale", whose coarse space has many patches. Each list is ended by NULL. */
+/* The names of all states of "cg"; of those of them that stand for what simulations meet; of what
+ * "scale" cuts into small blocks: those of "cg", and cloth in contact with the floor; of its
+ * large ones, whose coarse space has many patches. Each list is ended by NULL. */
 const char *const *states_all(void);
 const char *const *states_met(void);
+const char *const *states_small(void);
 const char *const *states_large(void);
 /* Why a state cannot be made here, or NULL. */
 const char *states_missing(const char *name);
@@ -25,6 +27,8 @@ struct states_plan {
     bool moves;          /* if anything does */
     const char *moved;   /* states of the same motion have the same one */
     uint32_t count;      /* iterations whose answer the state keeps */
+    bool solved_here;    /* it keeps no answers: plain loops would take too long, or know nothing of
+                          * the step's contacts; whoever needs the solution solves to 1e-12 */
 };
 /* 0, or what serve_fail returns. */
 int states_plan_make(struct states_plan *plan, const char *name, bool quick);
@@ -44,8 +48,9 @@ int cg_order(struct state *state, uint32_t grain);
 uint64_t cg_hash(const struct solve_system *system);
 
 /* The system of the first step of the plan's model, which is made whole, whatever energy it gains
- * and however far it stretches: a step that is halved would leave the system of a shorter one. 0,
- * or what serve_fail returns: the step fails, or its length is not the model's. */
+ * and however far it stretches: a step that is halved would leave the system of a shorter one. It
+ * knows nothing of contacts. 0, or what serve_fail returns: the step fails, or its length is not
+ * the model's. */
 int cg_make_system(struct states_plan *plan, struct serve_request *request,
                    struct solve_system *system);
 
@@ -71,6 +76,7 @@ struct cg_session {
     struct flow_state run;
     struct flow_report report;
     char settings[200];   /* that it is ready for; empty: for none */
+    double *solution;     /* of the state, of these settings; NULL: the state has it */
     enum model_stop stop; /* the scene's, which is the default one */
     double tolerance;
     uint32_t most;

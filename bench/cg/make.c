@@ -37,10 +37,24 @@ static int take(void *context, const struct solve_system *system, struct cloth_e
     return CLOTH_OK;
 }
 
+/* Where a motion ends. Its contacts are of no interest. */
+static int take_end(void *context, const struct solve_system *system, struct cloth_error *error)
+{
+    struct solve_system *copy = context;
+    const size_t bytes = 3 * (size_t)system->n * sizeof(double);
+    solve_system_free(copy);
+    const int code = solve_system_make(copy, system->n, 1, SOLVE_PAIRS_OF_SPRINGS, error);
+    if (code)
+        return code;
+    memcpy(copy->x, system->x, bytes);
+    memcpy(copy->v, system->v, bytes);
+    return CLOTH_OK;
+}
+
 /* The model of the step starts where its motion ends. */
 static int move(struct states_plan *plan, struct serve_request *request)
 {
-    const struct flow_output output = {.context = &moved.after, .system = take};
+    const struct flow_output output = {.context = &moved.after, .system = take_end};
     if (!plan->moves)
         return states_wave(&plan->model);
     if (!moved.name || strcmp(moved.name, plan->moved) != 0) {
@@ -61,6 +75,7 @@ int cg_make_system(struct states_plan *plan, struct serve_request *request,
     struct model *model = &plan->model;
     const struct flow_output output = {.context = system, .system = take};
     model->halving = false;
+    model->contact.mode = MODEL_CONTACT_PROJECT;
     model->energy_growth = model->stretch_growth = model->stretch_limit = 0;
     const int code = cg_run(model, request, &output, NULL, NULL);
     if (!code && !(fabs(system->h - model->h) <= 1e-9 * model->h))
@@ -137,9 +152,9 @@ static int complete(struct state *state, const struct states_plan *plan)
     state->count = plan->count;
     state->after = calloc((size_t)s->n + 1, 3 * sizeof *state->after);
     int code = state->after ? cg_order(state, plan->model.grain) : serve_no_memory();
-    if (!code)
+    if (!code && !plan->solved_here)
         code = state_iterate(s, state->count, state->after);
-    if (!code)
+    if (!code && !plan->solved_here)
         code = state_solve(s, s->dv);
     return code;
 }

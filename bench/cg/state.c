@@ -249,6 +249,20 @@ static void room_free(struct room *room)
     free(room->inverse);
 }
 
+double state_left(const struct state *state, const double *dv)
+{
+    const size_t n = 3 * (size_t)state->system.n;
+    double *nothing = calloc(n + 1, sizeof *nothing), *r = malloc((n + 1) * sizeof *r);
+    double left = NAN;
+    if (nothing && r)
+        left = sqrt(residual(&state->system, dv, r) / residual(&state->system, nothing, r));
+    else
+        serve_no_memory();
+    free(nothing);
+    free(r);
+    return left;
+}
+
 int state_iterate(const struct solve_system *system, uint32_t count, double *dv)
 {
     struct room room;

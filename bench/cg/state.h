@@ -29,6 +29,8 @@ int state_ready(struct state *state, struct serve_request *request);
 
 /* |a - b| / |b| in the mass norm over what is not held. */
 double state_distance(const struct state *state, const double *a, const double *b);
+/* |b - A dv| / |b|, by plain loops; NAN after serve_fail. */
+double state_left(const struct state *state, const double *dv);
 /* 0 if dv is what so many iterations come to, which must be state->count; else what serve_fail
  * returns. */
 int state_check(const struct state *state, uint32_t count, const double *dv);

@@ -1,6 +1,6 @@
 /* Iterations to an error of 1 % with the coarse space as it is, by groups of blocks, against one
- * exact factor of it: of states that are so large that the groups are what runs take, and of those
- * of the bench "cg", in blocks so small that there are groups. */
+ * exact factor of it: of states that are so large that the groups are what runs take; and of those
+ * of the bench "cg" and of cloth in contact, in blocks so small that there are groups. */
 #include "bench/cg/cg.h"
 #include "bench/scale/scale.h"
 
@@ -56,9 +56,16 @@ static void plan_small(struct measure *measure, const struct bench_options *opti
 {
     const unsigned grain = options->quick ? QUICK_GRAIN : GRAIN;
     size_t n;
-    const struct measure_series *groups = iterations(measure, options, states_met(), "", grain, &n);
-    const struct measure_series *one = iterations(measure, options, states_met(), "one", grain, &n);
+    const char *const *name = states_small();
+    const struct measure_series *groups = iterations(measure, options, name, "", grain, &n);
+    const struct measure_series *one = iterations(measure, options, name, "one", grain, &n);
     measure->cold = true;
+    for (size_t i = 0; i < n; name++) {
+        if (states_missing(*name))
+            continue;
+        measure_value(measure, groups + i, 1, "iterations", "iterations_%s", *name);
+        measure_value(measure, one + i++, 1, "iterations", "iterations_%s_one_factor", *name);
+    }
     plan_worst(measure, "iterations_small_vs_one_factor", groups, one, n);
 }
 
@@ -76,5 +83,6 @@ static const struct serve_run RUNS[] = {{"solve", run_solve}, {0}};
 const struct bench_case scale_large = {
     "large", "iterations of 160,000 vertices, by groups and by one factor", plan_large, RUNS, 1};
 const struct bench_case scale_small = {
-    "small", "iterations of the states of cg in small blocks, by groups and by one factor",
+    "small",
+    "iterations of the states of cg and of contact in small blocks, by groups and one factor",
     plan_small, NULL, 1};

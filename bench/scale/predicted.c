@@ -1,6 +1,6 @@
 /* A step of a large sheet by the default solver, traced on this machine and predicted on hosts of
- * 16 cores. Efficiency is against the same trace on one core. Bodies take the median of their
- * kernel: what this machine does beside them belongs to no other. */
+ * 16 or of 64 cores. Efficiency is against the same trace on one core. Bodies take the median of
+ * their kernel: what this machine does beside them belongs to no other. */
 #include "bench/scale/scale.h"
 #include "bench/temporary.h"
 
@@ -12,6 +12,10 @@
 #include <string.h>
 
 enum { SIDE = 1000, GRAIN = 1000, QUICK_SIDE = 60, QUICK_GRAIN = 50, CORES = 16 };
+/* 16 million vertices in blocks of 1,000 do not fit this machine: 4 million in as many blocks of
+ * 250 do. Bodies then take four times as long; halos have twice the bytes, for which the network
+ * has half the bandwidth. */
+enum { VAST_SIDE = 2000, VAST_GRAIN = 250, VAST_HOSTS = 64, VAST_CORES = 64, LARGER = 4 };
 
 static const struct network {
     const char *name;
@@ -39,13 +43,36 @@ static void plan(struct measure *measure, const struct bench_options *options)
     measure_value(measure, coarse, 1, "", "coarse_path_share");
 }
 
-/* The trace of a step, made when it is asked for first; NULL, and serve_fail. */
+static void plan_vast(struct measure *measure, const struct bench_options *options)
+{
+    static const struct {
+        const char *what, *name;
+    } figures[] = {{"scaling", "scaling_%dx%d_fast"},
+                   {"main", "main_share_%dx%d"},
+                   {"path", "path_share_%dx%d"}};
+    measure->cold = true;
+    for (size_t i = 0; i < sizeof figures / sizeof *figures; i++) {
+        const struct measure_series *series = measure_series(
+            measure, (struct subject_shape){"duite", 0, options->threads},
+            "vast side=%d grain=%d threads=%u what=%s", options->quick ? QUICK_SIDE : VAST_SIDE,
+            options->quick ? QUICK_GRAIN : VAST_GRAIN, options->threads, figures[i].what);
+        measure_value(measure, series, 1, "", figures[i].name, VAST_HOSTS, VAST_CORES);
+    }
+}
+
+/* The trace of a step, made when it is asked for; the last one is kept. NULL, and serve_fail. */
 static struct trace_run *trace_of(struct serve_request *request)
 {
     static struct trace_run *run;
+    static uint64_t side;
     char folder[TEMPORARY_PATH], arguments[SCALE_PATH + 200], path[SCALE_PATH + 20];
-    if (run || temporary_make(NULL, "duite-scale", folder))
+    if (run && side == serve_number(request, "side"))
         return run;
+    trace_run_free(run);
+    run = NULL;
+    side = serve_number(request, "side");
+    if (temporary_make(NULL, "duite-scale", folder))
+        return NULL;
     snprintf(path, sizeof path, "%s/trace", folder);
     snprintf(arguments, sizeof arguments, "--threads %u --end 0.003 --trace-steps 1:2 --trace '%s'",
              (unsigned)serve_number(request, "threads"), path);
@@ -59,23 +86,29 @@ static struct trace_run *trace_of(struct serve_request *request)
     return run;
 }
 
+static struct predict_cluster cluster_of(uint32_t hosts, uint32_t cores,
+                                         const struct network *network)
+{
+    return (struct predict_cluster){.hosts = hosts,
+                                    .cores = cores,
+                                    .latency = network->latency,
+                                    .bandwidth = network->bandwidth,
+                                    .capacity = INFINITY,
+                                    .core_speed = 1,
+                                    .overhead = -1,
+                                    .message = network->message,
+                                    .steady = true,
+                                    .packed = true,
+                                    .scheduler = duite_scheduler_find("steal"),
+                                    .mapping = duite_mapping_find("metis"),
+                                    .seed = 1};
+}
+
 /* chain: NULL, or room for the seconds of each kernel on the chain that holds up the last task. */
 static double makespan(const struct trace_run *run, uint32_t hosts, uint32_t cores,
                        const struct network *network, double *chain)
 {
-    const struct predict_cluster cluster = {.hosts = hosts,
-                                            .cores = cores,
-                                            .latency = network->latency,
-                                            .bandwidth = network->bandwidth,
-                                            .capacity = INFINITY,
-                                            .core_speed = 1,
-                                            .overhead = -1,
-                                            .message = network->message,
-                                            .steady = true,
-                                            .packed = true,
-                                            .scheduler = duite_scheduler_find("steal"),
-                                            .mapping = duite_mapping_find("metis"),
-                                            .seed = 1};
+    const struct predict_cluster cluster = cluster_of(hosts, cores, network);
     const struct predict_more more = {.chain = chain};
     struct predict_result result;
     return predict(run, &cluster, &result, &more) ? NAN : result.makespan;
@@ -105,6 +138,35 @@ static int run_scaling(void *context, struct serve_request *request, double *val
     return isnan(*value) ? serve_fail("%s", duite_message()) : 0;
 }
 
+static int predict_vast(const struct trace_run *run, uint32_t hosts, uint32_t cores,
+                        struct predict_result *result)
+{
+    struct predict_cluster cluster = cluster_of(hosts, cores, NETWORKS + 1);
+    cluster.bodies = LARGER;
+    cluster.bandwidth *= 0.5;
+    return predict(run, &cluster, result, NULL) ? serve_fail("%s", duite_message()) : 0;
+}
+
+/* vast side= grain= threads= what=: the efficiency ("scaling"); of the time, what the main program
+ * ("main") or the critical path ("path") holds up. Predicted when it is asked for first. */
+static int run_vast(void *context, struct serve_request *request, double *value)
+{
+    static struct predict_result all, one;
+    const struct trace_run *run = all.makespan > 0 ? NULL : trace_of(request);
+    char what[16];
+    (void)context;
+    serve_word(request, "what", what, sizeof what);
+    if (!(all.makespan > 0) && !run)
+        return 1;
+    if (run && (predict_vast(run, 1, 1, &one) || predict_vast(run, VAST_HOSTS, VAST_CORES, &all)))
+        return 1;
+    if (!strcmp(what, "scaling"))
+        *value = one.makespan / (VAST_HOSTS * VAST_CORES * all.makespan);
+    else
+        *value = all.chain[strcmp(what, "main") ? PREDICT_PATH : PREDICT_MAIN] / all.makespan;
+    return 0;
+}
+
 /* The tasks of the coarse space: those of groups, and those that every rank runs. */
 static bool is_coarse(const struct trace_run *run, uint32_t kernel)
 {
@@ -129,8 +191,13 @@ static int run_coarse(void *context, struct serve_request *request, double *valu
     return isnan(*value) ? serve_fail("%s", duite_message()) : 0;
 }
 
-static const struct serve_run RUNS[] = {{"scaling", run_scaling}, {"coarse", run_coarse}, {0}};
+static const struct serve_run RUNS[] = {
+    {"scaling", run_scaling}, {"coarse", run_coarse}, {"vast", run_vast}, {0}};
 
 const struct bench_case scale_predicted = {
     "predicted", "a step of a million vertices on 1 to 16 hosts of 16 cores, predicted", plan, RUNS,
     1};
+
+const struct bench_case scale_vast = {
+    "vast", "a step of 16 million vertices on 64 hosts of 64 cores, predicted: wants 8 GB",
+    plan_vast, NULL, 1};

@@ -16,6 +16,7 @@ enum { FAILED = 1, BAD_INPUT = 2 };
 enum {
     BALANCE = 256,
     BANDWIDTH,
+    BODIES,
     CORES,
     CORE_SPEED,
     HOSTS,
@@ -50,6 +51,8 @@ static const struct argp_option OPTIONS[] = {
     {"message", MESSAGE, "SECONDS", 0, "of a core, to send or to take a message (default: 5e-7)",
      1},
     {"overhead", OVERHEAD, "SECONDS", 0, "between two tasks (default: as it was traced)", 1},
+    {"bodies", BODIES, "FACTOR", 0, "times as long as in the trace: of larger blocks (default: 1)",
+     1},
     {"packed", PACKED, NULL, 0,
      "in replays blocks send what their hints say at most: for a trace of one rank whose program "
      "packs what other ranks read",
@@ -123,6 +126,9 @@ static error_t option_read(int key, char *value, struct argp_state *state)
         return 0;
     case CORE_SPEED:
         cluster->core_speed = option_number(state, "core-speed", value);
+        return 0;
+    case BODIES:
+        cluster->bodies = option_number(state, "bodies", value);
         return 0;
     case LATENCY:
         cluster->latency = option_number(state, "latency", value);

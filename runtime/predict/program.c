@@ -85,6 +85,8 @@ void predict_task(struct predict_program *p, const struct predict_fork *fork,
     double seconds;
     if (!predict_times_find(p->times, fork->number, &seconds) || graph->cluster->steady)
         seconds = predict_times_kernel(p->times, fork->kernel);
+    if (graph->cluster->bodies > 0)
+        seconds *= graph->cluster->bodies;
     seconds /= graph->cluster->core_speed;
     for (size_t i = 0; i < fork->n; i++)
         p->prepared[i] = where->round ? predict_round_fetch(p, fork, where, i)

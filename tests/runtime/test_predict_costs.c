@@ -166,6 +166,19 @@ START_TEST(values_from_host_to_host)
 }
 END_TEST
 
+/* Bodies of larger blocks take longer; what is between tasks does not. */
+START_TEST(larger_bodies)
+{
+    struct trace_file file = predicted_trace(1, 8);
+    for (int i = 0; i < 4; i++)
+        trace_file_fork(&file, FILE_RW, 2 * MS, 0, 1, SLOTS(1));
+    struct predict_cluster one = predicted_machine(1, 1);
+    one.bodies = 3;
+    one.overhead = 0.5 * MS;
+    nearly(predicted(&file, &one).makespan, 3 * 8 * MS + 3 * 0.5 * MS);
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("predicted costs");
@@ -178,6 +191,7 @@ int main(void)
     tcase_add_test(cases, packed_values);
     tcase_add_test(cases, sums_from_host_to_host);
     tcase_add_test(cases, values_from_host_to_host);
+    tcase_add_test(cases, larger_bodies);
     suite_add_tcase(suite, cases);
     return unit_run(suite);
 }

@@ -198,8 +198,20 @@ struct plan_memo_round *memo_round_make(struct plan_memo *memo, uint64_t key)
 
 /* ---- Replays ---- */
 
+/* An object of it may have been freed since, and another one have its slot. */
+static bool round_lives(const struct plan_memo *memo, struct plan_memo_round *round)
+{
+    if (plan_record_fits(round->record))
+        return true;
+    if (memo_round_is_idle(round))
+        memo_round_free(round, memo->worker);
+    return false;
+}
+
 bool memo_round_open(struct plan_memo *memo, struct plan_memo_round *round)
 {
+    if (!round_lives(memo, round))
+        return false;
     struct plan *plan = round->record->plan;
     memo->first = memo->graph->root.forks + 1;
     if (plan_replay_open(round->record, memo->worker, round->gate))

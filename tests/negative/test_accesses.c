@@ -121,6 +121,31 @@ START_TEST(use_after_free)
 }
 END_TEST
 
+/* Nor does it come to life by forks that were recognised as repeated. */
+START_TEST(repeated_forks_after_free)
+{
+    enum { FORKS = 1000 };
+    duite_options options = misuse_options(MPI_COMM_WORLD);
+
+    misuse_mpi();
+    options.threads = 1;
+    options.memo = 2;
+    ck_assert_int_eq(duite_start(&rt, &options), DUITE_OK);
+    a = misuse_new(rt, 4);
+    b = misuse_new(rt, 4);
+    for (int i = 0; i < FORKS; i++)
+        ck_assert_int_eq(DUITE_FORK(rt, &COPY, NULL, a, b), DUITE_OK);
+    ck_assert_int_eq(duite_wait(rt), DUITE_OK);
+    ck_assert_int_eq(duite_free(rt, b), DUITE_OK);
+    const duite_object next = misuse_new(rt, 1);
+    for (int i = 0; i < FORKS; i++)
+        ck_assert_int_eq(DUITE_FORK(rt, &COPY, NULL, a, b), DUITE_E_OBJECT);
+    ck_assert_int_eq(duite_wait(rt), DUITE_E_OBJECT);
+    b = next;
+    end();
+}
+END_TEST
+
 /* What was refused has left no trace. */
 START_TEST(refused_forks_do_nothing)
 {
@@ -152,6 +177,9 @@ int main(void)
     tcase_add_test(cases, no_such_object);
     tcase_add_test(cases, use_after_free);
     tcase_add_test(cases, refused_forks_do_nothing);
+    suite_add_tcase(suite, cases);
+    cases = tcase_create("repeated");
+    tcase_add_test(cases, repeated_forks_after_free);
     suite_add_tcase(suite, cases);
     return unit_run(suite);
 }

@@ -358,7 +358,7 @@ int flow_run(struct flow *flow, duite *rt, const struct flow_output *output,
     if (!code)
         code = run_steps(&state);
     if (!code)
-        code = duite_wait(rt); /* the last frame too is on disk */
+        code = duite_wait(rt); /* the last frame is written, too */
     report->wall_seconds = state.saved_wall + flow_now() - state.from;
     if (!code)
         code = flow_finish(&state);

@@ -1,6 +1,6 @@
 /* Three rooms for frames: the run fills `spare`, the newest whole frame waits in `frame`, and the
  * thread sends from its own. They are exchanged under the lock, so that the run copies a frame
- * once, and never waits for more than an exchange. */
+ * once, and waits for no viewer: for an exchange, or for the copy of a scene. */
 #include "cloth/base/memory.h"
 #include "cloth/live/publisher.h"
 #include "cloth/live/scene.h"

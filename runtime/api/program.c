@@ -150,8 +150,9 @@ static inline bool fork_is_direct(const duite *rt)
     return !more && !rt->graph.broken && task_thread_mark() == rt->thread;
 }
 
-static int fork_other(duite *rt, const duite_kernel *kernel, const void *args, size_t n,
-                      const duite_object *objects)
+__attribute__((noinline)) static int fork_other(duite *rt, const duite_kernel *kernel,
+                                                const void *args, size_t n,
+                                                const duite_object *objects)
 {
     if (fork_is_pruned(rt, kernel, args, n, objects))
         return DUITE_OK;
@@ -159,6 +160,29 @@ static int fork_other(duite *rt, const duite_kernel *kernel, const void *args, s
     return code ? code
                 : fork_task(rt, &(struct task_options){.at = TASK_ANYWHERE}, kernel, args, n,
                             objects);
+}
+
+static inline int fork_direct(duite *rt, const duite_kernel *kernel, const void *args, size_t n,
+                              const duite_object *objects)
+{
+    const int code = task_fork_main(&rt->graph, rt->worker, kernel, args, n, objects);
+    if (code)
+        return api_remember(rt, code);
+    if (rt->window)
+        api_throttle(rt);
+    return DUITE_OK;
+}
+
+/* Apart, since it needs most registers. */
+__attribute__((noinline)) static int fork_memo(duite *rt, const duite_kernel *kernel,
+                                               const void *args, size_t n,
+                                               const duite_object *objects)
+{
+    if (!plan_memo_fork(rt->memo, kernel, args, n, objects))
+        return fork_direct(rt, kernel, args, n, objects);
+    if (rt->window)
+        api_throttle(rt);
+    return DUITE_OK;
 }
 
 int duite_fork(duite *rt, const duite_kernel *kernel, const void *args, size_t n,
@@ -169,14 +193,8 @@ int duite_fork(duite *rt, const duite_kernel *kernel, const void *args, size_t n
         return api_body_fork(body, kernel, args, n, objects);
     if (!rt || !fork_is_direct(rt))
         return fork_other(rt, kernel, args, n, objects);
-    if (!rt->memo || !plan_memo_fork(rt->memo, kernel, args, n, objects)) {
-        const int code = task_fork_main(&rt->graph, rt->worker, kernel, args, n, objects);
-        if (code)
-            return api_remember(rt, code);
-    }
-    if (rt->window)
-        api_throttle(rt);
-    return DUITE_OK;
+    return rt->memo ? fork_memo(rt, kernel, args, n, objects)
+                    : fork_direct(rt, kernel, args, n, objects);
 }
 
 int duite_fork_at(duite *rt, int rank, const duite_kernel *kernel, const void *args, size_t n,

@@ -196,7 +196,7 @@ static struct base_magazine *magazine_new(void)
 
 /* Small ones are cut several at a time: the others are at hand then, and come in the order in which
  * they lie. So blocks of an odd number of grains come in even numbers, and nothing is lost between
- * them and others. */
+ * them and others. Nothing is loaded, or an empty magazine. */
 static void *blocks_new(struct base_shelf *shelf, size_t size)
 {
     enum { AT_ONCE = 16, SMALL = 256 /* bytes */ };
@@ -207,8 +207,9 @@ static void *blocks_new(struct base_shelf *shelf, size_t size)
     char *block = region_cut(n * bytes);
     if (!block)
         return NULL;
-    for (size_t i = n - 1; i > 0; i--)
-        loaded->block[loaded->n++] = block + i * bytes;
+    for (size_t i = 1; i < n; i++)
+        loaded->block[n - 1 - i] = block + i * bytes;
+    loaded->n = n - 1;
     return block;
 }
 

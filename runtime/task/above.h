@@ -31,8 +31,10 @@ void work_finish(struct task_graph *graph, struct worker *worker, struct task *t
 /* The task of another rank whose order has this top is over, with all that it forked. */
 void work_offloaded_over(struct task_scope *top, struct worker *worker);
 
-/* So many more tasks of the main program are over; -1: there is one more to come. */
+/* So many more tasks of the main program are over; -1: there is one more to come. The second: one
+ * is over, as mostly. */
 void work_over(struct work_pool *pool, struct worker *worker, int tasks);
+void work_over_one(struct work_pool *pool, struct worker *worker);
 
 /* Bodies that ran on this rank so far, and the seconds in them: about. Main thread. */
 void work_bodies(struct work_pool *pool, uint64_t *bodies, double *seconds);

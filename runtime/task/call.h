@@ -70,11 +70,9 @@ task_frame_call(struct task_frame *frame, struct task *task, const void *args,
                              : kernel->body(&frame->call);
     task_body_ends(body);
     *scope = body->scope;
-    if (!code)
-        code = body->refused;
-    if (!code)
-        code = body->remembered;
-    return code ? task_body_failure(body, code) : NULL;
+    if (!(code | body->refused | body->remembered))
+        return NULL;
+    return task_body_failure(body, code ? code : body->refused ? body->refused : body->remembered);
 }
 
 /* Runs a ready BODY that is LOCAL, in a frame that is set: its body is called, or it is known why

@@ -6,10 +6,11 @@
 static inline void access_release(struct task_graph *graph, struct worker *worker,
                                   const struct task_access *access)
 {
-    switch (access->waiter.mode) {
-    case DUITE_R:
+    if (access->waiter.mode == DUITE_R) { /* most */
         ready_release(graph, worker, access->in);
-        break;
+        return;
+    }
+    switch (access->waiter.mode) {
     case DUITE_W:
     case DUITE_RW:
         ready_publish(graph, worker, access->out);

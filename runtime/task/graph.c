@@ -69,19 +69,29 @@ static int kernel_check_unique(const duite_kernel *const kernels[], uint32_t ind
     return DUITE_OK;
 }
 
-/* What a fork finds out about each kernel, found out once. */
-static void kernel_prepare(struct task_graph *graph, uint32_t index)
+/* What a fork finds out of a plain kernel, found out once. */
+static int kernel_prepare(const struct task_graph *graph, uint32_t index)
 {
     struct task_fixed *fixed = &graph->fixed[index];
-    struct task *head = &graph->heads[index];
-    fixed->direct = fixed->plain && graph->n_ranks == 1;
-    fixed->head = head;
-    *head = (struct task){.pending = fixed->n + 1,
-                          .n = fixed->n,
+    const uint32_t n = fixed->n;
+    struct task *head;
+    if (!fixed->plain)
+        return DUITE_OK;
+    fixed->direct = graph->n_ranks == 1;
+    fixed->head = head = base_alloc(sizeof *head + n * sizeof head->access[0]);
+    if (!head)
+        return base_no_memory("the list of kernels");
+    *head = (struct task){.pending = n + 1,
+                          .n = n,
                           .kernel = index,
                           .grains = fixed->grains,
                           .type = TASK_BODY,
                           .placed = fixed->owner[0] != TASK_NOBODY};
+    for (uint32_t i = 0; i < n; i++)
+        head->access[i] = (struct task_access){
+            .waiter = {.back = (uint32_t)(sizeof *head + i * sizeof head->access[0]),
+                       .mode = fixed->kernel->access[i]}};
+    return DUITE_OK;
 }
 
 /* The places of all kernels by their addresses; at most half of them are taken. */
@@ -110,9 +120,8 @@ static int kernels_take(struct task_graph *graph, const duite_kernel *const *ker
     while (kernels[n])
         n++;
     graph->kernels = base_alloc(n * sizeof graph->kernels[0]);
-    graph->fixed = base_alloc(n * sizeof *graph->fixed);
-    graph->heads = base_alloc(n * sizeof *graph->heads);
-    if (!graph->kernels || !graph->fixed || !graph->heads)
+    graph->fixed = base_alloc_zero(n * sizeof *graph->fixed);
+    if (!graph->kernels || !graph->fixed)
         return base_no_memory("the list of kernels");
     memcpy(graph->kernels, kernels, n * sizeof graph->kernels[0]);
     graph->n_kernels = (uint32_t)n;
@@ -122,9 +131,10 @@ static int kernels_take(struct task_graph *graph, const duite_kernel *const *ker
             code = kernel_check_unique(graph->kernels, i);
         if (!code)
             code = data_law_check_kernel(graph->kernels[i], laws);
+        if (!code)
+            code = kernel_prepare(graph, i);
         if (code)
             return code;
-        kernel_prepare(graph, i);
     }
     return kernels_index(graph);
 }
@@ -167,8 +177,9 @@ void task_graph_stop(struct task_graph *graph)
         base_free(node);
     }
     base_free(graph->history);
+    for (uint32_t i = 0; i < graph->n_kernels; i++)
+        base_free(graph->fixed[i].head);
     base_free(graph->fixed);
-    base_free(graph->heads);
     base_free(graph->kernels);
     base_free(graph->kernel_place);
     data_table_stop(&graph->table);

@@ -13,8 +13,8 @@
 /* An heir that is no task passes the value on to the scope above. Not inline: it is rare. */
 void task_wake_heir(struct task_graph *graph, struct worker *worker, struct data_waiter *heir);
 
-static inline void ready_take(struct task_graph *graph, struct worker *worker, struct task *task,
-                              uint32_t taken)
+__attribute__((always_inline)) static inline void
+ready_take(struct task_graph *graph, struct worker *worker, struct task *task, uint32_t taken)
 {
     if (atomic_load_explicit(&task->pending, memory_order_acquire) == taken ||
         atomic_fetch_sub_explicit(&task->pending, taken, memory_order_acq_rel) == taken)

@@ -92,9 +92,9 @@ __attribute__((always_inline)) static inline const struct data_failure *
 params_prepare(struct task *task, duite_param *param, bool *sized)
 {
     const struct data_failure *failure = NULL, *new = NULL;
-    const uint32_t n = task->n, stamp = n ? task_new_stamp() : 0;
-    struct task_access *access = task->access;
-    for (uint32_t i = 0; i < n; i++, access++, param++) {
+    struct task_access *access = task->access, *const end = access + task->n;
+    duite_object name = {TASK_LOCAL_NAME, access < end ? task_new_stamp() : 0};
+    for (; access < end; access++, param++, name.slot++) {
         const uint32_t mode = access->waiter.mode;
         if (mode == DUITE_R) {
             new = param_describe(param, access->in, false);
@@ -108,7 +108,7 @@ params_prepare(struct task *task, duite_param *param, bool *sized)
         }
         if (new)
             failure = data_failure_first(failure, new);
-        param->object = (duite_object){TASK_LOCAL_NAME | i, stamp};
+        param->object = name;
     }
     return failure;
 }

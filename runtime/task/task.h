@@ -61,10 +61,11 @@ struct task_access {
     struct data_waiter waiter; /* waits for `in`, as a reader or as its heir; its mode is that of
                                   the access */
     union {
-        struct data_version *in; /* read or overwritten; NULL: a w without bytes to reuse */
-        struct data_piece *leaf; /* cw: this task's part of the sum */
-        size_t lent;             /* postponed: its place in the task's scope */
-        bool sized;              /* OFFLOADED: the object changes its size */
+        struct data_version *in;    /* read or overwritten; NULL: a w without bytes to reuse */
+        struct data_piece *leaf;    /* cw: this task's part of the sum */
+        size_t lent;                /* postponed: its place in the task's scope */
+        bool sized;                 /* OFFLOADED: the object changes its size */
+        struct data_object *object; /* while it is forked */
     };
     union {
         struct data_version *out; /* w, rw: what is written; r: NULL */
@@ -201,9 +202,8 @@ struct task_graph {
         uint32_t grains;   /* of a task with n objects */
         bool plain;        /* r, w and rw alone, few of them, no others; and it is not replicated */
         bool direct;       /* ... and there is one rank */
-        const struct task *head; /* plain: a task that was just forked, but for what differs */
+        struct task *head; /* plain: a task that was just forked, but for what differs; owned */
     } * fixed;
-    struct task *heads; /* of all kernels */
     uint32_t n_kernels;
     uint32_t *kernel_place, kernel_mask; /* by address, open addressing: index in `fixed` + 1 */
     bool paths; /* plans are to know the paths of their tasks; set before the first of them */

@@ -29,7 +29,8 @@ __attribute__((always_inline)) static inline void
 bodies_run(struct worker *worker, struct task_frame *frame, struct task *task,
            struct work_batch *batch, unsigned length)
 {
-    const struct task *below = work_enters(worker, task);
+    const struct task *below = atomic_load_explicit(&worker->runs, memory_order_relaxed);
+    atomic_store_explicit(&worker->runs, task, memory_order_release);
     const bool body = task_run_body(frame, task);
     work_leaves(worker, below);
     work_bump(&worker->counts.tasks, body);

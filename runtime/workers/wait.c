@@ -49,13 +49,22 @@ static bool main_has_enough(const struct work_pool *pool)
     return awaited && awaited - tasks_over(pool) < (wanted ? wanted : 1);
 }
 
-void work_over(struct work_pool *pool, struct worker *worker, int tasks)
+static inline void count_over(struct work_pool *pool, _Atomic uint64_t *count, uint64_t tasks)
 {
-    _Atomic uint64_t *count = tasks < 0 ? &worker->counts.more : &worker->counts.over;
-    uint64_t before = atomic_load_explicit(count, memory_order_relaxed);
-    atomic_store_explicit(count, before + (uint64_t)abs(tasks), memory_order_release);
+    const uint64_t before = atomic_load_explicit(count, memory_order_relaxed);
+    atomic_store_explicit(count, before + tasks, memory_order_release);
     if (atomic_load_explicit(&pool->wanted, memory_order_relaxed) && main_has_enough(pool))
         work_notify(pool);
+}
+
+void work_over(struct work_pool *pool, struct worker *worker, int tasks)
+{
+    count_over(pool, tasks < 0 ? &worker->counts.more : &worker->counts.over, (uint64_t)abs(tasks));
+}
+
+void work_over_one(struct work_pool *pool, struct worker *worker)
+{
+    count_over(pool, &worker->counts.over, 1);
 }
 
 void work_ran_out(struct worker *worker)

@@ -109,6 +109,11 @@ void work_over(struct work_pool *pool, struct worker *worker, int tasks)
     (void)pool, (void)worker, (void)tasks;
 }
 
+void work_over_one(struct work_pool *pool, struct worker *worker)
+{
+    (void)pool, (void)worker;
+}
+
 void work_notify(struct work_pool *pool)
 {
     (void)pool;

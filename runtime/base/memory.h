@@ -84,7 +84,8 @@ void base_pool_give_more(void *memory, size_t size);
 static inline void *pool_take_size(size_t size)
 {
     enum { MOST = BASE_POOL_AHEAD_LINES * BASE_LINE };
-    const size_t ahead = size < MOST / BASE_POOL_GRAIN ? size * BASE_POOL_GRAIN : MOST;
+    const size_t bytes = size * BASE_POOL_GRAIN; /* sizes that vary, a task's, are small */
+    const size_t ahead = __builtin_constant_p(size) && bytes > MOST ? MOST : bytes;
     struct base_magazine *loaded = base_shelves[size].loaded;
     if (!loaded || !loaded->n)
         return base_pool_take_more(size);

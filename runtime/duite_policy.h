@@ -162,7 +162,8 @@ typedef struct duite_leaf {
     const char *kernel;
     uint64_t number; /* its place in fork order */
     double cost;     /* seconds: as the fork said, else what bodies of its kernel took on this rank,
-                        the later ones counting more; 0: none ran yet */
+                        the later ones counting more; 0: none ran yet, or parameters of the task
+                        are postponed */
     size_t bytes;    /* that travel there and back */
     double transfer; /* seconds that this takes, after a measurement at start */
 } duite_leaf;

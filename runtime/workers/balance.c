@@ -140,6 +140,15 @@ double work_other_seconds(struct work_pool *pool)
 
 /* ---- Tasks that may go ---- */
 
+/* Seconds that a ready task is thought to take; 0: not known. What bodies took says nothing of one
+ * whose children do the work. */
+static double task_cost(const struct work_pool *pool, const struct task *task)
+{
+    if (task->cost > 0)
+        return task->cost;
+    return task->inner ? 0 : pool->tick * work_cost_mean(&pool->balance->cost, task->kernel);
+}
+
 /* False: it may not go. */
 static bool leaf_describe(const struct work_pool *pool, const struct task *task, duite_leaf *leaf)
 {
@@ -147,13 +156,11 @@ static bool leaf_describe(const struct work_pool *pool, const struct task *task,
     size_t bytes;
     if (!offload_may_go(graph, task, &bytes))
         return false;
-    *leaf = (duite_leaf){
-        .kernel = graph->kernels[task->kernel]->name,
-        .number = task->number,
-        .cost = task->cost > 0 ? task->cost
-                               : pool->tick * work_cost_mean(&pool->balance->cost, task->kernel),
-        .bytes = bytes,
-        .transfer = comm_transfer(pool->setup.comm, bytes)};
+    *leaf = (duite_leaf){.kernel = graph->kernels[task->kernel]->name,
+                         .number = task->number,
+                         .cost = task_cost(pool, task),
+                         .bytes = bytes,
+                         .transfer = comm_transfer(pool->setup.comm, bytes)};
     return true;
 }
 

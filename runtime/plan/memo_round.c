@@ -189,7 +189,7 @@ struct plan_memo_round *memo_round_make(struct plan_memo *memo, uint64_t key)
         memo_round_free(round, memo->worker);
         return NULL;
     }
-    round->compiles = !memo->always &&
+    round->compiles = !memo->always && round->n > ROUND_SHORT &&
                       !base_thread_start(&round->thread, "compiling thread", round_thread, round);
     if (!round->compiles)
         round_thread(round);

@@ -164,6 +164,7 @@ static int start(struct ranks_session *session, struct serve_request *request, c
     static const duite_kernel *const kernels[] = {&STEP, NULL};
     duite_options options = duite_options_default();
     options.kernels = kernels;
+    options.mapping = duite_mapping_find("block"); /* neighbours together, and a half for each */
     options.balance = duite_balancer_find(balance);
     return ranks_start(session, request, &options, rt);
 }

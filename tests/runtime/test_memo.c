@@ -425,6 +425,29 @@ START_TEST(rounds_take_turns)
 }
 END_TEST
 
+/* Such rounds are compiled at once: when bodies are known to be short, a few rounds are enough. They
+ * look long where another program takes the core meanwhile, which does not happen every time. */
+START_TEST(short_rounds_are_recognised_at_once)
+{
+    duite_options options = memo_options(1);
+    uint64_t most = 0;
+
+    options.threads = 1;
+    for (int attempt = 0; attempt < 10 && most < 5 * OBJECTS; attempt++) {
+        struct program program;
+
+        start(&program, &options);
+        for (int i = 0; i < 5; i++) /* too few to be recognised */
+            fork_round(&program);
+        ck_assert_int_eq(duite_wait(program.rt), DUITE_OK);
+        for (int i = 0; i < 20; i++)
+            fork_round(&program);
+        most = stop(&program);
+    }
+    ck_assert_uint_ge(most, 5 * OBJECTS);
+}
+END_TEST
+
 /* So long that a thread compiles them; how many forks come before it has done so is anybody's
  * guess. */
 START_TEST(long_rounds_are_right)
@@ -471,6 +494,7 @@ int main(void)
     tcase_add_test(memo, forks_go_ahead);
     tcase_add_test(memo, forks_are_not_held_back);
     tcase_add_test(memo, rounds_take_turns);
+    tcase_add_test(memo, short_rounds_are_recognised_at_once);
     tcase_add_test(memo, long_rounds_are_right);
     tcase_add_test(memo, tasks_that_write_nothing_stay_forks);
     suite_add_tcase(suite, memo);

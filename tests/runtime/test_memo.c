@@ -425,8 +425,9 @@ START_TEST(rounds_take_turns)
 }
 END_TEST
 
-/* Such rounds are compiled at once: when bodies are known to be short, a few rounds are enough. They
- * look long where another program takes the core meanwhile, which does not happen every time. */
+/* Such rounds are compiled at once: when bodies are known to be short, a few rounds are enough.
+ * They look long where another program takes the core meanwhile, which does not happen every time.
+ */
 START_TEST(short_rounds_are_recognised_at_once)
 {
     duite_options options = memo_options(1);

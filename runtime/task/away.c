@@ -11,25 +11,6 @@
 
 /* ---- On the other rank ---- */
 
-/* The value that came, held by the object alone. NULL without memory. */
-static struct data_version *version_of_value(const struct data_object *object, const void *values,
-                                             size_t bytes)
-{
-    struct data_version *version = data_object_version(object);
-    struct data_packet *packet = version ? data_packet_new(bytes, false) : NULL;
-    if (!packet) {
-        if (version)
-            data_version_free(version);
-        return NULL;
-    }
-    if (bytes)
-        memcpy(data_payload(packet), values, bytes);
-    version->packet = packet;
-    data_version_produced(version);
-    data_version_release(version);
-    return version;
-}
-
 static bool lend_contribution(struct task_scope *inner, struct task_access *access,
                               const struct data_object *object)
 {
@@ -53,7 +34,7 @@ bool task_lend_value(struct task_scope *inner, struct task_access *access,
     const duite_mode mode = task_immediate((duite_mode)access->waiter.mode);
     if (mode == DUITE_CW)
         return lend_contribution(inner, access, object);
-    struct data_version *in = mode == DUITE_W ? NULL : version_of_value(object, values, bytes);
+    struct data_version *in = mode == DUITE_W ? NULL : task_value_version(object, values, bytes);
     struct data_version *out = mode == DUITE_R ? NULL : data_object_version(object);
     if ((!in && mode != DUITE_W) || (!out && mode != DUITE_R)) {
         if (in)
@@ -119,7 +100,7 @@ void task_lent_comes_home(struct task_scope *inner, struct worker *worker, size_
         leaf_comes_home(nest->exit[lent].leaf, left);
         return;
     }
-    struct data_version *version = version_of_value(object, left->values, left->bytes);
+    struct data_version *version = task_value_version(object, left->values, left->bytes);
     if (!version) {
         task_scope_fail(inner, task_nest_no_memory());
         return;

@@ -79,6 +79,10 @@ int task_view_gather(struct task_graph *graph, struct worker *worker, struct dat
 
 /* The object has a new version on another rank: this rank's copy is stale. */
 void task_forget(struct task_graph *graph, struct worker *worker, struct data_object *object);
+/* A version of the object that has these bytes (values NULL: zeros), which the object alone is to
+ * hold. NULL without memory. */
+struct data_version *task_value_version(const struct data_object *object, const void *values,
+                                        size_t bytes);
 
 /* Contributions. task_contribute adds a leaf for access i of the fork, and first closes a sum of
  * another law. task_reduce closes the sum: its contributions are combined. */

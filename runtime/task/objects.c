@@ -93,10 +93,9 @@ struct data_version *task_see_given(struct duite_call_private *body, duite_objec
 
 enum { OVERWRITTEN = 0x736574 }; /* tells a set from a free in the fingerprint */
 
-static struct data_version *set_version(const struct data_object *object, const void *values,
-                                        size_t count)
+struct data_version *task_value_version(const struct data_object *object, const void *values,
+                                        size_t bytes)
 {
-    size_t bytes = count * data_type_size(object->type);
     struct data_version *version = data_object_version(object);
     struct data_packet *packet = version ? data_packet_new(bytes, !values) : NULL;
     if (!packet) {
@@ -108,7 +107,7 @@ static struct data_version *set_version(const struct data_object *object, const 
         memcpy(data_payload(packet), values, bytes);
     version->packet = packet;
     data_version_produced(version);
-    data_version_release(version); /* the object alone holds it */
+    data_version_release(version);
     return version;
 }
 
@@ -144,7 +143,8 @@ int task_set_object(struct task_scope *scope, struct worker *worker, duite_objec
         task_mixed(graph, TASK_CALLED, TASK_CALLED_SET);
     }
     struct data_version *version = NULL;
-    if (object->home == graph->rank && !(version = set_version(object, values, count))) {
+    const size_t bytes = count * data_type_size(object->type);
+    if (object->home == graph->rank && !(version = task_value_version(object, values, bytes))) {
         base_no_memory("the values of duite_set");
         return task_break(graph);
     }

@@ -29,8 +29,7 @@ __attribute__((always_inline)) static inline void
 bodies_run(struct worker *worker, struct task_frame *frame, struct task *task,
            struct work_batch *batch, unsigned length)
 {
-    const struct task *below = atomic_load_explicit(&worker->runs, memory_order_relaxed);
-    atomic_store_explicit(&worker->runs, task, memory_order_release);
+    const struct task *below = work_enters(worker, task);
     const bool body = task_run_body(frame, task);
     work_leaves(worker, below);
     work_bump(&worker->counts.tasks, body);
@@ -65,9 +64,7 @@ struct task *work_run_bodies(struct worker *worker, struct task *task, unsigned 
     worker->within = 0;
     for (unsigned in_turn = 1;; ++*length) {
         bodies_run(worker, &frame, task, &batch, *length);
-        task = worker->next;
-        worker->next = NULL;
-        work_bump(&worker->counts.chained, task != NULL);
+        task = work_take_next(worker);
         if (!task && (task = bodies_take(worker, in_turn++)))
             *length = 0;
         if (!task || !work_is_plain_body(worker, task))
@@ -104,9 +101,7 @@ void work_run_children(struct worker *worker, bool (*done)(void *context), void 
             return;
         }
         bodies_run(worker, &frame, task, NULL, length);
-        task = worker->next;
-        worker->next = NULL;
-        work_bump(&worker->counts.chained, task != NULL);
+        task = work_take_next(worker);
         if (!task && !done(context))
             task = bodies_take_child(worker);
     }

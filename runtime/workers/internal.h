@@ -127,12 +127,12 @@ static inline void work_bump(_Atomic uint64_t *count, uint64_t by)
 /* A worker whose task is over waits here for the end of a report. */
 void work_standstill_passes(struct work_pool *pool);
 
-/* Notes the task whose body runs from now on. Returns the one before: a body that waits has others
- * on top of it. */
+/* Notes the task whose body runs from now on; NULL: one without a body. Returns the one before: a
+ * body that waits has others on top of it. */
 static inline const struct task *work_enters(struct worker *worker, const struct task *task)
 {
     const struct task *below = atomic_load_explicit(&worker->runs, memory_order_relaxed);
-    atomic_store_explicit(&worker->runs, task_has_body(task) ? task : NULL, memory_order_release);
+    atomic_store_explicit(&worker->runs, task, memory_order_release);
     return below;
 }
 
@@ -149,6 +149,15 @@ static inline void work_leaves(struct worker *worker, const struct task *below)
     atomic_signal_fence(memory_order_seq_cst); /* the monitor has the fence: see standstill.c */
     if (atomic_load_explicit(&worker->pool->watched, memory_order_acquire))
         work_standstill_passes(worker->pool);
+}
+
+/* The task that became ready by the one that ran, and runs next on this worker; NULL: none. */
+static inline struct task *work_take_next(struct worker *worker)
+{
+    struct task *task = worker->next;
+    worker->next = NULL;
+    work_bump(&worker->counts.chained, task != NULL);
+    return task;
 }
 
 static inline void work_pause_core(void)

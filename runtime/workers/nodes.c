@@ -21,9 +21,8 @@ static inline void nodes_ready(struct task_graph *graph, struct worker *worker, 
 static inline void nodes_run(struct worker *worker, struct task_frame *frame, struct task *task,
                              struct work_batch *batch, unsigned length)
 {
-    const struct task *below = atomic_load_explicit(&worker->runs, memory_order_relaxed);
+    const struct task *below = work_enters(worker, task);
     const bool affine = plan_is_affine(task->node->plan);
-    atomic_store_explicit(&worker->runs, task, memory_order_release);
     const bool body = plan_node_run_body(frame, task);
     work_leaves(worker, below);
     work_bump(&worker->counts.tasks, body);
@@ -51,9 +50,7 @@ struct task *work_run_nodes(struct worker *worker, struct task *task, unsigned *
     worker->within = 0;
     for (;; ++*length) {
         nodes_run(worker, &frame, task, &batch, *length);
-        task = worker->next;
-        worker->next = NULL;
-        work_bump(&worker->counts.chained, task != NULL);
+        task = work_take_next(worker);
         if (!task || task->type != TASK_NODE)
             break;
         if (!batch.tasks)

@@ -217,7 +217,7 @@ static uint64_t run_body(struct worker *worker, struct task *task, uint64_t star
     struct work_pool *pool = worker->pool;
     uint64_t outer = worker->within;
     worker->within = 0;
-    const struct task *below = work_enters(worker, task);
+    const struct task *below = work_enters(worker, task_has_body(task) ? task : NULL);
     bool body = work_run_task(pool->setup.graph, worker, task, &worker->call);
     work_leaves(worker, below);
     uint64_t end = base_ticks(), took = end > start ? end - start : 0;
@@ -272,9 +272,7 @@ static struct task *run_any(struct worker *worker, struct task *task, unsigned *
         run_finish(worker, task, *length);
         if (comm)
             run_poll(worker, comm, end);
-        task = worker->next;
-        worker->next = NULL;
-        work_bump(&worker->counts.chained, task != NULL);
+        task = work_take_next(worker);
         const bool wrote = worker->ring && work_note_relieve(worker);
         if (!task || work_is_plain_node(worker, task) || work_is_plain_body(worker, task))
             return task;

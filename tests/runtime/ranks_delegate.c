@@ -2,6 +2,7 @@
  * inside, and who asks how often. All objects of a case live on one rank. */
 
 #include "tests/negative/misuse.h"
+#include "tests/runtime/delegation.h"
 
 #include <stdatomic.h>
 #include <stdio.h>
@@ -123,80 +124,42 @@ static const duite_kernel *const LIST[] = {&MIX,    &PLAIN, &STAYS,  &FILES,    
 
 static duite *start(const char *balance)
 {
-    duite_options options = misuse_options(MPI_COMM_WORLD);
-    duite *rt = NULL;
-
-    options.kernels = LIST;
-    options.threads = 1;
-    options.balance = duite_balancer_find(balance);
-    if (duite_start(&rt, &options))
-        printf("# %s\n", duite_message());
     for (int i = 0; i < 4; i++)
         atomic_store(&ran[i], 0);
-    return rt;
-}
-
-static duite_object new_beside(duite *rt, duite_object leader)
-{
-    const duite_object object = misuse_new(rt, 1);
-
-    duite_colocate(rt, object, leader);
-    return object;
-}
-
-static int32_t value_of(duite *rt, duite_object object)
-{
-    int32_t value = -1;
-
-    duite_get(rt, object, &value);
-    return value;
-}
-
-static uint64_t delegated(duite *rt)
-{
-    duite_counters counters;
-
-    duite_wait(rt);
-    return duite_count_all(rt, &counters) ? 0 : counters.delegated;
-}
-
-static void say(const char *balance, const char *what, int right)
-{
-    char name[100];
-
-    snprintf(name, sizeof name, "%s: %s", balance, what);
-    tap_case(right, name);
+    return delegation_start(LIST, balance);
 }
 
 /* All values are those of fork order. */
 static void values(const char *balance)
 {
     duite *rt = start(balance);
-    duite_object in = misuse_new(rt, 1), object[TASKS], last = new_beside(rt, in),
-                 sum = new_beside(rt, in);
+    duite_object in = misuse_new(rt, 1), object[TASKS], last = delegation_beside(rt, in),
+                 sum = delegation_beside(rt, in);
     int right = 1;
 
     DUITE_FORK(rt, &SET, &(int32_t){7}, in);
     for (int32_t i = 0; i < TASKS; i++)
-        object[i] = new_beside(rt, in);
+        object[i] = delegation_beside(rt, in);
     for (int32_t i = 0; i < TASKS; i++) {
         DUITE_FORK(rt, &MIX, &i, in, object[i], last, sum);
         DUITE_FORK(rt, &PARENT, NULL, object[i]);
     }
     for (int32_t i = 0; i < TASKS; i++)
-        right &= value_of(rt, object[i]) == 7 + i + 3;
-    say(balance, "every task has its value", right);
-    say(balance, "the last write is left", value_of(rt, last) == TASKS - 1);
-    say(balance, "contributions come home", value_of(rt, sum) == TASKS * (TASKS - 1) / 2);
+        right &= delegation_value(rt, object[i]) == 7 + i + 3;
+    delegation_say(balance, "every task has its value", right);
+    delegation_say(balance, "the last write is left", delegation_value(rt, last) == TASKS - 1);
+    delegation_say(balance, "contributions come home",
+                   delegation_value(rt, sum) == TASKS * (TASKS - 1) / 2);
     const int moves = !strcmp(balance, "scatter") && duite_ranks(rt) > 1;
 
-    say(balance, "tasks ran elsewhere if they could", (delegated(rt) > 0) == moves);
+    delegation_say(balance, "tasks ran elsewhere if they could",
+                   (delegation_count(rt) > 0) == moves);
     for (int i = 0; i < TASKS; i++)
         duite_free(rt, object[i]);
     duite_free(rt, in);
     duite_free(rt, last);
     duite_free(rt, sum);
-    say(balance, "stop", duite_stop(&rt) == DUITE_OK);
+    delegation_say(balance, "stop", duite_stop(&rt) == DUITE_OK);
 }
 
 /* What must not move does not. */
@@ -211,11 +174,11 @@ static void pinned(void)
         DUITE_FORK(rt, &STAYS, DUITE_ARGS(int32_t, 2), object);
         DUITE_FORK(rt, &FILES, DUITE_ARGS(int32_t, 3), object);
     }
-    tap_case(value_of(rt, object) == 3 * TASKS, "all ran");
+    tap_case(delegation_value(rt, object) == 3 * TASKS, "all ran");
     tap_case((atomic_load(&ran[1]) > 0) == here, "tasks whose fork names a rank run there");
     tap_case((atomic_load(&ran[2]) > 0) == here, "a kernel that stays stays");
     tap_case((atomic_load(&ran[3]) > 0) == here, "and one with side effects");
-    tap_case(delegated(rt) == 0, "and nothing is counted");
+    tap_case(delegation_count(rt) == 0, "and nothing is counted");
     duite_free(rt, object);
     duite_stop(&rt);
 }
@@ -247,7 +210,7 @@ static void sizes(void)
 static void poison(void)
 {
     duite *rt = start("scatter");
-    duite_object a = misuse_new(rt, 1), b = new_beside(rt, a);
+    duite_object a = misuse_new(rt, 1), b = delegation_beside(rt, a);
 
     for (int32_t i = 0; i < TASKS; i++) {
         DUITE_FORK(rt, &FAIL, DUITE_ARGS(int32_t, 10 + i), a);
@@ -261,7 +224,7 @@ static void poison(void)
              "with its sentence");
     tap_case(duite_wait(rt) == 10, "a wait tells the first failure");
     DUITE_FORK(rt, &SET, &(int32_t){4}, a);
-    tap_case(value_of(rt, a) == 4, "a w clears it");
+    tap_case(delegation_value(rt, a) == 4, "a w clears it");
     duite_free(rt, a);
     duite_free(rt, b);
     tap_case(duite_stop(&rt) == DUITE_OK, "stop after failures");
@@ -276,7 +239,7 @@ static void children(void)
 
     for (int i = 0; i < TASKS; i++)
         DUITE_FORK(rt, &CARELESS, NULL, a);
-    tap_case(value_of(rt, a) == 5, "a child's failure is not its parent's");
+    tap_case(delegation_value(rt, a) == 5, "a child's failure is not its parent's");
     tap_case(duite_wait(rt) == 23 && strstr(duite_message(), "task 1.1 (kernel fail)"),
              "but a wait tells it, with its place");
     tap_case(duite_wait(rt) == DUITE_OK, "once");
@@ -316,8 +279,8 @@ static void given(void)
 
     for (int i = 0; i < 100; i++)
         DUITE_FORK(rt, &DOZE, NULL, object);
-    tap_case(value_of(rt, object) == 100, "delegate: all ran");
-    tap_case((delegated(rt) > 0) == (duite_ranks(rt) > 1), "delegate: idle ranks got some");
+    tap_case(delegation_value(rt, object) == 100, "delegate: all ran");
+    tap_case((delegation_count(rt) > 0) == (duite_ranks(rt) > 1), "delegate: idle ranks got some");
     duite_free(rt, object);
     duite_stop(&rt);
 }
@@ -326,7 +289,7 @@ static void given(void)
 static void different(void)
 {
     duite *rt = start("scatter");
-    duite_object a = misuse_new(rt, 1), b = new_beside(rt, a);
+    duite_object a = misuse_new(rt, 1), b = delegation_beside(rt, a);
     const int alone = duite_ranks(rt) == 1;
 
     for (int32_t i = 0; i < TASKS; i++)

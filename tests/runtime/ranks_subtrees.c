@@ -1,6 +1,7 @@
 /* Tasks with postponed rights that run on other ranks with all that they fork: what comes home of
  * them, also of failures, of nothing and of other sizes. All objects of a case live on one rank. */
 #include "tests/negative/misuse.h"
+#include "tests/runtime/delegation.h"
 
 #include <stdatomic.h>
 #include <stdio.h>
@@ -119,88 +120,56 @@ static const duite_kernel *const LIST[] = {&MIX,  &WHOLE, &ONE_MORE, &TORN,  &DR
 
 static duite *start(const char *balance)
 {
-    duite_options options = misuse_options(MPI_COMM_WORLD);
-    duite *rt = NULL;
-    options.kernels = LIST;
-    options.threads = 1;
-    options.balance = duite_balancer_find(balance);
-    if (duite_start(&rt, &options))
-        printf("# %s\n", duite_message());
     atomic_store(&wholes, 0);
     atomic_store(&mixes, 0);
-    return rt;
-}
-
-static duite_object new_beside(duite *rt, duite_object leader)
-{
-    const duite_object object = misuse_new(rt, 1);
-    duite_colocate(rt, object, leader);
-    return object;
-}
-
-static int32_t value_of(duite *rt, duite_object object)
-{
-    int32_t value = -1;
-    duite_get(rt, object, &value);
-    return value;
-}
-
-static uint64_t delegated(duite *rt)
-{
-    duite_counters counters;
-    duite_wait(rt);
-    return duite_count_all(rt, &counters) ? 0 : counters.delegated;
-}
-
-static void say(const char *balance, const char *what, int right)
-{
-    char name[100];
-    snprintf(name, sizeof name, "%s: %s", balance, what);
-    tap_case(right, name);
+    return delegation_start(LIST, balance);
 }
 
 /* All values are those of fork order. */
 static void values(const char *balance)
 {
     duite *rt = start(balance);
-    duite_object in = misuse_new(rt, 1), object[TASKS], last = new_beside(rt, in),
-                 sum = new_beside(rt, in);
+    duite_object in = misuse_new(rt, 1), object[TASKS], last = delegation_beside(rt, in),
+                 sum = delegation_beside(rt, in);
     const int here = duite_home(rt, in) == rank;
     const int moves = !strcmp(balance, "scatter") && duite_ranks(rt) > 1;
     int right = 1;
     duite_set(rt, in, &(int32_t){7});
     for (int32_t i = 0; i < TASKS; i++)
-        object[i] = new_beside(rt, in);
+        object[i] = delegation_beside(rt, in);
     for (int32_t i = 0; i < TASKS; i++)
         DUITE_FORK(rt, &WHOLE, &i, in, object[i], last, sum);
     for (int32_t i = 0; i < TASKS; i++)
-        right &= value_of(rt, object[i]) == 3 * 7 + 6 * i;
-    say(balance, "every subtree has its value", right);
-    say(balance, "the last write is left", value_of(rt, last) == 3 * (TASKS - 1));
-    say(balance, "contributions come home", value_of(rt, sum) == 3 * TASKS * (TASKS - 1));
-    say(balance, "tasks ran elsewhere if they could", (delegated(rt) > 0) == moves);
-    say(balance, "whole", here || (atomic_load(&wholes) > 0) == moves);
-    say(balance, "with their children", /* some of those of home came by themselves */
-        here || atomic_load(&mixes) >= 3 * atomic_load(&wholes));
+        right &= delegation_value(rt, object[i]) == 3 * 7 + 6 * i;
+    delegation_say(balance, "every subtree has its value", right);
+    delegation_say(balance, "the last write is left",
+                   delegation_value(rt, last) == 3 * (TASKS - 1));
+    delegation_say(balance, "contributions come home",
+                   delegation_value(rt, sum) == 3 * TASKS * (TASKS - 1));
+    delegation_say(balance, "tasks ran elsewhere if they could",
+                   (delegation_count(rt) > 0) == moves);
+    delegation_say(balance, "whole", here || (atomic_load(&wholes) > 0) == moves);
+    delegation_say(balance, "with their children", /* some of those of home came by themselves */
+                   here || atomic_load(&mixes) >= 3 * atomic_load(&wholes));
     for (int i = 0; i < TASKS; i++)
         duite_free(rt, object[i]);
     duite_free(rt, in);
     duite_free(rt, last);
     duite_free(rt, sum);
-    say(balance, "stop", duite_stop(&rt) == DUITE_OK);
+    delegation_say(balance, "stop", duite_stop(&rt) == DUITE_OK);
 }
 
 static void failures(void)
 {
     duite *rt = start("scatter");
-    duite_object a = misuse_new(rt, 1), b = new_beside(rt, a);
+    duite_object a = misuse_new(rt, 1), b = delegation_beside(rt, a);
     int torn = 1, spilt = 1, fallen = 1;
     for (int i = 0; i < ROUNDS; i++) {
         duite_set(rt, a, NULL);
         duite_set(rt, b, NULL);
         DUITE_FORK(rt, &TORN, NULL, a, b);
         torn &= duite_get(rt, a, &(int32_t){0}) == 41 &&
-                strstr(duite_message(), ".1 (kernel fail)") && value_of(rt, b) == 1;
+                strstr(duite_message(), ".1 (kernel fail)") && delegation_value(rt, b) == 1;
         torn &= duite_wait(rt) == 41 && duite_wait(rt) == DUITE_OK;
         duite_set(rt, a, NULL);
         DUITE_FORK(rt, &SPILL, NULL, a);
@@ -220,14 +189,16 @@ static void failures(void)
 static void nothing(void)
 {
     duite *rt = start("scatter");
-    duite_object sum = misuse_new(rt, 1), over = new_beside(rt, sum), kept = new_beside(rt, sum);
+    duite_object sum = misuse_new(rt, 1), over = delegation_beside(rt, sum),
+                 kept = delegation_beside(rt, sum);
     int right = 1;
     for (int i = 0; i < ROUNDS; i++) {
         duite_set(rt, sum, &(int32_t){3});
         duite_set(rt, over, &(int32_t){4});
         duite_set(rt, kept, &(int32_t){5});
         DUITE_FORK(rt, &IDLE, NULL, sum, over, kept);
-        right &= value_of(rt, sum) == 3 && value_of(rt, over) == 0 && value_of(rt, kept) == 5;
+        right &= delegation_value(rt, sum) == 3 && delegation_value(rt, over) == 0 &&
+                 delegation_value(rt, kept) == 5;
     }
     tap_case(right, "a subtree that does nothing leaves the sum, zeros, and the old value");
     duite_free(rt, sum);

@@ -1,6 +1,7 @@
 /* Policies of which a function does not return on one rank until that rank has named it twice: then
  * it goes on, and all ranks end with the right values. */
 #include "tests/negative/misuse.h"
+#include "tests/runtime/passive.h"
 #include "tests/support/said.h"
 
 #include <duite_policy.h>
@@ -130,20 +131,6 @@ static duite_end serve(void *state)
     return DUITE_NEWEST;
 }
 
-static unsigned nobody(void *state, unsigned attempt)
-{
-    (void)state;
-    (void)attempt;
-    return DUITE_NO_QUEUE;
-}
-
-static int never(void *state, const duite_ready *task)
-{
-    (void)state;
-    (void)task;
-    return 0;
-}
-
 static const duite_mapping MAPPING = {
     .name = "hanging", .summary = "for tests", .map = map, .map_tasks = map_tasks};
 static const duite_mapping MAPPING_LATER = {
@@ -165,8 +152,8 @@ static const duite_scheduler SCHEDULER = {.name = "hanging",
                                           .summary = "for tests",
                                           .place = place,
                                           .serve = serve,
-                                          .victim = nobody,
-                                          .chain = never};
+                                          .victim = passive_victim,
+                                          .chain = passive_chain};
 
 /* ---- Programs ---- */
 

@@ -2,6 +2,7 @@
  * mappings, schedulers and balancers that know them make of them. */
 #include "runtime/map/map.h"
 #include "runtime/sched/sched.h"
+#include "tests/runtime/passive.h"
 #include "tests/runtime/predicted.h"
 #include "tests/support/unit.h"
 
@@ -187,35 +188,15 @@ static unsigned listen(void *state, const duite_ready *task)
     return 1; /* the second worker runs all */
 }
 
-static duite_end in_turn(void *state)
-{
-    (void)state;
-    return DUITE_OLDEST;
-}
-
-static unsigned nobody(void *state, unsigned attempt)
-{
-    (void)state;
-    (void)attempt;
-    return DUITE_NO_QUEUE;
-}
-
-static int never(void *state, const duite_ready *task)
-{
-    (void)state;
-    (void)task;
-    return 0;
-}
-
 /* Two objects, forked once and replayed in two rounds: data are warm from the second one on. */
 START_TEST(warmth)
 {
     static const duite_scheduler LISTENING = {.name = "listening",
                                               .summary = "for tests",
                                               .place = listen,
-                                              .serve = in_turn,
-                                              .victim = nobody,
-                                              .chain = never};
+                                              .serve = passive_serve,
+                                              .victim = passive_victim,
+                                              .chain = passive_chain};
     static const struct trace_file_node nodes[] = {{FILE_RW, 1 * MS, 0, 1, {0}},
                                                    {FILE_RW, 1 * MS, 0, 1, {1}}};
     struct trace_file file = predicted_trace(2, 8);

@@ -1,6 +1,7 @@
 /* What a scheduler is told of a task: what the fork said, and which worker has its data warm. The
  * scheduler of these tests keeps the last of it. */
 #include "tests/negative/misuse.h"
+#include "tests/runtime/passive.h"
 #include "tests/support/unit.h"
 
 #include <duite_policy.h>
@@ -40,34 +41,14 @@ static unsigned listen(void *state, const duite_ready *task)
     return 0;
 }
 
-static duite_end in_turn(void *state)
-{
-    (void)state;
-    return DUITE_OLDEST;
-}
-
-static unsigned nobody(void *state, unsigned attempt)
-{
-    (void)state;
-    (void)attempt;
-    return DUITE_NO_QUEUE;
-}
-
-static int never(void *state, const duite_ready *task)
-{
-    (void)state;
-    (void)task;
-    return 0;
-}
-
 static duite *start(void)
 {
     static const duite_scheduler LISTENING = {.name = "listening",
                                               .summary = "for tests",
                                               .place = listen,
-                                              .serve = in_turn,
-                                              .victim = nobody,
-                                              .chain = never};
+                                              .serve = passive_serve,
+                                              .victim = passive_victim,
+                                              .chain = passive_chain};
     static const duite_kernel *const KERNELS[] = {&NOTE, &LONG, NULL};
     duite_options options = misuse_options(MPI_COMM_WORLD);
     duite *rt = NULL;

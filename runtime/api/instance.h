@@ -10,7 +10,8 @@
 #include "runtime/trace/trace.h"
 #include "runtime/workers/workers.h"
 
-#pragma GCC visibility push(hidden) /* called directly: no program can come in between */
+/* The library calls these directly: no other library can put its own in their place. */
+#pragma GCC visibility push(hidden)
 
 /* A running runtime: its parts, and the error that the next get, wait or stop still has to return.
  * Main thread only. */

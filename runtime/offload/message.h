@@ -40,8 +40,8 @@ struct offload_left {
 };
 
 struct offload_answer {
-    uint64_t busy; /* nanoseconds of its bodies and those of its descendants, if it is measured */
-    uint64_t unused;
+    uint64_t busy;   /* nanoseconds of its bodies and those of its descendants, if it is measured */
+    uint64_t unused; /* 0: what follows begins at 16 bytes */
     struct offload_left left[];
 };
 

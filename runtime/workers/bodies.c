@@ -5,12 +5,12 @@
 #include "runtime/task/call.h"
 #include "runtime/workers/internal.h"
 
-enum {
-    BATCH = 16, /* tasks */
-    BRIEF = 5, /* times what leaves an affinity: a batch delays nobody who waits by a millisecond */
-    IN_TURN =
-        16 /* tasks of the queue, before the worker looks whether what it waits for is there */
-};
+/* Tasks between two looks at the clock. What an affinity needs, times BRIEF, is the most that a
+ * task of such a batch takes: so a batch delays nobody who waits by a millisecond. */
+enum { BATCH = 16, BRIEF = 5 };
+
+/* Tasks of the queue, before the worker looks whether what it waits for is there. */
+enum { IN_TURN = 16 };
 
 uint64_t work_batch_ends(struct worker *worker, struct work_batch *batch)
 {

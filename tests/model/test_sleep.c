@@ -3,6 +3,7 @@
  * and a stop ends. The workers are the real ones: thread 0 is the main thread, the others are those
  * that work_start makes. Queues are plain_queue.h's, or with REAL_QUEUES the real ones. */
 #include "tests/model/runtime.h"
+#include "tests/model/silent_comm.h"
 
 #include "runtime/workers/workers.h"
 
@@ -83,18 +84,6 @@ static void finish_task(struct worker *worker, const struct task *task)
 #define work_run_task(...)               run_task(TASK_IN(__VA_ARGS__))
 #define work_finish(graph, worker, task) finish_task(worker, TASK_IN(task))
 
-bool comm_posted(struct comm *comm)
-{
-    (void)comm;
-    return false;
-}
-
-int comm_broken(struct comm *comm)
-{
-    (void)comm;
-    return 0;
-}
-
 bool comm_poll(struct comm *comm, struct worker *worker)
 {
     (void)comm;
@@ -105,77 +94,6 @@ bool comm_poll(struct comm *comm, struct worker *worker)
         return false;
     work_ready(its.graph.pool, worker, its.task[next]);
     return true;
-}
-
-void comm_workers_end(struct comm *comm)
-{
-    (void)comm;
-}
-
-void comm_send(struct comm *comm, struct task *task)
-{
-    (void)comm;
-    (void)task;
-}
-
-void comm_channel_ready(struct comm *comm, struct worker *worker, struct task *node)
-{
-    (void)comm;
-    (void)worker;
-    (void)node;
-}
-
-int comm_channels_open(struct comm *comm, struct plan_channels *channels)
-{
-    (void)comm;
-    (void)channels;
-    return 0;
-}
-
-bool comm_awaits(struct comm *comm)
-{
-    (void)comm;
-    return false;
-}
-
-void comm_broke_memory(struct comm *comm, const char *what)
-{
-    (void)comm;
-    (void)what;
-}
-
-void comm_send_packet(struct comm *comm, struct data_packet *packet, int to)
-{
-    (void)comm;
-    (void)packet;
-    (void)to;
-}
-
-void comm_count(struct comm *comm, uint64_t *messages, uint64_t *bytes)
-{
-    *messages = *bytes = comm != NULL;
-}
-
-void comm_set_report(struct comm *comm, comm_report *report)
-{
-    (void)comm, (void)report;
-}
-
-uint64_t comm_awaited_ticks(const struct comm *comm)
-{
-    (void)comm;
-    return 0;
-}
-
-int comm_expect(struct comm *comm, struct worker *worker, struct data_key key,
-                struct comm_target target, uint32_t packets)
-{
-    (void)comm;
-    (void)worker;
-    (void)key;
-    (void)target;
-    (void)packets;
-    return 0;
 }
 
 #define base_ticks()                          stepping()

@@ -10,8 +10,7 @@
 #include "runtime/trace/trace.h"
 #include "runtime/workers/workers.h"
 
-/* The library calls these directly: no other library can put its own in their place. */
-#pragma GCC visibility push(hidden)
+#pragma GCC visibility push(hidden) /* called directly: no other library can replace them */
 
 /* A running runtime: its parts, and the error that the next get, wait or stop still has to return.
  * Main thread only. */

@@ -3,7 +3,7 @@
 
 #include <stddef.h>
 
-#pragma GCC visibility push(hidden) /* called directly: no program can come in between */
+#pragma GCC visibility push(hidden) /* called directly: no other library can replace them */
 
 /* All memory of the runtime: large blocks, growing arrays, and a pool of small blocks. */
 

@@ -3,7 +3,7 @@
 
 #include "runtime/data/sum.h"
 
-#pragma GCC visibility push(hidden) /* called directly: no program can come in between */
+#pragma GCC visibility push(hidden) /* called directly: no other library can replace them */
 
 /* Shared objects as every rank knows them. The main thread alone reads and writes this table. What
  * the table says about other ranks follows from the forks, which are the same everywhere: no rank

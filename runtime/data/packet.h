@@ -5,7 +5,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#pragma GCC visibility push(hidden) /* called directly: no program can come in between */
+#pragma GCC visibility push(hidden) /* called directly: no other library can replace them */
 
 /* The bytes of one version of an object, with room for a message header in front of them, so that
  * they are sent and received where they lie. */

@@ -4,7 +4,7 @@
 #include "runtime/data/law.h"
 #include "runtime/data/version.h"
 
-#pragma GCC visibility push(hidden) /* called directly: no program can come in between */
+#pragma GCC visibility push(hidden) /* called directly: no other library can replace them */
 
 /* Contributions (cw) to an object between two other accesses, the leaves of a reduction tree in
  * fork order (reduce.h). A piece is the value of a complete subtree: leaves first .. first +

@@ -10,7 +10,7 @@
 #include <stdint.h>
 #include <string.h>
 
-#pragma GCC visibility push(hidden) /* called directly: no program can come in between */
+#pragma GCC visibility push(hidden) /* called directly: no other library can replace them */
 
 /* ---- Poison ---- */
 

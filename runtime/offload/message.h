@@ -11,10 +11,10 @@
  * there: names.h): an offload_message, an offload_param for each parameter, the arguments, and the
  * values that the body reads.
  *
- * Back, DATA_RESULT (key.number: that name): an offload_answer. A body that did not fail: in it an
- * offload_left for each parameter, then their values, those that the body wrote before those that
- * its children left; then, with MESSAGE_FAILED_BELOW, the first failure among its descendants. One
- * that failed, MESSAGE_FAILED: its failure, then that first one. */
+ * Back, DATA_RESULT (key.number: that name). A body that did not fail: an offload_left for each
+ * parameter, then their values, those that the body wrote before those that its children left;
+ * then, with MESSAGE_FAILED_BELOW, the first failure among its descendants. One that failed,
+ * MESSAGE_FAILED: its failure, then that first one. */
 struct offload_message {
     uint64_t number; /* of the main program's task that it is or descends from */
     uint64_t index;  /* in its scope */
@@ -37,12 +37,6 @@ enum offload_what { LEFT_VALUE, LEFT_NOTHING, LEFT_POISON };
 struct offload_left {
     uint64_t bytes;
     uint64_t what;
-};
-
-struct offload_answer {
-    uint64_t busy;   /* nanoseconds of its bodies and those of its descendants, if it is measured */
-    uint64_t unused; /* 0: what follows begins at 16 bytes */
-    struct offload_left left[];
 };
 
 enum { MESSAGE_FAILED = 1, MESSAGE_FAILED_BELOW = 2 }; /* packet->pieces */
@@ -68,7 +62,7 @@ static inline size_t message_args_at(size_t n)
 /* Where the values of a result begin. */
 static inline size_t message_values_at(size_t n)
 {
-    return message_lines(sizeof(struct offload_answer) + n * sizeof(struct offload_left));
+    return message_lines(n * sizeof(struct offload_left));
 }
 
 /* Copies bytes to a place in a packet's payload, and clears the rest of the last line; returns the

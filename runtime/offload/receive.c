@@ -170,16 +170,16 @@ static bool params_lay_out(struct task *task, duite_param *param, const void **a
 static void result_close_up(const struct task *task, const duite_param *param)
 {
     struct data_packet *result = task->offloaded->result;
-    struct offload_answer *answer = data_payload(result);
+    struct offload_left *answer = data_payload(result);
     size_t at = message_values_at(task->n);
     memset(answer, 0, at);
     for (uint32_t i = 0; i < task->n; i++) {
         const duite_mode mode = (duite_mode)task->access[i].waiter.mode;
-        answer->left[i].what = LEFT_NOTHING;
+        answer[i].what = LEFT_NOTHING;
         if (mode == DUITE_R || task_postponed(mode))
             continue;
         const size_t bytes = param[i].count * data_type_size(param[i].type);
-        answer->left[i] = (struct offload_left){.bytes = bytes, .what = LEFT_VALUE};
+        answer[i] = (struct offload_left){.bytes = bytes, .what = LEFT_VALUE};
         at = offload_message_put(result, at, param[i].data, bytes);
     }
     data_packet_resize(result, at);
@@ -239,11 +239,10 @@ void offload_body_over(struct worker *worker, struct task *task)
 static struct data_packet *result_failures(const struct offload_task *own,
                                            const struct data_failure *below)
 {
-    const size_t at = message_values_at(0);
-    struct data_packet *packet = data_packet_new(at + 2 * sizeof *below, true);
+    struct data_packet *packet = data_packet_new(2 * sizeof *below, true);
     if (!packet)
         return NULL;
-    struct data_failure *both = (void *)((char *)data_payload(packet) + at);
+    struct data_failure *both = data_payload(packet);
     both[0] = *own->failure;
     if (below)
         both[1] = *below;
@@ -262,12 +261,12 @@ static void result_append(struct data_packet *packet, const void *from, size_t b
 /* What the children left of the parameters that were lent to them. */
 static void result_append_lent(const struct task *task, struct data_packet *result)
 {
-    struct offload_answer *answer = data_payload(result);
+    struct offload_left *answer = data_payload(result);
     for (uint32_t i = 0; i < task->n; i++) {
         if (!access_is_postponed(task, i))
             continue;
         const struct task_left_value left = task_lent_left(&task->access[i]);
-        struct offload_left *to = &answer->left[i];
+        struct offload_left *to = &answer[i];
         if (left.failure)
             *to = (struct offload_left){sizeof *left.failure, LEFT_POISON};
         else if (left.values)

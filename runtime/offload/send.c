@@ -193,8 +193,7 @@ static const struct data_failure *result_unpack_failures(const struct task *task
                                                          struct data_packet *packet)
 {
     struct task_graph *graph = task->scope->graph;
-    const struct data_failure *both =
-        (const void *)((char *)data_payload(packet) + message_values_at(0));
+    const struct data_failure *both = data_payload(packet);
     if (packet->pieces & MESSAGE_FAILED_BELOW)
         task_fail_below(graph, &both[1], task->scope);
     return task_fail(graph, &both[0], false);
@@ -204,12 +203,12 @@ static const struct data_failure *result_unpack_failures(const struct task *task
 static const struct data_failure *result_unpack(const struct task *task, duite_param *param,
                                                 struct data_packet *packet)
 {
-    const struct offload_answer *answer = data_payload(packet);
+    const struct offload_left *answer = data_payload(packet);
     const char *from = (const char *)answer + message_values_at(task->n);
     if (packet->pieces & MESSAGE_FAILED)
         return result_unpack_failures(task, packet);
     for (uint32_t i = 0; i < task->n; i++) {
-        const uint64_t bytes = answer->left[i].bytes;
+        const uint64_t bytes = answer[i].bytes;
         if (access_lent(task, i))
             continue;
         if (bytes)
@@ -237,17 +236,17 @@ static void result_unpack_below(struct task *task, struct worker *worker,
                                 struct data_packet *packet)
 {
     struct task_graph *graph = task->scope->graph;
-    const struct offload_answer *answer = data_payload(packet);
+    const struct offload_left *answer = data_payload(packet);
     const char *from = (const char *)answer + message_values_at(task->n);
     for (uint32_t i = 0; i < task->n; i++)
-        from += access_lent(task, i) ? 0 : message_lines(answer->left[i].bytes);
+        from += access_lent(task, i) ? 0 : message_lines(answer[i].bytes);
     for (uint32_t i = 0; i < task->n; i++) {
         if (!access_lent(task, i))
             continue;
-        const struct task_left_value left = left_unpack(graph, &answer->left[i], from);
+        const struct task_left_value left = left_unpack(graph, &answer[i], from);
         if (task->access[i].waiter.mode != DUITE_RP)
             task_lent_comes_home(task->inner, worker, task->access[i].lent, &left);
-        from += message_lines(answer->left[i].bytes);
+        from += message_lines(answer[i].bytes);
     }
     if (packet->pieces & MESSAGE_FAILED_BELOW)
         task_fail_below(graph, (const void *)from, task->scope);

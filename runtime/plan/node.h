@@ -4,7 +4,7 @@
 #include "runtime/plan/plan.h"
 #include "runtime/task/call.h"
 
-#pragma GCC visibility push(hidden) /* called directly: no program can come in between */
+#pragma GCC visibility push(hidden) /* called directly: no other library can replace them */
 
 /* A node's body and what follows, inline for those who run nodes: run.c, and the loop of workers.
  * What holds of the two is said in run.c. */

@@ -6,7 +6,7 @@
 
 #include <duite.h>
 
-#pragma GCC visibility push(hidden) /* called directly: no program can come in between */
+#pragma GCC visibility push(hidden) /* called directly: no other library can replace them */
 
 /* What task/, plan/ and offload/ ask of the workers and of the communication. They know these by
  * their names alone: workers/ defines the functions. `worker` is whoever calls. */

@@ -3,7 +3,7 @@
 
 #include "runtime/task/task.h"
 
-#pragma GCC visibility push(hidden) /* called directly: no program can come in between */
+#pragma GCC visibility push(hidden) /* called directly: no other library can replace them */
 
 /* A running body, and what the calls ask for that it makes. On the thread that runs it. */
 

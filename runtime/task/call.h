@@ -3,7 +3,7 @@
 
 #include "runtime/task/internal.h"
 
-#pragma GCC visibility push(hidden) /* called directly: no program can come in between */
+#pragma GCC visibility push(hidden) /* called directly: no other library can replace them */
 
 /* Calling a body: inline, for whatever runs the tasks of the program. */
 

@@ -3,7 +3,7 @@
 
 #include "runtime/task/body.h"
 
-#pragma GCC visibility push(hidden) /* called directly: no program can come in between */
+#pragma GCC visibility push(hidden) /* called directly: no other library can replace them */
 
 /* Shared by the files of this folder only. */
 

@@ -5,7 +5,7 @@
 
 #include "runtime/base/memory.h"
 
-#pragma GCC visibility push(hidden) /* called directly: no program can come in between */
+#pragma GCC visibility push(hidden) /* called directly: no other library can replace them */
 
 /* What ready.c says of versions and those that wait for them, inline for the files that do it with
  * every access. */

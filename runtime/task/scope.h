@@ -3,7 +3,7 @@
 
 #include "runtime/task/internal.h"
 
-#pragma GCC visibility push(hidden) /* called directly: no program can come in between */
+#pragma GCC visibility push(hidden) /* called directly: no other library can replace them */
 
 /* What a task's scope consists of; shared by scope.c and scope_end.c. */
 

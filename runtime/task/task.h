@@ -10,7 +10,7 @@
 #include <pthread.h>
 #include <stdatomic.h>
 
-#pragma GCC visibility push(hidden) /* called directly: no program can come in between */
+#pragma GCC visibility push(hidden) /* called directly: no other library can replace them */
 
 /* Tasks and what they wait for, on one rank.
  *

@@ -9,7 +9,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#pragma GCC visibility push(hidden) /* called directly: no program can come in between */
+#pragma GCC visibility push(hidden) /* called directly: no other library can replace them */
 
 /* Queues of ready tasks, and the two things that they are made of: a deque and a heap. */
 

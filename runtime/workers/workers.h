@@ -9,7 +9,7 @@
 
 #include <duite_policy.h>
 
-#pragma GCC visibility push(hidden) /* called directly: no program can come in between */
+#pragma GCC visibility push(hidden) /* called directly: no other library can replace them */
 
 /* The workers of a rank: worker 0 is the main thread, which works while the main program waits; the
  * others are threads of ours. A worker runs what it finds in its own queue, the shared one, or

@@ -93,6 +93,34 @@ void measure_ratio(struct measure *measure, const struct measure_series *of,
     metric->against = against;
 }
 
+static bool is_ratio(const struct measure_metric *metric, const char *kind)
+{
+    return metric->value == ratio && !strcmp(metric->against->shape.kind, kind);
+}
+
+/* Of the ratios before it, whose medians are known by now, that with the largest one. */
+static double worst(const struct measure_metric *metric, size_t round)
+{
+    const struct measure_metric *largest = NULL;
+    for (const struct measure_metric *one = metric - metric->n; one < metric; one++)
+        if (is_ratio(one, metric->against->shape.kind) &&
+            (!largest || one->median > largest->median))
+            largest = one;
+    return largest->value(largest, round);
+}
+
+void measure_worst(struct measure *measure, const char *kind, const char *name)
+{
+    const size_t n = measure->n_metrics;
+    struct measure_metric *metric = measure_metric(measure, "x", worst, "%s", name);
+    metric->n = n;
+    for (size_t i = 0; i < n; i++)
+        if (is_ratio(&measure->metric[i], kind)) {
+            metric->of = measure->metric[i].of;
+            metric->against = measure->metric[i].against;
+        }
+}
+
 void measure_targets(struct measure *measure, const struct measure_target *targets)
 {
     for (size_t i = 0; i < measure->n_metrics; i++)

@@ -38,7 +38,7 @@ struct measure_metric {
     /* The value in a round; NAN if there is none. */
     double (*value)(const struct measure_metric *metric, size_t round);
     const struct measure_series *of, *against; /* against: NULL if it is no ratio */
-    size_t n;                                  /* series in a row from `of`, and from `against` */
+    size_t n; /* series in a row from `of`, and from `against`; of the worst: metrics before it */
     size_t rounds; /* when it is computed: all of them, with their samples */
     double scale;
     const char *missing;                 /* why it was not measured, or NULL */
@@ -72,6 +72,10 @@ void measure_value(struct measure *measure, const struct measure_series *of, dou
 void measure_ratio(struct measure *measure, const struct measure_series *of,
                    const struct measure_series *against, const char *name, ...)
     __attribute__((format(printf, 4, 5)));
+
+/* Of the ratios planned so far against subjects of this kind, of which there is one at least, that
+ * whose median is the largest. */
+void measure_worst(struct measure *measure, const char *kind, const char *name);
 
 /* Gives the metrics planned so far their targets, by name. */
 void measure_targets(struct measure *measure, const struct measure_target *targets);

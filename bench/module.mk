@@ -9,8 +9,8 @@ bench_libbench_la_SOURCES = bench/bench.h bench/environment.h bench/instructions
 	bench/loops.c bench/loops.h bench/measure.c bench/measure.h bench/temporary.c bench/temporary.h \
 	bench/program.c bench/program.h bench/report.c bench/report.h bench/subject.c bench/subject.h \
 	bench/tasks/tasks.c bench/tasks/tasks.h bench/tasks/bytes.c bench/tasks/chain.c bench/tasks/fib.c bench/tasks/fib.h \
-	bench/tasks/granularity.c bench/tasks/growth.c bench/tasks/independent.c bench/tasks/instructions.c bench/tasks/stencil.c bench/tasks/tree.c \
-	bench/tasks/wake.c bench/ranks/cg.c bench/ranks/delegate.c bench/ranks/forks.c bench/ranks/loaded.c bench/ranks/memory.c \
+	bench/tasks/granularity.c bench/tasks/growth.c bench/tasks/independent.c bench/tasks/instructions.c bench/tasks/stencil.c bench/tasks/tiles.c \
+	bench/tasks/tree.c bench/tasks/wake.c bench/tiles.h bench/ranks/cg.c bench/ranks/delegate.c bench/ranks/forks.c bench/ranks/loaded.c bench/ranks/memory.c \
 	bench/ranks/migrate.c bench/ranks/ranks.c \
 	bench/ranks/ranks.h bench/ranks/sheet.c bench/ranks/sheet.h bench/ranks/stencil.c bench/ranks/twin.c \
 	bench/cg/bench.c bench/cg/cg.h bench/cg/frames.c bench/cg/make.c bench/cg/ours.c bench/cg/plans.c bench/cg/states.c bench/sets.h \
@@ -41,16 +41,22 @@ bench_libbench_la_CPPFLAGS = $(AM_CPPFLAGS) -DBENCH_MPIRUN='"$(MPIRUN)"' -DBENCH
 bench_libbench_la_LIBADD = libduite_cloth.la libduite_predict.la libduite_core.la
 check_PROGRAMS += bench/duite-bench
 bench_duite_bench_SOURCES = bench/duite-bench.c
-bench_duite_bench_LDADD = bench/libbench.la -lm
+bench_duite_bench_LDADD = bench/libbench.la $(TILES_OBJECT) -lm
 EXTRA_DIST += bench/experiments bench/garments/experiments.sh bench/garments/hanging.yaml bench/garments/worn.yaml \
-	bench/vassilev/panels.awk bench/vassilev/jeans.yaml bench/rivals/blender_sphere.py bench/rivals/openmp.c bench/cg/states.yaml
+	bench/vassilev/panels.awk bench/vassilev/jeans.yaml bench/rivals/blender_sphere.py bench/rivals/openmp.c bench/cg/states.yaml bench/tiles.c
+
+# The arithmetic of the case tiles, which would otherwise compare compilers: compiled once, for us and the rivals.
+TILES_OBJECT = bench/rivals/tiles.$(OBJEXT)
+$(TILES_OBJECT): bench/tiles.c bench/tiles.h
+	$(AM_V_CC)$(MKDIR_P) bench/rivals && $(CC) -std=gnu17 -O2 -fPIE $(WARN_CFLAGS) -I$(srcdir) -c -o $@ $(srcdir)/bench/tiles.c
+CLEANFILES += $(TILES_OBJECT)
 
 OPENMP_FILES = bench/rivals/openmp.c bench/problem.c bench/serve.c
-OPENMP_NEEDS = $(OPENMP_FILES) bench/problem.h bench/serve.h
+OPENMP_NEEDS = $(OPENMP_FILES) bench/problem.h bench/serve.h bench/tiles.h $(TILES_OBJECT)
 OPENMP_COMPILE = $(MKDIR_P) bench/rivals && { sources=; for source in $(OPENMP_FILES); do \
 	sources="$$sources $(srcdir)/$$source"; done; } && \
 	compile() { compiler=$$1; settings=$$2; shift 2; $$compiler -std=gnu17 -O2 $(WARN_CFLAGS) -D_GNU_SOURCE -I$(srcdir) \
-	-DRIVAL_SETTINGS="\"$$settings\"" "$$@" $$sources; } && compile
+	-DRIVAL_SETTINGS="\"$$settings\"" "$$@" $$sources $(TILES_OBJECT) -lm; } && compile
 bench/rivals/libgomp$(EXEEXT): $(OPENMP_NEEDS)
 	$(AM_V_CC)$(OPENMP_COMPILE) '$(RIVAL_GCC)' "OpenMP tasks, -O2, `$(RIVAL_GCC) --version | head -n 1`" -fopenmp -o $@
 bench/rivals/libomp$(EXEEXT): $(OPENMP_NEEDS)

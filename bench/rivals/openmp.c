@@ -2,9 +2,11 @@
  * thread makes all tasks, and takes part when it waits for them. */
 #include "bench/problem.h"
 #include "bench/serve.h"
+#include "bench/tiles.h"
 
 #include <omp.h>
 #include <stdlib.h>
+#include <string.h>
 
 static problem_point *const volatile COMBINE = problem_combine, *const volatile NOTHING =
                                                                     problem_nothing;
@@ -220,11 +222,97 @@ static int tree(void *context, struct serve_request *request, double *value)
     return warm == right && nodes == right ? 0 : serve_fail("wrong answer");
 }
 
+/* ---- Factorisations by tiles ---- */
+
+struct tiled {
+    double *a;
+    size_t size;
+};
+
+static void make_tiles_task(const struct tiles_task *task, void *context)
+{
+    const struct tiled *tiled = context;
+    const size_t size = tiled->size, length = size * size;
+    tiles_body *body = tiles_routine[task->routine];
+    double *x = tiled->a + task->x * length, *y = tiled->a + task->y * length;
+    double *z = tiled->a + task->z * length;
+    switch (tiles_reads[task->routine]) {
+    case 0:
+#pragma omp task depend(inout : *z) firstprivate(z, size, body)
+        body(NULL, NULL, z, size);
+        break;
+    case 1:
+#pragma omp task depend(in : *x) depend(inout : *z) firstprivate(x, z, size, body)
+        body(x, NULL, z, size);
+        break;
+    default:
+#pragma omp task depend(in : *x, *y) depend(inout : *z) firstprivate(x, y, z, size, body)
+        body(x, y, z, size);
+    }
+}
+
+static double time_tiles(struct tiles tiles, double *a, int threads)
+{
+    double seconds = 0;
+#pragma omp parallel num_threads(threads)
+#pragma omp master
+    {
+        double start = serve_seconds();
+        tiles_visit(tiles, make_tiles_task, &(struct tiled){a, tiles.size});
+#pragma omp taskwait
+        seconds = serve_seconds() - start;
+    }
+    return seconds;
+}
+
+static int time_all(struct tiles tiles, double *a, int threads, double *value)
+{
+    double *start = tiles_make(tiles);
+    if (!start)
+        return serve_no_memory();
+    int wrong = 0;
+    for (int i = 0; i < TILES_TIMES; i++) {
+        memcpy(a, start, tiles_bytes(tiles));
+        *value = tiles_least(*value, i, time_tiles(tiles, a, threads));
+        wrong |= tiles_all_wrong(tiles, a);
+    }
+    free(start);
+    return wrong ? serve_fail("wrong answer") : 0;
+}
+
+static int factorise(struct serve_request *request, enum tiles_kind kind, double *value)
+{
+    const struct tiles tiles = {kind, serve_number(request, "tiles"),
+                                serve_number(request, "rows")};
+    double *a = tiles_make(tiles);
+    int code =
+        a ? time_all(tiles, a, (int)serve_number(request, "threads"), value) : serve_no_memory();
+    free(a);
+    return code;
+}
+
+static int cholesky(void *context, struct serve_request *request, double *value)
+{
+    (void)context;
+    return factorise(request, TILES_CHOLESKY, value);
+}
+
+static int lu(void *context, struct serve_request *request, double *value)
+{
+    (void)context;
+    return factorise(request, TILES_LU, value);
+}
+
 int main(void)
 {
-    static const struct serve_run runs[] = {
-        {"stencil", stencil}, {"chain", chain}, {"independent", independent},
-        {"fib", fibonacci},   {"tree", tree},   {0}};
+    static const struct serve_run runs[] = {{"stencil", stencil},
+                                            {"chain", chain},
+                                            {"independent", independent},
+                                            {"fib", fibonacci},
+                                            {"tree", tree},
+                                            {"cholesky", cholesky},
+                                            {"lu", lu},
+                                            {0}};
     const struct serve_run *const all[] = {runs, NULL};
     return serve(RIVAL_SETTINGS, all, NULL);
 }

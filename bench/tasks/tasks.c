@@ -5,17 +5,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const struct bench_case *const CASES[] = {&tasks_stencil,
-                                                 &tasks_chain,
-                                                 &tasks_independent,
-                                                 &tasks_fib_case,
-                                                 &tasks_tree,
-                                                 &tasks_growth,
-                                                 &tasks_bytes,
-                                                 &tasks_granularity,
-                                                 &tasks_wake,
-                                                 &tasks_instructions,
-                                                 NULL};
+static const struct bench_case *const CASES[] = {
+    &tasks_stencil,     &tasks_chain, &tasks_independent,  &tasks_fib_case,
+    &tasks_tree,        &tasks_tiles, &tasks_growth,       &tasks_bytes,
+    &tasks_granularity, &tasks_wake,  &tasks_instructions, NULL};
 enum { N_CASES = sizeof CASES / sizeof *CASES - 1 };
 
 /* For two cores and the full sizes. */
@@ -30,6 +23,7 @@ static const struct measure_target TARGETS[] = {
     {"fib_ns_per_task_vs_libomp", 1, false},
     {"fib_speedup_t2", 1.8, true},
     {"tree_vs_libomp", 1.3, false},
+    {"tiles_vs_libomp", 1, false},
     {"independent_growth", 1.5, false},
     {"bytes_per_pending_task", 192, false},
     {"granularity_50_w2_vs_mpi", 1.2, false},
@@ -56,6 +50,14 @@ static const duite_kernel *const KERNELS[] = {&tasks_gate,
                                               &tasks_fib_add,
                                               &tasks_tree_node,
                                               &tasks_wake_up,
+                                              &tasks_tiles_kernels[TILES_POTRF],
+                                              &tasks_tiles_kernels[TILES_TRSM_L],
+                                              &tasks_tiles_kernels[TILES_SYRK],
+                                              &tasks_tiles_kernels[TILES_GEMM_T],
+                                              &tasks_tiles_kernels[TILES_GETRF],
+                                              &tasks_tiles_kernels[TILES_TRSM_U],
+                                              &tasks_tiles_kernels[TILES_TRSM_1],
+                                              &tasks_tiles_kernels[TILES_GEMM],
                                               NULL};
 
 int tasks_code(int code)
@@ -171,6 +173,11 @@ static struct measure_series *add(struct measure *measure, const struct tasks_co
     return series;
 }
 
+static const char *run_of(const struct tasks_contest *contest)
+{
+    return contest->run ? contest->run : contest->name;
+}
+
 /* A rival in each of its settings. */
 static struct measure_series *plan_rival(struct measure *measure,
                                          const struct bench_options *options,
@@ -179,7 +186,7 @@ static struct measure_series *plan_rival(struct measure *measure,
     struct measure_series *first = NULL, *last = NULL;
     for (; kind; kind = subject_other(kind)) {
         struct subject_shape shape = {kind, 0, options->threads};
-        struct measure_series *series = add(measure, contest, shape, contest->name, "");
+        struct measure_series *series = add(measure, contest, shape, run_of(contest), "");
         if (last)
             last->other = series;
         else
@@ -189,18 +196,27 @@ static struct measure_series *plan_rival(struct measure *measure,
     return first;
 }
 
-/* Ours against each rival; `series` of the rivals, `key` of ours: NAME or NAME_VARIANT. */
+/* WHAT, or WHAT_VARIANT. */
+static const char *join(char *key, size_t size, const char *what, const char *variant)
+{
+    snprintf(key, size, "%s%s%s", what, *variant ? "_" : "", variant);
+    return key;
+}
+
+/* Ours against each rival, of which `rival` are the series. */
 static void plan_ours(struct measure *measure, const struct bench_options *options,
-                      const struct tasks_contest *contest, const char *key,
+                      const struct tasks_contest *contest, const char *variant,
                       struct measure_series *const *rival)
 {
-    char scheduler[80];
+    char scheduler[80], name[60], run[60];
     snprintf(scheduler, sizeof scheduler, " scheduler=%s", options->scheduler);
+    join(name, sizeof name, contest->name, variant);
+    join(run, sizeof run, run_of(contest), variant);
     const struct measure_series *ours =
-        add(measure, contest, tasks_ours(options->threads), key, scheduler);
-    measure_value(measure, ours, 1e9 / contest->tasks, "ns", "%s_ns_per_task", key);
+        add(measure, contest, tasks_ours(options->threads), run, scheduler);
+    measure_value(measure, ours, 1e9 / contest->tasks, "ns", "%s_ns_per_task", name);
     for (size_t i = 0; contest->rivals[i]; i++)
-        measure_ratio(measure, ours, rival[i], "%s%s_vs_%s", key,
+        measure_ratio(measure, ours, rival[i], "%s%s_vs_%s", name,
                       contest->brief ? "" : "_ns_per_task", contest->rivals[i]);
 }
 
@@ -208,18 +224,16 @@ void tasks_plan_contest(struct measure *measure, const struct bench_options *opt
                         const struct tasks_contest *contest)
 {
     enum { MOST = 8 };
-    char key[60];
+    char run[60];
     struct measure_series *rival[MOST];
     for (size_t i = 0; contest->rivals[i] && i < MOST; i++)
         rival[i] = plan_rival(measure, options, contest, contest->rivals[i]);
-    for (size_t i = 0; contest->variants[i]; i++) {
-        snprintf(key, sizeof key, "%s%s%s", contest->name, *contest->variants[i] ? "_" : "",
-                 contest->variants[i]);
-        plan_ours(measure, options, contest, key, rival);
-    }
-    snprintf(key, sizeof key, "%s_sequential", contest->name);
-    const struct measure_series *twin = add(measure, contest, tasks_twin(), key, "");
-    measure_value(measure, twin, 1e9 / contest->tasks, "ns", "%s_ns_per_task", key);
+    for (size_t i = 0; contest->variants[i]; i++)
+        plan_ours(measure, options, contest, contest->variants[i], rival);
+    join(run, sizeof run, run_of(contest), "sequential");
+    const struct measure_series *twin = add(measure, contest, tasks_twin(), run, "");
+    measure_value(measure, twin, 1e9 / contest->tasks, "ns", "%s_sequential_ns_per_task",
+                  contest->name);
     for (size_t i = 0; contest->rivals[i]; i++)
         measure_value(measure, rival[i], 1e9 / contest->tasks, "ns", "%s_%s_ns_per_task",
                       contest->name, contest->rivals[i]);

@@ -3,6 +3,7 @@
 
 #include "bench/bench.h"
 #include "bench/problem.h"
+#include "bench/tiles.h"
 
 #include <duite.h>
 #include <stdatomic.h>
@@ -64,6 +65,7 @@ extern const duite_kernel tasks_gate_write, tasks_gate;
  * to each rival, NAME_VARIANT_ns_per_task_vs_RIVAL, or if they are brief NAME_VARIANT_vs_RIVAL. */
 struct tasks_contest {
     const char *name;
+    const char *run;                             /* that serves it; NULL: called as `name` */
     const char *size;                            /* "points=64 steps=200" */
     double tasks;                                /* in a run */
     bool brief;                                  /* names of ratios */
@@ -79,9 +81,11 @@ struct subject_shape tasks_twin(void);
 /* ---- Cases ---- */
 
 extern const struct bench_case tasks_stencil, tasks_chain, tasks_independent, tasks_fib_case,
-    tasks_tree, tasks_growth, tasks_bytes, tasks_granularity, tasks_wake, tasks_instructions;
+    tasks_tree, tasks_tiles, tasks_growth, tasks_bytes, tasks_granularity, tasks_wake,
+    tasks_instructions;
 extern const duite_kernel tasks_stencil_combine, tasks_stencil_empty, tasks_stencil_padded,
     tasks_chain_next, tasks_independent_mark, tasks_granularity_point, tasks_wake_up, tasks_fib,
-    tasks_fib_flow, tasks_fib_put, tasks_fib_add, tasks_tree_node;
+    tasks_fib_flow, tasks_fib_put, tasks_fib_add, tasks_tree_node,
+    tasks_tiles_kernels[TILES_ROUTINES];
 
 #endif

@@ -2,8 +2,8 @@ check_PROGRAMS += tests/bench/liar
 tests_bench_liar_SOURCES = tests/bench/liar.c bench/serve.c bench/serve.h
 if HAVE_CHECK
 check_PROGRAMS += tests/bench/test_problem
-tests_bench_test_problem_SOURCES = tests/bench/test_problem.c bench/problem.c bench/problem.h
-tests_bench_test_problem_LDADD = tests/support/libunit.la $(CHECK_LIBS)
+tests_bench_test_problem_SOURCES = tests/bench/test_problem.c bench/problem.c bench/problem.h bench/tiles.c bench/tiles.h
+tests_bench_test_problem_LDADD = tests/support/libunit.la $(CHECK_LIBS) -lm
 check_PROGRAMS += tests/bench/test_sheet
 tests_bench_test_sheet_SOURCES = tests/bench/test_sheet.c
 tests_bench_test_sheet_LDADD = bench/libbench.la tests/support/libunit.la $(CHECK_LIBS)

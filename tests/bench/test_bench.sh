@@ -74,6 +74,7 @@ independent_dynamic_ns_per_task_vs_libomp <= 0.7
 fib_ns_per_task_vs_libomp <= 1
 fib_speedup_t2 >= 1.8
 tree_vs_libomp <= 1.3
+tiles_vs_libomp <= 1
 independent_growth <= 1.5
 bytes_per_pending_task <= 192
 granularity_50_w2_vs_mpi <= 1.2

@@ -1,5 +1,6 @@
 /* The answers of the bench's problems: a wrong one is seen, whatever is wrong with it. */
 #include "bench/problem.h"
+#include "bench/tiles.h"
 
 #include "tests/support/unit.h"
 
@@ -102,6 +103,56 @@ START_TEST(test_tree)
 }
 END_TEST
 
+/* The factors come out, and a tile with another number is told, where the factors have one. */
+START_TEST(test_tiles)
+{
+    const struct tiles tiles = {_i ? TILES_LU : TILES_CHOLESKY, 3, 8};
+    const size_t last = 3 * 3 - 1, numbers = 8 * 8;
+    double *a = tiles_make(tiles);
+    ck_assert_ptr_nonnull(a);
+    ck_assert_int_ne(tiles_all_wrong(tiles, a), 0);
+    tiles_factor(tiles, a);
+    ck_assert_int_eq(tiles_all_wrong(tiles, a), 0);
+    for (size_t k = 0; k < numbers; k++) {
+        const int counts = tiles.kind == TILES_LU || k % 8 >= k / 8;
+        a[last * numbers + k] += 1;
+        ck_assert_int_eq(tiles_all_wrong(tiles, a), counts);
+        a[last * numbers + k] -= 1;
+    }
+    free(a);
+}
+END_TEST
+
+struct skip {
+    double *a;
+    size_t left, visited;
+};
+
+/* Every task but one. */
+static void visit_others(const struct tiles_task *task, void *context)
+{
+    struct skip *skip = context;
+    if (skip->visited++ != skip->left)
+        tiles_routine[task->routine](skip->a + task->x * 64, skip->a + task->y * 64,
+                                     skip->a + task->z * 64, 8);
+}
+
+START_TEST(test_tiles_without_a_task)
+{
+    const struct tiles tiles = {_i ? TILES_LU : TILES_CHOLESKY, 4, 8};
+    struct skip skip = {.visited = 1};
+    for (skip.left = 0; skip.left < skip.visited; skip.left++) {
+        skip.visited = 0;
+        skip.a = tiles_make(tiles);
+        ck_assert_ptr_nonnull(skip.a);
+        tiles_visit(tiles, visit_others, &skip);
+        ck_assert_int_ne(tiles_all_wrong(tiles, skip.a), 0);
+        free(skip.a);
+    }
+    ck_assert_uint_eq(skip.visited, (size_t)tiles_tasks(tiles));
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("bench/problem");
@@ -113,6 +164,8 @@ int main(void)
     tcase_add_test(one, test_line);
     tcase_add_test(one, test_fib);
     tcase_add_test(one, test_tree);
+    tcase_add_loop_test(one, test_tiles, 0, 2);
+    tcase_add_loop_test(one, test_tiles_without_a_task, 0, 2);
     suite_add_tcase(suite, one);
     return unit_run(suite);
 }

@@ -5,6 +5,7 @@
 
 #include "runtime/base/error.h"
 #include "runtime/map/map.h"
+#include "runtime/task/prune.h"
 
 #include <stdio.h>
 
@@ -124,29 +125,12 @@ static int fork_task(duite *rt, const struct task_options *options, const duite_
     return code || rt->graph.broken ? api_remember(rt, code) : DUITE_OK;
 }
 
-/* Whether the task may be forked and touches nothing of this rank: then no more is to be done for
- * the fork. Every so many such forks messages are polled all the same. */
-static bool fork_is_pruned(duite *rt, const duite_kernel *kernel, const void *args, size_t n,
-                           const duite_object *objects)
+/* Whether no more is to be done for a fork outside of bodies than its ranks and a trace ask for, as
+ * for most: it is the main program's, while nothing is recorded or to be settled. */
+static inline bool fork_is_usual(const duite *rt)
 {
-    enum { FORKS_A_TICK = 32 };
-    if (!rt || !rt->comm || rt->building || rt->graph.table.n_unsettled || rt->graph.broken ||
-        rt->mpi_held || comm_broken(rt->comm) || !work_may_fork(rt->pool) ||
-        !task_prune(&rt->graph, kernel, args, n, objects))
-        return false;
-    trace_fork(rt->trace, kernel, &(struct task_options){.at = TASK_ANYWHERE}, n, objects);
-    if (rt->graph.root.forks % FORKS_A_TICK == 0)
-        work_tick(rt->pool);
-    return true;
-}
-
-/* Whether a fork outside of bodies may be made and nothing is to be done for it beside the task, as
- * for most: by the main program, on one rank, without a trace, while nothing is recorded or to be
- * settled. */
-static inline bool fork_is_direct(const duite *rt)
-{
-    const uint64_t more = (uintptr_t)rt->comm | (uintptr_t)rt->trace | (uintptr_t)rt->building |
-                          rt->graph.table.n_unsettled | rt->mpi_held;
+    const uint64_t more =
+        (uintptr_t)rt->building | rt->graph.table.n_unsettled | (uint64_t)rt->mpi_held;
     return !more && !rt->graph.broken && task_thread_mark() == rt->thread;
 }
 
@@ -154,12 +138,27 @@ __attribute__((noinline)) static int fork_other(duite *rt, const duite_kernel *k
                                                 const void *args, size_t n,
                                                 const duite_object *objects)
 {
-    if (fork_is_pruned(rt, kernel, args, n, objects))
-        return DUITE_OK;
     int code = api_enter_any(rt, "duite_fork");
     return code ? code
                 : fork_task(rt, &(struct task_options){.at = TASK_ANYWHERE}, kernel, args, n,
                             objects);
+}
+
+/* A usual fork that touches nothing of this rank is done by task_prune. Every so many such forks
+ * messages are polled all the same, and broken communication is noticed. */
+__attribute__((noinline)) static int fork_ranks(duite *rt, const duite_kernel *kernel,
+                                                const void *args, size_t n,
+                                                const duite_object *objects)
+{
+    enum { FORKS_A_TICK = 32 };
+    if (!task_prune(&rt->graph, kernel, args, n, objects))
+        return fork_other(rt, kernel, args, n, objects);
+    if (rt->trace)
+        trace_fork(rt->trace, kernel, &(struct task_options){.at = TASK_ANYWHERE}, n, objects);
+    if (rt->graph.root.forks % FORKS_A_TICK)
+        return DUITE_OK;
+    work_tick(rt->pool);
+    return comm_broken(rt->comm) ? api_enter_any(rt, "duite_fork") : DUITE_OK;
 }
 
 static inline int fork_direct(duite *rt, const duite_kernel *kernel, const void *args, size_t n,
@@ -191,7 +190,11 @@ int duite_fork(duite *rt, const duite_kernel *kernel, const void *args, size_t n
     struct duite_call_private *body = api_body(rt);
     if (body)
         return api_body_fork(body, kernel, args, n, objects);
-    if (!rt || !fork_is_direct(rt))
+    if (!rt || !fork_is_usual(rt))
+        return fork_other(rt, kernel, args, n, objects);
+    if (rt->comm)
+        return fork_ranks(rt, kernel, args, n, objects);
+    if (rt->trace)
         return fork_other(rt, kernel, args, n, objects);
     return rt->memo ? fork_memo(rt, kernel, args, n, objects)
                     : fork_direct(rt, kernel, args, n, objects);

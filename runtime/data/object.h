@@ -9,7 +9,7 @@
  * the table says about other ranks follows from the forks, which are the same everywhere: no rank
  * is ever asked. */
 struct data_object {
-    /* What a fork of other ranks' tasks reads and writes (task/prune.c) comes first. */
+    /* What a fork of other ranks' tasks reads and writes (task/prune.h) comes first. */
     uint32_t generation; /* even: the slot is free */
     int home;            /* -1: not decided yet */
     int holder;          /* the rank that has the current version for certain */

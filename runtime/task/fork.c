@@ -3,7 +3,7 @@
  * versions move. A rank keeps only what it runs, sends or receives itself. A task forks by the same
  * rules in its own scope, whose objects are here and nowhere else. What is wrong is refused before
  * anything is changed; afterwards nothing but memory can be missing. The next stage is depend.c;
- * prune.c is the short way for tasks of which nothing is here. */
+ * prune.h is the short way for tasks of which nothing is here. */
 #include "runtime/task/scope.h"
 
 #include "runtime/base/error.h"

@@ -202,6 +202,8 @@ struct task_graph {
         uint32_t grains;   /* of a task with n objects */
         bool plain;        /* r, w and rw alone, few of them, no others; and it is not replicated */
         bool direct;       /* ... and there is one rank */
+        bool prunes;       /* task_prune may note its tasks: what its n objects are to them is */
+        uint64_t reads, writes; /* ... a bit an object; no other use */
         struct task *head; /* plain: a task that was just forked, but for what differs; owned */
     } * fixed;
     uint32_t n_kernels;
@@ -216,12 +218,7 @@ struct task_graph {
     uint64_t fingerprint;           /* of the main program's calls */
     struct task_history *history;   /* of them; NULL on one rank */
     uint64_t tasks;                 /* of this rank that it forked, or that serve it */
-    struct task_prune { /* the kernel of the last task that may be none of this rank's */
-        const duite_kernel *kernel;
-        uint32_t index, n, owner; /* in the list; objects, and which of them it runs for */
-        uint64_t reads, writes;   /* a bit an object; no other use */
-    } prune;
-    uint64_t rename_max; /* limit of `rename_bytes` */
+    uint64_t rename_max;            /* limit of `rename_bytes` */
     struct data_table table;
     /* Seldom used. */
     _Alignas(64) _Atomic int broken; /* memory ran out in a fork: the code of every later call */
@@ -282,12 +279,6 @@ struct task_options {
     double cost;    /* seconds; 0: not said */
     uint64_t round; /* of the replay that forks it; task_fork_any alone looks at it */
 };
-
-/* Forks a task of the main program if neither the task nor anything it names is on this rank: then
- * there is only something to note. False: nothing was done, task_fork is due. Main thread;
- * collective with task_fork on other ranks; the homes of all objects are settled. */
-bool task_prune(struct task_graph *graph, const duite_kernel *kernel, const void *args, size_t n,
-                const duite_object *objects);
 
 int task_fork(struct task_scope *scope, struct worker *worker, const struct task_options *options,
               const duite_kernel *kernel, const void *args, size_t n, const duite_object *objects);

@@ -279,14 +279,16 @@ const char *const *duite_balancer_names(void);
 
 /* Delegation: with the balancer `delegate` a rank that has nothing to do asks others for ready
  * tasks, one rank at a time and ever less often. It is given tasks that are thought to take longer
- * than to send their inputs there and their outputs back. Tasks that may go are those whose fork
- * named no rank and whose kernel has no side effects and does not say `fixed`; in recorded graphs,
- * those of rounds that are forked. One with postponed parameters goes once what its children may
- * read is there. All that such a task forks, whatever its kernel says, runs on the same rank, and
- * what the children left goes home when they are over. Bodies so run on whichever rank is idle.
- * What they find by their context must serve on each rank, and be there before the first such fork
- * of any rank (set up on all of them, then a duite_wait). Results and failures are the same; a
- * failure names the rank on which the body ran. `scatter` sends tasks anywhere, for tests. */
+ * than to send their inputs there and their outputs back. Of tasks with postponed parameters whose
+ * fork did not say what they cost it is given one, that which has been ready for longest. Tasks
+ * that may go are those whose fork named no rank and whose kernel has no side effects and does not
+ * say `fixed`; in recorded graphs, those of rounds that are forked. One with postponed parameters
+ * goes once what its children may read is there. What such a task forks runs on the same rank, or
+ * goes on from there by the same rules, and what the children left goes home when they are over.
+ * Bodies so run on whichever rank is idle. What they find by their context must serve on each rank,
+ * and be there before the first such fork of any rank (set up on all of them, then a duite_wait).
+ * Results and failures are the same; a failure names the rank on which the body ran. `scatter`
+ * sends tasks anywhere, for tests. */
 
 /* Migration: with the balancer `migrate` objects get other homes when the bodies of one rank's
  * tasks take longer than those of the others. A leader moves with all that follow it, and with all

@@ -155,17 +155,19 @@ typedef struct duite_mapping {
 /* ---- Balancers: which ready tasks run on another rank, and which objects move there ---- */
 
 /* A ready task that may run on any rank, with all that it forks: to its home it is a leaf, whatever
- * grows there. The main program or a task forked it. Its fork named no rank, and its kernel is not
+ * grows there. The main program or a task forked it, on this rank or, if that task is another
+ * rank's, above it. Its fork named no rank, and its kernel is not
  * fixed (duite_kernel.fixed) and has no side effects. What it and its children read travels there,
  * and is there to travel; what they leave travels back. */
 typedef struct duite_leaf {
     const char *kernel;
     uint64_t number; /* its place in fork order */
     double cost;     /* seconds: as the fork said, else what bodies of its kernel took on this rank,
-                        the later ones counting more; 0: none ran yet, or parameters of the task
-                        are postponed */
+                        the later ones counting more; 0: none ran yet, or the fork of a task that
+                        forks did not say */
     size_t bytes;    /* that travel there and back */
     double transfer; /* seconds that this takes, after a measurement at start */
+    int forks;       /* 1: parameters are postponed, and `cost` is of all that it forks, too */
 } duite_leaf;
 
 /* A rank that asks for tasks, and what there is here. */
@@ -174,6 +176,9 @@ typedef struct duite_request {
     unsigned idle;    /* workers there that have nothing to do */
     unsigned ready;   /* tasks, leaves or not, that were ready here and found when it was served */
     unsigned granted; /* of them to this rank, so far */
+    unsigned unknown; /* of those granted: tasks that fork, whose cost is 0. Such a task is offered
+                         in its turn among all that are ready, those first that have been for
+                         longest; others are offered as they become ready, too. */
 } duite_request;
 
 #define DUITE_NO_RANK (-1)

@@ -1,7 +1,9 @@
 /* delegate: an idle rank requests tasks of one other, the one that granted last or a random one,
  * and waits ever longer before its next request. The granter grants up to half of its ready tasks,
  * and only such as cost more than their transfer. Half, because it works on meanwhile; and the last
- * ready task stays, since its own worker takes it next. After Blumofe & Leiserson (1999), with half
+ * ready task stays, since its own worker takes it next. Of tasks whose subtrees are of unknown size
+ * it grants a single one, the oldest: nearest to the root, it is the largest as far as anybody can
+ * tell. Who got too much grants in turn. After Blumofe & Leiserson (1999), with half
  * of a queue instead of one task: Hendler & Shavit, Non-blocking steal-half work queues, PODC 2002.
  */
 #include "runtime/balance/balance.h"
@@ -40,8 +42,11 @@ static int delegate_victim(void *state, unsigned attempt, int granter, double *s
 
 static int delegate_grant(void *state, const duite_request *request, const duite_leaf *leaf)
 {
+    const bool has_more = request->granted < request->ready / 2;
     (void)state;
-    return leaf->cost > leaf->transfer && request->granted < request->ready / 2;
+    if (leaf->forks && leaf->cost <= 0)
+        return has_more && !request->granted;
+    return has_more && !request->unknown && leaf->cost > leaf->transfer;
 }
 
 const duite_balancer balance_delegate = {

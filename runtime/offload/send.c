@@ -64,12 +64,20 @@ static size_t access_room(const struct task *task, size_t i)
                                            : 0;
 }
 
+/* Whether nothing of its place is cut off: by places the ranks know which task comes before which.
+ */
+static bool place_is_whole(const struct task *task)
+{
+    struct data_failure place = {0};
+    if (task->scope == &task->scope->graph->root)
+        return true;
+    task_failure_place(&place, task, NULL);
+    return place.path_length < sizeof place.path;
+}
+
 bool offload_may_go(const struct task_graph *graph, const struct task *task, size_t *bytes)
 {
     if (task->type != TASK_BODY || task->state != TASK_LOCAL || task->at_rank)
-        return false;
-    /* What an offloaded task forks stays with it: it waits for nothing on another rank. */
-    if (task->scope->top != &graph->root)
         return false;
     const duite_kernel *kernel = graph->kernels[task->kernel];
     if (kernel->side_effects || kernel->fixed || kernel->replicated)
@@ -83,7 +91,7 @@ bool offload_may_go(const struct task_graph *graph, const struct task *task, siz
         back += message_lines(access_room(task, i));
     }
     *bytes = there + back + 2 * sizeof(struct data_packet);
-    return there < DATA_MAX_BYTES && back < DATA_MAX_BYTES;
+    return there < DATA_MAX_BYTES && back < DATA_MAX_BYTES && place_is_whole(task);
 }
 
 static struct offload_param access_param(const struct task *task, size_t i)

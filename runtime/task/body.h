@@ -81,7 +81,8 @@ bool task_lent(const struct duite_call_private *body, duite_object object);
 
 /* Whether a body that waits in `scope` may have this task run on top of it. It may if the task is a
  * descendant. If its descendants may wait for tasks outside, it also may if the task comes earlier
- * in the reference order. And a body that is not an offloaded task's may have any task of these. */
+ * in the reference order. A body that is neither an offloaded task's nor its descendant's may have
+ * any of theirs. One that is may have, of those, what comes earlier in the order of all ranks. */
 bool task_may_run_other(const struct task_scope *scope, const struct task *task);
 static inline bool task_may_run(const struct task_scope *scope, const struct task *task)
 {

@@ -8,6 +8,8 @@
 
 #include "runtime/base/memory.h"
 
+#include <string.h>
+
 /* ---- The end ---- */
 
 void task_left_last(struct task_graph *graph, struct task_scope *scope, struct worker *worker)
@@ -145,19 +147,24 @@ const struct data_failure *task_first_failure(struct task_scope *scope)
     return failure;
 }
 
-bool task_may_run_other(const struct task_scope *scope, const struct task *task)
+/* Whether the task comes before what the body that waits in `scope` does next; both are offloaded
+ * or descend from such. What was sent has a place that is not cut off (offload_may_go). So this is
+ * right for a task that just came, whoever waits. */
+static bool place_is_earlier(const struct task *task, const struct task_scope *scope)
 {
-    const struct task_scope *a = task->scope, *b = scope->parent;
-    uint64_t a_number = task->number, b_number = scope->number;
-    for (; a->depth > scope->depth; a = a->parent)
-        a_number = a->number;
-    if (a == scope)
-        return true;
-    if (a->top !=
-        scope->top) /* offloaded tasks wait for nothing of ours: they must not wait for us */
-        return scope->top == &scope->graph->root;
-    if (!scope->outward)
-        return false;
+    struct data_failure other = {0}, own = {0};
+    task_failure_place(&other, task, NULL);
+    task_failure_place(&own, ((const struct task_nest *)scope)->body->task, NULL);
+    return other.number != own.number ? other.number < own.number
+                                      : memcmp(other.path, own.path, own.path_length) <= 0;
+}
+
+/* The same of two that have the same top. */
+static bool number_is_earlier(const struct task_scope *a, uint64_t a_number,
+                              const struct task_scope *scope)
+{
+    const struct task_scope *b = scope->parent;
+    uint64_t b_number = scope->number;
     for (; a->depth > b->depth; a = a->parent)
         a_number = a->number;
     for (; b->depth > a->depth; b = b->parent)
@@ -167,4 +174,19 @@ bool task_may_run_other(const struct task_scope *scope, const struct task *task)
         b_number = b->number;
     }
     return a_number <= b_number;
+}
+
+bool task_may_run_other(const struct task_scope *scope, const struct task *task)
+{
+    const struct task_scope *a = task->scope, *root = &scope->graph->root;
+    uint64_t a_number = task->number;
+    for (; a->depth > scope->depth; a = a->parent)
+        a_number = a->number;
+    if (a == scope)
+        return true;
+    if (scope->top == root && a->top != root)
+        return true;
+    if (a->top != scope->top)
+        return a->top != root && place_is_earlier(task, scope);
+    return (scope->outward || scope->top != root) && number_is_earlier(a, a_number, scope);
 }

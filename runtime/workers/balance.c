@@ -160,8 +160,15 @@ static bool leaf_describe(const struct work_pool *pool, const struct task *task,
                          .number = task->number,
                          .cost = task_cost(pool, task),
                          .bytes = bytes,
-                         .transfer = comm_transfer(pool->setup.comm, bytes)};
+                         .transfer = comm_transfer(pool->setup.comm, bytes),
+                         .forks = task->inner != NULL};
     return true;
+}
+
+/* Its subtree may be of any size. */
+static bool leaf_is_unknown(const duite_leaf *leaf)
+{
+    return leaf->forks && leaf->cost <= 0;
 }
 
 static bool leaf_send(struct worker *worker, struct task *task, int to)
@@ -176,7 +183,8 @@ static bool leaf_send(struct worker *worker, struct task *task, int to)
 }
 
 /* The leaf goes to a rank that requests one before a worker of this rank can take it. In a tree
- * whose tasks become ready a few at a time, hardly a leaf would be left between two tasks. */
+ * whose tasks become ready a few at a time, hardly a leaf would be left between two tasks. Not so a
+ * subtree of unknown size: what just became ready is mostly smaller than what lies in the queue. */
 static bool leaf_grant_at_once(struct worker *worker, struct task *task, const duite_leaf *leaf)
 {
     const struct work_pool *pool = worker->pool;
@@ -205,7 +213,7 @@ bool work_placed_away(struct worker *worker, struct task *task)
         to = balancer_place(worker, &leaf);
     if (to >= 0 && to < pool->setup.graph->n_ranks && to != own)
         return leaf_send(worker, task, to);
-    return asked && leaf_grant_at_once(worker, task, &leaf);
+    return asked && !leaf_is_unknown(&leaf) && leaf_grant_at_once(worker, task, &leaf);
 }
 
 /* ---- Granting ---- */
@@ -224,10 +232,12 @@ static void grant_or_keep(struct grant *grant, struct work_queue *queue, struct 
         duite_leaf leaf;
         if (leaf_describe(pool, task, &leaf) &&
             balancer_grants(grant->worker, &grant->asked, &leaf) &&
-            leaf_send(grant->worker, task, grant->asked.rank))
+            leaf_send(grant->worker, task, grant->asked.rank)) {
             grant->asked.granted++;
-        else
+            grant->asked.unknown += leaf_is_unknown(&leaf);
+        } else {
             work_queue_push(queue, task);
+        }
         task = next;
     }
 }

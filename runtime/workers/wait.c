@@ -185,7 +185,12 @@ bool work_may_fork(struct work_pool *pool)
  * every waiting worker may run it, or waits for its own descendants alone, which will be over
  * without it. If it is a body that waits, all above it on its stack would come even earlier. So it
  * is on top, and its descendants are over. What a worker finds and may not run goes where others
- * look. */
+ * look.
+ *
+ * Offloaded tasks and their descendants, on all ranks, wait for nothing but one another. For them
+ * the same holds by themselves: their order is that of all ranks, and what descends from a waiting
+ * body may have come from another rank. A body that is none of them may run any of them on top, as
+ * they never wait for it; they run nothing of the others. */
 enum {
     NOT_BARREN = -1,
     SHARED_DEPTH = 16, /* of the shared queue's new end, that are looked at */

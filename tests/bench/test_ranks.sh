@@ -26,6 +26,7 @@ record_us_per_task <= 1
 prune_ns_per_task <= 20
 memory_r4_vs_r1 <= 0.35
 delegate_speedup_r2 >= 1.7
+tree_speedup_r2 >= 1.5
 migrate_vs_balanced <= 1.15
 migrate_steps <= 20
 END

@@ -115,8 +115,37 @@ static int grows_body(const duite_call *call)
 }
 static const duite_kernel GROWS = {.name = "grows", .body = grows_body, .access = {DUITE_RWP}};
 
-static const duite_kernel *const LIST[] = {&MIX,  &WHOLE, &ONE_MORE, &TORN,  &DROP, &SPILL,
-                                           &IDLE, &FALL,  &GROW,     &GROWS, &FAIL, NULL};
+/* Contributes 1 if it went on from another rank than home, and WENT_HOME more if it went there. */
+enum { WENT_HOME = 1 << 16 };
+struct origin {
+    int32_t home, parent, depth;
+};
+static int step_body(const duite_call *call)
+{
+    const struct origin *from = call->args;
+    if (from->parent != rank && from->parent != from->home)
+        duite_out(call, 0, int32_t)[0] = rank == from->home ? WENT_HOME + 1 : 1;
+    return 0;
+}
+static const duite_kernel STEP = {
+    .name = "step", .body = step_body, .access = {DUITE_CW}, .args_size = sizeof(struct origin)};
+
+static int walk_body(const duite_call *call);
+static const duite_kernel WALK = {
+    .name = "walk", .body = walk_body, .access = {DUITE_CWP}, .args_size = sizeof(struct origin)};
+
+/* All below it is over when it ends, wherever that ran. */
+static int walk_body(const duite_call *call)
+{
+    const struct origin *from = call->args;
+    const struct origin own = {from->home, rank, from->depth - 1};
+    for (int i = 0; i < 4; i++)
+        duite_fork(call->rt, own.depth ? &WALK : &STEP, &own, 1, &call->param[0].object);
+    return duite_wait(call->rt);
+}
+
+static const duite_kernel *const LIST[] = {&MIX,  &WHOLE, &ONE_MORE, &TORN, &DROP, &SPILL, &IDLE,
+                                           &FALL, &GROW,  &GROWS,    &FAIL, &STEP, &WALK,  NULL};
 
 static duite *start(const char *balance)
 {
@@ -149,14 +178,28 @@ static void values(const char *balance)
     delegation_say(balance, "tasks ran elsewhere if they could",
                    (delegation_count(rt) > 0) == moves);
     delegation_say(balance, "whole", here || (atomic_load(&wholes) > 0) == moves);
-    delegation_say(balance, "with their children", /* some of those of home came by themselves */
-                   here || atomic_load(&mixes) >= 3 * atomic_load(&wholes));
+    delegation_say(balance, "and their children", here || (atomic_load(&mixes) > 0) == moves);
     for (int i = 0; i < TASKS; i++)
         duite_free(rt, object[i]);
     duite_free(rt, in);
     duite_free(rt, last);
     duite_free(rt, sum);
     delegation_say(balance, "stop", duite_stop(&rt) == DUITE_OK);
+}
+
+/* What a subtree forks goes on, and home, while bodies wait for it everywhere. */
+static void onward(void)
+{
+    duite *rt = start("scatter");
+    duite_object sum = misuse_new(rt, 1);
+    const int32_t home = duite_home(rt, sum);
+    for (int i = 0; i < ROUNDS; i++)
+        DUITE_FORK(rt, &WALK, (&(struct origin){home, home, 4}), sum);
+    const int32_t went = delegation_value(rt, sum);
+    tap_case(duite_ranks(rt) == 1 ? !went : went > WENT_HOME, "parts of a subtree go home");
+    tap_case(duite_ranks(rt) < 3 || went % WENT_HOME > went / WENT_HOME, "and to third ranks");
+    duite_free(rt, sum);
+    tap_case(duite_stop(&rt) == DUITE_OK, "stop after that");
 }
 
 static void failures(void)
@@ -235,6 +278,7 @@ int main(void)
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
     values("none");
     values("scatter");
+    onward();
     failures();
     nothing();
     sizes();

@@ -16,6 +16,7 @@ done
 ok "whole subtrees in checking mode" eval 'DUITE_CHECK=accesses ranks 2 tests/runtime/ranks_subtrees'
 ok "random programs" ranks 4 tests/runtime/random_programs --base 500000 --programs $programs --balance scatter
 ok "random trees of tasks on 2 ranks" ranks 2 tests/runtime/nested_programs --seed 500000 --programs $programs --balance scatter
+ok "random trees of tasks on 3 ranks" ranks 3 tests/runtime/nested_programs --seed 500000 --programs $((programs / 2)) --balance scatter
 ok "random trees of tasks on 4 ranks" ranks 4 tests/runtime/nested_programs --seed 600000 --programs $((programs / 4)) --balance scatter
 ok "random trees of tasks in checking mode" eval 'DUITE_CHECK=accesses ranks 2 tests/runtime/nested_programs --seed 700000 \
     --programs $((programs / 4)) --balance scatter'

@@ -18,9 +18,10 @@ struct measure_series {
     struct subject_shape shape;
     bool fresh; /* a process of its own for each sample, asked once: for memory */
     char command[MEASURE_COMMAND];
-    double work;                        /* what a run of it does, in a unit of the case's own */
-    const struct measure_series *other; /* the same in another setting; the smaller sample counts */
-    double *sample;                     /* one a round; NULL if the subject is missing */
+    double work; /* what a run of it does, in a unit of the case's own */
+    const struct measure_series
+        *other;     /* the same in another setting, or again; the smaller sample counts */
+    double *sample; /* one a round; NULL if the subject is missing */
 };
 
 /* What the median of a metric should come to. */

@@ -212,8 +212,10 @@ static void plan_ours(struct measure *measure, const struct bench_options *optio
     snprintf(scheduler, sizeof scheduler, " scheduler=%s", options->scheduler);
     join(name, sizeof name, contest->name, variant);
     join(run, sizeof run, run_of(contest), variant);
-    const struct measure_series *ours =
+    struct measure_series *ours =
         add(measure, contest, tasks_ours(options->threads), run, scheduler);
+    if (contest->twice)
+        ours->other = add(measure, contest, tasks_ours(options->threads), run, scheduler);
     measure_value(measure, ours, 1e9 / contest->tasks, "ns", "%s_ns_per_task", name);
     for (size_t i = 0; contest->rivals[i]; i++)
         measure_ratio(measure, ours, rival[i], "%s%s_vs_%s", name,

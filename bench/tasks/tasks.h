@@ -69,6 +69,7 @@ struct tasks_contest {
     const char *size;                            /* "points=64 steps=200" */
     double tasks;                                /* in a run */
     bool brief;                                  /* names of ratios */
+    bool twice;                                  /* ours runs as often as an OpenMP rival does */
     const char *const *variants, *const *rivals; /* ended by NULL; a variant "" has no name */
 };
 void tasks_plan_contest(struct measure *measure, const struct bench_options *options,

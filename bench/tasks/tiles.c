@@ -24,6 +24,7 @@ static void plan_one(struct measure *measure, const struct bench_options *option
                                                .size = size,
                                                .tasks = tiles_tasks(tiles),
                                                .brief = true,
+                                               .twice = true,
                                                .variants = variants,
                                                .rivals = rivals});
 }

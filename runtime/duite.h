@@ -111,8 +111,8 @@ typedef enum duite_mode {
     DUITE_RP,  /* postponed: children read */
     DUITE_WP,  /* children overwrite; if none does, zeros are left */
     DUITE_RWP, /* children read and write */
-    DUITE_CWP  /* children accumulate: one contribution, the tree of theirs; none if they make none
-                */
+    DUITE_CWP  /* children accumulate, and so may the body (duite_contribute): one contribution, the
+                  tree of all these; none if there are none */
 } duite_mode;
 
 /* ---- Laws ---- */
@@ -184,6 +184,14 @@ int duite_fail(const duite_call *call, int code, const char *format, ...)
  * leaves is what readers find. More than the maximum, and another parameter, is DUITE_E_SIZE: then
  * the task fails with that even if its body returns 0. */
 int duite_resize(const duite_call *call, size_t i, size_t count);
+
+/* A contribution of the body's own to parameter i, which it holds by cwp: elements as many, and of
+ * the type, as param[i] says, the law's neutral elements (of sums: zeros). The body changes them
+ * until it ends. What they are then counts as what a child forked at that moment with cw would
+ * have left, in the same place of the tree; each call is another such child, but none that runs or
+ * has a number. NULL: no memory, or another mode (DUITE_E_RIGHT): then the task fails with that
+ * even if its body returns 0. Checking mode does not see writes beyond the elements. */
+void *duite_contribute(const duite_call *call, size_t i);
 
 enum { DUITE_MAX_ACCESS = 64 }; /* modes that a kernel lists, at most */
 
@@ -539,9 +547,10 @@ int duite_wait(duite *rt);
  *
  * With call->rt, and on its own thread, a body may call: duite_new, duite_new_sized, duite_free;
  * duite_set, duite_set_sized, duite_get, duite_get_count; duite_fork, duite_fork_with (without a
- * rank), duite_wait, duite_resize, duite_fail; and what describes the runtime (duite_rank and the
- * like). All others are DUITE_E_STATE, and so is any call from a thread of the program's own. In a
- * body the calls are local: children run on the rank of the task, and no other rank knows of them.
+ * rank), duite_wait, duite_resize, duite_contribute, duite_fail; and what describes the runtime
+ * (duite_rank and the like). All others are DUITE_E_STATE, and so is any call from a thread of the
+ * program's own. In a body the calls are local: children run on the rank of the task, unless a
+ * balancer delegates them, and no other rank knows of them.
  *
  * Objects: a body names those it was given (param[i].object) and those it made. The table at
  * duite_mode says what it may fork its children with. More is DUITE_E_RIGHT, and so is an object of

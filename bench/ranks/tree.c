@@ -11,7 +11,6 @@ enum { LAST_LEVELS = 3 };
 struct tree_args {
     struct problem_node node;
     uint32_t levels;
-    uint32_t above; /* nodes that are counted with this one */
 };
 
 static void plan(struct measure *measure, const struct bench_options *options)
@@ -28,8 +27,7 @@ static void plan(struct measure *measure, const struct bench_options *options)
 static int leaf(const duite_call *call)
 {
     const struct tree_args *args = call->args;
-    duite_out(call, 0, int64_t)[0] +=
-        (int64_t)problem_tree_nodes(&args->node, args->levels) + args->above;
+    duite_out(call, 0, int64_t)[0] += (int64_t)problem_tree_nodes(&args->node, args->levels);
     return 0;
 }
 static const duite_kernel LEAF = {
@@ -45,12 +43,13 @@ static int branch(const duite_call *call)
 {
     const struct tree_args *args = call->args;
     const uint32_t n = problem_tree_children(&args->node, args->levels);
-    int code = 0;
+    int64_t *own = duite_contribute(call, 0);
+    int code = own ? 0 : DUITE_E_MEMORY;
+    if (own)
+        own[0] = 1;
     for (uint32_t i = 0; i < n && !code; i++) {
-        const struct tree_args child = {problem_tree_child(&args->node, i), args->levels,
-                                        i ? 0 : args->above + 1};
-        const bool last = child.node.depth + LAST_LEVELS >= args->levels ||
-                          !problem_tree_children(&child.node, args->levels);
+        const struct tree_args child = {problem_tree_child(&args->node, i), args->levels};
+        const bool last = child.node.depth + LAST_LEVELS >= args->levels;
         code = DUITE_FORK(call->rt, last ? &LEAF : &BRANCH, &child, call->param[0].object);
     }
     return code;
@@ -58,7 +57,7 @@ static int branch(const duite_call *call)
 
 static int time_tree(duite *rt, uint32_t levels, double *value)
 {
-    const struct tree_args root = {problem_tree_root(), levels, 0};
+    const struct tree_args root = {problem_tree_root(), levels};
     duite_object nodes;
     int64_t got = -1;
     if (duite_new(rt, DUITE_I64, 1, &nodes) || duite_wait(rt))

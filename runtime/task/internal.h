@@ -151,7 +151,7 @@ void task_lent_drop(struct task_access *access);
 void task_lent_comes_home(struct task_scope *inner, struct worker *worker, size_t lent,
                           const struct task_left_value *left);
 /* The object that became of a postponed parameter: access->lent. */
-const struct data_object *task_lent_object(const struct task_scope *scope, size_t lent);
+struct data_object *task_lent_object(struct task_scope *scope, size_t lent);
 /* The task of the scope failed, or read poison: all that it leaves is poisoned. */
 void task_scope_fail(struct task_scope *scope, const struct data_failure *failure);
 /* The body is over, or never ran: what the children leave goes to the scope above, poisoned if the

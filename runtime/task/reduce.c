@@ -18,18 +18,23 @@ struct piece_place {
 static const struct data_failure sum_no_memory = {
     .code = DUITE_E_MEMORY, .kernel = UINT32_MAX, .text = "there was no memory for contributions"};
 
-/* ---- Contributing and reducing: at forks ---- */
+/* ---- Contributing: at forks ---- */
+
+/* The object has a sum from now on. False without memory. */
+static bool sum_open(const struct task_graph *graph, struct data_object *object)
+{
+    if (!object->sum)
+        object->sum = data_sum_new(graph->n_ranks, object->law, object->type, object->count);
+    return object->sum;
+}
 
 static int leaf_add(const struct task_fork_call *call, struct data_object *object, size_t i)
 {
     struct task_graph *graph = call->scope->graph;
     bool adder = object->holder == graph->rank;
-    if (!object->sum && (adder || call->task)) {
-        object->sum = data_sum_new(graph->n_ranks, object->law, object->type, object->count);
-        if (!object->sum) {
-            base_no_memory("contributions");
-            return task_break(graph);
-        }
+    if ((adder || call->task) && !sum_open(graph, object)) {
+        base_no_memory("contributions");
+        return task_break(graph);
     }
     uint64_t first = object->leaves++;
     if (adder && !call->task)
@@ -55,6 +60,46 @@ int task_contribute(const struct task_fork_call *call, struct data_object *objec
     object->law = law;
     return code ? code : leaf_add(call, object, i);
 }
+
+/* ---- Contributing without a child: in a body that holds cwp ---- */
+
+static void *contribute_refuse(const duite_call *call, size_t i, int code)
+{
+    if (code == DUITE_E_MEMORY)
+        duite_fail(call, 0, "duite_contribute: no memory for a contribution");
+    else if (i >= call->n_params)
+        duite_fail(call, 0, "duite_contribute: there is no parameter %zu, only %zu", i,
+                   call->n_params);
+    else
+        duite_fail(
+            call, 0, "duite_contribute: the task holds %s on parameter %zu, cwp is wanted",
+            task_mode_name(data_mode_of(call->own->graph->kernels[call->own->task->kernel], i)), i);
+    call->own->refused = code;
+    base_error(code, "%s", call->own->text);
+    return NULL;
+}
+
+/* Nothing closes the sum before the body is over: under cwp the children may do nothing else. So
+ * the leaf is not counted among those that the sum waits for. */
+void *duite_contribute(const duite_call *call, size_t i)
+{
+    const struct duite_call_private *body = call->own;
+    const struct task *task = body->task;
+    const duite_kernel *kernel = body->graph->kernels[task->kernel];
+    if (i >= call->n_params || data_mode_of(kernel, i) != DUITE_CWP)
+        return contribute_refuse(call, i, DUITE_E_RIGHT);
+    struct data_object *object = task_lent_object(body->scope, task->access[i].lent);
+    object->law = data_law_of(kernel, i);
+    struct data_piece *leaf =
+        sum_open(body->graph, object) ? data_sum_leaf(object->sum, object->leaves++) : NULL;
+    if (leaf)
+        data_sum_release(object->sum);
+    if (!leaf || !data_sum_open(object->sum, leaf))
+        return contribute_refuse(call, i, DUITE_E_MEMORY);
+    return leaf->value;
+}
+
+/* ---- Reducing ---- */
 
 /* A task that waits for all contributions, which leave the object; pending counts them as one.
  * Without memory they stay there until stop. */

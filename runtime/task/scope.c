@@ -101,9 +101,9 @@ struct task_scope *task_scope_new(const struct task *task, size_t n)
     return nest_new(task, n);
 }
 
-const struct data_object *task_lent_object(const struct task_scope *scope, size_t lent)
+struct data_object *task_lent_object(struct task_scope *scope, size_t lent)
 {
-    return &((const struct task_nest *)scope)->local[lent];
+    return &task_nest_of(scope)->local[lent];
 }
 
 struct task_scope *task_scope_begin(struct duite_call_private *body)

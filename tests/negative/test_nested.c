@@ -29,6 +29,8 @@ enum deed {
     OVERWRITE,
     SET_SIZED,
     RESIZE,
+    CONTRIBUTE,
+    CONTRIBUTE_BEYOND,
     NEW_NOWHERE,
     NEW_EMPTY,
     NEW_SIZED
@@ -128,6 +130,10 @@ static int ask(const duite_call *call, const struct args *args)
         return duite_set_sized(call->rt, own, values, 3);
     case RESIZE:
         return duite_resize(call, 0, 1);
+    case CONTRIBUTE:
+        return duite_contribute(call, 0) ? DUITE_OK : DUITE_E_RIGHT;
+    case CONTRIBUTE_BEYOND:
+        return duite_contribute(call, 1) ? DUITE_OK : DUITE_E_RIGHT;
     case NEW_NOWHERE:
         return duite_new(call->rt, DUITE_I32, 1, NULL);
     case NEW_EMPTY:
@@ -312,6 +318,24 @@ START_TEST(resizing_what_is_postponed)
 }
 END_TEST
 
+/* Who goes on as if it had been given something fails, too. */
+START_TEST(contributing)
+{
+    char what[120];
+
+    for (int held = DUITE_R; held <= MODES; held++) {
+        const int code = held == DUITE_CWP ? DUITE_OK : DUITE_E_RIGHT;
+
+        snprintf(what, sizeof what,
+                 "duite_contribute: the task holds %s on parameter 0, cwp is wanted", MODE[held]);
+        asks((duite_mode)held, (struct args){.deed = CONTRIBUTE}, code, code ? what : "");
+    }
+    asks(DUITE_CWP, (struct args){.deed = CONTRIBUTE_BEYOND}, DUITE_E_RIGHT,
+         "duite_contribute: there is no parameter 1, only 1");
+    asks(DUITE_NONE, (struct args){.deed = CONTRIBUTE}, DUITE_E_RIGHT, "no parameter 0, only 0");
+}
+END_TEST
+
 START_TEST(making)
 {
     asks(DUITE_NONE, (struct args){.deed = NEW_NOWHERE}, DUITE_E_ARGUMENT,
@@ -353,6 +377,7 @@ int main(void)
     tcase_add_test(cases, other_law);
     tcase_add_test(cases, reading_and_setting);
     tcase_add_test(cases, resizing_what_is_postponed);
+    tcase_add_test(cases, contributing);
     tcase_add_test(cases, making);
     tcase_add_test(cases, looked_at);
     suite_add_tcase(suite, cases);

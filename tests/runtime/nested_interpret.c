@@ -172,6 +172,14 @@ static void set(const struct nest_action *action, struct cell *cell)
         nest_values(cell->type, cell->count, action->seed, cell->value);
 }
 
+static void contribute_self(const struct nest_action *action, unsigned law, struct cell *cell)
+{
+    _Alignas(8) unsigned char value[BYTES] = {0};
+
+    nest_values(cell->type, cell->count, action->seed, value);
+    contribute(cell, law, value);
+}
+
 /* The children forked so far come now. */
 static void end_segment(struct machine *m, struct frame *frame)
 {
@@ -182,6 +190,8 @@ static void end_segment(struct machine *m, struct frame *frame)
             run_task(m, frame, action->task, action->object);
         else if (action->kind == NEST_SET)
             set(action, frame->object[action->object[0]]);
+        else if (action->kind == NEST_CONTRIBUTE)
+            contribute_self(action, frame->task->law, frame->object[action->object[0]]);
     }
     frame->first_pending = frame->n_done;
 }

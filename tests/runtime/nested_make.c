@@ -151,7 +151,9 @@ static void make_other(struct maker *maker, struct nest_task *task, struct table
     const unsigned modes = allowed(table->right[object]);
     enum nest_kind kind = NEST_WAIT;
 
-    if (what < 2 && modes >> DUITE_R & 1)
+    if (what < 4 && table->right[object] == DUITE_CWP)
+        kind = NEST_CONTRIBUTE;
+    else if (what < 2 && modes >> DUITE_R & 1)
         kind = NEST_GET;
     else if (what < 4 && modes >> DUITE_W & 1)
         kind = NEST_SET;
@@ -168,6 +170,8 @@ static void make_other(struct maker *maker, struct nest_task *task, struct table
     action->type = table->type[object];
     action->count = action->max = table->max[object];
     action->sized = table->sized[object];
+    if (kind == NEST_CONTRIBUTE)
+        action->seed = duite_random(&maker->random);
     if (kind == NEST_FREE)
         table->right[object] = DUITE_NONE;
 }
@@ -277,7 +281,8 @@ unsigned nest_kernel(const struct nest_task *task)
 static void print_task(const struct nest_program *program, unsigned self, int indent)
 {
     static const char *const modes[] = {"", "r", "w", "rw", "cw", "rp", "wp", "rwp", "cwp"};
-    static const char *const kinds[] = {"new", "free", "set", "fork", "get", "wait", "replay"};
+    static const char *const kinds[] = {"new",  "free", "set",  "contribute",
+                                        "fork", "get",  "wait", "replay"};
     const struct nest_task *task = &program->task[self];
 
     for (unsigned a = 0; a < task->n_actions; a++) {

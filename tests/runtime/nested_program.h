@@ -27,6 +27,7 @@ enum nest_kind {
     NEST_NEW,
     NEST_FREE,
     NEST_SET,
+    NEST_CONTRIBUTE, /* the task itself, to a parameter under cwp */
     NEST_FORK,
     NEST_GET,
     NEST_WAIT,
@@ -42,7 +43,7 @@ struct nest_action {
     size_t count, max; /* of the object, or (count) of what is set; they differ if it is sized */
     bool sized;
     int32_t priority; /* fork */
-    uint64_t seed;    /* set; 0: zeros, as many as there can be */
+    uint64_t seed;    /* set; 0: zeros, as many as there can be. Contribute */
 };
 
 struct nest_task {

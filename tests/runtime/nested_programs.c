@@ -194,8 +194,25 @@ static int replay(duite *rt, const struct nest_action *action, duite_object *obj
     return code ? code : duite_graph_free(rt, graph);
 }
 
-/* Does what a task does, or the main program (self 0), whose answers are compared. */
-static uint64_t act(duite *rt, unsigned self, duite_object *object, uint64_t digest)
+/* What the task itself contributes. */
+static void contribute(const duite_call *call, unsigned self, const struct nest_action *action)
+{
+    const duite_param *param = &call->param[action->object[0]];
+    unsigned char *values = duite_contribute(call, action->object[0]);
+
+    if (!values) {
+        found("task %u: no contribution: %s", self, duite_message());
+        return;
+    }
+    for (size_t b = 0; program.task[self].law % 3 == 0 && b < param->count; b++)
+        if (values[b])
+            found("task %u: a contribution of its own does not begin with zeros", self);
+    nest_values(param->type, param->count, action->seed, values);
+}
+
+/* Does what a task does, or the main program (self 0, call NULL), whose answers are compared. */
+static uint64_t act(duite *rt, const duite_call *call, unsigned self, duite_object *object,
+                    uint64_t digest)
 {
     const struct nest_task *task = &program.task[self];
     unsigned n = task->n;
@@ -206,6 +223,10 @@ static uint64_t act(duite *rt, unsigned self, duite_object *object, uint64_t dig
         const bool asks = action->kind == NEST_GET || action->kind == NEST_WAIT;
         _Alignas(8) unsigned char value[NEST_MAX_COUNT * 8] = {0};
         size_t count = 0;
+        if (action->kind == NEST_CONTRIBUTE) {
+            contribute(call, self, action);
+            continue;
+        }
         const int code = action->kind == NEST_REPLAY
                              ? replay(rt, action, object)
                              : call_one(rt, action, object, &object[n], value, &count);
@@ -249,7 +270,7 @@ static int body(const duite_call *call)
             if (data[b])
                 found("task %u, parameter %u: a contribution does not begin with zeros", self, i);
     }
-    const uint64_t digest = act(call->rt, self, object, nest_read(task, call->param));
+    const uint64_t digest = act(call->rt, call, self, object, nest_read(task, call->param));
 
     for (unsigned i = 0; i < task->n; i++)
         if (task->sized[i] && (task->mode[i] == DUITE_W || task->mode[i] == DUITE_RW))
@@ -332,7 +353,7 @@ static void run(const struct settings *settings)
         found("start: %s", duite_message());
         return;
     }
-    act(rt, 0, object, 0);
+    act(rt, NULL, 0, object, 0);
     const int code = duite_stop(&rt);
     if (code && code != DUITE_E_NOT_FREED && code < 0)
         found("stop: %s", duite_message());

@@ -35,6 +35,8 @@ static int fail_all(const duite_call *call);
 static int for_ever(const duite_call *call);
 static int through_reader(const duite_call *call);
 static int twice(const duite_call *call);
+static int own_least(const duite_call *call);
+static int own_twice(const duite_call *call);
 
 #define ARGS .args_size = sizeof(struct args)
 static const duite_kernel
@@ -53,7 +55,13 @@ static const duite_kernel
     THROUGH_READER = {.name = "through a reader",
                       .body = through_reader,
                       .access = {DUITE_R, DUITE_W}},
-    TWICE = {.name = "twice", .body = twice, .access = {DUITE_RWP}, ARGS};
+    TWICE = {.name = "twice", .body = twice, .access = {DUITE_RWP}, ARGS},
+    OWN_LEAST = {.name = "own least",
+                 .body = own_least,
+                 .access = {DUITE_CWP},
+                 .law = {&duite_min},
+                 ARGS},
+    OWN_TWICE = {.name = "own twice", .body = own_twice, .access = {DUITE_CWP}, ARGS};
 
 static const struct args *args_of(const duite_call *call)
 {
@@ -179,6 +187,30 @@ static int through_reader(const duite_call *call)
     return code;
 }
 
+/* n, or what it finds. */
+static int own_least(const duite_call *call)
+{
+    int32_t *least = duite_contribute(call, 0);
+
+    if (args_of(call)->n)
+        least[0] = args_of(call)->n;
+    return 0;
+}
+
+/* 5 before and 10 after its two children, if it has any, of depth n. */
+static int own_twice(const duite_call *call)
+{
+    const struct args child = {.n = args_of(call)->n - 1};
+    int32_t *before = duite_contribute(call, 0), *after;
+
+    for (int i = 0; i < 2 && child.n >= 0; i++)
+        DUITE_FORK(call->rt, &OWN_TWICE, &child, call->param[0].object);
+    after = duite_contribute(call, 0);
+    before[0] = 5;
+    after[0] = 10;
+    return args_of(call)->code;
+}
+
 static int twice(const duite_call *call)
 {
     DUITE_FORK(call->rt, &APPEND, args_of(call), call->param[0].object);
@@ -198,9 +230,9 @@ static const duite_kernel NOTHING = {.name = "nothing", .body = nothing, .access
 static void start(unsigned threads)
 {
     static const duite_kernel *const KERNELS[] = {
-        &PUT,        &APPEND,   &COPY,     &FAILS,          &DEEPER, &DEEPER_WAITING,
-        &APPEND_ALL, &FAIL_ALL, &FOR_EVER, &THROUGH_READER, &TWICE,  &NOTHING,
-        NULL};
+        &PUT,        &APPEND,    &COPY,     &FAILS,          &DEEPER, &DEEPER_WAITING,
+        &APPEND_ALL, &FAIL_ALL,  &FOR_EVER, &THROUGH_READER, &TWICE,  &NOTHING,
+        &OWN_LEAST,  &OWN_TWICE, NULL};
     duite_options options = duite_options_default();
 
     options.kernels = KERNELS;
@@ -336,6 +368,25 @@ static int build_postponed(duite *runtime, void *context)
     return DUITE_FORK(runtime, &TWICE, DUITE_ARGS(struct args, .n = 1), pair[0]);
 }
 
+/* The task itself contributes, with children and without any, or fails. */
+START_TEST(contributing)
+{
+    int32_t value = -1;
+
+    duite_set(rt, object, &(int32_t){9});
+    DUITE_FORK(rt, &OWN_LEAST, DUITE_ARGS(struct args, .n = 0), object);
+    holds(object, 9);
+    DUITE_FORK(rt, &OWN_LEAST, DUITE_ARGS(struct args, .n = 5), object);
+    holds(object, 5);
+    DUITE_FORK(rt, &OWN_TWICE, DUITE_ARGS(struct args, .n = 3), object);
+    holds(object, 5 + 15 * 15);
+    DUITE_FORK(rt, &OWN_TWICE, DUITE_ARGS(struct args, .n = 0, .code = 24), object);
+    ck_assert_int_eq(duite_get(rt, object, &value), 24);
+    ck_assert_int_eq(duite_wait(rt), 24);
+    duite_set(rt, object, NULL);
+}
+END_TEST
+
 START_TEST(replays)
 {
     duite_graph graph;
@@ -372,6 +423,7 @@ int main(void)
     tcase_add_test(cases, sizes);
     tcase_add_test(cases, failures);
     tcase_add_test(cases, reading);
+    tcase_add_test(cases, contributing);
     tcase_add_test(cases, replays);
     suite_add_tcase(suite, cases);
     return unit_run(suite);

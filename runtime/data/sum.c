@@ -95,6 +95,7 @@ struct data_piece *data_sum_leaf(struct data_sum *sum, uint64_t first)
     struct data_piece *leaf = data_piece_new();
     if (!leaf)
         return NULL;
+    leaf->sum = sum;
     leaf->first = first;
     leaf->next = sum->pieces;
     sum->pieces = leaf;

@@ -12,6 +12,7 @@
  */
 struct data_piece {
     struct data_piece *next;
+    struct data_sum *sum; /* of a leaf of this rank; else NULL */
     uint64_t first;
     uint32_t level;
     struct data_packet *packet; /* owns the bytes of value, unless it is shared with other pieces */

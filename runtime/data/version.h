@@ -51,9 +51,14 @@ static inline const struct data_failure *data_failure_first(const struct data_fa
 
 /* ---- Versions ---- */
 
-/* A link that makes a task wait for something: embedded in the task. */
+/* What makes a task wait for a version or a sum: embedded in the task. A reader is a link in the
+ * version's list until the value is there, and only then knows the version. An heir knows the
+ * version that it writes, which gets the bytes of the old one with the last hold on that. */
 struct data_waiter {
-    struct data_waiter *next;
+    union {
+        struct data_waiter *next;     /* of a reader that waits */
+        struct data_version *version; /* to be read, or written */
+    };
     uint32_t back; /* bytes from the beginning of the task; 0: it is no task that waits */
     uint32_t mode; /* of the access it is embedded in */
 };
@@ -76,8 +81,8 @@ static inline struct data_packet *data_packet_line(size_t bytes)
  *
  * A version is held by its producer (a task, or a message on its way), by the object while it is
  * the current one, and by each task that reads it. Whoever releases the last hold passes the
- * version on: to its heir, the task that overwrites the bytes in place and frees the version, or,
- * if there is none, to the allocator. So a writer waits for one thing only, and no list of readers
+ * bytes on: to the version that its heir writes, a task that overwrites them in place, or, if there
+ * is no heir, to the allocator. So a writer waits for one thing only, and no list of readers
  * is kept. */
 struct data_version {
     _Atomic(struct data_waiter *)
@@ -113,7 +118,7 @@ static inline struct data_version *data_version_new(duite_type type, size_t max,
     return version;
 }
 
-/* Frees a version whose bytes were taken over by its heir, or that never had any. */
+/* Frees a version whose bytes were taken over, or that never had any. */
 static inline void data_version_free(struct data_version *version)
 {
     if (!version->lent)
@@ -141,14 +146,16 @@ static inline struct data_packet *data_version_packet(const struct data_version 
 /* Puts poison in place of the bytes, which are freed; failure NULL: changes nothing. */
 void data_version_poison(struct data_version *version, const struct data_failure *failure);
 
-/* Lets `waiter` wait for the value. False if the value is there already: then nothing is kept, and
- * the producer's writes are seen. The caller holds it. */
+/* Lets `waiter` wait for the value. False if the value is there already: then the producer's writes
+ * are seen, and the waiter knows the version. The caller holds it. */
 static inline bool data_version_await(struct data_version *version, struct data_waiter *waiter)
 {
     struct data_waiter *first = atomic_load_explicit(&version->waiters, memory_order_acquire);
     do {
-        if (first == DATA_PRODUCED)
+        if (first == DATA_PRODUCED) {
+            waiter->version = version;
             return false;
+        }
         waiter->next = first;
     } while (!atomic_compare_exchange_weak_explicit(&version->waiters, &first, waiter,
                                                     memory_order_acq_rel, memory_order_acquire));
@@ -190,17 +197,33 @@ static inline bool data_version_is_alone(const struct data_version *version)
 /* No hold is left, and there is no heir: frees it with its bytes. */
 void data_version_drop(struct data_version *version);
 
+/* The bytes go on to the version that a task writes in place, and old poison where the task reads
+ * it, too. Frees the old version. */
+static inline void data_version_take_over(struct data_version *old, const struct data_waiter *heir)
+{
+    struct data_version *version = heir->version;
+    if (!old->poisoned) {
+        version->packet = old->packet;
+    } else if (heir->mode == DUITE_RW) {
+        version->poisoned = true;
+        version->failure = old->failure;
+    }
+    data_version_free(old);
+}
+
 /* No hold is left: returns the heir, or frees a version without one. */
 static inline struct data_waiter *data_version_end(struct data_version *version)
 {
-    if (!version->renamed && version->heir)
-        return version->heir;
-    data_version_drop(version);
-    return NULL;
+    struct data_waiter *heir = version->renamed ? NULL : version->heir;
+    if (!heir)
+        data_version_drop(version);
+    else if (heir->back)
+        data_version_take_over(version, heir);
+    return heir;
 }
 
-/* Releases a hold. Returns the heir if this was the last one, and NULL otherwise; frees a version
- * without heir. The last release sees every access to the bytes. */
+/* Releases a hold. Returns the heir if this was the last one, and NULL otherwise. The version is
+ * freed then, but for an heir that is no task. The last release sees every access to the bytes. */
 static inline struct data_waiter *data_version_release(struct data_version *version)
 {
     if (atomic_fetch_sub_explicit(&version->holds, 1, memory_order_acq_rel) != 1)

@@ -27,6 +27,11 @@ int offload_home(const struct task *task)
 
 /* ---- Arriving ---- */
 
+static bool access_is_postponed(const struct task *task, size_t i)
+{
+    return task_postponed((duite_mode)task->access[i].waiter.mode);
+}
+
 static void offloaded_init(struct offload_task *own, struct task_graph *graph,
                            struct data_packet *packet)
 {
@@ -60,7 +65,8 @@ bool offload_arrived(struct task_graph *graph, struct worker *worker, struct dat
     task->cost = message->cost;
     for (uint32_t i = 0; i < task->n; i++) {
         task->access[i].waiter.mode = data_mode_of(graph->kernels[task->kernel], i);
-        task->access[i].sized = param_of(own)[i].sized;
+        if (!access_is_postponed(task, i))
+            task->access[i].sized = param_of(own)[i].sized;
     }
     atomic_fetch_add_explicit(&graph->offloaded, 1, memory_order_relaxed);
     work_ready(graph->pool, worker, task);
@@ -68,11 +74,6 @@ bool offload_arrived(struct task_graph *graph, struct worker *worker, struct dat
 }
 
 /* ---- Running ---- */
-
-static bool access_is_postponed(const struct task *task, size_t i)
-{
-    return task_postponed((duite_mode)task->access[i].waiter.mode);
-}
 
 /* For what the body, or its children, leave of a parameter. */
 static size_t result_room(const struct task *task, size_t i)

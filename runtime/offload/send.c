@@ -36,19 +36,20 @@ static bool access_reads(const struct task_access *access)
     return mode == DUITE_R || mode == DUITE_RW;
 }
 
-/* The value that is sent along: of what the body, or a child, may read. */
+/* The value that is sent along: of what the body, or a child, may read. What a ready task changes
+ * has the value already. */
 static const struct data_version *access_value(const struct task *task, size_t i)
 {
     const struct data_object *lent = access_lent(task, i);
     if (!access_reads(&task->access[i]))
         return NULL;
-    return lent ? lent->current : task->access[i].in;
+    return lent ? lent->current : task->access[i].waiter.version;
 }
 
 /* A body waits for what it reads; one whose children read does not. */
-static bool value_may_go(const struct data_version *value)
+static bool value_may_go(const struct task *task, size_t i, const struct data_version *value)
 {
-    return data_version_ready(value) && data_version_packet(value);
+    return (!access_lent(task, i) || data_version_ready(value)) && data_version_packet(value);
 }
 
 static size_t access_room(const struct task *task, size_t i)
@@ -60,8 +61,9 @@ static size_t access_room(const struct task *task, size_t i)
         return access->waiter.mode == DUITE_RP ? 0 : lent->room;
     if (out)
         return data_version_room(out);
-    return access->waiter.mode == DUITE_CW ? access->sum->count * data_type_size(access->sum->type)
-                                           : 0;
+    return access->waiter.mode == DUITE_CW
+               ? access->leaf->sum->count * data_type_size(access->leaf->sum->type)
+               : 0;
 }
 
 /* Whether nothing of its place is cut off: by places the ranks know which task comes before which.
@@ -85,7 +87,7 @@ bool offload_may_go(const struct task_graph *graph, const struct task *task, siz
     size_t there = message_args_at(task->n) + kernel->args_size, back = message_values_at(task->n);
     for (uint32_t i = 0; i < task->n; i++) {
         const struct data_version *in = access_value(task, i);
-        if (in && !value_may_go(in))
+        if (in && !value_may_go(task, i, in))
             return false;
         there += in ? message_lines(in->packet->bytes) + 64 : 0;
         back += message_lines(access_room(task, i));
@@ -106,7 +108,8 @@ static struct offload_param access_param(const struct task *task, size_t i)
                                       .type = lent->type,
                                       .sized = lent->sized};
     if (!version)
-        return (struct offload_param){.max = access->sum->count, .type = access->sum->type};
+        return (struct offload_param){.max = access->leaf->sum->count,
+                                      .type = access->leaf->sum->type};
     return (struct offload_param){.bytes = in ? in->packet->bytes : 0,
                                   .max = version->max,
                                   .type = version->type,

@@ -29,22 +29,21 @@ static void place_move(struct plan *plan, struct plan_place *place, void *data)
 
 /* The bytes that an object's version has now, and its poison; rounds work on them in place. False
  * without memory. */
-static bool place_bind(struct plan *plan, struct task_access *access, struct plan_place *place)
+static bool place_bind(struct plan *plan, const struct task_access *access,
+                       struct plan_place *place)
 {
-    struct data_version *in = access->in;
-    struct data_packet *packet = in ? data_version_packet(in) : NULL;
-    place->failure = in && place->mode != DUITE_W ? data_version_failure(in) : NULL;
+    struct data_version *version = access->waiter.version;
+    place->failure = NULL;
     if (place->mode == DUITE_NONE)
         return true;
+    place->failure = data_version_failure(version);
     if (place->failure)
         plan_taint(plan, PLAN_POISONED);
-    if (place->mode != DUITE_R) {
-        if (in)
-            data_version_free(in);
-        access->in = NULL;
-        if (!packet)
-            packet = data_packet_new(place->bytes, false);
-        access->out->packet = packet;
+    struct data_packet *packet = data_version_packet(version);
+    if (place->mode != DUITE_R && !packet) { /* to be poisoned again at the end */
+        packet = data_packet_new(place->bytes, false);
+        version->poisoned = false;
+        version->packet = packet;
         if (!packet)
             return false;
     }
@@ -121,9 +120,6 @@ void plan_replay_run(struct task *task)
         plan->place[i].failure = NULL;
     for (size_t i = 0; i < plan->n_objects; i++)
         fine &= place_bind(plan, &task->access[i], &plan->place[i]);
-    if (task->access[plan->n_objects].in) /* the turn */
-        data_version_free(task->access[plan->n_objects].in);
-    task->access[plan->n_objects].in = NULL;
     run_reset_nodes(plan, replay);
     if (!fine)
         run_starve(plan, task);
@@ -133,9 +129,11 @@ void plan_replay_end(struct task_graph *graph, struct worker *worker, struct pla
                      uint64_t rounds)
 {
     struct task *task = plan->replay;
-    for (size_t i = 0; i < plan->n_objects; i++)
-        if (task->access[i].out)
-            data_version_poison(task->access[i].out, plan->place[i].failure);
+    for (size_t i = 0; i < plan->n_objects; i++) {
+        struct data_version *out = task_written(&task->access[i]);
+        if (out)
+            data_version_poison(out, plan->place[i].failure);
+    }
     atomic_store_explicit(&plan->rounds, rounds, memory_order_relaxed);
     atomic_fetch_add_explicit(&plan->over, 1, memory_order_release);
     work_notify(graph->pool);

@@ -22,7 +22,6 @@ static bool lend_contribution(struct task_scope *inner, struct task_access *acce
             data_sum_free(sum);
         return false;
     }
-    access->sum = sum;
     access->leaf = leaf;
     task_lend(inner, access, object, NULL, NULL);
     return true;
@@ -43,7 +42,7 @@ bool task_lend_value(struct task_scope *inner, struct task_access *access,
             data_version_free(out);
         return false;
     }
-    access->out = out;
+    access->left = out;
     task_lend(inner, access, object, in, out);
     return true;
 }
@@ -52,14 +51,14 @@ struct task_left_value task_lent_left(const struct task_access *access)
 {
     const bool contributes = access->waiter.mode == DUITE_CWP;
     struct task_left_value left = {0};
-    if (contributes && access->sum) {
-        const struct data_piece *leaf = access->sum->pieces;
+    if (contributes && access->leaf) {
+        const struct data_piece *leaf = access->leaf;
         left.failure = leaf->failure;
         left.values = leaf->value;
-        left.bytes = access->sum->count * data_type_size(access->sum->type);
-    } else if (!contributes && access->out) {
-        struct data_packet *packet = data_version_packet(access->out);
-        left.failure = data_version_failure(access->out);
+        left.bytes = leaf->sum->count * data_type_size(leaf->sum->type);
+    } else if (!contributes && access->left) {
+        struct data_packet *packet = data_version_packet(access->left);
+        left.failure = data_version_failure(access->left);
         left.values = packet ? data_payload(packet) : NULL;
         left.bytes = packet ? packet->bytes : 0;
     }
@@ -68,11 +67,11 @@ struct task_left_value task_lent_left(const struct task_access *access)
 
 void task_lent_drop(struct task_access *access)
 {
-    if (access->waiter.mode == DUITE_CWP && access->sum)
-        data_sum_free(access->sum);
-    else if (access->waiter.mode != DUITE_CWP && access->out)
-        data_version_release(access->out);
-    access->out = NULL;
+    if (access->waiter.mode == DUITE_CWP && access->leaf)
+        data_sum_free(access->leaf->sum);
+    else if (access->waiter.mode != DUITE_CWP && access->left)
+        data_version_release(access->left);
+    access->left = NULL;
 }
 
 /* ---- At home ---- */

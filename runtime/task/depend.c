@@ -12,25 +12,22 @@
 
 void task_read(struct task *task, size_t i, struct data_version *version, uint32_t *done)
 {
-    struct task_access *access = &task->access[i];
     data_version_hold(version);
-    access->in = version;
-    *done += !data_version_await(version, &access->waiter);
+    *done += !data_version_await(version, &task->access[i].waiter);
 }
 
 int task_overwrite(struct task_graph *graph, struct task *task, size_t i,
                    struct data_object *object, struct data_version *version, uint32_t *done)
 {
-    struct task_access *access = &task->access[i];
-    access->out = data_object_version(object);
-    if (!access->out) {
+    struct data_waiter *waiter = &task->access[i].waiter;
+    waiter->version = data_object_version(object);
+    if (!waiter->version) {
         base_no_memory("a version");
         return task_break(graph);
     }
-    access->in = version;
-    object->current = access->out;
+    object->current = waiter->version;
     if (version)
-        version->heir = &access->waiter;
+        version->heir = waiter;
     *done += !version || data_version_release(version) != NULL;
     return DUITE_OK;
 }

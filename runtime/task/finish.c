@@ -7,16 +7,16 @@ static inline void access_release(struct task_graph *graph, struct worker *worke
                                   const struct task_access *access)
 {
     if (access->waiter.mode == DUITE_R) { /* most */
-        ready_release(graph, worker, access->in);
+        ready_release(graph, worker, access->waiter.version);
         return;
     }
     switch (access->waiter.mode) {
     case DUITE_W:
     case DUITE_RW:
-        ready_publish(graph, worker, access->out);
+        ready_publish(graph, worker, access->waiter.version);
         break;
     case DUITE_CW:
-        task_wake(graph, worker, data_sum_release(access->sum));
+        task_wake(graph, worker, data_sum_release(access->leaf->sum));
         break;
     default: /* postponed: the scope's */
         break;
@@ -48,7 +48,7 @@ struct data_packet *task_send_packet(struct task *task)
     struct task_send *send = task->send;
     if (send->packet || !task->n)
         return send->packet;
-    const struct data_version *version = task->access[0].in;
+    const struct data_version *version = task->access[0].waiter.version;
     if (version->poisoned)
         return send->packet = task_poison_packet(send->key, version->failure);
     /* The same bytes may be on their way to another rank already: then the header says just this.

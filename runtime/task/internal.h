@@ -90,9 +90,9 @@ int task_contribute(const struct task_fork_call *call, struct data_object *objec
 int task_reduce(struct task_scope *scope, struct worker *worker, struct data_object *object);
 void task_run_combine(struct task *task);
 void task_run_pieces(struct task *task);
-/* Makes the contributions of a task's children `leaf` of `sum`, to which the task contributes. */
+/* Makes the contributions of a task's children `leaf`, which is the task's. */
 int task_gather(struct task_scope *scope, struct worker *worker, struct data_object *object,
-                struct data_sum *sum, struct data_piece *leaf);
+                struct data_piece *leaf);
 void task_run_gather(struct task *task);
 
 /* Where a search for a kernel begins in the table of their addresses. */
@@ -241,7 +241,8 @@ void task_body_enters(struct duite_call_private *body);
 /* What a BODY writes by this access: w or rw. */
 static inline struct data_version *task_written(const struct task_access *access)
 {
-    return access->waiter.mode == DUITE_W || access->waiter.mode == DUITE_RW ? access->out : NULL;
+    const uint32_t mode = access->waiter.mode;
+    return mode == DUITE_W || mode == DUITE_RW ? access->waiter.version : NULL;
 }
 
 /* Keeps a failure until stop; `report`: the next wait returns it. Never NULL. */

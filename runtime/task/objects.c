@@ -272,7 +272,7 @@ static bool param_is_sized(const duite_call *call, size_t i)
         return task_lent_object(call->own->scope, access->lent)->sized;
     if (task->type == TASK_OFFLOADED)
         return access->sized;
-    return access->out ? access->out->sized : access->in->sized;
+    return access->waiter.version->sized;
 }
 
 static bool param_is_written(const struct task *task, size_t i)

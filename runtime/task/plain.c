@@ -48,7 +48,7 @@ PLAIN_INLINE bool plain_take_objects(const struct plain_fork *fork, const duite_
             return false;
         }
         object->mark = mark;
-        access->waiter = like->waiter;
+        *access = *like;
         access->object = object;
     }
     return true;
@@ -90,16 +90,15 @@ PLAIN_INLINE bool plain_overwrite(const struct plain_fork *fork, struct task_acc
                                   struct data_object *object, uint32_t *done)
 {
     struct task_graph *const graph = fork->graph;
-    struct data_version *version = object->current, *out;
+    struct data_version *version = object->current;
     task_note_version(object, graph->rank);
     if (access->waiter.mode == DUITE_W && graph->rename_max)
         version = task_rename(graph, fork->worker, object);
-    access->in = version;
-    access->out = out = fork->nested ? task_child_version(fork->scope, object, !version)
-                                     : data_object_version(object);
+    struct data_version *out = fork->nested ? task_child_version(fork->scope, object, !version)
+                                            : data_object_version(object);
     if (!out)
         return false;
-    object->current = out;
+    object->current = access->waiter.version = out;
     if (version)
         version->heir = &access->waiter;
     *done += !version || data_version_release(version) != NULL;
@@ -115,10 +114,8 @@ PLAIN_INLINE uint32_t plain_depend(const struct plain_fork *fork, uint32_t *made
     for (; access < end; access++) {
         struct data_object *object = access->object;
         if (access->waiter.mode == DUITE_R) {
-            access->in = object->current;
-            access->out = NULL;
-            data_version_hold(access->in);
-            done += !data_version_await(access->in, &access->waiter);
+            data_version_hold(object->current);
+            done += !data_version_await(object->current, &access->waiter);
         } else if (!plain_overwrite(fork, access, object, &done)) {
             break;
         }

@@ -43,8 +43,6 @@ static inline void ready_wake_heir(struct task_graph *graph, struct worker *work
         task_wake_heir(graph, worker, heir);
         return;
     }
-    /* An access: another core wrote what its task will need next. */
-    base_prefetch(((struct task_access *)(void *)heir)->out);
     ready_take(graph, worker, ready_waiter_task(heir), 1);
 }
 
@@ -62,6 +60,7 @@ static inline struct data_waiter *ready_produced(struct task_graph *graph, struc
     struct data_waiter *waiter = data_version_produced(version);
     while (waiter) {
         struct data_waiter *next = waiter->next; /* the task may run and be freed once woken */
+        waiter->version = version;
         ready_take(graph, worker, ready_waiter_task(waiter), 1);
         waiter = next;
     }

@@ -42,7 +42,6 @@ static int leaf_add(const struct task_fork_call *call, struct data_object *objec
     if (!call->task)
         return DUITE_OK;
     struct task_access *access = &call->task->access[i];
-    access->sum = object->sum;
     access->leaf = data_sum_leaf(object->sum, first);
     if (access->leaf)
         return DUITE_OK;
@@ -185,7 +184,7 @@ static void sum_keep_unclosed(struct task_graph *graph, struct data_object *obje
 }
 
 int task_gather(struct task_scope *scope, struct worker *worker, struct data_object *object,
-                struct data_sum *outer, struct data_piece *leaf)
+                struct data_piece *leaf)
 {
     struct task_graph *graph = scope->graph;
     struct data_sum *sum = object->sum;
@@ -195,7 +194,6 @@ int task_gather(struct task_scope *scope, struct worker *worker, struct data_obj
         return DUITE_E_MEMORY;
     }
     task->access[0].waiter.mode = DUITE_CW;
-    task->access[0].sum = outer;
     task->access[0].leaf = leaf;
     object->leaves = 0;
     task_wake(graph, worker, data_sum_release(sum));
@@ -230,13 +228,12 @@ void task_run_combine(struct task *task)
         data_sum_free(sum->sum);
         return;
     }
-    struct data_version *in = task->access[0].in, *out = task->access[0].out;
+    struct data_version *out = task->access[0].waiter.version;
     struct data_piece *whole;
     int code;
     const struct data_failure *failure = data_sum_fold(sum->sum, &whole, &code);
-    out->packet = data_version_packet(in);
-    failure = code ? task_fail_memory(task) : data_failure_first(data_version_failure(in), failure);
-    data_version_free(in);
+    failure =
+        code ? task_fail_memory(task) : data_failure_first(data_version_failure(out), failure);
     data_version_poison(out, failure);
     if (!failure && whole)
         sum->sum->law->combine(data_payload(out->packet), whole->value, sum->sum->count,

@@ -24,21 +24,17 @@ static const struct data_failure *version_make_room(const struct task *task,
     return out->packet ? NULL : task_fail_memory(task);
 }
 
-/* The new version takes over the bytes of the old one. */
-static inline const struct data_failure *version_take_over(const struct task *task,
-                                                           struct task_access *access)
+/* The version that is written, which has the bytes of the one before it, is to have enough of them.
+ * Returns the poison that it has in place of bytes, or NULL. */
+static inline const struct data_failure *version_prepare(const struct task *task,
+                                                         const struct task_access *access)
 {
-    struct data_version *in = access->in, *out = access->out;
-    const bool keep = access->waiter.mode == DUITE_RW;
-    if (in) {
-        const struct data_failure *failure = keep ? data_version_failure(in) : NULL;
-        out->packet = data_version_packet(in);
-        data_version_free(in);
-        access->in = NULL;
-        if (failure)
-            return failure;
-    }
-    return out->packet && !out->sized ? NULL : version_make_room(task, out, keep);
+    struct data_version *out = access->waiter.version;
+    if (out->poisoned)
+        return out->failure;
+    return out->packet && !out->sized
+               ? NULL
+               : version_make_room(task, out, access->waiter.mode == DUITE_RW);
 }
 
 /* What the body gets of a version that has bytes; `fresh`: it finds unspecified ones there. Returns
@@ -66,7 +62,7 @@ static void param_describe_lent(duite_param *param, const struct data_object *ob
 static const struct data_failure *leaf_open(const struct task *task,
                                             const struct task_access *access, duite_param *param)
 {
-    const struct data_sum *sum = access->sum;
+    const struct data_sum *sum = access->leaf->sum;
     const struct data_failure *failure =
         data_sum_open(sum, access->leaf) ? NULL : task_fail_memory(task);
     struct data_packet *packet = access->leaf->packet;
@@ -97,12 +93,12 @@ params_prepare(struct task *task, duite_param *param, bool *sized)
     for (; access < end; access++, param++, name.slot++) {
         const uint32_t mode = access->waiter.mode;
         if (mode == DUITE_R) {
-            new = param_describe(param, access->in, false);
+            new = param_describe(param, access->waiter.version, false);
         } else if (mode == DUITE_W || mode == DUITE_RW) {
-            new = version_take_over(task, access);
+            new = version_prepare(task, access);
             if (!new)
-                new = param_describe(param, access->out, mode == DUITE_W);
-            *sized |= access->out->sized;
+                new = param_describe(param, access->waiter.version, mode == DUITE_W);
+            *sized |= access->waiter.version->sized;
         } else {
             new = param_prepare_other(task, access, param);
         }
@@ -135,17 +131,12 @@ const struct data_failure *task_body_failure(const struct duite_call_private *bo
     return task_fail_task(body->task, body->scope, &failure);
 }
 
-/* What it writes is poisoned, and the bytes of what it overwrites are taken over. */
+/* What it writes is poisoned. */
 static void outputs_poison(struct task *task, const struct data_failure *failure)
 {
     for (uint32_t i = 0; i < task->n; i++) {
-        struct task_access *access = &task->access[i];
+        const struct task_access *access = &task->access[i];
         struct data_version *out = task_written(access);
-        if (out && access->in) {
-            out->packet = data_version_packet(access->in);
-            data_version_free(access->in);
-            access->in = NULL;
-        }
         if (out)
             data_version_poison(out, failure);
         if (access->waiter.mode == DUITE_CW)
@@ -231,9 +222,10 @@ void task_run_result(struct task_graph *graph, struct task *task, task_take_resu
 
 static void view_run(struct task *task)
 {
-    struct data_version *in = task->access[0].in, *out = task->access[1].out;
+    const struct data_version *in = task->access[0].waiter.version;
+    struct data_version *out = task->access[1].waiter.version;
     const struct data_failure *failure =
-        data_failure_first(data_version_failure(in), version_take_over(task, &task->access[1]));
+        data_failure_first(data_version_failure(in), version_prepare(task, &task->access[1]));
     if (!failure)
         data_view_gather(task->view, data_type_size((duite_type)in->type), data_payload(in->packet),
                          data_payload(out->packet));
@@ -244,7 +236,7 @@ static void view_run(struct task *task)
 static void copy_run(struct task_graph *graph, struct task *task)
 {
     struct task_copy *copy = task->copy;
-    const struct data_version *version = task->access[0].in;
+    const struct data_version *version = task->access[0].waiter.version;
     copy->failure = data_version_failure(version);
     if (!copy->failure)
         copy->bytes = version->packet->bytes;

@@ -131,7 +131,7 @@ void task_lend(struct task_scope *inner, struct task_access *access,
                                .bytes = object->room,
                                .overwrites = access->waiter.mode == DUITE_WP};
     if (access->waiter.mode == DUITE_CWP) {
-        exit->sum = access->sum;
+        exit->sum = access->leaf->sum;
         exit->leaf = access->leaf;
     }
     int rank = nest->scope.graph->rank;
@@ -230,8 +230,8 @@ static struct data_version *read_version(const struct duite_call_private *body, 
 {
     const struct task *task = body->task;
     if (task->type == TASK_BODY) {
-        data_version_hold(task->access[i].in);
-        return task->access[i].in;
+        data_version_hold(task->access[i].waiter.version);
+        return task->access[i].waiter.version;
     }
     const duite_param *param = &body->param[i];
     size_t bytes = param->count * data_type_size(param->type);

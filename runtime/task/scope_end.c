@@ -94,7 +94,7 @@ static void exit_contribute(struct task_exit *exit, struct worker *worker,
     struct task_scope *scope = exit->scope;
     exit->leaf->failure = data_failure_first(failure, exit->leaf->failure);
     if (object->leaves) {
-        if (!task_gather(scope, worker, object, exit->sum, exit->leaf))
+        if (!task_gather(scope, worker, object, exit->leaf))
             return;
         exit->leaf->failure = &scope_no_memory;
     }

@@ -55,23 +55,24 @@ enum task_state {
 
 struct task_scope;
 
-/* One parameter of a task: half a cache line. Everything else about the object is said by the
- * versions, the sum, or, if it is postponed, by the task's scope. */
+/* One parameter of a task: a quarter of a cache line. Everything else about the object is said by
+ * the version, the sum, or, if it is postponed, by the task's scope. */
 struct task_access {
-    struct data_waiter waiter; /* waits for `in`, as a reader or as its heir; its mode is that of
-                                  the access */
     union {
-        struct data_version *in;    /* read or overwritten; NULL: a w without bytes to reuse */
-        struct data_piece *leaf;    /* cw: this task's part of the sum */
-        size_t lent;                /* postponed: its place in the task's scope */
-        bool sized;                 /* OFFLOADED: the object changes its size */
-        struct data_object *object; /* while it is forked */
-    };
-    union {
-        struct data_version *out; /* w, rw: what is written; r: NULL */
-        struct data_sum *sum;     /* cw: what is contributed to; NULL: it was lent */
+        struct data_waiter waiter; /* r, w, rw: the version, or waits for it */
+        struct {
+            union {
+                struct data_object *object; /* while it is forked */
+                struct data_piece *leaf;    /* cw: this task's part of the sum; NULL: lent */
+                struct data_version *left;  /* OFFLOADED, postponed: what its children write */
+                bool sized;                 /* OFFLOADED: the object changes its size */
+            };
+            uint32_t lent; /* postponed: its place in the task's scope */
+            uint32_t mode; /* the waiter's */
+        };
     };
 };
+_Static_assert(sizeof(struct task_access) == 16, "tasks that wait take little memory");
 
 /* One cache line, then the accesses, then, on a multiple of 16 bytes, arguments or what the union
  * points to. */

@@ -155,7 +155,7 @@ static void report_waiters(struct report *report, const struct task *task, uint3
 {
     const struct task_access *access = &task->access[i];
     bool writes = access->waiter.mode == DUITE_W || access->waiter.mode == DUITE_RW;
-    const struct data_waiter *waiter = writes ? data_version_waiters(access->out) : NULL;
+    const struct data_waiter *waiter = writes ? data_version_waiters(access->waiter.version) : NULL;
     if (waiter)
         report_line(report, "%s waits for what %s writes to parameter %u",
                     report_crowd(report, waiter).text, report_words(report, task).text, i);

@@ -13,6 +13,7 @@ static void given(const void *memory);
 
 #include "runtime/data/version.c"
 #define work_ready ready
+#include "runtime/task/depend.c"
 #include "runtime/task/ready.c"
 
 enum { READERS = 2, WRITER = READERS, TASKS = READERS + 1 };
@@ -52,12 +53,12 @@ void ready(struct work_pool *pool, struct worker *worker, struct task *task)
     (void)pool;
     (void)worker;
     if (task->number < WRITER) {
+        explore_check(task->access[0].waiter.version == its.version);
         read_version((int)task->number);
         return;
     }
     explore_check(++its.ran[WRITER] == 1);
     all_done(); /* it overwrites the bytes from here on */
-    data_version_free(its.version);
 }
 
 /* ---- The threads ---- */

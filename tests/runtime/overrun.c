@@ -6,7 +6,7 @@
 
 #include <stdio.h>
 
-enum { NUMBERS = 8, OBJECTS = 7, ROUNDS = 20, ARGS = 32 /* bytes */ };
+enum { NUMBERS = 8, OBJECTS = 7, ROUNDS = 20, ARGS = 48 /* bytes */ };
 
 static int step(const duite_call *call)
 {

@@ -41,7 +41,7 @@ bench_libbench_la_CPPFLAGS = $(AM_CPPFLAGS) -DBENCH_MPIRUN='"$(MPIRUN)"' -DBENCH
 bench_libbench_la_LIBADD = libduite_cloth.la libduite_predict.la libduite_core.la
 check_PROGRAMS += bench/duite-bench
 bench_duite_bench_SOURCES = bench/duite-bench.c
-bench_duite_bench_LDADD = bench/libbench.la $(TILES_OBJECT) -lm
+bench_duite_bench_LDADD = $(BENCH_LIBRARY) -lm
 EXTRA_DIST += bench/experiments bench/garments/experiments.sh bench/garments/hanging.yaml bench/garments/worn.yaml \
 	bench/vassilev/panels.awk bench/vassilev/jeans.yaml bench/rivals/blender_sphere.py bench/rivals/openmp.c bench/cg/states.yaml bench/tiles.c
 
@@ -50,6 +50,8 @@ TILES_OBJECT = bench/rivals/tiles.$(OBJEXT)
 $(TILES_OBJECT): bench/tiles.c bench/tiles.h
 	$(AM_V_CC)$(MKDIR_P) bench/rivals && $(CC) -std=gnu17 -O2 -fPIE $(WARN_CFLAGS) -I$(srcdir) -c -o $@ $(srcdir)/bench/tiles.c
 CLEANFILES += $(TILES_OBJECT)
+# What a program links that uses libbench.
+BENCH_LIBRARY = bench/libbench.la $(TILES_OBJECT)
 
 OPENMP_FILES = bench/rivals/openmp.c bench/problem.c bench/serve.c
 OPENMP_NEEDS = $(OPENMP_FILES) bench/problem.h bench/serve.h bench/tiles.h $(TILES_OBJECT)
@@ -152,7 +154,7 @@ bench_tasks_counted_LDADD = libduite.la
 # What bench/experiments contact-partition runs.
 check_PROGRAMS += bench/contact-partition
 bench_contact_partition_SOURCES = bench/contact/partition.c
-bench_contact_partition_LDADD = bench/libbench.la -lm
+bench_contact_partition_LDADD = $(BENCH_LIBRARY) -lm
 
 # The six loops that bench/experiments vassilev runs.
 check_PROGRAMS += bench/vassilev/vassilev

@@ -85,7 +85,10 @@ void data_version_drop(struct data_version *version)
 
 /* The code of a path: an index below 0x80 is one byte; a larger one is its bytes, highest first,
  * behind 0x80 plus their number. No byte of an index is a zero at its beginning, so that a path is
- * smaller than all that continue it. */
+ * smaller than all that continue it. PATH_CUT stands for an index that did not fit. Whatever fits
+ * in its place is less than that index, and begins with a smaller byte. */
+enum { PATH_CUT = 0xff };
+
 static unsigned path_index_bytes(uint64_t index)
 {
     unsigned n = 1;
@@ -99,6 +102,8 @@ void data_path_add(struct data_failure *failure, uint64_t index)
     unsigned n = index < 0x80 ? 0 : path_index_bytes(index);
     uint32_t at = failure->path_length;
     if (at + 1 + n > sizeof failure->path) {
+        if (at < sizeof failure->path)
+            failure->path[at] = PATH_CUT;
         failure->path_length = sizeof failure->path; /* nothing may follow what was left out */
         return;
     }
@@ -112,7 +117,7 @@ void data_path_print(const struct data_failure *failure, char *text, size_t size
 {
     size_t used = (size_t)snprintf(text, size, "%llu", (unsigned long long)failure->number);
     const uint8_t *at = failure->path, *end = at + sizeof failure->path;
-    while (at < end && *at && used + 24 < size) {
+    while (at < end && *at && *at != PATH_CUT && used + 24 < size) {
         unsigned n = *at >= 0x80 ? *at - 0x80u : 0;
         uint64_t index = n ? 0 : *at;
         for (at++; n && at < end; n--)

@@ -20,7 +20,7 @@
  * Its place in the reference order is `number` and, for a task forked by a task, `path`: its index
  * among the children of each ancestor, outermost first, in a code that orders like the numbers
  * (data_path_add). Of paths that are longer the end is cut off: among tasks that differ there only
- * any one may be taken for the first. */
+ * any one may be taken for the first. A path that is cut off and a whole one are in order. */
 struct data_failure {
     int32_t code;         /* of the body, or of the runtime (memory) */
     int32_t rank;         /* where the task ran */

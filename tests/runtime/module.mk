@@ -217,9 +217,11 @@ tests_runtime_test_graph_sums_SOURCES = tests/runtime/test_graph_sums.c
 tests_runtime_test_graph_sums_LDADD = $(DUITE_TEST_LIBS)
 endif
 
-check_PROGRAMS += tests/runtime/test_containers tests/runtime/test_reduce
-TESTS += tests/runtime/test_containers tests/runtime/test_reduce
+check_PROGRAMS += tests/runtime/test_containers tests/runtime/test_place tests/runtime/test_reduce
+TESTS += tests/runtime/test_containers tests/runtime/test_place tests/runtime/test_reduce
 tests_runtime_test_containers_SOURCES = tests/runtime/test_containers.c
 tests_runtime_test_containers_LDADD = $(DUITE_TEST_LIBS)
+tests_runtime_test_place_SOURCES = tests/runtime/test_place.c
+tests_runtime_test_place_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_reduce_SOURCES = tests/runtime/test_reduce.c
 tests_runtime_test_reduce_LDADD = $(DUITE_TEST_LIBS)

@@ -155,10 +155,9 @@ typedef struct duite_mapping {
 /* ---- Balancers: which ready tasks run on another rank, and which objects move there ---- */
 
 /* A ready task that may run on any rank, with all that it forks: to its home it is a leaf, whatever
- * grows there. The main program or a task forked it, on this rank or, if that task is another
- * rank's, above it. Its fork named no rank, and its kernel is not
- * fixed (duite_kernel.fixed) and has no side effects. What it and its children read travels there,
- * and is there to travel; what they leave travels back. */
+ * grows there. The main program forked it, or a task that runs here, of this rank or of another.
+ * Its fork named no rank, and its kernel is not fixed (duite_kernel.fixed) and has no side effects.
+ * What it and its children read is here, and travels there; what they leave travels back. */
 typedef struct duite_leaf {
     const char *kernel;
     uint64_t number; /* its place in fork order */

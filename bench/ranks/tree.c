@@ -94,5 +94,5 @@ static int run(void *context, struct serve_request *request, double *value)
 static const struct serve_run RUNS[] = {{"rank_tree", run}, {0}};
 
 const struct bench_case ranks_tree = {
-    "tree", "an unbalanced tree, some 100 nodes a task, born on one rank, over one and two", plan,
-    RUNS, 0};
+    "tree", "an unbalanced tree, 80 nodes a task, born on one rank, over one and two", plan, RUNS,
+    0};

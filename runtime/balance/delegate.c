@@ -3,9 +3,8 @@
  * and only such as cost more than their transfer. Half, because it works on meanwhile; and the last
  * ready task stays, since its own worker takes it next. Of tasks whose subtrees are of unknown size
  * it grants a single one, the oldest: nearest to the root, it is the largest as far as anybody can
- * tell. Who got too much grants in turn. After Blumofe & Leiserson (1999), with half
- * of a queue instead of one task: Hendler & Shavit, Non-blocking steal-half work queues, PODC 2002.
- */
+ * tell. Who got too much grants in turn. After Blumofe & Leiserson (1999), with half of a queue
+ * instead of one task: Hendler & Shavit, Non-blocking steal-half work queues, PODC 2002. */
 #include "runtime/balance/balance.h"
 
 /* How long a request stands: the first, and the longest. */

@@ -9,8 +9,8 @@
  * does what its body and its children would have done. On the other rank (receive.c) it is an
  * offloaded task, with a small reference order of its own. It waits for nothing, its descendants
  * wait for nothing but one another, and no rank's count of tasks has it. Of its descendants any may
- * be delegated in turn, to a third rank or back home. The layers above decide
- * which tasks go, and measure. Any worker may call these functions. */
+ * be delegated in turn, to a third rank or back home. The layers above decide which tasks go, and
+ * measure. Any worker may call these functions. */
 
 /* Whether a ready task may run on another rank; *bytes: how many go there and come back. */
 bool offload_may_go(const struct task_graph *graph, const struct task *task, size_t *bytes);

@@ -14,7 +14,8 @@ struct duite_call_private {
     struct task *task;
     const duite_param *param; /* as the runtime keeps them */
     struct task_scope *scope; /* what its children may use, or NULL as long as it has none */
-    int refused;       /* code of a duite_resize that failed, or 0: it fails with that at least */
+    int refused;       /* code of a duite_resize or duite_contribute that failed, or 0: it fails
+                          with that at least */
     int remembered;    /* the first error of its calls that it may not have looked at */
     char message[204]; /* of `remembered` */
     char text[sizeof((struct data_failure *)0)->text]; /* what it says of its failure */

@@ -240,9 +240,8 @@ static const struct data_failure *failure_home(const struct task_scope *scope)
     return scope->top == &scope->graph->root ? NULL : scope->top->place;
 }
 
-/* The task's place in the reference order. What a body does after a wait comes after the children
- * before it. The place of an offloaded
- * task goes on from the one it has at home. */
+/* What a body does after a wait comes after the children before it. The place of an offloaded task
+ * goes on from the one it has at home. */
 void task_failure_place(struct data_failure *failure, const struct task *task,
                         const struct task_scope *inner)
 {

@@ -63,7 +63,7 @@ struct task_access {
         struct {
             union {
                 struct data_object *object; /* while it is forked */
-                struct data_piece *leaf;    /* cw: this task's part of the sum; NULL: lent */
+                struct data_piece *leaf;    /* cw, cwp: this task's part of the sum */
                 struct data_version *left;  /* OFFLOADED, postponed: what its children write */
                 bool sized;                 /* OFFLOADED: the object changes its size */
             };

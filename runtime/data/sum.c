@@ -105,7 +105,7 @@ struct data_piece *data_sum_leaf(struct data_sum *sum, uint64_t first)
 
 bool data_sum_open(const struct data_sum *sum, struct data_piece *leaf)
 {
-    size_t bytes = sum->count * data_type_size(sum->type);
+    const size_t bytes = data_sum_bytes(sum);
     leaf->packet = data_packet_new(bytes, !sum->law->neutral);
     if (!leaf->packet)
         return false;

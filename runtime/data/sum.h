@@ -45,6 +45,12 @@ void data_sum_free(struct data_sum *sum);
 /* Notes that a rank contributes; counts each once. */
 void data_sum_sender(struct data_sum *sum, int rank);
 
+/* Of a value: of a leaf, a piece or the whole. */
+static inline size_t data_sum_bytes(const struct data_sum *sum)
+{
+    return sum->count * data_type_size(sum->type);
+}
+
 /* Adds leaf `first`, to be run on this rank: its task fills value. NULL without memory. */
 struct data_piece *data_sum_leaf(struct data_sum *sum, uint64_t first);
 

@@ -61,9 +61,7 @@ static size_t access_room(const struct task *task, size_t i)
         return access->waiter.mode == DUITE_RP ? 0 : lent->room;
     if (out)
         return data_version_room(out);
-    return access->waiter.mode == DUITE_CW
-               ? access->leaf->sum->count * data_type_size(access->leaf->sum->type)
-               : 0;
+    return access->waiter.mode == DUITE_CW ? data_sum_bytes(access->leaf->sum) : 0;
 }
 
 /* Whether nothing of its place is cut off: by places the ranks know which task comes before which.

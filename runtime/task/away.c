@@ -55,7 +55,7 @@ struct task_left_value task_lent_left(const struct task_access *access)
         const struct data_piece *leaf = access->leaf;
         left.failure = leaf->failure;
         left.values = leaf->value;
-        left.bytes = leaf->sum->count * data_type_size(leaf->sum->type);
+        left.bytes = data_sum_bytes(leaf->sum);
     } else if (!contributes && access->left) {
         struct data_packet *packet = data_version_packet(access->left);
         left.failure = data_version_failure(access->left);

@@ -258,7 +258,7 @@ void task_run_gather(struct task *task)
 static struct data_packet *pieces_pack(const struct task_sum *sum, const struct data_pieces *pieces)
 {
     const size_t n = pieces->n;
-    size_t bytes = sum->sum->count * data_type_size(sum->sum->type);
+    size_t bytes = data_sum_bytes(sum->sum);
     size_t stride = (bytes + 15) / 16 * 16;
     struct data_packet *packet = data_packet_new(n * (sizeof(struct piece_place) + stride), false);
     if (!packet)

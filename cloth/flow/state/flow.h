@@ -103,7 +103,7 @@ struct flow {
     struct flow_checkpoint from; /* that the run goes on from; bytes NULL: none */
 
     /* Of the run that is on. */
-    bool made[FLOW_FIELDS_OF_ALL];        /* which fields exist, in all blocks or in the first */
+    uint32_t made[FLOW_FIELDS_OF_ALL]; /* in which blocks a field exists: in none from there on */
     const struct flow_progress *progress; /* tasks ask it whether to stop; NULL: nobody is asked */
     unsigned n_clocks;
     struct flow_clock *clock; /* a worker */

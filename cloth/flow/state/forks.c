@@ -16,8 +16,7 @@ static duite_object *add_parameter(const struct flow_state *state, uint32_t bloc
                                    enum flow_whose whose, enum flow_field_id field,
                                    duite_object *refs)
 {
-    const struct flow_tables *tables = &state->flow->tables;
-    const struct flow_table *t = tables->block + block;
+    const struct flow_table *t = state->flow->tables.block + block;
     const struct flow_tied_blocks *tied = &state->tied.now;
     switch (whose) {
     case FLOW_OF_NEIGHBOURS:
@@ -25,7 +24,7 @@ static duite_object *add_parameter(const struct flow_state *state, uint32_t bloc
             *refs++ = flow_field_object(state, field, t->neighbour[s]);
         return refs;
     case FLOW_OF_ALL:
-        for (uint32_t b = 0; b < tables->n_blocks; b++)
+        for (uint32_t b = 0; b < state->flow->made[field]; b++)
             if (flow_fields[field].exists(state, b))
                 *refs++ = flow_field_object(state, field, b);
         return refs;

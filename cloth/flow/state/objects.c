@@ -32,11 +32,20 @@ static void hint_block(struct flow_state *state, uint32_t b)
     duite_hint(state->rt, state->block[b].x, t->n, t->n_neighbours, state->refs, bytes);
 }
 
+/* Up to the last block that has the field: forks of many blocks look no further. */
+static uint32_t blocks_with(const struct flow_state *state, enum flow_field_id field)
+{
+    uint32_t n = state->flow->tables.n_blocks;
+    while (n && !flow_fields[field].exists(state, n - 1))
+        n--;
+    return n;
+}
+
 void flow_objects_make(struct flow_state *state)
 {
     const uint32_t n_blocks = state->flow->tables.n_blocks;
     for (int field = 0; field < FLOW_FIELDS_OF_ALL; field++)
-        state->flow->made[field] = flow_fields[field].exists(state, 0);
+        state->flow->made[field] = blocks_with(state, (enum flow_field_id)field);
     for (uint32_t b = 0; b < n_blocks; b++)
         for (int field = 0; field < FLOW_FIELDS_OF_BLOCK; field++)
             make_field(state, (enum flow_field_id)field, b, state->block[b].of + field);

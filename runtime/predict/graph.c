@@ -224,7 +224,7 @@ static uint32_t exchange_value(struct predict_graph *graph, uint32_t object)
 uint32_t predict_fetch(struct predict_graph *graph, uint32_t object, int host)
 {
     struct predict_object *o = &graph->object[object];
-    if (o->holder == PREDICT_ALL || o->holder == host ||
+    if (o->holder == PREDICT_ALL || o->holder == host || o->lasts ||
         (graph->cluster->hosts == 1 && host == PREDICT_ALL))
         return o->writer;
     if (host == PREDICT_ALL) {
@@ -253,6 +253,7 @@ void predict_overwrite(struct predict_graph *graph, uint32_t node, uint32_t obje
             predict_edge(graph, graph->link[i].node, node);
     o->writer = node;
     o->holder = host;
+    o->written = true;
     o->shown = false;
     o->readers = o->copies = PREDICT_NONE;
 }

@@ -69,6 +69,8 @@ struct predict_object {
     uint32_t gathered; /* a view: the writer of its object then */
     uint32_t place;    /* in the record that is replayed, plus 1, while its round is compiled */
     bool shown;        /* counted among what its writer shows */
+    bool written;      /* a task has */
+    bool lasts;        /* its value is of before the trace, and no task of the trace writes it */
 };
 
 enum { PREDICT_ALL = -1 }; /* holder */

@@ -101,6 +101,13 @@ void predict_task(struct predict_program *p, const struct predict_fork *fork,
     p->tasks++;
 }
 
+duite_mode predict_fork_mode(const struct predict_program *p, const struct predict_fork *fork,
+                             size_t k)
+{
+    return fork->kernel == PREDICT_NONE ? DUITE_W
+                                        : trace_mode(&p->graph->run->kernel[fork->kernel], k);
+}
+
 void predict_fork(struct predict_program *p, const struct predict_fork *fork)
 {
     const uint32_t own = predict_owner(p->graph, fork, fork->object);
@@ -238,13 +245,31 @@ static void entry_wait(struct predict_program *p)
     op_end(p, from, to, PREDICT_NONE, true);
 }
 
+/* Which values last: who reads them has them since before the trace. One walk over the whole trace
+ * finds them, on one host, where nothing travels. */
+static void lasting_find(struct predict_program *p)
+{
+    struct predict_graph *graph = p->graph;
+    struct predict_cluster one = *graph->cluster;
+    one.hosts = 1;
+    struct predict_graph whole = {.run = graph->run, .cluster = &one};
+    p->code = predict_build(&whole);
+    for (size_t i = 0; i < graph->n_objects && !p->code; i++)
+        graph->object[i].lasts = !whole.object[i].written && whole.object[i].leaves == PREDICT_NONE;
+    predict_graph_free(&whole);
+}
+
+/* The first part of a run that is traced may begin behind others. */
 static void entry_switch(struct predict_program *p, bool on)
 {
+    const bool first = !p->forks && !p->tasks;
     p->forks = trace_words_next2(&p->words);
     trace_words_next2(&p->words);
     uint64_t now = trace_words_next2(&p->words);
     if (!on)
         op_end(p, now, now, PREDICT_NONE, true);
+    else if (first && p->forks && p->graph->cluster->hosts > 1)
+        lasting_find(p);
     p->since = now;
 }
 

@@ -22,6 +22,7 @@ struct predict_fork {
 struct predict_recorded {
     struct predict_fork *fork;
     uint32_t *use;
+    bool *writes; /* n_objects: whether a fork does more with it than read it */
     size_t n_forks, n_objects, n_calls;
     uint64_t replays, map_at;    /* so far; at this many the mapping is called again */
     uint64_t rounds;             /* since the last call of the balancer */
@@ -108,6 +109,9 @@ void predict_homes(struct predict_program *p, size_t n);
 /* Room for the objects of a fork. */
 bool predict_room(struct predict_program *p, size_t n);
 void predict_fork(struct predict_program *p, const struct predict_fork *fork);
+/* What a fork of a recorded graph does with its object k; a set writes. */
+duite_mode predict_fork_mode(const struct predict_program *p, const struct predict_fork *fork,
+                             size_t k);
 /* The same where it is known already where the task runs. */
 void predict_task(struct predict_program *p, const struct predict_fork *fork,
                   const struct predict_where *where);

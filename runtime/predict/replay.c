@@ -16,6 +16,7 @@ static void recorded_forget(struct predict_recorded *recorded)
 {
     free(recorded->fork);
     free(recorded->use);
+    free(recorded->writes);
     free(recorded->bound);
     predict_round_free(recorded->round);
     *recorded = (struct predict_recorded){0};
@@ -55,10 +56,11 @@ static bool recorded_fork(struct predict_program *p, struct predict_recorded *gr
         p->damaged = true;
     for (size_t k = 0; k < fork->n && !p->damaged; k++) {
         fork->object[k] = trace_words_next(&p->words);
+        const duite_mode mode = predict_fork_mode(p, fork, k);
         p->damaged |= fork->object[k] >= graph->n_objects;
-        p->damaged |= fork->kernel != PREDICT_NONE &&
-                      p->graph->run->kernel[fork->kernel].replicated &&
-                      trace_mode(&p->graph->run->kernel[fork->kernel], k) == DUITE_CW;
+        p->damaged |= mode == DUITE_CW && p->graph->run->kernel[fork->kernel].replicated;
+        if (!p->damaged)
+            graph->writes[fork->object[k]] |= mode != DUITE_R;
     }
     p->damaged |= fork->kernel == PREDICT_NONE && fork->n != 1;
     *used += fork->n;
@@ -79,7 +81,8 @@ void predict_take_graph(struct predict_program *p, size_t n_objects)
     graph->n_objects = n_objects;
     graph->fork = malloc((n + 1) * sizeof *graph->fork);
     graph->use = malloc((left + 1) * sizeof *graph->use);
-    p->graph->failed |= !graph->fork || !graph->use;
+    graph->writes = calloc(n_objects + 1, sizeof *graph->writes);
+    p->graph->failed |= !graph->fork || !graph->use || !graph->writes;
     while (!p->graph->failed && graph->n_forks < n &&
            recorded_fork(p, graph, graph->n_forks, &used))
         graph->n_forks++;
@@ -107,9 +110,11 @@ static bool round_ran(const struct predict_program *p, const struct predict_reco
 }
 
 /* On each host one node that all its objects wait for, and that waits for them. */
-static void replay_gate(struct predict_program *p, const uint32_t *bound, size_t n)
+static void replay_gate(struct predict_program *p, const struct predict_recorded *recorded)
 {
     struct predict_graph *graph = p->graph;
+    const uint32_t *bound = recorded->bound;
+    const size_t n = recorded->n_objects;
     const uint32_t hosts = graph->cluster->hosts;
     for (uint32_t h = 0; h < hosts; h++)
         graph->began[h] = PREDICT_NONE;
@@ -125,7 +130,8 @@ static void replay_gate(struct predict_program *p, const uint32_t *bound, size_t
             graph->began[host] =
                 predict_add(graph, &(struct predict_node){.host = host, .kind = PREDICT_INSTANT});
         if (!graph->failed)
-            predict_use(graph, graph->began[host], bound[i], DUITE_RW, o->writer);
+            predict_use(graph, graph->began[host], bound[i],
+                        recorded->writes[i] ? DUITE_RW : DUITE_R, o->writer);
     }
 }
 
@@ -314,9 +320,8 @@ static void replay_simulate(struct predict_program *p, struct predict_recorded *
                             uint64_t max)
 {
     struct predict_graph *graph = p->graph;
-    const uint32_t *bound = recorded->bound;
     predict_op_replays(p, true);
-    replay_gate(p, bound, recorded->n_objects);
+    replay_gate(p, recorded);
     graph->replays = true;
     for (uint64_t i = 0; i < max && !graph->failed; i++) {
         uint64_t first = p->forks + i * recorded->n_calls;
@@ -326,7 +331,7 @@ static void replay_simulate(struct predict_program *p, struct predict_recorded *
         recorded->rounds++;
     }
     graph->round = graph->flag = PREDICT_NONE;
-    replay_gate(p, bound, recorded->n_objects);
+    replay_gate(p, recorded);
     graph->replays = false;
     predict_op_replays(p, false);
 }

@@ -14,13 +14,6 @@ enum { MAX_PAIRS = 64 }; /* hosts; with more an exchange shares no packet with o
 
 /* ---- A round as plain data ---- */
 
-static duite_mode round_mode(const struct predict_program *p, const struct predict_fork *fork,
-                             size_t k)
-{
-    return fork->kernel == PREDICT_NONE ? DUITE_W
-                                        : trace_mode(&p->graph->run->kernel[fork->kernel], k);
-}
-
 static void round_fork(const struct predict_program *p, struct plan_source *source,
                        struct plan_access *access, const struct predict_fork *fork)
 {
@@ -35,7 +28,7 @@ static void round_fork(const struct predict_program *p, struct plan_source *sour
         .cost = set ? 0 : (double)fork->cost};
     for (size_t k = 0; k < fork->n; k++)
         access[source->n_accesses++] =
-            (struct plan_access){.object = fork->object[k], .mode = round_mode(p, fork, k)};
+            (struct plan_access){.object = fork->object[k], .mode = predict_fork_mode(p, fork, k)};
 }
 
 /* The objects of a record, and a flag that is none of them. The object of a view is among them if

@@ -52,6 +52,27 @@ START_TEST(replicated)
 }
 END_TEST
 
+/* What rounds only read goes to another host once, in whatever replay; and not at all if it is
+ * there since before the trace, which nothing of it writes. What each replay writes goes in each.
+ */
+START_TEST(reads_last)
+{
+    static const struct trace_file_node nodes[] = {{FILE_W, 1 * MS, 0, 1, {0}},
+                                                   {FILE_RR_RW, 1 * MS, 0, 3, {0, 1, 2}}};
+    for (int late = 0; late < 2; late++) {
+        struct trace_file file = {.forks = late ? 100 : 0};
+        for (uint32_t slot = 1; slot <= 4; slot++)
+            trace_file_object(&file, slot, slot == 2 ? 1000 : 8);
+        trace_file_begin(&file, 4);
+        trace_file_graph(&file, 4, 2, nodes);
+        for (int i = 0; i < 3; i++)
+            trace_file_replay(&file, 4, 2, nodes, 2);
+        const struct predict_cluster two = predicted_machine(2, 1);
+        ck_assert_uint_eq(predicted(&file, &two).bytes, late ? 6 * 8 : 6 * 8 + 1000);
+    }
+}
+END_TEST
+
 /* A set runs wherever what it sets is read, and nothing moves. */
 START_TEST(sets)
 {
@@ -244,6 +265,7 @@ int main(void)
     TCase *cases = tcase_create("replays");
     tcase_add_test(cases, packets);
     tcase_add_test(cases, replicated);
+    tcase_add_test(cases, reads_last);
     tcase_add_test(cases, sets);
     tcase_add_test(cases, exchanges);
     tcase_add_test(cases, phases);

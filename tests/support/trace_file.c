@@ -44,7 +44,8 @@ void trace_file_begin(struct trace_file *file, uint32_t n_slots)
         trace_file_word(file, 0);
     }
     trace_file_word(file, TRACE_ON);
-    for (int i = 0; i < 3; i++)
+    put_long(file, file->forks);
+    for (int i = 0; i < 2; i++)
         put_long(file, 0);
 }
 

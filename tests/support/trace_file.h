@@ -34,7 +34,8 @@ enum trace_file_kernel {
 void trace_file_object(struct trace_file *file, uint32_t slot, uint64_t bytes);
 /* What the object exchanges with another one; before trace_file_begin. */
 void trace_file_hint(struct trace_file *file, uint32_t slot, uint32_t other, double bytes);
-/* All objects up to a slot have homes from now on; then steps are recorded. */
+/* All objects up to a slot have homes from now on; then steps are recorded, behind as many forks as
+ * `forks` says. */
 void trace_file_begin(struct trace_file *file, uint32_t n_slots);
 /* A task of so many seconds. */
 void trace_file_fork(struct trace_file *file, enum trace_file_kernel kernel, double seconds,

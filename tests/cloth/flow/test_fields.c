@@ -235,6 +235,18 @@ static void check_made(const struct session *s, int field, uint32_t block)
                   is->name, block, count);
 }
 
+/* Forks that name a field of all blocks look at no block behind the last one that has it: else a
+ * step of n blocks takes n x n looks. */
+static void check_last(const struct session *s, int field)
+{
+    const struct flow_field *is = flow_fields + field;
+    const uint32_t n = s->flow->made[field];
+    ck_assert_msg(n <= s->flow->tables.n_blocks, "%s", is->name);
+    ck_assert_msg(!n || is->exists(&s->state, n - 1), "%s: not in block %u", is->name, n - 1);
+    for (uint32_t b = n; b < blocks_of(s, field); b++)
+        ck_assert_msg(!is->exists(&s->state, b), "%s: in block %u", is->name, b);
+}
+
 START_TEST(what_exists_is_made)
 {
     struct session s;
@@ -244,6 +256,8 @@ START_TEST(what_exists_is_made)
     for (int field = 0; field < FLOW_FIELDS_OF_ALL; field++)
         for (uint32_t b = 0; b < blocks_of(&s, field); b++)
             check_made(&s, field, b);
+    for (int field = 0; field < FLOW_FIELDS_OF_ALL; field++)
+        check_last(&s, field);
     session_end(&s);
 }
 END_TEST

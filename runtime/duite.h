@@ -468,6 +468,11 @@ int duite_is_local(duite *rt, duite_object object);
 
 /* ---- Tasks ---- */
 
+/* Forks that follow name these n objects: what forks look at of them comes into the cache
+ * meanwhile. For main programs that fork tasks on tens of thousands of objects, a few tasks ahead;
+ * it changes nothing else. Names of no object are passed over. Main program. Local. */
+void duite_prefetch(const duite *rt, size_t n, const duite_object *objects);
+
 /* Forks a task on n objects, in the order of the kernel's modes; a task names an object once.
  * `args` points to the kernel's args_size bytes (ignored if 0). It runs where its first w or rw
  * object lives, else its first r object, else on rank 0. Contributions (cw) between two other

@@ -13,7 +13,8 @@
 
 enum { SIDE = 1000, GRAIN = 1000, QUICK_SIDE = 60, QUICK_GRAIN = 50, CORES = 16 };
 /* 16 million vertices in blocks of 1,000 do not fit this machine: 4 million in as many blocks of
- * 250 do. Bodies then take four times as long; halos have twice the bytes, for which the network
+ * 250 do. Bodies then take four times as long, but for those of the coarse space, which are of
+ * blocks, however large these are; halos have twice the bytes, for which the network
  * has half the bandwidth. */
 enum { VAST_SIDE = 2000, VAST_GRAIN = 250, VAST_HOSTS = 64, VAST_CORES = 64, LARGER = 4 };
 
@@ -138,11 +139,23 @@ static int run_scaling(void *context, struct serve_request *request, double *val
     return isnan(*value) ? serve_fail("%s", duite_message()) : 0;
 }
 
+/* The tasks of the coarse space: those of groups, and those that every rank runs. */
+static bool is_coarse(const char *kernel)
+{
+    return !strncmp(kernel, "group_", strlen("group_")) || strstr(kernel, "coarse");
+}
+
+static bool grows(const char *kernel)
+{
+    return !is_coarse(kernel);
+}
+
 static int predict_vast(const struct trace_run *run, uint32_t hosts, uint32_t cores,
                         struct predict_result *result)
 {
     struct predict_cluster cluster = cluster_of(hosts, cores, NETWORKS + 1);
     cluster.bodies = LARGER;
+    cluster.grows = grows;
     cluster.bandwidth *= 0.5;
     return predict(run, &cluster, result, NULL) ? serve_fail("%s", duite_message()) : 0;
 }
@@ -167,13 +180,6 @@ static int run_vast(void *context, struct serve_request *request, double *value)
     return 0;
 }
 
-/* The tasks of the coarse space: those of groups, and those that every rank runs. */
-static bool is_coarse(const struct trace_run *run, uint32_t kernel)
-{
-    return !strncmp(run->kernel_name[kernel], "group_", strlen("group_")) ||
-           strstr(run->kernel_name[kernel], "coarse");
-}
-
 /* coarse side= grain= threads= hosts= network=: their share of the chain. */
 static int run_coarse(void *context, struct serve_request *request, double *value)
 {
@@ -186,7 +192,7 @@ static int run_coarse(void *context, struct serve_request *request, double *valu
         makespan(run, (uint32_t)serve_number(request, "hosts"), CORES, network_of(request), chain);
     *value = 0;
     for (uint32_t k = 0; k < run->n_kernels; k++)
-        *value += is_coarse(run, k) ? chain[k] / all : 0;
+        *value += is_coarse(run->kernel_name[k]) ? chain[k] / all : 0;
     free(chain);
     return isnan(*value) ? serve_fail("%s", duite_message()) : 0;
 }

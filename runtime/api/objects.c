@@ -158,6 +158,16 @@ int duite_is_local(duite *rt, duite_object object)
     return found->view && object_is_here(rt, &table->object[found->view->parent]);
 }
 
+void duite_prefetch(const duite *rt, size_t n, const duite_object *objects)
+{
+    if (!rt || task_thread_mark() != rt->thread)
+        return;
+    const struct data_table *table = &rt->graph.table;
+    for (size_t i = 0; i < n; i++)
+        if (objects[i].slot < table->n_slots)
+            base_prefetch(table->object + objects[i].slot);
+}
+
 int duite_free(duite *rt, duite_object object)
 {
     struct duite_call_private *body = api_body(rt);

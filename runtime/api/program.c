@@ -144,14 +144,15 @@ __attribute__((noinline)) static int fork_other(duite *rt, const duite_kernel *k
                             objects);
 }
 
-/* A usual fork that touches nothing of this rank is done by task_prune. Every so many such forks
- * messages are polled all the same, and broken communication is noticed. */
+/* A usual fork that asks nothing of this rank is done by task_prune or task_prune_more. Every so
+ * many such forks messages are polled all the same, and broken communication is noticed. */
 __attribute__((noinline)) static int fork_ranks(duite *rt, const duite_kernel *kernel,
                                                 const void *args, size_t n,
                                                 const duite_object *objects)
 {
     enum { FORKS_A_TICK = 32 };
-    if (!task_prune(&rt->graph, kernel, args, n, objects))
+    if (!task_prune(&rt->graph, kernel, args, n, objects) &&
+        !task_prune_more(&rt->graph, kernel, args, n, objects))
         return fork_other(rt, kernel, args, n, objects);
     if (rt->trace)
         trace_fork(rt->trace, kernel, &(struct task_options){.at = TASK_ANYWHERE}, n, objects);

@@ -38,16 +38,38 @@ void base_free(void *memory)
     free(memory);
 }
 
+/* The capacity that an array gets; 0: there is no such memory. */
+static size_t grown_capacity(size_t capacity, size_t needed, size_t element)
+{
+    size_t wanted = capacity ? capacity : 16;
+    while (wanted < needed)
+        wanted *= 2;
+    return wanted <= SIZE_MAX / element ? wanted : 0;
+}
+
 void *base_grow(void *array, size_t *capacity, size_t needed, size_t element)
 {
     if (needed <= *capacity)
         return array;
-    size_t wanted = *capacity ? *capacity : 16;
-    while (wanted < needed)
-        wanted *= 2;
-    void *moved = wanted <= SIZE_MAX / element ? realloc(array, wanted * element) : NULL;
+    const size_t wanted = grown_capacity(*capacity, needed, element);
+    void *moved = wanted ? realloc(array, wanted * element) : NULL;
     if (moved)
         *capacity = wanted;
+    return moved;
+}
+
+void *base_grow_lines(void *array, size_t *capacity, size_t needed, size_t element)
+{
+    if (needed <= *capacity)
+        return array;
+    const size_t wanted = grown_capacity(*capacity, needed, element);
+    void *moved = wanted ? base_alloc(wanted * element) : NULL;
+    if (!moved)
+        return NULL;
+    if (array)
+        memcpy(moved, array, *capacity * element);
+    base_free(array);
+    *capacity = wanted;
     return moved;
 }
 

@@ -19,6 +19,8 @@ void base_free(void *memory);
 /* Makes room for `needed` elements in a growing array: doubles *capacity. Returns the array, which
  * may have moved; NULL without memory, and then nothing has changed. Freed by free. */
 void *base_grow(void *array, size_t *capacity, size_t needed, size_t element);
+/* The same for an array that begins at a cache line. Freed by base_free. */
+void *base_grow_lines(void *array, size_t *capacity, size_t needed, size_t element);
 
 /* Prefetches a line that is written soon: it comes here as this core's own, so that the first
  * write, or an atomic operation behind it, need not wait. */

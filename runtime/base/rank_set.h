@@ -52,6 +52,16 @@ static inline uint32_t base_ranks_count(const uint64_t *set, size_t words)
     return n;
 }
 
+/* The first rank of the set that is not below `from`; -1: there is none. */
+static inline int base_ranks_next(const uint64_t *set, size_t words, int from)
+{
+    size_t i = (size_t)from / 64;
+    uint64_t word = i < words ? set[i] & UINT64_MAX << (from % 64) : 0;
+    while (!word && ++i < words)
+        word = set[i];
+    return word ? (int)(64 * i) + __builtin_ctzll(word) : -1;
+}
+
 /* Whether each rank of `set` is one of `other`. */
 static inline bool base_ranks_within(const uint64_t *set, const uint64_t *other, size_t words)
 {

@@ -16,7 +16,7 @@ int data_table_start(struct data_table *table, int n_ranks)
     table->words = base_ranks_words(n_ranks);
     table->n_slots = 1;
     struct data_object *object =
-        base_grow(NULL, &table->capacity, table->n_slots, sizeof *table->object);
+        base_grow_lines(NULL, &table->capacity, table->n_slots, sizeof *table->object);
     uint64_t *copies = base_grow(NULL, &table->copies_capacity, table->words, sizeof *copies);
     table->object = object;
     table->copies = copies;
@@ -43,15 +43,15 @@ void data_table_stop(struct data_table *table)
     free(table->vacant);
     free(table->blocks);
     free(table->copies);
-    free(table->object);
+    base_free(table->object);
     memset(table, 0, sizeof *table);
 }
 
 /* Room for one more slot and its bookkeeping. */
 static int table_reserve(struct data_table *table)
 {
-    void *moved = base_grow(table->object, &table->capacity, (size_t)table->n_slots + 1,
-                            sizeof *table->object);
+    void *moved = base_grow_lines(table->object, &table->capacity, (size_t)table->n_slots + 1,
+                                  sizeof *table->object);
     if (!moved)
         return base_no_memory("the table of objects");
     table->object = moved;

@@ -1,6 +1,7 @@
 #ifndef DUITE_DATA_OBJECT_H
 #define DUITE_DATA_OBJECT_H
 
+#include "runtime/base/memory.h"
 #include "runtime/data/sum.h"
 
 #pragma GCC visibility push(hidden) /* called directly: no other library can replace them */
@@ -9,7 +10,7 @@
  * the table says about other ranks follows from the forks, which are the same everywhere: no rank
  * is ever asked. */
 struct data_object {
-    /* What a fork of other ranks' tasks reads and writes (task/prune.h) comes first. */
+    /* What a fork of other ranks' tasks reads and writes (task/prune.h) has one cache line. */
     uint32_t generation; /* even: the slot is free */
     int home;            /* -1: not decided yet */
     int holder;          /* the rank that has the current version for certain */
@@ -30,7 +31,9 @@ struct data_object {
     uint32_t block;      /* its place among the leaders with its home, in the order they were made;
                             followers share their leader's */
     uint32_t hint;       /* while home is -1: its place in `unsettled` */
+    uint64_t : 64;       /* of two lines: in the table, which begins at one, each begins at one */
 };
+_Static_assert(sizeof(struct data_object) == 2 * BASE_LINE, "objects begin at cache lines");
 
 /* What the program hinted about an object, until its home is settled. */
 struct data_hint {

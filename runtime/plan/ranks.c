@@ -99,9 +99,11 @@ int plan_open(struct plan *plan, const struct plan_round *part)
 bool plan_at_home(const struct plan *plan, const struct plan_record *record)
 {
     const struct data_object *objects = plan->graph->table.object;
-    for (size_t i = 0; plan->words && i < record->n_objects; i++)
+    for (size_t i = 0; plan->words && i < record->n_objects; i++) {
+        plan_prefetch(record, i + PLAN_AHEAD);
         if (objects[record->object[i].bound.slot].home != plan->home[i])
             return false;
+    }
     return true;
 }
 
@@ -110,27 +112,31 @@ static bool ranks_has(const struct plan *plan, const uint64_t *sets, size_t i, i
     return base_ranks_has(sets + i * plan->words, rank);
 }
 
+/* The first rank of set i that is not below `from`, or -1. */
+static int ranks_next(const struct plan *plan, const uint64_t *sets, size_t i, int from)
+{
+    return base_ranks_next(sets + i * plan->words, plan->words, from);
+}
+
 int plan_fetch(const struct plan *plan, struct worker *worker, size_t i, struct data_object *object)
 {
-    int code = DUITE_OK;
-    for (int rank = 0; rank < plan->graph->n_ranks && !code; rank++)
-        if (ranks_has(plan, plan->enter, i, rank))
-            code = task_fetch(plan->graph, worker, object, rank);
+    int code = DUITE_OK, rank = -1;
+    while (!code && (rank = ranks_next(plan, plan->enter, i, rank + 1)) >= 0)
+        code = task_fetch(plan->graph, worker, object, rank);
     return code;
 }
 
+/* Its home holds it, if that is one of those that have it, else the first of them. */
 bool plan_moves(const struct plan *plan, size_t i, struct data_object *object)
 {
-    int holder = -1;
-    for (int rank = plan->graph->n_ranks; rank-- > 0;)
-        if (ranks_has(plan, plan->end, i, rank) && holder != object->home)
-            holder = rank;
-    if (holder < 0)
+    const int first = ranks_next(plan, plan->end, i, 0);
+    if (first < 0)
         return false;
+    const int holder = ranks_has(plan, plan->end, i, object->home) ? object->home : first;
     object->number++;
     data_object_moved(object, holder);
-    for (int rank = 0; rank < plan->graph->n_ranks; rank++)
-        if (rank != holder && ranks_has(plan, plan->end, i, rank))
+    for (int rank = first; rank >= 0; rank = ranks_next(plan, plan->end, i, rank + 1))
+        if (rank != holder)
             data_object_add_copy(&plan->graph->table, object, rank);
     return true;
 }

@@ -1,6 +1,7 @@
 #ifndef DUITE_PLAN_RECORD_H
 #define DUITE_PLAN_RECORD_H
 
+#include "runtime/base/memory.h"
 #include "runtime/plan/passes.h"
 #include "runtime/task/task.h"
 
@@ -95,6 +96,15 @@ struct plan_record {
     uint64_t rounds;             /* of the last replay, but for those of the plan */
     bool by_plan;                /* there were some of the plan */
 };
+
+/* Of a record of many objects, what the runtime knows of them lies far apart: whoever goes through
+ * them fetches one of those to come. */
+enum { PLAN_AHEAD = 12 };
+static inline void plan_prefetch(const struct plan_record *record, size_t i)
+{
+    if (i < record->n_objects)
+        base_prefetch(&record->graph->table.object[record->object[i].bound.slot]);
+}
 
 enum { PLAN_MAX_TASKS_BITS = 48 }; /* rounds times forks of one replay are below 2^48 */
 

@@ -152,6 +152,7 @@ static int replay_use_all(struct plan_record *record, struct worker *worker, str
     struct plan *plan = record->plan;
     uint32_t done = 0;
     for (size_t i = 0; i <= plan->n_objects; i++) {
+        plan_prefetch(record, i + PLAN_AHEAD);
         duite_mode mode = i < plan->n_objects ? plan->place[i].mode : DUITE_W;
         struct data_object *object = replay_object(record, i, flag);
         if (i < plan->n_objects)

@@ -17,9 +17,10 @@ struct predict_cluster {
     double capacity;       /* bytes/s of the switch, all messages together; infinite: enough */
     double core_speed;     /* times that of the traced run */
     double bodies;         /* they take so many times as long as in the trace; 0: as long */
-    double overhead;       /* s, of the runtime between two tasks; < 0: as it was seen */
-    double message; /* s of a core, to send or to take one, or (5e-7 at most) to look for one */
-    bool steady;    /* bodies take the median of their kernel, not what each took */
+    bool (*grows)(const char *kernel); /* which do; NULL: all */
+    double overhead; /* s, of the runtime between two tasks; < 0: as it was seen */
+    double message;  /* s of a core, to send or to take one, or (5e-7 at most) to look for one */
+    bool steady;     /* bodies take the median of their kernel, not what each took */
     bool
         packed; /* in replays a block sends a host no more than the hints of its blocks there say */
     const duite_scheduler *scheduler;

@@ -78,4 +78,9 @@ __attribute__((always_inline)) static inline bool task_prune(struct task_graph *
     return true;
 }
 
+/* The same where something of its objects may be here, of which the task asks nothing
+ * (prune_more.c). */
+bool task_prune_more(struct task_graph *graph, const duite_kernel *kernel, const void *args,
+                     size_t n, const duite_object *objects);
+
 #endif

@@ -14,6 +14,26 @@ static int touch_body(const duite_call *call)
     duite_out(call, 1, int32_t)[0] += duite_in(call, 0, int32_t)[0] + *(const int32_t *)call->args;
     return 0;
 }
+/* The second parameter gets the first of the further ones, which is 3. */
+static int contribute_body(const duite_call *call)
+{
+    duite_out(call, 0, int32_t)[0] += 1;
+    duite_out(call, 1, int32_t)[0] += duite_in(call, 2, int32_t)[0];
+    return 0;
+}
+static const duite_kernel CONTRIBUTE = {.name = "contribute",
+                                        .body = contribute_body,
+                                        .access = {DUITE_RW, DUITE_CW},
+                                        .variadic = DUITE_R};
+
+static int same_body(const duite_call *call)
+{
+    duite_out(call, 0, int32_t)[0] = 3;
+    return 0;
+}
+static const duite_kernel SAME = {
+    .name = "same", .body = same_body, .access = {DUITE_W}, .replicated = 1};
+
 static const duite_kernel TOUCH = {.name = "touch",
                                    .body = touch_body,
                                    .access = {DUITE_R, DUITE_RW},
@@ -78,6 +98,33 @@ static void forks(duite *rt, const duite_object *small, int home)
     tap_case(duite_wait(rt) == DUITE_OK, "the ranks agree on what was forked");
 }
 
+/* Many forks, of all ranks in turn, that contribute to an object of one, read what all ranks have,
+ * and, further, what lies on another one. */
+static void asking_nothing(duite *rt, const duite_object *small)
+{
+    enum { TURNS = 3 };
+    const duite_object sum = misuse_new(rt, 1), same = misuse_new(rt, 1);
+    const duite_object turn[TURNS] = {misuse_new(rt, 1), misuse_new(rt, 1), misuse_new(rt, 1)};
+    int32_t value = 0;
+
+    duite_fork(rt, &SAME, NULL, 1, &same);
+    duite_fork(rt, &SET, &(int32_t){0}, 1, &sum);
+    for (int i = 0; i < FORKS / 2; i++) {
+        const duite_object objects[4] = {turn[i % TURNS], sum, same, small[4]};
+
+        duite_fork(rt, &CONTRIBUTE, NULL, 3 + (size_t)(i % 2), objects);
+    }
+    tap_case(!duite_get(rt, sum, &value) && value == 3 * (FORKS / 2), "each contribution counts");
+    for (int i = 0; i < TURNS; i++)
+        tap_case(!duite_get(rt, turn[i], &value) && value == (FORKS / 2 + TURNS - 1 - i) / TURNS,
+                 "as each task does");
+    tap_case(duite_wait(rt) == DUITE_OK, "the ranks agree on these, too");
+    for (int i = 0; i < TURNS; i++)
+        duite_free(rt, turn[i]);
+    duite_free(rt, sum);
+    duite_free(rt, same);
+}
+
 /* What is wrong is found as everywhere else. */
 static void misuse(duite *rt, const duite_object *small)
 {
@@ -103,7 +150,7 @@ static void different(duite *rt, const duite_object *small, int home)
 
 int main(void)
 {
-    const duite_kernel *const list[] = {&SET, &MANY, &TOUCH, NULL};
+    const duite_kernel *const list[] = {&SET, &MANY, &TOUCH, &CONTRIBUTE, &SAME, NULL};
     duite_object large[OBJECTS], small[6];
     duite *rt;
 
@@ -126,6 +173,7 @@ int main(void)
     if (n_ranks > 1)
         copies(rt, large, home, (home + 1) % n_ranks);
     forks(rt, small, home);
+    asking_nothing(rt, small);
     misuse(rt, small);
     different(rt, small, home);
     const int code = duite_stop(&rt);

@@ -45,13 +45,19 @@ static duite_object *add_parameter(const struct flow_state *state, uint32_t bloc
     return refs;
 }
 
+/* Appends the objects of a fork to `refs`. Returns the end. */
+static duite_object *add_objects(const struct flow_state *state, const struct flow_kernel *kernel,
+                                 uint32_t block, const struct flow_as *as, duite_object *refs)
+{
+    for (const struct flow_parameter *p = kernel->parameter; p->whose != FLOW_NOBODY; p++)
+        refs = add_parameter(state, block, p->whose, given_for(as, p->field), refs);
+    return refs;
+}
+
 size_t flow_kernel_objects(struct flow_state *state, const struct flow_kernel *kernel,
                            uint32_t block, const struct flow_as *as)
 {
-    duite_object *end = state->refs;
-    for (const struct flow_parameter *p = kernel->parameter; p->whose != FLOW_NOBODY; p++)
-        end = add_parameter(state, block, p->whose, given_for(as, p->field), end);
-    return (size_t)(end - state->refs);
+    return (size_t)(add_objects(state, kernel, block, as, state->refs) - state->refs);
 }
 
 int flow_fork_one_as(struct flow_state *state, const struct flow_kernel *kernel, const void *args,
@@ -76,13 +82,35 @@ static bool sees_ties(const struct flow_kernel *kernel)
     return p->whose == FLOW_OF_TIED;
 }
 
+/* Forks the tasks of some blocks in a row. What the runtime knows of their objects lies far apart
+ * where there are thousands of blocks, and is fetched for all of them at once. */
+static int fork_some(struct flow_state *state, const struct flow_kernel *kernel, uint32_t first,
+                     uint32_t n_blocks, void *args, const struct flow_as *as)
+{
+    uint32_t *block = args;
+    duite_object *end[FLOW_FORKS_AHEAD], *refs = state->refs;
+    for (uint32_t i = 0; i < n_blocks; i++)
+        refs = end[i] = add_objects(state, kernel, first + i, as, refs);
+    duite_prefetch(state->rt, (size_t)(refs - state->refs), state->refs);
+    int code = DUITE_OK;
+    refs = state->refs;
+    for (uint32_t i = 0; i < n_blocks && !code; refs = end[i++]) {
+        *block = first + i;
+        code = duite_fork(state->rt, &kernel->task, args, (size_t)(end[i] - refs), refs);
+    }
+    return code;
+}
+
 int flow_fork_each_as(struct flow_state *state, const struct flow_kernel *kernel, void *args,
                       const struct flow_as *as)
 {
-    uint32_t *block = args;
+    const uint32_t n_blocks = state->flow->tables.n_blocks;
     int code = sees_ties(kernel) ? flow_ties_show(state) : DUITE_OK;
-    for (*block = 0; *block < state->flow->tables.n_blocks && !code; ++*block)
-        code = flow_fork_one_as(state, kernel, args, as);
+    for (uint32_t first = 0; first < n_blocks && !code; first += FLOW_FORKS_AHEAD) {
+        const uint32_t left = n_blocks - first;
+        code = fork_some(state, kernel, first, left < FLOW_FORKS_AHEAD ? left : FLOW_FORKS_AHEAD,
+                         args, as);
+    }
     return code;
 }
 

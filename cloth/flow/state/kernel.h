@@ -262,6 +262,8 @@ struct flow_as {
 #define FLOW_AS(...)                                                                               \
     ((const struct flow_as[]){__VA_ARGS__, {FLOW_FIELDS_OF_ALL, FLOW_FIELDS_OF_ALL}})
 
+enum { FLOW_FORKS_AHEAD = 8 }; /* forks whose objects are found together */
+
 /* Fork a kernel with the objects that it declares: on the block that the arguments name, on each
  * block, or on a rank. On each block they write its number into the arguments. Before a kernel that
  * reads TIED(tie_halo) they fork what shows the ties. as: NULL, or FLOW_AS. Collective. They return

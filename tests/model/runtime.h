@@ -42,6 +42,11 @@ void *base_grow(void *array, size_t *capacity, size_t needed, size_t element)
     return larger;
 }
 
+void *base_grow_lines(void *array, size_t *capacity, size_t needed, size_t element)
+{
+    return base_grow(array, capacity, needed, element);
+}
+
 /* What of the library is linked as it is finds nothing at hand. */
 static struct base_shelf no_shelves[BASE_POOL_LARGEST / BASE_POOL_GRAIN + 1];
 _Thread_local struct base_shelf *base_shelves = no_shelves;

@@ -77,20 +77,7 @@ static int64_t expected(struct tree_args args, bool last)
 
 static int time_tree(duite *rt, const struct tree_args *args, double *value)
 {
-    duite_object sum;
-    int64_t got = -1;
-    if (duite_new(rt, DUITE_I64, 1, &sum) || duite_wait(rt))
-        return tasks_code(1);
-    const double start = serve_seconds();
-    duite_fork(rt, &BRANCH, args, 1, &sum);
-    int code = duite_wait(rt);
-    *value = serve_seconds() - start;
-    if (!code)
-        code = duite_get(rt, sum, &got);
-    duite_free(rt, sum);
-    if (code)
-        return tasks_code(code);
-    return got == expected(*args, false) ? 0 : serve_fail("wrong answer");
+    return ranks_time_sum(rt, &BRANCH, args, expected(*args, false), value);
 }
 
 static int run(void *context, struct serve_request *request, double *value)

@@ -82,6 +82,28 @@ int ranks_stop(duite **rt, int code)
     return code ? code : tasks_code(failed);
 }
 
+int ranks_time_sum(duite *rt, const duite_kernel *kernel, const void *args, int64_t expected,
+                   double *value)
+{
+    duite_object sum;
+    int64_t got = 0;
+    if (duite_new(rt, DUITE_I64, 1, &sum))
+        return tasks_code(1);
+    int code = duite_wait(rt);
+    const double start = serve_seconds();
+    if (!code)
+        code = duite_fork(rt, kernel, args, 1, &sum);
+    if (!code)
+        code = duite_wait(rt);
+    *value = serve_seconds() - start;
+    if (!code)
+        code = duite_get(rt, sum, &got);
+    duite_free(rt, sum);
+    if (code)
+        return tasks_code(code);
+    return got == expected ? 0 : serve_fail("wrong answer");
+}
+
 /* ---- Serving ---- */
 
 static int serve_ours(const struct bench *bench)

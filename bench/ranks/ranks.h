@@ -31,6 +31,11 @@ int ranks_start(struct ranks_session *session, struct serve_request *request,
 int ranks_start_cloth(struct ranks_session *session, struct serve_request *request, duite **rt);
 int ranks_stop(duite **rt, int code);
 
+/* Forks the kernel on a number that is zero. *value: s until that task and all that it forks are
+ * over. Fails unless the number is `expected` then. */
+int ranks_time_sum(duite *rt, const duite_kernel *kernel, const void *args, int64_t expected,
+                   double *value);
+
 /* ---- The twin's solve ---- */
 
 /* What the twin sends in an iteration. */

@@ -58,20 +58,8 @@ static int branch(const duite_call *call)
 static int time_tree(duite *rt, uint32_t levels, double *value)
 {
     const struct tree_args root = {problem_tree_root(), levels};
-    duite_object nodes;
-    int64_t got = -1;
-    if (duite_new(rt, DUITE_I64, 1, &nodes) || duite_wait(rt))
-        return tasks_code(1);
-    const double start = serve_seconds();
-    duite_fork(rt, &BRANCH, &root, 1, &nodes);
-    int code = duite_wait(rt);
-    *value = serve_seconds() - start;
-    if (!code)
-        code = duite_get(rt, nodes, &got);
-    duite_free(rt, nodes);
-    if (code)
-        return tasks_code(code);
-    return (uint64_t)got == problem_tree_nodes(&root.node, levels) ? 0 : serve_fail("wrong answer");
+    const int64_t nodes = (int64_t)problem_tree_nodes(&root.node, levels);
+    return ranks_time_sum(rt, &BRANCH, &root, nodes, value);
 }
 
 static int run(void *context, struct serve_request *request, double *value)

@@ -129,6 +129,12 @@ static void asking_nothing(duite *rt, const duite_object *small)
 static void misuse(duite *rt, const duite_object *small)
 {
     const duite_object twice[2] = {small[0], small[0]}, none[2] = {small[0], DUITE_NO_OBJECT};
+    const duite_object far[2] = {{UINT32_MAX, 1}, small[0]};
+
+    duite_prefetch(rt, 2, none);
+    duite_prefetch(rt, 2, far);
+    duite_prefetch(NULL, 2, none);
+    tap_case(duite_wait(rt) == DUITE_OK, "what is fetched ahead need not exist");
 
     tap_case(duite_fork(rt, &TOUCH, &(int32_t){0}, 2, twice) == DUITE_E_ACCESS, "one object twice");
     tap_case(duite_fork(rt, &TOUCH, &(int32_t){0}, 2, none) == DUITE_E_OBJECT, "no object");

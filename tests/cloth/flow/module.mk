@@ -93,7 +93,7 @@ tests_cloth_flow_test_levels_LDADD = $(CLOTH_TEST_LIBS)
 TESTS += tests/cloth/flow/test_levels
 tests_cloth_flow_test_ties_runs_SOURCES = tests/cloth/flow/test_ties_runs.c $(FLOW_TEST_SESSION)
 tests_cloth_flow_test_ties_runs_LDADD = $(CLOTH_TEST_LIBS)
-tests_cloth_flow_test_fields_SOURCES = tests/cloth/flow/test_fields.c $(FLOW_TEST_SESSION)
+tests_cloth_flow_test_fields_SOURCES = tests/cloth/flow/test_fields.c tests/cloth/flow/kinds.c tests/cloth/flow/kinds.h $(FLOW_TEST_SESSION)
 tests_cloth_flow_test_fields_LDADD = $(CLOTH_TEST_LIBS)
 TESTS += tests/cloth/flow/test_fields tests/cloth/flow/test_ties tests/cloth/flow/test_ties_runs
 endif

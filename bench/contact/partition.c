@@ -299,6 +299,7 @@ static int predict_mapped(char **argv)
                                       .core_speed = 1,
                                       .overhead = -1,
                                       .message = 5e-6,
+                                      .look = -1,
                                       .steady = true,
                                       .mapping = &WITH_LINKS,
                                       .scheduler = duite_scheduler_find("steal"),

@@ -52,6 +52,7 @@ double predict_makespan(const struct trace_run *run, const struct predict_config
                                             .core_speed = 1,
                                             .overhead = -1,
                                             .message = MESSAGE,
+                                            .look = -1,
                                             .scheduler = duite_scheduler_find(config->scheduler),
                                             .mapping = find_mapping(config->mapping),
                                             .balance = duite_balancer_find(config->balance),

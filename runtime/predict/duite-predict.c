@@ -21,6 +21,7 @@ enum {
     CORE_SPEED,
     HOSTS,
     LATENCY,
+    LOOK,
     MAPPING,
     MESSAGE,
     OVERHEAD,
@@ -48,7 +49,12 @@ static const struct argp_option OPTIONS[] = {
      1},
     {"bandwidth", BANDWIDTH, "BYTES/S", 0, "of a network card (default: 1.25e9, 10 Gbit/s)", 1},
     {"switch", SWITCH, "BYTES/S", 0, "of all messages together (default: enough)", 1},
-    {"message", MESSAGE, "SECONDS", 0, "of a core, to send or to take a message (default: 5e-7)",
+    {"message", MESSAGE, "SECONDS", 0,
+     "of a core, to send or to take a message (default: as in a trace of several ranks, else 5e-7)",
+     1},
+    {"look", LOOK, "SECONDS", 0,
+     "of a core, to look for messages between two tasks (default: as in a trace of several ranks, "
+     "else as --message, at most 5e-7)",
      1},
     {"overhead", OVERHEAD, "SECONDS", 0, "between two tasks (default: as it was traced)", 1},
     {"bodies", BODIES, "FACTOR", 0, "times as long as in the trace: of larger blocks (default: 1)",
@@ -141,6 +147,9 @@ static error_t option_read(int key, char *value, struct argp_state *state)
         return 0;
     case MESSAGE:
         cluster->message = option_number(state, "message", value);
+        return 0;
+    case LOOK:
+        cluster->look = option_number(state, "look", value);
         return 0;
     case OVERHEAD:
         cluster->overhead = option_number(state, "overhead", value);
@@ -240,6 +249,9 @@ static void result_print(const struct command *command, const struct predict_res
     printf("  lower bound    %.6f s: critical path %.6f s, work %.6f s over %.0f cores\n", path,
            r->critical_path, r->work, workers);
     printf("  overhead       %.3g us between two tasks\n", 1e6 * r->overhead);
+    if (c->hosts > 1)
+        printf("  of a core      %.3g us to send or take a message, %.3g us to look for one\n",
+               1e6 * r->message, 1e6 * r->look);
     printf("  limited by     %s\n", predict_limit_name(r->limit));
     printf("  held up by    ");
     for (int i = 0; i < PREDICT_LIMITS; i++)
@@ -296,7 +308,8 @@ int main(int argc, char **argv)
                     .capacity = INFINITY,
                     .core_speed = 1,
                     .overhead = -1,
-                    .message = 5e-7,
+                    .message = -1,
+                    .look = -1,
                     .seed = 1,
                     .policy_seconds = duite_options_default().policy_seconds}};
     argp_err_exit_status = BAD_INPUT;

@@ -133,7 +133,8 @@ struct predict_graph {
     uint32_t round;  /* the first node of this round of a replay, or NONE */
     uint32_t flag;   /* the node that decided on this round, or NONE */
     double overhead; /* s between two tasks, */
-    double look;     /* of a look for messages, which workers make now and then */
+    double message;  /* of a core, to send or to take one, */
+    double look;     /* and to look for one, which workers do now and then; 0: nobody sends any */
     uint64_t n_tasks, migrated;
     bool plain;           /* tasks and what they read alone: replays have no gates */
     bool replays, failed; /* failed: no memory */
@@ -214,5 +215,10 @@ double predict_times_own(const struct predict_times *times, uint32_t kind);
 /* All seconds of the runtime's own tasks that combine contributions. */
 double predict_times_sums(const struct predict_times *times);
 double predict_times_gap(const struct predict_times *times);
+/* Seconds of a core that a message took in the trace, at each of its ends, and a look for messages
+ * that found none, if each worker looks between two tasks PREDICT_LOOKS apart. False: no worker
+ * that had tasks sent or took one. */
+#define PREDICT_LOOKS 5e-6
+bool predict_times_messages(const struct predict_times *times, double *message, double *look);
 
 #endif

@@ -48,8 +48,8 @@ int predict_check(const struct trace_run *run, const struct predict_cluster *c)
                           "the scheduler or the balancer wants a state (state_size) of more than "
                           "%zu bytes",
                           BASE_MAX_STATE);
-    if (!(c->message >= 0))
-        return base_error(DUITE_E_ARGUMENT, "the cost of a message is a number >= 0");
+    if (isnan(c->message) || isnan(c->look))
+        return base_error(DUITE_E_ARGUMENT, "the costs of messages and looks are numbers");
     if (c->balance && (c->balance->victim || c->balance->place))
         return base_error(DUITE_E_ARGUMENT,
                           "tasks that the balancer %s sends to other ranks are not predicted: take "
@@ -149,6 +149,8 @@ void predict_conclude(struct predict_machine *m, struct predict_result *result, 
                                       .migrated = graph->migrated,
                                       .makespan = fmax(makespan, m->main_time),
                                       .overhead = graph->overhead,
+                                      .message = graph->message,
+                                      .look = graph->look,
                                       .idle = all > 0 ? 1 - m->busy / all : 0};
     for (size_t i = 0; i < graph->n_nodes; i++)
         result->work += (double)graph->node[i].seconds;

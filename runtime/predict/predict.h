@@ -19,7 +19,9 @@ struct predict_cluster {
     double bodies;         /* they take so many times as long as in the trace; 0: as long */
     bool (*grows)(const char *kernel); /* which do; NULL: all */
     double overhead; /* s, of the runtime between two tasks; < 0: as it was seen */
-    double message;  /* s of a core, to send or to take one, or (5e-7 at most) to look for one */
+    double message;  /* s of a core, to send or to take one; < 0: as it was seen, else 5e-7 */
+    double look;     /* s of a core, to look for one; < 0: as it was seen, else `message`, at most
+                        5e-7 */
     bool steady;     /* bodies take the median of their kernel, not what each took */
     bool
         packed; /* in replays a block sends a host no more than the hints of its blocks there say */
@@ -48,7 +50,7 @@ struct predict_result {
     double work;                                       /* s in bodies, all workers together */
     double critical_path; /* s: the longest chain of tasks, if messages and forks took no time */
     double idle;          /* share of the workers' time without a task */
-    double overhead;      /* s between two tasks, as it was taken to be */
+    double overhead, message, look; /* s between two tasks and of messages, as taken to be */
     double chain[PREDICT_LIMITS];
     enum predict_limit limit; /* the largest of them */
 };

@@ -11,8 +11,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define MAX_LOOK                                                                                   \
-    5e-7 /* s: a look that finds no message takes no longer, however long messages take */
+/* s: of a message, and of a look at most, where nobody measured them: in a host's memory. */
+#define SOME_MESSAGE 5e-7
 /* What a fork costs a rank that has no part in it, over what one that runs there takes in a trace:
  * a third, of cloth in 16,000 blocks, where what is known of an object is never in the cache. It is
  * a tenth where it always is (docs/measuring.md). */
@@ -361,6 +361,22 @@ static uint64_t program_max_replayed(const struct trace_run *run)
     return 16 * n + 1000;
 }
 
+/* What messages take of the cores: as it is said, else as in the trace. */
+static void program_messages(struct predict_graph *graph, const struct predict_times *times)
+{
+    const struct predict_cluster *cluster = graph->cluster;
+    double message, look;
+    const bool seen = predict_times_messages(times, &message, &look);
+    graph->message = seen ? message / cluster->core_speed : SOME_MESSAGE;
+    if (cluster->message >= 0)
+        graph->message = cluster->message;
+    graph->look = seen ? look / cluster->core_speed : fmin(graph->message, SOME_MESSAGE);
+    if (cluster->look >= 0)
+        graph->look = cluster->look;
+    if (cluster->hosts == 1)
+        graph->look = 0;
+}
+
 static bool program_prepare(struct predict_program *p)
 {
     struct predict_graph *graph = p->graph;
@@ -387,9 +403,7 @@ static bool program_prepare(struct predict_program *p)
     graph->overhead = graph->cluster->overhead < 0
                           ? predict_times_gap(p->times) / graph->cluster->core_speed
                           : graph->cluster->overhead;
-    /* What ranks did between tasks has it already. */
-    const bool seen = graph->cluster->overhead < 0 && graph->run->n_ranks > 1;
-    graph->look = hosts > 1 && !seen ? fmin(graph->cluster->message, MAX_LOOK) : 0;
+    program_messages(graph, p->times);
     return true;
 }
 

@@ -11,8 +11,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define LOOK_SECONDS 5e-6 /* between two looks for messages of a worker that has tasks */
-
 /* ---- What messages take of the cores ---- */
 
 /* A host handles one message after the other, whichever core does it, and the latency has what the
@@ -23,8 +21,8 @@ static double message_handle(struct predict_machine *m, uint32_t host, int32_t p
     if (packets <= 0) /* it travels with another message */
         return m->now;
     const double begins = fmax(m->now, m->handler[host]);
-    m->handler[host] = begins + m->cluster->message * (double)packets;
-    m->handled[host] += m->cluster->message * (double)packets;
+    m->handler[host] = begins + m->graph->message * (double)packets;
+    m->handled[host] += m->graph->message * (double)packets;
     return begins;
 }
 
@@ -33,7 +31,7 @@ static double message_handle(struct predict_machine *m, uint32_t host, int32_t p
 static double exchange_send(struct predict_machine *m, const struct predict_node *exchange,
                             double *flight)
 {
-    const double all = m->cluster->message * (double)exchange->priority;
+    const double all = m->graph->message * (double)exchange->priority;
     const double share = all / m->cluster->hosts;
     double own = share, goes = m->now;
     if (exchange->block || exchange->hops > 1) {
@@ -44,7 +42,7 @@ static double exchange_send(struct predict_machine *m, const struct predict_node
         own = all;
     }
     return predict_exchange(&m->network, goes, exchange, flight) +
-           (exchange->hops > 1 ? 0 : fmax(0, own - m->cluster->message));
+           (exchange->hops > 1 ? 0 : fmax(0, own - m->graph->message));
 }
 
 /* A worker begins a task. Before that it does what is left to do for messages, if no core was idle,
@@ -55,7 +53,7 @@ static double worker_pay(struct predict_machine *m, uint32_t worker, uint32_t ho
     double seconds = none_idle ? m->handled[host] + m->handled_by_all - m->paid[host] : 0;
     m->handled[host] = 0;
     m->paid[host] = m->handled_by_all;
-    if (m->graph->look > 0 && m->now - m->looked[worker] >= LOOK_SECONDS) {
+    if (m->graph->look > 0 && m->now - m->looked[worker] >= PREDICT_LOOKS) {
         m->looked[worker] = m->now;
         seconds += m->graph->look;
     }

@@ -1,5 +1,5 @@
 /* What the events say about seconds: of each body (trace/sums.h), of a kernel's bodies in the
- * mean or the median, of the runtime's own tasks, and between two tasks. */
+ * mean or the median, of the runtime's own tasks, between two tasks, and of messages. */
 #include "runtime/predict/graph.h"
 
 #include "runtime/base/memory.h"
@@ -22,6 +22,7 @@ struct predict_times {
     uint32_t n_kernels;
     float *gap;
     size_t n_gaps;
+    struct times_mean message, look; /* look.n: how many there may have been */
 };
 
 static void mean_add(struct times_mean *mean, double seconds)
@@ -55,13 +56,51 @@ static void times_gap(struct predict_times *times, const struct trace_event *eve
     times->gap[times->n_gaps++] = (float)(tick * (double)(next->begin - end));
 }
 
+/* ---- Messages ---- */
+
+/* Messages that were sent or taken while the event lasted: their marks lie before it. */
+static uint64_t times_marks(const struct trace_event *first, const struct trace_event *event)
+{
+    uint64_t n = 0;
+    for (const struct trace_event *e = event; e-- > first && e->begin >= event->begin;)
+        n += e->kind == TRACE_SEND || e->kind == TRACE_RECEIVE;
+    return n;
+}
+
+/* Of one worker. What it did for messages while it had nothing else to do delays nobody, and is no
+ * event of its own. Looks shorter than such events are in the gaps. */
+static void times_messages(struct predict_times *times, const struct trace_piece *piece,
+                           double tick)
+{
+    const uint64_t apart = (uint64_t)(PREDICT_LOOKS / tick);
+    uint64_t looked = 0;
+    for (const struct trace_event *e = piece->event; e < piece->event + piece->n; e++) {
+        if (e->kind <= TRACE_OWN && e->begin - looked >= apart) {
+            looked = e->begin;
+            times->look.n++;
+        }
+        if (e->kind != TRACE_MESSAGES)
+            continue;
+        const uint64_t n = times_marks(piece->event, e);
+        (n ? &times->message : &times->look)->seconds += tick * (double)e->took;
+        times->message.n += n;
+    }
+}
+
+bool predict_times_messages(const struct predict_times *times, double *message, double *look)
+{
+    *message = mean_value(&times->message);
+    *look = mean_value(&times->look);
+    return times->message.n;
+}
+
+/* ---- Medians ---- */
+
 static int times_compare_seconds(const void *a, const void *b)
 {
     const float x = *(const float *)a, y = *(const float *)b;
     return (x > y) - (x < y);
 }
-
-/* ---- Medians ---- */
 
 struct times_body {
     uint32_t kernel;
@@ -144,6 +183,7 @@ struct predict_times *predict_times_new(const struct trace_run *run)
                 if (i + 1 < piece->n)
                     times_gap(times, &piece->event[i], run->rank[r].header->tick);
             }
+            times_messages(times, piece, run->rank[r].header->tick);
         }
     qsort(times->gap, times->n_gaps, sizeof *times->gap, times_compare_seconds);
     return times;

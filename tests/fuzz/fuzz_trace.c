@@ -18,6 +18,7 @@ static void predict_run(const struct trace_run *run)
                                       .core_speed = 1,
                                       .overhead = -1,
                                       .message = 5e-7,
+                                      .look = -1,
                                       .scheduler = duite_scheduler_find("steal"),
                                       .seed = 1};
     struct predict_result result;

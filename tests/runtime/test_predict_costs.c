@@ -29,6 +29,63 @@ START_TEST(messages_wait_for_one_another)
 }
 END_TEST
 
+/* What came of the example above, with messages as its trace has them: a worker was busy with them
+ * for `handled` s, of which two were sent or taken, and for `looked` s without one. It ran three
+ * tasks, 1 ms apart, and so looked twice. A message that an idle worker sends costs nobody time. */
+static struct predict_result with_messages(double handled, double looked,
+                                           const struct predict_cluster *cluster)
+{
+    const uint64_t ms = 1000000, took = (uint64_t)(1e9 * handled + 0.5);
+    const struct trace_event events[] = {
+        {.kind = TRACE_OWN, .begin = 1 * ms},
+        {.kind = TRACE_SEND, .begin = 2 * ms + took / 2, .number = 8},
+        {.kind = TRACE_RECEIVE, .begin = 2 * ms + took, .number = 8},
+        {.kind = TRACE_MESSAGES, .begin = 2 * ms, .took = took},
+        {.kind = TRACE_OWN, .begin = 3 * ms},
+        {.kind = TRACE_SEND, .begin = 4 * ms, .number = 8},
+        {.kind = TRACE_IDLE, .begin = 4 * ms, .took = ms},
+        {.kind = TRACE_MESSAGES, .begin = 5 * ms, .took = (uint64_t)(1e9 * looked + 0.5)}};
+    struct trace_file file = predicted_trace(3, 8);
+    trace_file_fork(&file, FILE_W, 1 * MS, 0, 1, SLOTS(2));
+    trace_file_fork(&file, FILE_W, 1 * MS, 0, 1, SLOTS(3));
+    trace_file_fork(&file, FILE_RR_W, 1 * MS, 0, 3, SLOTS(2, 3, 1));
+    for (size_t i = 0; handled > 0 && i < sizeof events / sizeof *events; i++)
+        trace_file_event(&file, &events[i]);
+    return predicted(&file, cluster);
+}
+
+static void same(double value, double expected)
+{
+    ck_assert_msg(fabs(value - expected) < 1e-12, "%.9g, not %.9g", value, expected);
+}
+
+START_TEST(messages_cost_what_they_did)
+{
+    struct predict_cluster three = predicted_machine(3, 1);
+    three.message = three.look = -1;
+    const struct predict_result seen = with_messages(0.4 * MS, 0.002 * MS, &three);
+    same(seen.message, 0.2 * MS);
+    same(seen.look, 0.001 * MS);
+    nearly(seen.makespan, 2.2 * MS);
+    const struct predict_result unseen = with_messages(0, 0, &three);
+    same(unseen.message, 5e-7);
+    same(unseen.look, 5e-7);
+    three.core_speed = 2;
+    const struct predict_result faster = with_messages(0.4 * MS, 0.002 * MS, &three);
+    same(faster.message, 0.1 * MS);
+    same(faster.look, 0.0005 * MS);
+    three.core_speed = 1;
+    three.message = 0.3 * MS;
+    three.look = 0.004 * MS;
+    const struct predict_result said = with_messages(0.4 * MS, 0.002 * MS, &three);
+    same(said.message, three.message);
+    same(said.look, three.look);
+    nearly(said.makespan, 2.3 * MS);
+    const struct predict_cluster one = predicted_machine(1, 1);
+    same(with_messages(0.4 * MS, 0.002 * MS, &one).look, 0);
+}
+END_TEST
+
 /* Host 1 sends to two hosts after 1 ms: the second message leaves 0.2 ms later. Its only core sends
  * both before its next task, of 2 ms; a second core has nothing else to do, and delays nothing. */
 START_TEST(idle_cores_handle_messages)
@@ -184,6 +241,7 @@ int main(void)
     Suite *suite = suite_create("predicted costs");
     TCase *cases = tcase_create("costs");
     tcase_add_test(cases, messages_wait_for_one_another);
+    tcase_add_test(cases, messages_cost_what_they_did);
     tcase_add_test(cases, idle_cores_handle_messages);
     tcase_add_test(cases, hosts_combine_their_own_contributions);
     tcase_add_test(cases, each_host_adds_what_it_has);

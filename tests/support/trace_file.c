@@ -65,22 +65,29 @@ void trace_file_hint(struct trace_file *file, uint32_t slot, uint32_t other, dou
     put_double(file, bytes);
 }
 
+void trace_file_event(struct trace_file *file, const struct trace_event *event)
+{
+    file->event = room(file->event, &file->events_capacity, file->n_events, sizeof *event);
+    file->event[file->n_events++] = *event;
+}
+
+static uint64_t ticks(double seconds)
+{
+    return (uint64_t)(1e9 * seconds + 0.5);
+}
+
 static void put_event(struct trace_file *file, enum trace_file_kernel kernel, double seconds)
 {
-    const struct trace_event event = {.took = (uint64_t)(1e9 * seconds + 0.5),
-                                      .number = ++file->forks,
-                                      .kernel = kernel,
-                                      .kind = TRACE_TASK};
-    file->event = room(file->event, &file->events_capacity, file->n_events, sizeof event);
-    file->event[file->n_events++] = event;
+    trace_file_event(file, &(struct trace_event){.took = ticks(seconds),
+                                                 .number = ++file->forks,
+                                                 .kernel = kernel,
+                                                 .kind = TRACE_TASK});
 }
 
 void trace_file_own(struct trace_file *file, uint32_t type, double seconds)
 {
-    const struct trace_event event = {
-        .took = (uint64_t)(1e9 * seconds + 0.5), .kernel = type, .kind = TRACE_OWN};
-    file->event = room(file->event, &file->events_capacity, file->n_events, sizeof event);
-    file->event[file->n_events++] = event;
+    trace_file_event(
+        file, &(struct trace_event){.took = ticks(seconds), .kernel = type, .kind = TRACE_OWN});
 }
 
 void trace_file_fork(struct trace_file *file, enum trace_file_kernel kernel, double seconds,

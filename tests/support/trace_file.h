@@ -53,6 +53,8 @@ void trace_file_replay(struct trace_file *file, uint32_t n_objects, uint32_t n,
                        const struct trace_file_node *nodes, uint32_t rounds);
 /* One of the runtime's own tasks: by its number among those. */
 void trace_file_own(struct trace_file *file, uint32_t type, double seconds);
+/* Any event, behind those that are there. */
+void trace_file_event(struct trace_file *file, const struct trace_event *event);
 /* The main program waits for all, or for an object; until then it forked for so many seconds. */
 void trace_file_wait(struct trace_file *file);
 void trace_file_forked(struct trace_file *file, double seconds);

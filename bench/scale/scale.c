@@ -8,14 +8,17 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-static const struct bench_case *const CASES[] = {
-    &scale_messages, &scale_wait, &scale_predicted, &scale_vast, &scale_large, &scale_small, NULL};
+static const struct bench_case *const CASES[] = {&scale_messages,  &scale_wait, &scale_runs,
+                                                 &scale_predicted, &scale_vast, &scale_large,
+                                                 &scale_small,     NULL};
 
 /* 8 ranks have 3 rounds: 3 messages of a sum and 2 for each of about 5 neighbours. A wait: 2
  * log2 8.
  */
 static const struct measure_target TARGETS[] = {{"messages_per_iteration_r8", 13, false},
                                                 {"wait_messages_r8", 6, false},
+                                                {"prediction_error_r2", 0.15, false},
+                                                {"prediction_error_r2_from_r1", 0.15, false},
                                                 {"scaling_16x16_tcp", 0.55, true},
                                                 {"scaling_16x16_fast", 0.65, true},
                                                 {"scaling_64x64_fast", 0.5, true},

@@ -7,7 +7,7 @@ plan_later
 rows() { # each metric with a number, or why there are no hosts
     limited bench/duite-bench scale --quick --repeats 1 > "$scratch/said" 2>&1 || { cat "$scratch/said"; return 1; }
     cat "$scratch/said"
-    for metric in messages_per_iteration_r8 wait_messages_r8 scaling_1x16_tcp scaling_16x16_tcp scaling_1x16_fast scaling_16x16_fast coarse_path_share \
+    for metric in messages_per_iteration_r8 wait_messages_r8 prediction_error_r2 prediction_error_r2_from_r1 scaling_1x16_tcp scaling_16x16_tcp scaling_1x16_fast scaling_16x16_fast coarse_path_share \
         iterations_large_vs_exact iterations_large_vs_one_patch iterations_small_vs_one_factor iterations_landed_h20 scaling_64x64_fast; do
         grep -Eq "^$metric: ([0-9]|not measured)" "$scratch/said" || return 1
     done

@@ -1,7 +1,8 @@
 #!/bin/sh
 # run.sh TEST: runs one test for automake's TAP driver, which takes the 77 of a skipped test for a failure. A test that is
-# stuck ends after an hour, a long one after eight. Temporary files are in a folder of the test's own, those of Open MPI too: programs of several tests
-# that start at the same moment trip over each other in the one that all runs of a user share.
+# stuck ends after an hour, a long one after eight; one of ten seconds and more says how long it took. Temporary files are in a
+# folder of the test's own, those of Open MPI too: programs of several tests that start at the same moment trip over each other
+# in the one that all runs of a user share.
 . "${0%/*}/mpi.sh"
 case $1 in
     # AddressSanitizer's slow unwinder, which sees through Open MPI, waits for itself in the loader of llvmpipe's code. Without it leaks of
@@ -29,6 +30,9 @@ case $1 in
     *_long.sh) seconds=28800 ;;
     *) seconds=3600 ;;
 esac
+began=$(date +%s)
 TMPDIR=$folder timeout --kill-after=10 $seconds "$@"
 status=$?
+took=$(($(date +%s) - began))
+test $took -lt 10 || echo "# took $took s"
 test $status = 77 || exit $status

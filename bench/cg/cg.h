@@ -12,11 +12,13 @@
 
 /* The names of all states of "cg"; of those of them that stand for what simulations meet; of what
  * "scale" cuts into small blocks: those of "cg", and cloth in contact with the floor; of its
- * large ones, whose coarse space has many patches. Each list is ended by NULL. */
+ * large ones, whose coarse space has many patches; of those of 1,000,000 vertices. Each list is
+ * ended by NULL. */
 const char *const *states_all(void);
 const char *const *states_met(void);
 const char *const *states_small(void);
 const char *const *states_large(void);
+const char *const *states_million(void);
 /* Why a state cannot be made here, or NULL. */
 const char *states_missing(const char *name);
 
@@ -27,8 +29,9 @@ struct states_plan {
     bool moves;          /* if anything does */
     const char *moved;   /* states of the same motion have the same one */
     uint32_t count;      /* iterations whose answer the state keeps */
-    bool solved_here;    /* it keeps no answers: plain loops would take too long, or know nothing of
-                          * the step's contacts; whoever needs the solution solves to 1e-12 */
+    bool solved_here;    /* it is made without answers: plain loops would take too long, or know
+                          * nothing of the step's contacts; who first needs the solution solves to
+                          * 1e-12, and the state keeps it if it has no contacts */
 };
 /* 0, or what serve_fail returns. */
 int states_plan_make(struct states_plan *plan, const char *name, bool quick);
@@ -67,6 +70,18 @@ struct cg_needed {
     uint32_t iterations;
 };
 enum { CG_NEEDED = 64 };
+
+/* A solver whose error after so many iterations is found by a solve: 0, or what serve_fail returns.
+ */
+struct cg_solver {
+    void *context;
+    int (*error_after)(void *context, uint32_t count, double *error);
+};
+/* The least number of iterations after which the error is small enough; of more than a hundred, to
+ * a hundredth. guess: about how many that may be; 0: counts are doubled, then halved, so versions
+ * of a solver are compared by the same ones. The error falls from 1. 0, or what serve_fail returns.
+ */
+int cg_search(const struct cg_solver *solver, double wanted, uint32_t guess, uint32_t *needed);
 
 struct cg_session {
     struct state state;

@@ -218,19 +218,31 @@ static double *new_answer(const struct cg_session *s)
     return dv;
 }
 
-/* Solves to 1e-12. Without contacts the state has the system, and tells whether that is so. */
+/* Whether what the state has as its solution is that of its system. */
+static bool is_solved(const struct state *state)
+{
+    return state_left(state, state->system.dv) < 1e-9;
+}
+
+/* Solves to 1e-12. Rank 0 puts it into the state's file unless there are contacts, which the system
+ * there does not have: then it is kept for these settings only. */
 static int find_solution(struct cg_session *s)
 {
     enum { MOST = 20000 };
     const bool touches = model_certifies(s->flow->model);
+    if (!touches && is_solved(&s->state))
+        return 0;
     s->solution = new_answer(s);
     stop_by(s, MODEL_STOP_RELATIVE, 1e-12, MOST);
     int code = s->solution ? tasks_code(flow_cg(&s->run)) : 1;
     if (!code)
         code = answer(s, s->solution);
-    return !code && !touches && !(state_left(&s->state, s->solution) < 1e-9)
-               ? serve_fail("the solution of %s is wrong", s->state.name)
-               : code;
+    if (code || touches)
+        return code;
+    memcpy(s->state.system.dv, s->solution, 3 * (size_t)s->state.system.n * sizeof *s->solution);
+    if (!is_solved(&s->state))
+        return serve_fail("the solution of %s is wrong", s->state.name);
+    return s->flow->vertex ? state_write(&s->state) : 0;
 }
 
 static int ready(struct cg_session *s, struct serve_request *request)
@@ -328,34 +340,12 @@ static int cg(void *context, struct serve_request *request, double *value)
     return code;
 }
 
-/* The least number of iterations after which the error is small enough; of many, to a hundredth. */
-static int search(struct cg_session *s, double wanted, uint32_t *needed)
+/* A cg_solver's. */
+static int error_after(void *context, uint32_t count, double *error)
 {
-    enum { MOST = 40000 };
-    double error = INFINITY;
-    uint32_t low = 0, high = 1;
-    int code = 0;
-    for (; !code && error > wanted && high < MOST; high *= 2) {
-        stop_after(s, high);
-        code = error_of(s, &error);
-        if (error > wanted)
-            low = high;
-        else
-            break;
-    }
-    while (!code && high - low > 1 + high / 100) {
-        const uint32_t middle = low + (high - low) / 2;
-        stop_after(s, middle);
-        code = error_of(s, &error);
-        if (error > wanted)
-            low = middle;
-        else
-            high = middle;
-    }
-    *needed = high;
-    if (!code && high >= MOST)
-        code = serve_fail("%s does not come to an error of %g", s->state.name, wanted);
-    return code;
+    struct cg_session *s = context;
+    stop_after(s, count);
+    return error_of(s, error);
 }
 
 /* 0: it was not found yet. */
@@ -368,10 +358,23 @@ static uint32_t known(const struct cg_session *s, const char *settings, double w
     return 0;
 }
 
+/* What the state took with other settings; 0: that is not known. */
+static uint32_t guess(const struct cg_session *s, double wanted)
+{
+    uint32_t found = 0;
+    const size_t length = strlen(s->state.name);
+    for (size_t i = 0; i < CG_NEEDED && i < s->n_needed && !found; i++)
+        if (!strncmp(s->needed[i].settings, s->state.name, length) &&
+            s->needed[i].settings[length] == ' ')
+            found = known(s, s->needed[i].settings, wanted);
+    return found;
+}
+
 static int find_needed(struct cg_session *s, double wanted, uint32_t *needed)
 {
     struct cg_needed *new = s->needed + s->n_needed % CG_NEEDED;
-    const int code = search(s, wanted, needed);
+    const struct cg_solver solver = {s, error_after};
+    const int code = cg_search(&solver, wanted, s->plan.solved_here ? guess(s, wanted) : 0, needed);
     if (code)
         return code;
     *new = (struct cg_needed){.error = wanted, .iterations = *needed};

@@ -26,6 +26,7 @@ static const struct motion {
 } MOTIONS[] = {
     {"reference", 0, {0}},
     {"large", 0, {"cloths[0].mesh.grid.nx=400", "cloths[0].mesh.grid.ny=400"}},
+    {"million", 0, {"cloths[0].mesh.grid.nx=1000", "cloths[0].mesh.grid.ny=1000"}},
     {"hanging", 0.4, {0}},
     {"falling", 0.08, {FREE, "cloths[0].transform.translate=[0, 3, 0]"}},
     {"crumpled", 0.64, {FREE, PLACE}},
@@ -57,9 +58,16 @@ static const struct spec {
     {"dress_h20", "dress", 20, false, 50},       {"landed_h1", "landed", 1, false, 0},
     {"landed_h8_bend", "landed", 8, true, 0},    {"landed_h20", "landed", 20, false, 0},
     {"large_h1", "large", 1, false, 0},          {"large_h8", "large", 8, false, 0},
-    {"large_h20", "large", 20, false, 0},
+    {"large_h20", "large", 20, false, 0},        {"million_h1", "million", 1, false, 0},
+    {"million_h8", "million", 8, false, 0},      {"million_h20", "million", 20, false, 0},
 };
-enum { N_SPECS = sizeof SPECS / sizeof *SPECS, FIRST_MET = 2, FIRST_LANDED = 17, FIRST_LARGE = 20 };
+enum {
+    N_SPECS = sizeof SPECS / sizeof *SPECS,
+    FIRST_MET = 2,
+    FIRST_LANDED = 17,
+    FIRST_LARGE = 20,
+    FIRST_MILLION = 23
+};
 
 /* From one spec to before another. */
 static void list_names(int first, int end, const char **name)
@@ -91,7 +99,14 @@ const char *const *states_met(void)
 const char *const *states_large(void)
 {
     static const char *name[N_SPECS + 1];
-    list_names(FIRST_LARGE, N_SPECS, name);
+    list_names(FIRST_LARGE, FIRST_MILLION, name);
+    return name;
+}
+
+const char *const *states_million(void)
+{
+    static const char *name[N_SPECS + 1];
+    list_names(FIRST_MILLION, N_SPECS, name);
     return name;
 }
 

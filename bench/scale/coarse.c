@@ -23,20 +23,22 @@ static const struct measure_series *iterations(struct measure *measure,
     return cg_solves(measure, options, state, words, n);
 }
 
-static void plan_worst(struct measure *measure, const char *name,
+static void plan_worst(struct measure *measure, const char *kind, const char *rival,
                        const struct measure_series *groups, const struct measure_series *against,
                        size_t n)
 {
-    struct measure_metric *metric = measure_metric(measure, "x", cg_worst, "%s", name);
+    struct measure_metric *metric =
+        measure_metric(measure, "x", cg_worst, "iterations_%s_vs_%s", kind, rival);
     metric->of = groups;
     metric->against = against;
     metric->n = n;
 }
 
-/* One patch a block in one factor is what such states had before there were groups. */
-static void plan_large(struct measure *measure, const struct bench_options *options)
+/* States that are named after `kind`. One patch a block in one factor is what such states had
+ * before there were groups. */
+static void plan_sheet(struct measure *measure, const struct bench_options *options,
+                       const char *kind, const char *const *name)
 {
-    const char *const *name = states_large();
     const unsigned grain = options->quick ? QUICK_GRAIN : 0;
     size_t n;
     const struct measure_series *groups = iterations(measure, options, name, "", grain, &n);
@@ -48,8 +50,18 @@ static void plan_large(struct measure *measure, const struct bench_options *opti
         measure_value(measure, exact + i, 1, "iterations", "iterations_%s_exact", name[i]);
         measure_value(measure, one + i, 1, "iterations", "iterations_%s_one_patch", name[i]);
     }
-    plan_worst(measure, "iterations_large_vs_exact", groups, exact, n);
-    plan_worst(measure, "iterations_large_vs_one_patch", groups, one, n);
+    plan_worst(measure, kind, "exact", groups, exact, n);
+    plan_worst(measure, kind, "one_patch", groups, one, n);
+}
+
+static void plan_large(struct measure *measure, const struct bench_options *options)
+{
+    plan_sheet(measure, options, "large", states_large());
+}
+
+static void plan_million(struct measure *measure, const struct bench_options *options)
+{
+    plan_sheet(measure, options, "million", states_million());
 }
 
 static void plan_small(struct measure *measure, const struct bench_options *options)
@@ -66,7 +78,7 @@ static void plan_small(struct measure *measure, const struct bench_options *opti
         measure_value(measure, groups + i, 1, "iterations", "iterations_%s", *name);
         measure_value(measure, one + i++, 1, "iterations", "iterations_%s_one_factor", *name);
     }
-    plan_worst(measure, "iterations_small_vs_one_factor", groups, one, n);
+    plan_worst(measure, "small", "one_factor", groups, one, n);
 }
 
 /* Makes the state first, if it is not there: only these cases need states. */
@@ -82,6 +94,8 @@ static const struct serve_run RUNS[] = {{"solve", run_solve}, {0}};
 
 const struct bench_case scale_large = {
     "large", "iterations of 160,000 vertices, by groups and by one factor", plan_large, RUNS, 1};
+const struct bench_case scale_million = {"million", "the same of 1,000,000 vertices", plan_million,
+                                         NULL, 1};
 const struct bench_case scale_small = {
     "small",
     "iterations of the states of cg and of contact in small blocks, by groups and one factor",

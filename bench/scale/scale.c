@@ -8,9 +8,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-static const struct bench_case *const CASES[] = {&scale_messages,  &scale_wait, &scale_runs,
-                                                 &scale_predicted, &scale_vast, &scale_large,
-                                                 &scale_small,     NULL};
+static const struct bench_case *const CASES[] = {&scale_messages,  &scale_wait,  &scale_runs,
+                                                 &scale_predicted, &scale_vast,  &scale_large,
+                                                 &scale_million,   &scale_small, NULL};
 
 /* 8 ranks have 3 rounds: 3 messages of a sum and 2 for each of about 5 neighbours. A wait: 2
  * log2 8.
@@ -25,6 +25,8 @@ static const struct measure_target TARGETS[] = {{"messages_per_iteration_r8", 13
                                                 {"coarse_path_share", 0.15, false},
                                                 {"iterations_large_vs_exact", 1.6, false},
                                                 {"iterations_large_vs_one_patch", 1, false},
+                                                {"iterations_million_vs_exact", 1.6, false},
+                                                {"iterations_million_vs_one_patch", 1, false},
                                                 {0}};
 enum { TARGET_THREADS = 2 };
 

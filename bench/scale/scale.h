@@ -13,6 +13,6 @@ enum { SCALE_COMMAND = 16384, SCALE_PATH = 4096 };
 int scale_cloth(const char *before, unsigned side, unsigned grain, const char *arguments);
 
 extern const struct bench_case scale_messages, scale_wait, scale_runs, scale_predicted, scale_vast,
-    scale_large, scale_small;
+    scale_large, scale_million, scale_small;
 
 #endif

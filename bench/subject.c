@@ -19,7 +19,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-enum { MOST_RANKS = 64, START_SECONDS = 60, ANSWER_SECONDS = 600, END_SECONDS = 20 };
+enum { MOST_RANKS = 64, START_SECONDS = 60, ANSWER_SECONDS = 1800, END_SECONDS = 20 };
 
 struct rank {
     FILE *answers;

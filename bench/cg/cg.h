@@ -11,12 +11,14 @@
 /* ---- States ---- */
 
 /* The names of all states of "cg"; of those of them that stand for what simulations meet; of what
- * "scale" cuts into small blocks: those of "cg", and cloth in contact with the floor; of its
- * large ones, whose coarse space has many patches; of those of 1,000,000 vertices. Each list is
- * ended by NULL. */
+ * "scale" cuts into small blocks: those of "cg", and cloth in contact; of cloth in contact with the
+ * floor, and with itself; of its large ones, whose coarse space has many patches; of those of
+ * 1,000,000 vertices. Each list is ended by NULL. */
 const char *const *states_all(void);
 const char *const *states_met(void);
 const char *const *states_small(void);
+const char *const *states_landed(void);
+const char *const *states_folded(void);
 const char *const *states_large(void);
 const char *const *states_million(void);
 /* Why a state cannot be made here, or NULL. */
@@ -81,6 +83,7 @@ struct cg_solver {
  * a hundredth. guess: about how many that may be; 0: counts are doubled, then halved, so versions
  * of a solver are compared by the same ones. The error falls from 1. 0, or what serve_fail returns.
  */
+enum { CG_ANY_GUESS = 32 };
 int cg_search(const struct cg_solver *solver, double wanted, uint32_t guess, uint32_t *needed);
 
 struct cg_session {
@@ -113,8 +116,15 @@ int cg_run(const struct model *model, struct serve_request *request,
            const struct flow_output *output, const struct flow_progress *progress,
            struct flow_report *report);
 
+/* Makes the session ready for a state and settings, with the system that is to be solved. The same.
+ */
+int cg_ready(struct cg_session *session, struct serve_request *request);
+
 extern const struct serve_run cg_runs[];
 int cg_solve_state(void *session, struct serve_request *request, double *value); /* run "solve" */
+/* How many springs of contact the system of a state has; self=1: of cloth with cloth (run "touch").
+ */
+int cg_touch(void *session, struct serve_request *request, double *value);
 /* Frames of a sheet that falls (bench/cg/frames.c). */
 int cg_frames(void *session, struct serve_request *request, double *value);
 

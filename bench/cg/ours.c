@@ -245,7 +245,7 @@ static int find_solution(struct cg_session *s)
     return s->flow->vertex ? state_write(&s->state) : 0;
 }
 
-static int ready(struct cg_session *s, struct serve_request *request)
+int cg_ready(struct cg_session *s, struct serve_request *request)
 {
     char settings[sizeof s->settings];
     const struct model *model = &s->plan.model;
@@ -325,7 +325,7 @@ static int cg(void *context, struct serve_request *request, double *value)
 {
     struct cg_session *s = context;
     const uint32_t count = (uint32_t)serve_number(request, "count");
-    int code = ready(s, request);
+    int code = cg_ready(s, request);
     stop_after(s, count / 10 + 1);
     if (!code)
         code = time_solve(s, value);
@@ -358,7 +358,7 @@ static uint32_t known(const struct cg_session *s, const char *settings, double w
     return 0;
 }
 
-/* What the state took with other settings; 0: that is not known. */
+/* What the state took with other settings, or anything. */
 static uint32_t guess(const struct cg_session *s, double wanted)
 {
     uint32_t found = 0;
@@ -367,7 +367,7 @@ static uint32_t guess(const struct cg_session *s, double wanted)
         if (!strncmp(s->needed[i].settings, s->state.name, length) &&
             s->needed[i].settings[length] == ' ')
             found = known(s, s->needed[i].settings, wanted);
-    return found;
+    return found ? found : CG_ANY_GUESS;
 }
 
 static int find_needed(struct cg_session *s, double wanted, uint32_t *needed)
@@ -395,7 +395,7 @@ int cg_solve_state(void *context, struct serve_request *request, double *value)
     settings_of(request, settings, sizeof settings);
     uint32_t needed = known(s, settings, wanted);
     const bool counts = !strcmp(what, "iterations");
-    int code = counts && needed ? 0 : ready(s, request);
+    int code = counts && needed ? 0 : cg_ready(s, request);
     if (!code && !needed)
         code = find_needed(s, wanted, &needed);
     *value = needed;
@@ -412,7 +412,7 @@ int cg_solve_state(void *context, struct serve_request *request, double *value)
 static int error(void *context, struct serve_request *request, double *value)
 {
     struct cg_session *s = context;
-    const int code = ready(s, request);
+    const int code = cg_ready(s, request);
     stop_by_default(s);
     return code ? code : error_of(s, value);
 }
@@ -423,7 +423,7 @@ static int step(void *context, struct serve_request *request, double *value)
     struct cg_session *s = context;
     const uint64_t steps = serve_number(request, "steps");
     double left = 0;
-    int code = ready(s, request);
+    int code = cg_ready(s, request);
     stop_by_default(s);
     if (!code)
         code = tasks_code(flow_initialise(&s->run));

@@ -15,9 +15,9 @@ static int try(const struct cg_solver *solver, double wanted, uint32_t count, st
 {
     double error = INFINITY;
     const int code = solver->error_after(solver->context, count, &error);
-    if (error > wanted) {
+    if (!(error <= wanted)) { /* nor is what is no number */
         to->low = count;
-        to->at_low = error;
+        to->at_low = fmin(error, 1);
     } else {
         to->high = count;
         to->at_high = error;
@@ -33,12 +33,20 @@ static uint32_t estimate(const struct bracket *b, double wanted)
     return b->low + (more < 1 ? 1 : more < width - 1 ? more : width - 1);
 }
 
+/* How many more are to be tried than what was too few: with a guess, as many as it takes if the
+ * logarithm falls on as it did, between an eighth and all of them. */
+static uint32_t more(const struct bracket *b, double wanted, uint32_t guess)
+{
+    const double part = log(wanted) / log(fmin(b->at_low, 0.99)) - 1;
+    return guess ? 1 + (uint32_t)(fmin(fmax(part, 0.125), 1) * b->low) : b->low;
+}
+
 int cg_search(const struct cg_solver *solver, double wanted, uint32_t guess, uint32_t *needed)
 {
     enum { MOST = 40000, HALVED = 4 };
     struct bracket b = {.at_low = 1};
     int code = 0;
-    for (uint32_t n = guess ? guess : 1; !code && !b.high && n < MOST; n += guess ? 1 + n / 8 : n)
+    for (uint32_t n = guess ? guess : 1; !code && !b.high && n < MOST; n += more(&b, wanted, guess))
         code = try(solver, wanted, n, &b);
     if (!code && !b.high)
         return serve_fail("there is no error of %g after so many iterations", wanted);

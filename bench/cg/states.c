@@ -12,13 +12,17 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { IRREGULAR_SIDE = 187, QUICK_SIDE = 16 };
+enum { IRREGULAR_SIDE = 187, QUICK_SIDE = 16, QUICK_FOLDED_SIDE = 32 };
 
 #define PLACE "cloths[0].transform={rotate: [0.87, 0.4, 0.25, 0.1], translate: [0, 0.62, 0]}"
 #define FREE  "cloths[0].pins=[]"
 #define TOUCH "contact={mode: certified, self: on, thickness: 0.002, friction: 0.3}"
 
-/* seconds: how long it moves, in steps of 8 ms; 0: not at all. */
+#define HIGH "cloths[0].transform={translate: [0, 0.62, 0]}"
+#define ROD  "obstacles=[{capsule: {from: [-0.6, 0.6, 0.01], to: [0.6, 0.6, -0.01], radius: 0.005}}]"
+
+/* seconds: how long it moves, in steps of 8 ms; 0: not at all; quick: four of them, or whole. What
+ * is folded hangs over a rod, and its halves have swung against each other. */
 static const struct motion {
     const char *name;
     double seconds;
@@ -31,6 +35,7 @@ static const struct motion {
     {"falling", 0.08, {FREE, "cloths[0].transform.translate=[0, 3, 0]"}},
     {"crumpled", 0.64, {FREE, PLACE}},
     {"landed", 0.64, {FREE, PLACE, TOUCH}},
+    {"folded", 0.64, {FREE, HIGH, TOUCH, ROD}},
     {"irregular", 0.16, {"cloths[0].transform={translate: [0, 0.5, 0]}"}},
     {"dress",
      0.16,
@@ -57,16 +62,19 @@ static const struct spec {
     {"dress_h1", "dress", 1, false, 50},         {"dress_h8_bend", "dress", 8, true, 50},
     {"dress_h20", "dress", 20, false, 50},       {"landed_h1", "landed", 1, false, 0},
     {"landed_h8_bend", "landed", 8, true, 0},    {"landed_h20", "landed", 20, false, 0},
-    {"large_h1", "large", 1, false, 0},          {"large_h8", "large", 8, false, 0},
-    {"large_h20", "large", 20, false, 0},        {"million_h1", "million", 1, false, 0},
-    {"million_h8", "million", 8, false, 0},      {"million_h20", "million", 20, false, 0},
+    {"folded_h1", "folded", 1, false, 0},        {"folded_h8_bend", "folded", 8, true, 0},
+    {"folded_h20", "folded", 20, false, 0},      {"large_h1", "large", 1, false, 0},
+    {"large_h8", "large", 8, false, 0},          {"large_h20", "large", 20, false, 0},
+    {"million_h1", "million", 1, false, 0},      {"million_h8", "million", 8, false, 0},
+    {"million_h20", "million", 20, false, 0},
 };
 enum {
     N_SPECS = sizeof SPECS / sizeof *SPECS,
     FIRST_MET = 2,
     FIRST_LANDED = 17,
-    FIRST_LARGE = 20,
-    FIRST_MILLION = 23
+    FIRST_FOLDED = 20,
+    FIRST_LARGE = 23,
+    FIRST_MILLION = 26
 };
 
 /* From one spec to before another. */
@@ -94,6 +102,20 @@ const char *const *states_small(void)
 const char *const *states_met(void)
 {
     return states_all() + FIRST_MET;
+}
+
+const char *const *states_landed(void)
+{
+    static const char *name[N_SPECS + 1];
+    list_names(FIRST_LANDED, FIRST_FOLDED, name);
+    return name;
+}
+
+const char *const *states_folded(void)
+{
+    static const char *name[N_SPECS + 1];
+    list_names(FIRST_FOLDED, FIRST_LARGE, name);
+    return name;
 }
 
 const char *const *states_large(void)
@@ -167,6 +189,11 @@ static int mesh_set(const char *motion, bool quick, char *set)
 
 /* ---- Models ---- */
 
+static bool is_folded(const struct motion *motion)
+{
+    return !strcmp(motion->name, "folded");
+}
+
 static int read_model(struct model *model, const struct motion *motion, bool quick, double h,
                       double end, bool bend)
 {
@@ -183,9 +210,12 @@ static int read_model(struct model *model, const struct motion *motion, bool qui
         if (bend)
             add_set(sets, "materials.cloth.bend=5");
         if (quick && !*mesh) {
-            add_set(sets, "cloths[0].mesh.grid.nx=%d", QUICK_SIDE);
-            add_set(sets, "cloths[0].mesh.grid.ny=%d", QUICK_SIDE);
+            const int side = is_folded(motion) ? QUICK_FOLDED_SIDE : QUICK_SIDE;
+            add_set(sets, "cloths[0].mesh.grid.nx=%d", side);
+            add_set(sets, "cloths[0].mesh.grid.ny=%d", side);
         }
+        if (quick && is_folded(motion)) /* of long edges: halves stay farther apart */
+            add_set(sets, "contact.thickness=0.02");
         if (quick)
             add_set(sets, "grain=40");
         if (end > h)
@@ -213,7 +243,8 @@ int states_plan_make(struct states_plan *plan, const char *name, bool quick)
                                  .count = quick ? QUICK_COUNT : spec->count,
                                  .moves = motion->seconds > 0,
                                  .solved_here = spec >= SPECS + FIRST_LANDED};
-    const double seconds = quick || !plan->moves ? 4 * h : motion->seconds;
+    const bool few = !plan->moves || (quick && !is_folded(motion));
+    const double seconds = few ? 4 * h : motion->seconds;
     int code =
         read_model(&plan->model, motion, quick, 0.001 * spec->h, 0.001 * spec->h, spec->bend);
     if (!code)

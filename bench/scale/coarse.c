@@ -64,6 +64,19 @@ static void plan_million(struct measure *measure, const struct bench_options *op
     plan_sheet(measure, options, "million", states_million());
 }
 
+/* How many springs of contact the systems have. */
+static void plan_touch(struct measure *measure, const struct bench_options *options, unsigned grain,
+                       const char *const *name, bool self)
+{
+    char more[40];
+    snprintf(more, sizeof more, " grain=%u self=%d", grain, self);
+    for (; *name; name++)
+        measure_value(
+            measure,
+            cg_series(measure, options, cg_ours(0, options->threads), "touch", *name, more), 1,
+            "springs", "touches_%s%s", self ? "itself_" : "", *name);
+}
+
 static void plan_small(struct measure *measure, const struct bench_options *options)
 {
     const unsigned grain = options->quick ? QUICK_GRAIN : GRAIN;
@@ -79,18 +92,33 @@ static void plan_small(struct measure *measure, const struct bench_options *opti
         measure_value(measure, one + i++, 1, "iterations", "iterations_%s_one_factor", *name);
     }
     plan_worst(measure, "small", "one_factor", groups, one, n);
+    plan_touch(measure, options, grain, states_landed(), false);
+    plan_touch(measure, options, grain, states_folded(), true);
 }
 
-/* Makes the state first, if it is not there: only these cases need states. */
-static int run_solve(void *session, struct serve_request *request, double *value)
+/* Makes the state if it is not there: only these cases need states. */
+static int make_state(void *session, struct serve_request *request)
 {
     struct state state = {0};
-    int code = state_ready(&state, request) ? cg_make_state(session, request, value) : 0;
+    double vertices;
+    const int code = state_ready(&state, request) ? cg_make_state(session, request, &vertices) : 0;
     state_free(&state);
+    return code;
+}
+
+static int run_solve(void *session, struct serve_request *request, double *value)
+{
+    const int code = make_state(session, request);
     return code ? code : cg_solve_state(session, request, value);
 }
 
-static const struct serve_run RUNS[] = {{"solve", run_solve}, {0}};
+static int run_touch(void *session, struct serve_request *request, double *value)
+{
+    const int code = make_state(session, request);
+    return code ? code : cg_touch(session, request, value);
+}
+
+static const struct serve_run RUNS[] = {{"solve", run_solve}, {"touch", run_touch}, {0}};
 
 const struct bench_case scale_large = {
     "large", "iterations of 160,000 vertices, by groups and by one factor", plan_large, RUNS, 1};

@@ -7,14 +7,22 @@ plan_later
 rows() { # each metric with a number, or why there are no hosts
     limited bench/duite-bench scale --quick --repeats 1 > "$scratch/said" 2>&1 || { cat "$scratch/said"; return 1; }
     cat "$scratch/said"
-    for metric in messages_per_iteration_r8 wait_messages_r8 prediction_error_r2 prediction_error_r2_from_r1 scaling_1x16_tcp scaling_16x16_tcp scaling_1x16_fast scaling_16x16_fast coarse_path_share \
-        iterations_large_vs_exact iterations_large_vs_one_patch iterations_small_vs_one_factor iterations_landed_h20 scaling_64x64_fast; do
+    for metric in messages_per_iteration_r8 wait_messages_r8 prediction_error_r2 prediction_error_r2_from_r1 scaling_1x16_tcp scaling_16x16_tcp \
+        scaling_1x16_fast scaling_16x16_fast coarse_path_share iterations_large_vs_exact iterations_large_vs_one_patch \
+        iterations_million_vs_exact iterations_million_vs_one_patch iterations_million_h20_exact iterations_small_vs_one_factor \
+        iterations_landed_h20 iterations_folded_h20 touches_landed_h20 scaling_64x64_fast; do
         grep -Eq "^$metric: ([0-9]|not measured)" "$scratch/said" || return 1
     done
 }
 
 waits() { # the rank in the middle of both trees sends log2 8 messages
     sed -n 's/^wait_messages_r8: \([0-9.]*\).*/\1/p' "$scratch/said" | awk '{ wrong = $1 < 2.5 || $1 > 6 } END { exit wrong }'
+}
+
+folded() { # cloth that touches itself has springs there in its system
+    for metric in h1 h8_bend h20; do
+        grep -Eq "^touches_itself_folded_$metric: [1-9]" "$scratch/said" || return 1
+    done
 }
 
 none_left() { # the traces and reports of the rows above
@@ -24,4 +32,5 @@ mkdir "$scratch/temporary"
 export TMPDIR="$scratch/temporary"
 ok "messages and predictions are measured" rows
 ok "a wait sends few messages" waits
+ok "cloth touches itself" folded
 ok "traces and reports are removed at the end" none_left

@@ -1,5 +1,6 @@
 /* The states of the bench "cg": a system is that of one whole step, also where the cloth would
- * rather take two of half the length, and a file with the system of another step is refused. */
+ * rather take two of half the length, and a file with the system of another step is refused. A
+ * count of iterations is found in few solves. */
 #include "bench/cg/cg.h"
 #include "tests/support/unit.h"
 
@@ -100,6 +101,59 @@ START_TEST(another_step_is_refused)
 }
 END_TEST
 
+/* ---- The search for a count ---- */
+
+struct curve {
+    uint32_t least; /* iterations to an error of 0.01 */
+    double bends;   /* 1: the logarithm falls evenly */
+    uint32_t tried, iterations;
+};
+
+static int error_on_curve(void *context, uint32_t count, double *error)
+{
+    struct curve *curve = context;
+    curve->tried++;
+    curve->iterations += count;
+    *error = pow(0.01, pow((double)count / curve->least, curve->bends));
+    return 0;
+}
+
+static uint32_t search(struct curve *curve, uint32_t guess)
+{
+    const struct cg_solver solver = {curve, error_on_curve};
+    uint32_t needed = 0;
+    curve->tried = curve->iterations = 0;
+    ck_assert_int_eq(cg_search(&solver, 0.01, guess, &needed), 0);
+    return needed;
+}
+
+/* Exact up to a hundred, and to a hundredth beyond; whatever was guessed, however errors fall. */
+START_TEST(the_least_count_is_found)
+{
+    static const uint32_t least[] = {1, 2, 3, 21, 100, 137, 2000}, guess[] = {0, 1, 32, 110, 3000};
+    static const double bends[] = {0.5, 1, 3};
+    for (int i = 0; i < 7 * 5 * 3; i++) {
+        struct curve curve = {.least = least[i % 7], .bends = bends[i / 35]};
+        const uint32_t needed = search(&curve, guess[i / 7 % 5]);
+        ck_assert_uint_ge(needed, curve.least);
+        ck_assert_uint_le(needed, curve.least + curve.least / 100);
+        ck_assert_uint_le(curve.tried, 60);
+    }
+}
+END_TEST
+
+/* A guess saves most solves. */
+START_TEST(a_good_guess_saves_solves)
+{
+    struct curve curve = {.least = 90, .bends = 1.3};
+    search(&curve, 0);
+    const uint32_t without = curve.iterations;
+    search(&curve, 112);
+    ck_assert_uint_le(curve.tried, 6);
+    ck_assert_uint_lt(2 * curve.iterations, without);
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("states");
@@ -109,6 +163,8 @@ int main(void)
     tcase_add_test(all, the_step_is_whole);
     tcase_add_test(all, a_step_that_fails_is_told);
     tcase_add_test(all, another_step_is_refused);
+    tcase_add_test(all, the_least_count_is_found);
+    tcase_add_test(all, a_good_guess_saves_solves);
     suite_add_tcase(suite, all);
     return unit_run(suite);
 }

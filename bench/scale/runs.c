@@ -29,7 +29,7 @@ static void plan(struct measure *measure, const struct bench_options *options)
 }
 
 /* Each rank has a core of its own: without taskset both hosts begin with the first one. */
-static int run_cloth(const struct serve_request *request, unsigned hosts, const char *trace)
+static int run_cloth(struct serve_request *request, unsigned hosts, const char *trace)
 {
     char before[SCALE_PATH], arguments[SCALE_PATH + 200];
     *before = '\0';
@@ -96,7 +96,7 @@ static int read_trace(struct trace_run **run, const char *path)
 static int run_run(void *context, struct serve_request *request, double *value)
 {
     struct trace_run *run = NULL, *one = NULL;
-    char folder[TEMPORARY_PATH], own[SCALE_PATH], single[SCALE_PATH], from[8];
+    char folder[TEMPORARY_PATH], own[SCALE_PATH + 8], single[SCALE_PATH + 8], from[8];
     (void)context;
     serve_word(request, "from", from, sizeof from);
     int code = temporary_make(NULL, "duite-scale", folder);

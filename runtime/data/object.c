@@ -160,6 +160,7 @@ void data_object_settle(struct data_table *table, uint32_t slot, int home)
 {
     struct data_object *object = &table->object[slot];
     object->home = object->holder = home;
+    table->changes++;
     object->block = table->blocks[home]++;
 }
 
@@ -168,6 +169,7 @@ void data_object_join(struct data_table *table, uint32_t slot, uint32_t leader)
     struct data_object *object = &table->object[slot];
     object->home = object->holder = table->object[leader].home;
     object->block = table->object[leader].block;
+    table->changes++;
 }
 
 void data_hints_forget(struct data_table *table)
@@ -181,6 +183,7 @@ void data_object_drop(struct data_table *table, duite_object name)
 {
     struct data_object *object = &table->object[name.slot];
     object->generation++;
+    table->changes++;
     object->current = NULL;
     if (object->view)
         table->object[object->view->parent].n_views--;

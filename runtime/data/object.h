@@ -10,7 +10,8 @@
  * the table says about other ranks follows from the forks, which are the same everywhere: no rank
  * is ever asked. */
 struct data_object {
-    /* What a fork of other ranks' tasks reads and writes (task/prune.h) has one cache line. */
+    /* What a fork of other ranks' tasks (task/prune.h) and a replay read and write has one cache
+     * line. */
     uint32_t generation; /* even: the slot is free */
     int home;            /* -1: not decided yet */
     int holder;          /* the rank that has the current version for certain */
@@ -22,15 +23,15 @@ struct data_object {
     uint64_t leaves;              /* contributions forked since the last other access */
     struct data_view *view;       /* it is a view; NULL: it is none */
     uint64_t mark;                /* the last fork that named it: one task names an object once */
+    uint32_t block;               /* its place among the leaders with its home, in the order they
+                                     were made; followers share their leader's */
+    uint32_t hint;                /* while home is -1: its place in `unsettled` */
     const duite_law *law;         /* of the contributions */
     struct data_sum *sum;         /* those that concern this rank, or NULL */
     duite_type type;
     uint32_t n_views;    /* views of it that are alive */
     size_t count, bytes; /* at first, when all elements are zero */
     size_t max, room;    /* elements and bytes of the largest version */
-    uint32_t block;      /* its place among the leaders with its home, in the order they were made;
-                            followers share their leader's */
-    uint32_t hint;       /* while home is -1: its place in `unsettled` */
     uint64_t : 64;       /* of two lines: in the table, which begins at one, each begins at one */
 };
 _Static_assert(sizeof(struct data_object) == 2 * BASE_LINE, "objects begin at cache lines");
@@ -55,6 +56,8 @@ struct data_table {
     struct data_hint *unsettled; /* objects without a home, in the order they were made */
     size_t n_unsettled, unsettled_capacity;
     uint32_t *blocks; /* by rank: how many leaders got their home there so far */
+    uint64_t changes; /* of names and homes so far: objects freed, homes given. What was found of
+                         objects by their names lasts until there is another one */
     uint64_t settled; /* objects that got a home by the mapping so far */
     uint64_t homes;   /* a hash of these homes: the same on every rank */
 };

@@ -278,7 +278,7 @@ static bool emit_all(struct plan *plan, const struct emit *emit)
     return true;
 }
 
-bool plan_fits(const struct plan *plan, const struct plan_record *record, const duite_object *flag)
+bool plan_fits(struct plan *plan, const struct plan_record *record, const duite_object *flag)
 {
     if (plan->decides != (flag != NULL) || !plan_at_home(plan, record))
         return false;

@@ -92,7 +92,9 @@ struct plan {
     size_t words;          /* of a set of ranks; 0: there is one rank */
     uint64_t *enter, *end; /* by object: the ranks whose rounds begin with it, that have it after */
     int *home;             /* by object: when the plan was made */
-    bool decides; /* the last node reads a flag and decides whether there is another round */
+    uint64_t at_home; /* main thread: table->changes, plus 1, when objects were last found there; 0:
+                         they were not, or others were bound since */
+    bool decides;     /* the last node reads a flag and decides whether there is another round */
     size_t flag_place;
     /* Main thread only. */
     struct data_object turn; /* written by each replay: one waits for the other */
@@ -175,7 +177,7 @@ static inline uint32_t plan_task_affinity(const struct task *task)
  * NULL: PLAN_NEEDS_TAGS, or an error: memory, MPI. */
 int plan_new(struct plan **plan, const struct plan_record *record, const duite_object *flag);
 /* Could plan_new have made this plan? */
-bool plan_fits(const struct plan *plan, const struct plan_record *record, const duite_object *flag);
+bool plan_fits(struct plan *plan, const struct plan_record *record, const duite_object *flag);
 /* Of several ranks. The first makes this rank's part of a round, without edges. The second opens
  * the channels, when all nodes are there. Errors: memory. */
 bool plan_of_ranks(struct plan *plan, const struct plan_round *round, struct plan_round *part,
@@ -191,7 +193,7 @@ bool plan_moves(const struct plan *plan, size_t i, struct data_object *object);
 /* Bytes of a node's message with all its failures. */
 size_t plan_channel_room(const struct plan *plan, const struct task *task);
 /* Whether the homes are those that the plan was made for. */
-bool plan_at_home(const struct plan *plan, const struct plan_record *record);
+bool plan_at_home(struct plan *plan, const struct plan_record *record);
 
 /* The record drops its plan (NULL is fine); a replay is over. The last of them frees the plan. */
 void plan_drop(struct plan *plan, struct worker *worker);

@@ -96,14 +96,16 @@ int plan_open(struct plan *plan, const struct plan_round *part)
     return work_open(plan->graph->pool, channels);
 }
 
-bool plan_at_home(const struct plan *plan, const struct plan_record *record)
+bool plan_at_home(struct plan *plan, const struct plan_record *record)
 {
-    const struct data_object *objects = plan->graph->table.object;
-    for (size_t i = 0; plan->words && i < record->n_objects; i++) {
+    const struct data_table *table = &plan->graph->table;
+    const uint64_t now = table->changes + 1;
+    for (size_t i = 0; plan->words && i < record->n_objects && plan->at_home != now; i++) {
         plan_prefetch(record, i + PLAN_AHEAD);
-        if (objects[record->object[i].bound.slot].home != plan->home[i])
+        if (table->object[record->object[i].bound.slot].home != plan->home[i])
             return false;
     }
+    plan->at_home = now;
     return true;
 }
 

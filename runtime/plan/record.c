@@ -239,6 +239,7 @@ void plan_record_end(struct plan_record *record)
     for (size_t i = 0; i < record->n_objects; i++) {
         const struct plan_recorded_object *object = &record->object[i];
         record->forked |= object->sized || (object->leads && object->trails);
+        record->leads |= object->leads;
         record->trails |= object->trails;
     }
 }
@@ -299,18 +300,23 @@ int plan_record_bind(struct plan_record *record, duite_object recorded, duite_ob
     task_mixed(record->graph, TASK_CALLED, TASK_CALLED_GRAPH_BIND);
     object->bound = name;
     record->graph->table.object[name.slot].fixed |= object->fixed;
-    record->rebound = true;
+    record->rebound = record->ever_bound = true;
+    if (record->plan)
+        record->plan->at_home = 0;
     return DUITE_OK;
 }
 
-bool plan_record_fits(const struct plan_record *record)
+/* What is bound existed then. */
+bool plan_record_fits(struct plan_record *record)
 {
     const struct data_table *table = &record->graph->table;
-    for (size_t i = 0; i < record->n_objects; i++) {
+    const uint64_t now = table->changes + 1;
+    for (size_t i = 0; i < record->n_objects && record->fits != now; i++) {
         duite_object bound = record->object[i].bound;
         if (table->object[bound.slot].generation != bound.generation)
             return false;
     }
+    record->fits = now;
     return record->whole;
 }
 

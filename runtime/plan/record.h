@@ -83,13 +83,16 @@ struct plan_record {
     size_t n_slots;
     duite_object *names; /* for the objects of one fork */
     size_t names_capacity;
-    bool whole;   /* build came to its end */
-    bool rebound; /* since the bindings were last found to be different objects */
-    bool forked;  /* has no plan: contributions of one round and of the next make one sum, the size
-                     of an object changes, or a right is postponed */
-    bool views;   /* reads views */
-    bool trails;  /* some object's contributions end the round: they stay open after the last */
-    int failed;   /* code of the first call of build that failed */
+    bool whole;      /* build came to its end */
+    uint64_t fits;   /* table->changes, plus 1, when all bound objects were last found to exist */
+    bool rebound;    /* since the bindings were last found to be different objects */
+    bool ever_bound; /* some object is bound, maybe to itself */
+    bool forked; /* has no plan: contributions of one round and of the next make one sum, the size
+                    of an object changes, or a right is postponed */
+    bool views;  /* reads views */
+    bool leads;  /* contributions to some object come before any other access in a round */
+    bool trails; /* some object's contributions end the round: they stay open after the last */
+    int failed;  /* code of the first call of build that failed */
     char message[512]; /* of it */
     struct plan *plan;
     struct plan_change *changes; /* since the last replay of the plan */
@@ -148,7 +151,7 @@ int plan_record_tasks(const struct plan_record *record, struct plan_tasks *tasks
 int plan_record_print(const struct plan_record *record, FILE *file);
 
 /* Was it recorded, and do all bound objects exist? */
-bool plan_record_fits(const struct plan_record *record);
+bool plan_record_fits(struct plan_record *record);
 /* DUITE_E_BINDING if two recorded objects are bound to one. */
 int plan_record_distinct(struct plan_record *record);
 

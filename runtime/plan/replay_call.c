@@ -11,7 +11,7 @@
 /* Do open contributions go on in the first round? */
 static bool replay_continues_sums(const struct plan_record *record)
 {
-    for (size_t i = 0; i < record->n_objects; i++)
+    for (size_t i = 0; i < record->n_objects && record->leads; i++)
         if (record->object[i].leads &&
             record->graph->table.object[record->object[i].bound.slot].leaves)
             return true;
@@ -24,7 +24,7 @@ static bool replay_changes_views(const struct plan_record *record, const duite_o
 {
     const struct data_object *objects = record->graph->table.object;
     bool changed = flag && objects[flag->slot].view;
-    for (size_t i = 0; i < record->n_objects && !changed; i++) {
+    for (size_t i = 0; i < record->n_objects && record->ever_bound && !changed; i++) {
         duite_object bound = record->object[i].bound, recorded = record->object[i].recorded;
         if (bound.slot != recorded.slot || bound.generation != recorded.generation)
             changed = record->views || objects[bound.slot].view;
@@ -39,7 +39,7 @@ void plan_replay_split(const struct plan_record *record, const duite_object *fla
     bool forked = record->forked || (flag && record->graph->table.object[flag->slot].sized) ||
                   replay_changes_views(record, flag);
     /* A flag's own contributions end with the round, since it is read. */
-    for (size_t i = 0; flag && i < record->n_objects; i++)
+    for (size_t i = 0; flag && record->trails && i < record->n_objects; i++)
         forked |=
             record->object[i].trails && (record->object[i].bound.slot != flag->slot ||
                                          record->object[i].bound.generation != flag->generation);

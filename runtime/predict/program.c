@@ -14,9 +14,9 @@
 /* s: of a message, and of a look at most, where nobody measured them: in a host's memory. */
 #define SOME_MESSAGE 5e-7
 /* What a fork costs a rank that has no part in it, over what one that runs there takes in a trace:
- * a third, of cloth in 16,000 blocks, where what is known of an object is never in the cache. It is
- * a tenth where it always is (docs/measuring.md). */
-#define FOREIGN_FORK 0.33
+ * of cloth in 16,000 blocks, whose neighbours are partly on other ranks. There, what is known of an
+ * object is never in the cache. It is a tenth where it always is (docs/measuring.md). */
+#define FOREIGN_FORK 0.40
 
 /* ---- Tasks ---- */
 

@@ -249,6 +249,7 @@ int task_move_object(struct task_graph *graph, struct worker *worker, struct dat
 {
     int from = object->home;
     object->home = home;
+    graph->table.changes++;
     if (object->holder != from || object->leaves || from == home)
         return DUITE_OK;
     if (object->number)

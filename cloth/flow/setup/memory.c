@@ -97,6 +97,7 @@ static void take(struct flow_state *state)
     flow->tables.block = cloth_alloc(head->n_blocks, sizeof *flow->tables.block, &flow->trouble);
     flow->tables.n_blocks = head->n_blocks;
     state->block = cloth_alloc(head->n_blocks, sizeof *state->block, &flow->trouble);
+    state->max_refs = refs;
     state->refs = cloth_alloc(FLOW_FORKS_AHEAD * refs, sizeof *state->refs, &flow->trouble);
     state->rows = cloth_alloc(larger(4 * (size_t)head->max_rows, head->max_neighbours),
                               sizeof *state->rows, &flow->trouble);

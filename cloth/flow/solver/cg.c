@@ -46,14 +46,21 @@ static int fork_begin(struct flow_state *state, bool guess)
     return code ? code : flow_levels_fork_top(state, &flow_kernel_cg_begin_coarse, &args, false);
 }
 
+/* Blocks of which one task follows another are taken by so many: the second still finds in caches
+ * what the first one left there. */
+enum { BLOCKS_TOGETHER = 4 * FLOW_FORKS_AHEAD };
+
 int flow_cg_start(struct flow_state *state)
 {
+    const uint32_t n_blocks = state->flow->tables.n_blocks;
     const double guess = guess_of(state);
     int code = flow_coarse_start(state);
-    for (uint32_t b = 0; b < state->flow->tables.n_blocks && !code; b++) {
-        code = flow_preconditioner_factor(state, b);
+    for (uint32_t first = 0; first < n_blocks && !code; first += BLOCKS_TOGETHER) {
+        const uint32_t left = n_blocks - first;
+        const uint32_t end = first + (left < BLOCKS_TOGETHER ? left : BLOCKS_TOGETHER);
+        code = flow_preconditioner_factor(state, first, end);
         if (!code)
-            code = flow_pass_start(state, b, guess);
+            code = flow_pass_start(state, first, end, guess);
     }
     return code ? code : fork_begin(state, guess != 0);
 }

@@ -342,28 +342,32 @@ static int cg_pass_preconditioned_body(const duite_call *call,
 
 /* ---- Forks ---- */
 
-/* The vectors of a block. */
-static int fork_start(struct flow_state *state, uint32_t block)
+/* The vectors of blocks. */
+static int fork_start(struct flow_state *state, uint32_t first, uint32_t end)
 {
-    const struct flow_block_args args = {block};
-    return flow_fork_one(state,
-                         flow_is_preconditioned(state->flow) ? &flow_kernel_cg_start_preconditioned
-                                                             : &flow_kernel_cg_start,
-                         &args);
+    struct flow_block_args args;
+    return flow_fork_range_as(state,
+                              flow_is_preconditioned(state->flow)
+                                  ? &flow_kernel_cg_start_preconditioned
+                                  : &flow_kernel_cg_start,
+                              first, end, &args, NULL);
 }
 
-static int fork_guess(struct flow_state *state, uint32_t block, double guess)
+static int fork_guess(struct flow_state *state, uint32_t first, uint32_t end, double guess)
 {
-    const struct guess_args args = {block, guess};
-    return flow_fork_one(state, &flow_kernel_cg_guess, &args);
+    struct guess_args args = {.guess = guess};
+    return flow_fork_range_as(state, &flow_kernel_cg_guess, first, end, &args, NULL);
 }
 
-int flow_pass_start(struct flow_state *state, uint32_t block, double guess)
+int flow_pass_start(struct flow_state *state, uint32_t first, uint32_t end, double guess)
 {
-    int code = guess != 0 ? fork_guess(state, block, guess) : fork_start(state, block);
-    if (!code)
-        code = flow_ties_pack_start(state, block, guess != 0);
-    return code ? code : flow_halo_pack(state, block, 0);
+    int code = guess != 0 ? fork_guess(state, first, end, guess) : fork_start(state, first, end);
+    for (uint32_t b = first; b < end && !code; b++) {
+        code = flow_ties_pack_start(state, b, guess != 0);
+        if (!code)
+            code = flow_halo_pack(state, b, 0);
+    }
+    return code;
 }
 
 /* What it reads of the neighbours are their halos or packed ones (halo.c). Behind all else come

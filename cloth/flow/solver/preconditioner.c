@@ -49,11 +49,12 @@ static int factor_body(const duite_call *call, const struct factor_fields *on)
     return 0;
 }
 
-int flow_preconditioner_factor(struct flow_state *state, uint32_t block)
+int flow_preconditioner_factor(struct flow_state *state, uint32_t first, uint32_t end)
 {
-    const struct flow_block_args args = {block};
-    return flow_is_preconditioned(state->flow) ? flow_fork_one(state, &flow_kernel_factor, &args)
-                                               : DUITE_OK;
+    struct flow_block_args args;
+    return flow_is_preconditioned(state->flow)
+               ? flow_fork_range_as(state, &flow_kernel_factor, first, end, &args, NULL)
+               : DUITE_OK;
 }
 
 /* ---- In a pass ---- */

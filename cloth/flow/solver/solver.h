@@ -12,10 +12,10 @@
 
 /* ---- Tasks of a solve. Collective. They return 0 or what duite_fork returned ---- */
 
-/* The first forks the vectors of a block before the first pass, and what neighbours read of them.
- * They are made of `guess` times dv, or of nothing (0). The second forks pass number state->pass of
- * a recorded round on all blocks. (pass.c) */
-int flow_pass_start(struct flow_state *state, uint32_t block, double guess);
+/* The first forks the vectors of blocks first to before end, before the first pass, and what
+ * neighbours read of them. They are made of `guess` times dv, or of nothing (0). The second forks
+ * pass number state->pass of a recorded round on all blocks. (pass.c) */
+int flow_pass_start(struct flow_state *state, uint32_t first, uint32_t end, double guess);
 int flow_pass_fork(struct flow_state *state);
 
 /* Fork what shows a block's corners of ties, if it has any into other blocks: what the first pass
@@ -25,10 +25,10 @@ int flow_ties_pack_start(struct flow_state *state, uint32_t block, bool guess);
 int flow_ties_pack(struct flow_state *state, uint32_t block);
 int flow_ties_show_basis(struct flow_state *state);
 
-/* Fork what comes of a step's matrix before its solve: the coarse factor; the factor of a block.
+/* Fork what comes of a step's matrix before its solve: the coarse factor; the factors of blocks.
  * Nothing where there is none. (coarse.c, preconditioner.c) */
 int flow_coarse_start(struct flow_state *state);
-int flow_preconditioner_factor(struct flow_state *state, uint32_t block);
+int flow_preconditioner_factor(struct flow_state *state, uint32_t first, uint32_t end);
 
 /* Fork what takes out of dv what a solve left of the momentum of free pieces, if there are any.
  * (pieces.c) */

@@ -237,6 +237,9 @@ size_t flow_field_numbers(const struct flow_state *state, enum flow_field_id fie
 duite_object flow_field_object(const struct flow_state *state, enum flow_field_id field,
                                uint32_t block);
 
+/* Where that is among the objects of its block, or, from FLOW_FIELDS_OF_BLOCK on, of the run. */
+size_t flow_field_place(const struct flow_state *state, enum flow_field_id field);
+
 /* In all blocks the names of two fields pass to each other's objects. Both exist, alike. */
 void flow_fields_swap(struct flow_state *state, enum flow_field_id a, enum flow_field_id b);
 

@@ -11,53 +11,86 @@ static enum flow_field_id given_for(const struct flow_as *as, enum flow_field_id
     return declared;
 }
 
-/* Appends the objects of one parameter to `refs`. Returns the end. */
-static duite_object *add_parameter(const struct flow_state *state, uint32_t block,
-                                   enum flow_whose whose, enum flow_field_id field,
-                                   duite_object *refs)
+/* Where the objects of a kernel's parameters are: the same in all blocks. */
+struct places {
+    size_t n;
+    struct {
+        enum flow_whose whose;
+        enum flow_field_id field;
+        size_t at;
+    } of[FLOW_MAX_PARAMETERS];
+};
+
+static bool is_there(const struct flow_state *state, enum flow_whose whose,
+                     enum flow_field_id field)
+{
+    if (whose == FLOW_OF_TIED && !state->tied.now.first)
+        return false;
+    return (whose != FLOW_IF_MADE && whose != FLOW_OF_TIED) || flow_fields[field].exists(state, 0);
+}
+
+static void find_places(const struct flow_state *state, const struct flow_kernel *kernel,
+                        const struct flow_as *as, struct places *places)
+{
+    places->n = 0;
+    for (const struct flow_parameter *p = kernel->parameter; p->whose != FLOW_NOBODY; p++) {
+        const enum flow_field_id field = given_for(as, p->field);
+        if (!is_there(state, p->whose, field))
+            continue;
+        places->of[places->n].whose = p->whose;
+        places->of[places->n].field = field;
+        places->of[places->n++].at = flow_field_place(state, field);
+    }
+}
+
+static duite_object object_at(const struct flow_state *state, size_t at, uint32_t block)
+{
+    return at < FLOW_FIELDS_OF_BLOCK ? state->block[block].of[at]
+                                     : state->run.of[at - FLOW_FIELDS_OF_BLOCK];
+}
+
+/* Appends what others than the block have of a field to `refs`. Returns the end. */
+static duite_object *add_others(const struct flow_state *state, uint32_t block,
+                                enum flow_whose whose, enum flow_field_id field, size_t at,
+                                duite_object *refs)
 {
     const struct flow_table *t = state->flow->tables.block + block;
     const struct flow_tied_blocks *tied = &state->tied.now;
-    switch (whose) {
-    case FLOW_OF_NEIGHBOURS:
+    if (whose == FLOW_OF_NEIGHBOURS)
         for (uint32_t s = 0; s < t->n_neighbours; s++)
-            *refs++ = flow_field_object(state, field, t->neighbour[s]);
-        return refs;
-    case FLOW_OF_ALL:
+            *refs++ = object_at(state, at, t->neighbour[s]);
+    else if (whose == FLOW_OF_TIED)
+        for (uint32_t i = tied->first[block]; i < tied->first[block + 1]; i++)
+            *refs++ = object_at(state, at, tied->other[i]);
+    else
         for (uint32_t b = 0; b < state->flow->made[field]; b++)
             if (flow_fields[field].exists(state, b))
-                *refs++ = flow_field_object(state, field, b);
-        return refs;
-    case FLOW_OF_TIED:
-        if (tied->first && flow_fields[field].exists(state, block))
-            for (uint32_t i = tied->first[block]; i < tied->first[block + 1]; i++)
-                *refs++ = flow_field_object(state, field, tied->other[i]);
-        return refs;
-    case FLOW_IF_MADE:
-        if (!flow_fields[field].exists(state, block))
-            return refs;
-        break;
-    case FLOW_OWN:
-    case FLOW_NOBODY:
-        break;
-    }
-    *refs++ = flow_field_object(state, field, block);
+                *refs++ = object_at(state, at, b);
     return refs;
 }
 
-/* Appends the objects of a fork to `refs`. Returns the end. */
-static duite_object *add_objects(const struct flow_state *state, const struct flow_kernel *kernel,
-                                 uint32_t block, const struct flow_as *as, duite_object *refs)
+/* Puts the objects of a fork into `refs`. Returns how many. */
+static size_t list_objects(const struct flow_state *state, const struct places *places,
+                           uint32_t block, duite_object *refs)
 {
-    for (const struct flow_parameter *p = kernel->parameter; p->whose != FLOW_NOBODY; p++)
-        refs = add_parameter(state, block, p->whose, given_for(as, p->field), refs);
-    return refs;
+    duite_object *end = refs;
+    for (size_t i = 0; i < places->n; i++) {
+        const enum flow_whose whose = places->of[i].whose;
+        const size_t at = places->of[i].at;
+        if (whose == FLOW_OWN || whose == FLOW_IF_MADE)
+            *end++ = object_at(state, at, block);
+        else
+            end = add_others(state, block, whose, places->of[i].field, at, end);
+    }
+    return (size_t)(end - refs);
 }
 
 size_t flow_kernel_objects(struct flow_state *state, const struct flow_kernel *kernel,
                            uint32_t block, const struct flow_as *as)
 {
-    return (size_t)(add_objects(state, kernel, block, as, state->refs) - state->refs);
+    struct places places;
+    find_places(state, kernel, as, &places);
+    return list_objects(state, &places, block, state->refs);
 }
 
 int flow_fork_one_as(struct flow_state *state, const struct flow_kernel *kernel, const void *args,
@@ -82,21 +115,38 @@ static bool sees_ties(const struct flow_kernel *kernel)
     return p->whose == FLOW_OF_TIED;
 }
 
-/* Forks the tasks of some blocks in a row. What the runtime knows of their objects lies far apart
- * where there are thousands of blocks, and is fetched for all of them at once. */
-static int fork_some(struct flow_state *state, const struct flow_kernel *kernel, uint32_t first,
-                     uint32_t n_blocks, void *args, const struct flow_as *as)
+/* The names of a block's objects, and its neighbours, come into the cache. */
+static void fetch_names(const struct flow_state *state, const struct places *places, uint32_t block)
+{
+    __builtin_prefetch(&state->flow->tables.block[block].neighbour);
+    for (size_t i = 0; i < places->n; i++)
+        if (places->of[i].at < FLOW_FIELDS_OF_BLOCK)
+            __builtin_prefetch(&state->block[block].of[places->of[i].at]);
+}
+
+/* What the runtime knows of the objects lies far apart where there are thousands of blocks: it is
+ * fetched for some blocks ahead. The objects of those have a ring in state->refs. */
+int flow_fork_range_as(struct flow_state *state, const struct flow_kernel *kernel, uint32_t first,
+                       uint32_t end, void *args, const struct flow_as *as)
 {
     uint32_t *block = args;
-    duite_object *end[FLOW_FORKS_AHEAD], *refs = state->refs;
-    for (uint32_t i = 0; i < n_blocks; i++)
-        refs = end[i] = add_objects(state, kernel, first + i, as, refs);
-    duite_prefetch(state->rt, (size_t)(refs - state->refs), state->refs);
+    size_t n[FLOW_FORKS_AHEAD];
+    struct places places;
     int code = DUITE_OK;
-    refs = state->refs;
-    for (uint32_t i = 0; i < n_blocks && !code; refs = end[i++]) {
-        *block = first + i;
-        code = duite_fork(state->rt, &kernel->task, args, (size_t)(end[i] - refs), refs);
+    find_places(state, kernel, as, &places);
+    for (uint32_t b = first; b < end + FLOW_FORKS_AHEAD && !code; b++) {
+        const uint32_t turn = (b - first) % FLOW_FORKS_AHEAD;
+        duite_object *refs = state->refs + turn * state->max_refs;
+        if (b >= first + FLOW_FORKS_AHEAD) {
+            *block = b - FLOW_FORKS_AHEAD;
+            code = duite_fork(state->rt, &kernel->task, args, n[turn], refs);
+        }
+        if (b >= end)
+            continue;
+        if (b + FLOW_FORKS_AHEAD < end)
+            fetch_names(state, &places, b + FLOW_FORKS_AHEAD);
+        n[turn] = list_objects(state, &places, b, refs);
+        duite_prefetch(state->rt, n[turn], refs);
     }
     return code;
 }
@@ -104,14 +154,9 @@ static int fork_some(struct flow_state *state, const struct flow_kernel *kernel,
 int flow_fork_each_as(struct flow_state *state, const struct flow_kernel *kernel, void *args,
                       const struct flow_as *as)
 {
-    const uint32_t n_blocks = state->flow->tables.n_blocks;
-    int code = sees_ties(kernel) ? flow_ties_show(state) : DUITE_OK;
-    for (uint32_t first = 0; first < n_blocks && !code; first += FLOW_FORKS_AHEAD) {
-        const uint32_t left = n_blocks - first;
-        code = fork_some(state, kernel, first, left < FLOW_FORKS_AHEAD ? left : FLOW_FORKS_AHEAD,
-                         args, as);
-    }
-    return code;
+    const int code = sees_ties(kernel) ? flow_ties_show(state) : DUITE_OK;
+    return code ? code
+                : flow_fork_range_as(state, kernel, 0, state->flow->tables.n_blocks, args, as);
 }
 
 int flow_fork_each(struct flow_state *state, const struct flow_kernel *kernel, void *args)

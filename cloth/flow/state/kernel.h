@@ -262,18 +262,20 @@ struct flow_as {
 #define FLOW_AS(...)                                                                               \
     ((const struct flow_as[]){__VA_ARGS__, {FLOW_FIELDS_OF_ALL, FLOW_FIELDS_OF_ALL}})
 
-enum { FLOW_FORKS_AHEAD = 8 }; /* forks whose objects are found together */
+enum { FLOW_FORKS_AHEAD = 8 }; /* forks whose objects are found before the first of them */
 
 /* Fork a kernel with the objects that it declares: on the block that the arguments name, on each
- * block, or on a rank. On each block they write its number into the arguments. Before a kernel that
- * reads TIED(tie_halo) they fork what shows the ties. as: NULL, or FLOW_AS. Collective. They return
- * what the runtime does. */
+ * block, on those from first to before end, or on a rank. On several blocks they write its number
+ * into the arguments. On each: before a kernel that reads TIED(tie_halo) they fork what shows the
+ * ties. as: NULL, or FLOW_AS. Collective. They return what the runtime does. */
 int flow_fork_one(struct flow_state *state, const struct flow_kernel *kernel, const void *args);
 int flow_fork_one_as(struct flow_state *state, const struct flow_kernel *kernel, const void *args,
                      const struct flow_as *as);
 int flow_fork_each(struct flow_state *state, const struct flow_kernel *kernel, void *args);
 int flow_fork_each_as(struct flow_state *state, const struct flow_kernel *kernel, void *args,
                       const struct flow_as *as);
+int flow_fork_range_as(struct flow_state *state, const struct flow_kernel *kernel, uint32_t first,
+                       uint32_t end, void *args, const struct flow_as *as);
 int flow_fork_at(struct flow_state *state, int rank, const struct flow_kernel *kernel,
                  const void *args, const struct flow_as *as);
 

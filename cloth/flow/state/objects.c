@@ -113,8 +113,7 @@ int flow_objects_free(struct flow_state *state)
     return code ? code : failed;
 }
 
-/* Where the object of a field is now among those of its block or of the run. */
-static size_t place_now(const struct flow_state *state, enum flow_field_id field)
+size_t flow_field_place(const struct flow_state *state, enum flow_field_id field)
 {
     const struct flow_field *is = flow_fields + field;
     unsigned turn = 0;
@@ -128,7 +127,7 @@ static size_t place_now(const struct flow_state *state, enum flow_field_id field
 duite_object flow_field_object(const struct flow_state *state, enum flow_field_id field,
                                uint32_t block)
 {
-    const size_t place = place_now(state, field);
+    const size_t place = flow_field_place(state, field);
     return field < FLOW_FIELDS_OF_BLOCK ? state->block[block].of[place]
                                         : state->run.of[place - FLOW_FIELDS_OF_BLOCK];
 }

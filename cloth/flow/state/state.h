@@ -279,7 +279,8 @@ struct flow_state {
     unsigned pass; /* of a round that is recorded: 0 or 1; else 0 */
     struct flow_newton newton;
     struct flow_head head;
-    duite_object *refs;    /* room for the objects of any FLOW_FORKS_AHEAD tasks */
+    duite_object *refs;    /* room for the objects of FLOW_FORKS_AHEAD tasks, */
+    size_t max_refs;       /* of so many each */
     double *rows;          /* room for the rows of any block, or a number for each neighbour */
     unsigned char *bytes;  /* rank 0: a part of the state, to be hashed, */
     XXH64_state_t *hash;   /* and what was hashed so far */

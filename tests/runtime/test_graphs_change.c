@@ -106,6 +106,27 @@ START_TEST(recorded_anew)
 }
 END_TEST
 
+/* The same, though nothing is made or gets a home between the replays. */
+START_TEST(recorded_without_what_is_gone)
+{
+    struct graphs_fixture f = graphs_begin(graphs_build), *seen = &f;
+    const duite_object other = graphs_number(f.rt, 7), old = f.a;
+    duite_graph graph;
+
+    ck_assert_int_eq(duite_graph_new(f.rt, graphs_build, seen, &graph), 0);
+    ck_assert_int_eq(duite_replay(f.rt, graph, 1), 0);
+    ck_assert_int_eq(duite_replay(f.rt, graph, 1), 0);
+    ck_assert_int_eq(f.built, 2);
+    f.a = other;
+    ck_assert_int_eq(duite_free(f.rt, old), 0);
+    ck_assert_int_eq(duite_replay(f.rt, graph, 1), 0);
+    ck_assert_int_eq(f.built, 3);
+    ck_assert_int_eq(graphs_value_of(f.rt, f.a), 713);
+    ck_assert_int_eq(duite_graph_free(f.rt, graph), 0);
+    graphs_end(&f, 0);
+}
+END_TEST
+
 /* Build names something that is gone: the replay says so, until there is something else. */
 START_TEST(cannot_be_recorded_anew)
 {
@@ -263,6 +284,7 @@ int main(void)
     tcase_add_test(changes, objects_change);
     tcase_add_test(changes, rounds_are_told);
     tcase_add_test(changes, recorded_anew);
+    tcase_add_test(changes, recorded_without_what_is_gone);
     tcase_add_test(changes, cannot_be_recorded_anew);
     tcase_add_test(changes, graphs_between_tasks);
     tcase_add_test(changes, freed_while_it_runs);

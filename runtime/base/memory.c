@@ -47,10 +47,8 @@ static size_t grown_capacity(size_t capacity, size_t needed, size_t element)
     return wanted <= SIZE_MAX / element ? wanted : 0;
 }
 
-void *base_grow(void *array, size_t *capacity, size_t needed, size_t element)
+void *base_grow_more(void *array, size_t *capacity, size_t needed, size_t element)
 {
-    if (needed <= *capacity)
-        return array;
     const size_t wanted = grown_capacity(*capacity, needed, element);
     void *moved = wanted ? realloc(array, wanted * element) : NULL;
     if (moved)

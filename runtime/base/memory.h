@@ -18,7 +18,11 @@ void base_free(void *memory);
 
 /* Makes room for `needed` elements in a growing array: doubles *capacity. Returns the array, which
  * may have moved; NULL without memory, and then nothing has changed. Freed by free. */
-void *base_grow(void *array, size_t *capacity, size_t needed, size_t element);
+void *base_grow_more(void *array, size_t *capacity, size_t needed, size_t element);
+static inline void *base_grow(void *array, size_t *capacity, size_t needed, size_t element)
+{
+    return needed <= *capacity ? array : base_grow_more(array, capacity, needed, element);
+}
 /* The same for an array that begins at a cache line. Freed by base_free. */
 void *base_grow_lines(void *array, size_t *capacity, size_t needed, size_t element);
 

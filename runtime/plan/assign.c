@@ -87,23 +87,29 @@ static uint32_t sets_copy(struct plan_rank_sets *sets, uint32_t from)
     return (uint32_t)sets->n_ranks + 1 + row;
 }
 
-/* Adds the ranks of `from`. Returns whether *to grew. */
-static bool sets_join(struct plan_rank_sets *sets, uint32_t *to, uint32_t from)
+/* Of sets_join, where ids do not say it. */
+static bool sets_join_more(struct plan_rank_sets *sets, uint32_t *to, uint32_t from)
 {
     const uint32_t few = (uint32_t)sets->n_ranks + 1;
-    if (*to == from || !from ||
-        base_ranks_within(plan_ranks(sets, from), plan_ranks(sets, *to), sets->words))
+    if (base_ranks_within(plan_ranks(sets, from), plan_ranks(sets, *to), sets->words))
         return false;
-    if (!*to && from < few) {
-        *to = from;
-        return true;
-    }
     if (*to < few)
         *to = sets_copy(sets, *to);
     if (sets->failed)
         return false;
     return base_ranks_join(sets->word + (*to - few) * sets->words, plan_ranks(sets, from),
                            sets->words);
+}
+
+/* Adds the ranks of `from`. Returns whether *to grew. */
+static inline bool sets_join(struct plan_rank_sets *sets, uint32_t *to, uint32_t from)
+{
+    if (!from || *to == from)
+        return false;
+    if (*to || from > (uint32_t)sets->n_ranks)
+        return sets_join_more(sets, to, from);
+    *to = from;
+    return true;
 }
 
 static uint32_t sets_all(struct plan_rank_sets *sets)
@@ -125,15 +131,14 @@ static bool assign_room(struct plan_assignment *a)
     a->reads = base_alloc(uses * sizeof *a->reads);
     a->makes = base_alloc(uses * sizeof *a->makes);
     a->version = base_alloc(versions * sizeof *a->version);
-    a->need = base_alloc_zero(versions * sizeof *a->need);
     a->last = base_alloc(objects * sizeof *a->last);
-    return a->home && a->at && a->set && a->reads && a->makes && a->version && a->need && a->last &&
+    return a->home && a->at && a->set && a->reads && a->makes && a->version && a->last &&
            sets_begin(&a->sets, a->n_ranks);
 }
 
 /* ---- Versions ---- */
 
-static void assign_versions(struct plan_assignment *a)
+static bool assign_versions(struct plan_assignment *a)
 {
     const struct plan_round *round = a->round;
     for (uint32_t i = 0; i < round->n_objects; i++) {
@@ -157,20 +162,8 @@ static void assign_versions(struct plan_assignment *a)
             a->last[use->place] = made;
         }
     }
-}
-
-uint32_t plan_maker(const struct plan_assignment *a, uint32_t version)
-{
-    const struct plan_version *found = &a->version[version];
-    if (!found->maker)
-        found = &a->version[a->last[found->object]];
-    return found->maker ? found->maker - 1 : PLAN_NONE;
-}
-
-bool plan_is_there(const struct plan_assignment *a, uint32_t version, int rank)
-{
-    uint32_t maker = plan_maker(a, version);
-    return maker == PLAN_NONE || plan_runs(a, maker, rank);
+    a->need = base_alloc_zero((a->n_versions + 1) * sizeof *a->need);
+    return a->need;
 }
 
 /* ---- Who runs what ---- */
@@ -206,23 +199,36 @@ static int assign_rank(const struct plan_assignment *a, const struct plan_round_
     }
 }
 
+static void assign_node(struct assigning *s, size_t n)
+{
+    struct plan_assignment *a = s->a;
+    const struct plan_round_node *node = &a->round->node[n];
+    const int at = a->at[n] = assign_rank(a, node);
+    if (at == PLAN_MANY)
+        s->many[s->n_many++] = (uint32_t)n;
+    else
+        a->set[n] = sets_alone(&a->sets, at);
+    if (node->kind == PLAN_FLAG)
+        a->set[n] = sets_all(&a->sets);
+}
+
 /* Those that make what a round begins with may come later in the list: views are placed last. */
 static void assign_nodes(struct assigning *s)
 {
     struct plan_assignment *a = s->a;
-    for (int views = 0; views < 2; views++)
-        for (size_t n = 0; n < a->round->n_nodes; n++) {
-            const struct plan_round_node *node = &a->round->node[n];
-            if ((node->kind == PLAN_VIEW) != views)
-                continue;
-            int at = a->at[n] = assign_rank(a, node);
-            if (at == PLAN_MANY)
-                s->many[s->n_many++] = (uint32_t)n;
-            else
-                a->set[n] = sets_alone(&a->sets, at);
-            if (node->kind == PLAN_FLAG)
-                a->set[n] = sets_all(&a->sets);
-        }
+    size_t n_views = 0;
+    for (size_t n = 0; n < a->round->n_nodes; n++) {
+        const bool view = a->round->node[n].kind == PLAN_VIEW;
+        n_views += view;
+        if (!view)
+            assign_node(s, n);
+    }
+    for (size_t n = 0; n_views; n++) {
+        const bool view = a->round->node[n].kind == PLAN_VIEW;
+        n_views -= view;
+        if (view)
+            assign_node(s, n);
+    }
 }
 
 /* What the node reads is needed where it runs. */
@@ -294,10 +300,9 @@ bool plan_assign(struct plan_assignment *a, const struct plan_round *round, cons
     *a = (struct plan_assignment){
         .round = round, .n_ranks = n_ranks, .words = base_ranks_words(n_ranks)};
     s.many = base_alloc((round->n_nodes + 1) * sizeof *s.many);
-    const bool fine = s.many && assign_room(a);
+    const bool fine = s.many && assign_room(a) && assign_versions(a);
     if (fine) {
         memcpy(a->home, home, round->n_objects * sizeof *home);
-        assign_versions(a);
         assign_all(&s);
     }
     base_free(s.many);

@@ -13,29 +13,30 @@
 /* Nodes here are those of two rounds: the second round's follow the first one's. All are kept plus
  * one; 0: none. */
 struct edge_place {
-    size_t writer; /* the last one */
-    size_t reader; /* the first in a list of those since */
+    uint32_t writer; /* the last one */
+    uint32_t reader; /* the first in a list of those since */
 };
 
 struct edge_reader {
-    size_t node, next;
+    uint32_t node, next;
 };
 
 struct edges {
     struct plan_round *round;
     struct edge_place *place;
     struct edge_reader *reader;
-    size_t n_readers;
-    size_t *mark; /* by node: the last one that an edge goes to from here */
+    uint32_t n_readers;
+    uint32_t *mark;   /* by node: the last one that an edge goes to from here */
+    size_t n_pending; /* places that the first round writes, and the second one does not yet */
     bool failed;
 };
 
-static void edge_add(struct edges *e, size_t from, size_t to)
+static void edge_add(struct edges *e, uint32_t from, uint32_t to)
 {
     struct plan_round *round = e->round;
-    size_t n = round->n_nodes;
-    bool cyclic = from < n && to >= n;
-    if (e->mark[from] == to + 1 || (to >= n && !cyclic))
+    const uint32_t n = (uint32_t)round->n_nodes;
+    const bool cyclic = to >= n;
+    if (from >= n || e->mark[from] == to + 1)
         return;
     e->mark[from] = to + 1;
     void *moved =
@@ -45,16 +46,16 @@ static void edge_add(struct edges *e, size_t from, size_t to)
         return;
     }
     round->edge = moved;
-    round->edge[round->n_edges++] =
-        (struct plan_round_edge){(uint32_t)(from % n), (uint32_t)(to % n), cyclic};
-    struct plan_round_node *before = &round->node[from % n], *after = &round->node[to % n];
+    struct plan_round_edge *edge = &round->edge[round->n_edges++];
+    *edge = (struct plan_round_edge){from, cyclic ? to - n : to, cyclic};
+    struct plan_round_node *before = &round->node[from], *after = &round->node[edge->to];
     before->n_next++;
     before->n_next_cyclic += cyclic;
     after->within += !cyclic;
     after->cyclic += cyclic;
 }
 
-static void edge_to_reader(struct edges *e, struct edge_place *place, size_t node)
+static void edge_to_reader(struct edges *e, struct edge_place *place, uint32_t node)
 {
     if (place->writer)
         edge_add(e, place->writer - 1, node);
@@ -62,20 +63,30 @@ static void edge_to_reader(struct edges *e, struct edge_place *place, size_t nod
     place->reader = ++e->n_readers;
 }
 
-static void edge_to_writer(struct edges *e, struct edge_place *place, size_t node)
+static void edge_to_writer(struct edges *e, struct edge_place *place, uint32_t node)
 {
+    const uint32_t n = (uint32_t)e->round->n_nodes;
     if (!place->reader && place->writer)
         edge_add(e, place->writer - 1, node);
-    for (size_t i = place->reader; i; i = e->reader[i - 1].next)
+    for (uint32_t i = place->reader; i; i = e->reader[i - 1].next)
         edge_add(e, e->reader[i - 1].node, node);
+    if (node < n)
+        e->n_pending += !place->writer;
+    else
+        e->n_pending -= place->writer <= n;
     place->reader = 0;
     place->writer = node + 1;
 }
 
-static void edges_of_places(struct edges *e, size_t to)
+/* Once the second round has written all that the first one did, places join no more nodes of both.
+ */
+static void edges_of_places(struct edges *e, uint32_t to)
 {
     const struct plan_round *round = e->round;
-    const struct plan_round_node *node = &round->node[to % round->n_nodes];
+    const uint32_t n = (uint32_t)round->n_nodes;
+    const struct plan_round_node *node = &round->node[to < n ? to : to - n];
+    if (to >= n && !e->n_pending)
+        return;
     for (size_t i = node->first_use; i < node->first_use + node->n_uses; i++) {
         struct edge_place *place = &e->place[round->use[i].place];
         if (round->use[i].writes)
@@ -86,14 +97,14 @@ static void edges_of_places(struct edges *e, size_t to)
 }
 
 /* What orders rounds, beside places. */
-static void edges_of_rounds(struct edges *e, size_t to)
+static void edges_of_rounds(struct edges *e, uint32_t to)
 {
     const struct plan_round *round = e->round;
-    size_t n = round->n_nodes, decider = n - 1;
-    const struct plan_round_node *node = &round->node[to % n];
+    const uint32_t n = (uint32_t)round->n_nodes, decider = n - 1;
+    const struct plan_round_node *node = &round->node[to < n ? to : to - n];
     bool decides = round->source->flag != PLAN_NONE;
     if (decides && to == decider)
-        for (size_t root = 0; root < decider; root++)
+        for (uint32_t root = 0; root < decider; root++)
             if (!round->node[root].within)
                 edge_add(e, root, decider);
     if (to < n || node->within)
@@ -109,9 +120,9 @@ bool plan_edges(struct plan_round *round)
     struct edges e = {.round = round};
     e.place = base_alloc_zero((round->n_places + 1) * sizeof *e.place);
     e.reader = base_alloc((2 * round->n_uses + 1) * sizeof *e.reader);
-    e.mark = base_alloc_zero((2 * round->n_nodes + 1) * sizeof *e.mark);
+    e.mark = base_alloc_zero((round->n_nodes + 1) * sizeof *e.mark);
     e.failed = !e.place || !e.reader || !e.mark;
-    for (size_t to = 0; to < 2 * round->n_nodes && !e.failed; to++) {
+    for (uint32_t to = 0; to < 2 * round->n_nodes && !e.failed; to++) {
         edges_of_places(&e, to);
         edges_of_rounds(&e, to);
     }

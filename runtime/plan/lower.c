@@ -18,30 +18,13 @@ struct lower_object {
 
 struct lowering {
     struct plan_round *round;
+    size_t n_sums, n_views; /* accesses that contribute; that name views */
     struct lower_object *object;
     uint32_t *next;          /* by buffer, less n_objects: the next of the same sum */
     uint32_t *view, *sister; /* by object: a view of it, plus 1; by view: another of its object */
 };
 
 /* ---- A round under construction ---- */
-
-struct plan_round_node *plan_round_add(struct plan_round *round, enum plan_kind kind, size_t fork)
-{
-    struct plan_round_node *node = &round->node[round->n_nodes++];
-    *node = (struct plan_round_node){.kind = kind,
-                                     .fork = (uint32_t)fork,
-                                     .owner = PLAN_NONE,
-                                     .first_use = round->n_uses,
-                                     .first_merge = round->n_merges};
-    return node;
-}
-
-void plan_round_use(struct plan_round *round, struct plan_round_node *node, size_t place,
-                    bool reads, bool writes)
-{
-    round->use[round->n_uses++] = (struct plan_node_use){(uint32_t)place, reads, writes};
-    node->n_uses++;
-}
 
 uint32_t plan_round_buffer(struct plan_round *round, uint32_t object, const duite_law *law)
 {
@@ -167,16 +150,25 @@ static void lower_stale(struct lowering *l, uint32_t object)
 
 /* ---- Forks ---- */
 
-static void lower_fork(struct lowering *l, size_t i)
+/* What comes before the fork. */
+static void lower_ends(struct lowering *l, size_t i)
 {
-    struct plan_round *round = l->round;
-    const struct plan_source_fork *fork = &round->source->fork[i];
-    const struct plan_access *access = round->source->access + fork->first;
+    const struct plan_source_fork *fork = &l->round->source->fork[i];
+    const struct plan_access *access = l->round->source->access + fork->first;
     for (uint32_t k = 0; k < fork->n; k++) {
         if (access[k].mode != DUITE_CW || access[k].law != l->object[access[k].object].law)
             lower_sum(l, access[k].object, i);
         lower_view(l, access[k].object, i);
     }
+}
+
+static void lower_fork(struct lowering *l, size_t i)
+{
+    struct plan_round *round = l->round;
+    const struct plan_source_fork *fork = &round->source->fork[i];
+    const struct plan_access *access = round->source->access + fork->first;
+    if (l->n_sums + l->n_views)
+        lower_ends(l, i);
     struct plan_round_node *node = plan_round_add(round, fork->sets ? PLAN_SET : PLAN_TASK, i);
     node->owner = fork->owner;
     for (uint32_t k = 0; k < fork->n; k++) {
@@ -185,7 +177,7 @@ static void lower_fork(struct lowering *l, size_t i)
             plan_round_use(round, node, lower_contribution(l, &access[k]), false, true);
         else
             plan_round_use(round, node, access[k].object, mode != DUITE_W, mode != DUITE_R);
-        if (mode != DUITE_R)
+        if (mode != DUITE_R && l->n_views)
             lower_stale(l, access[k].object);
     }
 }
@@ -207,10 +199,22 @@ static void lower_all(struct lowering *l)
 
 /* ---- The pass ---- */
 
-static void lower_begin(struct lowering *l)
+static void lower_count(struct lowering *l)
 {
     const struct plan_source *source = l->round->source;
     for (size_t i = 0; i < source->n_accesses; i++)
+        l->n_sums += source->access[i].mode == DUITE_CW;
+    bool views = false;
+    for (size_t i = 0; i < source->n_objects; i++)
+        views |= source->object[i].parent != 0;
+    for (size_t i = 0; i < source->n_accesses && views; i++)
+        l->n_views += source->object[source->access[i].object].parent != 0;
+}
+
+static void lower_begin(struct lowering *l)
+{
+    const struct plan_source *source = l->round->source;
+    for (size_t i = 0; i < source->n_accesses && l->n_views; i++)
         l->object[source->access[i].object].written |= source->access[i].mode != DUITE_R;
     for (uint32_t i = 0; i < source->n_objects; i++) {
         uint32_t parent = source->object[i].parent;
@@ -221,17 +225,26 @@ static void lower_begin(struct lowering *l)
     }
 }
 
+/* A sum has at least one contribution, and uses it and its object; a view's node uses two. */
+static bool lower_room(struct lowering *l)
+{
+    const struct plan_source *source = l->round->source;
+    const size_t more = l->n_sums + l->n_views + 1, objects = source->n_objects;
+    l->object = base_alloc_zero((objects + 1) * sizeof *l->object);
+    l->next = base_alloc_zero((l->n_sums + 1) * sizeof *l->next);
+    l->view = base_alloc_zero((objects + 1) * sizeof *l->view);
+    l->sister = base_alloc_zero((objects + 1) * sizeof *l->sister);
+    return l->object && l->next && l->view && l->sister &&
+           plan_round_room(l->round, source->n_forks + more, source->n_accesses + 2 * more,
+                           objects + l->n_sums, l->n_sums);
+}
+
 bool plan_lower(struct plan_round *round, const struct plan_source *source)
 {
-    size_t n = source->n_accesses, objects = source->n_objects;
     struct lowering l = {.round = round};
     round->source = source;
-    l.object = base_alloc_zero((objects + 1) * sizeof *l.object);
-    l.next = base_alloc_zero((n + 1) * sizeof *l.next);
-    l.view = base_alloc_zero((objects + 1) * sizeof *l.view);
-    l.sister = base_alloc_zero((objects + 1) * sizeof *l.sister);
-    bool fine = l.object && l.next && l.view && l.sister &&
-                plan_round_room(round, source->n_forks + 2 * n + 1, 5 * n + 1, objects + n, n);
+    lower_count(&l);
+    const bool fine = lower_room(&l);
     if (fine) {
         lower_begin(&l);
         lower_all(&l);

@@ -28,10 +28,11 @@ static uint32_t message_leaf(const struct plan_messages *m, const struct plan_no
     return m->leaf[use->place - m->assignment->round->n_objects];
 }
 
-static bool message_is_outside(const struct plan_assignment *a, const uint64_t *set,
-                               const uint64_t *has)
+/* Whether a set has ranks that another one has not. Most often they are the same. */
+static inline bool message_is_outside(const struct plan_assignment *a, uint32_t set, uint32_t has)
 {
-    return set != has && !base_ranks_within(set, has, a->words);
+    return set != has &&
+           !base_ranks_within(plan_ranks(&a->sets, set), plan_ranks(&a->sets, has), a->words);
 }
 
 /* ---- Phases ---- */
@@ -47,7 +48,7 @@ struct phase_past {
 static uint32_t phase_crosses(const struct plan_assignment *a, size_t n, uint32_t version)
 {
     const uint32_t maker = plan_maker(a, version);
-    if (maker == PLAN_NONE || !message_is_outside(a, plan_runs_set(a, n), plan_runs_set(a, maker)))
+    if (maker == PLAN_NONE || !message_is_outside(a, a->set[n], a->set[maker]))
         return 0;
     const uint32_t rounds = plan_relay_version(a, version, NULL, NULL);
     return rounds ? rounds : 1;
@@ -60,8 +61,7 @@ static uint32_t phase_of_leaves(const struct plan_messages *m, size_t n,
     uint32_t phase = 0;
     for (size_t i = node->first_use + 1; i < node->first_use + node->n_uses; i++) {
         uint32_t leaf = message_leaf(m, &a->round->use[i]);
-        bool crosses =
-            !m->rounds[n] && message_is_outside(a, plan_runs_set(a, n), plan_runs_set(a, leaf));
+        bool crosses = !m->rounds[n] && message_is_outside(a, a->set[n], a->set[leaf]);
         phase = phase_later(phase, m->phase[leaf] + crosses);
     }
     return phase + m->rounds[n];
@@ -286,7 +286,8 @@ static void message_version(struct finding *f, uint32_t version)
     const struct plan_assignment *a = f->m->assignment;
     const struct plan_version *found = &a->version[version];
     uint32_t maker = plan_maker(a, version);
-    if (maker == PLAN_NONE || a->at[maker] == PLAN_MANY)
+    if (maker == PLAN_NONE || a->at[maker] == PLAN_MANY ||
+        !message_is_outside(a, a->need[version], a->set[maker]))
         return;
     struct plan_item item = {.object = found->object,
                              .version = version,
@@ -378,7 +379,8 @@ static bool message_room(struct plan_messages *m)
 static void message_find_leaves(struct plan_messages *m)
 {
     const struct plan_round *round = m->assignment->round;
-    for (size_t n = 0; n < round->n_nodes; n++) {
+    const bool adds = round->n_places > round->n_objects;
+    for (size_t n = 0; n < round->n_nodes && adds; n++) {
         const struct plan_round_node *node = &round->node[n];
         for (size_t i = node->first_use; i < node->first_use + node->n_uses; i++)
             if (round->use[i].place >= round->n_objects && round->use[i].writes)

@@ -23,6 +23,7 @@ struct parting {
     uint32_t *leaf;      /* by buffer of the round, less n_objects: its place here, plus 1; or 0 */
     plan_moment *spoilt; /* by version: when the rank overwrites it */
     size_t next_item;    /* the first that is not made */
+    plan_moment next;    /* when it is, or when the next message goes */
     uint32_t *order;     /* the messages that go, by the moment they are ready */
     size_t n_sends, next_send;
     struct data_subtree *row; /* scratch: of one sum */
@@ -169,15 +170,28 @@ static void part_made(struct parting *p, size_t i, size_t fork)
     p->place[i] = aside;
 }
 
+static void part_look_ahead(struct parting *p)
+{
+    const struct plan_messages *m = p->m;
+    p->next = NEVER;
+    if (p->next_item < m->n_items)
+        p->next = m->item[p->next_item].made;
+    if (p->next_send < p->n_sends && m->message[p->order[p->next_send]].ready < p->next)
+        p->next = m->message[p->order[p->next_send]].ready;
+}
+
 /* A moment has come: what it makes has its place, and messages that are ready go. */
 static void part_moment(struct parting *p, plan_moment now, size_t fork)
 {
     const struct plan_messages *m = p->m;
+    if (now != p->next)
+        return;
     for (; p->next_item < m->n_items && m->item[p->next_item].made == now; p->next_item++)
         if (part_sends(p, m->item[p->next_item].message))
             part_made(p, p->next_item, fork);
     while (p->next_send < p->n_sends && m->message[p->order[p->next_send]].ready == now)
         part_message(p, p->order[p->next_send++], fork);
+    part_look_ahead(p);
 }
 
 /* ---- Nodes ---- */
@@ -340,6 +354,7 @@ static void part_nodes(struct parting *p)
     for (uint32_t i = 0; i < p->m->n_messages; i++)
         if (!part_sends(p, i))
             part_message(p, i, 0);
+    part_look_ahead(p);
     part_moment(p, 0, 0);
     for (size_t n = 0; n < p->round->n_nodes; n++) {
         const struct plan_round_node *node = &p->round->node[n];
@@ -358,10 +373,31 @@ static void part_nodes(struct parting *p)
 
 /* ---- The pass ---- */
 
+/* Memory for what this rank runs: a node each, and copies of what it writes on from; of each sum
+ * its contributions and pieces, and of each item a copy and what joins it. */
+static bool part_round_room(struct parting *p)
+{
+    const struct plan_messages *m = p->m;
+    size_t nodes = 0, plain = 0, copies = 0, sums = 0;
+    for (size_t n = 0; n < p->round->n_nodes; n++) {
+        const struct plan_round_node *node = &p->round->node[n];
+        const bool sum = node->kind == PLAN_SUM;
+        if (!sum && !plan_runs(p->a, n, m->rank))
+            continue;
+        nodes += sum ? 2 : 1;
+        *(sum ? &sums : &plain) += node->n_uses;
+        for (size_t i = node->first_use; i < node->first_use + node->n_uses; i++)
+            copies += p->round->use[i].reads && p->round->use[i].writes;
+    }
+    return plan_round_room(p->part, nodes + copies + 2 * m->n_items + m->n_messages,
+                           plain + 2 * copies + 8 * sums + 6 * m->n_items,
+                           p->round->n_places + 2 * m->n_items, 2 * sums + m->n_items + 1);
+}
+
 static bool part_room(struct parting *p)
 {
     const struct plan_messages *m = p->m;
-    size_t nodes = p->round->n_nodes, uses = p->round->n_uses, items = m->n_items;
+    size_t items = m->n_items;
     size_t leaves = p->round->n_places - p->round->n_objects + 1;
     p->replica = base_alloc(p->a->n_versions * sizeof *p->replica + 1);
     p->arrival = base_alloc(m->n_pieces * sizeof *p->arrival + 1);
@@ -376,10 +412,7 @@ static bool part_room(struct parting *p)
     p->param = base_alloc((leaves + items) * sizeof *p->param);
     p->part->channel = base_alloc((m->n_messages + 1) * sizeof *p->part->channel);
     return p->replica && p->arrival && p->place && p->leaf && p->spoilt && p->order && p->row &&
-           p->state && p->joined && p->came && p->param && p->part->channel &&
-           plan_round_room(p->part, 2 * nodes + uses + 2 * items + m->n_messages,
-                           8 * uses + 6 * items, p->round->n_places + 2 * items,
-                           2 * uses + items + 1);
+           p->state && p->joined && p->came && p->param && p->part->channel && part_round_room(p);
 }
 
 bool plan_part(struct plan_round *part, const struct plan_messages *messages)

@@ -101,13 +101,13 @@ struct plan_merge {
 
 struct plan_round_node {
     enum plan_kind kind;
-    uint32_t fork;  /* that it stands for, or that it comes before */
-    uint32_t owner; /* the object that it runs for, or PLAN_NONE */
-    size_t first_use, n_uses;
-    size_t first_merge, n_merges; /* SUM, PARTIAL */
-    const duite_law *law;         /* of these */
-    uint32_t channel;             /* SEND, RECEIVE */
-    uint32_t within, cyclic;      /* predecessors in its round; in the round before */
+    uint32_t fork;             /* that it stands for, or that it comes before */
+    uint32_t owner;            /* the object that it runs for, or PLAN_NONE */
+    uint32_t n_uses, n_merges; /* merges: SUM, PARTIAL */
+    uint32_t channel;          /* SEND, RECEIVE */
+    size_t first_use, first_merge;
+    const duite_law *law;    /* of the merges */
+    uint32_t within, cyclic; /* predecessors in its round; in the round before */
     uint32_t n_next, n_next_cyclic;
 };
 
@@ -162,9 +162,23 @@ void plan_round_free(struct plan_round *round);
 bool plan_round_room(struct plan_round *round, size_t nodes, size_t uses, size_t places,
                      size_t merges);
 /* Appends a node; a use to the last node; a buffer, and returns its place. */
-struct plan_round_node *plan_round_add(struct plan_round *round, enum plan_kind kind, size_t fork);
-void plan_round_use(struct plan_round *round, struct plan_round_node *node, size_t place,
-                    bool reads, bool writes);
+static inline struct plan_round_node *plan_round_add(struct plan_round *round, enum plan_kind kind,
+                                                     size_t fork)
+{
+    struct plan_round_node *node = &round->node[round->n_nodes++];
+    *node = (struct plan_round_node){.kind = kind,
+                                     .fork = (uint32_t)fork,
+                                     .owner = PLAN_NONE,
+                                     .first_use = round->n_uses,
+                                     .first_merge = round->n_merges};
+    return node;
+}
+static inline void plan_round_use(struct plan_round *round, struct plan_round_node *node,
+                                  size_t place, bool reads, bool writes)
+{
+    round->use[round->n_uses++] = (struct plan_node_use){(uint32_t)place, reads, writes};
+    node->n_uses++;
+}
 uint32_t plan_round_buffer(struct plan_round *round, uint32_t object, const duite_law *law);
 
 /* The reduction of data/reduce.h as merges of the last node; `where` is the parameter with the
@@ -242,7 +256,8 @@ static inline const uint64_t *plan_needs_set(const struct plan_assignment *a, si
 }
 static inline bool plan_runs(const struct plan_assignment *a, size_t node, int rank)
 {
-    return base_ranks_has(plan_runs_set(a, node), rank);
+    const uint32_t set = a->set[node], few = (uint32_t)a->n_ranks + 1;
+    return set < few ? set == (uint32_t)rank + 1 : base_ranks_has(plan_ranks(&a->sets, set), rank);
 }
 /* Nobody runs the node: what it makes is overwritten unread. */
 static inline bool plan_is_dead(const struct plan_assignment *assignment, size_t node)
@@ -251,9 +266,19 @@ static inline bool plan_is_dead(const struct plan_assignment *assignment, size_t
 }
 /* The node that makes the version; of one that enters the round, the one that made it in the round
  * before. PLAN_NONE: the graph does not write the object. */
-uint32_t plan_maker(const struct plan_assignment *assignment, uint32_t version);
+static inline uint32_t plan_maker(const struct plan_assignment *a, uint32_t version)
+{
+    const struct plan_version *found = &a->version[version];
+    if (!found->maker)
+        found = &a->version[a->last[found->object]];
+    return found->maker - 1;
+}
 /* Whether a rank has the version without a message within the round. */
-bool plan_is_there(const struct plan_assignment *assignment, uint32_t version, int rank);
+static inline bool plan_is_there(const struct plan_assignment *a, uint32_t version, int rank)
+{
+    const uint32_t maker = plan_maker(a, version);
+    return maker == PLAN_NONE || plan_runs(a, maker, rank);
+}
 
 /* ---- Messages: what moves, and when ---- */
 

@@ -31,10 +31,8 @@ void base_free(void *memory)
     (void)memory;
 }
 
-void *base_grow(void *array, size_t *capacity, size_t needed, size_t element)
+void *base_grow_more(void *array, size_t *capacity, size_t needed, size_t element)
 {
-    if (needed <= *capacity)
-        return array;
     void *larger = explore_alloc(2 * needed * element);
     if (array)
         memcpy(larger, array, *capacity * element);

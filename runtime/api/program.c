@@ -111,8 +111,10 @@ void api_throttle(duite *rt)
 static int fork_task(duite *rt, const struct task_options *options, const duite_kernel *kernel,
                      const void *args, size_t n, const duite_object *objects)
 {
-    if (rt->building)
-        return api_remember(rt, plan_record_fork(rt->building, options, kernel, args, n, objects));
+    if (rt->building) {
+        const int recorded = plan_record_fork(rt->building, options, kernel, args, n, objects);
+        return recorded ? api_remember(rt, recorded) : DUITE_OK;
+    }
     int code = rt->graph.table.n_unsettled ? api_settle(rt) : DUITE_OK;
     if (!code)
         code = task_fork(&rt->graph.root, work_main(rt->pool), options, kernel, args, n, objects);

@@ -81,22 +81,26 @@ static struct plan_recorded_object *record_find(const struct plan_record *record
     return found ? object : NULL;
 }
 
-static uint32_t record_index(struct plan_record *record, duite_object name)
+/* An object that is named for the first time; its place. */
+__attribute__((noinline)) static uint32_t record_add(struct plan_record *record, duite_object name)
 {
     const struct data_object *object = &record->graph->table.object[name.slot];
-    uint32_t *index = &record->index[name.slot];
-    if (!*index) {
-        record->object[record->n_objects] = (struct plan_recorded_object){.recorded = name,
-                                                                          .bound = name,
-                                                                          .type = object->type,
-                                                                          .count = object->max,
-                                                                          .sized = object->sized};
-        *index = (uint32_t)++record->n_objects;
-    }
-    return *index - 1;
+    record->object[record->n_objects] = (struct plan_recorded_object){.recorded = name,
+                                                                      .bound = name,
+                                                                      .type = object->type,
+                                                                      .count = object->max,
+                                                                      .sized = object->sized};
+    record->index[name.slot] = (uint32_t)record->n_objects + 1;
+    return (uint32_t)record->n_objects++;
 }
 
-static void record_note(struct plan_recorded_object *object, duite_mode mode)
+static inline uint32_t record_index(struct plan_record *record, duite_object name)
+{
+    const uint32_t index = record->index[name.slot];
+    return index ? index - 1 : record_add(record, name);
+}
+
+static inline void record_note(struct plan_recorded_object *object, duite_mode mode)
 {
     if (mode == DUITE_CW) {
         object->leads |= !object->read && !object->written;
@@ -123,13 +127,15 @@ static void record_use_view(struct plan_record *record, duite_object name)
     record->views = true;
 }
 
-static void record_use(struct plan_record *record, duite_object name, duite_mode mode,
-                       const duite_law *law)
+/* Returns the object's place. */
+static inline uint32_t record_use(struct plan_record *record, duite_object name, duite_mode mode,
+                                  const duite_law *law)
 {
-    uint32_t index = record_index(record, name);
+    const uint32_t index = record_index(record, name);
     record->access[record->n_accesses++] = (struct plan_access){index, mode, law};
     record->object[index].named = true;
     record_note(&record->object[index], mode);
+    return index;
 }
 
 uint32_t plan_recorded_owner(const struct plan_record *record,
@@ -152,10 +158,10 @@ static void record_fix_owner(struct plan_record *record, const struct plan_recor
     record->graph->table.object[object->bound.slot].fixed = true;
 }
 
-/* The bytes of the arguments are still to be written. */
+/* Without objects, owner and arguments, for which there is room now. */
 static struct plan_recorded_fork *record_append(struct plan_record *record, uint32_t kernel,
                                                 const struct task_options *options, size_t n,
-                                                const duite_object *objects, size_t bytes)
+                                                size_t bytes)
 {
     size_t whole = (bytes + 15) / 16 * 16;
     if (record->n_forks >= UINT32_MAX / 8 || record->n_accesses + n >= UINT32_MAX / 8 ||
@@ -167,40 +173,45 @@ static struct plan_recorded_fork *record_append(struct plan_record *record, uint
     *fork = (struct plan_recorded_fork){.kernel = kernel,
                                         .options = *options,
                                         .n = (uint32_t)n,
+                                        .owner = PLAN_NONE,
                                         .call = (uint32_t)record->n_calls,
                                         .first = record->n_accesses,
                                         .args = record->args_bytes};
     record->args_bytes += whole;
-    task_mix(record->graph, task_fork_hash_all(kernel, options->at, n, objects));
-    if (kernel != PLAN_SETS)
-        task_mixed(record->graph, TASK_RECORDED, kernel);
-    for (size_t i = 0; i < n; i++)
-        record_use_view(record, objects[i]);
-    const duite_kernel *body = kernel == PLAN_SETS ? NULL : record->graph->kernels[kernel];
-    for (size_t i = 0; i < n; i++) {
-        duite_mode mode = body ? task_immediate(data_mode_of(body, i)) : DUITE_W;
-        record_use(record, objects[i], mode, mode == DUITE_CW ? data_law_of(body, i) : NULL);
-    }
-    uint32_t owner = body ? task_owner(body->access, body->variadic, n) : 0; /* parameter */
-    fork->owner = owner == TASK_NOBODY ? PLAN_NONE : record->access[fork->first + owner].object;
     return fork;
+}
+
+static void record_use_all(struct plan_record *record, const struct task_fork_call *call)
+{
+    for (size_t i = 0; i < call->n && call->views; i++)
+        record_use_view(record, call->objects[i]);
+    for (size_t i = 0; i < call->n; i++) {
+        const duite_mode held = data_mode_of(call->kernel, i), mode = task_immediate(held);
+        const duite_law *law = mode == DUITE_CW ? data_law_of(call->kernel, i) : NULL;
+        record->forked |= task_postponed(held);
+        record_use(record, call->objects[i], mode, law);
+    }
 }
 
 int plan_record_fork(struct plan_record *record, const struct task_options *options,
                      const duite_kernel *kernel, const void *args, size_t n,
                      const duite_object *objects)
 {
-    uint32_t index;
-    int code = task_check_fork(&record->graph->root, options->at, kernel, args, n, objects, &index);
+    struct task_graph *graph = record->graph;
+    struct task_fork_call call;
+    int code = task_check_fork(&call, &graph->root, options->at, kernel, args, n, objects);
     if (code)
         return code;
-    task_unmark(&record->graph->root, n, objects);
-    for (size_t i = 0; i < n; i++)
-        record->forked |= task_postponed(data_mode_of(kernel, i));
     struct plan_recorded_fork *fork =
-        record_append(record, index, options, n, objects, kernel->args_size);
+        record_append(record, call.index, options, n, kernel->args_size);
     if (!fork)
         return DUITE_E_MEMORY;
+    record_use_all(record, &call);
+    if (call.owner != TASK_NOBODY)
+        fork->owner = record->access[fork->first + call.owner].object;
+    if (graph->n_ranks > 1)
+        task_mix_fork(graph, task_fork_hash_all(call.index, options->at, n, objects), TASK_RECORDED,
+                      call.index);
     if (kernel->args_size)
         memcpy(record->args + fork->args, args, kernel->args_size);
     if (kernel->fixed)
@@ -220,10 +231,12 @@ int plan_record_set(struct plan_record *record, duite_object name, const void *v
     int code = task_set_check(record->graph, object, name, count);
     if (code)
         return code;
-    struct plan_recorded_fork *fork = record_append(
-        record, PLAN_SETS, &(struct task_options){.at = TASK_ANYWHERE}, 1, &name, bytes);
+    struct plan_recorded_fork *fork =
+        record_append(record, PLAN_SETS, &(struct task_options){.at = TASK_ANYWHERE}, 1, bytes);
     if (!fork)
         return DUITE_E_MEMORY;
+    fork->owner = record_use(record, name, DUITE_W, NULL);
+    task_mix(record->graph, task_fork_hash_all(PLAN_SETS, TASK_ANYWHERE, 1, &name));
     task_mix(record->graph, count);
     task_mixed(record->graph, TASK_CALLED, TASK_CALLED_SET);
     fork->zeros = !values;

@@ -101,16 +101,6 @@ static int fork_check_object(struct task_fork_call *call, size_t i)
     return DUITE_OK;
 }
 
-void task_unmark(struct task_scope *scope, size_t n, const duite_object *objects)
-{
-    duite_mode right;
-    for (size_t i = 0; i < n; i++) {
-        struct data_object *object = task_find_object(scope, objects[i], &right);
-        if (object)
-            object->mark = 0;
-    }
-}
-
 /* A body's rights. What it reads may come into its scope, whose objects move then. */
 static int fork_check_rights(const struct task_fork_call *call)
 {
@@ -146,12 +136,19 @@ static bool fork_take_objects(struct task_fork_call *call)
     return call->plain;
 }
 
+/* The first n objects are not named by this fork after all. */
+static void fork_unmark(const struct task_fork_call *call, size_t n)
+{
+    for (size_t i = 0; i < n; i++)
+        task_fork_object(call, i)->mark = 0;
+}
+
 static int fork_check_objects(struct task_fork_call *call)
 {
     for (size_t i = 0; i < call->n; i++) {
         int code = fork_check_object(call, i);
         if (code) {
-            task_unmark(call->scope, i, call->objects);
+            fork_unmark(call, i);
             return code;
         }
     }
@@ -192,13 +189,14 @@ static void fork_call_init(struct task_fork_call *call, struct task_scope *scope
     call->views = false;
 }
 
-int task_check_fork(struct task_scope *scope, int at, const duite_kernel *kernel, const void *args,
-                    size_t n, const duite_object *objects, uint32_t *index)
+int task_check_fork(struct task_fork_call *call, struct task_scope *scope, int at,
+                    const duite_kernel *kernel, const void *args, size_t n,
+                    const duite_object *objects)
 {
-    struct task_fork_call call;
-    fork_call_init(&call, scope, NULL, kernel, n, objects);
-    int code = fork_check(&call, at, args);
-    *index = call.index;
+    fork_call_init(call, scope, NULL, kernel, n, objects);
+    int code = fork_check(call, at, args);
+    if (!code)
+        fork_unmark(call, n);
     return code;
 }
 
@@ -355,6 +353,6 @@ int task_fork_any(struct task_scope *scope, struct worker *worker,
     scope->forks++;
     if (!scope->depth && scope->graph->n_ranks > 1)
         task_mix_fork(scope->graph, task_fork_hash_all(call.index, options->at, n, objects),
-                      call.index);
+                      TASK_FORKED, call.index);
     return fork_checked(&call, options, args);
 }

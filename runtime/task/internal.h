@@ -264,11 +264,11 @@ const struct data_failure *task_fail_below(struct task_graph *graph,
 const struct data_failure *task_fail_memory(const struct task *task);
 struct data_packet *task_poison_packet(struct data_key key, const struct data_failure *failure);
 
-/* Fits a fork kernel, arguments and objects? Then *index is the kernel's. The objects are marked as
- * named by the next fork; task_unmark takes this back. */
-int task_check_fork(struct task_scope *scope, int at, const duite_kernel *kernel, const void *args,
-                    size_t n, const duite_object *objects, uint32_t *index);
-void task_unmark(struct task_scope *scope, size_t n, const duite_object *objects);
+/* Fits a fork kernel, arguments and objects? Then *call says what was found: the kernel's index,
+ * the parameter it runs for, the objects. */
+int task_check_fork(struct task_fork_call *call, struct task_scope *scope, int at,
+                    const duite_kernel *kernel, const void *args, size_t n,
+                    const duite_object *objects);
 
 /* May the object be set to so many elements? */
 int task_set_check(const struct task_graph *graph, const struct data_object *object,

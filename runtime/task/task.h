@@ -260,13 +260,13 @@ static inline void task_mixed(struct task_graph *graph, enum task_call_kind kind
     task_history_add(graph->history, graph->fingerprint,
                      task_call_bits(kind, which, graph->root.forks));
 }
-/* Both, of a fork on several ranks. */
-static inline void task_mix_fork(struct task_graph *graph, uint64_t hash, uint32_t kernel)
+/* Both, of a fork on several ranks; kind: it is recorded, or not. */
+static inline void task_mix_fork(struct task_graph *graph, uint64_t hash, enum task_call_kind kind,
+                                 uint32_t kernel)
 {
     uint64_t state = graph->fingerprint ^ hash;
     const uint64_t fingerprint = graph->fingerprint = duite_random(&state);
-    task_history_add(graph->history, fingerprint,
-                     task_call_bits(TASK_FORKED, kernel, graph->root.forks));
+    task_history_add(graph->history, fingerprint, task_call_bits(kind, kernel, graph->root.forks));
 }
 
 /* ---- Main thread with the graph's root as scope: collective, the homes of all objects are

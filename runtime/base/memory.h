@@ -26,6 +26,28 @@ static inline void *base_grow(void *array, size_t *capacity, size_t needed, size
 /* The same for an array that begins at a cache line. Freed by base_free. */
 void *base_grow_lines(void *array, size_t *capacity, size_t needed, size_t element);
 
+/* Arrays that come and go together, in one block: so most of them lie in large pages. A function
+ * that takes them one after the other is called twice. At first, with `block` NULL, it adds up
+ * `bytes`; then base_cut_begin gets the block, and it cuts them. Who cuts frees the block by
+ * base_free. */
+struct base_cut {
+    char *block;
+    size_t bytes;
+};
+static inline void *base_cut(struct base_cut *cut, size_t n, size_t element)
+{
+    void *part = cut->block ? cut->block + cut->bytes : NULL;
+    cut->bytes += (n * element + BASE_LINE - 1) / BASE_LINE * BASE_LINE;
+    return part;
+}
+/* The block; NULL without memory. */
+static inline void *base_cut_begin(struct base_cut *cut)
+{
+    cut->block = base_alloc(cut->bytes);
+    cut->bytes = 0;
+    return cut->block;
+}
+
 /* Prefetches a line that is written soon: it comes here as this core's own, so that the first
  * write, or an atomic operation behind it, need not wait. */
 static inline void base_prefetch(const void *line)

@@ -22,14 +22,8 @@ struct assigning {
 
 void plan_assignment_free(struct plan_assignment *a)
 {
-    base_free(a->home);
-    base_free(a->at);
-    base_free(a->set);
-    base_free(a->reads);
-    base_free(a->makes);
-    base_free(a->version);
+    base_free(a->memory);
     base_free(a->need);
-    base_free(a->last);
     base_free(a->sets.few);
     free(a->sets.word);
 }
@@ -124,16 +118,20 @@ static bool assign_room(struct plan_assignment *a)
 {
     const struct plan_round *round = a->round;
     size_t nodes = round->n_nodes + 1, uses = round->n_uses + 1, objects = round->n_objects + 1;
-    size_t versions = uses + objects;
-    a->home = base_alloc(objects * sizeof *a->home);
-    a->at = base_alloc(nodes * sizeof *a->at);
-    a->set = base_alloc_zero(nodes * sizeof *a->set);
-    a->reads = base_alloc(uses * sizeof *a->reads);
-    a->makes = base_alloc(uses * sizeof *a->makes);
-    a->version = base_alloc(versions * sizeof *a->version);
-    a->last = base_alloc(objects * sizeof *a->last);
-    return a->home && a->at && a->set && a->reads && a->makes && a->version && a->last &&
-           sets_begin(&a->sets, a->n_ranks);
+    struct base_cut cut = {0};
+    for (int cuts = 0; cuts < 2; cuts++) {
+        if (cuts && !(a->memory = base_cut_begin(&cut)))
+            return false;
+        a->home = base_cut(&cut, objects, sizeof *a->home);
+        a->at = base_cut(&cut, nodes, sizeof *a->at);
+        a->set = base_cut(&cut, nodes, sizeof *a->set);
+        a->reads = base_cut(&cut, uses, sizeof *a->reads);
+        a->makes = base_cut(&cut, uses, sizeof *a->makes);
+        a->version = base_cut(&cut, uses + objects, sizeof *a->version);
+        a->last = base_cut(&cut, objects, sizeof *a->last);
+    }
+    memset(a->set, 0, nodes * sizeof *a->set);
+    return sets_begin(&a->sets, a->n_ranks);
 }
 
 /* ---- Versions ---- */

@@ -28,7 +28,6 @@ struct edges {
     uint32_t n_readers;
     uint32_t *mark;   /* by node: the last one that an edge goes to from here */
     size_t n_pending; /* places that the first round writes, and the second one does not yet */
-    bool failed;
 };
 
 static void edge_add(struct edges *e, uint32_t from, uint32_t to)
@@ -39,13 +38,6 @@ static void edge_add(struct edges *e, uint32_t from, uint32_t to)
     if (from >= n || e->mark[from] == to + 1)
         return;
     e->mark[from] = to + 1;
-    void *moved =
-        base_grow(round->edge, &round->edges_capacity, round->n_edges + 1, sizeof *round->edge);
-    if (!moved) {
-        e->failed = true;
-        return;
-    }
-    round->edge = moved;
     struct plan_round_edge *edge = &round->edge[round->n_edges++];
     *edge = (struct plan_round_edge){from, cyclic ? to - n : to, cyclic};
     struct plan_round_node *before = &round->node[from], *after = &round->node[edge->to];
@@ -115,19 +107,29 @@ static void edges_of_rounds(struct edges *e, uint32_t to)
         edge_add(e, to - n, to);
 }
 
+/* A use joins its node to at most one of the first round in each of both, and as one of the first
+ * round to at most one that comes later; rounds are joined by at most two edges a node. */
+static bool edges_room(struct edges *e)
+{
+    struct plan_round *round = e->round;
+    const size_t nodes = round->n_nodes, uses = round->n_uses;
+    e->place = base_alloc_zero((round->n_places + 1) * sizeof *e->place);
+    e->reader = base_alloc((2 * uses + 1) * sizeof *e->reader);
+    e->mark = base_alloc_zero((nodes + 1) * sizeof *e->mark);
+    round->edge = base_alloc((3 * uses + 2 * nodes + 1) * sizeof *round->edge);
+    return e->place && e->reader && e->mark && round->edge;
+}
+
 bool plan_edges(struct plan_round *round)
 {
     struct edges e = {.round = round};
-    e.place = base_alloc_zero((round->n_places + 1) * sizeof *e.place);
-    e.reader = base_alloc((2 * round->n_uses + 1) * sizeof *e.reader);
-    e.mark = base_alloc_zero((round->n_nodes + 1) * sizeof *e.mark);
-    e.failed = !e.place || !e.reader || !e.mark;
-    for (uint32_t to = 0; to < 2 * round->n_nodes && !e.failed; to++) {
+    const bool fine = edges_room(&e);
+    for (uint32_t to = 0; to < 2 * round->n_nodes && fine; to++) {
         edges_of_places(&e, to);
         edges_of_rounds(&e, to);
     }
     base_free(e.place);
     base_free(e.reader);
     base_free(e.mark);
-    return !e.failed;
+    return fine;
 }

@@ -236,22 +236,26 @@ static size_t emit_count_trees(const struct plan_round *round)
 static bool emit_room(struct plan *plan, const struct emit *emit)
 {
     const struct plan_round *round = emit->round;
-    plan->nodes = base_alloc(plan->n_nodes * PLAN_NODE_BYTES + 1);
-    plan->root = base_alloc((plan->n_nodes + 1) * sizeof(struct task *));
-    plan->next = base_alloc((round->n_edges + 1) * sizeof(struct task *));
-    plan->first = base_alloc((plan->n_nodes + 1) * sizeof *plan->first);
-    plan->call = base_alloc((plan->n_nodes + 1) * sizeof *plan->call);
-    plan->owner = base_alloc((plan->n_nodes + 1) * sizeof *plan->owner);
-    plan->use = base_alloc((plan->n_uses + 1) * sizeof *plan->use);
-    plan->param = base_alloc((plan->n_uses + 1) * sizeof *plan->param);
-    plan->param_of = base_alloc((plan->n_uses + 1) * sizeof *plan->param_of);
-    plan->place = base_alloc((plan->n_places + 1) * sizeof *plan->place);
-    plan->args = base_alloc(emit->record->args_bytes + 1);
-    plan->merge = base_alloc(round->n_merges * sizeof *plan->merge + 1);
-    plan->tree = base_alloc(emit_count_trees(round) * sizeof *plan->tree + 1);
-    return plan->nodes && plan->root && plan->next && plan->first && plan->call && plan->owner &&
-           plan->use && plan->param && plan->param_of && plan->place && plan->args && plan->merge &&
-           plan->tree;
+    const size_t nodes = plan->n_nodes + 1, uses = plan->n_uses + 1;
+    struct base_cut cut = {0};
+    for (int cuts = 0; cuts < 2; cuts++) {
+        if (cuts && !(plan->memory = base_cut_begin(&cut)))
+            return false;
+        plan->nodes = base_cut(&cut, nodes, PLAN_NODE_BYTES);
+        plan->root = base_cut(&cut, nodes, sizeof(struct task *));
+        plan->next = base_cut(&cut, round->n_edges + 1, sizeof(struct task *));
+        plan->first = base_cut(&cut, nodes, sizeof *plan->first);
+        plan->call = base_cut(&cut, nodes, sizeof *plan->call);
+        plan->owner = base_cut(&cut, nodes, sizeof *plan->owner);
+        plan->use = base_cut(&cut, uses, sizeof *plan->use);
+        plan->param = base_cut(&cut, uses, sizeof *plan->param);
+        plan->param_of = base_cut(&cut, uses, sizeof *plan->param_of);
+        plan->place = base_cut(&cut, plan->n_places + 1, sizeof *plan->place);
+        plan->merge = base_cut(&cut, round->n_merges, sizeof *plan->merge);
+        plan->tree = base_cut(&cut, emit_count_trees(round), sizeof *plan->tree);
+    }
+    plan->args = base_alloc(emit->record->args_bytes + 1); /* apart: see plan_ring */
+    return plan->args;
 }
 
 static bool emit_all(struct plan *plan, const struct emit *emit)
@@ -349,20 +353,9 @@ void plan_release(struct plan *plan)
     for (size_t i = 0; i < plan->n_filled; i++)
         if (plan_task(plan, i)->type == TASK_NODE_VIEW)
             data_view_release(plan_task(plan, i)->node->view);
-    base_free(plan->nodes);
-    base_free(plan->root);
-    base_free(plan->next);
-    base_free(plan->first);
-    base_free(plan->call);
-    base_free(plan->owner);
-    base_free(plan->use);
-    base_free(plan->param);
-    base_free(plan->param_of);
-    base_free(plan->place);
+    base_free(plan->memory);
     base_free(plan->args);
     base_free(plan->buffers);
-    base_free(plan->merge);
-    base_free(plan->tree);
     base_free(plan->channels.channel);
     base_free(plan->enter);
     base_free(plan->end);

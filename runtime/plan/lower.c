@@ -6,8 +6,6 @@
 
 #include "runtime/base/memory.h"
 
-#include <stdlib.h>
-
 /* What happened so far in the round. */
 struct lower_object {
     uint32_t first, last, n_open; /* buffers of the contributions that are open */
@@ -35,13 +33,16 @@ uint32_t plan_round_buffer(struct plan_round *round, uint32_t object, const duit
 bool plan_round_room(struct plan_round *round, size_t nodes, size_t uses, size_t places,
                      size_t merges)
 {
-    round->node = base_alloc((nodes + 1) * sizeof *round->node);
-    round->use = base_alloc((uses + 1) * sizeof *round->use);
-    round->place = base_alloc((places + 1) * sizeof *round->place);
-    round->merge = base_alloc((merges + 1) * sizeof *round->merge);
+    struct base_cut cut = {0};
+    for (int cuts = 0; cuts < 2; cuts++) {
+        if (cuts && !(round->memory = base_cut_begin(&cut)))
+            return false;
+        round->node = base_cut(&cut, nodes + 1, sizeof *round->node);
+        round->use = base_cut(&cut, uses + 1, sizeof *round->use);
+        round->place = base_cut(&cut, places + 1, sizeof *round->place);
+        round->merge = base_cut(&cut, merges + 1, sizeof *round->merge);
+    }
     round->n_objects = round->source->n_objects;
-    if (!round->node || !round->use || !round->place || !round->merge)
-        return false;
     for (uint32_t i = 0; i < round->n_objects; i++)
         plan_round_buffer(round, i, NULL);
     return true;
@@ -49,12 +50,9 @@ bool plan_round_room(struct plan_round *round, size_t nodes, size_t uses, size_t
 
 void plan_round_free(struct plan_round *round)
 {
-    base_free(round->node);
-    base_free(round->use);
-    base_free(round->place);
-    base_free(round->merge);
+    base_free(round->memory);
     base_free(round->channel);
-    free(round->edge);
+    base_free(round->edge);
 }
 
 /* ---- The reduction tree ---- */

@@ -132,6 +132,7 @@ struct plan_round_channel {
 /* A round in its intermediate form. */
 struct plan_round {
     const struct plan_source *source;
+    void *memory; /* of the nodes, uses, places and merges */
     struct plan_round_node *node;
     struct plan_node_use *use;
     struct plan_round_place *place;
@@ -139,7 +140,7 @@ struct plan_round {
     struct plan_merge *merge;
     size_t n_merges;
     struct plan_round_edge *edge;
-    size_t n_edges, edges_capacity;
+    size_t n_edges;
     struct plan_round_channel *channel; /* of several ranks */
     size_t n_channels;
 };
@@ -210,6 +211,7 @@ struct plan_rank_sets {
 
 struct plan_assignment {
     const struct plan_round *round;
+    void *memory; /* of the arrays by node, use and object, and of versions */
     int n_ranks;
     size_t words; /* of a set of ranks */
     int *home;    /* by object */

@@ -73,6 +73,7 @@ struct plan {
     size_t n_filled;           /* nodes that were made so far */
     size_t n_nodes, n_calls, n_uses, n_roots, n_sinks, n_places;
     size_t n_objects;     /* places that are objects */
+    void *memory;         /* of all arrays from here to `tree`, but for arguments and buffers */
     unsigned char *nodes; /* the tasks: PLAN_NODE_BYTES each */
     struct task **root;   /* those without predecessors in their own round */
     struct task **next;

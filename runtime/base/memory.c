@@ -39,28 +39,17 @@ void base_free(void *memory)
 }
 
 /* The capacity that an array gets; 0: there is no such memory. */
-static size_t grown_capacity(size_t capacity, size_t needed, size_t element)
+static size_t grown_capacity(size_t capacity, size_t needed, size_t element, size_t factor)
 {
     size_t wanted = capacity ? capacity : 16;
     while (wanted < needed)
-        wanted *= 2;
+        wanted *= factor;
     return wanted <= SIZE_MAX / element ? wanted : 0;
 }
 
-void *base_grow_more(void *array, size_t *capacity, size_t needed, size_t element)
+/* The array in a new block of so many elements. */
+static void *grown_block(void *array, size_t *capacity, size_t wanted, size_t element)
 {
-    const size_t wanted = grown_capacity(*capacity, needed, element);
-    void *moved = wanted ? realloc(array, wanted * element) : NULL;
-    if (moved)
-        *capacity = wanted;
-    return moved;
-}
-
-void *base_grow_lines(void *array, size_t *capacity, size_t needed, size_t element)
-{
-    if (needed <= *capacity)
-        return array;
-    const size_t wanted = grown_capacity(*capacity, needed, element);
     void *moved = wanted ? base_alloc(wanted * element) : NULL;
     if (!moved)
         return NULL;
@@ -69,6 +58,29 @@ void *base_grow_lines(void *array, size_t *capacity, size_t needed, size_t eleme
     base_free(array);
     *capacity = wanted;
     return moved;
+}
+
+/* From a large page on arrays lie in such pages and quadruple, so that little is copied: what is
+ * not used yet takes no memory. Very large ones are moved by the system, without a copy. */
+void *base_grow_more(void *array, size_t *capacity, size_t needed, size_t element)
+{
+    const size_t large = PAGE / element, very_large = 32 * large;
+    const size_t wanted =
+        grown_capacity(*capacity, needed, element, needed < large || needed > very_large ? 2 : 4);
+    if (wanted >= large && needed <= very_large)
+        return grown_block(array, capacity, wanted, element);
+    void *moved = wanted ? realloc(array, wanted * element) : NULL;
+    if (moved)
+        *capacity = wanted;
+    return moved;
+}
+
+void *base_grow_lines(void *array, size_t *capacity, size_t needed, size_t element)
+{
+    return needed <= *capacity
+               ? array
+               : grown_block(array, capacity, grown_capacity(*capacity, needed, element, 2),
+                             element);
 }
 
 /* ---- Small blocks ---- */

@@ -16,8 +16,8 @@ void *base_alloc(size_t size);
 void *base_alloc_zero(size_t size);
 void base_free(void *memory);
 
-/* Makes room for `needed` elements in a growing array: doubles *capacity. Returns the array, which
- * may have moved; NULL without memory, and then nothing has changed. Freed by free. */
+/* Makes room for `needed` elements in a growing array: at least doubles *capacity. Returns the
+ * array, which may have moved; NULL without memory, and then nothing has changed. Freed by free. */
 void *base_grow_more(void *array, size_t *capacity, size_t needed, size_t element);
 static inline void *base_grow(void *array, size_t *capacity, size_t needed, size_t element)
 {

@@ -294,29 +294,31 @@ bool plan_fits(struct plan *plan, const struct plan_record *record, const duite_
            place->count == object->count;
 }
 
-/* All passes in order; of several ranks those between lowering and edges leave this rank's part. */
+/* All passes in order; of several ranks those between lowering and edges leave this rank's part,
+ * and the nodes of all ranks go as soon as the paths are known: the plan takes their memory. */
 static int plan_compile(struct plan *plan, const struct plan_record *record,
                         const duite_object *flag, const struct plan_source *source)
 {
-    struct plan_round round = {0}, part = {0};
-    struct emit emit = {.record = record, .flag = flag, .round = &round};
-    bool several = record->graph->n_ranks > 1, fine = plan_lower(&round, source);
+    const bool several = record->graph->n_ranks > 1, paths = plan->graph->paths;
+    struct plan_round all = {0}, part = {0}, *own = several ? &part : &all;
     float *path = NULL;
-    if (fine && several) {
-        fine = plan_of_ranks(plan, &round, &part, record, flag);
-        emit.round = &part;
-    }
-    fine = fine && plan_edges(several ? &part : &round);
-    if (fine && plan->graph->paths)
-        fine = (!several || plan_edges(&round)) &&
-               (emit.path = path = plan_paths_find(&round)) != NULL;
-    fine = fine && emit_all(plan, &emit);
+    bool fine = plan_lower(&all, source);
+    if (fine && several)
+        fine = plan_of_ranks(plan, &all, &part, record, flag);
+    if (fine && (paths || !several))
+        fine = plan_edges(&all);
+    if (fine && paths)
+        fine = (path = plan_paths_find(&all)) != NULL;
+    if (several)
+        plan_round_free(&all);
+    if (fine && several)
+        fine = plan_edges(&part);
+    fine = fine && emit_all(plan, &(struct emit){record, flag, own, path});
     int code = fine ? DUITE_OK : base_no_memory("a recorded graph");
     if (fine && several)
         code = plan_open(plan, &part);
     base_free(path);
-    plan_round_free(&round);
-    plan_round_free(&part);
+    plan_round_free(own);
     return code;
 }
 

@@ -53,6 +53,7 @@ void plan_round_free(struct plan_round *round)
     base_free(round->memory);
     base_free(round->channel);
     base_free(round->edge);
+    *round = (struct plan_round){0};
 }
 
 /* ---- The reduction tree ---- */

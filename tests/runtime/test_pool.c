@@ -1,10 +1,11 @@
 /* The pool: blocks are disjoint and aligned, survive a journey between threads, and come back to be
- * used again. */
+ * used again. Arrays that grow keep what is in them, however large they get. */
 #include "runtime/base/memory.h"
 #include "tests/support/unit.h"
 
 #include <pthread.h>
 #include <stdint.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum { N = 5000, ROUNDS = 20 };
@@ -97,6 +98,28 @@ START_TEST(large_and_nothing)
 }
 END_TEST
 
+/* Through small pages, large pages and blocks that the system moves. */
+START_TEST(growing)
+{
+    enum { MANY = 10000000 };
+    size_t capacity = 0;
+    uint64_t *array = NULL;
+    for (size_t i = 0; i < MANY; i++) {
+        array = base_grow(array, &capacity, i + 1, sizeof *array);
+        ck_assert_ptr_nonnull(array);
+        ck_assert_uint_gt(capacity, i);
+        array[i] = i;
+    }
+    for (size_t i = 0; i < MANY; i++)
+        if (array[i] != i)
+            ck_abort_msg("element %zu is lost", i);
+    const size_t before = capacity;
+    ck_assert_ptr_null(base_grow(array, &capacity, SIZE_MAX / 4, sizeof *array));
+    ck_assert_uint_eq(capacity, before);
+    free(array);
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("pool");
@@ -104,6 +127,7 @@ int main(void)
     tcase_add_loop_test(test, disjoint, 0, N_SIZES - 1);
     tcase_add_test(test, journey);
     tcase_add_test(test, large_and_nothing);
+    tcase_add_test(test, growing);
     suite_add_tcase(suite, test);
     return unit_run(suite);
 }

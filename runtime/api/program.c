@@ -131,9 +131,9 @@ static int fork_task(duite *rt, const struct task_options *options, const duite_
  * for most: it is the main program's, while nothing is recorded or to be settled. */
 static inline bool fork_is_usual(const duite *rt)
 {
-    const uint64_t more =
-        (uintptr_t)rt->building | rt->graph.table.n_unsettled | (uint64_t)rt->mpi_held;
-    return !more && !rt->graph.broken && task_thread_mark() == rt->thread;
+    const uint64_t more = (uintptr_t)rt->building | rt->graph.table.n_unsettled |
+                          (uint64_t)rt->mpi_held | (uint64_t)rt->graph.broken;
+    return !more && task_thread_mark() == rt->thread;
 }
 
 __attribute__((noinline)) static int fork_other(duite *rt, const duite_kernel *kernel,

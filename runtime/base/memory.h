@@ -109,18 +109,27 @@ void *base_pool_take_more(size_t size);
 void base_pool_give_more(void *memory, size_t size);
 
 #if !BASE_POOL_DIRECT
-static inline void *pool_take_size(size_t size)
+/* Sizes that vary, a task's, are of two lines mostly. */
+static inline void pool_prefetch(char *block, size_t bytes)
 {
     enum { MOST = BASE_POOL_AHEAD_LINES * BASE_LINE };
-    const size_t bytes = size * BASE_POOL_GRAIN; /* sizes that vary, a task's, are small */
-    const size_t ahead = __builtin_constant_p(size) && bytes > MOST ? MOST : bytes;
+    if (!__builtin_constant_p(bytes)) {
+        base_prefetch(block);
+        base_prefetch(block + bytes - 1);
+        return;
+    }
+    for (size_t line = 0; line < bytes && line < MOST; line += BASE_LINE)
+        base_prefetch(block + line);
+}
+
+static inline void *pool_take_size(size_t size)
+{
     struct base_magazine *loaded = base_shelves[size].loaded;
     if (!loaded || !loaded->n)
         return base_pool_take_more(size);
     /* A block that will be taken soon may lie in another core's cache: fetch it. */
     if (loaded->n > BASE_POOL_AHEAD)
-        for (size_t line = 0; line < ahead; line += BASE_LINE)
-            base_prefetch((char *)loaded->block[loaded->n - 1 - BASE_POOL_AHEAD] + line);
+        pool_prefetch(loaded->block[loaded->n - 1 - BASE_POOL_AHEAD], size * BASE_POOL_GRAIN);
     return loaded->block[--loaded->n];
 }
 

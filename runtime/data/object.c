@@ -23,7 +23,7 @@ int data_table_start(struct data_table *table, int n_ranks)
     table->blocks = calloc((size_t)n_ranks, sizeof *table->blocks);
     if (!object || !copies || !table->blocks)
         return base_no_memory("the table of objects");
-    memset(&object[0], 0, sizeof object[0]);
+    object[0] = (struct data_object){.leaves = DATA_VACANT};
     return DUITE_OK;
 }
 
@@ -184,6 +184,7 @@ void data_object_drop(struct data_table *table, duite_object name)
     struct data_object *object = &table->object[name.slot];
     object->generation++;
     table->changes++;
+    object->leaves = DATA_VACANT;
     object->current = NULL;
     if (object->view)
         table->object[object->view->parent].n_views--;

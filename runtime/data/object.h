@@ -20,7 +20,8 @@ struct data_object {
     bool fixed;          /* a task of a fixed kernel ran for it: its home does not change */
     uint64_t number;     /* of the current version: writes so far */
     struct data_version *current; /* this rank's copy of the current version, or NULL */
-    uint64_t leaves;              /* contributions forked since the last other access */
+    uint64_t leaves;              /* contributions forked since the last other access;
+                                     DATA_VACANT */
     struct data_view *view;       /* it is a view; NULL: it is none */
     uint64_t mark;                /* the last fork that named it: one task names an object once */
     uint32_t block;               /* its place among the leaders with its home, in the order they
@@ -35,6 +36,9 @@ struct data_object {
     uint64_t : 64;       /* of two lines: in the table, which begins at one, each begins at one */
 };
 _Static_assert(sizeof(struct data_object) == 2 * BASE_LINE, "objects begin at cache lines");
+
+/* `leaves` of a free slot: who finds none there need not ask whether it is free. */
+#define DATA_VACANT UINT64_C(1)
 
 /* What the program hinted about an object, until its home is settled. */
 struct data_hint {
@@ -101,6 +105,15 @@ static inline struct data_object *data_object_here(struct data_table *table, dui
     const bool here =
         name.slot < table->n_slots && object->generation == name.generation && name.generation % 2;
     return here ? object : NULL;
+}
+/* The same, but only if it is no view and has no contributions. */
+static inline struct data_object *data_object_usual(struct data_object *first, uint32_t n_slots,
+                                                    duite_object name)
+{
+    struct data_object *object = &first[name.slot];
+    const bool usual = name.slot < n_slots && object->generation == name.generation &&
+                       !((uintptr_t)object->view | object->leaves);
+    return usual ? object : NULL;
 }
 static inline struct data_object *data_object_find(struct data_table *table, duite_object name)
 {

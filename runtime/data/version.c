@@ -56,8 +56,6 @@ void data_packet_resize(struct data_packet *packet, size_t bytes)
 
 /* ---- Versions ---- */
 
-struct data_waiter data_produced_mark;
-
 void data_version_poison(struct data_version *version, const struct data_failure *failure)
 {
     if (!failure)

@@ -88,12 +88,13 @@ struct data_version {
     _Atomic(struct data_waiter *)
         waiters; /* tasks that want to read; DATA_PRODUCED once they may */
     _Atomic uint32_t holds;
-    bool sized, renamed; /* its size is its own; other bytes took its place, see rename_bytes */
-    bool poisoned;       /* in place of bytes; set before it is produced */
-    uint8_t type : 7;
-    uint8_t lent : 1; /* its memory is that of a scope, which lives longer: see task_cell */
-    size_t max;       /* elements there may be; there are as many, or fewer if it is sized */
-    union {           /* set before the object's hold is released */
+    bool sized : 1; /* its size is its own */
+    bool lent : 1;  /* its memory is that of a scope, which lives longer: see task_cell */
+    bool poisoned;  /* in place of bytes; set before it is produced */
+    bool renamed;   /* other bytes took its place, see rename_bytes */
+    uint8_t type;
+    size_t max; /* elements there may be; there are as many, or fewer if it is sized */
+    union {     /* set before the object's hold is released */
         struct data_waiter *heir;
         _Atomic uint64_t *rename_bytes; /* renamed: there its room is counted until it dies */
     };
@@ -104,8 +105,7 @@ struct data_version {
 };
 
 /* In place of a list of waiters: the value is there. */
-extern struct data_waiter data_produced_mark;
-#define DATA_PRODUCED (&data_produced_mark)
+#define DATA_PRODUCED ((struct data_waiter *)1)
 
 /* A version held by its producer and by its object. NULL without memory. */
 static inline struct data_version *data_version_new(duite_type type, size_t max, bool sized)
@@ -114,7 +114,7 @@ static inline struct data_version *data_version_new(duite_type type, size_t max,
     if (!version)
         return NULL;
     *version = (struct data_version){
-        .holds = 2, .type = type & 0x7f, .max = max, .sized = sized, .heir = NULL};
+        .holds = 2, .type = (uint8_t)type, .max = max, .sized = sized, .heir = NULL};
     return version;
 }
 

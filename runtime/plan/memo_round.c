@@ -72,9 +72,9 @@ bool memo_round_add(struct plan_memo *memo, const duite_kernel *kernel, const vo
                     const duite_object *objects)
 {
     struct task_graph *graph = memo->graph;
-    const uint32_t index = task_kernel_index(graph, kernel);
-    if (index >= graph->n_kernels || !graph->fixed[index].plain || n != graph->fixed[index].n ||
-        (kernel->args_size && !args) || (n && !objects) || !round_writes(kernel, n))
+    const struct task_fixed *fixed = task_kernel_find(graph, kernel);
+    if (!fixed || !fixed->plain || n != fixed->n || (kernel->args_size && !args) ||
+        (n && !objects) || !round_writes(kernel, n))
         return false;
     for (size_t i = 0; i < n; i++) {
         const struct data_object *object = data_object_here(&graph->table, objects[i]);

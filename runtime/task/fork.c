@@ -19,8 +19,9 @@ static int fork_kernel(const struct task_graph *graph, const duite_kernel *kerne
 {
     if (!kernel)
         return base_error(DUITE_E_ARGUMENT, "duite_fork: no kernel");
-    *index = task_kernel_index(graph, kernel);
-    if (*index < graph->n_kernels)
+    const struct task_fixed *fixed = task_kernel_find(graph, kernel);
+    *index = fixed ? fixed->index : graph->n_kernels;
+    if (fixed)
         return DUITE_OK;
     return base_error(DUITE_E_KERNEL, "kernel %s was not listed at start",
                       kernel->name ? kernel->name : "without a name");

@@ -48,6 +48,7 @@ static int kernel_check(const duite_kernel *kernel, uint32_t index, struct task_
     if (!kernel->body)
         return base_error(DUITE_E_KERNEL, "kernel %s has no body", kernel->name);
     *fixed = (struct task_fixed){.kernel = kernel,
+                                 .index = index,
                                  .plain = kernel->variadic == DUITE_NONE && !kernel->replicated};
     for (uint32_t i = 0; i < DUITE_MAX_ACCESS; i++) {
         duite_mode mode = kernel->access[i];
@@ -121,7 +122,7 @@ static int kernels_index(struct task_graph *graph)
         uint32_t at = task_kernel_hash(graph->kernels[i]);
         while (graph->kernel_place[at & graph->kernel_mask])
             at++;
-        graph->kernel_place[at & graph->kernel_mask] = i + 1;
+        graph->kernel_place[at & graph->kernel_mask] = &graph->fixed[i];
     }
     return DUITE_OK;
 }

@@ -101,17 +101,15 @@ static inline uint32_t task_kernel_hash(const duite_kernel *kernel)
     return (uint32_t)((uint64_t)(uintptr_t)kernel * 0x9e3779b97f4a7c15u >> 32);
 }
 
-/* The index of a kernel in the list given at start; n_kernels: it is not there. Each fork asks: so
- * this is an open table of indices and no uthash, which takes a hash of all bytes of the key and
- * two dependent loads more. */
-static inline uint32_t task_kernel_index(const struct task_graph *graph, const duite_kernel *kernel)
+/* The kernel among those given at start, or NULL. Each fork asks: so this is an open table and no
+ * uthash, which takes a hash of all bytes of the key and two dependent loads more. */
+static inline const struct task_fixed *task_kernel_find(const struct task_graph *graph,
+                                                        const duite_kernel *kernel)
 {
     for (uint32_t at = task_kernel_hash(kernel);; at++) {
-        const uint32_t found = graph->kernel_place[at & graph->kernel_mask];
-        if (!found)
-            return graph->n_kernels;
-        if (graph->fixed[found - 1].kernel == kernel)
-            return found - 1;
+        const struct task_fixed *found = graph->kernel_place[at & graph->kernel_mask];
+        if (!found || found->kernel == kernel)
+            return found;
     }
 }
 

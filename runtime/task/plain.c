@@ -35,18 +35,21 @@ static void plain_unmark(struct task *task, const struct task_access *end)
 PLAIN_INLINE bool plain_take_objects(const struct plain_fork *fork, const duite_object *name)
 {
     struct task_scope *const scope = fork->scope;
-    struct data_table *const table = &fork->graph->table;
+    struct data_object *const first = fork->graph->table.object;
+    const uint32_t n_slots = fork->graph->table.n_slots;
     const struct task_access *like = fork->fixed->head->access;
     struct task_access *access = fork->task->access, *const end = access + fork->fixed->n;
     const uint64_t mark = scope->forks + 1;
     for (; access < end; access++, like++, name++) {
         struct data_object *object = fork->nested ? task_find_given(scope, *name, like->waiter.mode)
-                                                  : data_object_here(table, *name);
-        if (!object || object->mark == mark || ((uintptr_t)object->view | object->leaves) ||
+                                                  : data_object_usual(first, n_slots, *name);
+        if (!object || object->mark == mark ||
+            (fork->nested && ((uintptr_t)object->view | object->leaves)) ||
             (!object->current && like->waiter.mode != DUITE_W)) {
             plain_unmark(fork->task, access);
             return false;
         }
+        base_prefetch(object->current);
         object->mark = mark;
         *access = *like;
         access->object = object;
@@ -56,9 +59,11 @@ PLAIN_INLINE bool plain_take_objects(const struct plain_fork *fork, const duite_
 
 static inline void plain_copy_args(void *to, const void *from, size_t size)
 {
+    if (!size)
+        return;
     if (size == sizeof(uint64_t)) /* as often: without a call */
         memcpy(to, from, sizeof(uint64_t));
-    else if (size)
+    else
         memcpy(to, from, size);
 }
 
@@ -71,12 +76,8 @@ PLAIN_INLINE void plain_make(const struct plain_fork *fork, const void *args)
     *task = *fixed->head;
     task->scope = scope;
     task->number = ++scope->forks;
-    task->block = (uint32_t)scope->forks;
-    if (fixed->owner[0] != TASK_NOBODY) {
-        struct data_object *own = task->access[fixed->owner[0]].object;
-        task->block = own->block;
-        own->fixed |= fixed->kernel->fixed;
-    }
+    task->block = fixed->owner[0] == TASK_NOBODY ? (uint32_t)scope->forks
+                                                 : task->access[fixed->owner[0]].object->block;
     plain_copy_args(task_rest(task, fixed->n), args, fixed->kernel->args_size);
     if (fork->nested)
         atomic_fetch_add_explicit(&scope->unfinished, 1, memory_order_relaxed);
@@ -91,7 +92,7 @@ PLAIN_INLINE bool plain_overwrite(const struct plain_fork *fork, struct task_acc
 {
     struct task_graph *const graph = fork->graph;
     struct data_version *version = object->current;
-    task_note_version(object, graph->rank);
+    object->number++; /* of an object that is nowhere else: its holder stays this rank */
     if (access->waiter.mode == DUITE_W && graph->rename_max)
         version = task_rename(graph, fork->worker, object);
     struct data_version *out = fork->nested ? task_child_version(fork->scope, object, !version)
@@ -106,21 +107,22 @@ PLAIN_INLINE bool plain_overwrite(const struct plain_fork *fork, struct task_acc
 }
 
 /* The accesses become holds on versions, and places of heirs. Returns how many have nothing to wait
- * for; *made: those before the one for which there was no memory. */
-PLAIN_INLINE uint32_t plain_depend(const struct plain_fork *fork, uint32_t *made)
+ * for; *stop: their end, or the one for which there was no memory. */
+PLAIN_INLINE uint32_t plain_depend(const struct plain_fork *fork, const struct task_access **stop)
 {
     struct task_access *access = fork->task->access, *const end = access + fork->fixed->n;
     uint32_t done = 0;
     for (; access < end; access++) {
         struct data_object *object = access->object;
         if (access->waiter.mode == DUITE_R) {
-            data_version_hold(object->current);
-            done += !data_version_await(object->current, &access->waiter);
+            struct data_version *version = object->current;
+            data_version_hold(version);
+            done += !data_version_await(version, &access->waiter);
         } else if (!plain_overwrite(fork, access, object, &done)) {
             break;
         }
     }
-    *made = (uint32_t)(access - fork->task->access);
+    *stop = access;
     return done;
 }
 
@@ -130,20 +132,20 @@ PLAIN_INLINE int plain_fork(const struct plain_fork *fork, const struct task_opt
 {
     struct task_graph *graph = fork->graph;
     struct task *task = fork->task;
-    uint32_t made;
+    const struct task_access *stop;
     plain_make(fork, args);
     if (options) {
         task->priority = options->priority;
         task->cost = (float)options->cost;
     }
-    const uint32_t done = plain_depend(fork, &made);
-    if (made == fork->fixed->n) {
+    const uint32_t done = plain_depend(fork, &stop);
+    if (stop == task->access + fork->fixed->n) {
         ready_take(graph, fork->worker, task, done + 1);
         return DUITE_OK;
     }
     base_no_memory("a version");
     task_break(graph);
-    task_void(graph, fork->worker, task, made, done);
+    task_void(graph, fork->worker, task, (size_t)(stop - task->access), done);
     return DUITE_E_MEMORY;
 }
 
@@ -152,10 +154,9 @@ PLAIN_INLINE bool plain_fits(struct plain_fork *fork, const duite_kernel *kernel
                              size_t n, const duite_object *objects)
 {
     const struct task_graph *graph = fork->graph;
-    const uint32_t index = task_kernel_index(graph, kernel);
-    const struct task_fixed *fixed = fork->fixed = &graph->fixed[index];
-    if (index >= graph->n_kernels || !(fork->nested ? fixed->plain : fixed->direct) ||
-        n != fixed->n || (!args && kernel->args_size) || (!objects && n))
+    const struct task_fixed *fixed = fork->fixed = task_kernel_find(graph, kernel);
+    if (!fixed || !(fork->nested ? fixed->plain : fixed->direct) || n != fixed->n ||
+        (!args && kernel->args_size) || (!objects && n))
         return false;
     const size_t bytes = (size_t)fixed->grains * TASK_GRAIN;
     fork->task = base_pool_take(bytes);

@@ -60,14 +60,12 @@ __attribute__((always_inline)) static inline bool task_prune(struct task_graph *
                                                              const duite_object *objects)
 {
     struct data_object *found[DUITE_MAX_ACCESS];
-    const uint32_t index = task_kernel_index(graph, kernel);
-    const struct task_fixed *fixed = &graph->fixed[index];
-    if (index == graph->n_kernels || !fixed->prunes || n != fixed->n || !objects ||
-        (!args && kernel->args_size))
+    const struct task_fixed *fixed = task_kernel_find(graph, kernel);
+    if (!fixed || !fixed->prunes || n != fixed->n || !objects || (!args && kernel->args_size))
         return false;
     const int at = task_owner_rank(TASK_ANYWHERE, false,
                                    prune_object(&graph->table, objects[fixed->owner[0]])->home);
-    uint64_t hash = task_fork_hash(index, TASK_ANYWHERE);
+    uint64_t hash = task_fork_hash(fixed->index, TASK_ANYWHERE);
     bool moves;
     if (at == graph->rank || !prune_look_up(graph, at, n, objects, found, &hash, &moves) ||
         (moves && !prune_note_copies(graph, fixed, at, found)))
@@ -75,7 +73,7 @@ __attribute__((always_inline)) static inline bool task_prune(struct task_graph *
     for (uint64_t writes = fixed->writes; writes; writes &= writes - 1)
         task_note_version(found[__builtin_ctzll(writes)], at);
     graph->root.forks++;
-    task_mix_fork(graph, hash, TASK_FORKED, index);
+    task_mix_fork(graph, hash, TASK_FORKED, fixed->index);
     return true;
 }
 

@@ -60,22 +60,20 @@ bool task_prune_more(struct task_graph *graph, const duite_kernel *kernel, const
                      size_t n, const duite_object *objects)
 {
     struct data_object *found[DUITE_MAX_ACCESS];
-    const uint32_t index = task_kernel_index(graph, kernel);
-    const struct task_fixed *fixed = &graph->fixed[index];
-    if (index == graph->n_kernels || kernel->replicated || !objects || !n || n < fixed->n ||
-        n > DUITE_MAX_ACCESS || (n > fixed->n && kernel->variadic == DUITE_NONE) ||
-        (!args && kernel->args_size))
+    const struct task_fixed *fixed = task_kernel_find(graph, kernel);
+    if (!fixed || kernel->replicated || !objects || !n || n < fixed->n || n > DUITE_MAX_ACCESS ||
+        (n > fixed->n && kernel->variadic == DUITE_NONE) || (!args && kernel->args_size))
         return false;
     const uint32_t own = fixed->owner[n > fixed->n];
     const int at =
         task_owner_rank(TASK_ANYWHERE, false,
                         own == TASK_NOBODY ? -1 : prune_object(&graph->table, objects[own])->home);
-    uint64_t hash = task_fork_hash(index, TASK_ANYWHERE);
+    uint64_t hash = task_fork_hash(fixed->index, TASK_ANYWHERE);
     if (at == graph->rank || !more_look_up(graph, kernel, at, n, objects, found, &hash))
         return false;
     for (size_t i = 0; i < n; i++)
         more_note(graph, task_immediate(data_mode_of(kernel, i)), at, found[i]);
     graph->root.forks++;
-    task_mix_fork(graph, hash, TASK_FORKED, index);
+    task_mix_fork(graph, hash, TASK_FORKED, fixed->index);
     return true;
 }

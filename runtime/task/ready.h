@@ -60,6 +60,9 @@ static inline struct data_waiter *ready_produced(struct task_graph *graph, struc
     struct data_waiter *waiter = data_version_produced(version);
     while (waiter) {
         struct data_waiter *next = waiter->next; /* the task may run and be freed once woken */
+        /* Mostly the two lines of a task that another core forked; behind the last one is none. */
+        base_prefetch(next);
+        base_prefetch((const void *)((uintptr_t)next - BASE_LINE));
         waiter->version = version;
         ready_take(graph, worker, ready_waiter_task(waiter), 1);
         waiter = next;

@@ -37,20 +37,35 @@ static inline const struct data_failure *version_prepare(const struct task *task
                : version_make_room(task, out, access->waiter.mode == DUITE_RW);
 }
 
-/* What the body gets of a version that has bytes; `fresh`: it finds unspecified ones there. Returns
- * the poison in place of bytes, or NULL. */
-static inline const struct data_failure *
-param_describe(duite_param *param, const struct data_version *version, bool fresh)
+/* Whether the version has bytes, no poison, and always as many elements: so most have. */
+static inline bool version_is_usual(const struct data_version *version)
 {
-    if (version->poisoned)
-        return version->failure;
-    struct data_packet *packet = version->packet;
-    param->data = data_payload(packet);
+    return !version->sized && !version->poisoned && version->packet;
+}
+
+/* What the body gets of a usual version. */
+static inline void param_describe(duite_param *param, const struct data_version *version)
+{
+    param->data = data_payload(version->packet);
     param->count = version->max;
     param->type = (duite_type)version->type;
     param->max = version->max;
-    if (version->sized && !fresh)
-        param->count = packet->bytes / data_type_size(param->type);
+}
+
+/* What it gets of any version; what it writes finds unspecified bytes there, unless it is to change
+ * them. Returns the poison in place of bytes, or NULL. */
+static const struct data_failure *
+param_prepare_version(const struct task *task, const struct task_access *access, duite_param *param)
+{
+    struct data_version *version = access->waiter.version;
+    const duite_mode mode = (duite_mode)access->waiter.mode;
+    const struct data_failure *failure =
+        mode == DUITE_R ? data_version_failure(version) : version_prepare(task, access);
+    if (failure)
+        return failure;
+    param_describe(param, version);
+    if (version->sized && mode != DUITE_W)
+        param->count = version->packet->bytes / data_type_size(param->type);
     return NULL;
 }
 
@@ -73,37 +88,35 @@ static const struct data_failure *leaf_open(const struct task *task,
     return failure;
 }
 
-/* What contributes, or belongs to the children. */
-static const struct data_failure *
+/* What is no usual version: another one, what contributes, or what belongs to the children. */
+__attribute__((noinline)) static const struct data_failure *
 param_prepare_other(const struct task *task, const struct task_access *access, duite_param *param)
 {
+    if (access->waiter.mode <= DUITE_RW)
+        return param_prepare_version(task, access, param);
     if (access->waiter.mode == DUITE_CW)
         return leaf_open(task, access, param);
     param_describe_lent(param, task_lent_object(task->inner, access->lent));
     return NULL;
 }
 
-/* Gives the body its parameters; returns the poison among them, or NULL. */
+/* Gives the body its parameters; returns the poison among them, or NULL. *other: some are no usual
+ * versions. */
 __attribute__((always_inline)) static inline const struct data_failure *
-params_prepare(struct task *task, duite_param *param, bool *sized)
+params_prepare(struct task *task, duite_param *param, bool *other)
 {
-    const struct data_failure *failure = NULL, *new = NULL;
+    const struct data_failure *failure = NULL;
     struct task_access *access = task->access, *const end = access + task->n;
     duite_object name = {TASK_LOCAL_NAME, access < end ? task_new_stamp() : 0};
     for (; access < end; access++, param++, name.slot++) {
-        const uint32_t mode = access->waiter.mode;
-        if (mode == DUITE_R) {
-            new = param_describe(param, access->waiter.version, false);
-        } else if (mode == DUITE_W || mode == DUITE_RW) {
-            new = version_prepare(task, access);
-            if (!new)
-                new = param_describe(param, access->waiter.version, mode == DUITE_W);
-            *sized |= access->waiter.version->sized;
+        if (access->waiter.mode <= DUITE_RW && version_is_usual(access->waiter.version)) {
+            param_describe(param, access->waiter.version);
         } else {
-            new = param_prepare_other(task, access, param);
+            const struct data_failure *new = param_prepare_other(task, access, param);
+            *other = true;
+            if (new)
+                failure = data_failure_first(failure, new);
         }
-        if (new)
-            failure = data_failure_first(failure, new);
         param->object = name;
     }
     return failure;
@@ -169,13 +182,13 @@ __attribute__((always_inline)) static inline bool body_run(struct task_graph *gr
                                                            struct task *task, duite_param *param,
                                                            const struct body_elsewhere *elsewhere)
 {
-    bool sized = false; /* it writes an object that changes its size */
-    const struct data_failure *failure = params_prepare(task, param, &sized);
+    bool other = false; /* it may write an object that changes its size */
+    const struct data_failure *failure = params_prepare(task, param, &other);
     if (!failure && !elsewhere)
         failure = task_given_up(graph);
     const bool runs = !failure && !elsewhere;
     if (runs) {
-        const bool has_args = graph->kernels[task->kernel]->args_size != 0;
+        const bool has_args = frame->body.graph->kernels[task->kernel]->args_size != 0;
         frame->call.round = task->later ? task_later_round(task) : 0;
         failure = task_frame_call(frame, task, has_args ? task_rest(task, task->n) : NULL, param,
                                   &task->inner);
@@ -184,7 +197,7 @@ __attribute__((always_inline)) static inline bool body_run(struct task_graph *gr
     }
     if (failure)
         outputs_poison(task, failure);
-    else if (sized)
+    else if (other)
         outputs_resize(task, param);
     return runs;
 }

@@ -62,7 +62,7 @@ static inline struct data_version *task_child_version(struct task_scope *scope,
     cell->packet.bytes = object->room;
     cell->packet.lines = 0;
     cell->version = (struct data_version){.holds = 2,
-                                          .type = object->type & 0x7f,
+                                          .type = (uint8_t)object->type,
                                           .lent = true,
                                           .max = object->max,
                                           .packet = &cell->packet};

@@ -198,7 +198,7 @@ struct task_graph {
     const duite_kernel **kernels;
     struct task_fixed { /* parameters in each kernel's `access` */
         const duite_kernel *kernel;
-        uint32_t n, postponed;
+        uint32_t index, n, postponed;
         uint32_t owner[2]; /* which of n objects, of more than n, a task runs for: see owner.h */
         uint32_t grains;   /* of a task with n objects */
         bool plain;        /* r, w and rw alone, few of them, no others; and it is not replicated */
@@ -208,7 +208,8 @@ struct task_graph {
         struct task *head; /* plain: a task that was just forked, but for what differs; owned */
     } * fixed;
     uint32_t n_kernels;
-    uint32_t *kernel_place, kernel_mask; /* by address, open addressing: index in `fixed` + 1 */
+    struct task_fixed **kernel_place; /* by address, open addressing */
+    uint32_t kernel_mask;
     bool paths; /* plans are to know the paths of their tasks; set before the first of them */
     _Atomic int given_up;   /* bodies do not run any more */
     bool checks;            /* bodies are called by work_check_body */

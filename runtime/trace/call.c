@@ -158,7 +158,7 @@ void trace_fork(struct trace *trace, const duite_kernel *kernel, const struct ta
     bool plain = options->at == TASK_ANYWHERE && !options->priority && !(options->cost > 0);
     if (!entry_begin(trace, plain ? TRACE_FORK : TRACE_FORKED, n))
         return;
-    word_put(trace, task_kernel_index(trace->graph, kernel));
+    word_put(trace, task_kernel_find(trace->graph, kernel)->index);
     if (!plain) {
         word_put(trace, (uint32_t)options->at);
         word_put(trace, (uint32_t)options->priority);

@@ -195,9 +195,16 @@ bool work_is_endless(struct work_pool *pool, unsigned attempt);
 void work_look(struct worker *worker, const struct work_wish *wish);
 /* Runs the task and those that run inline after it. */
 void work_run(struct worker *worker, struct task *task);
-/* Whether one more task may run inline after `length` of them; when it begins, if the last one
- * ended then. */
-bool work_goes_on(const struct worker *worker, unsigned length);
+/* Whether one more task may run inline after `length` of them. Tasks that run inline, moved to
+ * another worker, take all their data along: so it may while there is no other, and in between some
+ * run without a look at the queues. */
+enum { WORK_LONGEST_INLINE = 64 };
+bool work_has_no_other(const struct worker *worker);
+static inline bool work_goes_on(const struct worker *worker, unsigned length)
+{
+    return length % WORK_LONGEST_INLINE || work_has_no_other(worker);
+}
+/* When it begins, if the last one ended then. */
 uint64_t work_inline_start(struct worker *worker, unsigned length, uint64_t end);
 /* Sends and receives; whether anything happened. */
 bool work_poll(struct worker *worker);

@@ -6,9 +6,8 @@
 #include "runtime/base/memory.h"
 #include "runtime/workers/internal.h"
 
-/* Tasks run inline, one after another without a look at the queues, while something lies there; and
- * among these, those before which the clock is read. */
-enum { LONGEST_INLINE = 64, CLOCKED = 16 };
+/* Among the tasks that run inline, those before which the clock is read. */
+enum { CLOCKED = 16 };
 
 /* Tries of a scheduler that names victims, in one round. */
 enum { MAX_ATTEMPTS = 64, MAX_ATTEMPTS_A_WORKER = 16 };
@@ -28,7 +27,8 @@ static duite_ready ready_describe(const struct task_graph *graph, const struct t
                          .affinity = plan_task_affinity(task)};
 }
 
-static void ready_put(struct worker *worker, struct task *task, unsigned queue)
+__attribute__((noinline)) static void ready_put(struct worker *worker, struct task *task,
+                                                unsigned queue)
 {
     struct work_pool *pool = worker->pool;
     work_bump(&worker->counts.placed, 1);
@@ -101,7 +101,8 @@ static inline bool ready_is_straight(const struct work_pool *pool, const struct 
            !pool->balance;
 }
 
-static void ready_any(struct work_pool *pool, struct worker *worker, struct task *task)
+__attribute__((noinline)) static void ready_any(struct work_pool *pool, struct worker *worker,
+                                                struct task *task)
 {
     if (task_to_send(task)) {
         comm_send(pool->setup.comm, task);
@@ -124,14 +125,26 @@ static void ready_any(struct work_pool *pool, struct worker *worker, struct task
         ready_put(worker, task, worker->index);
 }
 
+/* A body waits below: the task may have to go to a queue. */
+__attribute__((noinline)) static void ready_on_top(struct worker *worker, struct task *task)
+{
+    if (ready_fits(worker, task))
+        worker->next = task;
+    else
+        ready_put(worker, task, worker->index);
+}
+
+/* Each of these calls is the last thing that is done: most tasks, which are next, save nothing. */
 void work_ready(struct work_pool *pool, struct worker *worker, struct task *task)
 {
     if (!ready_is_straight(pool, task))
         ready_any(pool, worker, task);
-    else if (worker->may_chain && !worker->next && ready_fits(worker, task))
-        worker->next = task;
-    else
+    else if (!worker->may_chain || worker->next)
         ready_put(worker, task, worker->index);
+    else if (worker->waits)
+        ready_on_top(worker, task);
+    else
+        worker->next = task;
 }
 
 /* ---- Find ---- */
@@ -189,13 +202,10 @@ bool work_poll(struct worker *worker)
     return came;
 }
 
-/* Tasks that run inline, moved to another worker, take all their data along: they stay as long as
- * this one has nothing else to do. */
-bool work_goes_on(const struct worker *worker, unsigned length)
+bool work_has_no_other(const struct worker *worker)
 {
-    return length % LONGEST_INLINE ||
-           (worker->index && !worker->waits && work_queue_is_empty(&worker->queue) &&
-            work_queue_is_empty(&worker->pool->shared));
+    return worker->index && !worker->waits && work_queue_is_empty(&worker->queue) &&
+           work_queue_is_empty(&worker->pool->shared);
 }
 
 /* When the inline task after this one begins. Reading the clock costs as much as all else that lies

@@ -104,10 +104,10 @@ START_TEST(growing)
     enum { MANY = 10000000 };
     size_t capacity = 0;
     uint64_t *array = NULL;
-    for (size_t i = 0; i < MANY; i++) {
+    for (size_t i = 0; i < MANY; i++) { /* an assertion of Check each time would take minutes */
         array = base_grow(array, &capacity, i + 1, sizeof *array);
-        ck_assert_ptr_nonnull(array);
-        ck_assert_uint_gt(capacity, i);
+        if (!array || capacity <= i)
+            ck_abort_msg("no room for element %zu", i);
         array[i] = i;
     }
     for (size_t i = 0; i < MANY; i++)

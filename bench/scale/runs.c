@@ -58,17 +58,10 @@ static int span_of(const struct trace_run *run, double *seconds)
 /* The run that was traced; `one`: NULL, or the trace of one rank to predict it from. */
 static int compare(const struct trace_run *run, const struct trace_run *one, double *error)
 {
-    struct predict_cluster cluster = {.hosts = HOSTS,
-                                      .cores = 1,
-                                      .latency = run->rank[0].header->latency,
-                                      .bandwidth = 1.25e9,
-                                      .capacity = INFINITY,
-                                      .core_speed = 1,
-                                      .overhead = -1,
-                                      .message = -1,
-                                      .look = -1,
-                                      .scheduler = duite_scheduler_find("steal"),
-                                      .seed = 1};
+    struct predict_cluster cluster = predict_cluster_default();
+    cluster.hosts = HOSTS;
+    cluster.cores = 1;
+    cluster.latency = run->rank[0].header->latency;
     struct predict_result result;
     double seconds = 0;
     int code = predict(run, &cluster, &result, NULL);

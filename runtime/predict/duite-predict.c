@@ -302,16 +302,8 @@ int main(int argc, char **argv)
         .scheduler = "steal",
         .mapping = "of the trace",
         .balance = "none",
-        .cluster = {.scheduler = duite_scheduler_find("steal"),
-                    .latency = -1,
-                    .bandwidth = 1.25e9,
-                    .capacity = INFINITY,
-                    .core_speed = 1,
-                    .overhead = -1,
-                    .message = -1,
-                    .look = -1,
-                    .seed = 1,
-                    .policy_seconds = duite_options_default().policy_seconds}};
+        .cluster = predict_cluster_default(),
+    };
     argp_err_exit_status = BAD_INPUT;
     if (argp_parse(&ARGP, argc, argv, 0, NULL, &command))
         return BAD_INPUT;

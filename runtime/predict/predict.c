@@ -19,6 +19,20 @@ const char *predict_limit_name(enum predict_limit limit)
     return names[limit];
 }
 
+struct predict_cluster predict_cluster_default(void)
+{
+    return (struct predict_cluster){.scheduler = duite_scheduler_find("steal"),
+                                    .latency = -1,
+                                    .bandwidth = 1.25e9,
+                                    .capacity = INFINITY,
+                                    .core_speed = 1,
+                                    .overhead = -1,
+                                    .message = -1,
+                                    .look = -1,
+                                    .seed = 1,
+                                    .policy_seconds = duite_options_default().policy_seconds};
+}
+
 int predict_check(const struct trace_run *run, const struct predict_cluster *c)
 {
     enum { MAX_WORKERS = 1 << 24 };

@@ -33,6 +33,10 @@ struct predict_cluster {
     double policy_seconds; /* a policy that is not built in is named after that; 0: never */
 };
 
+/* One that says nothing but the network card (10 Gbit/s), the scheduler steal and the seed 1: all
+ * else is as it was seen, or not there. Hosts, cores and latency are the caller's to fill in. */
+struct predict_cluster predict_cluster_default(void);
+
 /* What holds up the last task, and all: seconds along the chain of causes that ends with it. */
 enum predict_limit {
     PREDICT_WORK,      /* tasks that waited for a worker */

@@ -73,6 +73,8 @@ struct cg_needed {
 };
 enum { CG_NEEDED = 64 };
 
+enum { CG_ANY_GUESS = 32 }; /* for cg_search, where nothing is known of a large state */
+
 /* A solver whose error after so many iterations is found by a solve: 0, or what serve_fail returns.
  */
 struct cg_solver {
@@ -83,7 +85,6 @@ struct cg_solver {
  * a hundredth. guess: about how many that may be; 0: counts are doubled, then halved, so versions
  * of a solver are compared by the same ones. The error falls from 1. 0, or what serve_fail returns.
  */
-enum { CG_ANY_GUESS = 32 };
 int cg_search(const struct cg_solver *solver, double wanted, uint32_t guess, uint32_t *needed);
 
 struct cg_session {

@@ -11,18 +11,17 @@
 /* ---- States ---- */
 
 /* The names of all states of "cg"; of those of them that stand for what simulations meet; of what
- * "scale" cuts into small blocks: those of "cg", and cloth in contact; of cloth in contact with the
- * floor, and with itself; of its large ones, whose coarse space has many patches; of those of
- * 1,000,000 vertices. Each list is ended by NULL. */
+ * "scale" cuts into small blocks: those of "cg", and cloth in contact. Then those of one motion:
+ * "landed", cloth in contact with the floor; "folded", with itself; "large", whose coarse space has
+ * many patches; "million", of 1,000,000 vertices. Each list is ended by NULL. */
 const char *const *states_all(void);
 const char *const *states_met(void);
 const char *const *states_small(void);
-const char *const *states_landed(void);
-const char *const *states_folded(void);
-const char *const *states_large(void);
-const char *const *states_million(void);
+const char *const *states_of(const char *motion);
 /* Why a state cannot be made here, or NULL. */
 const char *states_missing(const char *name);
+
+enum { STATES_MOTIONS = 11 }; /* as many motions as there are, in states.c */
 
 /* What a state is made of, all owned by whom it is given to. */
 struct states_plan {

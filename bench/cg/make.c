@@ -1,5 +1,5 @@
-/* Making a state: its motion, unless the last state had the same one; the system of one step as the
- * cloth hands it over, of its whole length; the answers by plain loops. */
+/* Making a state: its motion, unless a state before it had the same one; the system of one step as
+ * the cloth hands it over, of its whole length; the answers by plain loops. */
 #include "bench/cg/cg.h"
 
 #include "cloth/mesh/blocks.h"
@@ -10,11 +10,12 @@
 #include <string.h>
 #include <xxhash.h>
 
-/* Of the motion that ran last. */
-static struct {
-    const char *name; /* NULL: none */
-    struct solve_system after;
-} moved;
+/* The motions that ran. States may come in any order, so the end of each is kept: a
+ * few MB each. */
+static struct end {
+    const char *motion; /* NULL: this place is free */
+    struct solve_system at;
+} ended[STATES_MOTIONS];
 
 static int take(void *context, const struct solve_system *system, struct cloth_error *error)
 {
@@ -51,22 +52,36 @@ static int take_end(void *context, const struct solve_system *system, struct clo
     return CLOTH_OK;
 }
 
+/* A place of its own, or a free one. */
+static struct end *find_end(const char *motion)
+{
+    struct end *end = ended;
+    while (end->motion && strcmp(end->motion, motion) != 0)
+        end++;
+    return end;
+}
+
+static int run_motion(struct states_plan *plan, struct serve_request *request, struct end *end)
+{
+    const struct flow_output output = {.context = &end->at, .system = take_end};
+    const double steps = plan->motion.end / plan->motion.h;
+    fprintf(stderr, "duite-bench: running the motion %s: %.0f steps\n", plan->moved, steps);
+    int code = states_wave(&plan->motion);
+    if (!code)
+        code = cg_run(&plan->motion, request, &output, NULL, NULL);
+    if (!code)
+        end->motion = plan->moved;
+    return code;
+}
+
 /* The model of the step starts where its motion ends. */
 static int move(struct states_plan *plan, struct serve_request *request)
 {
-    const struct flow_output output = {.context = &moved.after, .system = take_end};
     if (!plan->moves)
         return states_wave(&plan->model);
-    if (!moved.name || strcmp(moved.name, plan->moved) != 0) {
-        moved.name = NULL;
-        int code = states_wave(&plan->motion);
-        if (!code)
-            code = cg_run(&plan->motion, request, &output, NULL, NULL);
-        if (code)
-            return code;
-        moved.name = plan->moved;
-    }
-    return states_start(&plan->model, moved.after.x, moved.after.v);
+    struct end *end = find_end(plan->moved);
+    const int code = end->motion ? 0 : run_motion(plan, request, end);
+    return code ? code : states_start(&plan->model, end->at.x, end->at.v);
 }
 
 int cg_make_system(struct states_plan *plan, struct serve_request *request,

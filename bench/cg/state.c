@@ -70,11 +70,16 @@ static int read_arrays(struct state *state, const struct head *head, FILE *file)
     return 0;
 }
 
-static int check_step(const char *name, const char *path, double h)
+double state_step(const char *name)
 {
     const char *told = strstr(name, "_h");
-    const double ms = told && isdigit((unsigned char)told[2]) ? strtod(told + 2, NULL) : 1e3 * h;
-    return fabs(1e3 * h - ms) <= 1e-9 * ms
+    return told && isdigit((unsigned char)told[2]) ? strtod(told + 2, NULL) : 0;
+}
+
+static int check_step(const char *name, const char *path, double h)
+{
+    const double ms = state_step(name);
+    return !(ms > 0) || fabs(1e3 * h - ms) <= 1e-9 * ms
                ? 0
                : serve_fail("%s has the system of a step of %g ms, not of one of %g ms", path,
                             1e3 * h, ms);

@@ -19,8 +19,10 @@ struct state {
 /* The folder of the states is named by this variable of the environment. */
 #define STATE_FOLDER "DUITE_BENCH_STATES"
 
-/* NAME.state in the folder; 0, or what serve_fail returns. A name with _hN is of a step of N ms: a
- * file with the system of another step is refused. */
+/* The N of a name with _hN: the step in ms; 0: the name tells none. */
+double state_step(const char *name);
+/* NAME.state in the folder; 0, or what serve_fail returns. A file with the system of
+ * another step than its name tells is refused. */
 int state_read(struct state *state, const char *name);
 int state_write(const struct state *state);
 void state_free(struct state *state);

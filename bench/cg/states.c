@@ -1,5 +1,5 @@
 /* A state is a scene (states.yaml) with some of its values changed, moved for a time, and then the
- * system of one step. States of one motion differ in that step alone. */
+ * system of one step. States of one motion differ in that step alone; all of them stand with it. */
 #include "bench/cg/cg.h"
 
 #include "bench/measure.h"
@@ -18,118 +18,84 @@ enum { IRREGULAR_SIDE = 187, QUICK_SIDE = 16, QUICK_FOLDED_SIDE = 32 };
 #define FREE  "cloths[0].pins=[]"
 #define TOUCH "contact={mode: certified, self: on, thickness: 0.002, friction: 0.3}"
 
-#define HIGH "cloths[0].transform={translate: [0, 0.62, 0]}"
-#define ROD  "obstacles=[{capsule: {from: [-0.6, 0.6, 0.01], to: [0.6, 0.6, -0.01], radius: 0.005}}]"
+#define SIDE(n) "cloths[0].mesh.grid.nx=" #n, "cloths[0].mesh.grid.ny=" #n
+#define HIGH    "cloths[0].transform={translate: [0, 0.62, 0]}"
+#define ROD     "obstacles=[{capsule: {from: [-0.6, 0.6, 0.01], to: [0.6, 0.6, -0.01], radius: 0.005}}]"
 
 /* seconds: how long it moves, in steps of 8 ms; 0: not at all; quick: four of them, or whole. What
- * is folded hangs over a rod, and its halves have swung against each other. */
+ * is folded hangs over a rod, and its halves have swung against each other. count: iterations whose
+ * answers its states keep; 0: they are made without. A state's name tells its step, in ms (else 1
+ * ms), and whether there are bend springs. */
 static const struct motion {
     const char *name;
     double seconds;
+    uint32_t count;
     const char *sets[4];
+    const char *state[4];
 } MOTIONS[] = {
-    {"reference", 0, {0}},
-    {"large", 0, {"cloths[0].mesh.grid.nx=400", "cloths[0].mesh.grid.ny=400"}},
-    {"million", 0, {"cloths[0].mesh.grid.nx=1000", "cloths[0].mesh.grid.ny=1000"}},
-    {"hanging", 0.4, {0}},
-    {"falling", 0.08, {FREE, "cloths[0].transform.translate=[0, 3, 0]"}},
-    {"crumpled", 0.64, {FREE, PLACE}},
-    {"landed", 0.64, {FREE, PLACE, TOUCH}},
-    {"folded", 0.64, {FREE, HIGH, TOUCH, ROD}},
-    {"irregular", 0.16, {"cloths[0].transform={translate: [0, 0.5, 0]}"}},
+    {"sheet_150", 0, 400, {0}, {"sheet_150"}},
+    {"sheet_400", 0, 100, {SIDE(400)}, {"sheet_400"}},
+    {"hanging", 0.4, 50, {0}, {"hanging_h1", "hanging_h8_bend", "hanging_h20"}},
+    {"falling",
+     0.08,
+     50,
+     {FREE, "cloths[0].transform.translate=[0, 3, 0]"},
+     {"falling_h1_bend", "falling_h8", "falling_h20_bend"}},
+    {"crumpled", 0.64, 50, {FREE, PLACE}, {"crumpled_h1", "crumpled_h8_bend", "crumpled_h20"}},
+    {"irregular",
+     0.16,
+     50,
+     {"cloths[0].transform={translate: [0, 0.5, 0]}"},
+     {"irregular_h1_bend", "irregular_h8", "irregular_h20_bend"}},
     {"dress",
      0.16,
+     50,
      {"materials.cloth={density: 0.2, stretch: 2000, damping: {stiffness: 0.01}}",
       "cloths[0].pins=[{vertices: [0, 200]}]",
-      "cloths[0].transform={scale: 0.01, translate: [0, 5, 0]}"}},
+      "cloths[0].transform={scale: 0.01, translate: [0, 5, 0]}"},
+     {"dress_h1", "dress_h8_bend", "dress_h20"}},
+    {"landed", 0.64, 0, {FREE, PLACE, TOUCH}, {"landed_h1", "landed_h8_bend", "landed_h20"}},
+    {"folded", 0.64, 0, {FREE, HIGH, TOUCH, ROD}, {"folded_h1", "folded_h8_bend", "folded_h20"}},
+    {"large", 0, 0, {SIDE(400)}, {"large_h1", "large_h8", "large_h20"}},
+    {"million", 0, 0, {SIDE(1000)}, {"million_h1", "million_h8", "million_h20"}},
 };
-enum { N_MOTIONS = sizeof MOTIONS / sizeof *MOTIONS };
+enum { MOST_STATES = 3 * STATES_MOTIONS };
+_Static_assert(sizeof MOTIONS == STATES_MOTIONS * sizeof *MOTIONS, "what cg.h says");
 
-/* The step: its h in ms, and whether there are bend springs. count: iterations. */
-static const struct spec {
-    const char *name, *motion;
-    int h;
-    bool bend;
-    uint32_t count;
-} SPECS[] = {
-    {"sheet_150", "reference", 1, false, 400},   {"sheet_400", "large", 1, false, 100},
-    {"hanging_h1", "hanging", 1, false, 50},     {"hanging_h8_bend", "hanging", 8, true, 50},
-    {"hanging_h20", "hanging", 20, false, 50},   {"falling_h1_bend", "falling", 1, true, 50},
-    {"falling_h8", "falling", 8, false, 50},     {"falling_h20_bend", "falling", 20, true, 50},
-    {"crumpled_h1", "crumpled", 1, false, 50},   {"crumpled_h8_bend", "crumpled", 8, true, 50},
-    {"crumpled_h20", "crumpled", 20, false, 50}, {"irregular_h1_bend", "irregular", 1, true, 50},
-    {"irregular_h8", "irregular", 8, false, 50}, {"irregular_h20_bend", "irregular", 20, true, 50},
-    {"dress_h1", "dress", 1, false, 50},         {"dress_h8_bend", "dress", 8, true, 50},
-    {"dress_h20", "dress", 20, false, 50},       {"landed_h1", "landed", 1, false, 0},
-    {"landed_h8_bend", "landed", 8, true, 0},    {"landed_h20", "landed", 20, false, 0},
-    {"folded_h1", "folded", 1, false, 0},        {"folded_h8_bend", "folded", 8, true, 0},
-    {"folded_h20", "folded", 20, false, 0},      {"large_h1", "large", 1, false, 0},
-    {"large_h8", "large", 8, false, 0},          {"large_h20", "large", 20, false, 0},
-    {"million_h1", "million", 1, false, 0},      {"million_h8", "million", 8, false, 0},
-    {"million_h20", "million", 20, false, 0},
-};
-enum {
-    N_SPECS = sizeof SPECS / sizeof *SPECS,
-    FIRST_MET = 2,
-    FIRST_LANDED = 17,
-    FIRST_FOLDED = 20,
-    FIRST_LARGE = 23,
-    FIRST_MILLION = 26
-};
-
-/* From one spec to before another. */
-static void list_names(int first, int end, const char **name)
+/* Those of the motions before this one. */
+static const char *const *list_before(const char *motion, const char **name)
 {
-    for (int i = first; i < end; i++)
-        *name++ = SPECS[i].name;
-    *name = NULL;
+    const char **next = name;
+    for (const struct motion *m = MOTIONS; strcmp(m->name, motion) != 0; m++)
+        for (int i = 0; m->state[i]; i++)
+            *next++ = m->state[i];
+    *next = NULL;
+    return name;
 }
 
 const char *const *states_all(void)
 {
-    static const char *name[N_SPECS + 1];
-    list_names(0, FIRST_LANDED, name);
-    return name;
+    static const char *name[MOST_STATES + 1];
+    return list_before("landed", name);
 }
 
 const char *const *states_small(void)
 {
-    static const char *name[N_SPECS + 1];
-    list_names(0, FIRST_LARGE, name);
-    return name;
+    static const char *name[MOST_STATES + 1];
+    return list_before("large", name);
 }
 
 const char *const *states_met(void)
 {
-    return states_all() + FIRST_MET;
+    return states_all() + 2; /* but the two sheets that stand still */
 }
 
-const char *const *states_landed(void)
+const char *const *states_of(const char *motion)
 {
-    static const char *name[N_SPECS + 1];
-    list_names(FIRST_LANDED, FIRST_FOLDED, name);
-    return name;
-}
-
-const char *const *states_folded(void)
-{
-    static const char *name[N_SPECS + 1];
-    list_names(FIRST_FOLDED, FIRST_LARGE, name);
-    return name;
-}
-
-const char *const *states_large(void)
-{
-    static const char *name[N_SPECS + 1];
-    list_names(FIRST_LARGE, FIRST_MILLION, name);
-    return name;
-}
-
-const char *const *states_million(void)
-{
-    static const char *name[N_SPECS + 1];
-    list_names(FIRST_MILLION, N_SPECS, name);
-    return name;
+    const struct motion *m = MOTIONS;
+    while (strcmp(m->name, motion) != 0)
+        m++;
+    return m->state;
 }
 
 const char *states_missing(const char *name)
@@ -227,26 +193,31 @@ static int read_model(struct model *model, const struct motion *motion, bool qui
     return code;
 }
 
+/* NULL: there is no such state. */
+static const struct motion *motion_of(const char *state)
+{
+    for (const struct motion *m = MOTIONS; m < MOTIONS + STATES_MOTIONS; m++)
+        for (int i = 0; m->state[i]; i++)
+            if (!strcmp(m->state[i], state))
+                return m;
+    return NULL;
+}
+
 int states_plan_make(struct states_plan *plan, const char *name, bool quick)
 {
     enum { QUICK_COUNT = 20 };
     const double h = 0.008;
-    const struct spec *spec = SPECS;
-    const struct motion *motion = MOTIONS;
-    while (spec < SPECS + N_SPECS && strcmp(spec->name, name) != 0)
-        spec++;
-    if (spec == SPECS + N_SPECS)
+    const double own_h = 0.001 * fmax(state_step(name), 1);
+    const struct motion *motion = motion_of(name);
+    if (!motion)
         return serve_fail("there is no state %s", name);
-    while (strcmp(motion->name, spec->motion) != 0)
-        motion++;
     *plan = (struct states_plan){.moved = motion->name,
-                                 .count = quick ? QUICK_COUNT : spec->count,
+                                 .count = quick ? QUICK_COUNT : motion->count,
                                  .moves = motion->seconds > 0,
-                                 .solved_here = spec >= SPECS + FIRST_LANDED};
+                                 .solved_here = !motion->count};
     const bool few = !plan->moves || (quick && !is_folded(motion));
     const double seconds = few ? 4 * h : motion->seconds;
-    int code =
-        read_model(&plan->model, motion, quick, 0.001 * spec->h, 0.001 * spec->h, spec->bend);
+    int code = read_model(&plan->model, motion, quick, own_h, own_h, strstr(name, "_bend"));
     if (!code)
         code = read_model(&plan->motion, motion, quick, h, seconds, true);
     if (code)

@@ -34,12 +34,13 @@ static void plan_worst(struct measure *measure, const char *kind, const char *ri
     metric->n = n;
 }
 
-/* States that are named after `kind`. One patch a block in one factor is what such states had
+/* States of the motion `kind`. One patch a block in one factor is what such states had
  * before there were groups. */
 static void plan_sheet(struct measure *measure, const struct bench_options *options,
-                       const char *kind, const char *const *name)
+                       const char *kind)
 {
     const unsigned grain = options->quick ? QUICK_GRAIN : 0;
+    const char *const *name = states_of(kind);
     size_t n;
     const struct measure_series *groups = iterations(measure, options, name, "", grain, &n);
     const struct measure_series *exact = iterations(measure, options, name, "exact", grain, &n);
@@ -56,12 +57,12 @@ static void plan_sheet(struct measure *measure, const struct bench_options *opti
 
 static void plan_large(struct measure *measure, const struct bench_options *options)
 {
-    plan_sheet(measure, options, "large", states_large());
+    plan_sheet(measure, options, "large");
 }
 
 static void plan_million(struct measure *measure, const struct bench_options *options)
 {
-    plan_sheet(measure, options, "million", states_million());
+    plan_sheet(measure, options, "million");
 }
 
 /* How many springs of contact the systems have. */
@@ -92,8 +93,8 @@ static void plan_small(struct measure *measure, const struct bench_options *opti
         measure_value(measure, one + i++, 1, "iterations", "iterations_%s_one_factor", *name);
     }
     plan_worst(measure, "small", "one_factor", groups, one, n);
-    plan_touch(measure, options, grain, states_landed(), false);
-    plan_touch(measure, options, grain, states_folded(), true);
+    plan_touch(measure, options, grain, states_of("landed"), false);
+    plan_touch(measure, options, grain, states_of("folded"), true);
 }
 
 /* Makes the state if it is not there: only these cases need states. */

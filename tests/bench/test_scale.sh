@@ -1,11 +1,12 @@
 #!/bin/sh
-# duite-bench scale runs in tiny sizes, and has its figures; counts of messages are exact, where eight hosts can be played.
+# duite-bench scale runs in tiny sizes, and has its figures; counts of messages are exact, where eight hosts can be played. From nothing, it
+# runs each motion once.
 . "${srcdir:-.}/tests/support/tap.sh"
 skip_unless bench/duite-bench
 plan_later
 
 rows() { # each metric with a number, or why there are no hosts
-    limited bench/duite-bench scale --quick --repeats 1 > "$scratch/said" 2>&1 || { cat "$scratch/said"; return 1; }
+    limited bench/duite-bench scale --quick --repeats 1 --states "$scratch/states" > "$scratch/said" 2>&1 || { cat "$scratch/said"; return 1; }
     cat "$scratch/said"
     for metric in messages_per_iteration_r8 wait_messages_r8 prediction_error_r2 prediction_error_r2_from_r1 scaling_1x16_tcp scaling_16x16_tcp \
         scaling_1x16_fast scaling_16x16_fast coarse_path_share iterations_large_vs_exact iterations_large_vs_one_patch \
@@ -25,6 +26,12 @@ folded() { # cloth that touches itself has springs there in its system
     done
 }
 
+motions() { # in any order of the states; the dress may be missing
+    sed -n 's/^duite-bench: running the motion \([a-z]*\): .*/\1/p' "$scratch/said" | sort > "$scratch/motions"
+    grep -v dress "$scratch/motions" | tr '\n' ' ' > "$scratch/ran" && cat "$scratch/ran" &&
+        test "$(cat "$scratch/ran")" = "crumpled falling folded hanging irregular landed " && test "$(grep -c dress "$scratch/motions")" -le 1
+}
+
 none_left() { # the traces and reports of the rows above
     ls -A "$scratch/temporary" > "$scratch/left" && cat "$scratch/left" && test ! -s "$scratch/left"
 }
@@ -33,4 +40,5 @@ export TMPDIR="$scratch/temporary"
 ok "messages and predictions are measured" rows
 ok "a wait sends few messages" waits
 ok "cloth touches itself" folded
+ok "each motion runs once" motions
 ok "traces and reports are removed at the end" none_left

@@ -1,10 +1,11 @@
 /* The states of the bench "cg": a system is that of one whole step, also where the cloth would
- * rather take two of half the length, and a file with the system of another step is refused. A
- * count of iterations is found in few solves. */
+ * rather take two of half the length, and a file with the system of another step is refused. States
+ * of one motion start alike. A count of iterations is found in few solves. */
 #include "bench/cg/cg.h"
 #include "tests/support/unit.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -38,10 +39,14 @@ static void path_of(const char *name, char *path, size_t size)
 
 static void teardown(void)
 {
+    static const char *const left[] = {"hanging_h20.state", "hanging_h1.state", "crumpled_h1.state",
+                                       "hanging_h8_bend.state"};
     char path[300];
-    path_of("hanging_h20.state", path, sizeof path);
-    unlink(path);
-    rmdir(getenv(STATE_FOLDER));
+    for (int i = 0; i < 4; i++) {
+        path_of(left[i], path, sizeof path);
+        unlink(path);
+    }
+    ck_assert_int_eq(rmdir(getenv(STATE_FOLDER)), 0);
 }
 
 /* The cloth's own step, which nobody keeps whole, is halved: the case is one. */
@@ -98,6 +103,38 @@ START_TEST(another_step_is_refused)
     ck_assert_ptr_nonnull(strstr(serve_failure(), "hanging_h20.state has the system of a step of 5 "
                                                   "ms, not of one of 20 ms"));
     state_free(&state);
+}
+END_TEST
+
+static void make(struct state *state, const char *name)
+{
+    char text[100];
+    double vertices;
+    snprintf(text, sizeof text, "make state=%s quick=1 threads=2 scheduler=steal", name);
+    struct serve_request wanted = {.text = text};
+    ck_assert_msg(!cg_make_state(NULL, &wanted, &vertices), "%s", serve_failure());
+    ck_assert_msg(!state_read(state, name), "%s", serve_failure());
+}
+
+static bool start_alike(const struct state *a, const struct state *b)
+{
+    const size_t bytes = 3 * (size_t)a->system.n * sizeof(double);
+    ck_assert_uint_eq(a->system.n, b->system.n);
+    return !memcmp(a->system.x, b->system.x, bytes) && !memcmp(a->system.v, b->system.v, bytes);
+}
+
+/* Where a motion ended is not forgotten when another one runs. */
+START_TEST(states_of_a_motion_start_alike)
+{
+    struct state first, other, second;
+    make(&first, "hanging_h1");
+    make(&other, "crumpled_h1");
+    make(&second, "hanging_h8_bend");
+    ck_assert(start_alike(&first, &second));
+    ck_assert(!start_alike(&first, &other));
+    state_free(&first);
+    state_free(&other);
+    state_free(&second);
 }
 END_TEST
 
@@ -163,6 +200,7 @@ int main(void)
     tcase_add_test(all, the_step_is_whole);
     tcase_add_test(all, a_step_that_fails_is_told);
     tcase_add_test(all, another_step_is_refused);
+    tcase_add_test(all, states_of_a_motion_start_alike);
     tcase_add_test(all, the_least_count_is_found);
     tcase_add_test(all, a_good_guess_saves_solves);
     suite_add_tcase(suite, all);

@@ -19,7 +19,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-enum { MOST_RANKS = 64, START_SECONDS = 60, ANSWER_SECONDS = 1800, END_SECONDS = 20 };
+/* An answer may take the exact solution of a million vertices, on a machine that others use. */
+enum { MOST_RANKS = 64, START_SECONDS = 60, ANSWER_SECONDS = 4 * 3600, END_SECONDS = 20 };
 
 struct rank {
     FILE *answers;

@@ -5,9 +5,8 @@
 #include "runtime/task/call.h"
 #include "runtime/workers/internal.h"
 
-/* Tasks between two looks at the clock. What an affinity needs, times BRIEF, is the most that a
- * task of such a batch takes: so a batch delays nobody who waits by a millisecond. */
-enum { BATCH = 16, BRIEF = 5 };
+/* Tasks between two looks at the clock. */
+enum { BATCH = 16 };
 
 /* Tasks of the queue, before the worker looks whether what it waits for is there. */
 enum { IN_TURN = 16 };
@@ -56,9 +55,8 @@ static inline struct task *bodies_take(struct worker *worker, unsigned in_turn)
 struct task *work_run_bodies(struct worker *worker, struct task *task, unsigned *length)
 {
     const uint64_t outer = worker->within, begin = base_ticks();
-    struct work_batch batch = {.start = begin,
-                               .limit = worker->pool->affinity_ticks * BRIEF,
-                               .brief = &worker->brief_bodies};
+    struct work_batch batch = {
+        .start = begin, .limit = worker->pool->brief_ticks, .brief = &worker->brief_bodies};
     struct task_frame frame;
     task_frame_init(&frame, worker->pool->setup.graph, worker, &worker->call);
     worker->within = 0;

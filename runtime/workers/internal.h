@@ -97,7 +97,8 @@ struct work_pool {
     struct worker *worker; /* setup.threads of them */
     unsigned char *states;
     double tick; /* seconds */
-    uint64_t poll_ticks, spin_ticks, yield_ticks, await_ticks, affinity_ticks;
+    uint64_t poll_ticks, spin_ticks, yield_ticks, await_ticks, brief_ticks;
+    uint64_t affinity_ticks; /* of what leaves one; on one worker nothing does, if by_affinity */
     bool by_affinity; /* the scheduler's `place` and `chain` are those of sched.h by affinity */
     bool plain;       /* there is neither another rank nor a trace: see bodies.c */
     bool plain_nodes; /* both: see nodes.c */
@@ -352,6 +353,13 @@ static inline unsigned work_victim(struct worker *worker, unsigned attempt)
     const unsigned victim = worker->pool->setup.scheduler->victim(worker->state, attempt);
     base_mark_end(worker->mark);
     return victim;
+}
+
+/* Whether a scheduler that goes by affinity keeps the task with the worker that made it ready. */
+static inline bool work_keeps(const struct worker *worker, const struct task *task)
+{
+    const uint32_t affinity = plan_task_affinity(task);
+    return !affinity || affinity == worker->index + 1;
 }
 
 /* Notes the affinity that a task leaves, which took so many ticks. */

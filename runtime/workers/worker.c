@@ -62,11 +62,10 @@ static bool ready_runs_inline(const struct worker *worker, const duite_ready *re
     return is_inline;
 }
 
-/* Whether it need not be asked: a scheduler that goes by affinity alone keeps a task without any
- * with the worker that made it ready. */
+/* Whether it need not be asked. */
 static bool ready_stays(const struct worker *worker, const struct task *task)
 {
-    return worker->pool->by_affinity && !plan_task_affinity(task);
+    return worker->pool->by_affinity && work_keeps(worker, task);
 }
 
 /* Whether the task may run on top of the body that waits, if one does. */

@@ -101,13 +101,40 @@ __attribute__((always_inline)) static inline bool plan_node_run_body(struct task
     return runs;
 }
 
-typedef void plan_ready(struct task_graph *graph, struct worker *worker, struct task *task);
+/* A worker that counts down a node for which one more is missing may await it: then whoever is that
+ * leaves the node alone, and the worker runs it once nothing is missing, or gives it up before.
+ * Meanwhile the replay cannot end. */
+#define PLAN_AWAITED (UINT32_C(1) << 31) /* in `pending` */
 
-/* A node is over: counts its successors down; `ready` gets each for which it was the last. */
-__attribute__((always_inline)) static inline void plan_node_count_down(struct task_graph *graph,
-                                                                       struct worker *worker,
-                                                                       struct task *task,
-                                                                       plan_ready *ready)
+static inline bool plan_node_await(struct task *task)
+{
+    uint32_t pending = 2;
+    return atomic_compare_exchange_strong_explicit(&task->pending, &pending, PLAN_AWAITED + 1,
+                                                   memory_order_acq_rel, memory_order_relaxed);
+}
+
+/* Whether nothing is missing any more. */
+static inline bool plan_node_came(struct task *task)
+{
+    return atomic_load_explicit(&task->pending, memory_order_acquire) == PLAN_AWAITED;
+}
+
+/* False: nothing is missing, and the node is the worker's. */
+static inline bool plan_node_give_up(struct task *task)
+{
+    uint32_t pending = PLAN_AWAITED + 1;
+    return atomic_compare_exchange_strong_explicit(&task->pending, &pending, 1,
+                                                   memory_order_acq_rel, memory_order_acquire);
+}
+
+typedef void plan_ready(struct task_graph *graph, struct worker *worker, struct task *task);
+typedef bool plan_awaits(struct worker *worker, struct task *task);
+
+/* A node is over: counts its successors down; `ready` gets each for which it was the last. `awaits`
+ * (or NULL) is asked of each for which one more is missing, and says whether it is awaited now. */
+__attribute__((always_inline)) static inline void
+plan_node_count_down(struct task_graph *graph, struct worker *worker, struct task *task,
+                     plan_ready *ready, plan_awaits *awaits)
 {
     struct plan_node *node = task->node;
     struct plan *plan = node->plan;
@@ -125,9 +152,12 @@ __attribute__((always_inline)) static inline void plan_node_count_down(struct ta
     task->number += plan->n_calls;
     for (next += last ? node->n_cyclic : 0; next < stop; next++) {
         _Atomic uint32_t *pending = &(*next)->pending;
+        const uint32_t before = atomic_load_explicit(pending, memory_order_acquire);
+        if (awaits && before == 2 && awaits(worker, *next))
+            continue;
         /* The last one needs no atomic subtraction: nobody else has the counter then. */
-        const bool was_last = atomic_load_explicit(pending, memory_order_acquire) == 1 ||
-                              atomic_fetch_sub_explicit(pending, 1, memory_order_acq_rel) == 1;
+        const bool was_last =
+            before == 1 || atomic_fetch_sub_explicit(pending, 1, memory_order_acq_rel) == 1;
         if (was_last && plan_node_may_run(plan, *next))
             ready(graph, worker, *next);
     }

@@ -1,10 +1,11 @@
 /* Running a plan. From the moment its counter is 0 until its last successor is counted down, a node
- * belongs to the worker that runs it. Before the first of these decrements its own counter goes
- * back to `steady`, so that it counts for its next round: no node that it waits for there has run
- * yet (see edges.c). A replay is over when all sinks of its last round are. Each other node of any
- * round comes before one of these, and a node that still has successors to count down keeps one of
- * them waiting. So after its last decrement, of a successor or of the sinks, a worker must not
- * touch the plan: it may be freed.
+ * belongs to the worker that runs it; one that a worker awaits (node.h) does from the moment when
+ * nothing is missing. Before the first of these decrements its own counter goes back to `steady`,
+ * so that it counts for its next round: no node that it waits for there has run yet (see edges.c).
+ * A replay is over when all sinks of its last round are. Each other node of any round comes before
+ * one of these, and a node that still has successors to count down keeps one of them waiting. So
+ * after its last decrement, of a successor or of the sinks, a worker must not touch the plan: it
+ * may be freed.
  *
  * Poison is kept by place, under the same dependences as the bytes. Workers look at it only once
  * something failed: what sees the effects of a failure sees `tainted`. */
@@ -306,5 +307,5 @@ bool plan_node_run(struct task_graph *graph, struct worker *worker, struct task 
 
 void plan_node_finish(struct task_graph *graph, struct worker *worker, struct task *task)
 {
-    plan_node_count_down(graph, worker, task, plan_node_ready);
+    plan_node_count_down(graph, worker, task, plan_node_ready, NULL);
 }

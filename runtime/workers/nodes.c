@@ -1,7 +1,15 @@
 /* Nodes of a replay, one after another, as work_run runs tasks: each makes others ready, of which
  * the first is the next. The counters of tasks are exact after each of them. The clock is read
  * after each node, until BATCH in turn are so short that all of them together would leave no
- * affinity; then once for BATCH, until these take longer. */
+ * affinity; then once for BATCH, until these take longer.
+ *
+ * Where two workers need each other's result at each step, the one that is done first has nothing
+ * left, and the other one makes both next nodes ready. To hand one over by a queue moves six cache
+ * lines in turn from core to core. So the first one awaits a node that lacks one more predecessor:
+ * it looks at the counter of the node alone, and the other one leaves that node to it. Nobody else
+ * can run the node meanwhile. So the worker waits no longer than a node may take that leaves no
+ * affinity, not while any queue has a task, and not on a core that other programs use. A wait that
+ * was vain costs it twice as many times without one as the last. */
 #include "runtime/base/clock.h"
 #include "runtime/plan/node.h"
 #include "runtime/workers/internal.h"
@@ -11,11 +19,95 @@ enum { BATCH = 4 };
 /* The first node that becomes ready is the next one, if the scheduler need not be asked. */
 static inline void nodes_ready(struct task_graph *graph, struct worker *worker, struct task *task)
 {
-    if (task->type == TASK_NODE && worker->may_chain && !worker->next && !plan_task_affinity(task))
+    if (task->type == TASK_NODE && worker->may_chain && !worker->next && work_keeps(worker, task))
         worker->next = task;
     else
         plan_node_ready(graph, worker, task);
 }
+
+/* ---- Awaiting a node ---- */
+
+/* Up to 255. */
+static void hopes_vain(struct work_hopes *hopes)
+{
+    hopes->on = false;
+    hopes->pass = hopes->vain = (uint8_t)(2 * hopes->vain + 1);
+}
+
+/* No node is left for the worker: it may await one after the next. */
+static void hopes_dry(struct worker *worker)
+{
+    struct work_hopes *hopes = &worker->hopes;
+    if (hopes->pass)
+        hopes->pass--;
+    else
+        hopes->on = worker->pool->setup.threads > 1 && worker->pool->spin_ticks &&
+                    worker->looked >= worker->crowded_until;
+}
+
+static inline bool nodes_await(struct worker *worker, struct task *task)
+{
+    struct work_hopes *hopes = &worker->hopes;
+    if (hopes->node || worker->next || !work_keeps(worker, task) || !plan_node_await(task))
+        return false;
+    hopes->node = task;
+    return true;
+}
+
+/* Whether any worker has tasks to run. */
+static bool nodes_elsewhere(const struct work_pool *pool)
+{
+    bool some = !work_queue_is_empty(&pool->shared);
+    for (unsigned i = 0; i < pool->setup.threads && !some; i++)
+        some = !work_queue_is_empty(&pool->worker[i].queue);
+    return some;
+}
+
+/* Waits for the node, as long as there is nothing else to do. Returns whether it came. */
+static bool hopes_wait(struct worker *worker, struct task *task, struct work_batch *batch)
+{
+    const struct work_pool *pool = worker->pool;
+    if (plan_node_came(task))
+        return true;
+    if (batch->tasks)
+        work_batch_ends(worker, batch);
+    uint64_t now = batch->start, since = now;
+    bool came = false, crowded = false;
+    worker->looked = now;
+    while (!(came = plan_node_came(task)) && !crowded && now - since < pool->affinity_ticks &&
+           !nodes_elsewhere(pool)) {
+        work_pause_core();
+        now = base_ticks();
+        crowded = work_is_crowded(worker, now);
+    }
+    work_bump(&worker->counts.idle, now - since);
+    batch->start = now;
+    return came;
+}
+
+/* As plan_node_count_down. If none of the successors is the next node, the worker awaits one. */
+__attribute__((noinline)) static void
+nodes_count_down_hoping(struct worker *worker, struct task *task, struct work_batch *batch)
+{
+    struct task_graph *graph = worker->pool->setup.graph;
+    struct work_hopes *hopes = &worker->hopes;
+    plan_node_count_down(graph, worker, task, nodes_ready, nodes_await);
+    struct task *node = hopes->node;
+    if (!node)
+        return;
+    hopes->node = NULL;
+    if (!worker->next && hopes_wait(worker, node, batch)) {
+        hopes->vain = 0;
+    } else {
+        hopes_vain(hopes);
+        if (plan_node_give_up(node))
+            return;
+    }
+    if (plan_node_may_run(node->node->plan, node))
+        nodes_ready(graph, worker, node);
+}
+
+/* ---- One after another ---- */
 
 /* Runs a node; what it leaves becomes ready. */
 static inline void nodes_run(struct worker *worker, struct task_frame *frame, struct task *task,
@@ -34,7 +126,10 @@ static inline void nodes_run(struct worker *worker, struct task_frame *frame, st
     }
     worker->finishing = true;
     worker->may_chain = work_goes_on(worker, length);
-    plan_node_count_down(frame->body.graph, worker, task, nodes_ready);
+    if (worker->hopes.on && worker->may_chain && work_queue_is_empty(&worker->queue))
+        nodes_count_down_hoping(worker, task, batch);
+    else
+        plan_node_count_down(frame->body.graph, worker, task, nodes_ready, NULL);
     worker->finishing = false;
     worker->may_chain = false;
 }
@@ -58,6 +153,8 @@ struct task *work_run_nodes(struct worker *worker, struct task *task, unsigned *
     }
     if (batch.tasks)
         work_batch_ends(worker, &batch);
+    if (!task)
+        hopes_dry(worker);
     worker->within = outer + (batch.start - begin);
     return task;
 }

@@ -3,7 +3,7 @@ MODEL_EXPLORER = tests/model/explore.c tests/model/explore.h tests/model/machine
     tests/model/operations.c tests/model/search.c tests/model/search.h tests/model/atomics.h
 MODEL_RUNTIME = $(MODEL_EXPLORER) tests/model/runtime.h
 MODEL_TESTS = tests/model/test_explorer tests/model/test_deque tests/model/test_queue tests/model/test_sleep \
-    tests/model/test_sleep_queues tests/model/test_handover tests/model/test_version tests/model/test_gate
+    tests/model/test_sleep_queues tests/model/test_handover tests/model/test_version tests/model/test_gate tests/model/test_await
 check_PROGRAMS += $(MODEL_TESTS)
 tests_model_test_explorer_SOURCES = tests/model/test_explorer.c $(MODEL_EXPLORER)
 tests_model_test_deque_SOURCES = tests/model/test_deque.c $(MODEL_RUNTIME)
@@ -13,6 +13,7 @@ tests_model_test_sleep_queues_SOURCES = $(tests_model_test_sleep_SOURCES)
 tests_model_test_handover_SOURCES = tests/model/test_handover.c $(MODEL_RUNTIME)
 tests_model_test_version_SOURCES = tests/model/test_version.c $(MODEL_RUNTIME)
 tests_model_test_gate_SOURCES = tests/model/test_gate.c $(MODEL_RUNTIME)
+tests_model_test_await_SOURCES = tests/model/test_await.c $(MODEL_RUNTIME)
 tests_model_test_sleep_queues_CPPFLAGS = $(AM_CPPFLAGS) -DREAL_QUEUES
 tests_model_test_deque_LDADD = libduite_core.la
 tests_model_test_queue_LDADD = libduite_core.la
@@ -21,6 +22,7 @@ tests_model_test_sleep_queues_LDADD = libduite_core.la
 tests_model_test_handover_LDADD = libduite_core.la
 tests_model_test_version_LDADD = libduite_core.la
 tests_model_test_gate_LDADD = libduite_core.la
+tests_model_test_await_LDADD = libduite_core.la
 TESTS += $(MODEL_TESTS)
 
 dist_check_SCRIPTS += tests/model/test_long.sh

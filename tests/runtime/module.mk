@@ -203,7 +203,8 @@ tests_runtime_test_predict_rounds_LDADD = libduite_predict.la $(DUITE_TEST_LIBS)
 tests_runtime_test_graph_print_SOURCES = tests/runtime/test_graph_print.c
 tests_runtime_test_graph_print_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_graphs_change_LDADD = $(DUITE_TEST_LIBS)
-PASSES_TESTS = tests/runtime/test_passes tests/runtime/test_passes_random tests/runtime/test_emit tests/runtime/test_graph_sums
+PASSES_TESTS = tests/runtime/test_passes tests/runtime/test_passes_random tests/runtime/test_emit tests/runtime/test_graph_sums \
+    tests/runtime/test_lines
 check_PROGRAMS += $(PASSES_TESTS)
 TESTS += $(PASSES_TESTS)
 tests_runtime_test_passes_SOURCES = tests/runtime/test_passes.c tests/runtime/rounds.c tests/runtime/rounds.h
@@ -215,6 +216,8 @@ tests_runtime_test_emit_SOURCES = tests/runtime/test_emit.c
 tests_runtime_test_emit_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_graph_sums_SOURCES = tests/runtime/test_graph_sums.c
 tests_runtime_test_graph_sums_LDADD = $(DUITE_TEST_LIBS)
+tests_runtime_test_lines_SOURCES = tests/runtime/test_lines.c
+tests_runtime_test_lines_LDADD = $(DUITE_TEST_LIBS)
 endif
 
 check_PROGRAMS += tests/runtime/test_containers tests/runtime/test_place tests/runtime/test_reduce

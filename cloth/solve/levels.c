@@ -266,14 +266,24 @@ void solve_level_couple(const struct solve_level *level, uint32_t node, const do
     }
 }
 
+static void solve_scaled(const struct solve_pattern *pattern, const double *factor, double weight,
+                         double *x)
+{
+    solve_coarse_solve(pattern, factor, x);
+    for (size_t i = 0; i < SOLVE_COARSE_STRIDE * (size_t)pattern->n; i++)
+        x[i] *= weight;
+}
+
 void solve_level_solve(const struct solve_level *level, uint32_t group, const double *factor,
                        double *x)
 {
     const struct solve_cover *cover = level->cover + group;
-    const double weight = level->n_groups > 1 ? 0.25 : 1;
-    solve_coarse_solve(&cover->pattern, factor, x);
-    for (size_t i = 0; i < SOLVE_COARSE_STRIDE * (size_t)cover->n; i++)
-        x[i] *= weight;
+    solve_scaled(&cover->pattern, factor, level->n_groups > 1 ? 0.5 : 1, x);
+}
+
+void solve_level_solve_top(const struct solve_pattern *pattern, const double *factor, double *x)
+{
+    solve_scaled(pattern, factor, 2, x);
 }
 
 void solve_level_restrict(const double lift[9], const double x[SOLVE_COARSE],

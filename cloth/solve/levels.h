@@ -8,16 +8,17 @@
  * nodes together to groups, which are the nodes of the level above. A group covers its nodes and
  * one layer more: those that they are joined with. In place of C^-1 there is
  *
- *     sum over groups g of w R_g' (R_g C R_g')^-1 R_g  +  Q (Q' C Q)^-1 Q'
+ *     sum over groups g of w R_g' (R_g C R_g')^-1 R_g  +  o Q (Q' C Q)^-1 Q'
  *
- * R_g takes what g covers, and w is 1/4; of one group alone it is 1. (Most nodes near a border are
- * covered twice or more, and motions of Q are in both terms. On a sheet of 160,000 vertices 1/5
- * takes 3 to 7 % more iterations, 3/10 takes 3 % fewer; 1/10 and 1/2 take more on smaller ones.) Q
- * has nine columns a group, motions that are affine on its nodes. This is additive Schwarz of two
- * levels (Dryja & Widlund 1987). The matrix Q' C Q of the groups is like C, so it may be solved in
- * the same way, by one more level. Each term is symmetric and semidefinite, so their sum with
- * another preconditioner remains positive definite. One group that covers all solves C itself. The
- * order of sums follows from the numbers of nodes and groups.
+ * R_g takes what g covers, and w is 1/2, since most nodes near a border are covered twice or more;
+ * of one group alone it is 1. Q has nine columns a group, motions that are affine on its nodes.
+ * This is additive Schwarz of two levels (Dryja & Widlund 1987). A motion that is smooth tears at
+ * the borders of groups when it becomes one of Q, so Q' C Q is too stiff for it, and o is 2 (Braess
+ * 1995, who found 1.8). docs/measuring.md has what other w and o take. The matrix Q' C Q of the
+ * groups is like C, so it may be solved in the same way, by one more level: then o is that of the
+ * topmost level alone. Each term is symmetric and semidefinite, so their sum with another
+ * preconditioner remains positive definite. One group that covers all solves C itself. The order of
+ * sums follows from the numbers of nodes and groups.
  *
  * Blocks of C and of Q' C Q lie alike: a node has its diagonal block, then one for each neighbour
  * with a higher number, ascending. That is the coupling of the node. */
@@ -68,6 +69,8 @@ void solve_level_couple(const struct solve_level *level, uint32_t node, const do
 /* x = w (R_g C R_g')^-1 x, by the factor of a group. */
 void solve_level_solve(const struct solve_level *level, uint32_t group, const double *factor,
                        double *x);
+/* x = o (Q' C Q)^-1 x, of the topmost level, by its factor. */
+void solve_level_solve_top(const struct solve_pattern *pattern, const double *factor, double *x);
 
 /* sum += Q' x of one node; x = Q x of one node. */
 void solve_level_restrict(const double lift[9], const double x[SOLVE_COARSE],

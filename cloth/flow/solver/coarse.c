@@ -336,7 +336,10 @@ double flow_coarse_motion(const struct flow *flow, const double *factor, const d
     for (uint32_t p = 0; p < flow->pattern.n; p++)
         memcpy(motion + solve_coarse_at(&flow->pattern, p), right_of(flow, part, p),
                SOLVE_COARSE * sizeof *motion);
-    solve_coarse_solve(&flow->pattern, factor, motion);
+    if (flow->n_levels)
+        solve_level_solve_top(&flow->pattern, factor, motion);
+    else
+        solve_coarse_solve(&flow->pattern, factor, motion);
     for (uint32_t p = 0; p < flow->pattern.n; p++) {
         const double *right = right_of(flow, part, p);
         const double *x = motion + solve_coarse_at(&flow->pattern, p);

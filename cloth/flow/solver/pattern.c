@@ -106,6 +106,8 @@ static bool join_patches(struct flow *flow)
 
 /* ---- Levels ---- */
 
+enum { MOST_ON_TOP = 100 };
+
 /* Writes the first blocks of runs of at most so many blocks, as METIS' bisections made them
  * (cloth/mesh/blocks.h): the lower half is the smaller one. So runs of more blocks are made of
  * whole runs of fewer. Returns the end. */
@@ -148,17 +150,26 @@ static int add_level(struct flow *flow, uint64_t most)
     return code;
 }
 
+/* How many of n nodes the groups above them have: few, which is more exact and takes less time, if
+ * the top has room for what that leaves. */
+static uint32_t nodes_of_groups(uint32_t n)
+{
+    uint32_t nodes = FLOW_MAX_NODES / 4;
+    while (nodes < FLOW_MAX_NODES && n > nodes * MOST_ON_TOP)
+        nodes *= 2;
+    return nodes;
+}
+
 /* As many levels as it takes until few nodes are on top; none if patches are few. */
 static int make_levels(struct flow *flow)
 {
-    enum { MOST_ON_TOP = 100 };
-    uint32_t most = MODEL_ONE_FACTOR;
+    uint32_t n = flow_levels_graph(flow).n, most = MODEL_ONE_FACTOR;
     uint64_t blocks = FLOW_MAX_NODES / flow->patches;
     int code = CLOTH_OK;
-    while (flow_levels_graph(flow).n > most && !flow->model->exact_coarse &&
-           flow->n_levels < FLOW_MAX_LEVELS && !code) {
+    while (n > most && !flow->model->exact_coarse && flow->n_levels < FLOW_MAX_LEVELS && !code) {
         code = add_level(flow, blocks);
-        blocks *= FLOW_MAX_NODES;
+        n = flow_levels_graph(flow).n;
+        blocks *= nodes_of_groups(n);
         most = MOST_ON_TOP;
     }
     return code;

@@ -77,8 +77,9 @@ static void make(uint32_t of_group)
         solve_level_make(&level, NODES, first, neighbour, NODES / of_group, start, &error), 0);
 }
 
-/* y += the sum over groups of what they solve. */
-static void add_groups(const double *x, double *y)
+/* y += the sum over groups of what they solve; top: as the topmost level solves for what they
+ * cover. */
+static void add_solved(const double *x, bool top, double *y)
 {
     for (uint32_t g = 0; g < level.n_groups; g++) {
         const struct solve_cover *cover = level.cover + g;
@@ -94,13 +95,21 @@ static void add_groups(const double *x, double *y)
                    SOLVE_COARSE * sizeof *z);
         }
         solve_coarse_factor(&cover->pattern, factor);
-        solve_level_solve(&level, g, factor, z);
+        if (top)
+            solve_level_solve_top(&cover->pattern, factor, z);
+        else
+            solve_level_solve(&level, g, factor, z);
         for (uint32_t i = 0; i < SOLVE_COARSE * cover->n; i++)
             y[SOLVE_COARSE * cover->node[i / SOLVE_COARSE] + i % SOLVE_COARSE] +=
                 z[solve_coarse_at(&cover->pattern, i / SOLVE_COARSE) + i % SOLVE_COARSE];
         free(factor);
         free(z);
     }
+}
+
+static void add_groups(const double *x, double *y)
+{
+    add_solved(x, false, y);
 }
 
 static double dot(const double *x, const double *y)
@@ -132,6 +141,25 @@ START_TEST(one_group_is_the_system_itself)
     add_groups(y, back);
     for (uint32_t i = 0; i < ALL; i++)
         ck_assert_double_eq_tol(back[i], x[i], 1e-5); /* T is in float */
+    solve_level_free(&level);
+}
+END_TEST
+
+START_TEST(the_top_counts_twice)
+{
+    static double x[ALL], once[ALL], twice[ALL];
+    srand(3);
+    join();
+    draw_matrix(NODES + 1);
+    make(NODES);
+    for (uint32_t i = 0; i < ALL; i++)
+        x[i] = draw();
+    memset(once, 0, sizeof once);
+    memset(twice, 0, sizeof twice);
+    add_solved(x, false, once);
+    add_solved(x, true, twice);
+    for (uint32_t i = 0; i < ALL; i++)
+        ck_assert_double_eq(twice[i], 2 * once[i]);
     solve_level_free(&level);
 }
 END_TEST
@@ -285,6 +313,7 @@ int main(void)
     Suite *suite = suite_create("levels");
     TCase *cases = tcase_create("levels");
     tcase_add_test(cases, one_group_is_the_system_itself);
+    tcase_add_test(cases, the_top_counts_twice);
     tcase_add_loop_test(cases, groups_are_symmetric_and_definite, 0, 3);
     tcase_add_test(cases, a_cover_has_one_layer_more);
     tcase_add_test(cases, groups_have_the_matrix_of_their_motions);

@@ -4,7 +4,6 @@
 
 #include "cloth/base/memory.h"
 
-#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -163,10 +162,11 @@ static int make_room(struct solve_level *level, struct cloth_error *error)
 
 int solve_level_make(struct solve_level *level, uint32_t n, const uint32_t *first,
                      const uint32_t *neighbour, uint32_t n_groups, const uint32_t *start,
-                     struct cloth_error *error)
+                     bool lowest, struct cloth_error *error)
 {
     *level =
         (struct solve_level){.n = n, .first = first, .neighbour = neighbour, .n_groups = n_groups};
+    level->weight = n_groups == 1 ? 1 : lowest ? 0.5 : 1.5;
     int code = make_room(level, error);
     if (code)
         return code;
@@ -278,7 +278,7 @@ void solve_level_solve(const struct solve_level *level, uint32_t group, const do
                        double *x)
 {
     const struct solve_cover *cover = level->cover + group;
-    solve_scaled(&cover->pattern, factor, level->n_groups > 1 ? 0.5 : 1, x);
+    solve_scaled(&cover->pattern, factor, level->weight, x);
 }
 
 void solve_level_solve_top(const struct solve_pattern *pattern, const double *factor, double *x)

@@ -3,6 +3,8 @@
 
 #include "cloth/solve/coarse.h"
 
+#include <stdbool.h>
+
 /* The coarse system C x = y (cloth/solve/coarse.h) of many patches, solved by parts, which tasks
  * can do side by side. A level has nodes: patches, or groups of the level below. It puts runs of
  * nodes together to groups, which are the nodes of the level above. A group covers its nodes and
@@ -14,11 +16,11 @@
  * of one group alone it is 1. Q has nine columns a group, motions that are affine on its nodes.
  * This is additive Schwarz of two levels (Dryja & Widlund 1987). A motion that is smooth tears at
  * the borders of groups when it becomes one of Q, so Q' C Q is too stiff for it, and o is 2 (Braess
- * 1995, who found 1.8). docs/measuring.md has what other w and o take. The matrix Q' C Q of the
- * groups is like C, so it may be solved in the same way, by one more level: then o is that of the
- * topmost level alone. Each term is symmetric and semidefinite, so their sum with another
- * preconditioner remains positive definite. One group that covers all solves C itself. The order of
- * sums follows from the numbers of nodes and groups.
+ * 1995, who found 1.8). The matrix Q' C Q of the groups is like C, so it may be solved in the same
+ * way, by one more level, for whose groups w is 3/2: then o is that of the topmost level alone.
+ * docs/measuring.md has what other w and o take. Each term is symmetric and semidefinite, so their
+ * sum with another preconditioner remains positive definite. One group that covers all solves C
+ * itself. The order of sums follows from the numbers of nodes and groups.
  *
  * Blocks of C and of Q' C Q lie alike: a node has its diagonal block, then one for each neighbour
  * with a higher number, ascending. That is the coupling of the node. */
@@ -41,6 +43,7 @@ struct solve_level {
     uint32_t n;                        /* nodes */
     const uint32_t *first, *neighbour; /* n + 1: whom a node is joined with, ascending; of the
                                         * caller */
+    double weight;                     /* w */
     uint32_t n_groups;
     uint32_t *start;                 /* n_groups + 1: a group has the nodes from there on */
     uint32_t *group;                 /* n: of each node */
@@ -51,11 +54,11 @@ struct solve_level {
         *group_neighbour; /* n_groups + 1: whom a group is joined with, likewise */
 };
 
-/* Of so many groups, by their first nodes and n, which are copied. Error: CLOTH_E_MEMORY. To be
- * freed in any case. Local. */
+/* Of so many groups, by their first nodes and n, which are copied; lowest: its nodes are patches.
+ * Error: CLOTH_E_MEMORY. To be freed in any case. Local. */
 int solve_level_make(struct solve_level *level, uint32_t n, const uint32_t *first,
                      const uint32_t *neighbour, uint32_t n_groups, const uint32_t *start,
-                     struct cloth_error *error);
+                     bool lowest, struct cloth_error *error);
 void solve_level_free(struct solve_level *level);
 
 /* How many 9 x 9 blocks the coupling of a group has. */

@@ -106,8 +106,6 @@ static bool join_patches(struct flow *flow)
 
 /* ---- Levels ---- */
 
-enum { MOST_ON_TOP = 100 };
-
 /* Writes the first blocks of runs of at most so many blocks, as METIS' bisections made them
  * (cloth/mesh/blocks.h): the lower half is the smaller one. So runs of more blocks are made of
  * whole runs of fewer. Returns the end. */
@@ -145,31 +143,22 @@ static int add_level(struct flow *flow, uint64_t most)
     flow->first_group[l + 1] = flow->first_group[l] + n_groups;
     flow->first_lifted[l + 1] = flow->first_lifted[l] + nodes.n;
     const int code = solve_level_make(flow->level + l, nodes.n, nodes.first, nodes.neighbour,
-                                      n_groups, start, &flow->trouble);
+                                      n_groups, start, l == 0, &flow->trouble);
     free(start);
     return code;
-}
-
-/* How many of n nodes the groups above them have: few, which is more exact and takes less time, if
- * the top has room for what that leaves. */
-static uint32_t nodes_of_groups(uint32_t n)
-{
-    uint32_t nodes = FLOW_MAX_NODES / 4;
-    while (nodes < FLOW_MAX_NODES && n > nodes * MOST_ON_TOP)
-        nodes *= 2;
-    return nodes;
 }
 
 /* As many levels as it takes until few nodes are on top; none if patches are few. */
 static int make_levels(struct flow *flow)
 {
-    uint32_t n = flow_levels_graph(flow).n, most = MODEL_ONE_FACTOR;
+    enum { MOST_ON_TOP = 100 };
+    uint32_t most = MODEL_ONE_FACTOR;
     uint64_t blocks = FLOW_MAX_NODES / flow->patches;
     int code = CLOTH_OK;
-    while (n > most && !flow->model->exact_coarse && flow->n_levels < FLOW_MAX_LEVELS && !code) {
+    while (flow_levels_graph(flow).n > most && !flow->model->exact_coarse &&
+           flow->n_levels < FLOW_MAX_LEVELS && !code) {
         code = add_level(flow, blocks);
-        n = flow_levels_graph(flow).n;
-        blocks *= nodes_of_groups(n);
+        blocks *= FLOW_MAX_NODES;
         most = MOST_ON_TOP;
     }
     return code;

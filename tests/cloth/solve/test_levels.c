@@ -67,14 +67,20 @@ static void draw_matrix(uint32_t held)
 }
 
 /* Groups of so many nodes. */
-static void make(uint32_t of_group)
+static void make_level(uint32_t of_group, bool lowest)
 {
     uint32_t start[NODES + 1];
     struct cloth_error error = {0};
     for (uint32_t g = 0; g <= NODES / of_group; g++)
         start[g] = of_group * g;
     ck_assert_int_eq(
-        solve_level_make(&level, NODES, first, neighbour, NODES / of_group, start, &error), 0);
+        solve_level_make(&level, NODES, first, neighbour, NODES / of_group, start, lowest, &error),
+        0);
+}
+
+static void make(uint32_t of_group)
+{
+    make_level(of_group, true);
 }
 
 /* y += the sum over groups of what they solve; top: as the topmost level solves for what they
@@ -145,22 +151,31 @@ START_TEST(one_group_is_the_system_itself)
 }
 END_TEST
 
-START_TEST(the_top_counts_twice)
+START_TEST(levels_above_count_more)
 {
-    static double x[ALL], once[ALL], twice[ALL];
+    static double x[ALL], lowest[ALL], higher[ALL], one[ALL], top[ALL];
     srand(3);
     join();
     draw_matrix(NODES + 1);
-    make(NODES);
     for (uint32_t i = 0; i < ALL; i++)
         x[i] = draw();
-    memset(once, 0, sizeof once);
-    memset(twice, 0, sizeof twice);
-    add_solved(x, false, once);
-    add_solved(x, true, twice);
-    for (uint32_t i = 0; i < ALL; i++)
-        ck_assert_double_eq(twice[i], 2 * once[i]);
+    for (int of_groups = 0; of_groups < 2; of_groups++) {
+        double *y = of_groups ? higher : lowest;
+        memset(y, 0, sizeof higher);
+        make_level(GROUP, !of_groups);
+        add_groups(x, y);
+        solve_level_free(&level);
+    }
+    memset(one, 0, sizeof one);
+    memset(top, 0, sizeof top);
+    make(NODES);
+    add_groups(x, one);
+    add_solved(x, true, top);
     solve_level_free(&level);
+    for (uint32_t i = 0; i < ALL; i++) {
+        ck_assert_double_le(fabs(higher[i] - 3 * lowest[i]), 1e-12 * fabs(higher[i]));
+        ck_assert_double_eq(top[i], 2 * one[i]);
+    }
 }
 END_TEST
 
@@ -313,7 +328,7 @@ int main(void)
     Suite *suite = suite_create("levels");
     TCase *cases = tcase_create("levels");
     tcase_add_test(cases, one_group_is_the_system_itself);
-    tcase_add_test(cases, the_top_counts_twice);
+    tcase_add_test(cases, levels_above_count_more);
     tcase_add_loop_test(cases, groups_are_symmetric_and_definite, 0, 3);
     tcase_add_test(cases, a_cover_has_one_layer_more);
     tcase_add_test(cases, groups_have_the_matrix_of_their_motions);

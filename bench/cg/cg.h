@@ -32,7 +32,7 @@ struct states_plan {
     uint32_t count;      /* iterations whose answer the state keeps */
     bool solved_here;    /* it is made without answers: plain loops would take too long, or know
                           * nothing of the step's contacts; who first needs the solution solves to
-                          * 1e-12, and the state keeps it if it has no contacts */
+                          * 1e-10, and the state keeps it if it has no contacts */
 };
 /* 0, or what serve_fail returns. */
 int states_plan_make(struct states_plan *plan, const char *name, bool quick);

@@ -224,9 +224,8 @@ static bool is_solved(const struct state *state)
     return state_left(state, state->system.dv) < 1e-9;
 }
 
-/* Solves to 1e-10, which a million vertices come to. (To 1e-12 some of their systems do not.) Rank
- * 0 puts it into the state's file unless there are contacts, which the system there does not have:
- * then it is kept for these settings only. */
+/* Solves to 1e-10. Rank 0 puts it into the state's file unless there are contacts, which the system
+ * there does not have: then it is kept for these settings only. */
 static int find_solution(struct cg_session *s)
 {
     enum { MOST = 20000 };

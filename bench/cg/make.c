@@ -10,8 +10,7 @@
 #include <string.h>
 #include <xxhash.h>
 
-/* The motions that ran. States may come in any order, so the end of each is kept: a
- * few MB each. */
+/* The motions that ran. States may come in any order, so the end of each is kept: a few MB each. */
 static struct end {
     const char *motion; /* NULL: this place is free */
     struct solve_system at;

@@ -21,8 +21,8 @@ struct state {
 
 /* The N of a name with _hN: the step in ms; 0: the name tells none. */
 double state_step(const char *name);
-/* NAME.state in the folder; 0, or what serve_fail returns. A file with the system of
- * another step than its name tells is refused. */
+/* NAME.state in the folder; 0, or what serve_fail returns. A file with the system of another step
+ * than its name tells is refused. */
 int state_read(struct state *state, const char *name);
 int state_write(const struct state *state);
 void state_free(struct state *state);

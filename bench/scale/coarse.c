@@ -34,8 +34,8 @@ static void plan_worst(struct measure *measure, const char *kind, const char *ri
     metric->n = n;
 }
 
-/* States of the motion `kind`. One patch a block in one factor is what such states had
- * before there were groups. */
+/* States of the motion `kind`. One patch a block in one factor is what such states had before there
+ * were groups. */
 static void plan_sheet(struct measure *measure, const struct bench_options *options,
                        const char *kind)
 {

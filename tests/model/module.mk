@@ -3,7 +3,8 @@ MODEL_EXPLORER = tests/model/explore.c tests/model/explore.h tests/model/machine
     tests/model/operations.c tests/model/search.c tests/model/search.h tests/model/atomics.h
 MODEL_RUNTIME = $(MODEL_EXPLORER) tests/model/runtime.h
 MODEL_TESTS = tests/model/test_explorer tests/model/test_deque tests/model/test_queue tests/model/test_sleep \
-    tests/model/test_sleep_queues tests/model/test_handover tests/model/test_version tests/model/test_gate tests/model/test_await
+    tests/model/test_sleep_queues tests/model/test_handover tests/model/test_version tests/model/test_gate \
+    tests/model/test_await
 check_PROGRAMS += $(MODEL_TESTS)
 tests_model_test_explorer_SOURCES = tests/model/test_explorer.c $(MODEL_EXPLORER)
 tests_model_test_deque_SOURCES = tests/model/test_deque.c $(MODEL_RUNTIME)

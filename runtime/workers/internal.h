@@ -61,7 +61,7 @@ struct work_counts {
 };
 
 /* The node that a worker awaits, see nodes.c. */
-struct work_hopes {
+struct work_awaits {
     struct task *node; /* NULL: none */
     bool on;           /* it may await one */
     uint8_t pass;      /* how often it runs out of nodes before it may again; */
@@ -92,7 +92,7 @@ struct worker {
     long switches;         /* involuntary context switches of its thread; -1: not counted yet */
     uint64_t awaited_then; /* comm_awaited_ticks when it began to idle */
     double pause;
-    struct work_hopes hopes; /* what it awaits, if no task is next */
+    struct work_awaits awaits; /* what it awaits, if no task is next */
     duite_call call;
     struct work_counts counts;
     _Atomic(const struct task *) runs; /* whose body runs, for the monitor */

@@ -27,30 +27,31 @@ static inline void nodes_ready(struct task_graph *graph, struct worker *worker, 
 
 /* ---- Awaiting a node ---- */
 
-/* Up to 255. */
-static void hopes_vain(struct work_hopes *hopes)
+/* The node did not come: the worker passes over twice as many waits as the last time, and one. At
+ * most 255. */
+static void awaits_failed(struct work_awaits *awaits)
 {
-    hopes->on = false;
-    hopes->pass = hopes->vain = (uint8_t)(2 * hopes->vain + 1);
+    awaits->on = false;
+    awaits->pass = awaits->vain = (uint8_t)(2 * awaits->vain + 1);
 }
 
 /* No node is left for the worker: it may await one after the next. */
-static void hopes_dry(struct worker *worker)
+static void awaits_again(struct worker *worker)
 {
-    struct work_hopes *hopes = &worker->hopes;
-    if (hopes->pass)
-        hopes->pass--;
+    struct work_awaits *awaits = &worker->awaits;
+    if (awaits->pass)
+        awaits->pass--;
     else
-        hopes->on = worker->pool->setup.threads > 1 && worker->pool->spin_ticks &&
-                    worker->looked >= worker->crowded_until;
+        awaits->on = worker->pool->setup.threads > 1 && worker->pool->spin_ticks &&
+                     worker->looked >= worker->crowded_until;
 }
 
 static inline bool nodes_await(struct worker *worker, struct task *task)
 {
-    struct work_hopes *hopes = &worker->hopes;
-    if (hopes->node || worker->next || !work_keeps(worker, task) || !plan_node_await(task))
+    struct work_awaits *awaits = &worker->awaits;
+    if (awaits->node || worker->next || !work_keeps(worker, task) || !plan_node_await(task))
         return false;
-    hopes->node = task;
+    awaits->node = task;
     return true;
 }
 
@@ -64,7 +65,7 @@ static bool nodes_elsewhere(const struct work_pool *pool)
 }
 
 /* Waits for the node, as long as there is nothing else to do. Returns whether it came. */
-static bool hopes_wait(struct worker *worker, struct task *task, struct work_batch *batch)
+static bool awaits_node(struct worker *worker, struct task *task, struct work_batch *batch)
 {
     const struct work_pool *pool = worker->pool;
     if (plan_node_came(task))
@@ -87,19 +88,19 @@ static bool hopes_wait(struct worker *worker, struct task *task, struct work_bat
 
 /* As plan_node_count_down. If none of the successors is the next node, the worker awaits one. */
 __attribute__((noinline)) static void
-nodes_count_down_hoping(struct worker *worker, struct task *task, struct work_batch *batch)
+nodes_count_down_awaiting(struct worker *worker, struct task *task, struct work_batch *batch)
 {
     struct task_graph *graph = worker->pool->setup.graph;
-    struct work_hopes *hopes = &worker->hopes;
+    struct work_awaits *awaits = &worker->awaits;
     plan_node_count_down(graph, worker, task, nodes_ready, nodes_await);
-    struct task *node = hopes->node;
+    struct task *node = awaits->node;
     if (!node)
         return;
-    hopes->node = NULL;
-    if (!worker->next && hopes_wait(worker, node, batch)) {
-        hopes->vain = 0;
+    awaits->node = NULL;
+    if (!worker->next && awaits_node(worker, node, batch)) {
+        awaits->vain = 0;
     } else {
-        hopes_vain(hopes);
+        awaits_failed(awaits);
         if (plan_node_give_up(node))
             return;
     }
@@ -126,8 +127,8 @@ static inline void nodes_run(struct worker *worker, struct task_frame *frame, st
     }
     worker->finishing = true;
     worker->may_chain = work_goes_on(worker, length);
-    if (worker->hopes.on && worker->may_chain && work_queue_is_empty(&worker->queue))
-        nodes_count_down_hoping(worker, task, batch);
+    if (worker->awaits.on && worker->may_chain && work_queue_is_empty(&worker->queue))
+        nodes_count_down_awaiting(worker, task, batch);
     else
         plan_node_count_down(frame->body.graph, worker, task, nodes_ready, NULL);
     worker->finishing = false;
@@ -154,7 +155,7 @@ struct task *work_run_nodes(struct worker *worker, struct task *task, unsigned *
     if (batch.tasks)
         work_batch_ends(worker, &batch);
     if (!task)
-        hopes_dry(worker);
+        awaits_again(worker);
     worker->within = outer + (batch.start - begin);
     return task;
 }

@@ -14,7 +14,7 @@ static uint32_t workers, nodes;
 
 static struct {
     struct plan plan;
-    struct hopeful {
+    struct awaiter {
         struct task *awaited, *next;
     } worker[MOST];
     struct task *next[MOST];
@@ -34,13 +34,13 @@ static void run(struct task *task)
 static void made_ready(struct task_graph *graph, struct worker *worker, struct task *task)
 {
     (void)graph;
-    ((struct hopeful *)(void *)worker)->next = task;
+    ((struct awaiter *)(void *)worker)->next = task;
     run(task);
 }
 
 static bool awaits(struct worker *worker, struct task *task)
 {
-    struct hopeful *own = (struct hopeful *)(void *)worker;
+    struct awaiter *own = (struct awaiter *)(void *)worker;
     if (own->awaited || own->next || !plan_node_await(task))
         return false;
     own->awaited = task;
@@ -49,7 +49,7 @@ static bool awaits(struct worker *worker, struct task *task)
 
 static void worker_ends_node(uint32_t i)
 {
-    struct hopeful *own = &its.worker[i];
+    struct awaiter *own = &its.worker[i];
     atomic_store_explicit(&its.left[i], 1, memory_order_relaxed);
     plan_node_count_down(NULL, (struct worker *)(void *)own, plan_task(&its.plan, i), made_ready,
                          awaits);

@@ -4,8 +4,8 @@
 BENCH_RIVALS =
 BENCH_STATE = bench/cg/state.c bench/cg/state.h
 BENCH_SHARED = bench/problem.c bench/problem.h bench/serve.c bench/serve.h
-check_LTLIBRARIES += bench/libbench.la
-bench_libbench_la_SOURCES = bench/bench.h bench/environment.h bench/instructions.c bench/instructions.h bench/load.c bench/load.h \
+check_LIBRARIES += bench/libbench.a
+bench_libbench_a_SOURCES = bench/bench.h bench/environment.h bench/instructions.c bench/instructions.h bench/load.c bench/load.h \
 	bench/loops.c bench/loops.h bench/measure.c bench/measure.h bench/temporary.c bench/temporary.h \
 	bench/program.c bench/program.h bench/report.c bench/report.h bench/subject.c bench/subject.h \
 	bench/tasks/tasks.c bench/tasks/tasks.h bench/tasks/bytes.c bench/tasks/chain.c bench/tasks/fib.c bench/tasks/fib.h \
@@ -27,7 +27,7 @@ bench_libbench_la_SOURCES = bench/bench.h bench/environment.h bench/instructions
 	bench/sweep/median.c bench/sweep/compare.h \
 	tests/support/trace_file.c tests/support/trace_file.h \
 	$(BENCH_STATE) $(BENCH_SHARED)
-bench_libbench_la_CPPFLAGS = $(AM_CPPFLAGS) -DBENCH_MPIRUN='"$(MPIRUN)"' -DBENCH_CFLAGS='"$(CFLAGS)"' \
+bench_libbench_a_CPPFLAGS = $(AM_CPPFLAGS) -DBENCH_MPIRUN='"$(MPIRUN)"' -DBENCH_CFLAGS='"$(CFLAGS)"' \
 	-DBENCH_HOSTS='"$(abs_top_srcdir)/tests/cluster/hosts.sh"' \
 	-DBENCH_BLENDER='"$(abs_top_srcdir)/bench/rivals/blender_sphere.py"' \
 	-DBENCH_VIEW_MISSING='"$(VIEW_MISSING)"' \
@@ -38,10 +38,9 @@ bench_libbench_la_CPPFLAGS = $(AM_CPPFLAGS) -DBENCH_MPIRUN='"$(MPIRUN)"' -DBENCH
 	-DBENCH_PATTERNS='"$(abs_top_srcdir)/../shared/data/patterns"' \
 	-DBENCH_OWN_PATTERNS='"$(abs_top_srcdir)/tests/cloth/garment/patterns"' \
 	-DBENCH_DRESS='"$(abs_top_srcdir)/../shared/data/meshes/dress-v17k-f34k.obj"'
-bench_libbench_la_LIBADD = libduite_cloth.la libduite_predict.la libduite_core.la
 check_PROGRAMS += bench/duite-bench
 bench_duite_bench_SOURCES = bench/duite-bench.c
-bench_duite_bench_LDADD = $(BENCH_LIBRARY) -lm
+bench_duite_bench_LDADD = $(BENCH_LIBRARY)
 EXTRA_DIST += bench/experiments bench/garments/experiments.sh bench/garments/hanging.yaml bench/garments/worn.yaml \
 	bench/vassilev/panels.awk bench/vassilev/jeans.yaml bench/rivals/blender_sphere.py bench/rivals/openmp.c bench/cg/states.yaml bench/tiles.c
 
@@ -51,7 +50,7 @@ $(TILES_OBJECT): bench/tiles.c bench/tiles.h
 	$(AM_V_CC)$(MKDIR_P) bench/rivals && $(CC) -std=gnu17 -O2 -fPIE $(WARN_CFLAGS) -I$(srcdir) -c -o $@ $(srcdir)/bench/tiles.c
 CLEANFILES += $(TILES_OBJECT)
 # What a program links that uses libbench.
-BENCH_LIBRARY = bench/libbench.la $(TILES_OBJECT)
+BENCH_LIBRARY = bench/libbench.a $(TILES_OBJECT) libduite_predict.a $(CLOTH_LIBS)
 
 OPENMP_FILES = bench/rivals/openmp.c bench/problem.c bench/serve.c
 OPENMP_NEEDS = $(OPENMP_FILES) bench/problem.h bench/serve.h bench/tiles.h $(TILES_OBJECT)
@@ -133,17 +132,17 @@ if HAVE_VIEW
 check_PROGRAMS += bench/output/draw
 BENCH_RIVALS += bench/output/draw$(EXEEXT)
 bench_output_draw_SOURCES = bench/output/draw.c bench/output/folder.h bench/serve.c bench/serve.h
-bench_output_draw_LDADD = libduite_view.la libduite_cloth.la libduite_core.la
+bench_output_draw_LDADD = $(VIEW_LIBS)
 endif
 
 # Comparisons of policies: graph-run schedules graphs without an application, compare runs products of everything.
 check_PROGRAMS += bench/graph-run bench/compare
 bench_graph_run_SOURCES = bench/sweep/run.c bench/sweep/graph.c bench/sweep/graph.h
-bench_graph_run_LDADD = libduite_core.la -lm
+bench_graph_run_LDADD = $(CORE_LIBS)
 bench_compare_SOURCES = bench/environment.h bench/load.c bench/load.h bench/sweep/compare.c bench/sweep/compare.h bench/sweep/graph.c \
 	bench/sweep/graph.h bench/sweep/journal.c bench/sweep/median.c bench/sweep/page.c bench/sweep/start.c bench/sweep/statistics.c
 bench_compare_CPPFLAGS = $(AM_CPPFLAGS) -DBENCH_MPIRUN='"$(MPIRUN)"' -DBENCH_CFLAGS='"$(CFLAGS)"'
-bench_compare_LDADD = libduite_core.la -lm
+bench_compare_LDADD = $(CORE_LIBS)
 
 # What `duite-bench tasks` counts the instructions of: with the library of users, not with libduite_core.
 check_PROGRAMS += bench/tasks/counted
@@ -154,13 +153,13 @@ bench_tasks_counted_LDADD = libduite.la
 # What bench/experiments contact-partition runs.
 check_PROGRAMS += bench/contact-partition
 bench_contact_partition_SOURCES = bench/contact/partition.c
-bench_contact_partition_LDADD = $(BENCH_LIBRARY) -lm
+bench_contact_partition_LDADD = $(BENCH_LIBRARY)
 
 # The six loops that bench/experiments vassilev runs.
 check_PROGRAMS += bench/vassilev/vassilev
 bench_vassilev_vassilev_SOURCES = bench/vassilev/vassilev.c bench/vassilev/loops.c bench/vassilev/loops.h bench/vassilev/repel.c \
 	bench/vassilev/take.c bench/serve.c bench/serve.h
-bench_vassilev_vassilev_LDADD = libduite_cloth.la libduite_core.la -lm
+bench_vassilev_vassilev_LDADD = $(CLOTH_LIBS)
 
 bench: bench/tasks/counted$(EXEEXT) bench/vassilev/vassilev$(EXEEXT) bench/contact-partition$(EXEEXT) bench/duite-bench$(EXEEXT) bench/graph-run$(EXEEXT) bench/compare$(EXEEXT) duite-cloth$(EXEEXT) $(BENCH_RIVALS)
 check_DATA += $(BENCH_RIVALS)

@@ -1,6 +1,6 @@
-noinst_LTLIBRARIES += libduite_cloth.la
-libduite_cloth_la_SOURCES =
-libduite_cloth_la_LIBADD = $(HDF5_LIBS) $(YAML_LIBS) $(METIS_LIBS) $(XXHASH_LIBS) -lm
+noinst_LIBRARIES += libduite_cloth.a
+libduite_cloth_a_SOURCES =
+CLOTH_LIBS = libduite_cloth.a $(HDF5_LIBS) $(YAML_LIBS) $(ZMQ_LIBS) $(CORE_LIBS)
 
 include cloth/base/module.mk
 include cloth/mesh/module.mk
@@ -35,17 +35,17 @@ duite_cloth_SOURCES = \
 	cloth/summary.h cloth/summary.c cloth/summary_numbers.h cloth/summary_numbers.c cloth/summary_print.c cloth/summary_seams.h \
 	cloth/summary_seams.c cloth/summary_time.h cloth/summary_time.c
 duite_cloth_CPPFLAGS = $(AM_CPPFLAGS) -DSHIPPED_SCENES='"$(scenesdir)"'
-duite_cloth_LDADD = libduite_cloth.la libduite_core.la
+duite_cloth_LDADD = $(CLOTH_LIBS)
 
 bin_PROGRAMS += duite-garment
 dist_man_MANS += cloth/duite-garment.1
 duite_garment_SOURCES = cloth/duite-garment.c
-duite_garment_LDADD = libduite_cloth.la libduite_core.la
+duite_garment_LDADD = $(CLOTH_LIBS)
 
 bin_PROGRAMS += duite-mannequin
 dist_man_MANS += cloth/duite-mannequin.1
 duite_mannequin_SOURCES = cloth/duite-mannequin.c
-duite_mannequin_LDADD = libduite_cloth.la libduite_core.la
+duite_mannequin_LDADD = $(CLOTH_LIBS)
 
 scenesdir = $(pkgdatadir)/scenes
 dist_scenes_DATA =

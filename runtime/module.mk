@@ -1,4 +1,4 @@
-# libduite for users exports duite_* only; the tree itself links libduite_core, the same objects with all symbols.
+# libduite for users exports duite_* only. The programs of the tree link libduite_core.a, the same objects with all names.
 lib_LTLIBRARIES += libduite.la
 noinst_LTLIBRARIES += libduite_core.la
 include_HEADERS = runtime/duite.h runtime/duite_policy.h
@@ -8,7 +8,11 @@ libduite_la_SOURCES = $(include_HEADERS)
 libduite_la_LIBADD = $(METIS_LIBS) $(HWLOC_LIBS) $(XXHASH_LIBS) $(MPI_LIBS) -lm
 libduite_la_LDFLAGS = $(AM_LDFLAGS) -version-info 0:0:0 -export-symbols-regex '^duite_'
 libduite_core_la_SOURCES = $(libduite_la_SOURCES)
-libduite_core_la_LIBADD = $(libduite_la_LIBADD)
+libduite_core_la_LINK = $(LIBTOOL_LINK)
+libduite_core.a: libduite_core.la
+	$(AM_V_GEN)cp .libs/libduite_core.a $@
+CLEANFILES += libduite_core.a
+CORE_LIBS = libduite_core.a $(libduite_la_LIBADD)
 
 include runtime/base/module.mk
 include runtime/data/module.mk

@@ -2,11 +2,11 @@
 TESTS =
 LONG_TESTS =
 check_PROGRAMS =
-check_LTLIBRARIES =
+check_LIBRARIES =
 check_DATA =
 dist_check_SCRIPTS =
-DUITE_TEST_LIBS = tests/support/libunit.la libduite_core.la $(CHECK_LIBS)
-CLOTH_TEST_LIBS = tests/support/libunit.la libduite_cloth.la libduite_core.la $(CHECK_LIBS)
+DUITE_TEST_LIBS = tests/support/libunit.a $(CORE_LIBS) $(CHECK_LIBS)
+CLOTH_TEST_LIBS = tests/support/libunit.a $(CLOTH_LIBS) $(CHECK_LIBS)
 
 # Comments, which have the errors against closed forms, are shown as tests go.
 LOG_DRIVER = env AM_TAP_AWK='$(AWK)' $(SHELL) $(top_srcdir)/build-aux/tap-driver.sh --comments
@@ -61,8 +61,8 @@ TESTS += tests/support/test_tap.sh tests/arrows.sh tests/documents.sh tests/inst
 LONG_TESTS += tests/readme_long.sh tests/pages_long.sh
 
 if HAVE_CHECK
-check_LTLIBRARIES += tests/support/libunit.la
-tests_support_libunit_la_SOURCES = tests/support/unit.c tests/support/unit.h
+check_LIBRARIES += tests/support/libunit.a
+tests_support_libunit_a_SOURCES = tests/support/unit.c tests/support/unit.h
 check_PROGRAMS += tests/support/test_unit
 tests_support_test_unit_SOURCES = tests/support/test_unit.c
 tests_support_test_unit_LDADD = $(DUITE_TEST_LIBS)

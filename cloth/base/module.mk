@@ -1,4 +1,4 @@
-libduite_cloth_la_SOURCES += \
+libduite_cloth_a_SOURCES += \
 	cloth/base/axes.c cloth/base/axes.h \
 	cloth/base/error.c cloth/base/error.h \
 	cloth/base/memory.c cloth/base/memory.h cloth/base/order.h cloth/base/sets.h \

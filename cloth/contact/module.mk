@@ -1,5 +1,5 @@
 # Shapes that cloth meets, one file a kind. Pure.
-libduite_cloth_la_SOURCES += \
+libduite_cloth_a_SOURCES += \
 	cloth/contact/apart.h \
 	cloth/contact/body.c cloth/contact/body.h \
 	cloth/contact/body_check.c cloth/contact/making.h \

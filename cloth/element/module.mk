@@ -1,5 +1,5 @@
 # Elements besides springs: a descriptor of each kind, and all of a model's cloths.
-libduite_cloth_la_SOURCES += \
+libduite_cloth_a_SOURCES += \
     cloth/element/air.c \
     cloth/element/bending.c \
     cloth/element/cloths.c cloth/element/cloths.h \

@@ -1,6 +1,6 @@
 # The only folder of the cloth that includes duite.h. In reading order: what a run is made of, its state, a step, the solver of a step, what is
 # seen of it.
-libduite_cloth_la_SOURCES += \
+libduite_cloth_a_SOURCES += \
     cloth/flow/bodies.h \
     cloth/flow/checkpoint/check.c \
     cloth/flow/checkpoint/checkpoint.h \

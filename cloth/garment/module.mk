@@ -1,5 +1,5 @@
 # Sewing patterns and the mesh of their panels. Pure.
-libduite_cloth_la_SOURCES += \
+libduite_cloth_a_SOURCES += \
 	cloth/garment/garment.c cloth/garment/garment.h \
 	cloth/garment/check.c cloth/garment/pattern.c cloth/garment/pattern.h \
 	cloth/garment/girth.c cloth/garment/girth.h \

@@ -1,5 +1,5 @@
 # A closed figure that garments are put on. Pure.
-libduite_cloth_la_SOURCES += \
+libduite_cloth_a_SOURCES += \
 	cloth/mannequin/mannequin.c cloth/mannequin/mannequin.h \
 	cloth/mannequin/measures.c cloth/mannequin/measures.h \
 	cloth/mannequin/pose.c cloth/mannequin/pose.h \

@@ -1,4 +1,4 @@
-libduite_cloth_la_SOURCES += \
+libduite_cloth_a_SOURCES += \
 	cloth/mesh/mesh.h cloth/mesh/lattice.h cloth/mesh/elastic.h cloth/mesh/blocks.h \
 	cloth/mesh/axes.c cloth/mesh/blocks.c cloth/mesh/disc.c cloth/mesh/edges.c cloth/mesh/elastic.c cloth/mesh/equilateral.c \
 	cloth/mesh/grid.c cloth/mesh/groups.c cloth/mesh/inline.c cloth/mesh/lattice.c cloth/mesh/mesh.c cloth/mesh/obj.c cloth/mesh/pc2.c \

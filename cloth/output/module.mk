@@ -1,4 +1,4 @@
-libduite_cloth_la_SOURCES += \
+libduite_cloth_a_SOURCES += \
 	cloth/output/output.h \
 	cloth/output/colours.h cloth/output/colours.c cloth/output/colours_read.c \
 	cloth/output/checkpoint.c cloth/output/checkpoint.h \

@@ -1,4 +1,4 @@
-libduite_cloth_la_SOURCES += \
+libduite_cloth_a_SOURCES += \
     cloth/physics/air.c cloth/physics/air.h \
     cloth/physics/bending.h \
     cloth/physics/curve.c cloth/physics/curve.h \

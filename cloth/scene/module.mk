@@ -1,4 +1,4 @@
-libduite_cloth_la_SOURCES += \
+libduite_cloth_a_SOURCES += \
 	cloth/scene/scene.h \
 	cloth/scene/scene.c \
 	cloth/scene/pattern.h cloth/scene/pattern/reader.h \

@@ -1,4 +1,4 @@
-libduite_cloth_la_SOURCES += \
+libduite_cloth_a_SOURCES += \
     cloth/solve/assemble.c cloth/solve/assemble.h \
     cloth/solve/block.c cloth/solve/block.h cloth/solve/format.h \
     cloth/solve/cg.c cloth/solve/cg.h \

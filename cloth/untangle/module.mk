@@ -1,5 +1,5 @@
 # Starts that are tangled: cloths are moved apart before a run. Pure.
-libduite_cloth_la_SOURCES += \
+libduite_cloth_a_SOURCES += \
 	cloth/untangle/cross.c \
 	cloth/untangle/find.c \
 	cloth/untangle/layers.c \

@@ -1,5 +1,5 @@
 # Whether surfaces go through each other, exactly; nothing of it is used by contact, nor uses it. Pure.
-libduite_cloth_la_SOURCES += \
+libduite_cloth_a_SOURCES += \
 	cloth/verify/enter.c \
 	cloth/verify/inside.c \
 	cloth/verify/meet.c cloth/verify/verify.h \

@@ -1,7 +1,7 @@
 # Pictures are optional: configure says what they need.
 if HAVE_VIEW
-noinst_LTLIBRARIES += libduite_view.la
-libduite_view_la_SOURCES = \
+noinst_LIBRARIES += libduite_view.a
+libduite_view_a_SOURCES = \
 	cloth/view/view.h \
 	cloth/view/camera.c \
 	cloth/view/context.c \
@@ -25,20 +25,20 @@ libduite_view_la_SOURCES = \
 	cloth/view/draw/sky.c \
 	cloth/view/draw/surfaces.c
 if HAVE_CAIRO
-libduite_view_la_SOURCES += cloth/view/letters.h cloth/view/letters.c
+libduite_view_a_SOURCES += cloth/view/letters.h cloth/view/letters.c
 endif
 if HAVE_WINDOW
-libduite_view_la_SOURCES += cloth/view/overlay.h cloth/view/overlay.c cloth/view/window.h cloth/view/window.c
+libduite_view_a_SOURCES += cloth/view/overlay.h cloth/view/overlay.c cloth/view/window.h cloth/view/window.c
 endif
-libduite_view_la_CPPFLAGS = $(AM_CPPFLAGS) $(EPOXY_CFLAGS) $(EGL_CFLAGS) $(PNG_CFLAGS) $(GLFW_CFLAGS) $(CAIRO_CFLAGS)
+libduite_view_a_CPPFLAGS = $(AM_CPPFLAGS) $(EPOXY_CFLAGS) $(EGL_CFLAGS) $(PNG_CFLAGS) $(GLFW_CFLAGS) $(CAIRO_CFLAGS)
 # epoxy opens libEGL and libGL itself, so that their absence can be told.
-libduite_view_la_LIBADD = $(EPOXY_LIBS) $(PNG_LIBS) $(GLFW_LIBS) $(CAIRO_LIBS) -ldl -lm
+VIEW_LIBS = libduite_view.a $(EPOXY_LIBS) $(PNG_LIBS) $(GLFW_LIBS) $(CAIRO_LIBS) -ldl $(CLOTH_LIBS)
 
 bin_PROGRAMS += duite-view
 dist_man_MANS += cloth/duite-view.1
 duite_view_SOURCES = cloth/duite-view.c cloth/view_frames.c cloth/view_frames.h cloth/view_live.c cloth/view_live.h cloth/view_trace.c \
 	cloth/view_trace.h cloth/intersections.h cloth/intersections.c cloth/intersections_folder.c cloth/intersections_parts.h \
 	cloth/intersections_parts.c cloth/intersections_soup.h cloth/intersections_soup.c
-duite_view_LDADD = libduite_view.la libduite_cloth.la libduite_chart.la libduite_core.la
+duite_view_LDADD = $(CHART_LIBS) $(VIEW_LIBS)
 endif
 EXTRA_DIST += cloth/duite-view.1

@@ -3,16 +3,16 @@ tests_bench_liar_SOURCES = tests/bench/liar.c bench/serve.c bench/serve.h
 if HAVE_CHECK
 check_PROGRAMS += tests/bench/test_problem
 tests_bench_test_problem_SOURCES = tests/bench/test_problem.c bench/problem.c bench/problem.h bench/tiles.c bench/tiles.h
-tests_bench_test_problem_LDADD = tests/support/libunit.la $(CHECK_LIBS) -lm
+tests_bench_test_problem_LDADD = tests/support/libunit.a $(CHECK_LIBS) -lm
 check_PROGRAMS += tests/bench/test_sheet
 tests_bench_test_sheet_SOURCES = tests/bench/test_sheet.c
-tests_bench_test_sheet_LDADD = $(BENCH_LIBRARY) tests/support/libunit.la $(CHECK_LIBS)
+tests_bench_test_sheet_LDADD = tests/support/libunit.a $(BENCH_LIBRARY) $(CHECK_LIBS)
 check_PROGRAMS += tests/bench/test_states
 tests_bench_test_states_SOURCES = tests/bench/test_states.c
-tests_bench_test_states_LDADD = $(BENCH_LIBRARY) tests/support/libunit.la $(CHECK_LIBS)
+tests_bench_test_states_LDADD = tests/support/libunit.a $(BENCH_LIBRARY) $(CHECK_LIBS)
 check_PROGRAMS += tests/bench/test_load
 tests_bench_test_load_SOURCES = tests/bench/test_load.c bench/load.c bench/load.h
-tests_bench_test_load_LDADD = tests/support/libunit.la $(CHECK_LIBS)
+tests_bench_test_load_LDADD = tests/support/libunit.a $(CHECK_LIBS)
 TESTS += tests/bench/test_load tests/bench/test_problem tests/bench/test_sheet tests/bench/test_states
 endif
 EXTRA_DIST += tests/bench/bench.sh

@@ -1,7 +1,7 @@
 # On several hosts, which each test makes of this machine by network namespaces (hosts.sh); skipped where it may not.
 check_PROGRAMS += tests/cluster/ranks_traffic
 tests_cluster_ranks_traffic_SOURCES = tests/cluster/ranks_traffic.c
-tests_cluster_ranks_traffic_LDADD = libduite_core.la
+tests_cluster_ranks_traffic_LDADD = $(CORE_LIBS)
 CLUSTER_TESTS = tests/cluster/test_hosts.sh tests/cluster/test_same.sh tests/cluster/test_counts.sh tests/cluster/test_faults.sh
 CLUSTER_LONG_TESTS = tests/cluster/test_same_long.sh tests/cluster/test_counts_long.sh tests/cluster/test_faults_long.sh \
     tests/cluster/test_predicted_long.sh tests/cluster/test_hidden.sh tests/cluster/test_document.sh tests/cluster/test_slurm.sh

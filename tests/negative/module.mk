@@ -2,27 +2,27 @@ MISUSE = tests/negative/misuse.c tests/negative/misuse.h
 check_PROGRAMS += tests/negative/ranks_failures tests/negative/ranks_different tests/negative/ranks_groups \
                   tests/negative/ranks_memory tests/negative/ranks_memory_graphs tests/negative/ranks_system tests/negative/ranks_blocking
 tests_negative_ranks_failures_SOURCES = tests/negative/ranks_failures.c $(MISUSE)
-tests_negative_ranks_failures_LDADD = libduite_core.la
+tests_negative_ranks_failures_LDADD = $(CORE_LIBS)
 tests_negative_ranks_different_SOURCES = tests/negative/ranks_different.c $(MISUSE)
-tests_negative_ranks_different_LDADD = libduite_core.la
+tests_negative_ranks_different_LDADD = $(CORE_LIBS)
 tests_negative_ranks_blocking_SOURCES = tests/negative/ranks_blocking.c $(MISUSE)
-tests_negative_ranks_blocking_LDADD = libduite_core.la
+tests_negative_ranks_blocking_LDADD = $(CORE_LIBS)
 tests_negative_ranks_groups_SOURCES = tests/negative/ranks_groups.c $(MISUSE)
-tests_negative_ranks_groups_LDADD = libduite_core.la
+tests_negative_ranks_groups_LDADD = $(CORE_LIBS)
 STARVE = tests/negative/starve.c tests/negative/starve.h
 STARVE_WRAPS = -Wl,--wrap=malloc,--wrap=realloc,--wrap=aligned_alloc,--wrap=base_pool_take_more,--wrap=base_pool_give_more
 tests_negative_ranks_memory_SOURCES = tests/negative/ranks_memory.c $(MISUSE) $(STARVE)
-tests_negative_ranks_memory_LDADD = libduite_core.la
+tests_negative_ranks_memory_LDADD = $(CORE_LIBS)
 tests_negative_ranks_memory_LDFLAGS = $(STARVE_WRAPS)
 tests_negative_ranks_memory_graphs_SOURCES = tests/negative/ranks_memory_graphs.c $(MISUSE) $(STARVE)
-tests_negative_ranks_memory_graphs_LDADD = libduite_core.la
+tests_negative_ranks_memory_graphs_LDADD = $(CORE_LIBS)
 tests_negative_ranks_memory_graphs_LDFLAGS = $(STARVE_WRAPS)
 tests_negative_ranks_system_SOURCES = tests/negative/ranks_system.c $(MISUSE)
-tests_negative_ranks_system_LDADD = libduite_core.la
+tests_negative_ranks_system_LDADD = $(CORE_LIBS)
 tests_negative_ranks_system_LDFLAGS = -Wl,--wrap=pthread_create,--wrap=mmap
 check_PROGRAMS += tests/negative/ranks_lost
 tests_negative_ranks_lost_SOURCES = tests/negative/ranks_lost.c $(MISUSE)
-tests_negative_ranks_lost_LDADD = libduite_core.la
+tests_negative_ranks_lost_LDADD = $(CORE_LIBS)
 dist_check_SCRIPTS += tests/negative/test_ranks.sh tests/negative/test_lost.sh tests/negative/test_environment.sh
 TESTS += tests/negative/test_ranks.sh tests/negative/test_lost.sh tests/negative/test_environment.sh
 dist_check_SCRIPTS += tests/negative/test_lost_long.sh tests/negative/test_memory_long.sh

@@ -1,6 +1,6 @@
 check_PROGRAMS += tests/whole/same_hash
 tests_whole_same_hash_SOURCES = tests/whole/same_hash.c
-tests_whole_same_hash_LDADD = libduite_cloth.la libduite_core.la
+tests_whole_same_hash_LDADD = $(CLOTH_LIBS)
 dist_check_SCRIPTS += tests/whole/test_same_hash.sh tests/whole/test_same_hash_long.sh tests/whole/test_levels_long.sh tests/whole/test_dress.sh \
 	tests/whole/test_demo.sh
 TESTS += tests/whole/test_same_hash.sh tests/whole/test_dress.sh
@@ -25,10 +25,10 @@ TESTS += tests/whole/test_live.sh
 if HAVE_ZMQ
 check_PROGRAMS += tests/whole/spoil
 tests_whole_spoil_SOURCES = tests/whole/spoil.c tests/fuzz/fit.h
-tests_whole_spoil_LDADD = libduite_cloth.la libduite_core.la $(XXHASH_LIBS)
+tests_whole_spoil_LDADD = $(CLOTH_LIBS) $(XXHASH_LIBS)
 check_PROGRAMS += tests/whole/live_peer
 tests_whole_live_peer_SOURCES = tests/whole/live_peer.c
-tests_whole_live_peer_LDADD = libduite_cloth.la libduite_core.la $(ZMQ_LIBS) $(XXHASH_LIBS)
+tests_whole_live_peer_LDADD = $(CLOTH_LIBS) $(ZMQ_LIBS) $(XXHASH_LIBS)
 endif
 dist_check_SCRIPTS += tests/whole/test_signals.sh tests/whole/test_lock.sh
 TESTS += tests/whole/test_signals.sh tests/whole/test_lock.sh

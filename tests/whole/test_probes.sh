@@ -75,7 +75,7 @@ ok "of explicit runs, too" explicit
 # ---- At rest
 
 rests() { # well before the end; the chain's pin carries its weight, stretched by it
-    run sheet.yaml --output rest --report rest.json --end 100 --set 'time.rest={speed: 1e-5, hold: 0.1}' --set time.h=0.01 \
+    run sheet.yaml --output rest --report rest.json --end 100 --set 'time.rest={speed: 1e-5, hold: 0.1}' --set time.h=0.04 \
         --set 'materials.cotton.damping.mass=10' --set 'solver.stop={mass_norm: 1e-9}' || return 1
     awk -F'[:,]' '/"rest_seconds"/ { rest = $2 } /"simulated_seconds"/ { end = $2 }
         END { print rest, end; exit !(rest > 0.5 && rest < 50 && end >= rest && end <= rest + 0.05) }' rest.json || return 1
@@ -85,7 +85,7 @@ rests() { # well before the end; the chain's pin carries its weight, stretched b
 }
 ok "a run until rest: weight, stretch and where it ends" rests
 same_end() {
-    ranks 2 "$DUITE_CLOTH" sheet.yaml --quiet --output rest2 --end 100 --set 'time.rest={speed: 1e-5, hold: 0.1}' --set time.h=0.01 \
+    ranks 2 "$DUITE_CLOTH" sheet.yaml --quiet --threads 1 --output rest2 --end 100 --set 'time.rest={speed: 1e-5, hold: 0.1}' --set time.h=0.04 \
         --set 'materials.cotton.damping.mass=10' --set 'solver.stop={mass_norm: 1e-9}' && cmp rest/probes.csv rest2/probes.csv
 }
 ok "the same end on 2 ranks" same_end

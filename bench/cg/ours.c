@@ -232,8 +232,9 @@ static int solve_to(struct cg_session *s, double tolerance)
     return code ? code : answer(s, s->solution);
 }
 
-/* The solver stops by the norm of its preconditioner, which says little of what is left of the right
- * side: it is asked for more only where too much is, as the last digits take large states minutes. */
+/* The solver stops by the norm of its preconditioner, which says little of what is left of the
+ * right side: it is asked for more only where too much is, as the last digits take large states
+ * minutes. */
 static int solve_and_check(struct cg_session *s)
 {
     int code = 0;

@@ -44,30 +44,32 @@ static void plan(struct measure *measure, const struct bench_options *options)
     measure_value(measure, coarse, 1, "", "coarse_path_share");
 }
 
+enum { VAST_SCALING, VAST_MAIN, VAST_PATH, N_VAST };
+static const struct {
+    const char *what, *name;
+} VAST[N_VAST] = {
+    {"scaling", "scaling_%dx%d_fast"}, {"main", "main_share_%dx%d"}, {"path", "path_share_%dx%d"}};
+
 static void plan_vast(struct measure *measure, const struct bench_options *options)
 {
-    static const struct {
-        const char *what, *name;
-    } figures[] = {{"scaling", "scaling_%dx%d_fast"},
-                   {"main", "main_share_%dx%d"},
-                   {"path", "path_share_%dx%d"}};
     measure->cold = true;
-    for (size_t i = 0; i < sizeof figures / sizeof *figures; i++) {
+    for (int i = 0; i < N_VAST; i++) {
         const struct measure_series *series = measure_series(
             measure, (struct subject_shape){"duite", 0, options->threads},
             "vast side=%d grain=%d threads=%u what=%s", options->quick ? QUICK_SIDE : VAST_SIDE,
-            options->quick ? QUICK_GRAIN : VAST_GRAIN, options->threads, figures[i].what);
-        measure_value(measure, series, 1, "", figures[i].name, VAST_HOSTS, VAST_CORES);
+            options->quick ? QUICK_GRAIN : VAST_GRAIN, options->threads, VAST[i].what);
+        measure_value(measure, series, 1, "", VAST[i].name, VAST_HOSTS, VAST_CORES);
     }
 }
 
-/* The trace of a step, made when it is asked for; the last one is kept. NULL, and serve_fail. */
-static struct trace_run *trace_of(struct serve_request *request)
+/* The trace of a step, made when it is asked for; the last one is kept, unless there shall be a new
+ * one. NULL, and serve_fail. */
+static struct trace_run *trace_of(struct serve_request *request, bool anew)
 {
     static struct trace_run *run;
     static uint64_t side;
     char folder[TEMPORARY_PATH], arguments[SCALE_PATH + 200], path[SCALE_PATH + 20];
-    if (run && side == serve_number(request, "side"))
+    if (run && side == serve_number(request, "side") && !anew)
         return run;
     trace_run_free(run);
     run = NULL;
@@ -131,7 +133,7 @@ static int run_scaling(void *context, struct serve_request *request, double *val
 {
     const struct network *network = network_of(request);
     const uint32_t hosts = (uint32_t)serve_number(request, "hosts");
-    const struct trace_run *run = trace_of(request);
+    const struct trace_run *run = trace_of(request, false);
     (void)context;
     if (!run)
         return 1;
@@ -151,8 +153,8 @@ static bool grows(const char *kernel)
     return !is_coarse(kernel);
 }
 
-static int predict_vast(const struct trace_run *run, uint32_t hosts, uint32_t cores,
-                        struct predict_result *result)
+static int predict_larger(const struct trace_run *run, uint32_t hosts, uint32_t cores,
+                          struct predict_result *result)
 {
     struct predict_cluster cluster = cluster_of(hosts, cores, NETWORKS + 1);
     cluster.bodies = LARGER;
@@ -161,30 +163,42 @@ static int predict_vast(const struct trace_run *run, uint32_t hosts, uint32_t co
     return predict(run, &cluster, result, NULL) ? serve_fail("%s", duite_message()) : 0;
 }
 
+static int predict_vast(struct serve_request *request, double figure[N_VAST])
+{
+    struct predict_result all, one;
+    const struct trace_run *run = trace_of(request, true);
+    if (!run || predict_larger(run, 1, 1, &one) ||
+        predict_larger(run, VAST_HOSTS, VAST_CORES, &all))
+        return 1;
+    figure[VAST_SCALING] = one.makespan / (VAST_HOSTS * VAST_CORES * all.makespan);
+    figure[VAST_MAIN] = all.chain[PREDICT_MAIN] / all.makespan;
+    figure[VAST_PATH] = all.chain[PREDICT_PATH] / all.makespan;
+    return 0;
+}
+
 /* vast side= grain= threads= what=: the efficiency ("scaling"); of the time, what the main program
- * ("main") or the critical path ("path") holds up. Predicted when it is asked for first. */
+ * ("main") or the critical path ("path") holds up. Each is told once of a trace, so that rounds
+ * have traces of their own: a pause of the machine in the traced step changes all three. */
 static int run_vast(void *context, struct serve_request *request, double *value)
 {
-    static struct predict_result all, one;
-    const struct trace_run *run = all.makespan > 0 ? NULL : trace_of(request);
+    static double figure[N_VAST] = {NAN, NAN, NAN}; /* NAN: told, or not known */
     char what[16];
+    int i = 0;
     (void)context;
     serve_word(request, "what", what, sizeof what);
-    if (!(all.makespan > 0) && !run)
+    while (i < N_VAST - 1 && strcmp(VAST[i].what, what) != 0)
+        i++;
+    if (isnan(figure[i]) && predict_vast(request, figure))
         return 1;
-    if (run && (predict_vast(run, 1, 1, &one) || predict_vast(run, VAST_HOSTS, VAST_CORES, &all)))
-        return 1;
-    if (!strcmp(what, "scaling"))
-        *value = one.makespan / (VAST_HOSTS * VAST_CORES * all.makespan);
-    else
-        *value = all.chain[strcmp(what, "main") ? PREDICT_PATH : PREDICT_MAIN] / all.makespan;
+    *value = figure[i];
+    figure[i] = NAN;
     return 0;
 }
 
 /* coarse side= grain= threads= hosts= network=: their share of the chain. */
 static int run_coarse(void *context, struct serve_request *request, double *value)
 {
-    const struct trace_run *run = trace_of(request);
+    const struct trace_run *run = trace_of(request, false);
     double *chain = run ? calloc(run->n_kernels + 1u, sizeof *chain) : NULL;
     (void)context;
     if (!run || !chain)

@@ -14,7 +14,7 @@
     X(body_skin) X(body_refit) X(map_draw) X(map_draw_again)                                                                    \
     X(euler) X(euler_next) X(verlet_first) X(verlet_second) X(midpoint) X(runge)                   \
     X(edge_start) X(edge_begin) X(edge_round) X(edge_next) X(edge_end)                             \
-    X(velocity_implicit) X(position) X(predict) X(correct) X(shift) X(residual)                    \
+    X(implicit) X(implicit_next) X(predict) X(correct) X(shift) X(residual)                    \
     X(system) X(system_of_forces) X(matrix) X(factor)                                              \
     X(basis) X(basis_ghosts) X(patch_frame) X(lift) X(couple) X(factor_coarse)                     \
     X(cg_begin) X(cg_begin_coarse) X(cg_start) X(cg_start_preconditioned) X(cg_guess)              \

@@ -79,15 +79,9 @@ bool flow_euler_keeps(const struct model *model)
     return model->halving && !model_is_driven(model) && !model->correction_rounds;
 }
 
-static void swap_kept(struct flow_state *state)
-{
-    flow_fields_swap(state, FLOW_FIELD_x, FLOW_FIELD_kept_x);
-    flow_fields_swap(state, FLOW_FIELD_v, FLOW_FIELD_kept_v);
-}
-
 void flow_euler_restore(struct flow_state *state)
 {
-    swap_kept(state);
+    flow_swap_kept(state);
     flow_swap_halos(state);
 }
 
@@ -99,6 +93,6 @@ int flow_euler_end(struct flow_state *state)
         flow_fork_each(state, keeps ? &flow_kernel_euler_next : &flow_kernel_euler, &args);
     flow_swap_halos(state);
     if (keeps)
-        swap_kept(state);
+        flow_swap_kept(state);
     return code;
 }

@@ -14,9 +14,9 @@ static const double OVERSHOT = 0.5; /* of the slope at the begin of a Newton ste
 static const double LEAST_CUT = 0.1;
 enum { MAX_CUTS = 8 };
 
-static bool searches(const struct flow_state *state)
+static bool searches(const struct model *model)
 {
-    return model_is_implicit(state->flow->model) && state->flow->model->newton_steps > 1;
+    return model_is_implicit(model) && model->newton_steps > 1;
 }
 
 /* ---- Parts of a step ---- */
@@ -104,44 +104,97 @@ void flow_note_solve(const duite_call *call, const struct flow_table *t,
     status[FLOW_RESTARTS] = scalars->restarts;
 }
 
-/* v += dv, and what the solve took and lost of the momentum. A solve that failed in a step that
+/* v += dv, x += h v of a block, in place or beside the state. */
+struct implicit_move {
+    const phys_vec *from_x, *from_v;
+    phys_vec *x, *v, *halo_x, *halo_v;
+    double *status;
+};
+
+/* It notes, too, what the solve took and lost of the momentum. A solve that failed in a step that
  * must not leaves no scalars: then this does not run. */
-FLOW_KERNEL(velocity_implicit, FLOW_VELOCITY, struct flow_step_args,
-            (R(table), R(f), R(a), R(dv), R(r), RW(v), W(halo_v), R(scalars), SUM(status),
-             IF_MADE(tie_table)))
-static int velocity_implicit_body(const duite_call *call, const struct velocity_implicit_fields *on)
+static int implicit_move(const duite_call *call, const struct flow_table *t,
+                         const struct flow_step_args *step, const struct flow_solved *solved,
+                         const struct implicit_move *m)
 {
-    struct flow_table table = flow_table_in(call, on->table), *t = &table;
-    const struct flow_solved solved = {.value = flow_matrix_in(call, t, on->a),
-                                       .b = on->f,
-                                       .dv = on->dv,
-                                       .r = on->r,
-                                       .scalars = on->scalars,
-                                       .tie_table = on->tie_table};
-    flow_note_solve(call, t, &solved, on->status);
-    phys_advance(t->n, 1, on->dv, on->v);
-    flow_write_halo(t, on->v, on->halo_v);
-    return flow_check(call, t, on->args, on->v, "velocity", on->status);
+    flow_note_solve(call, t, solved, m->status);
+    if (m->x != m->from_x) {
+        memcpy(m->x, m->from_x, t->n * sizeof *m->x);
+        memcpy(m->v, m->from_v, t->n * sizeof *m->v);
+    }
+    phys_advance(t->n, 1, solved->dv, m->v);
+    flow_write_halo(t, m->v, m->halo_v);
+    flow_part_ends(call, FLOW_VELOCITY);
+    phys_advance(t->n, step->h, m->v, m->x);
+    flow_write_halo(t, m->x, m->halo_x);
+    const int code = flow_check(call, t, step, m->v, "velocity", m->status);
+    return code ? code : flow_check(call, t, step, m->x, "position", m->status);
 }
 
-FLOW_KERNEL(position, FLOW_POSITION, struct flow_step_args,
-            (R(table), R(v), RW(x), W(halo_x), SUM(status)))
-static int position_body(const duite_call *call, const struct position_fields *on)
+#define IMPLICIT_SOLVED(call, t, on)                                                               \
+    ((struct flow_solved){.value = flow_matrix_in(call, t, (on)->a),                               \
+                          .b = (on)->f,                                                            \
+                          .dv = (on)->dv,                                                          \
+                          .r = (on)->r,                                                            \
+                          .scalars = (on)->scalars,                                                \
+                          .tie_table = (on)->tie_table})
+
+/* In place. */
+FLOW_KERNEL(implicit, FLOW_POSITION, struct flow_step_args,
+            (R(table), R(f), R(a), R(dv), R(r), RW(x), RW(v), W(halo_x), W(halo_v), R(scalars),
+             SUM(status), IF_MADE(tie_table)))
+static int implicit_body(const duite_call *call, const struct implicit_fields *on)
 {
-    const struct flow_table table = flow_table_in(call, on->table), *t = &table;
-    phys_advance(t->n, on->args->h, on->v, on->x);
-    flow_write_halo(t, on->x, on->halo_x);
-    return flow_check(call, t, on->args, on->x, "position", on->status);
+    struct flow_table table = flow_table_in(call, on->table), *t = &table;
+    const struct flow_solved solved = IMPLICIT_SOLVED(call, t, on);
+    const struct implicit_move move = {.from_x = on->x,
+                                       .from_v = on->v,
+                                       .x = on->x,
+                                       .v = on->v,
+                                       .halo_x = on->halo_x,
+                                       .halo_v = on->halo_v,
+                                       .status = on->status};
+    return implicit_move(call, t, on->args, &solved, &move);
+}
+
+/* Beside the state, which stays as it is. */
+FLOW_KERNEL(implicit_next, FLOW_POSITION, struct flow_step_args,
+            (R(table), R(f), R(a), R(dv), R(r), R(x), R(v), W(kept_x), W(kept_v), W(halo_x),
+             W(halo_v), R(scalars), SUM(status), IF_MADE(tie_table)))
+static int implicit_next_body(const duite_call *call, const struct implicit_next_fields *on)
+{
+    struct flow_table table = flow_table_in(call, on->table), *t = &table;
+    const struct flow_solved solved = IMPLICIT_SOLVED(call, t, on);
+    const struct implicit_move move = {.from_x = on->x,
+                                       .from_v = on->v,
+                                       .x = on->kept_x,
+                                       .v = on->kept_v,
+                                       .halo_x = on->halo_x,
+                                       .halo_v = on->halo_v,
+                                       .status = on->status};
+    return implicit_move(call, t, on->args, &solved, &move);
+}
+
+/* Pins and contact write into the state before the solve, recorded rounds of a correction name its
+ * objects, and Newton steps have bases: then it is copied first. */
+bool flow_implicit_euler_keeps(const struct model *model)
+{
+    return model_keeps(model) && !flow_step_is_driven(model) && !model->correction_rounds &&
+           !searches(model);
 }
 
 static int fork_move(struct flow_state *state)
 {
+    const bool keeps = flow_implicit_euler_keeps(state->flow->model);
     struct flow_step_args args = flow_attempt_args(state);
     int code = flow_cg_iterate(state);
     state->guessed = state->attempt.length;
     if (!code)
-        code = flow_fork_each(state, &flow_kernel_velocity_implicit, &args);
-    return code ? code : flow_fork_each(state, &flow_kernel_position, &args);
+        code = flow_fork_each(state, keeps ? &flow_kernel_implicit_next : &flow_kernel_implicit,
+                              &args);
+    if (!code && keeps)
+        flow_swap_kept(state);
+    return code;
 }
 
 /* ---- Newton steps ----
@@ -227,12 +280,7 @@ FLOW_KERNEL(correct, FLOW_VELOCITY, struct flow_step_args,
 static int correct_body(const duite_call *call, const struct correct_fields *on)
 {
     struct flow_table table = flow_table_in(call, on->table), *t = &table;
-    const struct flow_solved solved = {.value = flow_matrix_in(call, t, on->a),
-                                       .b = on->f,
-                                       .dv = on->dv,
-                                       .r = on->r,
-                                       .scalars = on->scalars,
-                                       .tie_table = on->tie_table};
+    const struct flow_solved solved = IMPLICIT_SOLVED(call, t, on);
     const struct newton_move move = {on->dv, on->base_x, on->v, on->x, on->halo_v, on->halo_x};
     flow_note_solve(call, t, &solved, on->status);
     on->status[FLOW_SLOPE] = phys_slope(t->n, t->free, on->dv, on->f);
@@ -308,7 +356,7 @@ static int fork_bases(struct flow_state *state)
 /* Ends a step whose first system is made. */
 static int finish(struct flow_state *state, struct flow_step_args args)
 {
-    return searches(state) ? newton(state, args) : fork_correct(state, args, NULL);
+    return searches(state->flow->model) ? newton(state, args) : fork_correct(state, args, NULL);
 }
 
 int flow_implicit_euler_begin(struct flow_state *state)
@@ -318,7 +366,7 @@ int flow_implicit_euler_begin(struct flow_state *state)
 
 int flow_implicit_euler_end(struct flow_state *state)
 {
-    if (!searches(state))
+    if (!searches(state->flow->model))
         return fork_move(state);
     const int code = fork_bases(state);
     return code ? code : finish(state, flow_attempt_args(state));
@@ -398,7 +446,7 @@ int flow_bdf2_end(struct flow_state *state)
 
 void flow_implicit_status(const struct flow_state *state, double status[FLOW_STATUS])
 {
-    for (int i = 0; i < FLOW_STATUS && searches(state); i++)
+    for (int i = 0; i < FLOW_STATUS && searches(state->flow->model); i++)
         status[i] += state->newton.status[i];
 }
 
@@ -407,7 +455,7 @@ void flow_implicit_settle(struct flow_state *state, bool accepted, const double 
     struct flow_report *report = state->report;
     const bool touched = status[FLOW_TOUCHED] + status[FLOW_CORRECTED] > 0;
     state->smooth = accepted && !touched ? state->attempt.length : 0;
-    if (!accepted || !searches(state))
+    if (!accepted || !searches(state->flow->model))
         return;
     report->newton_steps += state->newton.steps;
     report->newton_unconverged += !state->newton.converged;

@@ -3,7 +3,8 @@
 #include "cloth/flow/integrators/integrator.h"
 
 const struct flow_integrator flow_integrators[] = {
-    [MODEL_IMPLICIT_EULER] = {flow_implicit_euler_begin, flow_implicit_euler_end, NULL, NULL},
+    [MODEL_IMPLICIT_EULER] = {flow_implicit_euler_begin, flow_implicit_euler_end,
+                              flow_implicit_euler_keeps, NULL},
     [MODEL_BDF2] = {NULL, flow_bdf2_end, NULL, NULL},
     [MODEL_EXPLICIT_EULER] = {NULL, flow_euler_end, flow_euler_keeps, flow_euler_restore},
     [MODEL_SYMPLECTIC_EULER] = {NULL, flow_euler_end, flow_euler_keeps, flow_euler_restore},

@@ -9,8 +9,8 @@ struct flow_integrator {
     int (*begin)(struct flow_state *state);
     /* Forks the rest, which ends with the new x and v and their halos; contact comes after it. */
     int (*end)(struct flow_state *state);
-    /* Whether its steps leave the state before them as what is kept, then what makes that the state
-     * again; NULL: it is copied before a step. */
+    /* Whether its steps leave the state before them as what is kept; NULL: it is copied before a
+     * step. Then what makes that the state again; NULL: a copy back. */
     bool (*keeps)(const struct model *model);
     void (*restore)(struct flow_state *state);
 };
@@ -23,6 +23,7 @@ extern const struct flow_integrator flow_integrators[];
  * what the runtime does. */
 int flow_implicit_euler_begin(struct flow_state *state);
 int flow_implicit_euler_end(struct flow_state *state);
+bool flow_implicit_euler_keeps(const struct model *model);
 int flow_bdf2_end(struct flow_state *state);
 int flow_euler_end(struct flow_state *state);
 bool flow_euler_keeps(const struct model *model);
@@ -34,6 +35,13 @@ int flow_runge_end(struct flow_state *state);
 
 /* Whether steps of a model do (keeps). Local. */
 bool flow_integrator_keeps(const struct model *model);
+/* When all tasks of such a step are forked: what they wrote beside the state becomes the state, and
+ * that is what is kept. Once more: back. */
+static inline void flow_swap_kept(struct flow_state *state)
+{
+    flow_fields_swap(state, FLOW_FIELD_x, FLOW_FIELD_kept_x);
+    flow_fields_swap(state, FLOW_FIELD_v, FLOW_FIELD_kept_v);
+}
 
 /* ---- Of implicit steps ---- */
 

@@ -64,8 +64,10 @@ static int restore_body(const duite_call *call, const struct restore_fields *on)
 int flow_restore(struct flow_state *state)
 {
     struct flow_block_args args;
-    if (!flow_integrator_keeps(state->flow->model))
+    const struct model *model = state->flow->model;
+    const struct flow_integrator *is = flow_integrators + model->integrator;
+    if (!is->restore || !flow_integrator_keeps(model))
         return flow_fork_each(state, &flow_kernel_restore, &args);
-    flow_integrators[state->flow->model->integrator].restore(state);
+    is->restore(state);
     return DUITE_OK;
 }

@@ -3,37 +3,37 @@
 #include "cloth/flow/bodies.h"
 
 #if WRONG == 1 /* a misspelt field */
-FLOW_KERNEL(position, FLOW_POSITION, struct flow_step_args, (R(table), R(v), RW(x), W(halo_y)))
+FLOW_KERNEL(implicit, FLOW_POSITION, struct flow_step_args, (R(table), R(v), RW(x), W(halo_y)))
 #elif WRONG == 2                 /* a field twice */
-FLOW_KERNEL(position, FLOW_POSITION, struct flow_step_args,
+FLOW_KERNEL(implicit, FLOW_POSITION, struct flow_step_args,
             (R(table), R(v), RW(x), W(halo_x), R(x)))
 #elif WRONG == 3                 /* a kernel that is in no list */
 FLOW_KERNEL(somewhere, FLOW_POSITION, struct flow_step_args, (R(table), R(v), RW(x), W(halo_x)))
 #elif WRONG == 4                 /* a word that is no mode */
-FLOW_KERNEL(position, FLOW_POSITION, struct flow_step_args, (R(table), R(v), WR(x), W(halo_x)))
+FLOW_KERNEL(implicit, FLOW_POSITION, struct flow_step_args, (R(table), R(v), WR(x), W(halo_x)))
 #elif WRONG == 5                 /* arguments that do not begin with the block */
 struct other {
     double h;
     uint32_t block;
 };
-FLOW_KERNEL(position, FLOW_POSITION, struct other, (R(table), R(v), RW(x), W(halo_x)))
+FLOW_KERNEL(implicit, FLOW_POSITION, struct other, (R(table), R(v), RW(x), W(halo_x)))
 #elif WRONG == 9                 /* their block is not the number of one */
 struct other {
     uint64_t block;
 };
-FLOW_KERNEL(position, FLOW_POSITION, struct other, (R(table), R(v), RW(x), W(halo_x)))
+FLOW_KERNEL(implicit, FLOW_POSITION, struct other, (R(table), R(v), RW(x), W(halo_x)))
 #elif WRONG == 10 || WRONG == 11 /* the block alone */
-FLOW_KERNEL(position, FLOW_POSITION, struct flow_block_args, (R(table), R(v), RW(x), W(halo_x)))
+FLOW_KERNEL(implicit, FLOW_POSITION, struct flow_block_args, (R(table), R(v), RW(x), W(halo_x)))
 #else
-FLOW_KERNEL(position, FLOW_POSITION, struct flow_step_args, (R(table), R(v), RW(x), W(halo_x)))
+FLOW_KERNEL(implicit, FLOW_POSITION, struct flow_step_args, (R(table), R(v), RW(x), W(halo_x)))
 #endif
 
 #if WRONG == 3
 #define FIELDS somewhere_fields
 #define BODY   somewhere_body
 #else
-#define FIELDS position_fields
-#define BODY   position_body
+#define FIELDS implicit_fields
+#define BODY   implicit_body
 #endif
 
 static int BODY(const duite_call *call, const struct FIELDS *on)

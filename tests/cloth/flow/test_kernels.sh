@@ -21,7 +21,7 @@ wrong() {
 
 ok "a right declaration compiles" compiles 0
 ok "a misspelt field does not" wrong 1 halo_y
-ok "a field twice does not" wrong 2 position_at_x
+ok "a field twice does not" wrong 2 implicit_at_x
 ok "a kernel that is in no list does not" wrong 3 FLOW_KERNEL_somewhere
 ok "a word that is no mode does not" wrong 4 '(requires|too few).* argument'
 ok "arguments that do not begin with the block do not" wrong 5 'begin with the block'

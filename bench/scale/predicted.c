@@ -221,4 +221,4 @@ const struct bench_case scale_predicted = {
 
 const struct bench_case scale_vast = {
     "vast", "a step of 16 million vertices on 64 hosts of 64 cores, predicted: wants 8 GB",
-    plan_vast, NULL, 1};
+    plan_vast, NULL, 3};

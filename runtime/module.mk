@@ -8,7 +8,7 @@ libduite_la_SOURCES = $(include_HEADERS)
 libduite_la_LIBADD = $(METIS_LIBS) $(HWLOC_LIBS) $(XXHASH_LIBS) $(MPI_LIBS) -lm
 libduite_la_LDFLAGS = $(AM_LDFLAGS) -version-info 0:0:0 -export-symbols-regex '^duite_'
 libduite_core_la_SOURCES = $(libduite_la_SOURCES)
-libduite_core_la_LINK = $(LIBTOOL_LINK)
+libduite_core_la_LDFLAGS = $(AM_LDFLAGS)
 libduite_core.a: libduite_core.la
 	$(AM_V_GEN)cp .libs/libduite_core.a $@
 CLEANFILES += libduite_core.a

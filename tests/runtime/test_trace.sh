@@ -116,7 +116,7 @@ done
 dot_is_whole() { # nodes are named before edges, which never point back
     ./duite-trace "$scratch/$1" --dot "$scratch/$1.dot" && awk '
         /->/ { from = substr($1, 2); to = substr($3, 2); if (from + 0 >= to + 0) { print; bad = 1 } n++ }
-        END { exit bad || n < 100 }' "$scratch/$1.dot" && grep -q 'label="position [0-9]*.nrank [01]' "$scratch/$1.dot"
+        END { exit bad || n < 100 }' "$scratch/$1.dot" && grep -q 'label="implicit_next [0-9]*.nrank [01]' "$scratch/$1.dot"
 }
 ok "dot of two" dot_is_whole two
 

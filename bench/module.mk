@@ -13,7 +13,7 @@ bench_libbench_a_SOURCES = bench/bench.h bench/environment.h bench/instructions.
 	bench/tasks/stencil.c bench/tasks/tiles.c bench/tasks/tree.c bench/tasks/wake.c bench/tiles.h \
 	bench/ranks/cg.c bench/ranks/delegate.c bench/ranks/forks.c bench/ranks/loaded.c bench/ranks/memory.c \
 	bench/ranks/migrate.c bench/ranks/ranks.c bench/ranks/ranks.h bench/ranks/sheet.c bench/ranks/sheet.h bench/ranks/stencil.c bench/ranks/tree.c bench/ranks/twin.c \
-	bench/cg/bench.c bench/cg/cg.h bench/cg/frames.c bench/cg/make.c bench/cg/ours.c bench/cg/plans.c bench/cg/search.c bench/cg/states.c bench/cg/touch.c bench/sets.h \
+	bench/cg/bench.c bench/cg/cg.h bench/cg/frames.c bench/cg/make.c bench/cg/ours.c bench/cg/plans.c bench/cg/search.c bench/cg/solution.c bench/cg/states.c bench/cg/touch.c bench/sets.h \
 	bench/contact/bench.c bench/contact/blender.c bench/contact/certify.c bench/contact/contact.h bench/contact/detect.c bench/contact/instructions.c \
 	bench/contact/maps.c \
 	bench/contact/plans.c bench/contact/scene.c bench/contact/shapes.c bench/contact/shapes.h bench/contact/solid.c bench/contact/state.c \

@@ -31,8 +31,8 @@ struct states_plan {
     const char *moved;   /* states of the same motion have the same one */
     uint32_t count;      /* iterations whose answer the state keeps */
     bool solved_here;    /* it is made without answers: plain loops would take too long, or know
-                          * nothing of the step's contacts; who first needs the solution solves to
-                          * 1e-10, and the state keeps it if it has no contacts */
+                          * nothing of the step's contacts; who first needs the solution finds it
+                          * (cg_find_solution) */
 };
 /* 0, or what serve_fail returns. */
 int states_plan_make(struct states_plan *plan, const char *name, bool quick);
@@ -119,6 +119,18 @@ int cg_run(const struct model *model, struct serve_request *request,
 /* Makes the session ready for a state and settings, with the system that is to be solved. The same.
  */
 int cg_ready(struct cg_session *session, struct serve_request *request);
+
+/* When solves end from now on, by whichever model a rank goes by. (solution.c, as what follows.) */
+void cg_stop_by(struct cg_session *session, enum model_stop stop, double tolerance, uint32_t most);
+/* Room for dv of all vertices, of the caller; NULL and serve_fail without memory. What the last
+ * solve left, in the numbering of the input: rank 0 knows the order of the blocks, others cut them
+ * as it does. 0, or what serve_fail returns. Collective. */
+double *cg_new_answer(const struct cg_session *session);
+int cg_answer(struct cg_session *session, double *dv);
+/* The solution of a state that was made without: less than 1e-9 of the right side is left. Rank 0
+ * puts it into the state's file. With contacts, which the system there lacks, it is solved for to
+ * 1e-10 and kept for these settings only. The same; collective. */
+int cg_find_solution(struct cg_session *session);
 
 extern const struct serve_run cg_runs[];
 int cg_solve_state(void *session, struct serve_request *request, double *value); /* run "solve" */

@@ -127,25 +127,14 @@ int cg_end(struct cg_session *s)
     return code;
 }
 
-/* Ranks other than 0 go by what they received of the model. */
-static void stop_by(struct cg_session *s, enum model_stop stop, double tolerance, uint32_t most)
-{
-    struct model *model[] = {&s->plan.model, s->flow ? &s->flow->received : NULL};
-    for (int i = 0; i < 2 && model[i]; i++) {
-        model[i]->stop = stop;
-        model[i]->tolerance = tolerance;
-        model[i]->max_iterations = most;
-    }
-}
-
 static void stop_after(struct cg_session *s, uint32_t count)
 {
-    stop_by(s, MODEL_STOP_COUNT, s->tolerance, count);
+    cg_stop_by(s, MODEL_STOP_COUNT, s->tolerance, count);
 }
 
 static void stop_by_default(struct cg_session *s)
 {
-    stop_by(s, s->stop, s->tolerance, s->most);
+    cg_stop_by(s, s->stop, s->tolerance, s->most);
 }
 
 static void settings_of(struct serve_request *request, char *settings, size_t size)
@@ -193,77 +182,6 @@ static void choose(const struct serve_request *request, struct model *model)
         model->grain = (uint32_t)atoi(grain);
 }
 
-/* dv, in the numbering of the input. Rank 0 knows the order of the blocks, others cut them as it
- * does. */
-static int answer(struct cg_session *s, double *dv)
-{
-    const struct flow *flow = s->flow;
-    const uint32_t *vertex = flow->vertex ? flow->vertex : s->state.order;
-    int code = 0;
-    for (uint32_t b = 0; b < flow->tables.n_blocks && !code; b++) {
-        const struct flow_table *t = flow->tables.block + b;
-        code = tasks_code(duite_get(s->rt, s->run.block[b].dv, s->run.rows));
-        for (uint32_t i = 0; i < t->n && !code; i++)
-            memcpy(dv + 3 * (size_t)vertex[t->first + i], s->run.rows + 4 * (size_t)i,
-                   3 * sizeof *dv);
-    }
-    return code;
-}
-
-static double *new_answer(const struct cg_session *s)
-{
-    double *dv = calloc((size_t)s->state.system.n + 1, 3 * sizeof *dv);
-    if (!dv)
-        serve_no_memory();
-    return dv;
-}
-
-/* Whether what the state has as its solution is that of its system. */
-static bool is_solved(const struct state *state)
-{
-    return state_left(state, state->system.dv) < 1e-9;
-}
-
-static int solve_to(struct cg_session *s, double tolerance)
-{
-    enum { MOST = 20000 };
-    stop_by(s, MODEL_STOP_RELATIVE, tolerance, MOST);
-    const int code = tasks_code(flow_cg(&s->run));
-    return code ? code : answer(s, s->solution);
-}
-
-/* The solver stops by the norm of its preconditioner, which says little of what is left of the
- * right side: it is asked for more only where too much is, as the last digits take large states
- * minutes. */
-static int solve_and_check(struct cg_session *s)
-{
-    int code = 0;
-    for (double tolerance = 1e-8; !code && !is_solved(&s->state); tolerance *= 0.1) {
-        if (tolerance < 1e-12)
-            return serve_fail("the solution of %s is not found", s->state.name);
-        code = solve_to(s, tolerance);
-        memcpy(s->state.system.dv, s->solution,
-               3 * (size_t)s->state.system.n * sizeof *s->solution);
-    }
-    return code;
-}
-
-/* Rank 0 puts it into the state's file unless there are contacts, which the system there does not
- * have: then it is to 1e-10, and kept for these settings only. */
-static int find_solution(struct cg_session *s)
-{
-    const bool touches = model_certifies(s->flow->model);
-    if (!touches && is_solved(&s->state))
-        return 0;
-    s->solution = new_answer(s);
-    if (!s->solution)
-        return 1;
-    if (touches)
-        return solve_to(s, 1e-10);
-    const int code = solve_and_check(s);
-    return code || !s->flow->vertex ? code : state_write(&s->state);
-}
-
 int cg_ready(struct cg_session *s, struct serve_request *request)
 {
     char settings[sizeof s->settings];
@@ -292,7 +210,7 @@ int cg_ready(struct cg_session *s, struct serve_request *request)
     if (!code && !s->flow->vertex)
         code = cut_again(s);
     if (!code && s->plan.solved_here)
-        code = find_solution(s);
+        code = cg_find_solution(s);
     if (!code)
         snprintf(s->settings, sizeof s->settings, "%s", settings);
     return code;
@@ -301,10 +219,10 @@ int cg_ready(struct cg_session *s, struct serve_request *request)
 /* One solve; how far it is from the solution. */
 static int error_of(struct cg_session *s, double *error)
 {
-    double *dv = new_answer(s);
+    double *dv = cg_new_answer(s);
     int code = dv ? tasks_code(flow_cg(&s->run)) : 1;
     if (!code)
-        code = answer(s, dv);
+        code = cg_answer(s, dv);
     if (!code)
         *error = state_distance(&s->state, dv, s->solution ? s->solution : s->state.system.dv);
     free(dv);
@@ -351,8 +269,8 @@ static int cg(void *context, struct serve_request *request, double *value)
     stop_after(s, count);
     if (!code)
         code = time_solve(s, value);
-    double *dv = code ? NULL : new_answer(s);
-    code = dv ? answer(s, dv) : 1;
+    double *dv = code ? NULL : cg_new_answer(s);
+    code = dv ? cg_answer(s, dv) : 1;
     if (!code)
         code = state_check(&s->state, count, dv);
     free(dv);

@@ -9,7 +9,7 @@
  * the rivals; vectors are n x 3 in the numbering of the input. */
 struct state {
     char name[40];
-    struct solve_system system; /* x, v: at which it was made; dv: the solution to 1e-12 */
+    struct solve_system system; /* x, v: at which it was made; dv: the solution */
     double *after;              /* dv after `count` iterations of conjugate gradients from zero */
     uint32_t count;
     uint32_t *order; /* n: the vertices in the order of the cloth's blocks, for locality */

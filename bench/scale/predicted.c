@@ -62,14 +62,14 @@ static void plan_vast(struct measure *measure, const struct bench_options *optio
     }
 }
 
-/* The trace of a step, made when it is asked for; the last one is kept, unless there shall be a new
+/* The trace of a step, made when it is asked for; the last one is kept. fresh: it shall be a new
  * one. NULL, and serve_fail. */
-static struct trace_run *trace_of(struct serve_request *request, bool anew)
+static struct trace_run *trace_of(struct serve_request *request, bool fresh)
 {
     static struct trace_run *run;
     static uint64_t side;
     char folder[TEMPORARY_PATH], arguments[SCALE_PATH + 200], path[SCALE_PATH + 20];
-    if (run && side == serve_number(request, "side") && !anew)
+    if (run && side == serve_number(request, "side") && !fresh)
         return run;
     trace_run_free(run);
     run = NULL;

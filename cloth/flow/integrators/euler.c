@@ -3,15 +3,9 @@
 #include "cloth/flow/integrators/explicit.h"
 
 /* x and v by the forces at where they are. */
-struct euler_move {
-    const phys_vec *from_x, *from_v;
-    phys_vec *x, *v, *halo_x, *halo_v;
-    double *status;
-};
-
 static int euler_move(const duite_call *call, const struct flow_table *t,
                       const struct flow_step_args *step, const struct flow_view *view,
-                      const struct euler_move *m)
+                      const struct flow_move *m)
 {
     const bool ahead = flow_of(call)->model->integrator == MODEL_SYMPLECTIC_EULER;
     phys_vec *f = flow_force_room(call);
@@ -43,13 +37,7 @@ static int euler_body(const duite_call *call, const struct euler_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table);
     const struct flow_view view = FLOW_VIEW(on);
-    const struct euler_move move = {.from_x = on->x,
-                                    .from_v = on->v,
-                                    .x = on->x,
-                                    .v = on->v,
-                                    .halo_x = on->spare_halo_x,
-                                    .halo_v = on->spare_halo_v,
-                                    .status = on->status};
+    const struct flow_move move = FLOW_MOVE(on, x, v, spare_halo_x, spare_halo_v);
     return euler_move(call, &table, on->args, &view, &move);
 }
 
@@ -62,13 +50,7 @@ static int euler_next_body(const duite_call *call, const struct euler_next_field
 {
     const struct flow_table table = flow_table_in(call, on->table);
     const struct flow_view view = FLOW_VIEW(on);
-    const struct euler_move move = {.from_x = on->x,
-                                    .from_v = on->v,
-                                    .x = on->kept_x,
-                                    .v = on->kept_v,
-                                    .halo_x = on->spare_halo_x,
-                                    .halo_v = on->spare_halo_v,
-                                    .status = on->status};
+    const struct flow_move move = FLOW_MOVE(on, kept_x, kept_v, spare_halo_x, spare_halo_v);
     return euler_move(call, &table, on->args, &view, &move);
 }
 

@@ -104,18 +104,11 @@ void flow_note_solve(const duite_call *call, const struct flow_table *t,
     status[FLOW_RESTARTS] = scalars->restarts;
 }
 
-/* v += dv, x += h v of a block, in place or beside the state. */
-struct implicit_move {
-    const phys_vec *from_x, *from_v;
-    phys_vec *x, *v, *halo_x, *halo_v;
-    double *status;
-};
-
-/* It notes, too, what the solve took and lost of the momentum. A solve that failed in a step that
- * must not leaves no scalars: then this does not run. */
+/* v += dv, x += h v of a block; notes what the solve took and lost of the momentum. A solve that
+ * failed in a step that must not leaves no scalars: then this does not run. */
 static int implicit_move(const duite_call *call, const struct flow_table *t,
                          const struct flow_step_args *step, const struct flow_solved *solved,
-                         const struct implicit_move *m)
+                         const struct flow_move *m)
 {
     flow_note_solve(call, t, solved, m->status);
     if (m->x != m->from_x) {
@@ -147,13 +140,7 @@ static int implicit_body(const duite_call *call, const struct implicit_fields *o
 {
     struct flow_table table = flow_table_in(call, on->table), *t = &table;
     const struct flow_solved solved = IMPLICIT_SOLVED(call, t, on);
-    const struct implicit_move move = {.from_x = on->x,
-                                       .from_v = on->v,
-                                       .x = on->x,
-                                       .v = on->v,
-                                       .halo_x = on->halo_x,
-                                       .halo_v = on->halo_v,
-                                       .status = on->status};
+    const struct flow_move move = FLOW_MOVE(on, x, v, halo_x, halo_v);
     return implicit_move(call, t, on->args, &solved, &move);
 }
 
@@ -165,13 +152,7 @@ static int implicit_next_body(const duite_call *call, const struct implicit_next
 {
     struct flow_table table = flow_table_in(call, on->table), *t = &table;
     const struct flow_solved solved = IMPLICIT_SOLVED(call, t, on);
-    const struct implicit_move move = {.from_x = on->x,
-                                       .from_v = on->v,
-                                       .x = on->kept_x,
-                                       .v = on->kept_v,
-                                       .halo_x = on->halo_x,
-                                       .halo_v = on->halo_v,
-                                       .status = on->status};
+    const struct flow_move move = FLOW_MOVE(on, kept_x, kept_v, halo_x, halo_v);
     return implicit_move(call, t, on->args, &solved, &move);
 }
 

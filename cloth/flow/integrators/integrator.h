@@ -35,6 +35,18 @@ int flow_runge_end(struct flow_state *state);
 
 /* Whether steps of a model do (keeps). Local. */
 bool flow_integrator_keeps(const struct model *model);
+/* What a task of a block moves, from x and v in place or beside the state; status: where it says
+ * that a row has gone too far. */
+struct flow_move {
+    const phys_vec *from_x, *from_v;
+    phys_vec *x, *v, *halo_x, *halo_v;
+    double *status;
+};
+/* FLOW_MOVE(on, kept_x, kept_v, halo_x, halo_v): to these fields of the kernel. */
+#define FLOW_MOVE(on, to_x, to_v, to_halo_x, to_halo_v)                                            \
+    ((struct flow_move){(on)->x, (on)->v, (on)->to_x, (on)->to_v, (on)->to_halo_x,                 \
+                        (on)->to_halo_v, (on)->status})
+
 /* When all tasks of such a step are forked: what they wrote beside the state becomes the state, and
  * that is what is kept. Once more: back. */
 static inline void flow_swap_kept(struct flow_state *state)

@@ -103,7 +103,7 @@ __attribute__((always_inline)) static inline bool plan_node_run_body(struct task
 
 /* A worker that counts down a node for which one more is missing may await it: then whoever is that
  * leaves the node alone, and the worker runs it once nothing is missing, or gives it up before.
- * Meanwhile the replay cannot end. */
+ * Meanwhile the replay cannot end, since the node is certain to run. */
 #define PLAN_AWAITED (UINT32_C(1) << 31) /* in `pending` */
 
 static inline bool plan_node_await(struct task *task)
@@ -131,7 +131,9 @@ typedef void plan_ready(struct task_graph *graph, struct worker *worker, struct 
 typedef bool plan_awaits(struct worker *worker, struct task *task);
 
 /* A node is over: counts its successors down; `ready` gets each for which it was the last. `awaits`
- * (or NULL) is asked of each for which one more is missing, and says whether it is awaited now. */
+ * (or NULL) is asked of each for which one more is missing, and says whether it is awaited now. It
+ * is asked of no node of a round that may not come: such a node does not keep the replay from its
+ * end. */
 __attribute__((always_inline)) static inline void
 plan_node_count_down(struct task_graph *graph, struct worker *worker, struct task *task,
                      plan_ready *ready, plan_awaits *awaits)
@@ -139,6 +141,7 @@ plan_node_count_down(struct task_graph *graph, struct worker *worker, struct tas
     struct plan_node *node = task->node;
     struct plan *plan = node->plan;
     struct task **next = node->next, **stop = next + node->n_next;
+    struct task **certain = next + (plan->decides ? node->n_cyclic : 0);
     const uint64_t round = atomic_load_explicit(&node->round, memory_order_relaxed);
     const uint64_t end = atomic_load_explicit(&plan->last, memory_order_relaxed);
     const bool decides = task->type == TASK_NODE_FLAG;
@@ -153,7 +156,7 @@ plan_node_count_down(struct task_graph *graph, struct worker *worker, struct tas
     for (next += last ? node->n_cyclic : 0; next < stop; next++) {
         _Atomic uint32_t *pending = &(*next)->pending;
         const uint32_t before = atomic_load_explicit(pending, memory_order_acquire);
-        if (awaits && before == 2 && awaits(worker, *next))
+        if (awaits && before == 2 && next >= certain && awaits(worker, *next))
             continue;
         /* The last one needs no atomic subtraction: nobody else has the counter then. */
         const bool was_last =

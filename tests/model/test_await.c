@@ -2,7 +2,10 @@
  * that awaits it waits to the end or gives it up, each node runs once, after all that it waits for.
  *
  * Each thread is a worker at the end of a node of its own, which every successor waits for. Like
- * the workers of nodes.c it awaits one successor at most, and none once another one is its next. */
+ * the workers of nodes.c it awaits one successor at most, and none once another one is its next.
+ *
+ * In two cases the successors are those of a round that may not come: they wait for one node more,
+ * which decides on it, and does not run. */
 #include "tests/model/runtime.h"
 
 #include "runtime/plan/node.h"
@@ -11,6 +14,7 @@ enum { MOST = 3, LOOKS = 2 /* of a worker at what it awaits */ };
 
 /* Workers, each with one node that is over; nodes that wait for all of these. */
 static uint32_t workers, nodes;
+static bool undecided; /* the nodes are those of a round that may not come */
 
 static struct {
     struct plan plan;
@@ -79,13 +83,17 @@ static void start(void)
 {
     memset(&its, 0, sizeof its);
     atomic_init(&its.plan.last, 1); /* not the last round */
+    its.plan.decides = undecided;
     its.plan.nodes = explore_alloc((workers + nodes) * PLAN_NODE_BYTES);
     for (uint32_t i = 0; i < workers + nodes; i++) {
         struct task *task = plan_task(&its.plan, i);
         task->type = TASK_NODE;
         task->node = (struct plan_node *)(void *)((unsigned char *)task + PLAN_NODE_AT);
-        *task->node = (struct plan_node){.plan = &its.plan, .next = its.next, .n_next = nodes};
-        atomic_init(&task->pending, workers);
+        *task->node = (struct plan_node){.plan = &its.plan,
+                                         .next = its.next,
+                                         .n_next = nodes,
+                                         .n_cyclic = undecided ? nodes : 0};
+        atomic_init(&task->pending, workers + undecided);
         if (i >= workers)
             its.next[i - workers] = task;
     }
@@ -97,14 +105,33 @@ static void end(void)
         explore_check(its.ran[i] == 1);
 }
 
+/* Counters are what the next replay finds: none is marked as awaited. */
+static void end_undecided(void)
+{
+    for (uint32_t i = 0; i < workers; i++)
+        explore_check(!its.worker[i].awaited);
+    for (uint32_t i = 0; i < nodes; i++)
+        explore_check(!its.ran[i] &&
+                      atomic_load_explicit(&its.next[i]->pending, memory_order_relaxed) == 1);
+}
+
 static struct explore_case of(const char *name, uint32_t n_workers, uint32_t n_nodes)
 {
     workers = n_workers;
     nodes = n_nodes;
+    undecided = false;
     return (struct explore_case){.name = name,
                                  .start = start,
                                  .thread = {first, second, workers > 2 ? third : NULL},
                                  .end = end};
+}
+
+static struct explore_case of_undecided(const char *name, uint32_t n_nodes)
+{
+    struct explore_case now = of(name, 2, n_nodes);
+    undecided = true;
+    now.end = end_undecided;
+    return now;
 }
 
 static const struct {
@@ -126,6 +153,8 @@ int main(int argc, char **argv)
     explore_passes((now = of("two workers, two nodes", 2, 2), &now));
     explore_passes((now = of("three workers, a node", 3, 1), &now));
     explore_passes((now = of("three workers, two nodes", 3, 2), &now));
+    explore_passes((now = of_undecided("two workers, a node that may not come", 1), &now));
+    explore_passes((now = of_undecided("two workers, two nodes that may not come", 2), &now));
     for (size_t i = 0; i < sizeof plants / sizeof plants[0]; i++)
         explore_finds((now = of(plants[i].shows, 2, 1), &now), plants[i].plant);
     return explore_end();

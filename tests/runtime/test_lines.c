@@ -1,13 +1,14 @@
 /* Lines of a few points, of which each needs its neighbours at each step: workers await nodes of
  * each other (runtime/workers/nodes.c). All values, against a loop; of recorded graphs and of forks
- * that are recognised, with bodies that take unequal times. */
+ * that are recognised, with bodies that take unequal times. And two values that change side by
+ * side, of which one decides on further rounds: the other one's next node may never come. */
 #include "tests/support/unit.h"
 
 #include <duite.h>
 #include <stdbool.h>
 #include <string.h>
 
-enum { MOST = 4, ROUNDS = 3000 };
+enum { MOST = 4, ROUNDS = 3000, REPLAYS = 20000 };
 
 struct line {
     duite_object object[2][MOST];
@@ -23,12 +24,16 @@ static uint64_t value_after(const uint64_t *old, size_t n)
     return value;
 }
 
+static void turn(unsigned times)
+{
+    for (volatile unsigned i = 0; i < times; i++)
+        ;
+}
+
 /* Now and then one takes longer, some of them too long to be awaited. */
 static void linger(uint64_t value)
 {
-    const unsigned turns = value % 31 ? (unsigned)(value % 7) : 4000 * (unsigned)(value % 2);
-    for (volatile unsigned i = 0; i < turns; i++)
-        ;
+    turn(value % 31 ? (unsigned)(value % 7) : 4000 * (unsigned)(value % 2));
 }
 
 static int step(const duite_call *call)
@@ -99,17 +104,22 @@ static void line_run(duite *rt, struct line *line, unsigned rounds, bool recorde
     ck_assert_int_eq(duite_graph_free(rt, graph), 0);
 }
 
+static void start(duite **rt, const duite_kernel *const *kernels, unsigned threads)
+{
+    duite_options options = duite_options_default();
+    options.kernels = kernels;
+    options.threads = threads;
+    options.bind = 0;
+    ck_assert_msg(!duite_start(rt, &options), "%s", duite_message());
+}
+
 static void line_check(unsigned points, unsigned threads, bool recorded)
 {
     const unsigned rounds = unit_quick() ? ROUNDS / 10 : ROUNDS;
     struct line line = {.points = points};
     uint64_t value[MOST] = {0}, got;
     duite *rt = NULL;
-    duite_options options = duite_options_default();
-    options.kernels = KERNELS;
-    options.threads = threads;
-    options.bind = 0;
-    ck_assert_msg(!duite_start(&rt, &options), "%s", duite_message());
+    start(&rt, KERNELS, threads);
     for (unsigned i = 0; i < points; i++) {
         value[i] = i;
         for (int s = 0; s < 2; s++)
@@ -136,11 +146,72 @@ START_TEST(neighbours_wait_for_each_other)
 }
 END_TEST
 
+/* ---- Rounds that one value decides on ---- */
+
+/* Both bodies take so long that two workers run them, and either may be the last. */
+static int change(const duite_call *call)
+{
+    uint64_t *value = duite_out(call, 0, uint64_t);
+    *value = value_after(value, 1);
+    turn((unsigned)(*value % 1000));
+    return 0;
+}
+
+static int pass(const duite_call *call)
+{
+    int32_t *left = duite_out(call, 0, int32_t);
+    --*left;
+    turn(700 * (unsigned)(*left % 3));
+    return 0;
+}
+
+static const duite_kernel CHANGE = {.name = "change", .body = change, .access = {DUITE_RW}};
+static const duite_kernel PASS = {.name = "pass", .body = pass, .access = {DUITE_RW}};
+
+struct pair {
+    duite_object value, left;
+};
+
+static int pair_round(duite *rt, void *context)
+{
+    const struct pair *pair = context;
+    return duite_fork(rt, &CHANGE, NULL, 1, &pair->value) |
+           duite_fork(rt, &PASS, NULL, 1, &pair->left);
+}
+
+START_TEST(rounds_that_do_not_come_are_not_awaited)
+{
+    const unsigned replays = unit_quick() ? REPLAYS / 10 : REPLAYS;
+    struct pair pair;
+    uint64_t value = 0, got;
+    duite *rt = NULL;
+    duite_graph graph;
+    start(&rt, (const duite_kernel *const[]){&CHANGE, &PASS, NULL}, 2);
+    ck_assert_int_eq(duite_new(rt, DUITE_I64, 1, &pair.value), 0);
+    ck_assert_int_eq(duite_new(rt, DUITE_I32, 1, &pair.left), 0);
+    ck_assert_int_eq(duite_graph_new(rt, pair_round, &pair, &graph), 0);
+    for (unsigned i = 0; i < replays; i++) {
+        const int32_t rounds = 20 + (int32_t)(i % 3);
+        ck_assert_int_eq(duite_set(rt, pair.left, &rounds), 0);
+        ck_assert_int_eq(duite_replay_while(rt, graph, pair.left, 99), 0);
+        for (int32_t k = 0; k < rounds; k++)
+            value = value_after(&value, 1);
+    }
+    ck_assert_int_eq(duite_get(rt, pair.value, &got), 0);
+    ck_assert_uint_eq(got, value);
+    ck_assert_int_eq(duite_graph_free(rt, graph), 0);
+    ck_assert_int_eq(duite_free(rt, pair.value), 0);
+    ck_assert_int_eq(duite_free(rt, pair.left), 0);
+    ck_assert_int_eq(duite_stop(&rt), 0);
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("lines");
     TCase *test = tcase_create("lines");
     tcase_add_test(test, neighbours_wait_for_each_other);
+    tcase_add_test(test, rounds_that_do_not_come_are_not_awaited);
     suite_add_tcase(suite, test);
     return unit_run(suite);
 }

@@ -1,13 +1,15 @@
 #!/bin/sh
 # Checkpoints: a run that is killed at any moment, by SIGKILL, and restarted on other ranks and threads ends with the state, the frames,
-# the tables and the report of one that was left alone. DUITE_KILLS: how often each scene is killed. Then a later end, and bad input.
+# the tables and the report of one that was left alone. Then a later end, and bad input.
 # shellcheck disable=SC2086 # commands of several words
 . "${srcdir:-.}/tests/support/tap.sh"
 skip_unless "$DUITE_CLOTH"
 plan_later
 here=$PWD
 cd "$scratch" || exit 99
-kills=${DUITE_KILLS:-2}
+kills=2 rounds=2
+if quick; then kills=1 rounds=1; fi
+if test "${DUITE_LONG:-}" = 1; then kills=4 rounds=6; fi
 mpi="${MPIRUN:-mpirun} --oversubscribe --bind-to none -n"
 
 cat > sheet.yaml << 'END'
@@ -107,8 +109,6 @@ killed() { # SCENE: killed some times, then left alone
     cat said
     test $status = 0 && same_as $scene killed killed.json
 }
-rounds=2
-test "$kills" -gt 2 && rounds=6
 for round in $(seq $rounds); do
     for scene in sheet pile phases; do ok "$scene, killed and restarted, round $round" killed $scene; done
 done

@@ -1,14 +1,16 @@
 #!/bin/sh
-# Programs as a user writes them, which check their own answers: alone under every scheduler, on 2 and 3 ranks, and in
-# checking mode.
+# Programs as a user writes them, which check their own answers: alone under every scheduler (quick: under two), on 2 and 3 ranks,
+# and in checking mode.
 . "${srcdir:-.}/tests/support/tap.sh"
 plan_later
 
+schedulers='steal fifo lifo priority static shuffle'
+if quick; then schedulers='steal shuffle'; fi
 checking() { (DUITE_CHECK=accesses; export DUITE_CHECK; "$@"); }
 
 for example in dot stencil cholesky cg fib quicksort; do
     program=tests/examples/$example
-    for scheduler in steal fifo lifo priority static shuffle; do
+    for scheduler in $schedulers; do
         ok "$example under $scheduler" limited $program $scheduler
     done
     ok "$example on 2 ranks" ranks 2 $program

@@ -28,17 +28,13 @@ AM_TESTS_ENVIRONMENT = \
 AM_DISTCHECK_CONFIGURE_FLAGS = DUITE_QUICK=1
 
 # In place of automake's rule of this name: one plain line with the sums of all cases at the end, also after a failure. TEST_JOBS
-# tests run at once, whatever make's own -j: most have several ranks or threads, and wait for them. The longest begin, or one of them
-# runs alone at the end.
+# tests run at once, whatever make's own -j: most have several ranks or threads, and wait for them.
 TEST_JOBS = 2
-LONGEST = tests/cloth/flow/test_checked tests/whole/test_same_hash.sh tests/whole/test_checkpoint.sh tests/cloth/flow/test_ranks.sh \
-	tests/bench/test_compare.sh tests/cloth/flow/test_levels
-longest_logs = $(filter $(TEST_LOGS),$(addsuffix .log,$(basename $(LONGEST))))
 check-TESTS: $(check_PROGRAMS)
-	@logs='$(longest_logs) $(filter-out $(longest_logs),$(TEST_LOGS))'; \
-	  trs=`for log in $$logs; do echo $${log%.log}.trs; done`; \
+	@$(am__set_TESTS_bases); \
+	  logs=`for base in $$bases; do echo $$base.log; done`; trs=`for base in $$bases; do echo $$base.trs; done`; \
 	  rm -f $$logs $$trs $(TEST_SUITE_LOG); status=0; \
-	  $(MAKE) $(AM_MAKEFLAGS) -j$(TEST_JOBS) $(TEST_SUITE_LOG) TEST_LOGS="$$logs" || status=$$?; \
+	  $(MAKE) $(AM_MAKEFLAGS) -j$(TEST_JOBS) $(TEST_SUITE_LOG) TEST_LOGS="`echo $$logs`" || status=$$?; \
 	  $(SHELL) $(srcdir)/tests/support/count.sh $$trs; exit $$status
 
 # Long tests fill the machine, and run one by one.

@@ -62,12 +62,26 @@ static inline uint64_t plan_node_round(const struct plan *plan, const struct pla
     return plan->first_round + atomic_load_explicit(&node->round, memory_order_relaxed);
 }
 
+/* A node whose task was never forked takes the number of the first task after the replay. So
+ * task_may_run lets each body that was forked later run it on top while it waits; it has no body of
+ * its own that could wait. */
+static inline void plan_node_renumber(const struct plan *plan, struct task *task)
+{
+    const uint64_t end = atomic_load_explicit(&plan->unforked, memory_order_relaxed);
+    if (task->number > end)
+        task->number = end;
+}
+
 /* Whether a node that waits for nothing else may run; if not, it is not the caller's any more. */
 static inline bool plan_node_may_run(struct plan *plan, struct task *task)
 {
-    return !plan->gate ||
-           task->number < atomic_load_explicit(&plan->gate->seen, memory_order_acquire) ||
-           plan_passes(plan, task);
+    if (!plan->gate)
+        return true;
+    if (task->number >= atomic_load_explicit(&plan->gate->seen, memory_order_acquire) &&
+        !plan_passes(plan, task))
+        return false;
+    plan_node_renumber(plan, task);
+    return true;
 }
 
 /* Runs a NODE; returns whether its body ran. */

@@ -13,7 +13,7 @@
  * A worker that parks a node looks at the gate once more, and then the replay may be over. So gates
  * outlive plans. Numbers of tasks are never used twice: what such a worker takes away is its own.
  */
-#include "runtime/plan/plan.h"
+#include "runtime/plan/node.h"
 
 #include "runtime/base/memory.h"
 
@@ -41,9 +41,12 @@ bool plan_passes(struct plan *plan, struct task *task)
 /* The number counts: meanwhile the node may have been taken, run, and parked for its next task. */
 void plan_unpark(struct plan *plan, struct worker *worker, uint32_t i, uint64_t number)
 {
-    if (atomic_compare_exchange_strong_explicit(&plan->gate->parked[i], &number, 0,
-                                                memory_order_acq_rel, memory_order_relaxed))
-        work_ready(plan->graph->pool, worker, plan_task(plan, i));
+    struct task *task = plan_task(plan, i);
+    if (!atomic_compare_exchange_strong_explicit(&plan->gate->parked[i], &number, 0,
+                                                 memory_order_acq_rel, memory_order_relaxed))
+        return;
+    plan_node_renumber(plan, task);
+    work_ready(plan->graph->pool, worker, task);
 }
 
 void plan_gate_close(struct plan *plan, struct plan_gate *gate, uint64_t first)

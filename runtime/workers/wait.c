@@ -180,12 +180,17 @@ bool work_may_fork(struct work_pool *pool)
 /* ---- A body that waits ---- */
 
 /* A body that waits has its worker run, on top of it, tasks that come before what the body does
- * next, and no others. So nothing can wait for a body that is buried on a stack. Proof: of all that
- * is not over, take what comes first in the reference order. It waits for nothing. If it is a task,
+ * next, and no others. So nothing can wait for a body that is buried on a stack. Proof: take the
+ * first in the reference order of all that is not over. It waits for nothing. If it is a task,
  * every waiting worker may run it, or waits for its own descendants alone, which will be over
  * without it. If it is a body that waits, all above it on its stack would come even earlier. So it
- * is on top, and its descendants are over. What a worker finds and may not run goes where others
- * look.
+ * is on top, and its descendants are over. A task that a worker finds and may not run goes where
+ * others look.
+ *
+ * The nodes of an open replay whose tasks were never forked stand in that order between the last
+ * task of the replay and the next fork, whose number they have (plan_node_renumber). They wait for
+ * each other and for what is earlier, and have no body. So they may run on top of any later body,
+ * and the proof holds for them, too.
  *
  * Offloaded tasks and their descendants, on all ranks, wait for nothing but one another. For them
  * the same holds by themselves: their order is that of all ranks, and what descends from a waiting

@@ -1,7 +1,8 @@
 /* The gate of an open replay (runtime/plan/open.c): a node runs each of its tasks once, in order,
  * none before the main program forked it, and none is forgotten, whoever comes first; after the
- * close each node passes once more, with the first task that was not forked. A gate is used again
- * by the next replay, while nobody is left in the one before.
+ * close each node passes once more, without a task. Then it has the number of the first task after
+ * the replay, so that any body forked later may run it while it waits (task_may_run). A gate is
+ * used again by the next replay, while nobody is left in the one before.
  *
  * Nodes wait for nothing else here: whoever has one runs it again and again, until it is parked. A
  * node that the main thread finds there runs at once, on the main thread. */
@@ -29,6 +30,7 @@ static struct {
 static void run(uint32_t node, uint64_t number)
 {
     if (number > forks) {
+        explore_check(number == forks + 1);
         explore_check(++its.voids[node] == 1);
         return;
     }

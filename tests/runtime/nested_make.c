@@ -22,6 +22,8 @@ struct maker {
     uint64_t random;
     unsigned fails; /* one task in so many; 0: none */
     bool plain;     /* the next fork postpones nothing: graphs of such tasks have a plan */
+    bool waits;     /* the next fork is of a task that begins with a get of what it was lent */
+    bool repeated;  /* it writes, too, and contributes nothing: rounds of such are recognised */
 };
 
 static unsigned draw(struct maker *maker, unsigned below)
@@ -55,8 +57,10 @@ static duite_mode draw_mode(struct maker *maker, duite_mode right, bool sized, u
     for (;;) {
         const duite_mode mode = (duite_mode)(1 + draw(maker, 8));
 
+        if (maker->repeated && (mode == DUITE_CW || mode >= DUITE_RP))
+            continue;
         /* Contributions are the most likely to go wrong: half of all. */
-        if (right == DUITE_RWP && !sized && draw(maker, 4) == 0)
+        if (right == DUITE_RWP && !sized && !maker->repeated && draw(maker, 4) == 0)
             return draw(maker, 2) && depth < MAX_DEPTH && !maker->plain ? DUITE_CWP : DUITE_CW;
         if (modes >> mode & 1 && !(mode >= DUITE_RP && (depth >= MAX_DEPTH || maker->plain)))
             return mode;
@@ -83,7 +87,10 @@ static void make_fork(struct maker *maker, unsigned self, struct table *table, i
     struct nest_action *action = add(&program->task[self], NEST_FORK);
     struct nest_task *task = &program->task[child];
     struct table given = {0};
-    const unsigned want = forced >= 0 ? 1 : draw(maker, NEST_MAX_PARAMS + 1);
+    const unsigned want =
+        forced >= 0 || maker->waits
+            ? 1
+            : maker->repeated + draw(maker, NEST_MAX_PARAMS + 1 - maker->repeated);
 
     memset(task, 0, sizeof *task);
     action->task = child;
@@ -95,12 +102,16 @@ static void make_fork(struct maker *maker, unsigned self, struct table *table, i
 
         for (unsigned i = 0; i < given.n; i++)
             twice |= action->object[i] == object;
-        if (twice || !allowed(table->right[object]) ||
+        if (twice || !allowed(table->right[object]) || (maker->repeated && table->sized[object]) ||
             (table->right[object] == DUITE_CWP && task->law != program->task[self].law))
             continue;
         duite_mode mode = draw_mode(maker, table->right[object], table->sized[object], depth);
         if (forced >= 0)
             mode = depth < MAX_DEPTH && draw(maker, 2) ? DUITE_WP : DUITE_W;
+        else if (maker->waits)
+            mode = draw(maker, 2) ? DUITE_RP : DUITE_RWP;
+        else if (maker->repeated && !given.n)
+            mode = draw(maker, 4) ? DUITE_RW : DUITE_W;
         table->written[object] |= mode == DUITE_W || mode == DUITE_WP;
         action->object[given.n] = object;
         task->mode[given.n] = mode;
@@ -110,7 +121,7 @@ static void make_fork(struct maker *maker, unsigned self, struct table *table, i
         given.max[given.n++] = table->max[object];
     }
     task->n = given.n;
-    maker->plain = false;
+    maker->plain = maker->repeated = false;
     make_task(maker, child, &given, depth);
 }
 
@@ -176,29 +187,45 @@ static void make_other(struct maker *maker, struct nest_task *task, struct table
         table->right[object] = DUITE_NONE;
 }
 
-/* A graph of a few forks and sets, which is replayed. */
+/* A few forks and sets: a graph, which is replayed, or forks that repeat themselves often enough to
+ * be recognised. The tasks of these fork no grandchildren: there are many of them. */
 static void make_replay(struct maker *maker, struct table *table)
 {
     struct nest_task *task = &maker->program->task[0];
     struct nest_action *replay = add(task, NEST_REPLAY);
     const unsigned first = task->n_actions, n = 1 + draw(maker, 3);
+    const bool forked = draw(maker, 2), plain = draw(maker, 3) > 0;
 
-    const bool plain = draw(maker, 3) > 0;
-
-    replay->max = 1 + draw(maker, 3);
+    replay->forked = forked;
+    replay->max = forked ? 70 + draw(maker, 80) : 1 + draw(maker, 3);
     for (unsigned tries = 0; tries < n; tries++) {
         const unsigned object = draw(maker, table->n);
 
-        maker->plain = plain;
-        if (draw(maker, 4))
-            make_fork(maker, 0, table, -1, 1);
+        maker->plain = plain || forked;
+        maker->repeated = forked;
+        if (forked || draw(maker, 4))
+            make_fork(maker, 0, table, -1, forked ? MAX_DEPTH - 1 : 1);
         else if (table->right[object])
             make_set(maker, task, table, object);
     }
-    maker->plain = false;
+    maker->plain = maker->repeated = false;
     replay->count = task->n_actions - first;
     if (!replay->count)
         task->n_actions--;
+    maker->waits = forked && draw(maker, 2);
+    if (maker->waits)
+        make_fork(maker, 0, table, -1, 1);
+    maker->waits = false;
+}
+
+static void make_get(struct nest_task *task, const struct table *table, unsigned object)
+{
+    struct nest_action *action = add(task, NEST_GET);
+
+    action->object[0] = object;
+    action->type = table->type[object];
+    action->count = action->max = table->max[object];
+    action->sized = table->sized[object];
 }
 
 /* Actions are kept free for what must be written, and for the main program's gets. */
@@ -227,16 +254,6 @@ static void make_actions(struct maker *maker, unsigned self, struct table *table
     }
 }
 
-static void make_get(struct nest_task *task, const struct table *table, unsigned object)
-{
-    struct nest_action *action = add(task, NEST_GET);
-
-    action->object[0] = object;
-    action->type = table->type[object];
-    action->count = action->max = table->max[object];
-    action->sized = table->sized[object];
-}
-
 static void make_task(struct maker *maker, unsigned self, const struct table *given, unsigned depth)
 {
     struct nest_program *program = maker->program;
@@ -246,6 +263,9 @@ static void make_task(struct maker *maker, unsigned self, const struct table *gi
     task->seed = duite_random(&maker->random);
     if (self && maker->fails && draw(maker, maker->fails) == 0)
         task->fails = 1 + (int)self;
+    if (maker->waits && table.n)
+        make_get(task, &table, 0);
+    maker->waits = false;
     make_actions(maker, self, &table, depth);
     for (unsigned i = 0; i < task->n; i++)
         if (task->mode[i] == DUITE_WP && !table.written[i] && draw(maker, 3))
@@ -298,7 +318,8 @@ static void print_task(const struct nest_program *program, unsigned self, int in
             printf(" type %d count %zu of %zu%s", (int)action->type, action->count, action->max,
                    action->sized ? ", sized" : "");
         else if (action->kind == NEST_REPLAY)
-            printf(" the next %zu, %zu times", action->count, action->max);
+            printf(" the next %zu, %zu times%s", action->count, action->max,
+                   action->forked ? ", by forks" : "");
         else if (action->kind != NEST_FORK && action->kind != NEST_WAIT)
             printf(" %u", action->object[0]);
         printf("\n");

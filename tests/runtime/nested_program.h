@@ -31,7 +31,8 @@ enum nest_kind {
     NEST_FORK,
     NEST_GET,
     NEST_WAIT,
-    NEST_REPLAY /* main program: the next `count` actions, forks and sets, `max` times */
+    NEST_REPLAY /* main program: the next `count` actions, forks and sets, `max` times: from a
+                   graph, or forked again and again */
 };
 
 /* What a task does, one thing after the other; objects by their place in its table. */
@@ -43,6 +44,7 @@ struct nest_action {
     size_t count, max; /* of the object, or (count) of what is set; they differ if it is sized */
     bool sized;
     int32_t priority; /* fork */
+    bool forked;      /* replay: the rounds are forked, so that they may be recognised */
     uint64_t seed;    /* set; 0: zeros, as many as there can be. Contribute */
 };
 

@@ -42,6 +42,12 @@ static int look(const duite_call *call)
     return 0;
 }
 
+/* Waits in its body for what it was lent. */
+static int ask(const duite_call *call)
+{
+    return duite_get(call->rt, call->param[0].object, duite_out(call, 1, uint32_t));
+}
+
 static int put(const duite_call *call)
 {
     const struct repeated_argument *args = call->args;
@@ -67,11 +73,12 @@ const duite_kernel MIX = {.name = "mix",
                            .access = MIX_ACCESS,
                            .args_size = sizeof(struct repeated_argument)},
                    HOLD = {.name = "hold", .body = hold, .access = {DUITE_RW}},
-                   LOOK = {.name = "look", .body = look, .access = {DUITE_R}};
+                   LOOK = {.name = "look", .body = look, .access = {DUITE_R}},
+                   ASK = {.name = "ask", .body = ask, .access = {DUITE_RP, DUITE_W}};
 
 duite_options repeated_options(int memo)
 {
-    static const duite_kernel *const KERNELS[] = {&MIX, &TWIN, &PUT, &HOLD, &LOOK, NULL};
+    static const duite_kernel *const KERNELS[] = {&MIX, &TWIN, &PUT, &HOLD, &LOOK, &ASK, NULL};
     duite_options options = misuse_options(MPI_COMM_WORLD);
 
     options.kernels = KERNELS;

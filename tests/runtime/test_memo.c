@@ -128,6 +128,35 @@ START_TEST(anything_else_ends_it)
 }
 END_TEST
 
+/* Rounds, and after them tasks that wait in their bodies for what the rounds wrote. */
+static void ask_after_rounds(const duite_options *options)
+{
+    struct repeated program;
+
+    repeated_start(&program, options);
+    for (int turn = 0; turn < 3; turn++) {
+        for (int i = 0; i < ROUNDS; i++)
+            repeated_round(&program);
+        for (int i = 1; i < OBJECTS; i += 2) {
+            ck_assert_int_eq(
+                DUITE_FORK(program.rt, &ASK, NULL, program.object[i], program.object[i - 1]),
+                DUITE_OK);
+            program.value[i - 1] = program.value[i];
+        }
+        repeated_expect(&program, turn);
+    }
+    ck_assert_uint_ge(repeated_stop(&program), ROUNDS * OBJECTS);
+}
+
+START_TEST(tasks_that_wait_come_after_rounds)
+{
+    duite_options options = repeated_options(ALWAYS);
+
+    for (options.threads = 1; options.threads <= 4; options.threads++)
+        ask_after_rounds(&options);
+}
+END_TEST
+
 /* The message names the task by its number. */
 static void fail_at(int memo, int fails_at, char *message, size_t size)
 {
@@ -258,6 +287,7 @@ int main(void)
     tcase_add_test(cases, nothing_is_recognised_where_it_is_off);
     tcase_add_test(cases, the_environment_switches_it_off);
     tcase_add_test(cases, anything_else_ends_it);
+    tcase_add_test(cases, tasks_that_wait_come_after_rounds);
     tcase_add_test(cases, failures_are_the_same);
     tcase_add_test(cases, a_round_may_end_anywhere);
     tcase_add_test(cases, short_rounds_are_recognised_at_once);

@@ -16,6 +16,8 @@ for n in 5 8; do
 done
 for seed in 1 2 3 4; do
     ok "50000 random trees of tasks, part $seed" limited tests/runtime/nested_programs --seed 1${seed}000000 --programs 50000
+    ok "50000 whose repeated rounds are recognised, part $seed" \
+        limited env DUITE_MEMO=always tests/runtime/nested_programs --seed 5${seed}000000 --programs 50000
     ok "25000 on 2 ranks, part $seed" ranks 2 tests/runtime/nested_programs --seed 2${seed}000000 --programs 25000
     ok "12500 on 3 ranks, part $seed" ranks 3 tests/runtime/nested_programs --seed 3${seed}000000 --programs 12500
 done

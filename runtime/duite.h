@@ -56,7 +56,8 @@ enum {
     DUITE_E_SIZE = -14,  /* an object grows beyond its maximum, or changes a size that is fixed */
     DUITE_E_CHECK = -15, /* checking mode: a body does not keep to what its kernel declares */
     DUITE_E_VIEW = -16, /* a view is used otherwise than under r, or cannot be, or is left behind */
-    DUITE_E_LOST = -17  /* a rank is lost: killed, or its host cut off */
+    DUITE_E_LOST = -17, /* a rank is lost: killed, or its host cut off */
+    DUITE_E_DEPTH = -18 /* bodies that wait are nested more deeply than the stack has room for */
 };
 
 /* The error message of the last call of this thread that failed; never NULL. Valid until the next
@@ -568,7 +569,8 @@ int duite_wait(duite *rt);
  *
  * duite_get waits for the value that the children forked so far leave, duite_wait for all of these
  * with their descendants; what the body does afterwards comes after them. Meanwhile its thread runs
- * other tasks that come earlier, on the same stack: a body must not wait with a lock held. A
+ * other tasks that come earlier, on the same stack: a body must not wait with a lock held. A wait
+ * for which three quarters of the stack are used returns DUITE_E_DEPTH, and did not wait. A
  * duite_wait returns the error that is first in the reference order among the descendants since the
  * body's last wait. The next wait of the main program returns it, too. A failed child poisons what
  * it writes, no more: its parent fails only if it says so.

@@ -130,9 +130,18 @@ int api_body_set(struct duite_call_private *body, duite_object object, const voi
     return body_remember(body, code);
 }
 
-/* Waiting ended early: everything did. */
-static int body_broken(const struct duite_call_private *body)
+/* The sentence is what the task says of its failure, should the body return the code. */
+BODY_ERROR body_too_deep(struct duite_call_private *body, const char *text)
 {
+    snprintf(body->text, sizeof body->text, "%s", text);
+    return DUITE_E_DEPTH;
+}
+
+/* The wait was not begun (code), or ended early, as everything did. */
+static int body_broken(struct duite_call_private *body, int code)
+{
+    if (code)
+        return body_too_deep(body, duite_message());
     return base_error(DUITE_E_MPI,
                       "communication between the ranks broke while a task of kernel %s waited",
                       body->graph->kernels[body->task->kernel]->name);
@@ -148,11 +157,14 @@ static int body_read(struct duite_call_private *body, struct data_version *versi
                      size_t *bytes)
 {
     struct task_scope *scope = task_inside(body);
+    int code = DUITE_OK;
     if (!data_version_ready(version))
-        work_inside(body->worker, scope, version_is_there, version);
+        code = work_inside(body->worker, scope, version_is_there, version);
     if (!data_version_ready(version))
-        return body_broken(body);
+        return body_broken(body, code);
     task_close_segment(scope);
+    if (version->poisoned && version->failure->code == DUITE_E_DEPTH)
+        body_too_deep(body, version->failure->text);
     if (version->poisoned)
         return task_failure_error(body->graph, version->failure);
     *bytes = version->packet->bytes;
@@ -215,12 +227,13 @@ int api_body_wait(struct duite_call_private *body)
     struct task_scope *scope = body->scope;
     if (!scope)
         return body_recall(body);
+    int code = DUITE_OK;
     if (!task_alone(scope))
-        work_inside(body->worker, scope, body_is_alone, scope);
+        code = work_inside(body->worker, scope, body_is_alone, scope);
     if (!task_alone(scope))
-        return body_broken(body);
+        return body_broken(body, code);
     task_close_segment(scope);
-    int code = body_recall(body);
+    code = body_recall(body);
     const struct data_failure *failure = code ? NULL : task_first_failure(scope);
     return failure ? task_failure_error(body->graph, failure) : code;
 }

@@ -83,6 +83,8 @@ const char *duite_code_text(int code)
         return "a view can only be read";
     case DUITE_E_LOST:
         return "a rank is lost";
+    case DUITE_E_DEPTH:
+        return "bodies that wait are nested too deeply for the stack";
     case DUITE_E_BINDING:
         return "an object does not fit the one it is bound to";
     default:

@@ -32,6 +32,19 @@ static bool thread_stack_fits(size_t bytes)
     return true;
 }
 
+struct base_stack base_stack_here(void)
+{
+    struct base_stack stack = {0};
+    pthread_attr_t attributes;
+    void *lowest = NULL;
+    if (pthread_getattr_np(pthread_self(), &attributes))
+        return stack;
+    if (!pthread_attr_getstack(&attributes, &lowest, &stack.bytes))
+        stack.floor = (const char *)lowest + stack.bytes / 4;
+    pthread_attr_destroy(&attributes);
+    return stack;
+}
+
 int base_thread_start(pthread_t *thread, const char *what, void *(*body)(void *), void *context)
 {
     const int reason = pthread_create(thread, NULL, body, context);

@@ -2,10 +2,18 @@
 #define DUITE_BASE_THREAD_H
 
 #include <pthread.h>
+#include <stddef.h>
 
 /* pthread_create with the default attributes. `what`: the thread's name in messages, "worker thread
  * 1 of 4". Errors: DUITE_E_MEMORY where the system has no room for the thread's stack, with its
  * bytes, else DUITE_E_SYSTEM with the system's reason. Local. */
 int base_thread_start(pthread_t *thread, const char *what, void *(*body)(void *), void *context);
+
+/* The calling thread's stack. */
+struct base_stack {
+    size_t bytes;      /* of all of it; 0: unknown */
+    const char *floor; /* an address below this one lies in its last quarter; NULL: unknown */
+};
+struct base_stack base_stack_here(void);
 
 #endif

@@ -85,6 +85,11 @@ bool task_lent(const struct duite_call_private *body, duite_object object);
  * in the reference order. A body that is neither an offloaded task's nor its descendant's may have
  * any of theirs. One that is may have, of those, what comes earlier in the order of all ranks. */
 bool task_may_run_other(const struct task_scope *scope, const struct task *task);
+/* Whether the task descends from the body whose scope it is. */
+bool task_descends(const struct task_scope *scope, const struct task *task);
+/* Whether a comes before b in the reference order; offloaded tasks and their descendants come
+ * before all others. Both may run on top of one body, and neither descends from the other. */
+bool task_is_earlier(const struct task *a, const struct task *b);
 static inline bool task_may_run(const struct task_scope *scope, const struct task *task)
 {
     return task->scope == scope || task_may_run_other(scope, task); /* most are its children */

@@ -147,24 +147,23 @@ const struct data_failure *task_first_failure(struct task_scope *scope)
     return failure;
 }
 
-/* Whether the task comes before what the body that waits in `scope` does next; both are offloaded
- * or descend from such. What was sent has a place that is not cut off (offload_may_go). So this is
- * right for a task that just came, whoever waits. */
-static bool place_is_earlier(const struct task *task, const struct task_scope *scope)
+/* Whether a comes before b, or is the same; both are offloaded or descend from such. What was sent
+ * has a place that is not cut off (offload_may_go). So this is right for a task that just came,
+ * whoever waits. */
+static bool place_is_earlier(const struct task *a, const struct task *b)
 {
-    struct data_failure other = {0}, own = {0};
-    task_failure_place(&other, task, NULL);
-    task_failure_place(&own, ((const struct task_nest *)scope)->body->task, NULL);
-    return other.number != own.number ? other.number < own.number
-                                      : memcmp(other.path, own.path, own.path_length) <= 0;
+    struct data_failure left = {0}, right = {0};
+    task_failure_place(&left, a, NULL);
+    task_failure_place(&right, b, NULL);
+    return left.number != right.number ? left.number < right.number
+                                       : memcmp(left.path, right.path, right.path_length) <= 0;
 }
 
-/* The same of two that have the same top. */
+/* Whether number a_number of scope a comes before b_number of b, or is the same; both scopes have
+ * the same top. */
 static bool number_is_earlier(const struct task_scope *a, uint64_t a_number,
-                              const struct task_scope *scope)
+                              const struct task_scope *b, uint64_t b_number)
 {
-    const struct task_scope *b = scope->parent;
-    uint64_t b_number = scope->number;
     for (; a->depth > b->depth; a = a->parent)
         a_number = a->number;
     for (; b->depth > a->depth; b = b->parent)
@@ -176,17 +175,29 @@ static bool number_is_earlier(const struct task_scope *a, uint64_t a_number,
     return a_number <= b_number;
 }
 
+bool task_is_earlier(const struct task *a, const struct task *b)
+{
+    const struct task_scope *root = &a->scope->graph->root;
+    if (a->scope->top == b->scope->top)
+        return number_is_earlier(a->scope, a->number, b->scope, b->number);
+    return a->scope->top != root && (b->scope->top == root || place_is_earlier(a, b));
+}
+
+bool task_descends(const struct task_scope *scope, const struct task *task)
+{
+    const struct task_scope *a = task->scope;
+    while (a->depth > scope->depth)
+        a = a->parent;
+    return a == scope;
+}
+
 bool task_may_run_other(const struct task_scope *scope, const struct task *task)
 {
-    const struct task_scope *a = task->scope, *root = &scope->graph->root;
-    uint64_t a_number = task->number;
-    for (; a->depth > scope->depth; a = a->parent)
-        a_number = a->number;
-    if (a == scope)
+    const struct task_scope *top = task->scope->top, *root = &scope->graph->root;
+    if (task_descends(scope, task) || (scope->top == root && top != root))
         return true;
-    if (scope->top == root && a->top != root)
-        return true;
-    if (a->top != scope->top)
-        return a->top != root && place_is_earlier(task, scope);
-    return (scope->outward || scope->top != root) && number_is_earlier(a, a_number, scope);
+    if (top != scope->top)
+        return top != root && place_is_earlier(task, ((const struct task_nest *)scope)->body->task);
+    return (scope->outward || scope->top != root) &&
+           number_is_earlier(task->scope, task->number, scope->parent, scope->number);
 }

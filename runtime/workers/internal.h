@@ -2,6 +2,7 @@
 #define DUITE_WORKERS_INTERNAL_H
 
 #include "runtime/base/monitor.h"
+#include "runtime/base/thread.h"
 #include "runtime/data/packet.h"
 #include "runtime/plan/plan.h"
 #include "runtime/task/body.h"
@@ -80,7 +81,9 @@ struct worker {
     bool may_chain; /* ... and may run one of them inline, as its next */
     bool polls;     /* is the poller */
     bool left_some; /* the heap from which it took a task has more: another worker is to be woken */
-    const struct task_scope *waits;     /* of the body that waits on top; NULL: none does */
+    const struct task_scope *waits; /* of the body that waits on top; NULL: none does */
+    unsigned nested;                /* bodies that wait on its stack */
+    struct base_stack stack;
     uint64_t within;                    /* ticks of tasks, messages and idling inside the body that
                                            runs */
     uint64_t gap;                       /* ticks between inline tasks, when last looked at */
@@ -159,6 +162,14 @@ static inline void work_leaves(struct worker *worker, const struct task *below)
     atomic_signal_fence(memory_order_seq_cst); /* the monitor has the fence: see standstill.c */
     if (atomic_load_explicit(&worker->pool->watched, memory_order_acquire))
         work_standstill_passes(worker->pool);
+}
+
+/* Whether any task that may run on top of the body that waits does so, in whatever order: below
+ * this many the stack does not matter, and the order of the queues is the faster one. */
+enum { WORK_NESTED_FREELY = 64 };
+static inline bool work_nests_freely(const struct worker *worker)
+{
+    return worker->nested <= WORK_NESTED_FREELY;
 }
 
 /* The task that became ready by the one that ran, and runs next on this worker; NULL: none. */

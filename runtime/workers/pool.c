@@ -69,6 +69,7 @@ static int pool_start_threads(struct work_pool *pool)
             return code;
     }
     work_cores_bind(pool->worker[0].unit);
+    pool->worker[0].stack = base_stack_here();
     return DUITE_OK;
 }
 

@@ -10,6 +10,7 @@
  * A body that waits has only such tasks run on top of it as come before what it does next: see
  * below. */
 #include "runtime/base/clock.h"
+#include "runtime/base/error.h"
 #include "runtime/workers/internal.h"
 
 #include <sched.h>
@@ -198,58 +199,87 @@ bool work_may_fork(struct work_pool *pool)
  * they never wait for it; they run nothing of the others. */
 enum {
     NOT_BARREN = -1,
-    SHARED_DEPTH = 16, /* of the shared queue's new end, that are looked at */
-    MAX_REFUSED = 4    /* tasks taken from others in vain between two pauses */
+    LOOKED_AT = 16, /* of a queue's new end, when one of them may run: the earliest is taken */
+    MAX_REFUSED = 4 /* tasks taken from others in vain between two pauses */
 };
 #define LONGEST_INSIDE_SECONDS 2e-4
+
+/* A body on top may wait, too, and have further ones run on top of it. So that few do, children
+ * come first; of other tasks the earliest that is at hand, which has most of what it needs. Where
+ * more than WORK_NESTED_FREELY bodies wait on a stack it is the earliest of all that lie in the
+ * worker's queue and the shared one: nothing there is earlier than that, so that it adds one level,
+ * and no more until something new becomes ready. What is nested by itself, children that wait for
+ * theirs, ends where the stack does: the wait then is an error. */
 
 /* What a waiting worker knows. */
 struct inside_wait {
     const struct task_scope *scope;
+    unsigned look;    /* at so many tasks of a queue, though one may run already */
     unsigned refused; /* tasks taken from others in vain since the last pause */
     bool paused;      /* just now */
     int64_t barren;   /* the mark of its own queue when nothing in it might run, or NOT_BARREN */
 };
 
-/* The newest of a queue of this worker that may run; the others keep their places, and those who
- * did not find them meanwhile look again. */
-static struct task *inside_dig(struct work_pool *pool, struct work_queue *queue,
-                               const struct task_scope *scope, unsigned depth)
+/* What a look through a queue found: the one to run, and those that go back, newest last. */
+struct inside_look {
+    const struct task_scope *scope;
+    struct task *best, *aside;
+    bool child; /* it is a descendant of the body */
+};
+
+/* The task was taken from the queue. */
+static void look_at(struct inside_look *look, struct task *task)
 {
-    struct task *aside = NULL, *task = NULL;
-    bool hidden = false;
-    while (depth-- && (task = work_queue_take(queue, DUITE_NEWEST)) && !task_may_run(scope, task)) {
-        task->next = aside;
-        aside = task;
+    struct task *other = task;
+    if (task->scope == look->scope || task_descends(look->scope, task))
+        look->child = true;
+    else if (!task_may_run_other(look->scope, task) ||
+             (look->best && task_is_earlier(look->best, task)))
         task = NULL;
-        hidden = true;
+    if (task) {
+        other = look->best;
+        look->best = task;
     }
-    while (aside) {
-        struct task *next = aside->next;
-        work_queue_push(queue, aside);
-        aside = next;
+    if (other) {
+        other->next = look->aside;
+        look->aside = other;
+    }
+}
+
+/* Looks from the new end on, at `most` tasks, and at so many only if one of those may run; then at
+ * the oldest. Those that do not run go back, and those who did not find them meanwhile look again.
+ */
+static struct task *inside_dig(struct work_pool *pool, struct work_queue *queue,
+                               const struct inside_wait *wait, unsigned most)
+{
+    struct inside_look look = {.scope = wait->scope};
+    struct task *task = NULL;
+    for (unsigned i = 0; i < most && !look.child && !(look.best && i >= wait->look); i++) {
+        if (!(task = work_queue_take(queue, DUITE_NEWEST)))
+            break;
+        look_at(&look, task);
+    }
+    if (!look.child && (task = work_queue_take(queue, DUITE_OLDEST)))
+        look_at(&look, task);
+    const bool hidden = look.aside;
+    while (look.aside) {
+        struct task *next = look.aside->next;
+        work_queue_push(queue, look.aside);
+        look.aside = next;
     }
     if (hidden)
         work_wake_one(pool, DUITE_NO_QUEUE);
-    return task;
+    return look.best;
 }
 
-/* The same of the shared queue, a few at its new end; and one at the old end, which goes to the
- * new one, so that all come by. */
-static struct task *inside_dig_shared(struct work_pool *pool, const struct task_scope *scope)
+/* The same of the shared queue; a few at its new end, and one at the old end, which goes to the new
+ * one, so that all come by. */
+static struct task *inside_dig_shared(struct work_pool *pool, const struct inside_wait *wait)
 {
     struct work_queue *queue = &pool->shared;
-    struct task *task = NULL;
     if (atomic_flag_test_and_set_explicit(&queue->token, memory_order_acquire))
         return NULL;
-    task = inside_dig(pool, queue, scope, SHARED_DEPTH);
-    if (!task) {
-        task = work_queue_take(queue, DUITE_OLDEST);
-        if (task && !task_may_run(scope, task)) {
-            work_queue_push(queue, task);
-            task = NULL;
-        }
-    }
+    struct task *task = inside_dig(pool, queue, wait, wait->look);
     atomic_flag_clear_explicit(&queue->token, memory_order_release);
     return task;
 }
@@ -321,11 +351,11 @@ static struct task *inside_find(struct worker *worker, struct inside_wait *wait)
     struct work_pool *pool = worker->pool;
     struct task *task = NULL;
     if (wait->barren < 0 || wait->barren != work_queue_mark(&worker->queue)) {
-        task = inside_dig(pool, &worker->queue, wait->scope, UINT32_MAX);
+        task = inside_dig(pool, &worker->queue, wait, UINT32_MAX);
         wait->barren = task ? NOT_BARREN : work_queue_mark(&worker->queue);
     }
     if (!task)
-        task = inside_dig_shared(pool, wait->scope);
+        task = inside_dig_shared(pool, wait);
     if (!task)
         task = inside_steal(worker, wait);
     worker->left_some =
@@ -339,13 +369,16 @@ __attribute__((noinline)) static void inside_wait(struct worker *worker,
                                                   bool (*done)(void *context), void *context)
 {
     struct comm *comm = worker->pool->setup.comm;
-    struct inside_wait wait = {.scope = scope, .barren = NOT_BARREN};
+    const struct inside_wait begin = {.scope = scope,
+                                      .barren = NOT_BARREN,
+                                      .look = work_nests_freely(worker) ? LOOKED_AT : UINT32_MAX};
+    struct inside_wait wait = begin;
     while (!done(context) && !(comm && comm_broken(comm))) {
         struct task *task = inside_find(worker, &wait);
         if (task) {
             work_busy_again(worker);
             work_run(worker, task);
-            wait = (struct inside_wait){.scope = scope, .barren = NOT_BARREN};
+            wait = begin;
         } else if (work_poll(worker)) {
             work_busy_again(worker);
         } else {
@@ -355,14 +388,29 @@ __attribute__((noinline)) static void inside_wait(struct worker *worker,
     work_busy_again(worker);
 }
 
-void work_inside(struct worker *worker, const struct task_scope *scope, bool (*done)(void *context),
-                 void *context)
+__attribute__((noinline, cold)) static int inside_is_full(const struct worker *worker)
+{
+    return base_error(
+        DUITE_E_DEPTH,
+        "%u bodies wait on top of one another on worker %u, and three quarters of its "
+        "stack of %zu kB are used: nest tasks less deeply, or allow a larger stack "
+        "(ulimit -s)",
+        worker->nested, worker->index, worker->stack.bytes / 1024);
+}
+
+int work_inside(struct worker *worker, const struct task_scope *scope, bool (*done)(void *context),
+                void *context)
 {
     const struct task_scope *outer = worker->waits;
+    if ((const char *)__builtin_frame_address(0) < worker->stack.floor)
+        return inside_is_full(worker);
     worker->waits = scope;
+    worker->nested++;
     if (worker->pool->plain && worker->pool->by_affinity)
         work_run_children(worker, done, context);
     if (!done(context))
         inside_wait(worker, scope, done, context);
+    worker->nested--;
     worker->waits = outer;
+    return DUITE_OK;
 }

@@ -71,7 +71,8 @@ static bool ready_stays(const struct worker *worker, const struct task *task)
 /* Whether the task may run on top of the body that waits, if one does. */
 static inline bool ready_fits(const struct worker *worker, const struct task *task)
 {
-    return !worker->waits || task_may_run(worker->waits, task);
+    return !worker->waits || task->scope == worker->waits ||
+           (work_nests_freely(worker) && task_may_run_other(worker->waits, task));
 }
 
 /* Apart from the rest, since most tasks stay and need no description. */
@@ -331,6 +332,7 @@ void *work_thread(void *argument)
     struct worker *worker = argument;
     struct work_pool *pool = worker->pool;
     work_cores_bind(worker->unit);
+    worker->stack = base_stack_here();
     base_watchdog_here(pool->setup.watchdog, worker->index);
     while (!atomic_load_explicit(&pool->stop, memory_order_acquire))
         work_look(worker, &(struct work_wish){0});

@@ -75,9 +75,9 @@ bool work_stands_still(struct work_pool *pool, struct work_stillness *still);
 
 /* Works until done(context) in the middle of a body, with whose scope it waits: runs tasks that
  * task_may_run on top of it, on its stack. Returns early if communication broke. The worker whose
- * body it is. */
-void work_inside(struct worker *worker, const struct task_scope *scope, bool (*done)(void *context),
-                 void *context);
+ * body it is. DUITE_E_DEPTH: its stack has no room for a further body, and it did not wait. */
+int work_inside(struct worker *worker, const struct task_scope *scope, bool (*done)(void *context),
+                void *context);
 
 /* One look around by the main thread: a task or a poll; idles a moment if there is nothing. */
 void work_once(struct work_pool *pool);

@@ -137,7 +137,7 @@ RUNTIME_TESTS = tests/runtime/test_late tests/runtime/test_predict tests/runtime
 	tests/runtime/test_laws tests/runtime/test_settle tests/runtime/test_balance tests/runtime/test_sched \
 	tests/runtime/test_sched_knowing tests/runtime/test_sched_told tests/runtime/test_makespan tests/runtime/test_watchdog \
 	tests/runtime/test_traced tests/runtime/test_check tests/runtime/test_environment \
-    tests/runtime/test_nested_tasks tests/runtime/test_graphs tests/runtime/test_graphs_change tests/runtime/test_graphs_refused tests/runtime/test_graph_print tests/runtime/test_views
+    tests/runtime/test_nested_tasks tests/runtime/test_stack tests/runtime/test_graphs tests/runtime/test_graphs_change tests/runtime/test_graphs_refused tests/runtime/test_graph_print tests/runtime/test_views
 check_PROGRAMS += $(RUNTIME_TESTS)
 TESTS += $(RUNTIME_TESTS)
 PREDICTED_FILES = tests/runtime/predicted.c tests/runtime/predicted.h tests/support/trace_file.c tests/support/trace_file.h
@@ -161,6 +161,8 @@ tests_runtime_test_check_SOURCES = tests/runtime/test_check.c
 tests_runtime_test_check_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_nested_tasks_SOURCES = tests/runtime/test_nested_tasks.c
 tests_runtime_test_nested_tasks_LDADD = $(DUITE_TEST_LIBS)
+tests_runtime_test_stack_SOURCES = tests/runtime/test_stack.c
+tests_runtime_test_stack_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_offload_names_SOURCES = tests/runtime/test_offload_names.c
 tests_runtime_test_offload_names_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_owner_SOURCES = tests/runtime/test_owner.c

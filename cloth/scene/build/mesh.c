@@ -159,6 +159,18 @@ int scene_build_check_turn(const struct mesh_transform *transform, const struct 
     return CLOTH_OK;
 }
 
+/* Whoever gave uv to a part means it to count. */
+static int warn_of_uv(struct model *model, const struct mesh *mesh, const struct scene_tree *tree,
+                      int node, struct cloth_error *error)
+{
+    if (!mesh->n_without_uv)
+        return CLOTH_OK;
+    return scene_build_warn(model, tree, node, error,
+                            "%u of %u faces have corners without vt, so that no uv of the mesh "
+                            "counts: warp and weft follow its longest axes",
+                            mesh->n_without_uv, mesh->n_faces);
+}
+
 int scene_build_mesh(struct model *model, struct model_cloth *cloth, struct scene_tree *tree,
                      int node, struct cloth_error *error)
 {
@@ -187,7 +199,8 @@ int scene_build_mesh(struct model *model, struct model_cloth *cloth, struct scen
         return cloth_fail(error, inner.code, "%s: %s", tree->path, inner.text);
     if (inner.code)
         return scene_tree_fail(tree, kind.value, error, "mesh: %s", inner.text);
-    if (!code)
-        mesh_apply(mesh, &transform);
-    return code;
+    if (code)
+        return code;
+    mesh_apply(mesh, &transform);
+    return warn_of_uv(model, mesh, tree, kind.value, error);
 }

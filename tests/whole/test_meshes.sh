@@ -1,0 +1,95 @@
+#!/bin/sh
+# Meshes as they come from other programs: uv in islands, pieces, edges that are too short. Twins differ in what must not matter, and so
+# give the same forces. Errors are printed.
+. "${srcdir:-.}/tests/support/tap.sh"
+. "$srcdir/tests/support/probes.sh"
+plan_later
+
+# A strip of 10 x 4 cells of 1/8 m, in two groups, with uv. Beyond x = 5/8 m the uv is that of an island of its own: SHIFT away in u, or
+# turned by 90 degrees.
+strip() { # SHIFT TURNED
+    awk -v shift="$1" -v turned="$2" 'BEGIN { nx = 11; ny = 5; print "mtllib strip.mtl"; print "o Whole strip"
+        for (j = 0; j < ny; j++) for (i = 0; i < nx; i++) printf "v %.15g %.15g %.15g\nvt %.15g %.15g\n", i / 8, (i % 3) / 64, j / 8, i / 8, j / 8
+        for (j = 0; j < ny; j++) for (i = 0; i < nx; i++) if (turned) printf "vt %.15g %.15g\n", shift - j / 8, i / 8
+            else printf "vt %.15g %.15g\n", i / 8 + shift, j / 8
+        for (k = 0; k < 2; k++) { print k ? "g right" : "g left first"; print k ? "usemtl red" : "usemtl blue one"; at = k * (shift || turned) * nx * ny
+            for (j = 0; j < ny - 1; j++) for (i = 5 * k; i < 5 * k + 5; i++) { a = j * nx + i + 1; b = a + nx
+                printf "f %d/%d %d/%d %d/%d\nf %d/%d %d/%d %d/%d\n", a, a + at, b, b + at, b + 1, b + 1 + at, a, a + at, b + 1, b + 1 + at, a + 1, a + 1 + at } } }'
+}
+strip 0 0 > whole.obj
+strip 2 0 > moved.obj
+strip 2 1 > turned.obj
+sed 's/^vt .*/vt 0 0/' whole.obj > point.obj
+sed '/^usemtl red/,$s|/[0-9]*||g' whole.obj > half.obj
+sed 's|/[0-9]*||g; /^vt /d' whole.obj > bare.obj
+echo 'newmtl red' > strip.mtl
+cat > strip.yaml << 'END'
+schema: 1
+cloths:
+  - mesh: {file: whole.obj}
+    material: cloth
+    pins: [{box: [[0, 0, 0], [0, 1, 1]]}, {box: [[1.25, 0, 0], [1.25, 1, 1]], motion: {times: [0, 0.1], translate: [[0, 0, 0], [0.02, 0, 0]]}}]
+materials: {cloth: {model: triangles, density: 0.25, stretch: [100, 400], shear: 30, bending: {rigidity: [1e-4, 4e-4]}, damping: {stiffness: 0.01, mass: 1}}}
+time: {h: 0.01, end: 0.2, fps: 50}
+probes: [{name: p, box: [[0, 0, 0], [0, 1, 1]], values: [total]}]
+END
+SPRINGS='materials.cloth={density: 0.25, stretch: [100, 400], bend: 1, damping: {stiffness: 0.01, mass: 1}}'
+
+twins() { # MESH SCENE...: the same to the last bit
+    mesh=$1
+    shift
+    run strip.yaml "$@" && cp out/cloth.pc2 one.pc2 && cp out/probes.csv one.csv && run strip.yaml --set "cloths[0].mesh.file=$mesh" "$@" &&
+        cmp out/probes.csv one.csv && cmp out/cloth.pc2 one.pc2
+}
+ok "uv in two islands: triangles, and hinges between them" twins moved.obj
+ok "springs along warp and weft" twins moved.obj --set "$SPRINGS"
+differs() { ! twins "$@"; }
+ok "an island that is turned has its warp along it" differs turned.obj
+ok "uv without an area says no more than none" twins point.obj --set 'cloths[0].mesh.file=bare.obj'
+
+like() { # MESH SCENE...: flat at rest, of uv: but for rounding; a shape at rest of its own draws the strip together
+    mesh=$1
+    shift
+    run strip.yaml --set 'cloths[0].rest=uv' "$@" && pull=$(last p.total.rx) &&
+        run strip.yaml --set 'cloths[0].rest=uv' "$@" --set "cloths[0].mesh.file=$mesh" && near "force of the strip" "$(last p.total.rx)" "$pull" 1e-9
+}
+ALIKE='materials.cloth={model: triangles, density: 0.25, stretch: 100, shear: 30, bending: {rigidity: 1e-4}, strain_limit: {at: 0.01, stiffness: 50}}'
+ok "a rest shape of two islands" like moved.obj
+ok "of which one is turned" like turned.obj --set "$ALIKE"
+ok "of springs" like turned.obj --set 'materials.cloth={density: 0.25, stretch: 100, bend: 1, damping: {mass: 1}}'
+ok "with a load along the border of the islands" like turned.obj --set "$ALIKE" \
+    --set 'cloths[0].loads=[{edges: [[5, 16], [16, 27], [27, 38], [38, 49]], force: [2, 0, 0]}]'
+
+# What is written is read again as the same mesh, and has the names.
+again() {
+    run strip.yaml --set 'cloths[0].mesh.file=moved.obj' && cp out/cloth.pc2 one.pc2 && cp out/cloth.obj again.obj &&
+        run strip.yaml --set 'cloths[0].mesh.file=again.obj' && cmp out/cloth.pc2 one.pc2 &&
+        sed 's/^g cloth1 /g /' out/cloth.obj | diff again.obj - # what was the cloth's name is that of an object
+}
+ok "cloth.obj read again, and written again" again
+lines() {
+    grep -E '^(mtllib|o|g|usemtl)' again.obj > got
+    printf '%s\n' "mtllib $(realpath strip.mtl)" 'o cloth1' 'g Whole_strip left first' 'usemtl blue one' 'g Whole_strip right' 'usemtl red' > expected
+    diff got expected && test "$(grep -c '^vt' again.obj)" = 60
+}
+ok "its uv, groups and materials" lines
+two() { # a second cloth has no groups and no material of the first one
+    run strip.yaml --set 'cloths=[{mesh: {file: moved.obj}, material: cloth}, {mesh: {file: bare.obj}, material: cloth}, {mesh: {grid: {width: 1, height: 1, nx: 2, ny: 2}}, material: cloth, name: sheet}]' \
+        --set 'probes=[]' --set 'contact={mode: project}' --end 0.01 || return
+    sed -n '/^o sheet/,$p' out/cloth.obj | grep -E '^(o|g|usemtl|f)' > got
+    printf '%s\n' 'o sheet' g 'usemtl sheet' 'f 111/61 113/63 114/64' > expected
+    head -4 got | diff - expected
+}
+ok "groups and materials end with their cloth" two
+
+says() { # SENTENCE SCENE...
+    sentence=$1
+    shift
+    limited "$DUITE_CLOTH" "$@" --end 0.01 > said 2>&1 || { cat said && return 1; }
+    cat said
+    grep -qF "$sentence" said
+}
+ok "uv that some faces lack is said" says "40 of 80 faces have corners without vt" strip.yaml --set 'cloths[0].mesh.file=half.obj'
+silent() { says "Limited by" "$@" && ! grep -q vt said; }
+ok "nothing is said of a mesh without uv" silent strip.yaml --set 'cloths[0].mesh.file=bare.obj'
+ok "an object is a group" says "frames" strip.yaml --set 'cloths[0].pins=[{group: Whole strip}]'

@@ -138,6 +138,13 @@ struct mesh_transform {
 extern const struct mesh_transform mesh_identity;
 void mesh_apply(struct mesh *mesh, const struct mesh_transform *transform);
 
+/* Of each vertex that a face or a lone edge uses, the lowest one within a distance (m, > 0), of
+ * those that have no such themselves; of others, and where there is none, the vertex. What is 2^52
+ * distances from the origin has none. same:
+ * n_vertices of the caller. Error: CLOTH_E_MEMORY. */
+int mesh_coincide(const struct mesh *mesh, double distance, uint32_t *same,
+                  struct cloth_error *error);
+
 /* One byte a vertex, 1 if a face or a lone edge uses it. used: n_vertices bytes of the caller. */
 void mesh_used(const struct mesh *mesh, unsigned char *used);
 

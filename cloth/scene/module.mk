@@ -53,5 +53,6 @@ libduite_cloth_a_SOURCES += \
 	cloth/scene/build/obstacle.c \
 	cloth/scene/build/pattern.c \
 	cloth/scene/build/phases.c \
+	cloth/scene/build/pieces.c \
 	cloth/scene/build/probe.c
 EXTRA_DIST += docs/scene.md

@@ -93,3 +93,60 @@ ok "uv that some faces lack is said" says "40 of 80 faces have corners without v
 silent() { says "Limited by" "$@" && ! grep -q vt said; }
 ok "nothing is said of a mesh without uv" silent strip.yaml --set 'cloths[0].mesh.file=bare.obj'
 ok "an object is a group" says "frames" strip.yaml --set 'cloths[0].pins=[{group: Whole strip}]'
+
+# A sheet of 8 x 4 cells of 1/8 m, whose halves have vertices of their own where they meet; or none (WHOLE); or bent to a tube, whose slit
+# has its vertices twice.
+halves() { # WHOLE
+    awk -v whole="$1" 'BEGIN { for (k = 0; k < 2; k++) for (j = 0; j < 5; j++) for (i = k && whole; i < 5; i++) {
+            print "v", (i + 4 * k) / 8, 0, j / 8; at[k, i, j] = ++n }
+        for (j = 0; whole && j < 5; j++) at[1, 0, j] = at[0, 4, j]
+        for (k = 0; k < 2; k++) for (j = 0; j < 4; j++) for (i = 0; i < 4; i++) {
+            print "f", at[k, i, j], at[k, i, j + 1], at[k, i + 1, j + 1]; print "f", at[k, i, j], at[k, i + 1, j + 1], at[k, i + 1, j] } }'
+}
+halves 0 > halves.obj
+halves 1 > one.obj
+awk '$1 == "v" { a = $2 * 8 * atan2(0, -1) / 4; printf "v %.15g %.15g %s\n", cos(a) / 4, sin(a) / 4, $4; next } 1' one.obj > tube.obj
+cat > halves.yaml << 'END'
+schema: 1
+cloths:
+  - mesh: {file: halves.obj}
+    material: cloth
+    pins: [{box: [[0, 0, 0], [0, 1, 1]]}]
+materials: {cloth: {model: triangles, density: 0.25, stretch: 100, shear: 30, bending: {rigidity: 1e-3}, damping: {stiffness: 0.01, mass: 1}}}
+time: {h: 0.01, end: 0.1, fps: 50}
+solver: {stop: {relative: 1e-12}}
+contact: {mode: project}
+probes: [{name: p, box: [[0, 0, 0], [0, 1, 1]], values: [total]}]
+END
+ok "pieces are said, and what lies on another's place" says "has 2 pieces; 5 vertices at borders lie on another's place" halves.yaml
+ok "so is a slit" says "has 1 piece; 5 vertices at borders" halves.yaml --set 'cloths[0].mesh.file=tube.obj' --set 'cloths[0].pins=[]' --set 'probes=[]'
+quiet() { says "Limited by" halves.yaml --output out "$@" && ! grep -q warning said; }
+ok "not where welds join them" quiet --set 'welds=[{from: {vertices: [4, 9, 14, 19, 24]}, to: {vertices: [25, 30, 35, 40, 45]}}]'
+ok "nor where joints do" quiet \
+    --set 'joints=[{from: {vertices: [4, 9, 14, 19, 24]}, to: {vertices: [25, 30, 35, 40, 45]}, stiffness: 10, length: 0}]'
+ok "nor where the mesh is whole" quiet --set 'cloths[0].mesh.file=one.obj'
+ok "nor where weld makes them one" quiet --set 'cloths[0].mesh.weld=1e-5'
+welded() { # SCENE...
+    run halves.yaml --set 'cloths[0].mesh.file=one.obj' "$@" && pull=$(last p.total.ry) &&
+        run halves.yaml --set 'cloths[0].mesh={weld: 1e-5, file: halves.obj}' "$@" && near "force of welded halves" "$(last p.total.ry)" "$pull" 1e-6
+}
+ok "welded halves are the whole: triangles and hinges" welded
+ok "springs" welded --set 'materials.cloth={density: 0.25, stretch: 100, damping: {stiffness: 0.01, mass: 1}}'
+CERTIFIED='contact={mode: certified, self: on, thickness: 0.002}'
+ok "and start where contact is certified" run halves.yaml --set 'cloths[0].mesh.weld=1e-5' --set "$CERTIFIED"
+advised() {
+    limited "$DUITE_CLOTH" halves.yaml --set "$CERTIFIED" > said 2>&1
+    test $? = 2 || return
+    cat said
+    grep -qF "join what lies on another's place, by mesh: {weld: 1e-5}" said && ! grep -q untangle said
+}
+ok "where halves do not, the error says what joins them" advised
+ok "a weld that joins nothing is said" says "weld joins no vertices: no two of cloth 'cloth1' are within 0.001 m" halves.yaml \
+    --set 'cloths[0].mesh={file: one.obj, weld: 1e-3}'
+far() {
+    limited "$DUITE_CLOTH" halves.yaml --set 'cloths[0].mesh.weld=0.13' > said 2>&1
+    test $? = 2 || return
+    cat said
+    grep -qF "welds make vertices 0 and 5 of cloth 'cloth1' one, which a triangle joins" said
+}
+ok "one that is longer than an edge is refused" far

@@ -57,6 +57,9 @@ int scene_build_mesh_welds(struct model *model, const struct scene_tree *tree,
 /* Warns of vertices on one place that nothing joins; after all joints and welds. */
 int scene_build_pieces(struct model *model, const struct scene_tree *tree,
                        struct cloth_error *error);
+/* Edges that are shorter than contact.thickness; after the seams. */
+int scene_build_short_edges(struct model *model, const struct scene_tree *tree,
+                            struct cloth_error *error);
 /* One more weld of the model, with room for n pairs of vertices of a cloth, but no place. NULL:
  * out of memory. */
 struct model_weld *scene_build_add_weld(struct model *model, double tolerance, uint32_t cloth,

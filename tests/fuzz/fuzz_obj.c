@@ -2,6 +2,8 @@
 #include "cloth/mesh/mesh.h"
 #include "tests/fuzz/fuzz.h"
 
+#include <stdlib.h>
+
 static void use(struct mesh *mesh)
 {
     struct mesh_edges edges = {0};
@@ -10,6 +12,10 @@ static void use(struct mesh *mesh)
     if (!mesh_edges_find(&edges, mesh, &error))
         mesh_edges_free(&edges);
     mesh_axes(mesh, u, v);
+    uint32_t *same = calloc((size_t)mesh->n_vertices + 1, sizeof *same);
+    if (same && !mesh_coincide(mesh, 1e-5, same, &error))
+        sum += same[mesh->n_vertices - 1];
+    free(same);
     for (uint32_t t = 0; t < mesh->n_triangles; t++)
         for (size_t i = 0; i < 3; i++)
             if (mesh_uv(mesh, mesh_uv_number(mesh, t, mesh->triangle[3 * (size_t)t + i]), uv))

@@ -100,7 +100,7 @@ int mesh_naming_end(struct mesh_naming *naming, uint32_t n_faces, struct mesh_na
 {
     struct entry *entry = naming->entry.items;
     *names = (struct mesh_names){0};
-    for (int kind = 0; kind < MESH_NAMINGS; kind++)
+    for (enum mesh_naming_kind kind = MESH_GROUPS; kind < MESH_NAMINGS; kind++)
         close_open(naming, kind, n_faces);
     const size_t n = naming->entry.n = drop_empty(entry, naming->entry.n);
     for (size_t i = 0; i < n; i++)

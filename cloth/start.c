@@ -251,8 +251,9 @@ int start_check(const struct model *model, const struct flow *flow,
                           "%s: where the run starts %" PRIu64
                           " pairs of triangles go through each other and %" PRIu64
                           " through obstacles; contact.mode certified needs a start where none "
-                          "does: move the cloths apart, or write contact: {untangle: on}%s",
-                          scene, found.pairs, found.with_shapes, model_contact_cure(model));
+                          "does: %s%s",
+                          scene, found.pairs, found.with_shapes, model_start_cure(model),
+                          model_contact_cure(model));
     free(position);
     return code;
 }

@@ -15,8 +15,9 @@ struct contact_apart {
     uint32_t n_vertices;  /* of all cloths */
     const uint32_t *attached; /* by vertex: the obstacle, from 1, that its pin follows, or 0, which
                                * no feature with a corner there meets; NULL: none does */
-    uint32_t *joined; /* by vertex of all cloths: the lowest that pulled seams join it with, as
-                       * whose corner it does not meet features; NULL: there are none */
+    uint32_t *joined; /* by vertex of all cloths: the lowest that pulled seams, and edges shorter
+                       * than the thickness, join it with, as whose corner it does not meet
+                       * features; NULL: there are none */
 };
 
 static inline bool contact_is_attached(const struct contact_apart *all, uint32_t n,

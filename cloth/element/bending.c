@@ -32,12 +32,12 @@ bool element_bend_alike(const struct model *model, uint32_t a, uint32_t b)
 
 /* ---- Rest shapes ---- */
 
-static int bend_rest(const struct element_cloths *cloths, uint32_t cloth, const uint32_t corner[4],
+static int bend_rest(const struct element_cloths *cloths, uint32_t cloth,
+                     const uint32_t triangle[2], const uint32_t corner[4],
                      struct phys_bend_rest *rest)
 {
     double x[12];
-    for (int i = 0; i < 4; i++)
-        element_rest_position(cloths, cloth, corner[i], x + 3 * i);
+    mesh_hinge(element_rest(cloths, cloth), triangle, corner, x);
     const int code = phys_bend_rest(x, rest);
     if (cloths->model->cloths[cloth].rest)
         rest->s = 0; /* flat in u and v, also where these fold over */
@@ -53,25 +53,6 @@ static double difference(const double *a, const double *b, const double *z, doub
         sum += y[c] * (z ? z[c] : y[c]);
     }
     return sum;
-}
-
-/* Lays the triangle b beside the triangle a (ends of the edge, then opposite), flat: where its
- * opposite vertex comes to lie. */
-static void lay_beside(const double a[9], const double b[9], double x[3])
-{
-    double edge[3], arm[3], other[3], packed[3], in = 0, out = 0;
-    const double square = difference(a, a + 3, NULL, edge);
-    const double foot = difference(a, a + 6, edge, arm) / square;
-    const double other_square = difference(b, b + 3, NULL, other);
-    const double other_foot = difference(b, b + 6, other, packed) / other_square;
-    for (int c = 0; c < 3; c++) {
-        arm[c] -= foot * edge[c];
-        packed[c] -= other_foot * other[c];
-        in += arm[c] * arm[c];
-        out += packed[c] * packed[c];
-    }
-    for (int c = 0; c < 3; c++)
-        x[c] = a[c] + other_foot * edge[c] - sqrt(out / in) * arm[c];
 }
 
 /* Whether both sides of a seam, ends of the edge first, have it at one place. Then the second is
@@ -100,14 +81,15 @@ static int seam_rest(const struct element_cloths *cloths, const struct element_s
     bool flat = seam->flat;
     for (int k = 0; k < 2; k++) {
         const struct element_side *side = seam->side + k;
+        const struct mesh *mesh = element_rest(cloths, side->cloth);
         for (int i = 0; i < 3; i++)
-            element_rest_position(cloths, side->cloth, side->corner[i], x[k] + 3 * i);
+            memcpy(x[k] + 3 * i, mesh_place(mesh, side->triangle, side->corner[i]), 3 * sizeof **x);
         flat = flat || cloths->model->cloths[side->cloth].rest;
     }
     const bool one = !seam->flat && seam_meets(seam, x[0], x[1]);
     memcpy(x[0] + 9, x[1] + 6, 3 * sizeof **x);
     if (!one)
-        lay_beside(x[0], x[1], x[0] + 9);
+        mesh_lay_beside(x[0], x[1], x[0] + 9);
     const int code = phys_bend_rest(x[0], rest);
     if (flat || !one)
         rest->s = 0;
@@ -116,12 +98,13 @@ static int seam_rest(const struct element_cloths *cloths, const struct element_s
 
 /* The rigidity across an edge whose direction is the mean of what its triangles say. */
 static double rigidity_of(const struct element_cloths *cloths, uint32_t cloth,
-                          const uint32_t corner[4], const struct model_material *material)
+                          const uint32_t triangle[2], const uint32_t corner[4],
+                          const struct model_material *material)
 {
     const uint32_t second[3] = {corner[0], corner[1], corner[3]};
     double one[6], two[6];
-    element_rest_local(cloths, cloth, corner, one);
-    element_rest_local(cloths, cloth, second, two);
+    element_rest_local(cloths, cloth, triangle[0], corner, one);
+    element_rest_local(cloths, cloth, triangle[1], second, two);
     const double sign = one[2] * two[2] + one[3] * two[3] < 0 ? -1 : 1;
     const double direction[2] = {one[2] + sign * two[2], one[3] + sign * two[3]};
     return phys_bend_rigidity(material->rigidity[0], material->rigidity[1], direction);
@@ -143,7 +126,7 @@ static void bend_make(const struct element_cloths *cloths, const struct element 
     if (element->seam)
         seam_rest(cloths, element->seam, &bend->rest);
     else
-        bend_rest(cloths, element->cloth, element->corner, &bend->rest);
+        bend_rest(cloths, element->cloth, element->triangle, element->corner, &bend->rest);
     element_fold_rest(cloths, element, &bend->rest.s);
     for (int k = 0; k < sides; k++) {
         const struct element_side *side = element->seam ? element->seam->side + k : NULL;
@@ -152,11 +135,13 @@ static void bend_make(const struct element_cloths *cloths, const struct element 
                                  side ? side->corner[1] : element->corner[1],
                                  side ? side->corner[2] : element->corner[2],
                                  side ? side->corner[2] : element->corner[3]};
+        const uint32_t triangle[2] = {side ? side->triangle : element->triangle[0],
+                                      side ? side->triangle : element->triangle[1]};
         const struct model_material *material =
             model->materials + model_material_of(model->cloths + cloth, 2, own);
         const double rigidity = element->seam && element->seam->rigidity >= 0
                                     ? element->seam->rigidity
-                                    : rigidity_of(cloths, cloth, own, material);
+                                    : rigidity_of(cloths, cloth, triangle, own, material);
         const double k_of = rigidity * bend->rest.shape / sides;
         bend->stiffness += (int)material->bending == energy ? k_of : 0;
         bend->damping += model_damping_bending(material) * k_of;
@@ -170,7 +155,7 @@ static int bending_check(const struct element_cloths *cloths, uint32_t c, struct
         const struct mesh_edge *edge = cloths->edges[c].edge + e;
         const uint32_t corner[4] = {edge->a, edge->b, edge->opposite[0], edge->opposite[1]};
         struct phys_bend_rest rest;
-        if (element_is_hinge(edge) && bend_rest(cloths, c, corner, &rest))
+        if (element_is_hinge(edge) && bend_rest(cloths, c, edge->triangle, corner, &rest))
             return model_fail(
                 cloth->mesh_place, error,
                 "mesh: a triangle at the edge between vertices %u and %u of cloth "
@@ -266,7 +251,7 @@ static int quadratic_check(const struct element_cloths *cloths, uint32_t c,
         const struct mesh_edge *edge = cloths->edges[c].edge + e;
         const uint32_t corner[4] = {edge->a, edge->b, edge->opposite[0], edge->opposite[1]};
         struct phys_bend_rest rest;
-        if (!element_is_hinge(edge) || bend_rest(cloths, c, corner, &rest))
+        if (!element_is_hinge(edge) || bend_rest(cloths, c, edge->triangle, corner, &rest))
             continue;
         if (!(fabs(rest.s) <= flat))
             return model_fail(

@@ -10,35 +10,43 @@
 
 /* ---- Rest shapes ---- */
 
-void element_rest_position(const struct element_cloths *cloths, uint32_t cloth, uint32_t vertex,
-                           double x[3])
+const struct mesh *element_rest(const struct element_cloths *cloths, uint32_t cloth)
 {
-    memcpy(x, model_rest(cloths->model->cloths + cloth)->position + 3 * (size_t)vertex,
-           3 * sizeof *x);
+    return model_rest(cloths->model->cloths + cloth);
 }
 
-/* Directions of warp and weft at a vertex. */
-static void directions_of(const struct element_cloths *cloths, uint32_t cloth, uint32_t vertex,
-                          double uv[2])
+double element_rest_length(const struct element_cloths *cloths, const struct element *element)
 {
-    double x[3];
-    if (mesh_uv(model_rest(cloths->model->cloths + cloth), vertex, uv))
-        return;
-    element_rest_position(cloths, cloth, vertex, x);
-    for (int d = 0; d < 2; d++) {
-        const double *axis = cloths->axis[cloth][d];
-        uv[d] = x[0] * axis[0] + x[1] * axis[1] + x[2] * axis[2];
-    }
+    return mesh_length(element_rest(cloths, element->cloth), element->triangle, element->corner[0],
+                       element->corner[1]);
 }
 
-void element_rest_local(const struct element_cloths *cloths, uint32_t cloth,
+/* The uv of a triangle's corners; whether they have an area there. */
+static bool uv_of(const struct mesh *mesh, uint32_t triangle, const uint32_t corner[3],
+                  double uv[6])
+{
+    double gradient[4], area;
+    for (int i = 0; i < 3; i++)
+        if (!mesh_uv(mesh, mesh_uv_number(mesh, triangle, corner[i]), uv + 2 * i))
+            return false;
+    return !phys_triangle_rest(uv, gradient, &area);
+}
+
+void element_rest_local(const struct element_cloths *cloths, uint32_t cloth, uint32_t triangle,
                         const uint32_t corner[3], double local[6])
 {
-    double x[9], uv[6];
+    const struct mesh *rest = element_rest(cloths, cloth);
+    double x[9], uv[6], own[6];
     for (int i = 0; i < 3; i++) {
-        element_rest_position(cloths, cloth, corner[i], x + 3 * i);
-        directions_of(cloths, cloth, corner[i], uv + 2 * i);
+        const double *place = mesh_place(rest, triangle, corner[i]);
+        memcpy(x + 3 * i, place, 3 * sizeof *x);
+        for (int d = 0; d < 2; d++) {
+            const double *axis = cloths->axis[cloth][d];
+            uv[2 * i + d] = place[0] * axis[0] + place[1] * axis[1] + place[2] * axis[2];
+        }
     }
+    if (uv_of(rest, triangle, corner, own))
+        memcpy(uv, own, sizeof uv);
     phys_triangle_local(x, uv, local);
     const double *turn = model_grain(cloths->model->cloths + cloth, 3, corner);
     for (int i = 0; i < 3 && turn; i++) {
@@ -78,6 +86,7 @@ static void walk_triangles(struct walk *walk)
     walk->element.corners = 3;
     for (uint32_t t = 0; t < mesh->n_triangles; t++) {
         mesh_corners(mesh, t, walk->element.corner);
+        walk->element.triangle[0] = t;
         walk->visit(walk->to, &walk->element);
     }
 }
@@ -92,6 +101,7 @@ static void walk_faces(struct walk *walk)
     walk->element.corners = 4;
     for (uint32_t t = 0; t < mesh->n_triangles; t++) {
         mesh_corners(mesh, t, walk->element.corner);
+        walk->element.triangle[0] = t;
         walk->element.corner[3] = mesh_fourth(mesh, t);
         walk->visit(walk->to, &walk->element);
     }
@@ -107,6 +117,7 @@ static void walk_hinges(struct walk *walk)
         if (!element_is_hinge(edge))
             continue;
         memcpy(walk->element.corner, corner, sizeof corner);
+        memcpy(walk->element.triangle, edge->triangle, sizeof edge->triangle);
         walk->visit(walk->to, &walk->element);
     }
 }
@@ -128,6 +139,7 @@ static void walk_edges(struct walk *walk)
             continue;
         walk->element.corner[0] = edges->edge[e].a;
         walk->element.corner[1] = edges->edge[e].b;
+        memcpy(walk->element.triangle, edges->edge[e].triangle, sizeof edges->edge[e].triangle);
         walk->visit(walk->to, &walk->element);
     }
 }

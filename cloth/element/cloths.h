@@ -12,6 +12,7 @@
 struct element_side {
     uint32_t cloth, first; /* its number; its first vertex, of all cloths */
     uint32_t corner[3];    /* of the cloth's mesh: ends, in the order of both, and opposite */
+    uint32_t triangle;     /* that has these */
 };
 struct element_seam {
     struct element_side side[2];
@@ -23,7 +24,8 @@ struct element_seam {
 struct element {
     uint32_t cloth, first;                     /* its number; its first vertex, of all cloths */
     uint32_t corner[ELEMENT_CORNERS], corners; /* of the cloth's mesh; how many */
-    uint32_t kind;                             /* of element_kinds */
+    uint32_t triangle[2]; /* it is one, or those at its edge; UINT32_MAX: none (mesh_edge) */
+    uint32_t kind;        /* of element_kinds */
     const struct element_seam *seam; /* NULL; else across this: the last corner is the other side's,
                                         so numbered that first + corner is its vertex */
 };
@@ -71,12 +73,15 @@ void element_alone(const struct element_cloths *cloths, const struct element *el
 
 /* ---- For descriptors: vertices are of the cloth's mesh ---- */
 
-/* Where a vertex is at rest, m. */
-void element_rest_position(const struct element_cloths *cloths, uint32_t cloth, uint32_t vertex,
-                           double x[3]);
+/* The shape at rest of a cloth: vertices lie at mesh_place, m. */
+const struct mesh *element_rest(const struct element_cloths *cloths, uint32_t cloth);
 
-/* A triangle's coordinates along warp and weft (phys_triangle_local), turned by its grain. */
-void element_rest_local(const struct element_cloths *cloths, uint32_t cloth,
+/* How long an edge is at rest, m. */
+double element_rest_length(const struct element_cloths *cloths, const struct element *element);
+
+/* Coordinates along warp and weft (phys_triangle_local) of a triangle's corners, in any order,
+ * turned by its grain. */
+void element_rest_local(const struct element_cloths *cloths, uint32_t cloth, uint32_t triangle,
                         const uint32_t corner[3], double local[6]);
 
 /* The material, by number, of an element: of what its first n corners have in common. */

@@ -39,7 +39,7 @@ static void add_triangle(struct element_strains *strains, const struct element_c
                          const struct element *element, uint32_t t)
 {
     double local[6], gradient[4];
-    element_rest_local(cloths, element->cloth, element->corner, local);
+    element_rest_local(cloths, element->cloth, element->triangle[0], element->corner, local);
     if (phys_triangle_rest(local, gradient, strains->area + t)) {
         strains->area[t] = 0;
         memset(gradient, 0, sizeof gradient);
@@ -53,14 +53,9 @@ static void add_triangle(struct element_strains *strains, const struct element_c
 static void add_edge(struct element_strains *strains, const struct element_cloths *cloths,
                      const struct element *element, uint32_t e)
 {
-    double end[2][3], square = 0;
-    for (int i = 0; i < 2; i++) {
-        element_rest_position(cloths, element->cloth, element->corner[i], end[i]);
+    for (int i = 0; i < 2; i++)
         strains->edge[e][i] = element->first + element->corner[i];
-    }
-    for (int k = 0; k < 3; k++)
-        square += (end[1][k] - end[0][k]) * (end[1][k] - end[0][k]);
-    strains->length[e] = sqrt(square);
+    strains->length[e] = element_rest_length(cloths, element);
 }
 
 static void add_cloths(struct element_strains *strains, const struct element_cloths *cloths)
@@ -71,8 +66,10 @@ static void add_cloths(struct element_strains *strains, const struct element_clo
         const struct mesh *mesh = &cloths->model->cloths[element.cloth].mesh;
         for (uint32_t i = 0; i < mesh->n_triangles; i++) {
             mesh_corners(mesh, i, element.corner);
+            element.triangle[0] = i;
             add_triangle(strains, cloths, &element, t++);
         }
+        element.triangle[0] = element.triangle[1] = UINT32_MAX;
         for (uint32_t i = 0; i < mesh->n_bare_edges; i++) {
             memcpy(element.corner, mesh->lone_edge + 2 * (size_t)i, 2 * sizeof *element.corner);
             add_edge(strains, cloths, &element, e++);

@@ -18,13 +18,8 @@ static void strain_limit_pack(const struct element_cloths *cloths, const struct 
 {
     const struct model_material *material =
         cloths->model->materials + element_material(cloths, element, 2);
-    double x[2][3], square = 0;
-    for (int i = 0; i < 2; i++)
-        element_rest_position(cloths, element->cloth, element->corner[i], x[i]);
-    for (int c = 0; c < 3; c++)
-        square += (x[1][c] - x[0][c]) * (x[1][c] - x[0][c]);
     list->number[0][e] = material->limit_stiffness;
-    list->number[1][e] = (1 + material->limit_strain) * sqrt(square);
+    list->number[1][e] = (1 + material->limit_strain) * element_rest_length(cloths, element);
 }
 
 static struct phys_strain_limits strain_limit_of(const struct element_list *list)

@@ -8,11 +8,11 @@ static bool triangles_has(const struct model *model, const struct model_cloth *c
     return model_has_triangles(model, cloth);
 }
 
-static int triangle_rest(const struct element_cloths *cloths, uint32_t cloth,
+static int triangle_rest(const struct element_cloths *cloths, uint32_t cloth, uint32_t triangle,
                          const uint32_t corner[3], double gradient[4], double *area)
 {
     double local[6];
-    element_rest_local(cloths, cloth, corner, local);
+    element_rest_local(cloths, cloth, triangle, corner, local);
     return phys_triangle_rest(local, gradient, area);
 }
 
@@ -24,7 +24,7 @@ static int triangles_check(const struct element_cloths *cloths, uint32_t c,
         uint32_t corner[3];
         double gradient[4], area;
         mesh_corners(&cloth->mesh, t, corner);
-        if (triangle_rest(cloths, c, corner, gradient, &area))
+        if (triangle_rest(cloths, c, t, corner, gradient, &area))
             return model_fail(cloth->mesh_place, error,
                               "mesh: triangle %u of cloth '%.60s' (vertices %u, %u and %u, all "
                               "counted from 0) has no area at rest; an area above 0 is expected",
@@ -37,7 +37,8 @@ static void triangles_pack(const struct element_cloths *cloths, const struct ele
                            const struct element_list *list, uint32_t e)
 {
     double gradient[4];
-    triangle_rest(cloths, element->cloth, element->corner, gradient, list->number[0] + e);
+    triangle_rest(cloths, element->cloth, element->triangle[0], element->corner, gradient,
+                  list->number[0] + e);
     list->vector[e] = (phys_vec){gradient[0], gradient[1], gradient[2], gradient[3]};
     list->corner[e][3] = element_material(cloths, element, 3);
 }

@@ -3,7 +3,6 @@
 #include "cloth/base/memory.h"
 #include "cloth/base/order.h"
 #include "cloth/mesh/detail/sides.h"
-#include "cloth/mesh/detail/vector.h"
 #include "cloth/mesh/mesh.h"
 
 #include <stdlib.h>
@@ -12,16 +11,19 @@ static struct mesh_edge make_edge(const struct mesh *mesh, const struct mesh_sid
                                   uint32_t first, uint32_t end)
 {
     const uint32_t *pair = sides->pair + 2 * (size_t)sides->order[first];
-    struct mesh_edge edge = {
-        .a = pair[0], .b = pair[1], .opposite = {UINT32_MAX, UINT32_MAX}, .area = 0};
+    struct mesh_edge edge = {.a = pair[0],
+                             .b = pair[1],
+                             .opposite = {UINT32_MAX, UINT32_MAX},
+                             .triangle = {UINT32_MAX, UINT32_MAX}};
     for (uint32_t i = first, n = 0; i < end; i++) {
         uint32_t side = sides->order[i], t = side / 3;
         if (t >= mesh->n_triangles)
             break;
         uint32_t corner[3];
         mesh_corners(mesh, t, corner);
+        edge.triangle[n] = t;
         edge.opposite[n++] = corner[(side % 3 + 2) % 3];
-        edge.area += mesh_area(mesh->position, corner);
+        edge.area += mesh_triangle_area(mesh, t);
     }
     return edge;
 }

@@ -147,15 +147,15 @@ uint32_t mesh_face(const struct mesh *mesh, uint32_t f, uint32_t room[3], const 
     return mesh->face_start[f + 1] - mesh->face_start[f];
 }
 
-int mesh_uv(const struct mesh *mesh, uint32_t v, double uv[2])
+int mesh_uv(const struct mesh *mesh, uint32_t number, double uv[2])
 {
     const uint32_t nx = mesh->grid_nx, ny = mesh->grid_ny;
     if (nx) {
-        uv[0] = mesh->grid_width * (v % nx) / (nx - 1.0);
-        uv[1] = mesh->grid_height * (v / nx) / (ny - 1.0);
+        uv[0] = mesh->grid_width * (number % nx) / (nx - 1.0);
+        uv[1] = mesh->grid_height * (number / nx) / (ny - 1.0);
         return 1;
     }
     if (mesh->uv)
-        memcpy(uv, mesh->uv + 2 * (size_t)v, 2 * sizeof *uv);
+        memcpy(uv, mesh->uv + 2 * (size_t)number, 2 * sizeof *uv);
     return mesh->uv != NULL;
 }

@@ -26,7 +26,10 @@ int mesh_group_add(struct mesh *mesh, const char *name, uint32_t first, uint32_t
     if (!copy)
         return cloth_fail(error, CLOTH_E_MEMORY, "out of memory for the groups of a mesh");
     memcpy(copy, name, size);
-    run[mesh->n_group_runs++] = (struct mesh_group_run){mesh->n_groups, first, n};
+    uint32_t r = mesh->n_group_runs++;
+    for (; r > 0 && run[r - 1].first > first; r--)
+        run[r] = run[r - 1];
+    run[r] = (struct mesh_group_run){mesh->n_groups, first, n};
     group[mesh->n_groups++] = copy;
     return CLOTH_OK;
 }

@@ -61,9 +61,8 @@ static int check_length(const struct builder *builder, uint32_t a, uint32_t b, d
 
 /* area >= 0: modulus * area / length^2; else the modulus as it is. */
 static int add(struct builder *builder, uint32_t a, uint32_t b, enum mesh_spring_kind kind,
-               double modulus, double area)
+               double modulus, double area, double length)
 {
-    double length = mesh_distance(builder->mesh->position, a, b);
     int code = check_length(builder, a, b, length);
     if (code)
         return code;
@@ -127,7 +126,8 @@ static int add_grid_vertex(struct builder *builder, uint32_t i, uint32_t j)
         const uint32_t b = springs[s].b;
         const double k = springs[s].part *
                          modulus_along(moduli_of(builder, a, b), springs[s].kind, springs[s].weft);
-        int code = k == 0 ? CLOTH_OK : add(builder, a, b, springs[s].kind, k, NO_AREA);
+        const double length = mesh_distance(mesh->position, a, b);
+        int code = k == 0 ? CLOTH_OK : add(builder, a, b, springs[s].kind, k, NO_AREA, length);
         if (code)
             return code;
     }
@@ -156,23 +156,38 @@ static void turn(const struct mesh_regions *regions, const struct mesh_edge *edg
     *v = c * *v - s * along;
 }
 
-/* The modulus along an edge. */
-static int modulus_of(const struct builder *builder, const struct mesh_edge *edge, double *modulus)
+/* How much of a modulus along an edge is that of the weft, as the uv of one of its triangles says.
+ */
+static double weft_share(const struct builder *builder, const struct mesh_edge *edge,
+                         uint32_t triangle)
 {
-    const struct mesh_moduli *moduli = moduli_of(builder, edge->a, edge->b);
+    const struct mesh *mesh = builder->mesh;
     double a[2], b[2];
-    *modulus = moduli->stretch;
-    if (moduli->weft_excess == 0)
-        return CLOTH_OK;
-    if (!mesh_uv(builder->mesh, edge->a, a) || !mesh_uv(builder->mesh, edge->b, b))
-        return cloth_fail(builder->error, CLOTH_E_INPUT,
-                          "moduli of springs along warp and weft differ, which needs a mesh with "
-                          "uv; a grid, an OBJ file with vt, or one modulus is expected");
+    mesh_uv(mesh, mesh_uv_number(mesh, triangle, edge->a), a);
+    mesh_uv(mesh, mesh_uv_number(mesh, triangle, edge->b), b);
     double along = b[0] - a[0], across = b[1] - a[1];
     turn(builder->moduli->regions, edge, &along, &across);
     const double u = along * along, v = across * across;
-    if (u + v > 0)
-        *modulus += moduli->weft_excess * (v / (u + v));
+    return u + v > 0 ? v / (u + v) : 0;
+}
+
+/* The modulus along an edge: the mean of what its triangles say. */
+static int modulus_of(const struct builder *builder, const struct mesh_edge *edge, double *modulus)
+{
+    const struct mesh_moduli *moduli = moduli_of(builder, edge->a, edge->b);
+    const uint32_t *triangle = edge->triangle;
+    double uv[2];
+    *modulus = moduli->stretch;
+    if (moduli->weft_excess == 0)
+        return CLOTH_OK;
+    if (!mesh_uv(builder->mesh, edge->a, uv))
+        return cloth_fail(builder->error, CLOTH_E_INPUT,
+                          "moduli of springs along warp and weft differ, which needs a mesh with "
+                          "uv; a grid, an OBJ file with vt, or one modulus is expected");
+    double share = weft_share(builder, edge, triangle[0]);
+    if (triangle[1] != UINT32_MAX)
+        share = (share + weft_share(builder, edge, triangle[1])) / 2;
+    *modulus += moduli->weft_excess * share;
     return CLOTH_OK;
 }
 
@@ -181,14 +196,28 @@ static int add_side(struct builder *builder, const struct mesh_edge *edge)
 {
     double modulus;
     const int code = modulus_of(builder, edge, &modulus);
-    return code ? code : add(builder, edge->a, edge->b, MESH_STRETCH, modulus, edge->area);
+    if (code)
+        return code;
+    const double length = mesh_length(builder->mesh, edge->triangle, edge->a, edge->b);
+    return add(builder, edge->a, edge->b, MESH_STRETCH, modulus, edge->area, length);
 }
 
 static int add_lone_edge(struct builder *builder, const struct mesh_edge *edge)
 {
     const double length = mesh_distance(builder->mesh->position, edge->a, edge->b);
     const double ea = moduli_of(builder, edge->a, edge->b)->ea;
-    return add(builder, edge->a, edge->b, MESH_STRETCH, length > 0 ? ea / length : 0, NO_AREA);
+    return add(builder, edge->a, edge->b, MESH_STRETCH, length > 0 ? ea / length : 0, NO_AREA,
+               length);
+}
+
+/* Between the vertices opposite. */
+static int add_bend(struct builder *builder, const struct mesh_edge *edge, double modulus)
+{
+    const uint32_t corner[4] = {edge->a, edge->b, edge->opposite[0], edge->opposite[1]};
+    double x[12];
+    mesh_hinge(builder->mesh, edge->triangle, corner, x);
+    return add(builder, corner[2], corner[3], MESH_BEND, modulus, edge->area,
+               mesh_distance(x, 2, 3));
 }
 
 /* All stretch springs, then all bend springs, each in edge order. */
@@ -205,7 +234,7 @@ static int add_edges(struct builder *builder, const struct mesh_edges *edges)
         uint32_t a = edge->opposite[0], b = edge->opposite[1];
         const double modulus = b == UINT32_MAX || a == b ? 0 : moduli_of(builder, a, b)->bend;
         if (modulus != 0)
-            code = add(builder, a, b, MESH_BEND, modulus, edge->area);
+            code = add_bend(builder, edge, modulus);
     }
     return code;
 }

@@ -68,7 +68,7 @@ void mesh_share_of(const struct mesh *mesh, uint32_t triangle, double density, b
     mesh_corners(mesh, triangle, share->vertex);
     share->n = fourth == UINT32_MAX ? 3 : 4;
     share->vertex[3] = fourth;
-    share->mass = mesh_area(mesh->position, share->vertex) * density / share->n;
+    share->mass = mesh_triangle_area(mesh, triangle) * density / share->n;
 }
 
 static void add_share(const struct mesh *mesh, uint32_t triangle, double density, bool by_cell,
@@ -111,17 +111,27 @@ double mesh_box(const struct mesh *mesh, double low[3], double high[3])
     return longest;
 }
 
+static void free_names(char **name, uint32_t n)
+{
+    for (uint32_t i = 0; i < n; i++)
+        free(name[i]);
+    free(name);
+}
+
 void mesh_free(struct mesh *mesh)
 {
     free(mesh->position);
     free(mesh->uv);
     free(mesh->face_start);
     free(mesh->face_corner);
+    free(mesh->face_uv);
     free(mesh->triangle);
+    free(mesh->triangle_uv);
     free(mesh->lone_edge);
-    for (uint32_t g = 0; g < mesh->n_groups; g++)
-        free(mesh->group[g]);
-    free(mesh->group);
+    free_names(mesh->group, mesh->n_groups);
+    free_names(mesh->material, mesh->n_materials);
+    free_names(mesh->library, mesh->n_libraries);
     free(mesh->group_run);
+    free(mesh->material_run);
     *mesh = (struct mesh){0};
 }

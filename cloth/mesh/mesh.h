@@ -22,16 +22,22 @@ enum mesh_cells { MESH_SAME, MESH_ALTERNATE, MESH_MIRRORED, MESH_EQUILATERAL };
 struct mesh {
     uint32_t n_vertices;
     double *position; /* n_vertices x 3, metres */
-    double *uv; /* n_vertices x 2, or NULL unless every corner of a face has one and all corners of
-                 * a vertex the same; 0 for vertices without faces */
+    double *uv; /* (n_vertices + n_more_uv) x 2, or NULL unless every corner of a face has one: of
+                 * each vertex that of its first corner, 0 of one without faces; then those that
+                 * other corners of a vertex have, where islands of uv meet */
+    uint32_t n_more_uv;
+    uint32_t n_without_uv; /* faces with a corner that has none, where others have one */
 
     uint32_t n_faces;
     uint32_t *face_start;  /* n_faces + 1: corners of face f are face_corner[face_start[f] ..] */
     uint32_t *face_corner; /* vertices of the polygons, as in the input */
+    uint32_t *face_uv;     /* numbers of their uv; NULL: those of the vertices */
 
     uint32_t n_triangles;
     uint32_t *triangle; /* n_triangles x 3: of the polygons, in order; a convex one is fanned from
                          * its first corner, others are cut by clipping ears */
+    uint32_t *triangle_uv; /* n_triangles x 3: numbers of the uv; NULL: those of the vertices */
+    bool placed_by_uv;     /* positions are one for each uv, of a flat shape at rest */
 
     uint32_t n_lone_edges;
     uint32_t n_bare_edges; /* of these, that no triangle has: they come first */
@@ -41,7 +47,11 @@ struct mesh {
     char **group; /* n_groups: names of faces, each once; */
     struct mesh_group_run {
         uint32_t group, first, n; /* faces first .. first + n - 1 are in this group */
-    } * group_run;
+    } * group_run;                /* by their first faces */
+    uint32_t n_materials, n_material_runs, n_libraries;
+    char **material; /* likewise, of what faces are drawn with: a face has one or none */
+    struct mesh_group_run *material_run;
+    char **library; /* n_libraries: paths of the files that have the materials */
 
     uint32_t grid_nx, grid_ny;      /* vertices in u and v of a grid; 0: not a grid */
     double grid_width, grid_height; /* m, before any transform */
@@ -81,15 +91,17 @@ double mesh_row_distance(double width, uint32_t nx);
 bool mesh_cell_turned(const struct mesh *mesh, uint32_t i, uint32_t j);
 
 /* Reads v (x y z, anything after them ignored), vt, f (any polygon; v, v/vt, v//vn, v/vt/vn;
- * negative indices), l (lone edges) and g (groups) of a Wavefront OBJ file; all else is skipped,
- * also o. Faces are in each of the groups that the last g before them names; without a name they
- * are in none. A name that comes again goes on. Groups without faces are none. Errors name
- * file and line. They are: no vertices, numbers that are none or not finite, indices out of range,
- * faces with fewer than 3 or repeated corners. A polygon of more than 3 corners may not be without
- * area, nor cross or touch itself. More errors are: an edge shared by more than two triangles
- * (non-manifold, at the third face), a lone edge that stands twice, files beyond 2^31 vertices or
- * corners. A line ended by `\` goes on in the next and counts as the first. Codes: CLOTH_E_INPUT,
- * CLOTH_E_IO (cannot be read), CLOTH_E_MEMORY. */
+ * negative indices), l (lone edges), g and o (groups), usemtl and mtllib (materials) of a Wavefront
+ * OBJ file; all else is skipped. Faces are in each of the groups that the last g before them names,
+ * and in that of the last o, whose name is the whole line; without a name they are in none. A name
+ * that comes again goes on. Groups without faces are none. A library that is found beside the file
+ * has an absolute path, another one its name. Errors name file and line. They are: no vertices,
+ * numbers that are none or not finite, indices out of range, faces with fewer than 3 or repeated
+ * corners. A polygon of more than 3 corners may not be without area, nor cross or touch itself.
+ * More errors are: an edge shared by more than two triangles (non-manifold, at the third face), a
+ * lone edge that stands twice, files beyond 2^31 vertices or corners. A line ended by `\` goes on
+ * in the next and counts as the first. Codes: CLOTH_E_INPUT, CLOTH_E_IO (cannot be read),
+ * CLOTH_E_MEMORY. */
 int mesh_read_obj(struct mesh *mesh, const char *path, struct cloth_error *error);
 
 /* The same of a surface that nothing is folded or cut along: polygons that cross or touch
@@ -126,6 +138,13 @@ struct mesh_transform {
 extern const struct mesh_transform mesh_identity;
 void mesh_apply(struct mesh *mesh, const struct mesh_transform *transform);
 
+/* Of each vertex that a face or a lone edge uses, the lowest one within a distance (m, > 0), of
+ * those that have no such themselves; of others, and where there is none, the vertex. What is 2^52
+ * distances from the origin has none. same:
+ * n_vertices of the caller. Error: CLOTH_E_MEMORY. */
+int mesh_coincide(const struct mesh *mesh, double distance, uint32_t *same,
+                  struct cloth_error *error);
+
 /* One byte a vertex, 1 if a face or a lone edge uses it. used: n_vertices bytes of the caller. */
 void mesh_used(const struct mesh *mesh, unsigned char *used);
 
@@ -135,8 +154,15 @@ void mesh_corners(const struct mesh *mesh, uint32_t t, uint32_t corner[3]);
 /* How many corners face f has; *corner: these, in the mesh or in `room`. */
 uint32_t mesh_face(const struct mesh *mesh, uint32_t f, uint32_t room[3], const uint32_t **corner);
 
-/* The uv of a vertex; 0 if the mesh has none. */
-int mesh_uv(const struct mesh *mesh, uint32_t v, double uv[2]);
+/* The uv of that number, which is a vertex or one of the further ones; 0 if the mesh has none. */
+int mesh_uv(const struct mesh *mesh, uint32_t number, double uv[2]);
+
+/* The number of the uv that a vertex has in triangle t, of which it is a corner; t UINT32_MAX: in
+ * its first. */
+uint32_t mesh_uv_number(const struct mesh *mesh, uint32_t t, uint32_t vertex);
+/* Where it lies there, m: a shape at rest from uv may have several places of a vertex. */
+const double *mesh_place(const struct mesh *mesh, uint32_t t, uint32_t vertex);
+double mesh_triangle_area(const struct mesh *mesh, uint32_t t);
 
 /* The group of that name; UINT32_MAX: there is none. */
 uint32_t mesh_group_of(const struct mesh *mesh, const char *name);
@@ -167,7 +193,8 @@ struct mesh_edge {
     uint32_t a, b;
     uint32_t
         opposite[2]; /* the third vertices of its triangles, in their order; UINT32_MAX: none */
-    double area;     /* sum of the areas of its triangles in the positions given, m^2 */
+    uint32_t triangle[2]; /* these; UINT32_MAX: none */
+    double area;          /* sum of the areas of its triangles in the positions given, m^2 */
 };
 struct mesh_edges {
     uint32_t n;
@@ -177,6 +204,16 @@ int mesh_edges_find(struct mesh_edges *edges, const struct mesh *mesh, struct cl
 /* The edge between two vertices, in any order; NULL: there is none. */
 const struct mesh_edge *mesh_edges_get(const struct mesh_edges *edges, uint32_t a, uint32_t b);
 void mesh_edges_free(struct mesh_edges *edges);
+/* How long the edge from a to b is, m: the mean of both triangles, each of which may lack
+ * (UINT32_MAX). */
+double mesh_length(const struct mesh *mesh, const uint32_t triangle[2], uint32_t a, uint32_t b);
+/* Where the corners of two triangles with a common edge lie, m: its ends, then opposite. Where the
+ * triangles have other places for the ends, the second is laid flat beside the first. */
+void mesh_hinge(const struct mesh *mesh, const uint32_t triangle[2], const uint32_t corner[4],
+                double x[12]);
+/* Lays the triangle b beside the triangle a (ends of the edge, then opposite), flat: where its
+ * opposite vertex comes to lie. */
+void mesh_lay_beside(const double a[9], const double b[9], double x[3]);
 
 /* Adds to mass[v] (kg, n_vertices) a third of each triangle's area (as positioned) times density
  * (kg/m^2). */

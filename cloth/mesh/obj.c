@@ -2,6 +2,8 @@
  * read are indices checked against the counts, since corners may name vertices that come later. */
 #include "cloth/base/memory.h"
 #include "cloth/mesh/detail/finish.h"
+#include "cloth/mesh/detail/islands.h"
+#include "cloth/mesh/detail/library.h"
 #include "cloth/mesh/detail/lines.h"
 #include "cloth/mesh/detail/naming.h"
 #include "cloth/mesh/detail/words.h"
@@ -11,17 +13,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define NO_UV 0xffffffffu
-
 struct obj {
     bool fans; /* finish.h */
     struct mesh_lines lines;
     struct cloth_error *error;
     locale_t c;                     /* numbers have points, whatever the program's locale */
     struct cloth_list position, uv; /* 3 and 2 doubles an item */
-    struct cloth_list corner;       /* uint32_t[2]: vertex, and uv or NO_UV */
+    struct cloth_list corner;       /* uint32_t[2]: vertex, and uv or MESH_NO_UV */
     struct cloth_list face_start, face_line, edge, edge_line;
-    struct mesh_naming naming;
+    struct mesh_naming naming, drawing; /* groups, materials */
+    struct cloth_list library;          /* char *: paths of the files with these */
 };
 
 #define FAIL(obj, format, ...)                                                                     \
@@ -101,7 +102,7 @@ static int read_corner(struct obj *obj, const char *word, uint32_t *corner)
     if (!mesh_word_corner(word, &read))
         return FAIL(obj, "'%s' is not a corner; it is v, v/vt, v//vn or v/vt/vn in whole numbers",
                     mesh_word_quote(word).text);
-    corner[1] = NO_UV;
+    corner[1] = MESH_NO_UV;
     int code = resolve(obj, word, read.v, obj->position.n, "vertex", &corner[0]);
     if (!code && read.vt)
         code = resolve(obj, word, read.vt, obj->uv.n, "texture coordinate", &corner[1]);
@@ -161,6 +162,7 @@ static int read_edges(struct obj *obj, const char *at)
 static int read_line(struct obj *obj, const char *line)
 {
     const char *at;
+    const uint32_t n_faces = (uint32_t)obj->face_start.n;
     if ((at = mesh_word_after(line, "v")))
         return read_vertex(obj, at);
     if ((at = mesh_word_after(line, "vt")))
@@ -170,7 +172,13 @@ static int read_line(struct obj *obj, const char *line)
     if ((at = mesh_word_after(line, "l")))
         return read_edges(obj, at);
     if ((at = mesh_word_after(line, "g")))
-        return mesh_naming_line(&obj->naming, at, (uint32_t)obj->face_start.n, obj->error);
+        return mesh_naming_line(&obj->naming, MESH_GROUPS, at, n_faces, obj->error);
+    if ((at = mesh_word_after(line, "o")))
+        return mesh_naming_line(&obj->naming, MESH_OBJECTS, at, n_faces, obj->error);
+    if ((at = mesh_word_after(line, "usemtl")))
+        return mesh_naming_line(&obj->drawing, MESH_OBJECTS, at, n_faces, obj->error);
+    if ((at = mesh_word_after(line, "mtllib")))
+        return mesh_library_line(&obj->library, obj->lines.path, at, obj->error);
     return CLOTH_OK;
 }
 
@@ -200,7 +208,7 @@ static int check_uv(const struct obj *obj)
     for (size_t c = 0, face = 0; c < obj->corner.n; c++) {
         while (face + 1 < obj->face_start.n && start[face + 1] <= c)
             face++;
-        if (corner[c][1] != NO_UV && corner[c][1] >= obj->uv.n)
+        if (corner[c][1] != MESH_NO_UV && corner[c][1] >= obj->uv.n)
             return cloth_fail(obj->error, CLOTH_E_INPUT,
                               "%s:%zu: there is no texture coordinate %u; the file has %zu",
                               mesh_path_shown(obj->lines.path), line[face], corner[c][1] + 1,
@@ -209,29 +217,25 @@ static int check_uv(const struct obj *obj)
     return CLOTH_OK;
 }
 
-/* mesh->uv, if every corner has one and all corners of a vertex agree. */
-static int make_uv(const struct obj *obj, struct mesh *mesh)
+/* The names of the groups and of the materials. */
+static int make_names(struct obj *obj, struct mesh *mesh)
 {
-    const uint32_t(*corner)[2] = obj->corner.items;
-    const double(*uv)[2] = obj->uv.items;
-    if (obj->uv.n == 0 || obj->corner.n == 0)
-        return CLOTH_OK;
-    unsigned char *seen = cloth_alloc(mesh->n_vertices, 1, obj->error);
-    double(*to)[2] = cloth_alloc(mesh->n_vertices, sizeof *to, obj->error);
-    bool whole = seen && to;
-    for (size_t c = 0; whole && c < obj->corner.n; c++) {
-        uint32_t v = corner[c][0], t = corner[c][1];
-        whole = t != NO_UV && (!seen[v] || (to[v][0] == uv[t][0] && to[v][1] == uv[t][1]));
-        if (whole && !seen[v])
-            memcpy(to[v], uv[t], sizeof *to);
-        seen[v] = 1;
-    }
-    int code = seen && to ? CLOTH_OK : CLOTH_E_MEMORY;
-    free(seen);
-    if (whole)
-        mesh->uv = (double *)to;
-    else
-        free(to);
+    struct mesh_names names;
+    int code = mesh_naming_end(&obj->naming, mesh->n_faces, &names, obj->error);
+    mesh->n_groups = names.n;
+    mesh->n_group_runs = names.n_runs;
+    mesh->group = names.name;
+    mesh->group_run = names.run;
+    if (code)
+        return code;
+    code = mesh_naming_end(&obj->drawing, mesh->n_faces, &names, obj->error);
+    mesh->n_materials = names.n;
+    mesh->n_material_runs = names.n_runs;
+    mesh->material = names.name;
+    mesh->material_run = names.run;
+    mesh->n_libraries = (uint32_t)obj->library.n;
+    mesh->library = obj->library.items;
+    obj->library = (struct cloth_list){0};
     return code;
 }
 
@@ -269,8 +273,10 @@ static int make_mesh(struct obj *obj, struct mesh *mesh)
                                  obj->fans};
     int code = mesh_finish(mesh, &source, obj->error);
     if (!code)
-        code = mesh_naming_end(&obj->naming, mesh, obj->error);
-    return code ? code : make_uv(obj, mesh);
+        code = make_names(obj, mesh);
+    if (code || !obj->uv.n || !obj->corner.n)
+        return code;
+    return mesh_islands_make(mesh, obj->uv.items, obj->corner.items, obj->error);
 }
 
 static void free_obj(struct obj *obj)
@@ -284,6 +290,10 @@ static void free_obj(struct obj *obj)
     free(obj->edge.items);
     free(obj->edge_line.items);
     mesh_naming_free(&obj->naming);
+    mesh_naming_free(&obj->drawing);
+    for (size_t i = 0; i < obj->library.n; i++)
+        free(((char **)obj->library.items)[i]);
+    free(obj->library.items);
     if (obj->c)
         freelocale(obj->c);
 }

@@ -165,10 +165,7 @@ int mesh_shadow(const struct mesh_shape *shape, const double axis[3], double *ar
 double mesh_surface(const struct mesh *mesh)
 {
     double area = 0;
-    for (uint32_t t = 0; t < mesh->n_triangles; t++) {
-        uint32_t corner[3];
-        mesh_corners(mesh, t, corner);
-        area += mesh_area(mesh->position, corner);
-    }
+    for (uint32_t t = 0; t < mesh->n_triangles; t++)
+        area += mesh_triangle_area(mesh, t);
     return area;
 }

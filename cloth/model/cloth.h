@@ -181,6 +181,8 @@ struct model_cloth {
     uint32_t n_grains;    /* where the warp is turned: at most MODEL_MAX_REGIONS; */
     double (*grain)[2];   /* cosine and sine of the angle from u towards v; */
     uint64_t *grain_mask; /* by vertex, which of these have it: mesh_region; NULL: none */
+    double weld;          /* m: vertices that lie so near are one, by a weld; 0: none are */
+    uint32_t n_unjoined;  /* vertices that lie on another's place, and nothing joins them */
     double mass_per_vertex; /* kg, replaces density * area where > 0 */
     double velocity[3];     /* at the start, m/s */
     double *start;          /* n_vertices x 6: where they start (m) and how fast (m/s), the shape of

@@ -241,6 +241,14 @@ struct mesh_elastic model_elastic(const struct model *model, uint32_t material)
     return all;
 }
 
+const char *model_start_cure(const struct model *model)
+{
+    for (uint32_t c = 0; c < model->n_cloths; c++)
+        if (model->cloths[c].n_unjoined)
+            return "join what lies on another's place, by mesh: {weld: 1e-5}";
+    return "move them apart, or write contact: {untangle: on}";
+}
+
 void model_name_seam(const struct model_cloth *cloth, uint32_t seam, char text[MODEL_SEAM_NAME])
 {
     const struct model_seam *of = cloth->seams.seam + seam;

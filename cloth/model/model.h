@@ -194,6 +194,9 @@ static inline const char *model_contact_cure(const struct model *model)
                : "";
 }
 
+/* Likewise, of a start that certified contact cannot take: what helps. */
+const char *model_start_cure(const struct model *model);
+
 /* The area of a cloth at rest, m^2; while it has its mesh. */
 static inline double model_area(const struct model_cloth *cloth)
 {

@@ -46,6 +46,7 @@ libduite_cloth_a_SOURCES += \
 	cloth/scene/build/settings.c \
 	cloth/scene/build/settled.c \
 	cloth/scene/build/seams.c \
+	cloth/scene/build/short.c \
 	cloth/scene/build/seams_file.c \
 	cloth/scene/build/sides.c \
 	cloth/scene/build/start.c \
@@ -53,5 +54,6 @@ libduite_cloth_a_SOURCES += \
 	cloth/scene/build/obstacle.c \
 	cloth/scene/build/pattern.c \
 	cloth/scene/build/phases.c \
+	cloth/scene/build/pieces.c \
 	cloth/scene/build/probe.c
 EXTRA_DIST += docs/scene.md

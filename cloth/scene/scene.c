@@ -43,7 +43,13 @@ static int read_tree(struct model *model, struct scene_tree *tree, uint32_t phas
     if (!code)
         code = scene_build_welds(model, tree, error);
     if (!code)
+        code = scene_build_mesh_welds(model, tree, error);
+    if (!code)
         code = scene_build_seams(model, tree, error);
+    if (!code)
+        code = scene_build_pieces(model, tree, error);
+    if (!code)
+        code = scene_build_short_edges(model, tree, error);
     if (!code)
         code = scene_build_folds(model, tree, error);
     if (!code)

@@ -178,10 +178,12 @@ int flow_contact_start(struct flow_state *state)
     if (!code)
         code = look(state, false, &seen);
     if (!code && seen.fails) {
+        char cure[128];
+        snprintf(cure, sizeof cure, ": %s", model_start_cure(state->flow->model));
         code = say_why(state, seen.fails,
                        "pairs of features touch where the run starts, cloths or a cloth and an "
                        "obstacle",
-                       ": move them apart, or write contact: {untangle: on}");
+                       cure);
         return code ? code : FLOW_TANGLED;
     }
     if (!code)

@@ -18,6 +18,8 @@ struct loader {
     bool failed;    /* there was no memory */
 };
 
+static const uint32_t NO_TRIANGLES[2] = {UINT32_MAX, UINT32_MAX};
+
 static void to_vector(const double *x, phys_vec *y)
 {
     *y = (phys_vec){x[0], x[1], x[2], 0};
@@ -66,21 +68,27 @@ static int load_edges(struct loader *loader, const struct model_load *load,
                       struct cloth_error *error)
 {
     const struct mesh *mesh = model_rest(loader->cloth);
-    phys_vec a, b, force;
+    struct mesh_edges edges = {0}; /* found where ends alone do not say the length */
+    int code =
+        mesh->placed_by_uv && mesh->triangle_uv ? mesh_edges_find(&edges, mesh, error) : CLOTH_OK;
+    phys_vec force;
     to_vector(load->force, &force);
-    for (uint32_t i = 0; i < load->n_edges; i++) {
+    for (uint32_t i = 0; i < load->n_edges && !code; i++) {
         const uint32_t *end = load->edges[i];
-        for (int k = 0; k < 2; k++)
+        for (int k = 0; k < 2 && !code; k++)
             if (end[k] >= mesh->n_vertices)
-                return flow_no_vertex(loader->cloth, "a load", end[k], loader->place, error);
-        to_vector(mesh->position + 3 * (size_t)end[0], &a);
-        to_vector(mesh->position + 3 * (size_t)end[1], &b);
-        b -= a;
-        loader->force = 0.5 * sqrt(phys_dot(&b, &b)) * force;
+                code = flow_no_vertex(loader->cloth, "a load", end[k], loader->place, error);
+        if (code)
+            break;
+        const struct mesh_edge *edge = mesh_edges_get(&edges, end[0], end[1]);
+        const double length =
+            mesh_length(mesh, edge ? edge->triangle : NO_TRIANGLES, end[0], end[1]);
+        loader->force = 0.5 * length * force;
         add_load(loader, end[0]);
         add_load(loader, end[1]);
     }
-    return CLOTH_OK;
+    mesh_edges_free(&edges);
+    return code;
 }
 
 int flow_loads_make(struct flow_particles *p, uint32_t first, const struct model_cloth *cloth,

@@ -13,6 +13,7 @@ struct border {
     uint32_t root[2]; /* ascending */
     uint32_t cloth, edge;
     uint32_t corner[3]; /* of the mesh: ends, in the order of their roots; the vertex opposite */
+    uint32_t triangle;  /* that has these */
 };
 
 static int compare_borders(const void *va, const void *vb)
@@ -60,7 +61,8 @@ static int find_borders(struct cloth_list *list, const struct element_cloths *el
             .root = {turned ? b : a, turned ? a : b},
             .cloth = cloth,
             .edge = e,
-            .corner = {turned ? edge->b : edge->a, turned ? edge->a : edge->b, edge->opposite[0]}};
+            .corner = {turned ? edge->b : edge->a, turned ? edge->a : edge->b, edge->opposite[0]},
+            .triangle = edge->triangle[0]};
     }
     return CLOTH_OK;
 }
@@ -104,6 +106,7 @@ static void add_seam(struct element_cloths *elements, const struct flow_welds *w
     uint32_t opposite[2];
     for (int k = 0; k < 2; k++) {
         seam->side[k].cloth = border[k].cloth;
+        seam->side[k].triangle = border[k].triangle;
         for (int i = 0; i < 3; i++)
             seam->side[k].corner[i] = border[k].corner[i];
         seam->side[k].first = model_first(elements->model, border[k].cloth);

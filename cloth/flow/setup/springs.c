@@ -118,13 +118,15 @@ static void pass_on(void *context, const struct mesh_spring *s)
     visitor->visit(visitor->to, &spring);
 }
 
-/* A link without stiffness, or with ea (N) the spring of an edge without triangles. */
-static void link_pair(const struct visitor *visitor, const struct mesh *mesh, uint32_t a,
-                      uint32_t b, double ea, unsigned char stretch)
+static const uint32_t NO_TRIANGLES[2] = {UINT32_MAX, UINT32_MAX};
+
+/* A link without stiffness, or with ea (N) the spring of an edge without triangles. triangle: those
+ * at it. */
+static void link_pair(const struct visitor *visitor, const struct mesh *mesh,
+                      const uint32_t triangle[2], uint32_t a, uint32_t b, double ea,
+                      unsigned char stretch)
 {
-    const double *p = mesh->position + 3 * (size_t)a, *q = mesh->position + 3 * (size_t)b;
-    const double x = q[0] - p[0], y = q[1] - p[1], z = q[2] - p[2];
-    const double length = sqrt(x * x + y * y + z * z);
+    const double length = mesh_length(mesh, triangle, a, b);
     const double stiffness = length > 0 ? ea / length : 0;
     const double damping = stiffness > 0 ? material_of(visitor, a, b)->damping_stiffness : 0;
     const struct flow_spring spring = {
@@ -146,9 +148,9 @@ static void link_cells(const struct visitor *visitor, const struct mesh *mesh)
         for (uint32_t i = 0; i + 1 < nx; i++) {
             const uint32_t v = j * nx + i;
             if (mesh_cell_turned(mesh, i, j))
-                link_pair(visitor, mesh, v, v + nx + 1, 0, 0);
+                link_pair(visitor, mesh, NO_TRIANGLES, v, v + nx + 1, 0, 0);
             else
-                link_pair(visitor, mesh, v + 1, v + nx, 0, 0);
+                link_pair(visitor, mesh, NO_TRIANGLES, v + 1, v + nx, 0, 0);
         }
 }
 
@@ -173,7 +175,7 @@ static void link_triangles(const struct visitor *visitor, const struct mesh *mes
         uint32_t corner[3];
         mesh_corners(mesh, t, corner);
         for (int k = 0; k < 3; k++)
-            link_pair(visitor, mesh, corner[k], corner[(k + 1) % 3], 0, 0);
+            link_pair(visitor, mesh, NO_TRIANGLES, corner[k], corner[(k + 1) % 3], 0, 0);
     }
 }
 
@@ -191,10 +193,10 @@ static void each_link(const struct flow_springs *springs, uint32_t c, const stru
         const struct mesh_edge *edge = edges->edge + e;
         const bool lone = edge->opposite[0] == UINT32_MAX;
         if (triangles || !lone)
-            link_pair(visitor, mesh, edge->a, edge->b,
+            link_pair(visitor, mesh, edge->triangle, edge->a, edge->b,
                       lone ? material_of(visitor, edge->a, edge->b)->ea : 0, triangles);
         if (parts & 1u << ELEMENT_HINGES && element_is_hinge(edge))
-            link_pair(visitor, mesh, edge->opposite[0], edge->opposite[1], 0, 0);
+            link_pair(visitor, mesh, NO_TRIANGLES, edge->opposite[0], edge->opposite[1], 0, 0);
     }
     if (parts & 1u << ELEMENT_FACES && model_has_cells(model, cloth))
         link_cells(visitor, mesh);

@@ -1,34 +1,38 @@
 /* Contact that is certified keeps triangles a thickness apart that share no corner: so no edge at
- * rest may be shorter, or a cloth would touch its own neighbours. */
+ * rest may be shorter, or a cloth would touch its own neighbours; but for those whose ends count as
+ * one. */
 #include "cloth/flow/setup/source.h"
 
 #include <math.h>
 
-/* Of two corners of a triangle, at rest. */
-static double length_of(const struct mesh *rest, const uint32_t ends[2])
-{
-    const double *a = rest->position + 3 * (size_t)ends[0];
-    const double *b = rest->position + 3 * (size_t)ends[1];
-    return sqrt((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) +
-                (a[2] - b[2]) * (a[2] - b[2]));
-}
+/* The sides of triangles that are too short, and the first of the shortest. */
+struct shorts {
+    uint32_t n, ends[2];
+    double least; /* m */
+};
 
-/* The shortest edge of all triangles, m, the first of equals; infinite: there is none. */
-static double find_shortest(const struct mesh *rest, uint32_t shortest[2])
+/* first: number of the cloth's first vertex. */
+static void find_shorts(const struct model *model, const struct mesh *rest, uint32_t first,
+                        struct shorts *shorts)
 {
-    double least = INFINITY;
+    const uint32_t *joined = model->contact.apart.joined;
+    *shorts = (struct shorts){.least = INFINITY};
     for (size_t i = 0; i < 3 * (size_t)rest->n_triangles; i++) {
+        const uint32_t t = (uint32_t)(i / 3), triangle[2] = {t, UINT32_MAX};
         uint32_t corner[3];
-        mesh_corners(rest, (uint32_t)(i / 3), corner);
-        const uint32_t ends[2] = {corner[i % 3], corner[(i + 1) % 3]};
-        const double length = length_of(rest, ends);
-        if (!(length < least))
+        mesh_corners(rest, t, corner);
+        const uint32_t a = corner[i % 3], b = corner[(i + 1) % 3];
+        const double length = mesh_length(rest, triangle, a, b);
+        if (!(length < model->contact.thickness) ||
+            (joined && joined[first + a] == joined[first + b]))
             continue;
-        least = length;
-        shortest[0] = ends[0];
-        shortest[1] = ends[1];
+        shorts->n++;
+        if (!(length < shorts->least))
+            continue;
+        shorts->least = length;
+        shorts->ends[0] = a;
+        shorts->ends[1] = b;
     }
-    return least;
 }
 
 int flow_thickness_check(const struct model *model, struct cloth_error *error)
@@ -36,15 +40,17 @@ int flow_thickness_check(const struct model *model, struct cloth_error *error)
     int code = CLOTH_OK;
     for (uint32_t c = 0; c < model->n_cloths && !code; c++) {
         const struct model_cloth *cloth = model->cloths + c;
-        uint32_t ends[2] = {0};
-        const double length = find_shortest(model_rest(cloth), ends);
-        if (length < model->contact.thickness)
-            code = model_fail(
-                cloth->place, error,
-                "cloth '%.60s': the edge between vertices %u and %u is %g m long at "
-                "rest, shorter than contact.thickness, %g m; a smaller one is expected%s",
-                cloth->name ? cloth->name : "", ends[0], ends[1], length, model->contact.thickness,
-                model_contact_cure(model));
+        const struct mesh *rest = model_rest(cloth);
+        struct shorts shorts;
+        find_shorts(model, rest, model_first(model, c), &shorts);
+        if (shorts.n)
+            code = model_fail(cloth->place, error,
+                              "cloth '%.60s': the edge between vertices %u and %u (counted from 0) "
+                              "is %g m long at rest, shorter than contact.thickness, %g m, as %u "
+                              "of %u sides of triangles are; a smaller one is expected%s",
+                              cloth->name ? cloth->name : "", shorts.ends[0], shorts.ends[1],
+                              shorts.least, model->contact.thickness, shorts.n,
+                              3 * rest->n_triangles, model_contact_cure(model));
     }
     return code;
 }

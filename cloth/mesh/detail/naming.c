@@ -10,40 +10,60 @@
 struct entry {
     char *name;
     uint32_t first, end; /* faces */
-    uint32_t number;     /* in the order of the file */
+    uint32_t number;     /* in the order of the file, of those with faces */
     uint32_t group;      /* the number of the first entry of this name; then of its group */
 };
 
-/* Gives the open entries their last face; those without faces are gone. */
-static void close_open(struct mesh_naming *naming, uint32_t n_faces)
+/* Gives the open entries of a kind their last face. */
+static void close_open(struct mesh_naming *naming, enum mesh_naming_kind kind, uint32_t n_faces)
 {
     struct entry *entry = naming->entry.items;
-    for (size_t i = naming->open; i < naming->entry.n; i++)
+    for (size_t i = naming->open[kind]; i < naming->end[kind]; i++)
         entry[i].end = n_faces;
-    for (size_t i = naming->open; i < naming->entry.n && entry[i].first == n_faces; i++)
-        free(entry[i].name);
-    if (naming->open < naming->entry.n && entry[naming->open].first == n_faces)
-        naming->entry.n = naming->open;
-    naming->open = naming->entry.n;
+    naming->open[kind] = naming->end[kind] = naming->entry.n;
 }
 
-int mesh_naming_line(struct mesh_naming *naming, const char *at, uint32_t n_faces,
-                     struct cloth_error *error)
+static int add_name(struct mesh_naming *naming, const char *from, const char *to, uint32_t n_faces,
+                    struct cloth_error *error)
 {
-    close_open(naming, n_faces);
-    for (const char *word; (word = mesh_word(at)); at = mesh_word_end(word)) {
-        const size_t length = (size_t)(mesh_word_end(word) - word);
-        char *name = cloth_alloc(length + 1, 1, error);
-        struct entry *entry = name ? cloth_list_add(&naming->entry, sizeof *entry, 1, error) : NULL;
-        if (!entry) {
-            free(name);
-            return CLOTH_E_MEMORY;
-        }
-        memcpy(name, word, length);
-        *entry = (struct entry){
-            .name = name, .first = n_faces, .number = (uint32_t)(naming->entry.n - 1)};
+    const size_t length = (size_t)(to - from);
+    char *name = cloth_alloc(length + 1, 1, error);
+    struct entry *entry = name ? cloth_list_add(&naming->entry, sizeof *entry, 1, error) : NULL;
+    if (!entry) {
+        free(name);
+        return CLOTH_E_MEMORY;
     }
+    memcpy(name, from, length);
+    *entry = (struct entry){.name = name, .first = n_faces};
     return CLOTH_OK;
+}
+
+int mesh_naming_line(struct mesh_naming *naming, enum mesh_naming_kind kind, const char *at,
+                     uint32_t n_faces, struct cloth_error *error)
+{
+    int code = CLOTH_OK;
+    close_open(naming, kind, n_faces);
+    for (const char *word, *end; !code && (word = mesh_word(at)); at = end) {
+        end = mesh_word_end(word);
+        for (const char *next; kind == MESH_OBJECTS && (next = mesh_word(end));)
+            end = mesh_word_end(next);
+        code = add_name(naming, word, end, n_faces, error);
+    }
+    naming->end[kind] = naming->entry.n;
+    return code;
+}
+
+/* Entries without faces are gone. */
+static size_t drop_empty(struct entry *entry, size_t n)
+{
+    size_t kept = 0;
+    for (size_t i = 0; i < n; i++) {
+        if (entry[i].first == entry[i].end)
+            free(entry[i].name);
+        else
+            entry[kept++] = entry[i];
+    }
+    return kept;
 }
 
 static int by_name(const void *va, const void *vb)
@@ -75,27 +95,30 @@ static uint32_t number_groups(struct entry *entry, size_t n)
     return groups;
 }
 
-int mesh_naming_end(struct mesh_naming *naming, struct mesh *mesh, struct cloth_error *error)
+int mesh_naming_end(struct mesh_naming *naming, uint32_t n_faces, struct mesh_names *names,
+                    struct cloth_error *error)
 {
     struct entry *entry = naming->entry.items;
-    close_open(naming, mesh->n_faces);
-    const size_t n = naming->entry.n;
+    *names = (struct mesh_names){0};
+    for (enum mesh_naming_kind kind = MESH_GROUPS; kind < MESH_NAMINGS; kind++)
+        close_open(naming, kind, n_faces);
+    const size_t n = naming->entry.n = drop_empty(entry, naming->entry.n);
     for (size_t i = 0; i < n; i++)
         entry[i].number = (uint32_t)i;
     const uint32_t groups = n ? number_groups(entry, n) : 0;
-    mesh->group = cloth_alloc(groups, sizeof *mesh->group, error);
-    mesh->group_run = cloth_alloc(n, sizeof *mesh->group_run, error);
-    if (!mesh->group || !mesh->group_run)
+    names->name = cloth_alloc(groups, sizeof *names->name, error);
+    names->run = cloth_alloc(n, sizeof *names->run, error);
+    if (!names->name || !names->run)
         return CLOTH_E_MEMORY;
     for (size_t i = 0; i < n; i++) {
-        mesh->group_run[i] =
+        names->run[i] =
             (struct mesh_group_run){entry[i].group, entry[i].first, entry[i].end - entry[i].first};
-        if (entry[i].group < mesh->n_groups)
+        if (entry[i].group < names->n)
             continue;
-        mesh->group[mesh->n_groups++] = entry[i].name;
-        entry[i].name = NULL; /* the mesh has it now */
+        names->name[names->n++] = entry[i].name;
+        entry[i].name = NULL; /* the names have it now */
     }
-    mesh->n_group_runs = (uint32_t)n;
+    names->n_runs = (uint32_t)n;
     return CLOTH_OK;
 }
 

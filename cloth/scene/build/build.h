@@ -51,6 +51,22 @@ int scene_build_joints(struct model *model, const struct scene_tree *tree,
 int scene_build_welds(struct model *model, const struct scene_tree *tree,
                       struct cloth_error *error);
 
+/* What mesh.weld joins; after the welds. */
+int scene_build_mesh_welds(struct model *model, const struct scene_tree *tree,
+                           struct cloth_error *error);
+/* Warns of vertices on one place that nothing joins; after all joints and welds. */
+int scene_build_pieces(struct model *model, const struct scene_tree *tree,
+                       struct cloth_error *error);
+/* Edges that are shorter than contact.thickness; after the seams. */
+int scene_build_short_edges(struct model *model, const struct scene_tree *tree,
+                            struct cloth_error *error);
+/* One more weld of the model, with room for n pairs of vertices of a cloth, but no place. NULL:
+ * out of memory. */
+struct model_weld *scene_build_add_weld(struct model *model, double tolerance, uint32_t cloth,
+                                        uint32_t n, struct cloth_error *error);
+/* The pair of a mesh that says its kind, of the cloth at a node. */
+yaml_node_pair_t scene_build_mesh_kind(const struct scene_tree *tree, int node);
+
 /* The seams of cloths, which become joints or welds of the model; after all others of these. */
 int scene_build_seams(struct model *model, const struct scene_tree *tree,
                       struct cloth_error *error);

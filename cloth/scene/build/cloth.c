@@ -221,13 +221,14 @@ static int name_cloth(struct model *model, uint32_t i, const struct scene_tree *
 static int build_rest(struct model_cloth *cloth, const struct scene_tree *tree, int node,
                       struct cloth_error *error)
 {
-    const uint32_t n = cloth->mesh.n_vertices;
+    const uint32_t n = cloth->mesh.n_vertices + cloth->mesh.n_more_uv;
     if (!scene_word_value(scene_rests, scene_tree_text(tree, node, "rest"), NULL))
         return CLOTH_OK;
     cloth->rest = scene_build_array(1, sizeof *cloth->rest, error);
     if (!cloth->rest)
         return error->code;
     *cloth->rest = cloth->mesh;
+    cloth->rest->placed_by_uv = true;
     cloth->rest->position = scene_build_array(n, 3 * sizeof(double), error);
     if (!cloth->rest->position)
         return error->code;

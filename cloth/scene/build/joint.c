@@ -214,3 +214,24 @@ int scene_build_welds(struct model *model, const struct scene_tree *tree, struct
                            scene_tree_item(tree, list, i), error);
     return code;
 }
+
+struct model_weld *scene_build_add_weld(struct model *model, double tolerance, uint32_t cloth,
+                                        uint32_t n, struct cloth_error *error)
+{
+    struct model_weld *grown =
+        realloc(model->welds, (model->n_welds + (size_t)1) * sizeof *model->welds);
+    if (!grown) {
+        cloth_fail(error, CLOTH_E_MEMORY, "out of memory while the scene is read");
+        return NULL;
+    }
+    model->welds = grown;
+    struct model_weld *weld = grown + model->n_welds++;
+    *weld = (struct model_weld){.tolerance = tolerance};
+    bool made = true;
+    for (int k = 0; k < 2; k++) {
+        weld->pairs.end[k].cloth = cloth;
+        weld->pairs.end[k].vertices = scene_build_array(n, sizeof(uint32_t), error);
+        made = made && weld->pairs.end[k].vertices;
+    }
+    return made ? weld : NULL;
+}

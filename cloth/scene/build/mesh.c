@@ -159,6 +159,26 @@ int scene_build_check_turn(const struct mesh_transform *transform, const struct 
     return CLOTH_OK;
 }
 
+yaml_node_pair_t scene_build_mesh_kind(const struct scene_tree *tree, int node)
+{
+    const int mesh = scene_tree_get(tree, node, "mesh");
+    const yaml_node_pair_t first = scene_tree_pair(tree, mesh, 0);
+    const bool other = !strcmp(scene_tree_scalar(tree, first.key), "weld");
+    return other ? scene_tree_pair(tree, mesh, 1) : first;
+}
+
+/* Whoever gave uv to a part means it to count. */
+static int warn_of_uv(struct model *model, const struct mesh *mesh, const struct scene_tree *tree,
+                      int node, struct cloth_error *error)
+{
+    if (!mesh->n_without_uv)
+        return CLOTH_OK;
+    return scene_build_warn(model, tree, node, error,
+                            "%u of %u faces have corners without vt, so that no uv of the mesh "
+                            "counts: warp and weft follow its longest axes",
+                            mesh->n_without_uv, mesh->n_faces);
+}
+
 int scene_build_mesh(struct model *model, struct model_cloth *cloth, struct scene_tree *tree,
                      int node, struct cloth_error *error)
 {
@@ -166,7 +186,7 @@ int scene_build_mesh(struct model *model, struct model_cloth *cloth, struct scen
     struct cloth_error inner = {0};
     struct mesh_transform transform;
     const int change = scene_tree_get(tree, node, "transform");
-    yaml_node_pair_t kind = scene_tree_pair(tree, scene_tree_get(tree, node, "mesh"), 0);
+    const yaml_node_pair_t kind = scene_build_mesh_kind(tree, node);
     const char *name = scene_tree_scalar(tree, kind.key);
     int code = scene_fill(&transform, &scene_transform, tree, change, error);
     if (!code)
@@ -187,7 +207,8 @@ int scene_build_mesh(struct model *model, struct model_cloth *cloth, struct scen
         return cloth_fail(error, inner.code, "%s: %s", tree->path, inner.text);
     if (inner.code)
         return scene_tree_fail(tree, kind.value, error, "mesh: %s", inner.text);
-    if (!code)
-        mesh_apply(mesh, &transform);
-    return code;
+    if (code)
+        return code;
+    mesh_apply(mesh, &transform);
+    return warn_of_uv(model, mesh, tree, kind.value, error);
 }

@@ -183,7 +183,7 @@ static int find_seams(struct model *model, struct model_cloth *cloth, const stru
                       int of, int node, struct cloth_error *error)
 {
     const int file = scene_tree_get(tree, node, "file");
-    const int mesh = scene_tree_pair(tree, scene_tree_get(tree, of, "mesh"), 0).key;
+    const int mesh = scene_build_mesh_kind(tree, of).key;
     const bool pattern = !strcmp(scene_tree_scalar(tree, mesh), "pattern");
     if (file && pattern)
         return scene_tree_fail(tree, file, error,

@@ -68,16 +68,18 @@ static const struct scene_rule pattern_keys[] = {
     {0}};
 
 #define MESH_PLACE PLACE(struct model_cloth, mesh_place)
-static const struct scene_rule mesh_kinds[] = {
-    {"grid", SCENE_MAP, .inside = grid_keys, .apart = true, MESH_PLACE,
+static const struct scene_rule mesh_keys[] = {
+    {"grid", SCENE_MAP, .choice = true, .inside = grid_keys, .apart = true, MESH_PLACE,
      .about = "a flat sheet in the x-z plane"},
-    {"disc", SCENE_MAP, .inside = disc_keys, .apart = true, MESH_PLACE,
+    {"disc", SCENE_MAP, .choice = true, .inside = disc_keys, .apart = true, MESH_PLACE,
      .about = "a round sheet in the x-z plane"},
-    {"file", SCENE_TEXT, MESH_PLACE, .about = "an OBJ file, relative to the scene's folder"},
-    {"inline", SCENE_MAP, .inside = inline_keys, .apart = true, MESH_PLACE,
+    {"file", SCENE_TEXT, .choice = true, MESH_PLACE, .about = "an OBJ file, relative to the scene's folder"},
+    {"inline", SCENE_MAP, .choice = true, .inside = inline_keys, .apart = true, MESH_PLACE,
      .about = "a mesh written out"},
-    {"pattern", SCENE_MAP, .inside = pattern_keys, .apart = true, MESH_PLACE,
+    {"pattern", SCENE_MAP, .choice = true, .inside = pattern_keys, .apart = true, MESH_PLACE,
      .about = "the panels of a sewing pattern, where it places them"},
+    {"weld", SCENE_NUMBER, "m", .range = SCENE_POSITIVE, INTO(struct model_cloth, weld),
+     .about = "vertices that lie so near to each other are one, as by welds"},
     {0}};
 
 static const struct scene_rule transform_keys[] = {
@@ -295,7 +297,7 @@ static const struct scene_rule fold = {
 static const struct scene_rule cloth_keys[] = {
     {"name", SCENE_TEXT, INTO(struct model_cloth, name),
      .about = "unique; else cloth1, cloth2, ..."},
-    {"mesh", SCENE_ONE_OF, .required = true, .inside = mesh_kinds, .about = "its shape at rest"},
+    {"mesh", SCENE_MAP, .required = true, .inside = mesh_keys, .about = "its shape at rest"},
     {"transform", SCENE_MAP, .fallback = "{}", .inside = transform_keys, .apart = true,
      .about = "of the mesh, before lengths and masses are taken"},
     {"material", SCENE_TEXT, .required = true, .about = "a name in materials"},

@@ -112,5 +112,25 @@ START_TEST(non_manifold)
 }
 END_TEST
 
+/* A chain of vertices each near the next: those that stand for others are not near each other. */
+START_TEST(vertices_on_one_place)
+{
+    const double x[] = {-1e-5, 0, 0,       5e-6, 0, 0,    1.2e-5, 0, 0, 1,     1, 1,
+                        1,     1, 1.00001, 1,    1, 0.99, -1e-5,  0, 0, 1e300, 0, 0};
+    const uint32_t edges[] = {0, 3, 1, 4, 2, 5, 3, 5, 5, 7};
+    struct cloth_error error = {0};
+    struct mesh mesh;
+    uint32_t same[8];
+    ck_assert_int_eq(mesh_inline(&mesh, 8, x, 5, edges, 0, NULL, &error), CLOTH_OK);
+    ck_assert_int_eq(mesh_coincide(&mesh, 2e-5, same, &error), CLOTH_OK);
+    const uint32_t expected[] = {0, 0, 2, 3, 3, 5, 6, 7}; /* nothing uses vertex 6 */
+    ck_assert_mem_eq(same, expected, sizeof same);
+    ck_assert_int_eq(mesh_coincide(&mesh, 1e-300, same, &error), CLOTH_OK);
+    for (uint32_t v = 0; v < 8; v++)
+        ck_assert_uint_eq(same[v], v);
+    mesh_free(&mesh);
+}
+END_TEST
+
 RUN("inline", copies, a_chain_and_a_point, wrong_entries, edges_that_stand_twice, too_large,
-    non_manifold)
+    non_manifold, vertices_on_one_place)

@@ -41,16 +41,17 @@ void *__wrap_realloc(void *block, size_t n)
     return fails_now() ? NULL : __real_realloc(block, n);
 }
 
-/* A strip of 16 squares, so that lists are just full at its end, and a lone edge. */
+/* A strip of 16 squares, so that lists are just full at its end, and a lone edge; with two uv at
+ * vertices, and names. */
 static struct file strip(void)
 {
     char text[4096];
-    size_t n = (size_t)sprintf(text, "vt 0 0\n");
+    size_t n = (size_t)sprintf(text, "vt 0 0\nvt 1 1\nmtllib a.mtl\no strip\ng a b\nusemtl red\n");
     for (int i = 0; i <= 16; i++)
         n += (size_t)sprintf(text + n, "v %d 0 0\nv %d 1 0\n", i, i);
     for (int i = 0; i < 16; i++)
-        n += (size_t)sprintf(text + n, "f %d/1 %d/1 %d/1 %d/1\n", 2 * i + 1, 2 * i + 3, 2 * i + 4,
-                             2 * i + 2);
+        n += (size_t)sprintf(text + n, "f %d/%d %d/1 %d/1 %d/1\n", 2 * i + 1, 1 + i % 2, 2 * i + 3,
+                             2 * i + 4, 2 * i + 2);
     n += (size_t)sprintf(text + n, "l 1 34\n");
     return file_new(text, n);
 }
@@ -69,7 +70,8 @@ static int all(struct cloth_error *error, const char *path)
     if (TRY(mesh_read_obj(&mesh, path, error)))
         ck_assert(!mesh.position && !mesh.triangle && !mesh.lone_edge && !mesh.uv);
     else
-        ck_assert(mesh.uv && mesh.n_triangles == 32 && mesh.n_lone_edges == 1);
+        ck_assert(mesh.triangle_uv && mesh.n_more_uv == 8 && mesh.n_triangles == 32 &&
+                  mesh.n_lone_edges == 1);
     if (!code && TRY(mesh_lattice_build(&lattice, &mesh, &moduli, error)))
         ck_assert(!lattice.spring && lattice.n == 0);
     if (!code && TRY(mesh_grid(&sheet, 1, 1, 8, 8, MESH_SAME, error)))

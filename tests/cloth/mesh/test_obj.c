@@ -132,8 +132,8 @@ START_TEST(uv_of_vertices)
         int has;
     } files[] = {
         {SQUARE "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3\nf 1/1 3/3 4/4\n", 1},
-        {SQUARE "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3\nf 1/2 3/3 4/4\n", 0}, /* a seam */
-        {SQUARE "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3\nf 1/4 3/3 4/4\n", 0},
+        {SQUARE "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3\nf 1/2 3/3 4/4\n", 1}, /* a seam */
+        {SQUARE "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3\nf 1/4 3/3 4/4\n", 1},
         {SQUARE "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3\nf 1/1 3/3 4\n", 0},
         {SQUARE "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1 2 3 4\n", 0},
         {SQUARE "vt 0 0\n", 0},
@@ -144,10 +144,36 @@ START_TEST(uv_of_vertices)
         struct mesh mesh = read_text(files[i].text);
         const double uv[8] = {0, 0, 1, 0, 1, 1, 0, 1};
         ck_assert_msg((mesh.uv != NULL) == files[i].has, "file %zu", i);
+        ck_assert_uint_eq(mesh.n_without_uv, i == 3);
         if (mesh.uv)
             ck_assert_mem_eq(mesh.uv, uv, sizeof uv);
         mesh_free(&mesh);
     }
+}
+END_TEST
+
+/* Vertex 1 has three uv, one of them under two numbers; vertex 3 has two in one polygon and
+ * another.
+ */
+START_TEST(uv_of_corners)
+{
+    struct mesh mesh = read_text(SQUARE "v 2 0 0\nv 2 1 0\nv -1 0 0\n"
+                                        "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nvt 7 7\nvt 5 5\nvt 7 7\n"
+                                        "f 1/1 2/2 3/3 4/4\nf 2/2 5/5 6/6 3/5\nf 1/5 4/4 7/1\n"
+                                        "f 7/1 2/2 1/6\n");
+    const uint32_t face[] = {0, 1, 2, 3, 1, 4, 5, 9, 8, 3, 6, 6, 1, 7};
+    const uint32_t triangle[] = {0, 1, 2, 0, 2, 3, 1, 4, 5, 1, 5, 9, 8, 3, 6, 6, 1, 7};
+    const double more[] = {5, 5, 7, 7, 7, 7};
+    double uv[2];
+    ck_assert_uint_eq(mesh.n_more_uv, 3);
+    ck_assert_mem_eq(mesh.face_uv, face, sizeof face);
+    ck_assert_mem_eq(mesh.triangle_uv, triangle, sizeof triangle);
+    ck_assert_mem_eq(mesh.uv + 14, more, sizeof more);
+    ck_assert_uint_eq(mesh_uv_number(&mesh, 3, 2), 9);
+    ck_assert_uint_eq(mesh_uv_number(&mesh, 1, 2), 2);
+    ck_assert_uint_eq(mesh_uv_number(&mesh, UINT32_MAX, 2), 2);
+    ck_assert(mesh_uv(&mesh, 9, uv) && uv[0] == 7 && uv[1] == 7);
+    mesh_free(&mesh);
 }
 END_TEST
 
@@ -209,15 +235,17 @@ static void group_is(const struct mesh *mesh, const char *name, const char *vert
 
 START_TEST(groups_of_faces)
 {
-    struct mesh mesh = read_text(SQUARE "v 2 0 0\nv 2 1 0\nv 9 9 9\n"
-                                        "o all\ng empty\n g b \ta # c\nf 1 2 3 4\ng\nf 2 5 3\n"
-                                        "g a\nf 5 6 3\ng b a b\ng e\\\nnd\ng\n");
-    ck_assert_uint_eq(mesh.n_groups, 2); /* in the order of the file */
-    ck_assert_str_eq(mesh.group[0], "b");
-    ck_assert_str_eq(mesh.group[1], "a");
+    struct mesh mesh =
+        read_text(SQUARE "v 2 0 0\nv 2 1 0\nv 9 9 9\n"
+                         "o  all of it # c\ng empty\n g b \ta # c\nf 1 2 3 4\ng\nf 2 5 3\n"
+                         "g a\nf 5 6 3\ng b a b\ng e\\\nnd\ng\n");
+    ck_assert_uint_eq(mesh.n_groups, 3); /* in the order of the file */
+    ck_assert_str_eq(mesh.group[0], "all of it");
+    ck_assert_str_eq(mesh.group[1], "b");
+    ck_assert_str_eq(mesh.group[2], "a");
+    group_is(&mesh, "all of it", "1111110", "1111");
     group_is(&mesh, "b", "1111000", "1100");
     group_is(&mesh, "a", "1111110", "1101");
-    ck_assert_uint_eq(mesh_group_of(&mesh, "all"), UINT32_MAX);
     ck_assert_uint_eq(mesh_group_of(&mesh, "empty"), UINT32_MAX);
     mesh_free(&mesh);
     mesh = read_text(SQUARE "f 1 2 3\ng last last\nf 1 3 4\n");
@@ -230,6 +258,25 @@ START_TEST(groups_of_faces)
 }
 END_TEST
 
+START_TEST(materials_of_faces)
+{
+    struct mesh mesh = read_text(SQUARE "mtllib gone.mtl  other.mtl\nmtllib other.mtl\n"
+                                        "usemtl unused\nusemtl dark red\nf 1 2 3\nusemtl blue\n"
+                                        "f 1 3 4\nv 3 0 0\nusemtl dark red\nf 2 5 3\n");
+    ck_assert_uint_eq(mesh.n_groups, 0);
+    ck_assert_uint_eq(mesh.n_libraries, 2);
+    ck_assert_str_eq(mesh.library[0], "gone.mtl"); /* neither is there */
+    ck_assert_str_eq(mesh.library[1], "other.mtl");
+    ck_assert_uint_eq(mesh.n_materials, 2);
+    ck_assert_uint_eq(mesh.n_material_runs, 3);
+    ck_assert_str_eq(mesh.material[mesh.material_run[0].group], "dark red");
+    ck_assert_str_eq(mesh.material[mesh.material_run[1].group], "blue");
+    ck_assert_str_eq(mesh.material[mesh.material_run[2].group], "dark red");
+    ck_assert_uint_eq(mesh.material_run[2].first, 2);
+    mesh_free(&mesh);
+}
+END_TEST
+
 RUN("obj", polygons_are_fanned, every_way_to_write_a_corner, numbers, the_locale_does_not_matter,
     all_else_is_skipped, faces_may_come_first, lone_edges, unused_vertices_are_kept, uv_of_vertices,
-    very_long_lines, lines_across_chunks, groups_of_faces)
+    uv_of_corners, very_long_lines, lines_across_chunks, groups_of_faces, materials_of_faces)

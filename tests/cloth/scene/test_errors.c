@@ -270,8 +270,8 @@ START_TEST(sets_that_are_wrong)
         {"cloths[7].name=a", "'cloths' has 1 entries; an index from 0 to 1 is expected"},
         {"cloths[-1].name=a", "an index is written [0], [1], ..."},
         {"cloths[0.name=a", "an index is written [0], [1], ..."},
-        {"cloths[1].name=a", "cloths[1].mesh is missing; a map with exactly one of grid, disc, "
-                             "file, inline, pattern is expected"},
+        {"cloths[1].name=a", "cloths[1].mesh is missing; a map of grid, disc, "
+                             "file, inline, pattern, weld is expected"},
         {"cloths[0].pins[0].vertices[0]=12", "vertex 12 is outside the mesh of cloth 'sheet', "
                                              "which has 12 vertices; 0 to 11 are allowed"},
         {"cloths[0].pins[0]={vertices: [0], nearest: [0, 0, 0]}",

@@ -165,6 +165,8 @@ void predict_conclude(struct predict_machine *m, struct predict_result *result, 
                                       .overhead = graph->overhead,
                                       .message = graph->message,
                                       .look = graph->look,
+                                      .bodies = graph->bodies,
+                                      .medians = graph->medians,
                                       .idle = all > 0 ? 1 - m->busy / all : 0};
     for (size_t i = 0; i < graph->n_nodes; i++)
         result->work += (double)graph->node[i].seconds;

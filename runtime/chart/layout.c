@@ -206,7 +206,7 @@ static int chart_lay_out(struct chart *chart, const struct trace_run *run,
                                 (uint32_t)chart->columns, MAX_LINES);
     if (code)
         return code;
-    chart->has_lines = chart->model.traffic.n_messages > 0;
+    chart->has_lines = chart->model.traffic.messages.n > 0;
     chart->has_path_line = chart->model.path.known && path_steps(&chart->model) <= MAX_LINES;
     chart->strip_top = chart->model.traffic.n > MAX_LINES;
     caption_add(chart);

@@ -228,5 +228,5 @@ void chart_model_free(struct chart_model *model)
     base_free(model->shares.seconds);
     base_free(model->path.step);
     base_free(model->traffic.count);
-    base_free(model->traffic.message);
+    base_free(model->traffic.messages.message);
 }

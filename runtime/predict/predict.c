@@ -143,7 +143,7 @@ int predict_write_paje(const struct predict_machine *m, FILE *file)
             span[n++] = (struct trace_span){m->begin[i], m->end[i], predict_describe(m, i).kernel,
                                             m->runs_on[i]};
     if (!code)
-        code = trace_write_paje_spans(file, span, n, host_of, m->n_workers, m->now);
+        code = trace_write_paje_spans(file, span, n, NULL, host_of, m->n_workers, m->now);
     base_free(span);
     base_free(host_of);
     return code;

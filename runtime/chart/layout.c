@@ -202,8 +202,7 @@ static int chart_lay_out(struct chart *chart, const struct trace_run *run,
     chart->width = options->width;
     chart->height = options->height;
     chart->columns = options->width - CHART_LEFT - CHART_RIGHT;
-    int code = chart_model_make(&chart->model, run, options->from, options->to,
-                                (uint32_t)chart->columns, MAX_LINES);
+    int code = chart_model_make(&chart->model, run, options, (uint32_t)chart->columns, MAX_LINES);
     if (code)
         return code;
     chart->has_lines = chart->model.traffic.messages.n > 0;

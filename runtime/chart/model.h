@@ -111,9 +111,9 @@ struct chart_model {
 };
 
 /* The first part: all but rows and shares. max_lines: see chart_traffic_find. Errors: memory;
- * DUITE_E_ARGUMENT: nothing is within from .. to. */
-int chart_model_make(struct chart_model *model, const struct trace_run *run, double from, double to,
-                     uint32_t n_columns, size_t max_lines);
+ * DUITE_E_ARGUMENT: nothing is within the window. */
+int chart_model_make(struct chart_model *model, const struct trace_run *run,
+                     const struct chart_options *options, uint32_t n_columns, size_t max_lines);
 /* The second part. Workers of a rank share rows where there are more than `max_rows`, and ranks do
  * where that is not enough; max_rows: 1 at least. Errors: memory. */
 int chart_model_fill(struct chart_model *model, uint32_t n_columns, uint32_t max_rows);

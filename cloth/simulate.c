@@ -13,7 +13,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <sys/resource.h>
-#include <unistd.h>
 
 static atomic_int stop_requested; /* read by all threads, written by the signal's handler */
 

@@ -141,7 +141,7 @@ bench_graph_run_SOURCES = bench/sweep/run.c bench/sweep/graph.c bench/sweep/grap
 bench_graph_run_LDADD = $(CORE_LIBS)
 bench_compare_SOURCES = bench/environment.h bench/load.c bench/load.h bench/sweep/compare.c bench/sweep/compare.h bench/sweep/graph.c \
 	bench/sweep/graph.h bench/sweep/journal.c bench/sweep/median.c bench/sweep/page.c bench/sweep/start.c bench/sweep/statistics.c
-bench_compare_CPPFLAGS = $(AM_CPPFLAGS) -DBENCH_MPIRUN='"$(MPIRUN)"' -DBENCH_CFLAGS='"$(CFLAGS)"'
+bench_compare_CPPFLAGS = $(AM_CPPFLAGS) -DBENCH_MPIRUN='"$(MPIRUN)"' -DBENCH_CFLAGS='"$(CFLAGS)"' -DBENCH_SOURCE='"$(top_srcdir)"'
 bench_compare_LDADD = $(CORE_LIBS)
 
 # What `duite-bench tasks` counts the instructions of: with the library of users, not with libduite_core.

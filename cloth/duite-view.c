@@ -60,7 +60,8 @@ static const struct argp_option OPTIONS[] = {
     {"trace", 't', "FILE", 0,
      "Draw the Gantt chart of a run from the trace that duite-cloth --trace wrote; no DIR then", 0},
     {"svg", 'v', "FILE", 0, "Write the chart of --trace to FILE as SVG", 0},
-    {"window", 'w', "FROM:TO", 0, "Seconds that the chart of --trace shows (all)", 0},
+    {"window", 'w', "FROM:TO", 0,
+     "Seconds that the chart of --trace shows, or percent of the run (all)", 0},
     {"check-intersections", 'i', NULL, 0,
      "Look in all frames, exactly, for triangles that go through each other or through obstacles",
      0},
@@ -190,7 +191,10 @@ static error_t parse_chart(int key, char *arg, struct argp_state *state)
     case 'w':
         options->windowed = true;
         if (!chart_window_parse(arg, &options->chart))
-            argp_error(state, "--window takes FROM:TO in seconds, such as 0.1:0.2, not `%s'", arg);
+            argp_error(state,
+                       "--window takes FROM:TO in seconds, such as 0.1:0.2, or in percent of the "
+                       "run, such as 50%%:51%%, not `%s'",
+                       arg);
         return 0;
     default:
         return parse_live(key, arg, state);

@@ -13,7 +13,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <sys/resource.h>
-#include <unistd.h>
 
 static atomic_int stop_requested; /* read by all threads, written by the signal's handler */
 
@@ -123,7 +122,10 @@ static void run_flow(struct run *run, duite *rt, struct cloth_error *error)
     const bool wants = run->wants_frames || options->save_system || goes_on;
     const struct flow_progress progress = {run, forget_meshes, show_step, simulate_stops,
                                            options->checkpoint > 0 ? is_due : NULL};
+    const char *from;
     run->threads = duite_threads(rt);
+    run->cores = duite_cores(rt, &from);
+    snprintf(run->cores_from, sizeof run->cores_from, "%s", from);
     progress_begin(&run->progress, run->phases.done[run->phases.now].name);
     flow_run(run->flow, rt, wants ? &output : NULL, &progress, &run->report, error);
     progress_end(&run->progress);
@@ -261,7 +263,8 @@ static int conclude(struct run *run)
             .drape = outputs->drape ? &outputs->drapes : NULL,
             .ranks = run->ranks,
             .threads = run->threads,
-            .cores = (unsigned)fmax(1, (double)sysconf(_SC_NPROCESSORS_ONLN)),
+            .cores = run->cores,
+            .cores_from = run->cores_from,
             .workers = workers,
             .memory_bytes = peak,
             .critical_path = path,

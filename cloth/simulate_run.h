@@ -14,7 +14,8 @@ struct run {
     const struct simulate_options *options;
     const char *asked; /* the scene as the command line names it */
     int rank, ranks;
-    unsigned threads;
+    unsigned threads, cores;
+    char cores_from[160]; /* what said how many they are */
     struct phases phases;
     struct model *model;        /* of the phase that runs */
     struct flow *flow;          /* as that */

@@ -30,6 +30,8 @@ static void add_setting(struct output_report *json, const struct summary *summar
     add_hash(json, "partition_hash", report->partition_hash);
     output_report_integer(json, "ranks", (uint64_t)summary->ranks);
     output_report_integer(json, "threads", summary->threads);
+    output_report_integer(json, "cores", summary->cores);
+    output_report_text(json, "cores_from", summary->cores_from);
     output_report_text(json, "scheduler", summary->options->scheduler_name);
     output_report_text(json, "mapping", summary->options->mapping_name);
     output_report_text(json, "balance", summary->options->balance_name);

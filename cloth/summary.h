@@ -21,7 +21,8 @@ struct summary {
     const struct intersections_found *intersections; /* NULL: they were not looked for */
     const struct drape_found *drape;                 /* NULL: there is no drape test */
     int ranks;
-    unsigned threads, cores;           /* of rank 0; of its host */
+    unsigned threads, cores;           /* of rank 0 */
+    const char *cores_from;            /* duite_cores */
     uint64_t workers;                  /* of all ranks together */
     uint64_t memory_bytes;             /* the largest resident size that any rank had */
     double critical_path, lower_bound; /* s, of what was traced; not a number: nothing was */

@@ -115,6 +115,7 @@ static void print_what_ran(FILE *file, const struct summary *summary)
             "  ran on           %d ranks x %u threads, scheduler %s, mapping %s, balance %s\n",
             summary->ranks, summary->threads, summary->options->scheduler_name,
             summary->options->mapping_name, summary->options->balance_name);
+    fprintf(file, "  cores            %u a rank (%s)\n", summary->cores, summary->cores_from);
     fprintf(file, "  instructions     %s\n", cloth_simd_name());
     fprintf(file, "  steps            %" PRIu64 " of %g s, %g s simulated\n", report->steps,
             model->h, report->simulated_seconds);

@@ -237,8 +237,9 @@ typedef struct duite_options {
     const duite_kernel *const *kernels; /* ended by NULL; the list is copied, the kernels are not */
     const duite_law *const *laws;       /* of the program, ended by NULL; default NULL: none */
     void *context;                      /* given to every body; may differ between ranks */
-    unsigned threads; /* workers of this rank, the main thread among them; 0: its share of the
-                         cores. Default: DUITE_THREADS, else 0. At most DUITE_MAX_THREADS.
+    unsigned threads; /* workers of this rank, the main thread among them; 0: one on each of its
+                         cores (duite_cores), or fewer where OMP_NUM_THREADS or OMP_THREAD_LIMIT
+                         say so. Default: DUITE_THREADS, else 0. At most DUITE_MAX_THREADS.
                          May differ between ranks */
     const struct duite_scheduler *scheduler; /* default: DUITE_SCHEDULER, else steal */
     const struct duite_mapping *mapping;     /* default: DUITE_MAPPING, else metis */
@@ -384,8 +385,15 @@ int duite_rank(const duite *rt);
 int duite_ranks(const duite *rt);
 unsigned duite_threads(const duite *rt);
 
-/* 1 if the workers of this host outnumber the cores they may use: then they neither spin nor bind.
- * Local. */
+/* How many cores are this rank's: the least of its share of the cores that the ranks of its host
+ * may use, its share of what a cgroup's quota or SLURM_CPUS_ON_NODE leaves of them, and
+ * SLURM_CPUS_PER_TASK. *from, unless from is NULL: what said so, for people, such as
+ * "SLURM_CPUS_PER_TASK=1"; it stays until duite_stop. Where a rank is given fewer cores than it may
+ * use its workers are not bound. Local. */
+unsigned duite_cores(const duite *rt, const char **from);
+
+/* 1 if the workers of this host outnumber the cores they may use, or those of this rank its own:
+ * then they neither spin nor bind. Local. */
 int duite_oversubscribed(const duite *rt);
 
 /* ---- Shared objects ---- */

@@ -1,4 +1,4 @@
-# Sourced by bench/experiments: those of garments. It has run, value, median, $scratch, $scenes, $runs and $quick.
+# Sourced by bench/experiments: those of garments. It has run, value, median, $scratch, $scenes, $runs, $all_runs and $quick.
 # shellcheck shell=sh disable=SC2154,SC2086
 
 # ---- Vassilev ----
@@ -64,7 +64,7 @@ vassilev() {
     panels 500
     far_panels=$("$loops" check 20 "$scratch/panels.yaml")
     far_jeans=$("$loops" check 20 "$scratch/jeans.yaml")
-    echo "Milliseconds an explicit iteration of two panels that joints pull together around the figure; median of $runs runs of $steps iterations. After 20"
+    echo "Milliseconds an explicit iteration of two panels that joints pull together around the figure; median of $all_runs of $steps iterations. After 20"
     echo "iterations without the figure no vertex of the six loops is farther than $far_panels m from where duite-cloth has it, of jeans"
     echo "$far_jeans m"
     for self in off on; do
@@ -113,7 +113,7 @@ partutex_shirt() {
     : > "$scratch/hashes" && : > "$scratch/alone"
     run 1 1 shirt "$@" --set 'phases[1].set={time.end: 0.001}'
     echo "Figure 3: the shirt of $(value triangles) triangles, one welded surface; plain conjugate gradients to 1e-3, 25 frames a second"
-    echo "gathered, mean of $runs runs of the phase that hangs"
+    echo "gathered, mean of $all_runs of the phase that hangs"
     echo
     echo "| ranks x threads | seconds | seconds a step | speed-up | iterations a step (1115 there) |"
     echo "|---|---:|---:|---:|---:|"

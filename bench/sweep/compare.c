@@ -388,8 +388,9 @@ int main(int argc, char **argv)
         "SCENE.yaml|GRAPH...",
         "Compares schedulers, mappings, balancers, grains, ranks and threads: every product of the "
         "lists, in rounds of random order.\vA comparison that was interrupted goes on where it "
-        "stopped when the same command is given again; more --rounds are added to it. Results are "
-        "in the folder: compare.md has all, runs.csv every run, summary.csv the medians. The "
+        "stopped when the same command is given again; longer lists and more --rounds are added to "
+        "it. Results are in the folder: compare.md has all, runs.csv every run, summary.csv the "
+        "medians. The "
         "status is 1 if a run failed, a result was "
         "wrong, or something could not be written.",
         NULL,

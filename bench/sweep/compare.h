@@ -3,6 +3,7 @@
 
 #include "bench/load.h"
 
+#include <limits.h>
 #include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -12,6 +13,8 @@
  * be taken up where it was interrupted. Strings are the command line's. */
 
 enum { COMPARE_MOST = 24, COMPARE_CONFIGS = 2000, COMPARE_ROUNDS = 1000 };
+/* Rounds from which on order statistics have an interval of 95 %. */
+enum { COMPARE_ENOUGH = 6 };
 
 struct compare_list {
     const char *item[COMPARE_MOST];
@@ -36,10 +39,11 @@ struct compare_config {
     struct compare_run *run; /* rounds of them */
     /* From those that are fine: */
     size_t n;
-    double median, low, high; /* low .. high: 95 % for the median if there are 6 runs, else all */
+    double median, low, high; /* low .. high: 95 % for the median if runs are enough, else all */
     double bodies, outside;   /* medians */
     double ratio, ratio_low, ratio_high; /* to the fastest of its subject, within rounds */
-    bool fastest, noise;                 /* noise: the difference to it is none */
+    bool fastest, few, noise; /* few: too few rounds to tell; noise: the difference to it is none */
+    bool known;               /* the journal had a run of it when it was opened */
 };
 
 struct compare {
@@ -58,8 +62,9 @@ struct compare {
     size_t failed;       /* runs that did */
 };
 
-/* Opens the journal and takes over what is there, or begins it with the host and the build. 1, said
- * on stderr, if it is another comparison's or cannot be written. */
+/* Opens the journal and takes over what is there, or begins it with the host and the build. Lists
+ * may have grown meanwhile. 1, said on stderr, if it is another comparison's or cannot be written.
+ */
 int compare_journal_open(struct compare *compare);
 /* Appends a run and sees to it that it is on the disk. 1, said on stderr: nothing more can be kept.
  */
@@ -70,6 +75,10 @@ void compare_journal_warn(struct compare *compare, const char *warning);
 void compare_journal_close(struct compare *compare);
 /* The host and the build, a line each after `before`. */
 void compare_describe(FILE *out, const char *before);
+
+/* The path of what lies beside this program, or, with "../" as `above`, in the folder above it. */
+enum { COMPARE_PROGRAM = PATH_MAX + 100 };
+const char *compare_find_program(const char *name, const char *above, char path[COMPARE_PROGRAM]);
 
 /* Why StarPU's scheduler of this name cannot be run, in words written to text: NULL if it can. */
 const char *compare_starpu_wrong(const char *name, char *text, size_t size);
@@ -85,6 +94,10 @@ void compare_judge(struct compare *compare);
  * with the largest k for which fewer than k of n tosses come out heads with a probability of at
  * most 2.5 %; of fewer than 6 values all of them. Sorts the values. */
 double compare_median(double *values, size_t n, double *low, double *high);
+
+/* The values of what varies. */
+void compare_print_member(const struct compare *compare, const struct compare_config *config,
+                          FILE *out);
 
 /* How many runs of it failed; *first, if any, is the first one. */
 size_t compare_failures(const struct compare *compare, const struct compare_config *config,

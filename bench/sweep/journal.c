@@ -35,6 +35,7 @@ static void first_line_of(FILE *out, const char *before, const char *key, const 
 void compare_describe(FILE *out, const char *before)
 {
     struct utsname host;
+    char build[COMPARE_PROGRAM], command[COMPARE_PROGRAM + LINE];
     if (!uname(&host))
         fprintf(out, "%shost: %s, %s %s, %s\n", before, host.nodename, host.sysname, host.release,
                 host.machine);
@@ -45,15 +46,16 @@ void compare_describe(FILE *out, const char *before)
     first_line_of(out, before, "load", "cut -d ' ' -f 1-3 /proc/loadavg");
     first_line_of(out, before, "mpi", BENCH_MPIRUN " --version 2> /dev/null | head -n 1");
     fprintf(out, "%sbuild: %s, %s, %s\n", before, PACKAGE_STRING, COMPILER, BENCH_CFLAGS);
+    snprintf(command, sizeof command,
+             "git -C '%s' -C '" BENCH_SOURCE "' describe --always --dirty --abbrev=12 2> /dev/null",
+             compare_find_program("", "../", build));
+    first_line_of(out, before, "revision", command);
 }
 
-/* What makes runs comparable: all but the number of rounds. */
+/* What makes runs comparable, and no run says itself: so lists and rounds may grow. */
 static void print_specification(const struct compare *compare, FILE *out)
 {
     fprintf(out, "# compares:");
-    for (int d = 0; d < COMPARE_DIMENSIONS; d++)
-        for (size_t i = 0; i < compare->list[d].n; i++)
-            fprintf(out, "%s%s", i ? "," : " ", compare->list[d].item[i]);
     for (size_t i = 0; i < compare->sets.n; i++)
         fprintf(out, " --set %s", compare->sets.item[i]);
     fprintf(out, " tasks=%s cost=%s bytes=%s steps=%s seed=%" PRIu64 "\n", compare->tasks,
@@ -77,19 +79,24 @@ static struct compare_config *find(struct compare *compare, char *const *field)
     return NULL;
 }
 
-/* A run that failed is made again. */
-static void take_line(struct compare *compare, char *line)
+/* A run that failed is made again. False: the run is none of this comparison. */
+static bool take_line(struct compare *compare, char *line)
 {
     enum { FIELDS = 1 + COMPARE_DIMENSIONS + 7 };
     char *field[FIELDS], *rest = line;
     int n = 0;
     while (n < FIELDS && (field[n] = strsep(&rest, ",")))
         n++;
-    struct compare_config *config = n == FIELDS ? find(compare, field) : NULL;
-    size_t round = config ? strtoul(field[0], NULL, 10) : 0;
+    if (n < FIELDS || *line < '0' || *line > '9')
+        return true;
+    struct compare_config *config = find(compare, field);
+    if (!config)
+        return false;
+    const size_t round = strtoul(field[0], NULL, 10);
     char **figure = field + 1 + COMPARE_DIMENSIONS;
-    if (!config || round >= compare->rounds || strcmp(figure[6], "fine") != 0)
-        return;
+    config->known = true;
+    if (round >= compare->rounds || strcmp(figure[6], "fine") != 0)
+        return true;
     struct compare_run *run = &config->run[round];
     *run = (struct compare_run){.seconds = strtod(figure[0], NULL),
                                 .bodies = strtod(figure[1], NULL),
@@ -99,6 +106,7 @@ static void take_line(struct compare *compare, char *line)
                                 .done = true,
                                 .fine = true};
     snprintf(run->hash, sizeof run->hash, "%s", figure[5]);
+    return true;
 }
 
 #define WARNING "# warning: "
@@ -110,35 +118,89 @@ static void keep_warning(struct compare *compare, const char *warning)
         snprintf(compare->warnings + used, sizeof compare->warnings - used, "%s\n", warning);
 }
 
-/* Takes over whole lines; *whole: bytes up to the end of the last one. */
-static int take_over(struct compare *compare, FILE *in, long *whole)
+/* What a journal has that was there. */
+struct found {
+    long whole;       /* bytes up to the end of the last whole line */
+    bool same;        /* it is this comparison's */
+    size_t rounds;    /* that were begun */
+    char other[LINE]; /* the build or the revision of it, if it is another one's */
+};
+
+static bool begins(const char *line, const char *with)
 {
-    char line[LINE], *wanted = NULL;
+    return !strncmp(line, with, strlen(with));
+}
+
+/* ours: what begin() would write. */
+static void look_at(struct compare *compare, const char *ours, char *line, struct found *found)
+{
+    if (begins(line, "# compares:"))
+        found->same = strstr(ours, line);
+    const bool other =
+        (begins(line, "# build: ") || begins(line, "# revision: ")) && !strstr(ours, line);
+    line[strcspn(line, "\n")] = 0;
+    if (other)
+        snprintf(found->other, sizeof found->other, "%s", line + strlen("# "));
+    if (begins(line, WARNING))
+        keep_warning(compare, line + strlen(WARNING));
+    if (*line >= '0' && *line <= '9' && strtoul(line, NULL, 10) >= found->rounds)
+        found->rounds = strtoul(line, NULL, 10) + 1;
+    if (!take_line(compare, line))
+        found->same = false;
+}
+
+/* Takes over whole lines. */
+static int take_over(struct compare *compare, FILE *in, struct found *found)
+{
+    char line[LINE], *ours = NULL;
     size_t size, taken = 0;
-    bool same = false;
-    FILE *memory = open_memstream(&wanted, &size);
+    FILE *memory = open_memstream(&ours, &size);
     if (!memory)
         return 1;
     print_specification(compare, memory);
+    compare_describe(memory, "# ");
     fclose(memory);
     while (fgets(line, sizeof line, in) && strchr(line, '\n')) {
-        *whole = ftell(in);
-        same = same || !strcmp(line, wanted);
-        line[strcspn(line, "\n")] = 0;
-        if (!strncmp(line, WARNING, strlen(WARNING)))
-            keep_warning(compare, line + strlen(WARNING));
-        take_line(compare, line);
+        found->whole = ftell(in);
+        look_at(compare, ours, line, found);
     }
-    free(wanted);
+    free(ours);
     for (size_t i = 0; i < compare->n; i++)
         for (size_t r = 0; r < compare->rounds; r++)
             taken += compare->config[i].run[r].done;
-    if (*whole && !same)
-        fprintf(stderr, "compare: %s has another comparison; choose another --output\n",
+    if (found->whole && !found->same)
+        fprintf(stderr,
+                "compare: %s has another comparison: lists and rounds may grow, all else stays; "
+                "choose another --output\n",
                 compare->folder);
     else if (taken)
         printf("%zu runs are there already\n", taken);
-    return *whole && !same;
+    return found->whole && !found->same;
+}
+
+/* Members without a run, although a second round was begun, were not there before. */
+static void warn_of_later(struct compare *compare, const struct found *found)
+{
+    const struct compare_config *first = NULL;
+    char *text = NULL;
+    size_t n = 0, size;
+    for (size_t i = compare->n; i-- > 0;)
+        if (found->rounds > 1 && !compare->config[i].known) {
+            first = &compare->config[i];
+            n++;
+        }
+    FILE *memory = first ? open_memstream(&text, &size) : NULL;
+    if (!memory)
+        return;
+    compare_print_member(compare, first, memory);
+    if (n > 1)
+        fprintf(memory, " and %zu others", n - 1);
+    fputs(" joined later: their runs are not in turns with the others', so that their ratios have "
+          "what the machine did in between",
+          memory);
+    fclose(memory);
+    compare_journal_warn(compare, text);
+    free(text);
 }
 
 static void begin(struct compare *compare)
@@ -157,24 +219,30 @@ static void begin(struct compare *compare)
 
 int compare_journal_open(struct compare *compare)
 {
-    char path[LINE];
-    long whole = 0;
+    char path[LINE], text[LINE + 60];
+    struct found found = {.whole = 0};
     path_of(compare, path, sizeof path);
     FILE *in = fopen(path, "r");
-    int failed = in ? take_over(compare, in, &whole) : 0;
+    int failed = in ? take_over(compare, in, &found) : 0;
     if (in)
         fclose(in);
     if (failed)
         return 1;
-    compare->journal = fopen(path, whole ? "r+" : "w");
-    if (compare->journal && whole &&
-        (ftruncate(fileno(compare->journal), whole) || fseek(compare->journal, 0, SEEK_END)))
+    compare->journal = fopen(path, found.whole ? "r+" : "w");
+    if (compare->journal && found.whole &&
+        (ftruncate(fileno(compare->journal), found.whole) || fseek(compare->journal, 0, SEEK_END)))
         failed = 1;
-    if (compare->journal && !whole)
+    if (compare->journal && !found.whole)
         begin(compare);
     if (!compare->journal || failed || fflush(compare->journal)) {
         fprintf(stderr, "compare: %s: %s\n", path, strerror(errno));
         return 1;
+    }
+    warn_of_later(compare, &found);
+    if (*found.other) {
+        snprintf(text, sizeof text, "runs that were there already are of another build: %s",
+                 found.other);
+        compare_journal_warn(compare, text);
     }
     return 0;
 }

@@ -41,6 +41,8 @@ static const char *verdict(const struct compare *compare, const struct compare_c
         return compare_failures(compare, config, &run) ? "failed" : "not run";
     if (config->fastest)
         return "fastest";
+    if (config->few)
+        return "too few rounds";
     return config->noise ? "within the noise" : "slower";
 }
 
@@ -140,8 +142,8 @@ static void print_summary(const struct compare *compare, FILE *out)
 
 /* ---- Failures ---- */
 
-static void print_member(const struct compare *compare, const struct compare_config *config,
-                         FILE *out)
+void compare_print_member(const struct compare *compare, const struct compare_config *config,
+                          FILE *out)
 {
     fputs(config->value[SUBJECT], out);
     for (int d = 1; d < COMPARE_DIMENSIONS; d++)
@@ -159,7 +161,7 @@ static void print_failures(const struct compare *compare, FILE *out)
         if (!n)
             continue;
         fputs("- ", out);
-        print_member(compare, &compare->config[i], out);
+        compare_print_member(compare, &compare->config[i], out);
         fprintf(out, ": %zu of %zu runs; %s%s\n", n, compare->rounds, n > 1 ? "the first: " : "",
                 run->why ? run->why : "out of memory");
     }
@@ -318,8 +320,8 @@ static void print_rest(const struct compare *compare, FILE *out)
     fputs(
         "Times are of a step of a scene, or of a round of a graph; in bodies and outside of them, "
         "a "
-        "worker. The ratio to the fastest is taken within rounds; where its interval reaches 1, or "
-        "there are fewer than 6 rounds, the difference is within the noise.\n",
+        "worker. The ratio to the fastest is taken within rounds; where its interval reaches 1, "
+        "the difference is within the noise, and fewer than 6 rounds are too few to tell.\n",
         out);
     if (compare->wrong)
         fputs("\n**Results differ between runs that should agree.**\n", out);

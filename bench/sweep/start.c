@@ -33,29 +33,26 @@ static void append_pair(struct line *line, const char *option, const char *value
     append(line, value);
 }
 
-enum { PROGRAM = PATH_MAX + 100 };
-
-/* Beside this program, or in the folder above it. */
-static const char *find_program(const char *name, const char *above, char path[PROGRAM])
+const char *compare_find_program(const char *name, const char *above, char path[COMPARE_PROGRAM])
 {
     char self[PATH_MAX] = "";
     if (readlink("/proc/self/exe", self, sizeof self - 1) < 0)
         self[0] = 0;
-    snprintf(path, PROGRAM, "%s/%s%s", dirname(self), above, name);
+    snprintf(path, COMPARE_PROGRAM, "%s/%s%s", dirname(self), above, name);
     return path;
 }
 
 static void append_program(struct line *line, const char *name, const char *above)
 {
-    char path[PROGRAM];
-    append(line, find_program(name, above, path));
+    char path[COMPARE_PROGRAM];
+    append(line, compare_find_program(name, above, path));
 }
 
 const char *compare_starpu_wrong(const char *name, char *text, size_t size)
 {
-    char path[PROGRAM], command[PROGRAM + 40], known[2000] = "", word[100];
+    char path[COMPARE_PROGRAM], command[COMPARE_PROGRAM + 40], known[2000] = "", word[100];
     bool found = false;
-    if (access(find_program(STARPU_GRAPH, "", path), X_OK)) {
+    if (access(compare_find_program(STARPU_GRAPH, "", path), X_OK)) {
         snprintf(text, size, "%s is not built: configure found no libstarpu-dev", path);
         return text;
     }

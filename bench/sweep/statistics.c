@@ -32,7 +32,8 @@ static void judge_against(const struct compare *compare, struct compare_config *
             ratio[n++] = config->run[r].seconds / fastest->run[r].seconds;
     config->ratio = compare_median(ratio, n, &config->ratio_low, &config->ratio_high);
     config->fastest = config == fastest;
-    config->noise = !config->fastest && (n < 6 || config->ratio_low <= 1);
+    config->few = n < COMPARE_ENOUGH;
+    config->noise = config->ratio_low <= 1;
 }
 
 void compare_judge(struct compare *compare)

@@ -8,6 +8,7 @@
 #include "runtime/plan/record.h"
 #include "runtime/task/body.h"
 #include "runtime/trace/trace.h"
+#include "runtime/workers/share.h"
 #include "runtime/workers/workers.h"
 
 #pragma GCC visibility push(hidden) /* called directly: no other library can replace them */
@@ -31,7 +32,7 @@ struct duite {
     const duite_balancer *balance;
     uint64_t seed;
     size_t window;
-    unsigned threads;
+    struct work_share share;
     int oversubscribed;
     bool mpi_held;      /* the program holds MPI: between duite_mpi_begin and duite_mpi_end */
     int remembered;     /* code of a failed fork, new, ... */

@@ -77,7 +77,7 @@ static void migration_fill_own(struct migration *m)
 {
     struct work_pool *pool = m->rt->pool;
     const size_t *first = m->first + m->rt->graph.rank;
-    m->values[REPORT_WORKERS] = m->rt->threads;
+    m->values[REPORT_WORKERS] = m->rt->share.workers;
     m->values[REPORT_OTHER] = work_other_seconds(pool);
     for (size_t i = first[0]; i < first[1]; i++) {
         const struct map_block *block = &m->moves.blocks.block[m->row[i]];

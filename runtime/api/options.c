@@ -220,8 +220,9 @@ int api_watch_policies(duite *rt, const duite_options *options)
     if (!(options->policy_seconds > 0) ||
         !(policy[BASE_SCHEDULER] || policy[BASE_MAPPING] || policy[BASE_BALANCER]))
         return DUITE_OK;
-    const int code = base_watchdog_start(&rt->watchdog, &rt->monitor, policy,
-                                         options->policy_seconds, rt->threads, rt->graph.rank);
+    const int code =
+        base_watchdog_start(&rt->watchdog, &rt->monitor, policy, options->policy_seconds,
+                            rt->share.workers, rt->graph.rank);
     if (!code)
         rt->mapping.mark = base_watchdog_mark(rt->watchdog, BASE_MAPPING, 0);
     return code;

@@ -278,7 +278,14 @@ int duite_ranks(const duite *rt)
 
 unsigned duite_threads(const duite *rt)
 {
-    return rt ? rt->threads : 0;
+    return rt ? rt->share.workers : 0;
+}
+
+unsigned duite_cores(const duite *rt, const char **from)
+{
+    if (from)
+        *from = rt ? rt->share.from : "";
+    return rt ? rt->share.cores : 0;
 }
 
 int duite_oversubscribed(const duite *rt)

@@ -84,20 +84,36 @@ static int instance_start_memo(duite *rt, const duite_options *options)
     return rt->memo ? DUITE_OK : base_no_memory("the runtime");
 }
 
+/* Collective. Workers of a rank whose cores others may use, too, sleep where they are more than its
+ * share, and are not bound: all who are bound would be on the first cores. */
+static int instance_share(duite *rt, const duite_options *options, const struct work_cores *cores,
+                          struct comm_host *host)
+{
+    int code = comm_host_find(host, rt->mpi, cores->hash);
+    work_share_find(&(struct work_surroundings){.cores = cores->n,
+                                                .ranks = host->ranks,
+                                                .asked = options->threads,
+                                                .cgroups = WORK_CGROUPS,
+                                                .mounted = WORK_CGROUP_ROOT},
+                    &rt->share);
+    if (!code)
+        code = comm_host_count(host, rt->share.workers);
+    rt->oversubscribed =
+        host->total > cores->n || (rt->share.limited && rt->share.workers > rt->share.cores);
+    return code;
+}
+
 static int instance_start_workers(duite *rt, const duite_options *options, int code)
 {
     struct work_cores cores = {0};
     struct comm_host host = {.ranks = 1};
-    unsigned threads = options->threads;
     if (!code)
         code = work_cores_find(&cores);
     /* Collective: a rank that failed takes part. */
-    int asked = comm_host_find(&host, rt->mpi, cores.hash, cores.n, &threads);
+    int asked = instance_share(rt, options, &cores, &host);
     if (!code)
         code = asked;
-    rt->threads = threads;
-    rt->oversubscribed = host.total > cores.n;
-    bool bind = options->bind && !rt->oversubscribed;
+    bool bind = options->bind && !rt->oversubscribed && !rt->share.limited;
     if (!code)
         code = api_watch_policies(rt, options);
     if (!code && options->trace)
@@ -116,7 +132,7 @@ static int instance_start_workers(duite *rt, const duite_options *options, int c
                                  .measures = options->mapping->map_tasks != NULL,
                                  .context = options->context,
                                  .rt = rt,
-                                 .threads = threads,
+                                 .threads = rt->share.workers,
                                  .seed = options->seed,
                                  .stuck_seconds = options->stuck_seconds,
                                  .spin_seconds = rt->oversubscribed ? 0 : options->spin_seconds,

@@ -15,7 +15,7 @@ int api_trace_open(duite *rt, const duite_options *options)
                                                         .end = options->trace_end,
                                                         .rank = rt->graph.rank,
                                                         .n_ranks = rt->graph.n_ranks,
-                                                        .workers = rt->threads,
+                                                        .workers = rt->share.workers,
                                                         .graph = &rt->graph});
 }
 
@@ -57,7 +57,7 @@ int duite_trace_step(duite *rt, uint64_t step)
 
 static int trace_close_file(duite *rt)
 {
-    struct trace_counters *counters = base_alloc_zero(rt->threads * sizeof *counters);
+    struct trace_counters *counters = base_alloc_zero(rt->share.workers * sizeof *counters);
     if (counters)
         work_note_counters(rt->pool, counters);
     if (trace_is_on(rt->trace))

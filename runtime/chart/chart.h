@@ -14,14 +14,15 @@ enum { CHART_WIDTH = 1280, CHART_MIN_WIDTH = 400, CHART_MIN_HEIGHT = 200, CHART_
 
 struct chart_options {
     double from, to;   /* s since the first event, on the clock of rank 0; infinite: all there is */
+    bool shares;       /* they are shares of the run, 0 .. 1 */
     int width, height; /* pixels; height 0: what the rows need */
 };
 
 /* All of the run, CHART_WIDTH wide. */
 struct chart_options chart_options_default(void);
 
-/* FROM:TO in seconds, either of which may be left out; WIDTHxHEIGHT. False: the text is neither;
- * the options are as before then. */
+/* FROM:TO in seconds or, both with a % sign, in percent of the run, either of which may be left
+ * out; WIDTHxHEIGHT. False: the text is neither; the options are as before then. */
 bool chart_window_parse(const char *text, struct chart_options *options);
 bool chart_size_parse(const char *text, struct chart_options *options);
 

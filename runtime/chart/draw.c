@@ -196,9 +196,9 @@ static void draw_span(const struct drawing *d, double from, double from_y, doubl
 
 static void draw_messages(const struct drawing *d)
 {
-    const struct chart_traffic *traffic = &d->chart->model.traffic;
-    for (size_t i = 0; i < traffic->n_messages; i++) {
-        const struct chart_message *message = &traffic->message[i];
+    const struct trace_messages *messages = &d->chart->model.traffic.messages;
+    for (size_t i = 0; i < messages->n; i++) {
+        const struct trace_message *message = &messages->message[i];
         draw_span(d, message->sent, middle_of(d->chart, message->from), message->received,
                   middle_of(d->chart, message->to), MESSAGE_WIDTH, MESSAGE);
     }

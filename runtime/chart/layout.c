@@ -202,11 +202,10 @@ static int chart_lay_out(struct chart *chart, const struct trace_run *run,
     chart->width = options->width;
     chart->height = options->height;
     chart->columns = options->width - CHART_LEFT - CHART_RIGHT;
-    int code = chart_model_make(&chart->model, run, options->from, options->to,
-                                (uint32_t)chart->columns, MAX_LINES);
+    int code = chart_model_make(&chart->model, run, options, (uint32_t)chart->columns, MAX_LINES);
     if (code)
         return code;
-    chart->has_lines = chart->model.traffic.n_messages > 0;
+    chart->has_lines = chart->model.traffic.messages.n > 0;
     chart->has_path_line = chart->model.path.known && path_steps(&chart->model) <= MAX_LINES;
     chart->strip_top = chart->model.traffic.n > MAX_LINES;
     caption_add(chart);

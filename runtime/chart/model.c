@@ -128,8 +128,9 @@ static int model_times(struct chart_model *model)
     return code;
 }
 
-static int model_window(struct chart_model *model, double from, double to)
+static int model_window(struct chart_model *model, const struct chart_options *options)
 {
+    double from = options->from, to = options->to;
     struct trace_sums sums;
     int code = trace_sum(model->run, &sums);
     trace_sums_free(&sums);
@@ -137,6 +138,10 @@ static int model_window(struct chart_model *model, double from, double to)
         return code;
     model->first = sums.first;
     model->last = sums.last;
+    if (options->shares) {
+        from = sums.first + from * (sums.last - sums.first);
+        to = sums.first + to * (sums.last - sums.first);
+    }
     model->from = fmax(from, sums.first);
     model->to = fmin(to, sums.last);
     if (model->from < model->to)
@@ -148,12 +153,12 @@ static int model_window(struct chart_model *model, double from, double to)
     return base_error(DUITE_E_ARGUMENT, "the trace has nothing that took time: no chart");
 }
 
-int chart_model_make(struct chart_model *model, const struct trace_run *run, double from, double to,
-                     uint32_t n_columns, size_t max_lines)
+int chart_model_make(struct chart_model *model, const struct trace_run *run,
+                     const struct chart_options *options, uint32_t n_columns, size_t max_lines)
 {
     *model = (struct chart_model){.run = run, .n_workers = trace_first_worker(run, run->n_ranks)};
     const uint32_t n = run->n_kernels + CHART_STATES;
-    int code = model_window(model, from, to);
+    int code = model_window(model, options);
     if (code)
         return code;
     model->row_of = base_alloc_zero((model->n_workers + 1) * sizeof *model->row_of);
@@ -228,5 +233,5 @@ void chart_model_free(struct chart_model *model)
     base_free(model->shares.seconds);
     base_free(model->path.step);
     base_free(model->traffic.count);
-    base_free(model->traffic.message);
+    base_free(model->traffic.messages.message);
 }

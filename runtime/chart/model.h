@@ -69,21 +69,13 @@ struct chart_path {
 /* Errors: memory. */
 int chart_path_find(const struct trace_run *run, struct chart_path *path);
 
-/* The k-th message from one rank to another is taken to be the k-th that is received: no event says
- * which one it is. */
-struct chart_message {
-    double sent, received; /* s */
-    uint32_t from, to;     /* workers of all ranks */
-};
-
 struct chart_traffic {
-    size_t n;                      /* messages sent within from .. to */
-    uint32_t *count;               /* of these, by column */
-    struct chart_message *message; /* n_messages that are on their way then, if n <= max */
-    size_t n_messages;
+    size_t n;                       /* messages sent within from .. to */
+    uint32_t *count;                /* of these, by column */
+    struct trace_messages messages; /* those that are on their way then, if n <= max */
 };
 
-/* To be freed by base_free(count), base_free(message), which are NULL after an error. Errors:
+/* To be freed by base_free(count), base_free(messages.message), after an error, too. Errors:
  * memory. */
 int chart_traffic_find(const struct trace_run *run, double from, double to, uint32_t n_columns,
                        size_t max, struct chart_traffic *traffic);
@@ -119,9 +111,9 @@ struct chart_model {
 };
 
 /* The first part: all but rows and shares. max_lines: see chart_traffic_find. Errors: memory;
- * DUITE_E_ARGUMENT: nothing is within from .. to. */
-int chart_model_make(struct chart_model *model, const struct trace_run *run, double from, double to,
-                     uint32_t n_columns, size_t max_lines);
+ * DUITE_E_ARGUMENT: nothing is within the window. */
+int chart_model_make(struct chart_model *model, const struct trace_run *run,
+                     const struct chart_options *options, uint32_t n_columns, size_t max_lines);
 /* The second part. Workers of a rank share rows where there are more than `max_rows`, and ranks do
  * where that is not enough; max_rows: 1 at least. Errors: memory. */
 int chart_model_fill(struct chart_model *model, uint32_t n_columns, uint32_t max_rows);

@@ -10,22 +10,29 @@ struct chart_options chart_options_default(void)
     return (struct chart_options){.from = -INFINITY, .to = INFINITY, .width = CHART_WIDTH};
 }
 
-/* A number of seconds from 0 on that ends at `end`; nothing at all leaves *seconds. */
-static bool window_end_parse(const char *text, const char *end, double *seconds)
+/* A number from 0 on, of at most 100 percent if that is wanted, that ends at `end`; nothing at all
+ * leaves *value. */
+static bool window_end_parse(const char *text, const char *end, bool percent, double *value)
 {
     char *behind = NULL;
     if (text == end)
         return true;
-    *seconds = strtod(text, &behind);
-    return behind == end && *text >= '0' && *text <= '9' && isfinite(*seconds);
+    *value = strtod(text, &behind);
+    if (percent && (*behind != '%' || *value > 100))
+        return false;
+    if (percent)
+        *value /= 100;
+    return behind + percent == end && *text >= '0' && *text <= '9' && isfinite(*value);
 }
 
 bool chart_window_parse(const char *text, struct chart_options *options)
 {
     const char *colon = strchr(text, ':');
     struct chart_options window = *options;
-    if (!colon || !window_end_parse(text, colon, &window.from) ||
-        !window_end_parse(colon + 1, text + strlen(text), &window.to) || !(window.from < window.to))
+    window.shares = strchr(text, '%') != NULL;
+    if (!colon || !window_end_parse(text, colon, window.shares, &window.from) ||
+        !window_end_parse(colon + 1, text + strlen(text), window.shares, &window.to) ||
+        !(window.from < window.to))
         return false;
     *options = window;
     return true;

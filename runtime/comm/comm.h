@@ -96,15 +96,17 @@ uint64_t comm_movement(struct comm *comm);
 
 /* The ranks of one host that share their cores with this one. */
 struct comm_host {
-    unsigned ranks;  /* this one among them */
-    unsigned before; /* workers of the ranks below this one */
-    unsigned total;  /* workers of all of them */
+    MPI_Comm sharers; /* these ranks, until their workers are counted */
+    unsigned ranks;   /* this one among them */
+    unsigned before;  /* workers of the ranks below this one */
+    unsigned total;   /* workers of all of them */
 };
 
-/* hash: of the cores this rank may use; n_cores: how many; threads: workers this rank wants, or 0
- * for its share, which is written back. Collective over mpi. Errors: DUITE_E_MPI. */
-int comm_host_find(struct comm_host *host, MPI_Comm mpi, uint64_t hash, unsigned n_cores,
-                   unsigned *threads);
+/* hash: of the cores this rank may use. Collective over mpi. Errors: DUITE_E_MPI, on all ranks;
+ * comm_host_count is not due then. */
+int comm_host_find(struct comm_host *host, MPI_Comm mpi, uint64_t hash);
+/* threads: workers of this rank. Collective over the ranks of the host. Errors: DUITE_E_MPI. */
+int comm_host_count(struct comm_host *host, unsigned threads);
 
 /* Measures what a message costs between ranks. Before comm_open; collective, blocks. A failure is
  * told by the next call. */

@@ -9,38 +9,31 @@
 
 /* ---- Ranks that share cores ---- */
 
-/* The ranks that share this one's cores. */
-static int host_exchange(struct comm_host *host, MPI_Comm sharers, unsigned n_cores,
-                         unsigned *threads)
+int comm_host_find(struct comm_host *host, MPI_Comm mpi, uint64_t hash)
 {
-    int n, self;
-    if (MPI_Comm_size(sharers, &n) || MPI_Comm_rank(sharers, &self))
-        return base_error(DUITE_E_MPI, "MPI_Comm_size failed");
-    *host = (struct comm_host){.ranks = (unsigned)n};
-    if (!*threads)
-        *threads = n_cores > host->ranks ? n_cores / host->ranks : 1;
-    if (MPI_Exscan(threads, &host->before, 1, MPI_UNSIGNED, MPI_SUM, sharers) ||
-        MPI_Allreduce(threads, &host->total, 1, MPI_UNSIGNED, MPI_SUM, sharers))
-        return base_error(DUITE_E_MPI, "MPI_Allreduce failed");
-    if (!self)
-        host->before = 0; /* MPI_Exscan leaves it undefined there */
-    return DUITE_OK;
-}
-
-int comm_host_find(struct comm_host *host, MPI_Comm mpi, uint64_t hash, unsigned n_cores,
-                   unsigned *threads)
-{
-    MPI_Comm local, sharers;
+    MPI_Comm local;
+    int n, code = DUITE_OK;
     if (MPI_Comm_split_type(mpi, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &local))
         return base_error(DUITE_E_MPI, "MPI_Comm_split_type failed");
-    int code = DUITE_OK;
-    if (MPI_Comm_split(local, (int)(hash & 0x7fffffff), 0, &sharers))
+    if (MPI_Comm_split(local, (int)(hash & 0x7fffffff), 0, &host->sharers) ||
+        MPI_Comm_size(host->sharers, &n))
         code = base_error(DUITE_E_MPI, "MPI_Comm_split failed");
     MPI_Comm_free(&local);
-    if (code)
-        return code;
-    code = host_exchange(host, sharers, n_cores, threads);
-    MPI_Comm_free(&sharers);
+    if (!code)
+        host->ranks = (unsigned)n;
+    return code;
+}
+
+int comm_host_count(struct comm_host *host, unsigned threads)
+{
+    int self, code = DUITE_OK;
+    if (MPI_Comm_rank(host->sharers, &self) ||
+        MPI_Exscan(&threads, &host->before, 1, MPI_UNSIGNED, MPI_SUM, host->sharers) ||
+        MPI_Allreduce(&threads, &host->total, 1, MPI_UNSIGNED, MPI_SUM, host->sharers))
+        code = base_error(DUITE_E_MPI, "MPI_Allreduce failed");
+    else if (!self)
+        host->before = 0; /* MPI_Exscan leaves it undefined there */
+    MPI_Comm_free(&host->sharers);
     return code;
 }
 

@@ -57,7 +57,8 @@ static void options_fill(void)
         *next++ =
             (struct argp_option){CHARTS[i].option, FORM + N_FORMS + i, "OUT", 0, CHARTS[i].help, 1};
     *next++ = (struct argp_option){
-        "window", WINDOW, "FROM:TO", 0, "seconds that the chart shows (all)", 1};
+        "window", WINDOW, "FROM:TO", 0, "seconds that the chart shows, or percent of the run (all)",
+        1};
     *next++ = (struct argp_option){
         "size", SIZE, "WxH", 0, "pixels of the chart (1280 wide, as high as its rows)", 1};
     *next++ = (struct argp_option){
@@ -80,8 +81,11 @@ static error_t form_option_read(int key, char *value, struct argp_state *state)
     case WINDOW:
         command->charted = true;
         if (!chart_window_parse(value, &command->chart))
-            argp_error(state, "--window takes FROM:TO in seconds, such as 0.1:0.2, not `%s'",
-                       value);
+            argp_error(
+                state,
+                "--window takes FROM:TO in seconds, such as 0.1:0.2, or in percent of the run, "
+                "such as 50%%:51%%, not `%s'",
+                value);
         return 0;
     case SIZE:
         command->charted = true;

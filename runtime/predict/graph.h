@@ -135,6 +135,7 @@ struct predict_graph {
     double overhead; /* s between two tasks, */
     double message;  /* of a core, to send or to take one, */
     double look;     /* and to look for one, which workers do now and then; 0: nobody sends any */
+    double bodies, medians; /* s, as predict_result has them */
     uint64_t n_tasks, migrated;
     bool plain;           /* tasks and what they read alone: replays have no gates */
     bool replays, failed; /* failed: no memory */
@@ -202,12 +203,11 @@ int predict_simulate(struct predict_graph *graph, struct predict_result *result,
 
 /* Seconds of tasks by their numbers. */
 struct predict_times;
-struct predict_times *predict_times_new(const struct trace_run *run);
+/* `steady`: bodies take the median of their kernel. NULL without memory. */
+struct predict_times *predict_times_new(const struct trace_run *run, bool steady);
 void predict_times_free(struct predict_times *times);
 /* Whether the task ran; and for how long. */
 bool predict_times_find(const struct predict_times *times, uint64_t number, double *seconds);
-/* Bodies take the median of their kernel from now on. False without memory. */
-bool predict_times_steady(struct predict_times *times, const struct trace_run *run);
 /* The mean of the tasks of a kernel, or their median; of the runtime's own tasks of a kind; between
  * two tasks. */
 double predict_times_kernel(const struct predict_times *times, uint32_t kernel);
@@ -215,6 +215,8 @@ double predict_times_own(const struct predict_times *times, uint32_t kind);
 /* All seconds of the runtime's own tasks that combine contributions. */
 double predict_times_sums(const struct predict_times *times);
 double predict_times_gap(const struct predict_times *times);
+/* All seconds of bodies; and what they were if each had taken the median of its kernel. */
+void predict_times_spread(const struct predict_times *times, double *bodies, double *medians);
 /* Seconds of a core that a message took in the trace, at each of its ends, and a look for messages
  * that found none, if each worker looks between two tasks PREDICT_LOOKS apart. False: no worker
  * that had tasks sent or took one. */

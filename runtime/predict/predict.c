@@ -143,7 +143,7 @@ int predict_write_paje(const struct predict_machine *m, FILE *file)
             span[n++] = (struct trace_span){m->begin[i], m->end[i], predict_describe(m, i).kernel,
                                             m->runs_on[i]};
     if (!code)
-        code = trace_write_paje_spans(file, span, n, host_of, m->n_workers, m->now);
+        code = trace_write_paje_spans(file, span, n, NULL, host_of, m->n_workers, m->now);
     base_free(span);
     base_free(host_of);
     return code;
@@ -165,6 +165,8 @@ void predict_conclude(struct predict_machine *m, struct predict_result *result, 
                                       .overhead = graph->overhead,
                                       .message = graph->message,
                                       .look = graph->look,
+                                      .bodies = graph->bodies,
+                                      .medians = graph->medians,
                                       .idle = all > 0 ? 1 - m->busy / all : 0};
     for (size_t i = 0; i < graph->n_nodes; i++)
         result->work += (double)graph->node[i].seconds;

@@ -53,6 +53,8 @@ struct predict_result {
     double makespan;                                   /* s */
     double work;                                       /* s in bodies, all workers together */
     double critical_path; /* s: the longest chain of tasks, if messages and forks took no time */
+    double bodies;        /* s that bodies took in the trace, */
+    double medians;       /* and would have, had each taken the median of its kernel */
     double idle;          /* share of the workers' time without a task */
     double overhead, message, look; /* s between two tasks and of messages, as taken to be */
     double chain[PREDICT_LIMITS];

@@ -381,7 +381,7 @@ static bool program_prepare(struct predict_program *p)
 {
     struct predict_graph *graph = p->graph;
     const uint32_t hosts = graph->cluster->hosts;
-    p->times = predict_times_new(graph->run);
+    p->times = predict_times_new(graph->run, graph->cluster->steady);
     graph->piece = base_alloc(hosts * sizeof *graph->piece);
     graph->began = base_alloc(hosts * sizeof *graph->began);
     graph->count = base_alloc_zero(hosts * sizeof *graph->count);
@@ -390,8 +390,6 @@ static bool program_prepare(struct predict_program *p)
     graph->among = base_alloc(base_ranks_words((int)hosts) * sizeof *graph->among);
     graph->round = PREDICT_NONE;
     graph->flag = PREDICT_NONE;
-    if (p->times && graph->cluster->steady && !predict_times_steady(p->times, graph->run))
-        return false;
     if (!p->times || !graph->piece || !graph->began || !graph->count || !graph->phase ||
         !graph->among || !graph->ring ||
         !(p->blocks_on = base_alloc_zero(hosts * sizeof *p->blocks_on)) ||
@@ -404,6 +402,7 @@ static bool program_prepare(struct predict_program *p)
                           ? predict_times_gap(p->times) / graph->cluster->core_speed
                           : graph->cluster->overhead;
     program_messages(graph, p->times);
+    predict_times_spread(p->times, &graph->bodies, &graph->medians);
     return true;
 }
 

@@ -18,7 +18,9 @@ struct times_mean {
 struct predict_times {
     struct trace_bodies *bodies;
     struct times_mean *kernel, own[OWN_KINDS];
-    float *median; /* by kernel, then by kind of the runtime's own tasks; NULL: not asked for */
+    float *median;                  /* by kernel, then by kind of the runtime's own tasks */
+    double all_bodies, all_medians; /* of kernels */
+    bool steady;
     uint32_t n_kernels;
     float *gap;
     size_t n_gaps;
@@ -141,7 +143,8 @@ static size_t times_bodies(const struct predict_times *times, const struct trace
     return n;
 }
 
-bool predict_times_steady(struct predict_times *times, const struct trace_run *run)
+/* False without memory. */
+static bool times_medians(struct predict_times *times, const struct trace_run *run)
 {
     size_t n = 1;
     for (uint32_t r = 0; r < run->n_ranks; r++)
@@ -156,7 +159,12 @@ bool predict_times_steady(struct predict_times *times, const struct trace_run *r
     for (size_t first = 0, end; body && times->median && first < n; first = end) {
         for (end = first; end < n && body[end].kernel == body[first].kernel;)
             end++;
-        times->median[body[first].kernel] = body[first + (end - first) / 2].seconds;
+        const float median = body[first + (end - first) / 2].seconds;
+        times->median[body[first].kernel] = median;
+        for (size_t i = first; i < end && body[i].kernel < times->n_kernels; i++) {
+            times->all_bodies += (double)body[i].seconds;
+            times->all_medians += (double)median;
+        }
     }
     const bool fine = body && times->median;
     base_free(body);
@@ -165,7 +173,7 @@ bool predict_times_steady(struct predict_times *times, const struct trace_run *r
 
 /* ---- All of it ---- */
 
-struct predict_times *predict_times_new(const struct trace_run *run)
+struct predict_times *predict_times_new(const struct trace_run *run, bool steady)
 {
     struct predict_times *times = base_alloc_zero(sizeof *times);
     if (!times || !(times->bodies = trace_bodies_new(run)) ||
@@ -175,6 +183,7 @@ struct predict_times *predict_times_new(const struct trace_run *run)
         return NULL;
     }
     times->n_kernels = run->n_kernels;
+    times->steady = steady;
     for (uint32_t r = 0; r < run->n_ranks; r++)
         for (size_t p = 0; p < run->rank[r].n_pieces; p++) {
             const struct trace_piece *piece = &run->rank[r].piece[p];
@@ -186,6 +195,10 @@ struct predict_times *predict_times_new(const struct trace_run *run)
             times_messages(times, piece, run->rank[r].header->tick);
         }
     qsort(times->gap, times->n_gaps, sizeof *times->gap, times_compare_seconds);
+    if (!times_medians(times, run)) {
+        predict_times_free(times);
+        return NULL;
+    }
     return times;
 }
 
@@ -207,7 +220,7 @@ bool predict_times_find(const struct predict_times *times, uint64_t number, doub
 
 double predict_times_kernel(const struct predict_times *times, uint32_t kernel)
 {
-    if (times->median)
+    if (times->steady)
         return times->median[kernel];
     return mean_value(&times->kernel[kernel]);
 }
@@ -216,7 +229,7 @@ double predict_times_own(const struct predict_times *times, uint32_t kind)
 {
     if (kind >= OWN_KINDS)
         return 0;
-    return times->median ? (double)times->median[times->n_kernels + kind]
+    return times->steady ? (double)times->median[times->n_kernels + kind]
                          : mean_value(&times->own[kind]);
 }
 
@@ -227,6 +240,12 @@ double predict_times_sums(const struct predict_times *times)
     for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++)
         seconds += predict_times_own(times, kinds[i]) * (double)times->own[kinds[i]].n;
     return seconds;
+}
+
+void predict_times_spread(const struct predict_times *times, double *bodies, double *medians)
+{
+    *bodies = times->all_bodies;
+    *medians = times->all_medians;
 }
 
 double predict_times_gap(const struct predict_times *times)

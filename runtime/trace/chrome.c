@@ -5,6 +5,8 @@
  * (spans that overlap are dropped). */
 #include "runtime/trace/export.h"
 
+#include "runtime/base/memory.h"
+
 #include <inttypes.h>
 #include <math.h>
 
@@ -62,11 +64,10 @@ static int64_t chrome_nanoseconds(double seconds)
     return seconds > 0 ? llrint(1e9 * seconds) : 0;
 }
 
-/* Threads are numbered through all ranks. */
-static void chrome_put_ids(FILE *file, const struct trace_run *run, uint32_t rank, uint32_t worker)
+/* thread: the worker, numbered through all ranks. */
+static void chrome_put_ids(FILE *file, uint32_t rank, uint32_t thread)
 {
-    fprintf(file, "\"pid\":%" PRIu32 ",\"tid\":%" PRIu32, rank + 1,
-            trace_first_worker(run, rank) + worker + 1);
+    fprintf(file, "\"pid\":%" PRIu32 ",\"tid\":%" PRIu32, rank + 1, thread + 1);
 }
 
 static void chrome_put_event(void *context, const struct trace_seen *seen)
@@ -77,7 +78,7 @@ static void chrome_put_event(void *context, const struct trace_seen *seen)
     fputs(",\n{\"name\":", file);
     chrome_put_string(file, trace_event_name(writer->run, seen->event));
     fprintf(file, ",\"cat\":\"%s\",", trace_kind_name(seen->event->kind));
-    chrome_put_ids(file, writer->run, seen->rank, seen->worker);
+    chrome_put_ids(file, seen->rank, trace_first_worker(writer->run, seen->rank) + seen->worker);
     chrome_put_time(file, "ts", begin);
     if (trace_event_lasts(seen->event)) {
         fputs(",\"ph\":\"X\"", file);
@@ -97,16 +98,40 @@ static void chrome_put_name(FILE *file, const struct trace_run *run, uint32_t ra
     const char *what = process ? "process" : "thread";
     fprintf(file, "%s{\"name\":\"%s_name\",\"ph\":\"M\",", rank || worker || !process ? ",\n" : "",
             what);
-    chrome_put_ids(file, run, rank, worker);
+    chrome_put_ids(file, rank, trace_first_worker(run, rank) + worker);
     fprintf(file, ",\"args\":{\"name\":\"%s %" PRIu32 "\"}},\n", process ? "rank" : "worker",
             process ? rank : worker);
     fprintf(file, "{\"name\":\"%s_sort_index\",\"ph\":\"M\",", what);
-    chrome_put_ids(file, run, rank, worker);
+    chrome_put_ids(file, rank, trace_first_worker(run, rank) + worker);
     fprintf(file, ",\"args\":{\"sort_index\":%" PRIu32 "}}", process ? rank : worker);
+}
+
+/* An end of an arrow between ranks. */
+static void chrome_put_end(FILE *file, char phase, size_t id, uint32_t rank, uint32_t thread,
+                           int64_t t)
+{
+    fprintf(file, ",\n{\"name\":\"message\",\"cat\":\"message\",\"id\":%zu,", id);
+    chrome_put_ids(file, rank, thread);
+    chrome_put_time(file, "ts", t);
+    fprintf(file, ",\"ph\":\"%c\",\"bp\":\"e\"}", phase);
+}
+
+/* Perfetto joins what began last on a thread before the arrow's end, here the send and the receive:
+ * so arrows come behind all events. It drops an arrow that ends before it begins, which clocks of
+ * two ranks may say. */
+static void chrome_put_arrow(FILE *file, const struct trace_message *message, size_t id)
+{
+    const int64_t sent = chrome_nanoseconds(message->sent),
+                  received = chrome_nanoseconds(message->received);
+    chrome_put_end(file, 's', id, message->from_rank, message->from, sent);
+    chrome_put_end(file, 'f', id, message->to_rank, message->to,
+                   received > sent ? received : sent + 1);
 }
 
 static int chrome_write(const struct trace_run *run, FILE *file)
 {
+    struct trace_messages messages;
+    int code = trace_messages_find(run, &messages);
     fputs("{\"displayTimeUnit\":\"ns\",\"traceEvents\":[\n", file);
     for (uint32_t r = 0; r < run->n_ranks; r++) {
         chrome_put_name(file, run, r, 0, true);
@@ -114,8 +139,11 @@ static int chrome_write(const struct trace_run *run, FILE *file)
             chrome_put_name(file, run, r, w, false);
     }
     trace_each(run, chrome_put_event, &(struct chrome_writer){run, file});
+    for (size_t i = 0; i < messages.n; i++)
+        chrome_put_arrow(file, &messages.message[i], i + 1);
     fputs("\n]}\n", file);
-    return 0;
+    base_free(messages.message);
+    return code;
 }
 
 const struct trace_export trace_export_chrome = {

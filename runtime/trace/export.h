@@ -31,10 +31,11 @@ struct trace_span {
     uint32_t worker;
 };
 
-/* Writes spans of the caller's own in the form of Paje. `host_of[worker]`: its rank; `limit`: the
- * whole time, at least. A span that ends before it begins is an event. `file` stays open. Errors:
- * memory. */
-int trace_write_paje_spans(FILE *file, struct trace_span *span, size_t n, const uint32_t *host_of,
+/* Writes spans and messages (NULL: none) of the caller's own in the form of Paje.
+ * `host_of[worker]`: its rank; `limit`: the whole time, at least. A span that ends before it begins
+ * is an event. `file` stays open. Errors: memory. */
+int trace_write_paje_spans(FILE *file, struct trace_span *span, size_t n,
+                           const struct trace_messages *messages, const uint32_t *host_of,
                            uint32_t n_workers, double limit);
 
 #endif

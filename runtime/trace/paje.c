@@ -1,5 +1,6 @@
 /* Paje (Schnorr, de Oliveira Stein & Chassin de Kergommeaux, 2013), which ViTE opens: ranks hold
- * workers, whose states are pushed and popped; steals and messages are events.
+ * workers, whose states are pushed and popped; steals, sends and receives are events, messages are
+ * links.
  *
  * Paje wants its lines in the order of time: spans become two moments each. Of those at one time
  * ends come first, the inner ones before the outer; spans without a duration are left out. */
@@ -30,13 +31,21 @@ static const char *const HEAD =
     "%EventDef PajePopState 8\n%  Time date\n%  Type string\n%  Container string\n%EndEventDef\n"
     "%EventDef PajeNewEvent 9\n%  Time date\n%  Type string\n%  Container string\n"
     "%  Value string\n%EndEventDef\n"
-    "1 R 0 Rank\n1 W R Worker\n2 S W State\n";
+    "%EventDef PajeDefineLinkType 10\n%  Alias string\n%  Type string\n"
+    "%  StartContainerType string\n%  EndContainerType string\n%  Name string\n%EndEventDef\n"
+    "%EventDef PajeStartLink 11\n%  Time date\n%  Type string\n%  Container string\n"
+    "%  StartContainer string\n%  Value string\n%  Key string\n%EndEventDef\n"
+    "%EventDef PajeEndLink 12\n%  Time date\n%  Type string\n%  Container string\n"
+    "%  EndContainer string\n%  Value string\n%  Key string\n%EndEventDef\n"
+    "1 R 0 Rank\n1 W R Worker\n2 S W State\n10 M 0 W W Message\n";
 
-/* The beginning or the end of a span, or something without a duration. */
+/* The beginning or the end of a span, something without a duration, or an end of a message. */
 struct moment {
     double time, begin, end; /* of its span */
     const struct trace_span *span;
-    enum { END, BEGIN, MARK } what;
+    enum { END, BEGIN, MARK, SENT, RECEIVED } what;
+    uint32_t worker;
+    size_t key; /* of a message */
 };
 
 static int paje_moment_compare(const void *a, const void *b)
@@ -107,35 +116,65 @@ static void paje_put_ends(FILE *file, const uint32_t *host_of, uint32_t n_worker
 
 static void paje_put_moment(FILE *file, const struct moment *moment)
 {
-    const struct trace_span *span = moment->span;
-    if (moment->what == END) {
-        fprintf(file, "8 %.9f S W%" PRIu32 "\n", moment->time, span->worker);
+    const bool begins = moment->what == BEGIN;
+    switch (moment->what) {
+    case END:
+        fprintf(file, "8 %.9f S W%" PRIu32 "\n", moment->time, moment->worker);
         return;
+    case SENT:
+    case RECEIVED:
+        fprintf(file, "%d %.9f M 0 W%" PRIu32 " message %zu\n", moment->what == SENT ? 11 : 12,
+                moment->time, moment->worker, moment->key);
+        return;
+    default:
+        fprintf(file, "%d %.9f %s W%" PRIu32 " ", begins ? 7 : 9, moment->time, begins ? "S" : "E",
+                moment->worker);
+        paje_put_name(file, moment->span->name);
+        fputc('\n', file);
     }
-    fprintf(file, "%d %.9f %s W%" PRIu32 " ", moment->what == BEGIN ? 7 : 9, moment->time,
-            moment->what == BEGIN ? "S" : "E", span->worker);
-    paje_put_name(file, span->name);
-    fputc('\n', file);
 }
 
-int trace_write_paje_spans(FILE *file, struct trace_span *span, size_t n, const uint32_t *host_of,
+/* At most two moments; how many. */
+static size_t paje_take_span(struct moment *moment, const struct trace_span *s)
+{
+    const uint32_t worker = s->worker;
+    if (s->end < s->begin) {
+        moment[0] = (struct moment){s->begin, s->begin, s->begin, s, MARK, worker, 0};
+        return 1;
+    }
+    if (!(s->end > s->begin))
+        return 0;
+    moment[0] = (struct moment){s->begin, s->begin, s->end, s, BEGIN, worker, 0};
+    moment[1] = (struct moment){s->end, s->begin, s->end, s, END, worker, 0};
+    return 2;
+}
+
+/* Two moments. Clocks of two ranks may say that it was received first. */
+static size_t paje_take_message(struct moment *moment, const struct trace_message *message,
+                                size_t key)
+{
+    const double sent = message->sent,
+                 received = message->received > sent ? message->received : sent;
+    moment[0] = (struct moment){sent, sent, sent, NULL, SENT, message->from, key};
+    moment[1] = (struct moment){received, received, received, NULL, RECEIVED, message->to, key};
+    return 2;
+}
+
+int trace_write_paje_spans(FILE *file, struct trace_span *span, size_t n,
+                           const struct trace_messages *messages, const uint32_t *host_of,
                            uint32_t n_workers, double limit)
 {
-    struct moment *moment = base_alloc((2 * n + 1) * sizeof *moment);
+    const size_t n_messages = messages ? messages->n : 0;
+    struct moment *moment = base_alloc((2 * (n + n_messages) + 1) * sizeof *moment);
     size_t m = 0;
     if (!moment)
         return base_no_memory("the moments of a trace");
-    for (size_t i = 0; i < n; i++) {
-        const struct trace_span *s = &span[i];
-        bool mark = s->end < s->begin;
-        if (mark)
-            moment[m++] = (struct moment){s->begin, s->begin, s->begin, s, MARK};
-        if (mark || !(s->end > s->begin))
-            continue;
-        moment[m++] = (struct moment){s->begin, s->begin, s->end, s, BEGIN};
-        moment[m++] = (struct moment){s->end, s->begin, s->end, s, END};
-        limit = s->end > limit ? s->end : limit;
-    }
+    for (size_t i = 0; i < n; i++)
+        m += paje_take_span(moment + m, &span[i]);
+    for (size_t i = 0; i < n_messages; i++)
+        m += paje_take_message(moment + m, &messages->message[i], i + 1);
+    for (size_t i = 0; i < m; i++)
+        limit = moment[i].end > limit ? moment[i].end : limit;
     qsort(moment, m, sizeof *moment, paje_moment_compare);
     fputs(HEAD, file);
     fputs("3 E W Event \"0.3 0.3 0.3\"\n", file);
@@ -172,14 +211,18 @@ static int paje_write(const struct trace_run *run, FILE *file)
         n += run->rank[r].n_events;
     struct spans spans = {run, base_alloc((n + 1) * sizeof *spans.span), 0};
     uint32_t *host_of = base_alloc((n_workers + 1) * sizeof *host_of);
-    int code = spans.span && host_of ? DUITE_OK : base_no_memory("the spans of a trace");
+    struct trace_messages messages;
+    int code = trace_messages_find(run, &messages);
+    if (!spans.span || !host_of)
+        code = base_no_memory("the spans of a trace");
     for (uint32_t r = 0, w = 0; r < run->n_ranks && !code; r++)
         for (uint32_t i = 0; i < run->rank[r].header->workers; i++)
             host_of[w++] = r;
     if (!code) {
         trace_each(run, paje_add_span, &spans);
-        code = trace_write_paje_spans(file, spans.span, n, host_of, n_workers, 0);
+        code = trace_write_paje_spans(file, spans.span, n, &messages, host_of, n_workers, 0);
     }
+    base_free(messages.message);
     base_free(spans.span);
     base_free(host_of);
     return code;

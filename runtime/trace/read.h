@@ -69,6 +69,24 @@ struct trace_seen {
 void trace_each(const struct trace_run *run,
                 void (*visit)(void *context, const struct trace_seen *), void *context);
 
+/* ---- Messages ---- */
+
+/* A message of which both ends are known. Clocks of two ranks agree within run->bound only, so it
+ * may be received before it is sent, by that. */
+struct trace_message {
+    double sent, received; /* s */
+    uint32_t from, to;     /* workers, numbered through all ranks */
+    uint32_t from_rank, to_rank;
+};
+
+struct trace_messages {
+    struct trace_message *message; /* n; to be freed by base_free, after an error, too */
+    size_t n;
+};
+
+/* Ordered by sending rank, receiving rank and time. Errors: memory. */
+int trace_messages_find(const struct trace_run *run, struct trace_messages *messages);
+
 /* ---- The main program ---- */
 
 /* The main program of a trace, read word by word: see runtime/trace/format.h for its entries.

@@ -25,6 +25,40 @@ again() { # shellcheck disable=SC2086
     tiny $product --rounds 2 --output c > "$scratch/said" || { cat "$scratch/said" && return 1; }
     grep -qx "$before runs are there already" "$scratch/said" && test "$(grep -c ',fine$' "$scratch/c/runs.csv")" = 32
 }
+# Another scheduler: what ran is kept, and the page says that its runs were not in turns with the others'.
+grown() { # shellcheck disable=SC2086
+    tiny $product --scheduler priority,locality,steal --rounds 2 --output c > "$scratch/said" 2>&1 || { cat "$scratch/said" && return 1; }
+    cat "$scratch/said"
+    grep -qx "32 runs are there already" "$scratch/said" && test "$(grep -c ',fine$' "$scratch/c/runs.csv")" = 48 &&
+        grep '^[*][*]Warning:[*][*] .*, scheduler locality and 7 others joined later' "$scratch/c/compare.md" &&
+        tiny $product --scheduler priority,locality,steal --rounds 2 --output c > "$scratch/said" 2>&1 &&
+        grep -qx "48 runs are there already" "$scratch/said" && test "$(grep -c 'joined later' "$scratch/c/compare.md")" = 1
+}
+# Two rounds tell nothing, whatever their ratios are. A second one has runs, and the page whose they are.
+told() {
+    cat "$scratch/c/compare.md"
+    ! grep -q '| within the noise |\|| slower  *|' "$scratch/c/compare.md" && test "$(grep -c '| too few rounds  *|' "$scratch/c/compare.md")" = 22 &&
+        grep -qx -- "- revision: $(git -C "$top" describe --always --dirty --abbrev=12 2> /dev/null || echo unknown)" "$scratch/c/compare.md" &&
+        grep -qx -- "- processor: ..*" "$scratch/c/compare.md" && grep -qx -- "- cores: [1-9][0-9]*" "$scratch/c/compare.md" &&
+        grep -qx -- "- mpi: .*[0-9].*" "$scratch/c/compare.md"
+}
+# With rounds enough: what is three times as long is slower, and what is as long is not.
+judged() {
+    refused 0 "6 rounds" tree --threads 1 --mapping block,cyclic --grain 1 --rounds 6 --output j || return 1
+    cp "$scratch/j/runs.csv" "$scratch/six"
+    sed 's/^\([0-5],tree,1,1,1,none,\)\(block\|cyclic\),steal,[^,]*,/\1\2,steal,1e-3,/; s/,cyclic,steal,1e-3,/,cyclic,steal,3e-3,/' "$scratch/six" > "$scratch/j/runs.csv"
+    refused 0 "12 runs are there already" tree --threads 1 --mapping block,cyclic --grain 1 --rounds 6 --output j &&
+        grep '^| cyclic .* 3.000 .* slower ' "$scratch/j/compare.md" || return 1
+    sed -i 's/^0\(,.*,cyclic,steal,\)3e-3,/0\10.9e-3,/' "$scratch/j/runs.csv"
+    refused 0 "12 runs are there already" tree --threads 1 --mapping block,cyclic --grain 1 --rounds 6 --output j &&
+        grep '^| cyclic .* 3.000 .* within the noise ' "$scratch/j/compare.md"
+}
+# The runs of another build stay, with a warning that names it.
+other_build() { # shellcheck disable=SC2086
+    sed -i 's/^# revision: .*/# revision: 0123456789ab/' "$scratch/j/runs.csv"
+    refused 0 "warning: runs that were there already are of another build: revision: 0123456789ab" tree --threads 1 --mapping block,cyclic \
+        --grain 1 --rounds 6 --output j && grep -q "another build: revision: 0123456789ab" "$scratch/j/compare.md"
+}
 refused() { # STATUS SENTENCE OPTIONS...
     wanted=$1 sentence=$2
     shift 2
@@ -35,7 +69,7 @@ refused() { # STATUS SENTENCE OPTIONS...
 }
 wrong() { # shellcheck disable=SC2086
     sed -i '$s/,[0-9a-f]\{16\},/,0123456789abcdef,/' "$scratch/c/runs.csv"
-    refused 1 "WRONG: .* hash" $product --rounds 3 --output c
+    refused 1 "WRONG: .* hash" $product --scheduler priority,locality,steal --rounds 3 --output c
 }
 full() {
     mkdir "$scratch/full" && ln -s /dev/full "$scratch/full/runs.csv" && refused 1 "No space left" tree --output full
@@ -71,7 +105,12 @@ scene() {
 top=$(cd "$srcdir" && pwd)
 ok "a product of graphs" first
 ok "it goes on where it was interrupted" again
+ok "a list grows" grown
+ok "two rounds are too few, and the page says where they ran" told
+ok "six rounds are not" judged
+ok "runs of another build" other_build
 ok "a folder of another comparison" refused 1 "another comparison" stencil --output c
+ok "... or of other scenes" eval 'refused 1 "another comparison" $product --scheduler priority,locality,steal --set a=1 --output c'
 ok "a wrong result is told" wrong
 ok "a scene over grains" scene
 ok "a graph from a file is the same" graph_file

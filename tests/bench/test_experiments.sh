@@ -10,12 +10,16 @@ mkdir -p "$scratch/bench/vassilev" # what it leaves lies there
 ln -s "$PWD/duite-cloth" "$PWD/duite-predict" "$scratch"
 ln -s "$PWD/bench/compare" "$PWD/bench/contact-partition" "$scratch/bench"
 ln -s "$PWD/bench/vassilev/vassilev" "$scratch/bench/vassilev"
-table() { # NAME LINES: so many rows, none of them without figures
+# What ran stands above the table and below it: sizes and lengths are those of --quick, not of what is measured without it.
+revision=$(git -C "$srcdir" describe --always --dirty --abbrev=12 2> /dev/null || echo unknown)
+table() { # NAME LINES [WORDS]: so many rows, none of them without figures, and a caption with these words
     status=0
     (cd "$scratch" && limited sh "$experiments" --quick "$1") > "$scratch/said" 2>&1 || status=$?
     cat "$scratch/said"
     if test $status = 77; then return 0; fi # no hosts here, which it says
-    test $status = 0 && test "$(grep -c '^| ' "$scratch/said")" = "$2" && ! grep -q '|  *|  *|.*nan\|inf' "$scratch/said"
+    test $status = 0 && test "$(grep -c '^| ' "$scratch/said")" = "$2" && ! grep -q '|  *|  *|.*nan\|inf' "$scratch/said" &&
+        grep -q "^--quick: small sizes and short runs; .*figures mean nothing" "$scratch/said" && grep -q "${3:-.}" "$scratch/said" &&
+        grep -Fq ", revision $revision, " "$scratch/said" && grep -q "^..*, [1-9][0-9]* cores, .*[Mm][Pp][Ii].*[0-9], .*[0-9] runs*[.]$" "$scratch/said"
 }
 unknown() {
     status=0
@@ -23,11 +27,11 @@ unknown() {
     test $status = 2 && grep -q "zara|partutex|resolution|grain|link|scaling|contact-partition|vassilev|partutex-shirt" "$scratch/said"
 }
 ok "an unknown experiment" unknown
-ok "resolution" table resolution 3
-ok "grain" table grain 8
-ok "scaling" table scaling 22
-ok "contact-partition" table contact-partition 17
-ok "vassilev" table vassilev 17
+ok "resolution" table resolution 3 "after 0.01 s"
+ok "grain" table grain 8 "a step of 900 vertices, .*median of 1 run"
+ok "scaling" table scaling 22 "A step of 3600 vertices"
+ok "contact-partition" table contact-partition 17 "median of 1 run"
+ok "vassilev" table vassilev 17 "median of 1 run of 10 iterations"
 # Panels of so many vertices that joints pull together around the figure.
 awk -v n=300 -f "$srcdir/bench/vassilev/panels.awk" > "$scratch/panels.yaml"
 # What the loops give: on two threads as many pairs repel each other, and vertices are in the body, as on one, or nearly so.
@@ -53,8 +57,8 @@ ok "six loops on one thread and on two" threads_agree
 ok "six loops of what they do not know" refused 'obstacles=[{plane: {point: [0, 0, 0], normal: [0, 1, 0]}}]' "met by image"
 ok "six loops of triangles" refused 'materials.cloth={model: triangles, density: 0.2, stretch: 40, shear: 10}' "springs alone"
 if test "${DUITE_LONG:-}" = 1; then
-    ok "zara" table zara 22
-    ok "partutex" table partutex 7
-    ok "partutex-shirt" table partutex-shirt $((2 * $(nproc)))
-    ok "link" table link 9
+    ok "zara" table zara 22 "at 1600 particles"
+    ok "partutex" table partutex 7 "22,500 vertices, 2 steps"
+    ok "partutex-shirt" table partutex-shirt $((2 * $(nproc))) "mean of 1 run"
+    ok "link" table link 9 "at 900 particles, implicit, over 2 steps"
 fi

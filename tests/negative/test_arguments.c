@@ -94,6 +94,7 @@ START_TEST(no_runtime)
     ck_assert_int_eq(duite_rank(NULL), -1);
     ck_assert_int_eq(duite_ranks(NULL), -1);
     ck_assert_uint_eq(duite_threads(NULL), 0);
+    ck_assert_uint_eq(duite_cores(NULL, NULL), 0);
     graphs_without_runtime();
     ck_assert_int_eq(duite_wait(rt), DUITE_OK);
 }

@@ -53,6 +53,16 @@ drawn() { grep -q 'stroke="#000000"' "$scratch/part.svg" && grep -q '>critical p
 middle=$(awk '$1 == "time" { printf "%.6f:%.6f", $2 / 2, $2 / 2 + 0.0005 }' "$scratch/table")
 ok "a window of half a millisecond" ./duite-trace "$scratch/ranks" --window "$middle" --svg "$scratch/part.svg"
 ok "... has the critical path as a line" drawn
+# Shares of the run, for which nobody needs its moments: the caption says how long they are.
+half() {
+    ./duite-trace "$scratch/ranks" --window 25%:75% --svg "$scratch/half.svg" && sed -n 's/<title>\(.*\)<.title>/\1/p' "$scratch/half.svg" |
+        awk -v all="$(awk '$1 == "time" { print $2 }' "$scratch/table")" '{
+            print
+            t = $1 * ($2 ~ /^s/ ? 1 : $2 ~ /^ms/ ? 1e-3 : 1e-6)
+            exit !(t > 0.49 * all && t < 0.51 * all) }'
+}
+ok "a window of half of the run" half
+ok "... or of all behind a third" ./duite-trace "$scratch/ranks" --window 33.3%: --svg "$scratch/part.svg"
 sized() { ./duite-trace "$scratch/ranks" --size 800x300 --svg - | grep -q 'width="800" height="300"'; }
 ok "a size" sized
 
@@ -66,6 +76,7 @@ refused() { # TEXT OPTION...
 }
 ok "a window behind the run" refused "has nothing of the run" --svg - --window 1000:1001
 ok "a window that ends first" refused "--window takes FROM:TO" --svg - --window 2:1
+for wrong in 50%:0.1 0.1:50% 50%:40% 50%:101% %:50%; do ok "a window $wrong" refused "--window takes FROM:TO" --svg - --window $wrong; done
 ok "a size that is too small" refused "400x200 to 4096x4096 pixels, not 10x10" --svg - --size 10x10
 ok "a window without a chart" refused "are of charts" --window 0:1
 head -c 2000 "$scratch/ranks" > "$scratch/short"

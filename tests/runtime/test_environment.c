@@ -1,14 +1,19 @@
 /* What the environment chooses for a program that chooses nothing itself, what goes before it, and
- * what is refused. */
+ * what is refused; and how many cores a batch system or a container leaves a rank. */
 
+#include "runtime/workers/share.h"
 #include "tests/negative/misuse.h"
 #include "tests/support/unit.h"
 
 #include <duite_policy.h>
 
+#include <errno.h>
+#include <sched.h>
 #include <stdint.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 static const char *const VARIABLES[] = {"DUITE_SCHEDULER", "DUITE_MAPPING", "DUITE_BALANCE",
@@ -72,6 +77,192 @@ START_TEST(the_environment_chooses)
     start_and_stop(&options, 3);
     ck_assert_int_eq(unlink(trace), 0);
     rmdir(folder);
+}
+END_TEST
+
+/* ---- The share of the cores ---- */
+
+static const char *const LIMITS[] = {"SLURM_CPUS_ON_NODE", "SLURM_CPUS_PER_TASK", "OMP_NUM_THREADS",
+                                     "OMP_THREAD_LIMIT"};
+enum { N_LIMITS = sizeof LIMITS / sizeof *LIMITS };
+
+static void forget_limits(void)
+{
+    for (int i = 0; i < N_LIMITS; i++)
+        unsetenv(LIMITS[i]);
+}
+
+/* Of so many cores that the process may use, with these variables (ended by NULL, each with its
+ * value) and these cgroups. */
+static struct work_share share_of(unsigned cores, unsigned ranks, unsigned asked,
+                                  const char *const *variables, const char *folder)
+{
+    struct work_share share;
+    char cgroups[64];
+    forget_limits();
+    for (; *variables; variables += 2)
+        setenv(variables[0], variables[1], 1);
+    snprintf(cgroups, sizeof cgroups, "%s/cgroup", folder);
+    work_share_find(
+        &(struct work_surroundings){
+            .cores = cores, .ranks = ranks, .asked = asked, .cgroups = cgroups, .mounted = folder},
+        &share);
+    forget_limits();
+    return share;
+}
+
+static void says(const struct work_share *share, unsigned cores, unsigned workers, bool limited,
+                 const char *from)
+{
+    ck_assert_msg(share->cores == cores && share->workers == workers && share->limited == limited &&
+                      !strcmp(share->from, from),
+                  "%u cores, %u workers, %d, %s; not %u, %u, %d, %s", share->cores, share->workers,
+                  share->limited, share->from, cores, workers, limited, from);
+}
+
+START_TEST(the_least_of_all_is_the_share)
+{
+    static const struct {
+        unsigned ranks, asked;
+        const char *variables[7];
+        unsigned cores, workers;
+        bool limited;
+        const char *from;
+    } rows[] = {{1, 0, {NULL}, 8, 8, false, "affinity, 8 cores"},
+                {3, 0, {NULL}, 2, 2, false, "affinity, 8 cores for 3 ranks"},
+                {9, 0, {NULL}, 1, 1, false, "affinity, 8 cores for 9 ranks"},
+                {1, 0, {"SLURM_CPUS_PER_TASK", "3"}, 3, 3, true, "SLURM_CPUS_PER_TASK=3"},
+                {2, 0, {"SLURM_CPUS_PER_TASK", "3"}, 3, 3, true, "SLURM_CPUS_PER_TASK=3"},
+                {4, 0, {"SLURM_CPUS_PER_TASK", "3"}, 2, 2, false, "affinity, 8 cores for 4 ranks"},
+                {1, 0, {"SLURM_CPUS_PER_TASK", "9"}, 8, 8, false, "affinity, 8 cores"},
+                {1, 0, {"SLURM_CPUS_ON_NODE", "1"}, 1, 1, true, "SLURM_CPUS_ON_NODE=1"},
+                {2, 0, {"SLURM_CPUS_ON_NODE", "6"}, 3, 3, true, "SLURM_CPUS_ON_NODE=6 for 2 ranks"},
+                {1,
+                 0,
+                 {"SLURM_CPUS_ON_NODE", "6", "SLURM_CPUS_PER_TASK", "2"},
+                 2,
+                 2,
+                 true,
+                 "SLURM_CPUS_PER_TASK=2"},
+                {1, 4, {"SLURM_CPUS_PER_TASK", "2"}, 2, 4, true, "SLURM_CPUS_PER_TASK=2"},
+                {1,
+                 0,
+                 {"OMP_NUM_THREADS", "2"},
+                 8,
+                 2,
+                 false,
+                 "affinity, 8 cores; workers by OMP_NUM_THREADS=2"},
+                {1,
+                 0,
+                 {"OMP_NUM_THREADS", "4,2", "OMP_THREAD_LIMIT", "3"},
+                 8,
+                 3,
+                 false,
+                 "affinity, 8 cores; workers by OMP_THREAD_LIMIT=3"},
+                {1, 4, {"OMP_NUM_THREADS", "2"}, 8, 4, false, "affinity, 8 cores"},
+                {1,
+                 0,
+                 {"OMP_NUM_THREADS", "many", "SLURM_CPUS_PER_TASK", "0"},
+                 8,
+                 8,
+                 false,
+                 "affinity, 8 cores"},
+                {1,
+                 0,
+                 {"OMP_NUM_THREADS", "-2", "SLURM_CPUS_PER_TASK", "2x"},
+                 8,
+                 8,
+                 false,
+                 "affinity, 8 cores"}};
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        const struct work_share share =
+            share_of(8, rows[i].ranks, rows[i].asked, rows[i].variables, "/nowhere");
+        says(&share, rows[i].cores, rows[i].workers, rows[i].limited, rows[i].from);
+    }
+}
+END_TEST
+
+static void put(const char *folder, const char *name, const char *text)
+{
+    char path[128];
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    for (char *slash = strchr(path + strlen(folder) + 1, '/'); slash;
+         slash = strchr(slash + 1, '/')) {
+        *slash = 0;
+        ck_assert(!mkdir(path, 0700) || errno == EEXIST);
+        *slash = '/';
+    }
+    FILE *file = fopen(path, "w");
+    ck_assert_ptr_nonnull(file);
+    ck_assert_int_ge(fputs(text, file), 0);
+    ck_assert_int_eq(fclose(file), 0);
+}
+
+/* Of a cgroup and of all above it, version 2 and 1, and of one in a container, whose path is not
+ * there. Shared by ranks, rounded down. */
+START_TEST(quotas_of_cgroups)
+{
+    static const char *const none[] = {NULL}, *const task[] = {"SLURM_CPUS_PER_TASK", "1", NULL};
+    static const struct {
+        const char *cgroups;
+        unsigned ranks, cores;
+        const char *from;
+    } rows[] = {{"0::/a/b\n", 1, 2, "cgroup quota 2.5"},
+                {"0::/a/b\n", 2, 1, "cgroup quota 2.5 for 2 ranks"},
+                {"0::/a\n", 1, 2, "cgroup quota 2.5"},
+                {"0::/c\n", 1, 1, "cgroup quota 0.5"},
+                {"0::/\n", 1, 8, "affinity, 8 cores"},
+                {"4:memory:/one\n3:cpu,cpuacct:/one\n0::/d\n", 1, 3, "cgroup quota 3"},
+                {"3:cpuacct:/one\n0::/d\n", 1, 8, "affinity, 8 cores"},
+                {"2:cpu:/docker/0123\n", 1, 4, "cgroup quota 4"},
+                {"no cgroups\n", 1, 8, "affinity, 8 cores"}};
+    char folder[] = "/tmp/duite.XXXXXX", command[64];
+    ck_assert_ptr_nonnull(mkdtemp(folder));
+    put(folder, "a/cpu.max", "250000 100000\n");
+    put(folder, "a/b/cpu.max", "400000 100000\n");
+    put(folder, "c/cpu.max", "50000 100000\n");
+    put(folder, "d/cpu.max", "max 100000\n");
+    put(folder, "cpu,cpuacct/one/cpu.cfs_quota_us", "300000\n");
+    put(folder, "cpu,cpuacct/one/cpu.cfs_period_us", "100000\n");
+    put(folder, "cpu,cpuacct/cpu.cfs_quota_us", "-1\n");
+    put(folder, "cpu,cpuacct/cpu.cfs_period_us", "100000\n");
+    put(folder, "cpu/cpu.cfs_quota_us", "400000\n");
+    put(folder, "cpu/cpu.cfs_period_us", "100000\n");
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        put(folder, "cgroup", rows[i].cgroups);
+        const struct work_share share = share_of(8, rows[i].ranks, 0, none, folder);
+        says(&share, rows[i].cores, rows[i].cores, rows[i].cores < 8, rows[i].from);
+    }
+    put(folder, "cgroup", rows[0].cgroups);
+    const struct work_share share = share_of(8, 1, 0, task, folder);
+    says(&share, 1, 1, true, "SLURM_CPUS_PER_TASK=1");
+    snprintf(command, sizeof command, "rm -r %s", folder);
+    ck_assert_int_eq(system(command), 0);
+}
+END_TEST
+
+/* A job of one core on a host with more has one worker, which stays free to run on any of them: all
+ * jobs would be bound to the same one. */
+START_TEST(a_job_keeps_to_its_cores)
+{
+    cpu_set_t before, inside;
+    const char *from;
+    duite *rt;
+    for (int i = 0; i < N_VARIABLES; i++)
+        unsetenv(VARIABLES[i]);
+    setenv("SLURM_CPUS_PER_TASK", "1", 1);
+    const duite_options options = plain();
+    misuse_mpi();
+    ck_assert_int_eq(sched_getaffinity(0, sizeof before, &before), 0);
+    ck_assert_msg(duite_start(&rt, &options) == DUITE_OK, "%s", duite_message());
+    ck_assert_int_eq(sched_getaffinity(0, sizeof inside, &inside), 0);
+    ck_assert_uint_eq(duite_threads(rt), 1);
+    ck_assert_uint_eq(duite_cores(rt, &from), 1);
+    ck_assert(CPU_EQUAL(&before, &inside));
+    if (CPU_COUNT(&before) > 1)
+        ck_assert_msg(strstr(from, "=1") || strstr(from, "quota"), "%s", from);
+    ck_assert_int_eq(duite_stop(&rt), DUITE_OK);
+    unsetenv("SLURM_CPUS_PER_TASK");
 }
 END_TEST
 
@@ -172,6 +363,9 @@ int main(void)
     tcase_add_test(cases, nothing_is_chosen);
     tcase_add_test(cases, the_environment_chooses);
     tcase_add_test(cases, the_program_goes_first);
+    tcase_add_test(cases, the_least_of_all_is_the_share);
+    tcase_add_test(cases, quotas_of_cgroups);
+    tcase_add_test(cases, a_job_keeps_to_its_cores);
     tcase_add_test(cases, wrong_names);
     tcase_add_test(cases, wrong_numbers);
     tcase_add_test(cases, the_fault_of_the_program);

@@ -8,7 +8,10 @@
 
 #include <math.h>
 #include <stddef.h>
+#include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
 
 static void is(double value, double expected)
 {
@@ -234,17 +237,56 @@ START_TEST(speed_and_overhead)
 }
 END_TEST
 
+/* Five bodies of 1 ms, one of which was held up if that is said, and one of another kernel. */
+static struct trace_file bodies_one_late(double late)
+{
+    struct trace_file file = predicted_trace(2, 8);
+    for (int i = 0; i < 5; i++)
+        trace_file_fork(&file, FILE_RW, i == 3 ? late : 1 * MS, 0, 1, SLOTS(1));
+    trace_file_fork(&file, FILE_R_W, 2 * MS, 0, 2, SLOTS(1, 2));
+    return file;
+}
+
 /* Of 1, 1, 1, 9 and 1 ms the median; another kernel's is its own. */
 START_TEST(steady)
 {
     for (int is_steady = 0; is_steady < 2; is_steady++) {
-        struct trace_file file = predicted_trace(2, 8);
-        for (int i = 0; i < 5; i++)
-            trace_file_fork(&file, FILE_RW, (i == 3 ? 9 : 1) * MS, 0, 1, SLOTS(1));
-        trace_file_fork(&file, FILE_R_W, 2 * MS, 0, 2, SLOTS(1, 2));
+        struct trace_file file = bodies_one_late(9 * MS);
         struct predict_cluster one = predicted_machine(1, 1);
         one.steady = is_steady;
-        is(predicted(&file, &one).makespan, is_steady ? 7 * MS : 15 * MS);
+        const struct predict_result r = predicted(&file, &one);
+        is(r.makespan, is_steady ? 7 * MS : 15 * MS);
+        is(r.bodies, 15 * MS);
+        is(r.medians, 7 * MS);
+    }
+}
+END_TEST
+
+/* A trace in which bodies took far longer than their kernels' medians is believed with a warning
+ * alone, which names --steady; bodies a little apart, and --steady itself, need none. */
+START_TEST(warns_of_a_disturbed_trace)
+{
+    static const struct {
+        double late;
+        const char *option;
+        bool warns;
+    } runs[] = {{9 * MS, "", true}, {2 * MS, "", false}, {9 * MS, "--steady", false}};
+    for (size_t i = 0; i < sizeof runs / sizeof *runs; i++) {
+        struct trace_file file = bodies_one_late(runs[i].late);
+        char command[128], said[4096], trace[64];
+        snprintf(trace, sizeof trace, "test_predict.%d.late.trace", (int)getpid());
+        snprintf(command, sizeof command, "./duite-predict %s %s 2>&1", trace, runs[i].option);
+        ck_assert(trace_file_write(&file, trace));
+        FILE *output = popen(command, "r");
+        ck_assert_ptr_nonnull(output);
+        said[fread(said, 1, sizeof said - 1, output)] = 0;
+        ck_assert_int_eq(pclose(output), 0);
+        unlink(trace);
+        const char *warning = strstr(said, "duite-predict: warning: ");
+        ck_assert_msg(!warning == !runs[i].warns, "%g s late: %s", runs[i].late, said);
+        ck_assert_msg(!warning || (strstr(warning, "--steady") && strstr(warning, "0.015 s") &&
+                                   strstr(warning, "0.007 s")),
+                      "%s", said);
     }
 }
 END_TEST
@@ -334,6 +376,7 @@ int main(void)
     tcase_add_test(cases, waits);
     tcase_add_test(cases, speed_and_overhead);
     tcase_add_test(cases, steady);
+    tcase_add_test(cases, warns_of_a_disturbed_trace);
     tcase_add_test(cases, replicated);
     tcase_add_test(cases, schedulers);
     tcase_add_test(cases, poisoned_rounds_take_no_time);

@@ -68,13 +68,19 @@ csv_is_whole() { # 12 columns, every kind of number a number, spans of a worker 
         END { print n["task"], n["runtime"], n["step"]; exit bad || n["task"] < 100 || !n["runtime"] || !n["step"] || n["step"] % 4 }' \
         "$scratch/$1.csv"
 }
-paje_is_whole() { # times in order, each pop after a push of its own worker, none left
+paje_is_whole() { # times in order, each pop after a push of its own worker, none left; a link of another rank for each send
     ./duite-trace "$scratch/$1" --paje "$scratch/$1.paje" && awk '
         /^[6789] / { if ($2 + 0 < last) { print "goes back: " $0; bad = 1 } last = $2 + 0 }
         $1 == 5 { known[$3] = 1 }
         $1 == 7 { if (!known[$4]) bad = 1; depth[$4]++; n++ }
         $1 == 8 { if (--depth[$4] < 0) { print "nothing to pop: " $0; bad = 1 } }
-        END { for (w in depth) if (depth[w]) { print "left open: " w; bad = 1 } exit bad || n < 100 }' "$scratch/$1.paje"
+        $1 == 9 && /"send"/ { sends++; sent[$2, $4] = 1 }
+        $1 == 5 && $4 == "W" { rank[$3] = $5 }
+        $1 == 11 { if (!(($2, $5) in sent) || $7 in from) { print "no such send: " $0; bad = 1 } from[$7] = $5; links++ }
+        $1 == 12 { if (!($7 in from) || rank[from[$7]] == rank[$5]) { print "goes nowhere: " $0; bad = 1 } ends++ }
+        END { for (w in depth) if (depth[w]) { print "left open: " w; bad = 1 }
+              print sends + 0, "sends,", links + 0, "links,", ends + 0, "ends"
+              exit bad || n < 100 || links != sends || ends != sends || (sends > 100) != wanted }' wanted="$2" "$scratch/$1.paje"
 }
 chrome_is_json() { # as Perfetto takes it: no process or thread 0, no time below 0, spans of a thread nested or apart, all named
     ./duite-trace "$scratch/$1" --chrome "$scratch/$1.json" && python3 -c '
@@ -90,7 +96,7 @@ assert len(named) == 2 * ranks and len({t for p, t in named}) == len(named) and 
 assert {e["pid"]: e["args"]["name"] for e in events if e["name"] == "process_name"} == {r + 1: "rank %d" % r for r in range(ranks)}
 spans = defaultdict(list)
 for e in events:
-    assert (e["pid"], e["tid"]) in named and e["ph"] in "MXi", e
+    assert (e["pid"], e["tid"]) in named and e["ph"] in "MXisf", e
     assert e["ph"] == "M" or e["ts"] >= 0 and e.get("dur", 0) >= 0, e
     if e["ph"] == "X":
         begin = round(1000 * e["ts"])
@@ -101,11 +107,27 @@ for row in spans.values():
         while open_until and open_until[-1] <= begin:
             open_until.pop()
         assert not open_until or -end <= open_until[-1], (begin, -end, open_until)
-        open_until.append(-end)' "$scratch/$1.json" "$2"
+        open_until.append(-end)
+# Arrows: Perfetto binds an end to what began last on its thread. So a start lies at its send, and behind it in the file.
+flows, behind, sends = {}, set(), 0
+for e in events:
+    if e["ph"] == "i" and e["cat"] in ("send", "receive"):
+        behind.add((e["cat"], e["tid"], e["ts"]))
+        sends += e["cat"] == "send"
+    elif e["ph"] == "s":
+        assert ("send", e["tid"], e["ts"]) in behind and e["id"] not in flows, e
+        flows[e["id"]] = e
+    elif e["ph"] == "f":
+        start = flows[e["id"]]
+        assert start is not None and (start["name"], start["cat"]) == (e["name"], e["cat"]) and e["bp"] == "e", e
+        assert e["pid"] != start["pid"] and e["ts"] > start["ts"], (start, e)
+        flows[e["id"]] = None
+print(sends, "sends,", len(flows), "arrows")
+assert len(flows) == sends and not any(flows.values()) and (sends > 100) == (ranks > 1)' "$scratch/$1.json" "$2"
 }
 for trace in two ranks; do
     ok "CSV of $trace" csv_is_whole $trace
-    ok "Paje of $trace" paje_is_whole $trace
+    ok "Paje of $trace" paje_is_whole $trace "$(test $trace = two && echo 0 || echo 1)"
     if command -v python3 > /dev/null; then
         ok "Chrome's JSON of $trace" chrome_is_json $trace "$(test $trace = two && echo 1 || echo 2)"
     else

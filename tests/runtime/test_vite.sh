@@ -24,5 +24,10 @@ drawn() { # TRACE WORKERS: each rank and worker has its name, and there are stat
 ok "a run on 2 ranks" run
 ok "... as a Paje trace" ./duite-trace "$scratch/ranks" --paje "$scratch/ranks.paje"
 ok "... is drawn" drawn ranks 4
+arrows() {
+    messages=$(grep -c '^11 ' "$scratch/ranks.paje")
+    test "$messages" -gt 100 && test "$(grep -c '<polygon' "$scratch/ranks.svg")" = "$messages"
+}
+ok "... with an arrow for each message" arrows
 ok "predicted on 3 hosts" ./duite-predict "$scratch/ranks" --hosts 3 --cores 2 --paje "$scratch/predicted.paje"
 ok "... is drawn, too" drawn predicted 6

@@ -28,6 +28,20 @@ alone() { # one worker is busy all the time, whatever else the machine does
 }
 trace_agrees() { "$trace" run.trace > table && grep 'limited by' table && grep -qx "  limited by    $(value limited_by)" table; }
 
+# A job of Slurm that is not bound has one core of all that it may use (nothing lowers that of a machine or a container of one).
+job() {
+    # shellcheck disable=SC2086 # a list of options
+    SLURM_CPUS_PER_TASK=1 OMP_NUM_THREADS=1 limited "$DUITE_CLOTH" "$sheet" $small --end 0.002 --report report.json > said && cat said &&
+        test "$(value threads)" = 1 && test "$(value cores)" = 1 && grep -q '^  ran on           1 ranks x 1 threads, ' said &&
+        grep -Fqx "  cores            1 a rank ($(value cores_from))" said && case $(value cores_from) in
+        SLURM_CPUS_PER_TASK=1 | 'affinity, 1 core' | 'cgroup quota '[01]*) true ;; *) false ;; esac
+}
+whole_machine() { # more workers than the environment says, since an option says so
+    # shellcheck disable=SC2086
+    OMP_NUM_THREADS=1 limited "$DUITE_CLOTH" "$sheet" $small --end 0.002 --threads 2 --report report.json > said && cat said &&
+        test "$(value threads)" = 2 && ! grep OMP_NUM_THREADS said
+}
+
 # A terminal of 60 columns: what stands between two returns of the carriage is at most 59 wide.
 narrow() {
     # shellcheck disable=SC2086
@@ -47,6 +61,8 @@ ok "duite-cloth and duite-trace know the same limits" same_names
 ok "docs/tracing.md has the rule of each" documented
 ok "on one thread a run is limited by work" alone
 if test -x "$trace"; then ok "its trace says the same" trace_agrees; else skip "its trace says the same" "no duite-trace"; fi
+ok "a job's cores, and what said how many they are" job
+ok "an option counts before the environment" whole_machine
 if command -v script > /dev/null; then
     ok "progress is cut where the terminal ends" narrow
     ok "progress has steps, time left, frames and iterations" wide

@@ -146,6 +146,7 @@ struct model_seam {
     uint32_t n_pairs;
     uint32_t (*pair)[2]; /* of both sides, in the order of the first */
     bool reversed;       /* the second side runs from its end to its begin */
+    bool unsure;         /* it may have to be the other way round */
     double distance[2];  /* m: of partners in the mean, if both sides run alike, and reversed */
 };
 

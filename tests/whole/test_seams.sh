@@ -111,9 +111,17 @@ unclosed() { # one panel is pinned, and of the other a vertex in the middle of a
     scene "$panels" '{}' 'pins: [{box: [[-1, -1, -1], [1, 1, 0.001]]}]' | sed 's/^time: {/time: {sewn: {}, /; s/end: 0.5/end: 0.1/' > unclosed.yaml
     run unclosed.yaml --output unclosed 2> said
     test $? = 1 && test -s unclosed/cloth.pc2 && cat said || return 1
-    grep -q "seams are not closed at time.end, 0.1 s: 4 of 4 are open by more than 0.001 m (time.sewn.distance); the worst: seam [0-3] of cloth 'pillow' (edge [0-3] of panel 'front', edge [0-3] of panel 'back') by 0.0[0-9]* m;" said
+    grep -q "seams are not closed at time.end, 0.1 s: 4 of 4 are open by more than 0.001 m (time.sewn.distance); seams.reversed turns one that is the wrong way round; the worst: seam [0-3] of cloth 'pillow' (edge [0-3] of panel 'front', edge [0-3] of panel 'back') by 0.0[0-9]* m;" said
 }
 ok "seams that are not closed in time are named" unclosed
+unsure() { # SEAMS EXPECTED: numbers of the seams whose direction draws a warning
+    scene "{pattern: {file: $srcdir/tests/cloth/garment/patterns/hood.json, edge: 0.05}}" "$1" '' > unsure.yaml
+    run unsure.yaml --end 0.01 2> said && cat said || return 1
+    test "$(sed -n "s/.* of the seams of cloth 'pillow' may be sewn the wrong way round, the first are\( [0-9 ]*\): .*; .*seams.reversed turns a seam$/\1/p" said)" = "$2"
+}
+ok "directions that are not clear" unsure '{}' ' 2 3'
+ok "those that the scene turns are" unsure '{reversed: [2]}' ' 3'
+ok "and those that nothing joins" unsure '{state: open}' ''
 idle() { # nothing is pulled
     scene "$panels" '{state: open}' '' | sed 's/^time: {/time: {sewn: {}, /' > idle.yaml
     run idle.yaml 2> said

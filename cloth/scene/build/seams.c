@@ -11,6 +11,8 @@
  * given. Their joint would else close within a step, however far they are. */
 static const double CLOSING = 0.1;
 
+enum { MOST_NAMED = 12 }; /* in a warning */
+
 /* ---- Which pairs a seam joins ---- */
 
 struct pair {
@@ -143,6 +145,7 @@ static void reverse(struct model_seam *seam)
         seam->pair[k][1] = vertex;
     }
     seam->reversed = !seam->reversed;
+    seam->unsure = false; /* the scene says so */
 }
 
 static int reverse_some(struct model_cloth *cloth, const struct scene_tree *tree, int node,
@@ -164,6 +167,26 @@ static int reverse_some(struct model_cloth *cloth, const struct scene_tree *tree
         reverse(seams->seam + seams->reversed[i]);
     }
     return CLOTH_OK;
+}
+
+static int warn_of_unsure(struct model *model, const struct model_cloth *cloth,
+                          const struct scene_tree *tree, int node, struct cloth_error *error)
+{
+    char numbers[160] = "";
+    size_t size = 0;
+    uint32_t n = 0;
+    for (uint32_t s = 0; s < cloth->seams.n; s++)
+        if (cloth->seams.seam[s].unsure && n++ < MOST_NAMED)
+            size += (size_t)snprintf(numbers + size, sizeof numbers - size, " %u", s);
+    if (!n)
+        return CLOTH_OK;
+    return scene_build_warn(
+        model, tree, node, error,
+        "%u of the seams of cloth '%.60s' may be sewn the wrong way round, the first "
+        "are%s: how far partners are from each other does not tell, or "
+        "contradicts other seams, so the fronts of the panels decide; the "
+        "summary has the distances, and seams.reversed turns a seam",
+        n, cloth->name, numbers);
 }
 
 static int read_file(struct model *model, struct model_cloth *cloth, const struct scene_tree *tree,
@@ -239,7 +262,10 @@ static int build_seams(struct model *model, uint32_t i, const struct scene_tree 
         cloth->seams.bending = -1;
     int code = find_seams(model, cloth, tree, of, node, error);
     code = code ? code : reverse_some(cloth, tree, node, error);
-    return code || cloth->seams.state == MODEL_SEAMS_OPEN ? code : sew(model, i, tree, node, error);
+    if (code || cloth->seams.state == MODEL_SEAMS_OPEN)
+        return code;
+    code = warn_of_unsure(model, cloth, tree, node, error);
+    return code ? code : sew(model, i, tree, node, error);
 }
 
 int scene_build_seams(struct model *model, const struct scene_tree *tree, struct cloth_error *error)

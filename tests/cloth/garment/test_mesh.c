@@ -232,9 +232,10 @@ END_TEST
 /* A front, a back, and beside their necks a panel of a hood, by its lower edge. */
 struct hood {
     double place[3], turned, back; /* of the hood, m and degrees; z of the back, m */
-    bool flipped, right_wrong;     /* the hood has its front inside; the word, in its seam at the back */
-    double vote[2];                /* above 0: by the distances of its seams they are reversed, */
-    bool reversed[2], unsure[2];   /* and as they are */
+    bool flipped,
+        right_wrong; /* the hood has its front inside; the word, in its seam at the back */
+    double vote[2];  /* above 0: by the distances of its seams they are reversed, */
+    bool reversed[2], unsure[2]; /* and as they are */
 };
 static const struct hood HOODS[] = {
     /* Too far to tell: by their fronts. */

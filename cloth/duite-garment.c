@@ -228,6 +228,22 @@ static void say_seam(const struct garment *garment, const struct garment_pattern
         seam->distance[seam->reversed], seam->distance[!seam->reversed]);
 }
 
+static void warn(const struct garment *garment)
+{
+    uint32_t n = 0;
+    for (uint32_t s = 0; s < garment->n_seams; s++)
+        if (garment->seam[s].unsure)
+            fprintf(stderr,
+                    n++ ? " %u"
+                        : "duite-garment: warning: these seams may be sewn the "
+                          "wrong way round: %u",
+                    s);
+    if (n)
+        fputs("; how far partners are from each other does not tell, or contradicts other seams, "
+              "so the fronts of the panels decide; seams.reversed of a scene turns a seam\n",
+              stderr);
+}
+
 static void say(const struct garment *garment, const struct garment_pattern *pattern)
 {
     uint32_t below;
@@ -316,6 +332,8 @@ static int write_mesh(const struct options *options, const char *seams,
     code = code ? code : output_garment_seams(seams, &garment, pattern, error);
     if (!code && options->body)
         code = compare_body(&garment, options->body, error);
+    if (!code)
+        warn(&garment);
     if (!code && !options->quiet)
         say(&garment, pattern);
     garment_free(&garment);

@@ -4,17 +4,17 @@
 #include <inttypes.h>
 #include <math.h>
 
-static const char *const STATES[] = {"open", "pulled", "welded"};
+static const char *const STATES[MODEL_SEAMS_STATES] = {"open", "pulled", "welded"};
 
 static void print_seam(FILE *file, const struct model_cloth *cloth, uint32_t s)
 {
     const struct model_seam *seam = cloth->seams.seam + s;
     fprintf(file,
             "  seam %-11" PRIu32 " edge %" PRIu32 " of %.40s, edge %" PRIu32 " of %.40s%s: %" PRIu32
-            " pairs, %.4g m apart (%.4g the other way round)\n",
+            " pairs, %.4g m apart (%.4g the other way round), %s\n",
             s, seam->side[0].edge, seam->side[0].panel, seam->side[1].edge, seam->side[1].panel,
             seam->reversed ? ", reversed" : "", seam->n_pairs, seam->distance[seam->reversed],
-            seam->distance[!seam->reversed]);
+            seam->distance[!seam->reversed], STATES[seam->sewing.state]);
 }
 
 void summary_seams_print(FILE *file, const struct model *model, const struct flow_report *report)
@@ -22,8 +22,8 @@ void summary_seams_print(FILE *file, const struct model *model, const struct flo
     for (uint32_t c = 0; c < model->n_cloths; c++) {
         const struct model_cloth *cloth = model->cloths + c;
         if (cloth->seams.n)
-            fprintf(file, "  seams            of %.40s: %" PRIu32 ", %s\n", cloth->name,
-                    cloth->seams.n, STATES[cloth->seams.state]);
+            fprintf(file, "  seams            of %.40s: %" PRIu32 "\n", cloth->name,
+                    cloth->seams.n);
         for (uint32_t s = 0; s < cloth->seams.n; s++)
             print_seam(file, cloth, s);
     }
@@ -67,6 +67,7 @@ void summary_seams_add(struct output_report *json, const struct model *model,
             output_report_integer(json, "edge_to", seam->side[1].edge);
             output_report_integer(json, "pairs", seam->n_pairs);
             output_report_integer(json, "reversed", seam->reversed);
+            output_report_text(json, "state", STATES[seam->sewing.state]);
             output_report_number(json, "distance", seam->distance[seam->reversed]);
             output_report_number(json, "distance_other", seam->distance[!seam->reversed]);
         }

@@ -20,6 +20,7 @@ struct garment_seam {
     uint32_t n_pairs;
     uint32_t (*pair)[2]; /* the vertices of both sides */
     bool reversed;       /* side 1 runs from its end to its begin */
+    bool unsure;         /* the panels' fronts alone say so, or the distances contradict */
     double distance[2];  /* m, mean over the pairs if both run alike, and if one is reversed */
 };
 

@@ -128,13 +128,30 @@ struct model_start {
 struct model_fold {
     uint32_t n;
     uint32_t *vertices; /* of the cloth's mesh */
-    bool sewn;          /* along a seam, where nothing folds unless it is welded */
+    bool sewn;          /* along a seam, where nothing folds unless it is welded, */
+    bool open;          /* and nothing pulls it */
     double angle; /* degrees, above -180 and below 180; above 0: a ridge on the side from which the
                      triangles are counterclockwise */
     char *place;
 };
 
 enum { MODEL_MAX_REGIONS = 64 };
+
+enum model_seams_state {
+    MODEL_SEAMS_OPEN,   /* nothing joins them */
+    MODEL_SEAMS_PULLED, /* a joint of rest length 0 for each pair, whose two meet as one vertex does
+                         */
+    MODEL_SEAMS_WELDED, /* a weld for each pair */
+    MODEL_SEAMS_STATES
+};
+
+/* What is made of a seam. */
+struct model_sewing {
+    enum model_seams_state state;
+    double stiffness, damping; /* pulled: N/m, > 0, and kg/s, >= 0, of each joint */
+    double tolerance;          /* welded: m: partners start at most so far from each other */
+    double bending;            /* welded: N m: of the hinges across it; < 0: as the materials */
+};
 
 /* A seam of a sewn cloth: pairs of vertices of its mesh that belong together, along an edge of one
  * panel and one of the same or another panel. */
@@ -146,26 +163,27 @@ struct model_seam {
     uint32_t n_pairs;
     uint32_t (*pair)[2]; /* of both sides, in the order of the first */
     bool reversed;       /* the second side runs from its end to its begin */
+    bool unsure;         /* it may have to be the other way round */
     double distance[2];  /* m: of partners in the mean, if both sides run alike, and reversed */
+    struct model_sewing sewing;
 };
 
-enum model_seams_state {
-    MODEL_SEAMS_OPEN,   /* nothing joins them */
-    MODEL_SEAMS_PULLED, /* a joint of rest length 0 for each pair, whose two meet as one vertex does
-                         */
-    MODEL_SEAMS_WELDED  /* a weld for each pair */
+/* Seams that are sewn otherwise, by number or by their two panels; of its sewing what the scene
+ * gives counts. */
+struct model_some_seams {
+    uint32_t n;
+    uint32_t *number; /* n */
+    struct model_sewing sewing;
 };
 
 /* The seams of a cloth, and what is made of them: joints or welds of the model, whose pairs name
  * their seam. */
 struct model_seams {
-    enum model_seams_state state;
-    double stiffness, damping; /* pulled: N/m, > 0, and kg/s, >= 0, of each joint */
-    double tolerance;          /* welded: m: partners start at most so far from each other */
-    double bending;            /* welded: N m: of the hinges across them; < 0: as the materials */
-    uint32_t n, n_reversed;
+    struct model_sewing sewing; /* of all that are not named in `some` */
+    uint32_t n, n_reversed, n_some;
     struct model_seam *seam;
     uint32_t *reversed; /* seams that are sewn the other way round than they came */
+    struct model_some_seams *some;
 };
 
 struct model_cloth {

@@ -43,6 +43,9 @@ static void free_seams(struct model_seams *seams)
         free(seams->seam[s].pair);
     }
     free(seams->seam);
+    for (uint32_t i = 0; i < seams->n_some && seams->some; i++)
+        free(seams->some[i].number);
+    free(seams->some);
     free(seams->reversed);
 }
 

@@ -46,6 +46,13 @@ else
     skip "the seams are JSON" "no python3"
 fi
 
+unsure() { # distances of two seams do not tell in which direction they are sewn, and the fronts of the panels do
+    prints run "$patterns/hood.json" -e 0.02 -o hood.obj && cat complained &&
+        grep -qF "warning: these seams may be sewn the wrong way round: 2 3; how far partners are from each other does not tell" complained &&
+        grep -q '^seam 2: .*, reversed: 6 pairs, 0.3036 m apart (0.302 the other way round)$' printed
+}
+ok "directions that are not clear" unsure
+
 refused() { # SENTENCE ARGUMENT...: exit status 2, and one line that has the sentence
     sentence=$1
     shift

@@ -91,7 +91,8 @@ int flow_seams_fail(struct flow_state *state)
     size_t size = sizeof state->reason, n;
     n = (size_t)snprintf(text, size,
                          "seams are not closed at time.end, %g s: %ju of %u are open by "
-                         "more than %g m (time.sewn.distance)",
+                         "more than %g m (time.sewn.distance); seams.reversed turns one that is "
+                         "the wrong way round",
                          model->end, (uintmax_t)state->report->seams_open, model->n_pulled,
                          model->sewn);
     for (uint32_t i = 0; i < NAMED && i < state->report->seams_open && model->joints && n < size;

@@ -74,8 +74,8 @@ static bool is_shared(const struct border *a, const struct border *b)
 
 /* What welds say of a root. */
 struct welded {
-    double tolerance;               /* m: the largest */
-    const struct model_seams *sewn; /* NULL: no weld of it is a seam's */
+    double tolerance; /* m: the largest */
+    bool sewn;        /* a weld of it is a seam's */
 };
 
 /* By root. The caller frees it; NULL: no memory. */
@@ -86,20 +86,70 @@ static struct welded *find_welded(const struct model *model, const struct flow_w
     struct welded *all = cloth_alloc(n, sizeof *all, error);
     for (uint32_t w = 0; w < model->n_welds && all; w++) {
         const struct model_pairs *pairs = &model->welds[w].pairs;
-        const uint32_t cloth = pairs->end[0].cloth;
-        const uint32_t *root = welds->root + model_first(model, cloth);
+        const uint32_t *root = welds->root + model_first(model, pairs->end[0].cloth);
         for (uint32_t i = 0; i < pairs->end[0].n; i++) {
             struct welded *at = all + root[pairs->end[0].vertices[i]];
             at->tolerance = fmax(at->tolerance, model->welds[w].tolerance);
-            at->sewn = pairs->seam ? &model->cloths[cloth].seams : at->sewn;
+            at->sewn = at->sewn || pairs->seam;
         }
     }
     return all;
 }
 
+/* ---- How seams bend ---- */
+
+/* A part of a seam that is welded. */
+struct stitch {
+    uint32_t root[2]; /* ascending */
+    double bending;   /* as of model_sewing */
+};
+
+static int compare_stitches(const void *va, const void *vb)
+{
+    const struct stitch *a = va, *b = vb;
+    const int order = cloth_compare_u32(a->root[0], b->root[0]);
+    return order ? order : cloth_compare_u32(a->root[1], b->root[1]);
+}
+
+static int list_stitches(struct cloth_list *list, const struct model *model,
+                         const struct flow_welds *welds, struct cloth_error *error)
+{
+    for (uint32_t w = 0; w < model->n_welds; w++) {
+        const struct model_pairs *pairs = &model->welds[w].pairs;
+        const uint32_t cloth = pairs->end[0].cloth;
+        const uint32_t *root = welds->root + model_first(model, cloth);
+        if (!pairs->seam)
+            continue;
+        const struct model_seam *seam = model->cloths[cloth].seams.seam + pairs->seam - 1;
+        struct stitch *stitch = cloth_list_add(list, sizeof *stitch, seam->n_pairs - 1, error);
+        if (!stitch)
+            return CLOTH_E_MEMORY;
+        for (uint32_t i = 0; i + 1 < seam->n_pairs; i++) {
+            const uint32_t a = root[seam->pair[i][0]], b = root[seam->pair[i + 1][0]];
+            stitch[i] = (struct stitch){{a < b ? a : b, a < b ? b : a}, seam->sewing.bending};
+        }
+    }
+    if (list->n)
+        qsort(list->items, list->n, sizeof(struct stitch), compare_stitches);
+    return CLOTH_OK;
+}
+
+/* Of the edge between two roots; < 0: as the materials. */
+static double bending_of(const struct cloth_list *stitches, const uint32_t root[2])
+{
+    const struct stitch key = {{root[0], root[1]}, 0};
+    const struct stitch *found = stitches->n ? bsearch(&key, stitches->items, stitches->n,
+                                                       sizeof(struct stitch), compare_stitches)
+                                             : NULL;
+    return found ? found->bending : -1;
+}
+
+/* ---- Hinges ---- */
+
 /* welded: by root. */
 static void add_seam(struct element_cloths *elements, const struct flow_welds *welds,
-                     const struct welded *welded, const struct border *border)
+                     const struct welded *welded, const struct cloth_list *stitches,
+                     const struct border *border)
 {
     const struct welded *ends[2] = {welded + border->root[0], welded + border->root[1]};
     struct element_seam *seam = elements->seam + elements->n_seams;
@@ -114,7 +164,7 @@ static void add_seam(struct element_cloths *elements, const struct flow_welds *w
     }
     seam->tolerance = fmax(ends[0]->tolerance, ends[1]->tolerance);
     seam->flat = ends[0]->sewn && ends[1]->sewn;
-    seam->rigidity = seam->flat ? ends[0]->sewn->bending : -1;
+    seam->rigidity = bending_of(stitches, border->root);
     elements->n_seams += opposite[0] != opposite[1]; /* else one lies on the other */
 }
 
@@ -122,21 +172,22 @@ static int make_seams(struct element_cloths *elements, const struct flow_welds *
                       struct cloth_list *list, struct cloth_error *error)
 {
     const struct border *border = list->items;
+    struct cloth_list stitches = {0};
     if (!list->n)
         return CLOTH_OK;
     qsort(list->items, list->n, sizeof *border, compare_borders);
     elements->seam = cloth_alloc(list->n, sizeof *elements->seam, error);
     struct welded *welded = elements->seam ? find_welded(elements->model, welds, error) : NULL;
-    if (!welded)
-        return CLOTH_E_MEMORY;
-    for (size_t i = 0, end; i < list->n; i = end) {
+    int code = welded ? list_stitches(&stitches, elements->model, welds, error) : CLOTH_E_MEMORY;
+    for (size_t i = 0, end; i < list->n && !code; i = end) {
         for (end = i + 1; end < list->n && is_shared(border + i, border + end);)
             end++;
         if (end == i + 2)
-            add_seam(elements, welds, welded, border + i);
+            add_seam(elements, welds, welded, &stitches, border + i);
     }
     free(welded);
-    return element_seams_check(elements, error);
+    free(stitches.items);
+    return code ? code : element_seams_check(elements, error);
 }
 
 int flow_seams_make(struct element_cloths *elements, const struct flow_welds *welds,

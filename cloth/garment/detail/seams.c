@@ -1,8 +1,18 @@
-/* The file does not say in which direction an edge is sewn to the other. */
+/* The file does not say in which direction an edge is sewn to the other. A sewn cloth has a front
+ * and a back: where the fronts of two panels are on one side of it, their loops run against each
+ * other along the seam, and else alike. So all seams of two panels have one answer, and those that
+ * are clear decide for others. */
 #include "cloth/garment/detail/seams.h"
 #include "cloth/base/memory.h"
+#include "cloth/base/order.h"
+#include "cloth/base/sets.h"
 
 #include <math.h>
+#include <stdlib.h>
+
+/* Of the longer of the two distances: a seam whose distances differ by less says nothing, since
+ * short edges of panels that are far from each other are as near either way round. */
+static const double CLEAR = 0.05;
 
 /* Vertex k along an edge, from its begin. */
 static uint32_t vertex_of(const struct garment *garment, const struct garment_pattern *pattern,
@@ -23,57 +33,165 @@ static double distance(const struct garment *garment, uint32_t a, uint32_t b)
     return sqrt(sum);
 }
 
-/* Whether the second side runs from its end to its begin. */
-static bool is_reversed(const struct garment_stitch *stitch, const struct garment_pattern *pattern,
-                        const double mean[2])
+static void measure(struct garment *garment, const struct garment_pattern *pattern, uint32_t s)
 {
-    const struct garment_side *side = stitch->side;
-    const uint32_t *a = pattern->panel[side[0].panel].edge[side[0].edge].end;
-    const uint32_t *b = pattern->panel[side[1].panel].edge[side[1].edge].end;
-    if (stitch->right_wrong)
-        return false;
-    if (side[0].panel == side[1].panel && (a[1] == b[0] || a[0] == b[1]))
-        return true;
-    return mean[1] < mean[0];
-}
-
-static int make_seam(struct garment *garment, const struct garment_pattern *pattern, uint32_t s,
-                     struct cloth_error *error)
-{
-    const struct garment_stitch *stitch = &pattern->stitch[s];
-    const struct garment_side *side = stitch->side;
+    const struct garment_side *side = pattern->stitch[s].side;
     struct garment_seam *seam = &garment->seam[s];
     const uint32_t *start = garment->piece[side[0].panel].start;
-    const uint32_t n = start[side[0].edge + 1] - start[side[0].edge] + 1;
-    seam->pair = cloth_alloc(n, sizeof *seam->pair, error);
-    if (!seam->pair)
-        return CLOTH_E_MEMORY;
-    seam->n_pairs = n;
+    const uint32_t n = seam->n_pairs = start[side[0].edge + 1] - start[side[0].edge] + 1;
     for (uint32_t k = 0; k < n; k++) {
         const uint32_t a = vertex_of(garment, pattern, side[0], k);
         seam->distance[0] += distance(garment, a, vertex_of(garment, pattern, side[1], k)) / n;
         seam->distance[1] +=
             distance(garment, a, vertex_of(garment, pattern, side[1], n - 1 - k)) / n;
     }
-    seam->reversed = is_reversed(stitch, pattern, seam->distance);
-    for (uint32_t k = 0; k < n; k++) {
+}
+
+/* ---- Which panels have their fronts on one side ---- */
+
+/* By panel p: p as its front is, and p + n_panels turned over. One set: one side. */
+struct fronts {
+    uint32_t n_panels, *set;
+};
+
+/* What the seams of two panels say: above 0 that their fronts are on one side, below 0 not. */
+struct vote {
+    uint32_t panel[2]; /* ascending */
+    double sum;
+};
+
+/* Above 0: nearer if one is reversed. */
+static double vote_of(const struct garment_seam *seam)
+{
+    const double *mean = seam->distance, margin = mean[0] - mean[1];
+    const double longer = fmax(mean[0], mean[1]);
+    return fabs(margin) > CLEAR * longer ? margin / longer : 0;
+}
+
+/* 0: nothing is known. */
+static int relation(const struct fronts *fronts, const struct garment_side side[2])
+{
+    const uint32_t a = cloth_sets_root(fronts->set, side[0].panel);
+    if (a == cloth_sets_root(fronts->set, side[1].panel))
+        return 1;
+    return a == cloth_sets_root(fronts->set, side[1].panel + fronts->n_panels) ? -1 : 0;
+}
+
+static void relate(const struct fronts *fronts, uint32_t a, uint32_t b, bool one_side)
+{
+    const uint32_t n = fronts->n_panels;
+    cloth_sets_join(fronts->set, a, one_side ? b : b + n);
+    cloth_sets_join(fronts->set, a + n, one_side ? b + n : b);
+}
+
+static int compare_panels(const void *va, const void *vb)
+{
+    const struct vote *a = va, *b = vb;
+    const int order = cloth_compare_u32(a->panel[0], b->panel[0]);
+    return order ? order : cloth_compare_u32(a->panel[1], b->panel[1]);
+}
+
+static int compare_votes(const void *va, const void *vb)
+{
+    const double a = fabs(((const struct vote *)va)->sum), b = fabs(((const struct vote *)vb)->sum);
+    return a < b ? 1 : a > b ? -1 : compare_panels(va, vb);
+}
+
+/* The votes of panels, one for each two that have clear seams. */
+static uint32_t count_votes(struct vote *vote, const struct garment *garment,
+                            const struct garment_pattern *pattern)
+{
+    uint32_t n = 0, kept = 0;
+    for (uint32_t s = 0; s < garment->n_seams; s++) {
+        const struct garment_side *side = pattern->stitch[s].side;
+        const uint32_t a = side[0].panel, b = side[1].panel;
+        if (a != b && !pattern->stitch[s].right_wrong)
+            vote[n++] = (struct vote){{a < b ? a : b, a < b ? b : a}, vote_of(&garment->seam[s])};
+    }
+    qsort(vote, n, sizeof *vote, compare_panels);
+    for (uint32_t i = 0; i < n; i++)
+        if (kept && !compare_panels(vote + kept - 1, vote + i))
+            vote[kept - 1].sum += vote[i].sum;
+        else
+            vote[kept++] = vote[i];
+    qsort(vote, kept, sizeof *vote, compare_votes);
+    return kept;
+}
+
+/* The clearest first; what contradicts them is overruled. */
+static int find_fronts(struct fronts *fronts, const struct garment *garment,
+                       const struct garment_pattern *pattern, struct cloth_error *error)
+{
+    struct vote *vote = cloth_alloc(garment->n_seams, sizeof *vote, error);
+    fronts->n_panels = pattern->n_panels;
+    fronts->set = cloth_alloc(2 * (size_t)fronts->n_panels, sizeof *fronts->set, error);
+    if (vote && fronts->set) {
+        const uint32_t n = count_votes(vote, garment, pattern);
+        cloth_sets_start(fronts->set, 2 * fronts->n_panels);
+        for (uint32_t i = 0; i < n && fabs(vote[i].sum) > 0; i++) {
+            const struct garment_side side[2] = {{.panel = vote[i].panel[0]},
+                                                 {.panel = vote[i].panel[1]}};
+            if (!relation(fronts, side))
+                relate(fronts, side[0].panel, side[1].panel, vote[i].sum > 0);
+        }
+    }
+    const bool enough = vote && fronts->set;
+    free(vote);
+    return enough ? CLOTH_OK : CLOTH_E_MEMORY;
+}
+
+/* Where no clear seam joins them, panels have their fronts where the pattern has them. */
+static void turn_seams(struct garment *garment, const struct garment_pattern *pattern,
+                       const struct fronts *fronts)
+{
+    for (uint32_t s = 0; s < garment->n_seams; s++)
+        garment->seam[s].unsure =
+            !pattern->stitch[s].right_wrong && !relation(fronts, pattern->stitch[s].side);
+    for (uint32_t s = 0; s < garment->n_seams; s++) {
+        const struct garment_stitch *stitch = &pattern->stitch[s];
+        const struct garment_side *side = stitch->side;
+        struct garment_seam *seam = &garment->seam[s];
+        if (stitch->right_wrong)
+            continue;
+        if (!relation(fronts, side))
+            relate(fronts, side[0].panel, side[1].panel, true);
+        seam->reversed = relation(fronts, side) > 0;
+        const double vote = vote_of(seam);
+        seam->unsure = seam->unsure || (seam->reversed ? vote < 0 : vote > 0);
+    }
+}
+
+/* ---- All seams ---- */
+
+static int pair_vertices(struct garment *garment, const struct garment_pattern *pattern, uint32_t s,
+                         struct cloth_error *error)
+{
+    const struct garment_side *side = pattern->stitch[s].side;
+    struct garment_seam *seam = &garment->seam[s];
+    const uint32_t n = seam->n_pairs;
+    seam->pair = cloth_alloc(n, sizeof *seam->pair, error);
+    for (uint32_t k = 0; k < n && seam->pair; k++) {
         seam->pair[k][0] = vertex_of(garment, pattern, side[0], k);
         seam->pair[k][1] = vertex_of(garment, pattern, side[1], seam->reversed ? n - 1 - k : k);
     }
-    return CLOTH_OK;
+    return seam->pair ? CLOTH_OK : CLOTH_E_MEMORY;
 }
 
 int seams_make(struct garment *garment, const struct garment_pattern *pattern,
                struct cloth_error *error)
 {
+    struct fronts fronts = {0};
     garment->seam = cloth_alloc(pattern->n_stitches, sizeof *garment->seam, error);
     if (!garment->seam)
         return CLOTH_E_MEMORY;
     garment->n_seams = pattern->n_stitches;
-    for (uint32_t s = 0; s < pattern->n_stitches; s++) {
-        int code = make_seam(garment, pattern, s, error);
-        if (code)
-            return code;
-    }
-    return CLOTH_OK;
+    for (uint32_t s = 0; s < garment->n_seams; s++)
+        measure(garment, pattern, s);
+    int code = find_fronts(&fronts, garment, pattern, error);
+    if (!code)
+        turn_seams(garment, pattern, &fronts);
+    for (uint32_t s = 0; s < garment->n_seams && !code; s++)
+        code = pair_vertices(garment, pattern, s, error);
+    free(fronts.set);
+    return code;
 }

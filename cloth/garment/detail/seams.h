@@ -3,9 +3,8 @@
 
 #include "cloth/garment/garment.h"
 
-/* Pairs the vertices of all stitches of a garment that has its pieces. Of the two directions the
- * one with the shorter total distance in space is taken; the edges of a dart, which share a corner,
- * are joined from there on. Error: CLOTH_E_MEMORY. Local. */
+/* Pairs the vertices of all stitches of a garment that has its pieces, each in the direction that
+ * docs/garments.md says. Error: CLOTH_E_MEMORY. Local. */
 int seams_make(struct garment *garment, const struct garment_pattern *pattern,
                struct cloth_error *error);
 

@@ -33,6 +33,7 @@ static int take_side(struct model_fold *fold, const struct model_seam *seam, int
                      struct cloth_error *error)
 {
     fold->sewn = true;
+    fold->open = seam->sewing.state == MODEL_SEAMS_OPEN;
     fold->vertices = scene_build_array(seam->n_pairs, sizeof *fold->vertices, error);
     if (!fold->vertices)
         return error->code;
@@ -77,13 +78,13 @@ static int build_fold(struct model_fold *fold, const struct model_cloth *cloth,
 static int warn_of_open(struct model *model, const struct model_cloth *cloth,
                         const struct scene_tree *tree, int list, struct cloth_error *error)
 {
-    bool sewn = false;
+    bool open = false;
     for (uint32_t i = 0; i < cloth->n_folds; i++)
-        sewn = sewn || cloth->folds[i].sewn;
-    if (!sewn || cloth->seams.state != MODEL_SEAMS_OPEN)
+        open = open || cloth->folds[i].open;
+    if (!open)
         return CLOTH_OK;
     return scene_build_warn(model, tree, list, error,
-                            "folds along edges of panels mean nothing in cloth '%.60s', whose "
+                            "folds along edges of panels mean nothing in cloth '%.60s' where "
                             "seams are open",
                             cloth->name);
 }

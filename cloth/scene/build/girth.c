@@ -46,6 +46,14 @@ static int compare(struct girth_worst *worst, const struct model_cloth *cloth,
     return code;
 }
 
+static bool is_sewn(const struct model_seams *seams)
+{
+    bool sewn = false;
+    for (uint32_t s = 0; s < seams->n; s++)
+        sewn = sewn || seams->seam[s].sewing.state != MODEL_SEAMS_OPEN;
+    return sewn;
+}
+
 static int warn_of_girth(struct model *model, uint32_t cloth, uint32_t obstacle,
                          const struct scene_tree *tree, struct cloth_error *error)
 {
@@ -69,8 +77,8 @@ int scene_build_girths(struct model *model, const struct scene_tree *tree,
     int code = CLOTH_OK;
     for (uint32_t i = 0; i < model->n_cloths; i++)
         for (uint32_t k = 0; k < model->n_obstacles && !code; k++)
-            if (model->cloths[i].seams.n && model->cloths[i].seams.state != MODEL_SEAMS_OPEN &&
-                model->obstacles[k].body && !model->obstacles[k].n)
+            if (is_sewn(&model->cloths[i].seams) && model->obstacles[k].body &&
+                !model->obstacles[k].n)
                 code = warn_of_girth(model, i, k, tree, error);
     return code;
 }

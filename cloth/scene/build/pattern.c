@@ -35,6 +35,7 @@ static int take_seam(struct model_seam *to, const struct garment_seam *from,
 {
     *to = (struct model_seam){.n_pairs = from->n_pairs,
                               .reversed = from->reversed,
+                              .unsure = from->unsure,
                               .distance = {from->distance[0], from->distance[1]}};
     for (int k = 0; k < 2; k++) {
         to->side[k].edge = stitch->side[k].edge;

@@ -4,6 +4,7 @@
 
 #include "cloth/base/sets.h"
 
+#include <fnmatch.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -11,10 +12,12 @@
  * given. Their joint would else close within a step, however far they are. */
 static const double CLOSING = 0.1;
 
+enum { MOST_NAMED = 12 }; /* in a warning */
+
 /* ---- Which pairs a seam joins ---- */
 
 struct pair {
-    uint32_t low, high; /* vertices of the cloth */
+    uint32_t low, high; /* vertices */
     uint32_t seam, i;   /* pair i of this seam */
 };
 
@@ -29,21 +32,24 @@ static int compare_pairs(const void *va, const void *vb)
     return 0;
 }
 
-/* joins: of each pair, seam after seam, 1 where it is the first of its two vertices. */
-static int find_firsts(const struct model_seams *seams, size_t n, unsigned char *joins,
+/* joins: of each pair, seam after seam, 1 where it is the first of its two vertices among the seams
+ * of a state. root: by vertex, what welds make it. */
+static int find_firsts(const struct model_seams *seams, enum model_seams_state state,
+                       const uint32_t *root, size_t n, unsigned char *joins,
                        struct cloth_error *error)
 {
     struct pair *all = scene_build_array(n, sizeof *all, error);
-    size_t k = 0;
+    size_t k = 0, of_state = 0;
     if (!all)
         return error->code;
     for (uint32_t s = 0; s < seams->n; s++)
         for (uint32_t i = 0; i < seams->seam[s].n_pairs; i++, k++) {
-            const uint32_t *v = seams->seam[s].pair[i];
-            all[k] = (struct pair){v[v[1] < v[0]], v[v[1] > v[0]], s, (uint32_t)k};
+            const uint32_t *v = seams->seam[s].pair[i], a = root[v[0]], b = root[v[1]];
+            if (seams->seam[s].sewing.state == state)
+                all[of_state++] = (struct pair){a < b ? a : b, a < b ? b : a, s, (uint32_t)k};
         }
-    qsort(all, n, sizeof *all, compare_pairs);
-    for (k = 0; k < n; k++) {
+    qsort(all, of_state, sizeof *all, compare_pairs);
+    for (k = 0; k < of_state; k++) {
         const bool again = k && all[k].low == all[k - 1].low && all[k].high == all[k - 1].high;
         joins[all[k].i] = !again && all[k].low != all[k].high;
     }
@@ -85,33 +91,79 @@ static int fill_pairs(struct model_pairs *to, uint32_t cloth, const struct model
 static int add_joint(struct model *model, uint32_t cloth, uint32_t seam, const unsigned char *joins,
                      const struct scene_tree *tree, int node, struct cloth_error *error)
 {
-    const struct model_seams *seams = &model->cloths[cloth].seams;
+    const struct model_seam *of = model->cloths[cloth].seams.seam + seam;
     void *list = model->joints;
     struct model_joint *joint = one_more(&list, &model->n_joints, sizeof *joint, error);
     model->joints = list;
     if (!joint)
         return error->code;
     model->n_pulled++;
-    joint->stiffness = seams->stiffness;
-    joint->damping = seams->damping;
+    joint->stiffness = of->sewing.stiffness;
+    joint->damping = of->sewing.damping;
     joint->pairs.seam = seam + 1;
-    return fill_pairs(&joint->pairs, cloth, seams->seam + seam, joins, tree, node, error);
+    return fill_pairs(&joint->pairs, cloth, of, joins, tree, node, error);
 }
 
 static int add_weld(struct model *model, uint32_t cloth, uint32_t seam, const unsigned char *joins,
                     const struct scene_tree *tree, int node, struct cloth_error *error)
 {
-    const struct model_seams *seams = &model->cloths[cloth].seams;
+    const struct model_seam *of = model->cloths[cloth].seams.seam + seam;
     void *list = model->welds;
     struct model_weld *weld = one_more(&list, &model->n_welds, sizeof *weld, error);
     model->welds = list;
     if (!weld)
         return error->code;
-    weld->tolerance = seams->tolerance;
+    weld->tolerance = of->sewing.tolerance;
     weld->pairs.seam = seam + 1;
-    return fill_pairs(&weld->pairs, cloth, seams->seam + seam, joins, tree, node, error);
+    return fill_pairs(&weld->pairs, cloth, of, joins, tree, node, error);
 }
 
+static void join_pairs(const struct model *model, const struct model_pairs *pairs, uint32_t *set)
+{
+    const struct model_end *end = pairs->end;
+    for (uint32_t i = 0; i < end[0].n; i++)
+        cloth_sets_join(set, model_first(model, end[0].cloth) + end[0].vertices[i],
+                        model_first(model, end[1].cloth) + end[1].vertices[i]);
+}
+
+/* By vertex of all cloths: the lowest that welds make it one with. The caller frees it; NULL: no
+ * memory. */
+static uint32_t *find_roots(const struct model *model, struct cloth_error *error)
+{
+    const uint32_t n = model_first(model, model->n_cloths);
+    uint32_t *root = scene_build_array(n, sizeof *root, error);
+    if (!root)
+        return NULL;
+    cloth_sets_start(root, n);
+    for (uint32_t w = 0; w < model->n_welds; w++)
+        join_pairs(model, &model->welds[w].pairs, root);
+    for (uint32_t v = 0; v < n; v++)
+        root[v] = cloth_sets_root(root, v);
+    return root;
+}
+
+/* The seams of one state. */
+static int sew_state(struct model *model, uint32_t cloth, enum model_seams_state state, size_t n,
+                     const struct scene_tree *tree, int node, struct cloth_error *error)
+{
+    const struct model_seams *seams = &model->cloths[cloth].seams;
+    unsigned char *joins = scene_build_array(n, 1, error);
+    uint32_t *root = joins ? find_roots(model, error) : NULL;
+    int code = root ? find_firsts(seams, state, root + model_first(model, cloth), n, joins, error)
+                    : error->code;
+    const unsigned char *of = joins;
+    for (uint32_t s = 0; s < seams->n && !code; of += seams->seam[s++].n_pairs) {
+        if (!memchr(of, 1, seams->seam[s].n_pairs))
+            continue; /* it is of another state, or joined by others already */
+        code = state == MODEL_SEAMS_PULLED ? add_joint(model, cloth, s, of, tree, node, error)
+                                           : add_weld(model, cloth, s, of, tree, node, error);
+    }
+    free(joins);
+    free(root);
+    return code;
+}
+
+/* Welds first: what they make one is not pulled. */
 static int sew(struct model *model, uint32_t cloth, const struct scene_tree *tree, int node,
                struct cloth_error *error)
 {
@@ -119,18 +171,8 @@ static int sew(struct model *model, uint32_t cloth, const struct scene_tree *tre
     size_t n = 0;
     for (uint32_t s = 0; s < seams->n; s++)
         n += seams->seam[s].n_pairs;
-    unsigned char *joins = scene_build_array(n, 1, error);
-    int code = joins ? find_firsts(seams, n, joins, error) : error->code;
-    const unsigned char *of = joins;
-    for (uint32_t s = 0; s < seams->n && !code; of += seams->seam[s++].n_pairs) {
-        if (!memchr(of, 1, seams->seam[s].n_pairs))
-            continue; /* it is joined by others already */
-        code = seams->state == MODEL_SEAMS_PULLED
-                   ? add_joint(model, cloth, s, of, tree, node, error)
-                   : add_weld(model, cloth, s, of, tree, node, error);
-    }
-    free(joins);
-    return code;
+    const int code = sew_state(model, cloth, MODEL_SEAMS_WELDED, n, tree, node, error);
+    return code ? code : sew_state(model, cloth, MODEL_SEAMS_PULLED, n, tree, node, error);
 }
 
 /* ---- The keys ---- */
@@ -143,6 +185,20 @@ static void reverse(struct model_seam *seam)
         seam->pair[k][1] = vertex;
     }
     seam->reversed = !seam->reversed;
+    seam->unsure = false; /* the scene says so */
+}
+
+/* That a list of the scene names seams that are there. */
+static int check_numbers(const struct model_cloth *cloth, const uint32_t *number, uint32_t n,
+                         const struct scene_tree *tree, int list, struct cloth_error *error)
+{
+    for (uint32_t i = 0; i < n; i++)
+        if (number[i] >= cloth->seams.n)
+            return scene_tree_fail(tree, scene_tree_item(tree, list, i), error,
+                                   "seam %u is none of cloth '%.60s', which has %u seams, counted "
+                                   "from 0",
+                                   number[i], cloth->name, cloth->seams.n);
+    return CLOTH_OK;
 }
 
 static int reverse_some(struct model_cloth *cloth, const struct scene_tree *tree, int node,
@@ -150,12 +206,8 @@ static int reverse_some(struct model_cloth *cloth, const struct scene_tree *tree
 {
     struct model_seams *seams = &cloth->seams;
     const int list = scene_tree_get(tree, node, "reversed");
-    for (uint32_t i = 0; i < seams->n_reversed; i++) {
-        if (seams->reversed[i] >= seams->n)
-            return scene_tree_fail(tree, scene_tree_item(tree, list, i), error,
-                                   "seam %u is none of cloth '%.60s', which has %u seams, counted "
-                                   "from 0",
-                                   seams->reversed[i], cloth->name, seams->n);
+    int code = check_numbers(cloth, seams->reversed, seams->n_reversed, tree, list, error);
+    for (uint32_t i = 0; i < seams->n_reversed && !code; i++) {
         for (uint32_t j = 0; j < i; j++)
             if (seams->reversed[j] == seams->reversed[i])
                 return scene_tree_fail(tree, scene_tree_item(tree, list, i), error,
@@ -163,7 +215,108 @@ static int reverse_some(struct model_cloth *cloth, const struct scene_tree *tree
                                        seams->reversed[i]);
         reverse(seams->seam + seams->reversed[i]);
     }
-    return CLOTH_OK;
+    return code;
+}
+
+/* ---- Seams that are sewn otherwise than the cloth's ---- */
+
+/* The keys of a map in place of what was there. */
+static void lay_over(struct model_sewing *to, const struct model_sewing *from,
+                     const struct scene_tree *tree, int node)
+{
+    if (scene_tree_get(tree, node, "state"))
+        to->state = from->state;
+    if (scene_tree_get(tree, node, "stiffness"))
+        to->stiffness = from->stiffness;
+    if (scene_tree_get(tree, node, "damping"))
+        to->damping = from->damping;
+    if (scene_tree_get(tree, node, "tolerance"))
+        to->tolerance = from->tolerance;
+    if (scene_tree_get(tree, node, "bending"))
+        to->bending = from->bending;
+}
+
+static bool is_between(const struct model_seam *seam, const char *const panel[2])
+{
+    bool is = false;
+    for (int k = 0; k < 2; k++)
+        is = is || (!fnmatch(panel[0], seam->side[k].panel, 0) &&
+                    !fnmatch(panel[1], seam->side[!k].panel, 0));
+    return is;
+}
+
+/* The entry of `some` gets the numbers of the seams between two panels. */
+static int find_between(const struct model_cloth *cloth, struct model_some_seams *some,
+                        const struct scene_tree *tree, int of, struct cloth_error *error)
+{
+    const char *panel[2];
+    for (size_t k = 0; k < 2; k++)
+        panel[k] = scene_tree_scalar(tree, scene_tree_item(tree, of, k));
+    some->number = scene_build_array(cloth->seams.n, sizeof *some->number, error);
+    if (!some->number)
+        return error->code;
+    for (uint32_t s = 0; s < cloth->seams.n; s++)
+        if (is_between(cloth->seams.seam + s, panel))
+            some->number[some->n++] = s;
+    if (some->n)
+        return CLOTH_OK;
+    return scene_tree_fail(tree, of, error,
+                           "no seam of cloth '%.60s' is between a panel '%.60s' and one '%.60s'; a "
+                           "panel's name is expected, in which * stands for any characters",
+                           cloth->name, panel[0], panel[1]);
+}
+
+static int take_some(struct model_cloth *cloth, struct model_some_seams *some,
+                     const struct scene_tree *tree, int node, struct cloth_error *error)
+{
+    const int of = scene_tree_get(tree, node, "of");
+    const int numbers = scene_tree_get(tree, node, "numbers");
+    const int code = of ? find_between(cloth, some, tree, of, error)
+                        : check_numbers(cloth, some->number, some->n, tree, numbers, error);
+    for (uint32_t i = 0; i < some->n && !code; i++)
+        lay_over(&cloth->seams.seam[some->number[i]].sewing, &some->sewing, tree, node);
+    return code;
+}
+
+static int take_sewing(struct model_cloth *cloth, const struct scene_tree *tree, int node,
+                       struct cloth_error *error)
+{
+    struct model_seams *seams = &cloth->seams;
+    const int list = scene_tree_get(tree, node, "some");
+    int code = CLOTH_OK;
+    for (uint32_t s = 0; s < seams->n; s++) {
+        seams->seam[s].sewing = (struct model_sewing){.damping = -1, .bending = -1};
+        lay_over(&seams->seam[s].sewing, &seams->sewing, tree, node);
+    }
+    for (uint32_t i = 0; i < seams->n_some && !code; i++)
+        code = take_some(cloth, seams->some + i, tree, scene_tree_item(tree, list, i), error);
+    for (uint32_t s = 0; s < seams->n; s++) {
+        struct model_sewing *sewing = &seams->seam[s].sewing;
+        if (sewing->damping < 0) /* it is not given */
+            sewing->damping = CLOSING * sewing->stiffness;
+    }
+    return code;
+}
+
+static int warn_of_unsure(struct model *model, const struct model_cloth *cloth,
+                          const struct scene_tree *tree, int node, struct cloth_error *error)
+{
+    char numbers[160] = "";
+    size_t size = 0;
+    uint32_t n = 0;
+    for (uint32_t s = 0; s < cloth->seams.n; s++)
+        if (cloth->seams.seam[s].unsure && cloth->seams.seam[s].sewing.state != MODEL_SEAMS_OPEN &&
+            n++ < MOST_NAMED)
+            size += (size_t)snprintf(numbers + size, sizeof numbers - size, " %u", s);
+    if (!n)
+        return CLOTH_OK;
+    return scene_build_warn(
+        model, tree, node, error,
+        "%u of the seams of cloth '%.60s' may be sewn the wrong way round, the first "
+        "are%s: how far partners are from each other does not tell, or "
+        "contradicts other seams, so the fronts of the panels decide; the "
+        "summary has the distances, and seams.reversed turns a seam",
+        n, cloth->name, numbers);
 }
 
 static int read_file(struct model *model, struct model_cloth *cloth, const struct scene_tree *tree,
@@ -201,28 +354,18 @@ static int find_seams(struct model *model, struct model_cloth *cloth, const stru
 
 /* ---- What meets as one ---- */
 
-static void join_pairs(const struct model *model, const struct model_pairs *pairs)
-{
-    const uint32_t first = model_first(model, pairs->end[0].cloth);
-    for (uint32_t i = 0; i < pairs->end[0].n && pairs->seam; i++)
-        cloth_sets_join(model->contact.apart.joined, first + pairs->end[0].vertices[i],
-                        first + pairs->end[1].vertices[i]);
-}
-
 static int find_joined(struct model *model, struct cloth_error *error)
 {
-    struct contact_apart *apart = &model->contact.apart;
-    const uint32_t n = model_first(model, model->n_cloths);
-    if (!model->n_pulled)
-        return CLOTH_OK;
-    apart->joined = scene_build_array(n, sizeof *apart->joined, error);
-    if (!apart->joined)
+    uint32_t *joined = model->n_pulled ? find_roots(model, error) : NULL;
+    model->contact.apart.joined = joined;
+    if (!joined)
         return error->code;
-    cloth_sets_start(apart->joined, n);
     for (uint32_t j = 0; j < model->n_joints; j++)
-        join_pairs(model, &model->joints[j].pairs);
+        if (model->joints[j].pairs.seam)
+            join_pairs(model, &model->joints[j].pairs, joined);
+    const uint32_t n = model_first(model, model->n_cloths);
     for (uint32_t v = 0; v < n; v++)
-        apart->joined[v] = cloth_sets_root(apart->joined, v);
+        joined[v] = cloth_sets_root(joined, v);
     return CLOTH_OK;
 }
 
@@ -233,13 +376,11 @@ static int build_seams(struct model *model, uint32_t i, const struct scene_tree 
     const int node = scene_tree_get(tree, of, "seams");
     if (!node)
         return CLOTH_OK;
-    if (!scene_tree_get(tree, node, "damping"))
-        cloth->seams.damping = CLOSING * cloth->seams.stiffness;
-    if (!scene_tree_get(tree, node, "bending"))
-        cloth->seams.bending = -1;
     int code = find_seams(model, cloth, tree, of, node, error);
     code = code ? code : reverse_some(cloth, tree, node, error);
-    return code || cloth->seams.state == MODEL_SEAMS_OPEN ? code : sew(model, i, tree, node, error);
+    code = code ? code : take_sewing(cloth, tree, node, error);
+    code = code ? code : warn_of_unsure(model, cloth, tree, node, error);
+    return code ? code : sew(model, i, tree, node, error);
 }
 
 int scene_build_seams(struct model *model, const struct scene_tree *tree, struct cloth_error *error)

@@ -245,23 +245,38 @@ static const struct scene_rule region_keys[] = {
     {0}};
 const struct scene_rule scene_region = {.type = SCENE_MAP, .inside = region_keys};
 
+/* Keys of the struct model_sewing of a type, with the defaults of three. */
+#define SEWING(type, of_state, of_stiffness, of_tolerance) \
+    {"state", SCENE_CHOICE, .fallback = of_state, INTO(type, sewing.state), \
+     WORDS({"pulled", MODEL_SEAMS_PULLED}, {"welded", MODEL_SEAMS_WELDED}, \
+           {"open", MODEL_SEAMS_OPEN}), \
+     .about = "pulled: a joint of rest length 0 for each pair of vertices; welded: a weld for each; " \
+              "open: nothing"}, \
+    {"stiffness", SCENE_NUMBER, "N/m", of_stiffness, .range = SCENE_POSITIVE, \
+     INTO(type, sewing.stiffness), .about = "pulled: of each joint"}, \
+    {"damping", SCENE_NUMBER, "kg/s", .range = SCENE_NOT_NEGATIVE, INTO(type, sewing.damping), \
+     .about = "pulled: along each joint; else 0.1 s times the stiffness"}, \
+    {"tolerance", SCENE_NUMBER, "m", of_tolerance, .range = SCENE_NOT_NEGATIVE, \
+     INTO(type, sewing.tolerance), \
+     .about = "welded: partners start at most so far from each other"}, \
+    {"bending", SCENE_NUMBER, "N m", .range = SCENE_NOT_NEGATIVE, INTO(type, sewing.bending), \
+     .about = "welded: rigidity of the hinges across them; else the materials'"}
+
+static const struct scene_rule some_keys[] = {
+    {"numbers", SCENE_LIST, .choice = true, .filled = true, .inside = &vertex,
+     ARRAY(struct model_some_seams, number, n), .about = "of the seams, from 0"},
+    {"of", SCENE_LIST, .choice = true, .length = 2, .inside = &text,
+     .about = "names of the two panels; * stands for any characters"},
+    SEWING(struct model_some_seams, NULL, NULL, NULL),
+    {0}};
+static const struct scene_rule some = {.type = SCENE_MAP, .inside = some_keys};
+
 static const struct scene_rule seams_keys[] = {
-    {"state", SCENE_CHOICE, .fallback = "pulled", INTO(struct model_seams, state),
-     WORDS({"pulled", MODEL_SEAMS_PULLED}, {"welded", MODEL_SEAMS_WELDED},
-           {"open", MODEL_SEAMS_OPEN}),
-     .about = "pulled: a joint of rest length 0 for each pair of vertices; welded: a weld for each; "
-              "open: nothing"},
-    {"stiffness", SCENE_NUMBER, "N/m", "200", .range = SCENE_POSITIVE,
-     INTO(struct model_seams, stiffness), .about = "pulled: of each joint"},
-    {"damping", SCENE_NUMBER, "kg/s", .range = SCENE_NOT_NEGATIVE,
-     INTO(struct model_seams, damping),
-     .about = "pulled: along each joint; else 0.1 s times the stiffness"},
-    {"tolerance", SCENE_NUMBER, "m", "0.002", .range = SCENE_NOT_NEGATIVE,
-     INTO(struct model_seams, tolerance),
-     .about = "welded: partners start at most so far from each other"},
-    {"bending", SCENE_NUMBER, "N m", .range = SCENE_NOT_NEGATIVE,
-     INTO(struct model_seams, bending),
-     .about = "welded: rigidity of the hinges across them; else the materials'"},
+    SEWING(struct model_seams, "pulled", "200", "0.002"),
+    {"some", SCENE_LIST, .fallback = "[]", .inside = &some,
+     ARRAY(struct model_seams, some, n_some),
+     .about = "seams that are sewn otherwise; keys that are not given are the cloth's, and the last "
+              "one that has a seam counts"},
     {"reversed", SCENE_LIST, .fallback = "[]", .inside = &vertex,
      ARRAY(struct model_seams, reversed, n_reversed),
      .about = "numbers of seams, from 0, that are sewn the other way round than was found"},

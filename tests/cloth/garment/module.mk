@@ -1,6 +1,6 @@
 GARMENT_PATTERNS = tests/cloth/garment/patterns/circle.json tests/cloth/garment/patterns/cubic.json tests/cloth/garment/patterns/dart.json \
-	tests/cloth/garment/patterns/fold.json tests/cloth/garment/patterns/gather.json tests/cloth/garment/patterns/quadratic.json \
-	tests/cloth/garment/patterns/steep.json tests/cloth/garment/patterns/straight.json
+	tests/cloth/garment/patterns/fold.json tests/cloth/garment/patterns/gather.json tests/cloth/garment/patterns/hood.json \
+	tests/cloth/garment/patterns/quadratic.json tests/cloth/garment/patterns/steep.json tests/cloth/garment/patterns/straight.json
 EXTRA_DIST += $(GARMENT_PATTERNS)
 if HAVE_CHECK
 check_PROGRAMS += tests/cloth/garment/test_curves

@@ -229,6 +229,57 @@ START_TEST(folds_meet)
 }
 END_TEST
 
+/* A front, a back, and beside their necks a panel of a hood, by its lower edge. */
+struct hood {
+    double place[3], turned, back; /* of the hood, m and degrees; z of the back, m */
+    bool flipped,
+        right_wrong; /* the hood has its front inside; the word, in its seam at the back */
+    double vote[2];  /* above 0: by the distances of its seams they are reversed, */
+    bool reversed[2], unsure[2]; /* and as they are */
+};
+static const struct hood HOODS[] = {
+    /* Too far to tell: by their fronts. */
+    {{0.15, 0.5, 0}, 90, -0.25, false, false, {-0.005, -0.005}, {true, true}, {true, true}},
+    {{0.15, 0.5, 0}, 90, -0.25, false, true, {-0.005, -0.005}, {true, false}, {true, false}},
+    /* The seam at the front is clear, and decides for that at the back. */
+    {{0.07, 0.33, 0.1}, 60, -0.25, false, false, {0.088, -0.0144}, {true, true}, {false, false}},
+    {{0.07, 0.33, 0.1}, 60, -0.25, true, false, {-0.088, 0.0144}, {false, false}, {false, false}},
+    /* All are clear, and the least so is overruled. */
+    {{0.07, 0.33, 0.1}, 60, 0, false, false, {0.088, -0.174}, {false, false}, {true, false}}};
+
+static void place_hood(struct garment_pattern *pattern, const struct hood *hood)
+{
+    struct garment_panel *panel = pattern->panel + 2;
+    struct garment_stitch *stitch = pattern->stitch + 2;
+    memcpy(panel->translate, hood->place, sizeof panel->translate);
+    panel->rotate[1] = hood->turned + (hood->flipped ? 180 : 0);
+    pattern->panel[1].translate[2] = hood->back;
+    stitch[0].side[1].edge = hood->flipped;
+    stitch[1].side[1].edge = !hood->flipped;
+    stitch[1].right_wrong = hood->right_wrong;
+}
+
+START_TEST(fronts_are_on_one_side)
+{
+    const struct hood *hood = HOODS + _i;
+    struct garment_pattern pattern;
+    struct garment garment;
+    read_pattern(&pattern, "hood");
+    place_hood(&pattern, hood);
+    make_garment(&garment, &pattern, 0.02, 0);
+    const struct garment_seam *seam = garment.seam;
+    ck_assert(seam[0].reversed && seam[1].reversed && !seam[0].unsure && !seam[1].unsure);
+    for (int k = 0; k < 2; k++) {
+        const double *mean = seam[2 + k].distance;
+        ck_assert_double_eq_tol((mean[0] - mean[1]) / fmax(mean[0], mean[1]), hood->vote[k], 5e-4);
+        ck_assert_int_eq(seam[2 + k].reversed, hood->reversed[k]);
+        ck_assert_int_eq(seam[2 + k].unsure, hood->unsure[k]);
+    }
+    garment_free(&garment);
+    garment_pattern_free(&pattern);
+}
+END_TEST
+
 /* About x first, then y: 90 and 90 degrees take (x, y) to (y, 0, -x). */
 START_TEST(rotations_are_in_order)
 {
@@ -273,6 +324,7 @@ int main(void)
     tcase_add_loop_test(mesh, seams_have_equal_sides, 0, 3);
     tcase_add_test(mesh, darts_close_at_their_tip);
     tcase_add_test(mesh, folds_meet);
+    tcase_add_loop_test(mesh, fronts_are_on_one_side, 0, sizeof HOODS / sizeof *HOODS);
     tcase_add_test(mesh, rotations_are_in_order);
     tcase_add_test(mesh, the_same_again);
     suite_add_tcase(suite, mesh);

@@ -20,9 +20,11 @@
 static const char *const PANELS =
     "{\"pattern\": {\"panels\": {\n"
     "  \"front\": {" RECTANGLE ",\n    \"translation\": [0, 0, 3], \"rotation\": [0, 0, 0]},\n"
-    "  \"back\": {" RECTANGLE ",\n    \"translation\": [20, 0, 0], \"rotation\": [0, 180, 0]}},\n"
+    "  \"back\": {" RECTANGLE ",\n    \"translation\": [20, 0, 0], \"rotation\": [0, 180, 0]}\n"
+    "  %s},\n"
     "  \"stitches\": [%s]},\n"
     " \"properties\": {\"curvature_coords\": \"relative\", \"units_in_meter\": 100}}\n";
+#define TOP_OF    ", \"top\": {" RECTANGLE ", \"translation\": [300, 60, 0], \"rotation\": [0, 0, 0]}"
 #define SIDES_OF  STITCH(1, 3) ", " STITCH(3, 1)
 #define BAG_OF    STITCH(0, 0) ", " SIDES_OF
 #define PILLOW_OF STITCH(2, 2) ", " BAG_OF
@@ -30,7 +32,8 @@ static const char *const PANELS =
 static char *scene_of(const char *stitches, const char *keys)
 {
     char *pattern = NULL, *text = NULL;
-    ck_assert_int_ge(asprintf(&pattern, PANELS, stitches), 0);
+    ck_assert_int_ge(asprintf(&pattern, PANELS, strstr(stitches, "top") ? TOP_OF : "", stitches),
+                     0);
     scene_write_file("panels.json", pattern, strlen(pattern));
     free(pattern);
     ck_assert_int_ge(asprintf(&text,
@@ -97,6 +100,93 @@ START_TEST(keys_of_seams)
     model = read_scene(SIDES_OF, "{state: open}");
     ck_assert_uint_eq(model.n_joints + model.n_welds + model.n_pulled, 0);
     ck_assert_ptr_null(model.contact.apart.joined);
+    model_free(&model);
+}
+END_TEST
+
+/* ---- Some seams that are sewn otherwise than the cloth ---- */
+
+/* How many joints and welds there are, of those seams (from 1, 0: of no more). */
+struct some {
+    const char *keys;
+    uint32_t joint[3], weld[3];
+    double stiffness, damping; /* of the first joint */
+};
+static const struct some SOME[] = {
+    {"{state: open, some: [{numbers: [1], state: pulled, stiffness: 50}]}", {2}, {0}, 50, 5},
+    {"{some: [{of: [front, back], stiffness: 50}, {numbers: [0, 2], state: open}]}",
+     {2},
+     {0},
+     50,
+     5},
+    {"{damping: 3, some: [{of: ['ba*', '*nt'], stiffness: 50}, {numbers: [1, 2], state: welded}]}",
+     {1},
+     {2, 3},
+     50,
+     3},
+    {"{stiffness: 10, some: [{numbers: [0], damping: 7}, {numbers: [0], stiffness: 20}]}",
+     {1, 2, 3},
+     {0},
+     20,
+     7},
+    {"{state: welded, some: []}", {0}, {1, 2, 3}, 0, 0}};
+
+START_TEST(some_seams)
+{
+    const struct some *some = SOME + _i;
+    struct model model = read_scene(BAG_OF, some->keys);
+    for (uint32_t i = 0; i < 3; i++) {
+        ck_assert_uint_eq(i < model.n_joints ? model.joints[i].pairs.seam : 0, some->joint[i]);
+        ck_assert_uint_eq(i < model.n_welds ? model.welds[i].pairs.seam : 0, some->weld[i]);
+    }
+    ck_assert_uint_eq(model.n_pulled, model.n_joints);
+    if (model.n_joints) {
+        ck_assert_double_eq(model.joints[0].stiffness, some->stiffness);
+        ck_assert_double_eq_tol(model.joints[0].damping, some->damping, 1e-12);
+    }
+    model_free(&model);
+}
+END_TEST
+
+/* The bottom, which is pulled, ends in both sides, which are welded: their pairs stand first. */
+START_TEST(welds_come_before_joints)
+{
+    struct model model =
+        read_scene(BAG_OF, "{tolerance: 0.031, some: [{numbers: [1, 2], state: welded}]}");
+    struct cloth_error error = {0};
+    struct flow *flow;
+    const struct model_seam *seam = model.cloths[0].seams.seam;
+    ck_assert_uint_eq(model.n_joints, 1);
+    ck_assert_uint_eq(model.joints[0].pairs.end[0].n, seam[0].n_pairs - 2);
+    ck_assert_uint_eq(model.welds[0].pairs.end[0].n, seam[1].n_pairs);
+    const uint32_t *vertex = model.contact.apart.joined;
+    for (uint32_t s = 0; s < 3; s++)
+        for (uint32_t i = 0; i < seam[s].n_pairs; i++)
+            ck_assert_uint_eq(vertex[seam[s].pair[i][0]], vertex[seam[s].pair[i][1]]);
+    ck_assert_msg(!flow_prepare(&flow, &model, 1, &error), "%s", error.text);
+    flow_free(flow);
+    model_free(&model);
+}
+END_TEST
+
+/* Three seams that meet at a corner, as of a box: where two are welded its three vertices are one,
+ * and the third has no pair there. */
+START_TEST(corners_of_three_seams)
+{
+    static const char *const stitches =
+        STITCH(0, 3) ", [{\"panel\": \"back\", \"edge\": 0}, {\"panel\": \"top\", \"edge\": 3}], "
+                     "[{\"panel\": \"top\", \"edge\": 0}, {\"panel\": \"front\", \"edge\": 3}]";
+    struct model model = read_scene(
+        stitches, "{tolerance: 4, reversed: [0, 2], some: [{numbers: [0, 1], state: welded}]}");
+    struct cloth_error error = {0};
+    struct flow *flow;
+    for (int s = 0; s < 3; s++)
+        ck_assert(model.cloths[0].seams.seam[s].reversed);
+    ck_assert_uint_eq(model.n_welds, 2);
+    ck_assert_uint_eq(model.n_joints, 1);
+    ck_assert_uint_eq(model.joints[0].pairs.end[0].n, model.cloths[0].seams.seam[2].n_pairs - 1);
+    ck_assert_msg(!flow_prepare(&flow, &model, 1, &error), "%s", error.text);
+    flow_free(flow);
     model_free(&model);
 }
 END_TEST
@@ -205,11 +295,13 @@ static void take_hinge(void *to, const struct element *element)
 /* They are flat at rest, though the panels lie face to face, and as stiff as the key says. */
 START_TEST(hinges_of_seams)
 {
-    double stiffness[3];
-    static const char *const keys[3] = {"{state: welded, tolerance: 0.031}",
+    double stiffness[4];
+    static const char *const keys[4] = {"{state: welded, tolerance: 0.031}",
                                         "{state: welded, tolerance: 0.031, bending: 2.0e-5}",
-                                        "{state: welded, tolerance: 0.031, bending: 6.0e-5}"};
-    for (int i = 0; i < 3; i++) {
+                                        "{state: welded, tolerance: 0.031, bending: 6.0e-5}",
+                                        "{state: welded, tolerance: 0.031, bending: 2.0e-5, some: "
+                                        "[{numbers: [1], bending: 6.0e-5}]}"};
+    for (int i = 0; i < 4; i++) {
         struct model model = read_scene(SIDES_OF, keys[i]);
         struct cloth_error error = {0};
         struct flow *flow;
@@ -225,6 +317,9 @@ START_TEST(hinges_of_seams)
     ck_assert_double_gt(stiffness[0], 0);
     ck_assert_double_eq_tol(stiffness[1], stiffness[0], 1e-12 * stiffness[0]);
     ck_assert_double_eq_tol(stiffness[2], 3 * stiffness[0], 1e-12 * stiffness[2]);
+    ck_assert_double_gt(stiffness[3],
+                        1.9 * stiffness[0]); /* one of two sides, whose meshes differ */
+    ck_assert_double_lt(stiffness[3], 2.1 * stiffness[0]);
 }
 END_TEST
 
@@ -242,6 +337,14 @@ START_TEST(seams_that_cannot_be_sewn)
     refused(SIDES_OF, "{reversed: [1, 1]}", ":6:27: seam 1 stands twice in seams.reversed");
     refused(SIDES_OF, "{file: panels.json}",
             ":6:19: seams.file is of OBJ meshes; the seams of a pattern are its stitches");
+    refused(SIDES_OF, "{some: [{numbers: [0, 2], state: open}]}",
+            ":6:34: seam 2 is none of cloth 'bag', which has 2 seams, counted from 0");
+    refused(
+        SIDES_OF, "{some: [{of: [front, 'b*'], state: open}, {of: [front, 'f*'], state: open}]}",
+        ":6:59: no seam of cloth 'bag' is between a panel 'front' and one 'f*'; a panel's name is "
+        "expected, in which * stands for any characters");
+    refused(SIDES_OF, "{some: [{state: open}]}",
+            ":6:20: cloths[0].seams.some[0] has no numbers or of; one of them is expected");
     refused(SIDES_OF, "{state: sewn}",
             ":6:20: cloths[0].seams.state is sewn; pulled or welded or open is expected");
     refused(SIDES_OF, "{stiffness: 0}",
@@ -291,6 +394,9 @@ int main(void)
     TCase *cases = tcase_create("seams");
     tcase_add_test(cases, joints_of_seams);
     tcase_add_test(cases, keys_of_seams);
+    tcase_add_loop_test(cases, some_seams, 0, sizeof SOME / sizeof *SOME);
+    tcase_add_test(cases, welds_come_before_joints);
+    tcase_add_test(cases, corners_of_three_seams);
     tcase_add_loop_test(cases, what_is_sewn, 0, sizeof GARMENTS / sizeof *GARMENTS);
     tcase_add_test(cases, hinges_of_seams);
     tcase_add_test(cases, seams_that_cannot_be_sewn);

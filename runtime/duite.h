@@ -474,17 +474,18 @@ int duite_is_local(duite *rt, duite_object object);
 void duite_prefetch(const duite *rt, size_t n, const duite_object *objects);
 
 /* Forks a task on n objects, in the order of the kernel's modes; a task names an object once.
- * `args` points to the kernel's args_size bytes (ignored if 0). It runs where its first w or rw
- * object lives, else its first r object, else on rank 0. Contributions (cw) between two other
- * accesses of an object (by tasks, set, get or free; waits do not count) combine in fork order by a
- * fixed tree. Complete subtrees combine as in a binary counter, the rest folds from the right. Then
- * the result is combined with the object: under a sum old + (A + (B + C)). Contributions of another
- * law are another access. Collective; returns at once, unless options.window is set and more tasks
- * of this rank than that are unfinished. Then the main thread works, and the fork returns when they
- * are at most so many. Tasks that the runtime adds to combine, send and copy count. A replay is one
- * task, but the tasks of a round that is forked count each. The window bounds the memory of a
- * program that forks far ahead, and changes no result. Such a fork may wait for other ranks, as a
- * get does: they must not wait for this one outside of duite.
+ * `args` points to the kernel's args_size bytes; it is NULL if these are 0, and only then
+ * (DUITE_E_ARGUMENT). It runs where its first w or rw object lives, else its first r object, else
+ * on rank 0. Contributions (cw) between two other accesses of an object (by tasks, set, get or
+ * free; waits do not count) combine in fork order by a fixed tree. Complete subtrees combine as in
+ * a binary counter, the rest folds from the right. Then the result is combined with the object:
+ * under a sum old + (A + (B + C)). Contributions of another law are another access. Collective;
+ * returns at once, unless options.window is set and more tasks of this rank than that are
+ * unfinished. Then the main thread works, and the fork returns when they are at most so many. Tasks
+ * that the runtime adds to combine, send and copy count. A replay is one task, but the tasks of a
+ * round that is forked count each. The window bounds the memory of a program that forks far ahead,
+ * and changes no result. Such a fork may wait for other ranks, as a get does: they must not wait
+ * for this one outside of duite.
  *
  * A program of one rank that forks the same tasks round after round has them replayed, as if it had
  * recorded them: same results, failures and task numbers, in less time. Recognised are up to 4,096

@@ -73,8 +73,7 @@ bool memo_round_add(struct plan_memo *memo, const duite_kernel *kernel, const vo
 {
     struct task_graph *graph = memo->graph;
     const struct task_fixed *fixed = task_kernel_find(graph, kernel);
-    if (!fixed || !fixed->plain || n != fixed->n || (kernel->args_size && !args) ||
-        (n && !objects) || !round_writes(kernel, n))
+    if (!fixed || !fixed->plain || n != fixed->n || (n && !objects) || !round_writes(kernel, n))
         return false;
     for (size_t i = 0; i < n; i++) {
         const struct data_object *object = data_object_here(&graph->table, objects[i]);

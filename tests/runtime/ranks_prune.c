@@ -140,6 +140,9 @@ static void misuse(duite *rt, const duite_object *small)
     tap_case(duite_fork(rt, &TOUCH, &(int32_t){0}, 2, none) == DUITE_E_OBJECT, "no object");
     tap_case(duite_fork(rt, &TOUCH, &(int32_t){0}, 1, small) == DUITE_E_ACCESS, "too few");
     tap_case(duite_fork(rt, &TOUCH, NULL, 2, small) == DUITE_E_ARGUMENT, "no arguments");
+    tap_case(duite_fork(rt, &COPY, &(int32_t){0}, 2, small) == DUITE_E_ARGUMENT &&
+                 duite_fork(rt, &CONTRIBUTE, &(int32_t){0}, 3, small) == DUITE_E_ARGUMENT,
+             "arguments that no body finds");
     tap_case(duite_fork(rt, &UNLISTED, NULL, 1, small) == DUITE_E_KERNEL, "a kernel not listed");
     tap_case(duite_wait(rt) == DUITE_E_ACCESS, "and told once more");
     tap_case(duite_is_local(rt, DUITE_NO_OBJECT) == 1, "nothing is everybody's business");
@@ -156,7 +159,7 @@ static void different(duite *rt, const duite_object *small, int home)
 
 int main(void)
 {
-    const duite_kernel *const list[] = {&SET, &MANY, &TOUCH, &CONTRIBUTE, &SAME, NULL};
+    const duite_kernel *const list[] = {&SET, &MANY, &TOUCH, &CONTRIBUTE, &SAME, &COPY, NULL};
     duite_object large[OBJECTS], small[6];
     duite *rt;
 

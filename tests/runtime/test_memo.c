@@ -249,6 +249,26 @@ START_TEST(tasks_that_write_nothing_stay_forks)
 }
 END_TEST
 
+/* Of a round that is recognised, too. */
+START_TEST(arguments_that_no_body_finds)
+{
+    const duite_options options = repeated_options(ALWAYS);
+    struct repeated program;
+
+    repeated_start(&program, &options);
+    for (int i = 0; i < ROUNDS * OBJECTS; i++)
+        ck_assert_int_eq(DUITE_FORK(program.rt, &HOLD, NULL, program.object[i % OBJECTS]),
+                         DUITE_OK);
+    ck_assert_uint_ge(repeated_recognised(&program), ROUNDS * OBJECTS / 2);
+    for (int i = 0; i < ROUNDS * OBJECTS; i++)
+        ck_assert_int_eq(
+            DUITE_FORK(program.rt, &HOLD, i % 100 == 99 ? &i : NULL, program.object[i % OBJECTS]),
+            i % 100 == 99 ? DUITE_E_ARGUMENT : DUITE_OK);
+    ck_assert_int_eq(duite_wait(program.rt), DUITE_E_ARGUMENT);
+    repeated_stop(&program);
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("memo");
@@ -263,6 +283,7 @@ int main(void)
     tcase_add_test(cases, short_rounds_are_recognised_at_once);
     tcase_add_test(cases, long_rounds_are_right);
     tcase_add_test(cases, tasks_that_write_nothing_stay_forks);
+    tcase_add_test(cases, arguments_that_no_body_finds);
     suite_add_tcase(suite, cases);
     return unit_run(suite);
 }

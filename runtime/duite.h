@@ -268,10 +268,11 @@ typedef struct duite_options {
                   DUITE_MEMO=always in the environment */
 } duite_options;
 
-/* The defaults, as the fields say. What the program sets afterwards counts first, then the
- * variables of the environment that the fields name, which are read here, then what is built in. A
- * variable that makes no sense (an unknown policy, text in place of a number) is an error of
- * duite_start, which names it, unless the program sets the field. Local. */
+/* The defaults, as the fields say; options begin with these, since zeros are no communicator and no
+ * policies (DUITE_E_ARGUMENT). What the program sets afterwards counts first, then the variables of
+ * the environment that the fields name, which are read here, then what is built in. A variable that
+ * makes no sense (an unknown policy, text in place of a number) is an error of duite_start, which
+ * names it, unless the program sets the field. Local. */
 duite_options duite_options_default(void);
 
 /* The built-in policies by name, or from a shared library if the name has a / in it

@@ -49,6 +49,21 @@ static int instance_start_mpi(void)
     return DUITE_OK;
 }
 
+static int instance_dup(MPI_Comm comm, MPI_Comm *mpi)
+{
+    int between;
+    if (MPI_Comm_test_inter(comm, &between))
+        return base_error(DUITE_E_MPI, "MPI_Comm_test_inter failed");
+    if (between)
+        return base_error(DUITE_E_ARGUMENT,
+                          "duite_start: the communicator (comm) is between two groups; "
+                          "MPI_Intercomm_merge makes one group of them");
+    if (MPI_Comm_dup(comm, mpi))
+        return base_error(DUITE_E_MPI, "MPI_Comm_dup failed");
+    MPI_Comm_set_errhandler(*mpi, MPI_ERRORS_RETURN);
+    return DUITE_OK;
+}
+
 /* ---- Start ---- */
 
 static int instance_start_graph(duite *rt, const duite_options *options)
@@ -202,9 +217,9 @@ int duite_start(duite **out, const duite_options *options)
     if (code)
         return code;
     MPI_Comm mpi;
-    if (MPI_Comm_dup(options->comm, &mpi))
-        return base_error(DUITE_E_MPI, "MPI_Comm_dup failed");
-    MPI_Comm_set_errhandler(mpi, MPI_ERRORS_RETURN);
+    code = instance_dup(options->comm, &mpi);
+    if (code)
+        return code;
     duite *rt = base_alloc_zero(sizeof *rt);
     code = api_agree_on_code(mpi, rt ? DUITE_OK : base_no_memory("the runtime"));
     if (code) {

@@ -321,12 +321,13 @@ const char *const *duite_balancer_names(void);
 /* Checking mode: each body works on private copies of its parameters, between guard pages that are
  * taken away afterwards, and runs twice if it has no side effects and forks nothing. The task fails
  * with DUITE_E_CHECK if it writes to an r parameter or to its arguments, goes beyond the ends of a
- * parameter, or uses memory that an earlier task was given. It also fails if it leaves bytes of a w
- * parameter unwritten, or writes other bytes the second time. The message names the task, the
- * parameter and the byte. Results of correct programs are the same, at many times the cost. Other
- * memory (globals, heap) is not watched, and a body that faults is left by a jump: what it held
- * stays held. The signals SIGSEGV and SIGBUS are the runtime's meanwhile; faults that are none of
- * these go on to the handler there was. */
+ * parameter, or uses memory that an earlier task was given. A read that ends near enough not to
+ * fault is found if what the body leaves depends on it, and the body runs twice. It also fails if
+ * it leaves bytes of a w parameter unwritten, or writes other bytes the second time. The message
+ * names the task, the parameter and the byte. Results of correct programs are the same, at many
+ * times the cost. Other memory (globals, heap) is not watched, and a body that faults is left by a
+ * jump: what it held stays held. The signals SIGSEGV and SIGBUS are the runtime's meanwhile; faults
+ * that are none of these go on to the handler there was. */
 
 /* A standstill: the main program waits (in a get, a wait, a stop, or a fork, for the window) and
  * for options.stuck_seconds no task of this rank began or ended and no message came. Then this rank

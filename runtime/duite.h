@@ -22,7 +22,7 @@
  * not remembered.) On several ranks a call that runs out of memory on one of them, or a failure of
  * MPI, ends the work of all. Then every rank's present or next blocking call returns the code, and
  * only duite_stop is left (duite_abandon if MPI failed or a rank is lost). The library never exits
- * or aborts. */
+ * or aborts, but for a body that does not return (duite_body). */
 
 #include <mpi.h>
 #include <stddef.h>
@@ -171,7 +171,11 @@ typedef struct duite_call {
  * in turn, until a w, which does not read, overwrites it. The next duite_wait, and every duite_get
  * of something poisoned, returns the code on all ranks. A contribution that failed poisons the
  * object; contributing to a poisoned object is possible and does not heal it. What a body may call:
- * see "Tasks that fork". */
+ * see "Tasks that fork".
+ *
+ * A body returns, since others wait for what it writes. If a C++ exception or the end of its thread
+ * leaves it, or a law or a policy that a task calls, the process ends with a sentence. A longjmp
+ * that leaves it is not noticed: the runtime waits for ever for the body to return. */
 typedef int duite_body(const duite_call *call);
 
 /* Gives the failure of a body its message (printf form, at most 200 bytes are kept). Returns code.
@@ -347,10 +351,10 @@ const char *const *duite_balancer_names(void);
 
 /* Starts a runtime. Initialises MPI (thread support SERIALIZED) if the caller has not. On several
  * ranks its workers call MPI at any time until duite_stop: a program that calls MPI meanwhile needs
- * MPI_THREAD_MULTIPLE. One runtime at a time in a process, unless it has MPI_THREAD_MULTIPLE.
- * Collective over comm. On failure *rt is NULL on all ranks. Where another rank failed, the code is
- * DUITE_E_MEMORY if it had no memory, else DUITE_E_DIFFERENT; the message is that of the rank that
- * failed, with its number. */
+ * MPI_THREAD_MULTIPLE. One runtime at a time in a process, unless it has MPI_THREAD_MULTIPLE
+ * (DUITE_E_STATE, on this rank). Collective over comm. On failure *rt is NULL on all ranks. Where
+ * another rank failed, the code is DUITE_E_MEMORY if it had no memory, else DUITE_E_DIFFERENT; the
+ * message is that of the rank that failed, with its number. */
 int duite_start(duite **rt, const duite_options *options);
 
 /* Waits for all tasks, ends the workers and frees everything; start and stop may repeat. MPI, if

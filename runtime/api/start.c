@@ -46,6 +46,11 @@ static int instance_start_mpi(void)
                           "MPI gives thread support %d, less than MPI_THREAD_SERIALIZED: "
                           "initialise it by MPI_Init_thread, or leave it to duite_start",
                           level);
+    if (level < MPI_THREAD_MULTIPLE && atomic_load(&alive))
+        return base_error(DUITE_E_STATE,
+                          "duite_start: this process has another runtime, or abandoned one, and "
+                          "both would call MPI at the same time: stop it first, or initialise MPI "
+                          "with MPI_THREAD_MULTIPLE");
     return DUITE_OK;
 }
 

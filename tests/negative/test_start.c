@@ -305,6 +305,32 @@ START_TEST(mpi_for_one_thread)
 }
 END_TEST
 
+/* The workers of both would call MPI at the same time. */
+START_TEST(two_at_a_time)
+{
+    const int levels[] = {MPI_THREAD_SERIALIZED, MPI_THREAD_MULTIPLE};
+    duite *first, *second = (duite *)&first;
+
+    misuse_mpi_at(levels[_i]);
+    first = misuse_start(MPI_COMM_WORLD, 2);
+    ck_assert_ptr_nonnull(first);
+    duite_options options = misuse_options(MPI_COMM_SELF);
+    const int code = duite_start(&second, &options);
+
+    if (levels[_i] == MPI_THREAD_SERIALIZED) {
+        ck_assert_int_eq(code, DUITE_E_STATE);
+        ck_assert_ptr_null(second);
+        ck_assert_msg(strstr(duite_message(), "MPI_THREAD_MULTIPLE") != NULL, "%s",
+                      duite_message());
+    } else {
+        ck_assert_int_eq(code, DUITE_OK);
+        ck_assert_int_eq(duite_stop(&second), DUITE_OK);
+    }
+    ck_assert_int_eq(duite_stop(&first), DUITE_OK);
+    one_life(MPI_COMM_SELF, 2);
+}
+END_TEST
+
 START_TEST(not_freed)
 {
     duite *rt = misuse_start(MPI_COMM_WORLD, 2);
@@ -337,6 +363,7 @@ int main(void)
     tcase_add_test(cases, mpi_of_our_own);
     tcase_add_test(cases, mpi_is_over);
     tcase_add_test(cases, mpi_for_one_thread);
+    tcase_add_loop_test(cases, two_at_a_time, 0, 2);
     tcase_add_test(cases, not_freed);
     suite_add_tcase(suite, cases);
     return unit_run(suite);

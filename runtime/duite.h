@@ -395,13 +395,14 @@ int duite_oversubscribed(const duite *rt);
 
 /* ---- Shared objects ---- */
 
-/* Makes an object of count elements, all zero. Collective; no communication. */
+/* Makes an object of count elements, at least 1 (DUITE_E_ARGUMENT), all zero. Collective; no
+ * communication. */
 int duite_new(duite *rt, duite_type type, size_t count, duite_object *object);
 
-/* Makes an object whose size changes: 0 to `max` elements, count zeros to begin with. Bodies under
- * w and rw find room for `max` and say how many there are (duite_resize); readers, messages and
- * gets have as many as there are. It cannot be accumulated into (cw: DUITE_E_ACCESS). Collective;
- * no communication. */
+/* Makes an object whose size changes: 0 to `max` elements (at least 1), count zeros to begin with.
+ * Bodies under w and rw find room for `max` and say how many there are (duite_resize); readers,
+ * messages and gets have as many as there are. It cannot be accumulated into (cw: DUITE_E_ACCESS).
+ * Collective; no communication. */
 int duite_new_sized(duite *rt, duite_type type, size_t count, size_t max, duite_object *object);
 
 /* Makes a view of an object: a name for n of its elements, used like that of an object of its own.
@@ -466,10 +467,11 @@ int duite_home(duite *rt, duite_object object);
 
 /* 1 if this rank keeps the object or has a copy of it as the tasks forked so far leave it; else 0.
  * If all objects of a fork are 0 here, the fork is only counted here: it must still be called, but
- * its `args` are not read and need not be computed. This does not hold for forks that name this
- * rank or have a replicated kernel, for forks in a build function, or on rank 0 for tasks that read
- * and write nothing (no objects, or cw alone). 1 of what is no object. Settles homes, like
- * duite_home. Collective as that is. */
+ * its `args` are not read and need not be computed (any pointer will do, but not NULL, which this
+ * rank alone would refuse: then the ranks differ). This does not hold for forks that name this rank
+ * or have a replicated kernel, for forks in a build function, or on rank 0 for tasks that read and
+ * write nothing (no objects, or cw alone). 1 of what is no object. Settles homes, like duite_home.
+ * Collective as that is. */
 int duite_is_local(duite *rt, duite_object object);
 
 /* ---- Tasks ---- */
@@ -496,9 +498,13 @@ void duite_prefetch(const duite *rt, size_t n, const duite_object *objects);
  * A program of one rank that forks the same tasks round after round has them replayed, as if it had
  * recorded them: same results, failures and task numbers, in less time. Recognised are up to 4,096
  * forks a round without options, of kernels of up to 16 parameters under r, w and rw that write
- * something, on objects of fixed size that are no views; arguments may change. Any other call of
- * the main program ends it, and it begins again after two equal rounds. Not in checking mode, not
- * with a trace, and not with renaming. options.memo switches it off. */
+ * something, on objects of fixed size that are no views; arguments may change. A kernel that
+ * accumulates, postpones, is replicated or allows further parameters (variadic) is left out, and so
+ * is each round that it is part of. Any other call of the main program ends it, and it begins again
+ * after two equal rounds. It needs bodies that have run, to know that they are short: on one thread
+ * with window 0 none runs before the first get or wait, and nothing is recognised. Rounds whose
+ * arguments come to more than 1 MiB ahead of the bodies are forked. Not in checking mode, not with
+ * a trace, and not with renaming. options.memo switches it off. */
 int duite_fork(duite *rt, const duite_kernel *kernel, const void *args, size_t n,
                const duite_object *objects);
 

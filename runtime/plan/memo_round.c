@@ -28,8 +28,8 @@ struct plan_memo_round *memo_round_find(struct plan_memo *memo, uint64_t key, si
 
 bool memo_round_is_made(struct plan_memo_round *round, bool *fails)
 {
-    const int made = atomic_load_explicit(&round->made, memory_order_acquire);
-    if (made && round->compiles) {
+    const int made = atomic_load_explicit(&round->made, memory_order_relaxed);
+    if (made && round->compiles) { /* the plan is seen by the join */
         pthread_join(round->thread, NULL);
         round->compiles = false;
     }
@@ -136,7 +136,7 @@ static void *round_thread(void *context)
 {
     struct plan_memo_round *round = context;
     const int made = round_compile(round) ? 1 : -1;
-    atomic_store_explicit(&round->made, made, memory_order_release);
+    atomic_store_explicit(&round->made, made, memory_order_relaxed);
     return NULL;
 }
 

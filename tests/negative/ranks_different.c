@@ -174,8 +174,11 @@ static void differ(duite *rt, enum difference what, duite_object a, duite_object
         duite_fork(rt, &ADD, NULL, 1, odd ? &a : &b);
     if (what == ANOTHER_RANK)
         duite_fork_at(rt, odd, &ADD, NULL, 1, &a);
-    if (what == NO_ARGUMENTS) /* refused there, even if it is not read there */
-        duite_fork(rt, &SET, odd ? NULL : &(int32_t){1}, 1, &a);
+    if (what == NO_ARGUMENTS && !duite_new(rt, DUITE_I32, 1, &made)) {
+        duite_colocate(rt, made, a);
+        duite_home(rt, made); /* not the last rank, which reads no arguments, but refuses NULL */
+        duite_fork(rt, &SET, odd ? NULL : &(int32_t){1}, 1, &made);
+    }
     if (what == ONE_OBJECT_MORE && odd)
         duite_new(rt, DUITE_I32, 1, &made);
     if (what == ANOTHER_SIZE)

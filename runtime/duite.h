@@ -22,7 +22,7 @@
  * not remembered.) On several ranks a call that runs out of memory on one of them, or a failure of
  * MPI, ends the work of all. Then every rank's present or next blocking call returns the code, and
  * only duite_stop is left (duite_abandon if MPI failed or a rank is lost). The library never exits
- * or aborts. */
+ * or aborts, but for a body that does not return (duite_body). */
 
 #include <mpi.h>
 #include <stddef.h>
@@ -172,7 +172,11 @@ typedef struct duite_call {
  * in turn, until a w, which does not read, overwrites it. The next duite_wait, and every duite_get
  * of something poisoned, returns the code on all ranks. A contribution that failed poisons the
  * object; contributing to a poisoned object is possible and does not heal it. What a body may call:
- * see "Tasks that fork". */
+ * see "Tasks that fork".
+ *
+ * A body returns, since others wait for what it writes. If a C++ exception or the end of its thread
+ * leaves it, or a law or a policy that a task calls, the process ends with a sentence. A longjmp
+ * that leaves it is not noticed: the runtime waits for ever for the body to return. */
 typedef int duite_body(const duite_call *call);
 
 /* Gives the failure of a body its message (printf form, at most 200 bytes are kept). Returns code.
@@ -270,10 +274,11 @@ typedef struct duite_options {
                   DUITE_MEMO=always in the environment */
 } duite_options;
 
-/* The defaults, as the fields say. What the program sets afterwards counts first, then the
- * variables of the environment that the fields name, which are read here, then what is built in. A
- * variable that makes no sense (an unknown policy, text in place of a number) is an error of
- * duite_start, which names it, unless the program sets the field. Local. */
+/* The defaults, as the fields say; options begin with these, since zeros are no communicator and no
+ * policies (DUITE_E_ARGUMENT). What the program sets afterwards counts first, then the variables of
+ * the environment that the fields name, which are read here, then what is built in. A variable that
+ * makes no sense (an unknown policy, text in place of a number) is an error of duite_start, which
+ * names it, unless the program sets the field. Local. */
 duite_options duite_options_default(void);
 
 /* The built-in policies by name, or from a shared library if the name has a / in it
@@ -322,12 +327,13 @@ const char *const *duite_balancer_names(void);
 /* Checking mode: each body works on private copies of its parameters, between guard pages that are
  * taken away afterwards, and runs twice if it has no side effects and forks nothing. The task fails
  * with DUITE_E_CHECK if it writes to an r parameter or to its arguments, goes beyond the ends of a
- * parameter, or uses memory that an earlier task was given. It also fails if it leaves bytes of a w
- * parameter unwritten, or writes other bytes the second time. The message names the task, the
- * parameter and the byte. Results of correct programs are the same, at many times the cost. Other
- * memory (globals, heap) is not watched, and a body that faults is left by a jump: what it held
- * stays held. The signals SIGSEGV and SIGBUS are the runtime's meanwhile; faults that are none of
- * these go on to the handler there was. */
+ * parameter, or uses memory that an earlier task was given. A read that ends near enough not to
+ * fault is found if what the body leaves depends on it, and the body runs twice. It also fails if
+ * it leaves bytes of a w parameter unwritten, or writes other bytes the second time. The message
+ * names the task, the parameter and the byte. Results of correct programs are the same, at many
+ * times the cost. Other memory (globals, heap) is not watched, and a body that faults is left by a
+ * jump: what it held stays held. The signals SIGSEGV and SIGBUS are the runtime's meanwhile; faults
+ * that are none of these go on to the handler there was. */
 
 /* A standstill: the main program waits (in a get, a wait, a stop, or a fork, for the window) and
  * for options.stuck_seconds no task of this rank began or ended and no message came. Then this rank
@@ -347,10 +353,10 @@ const char *const *duite_balancer_names(void);
 
 /* Starts a runtime. Initialises MPI (thread support SERIALIZED) if the caller has not. On several
  * ranks its workers call MPI at any time until duite_stop: a program that calls MPI meanwhile needs
- * MPI_THREAD_MULTIPLE. One runtime at a time in a process, unless it has MPI_THREAD_MULTIPLE.
- * Collective over comm. On failure *rt is NULL on all ranks. Where another rank failed, the code is
- * DUITE_E_MEMORY if it had no memory, else DUITE_E_DIFFERENT; the message is that of the rank that
- * failed, with its number. */
+ * MPI_THREAD_MULTIPLE. One runtime at a time in a process, unless it has MPI_THREAD_MULTIPLE
+ * (DUITE_E_STATE, on this rank). Collective over comm. On failure *rt is NULL on all ranks. Where
+ * another rank failed, the code is DUITE_E_MEMORY if it had no memory, else DUITE_E_DIFFERENT; the
+ * message is that of the rank that failed, with its number. */
 int duite_start(duite **rt, const duite_options *options);
 
 /* Waits for all tasks, ends the workers and frees everything; start and stop may repeat. MPI, if
@@ -398,13 +404,14 @@ int duite_oversubscribed(const duite *rt);
 
 /* ---- Shared objects ---- */
 
-/* Makes an object of count elements, all zero. Collective; no communication. */
+/* Makes an object of count elements, at least 1 (DUITE_E_ARGUMENT), all zero. Collective; no
+ * communication. */
 int duite_new(duite *rt, duite_type type, size_t count, duite_object *object);
 
-/* Makes an object whose size changes: 0 to `max` elements, count zeros to begin with. Bodies under
- * w and rw find room for `max` and say how many there are (duite_resize); readers, messages and
- * gets have as many as there are. It cannot be accumulated into (cw: DUITE_E_ACCESS). Collective;
- * no communication. */
+/* Makes an object whose size changes: 0 to `max` elements (at least 1), count zeros to begin with.
+ * Bodies under w and rw find room for `max` and say how many there are (duite_resize); readers,
+ * messages and gets have as many as there are. It cannot be accumulated into (cw: DUITE_E_ACCESS).
+ * Collective; no communication. */
 int duite_new_sized(duite *rt, duite_type type, size_t count, size_t max, duite_object *object);
 
 /* Makes a view of an object: a name for n of its elements, used like that of an object of its own.
@@ -469,10 +476,11 @@ int duite_home(duite *rt, duite_object object);
 
 /* 1 if this rank keeps the object or has a copy of it as the tasks forked so far leave it; else 0.
  * If all objects of a fork are 0 here, the fork is only counted here: it must still be called, but
- * its `args` are not read and need not be computed. This does not hold for forks that name this
- * rank or have a replicated kernel, for forks in a build function, or on rank 0 for tasks that read
- * and write nothing (no objects, or cw alone). 1 of what is no object. Settles homes, like
- * duite_home. Collective as that is. */
+ * its `args` are not read and need not be computed (any pointer will do, but not NULL, which this
+ * rank alone would refuse: then the ranks differ). This does not hold for forks that name this rank
+ * or have a replicated kernel, for forks in a build function, or on rank 0 for tasks that read and
+ * write nothing (no objects, or cw alone). 1 of what is no object. Settles homes, like duite_home.
+ * Collective as that is. */
 int duite_is_local(duite *rt, duite_object object);
 
 /* ---- Tasks ---- */
@@ -483,24 +491,29 @@ int duite_is_local(duite *rt, duite_object object);
 void duite_prefetch(const duite *rt, size_t n, const duite_object *objects);
 
 /* Forks a task on n objects, in the order of the kernel's modes; a task names an object once.
- * `args` points to the kernel's args_size bytes (ignored if 0). It runs where its first w or rw
- * object lives, else its first r object, else on rank 0. Contributions (cw) between two other
- * accesses of an object (by tasks, set, get or free; waits do not count) combine in fork order by a
- * fixed tree. Complete subtrees combine as in a binary counter, the rest folds from the right. Then
- * the result is combined with the object: under a sum old + (A + (B + C)). Contributions of another
- * law are another access. Collective; returns at once, unless options.window is set and more tasks
- * of this rank than that are unfinished. Then the main thread works, and the fork returns when they
- * are at most so many. Tasks that the runtime adds to combine, send and copy count. A replay is one
- * task, but the tasks of a round that is forked count each. The window bounds the memory of a
- * program that forks far ahead, and changes no result. Such a fork may wait for other ranks, as a
- * get does: they must not wait for this one outside of duite.
+ * `args` points to the kernel's args_size bytes; it is NULL if these are 0, and only then
+ * (DUITE_E_ARGUMENT). It runs where its first w or rw object lives, else its first r object, else
+ * on rank 0. Contributions (cw) between two other accesses of an object (by tasks, set, get or
+ * free; waits do not count) combine in fork order by a fixed tree. Complete subtrees combine as in
+ * a binary counter, the rest folds from the right. Then the result is combined with the object:
+ * under a sum old + (A + (B + C)). Contributions of another law are another access. Collective;
+ * returns at once, unless options.window is set and more tasks of this rank than that are
+ * unfinished. Then the main thread works, and the fork returns when they are at most so many. Tasks
+ * that the runtime adds to combine, send and copy count. A replay is one task, but the tasks of a
+ * round that is forked count each. The window bounds the memory of a program that forks far ahead,
+ * and changes no result. Such a fork may wait for other ranks, as a get does: they must not wait
+ * for this one outside of duite.
  *
  * A program of one rank that forks the same tasks round after round has them replayed, as if it had
  * recorded them: same results, failures and task numbers, in less time. Recognised are up to 4,096
  * forks a round without options, of kernels of up to 16 parameters under r, w and rw that write
- * something, on objects of fixed size that are no views; arguments may change. Any other call of
- * the main program ends it, and it begins again after two equal rounds. Not in checking mode, not
- * with a trace, and not with renaming. options.memo switches it off. */
+ * something, on objects of fixed size that are no views; arguments may change. A kernel that
+ * accumulates, postpones, is replicated or allows further parameters (variadic) is left out, and so
+ * is each round that it is part of. Any other call of the main program ends it, and it begins again
+ * after two equal rounds. It needs bodies that have run, to know that they are short: on one thread
+ * with window 0 none runs before the first get or wait, and nothing is recognised. Rounds whose
+ * arguments come to more than 1 MiB ahead of the bodies are forked. Not in checking mode, not with
+ * a trace, and not with renaming. options.memo switches it off. */
 int duite_fork(duite *rt, const duite_kernel *kernel, const void *args, size_t n,
                const duite_object *objects);
 

@@ -103,6 +103,11 @@ int api_check_options(const duite_options *options)
     if (!options)
         return base_error(DUITE_E_ARGUMENT,
                           "duite_start: no options; begin with duite_options_default()");
+    if (options->comm == (MPI_Comm)0) /* for some MPIs a handle that ends the process */
+        return base_error(
+            DUITE_E_ARGUMENT,
+            "duite_start: no communicator (comm); begin with duite_options_default(), "
+            "and change what is to differ");
     if (options->comm == MPI_COMM_NULL)
         return base_error(DUITE_E_ARGUMENT, "duite_start: the communicator is MPI_COMM_NULL");
     return DUITE_OK;

@@ -46,6 +46,26 @@ static int instance_start_mpi(void)
                           "MPI gives thread support %d, less than MPI_THREAD_SERIALIZED: "
                           "initialise it by MPI_Init_thread, or leave it to duite_start",
                           level);
+    if (level < MPI_THREAD_MULTIPLE && atomic_load(&alive))
+        return base_error(DUITE_E_STATE,
+                          "duite_start: this process has another runtime, or abandoned one, and "
+                          "both would call MPI at the same time: stop it first, or initialise MPI "
+                          "with MPI_THREAD_MULTIPLE");
+    return DUITE_OK;
+}
+
+static int instance_dup(MPI_Comm comm, MPI_Comm *mpi)
+{
+    int between;
+    if (MPI_Comm_test_inter(comm, &between))
+        return base_error(DUITE_E_MPI, "MPI_Comm_test_inter failed");
+    if (between)
+        return base_error(DUITE_E_ARGUMENT,
+                          "duite_start: the communicator (comm) is between two groups; "
+                          "MPI_Intercomm_merge makes one group of them");
+    if (MPI_Comm_dup(comm, mpi))
+        return base_error(DUITE_E_MPI, "MPI_Comm_dup failed");
+    MPI_Comm_set_errhandler(*mpi, MPI_ERRORS_RETURN);
     return DUITE_OK;
 }
 
@@ -218,9 +238,9 @@ int duite_start(duite **out, const duite_options *options)
     if (code)
         return code;
     MPI_Comm mpi;
-    if (MPI_Comm_dup(options->comm, &mpi))
-        return base_error(DUITE_E_MPI, "MPI_Comm_dup failed");
-    MPI_Comm_set_errhandler(mpi, MPI_ERRORS_RETURN);
+    code = instance_dup(options->comm, &mpi);
+    if (code)
+        return code;
     duite *rt = base_alloc_zero(sizeof *rt);
     code = api_agree_on_code(mpi, rt ? DUITE_OK : base_no_memory("the runtime"));
     if (code) {

@@ -18,7 +18,10 @@
 /* ---- Frames ---- */
 
 enum { RETIRED = 4096 }; /* regions whose address space stays taken */
-static const unsigned char FILL[2] = {0xa5, 0x5a};
+/* What bodies find in place of values that they are to overwrite, and around all values: other
+ * bytes when they run again. */
+static const unsigned char FILL[2] = {0xa5, 0x5a}, REST[2] = {0xc3, 0x3c};
+static const size_t NONE = SIZE_MAX;
 
 struct check {
     pthread_mutex_t lock; /* the ring */
@@ -33,6 +36,8 @@ struct frame {
     const duite_call *call;      /* with the originals */
     struct check_region *region; /* n_params, and the arguments */
     duite_param *param;          /* n_params, of the copies */
+    unsigned again;              /* 1: the body ran before */
+    size_t odd;                  /* the region around which it finds what it did not; or NONE */
     sigjmp_buf jump;
     struct check_region hit; /* what the fault was about */
     const char *at;          /* where it was */
@@ -150,7 +155,12 @@ static int fault_report(const struct frame *frame)
 
 /* ---- Copies ---- */
 
-static bool frame_map_param(struct frame *frame, size_t i, unsigned char fill)
+static unsigned char frame_rest(const struct frame *frame, size_t i)
+{
+    return REST[i == frame->odd ? 1 - frame->again : frame->again];
+}
+
+static bool frame_map_param(struct frame *frame, size_t i)
 {
     const duite_param *param = &frame->call->param[i];
     struct check_region *region = &frame->region[i];
@@ -160,14 +170,16 @@ static bool frame_map_param(struct frame *frame, size_t i, unsigned char fill)
     region->param = i;
     if (!param->data)
         return true;
-    if (!check_region_map(region, frame_param_room(param, mode), fill))
+    if (!check_region_map(region, frame_param_room(param, mode), frame_rest(frame, i)))
         return false;
-    if (mode != DUITE_W)
+    if (mode == DUITE_W)
+        memset(region->data, FILL[frame->again], region->bytes);
+    else
         memcpy(region->data, param->data, frame_param_bytes(param));
     return mode != DUITE_R || check_region_protect(region);
 }
 
-static bool frame_map_args(struct frame *frame, unsigned char fill)
+static bool frame_map_args(struct frame *frame)
 {
     const duite_kernel *kernel = frame->task->kernel;
     struct check_region *region = &frame->region[frame->call->n_params];
@@ -176,7 +188,7 @@ static bool frame_map_args(struct frame *frame, unsigned char fill)
     region->param = CHECK_ARGS;
     if (!kernel->args_size)
         return true;
-    if (!check_region_map(region, kernel->args_size, fill))
+    if (!check_region_map(region, kernel->args_size, frame_rest(frame, frame->call->n_params)))
         return false;
     memcpy(region->data, frame->call->args, region->bytes);
     return check_region_protect(region);
@@ -200,15 +212,15 @@ static void region_retire(struct check *check, struct check_region *region)
 
 /* Runs the body on copies; frame->param gets what it leaves. Returns its code, or that of the
  * fault. */
-static int frame_run(struct frame *frame, unsigned char fill)
+static int frame_run(struct frame *frame)
 {
     const duite_call *original = frame->call;
     duite_param *param = frame->param;
     size_t n = original->n_params;
     for (size_t i = 0; i < n; i++)
-        if (!frame_map_param(frame, i, fill))
+        if (!frame_map_param(frame, i))
             return duite_fail(original, DUITE_E_MEMORY, "no memory to check parameter %zu", i);
-    if (!frame_map_args(frame, fill))
+    if (!frame_map_args(frame))
         return duite_fail(original, DUITE_E_MEMORY, "no memory to check the arguments");
     duite_call call = *original;
     for (size_t i = 0; i < n; i++) {
@@ -226,14 +238,14 @@ static int frame_run(struct frame *frame, unsigned char fill)
     }
     current = frame->outer;
     for (size_t i = 0; i < n && !code; i++)
-        if (frame->region[i].base && !check_region_whole(&frame->region[i], fill))
+        if (frame->region[i].base && !check_region_whole(&frame->region[i]))
             code = duite_fail(original, DUITE_E_CHECK,
                               "writes beyond an end of parameter %zu (%zu bytes)", i,
                               frame->region[i].bytes);
     return code;
 }
 
-/* ---- Two runs ---- */
+/* ---- More runs ---- */
 
 static bool kernel_is_repeatable(const duite_kernel *kernel, size_t n)
 {
@@ -272,6 +284,67 @@ static int frames_compare(const struct frame *first, const struct frame *second)
     return DUITE_OK;
 }
 
+/* The same, and of the code that the second run returned. */
+static int frames_differ(const struct frame *first, const struct frame *second, int again)
+{
+    if (again > 0)
+        return duite_fail(first->call, DUITE_E_CHECK,
+                          "is not deterministic: it returns 0 and then %d", again);
+    return again ? again : frames_compare(first, second);
+}
+
+/* The region around which other bytes alone change what becomes of the second run, which returned
+ * `again`; NONE if a run like it already differs. A run that fails tells nothing. The one in
+ * `third` is made and given up several times. */
+static size_t frames_blame(struct check *check, const struct frame *second, int again,
+                           struct frame *third)
+{
+    const size_t n = second->call->n_params;
+    third->odd = NONE;
+    for (size_t next = 0; next <= n + 1; next++) {
+        const int code = frame_run(third);
+        const bool same = code < 0 || (code == again && (code || !frames_compare(second, third)));
+        for (size_t i = 0; i <= n; i++)
+            region_retire(check, &third->region[i]);
+        if (!same)
+            return third->odd;
+        third->odd = next;
+    }
+    return NONE;
+}
+
+static int fault_reads(const struct frame *frame, size_t region)
+{
+    const duite_call *call = frame->call;
+    if (region < call->n_params)
+        return duite_fail(call, DUITE_E_CHECK,
+                          "goes beyond parameter %zu: it reads before or behind its %zu bytes",
+                          region, frame_param_bytes(&call->param[region]));
+    return duite_fail(call, DUITE_E_CHECK,
+                      "goes beyond its arguments: it reads before or behind their %zu bytes",
+                      frame->task->kernel->args_size);
+}
+
+/* Runs the body a second time, in memory for that and for a third run. */
+static int check_again(struct check *check, const struct frame *first, struct check_region *region,
+                       duite_param *param)
+{
+    const size_t n = first->call->n_params + 1;
+    struct frame second = *first;
+    second.again = 1;
+    second.region = region;
+    second.param = param;
+    const int again = frame_run(&second);
+    const int code = frames_differ(first, &second, again);
+    if (!code || again < 0)
+        return code;
+    struct frame third = second;
+    third.region = region + n;
+    third.param = param + n;
+    const size_t beyond = frames_blame(check, &second, again, &third);
+    return beyond == NONE ? frames_differ(first, &second, again) : fault_reads(first, beyond);
+}
+
 static void frame_copy_back(const struct frame *frame)
 {
     duite_param *param = (duite_param *)frame->call->param; /* the runtime's own */
@@ -285,31 +358,27 @@ static void frame_copy_back(const struct frame *frame)
 
 int check_call(struct check *check, const struct check_task *task, duite_call *call)
 {
-    size_t n = call->n_params;
-    struct check_region *region = base_alloc_zero(2 * (n + 1) * sizeof *region);
-    duite_param *param = base_alloc(2 * (n + 1) * sizeof *param);
+    enum { RUNS = 3 };
+    const size_t n = call->n_params + 1;
+    struct check_region *region = base_alloc_zero(RUNS * n * sizeof *region);
+    duite_param *param = base_alloc(RUNS * n * sizeof *param);
     if (!region || !param) {
         base_free(region);
         base_free(param);
         return duite_fail(call, DUITE_E_MEMORY, "no memory to check it");
     }
-    struct frame first = {
-        .outer = current, .task = task, .call = call, .region = region, .param = param};
-    int code = frame_run(&first, FILL[0]);
-    if (!code && kernel_is_repeatable(task->kernel, n) && !task_body_forked(call)) {
-        struct frame second = first;
-        second.region = region + n + 1;
-        second.param = param + n + 1;
-        int again = frame_run(&second, FILL[1]);
-        code = again > 0 ? duite_fail(call, DUITE_E_CHECK,
-                                      "is not deterministic: it returns 0 and then %d", again)
-                         : again;
-        if (!code)
-            code = frames_compare(&first, &second);
-    }
+    struct frame first = {.outer = current,
+                          .task = task,
+                          .call = call,
+                          .region = region,
+                          .param = param,
+                          .odd = NONE};
+    int code = frame_run(&first);
+    if (!code && kernel_is_repeatable(task->kernel, call->n_params) && !task_body_forked(call))
+        code = check_again(check, &first, region + n, param + n);
     if (!code)
         frame_copy_back(&first);
-    for (size_t i = 0; i < 2 * (n + 1); i++)
+    for (size_t i = 0; i < RUNS * n; i++)
         region_retire(check, &region[i]);
     base_free(param);
     base_free(region);

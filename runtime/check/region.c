@@ -13,7 +13,7 @@ static size_t page_bytes(void)
     return (size_t)sysconf(_SC_PAGESIZE);
 }
 
-bool check_region_map(struct check_region *region, size_t bytes, unsigned char fill)
+bool check_region_map(struct check_region *region, size_t bytes, unsigned char rest)
 {
     size_t pages = (bytes + page_bytes() - 1) / page_bytes() * page_bytes();
     region->mapped = pages + 2 * (size_t)GUARD;
@@ -23,10 +23,11 @@ bool check_region_map(struct check_region *region, size_t bytes, unsigned char f
         return false;
     }
     region->bytes = bytes;
+    region->rest = rest;
     region->data = region->base + GUARD + (pages - bytes) / 64 * 64;
     if (pages && mprotect(region->base + GUARD, pages, PROT_READ | PROT_WRITE))
         return false;
-    memset(region->base + GUARD, fill, pages);
+    memset(region->base + GUARD, rest, pages);
     return true;
 }
 
@@ -56,14 +57,14 @@ void check_region_unmap(struct check_region *region)
     region->base = NULL;
 }
 
-bool check_region_whole(const struct check_region *region, unsigned char fill)
+bool check_region_whole(const struct check_region *region)
 {
     const char *end = region->base + GUARD + region_inner(region);
     for (const char *at = region->base + GUARD; at < region->data; at++)
-        if ((unsigned char)*at != fill)
+        if ((unsigned char)*at != region->rest)
             return false;
     for (const char *at = region->data + region->bytes; at < end; at++)
-        if ((unsigned char)*at != fill)
+        if ((unsigned char)*at != region->rest)
             return false;
     return true;
 }

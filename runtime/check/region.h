@@ -7,12 +7,14 @@
 
 /* Bytes on pages of their own, with a guard on either side. The bytes end as near to the second
  * guard as their alignment (64) allows; the rest of the pages is filled with a known byte, and
- * compared later. */
+ * compared later: it shows writes. A read there shows by what becomes of it if the byte is another
+ * one. */
 struct check_region {
     char *base; /* of the mapping: guard, pages, guard; NULL: none */
     size_t mapped;
     char *data;
     size_t bytes;
+    unsigned char rest; /* what the pages are filled with */
     /* Whose: the task, its kernel, which parameter (CHECK_ARGS: its arguments). */
     uint64_t number;
     const char *kernel;
@@ -21,8 +23,8 @@ struct check_region {
 
 #define CHECK_ARGS SIZE_MAX
 
-/* Maps the region, all of it filled with `fill`, readable and writable. False without memory. */
-bool check_region_map(struct check_region *region, size_t bytes, unsigned char fill);
+/* Maps the region, all of it filled with `rest`, readable and writable. False without memory. */
+bool check_region_map(struct check_region *region, size_t bytes, unsigned char rest);
 
 /* From now on it can be read only. */
 bool check_region_protect(const struct check_region *region);
@@ -35,7 +37,7 @@ void check_region_forbid(const struct check_region *region);
 void check_region_unmap(struct check_region *region);
 
 /* Whether every byte around the data still is what it was filled with. */
-bool check_region_whole(const struct check_region *region, unsigned char fill);
+bool check_region_whole(const struct check_region *region);
 
 /* Whether the address is in the region or in a guard of it. Safe in a signal handler. */
 bool check_region_has(const struct check_region *region, const void *address);

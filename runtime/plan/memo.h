@@ -114,7 +114,7 @@ static inline uint32_t plan_memo_hash(const struct plan_memo *memo, const duite_
 static inline bool plan_memo_is_step(const struct plan_memo_step *step, const duite_kernel *kernel,
                                      const void *args, size_t n, const duite_object *objects)
 {
-    if (step->kernel != kernel || step->n != n || (step->bytes && !args) || !objects)
+    if (step->kernel != kernel || step->n != n || !task_args_fit(args, step->bytes) || !objects)
         return false;
     uint64_t different = 0;
     for (size_t i = 0; i < n; i++)

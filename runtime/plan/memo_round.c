@@ -28,8 +28,8 @@ struct plan_memo_round *memo_round_find(struct plan_memo *memo, uint64_t key, si
 
 bool memo_round_is_made(struct plan_memo_round *round, bool *fails)
 {
-    const int made = atomic_load_explicit(&round->made, memory_order_acquire);
-    if (made && round->compiles) {
+    const int made = atomic_load_explicit(&round->made, memory_order_relaxed);
+    if (made && round->compiles) { /* the plan is seen by the join */
         pthread_join(round->thread, NULL);
         round->compiles = false;
     }
@@ -73,8 +73,7 @@ bool memo_round_add(struct plan_memo *memo, const duite_kernel *kernel, const vo
 {
     struct task_graph *graph = memo->graph;
     const struct task_fixed *fixed = task_kernel_find(graph, kernel);
-    if (!fixed || !fixed->plain || n != fixed->n || (kernel->args_size && !args) ||
-        (n && !objects) || !round_writes(kernel, n))
+    if (!fixed || !fixed->plain || n != fixed->n || (n && !objects) || !round_writes(kernel, n))
         return false;
     for (size_t i = 0; i < n; i++) {
         const struct data_object *object = data_object_here(&graph->table, objects[i]);
@@ -137,7 +136,7 @@ static void *round_thread(void *context)
 {
     struct plan_memo_round *round = context;
     const int made = round_compile(round) ? 1 : -1;
-    atomic_store_explicit(&round->made, made, memory_order_release);
+    atomic_store_explicit(&round->made, made, memory_order_relaxed);
     return NULL;
 }
 

@@ -266,10 +266,14 @@ int plan_record_args(struct plan_record *record, size_t k, const void *args)
                           record->n_calls);
     const struct plan_recorded_fork *fork = &record->fork[record->call[k]];
     size_t bytes = record->graph->kernels[fork->kernel]->args_size;
+    const char *kernel = record->graph->kernels[fork->kernel]->name;
     if (bytes && !args)
         return base_error(DUITE_E_ARGUMENT,
-                          "duite_graph_args: fork %zu (kernel %s) needs %zu bytes", k,
-                          record->graph->kernels[fork->kernel]->name, bytes);
+                          "duite_graph_args: fork %zu (kernel %s) needs %zu bytes", k, kernel,
+                          bytes);
+    if (!bytes && args)
+        return base_error(DUITE_E_ARGUMENT,
+                          "duite_graph_args: fork %zu (kernel %s) has no arguments", k, kernel);
     if (!bytes)
         return DUITE_OK;
     if (record->plan) {

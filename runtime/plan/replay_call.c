@@ -48,6 +48,17 @@ void plan_replay_split(const struct plan_record *record, const duite_object *fla
     *after = !flag && !forked && record->trails && rounds > *before;
 }
 
+/* On the record's names. */
+static int replay_fork_task(const struct plan_record *record, struct worker *worker,
+                            const struct task_options *options,
+                            const struct plan_recorded_fork *fork, const void *args)
+{
+    struct task_graph *graph = record->graph;
+    const duite_kernel *kernel = graph->kernels[fork->kernel];
+    return task_fork_any(&graph->root, worker, options, kernel, kernel->args_size ? args : NULL,
+                         fork->n, record->names);
+}
+
 int plan_replay_fork(struct plan_record *record, struct worker *worker, uint64_t round)
 {
     struct task_graph *graph = record->graph;
@@ -64,8 +75,7 @@ int plan_replay_fork(struct plan_record *record, struct worker *worker, uint64_t
             code = task_set_object(&graph->root, worker, objects[0], fork->zeros ? NULL : args,
                                    &fork->count);
         else
-            code = task_fork_any(&graph->root, worker, &options, graph->kernels[fork->kernel], args,
-                                 fork->n, objects);
+            code = replay_fork_task(record, worker, &options, fork, args);
     }
     return code;
 }

@@ -27,6 +27,17 @@ static int fork_kernel(const struct task_graph *graph, const duite_kernel *kerne
                       kernel->name ? kernel->name : "without a name");
 }
 
+static int fork_wrong_args(const duite_kernel *kernel)
+{
+    if (kernel->args_size)
+        return base_error(DUITE_E_ARGUMENT, "kernel %s needs %zu bytes of arguments", kernel->name,
+                          kernel->args_size);
+    return base_error(DUITE_E_ARGUMENT,
+                      "kernel %s has no arguments, and the fork gives some; if the body is to find "
+                      "them, the kernel says their size (args_size)",
+                      kernel->name);
+}
+
 /* Kernel, arguments and number of objects fit. */
 static int fork_check_call(const struct task_graph *graph, int at, uint32_t index, const void *args,
                            size_t n, const duite_object *objects)
@@ -38,9 +49,8 @@ static int fork_check_call(const struct task_graph *graph, int at, uint32_t inde
                           kernel->variadic == DUITE_NONE ? "" : "at least ", fixed, n);
     if (n && !objects)
         return base_error(DUITE_E_ARGUMENT, "kernel %s: no objects given", kernel->name);
-    if (kernel->args_size && !args)
-        return base_error(DUITE_E_ARGUMENT, "kernel %s needs %zu bytes of arguments", kernel->name,
-                          kernel->args_size);
+    if (!task_args_fit(args, kernel->args_size))
+        return fork_wrong_args(kernel);
     if (at < TASK_ANYWHERE || at >= graph->n_ranks)
         return base_error(DUITE_E_ARGUMENT, "kernel %s: there is no rank %d, only 0 to %d",
                           kernel->name, at, graph->n_ranks - 1);

@@ -156,7 +156,7 @@ PLAIN_INLINE bool plain_fits(struct plain_fork *fork, const duite_kernel *kernel
     const struct task_graph *graph = fork->graph;
     const struct task_fixed *fixed = fork->fixed = task_kernel_find(graph, kernel);
     if (!fixed || !(fork->nested ? fixed->plain : fixed->direct) || n != fixed->n ||
-        (!args && kernel->args_size) || (!objects && n))
+        !task_args_fit(args, kernel->args_size) || (!objects && n))
         return false;
     const size_t bytes = (size_t)fixed->grains * TASK_GRAIN;
     fork->task = base_pool_take(bytes);

@@ -61,7 +61,8 @@ __attribute__((always_inline)) static inline bool task_prune(struct task_graph *
 {
     struct data_object *found[DUITE_MAX_ACCESS];
     const struct task_fixed *fixed = task_kernel_find(graph, kernel);
-    if (!fixed || !fixed->prunes || n != fixed->n || !objects || (!args && kernel->args_size))
+    if (!fixed || !fixed->prunes || n != fixed->n || !objects ||
+        !task_args_fit(args, kernel->args_size))
         return false;
     const int at = task_owner_rank(TASK_ANYWHERE, false,
                                    prune_object(&graph->table, objects[fixed->owner[0]])->home);

@@ -62,7 +62,7 @@ bool task_prune_more(struct task_graph *graph, const duite_kernel *kernel, const
     struct data_object *found[DUITE_MAX_ACCESS];
     const struct task_fixed *fixed = task_kernel_find(graph, kernel);
     if (!fixed || kernel->replicated || !objects || !n || n < fixed->n || n > DUITE_MAX_ACCESS ||
-        (n > fixed->n && kernel->variadic == DUITE_NONE) || (!args && kernel->args_size))
+        (n > fixed->n && kernel->variadic == DUITE_NONE) || !task_args_fit(args, kernel->args_size))
         return false;
     const uint32_t own = fixed->owner[n > fixed->n];
     const int at =

@@ -116,6 +116,12 @@ static inline void *task_rest(struct task *task, size_t n)
     return (char *)task + sizeof *task + n * sizeof task->access[0];
 }
 
+/* Whether a fork gives arguments where its kernel takes some, and none where it takes none. */
+static inline bool task_args_fit(const void *args, size_t args_size)
+{
+    return !args == !args_size;
+}
+
 /* Where behind the arguments a BODY that is `later` has its round; and the round. */
 static inline size_t task_round_at(size_t args_size)
 {

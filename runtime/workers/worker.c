@@ -4,7 +4,11 @@
  * looks for messages in between. Without a task it idles (idle.c). */
 #include "runtime/base/clock.h"
 #include "runtime/base/memory.h"
+#include "runtime/base/report.h"
 #include "runtime/workers/internal.h"
+
+#include <stdio.h>
+#include <stdlib.h>
 
 /* Among the tasks that run inline, those before which the clock is read. */
 enum { CLOCKED = 16 };
@@ -290,8 +294,27 @@ static struct task *run_any(struct worker *worker, struct task *task, unsigned *
     }
 }
 
+/* An exception, or the end of its thread, leaves a function of the program and this loop with it.
+ * The task can neither be finished nor run again: others would wait for it for ever. */
+static void run_is_left(struct worker *const *running)
+{
+    char text[512];
+    if (!*running)
+        return;
+    const struct task_graph *graph = (*running)->pool->setup.graph;
+    const struct task *task = atomic_load_explicit(&(*running)->runs, memory_order_relaxed);
+    snprintf(text, sizeof text,
+             "duite: %s%s was left by a C++ exception or the end of its thread (rank %d, worker "
+             "%u); it has to return, and this process ends\n",
+             task ? "the body of kernel " : "a law or a policy",
+             task ? graph->kernels[task->kernel]->name : "", graph->rank, (*running)->index);
+    base_report(text);
+    abort();
+}
+
 void work_run(struct worker *worker, struct task *task)
 {
+    __attribute__((cleanup(run_is_left))) struct worker *running = worker;
     if (worker->left_some) {
         atomic_thread_fence(memory_order_seq_cst);
         work_wake_one(worker->pool, DUITE_NO_QUEUE);
@@ -305,6 +328,7 @@ void work_run(struct worker *worker, struct task *task)
         else
             task = run_any(worker, task, &length);
     }
+    running = NULL;
 }
 
 /* ---- The loop ---- */

@@ -30,6 +30,43 @@ int main()
 END
     compile policies "$scratch/policies.cpp"
 }
+# What a body throws and main would catch.
+throwing() {
+    cat > "$scratch/throwing.cpp" << 'END'
+#include <duite.h>
+#include <stdexcept>
+static int body(const duite_call *)
+{
+    throw std::runtime_error("not a code");
+}
+int main()
+{
+    static duite_kernel kernel = {};
+    kernel.name = "throws";
+    kernel.body = body;
+    const duite_kernel *kernels[] = {&kernel, nullptr};
+    duite_options options = duite_options_default();
+    options.kernels = kernels;
+    options.threads = 1;
+    duite *rt;
+    try {
+        if (duite_start(&rt, &options) || duite_fork(rt, &kernel, nullptr, 0, nullptr))
+            return 3;
+        duite_wait(rt);
+    } catch (const std::exception &) {
+    }
+    return duite_stop(&rt);
+}
+END
+    compile throwing "$scratch/throwing.cpp"
+}
+told() { # SENTENCE COMMAND...
+    sentence=$1
+    shift
+    "$@" > "$scratch/said" 2>&1
+    cat "$scratch/said"
+    grep -q "$sentence" "$scratch/said"
+}
 checking() { (DUITE_CHECK=accesses; export DUITE_CHECK; "$@"); }
 
 plan_later
@@ -40,3 +77,5 @@ ok "it runs on 2 ranks" ranks 2 "$scratch/dot"
 ok "it runs in checking mode" checking limited "$scratch/dot"
 ok "duite_policy.h after mpi.h compiles" policies
 ok "it runs, too" limited "$scratch/policies"
+ok "a program whose body throws compiles" throwing
+ok "it is told so, and does not hang" told "^duite: the body of kernel throws was left by a C++ exception" limited "$scratch/throwing"

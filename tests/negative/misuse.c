@@ -2,6 +2,7 @@
 
 #include "tests/negative/misuse.h"
 
+#include <malloc.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -37,6 +38,13 @@ static int empty_body(const duite_call *call)
 {
     (void)call;
     return 0;
+}
+
+double misuse_megabytes(void)
+{
+    const struct mallinfo2 info = mallinfo2();
+
+    return 1e-6 * (double)(info.uordblks + info.hblkhd);
 }
 
 const duite_kernel SET = {

@@ -23,6 +23,9 @@ duite *misuse_start(MPI_Comm comm, unsigned threads);
 /* An object of count integers (DUITE_I32). */
 duite_object misuse_new(duite *rt, size_t count);
 
+/* Megabytes of this process' heap; 0: malloc is a sanitizer's, which does not say. */
+double misuse_megabytes(void);
+
 /* Prints one TAP line on rank 0 of the world, ok if `right` on every rank; the others say on stderr
  * that they are wrong. Collective over MPI_COMM_WORLD. */
 void tap_case(int right, const char *name);

@@ -122,6 +122,7 @@ enum difference {
     ANOTHER_KERNEL,
     ANOTHER_OBJECT,
     ANOTHER_RANK,
+    NO_ARGUMENTS,
     ONE_OBJECT_MORE,
     ANOTHER_SIZE,
     ANOTHER_MAXIMUM,
@@ -173,6 +174,11 @@ static void differ(duite *rt, enum difference what, duite_object a, duite_object
         duite_fork(rt, &ADD, NULL, 1, odd ? &a : &b);
     if (what == ANOTHER_RANK)
         duite_fork_at(rt, odd, &ADD, NULL, 1, &a);
+    if (what == NO_ARGUMENTS && !duite_new(rt, DUITE_I32, 1, &made)) {
+        duite_colocate(rt, made, a);
+        duite_home(rt, made); /* not the last rank, which reads no arguments, but refuses NULL */
+        duite_fork(rt, &SET, odd ? NULL : &(int32_t){1}, 1, &made);
+    }
     if (what == ONE_OBJECT_MORE && odd)
         duite_new(rt, DUITE_I32, 1, &made);
     if (what == ANOTHER_SIZE)
@@ -206,6 +212,7 @@ static const struct {
      "forked \"add\" with other objects or on another rank"},
     {"another rank", "at fork 21", "forked \"add\"",
      "forked \"add\" with other objects or on another rank"},
+    {"arguments left out", "at fork 21", "forked \"set\"", NULL},
     {"an object more", "after fork 20", NULL, "called duite_new"},
     {"another size", "after fork 20", "called duite_new", "called duite_new with other arguments"},
     {"another maximum", "after fork 20", "called duite_new_sized",
@@ -232,13 +239,12 @@ static const struct {
 
 static int names_difference(enum difference what, int at_stop)
 {
-    const char *others = DIFFERENCES[what].others;
+    const char *ends = at_stop ? "called duite_stop" : "called duite_wait";
+    const char *others = DIFFERENCES[what].others, *last = DIFFERENCES[what].last;
     char text[300];
 
-    if (!others)
-        others = at_stop ? "called duite_stop" : "called duite_wait";
     snprintf(text, sizeof text, "ranks differ %s: %s %s, rank %d %s", DIFFERENCES[what].where,
-             misuse_first_ranks(ranks - 1), others, ranks - 1, DIFFERENCES[what].last);
+             misuse_first_ranks(ranks - 1), others ? others : ends, ranks - 1, last ? last : ends);
     return misuse_all_told(text);
 }
 

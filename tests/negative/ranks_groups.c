@@ -55,6 +55,20 @@ static void too_large(void)
     tap_case(duite_stop(&rt) == DUITE_OK, "and nothing is left");
 }
 
+/* A communicator of two groups is none of duite's. */
+static void two_groups(MPI_Comm half)
+{
+    MPI_Comm between;
+    duite *rt = (duite *)&between;
+
+    MPI_Intercomm_create(half, 0, MPI_COMM_WORLD, 1 - rank % 2, 0, &between);
+    duite_options options = misuse_options(between);
+    tap_case(duite_start(&rt, &options) == DUITE_E_ARGUMENT && !rt, "an intercommunicator");
+    misuse_keep_message();
+    tap_case(misuse_all_told("MPI_Intercomm_merge"), "is refused with a way out");
+    MPI_Comm_free(&between);
+}
+
 int main(void)
 {
     MPI_Comm half, reversed;
@@ -81,6 +95,8 @@ int main(void)
         right &= live(MPI_COMM_WORLD, 1 + (unsigned)i % 2);
     tap_case(right, "fifty lives");
     too_large();
+    if (ranks > 1)
+        two_groups(half);
     MPI_Comm_free(&half);
     MPI_Comm_free(&reversed);
     return tap_done();

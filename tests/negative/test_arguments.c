@@ -131,6 +131,33 @@ START_TEST(null_pointers)
 }
 END_TEST
 
+static int build_copy(duite *runtime, void *args)
+{
+    return duite_fork(runtime, &COPY, args, 2, (duite_object[]){a, b});
+}
+
+/* The body would find NULL. */
+START_TEST(arguments_for_a_kernel_that_has_none)
+{
+    const duite_object both[] = {a, b};
+    int32_t seven = SEVEN;
+    duite_graph graph;
+
+    refused(duite_fork(rt, &EMPTY, &seven, 0, NULL), DUITE_E_ARGUMENT);
+    refused(duite_fork(rt, &COPY, &seven, 2, both), DUITE_E_ARGUMENT);
+    ck_assert_ptr_nonnull(strstr(duite_message(), "kernel copy has no arguments"));
+    refused(duite_fork(rt, &ADD, &seven, 1, &a), DUITE_E_ARGUMENT);
+    refused(duite_fork_at(rt, 0, &COPY, &seven, 2, both), DUITE_E_ARGUMENT);
+    refused(duite_fork_with(rt, NULL, &COPY, &seven, 2, both), DUITE_E_ARGUMENT);
+    refused(duite_graph_new(rt, build_copy, &seven, &graph), DUITE_E_ARGUMENT);
+    ck_assert_int_eq(duite_graph_new(rt, build_copy, NULL, &graph), DUITE_OK);
+    refused(duite_graph_args(rt, graph, 0, &seven), DUITE_E_ARGUMENT);
+    ck_assert_ptr_nonnull(strstr(duite_message(), "fork 0 (kernel copy) has no arguments"));
+    ck_assert_int_eq(duite_graph_args(rt, graph, 0, NULL), DUITE_OK);
+    ck_assert_int_eq(duite_graph_free(rt, graph), DUITE_OK);
+}
+END_TEST
+
 START_TEST(types_and_sizes)
 {
     duite_object object = a;
@@ -238,6 +265,7 @@ int main(void)
     tcase_add_test(cases, no_runtime);
     tcase_add_test(cases, after_stop);
     tcase_add_test(cases, null_pointers);
+    tcase_add_test(cases, arguments_for_a_kernel_that_has_none);
     tcase_add_test(cases, types_and_sizes);
     tcase_add_test(cases, ranks_outside);
     tcase_add_test(cases, hints_and_leaders);

@@ -21,6 +21,7 @@ enum deed {
     FORK_OTHER_LAW,
     FORK_UNLISTED,
     FORK_AT,
+    FORK_WITH_ARGUMENTS,
     FREE,
     FREE_TWICE,
     GET,
@@ -99,6 +100,8 @@ static int fork_something(const duite_call *call, const struct args *args)
     case FORK_AT:
         return duite_fork_with(call->rt, &(duite_task_options){.at = &(int){0}}, kernel, NULL, 1,
                                &call->param[0].object);
+    case FORK_WITH_ARGUMENTS:
+        return duite_fork(call->rt, kernel, args, 1, &call->param[0].object);
     case FORK_UNLISTED:
         return duite_fork(call->rt, &UNLISTED, NULL, 1, &call->param[0].object);
     default:
@@ -270,6 +273,8 @@ START_TEST(other_objects)
     asks(DUITE_RWP, with, DUITE_E_KERNEL, "not listed");
     with.deed = FORK_AT;
     asks(DUITE_RWP, with, DUITE_E_STATE, "the children of a task run on its rank (0)");
+    with.deed = FORK_WITH_ARGUMENTS;
+    asks(DUITE_RWP, with, DUITE_E_ARGUMENT, "kernel child rw has no arguments");
     with.deed = FREE;
     asks(DUITE_RWP, with, DUITE_E_RIGHT, "duite_free: the object is the caller's");
     asks(DUITE_WP, with, DUITE_E_RIGHT, "duite_free, parameter 0: the task holds wp");

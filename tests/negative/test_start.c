@@ -125,6 +125,36 @@ static void refuses_options(const duite_options *options, const char *sentence)
                   duite_message(), sentence);
 }
 
+/* Filled by hand and in part: each is refused by its name, or means what duite.h says of 0. */
+START_TEST(options_left_at_zero)
+{
+    const duite_options whole = misuse_options(MPI_COMM_WORLD);
+    duite_options options = {0};
+
+    refuses_options(&options, "no communicator (comm)"); /* before MPI is initialised */
+    misuse_mpi();
+    refuses_options(&options, "duite_options_default()");
+    options.comm = MPI_COMM_WORLD;
+    refuses_options(&options, "no list of kernels");
+    options.kernels = whole.kernels;
+    refuses_options(&options, "no scheduler");
+    options.scheduler = whole.scheduler;
+    refuses_options(&options, "no mapping");
+    options.mapping = whole.mapping;
+    refuses_options(&options, "no balancer");
+    options.balance = whole.balance;
+    for (options.bind = 0; options.bind < 2; options.bind++) { /* all the rest may be 0 */
+        duite *rt = NULL;
+
+        ck_assert_msg(!duite_start(&rt, &options), "%s", duite_message());
+        ck_assert_int_eq(duite_stop(&rt), DUITE_OK);
+    }
+    options = whole;
+    memset(&options.comm, 0, sizeof options.comm);
+    refuses_options(&options, "no communicator (comm)");
+}
+END_TEST
+
 START_TEST(malformed_policies)
 {
     duite_options options = misuse_options(MPI_COMM_WORLD);
@@ -275,6 +305,32 @@ START_TEST(mpi_for_one_thread)
 }
 END_TEST
 
+/* The workers of both would call MPI at the same time. */
+START_TEST(two_at_a_time)
+{
+    const int levels[] = {MPI_THREAD_SERIALIZED, MPI_THREAD_MULTIPLE};
+    duite *first, *second = (duite *)&first;
+
+    misuse_mpi_at(levels[_i]);
+    first = misuse_start(MPI_COMM_WORLD, 2);
+    ck_assert_ptr_nonnull(first);
+    duite_options options = misuse_options(MPI_COMM_SELF);
+    const int code = duite_start(&second, &options);
+
+    if (levels[_i] == MPI_THREAD_SERIALIZED) {
+        ck_assert_int_eq(code, DUITE_E_STATE);
+        ck_assert_ptr_null(second);
+        ck_assert_msg(strstr(duite_message(), "MPI_THREAD_MULTIPLE") != NULL, "%s",
+                      duite_message());
+    } else {
+        ck_assert_int_eq(code, DUITE_OK);
+        ck_assert_int_eq(duite_stop(&second), DUITE_OK);
+    }
+    ck_assert_int_eq(duite_stop(&first), DUITE_OK);
+    one_life(MPI_COMM_SELF, 2);
+}
+END_TEST
+
 START_TEST(not_freed)
 {
     duite *rt = misuse_start(MPI_COMM_WORLD, 2);
@@ -299,6 +355,7 @@ int main(void)
     tcase_add_test(cases, replicated_kernels);
     tcase_add_test(cases, kernel_twice);
     tcase_add_test(cases, malformed_options);
+    tcase_add_test(cases, options_left_at_zero);
     tcase_add_test(cases, malformed_policies);
     tcase_add_test(cases, fifty_lives);
     tcase_add_test(cases, threads_by_default);
@@ -306,6 +363,7 @@ int main(void)
     tcase_add_test(cases, mpi_of_our_own);
     tcase_add_test(cases, mpi_is_over);
     tcase_add_test(cases, mpi_for_one_thread);
+    tcase_add_loop_test(cases, two_at_a_time, 0, 2);
     tcase_add_test(cases, not_freed);
     suite_add_tcase(suite, cases);
     return unit_run(suite);

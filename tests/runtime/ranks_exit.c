@@ -1,17 +1,22 @@
 /* Ends in the middle of its work, without a stop, with the status given: rank 0 at once, or all
- * ranks with --all; or in a function of a policy, --map or --place. Messages are on their
+ * ranks with --all; or in a function of a policy, --map or --place; or a body ends its thread,
+ * --thread. Messages are on their
  * way meanwhile, and workers poll. */
 #include <duite.h>
 #include <duite_policy.h>
 
+#include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum { TASKS = 20000, CHAINS = 4 };
 
+static int ends_thread;
+
 static int step(const duite_call *call)
 {
-    duite_out(call, 0, int64_t)[0]++;
+    if (++duite_out(call, 0, int64_t)[0] == TASKS / CHAINS / 2 && ends_thread)
+        pthread_exit(NULL);
     return 0;
 }
 
@@ -65,6 +70,7 @@ int main(int argc, char **argv)
     status = atoi(argv[1]);
     if (argc > 2)
         choose(&options, argv[2]);
+    ends_thread = argc > 2 && !strcmp(argv[2], "--thread");
     options.kernels = KERNELS;
     options.threads = 2;
     if (duite_start(&rt, &options))

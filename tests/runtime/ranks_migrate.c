@@ -3,7 +3,6 @@
 
 #include "tests/runtime/moving.h"
 
-#include <malloc.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -90,14 +89,6 @@ static void shown(void)
 
 /* ---- What moves ---- */
 
-/* Of the heap; 0: malloc is a sanitizer's, which does not say. */
-static double megabytes(void)
-{
-    const struct mallinfo2 info = mallinfo2();
-
-    return 1e-6 * (double)(info.uordblks + info.hblkhd);
-}
-
 /* Objects that are only read from now on. */
 static void memory(void)
 {
@@ -107,7 +98,7 @@ static void memory(void)
     duite_object large[N_LARGE];
 
     duite_wait(rt);
-    const double before = megabytes();
+    const double before = misuse_megabytes();
 
     for (int i = 0; i < N_LARGE; i++) {
         large[i] = misuse_new(rt, LARGE);
@@ -117,10 +108,11 @@ static void memory(void)
     duite_wait(rt);
     const int home = duite_home(rt, large[0]), next = (home + 1) % ranks;
 
-    tap_case(rank != home || before <= 0 || megabytes() - before > 0.9 * all, "a home has them");
+    tap_case(rank != home || before <= 0 || misuse_megabytes() - before > 0.9 * all,
+             "a home has them");
     moving(rt, nothing, next);
     duite_wait(rt);
-    const double now = megabytes() - before;
+    const double now = misuse_megabytes() - before;
     int right = 1;
 
     tap_case(duite_home(rt, large[N_LARGE - 1]) == next, "they have moved with their leader");

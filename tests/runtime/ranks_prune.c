@@ -3,8 +3,6 @@
 
 #include "tests/negative/misuse.h"
 
-#include <malloc.h>
-
 enum { OBJECTS = 20, LARGE = 1 << 18, FORKS = 100000 };
 
 static int rank;
@@ -39,19 +37,11 @@ static const duite_kernel TOUCH = {.name = "touch",
                                    .access = {DUITE_R, DUITE_RW},
                                    .args_size = sizeof(int32_t)};
 
-/* Of the heap; 0: malloc is a sanitizer's, which does not say. */
-static double megabytes(void)
-{
-    const struct mallinfo2 info = mallinfo2();
-
-    return 1e-6 * (double)(info.uordblks + info.hblkhd);
-}
-
 /* The same after a wait, before any rank goes on: one that forks sends the others what they will
  * read. */
 static double megabytes_at_rest(void)
 {
-    const double now = megabytes();
+    const double now = misuse_megabytes();
 
     MPI_Barrier(MPI_COMM_WORLD);
     return now;
@@ -77,7 +67,7 @@ static void copies(duite *rt, const duite_object *object, int home, int reader)
     for (int i = 0; i < OBJECTS; i++)
         duite_fork_at(rt, home, &SET, &(int32_t){i + 1}, 1, &object[i]);
     duite_wait(rt);
-    tap_case(rank != reader || megabytes() - before < 0.1 * all,
+    tap_case(rank != reader || misuse_megabytes() - before < 0.1 * all,
              "which are dropped when the objects are overwritten");
     tap_case(rank == home || duite_is_local(rt, object[0]) == 0,
              "and then is not touched any more");
@@ -90,10 +80,11 @@ static void forks(duite *rt, const duite_object *small, int home)
     int32_t value = 0;
 
     duite_wait(rt);
-    const double before = megabytes();
+    const double before = misuse_megabytes();
     for (int i = 0; i < FORKS; i++)
         DUITE_FORK(rt, &TOUCH, DUITE_ARGS(int32_t, 1), small[i % 3], small[3 + i % 2]);
-    tap_case(rank == home || megabytes() - before < 0.01, "they keep no memory on the others");
+    tap_case(rank == home || misuse_megabytes() - before < 0.01,
+             "they keep no memory on the others");
     tap_case(!duite_get(rt, small[3], &value) && value == FORKS / 2, "and run where they should");
     tap_case(duite_wait(rt) == DUITE_OK, "the ranks agree on what was forked");
 }
@@ -140,6 +131,9 @@ static void misuse(duite *rt, const duite_object *small)
     tap_case(duite_fork(rt, &TOUCH, &(int32_t){0}, 2, none) == DUITE_E_OBJECT, "no object");
     tap_case(duite_fork(rt, &TOUCH, &(int32_t){0}, 1, small) == DUITE_E_ACCESS, "too few");
     tap_case(duite_fork(rt, &TOUCH, NULL, 2, small) == DUITE_E_ARGUMENT, "no arguments");
+    tap_case(duite_fork(rt, &COPY, &(int32_t){0}, 2, small) == DUITE_E_ARGUMENT &&
+                 duite_fork(rt, &CONTRIBUTE, &(int32_t){0}, 3, small) == DUITE_E_ARGUMENT,
+             "arguments that no body finds");
     tap_case(duite_fork(rt, &UNLISTED, NULL, 1, small) == DUITE_E_KERNEL, "a kernel not listed");
     tap_case(duite_wait(rt) == DUITE_E_ACCESS, "and told once more");
     tap_case(duite_is_local(rt, DUITE_NO_OBJECT) == 1, "nothing is everybody's business");
@@ -156,7 +150,7 @@ static void different(duite *rt, const duite_object *small, int home)
 
 int main(void)
 {
-    const duite_kernel *const list[] = {&SET, &MANY, &TOUCH, &CONTRIBUTE, &SAME, NULL};
+    const duite_kernel *const list[] = {&SET, &MANY, &TOUCH, &CONTRIBUTE, &SAME, &COPY, NULL};
     duite_object large[OBJECTS], small[6];
     duite *rt;
 

@@ -17,9 +17,11 @@ static int mix_body(const duite_call *call)
 {
     const int32_t add = *(const int32_t *)call->args;
     atomic_fetch_add(&mixes, 1);
-    duite_out(call, 1, int32_t)[0] += duite_in(call, 0, int32_t)[0] + add;
-    duite_out(call, 2, int32_t)[0] = add;
-    duite_out(call, 3, int32_t)[0] += add;
+    for (size_t i = 0; i < duite_count(call, 0); i++) {
+        duite_out(call, 1, int32_t)[i] += duite_in(call, 0, int32_t)[i] + add;
+        duite_out(call, 2, int32_t)[i] = add;
+        duite_out(call, 3, int32_t)[i] += add;
+    }
     return 0;
 }
 static const duite_kernel MIX = {.name = "mix",
@@ -272,6 +274,33 @@ static void sizes(void)
     tap_case(duite_stop(&rt) == DUITE_OK, "stop after sizes");
 }
 
+/* Large subtrees, one after another: no rank keeps anything of one that is over. */
+static void memory(void)
+{
+    enum { LARGE = 1 << 16, BEFORE = 8 /* that run first, for what stays */ };
+    const double one = 4e-6 * LARGE;
+    duite *rt = start("scatter");
+    duite_object object[4];
+    double before = 0;
+    for (int i = 0; i < 4; i++)
+        object[i] = misuse_new(rt, LARGE);
+    for (int i = 1; i < 4; i++)
+        duite_colocate(rt, object[i], object[0]);
+    for (int32_t i = 0; i < BEFORE + ROUNDS; i++) {
+        duite_fork(rt, &WHOLE, &i, 4, object);
+        duite_set(rt, object[3], NULL); /* its contributions go, too */
+        duite_wait(rt);
+        MPI_Barrier(MPI_COMM_WORLD);
+        if (i == BEFORE - 1)
+            before = misuse_megabytes();
+    }
+    const double grown = misuse_megabytes() - before;
+    tap_case(before <= 0 || grown < ROUNDS / 4 * one, "what was lent is given back");
+    for (int i = 0; i < 4; i++)
+        duite_free(rt, object[i]);
+    tap_case(duite_stop(&rt) == DUITE_OK, "stop after that");
+}
+
 int main(void)
 {
     misuse_mpi();
@@ -282,5 +311,6 @@ int main(void)
     failures();
     nothing();
     sizes();
+    memory();
     return tap_done();
 }

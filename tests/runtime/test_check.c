@@ -21,6 +21,10 @@ enum deed {
     BEYOND_END,
     BEFORE_START,
     FAR_BEYOND,
+    READ_BEHIND,
+    READ_BEFORE,
+    READ_BEHIND_ARGS,
+    RETURN_BEHIND,
     UNWRITTEN,
     UNSTEADY,
     UNSTEADY_CODE,
@@ -66,6 +70,17 @@ static int body(const duite_call *call)
     case FAR_BEYOND:
         w[0] = r[COUNT + 2000];
         break;
+    case READ_BEHIND:
+        w[args->where] = rw[COUNT] / 2;
+        break;
+    case READ_BEFORE:
+        w[args->where] = r[-1] / 2;
+        break;
+    case READ_BEHIND_ARGS:
+        cw[0] += (&args->where)[args->where];
+        break;
+    case RETURN_BEHIND:
+        return r[COUNT] > 0;
     case UNSTEADY:
         cw[args->where] += n;
         break;
@@ -97,6 +112,15 @@ static const duite_kernel BODY = {.name = "body",
                                   .access = {DUITE_R, DUITE_W, DUITE_RW, DUITE_CW},
                                   .args_size = sizeof(struct args),
                                   .side_effects = 1};
+
+static int peek(const duite_call *call)
+{
+    int32_t *values = duite_out(call, 0, int32_t);
+
+    values[0] = values[duite_count(call, 0)];
+    return 0;
+}
+static const duite_kernel PEEK = {.name = "peek", .body = peek, .access = {DUITE_RW}};
 
 static duite *rt;
 static duite_object object[4];
@@ -160,6 +184,37 @@ START_TEST(beyond_the_ends)
     found(BEYOND_END, 6, "goes beyond parameter 1: to byte 64 of 40");
     found(BEFORE_START, 0, "writes beyond an end of parameter 2");
     found(FAR_BEYOND, 0, "goes beyond parameter 0: to byte 8040 of 40");
+}
+END_TEST
+
+/* 40 bytes do not end where a page does: these reads do not fault. */
+START_TEST(reads_beyond_the_ends)
+{
+    found(READ_BEHIND, 3, "goes beyond parameter 2: it reads before or behind its 40 bytes");
+    found(READ_BEFORE, 0, "goes beyond parameter 0: it reads before or behind its 40 bytes");
+    found(READ_BEHIND_ARGS, 1,
+          "goes beyond its arguments: it reads before or behind their 8 bytes");
+    found(RETURN_BEHIND, 0, "goes beyond parameter 0: it reads");
+}
+END_TEST
+
+/* As many elements as it has, though there is room for more, which holds no values yet. */
+START_TEST(reads_beyond_the_size)
+{
+    const duite_kernel *kernels[] = {&PEEK, NULL};
+    duite_options options = duite_options_default();
+    duite_object sized;
+
+    options.kernels = kernels;
+    options.check = 1;
+    ck_assert_int_eq(duite_start(&rt, &options), DUITE_OK);
+    ck_assert_int_eq(duite_new_sized(rt, DUITE_I32, 3, 20, &sized), DUITE_OK);
+    duite_fork(rt, &PEEK, NULL, 1, &sized);
+    ck_assert_int_eq(duite_wait(rt), DUITE_E_CHECK);
+    ck_assert_msg(strstr(duite_message(), "goes beyond parameter 0: it reads") != NULL, "%s",
+                  duite_message());
+    duite_free(rt, sized);
+    duite_stop(&rt);
 }
 END_TEST
 
@@ -306,6 +361,8 @@ int main(void)
     tcase_add_test(cases, a_write_under_r);
     tcase_add_test(cases, a_write_to_the_arguments);
     tcase_add_test(cases, beyond_the_ends);
+    tcase_add_test(cases, reads_beyond_the_ends);
+    tcase_add_test(cases, reads_beyond_the_size);
     tcase_add_test(cases, bytes_that_w_left_unwritten);
     tcase_add_test(cases, kernels_that_are_not_deterministic);
     tcase_add_test(cases, stale_pointers);

@@ -13,6 +13,20 @@ for round in $(seq $times); do
 done
 not_ok_expected "both ranks without a failure: mpirun tells" ranks 2 tests/runtime/ranks_exit 0 --all
 
+# A body that does not return leaves a task that can never end, and the process ends with a sentence in place of a hang.
+aborts() { # SENTENCE COMMAND...
+    sentence=$1
+    shift
+    status=0
+    "$@" 2> "$scratch/said" || status=$?
+    cat "$scratch/said"
+    echo "exit status $status"
+    test $status = 134 && grep -q "^duite: $sentence" "$scratch/said"
+}
+left="the body of kernel step was left by a C++ exception or the end of its thread (rank [01], worker [01])"
+ok "a body ends its thread" aborts "$left" limited tests/runtime/ranks_exit 0 --thread
+ok "a body ends its thread on 2 ranks" aborts "$left" ranks 2 tests/runtime/ranks_exit 0 --thread
+
 # A policy must not end the program: its exit becomes a failure that names the policy.
 leaves() { # SENTENCE COMMAND...
     sentence=$1

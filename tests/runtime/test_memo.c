@@ -1,5 +1,6 @@
 /* Repeated forks are recognised, and nobody can tell but by the counters: values, failures, and
  * whatever comes in between are as of forks. */
+#include "runtime/api/instance.h"
 #include "tests/negative/misuse.h"
 #include "tests/runtime/repeated.h"
 #include "tests/support/unit.h"
@@ -282,6 +283,106 @@ START_TEST(tasks_that_write_nothing_stay_forks)
 }
 END_TEST
 
+/* Each fork is there twice in a round, with another one after it: a round that comes again is found
+ * by more than the fork that it begins with. */
+START_TEST(rounds_begin_where_they_did)
+{
+    enum { LENGTH = 6 };
+    static const int TO[LENGTH] = {0, 1, 0, 2, 1, 2};
+    const duite_options options = repeated_options(ALWAYS);
+    struct repeated program;
+
+    repeated_start(&program, &options);
+    for (int begin = 0; begin < LENGTH; begin++) {
+        for (int i = begin; i < begin + ROUNDS * LENGTH; i++)
+            repeated_fork(&program, &MIX, TO[i % LENGTH], 3, 0);
+        ck_assert_int_eq(duite_wait(program.rt), DUITE_OK);
+    }
+    ck_assert_uint_ge(repeated_stop(&program), LENGTH * ROUNDS * LENGTH * 3 / 4);
+}
+END_TEST
+
+/* Forks repeat themselves until the next round is recorded, and then no more: no plan is kept of
+ * that. */
+START_TEST(almost_a_round)
+{
+    const duite_options options = repeated_options(ALWAYS);
+    struct repeated program;
+    int kept = 0, n = 0;
+
+    repeated_start(&program, &options);
+    const struct plan_memo *memo = program.rt->memo;
+
+    for (; memo->state != MEMO_RECORD && n < ROUNDS * OBJECTS; n++)
+        repeated_fork(&program, &MIX, n % OBJECTS, (n + 3) % OBJECTS, 0);
+    ck_assert_int_eq(memo->state, MEMO_RECORD);
+    for (int i = 0; i < OBJECTS; i++)
+        repeated_fork(&program, &TWIN, i, (i + 1) % OBJECTS, 0);
+    for (int i = 0; i < MEMO_PLANS; i++)
+        kept += memo->rounds_kept[i].record != NULL;
+    ck_assert_int_eq(kept, 0);
+    repeated_stop(&program);
+}
+END_TEST
+
+/* A round that was recognised is forked again when one of its objects is no more, and another one
+ * has its slot. */
+START_TEST(rounds_of_a_freed_object)
+{
+    enum { FREED = 5 };
+    const duite_options options = repeated_options(ALWAYS);
+    struct repeated program;
+
+    repeated_start(&program, &options);
+    for (int i = 0; i < ROUNDS; i++)
+        repeated_round(&program);
+    ck_assert_int_eq(duite_wait(program.rt), DUITE_OK); /* so that its plan is free */
+    const uint64_t before = repeated_recognised(&program);
+    const duite_object freed = program.object[FREED];
+
+    ck_assert_int_eq(duite_free(program.rt, freed), DUITE_OK);
+    const duite_object other = misuse_new(program.rt, 1);
+
+    ck_assert_uint_eq(other.slot, freed.slot);
+    for (int i = 0; i < ROUNDS * OBJECTS; i++) {
+        const int to = i % OBJECTS, from = (i + 3) % OBJECTS;
+        const struct repeated_argument none = {0};
+
+        if (to != FREED && from != FREED)
+            repeated_fork(&program, &MIX, to, from, 0);
+        else
+            ck_assert_int_eq(
+                DUITE_FORK(program.rt, &MIX, &none, program.object[to], program.object[from]),
+                DUITE_E_OBJECT);
+    }
+    program.object[FREED] = other;
+    program.value[FREED] = 0;
+    ck_assert_int_eq(duite_wait(program.rt), DUITE_E_OBJECT);
+    ck_assert_uint_ge(before, ROUNDS * OBJECTS / 2);
+    ck_assert_uint_eq(repeated_stop(&program), before);
+}
+END_TEST
+
+/* Of a round that is recognised, too. */
+START_TEST(arguments_that_no_body_finds)
+{
+    const duite_options options = repeated_options(ALWAYS);
+    struct repeated program;
+
+    repeated_start(&program, &options);
+    for (int i = 0; i < ROUNDS * OBJECTS; i++)
+        ck_assert_int_eq(DUITE_FORK(program.rt, &HOLD, NULL, program.object[i % OBJECTS]),
+                         DUITE_OK);
+    ck_assert_uint_ge(repeated_recognised(&program), ROUNDS * OBJECTS / 2);
+    for (int i = 0; i < ROUNDS * OBJECTS; i++)
+        ck_assert_int_eq(
+            DUITE_FORK(program.rt, &HOLD, i % 100 == 99 ? &i : NULL, program.object[i % OBJECTS]),
+            i % 100 == 99 ? DUITE_E_ARGUMENT : DUITE_OK);
+    ck_assert_int_eq(duite_wait(program.rt), DUITE_E_ARGUMENT);
+    repeated_stop(&program);
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("memo");
@@ -297,6 +398,10 @@ int main(void)
     tcase_add_test(cases, short_rounds_are_recognised_at_once);
     tcase_add_test(cases, long_rounds_are_right);
     tcase_add_test(cases, tasks_that_write_nothing_stay_forks);
+    tcase_add_test(cases, rounds_begin_where_they_did);
+    tcase_add_test(cases, almost_a_round);
+    tcase_add_test(cases, rounds_of_a_freed_object);
+    tcase_add_test(cases, arguments_that_no_body_finds);
     suite_add_tcase(suite, cases);
     return unit_run(suite);
 }

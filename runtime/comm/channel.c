@@ -41,6 +41,7 @@ bool comm_channels_start(struct comm *comm)
     return true;
 }
 
+/* Without the lock: to free large buffers takes long. */
 static void group_free(struct comm_group *group)
 {
     for (size_t i = 0; i < group->n; i++) {
@@ -48,6 +49,15 @@ static void group_free(struct comm_group *group)
         base_free(group->side[i].buffer[1]);
     }
     base_free(group);
+}
+
+static void groups_free(struct comm_group *group)
+{
+    while (group) {
+        struct comm_group *next = group->next;
+        group_free(group);
+        group = next;
+    }
 }
 
 /* Whether MPI has done with the group's memory. */
@@ -61,27 +71,29 @@ static bool group_is_quiet(struct comm_group *group)
     return true;
 }
 
-/* Frees the closed groups whose memory MPI has done with. */
-static void channels_sweep(struct comm *comm)
+/* Takes the closed groups whose memory MPI has done with, to be freed. */
+static struct comm_group *channels_sweep(struct comm *comm)
 {
-    struct comm_group **link = &comm->channels.closed;
+    struct comm_group **link = &comm->channels.closed, *quiet = NULL;
     while (*link) {
         struct comm_group *group = *link;
         if (group_is_quiet(group)) {
             *link = group->next;
-            group_free(group);
+            group->next = quiet;
+            quiet = group;
         } else {
             link = &group->next;
         }
     }
+    return quiet;
 }
 
 bool comm_channels_stop(struct comm *comm)
 {
-    channels_sweep(comm);
+    groups_free(channels_sweep(comm));
     while (comm->channels.closed && !comm_is_broken(comm)) { /* the others have received it all */
         sched_yield();
-        channels_sweep(comm);
+        groups_free(channels_sweep(comm));
     }
     comm_requests_free(&comm->channels.awaited);
     comm_tags_stop(&comm->channels.tags);
@@ -131,7 +143,7 @@ static struct comm_group *group_new(struct comm *comm, struct plan_channels *cha
 /* A plan is freed: no message comes for the receives that were posted for another round. */
 static void group_close(struct plan_channels *channels)
 {
-    struct comm_group *group = channels->own, **link;
+    struct comm_group *group = channels->own, **link, *quiet = NULL;
     struct comm *comm = group->comm;
     comm_hold(comm);
     for (link = &comm->channels.open; *link != group; link = &(*link)->next)
@@ -146,8 +158,9 @@ static void group_close(struct plan_channels *channels)
     group->next = comm->channels.closed;
     comm->channels.closed = group;
     if (!comm_is_lost(comm))
-        channels_sweep(comm);
+        quiet = channels_sweep(comm);
     comm_unlock(comm);
+    groups_free(quiet);
 }
 
 static void group_drop(struct plan_channels *channels)
@@ -189,9 +202,10 @@ int comm_channels_open(struct comm *comm, struct plan_channels *channels)
     if (!group)
         return base_no_memory("the messages of a recorded graph");
     comm_hold(comm);
-    channels_sweep(comm);
+    struct comm_group *quiet = channels_sweep(comm);
     int code = group_open(comm, group, channels);
     comm_unlock(comm);
+    groups_free(quiet);
     if (!channels->close)
         group_free(group);
     return code;
@@ -202,7 +216,6 @@ int comm_channels_open(struct comm *comm, struct plan_channels *channels)
 static bool channels_linger(struct comm *comm)
 {
     size_t open = 0;
-    channels_sweep(comm);
     for (const struct comm_group *group = comm->channels.open; group; group = group->next)
         open++;
     return comm->channels.closed || open > comm_tags_held(&comm->channels.tags);
@@ -213,8 +226,10 @@ int comm_channels_settle(struct comm *comm)
     bool lingers = true;
     while (lingers && !comm_is_broken(comm)) {
         comm_hold(comm);
+        struct comm_group *quiet = channels_sweep(comm);
         lingers = channels_linger(comm);
         comm_unlock(comm);
+        groups_free(quiet);
         sched_yield();
     }
     return comm_broken(comm);

@@ -87,14 +87,17 @@ static int came(duite *rt, duite_object wrong)
     return !duite_get(rt, wrong, &n) && !duite_wait(rt) && n == 0;
 }
 
+/* A short message goes through the other buffer, too, which a large one has no memory for. */
 static int recorded(duite *rt, duite_object *object)
 {
+    const int twice = is_slow;
     duite_graph graph;
     if (duite_graph_new(rt, build, object, &graph))
         return 0;
     int right = !duite_replay(rt, graph, 1) && came(rt, object[1]);
     is_slow = 0;
-    right = right && !duite_replay(rt, graph, 1) && came(rt, object[1]); /* the other buffer */
+    if (twice)
+        right = right && !duite_replay(rt, graph, 1) && came(rt, object[1]);
     return !duite_graph_free(rt, graph) && right;
 }
 

@@ -353,10 +353,12 @@ static bool channel_fits(struct comm *comm, int mpi)
 }
 
 /* A piece of a large message came. Whether it was the last one. */
-static bool channel_is_through(struct comm *comm, struct channel_side *side)
+static bool channel_is_through(struct comm *comm, struct comm_found *found,
+                               struct channel_side *side)
 {
     if (comm_is_last_piece(side->channel->bytes, side->at))
         return true;
+    found->more = true;
     side->at += comm_piece_bytes;
     channel_post_receive(comm, side, side->turn);
     channel_listen(comm, side);
@@ -373,7 +375,7 @@ static void channels_receive(struct comm *comm, struct comm_found *found)
         struct channel_side *side = awaited->what[n + i];
         struct task *node = side->channel->node;
         atomic_fetch_add_explicit(&comm->came, 1, memory_order_relaxed);
-        if (side_is_large(side) && !channel_is_through(comm, side))
+        if (side_is_large(side) && !channel_is_through(comm, found, side))
             continue;
         comm_note(comm, false, side->channel->peer, side->channel->bytes);
         if (side_is_large(side)) {

@@ -159,7 +159,7 @@ static void comm_receive_seldom(struct comm *comm, struct comm_found *found)
 
 static inline bool comm_pass(struct comm *comm, struct worker *worker, bool looks)
 {
-    bool any = false, outer = passing;
+    bool any = false, more, outer = passing;
     passing = true;
     do {
         struct comm_found found = {0};
@@ -174,11 +174,12 @@ static inline bool comm_pass(struct comm *comm, struct worker *worker, bool look
         comm_heartbeat_pass(comm);
         comm_unlock(comm);
         any |= found.any;
+        more = found.more;
         if (found.packets || found.sent || found.nodes || found.copies) {
             any = true;
             comm_transport_deliver(comm, worker, &found);
         }
-    } while (comm_left_to_us(comm));
+    } while (more || comm_left_to_us(comm));
     passing = outer;
     return any;
 }

@@ -25,6 +25,7 @@ struct comm_found {
     struct task *nodes;  /* of channels whose message is through */
     struct task *copies; /* of channels whose message is large: see comm_channel_copy */
     bool any;
+    bool more; /* so much came that the lock is let go before the rest is received */
 };
 
 /* Under the lock: sends what was posted, and receives what came. */

@@ -172,10 +172,12 @@ static void large_begin(struct comm *comm, struct data_packet *header, int from)
 }
 
 /* A piece came. Whether it was the last one. */
-static bool large_is_through(struct comm *comm, struct data_packet *packet)
+static bool large_is_through(struct comm *comm, struct comm_found *found,
+                             struct data_packet *packet)
 {
     if (comm_is_last_piece(packet->bytes, packet->came))
         return true;
+    found->more = true;
     atomic_fetch_add_explicit(&comm->came, 1, memory_order_relaxed);
     packet->came += comm_piece_bytes;
     large_receive(comm, packet);
@@ -235,13 +237,14 @@ void comm_transport_receive(struct comm *comm, struct comm_found *found)
     int done;
     while (received < comm_piece_bytes && message_receive(comm, found, &received))
         found->any = true;
+    found->more |= received >= comm_piece_bytes;
     if (!comm->receives.n)
         return;
     comm_mpi_ok(comm, comm_requests_test(&comm->receives, &done), "MPI_Testsome");
     for (int i = 0, n = comm->receives.n; i < done;
          i++) { /* next pieces take the places before i */
         struct data_packet *packet = comm->receives.what[n + i];
-        if (!packet_is_large(packet) || large_is_through(comm, packet))
+        if (!packet_is_large(packet) || large_is_through(comm, found, packet))
             message_came(comm, found, packet);
     }
 }

@@ -344,12 +344,12 @@ const char *const *duite_balancer_names(void);
  * objects, and DUITE_CHECK=accesses names such a body. */
 
 /* A lost rank: on several ranks a thread of each sends the next rank a heartbeat sixteen times in
- * options.lost_seconds, however busy its workers are. A rank that died, was cut off, or was
- * stopped for so long, is lost. The time in which the one that listens was stopped itself does not
- * count. Then every blocking call of all ranks that can still be reached returns DUITE_E_LOST, as
- * soon as the bodies that run are over; duite_message() names the rank and its host. Only
- * duite_abandon is left, and MPI may not be called any more: the program saves what it can and
- * ends. (Open MPI may end the job first, with a message of its own.) */
+ * options.lost_seconds, however busy its workers and however large its messages are. A rank that
+ * died, was cut off, or was stopped for so long, is lost. The time in which the one that listens
+ * was stopped itself does not count. Then every blocking call of all ranks that can still be
+ * reached returns DUITE_E_LOST, as soon as the bodies that run are over; duite_message() names the
+ * rank and its host. Only duite_abandon is left, and MPI may not be called any more: the program
+ * saves what it can and ends. (Open MPI may end the job first, with a message of its own.) */
 
 /* Starts a runtime. Initialises MPI (thread support SERIALIZED) if the caller has not. On several
  * ranks its workers call MPI at any time until duite_stop: a program that calls MPI meanwhile needs

@@ -1,14 +1,14 @@
 /* A channel's turn counts its messages from the opening on, over all replays; a message lies in the
- * buffer of its turn's parity. A sender is not told that its message was read: in most graphs it
- * cannot get far without an answer. So that no rank gets too far, every sixteenth message of a
- * channel is sent synchronously: MPI tells when it was received. This bounds by how many rounds a
- * rank is ahead. */
+ * buffer of its turn's parity. A large one is written and read without the lock, and comes in
+ * pieces; its receive is posted when its node is ready, not a round early. A sender is not told
+ * that its message was read: in most graphs it cannot get far without an answer. So that no rank
+ * gets too far, every sixteenth message of a channel, and every large one, is sent synchronously:
+ * MPI tells when it was received. This bounds by how many rounds a rank is ahead. */
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
 #include "runtime/base/stack.h"
 #include "runtime/comm/internal.h"
 
-#include <limits.h>
 #include <sched.h>
 
 enum { CHECKED_TURN = 16 };
@@ -19,6 +19,7 @@ struct channel_side {
     unsigned char *buffer[2];
     MPI_Request request[2];
     uint64_t turn;
+    size_t at; /* of a large message: bytes that were written, or 0; or that came */
 };
 
 struct comm_group {
@@ -40,6 +41,7 @@ bool comm_channels_start(struct comm *comm)
     return true;
 }
 
+/* Without the lock: to free large buffers takes long. */
 static void group_free(struct comm_group *group)
 {
     for (size_t i = 0; i < group->n; i++) {
@@ -47,6 +49,15 @@ static void group_free(struct comm_group *group)
         base_free(group->side[i].buffer[1]);
     }
     base_free(group);
+}
+
+static void groups_free(struct comm_group *group)
+{
+    while (group) {
+        struct comm_group *next = group->next;
+        group_free(group);
+        group = next;
+    }
 }
 
 /* Whether MPI has done with the group's memory. */
@@ -60,27 +71,29 @@ static bool group_is_quiet(struct comm_group *group)
     return true;
 }
 
-/* Frees the closed groups whose memory MPI has done with. */
-static void channels_sweep(struct comm *comm)
+/* Takes the closed groups whose memory MPI has done with, to be freed. */
+static struct comm_group *channels_sweep(struct comm *comm)
 {
-    struct comm_group **link = &comm->channels.closed;
+    struct comm_group **link = &comm->channels.closed, *quiet = NULL;
     while (*link) {
         struct comm_group *group = *link;
         if (group_is_quiet(group)) {
             *link = group->next;
-            group_free(group);
+            group->next = quiet;
+            quiet = group;
         } else {
             link = &group->next;
         }
     }
+    return quiet;
 }
 
 bool comm_channels_stop(struct comm *comm)
 {
-    channels_sweep(comm);
+    groups_free(channels_sweep(comm));
     while (comm->channels.closed && !comm_is_broken(comm)) { /* the others have received it all */
         sched_yield();
-        channels_sweep(comm);
+        groups_free(channels_sweep(comm));
     }
     comm_requests_free(&comm->channels.awaited);
     comm_tags_stop(&comm->channels.tags);
@@ -89,14 +102,16 @@ bool comm_channels_stop(struct comm *comm)
 
 /* ---- Opening and closing: all ranks in the same order ---- */
 
+static bool side_is_large(const struct channel_side *side)
+{
+    return comm_is_large(side->channel->bytes);
+}
+
 static bool channel_post_receive(struct comm *comm, struct channel_side *side, size_t turn)
 {
     const struct plan_channel *channel = side->channel;
-    MPI_Request *request = &side->request[turn % 2];
-    bool large = channel->bytes > INT_MAX;
-    size_t count = large ? (channel->bytes + 63) / 64 : channel->bytes;
-    int mpi = MPI_Irecv(side->buffer[turn % 2], (int)count, large ? comm->line : MPI_BYTE,
-                        channel->peer, channel->tag, comm->mpi, request);
+    int mpi = comm_piece_receive(comm, side->buffer[turn % 2], channel->bytes, side->at,
+                                 channel->peer, channel->tag, &side->request[turn % 2]);
     return comm_mpi_ok(comm, mpi, "MPI_Irecv");
 }
 
@@ -128,7 +143,7 @@ static struct comm_group *group_new(struct comm *comm, struct plan_channels *cha
 /* A plan is freed: no message comes for the receives that were posted for another round. */
 static void group_close(struct plan_channels *channels)
 {
-    struct comm_group *group = channels->own, **link;
+    struct comm_group *group = channels->own, **link, *quiet = NULL;
     struct comm *comm = group->comm;
     comm_hold(comm);
     for (link = &comm->channels.open; *link != group; link = &(*link)->next)
@@ -143,8 +158,9 @@ static void group_close(struct plan_channels *channels)
     group->next = comm->channels.closed;
     comm->channels.closed = group;
     if (!comm_is_lost(comm))
-        channels_sweep(comm);
+        quiet = channels_sweep(comm);
     comm_unlock(comm);
+    groups_free(quiet);
 }
 
 static void group_drop(struct plan_channels *channels)
@@ -169,6 +185,8 @@ static int group_open(struct comm *comm, struct comm_group *group, struct plan_c
         if (channels->channel[i].sends)
             continue;
         comm->channels.room += 2;
+        if (side_is_large(&group->side[i]))
+            continue;
         if (!channel_post_receive(comm, &group->side[i], 0) ||
             !channel_post_receive(comm, &group->side[i], 1))
             return DUITE_E_MPI;
@@ -184,9 +202,10 @@ int comm_channels_open(struct comm *comm, struct plan_channels *channels)
     if (!group)
         return base_no_memory("the messages of a recorded graph");
     comm_hold(comm);
-    channels_sweep(comm);
+    struct comm_group *quiet = channels_sweep(comm);
     int code = group_open(comm, group, channels);
     comm_unlock(comm);
+    groups_free(quiet);
     if (!channels->close)
         group_free(group);
     return code;
@@ -197,7 +216,6 @@ int comm_channels_open(struct comm *comm, struct plan_channels *channels)
 static bool channels_linger(struct comm *comm)
 {
     size_t open = 0;
-    channels_sweep(comm);
     for (const struct comm_group *group = comm->channels.open; group; group = group->next)
         open++;
     return comm->channels.closed || open > comm_tags_held(&comm->channels.tags);
@@ -208,8 +226,10 @@ int comm_channels_settle(struct comm *comm)
     bool lingers = true;
     while (lingers && !comm_is_broken(comm)) {
         comm_hold(comm);
+        struct comm_group *quiet = channels_sweep(comm);
         lingers = channels_linger(comm);
         comm_unlock(comm);
+        groups_free(quiet);
         sched_yield();
     }
     return comm_broken(comm);
@@ -234,11 +254,30 @@ static void node_push(struct task **list, struct task *node)
     *list = node;
 }
 
-/* Once communication is broken, a message ends as if it had been sent. */
-static void channel_send(struct comm *comm, struct task *node, struct channel_side *side,
-                         struct task **over)
+/* Sends the message, which was written if it is large. Returns its bytes. */
+static size_t channel_isend(struct comm *comm, struct task *node, struct channel_side *side)
 {
     const struct plan_channel *channel = side->channel;
+    MPI_Request *request = &side->request[side->turn % 2];
+    void *buffer = side->buffer[side->turn % 2];
+    const bool checked = side->turn++ % CHECKED_TURN == CHECKED_TURN - 1;
+    size_t bytes = side->at;
+    int mpi;
+    side->at = 0;
+    if (bytes) {
+        mpi = comm_pieces_send(comm, buffer, channel->bytes, channel->peer, channel->tag, request);
+    } else {
+        bytes = plan_channel_pack(node, buffer);
+        mpi = (checked ? MPI_Issend : MPI_Isend)(buffer, (int)bytes, MPI_BYTE, channel->peer,
+                                                 channel->tag, comm->mpi, request);
+    }
+    return comm_mpi_ok(comm, mpi, "MPI_Isend") ? bytes : 0;
+}
+
+/* Once communication is broken, a message ends as if it had been sent. */
+static void channel_send(struct comm *comm, struct task *node, struct channel_side *side,
+                         struct comm_found *found)
+{
     MPI_Request *request = &side->request[side->turn % 2];
     int free = 1;
     if (!comm_is_broken(comm) && *request != MPI_REQUEST_NULL &&
@@ -249,49 +288,56 @@ static void channel_send(struct comm *comm, struct task *node, struct channel_si
         return;
     }
     if (comm_is_broken(comm)) {
-        plan_channel_lost(node);
-        node_push(over, node);
+        if (!side->at)
+            plan_channel_lost(node);
+        node_push(&found->nodes, node);
         return;
     }
-    void *buffer = side->buffer[side->turn % 2];
-    size_t bytes = plan_channel_pack(node, buffer);
-    bool large = channel->bytes > INT_MAX;
-    int count = (int)(large ? (bytes + 63) / 64 : bytes);
-    MPI_Datatype type = large ? comm->line : MPI_BYTE;
-    int mpi = side->turn++ % CHECKED_TURN == CHECKED_TURN - 1
-                  ? MPI_Issend(buffer, count, type, channel->peer, channel->tag, comm->mpi, request)
-                  : MPI_Isend(buffer, count, type, channel->peer, channel->tag, comm->mpi, request);
-    if (comm_mpi_ok(comm, mpi, "MPI_Isend")) {
+    if (side_is_large(side) && !side->at) {
+        node_push(&found->copies, node);
+        return;
+    }
+    const size_t bytes = channel_isend(comm, node, side);
+    if (bytes) {
         atomic_fetch_add_explicit(&comm->messages, 1, memory_order_relaxed);
         atomic_fetch_add_explicit(&comm->bytes, bytes, memory_order_relaxed);
-        comm_note(comm, true, channel->peer, bytes);
+        comm_note(comm, true, side->channel->peer, bytes);
     }
-    node_push(over, node);
+    node_push(&found->nodes, node);
+}
+
+/* From now on the receive that was posted is looked for. */
+static void channel_listen(struct comm *comm, struct channel_side *side)
+{
+    MPI_Request *request = &side->request[side->turn % 2];
+    *comm_requests_place(&comm->channels.awaited) = *request;
+    comm_requests_started(&comm->channels.awaited, side);
+    *request = MPI_REQUEST_NULL;
 }
 
 static void channel_await(struct comm *comm, struct task *node, struct channel_side *side,
-                          struct task **over)
+                          struct comm_found *found)
 {
     if (comm->channels.lost) {
         plan_channel_lost(node);
-        node_push(over, node);
+        node_push(&found->nodes, node);
         return;
     }
-    *comm_requests_place(&comm->channels.awaited) = side->request[side->turn % 2];
-    comm_requests_started(&comm->channels.awaited, side);
-    side->request[side->turn % 2] = MPI_REQUEST_NULL;
+    if (side_is_large(side))
+        channel_post_receive(comm, side, side->turn);
+    channel_listen(comm, side);
 }
 
-static void nodes_start(struct comm *comm, struct task *nodes, struct task **over)
+static void nodes_start(struct comm *comm, struct task *nodes, struct comm_found *found)
 {
     while (nodes) {
         struct task *node = nodes;
         struct channel_side *side = plan_channel_of(node)->own;
         nodes = node->next;
         if (side->channel->sends)
-            channel_send(comm, node, side, over);
+            channel_send(comm, node, side, found);
         else
-            channel_await(comm, node, side, over);
+            channel_await(comm, node, side, found);
     }
 }
 
@@ -306,38 +352,72 @@ static bool channel_fits(struct comm *comm, int mpi)
     return false;
 }
 
-static void channels_receive(struct comm *comm, struct task **over)
+/* A piece of a large message came. Whether it was the last one. */
+static bool channel_is_through(struct comm *comm, struct comm_found *found,
+                               struct channel_side *side)
+{
+    if (comm_is_last_piece(side->channel->bytes, side->at))
+        return true;
+    found->more = true;
+    side->at += comm_piece_bytes;
+    channel_post_receive(comm, side, side->turn);
+    channel_listen(comm, side);
+    return false;
+}
+
+static void channels_receive(struct comm *comm, struct comm_found *found)
 {
     struct comm_requests *awaited = &comm->channels.awaited;
     int done;
     if (!channel_fits(comm, comm_requests_test(awaited, &done)))
         return;
-    for (int i = 0; i < done; i++) {
-        struct channel_side *side = awaited->what[awaited->n + i];
-        plan_channel_unpack(side->channel->node, side->buffer[side->turn % 2]);
+    for (int i = 0, n = awaited->n; i < done; i++) { /* next pieces take the places before i */
+        struct channel_side *side = awaited->what[n + i];
+        struct task *node = side->channel->node;
         atomic_fetch_add_explicit(&comm->came, 1, memory_order_relaxed);
+        if (side_is_large(side) && !channel_is_through(comm, found, side))
+            continue;
         comm_note(comm, false, side->channel->peer, side->channel->bytes);
+        if (side_is_large(side)) {
+            node_push(&found->copies, node);
+            continue;
+        }
+        plan_channel_unpack(node, side->buffer[side->turn % 2]);
         channel_post_receive(comm, side, side->turn++);
-        node_push(over, side->channel->node);
+        node_push(&found->nodes, node);
     }
 }
 
-struct task *comm_channels_pass(struct comm *comm, struct task *over)
+void comm_channels_pass(struct comm *comm, struct comm_found *found)
 {
     struct comm_channels *channels = &comm->channels;
     int before = channels->awaited.n;
     if (!BASE_STACK_IS_EMPTY(&channels->ready))
-        nodes_start(comm, BASE_STACK_TAKE(&channels->ready), &over);
+        nodes_start(comm, BASE_STACK_TAKE(&channels->ready), found);
     if (channels->stalled) {
         struct task *nodes = channels->stalled;
         channels->stalled = NULL;
-        nodes_start(comm, nodes, &over);
+        nodes_start(comm, nodes, found);
     }
     if (channels->awaited.n)
-        channels_receive(comm, &over);
+        channels_receive(comm, found);
     comm_arrivals_also(&comm->arrivals, channels->awaited.n - before);
     atomic_store_explicit(&channels->awaits, channels->awaited.n > 0, memory_order_relaxed);
-    return over;
+}
+
+bool comm_channel_copy(struct comm *comm, struct task *node)
+{
+    struct channel_side *side = plan_channel_of(node)->own;
+    void *buffer = side->buffer[side->turn % 2];
+    if (side->channel->sends) {
+        side->at = plan_channel_pack(node, buffer);
+        comm_channel_post(comm, node);
+        return false;
+    }
+    plan_channel_unpack(node, buffer);
+    side->at = 0;
+    side->turn++;
+    return true;
 }
 
 void comm_channels_look(struct comm *comm, const struct comm_looker *looker)

@@ -159,25 +159,27 @@ static void comm_receive_seldom(struct comm *comm, struct comm_found *found)
 
 static inline bool comm_pass(struct comm *comm, struct worker *worker, bool looks)
 {
-    bool any = false, outer = passing;
+    bool any = false, more, outer = passing;
     passing = true;
     do {
         struct comm_found found = {0};
         if (!comm_try_lock(comm))
             break;
         comm->worker = worker;
-        if (comm->sends.n || !BASE_STACK_IS_EMPTY(&comm->posts))
+        if (comm->sends.n || comm->stalled || !BASE_STACK_IS_EMPTY(&comm->posts))
             comm_transport_send(comm, &found);
-        found.nodes = comm_channels_pass(comm, NULL);
+        comm_channels_pass(comm, &found);
         if (looks)
             comm_receive_seldom(comm, &found);
+        comm_heartbeat_pass(comm);
         comm_unlock(comm);
         any |= found.any;
-        if (found.packets || found.sent || found.nodes) {
+        more = found.more;
+        if (found.packets || found.sent || found.nodes || found.copies) {
             any = true;
             comm_transport_deliver(comm, worker, &found);
         }
-    } while (comm_left_to_us(comm));
+    } while (more || comm_left_to_us(comm));
     passing = outer;
     return any;
 }

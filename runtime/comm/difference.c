@@ -1,7 +1,8 @@
 /* The first difference between ranks, found when a difference is already certain. Rank 0 alone asks
  * all ranks for their histories, once, and breaks with one sentence, which its abort message takes
- * to all. Whoever finds a difference tells rank 0. If rank 0 is not heard in time, that rank breaks
- * with what it knows; so does rank 0 for ranks that do not answer.
+ * to all. Whoever finds a difference tells rank 0. Rank 0 waits as long as answers come: none for
+ * so long that a silent rank would be lost, and it breaks with what it knows. So does the rank that
+ * told rank 0, after twice that time.
  *
  * The reference is a history that grows: rank 0's, and beyond its end the calls of ranks that have
  * the same up to there. The fingerprint of a call depends on all calls before it, so two histories
@@ -11,11 +12,9 @@
 #include "runtime/comm/internal.h"
 #include "runtime/comm/verdict.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
-
-#define ANSWER_SECONDS  1.0 /* rank 0 waits so long for histories */
-#define VERDICT_SECONDS 3.0 /* and all others for rank 0 */
 
 /* COMM_DIFFERS: a rank found a difference at its blocking call of that number. COMM_INQUIRY: only
  * the number. */
@@ -38,6 +37,14 @@ static void difference_conclude(struct comm *comm)
     comm->difference.until = 0;
     comm_verdict_find(comm, &verdict);
     comm_broke(comm, DUITE_E_DIFFERENT, verdict.text);
+}
+
+/* From now on it waits for as long as all ranks may be silent. */
+static void difference_wait(struct comm *comm)
+{
+    const double seconds = comm->heartbeat.seconds;
+    comm->difference.until =
+        seconds > 0 ? base_seconds() + (comm->rank ? 2 : 1) * seconds : (double)INFINITY;
 }
 
 /* ---- Answers, on rank 0 ---- */
@@ -88,6 +95,7 @@ static void difference_take(struct comm *comm, int from, const struct difference
     rank->has_homes = answer->has_homes;
     rank->homes = answer->homes;
     reference_compare(&inquiry->reference, rank, &answer->history);
+    difference_wait(comm);
     if (++inquiry->answers == comm->n_ranks)
         difference_conclude(comm);
 }
@@ -160,7 +168,7 @@ void comm_difference_found(struct comm *comm, uint64_t number, const char *messa
     difference->found = true;
     difference->number = number;
     snprintf(difference->message, sizeof difference->message, "%s", message);
-    difference->until = base_seconds() + (comm->rank ? VERDICT_SECONDS : ANSWER_SECONDS);
+    difference_wait(comm);
     if (comm->rank)
         difference_report(comm);
     else

@@ -67,21 +67,43 @@ static void heartbeat_send(struct comm *comm, char which)
         heartbeat->last_sent = which == LAST_HEARTBEAT;
 }
 
-/* A look of the monitor. False: a worker polls, and the look is made again soon. */
+static void heartbeat_make_look(struct comm *comm)
+{
+    struct comm_heartbeat *heartbeat = &comm->heartbeat;
+    if (comm_is_lost(comm))
+        return;
+    heartbeat_send(comm, HEARTBEAT);
+    heartbeat->silent = heartbeat_hear(comm) ? 0 : heartbeat->silent + 1;
+    if (heartbeat->silent >= COMM_SILENT_LOOKS)
+        heartbeat_lost(comm);
+}
+
+void comm_heartbeat_pass(struct comm *comm)
+{
+    _Atomic int *state = &comm->heartbeat.state;
+    if (atomic_load_explicit(state, memory_order_relaxed) != COMM_LOOK_DUE)
+        return;
+    heartbeat_make_look(comm);
+    atomic_store_explicit(state, COMM_LOOK_MADE, memory_order_relaxed);
+}
+
+/* A look of the monitor. False: a worker polls, and the monitor comes again soon, for the lock or
+ * to find that the look was made. */
 static bool heartbeat_look(void *context)
 {
     struct comm *comm = context;
-    struct comm_heartbeat *heartbeat = &comm->heartbeat;
-    if (!comm_try_lock(comm))
+    _Atomic int *state = &comm->heartbeat.state;
+    const bool locked = comm_try_lock(comm);
+    const int before = atomic_load_explicit(state, memory_order_relaxed);
+    if (!locked && before == COMM_LOOK_DUE)
         return false;
-    if (!comm_is_lost(comm)) {
-        heartbeat_send(comm, HEARTBEAT);
-        heartbeat->silent = heartbeat_hear(comm) ? 0 : heartbeat->silent + 1;
-        if (heartbeat->silent >= COMM_SILENT_LOOKS)
-            heartbeat_lost(comm);
-    }
-    comm_unlock(comm); /* what was posted meanwhile is sent by the next poll */
-    return true;
+    if (locked && before != COMM_LOOK_MADE)
+        heartbeat_make_look(comm);
+    const bool made = locked || before == COMM_LOOK_MADE;
+    atomic_store_explicit(state, made ? COMM_LOOK_NOT_DUE : COMM_LOOK_DUE, memory_order_relaxed);
+    if (locked)
+        comm_unlock(comm); /* what was posted meanwhile is sent by the next poll */
+    return made;
 }
 
 /* ---- The beginning ---- */

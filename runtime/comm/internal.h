@@ -11,8 +11,10 @@
  * control messages), and at the end the comm itself. "Under the lock" means: the caller holds
  * comm->lock. */
 
-/* Tags: of packets, of heartbeats, and from the last one on of channels. */
-enum { COMM_PACKETS, COMM_HEARTBEATS, COMM_CHANNELS };
+/* Tags: of packets, of heartbeats, some of the pieces of packets, and from the last one on of
+ * channels. */
+enum { COMM_PIECE_TAGS = 16 };
+enum { COMM_PACKETS, COMM_HEARTBEATS, COMM_PIECES, COMM_CHANNELS = COMM_PIECES + COMM_PIECE_TAGS };
 
 /* ---- Transport: packets between ranks (transport.c) ---- */
 
@@ -20,8 +22,10 @@ enum { COMM_PACKETS, COMM_HEARTBEATS, COMM_CHANNELS };
 struct comm_found {
     struct data_packet *packets;
     struct task *sent;
-    struct task *nodes; /* of channels whose message is through */
+    struct task *nodes;  /* of channels whose message is through */
+    struct task *copies; /* of channels whose message is large: see comm_channel_copy */
     bool any;
+    bool more; /* so much came that the lock is let go before the rest is received */
 };
 
 /* Under the lock: sends what was posted, and receives what came. */
@@ -30,6 +34,38 @@ void comm_transport_receive(struct comm *comm, struct comm_found *found);
 
 /* Without the lock: delivers all of it to whatever expects it. */
 void comm_transport_deliver(struct comm *comm, struct worker *worker, struct comm_found *found);
+
+/* ---- Pieces (pieces.c) ---- */
+
+/* A message of more bytes than this is sent in pieces of so many. MPI may copy a whole message in
+ * one call, seconds long if it is large, and the lock is held meanwhile; it is let go between two
+ * pieces. A piece takes some 10 ms. Tests make pieces smaller, alike on all ranks. */
+enum { COMM_PIECE_BYTES = 1 << 24 };
+extern size_t comm_piece_bytes;
+
+static inline bool comm_is_large(size_t bytes)
+{
+    return bytes > comm_piece_bytes;
+}
+
+/* Whether no other piece of a message of so many bytes follows the one that begins at `at`. */
+static inline bool comm_is_last_piece(size_t bytes, size_t at)
+{
+    return bytes - at <= comm_piece_bytes;
+}
+
+/* The next three return what MPI does, and are under the lock. Sends all pieces; the request is
+ * over when the receiver has them, but for a last one that it is receiving. */
+int comm_pieces_send(struct comm *comm, const void *from, size_t bytes, int to, int tag,
+                     MPI_Request *request);
+
+/* Posts the receive of the piece that begins at `at`, when the one before is over. A message that
+ * is not large is its only piece. */
+int comm_piece_receive(struct comm *comm, void *into, size_t bytes, size_t at, int from, int tag,
+                       MPI_Request *request);
+
+/* Receives all pieces, which are on their way, and forgets them. */
+void comm_pieces_forget(struct comm *comm, size_t bytes, int from, int tag);
 
 /* ---- Tags of channels (tags.c) ---- */
 
@@ -91,9 +127,12 @@ bool comm_channels_stop(struct comm *comm);
 /* Posts a node that is ready; the caller makes sure that a worker polls afterwards. Any thread. */
 void comm_channel_post(struct comm *comm, struct task *node);
 
-/* Under the lock: sends and receives what can be; the nodes that are through are linked before
- * `over`, which is returned. */
-struct task *comm_channels_pass(struct comm *comm, struct task *over);
+/* Under the lock: sends and receives what can be, and finds nodes. */
+void comm_channels_pass(struct comm *comm, struct comm_found *found);
+
+/* Without the lock, for a node of `copies`: writes its message, which is posted then, or reads the
+ * one that came. True: the node is through. */
+bool comm_channel_copy(struct comm *comm, struct task *node);
 
 /* Under the lock: communication is broken, and nothing is awaited any more. */
 void comm_channels_give_up(struct comm *comm);
@@ -111,14 +150,20 @@ void comm_channels_look(struct comm *comm, const struct comm_looker *looker);
  * on each side a rank listens to one of the other side.
  *
  * The monitor sends heartbeats, not the poll of the workers: all workers may be inside long bodies,
- * and such a rank is not lost. The monitor calls MPI under the lock, like the workers. It adds
- * nothing to the path of a task or a message. Silence is counted in looks, not in seconds, so that
- * the time in which this process itself was stopped, or got no core, does not count. */
+ * and such a rank is not lost. The monitor calls MPI under the lock, like the workers. While they
+ * move large messages the lock is hardly ever free, so whoever has it makes the look that is due.
+ * Silence is counted in looks, not in seconds, so that the time in which this process itself was
+ * stopped, or got no core, does not count. */
 enum { COMM_SILENT_LOOKS = 16, COMM_HOST_NAME = 64 };
+
+/* Of the look that the monitor cannot make: it says that the look is due, whoever has the lock
+ * makes it, and the monitor takes notice. */
+enum comm_look_state { COMM_LOOK_NOT_DUE, COMM_LOOK_DUE, COMM_LOOK_MADE };
 
 struct comm_heartbeat {
     struct base_monitor *monitor;
     struct base_look look;
+    _Atomic int state;         /* enum comm_look_state */
     double seconds;            /* until a silent rank is lost; 0: nobody listens */
     char host[COMM_HOST_NAME]; /* of the rank before this one */
     /* Under the lock of the comm: */
@@ -131,6 +176,9 @@ struct comm_heartbeat {
 /* Registers with the monitor, which does nothing before comm_heartbeat_open. comm_heartbeat_stop is
  * due all the same. Errors: DUITE_E_SYSTEM, memory. */
 int comm_heartbeat_start(struct comm *comm, struct base_monitor *monitor);
+
+/* Under the lock of the comm: makes the look if one is due. */
+void comm_heartbeat_pass(struct comm *comm);
 
 /* Under the lock of the comm: heartbeats begin, if `seconds`, the same on all ranks, is > 0.
  * `host`: of the rank before this one. */
@@ -164,7 +212,8 @@ struct comm {
     int rank, n_ranks;
     atomic_flag lock;
     _Atomic(struct task *) posts;
-    struct comm_requests sends, receives; /* touched by the holder of `lock` only */
+    struct comm_requests sends, receives; /* touched by the holder of `lock` only, like: */
+    struct task *stalled; /* large messages that wait for others, in the order of their posts */
     struct comm_arrivals arrivals;
     struct comm_channels channels;
     _Atomic int broken;

@@ -1,6 +1,10 @@
 /* Packets between ranks: a SEND becomes a message, and a message that comes goes to the version,
  * sum or task that expects it. Once communication is broken nothing is sent any more: posted tasks
- * end as if they had been sent. */
+ * end as if they had been sent.
+ *
+ * Of a large packet the header is a message of its own, and the payload follows in pieces, by a tag
+ * that the key gives. Of two that go to the same rank by the same tag the second waits until the
+ * first is through: so pieces of two messages are never mixed up. */
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
 #include "runtime/base/stack.h"
@@ -8,6 +12,46 @@
 #include "runtime/offload/offload.h"
 
 /* ---- Sending ---- */
+
+/* Control messages go whole. */
+static bool packet_is_large(const struct data_packet *packet)
+{
+    return packet->kind < COMM_ABORT && comm_is_large(packet->bytes);
+}
+
+static int pieces_tag(const struct data_packet *packet)
+{
+    return COMM_PIECES + (int)((packet->key.slot + packet->key.number) % COMM_PIECE_TAGS);
+}
+
+/* Whether a large message must wait for another one. */
+static bool message_stalls(struct comm *comm, struct task *task)
+{
+    const struct data_packet *packet = comm_is_broken(comm) ? NULL : task_send_packet(task);
+    if (!packet || !packet_is_large(packet))
+        return false;
+    for (int i = 0; i < comm->sends.n; i++) {
+        struct task *other = comm->sends.what[i];
+        const struct data_packet *sent = task_send_packet(other);
+        if (other->send->to == task->send->to && packet_is_large(sent) &&
+            pieces_tag(sent) == pieces_tag(packet))
+            return true;
+    }
+    return false;
+}
+
+static int packet_isend(struct comm *comm, struct data_packet *packet, int to, MPI_Request *request)
+{
+    const bool large = packet_is_large(packet);
+    const size_t lines = large ? 1 : data_packet_lines(packet->bytes);
+    int mpi = MPI_Isend(packet, (int)lines, comm->line, to, COMM_PACKETS, comm->mpi, request);
+    if (mpi != MPI_SUCCESS || !large)
+        return mpi;
+    mpi = MPI_Request_free(request);
+    return mpi == MPI_SUCCESS ? comm_pieces_send(comm, data_payload(packet), packet->bytes, to,
+                                                 pieces_tag(packet), request)
+                              : mpi;
+}
 
 /* False: it was not sent, and never will be. */
 static bool message_send(struct comm *comm, struct task *task)
@@ -21,9 +65,7 @@ static bool message_send(struct comm *comm, struct task *task)
         return false;
     }
     size_t lines = data_packet_lines(packet->bytes);
-    int mpi =
-        MPI_Isend(packet, (int)lines, comm->line, task->send->to, COMM_PACKETS, comm->mpi, request);
-    if (!comm_mpi_ok(comm, mpi, "MPI_Isend"))
+    if (!comm_mpi_ok(comm, packet_isend(comm, packet, task->send->to, request), "MPI_Isend"))
         return false;
     comm_requests_started(&comm->sends, task);
     atomic_fetch_add_explicit(&comm->messages, 1, memory_order_relaxed);
@@ -40,15 +82,26 @@ static void message_push_sent(struct comm_found *found, struct task *task)
 
 void comm_transport_send(struct comm *comm, struct comm_found *found)
 {
-    struct task *in_order = BASE_STACK_TAKE(&comm->posts);
-    BASE_LIST_REVERSE(in_order);
+    struct task *posts = BASE_STACK_TAKE(&comm->posts), *in_order = comm->stalled;
+    struct task **end = &in_order;
+    BASE_LIST_REVERSE(posts);
+    while (*end)
+        end = &(*end)->next;
+    *end = posts;
+    end = &comm->stalled;
     while (in_order) {
         struct task *task = in_order;
         in_order = task->next;
+        if (message_stalls(comm, task)) {
+            *end = task;
+            end = &task->next;
+            continue;
+        }
         found->any = true;
         if (!message_send(comm, task))
             message_push_sent(found, task);
     }
+    *end = NULL;
     int done;
     comm_mpi_ok(comm, comm_requests_test(&comm->sends, &done), "MPI_Testsome");
     for (int i = 0; i < done; i++)
@@ -60,7 +113,7 @@ void comm_transport_send(struct comm *comm, struct comm_found *found)
 /* A message that there is no memory for. A control message needs none: a rank that is about to
  * leave must not break for want of memory, since others may have left. Any other is lost: MPI
  * forgets it, and its sender goes on. */
-static void message_receive_scarce(struct comm *comm, MPI_Message *message, int lines)
+static void message_receive_scarce(struct comm *comm, MPI_Message *message, int lines, int from)
 {
     struct data_packet *spare = comm->control.spare;
     if (lines > (int)data_packet_lines(sizeof(struct comm_abort))) {
@@ -69,11 +122,82 @@ static void message_receive_scarce(struct comm *comm, MPI_Message *message, int 
         return;
     }
     int mpi = MPI_Mrecv(spare, lines, comm->line, message, MPI_STATUS_IGNORE);
-    if (comm_mpi_ok(comm, mpi, "MPI_Mrecv") && !comm_control_hear(comm, spare))
-        comm_broke_memory(comm, "a message");
+    if (!comm_mpi_ok(comm, mpi, "MPI_Mrecv") || comm_control_hear(comm, spare))
+        return;
+    comm_broke_memory(comm, "a message");
+    if (packet_is_large(spare))
+        comm_pieces_forget(comm, spare->bytes, from, pieces_tag(spare));
 }
 
-static bool message_receive(struct comm *comm)
+/* A packet is here. */
+static void message_came(struct comm *comm, struct comm_found *found, struct data_packet *packet)
+{
+    data_packet_came(packet);
+    if (comm_control_hear(comm, packet)) {
+        data_packet_free(packet);
+        return;
+    }
+    atomic_fetch_add_explicit(&comm->came, 1, memory_order_relaxed);
+    packet->next = found->packets;
+    found->packets = packet;
+}
+
+/* Posts the receive of the next piece; there is room for its request. */
+static void large_receive(struct comm *comm, struct data_packet *packet)
+{
+    MPI_Request *request = comm_requests_place(&comm->receives);
+    int mpi = comm_piece_receive(comm, data_payload(packet), packet->bytes, packet->came,
+                                 (int)packet->from, pieces_tag(packet), request);
+    if (comm_mpi_ok(comm, mpi, "MPI_Irecv"))
+        comm_requests_started(&comm->receives, packet);
+}
+
+/* The header of a large packet came, in a packet of its own, which is freed. */
+static void large_begin(struct comm *comm, struct data_packet *header, int from)
+{
+    struct data_packet *packet = data_packet_new(header->bytes, false);
+    if (packet && comm_requests_place(&comm->receives)) {
+        *packet = *header;
+        data_packet_came(packet);
+        packet->came = 0;
+        packet->from = (uint64_t)from;
+        large_receive(comm, packet);
+    } else {
+        data_packet_free(packet);
+        comm_broke_memory(comm, "a message");
+        comm_pieces_forget(comm, header->bytes, from, pieces_tag(header));
+    }
+    header->lines = 1;
+    data_packet_free(header);
+}
+
+/* A piece came. Whether it was the last one. */
+static bool large_is_through(struct comm *comm, struct comm_found *found,
+                             struct data_packet *packet)
+{
+    if (comm_is_last_piece(packet->bytes, packet->came))
+        return true;
+    found->more = true;
+    atomic_fetch_add_explicit(&comm->came, 1, memory_order_relaxed);
+    packet->came += comm_piece_bytes;
+    large_receive(comm, packet);
+    return false;
+}
+
+/* A message of one line comes whole; it may be the header of a large packet. */
+static void message_receive_line(struct comm *comm, struct comm_found *found, MPI_Message *message,
+                                 struct data_packet *packet, int from)
+{
+    int mpi = MPI_Mrecv(packet, 1, comm->line, message, MPI_STATUS_IGNORE);
+    if (!comm_mpi_ok(comm, mpi, "MPI_Mrecv"))
+        data_packet_free(packet);
+    else if (packet_is_large(packet))
+        large_begin(comm, packet, from);
+    else
+        message_came(comm, found, packet);
+}
+
+static bool message_receive(struct comm *comm, struct comm_found *found, size_t *received)
 {
     int there = 0, lines = 0;
     MPI_Message message;
@@ -85,11 +209,17 @@ static bool message_receive(struct comm *comm)
     if (!comm_mpi_ok(comm, mpi, "MPI_Get_count") || lines < 1)
         return false;
     size_t bytes = ((size_t)lines - 1) * sizeof(struct data_packet);
+    *received += bytes;
     struct data_packet *packet = data_packet_new(bytes, false);
     MPI_Request *request = packet ? comm_requests_place(&comm->receives) : NULL;
     if (!request) {
         data_packet_free(packet);
-        message_receive_scarce(comm, &message, lines);
+        message_receive_scarce(comm, &message, lines, status.MPI_SOURCE);
+        return true;
+    }
+    comm_note(comm, false, status.MPI_SOURCE, (size_t)lines * sizeof *packet);
+    if (lines == 1) {
+        message_receive_line(comm, found, &message, packet, status.MPI_SOURCE);
         return true;
     }
     mpi = MPI_Imrecv(packet, lines, comm->line, &message, request);
@@ -98,28 +228,24 @@ static bool message_receive(struct comm *comm)
         return false;
     }
     comm_requests_started(&comm->receives, packet);
-    comm_note(comm, false, status.MPI_SOURCE, (size_t)lines * sizeof *packet);
     return true;
 }
 
 void comm_transport_receive(struct comm *comm, struct comm_found *found)
 {
+    size_t received = 0;
     int done;
-    while (message_receive(comm))
+    while (received < comm_piece_bytes && message_receive(comm, found, &received))
         found->any = true;
+    found->more |= received >= comm_piece_bytes;
     if (!comm->receives.n)
         return;
     comm_mpi_ok(comm, comm_requests_test(&comm->receives, &done), "MPI_Testsome");
-    for (int i = 0; i < done; i++) {
-        struct data_packet *packet = comm->receives.what[comm->receives.n + i];
-        data_packet_came(packet);
-        if (comm_control_hear(comm, packet)) {
-            data_packet_free(packet);
-            continue;
-        }
-        atomic_fetch_add_explicit(&comm->came, 1, memory_order_relaxed);
-        packet->next = found->packets;
-        found->packets = packet;
+    for (int i = 0, n = comm->receives.n; i < done;
+         i++) { /* next pieces take the places before i */
+        struct data_packet *packet = comm->receives.what[n + i];
+        if (!packet_is_large(packet) || large_is_through(comm, found, packet))
+            message_came(comm, found, packet);
     }
 }
 
@@ -171,6 +297,12 @@ void comm_transport_deliver(struct comm *comm, struct worker *worker, struct com
             offload_result_arrived(comm->graph, worker, packet);
         else
             message_deliver_value(comm, worker, packet);
+    }
+    while (found->copies) {
+        struct task *node = found->copies;
+        found->copies = node->next;
+        if (comm_channel_copy(comm, node))
+            work_finish(comm->graph, worker, node);
     }
     while (found->nodes) {
         struct task *node = found->nodes;

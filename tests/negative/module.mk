@@ -23,6 +23,9 @@ tests_negative_ranks_system_LDFLAGS = -Wl,--wrap=pthread_create,--wrap=mmap
 check_PROGRAMS += tests/negative/ranks_lost
 tests_negative_ranks_lost_SOURCES = tests/negative/ranks_lost.c $(MISUSE)
 tests_negative_ranks_lost_LDADD = $(CORE_LIBS)
+check_PROGRAMS += tests/negative/ranks_large
+tests_negative_ranks_large_SOURCES = tests/negative/ranks_large.c $(MISUSE)
+tests_negative_ranks_large_LDADD = $(CORE_LIBS)
 dist_check_SCRIPTS += tests/negative/test_ranks.sh tests/negative/test_lost.sh tests/negative/test_environment.sh
 TESTS += tests/negative/test_ranks.sh tests/negative/test_lost.sh tests/negative/test_environment.sh
 dist_check_SCRIPTS += tests/negative/test_lost_long.sh tests/negative/test_memory_long.sh

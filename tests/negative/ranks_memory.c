@@ -1,12 +1,14 @@
 /* Out of memory at every allocation in turn, on one rank: nothing hangs, nothing crashes, what is
- * returned as good is right, and the next start finds a clean process. */
+ * returned as good is right, and the next start finds a clean process. With an argument objects are
+ * sent in pieces. */
 
+#include "runtime/comm/internal.h"
 #include "tests/negative/misuse.h"
 #include "tests/negative/starve.h"
 
 #include <stdint.h>
 
-enum { OBJECTS = 6, COUNT = 40 };
+enum { OBJECTS = 6, COUNT = 40, PIECE = 64 };
 
 static int ranks;
 
@@ -152,10 +154,13 @@ static int run(void)
     return fine && rt == NULL && (!code || stopped || code == DUITE_E_MEMORY);
 }
 
-int main(void)
+int main(int argc, char **argv)
 {
+    (void)argv;
     misuse_mpi();
     MPI_Comm_size(MPI_COMM_WORLD, &ranks);
+    if (argc > 1)
+        comm_piece_bytes = PIECE;
     starve("tasks", run);
     return tap_done();
 }

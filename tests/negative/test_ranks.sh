@@ -8,6 +8,7 @@ ok "out of memory on 1 rank with graphs" ranks 1 tests/negative/ranks_memory_gra
 ok "the system refuses on 1 rank" ranks 1 tests/negative/ranks_system
 # On 3 ranks: test_memory_long.sh.
 ok "out of memory on 2 ranks" ranks 2 tests/negative/ranks_memory
+ok "out of memory on 2 ranks, whose messages go in pieces" ranks 2 tests/negative/ranks_memory pieces
 ok "out of memory on 2 ranks with graphs" ranks 2 tests/negative/ranks_memory_graphs
 ok "out of memory on 2 ranks while objects move" ranks 2 tests/negative/ranks_memory_graphs wander
 for n in 2 3; do

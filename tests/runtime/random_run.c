@@ -3,6 +3,8 @@
 
 #include "tests/runtime/random_run.h"
 
+#include "runtime/comm/internal.h"
+
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
@@ -301,6 +303,9 @@ static void operation(struct run *run, const struct prog_op *op, const struct pr
     }
 }
 
+/* Bytes of the pieces of large messages; what a program sends has some hundreds at most. */
+static const size_t PIECES[] = {40, 100, 300, COMM_PIECE_BYTES};
+
 static void run_operations(struct run *run, const struct prog_setup *setup,
                            struct prog_context *context, volatile size_t *where)
 {
@@ -320,6 +325,7 @@ static void run_operations(struct run *run, const struct prog_setup *setup,
     options.bind = 0;
     options.window = setup->window;
     options.rename_bytes = setup->rename;
+    comm_piece_bytes = PIECES[setup->seed % (sizeof PIECES / sizeof *PIECES)];
     run->moves = options.balance->migrate || options.mapping->map_tasks;
     const int code = duite_start(&run->rt, &options);
 

@@ -1,10 +1,13 @@
 /* Recorded graphs on several ranks where MPI has hardly any tags: they are handed out again, the
  * same on all ranks, though a graph that was freed still runs on one of them. Run under mpirun. */
 
+#include "runtime/comm/internal.h"
 #include "tests/negative/misuse.h"
 
 #include <stdint.h>
 #include <unistd.h>
+
+enum { FEW_TAGS = COMM_CHANNELS + 8 };
 
 static int rank, ranks, tags;
 
@@ -115,9 +118,9 @@ int main(void)
     misuse_mpi();
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
     MPI_Comm_size(MPI_COMM_WORLD, &ranks);
-    for (tags = 10; tags < 40; tags += 9)
+    for (tags = FEW_TAGS; tags < FEW_TAGS + 30; tags += 9)
         tap_case(many(), "tags are handed out again");
-    tags = 10;
+    tags = FEW_TAGS;
     tap_case(too_many(), "graphs that have no tags are refused on all ranks");
     return tap_done();
 }

@@ -200,6 +200,14 @@ bad "the file has no \"properties\"" -e 's/"properties"/"parameters"/'
 bad "the pattern has no panels" -e 's/"panels": {/"panels": {}, "panel_order": {/; s/"stitches": .*/"stitches": []/'
 bad "has the key edge twice" -e 's/"edge": 4/"edge": 4, "edge": 4/'
 bad "not JSON" -e 's/\[40, 0\],/[40, 0] "/'
+bad "bad.json:8:9: a comment begins here, and JSON has none: take it out" -e '8s,"translation",// "translation",'
+bad "bad.json:1:1: a comment begins here, and JSON has none: take it out" -e '1s,^,/* "a" */,'
+kept() { # slashes in a text are none
+    sed 's,"label": "",&,; s,"translation": ,"label": "http://a/*bc", "translation": ,' "$patterns/dart.json" > bad.json && run bad.json -e 0.05 -o x.obj 2> said
+    cat said
+    ! grep "a comment" said
+}
+ok "slashes in a text are no comment" kept
 
 hostile() { # NAME TEXT: no crash, one sentence
     printf '%b' "$2" > hostile.json

@@ -9,6 +9,8 @@
 bool scene_scalar_number(const char *text, double *value);
 
 /* [+-] digits, from 0 to 2^32 - 1. */
+/* It would be a number with a point in place of its comma. */
+bool scene_scalar_has_comma(const char *text);
 bool scene_scalar_integer(const char *text, uint32_t *value);
 
 #endif

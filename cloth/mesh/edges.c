@@ -37,8 +37,8 @@ int mesh_edges_find(struct mesh_edges *edges, const struct mesh *mesh, struct cl
     if (mesh_sides_third(&sides, mesh->n_triangles, &third)) {
         code = cloth_fail(error, CLOTH_E_INPUT,
                           "triangle %u is the third at one edge (non-manifold); an edge may have "
-                          "at most two",
-                          third / 3);
+                          "at most two (triangles count from 1)",
+                          third / 3 + 1);
         goto done;
     }
     for (uint32_t i = 0; i < sides.n; i = mesh_sides_run(&sides, i))

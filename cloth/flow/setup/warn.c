@@ -16,9 +16,9 @@ static void describe_unusual(char *text, size_t size, const char *what,
     if (unusual->n)
         snprintf(text, size,
                  "%.200s%s%s that no face, edge or joint uses: %u, the first is vertex %u of cloth "
-                 "'%.60s'; %s",
+                 "'%.60s' (vertices count from 1); %s",
                  unusual->place ? unusual->place : "", unusual->place ? ": " : "", what, unusual->n,
-                 unusual->vertex, unusual->cloth->name, effect);
+                 unusual->vertex + 1, unusual->cloth->name, effect);
 }
 
 static void warn(struct flow *flow, const struct flow_particles *particles)
@@ -160,10 +160,10 @@ static void warn_of_inside(struct flow *flow)
             if (gap < -DEEP)
                 snprintf(flow->warning[9], size,
                          "%.200s%scloth '%.60s' starts inside obstacles[%u], a %s: vertex %u is %g "
-                         "m deep in it%s",
+                         "m deep in it (vertices count from 1)%s",
                          cloth->place ? cloth->place : "", cloth->place ? ": " : "",
                          cloth->name ? cloth->name : "", i,
-                         contact_kinds[model->obstacles[i].kind]->name, deepest, -gap,
+                         contact_kinds[model->obstacles[i].kind]->name, deepest + 1, -gap,
                          model_certifies(model)
                              ? ""
                              : "; the first step puts it out by the nearest way");

@@ -31,8 +31,8 @@ START_TEST(vertices_without_faces)
         if (n) {
             ck_assert_uint_eq(flow_vertices(flow), 4);
             warns(flow, 0,
-                  "a.yaml:4:9: vertices that no face, edge or joint uses: 1, the first is vertex 3 "
-                  "of cloth 'test'; ");
+                  "a.yaml:4:9: vertices that no face, edge or joint uses: 1, the first is vertex 4 "
+                  "of cloth 'test' (vertices count from 1); ");
             ck_assert_ptr_null(flow_warning(flow, 1));
         } else {
             ck_assert_msg(
@@ -64,13 +64,13 @@ START_TEST(pins_and_loads_that_move_nothing)
     setup_load(&setup, 3, 0, 1, 0);
     setup.load.pick.place = (char[]){"a.yaml:6:9"};
     ck_assert_int_eq(flow_prepare(&flow, &setup.model, 1, &error), 0);
-    warns(flow, 0, "vertices that no face, edge or joint uses: 2, the first is vertex 3 ");
+    warns(flow, 0, "vertices that no face, edge or joint uses: 2, the first is vertex 4 ");
     warns(
         flow, 1,
-        "a.yaml:5:9: pinned vertices that no face, edge or joint uses: 2, the first is vertex 4 ");
+        "a.yaml:5:9: pinned vertices that no face, edge or joint uses: 2, the first is vertex 5 ");
     warns(flow, 2,
           "a.yaml:6:9: loads on vertices that no face, edge or joint uses: 1, the first is vertex "
-          "3 ");
+          "4 ");
     ck_assert_ptr_null(flow_warning(flow, 3));
     flow_free(flow);
     setup_free(&setup);
@@ -101,9 +101,9 @@ START_TEST(a_start_inside_an_obstacle)
         else
             warns(flow, 0,
                   i == 2 ? "a.yaml:4:9: cloth 'test' starts inside obstacles[1], a sphere: vertex "
-                           "4 is 0.6 m deep in it"
+                           "5 is 0.6 m deep in it (vertices count from 1)"
                          : "a.yaml:4:9: cloth 'test' starts inside obstacles[1], a sphere: vertex "
-                           "1 is 0.1 m deep in it");
+                           "2 is 0.1 m deep in it (vertices count from 1)");
         flow_free(flow);
         setup_free(&setup);
     }

@@ -14,12 +14,16 @@ static struct mesh_edge make_edge(const struct mesh *mesh, const struct mesh_sid
     const uint32_t *pair = sides->pair + 2 * (size_t)sides->order[first];
     struct mesh_edge edge = {
         .a = pair[0], .b = pair[1], .opposite = {UINT32_MAX, UINT32_MAX}, .area = 0};
+    bool first_ascends = false;
     for (uint32_t i = first, n = 0; i < end; i++) {
         uint32_t side = sides->order[i], t = side / 3;
         if (t >= mesh->n_triangles)
             break;
         uint32_t corner[3];
         mesh_corners(mesh, t, corner);
+        const bool ascends = corner[side % 3] == edge.a;
+        edge.against = n && ascends == first_ascends;
+        first_ascends = ascends;
         edge.opposite[n++] = corner[(side % 3 + 2) % 3];
         edge.area += mesh_area(mesh->position, corner);
     }

@@ -190,6 +190,18 @@ bad "unknown key \"units\" in properties" -e 's/units_in_meter/units/'
 bad "units_in_meter is 0; it has to be 0.001 to 1e6" -e 's/"units_in_meter": 100/"units_in_meter": 0/'
 bad "units_in_meter is \"cm\"" -e 's/"units_in_meter": 100/"units_in_meter": "cm"/'
 bad "panel 'back' is 500 m large; panels have 0.001 to 100 m: is units_in_meter right?" -e 's/"units_in_meter": 100/"units_in_meter": 0.1/'
+units() { # UNITS: with so many in a metre the back has 0.5 m * 100 / UNITS
+    sed "s/\"units_in_meter\": 100/\"units_in_meter\": $1/" "$patterns/dart.json" > units.json && run units.json --vertices 300 -o x.obj --quiet 2> said
+    cat said
+}
+warns_of_units() {
+    units 5 && grep -qx "duite-garment: warning: units.json: panel 'back' is 10 m large; panels have 0.05 to 4 m: is units_in_meter right?" said &&
+        units 2000 && grep -q "panel 'back' is 0.025 m large" said && units 100 && ! test -s said &&
+        units 5 && printf 'schema: 1\ncloths: [{mesh: {pattern: {file: units.json, vertices: 300}}, material: m}]\nmaterials: {m: {density: 0.2, stretch: 100}}\n%s\n' \
+        'time: {h: 0.001, end: 0.001}' > units.yaml && limited "$DUITE_CLOTH" units.yaml --quiet 2> said && cat said &&
+        grep -q "units.yaml:2:[0-9]*: mesh: units.json: panel 'back' is 10 m large; panels have 0.05 to 4 m: is units_in_meter right?" said
+}
+ok "units that make a panel of 10 m draw a warning" warns_of_units
 bad "curvature_coords is world; it has to be" -e 's/"relative"/world/'
 bad "stitch 0: there is no panel 'front'" -e 's/"panel": "back", "edge": 4/"panel": "front", "edge": 4/'
 bad "stitch 0: the edge of panel 'back' is 7, but there are 7 edges, counted from 0" -e 's/"edge": 4/"edge": 7/'

@@ -82,7 +82,11 @@ static int read_file(struct model *model, struct garment_pattern *pattern,
                      struct cloth_error *inner)
 {
     char *path = scene_build_path(model, tree, scene_tree_get(tree, node, "file"), error);
-    const int code = path ? scene_read_pattern(pattern, path, inner) : error->code;
+    char text[200];
+    int code = path ? scene_read_pattern(pattern, path, inner) : error->code;
+    if (!code && garment_pattern_unusual(pattern, text, sizeof text))
+        code = scene_build_warn(model, tree, scene_tree_get(tree, node, "file"), error,
+                                "mesh: %.200s: %s", path, text);
     free(path);
     return code == CLOTH_E_IO ? CLOTH_E_INPUT : code; /* a scene that names no readable file */
 }

@@ -110,6 +110,33 @@ START_TEST(a_start_inside_an_obstacle)
 }
 END_TEST
 
+/* Two triangles of a square, the second one turned round. */
+START_TEST(windings_that_disagree)
+{
+    static const double place[] = {0, 0, 0, 1, 0, 0, 1, 0, 1, 0, 0, 1};
+    static const uint32_t triangles[2][6] = {{0, 2, 1, 0, 3, 2}, {0, 2, 1, 0, 2, 3}};
+    struct cloth_error error = {0};
+    struct flow *flow = NULL;
+    struct setup setup;
+    setup_sheet(&setup, 3);
+    mesh_free(&setup.cloth.mesh);
+    ck_assert_int_eq(mesh_inline(&setup.cloth.mesh, 4, place, 0, NULL, 2, triangles[_i], &error),
+                     0);
+    setup.cloth.mesh_place = (char[]){"a.yaml:4:9"};
+    setup.material.shear = 0;
+    ck_assert_int_eq(flow_prepare(&flow, &setup.model, 1, &error), CLOTH_OK);
+    if (_i)
+        warns(flow, 0,
+              "a.yaml:4:9: cloth 'test' has 1 edges whose two triangles are wound against each "
+              "other, the first is between vertices 1 and 3 (counted from 1): which side is its "
+              "outside differs there; turn the faces of one side round");
+    else
+        ck_assert_ptr_null(flow_warning(flow, 0));
+    flow_free(flow);
+    setup_free(&setup);
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("warnings");
@@ -117,6 +144,7 @@ int main(void)
     tcase_add_test(cases, vertices_without_faces);
     tcase_add_test(cases, pins_and_loads_that_move_nothing);
     tcase_add_test(cases, a_start_inside_an_obstacle);
+    tcase_add_loop_test(cases, windings_that_disagree, 0, 2);
     suite_add_tcase(suite, cases);
     return unit_run(suite);
 }

@@ -79,18 +79,45 @@ static void add_seam(struct threads *to, const double *position, const struct mo
     }
 }
 
+/* The first two seams of which a good part of the one's threads goes through the other. Seams that
+ * begin at one corner may touch near it. Triangles are in the order of the seams, and so are pairs.
+ * crossed, last: room, of each seam: triangles of the one that go through it; the last of these. */
+static bool find_crossed(const struct threads *threads, const struct cloth_list *pairs,
+                         const struct model_seams *seams, uint32_t *crossed, uint32_t *last,
+                         uint32_t found[2])
+{
+    const double PART = 0.25;
+    uint32_t now = UINT32_MAX;
+    for (const struct verify_pair *pair = pairs->items, *end = pair + pairs->n; pair < end;
+         pair++) {
+        const uint32_t one = threads->seam[pair->triangle[0]];
+        const uint32_t other = threads->seam[pair->triangle[1]];
+        if (one != now)
+            memset(crossed, 0, seams->n * sizeof *crossed);
+        crossed[other] += !crossed[other] || last[other] != pair->triangle[0];
+        last[other] = pair->triangle[0];
+        now = one;
+        found[0] = one;
+        found[1] = other;
+        if (one != other && crossed[other] >= PART * 2 * seams->seam[one].n_pairs)
+            return true;
+    }
+    return false;
+}
+
 static int warn_of_threads(struct model *model, const struct model_cloth *cloth,
                            const struct threads *threads, const struct cloth_list *pairs,
                            const struct scene_tree *tree, int node, struct cloth_error *error)
 {
-    const struct verify_pair *pair = pairs->items, *end = pair + pairs->n;
-    while (pair < end && threads->seam[pair->triangle[0]] == threads->seam[pair->triangle[1]])
-        pair++;
-    if (pair == end)
-        return CLOTH_OK;
     char one[MODEL_SEAM_NAME], other[MODEL_SEAM_NAME];
-    model_name_seam(cloth, threads->seam[pair->triangle[0]], one);
-    model_name_seam(cloth, threads->seam[pair->triangle[1]], other);
+    uint32_t found[2], *room = scene_build_array(2 * cloth->seams.n, sizeof *room, error);
+    const bool cross =
+        room && find_crossed(threads, pairs, &cloth->seams, room, room + cloth->seams.n, found);
+    free(room);
+    if (!cross)
+        return error->code;
+    model_name_seam(cloth, found[0], one);
+    model_name_seam(cloth, found[1], other);
     return scene_build_warn(model, tree, node, error,
                             "%.160s and %.160s cross where the run starts: what they pull goes "
                             "through each other; place the panels otherwise, or see seams.reversed",

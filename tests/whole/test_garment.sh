@@ -190,6 +190,15 @@ bad "unknown key \"units\" in properties" -e 's/units_in_meter/units/'
 bad "units_in_meter is 0; it has to be 0.001 to 1e6" -e 's/"units_in_meter": 100/"units_in_meter": 0/'
 bad "units_in_meter is \"cm\"" -e 's/"units_in_meter": 100/"units_in_meter": "cm"/'
 bad "panel 'back' is 500 m large; panels have 0.001 to 100 m: is units_in_meter right?" -e 's/"units_in_meter": 100/"units_in_meter": 0.1/'
+ok "edges too short to be had" refused "edges of 1e-06 m give about 2e+11 vertices; up to 134217728 can be had" "$patterns/dart.json" --edge 1e-6 -o x.obj
+short_edges() { # by the scene, whose key is named
+    printf 'schema: 1\ncloths:\n  - mesh: {pattern: {garment: tshirt, edge: 1e-6}}\n    material: m\nmaterials: {m: {density: 0.2, stretch: 100}}\ntime: {h: 0.001, end: 0.001}\n' > short.yaml
+    status=0
+    limited "$DUITE_CLOTH" short.yaml --quiet > said 2>&1 || status=$?
+    cat said
+    test $status = 2 && grep -q "^duite-cloth: short.yaml:3:45: the pattern is to have [0-9]* vertices, which take [0-9]* GB of memory or more; this machine has " said
+}
+ok "also in a scene" short_edges
 units() { # UNITS: with so many in a metre the back has 0.5 m * 100 / UNITS
     sed "s/\"units_in_meter\": 100/\"units_in_meter\": $1/" "$patterns/dart.json" > units.json && run units.json --vertices 300 -o x.obj --quiet 2> said
     cat said

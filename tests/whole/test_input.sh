@@ -193,6 +193,10 @@ awk 'BEGIN { print "schema: 1"; for (i = 0; i < 4096; i++) print "k" i ": 1" }' 
 ok "a scene of keys" says 1 "keys.yaml:1:1: a map of 4097 keys; a scene has at most 4096 in one map" keys.yaml
 awk 'BEGIN { print "schema: 1\na:"; for (i = 0; i < 1001; i++) print "  - &a" i " 1" }' > anchors.yaml
 ok "a scene of anchors" says 1 "anchors.yaml:1003: more than 1000 anchors, such as &name, are in the file; a scene needs a few" anchors.yaml
+awk 'BEGIN { print "schema: 1\nprobes:\n  - &p {vertices: [0]}"; for (i = 0; i < 200000; i++) print "  - *p" }' > probes.yaml
+ok "a scene of probes" says 1 "probes.yaml:3:3: probes is a list of 200001; a list of at most 4096 maps is expected" probes.yaml
+awk 'BEGIN { print "schema: 1\nphases:"; for (i = 0; i < 1000; i++) print "  - {name: p" i "}" }' > phases.yaml
+ok "a scene of phases" says 1 "phases.yaml:3:3: phases is a list of 1000; a list of 1 to 100 maps is expected" phases.yaml
 likewise "a probe of nothing" \
     "--set probes=[{vertices: [1], values: []}]: probes[0].values is an empty list; a non-empty list of words is expected" \
     scene.yaml --set 'probes=[{vertices: [1], values: []}]'

@@ -246,6 +246,6 @@ says() { # SENTENCE PHASES
     cat said
     test $status = 2 && grep -qF -- "$1" said
 }
-ok "no phases" says "phases is an empty list; a non-empty list of maps is expected" "[]"
+ok "no phases" says "phases is an empty list; a list of 1 to 100 maps is expected" "[]"
 ok "a phase without a name" says "phases[0].name is missing; a text is expected" "[{set: {time.end: 1}}]"
 ok "two of one name" says "phases[1].name is 'a', as that of phases[0]; each phase has a name of its own" "[{name: a}, {name: a}]"

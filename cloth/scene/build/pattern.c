@@ -7,6 +7,7 @@
 #include "cloth/scene/pattern.h"
 #include "cloth/scene/schema/check.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -171,6 +172,10 @@ int scene_build_pattern(struct model *model, struct model_cloth *cloth, struct s
     code = code ? code : check_fineness(&asked, tree, node, error);
     code = code ? code : take_pattern(model, &pattern, &asked, tree, node, error, inner);
     const struct garment_fineness fineness = {asked.edge, asked.vertices};
+    if (!code && asked.edge > 0)
+        code = scene_build_check_memory(
+            (uint64_t)fmin(garment_vertices(&pattern, asked.edge), 1e18), "the pattern is to have",
+            tree, scene_tree_get(tree, node, "edge"), error);
     code = code ? code : garment_make(&garment, &pattern, &fineness, inner);
     code = code ? code : take_mesh(&cloth->mesh, &garment, &pattern, inner);
     code = code ? code : take_seams(&cloth->seams, &garment, &pattern, error);

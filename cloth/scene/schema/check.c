@@ -67,15 +67,13 @@ static const struct {
     {"contact", "filter", "it is gone; contact: {mode: certified} or {mode: project} is there"},
     {"mode", "filter", "it is gone; certified knows of contact in the solve, too"}};
 
-static const char no_comma[] = "a number has no comma: its decimals follow a point, as in 0.2";
-
 static const char *more_of(const struct walk *walk, const struct place *at, int node)
 {
     const char *value = scene_tree_scalar(walk->tree, node);
     for (size_t i = 0; at->key && value && i < sizeof outdated / sizeof *outdated; i++)
         if (!strcmp(outdated[i].key, at->key) && !strcmp(outdated[i].value, value))
             return outdated[i].now;
-    return value && scene_scalar_has_comma(value) ? no_comma : NULL;
+    return value && scene_scalar_has_comma(value) ? SCENE_NO_COMMA : NULL;
 }
 
 static int wrong(struct walk *walk, const struct place *at, const struct scene_rule *rule, int node)
@@ -158,7 +156,7 @@ static int check_comma(struct walk *walk, const struct place *at, int map, size_
         return CLOTH_OK;
     path_of(&(struct place){at, scene_tree_scalar(tree, before.key), 0}, path, sizeof path);
     return scene_tree_fail(walk->tree, before.value, walk->error, "%s is %s; %s", path, number,
-                           no_comma);
+                           SCENE_NO_COMMA);
 }
 
 /* Keys of a map are texts, each there once. */
@@ -326,7 +324,8 @@ static int check_list(struct walk *walk, const struct place *at, const struct sc
                       int node, void *base)
 {
     size_t n = scene_tree_length(walk->tree, node), step;
-    if ((rule->length && n != rule->length) || (rule->filled && !n))
+    if ((rule->length && n != rule->length) || (rule->filled && !n) ||
+        (rule->max > 0 && (double)n > rule->max))
         return wrong(walk, at, rule, node);
     char *items = items_of(walk, rule, node, base, &step);
     int code = walk->error->code;

@@ -318,7 +318,7 @@ START_TEST(sets_that_are_wrong)
          "the value is in itself, by an alias * of its anchor &; an alias may stand only behind "
          "what its anchor is of"},
         {"materials=[1]", "materials is a list of 1; a non-empty map of names is expected"},
-        {"cloths=[]", "cloths is an empty list; a non-empty list of maps is expected"}};
+        {"cloths=[]", "cloths is an empty list; a list of 1 to 4096 maps is expected"}};
     for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
         char error[300];
         snprintf(error, sizeof error, "--set %s: %s", all[i].set, all[i].error);

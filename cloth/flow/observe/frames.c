@@ -1,9 +1,9 @@
-/* Frame k shows the state after the step whose end is nearest to k / fps, by the time of all phases.
- * Where steps may be
- * shorter than h it is known only when the step beyond k / fps is accepted: then either this step's
- * end or its begin, which is kept, is shown. The frame before must have been written by then:
- * frames are written by rank 0, one after the other, and each frame's task holds the token. The
- * last frame of a run that is stopped shows the state that the run ends with, whenever that is. */
+/* Frame k shows the state after the step whose end is nearest to k / fps, by the time of all
+ * phases. Where steps may be shorter than h it is known only when the step beyond k / fps is
+ * accepted: then either this step's end or its begin, which is kept, is shown. The frame before
+ * must have been written by then: frames are written by rank 0, one after the other, and each
+ * frame's task holds the token. The last frame of a run that is stopped shows the state that the
+ * run ends with, whenever that is. */
 #include "cloth/flow/bodies.h"
 #include "cloth/flow/observe/observe.h"
 
@@ -157,9 +157,8 @@ static int fork_frame(struct flow_state *state, double tick, bool kept)
     int64_t token;
     const struct flow_before before = flow_before(state);
     const uint64_t number = state->next_frame++;
-    const struct frame_args args = {.frame = number,
-                                    .time =
-                                        before.time + tick * state->flow->model->h / FLOW_TICKS};
+    const struct frame_args args = {
+        .frame = number, .time = before.time + tick * state->flow->model->h / FLOW_TICKS};
     state->shown = tick;
     if (!flow_shows(state)) /* only counted */
         return DUITE_OK;

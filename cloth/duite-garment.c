@@ -286,9 +286,12 @@ static int take_pattern(struct garment_pattern *pattern, const struct options *o
                         struct cloth_error *error)
 {
     double value[GARMENT_MEASURES];
-    int code = CLOTH_OK;
+    char unusual[200];
+    int code = options->own ? CLOTH_OK : scene_read_pattern(pattern, options->pattern, error);
+    if (!options->own && !code && garment_pattern_unusual(pattern, unusual, sizeof unusual))
+        fprintf(stderr, "duite-garment: warning: %s: %s\n", options->pattern, unusual);
     if (!options->own)
-        return scene_read_pattern(pattern, options->pattern, error);
+        return code;
     garment_own_size(options->own, options->size < 0 ? SIZE_M : options->size, value);
     for (int i = 0; i < options->n_measures && !code; i++)
         code = set_measure(options->own, options->measure[i], value, error);

@@ -149,8 +149,7 @@ static int open_frames(struct outputs *to, const struct phases *phases, const st
                        struct cloth_error *error)
 {
     const struct flow_before before = phases_before(phases);
-    const struct stays stays = {.frames =
-                                    before.frames - before.shown + (resumed ? resumed->frames : 0),
+    const struct stays stays = {.frames = resumed ? resumed->frames : 0,
                                 .rows = before.steps + (resumed ? resumed->steps : 0) + 1};
     struct outputs_setup made;
     int code = outputs_setup_make(&made, to->options, phases, apart, error);

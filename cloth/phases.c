@@ -61,7 +61,6 @@ struct flow_before phases_before(const struct phases *phases)
 {
     const struct flow_report *total = &phases->total;
     return (struct flow_before){.goes_on = phases->now > 0,
-                                .shown = total->shown,
                                 .frames = total->frames,
                                 .steps = total->steps,
                                 .time = total->simulated_seconds};

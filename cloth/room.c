@@ -21,12 +21,12 @@ static struct extent extent_of(uint32_t n, const struct model *phases, const str
 {
     struct extent all = {.frames = 1};
     for (uint32_t i = 0; i < n; i++) {
-        all.frames += floor(phases[i].fps * phases[i].end);
         all.steps += phases[i].end / phases[i].h;
         all.seconds += phases[i].end;
         all.colours += outputs_colours_bytes(phases + i, flow_vertices(flow));
         all.may_rest = all.may_rest || phases[i].rest.speed > 0;
     }
+    all.frames += floor(phases->fps * all.seconds);
     return all;
 }
 

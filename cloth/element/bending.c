@@ -159,8 +159,8 @@ static int bending_check(const struct element_cloths *cloths, uint32_t c, struct
             return model_fail(
                 cloth->mesh_place, error,
                 "mesh: a triangle at the edge between vertices %u and %u of cloth "
-                "'%.60s' (counted from 0) has no area at rest; an area above 0 is expected",
-                edge->a, edge->b, cloth->name);
+                "'%.60s' (counted from 1) has no area at rest; an area above 0 is expected",
+                edge->a + 1, edge->b + 1, cloth->name);
     }
     return CLOTH_OK;
 }
@@ -257,9 +257,10 @@ static int quadratic_check(const struct element_cloths *cloths, uint32_t c,
             return model_fail(
                 cloth->mesh_place, error,
                 "mesh: cloth '%.60s' is not flat at the edge between vertices %u and %u "
-                "(counted from 0), as bending: {model: quadratic} of material "
+                "(counted from 1), as bending: {model: quadratic} of material "
                 "'%.60s' expects; take model: hinge, or rest: uv",
-                cloth->name, edge->a, edge->b, element_bending_of(cloths->model, cloth)->name);
+                cloth->name, edge->a + 1, edge->b + 1,
+                element_bending_of(cloths->model, cloth)->name);
     }
     return code;
 }
@@ -280,9 +281,9 @@ int element_seams_check(const struct element_cloths *cloths, struct cloth_error 
         if (failed || bent)
             code = model_fail(cloth->mesh_place, error,
                               "mesh: where welds bring cloth '%.60s' to cloth '%.60s', at the edge "
-                              "between vertices %u and %u (counted from 0), %s",
-                              cloth->name, model->cloths[two->cloth].name, one->corner[0],
-                              one->corner[1],
+                              "between vertices %u and %u (counted from 1), %s",
+                              cloth->name, model->cloths[two->cloth].name, one->corner[0] + 1,
+                              one->corner[1] + 1,
                               failed ? "a triangle has no area at rest; an area above 0 is expected"
                                      : "they are not flat at rest, as bending: {model: quadratic} "
                                        "expects; take model: hinge, or rest: uv");

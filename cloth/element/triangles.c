@@ -27,8 +27,8 @@ static int triangles_check(const struct element_cloths *cloths, uint32_t c,
         if (triangle_rest(cloths, c, t, corner, gradient, &area))
             return model_fail(cloth->mesh_place, error,
                               "mesh: triangle %u of cloth '%.60s' (vertices %u, %u and %u, all "
-                              "counted from 0) has no area at rest; an area above 0 is expected",
-                              t, cloth->name, corner[0], corner[1], corner[2]);
+                              "counted from 1) has no area at rest; an area above 0 is expected",
+                              t + 1, cloth->name, corner[0] + 1, corner[1] + 1, corner[2] + 1);
     }
     return CLOTH_OK;
 }

@@ -373,7 +373,6 @@ int flow_run(struct flow *flow, duite *rt, const struct flow_output *output,
         failed = cloth_fail(error, CLOTH_E_LIBRARY, "%s", duite_message());
     duite_wait(rt);
     if (flow->model) {
-        report->shown = state.shown >= (double)state.grid.now;
         report->simulated_seconds = (double)state.grid.now * flow->model->h / FLOW_TICKS;
         report->shortest_step = state.grid.least_done * flow->model->h / FLOW_TICKS;
         report->steps_halved = state.grid.refused;

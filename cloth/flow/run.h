@@ -85,7 +85,6 @@ struct flow_report {
         energy_gained; /* the most that it rose above an earlier one; NaN but with energy_steps */
     uint64_t state_hash;
     uint64_t last_frame;        /* the last frame written */
-    bool shown;                 /* it shows the end */
     bool stopped;               /* a stop was requested before the end */
     double rest_seconds;        /* when the run was found at rest, s; NaN: it was not */
     uint64_t seams, seams_open; /* that are pulled; of these, open at the end by more than the
@@ -98,8 +97,7 @@ struct flow_report {
 /* What there is before a run that goes on where others ended. */
 struct flow_before {
     bool goes_on;           /* it does; else all of this is zero */
-    bool shown;             /* the last frame shows where it starts, which is not written again */
-    uint64_t frames, steps; /* of the runs before it, all together */
+    uint64_t frames, steps; /* of the runs before it, all together; frames keep their clock */
     double time;            /* s: that they took */
 };
 

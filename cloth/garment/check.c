@@ -5,6 +5,7 @@
 #include "cloth/garment/detail/meet.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 
 static const double LEAST = 1e-3, MOST = 100; /* m: sizes of panels */
@@ -171,4 +172,31 @@ int garment_pattern_check(const struct garment_pattern *pattern, struct cloth_er
     free(first);
     free(by);
     return code;
+}
+
+/* By its corners. */
+static double size_of(const struct garment_panel *panel)
+{
+    double size = 0;
+    for (uint32_t i = 0; i < panel->n_corners; i++)
+        for (int k = 0; k < 2; k++)
+            size = fmax(size, fabs(panel->corner[i][k] - panel->corner[0][k]));
+    return size;
+}
+
+bool garment_pattern_unusual(const struct garment_pattern *pattern, char *text, size_t size)
+{
+    const double least = 0.05, most = 4; /* m: a doll's, a curtain's */
+    const struct garment_panel *largest = pattern->panel;
+    for (uint32_t p = 1; p < pattern->n_panels; p++)
+        if (size_of(pattern->panel + p) > size_of(largest))
+            largest = pattern->panel + p;
+    const double found = size_of(largest);
+    if (found >= least && found <= most)
+        return false;
+    snprintf(text, size,
+             "panel '%.60s' is %g m large; panels have %g to %g m: is units_in_meter "
+             "right?",
+             largest->name, found, least, most);
+    return true;
 }

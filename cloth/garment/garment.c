@@ -18,6 +18,8 @@ static const uint32_t MOST = (uint32_t)1 << 27;
 
 /* A lattice of triangles with edges h has 1.155 / h^2 vertices an area; of a boundary of length P
  * about 0.365 P / h more are there, since those of the boundary are nearer to each other. */
+static const double INSIDE = 1.155, AROUND = 0.365;
+
 static double first_spacing(const struct meshing *meshing, double n)
 {
     double area = 0, around = 0;
@@ -26,7 +28,7 @@ static double first_spacing(const struct meshing *meshing, double n)
         for (uint32_t e = meshing->first[p]; e < meshing->first[p + 1]; e++)
             around += meshing->edge[e].curve.length;
     }
-    const double a = 1.155 * area, b = 0.365 * around;
+    const double a = INSIDE * area, b = AROUND * around;
     return (b + sqrt(b * b + 4 * a * n)) / (2 * n);
 }
 
@@ -63,13 +65,31 @@ static int mesh_by_count(struct meshing *meshing, uint32_t wanted, struct cloth_
     return code;
 }
 
-static int check_fineness(const struct garment_fineness *fineness, struct cloth_error *error)
+double garment_vertices(const struct garment_pattern *pattern, double edge)
+{
+    double n = 0;
+    for (uint32_t p = 0; p < pattern->n_panels; p++) {
+        const struct garment_panel *panel = pattern->panel + p;
+        n += INSIDE * fabs(garment_panel_area(panel)) / (edge * edge);
+        for (uint32_t e = 0; e < panel->n_edges; e++)
+            n += AROUND * garment_edge_length(panel, e) / edge;
+    }
+    return n;
+}
+
+static int check_fineness(const struct garment_fineness *fineness,
+                          const struct garment_pattern *pattern, struct cloth_error *error)
 {
     if (fineness->vertices && (fineness->vertices < 3 || fineness->vertices > MOST))
         return cloth_fail(error, CLOTH_E_INPUT, "%u vertices cannot be had: 3 to %u",
                           fineness->vertices, MOST);
     if (!fineness->vertices && !(fineness->edge > 0 && isfinite(fineness->edge)))
         return cloth_fail(error, CLOTH_E_INPUT, "edges of %g m cannot be had", fineness->edge);
+    const double about = fineness->vertices ? 0 : garment_vertices(pattern, fineness->edge);
+    if (about > MOST)
+        return cloth_fail(error, CLOTH_E_INPUT,
+                          "edges of %g m give about %.1g vertices; up to %u can be had",
+                          fineness->edge, about, MOST);
     return CLOTH_OK;
 }
 
@@ -159,7 +179,7 @@ int garment_make(struct garment *garment, const struct garment_pattern *pattern,
 {
     struct meshing meshing = {0};
     *garment = (struct garment){0};
-    int code = check_fineness(fineness, error);
+    int code = check_fineness(fineness, pattern, error);
     if (code)
         return code;
     code = meshing_make(&meshing, pattern, error);

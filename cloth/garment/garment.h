@@ -52,6 +52,9 @@ int garment_make(struct garment *garment, const struct garment_pattern *pattern,
                  const struct garment_fineness *fineness, struct cloth_error *error);
 void garment_free(struct garment *garment);
 
+/* About how many vertices edges of a length, m > 0, give. Local. */
+double garment_vertices(const struct garment_pattern *pattern, double edge);
+
 /* The least angle of the triangles that are not excused, degrees (60 of none); *below: how many of
  * them have one below 30 degrees. The one figure here that may differ in its last bit. Local. */
 double garment_least_angle(const struct garment *garment, uint32_t *below);

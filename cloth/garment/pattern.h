@@ -4,6 +4,7 @@
 #include "cloth/base/error.h"
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 /* A sewing pattern: flat panels, which of their edges are stitched, and where each panel is around
@@ -55,6 +56,10 @@ void garment_pattern_free(struct garment_pattern *pattern);
  * error: CLOTH_E_MEMORY. Numbers of corners, panels and edges must be in range, and coordinates
  * finite. Local. */
 int garment_pattern_check(const struct garment_pattern *pattern, struct cloth_error *error);
+
+/* Whether its largest panel is one that is hardly ever meant, less than 5 cm or more than 4 m; the
+ * text is a sentence about it then. Local. */
+bool garment_pattern_unusual(const struct garment_pattern *pattern, char *text, size_t size);
 
 /* The length of an edge, m. Local. */
 double garment_edge_length(const struct garment_panel *panel, uint32_t edge);

@@ -15,12 +15,16 @@ static struct mesh_edge make_edge(const struct mesh *mesh, const struct mesh_sid
                              .b = pair[1],
                              .opposite = {UINT32_MAX, UINT32_MAX},
                              .triangle = {UINT32_MAX, UINT32_MAX}};
+    bool first_ascends = false;
     for (uint32_t i = first, n = 0; i < end; i++) {
         uint32_t side = sides->order[i], t = side / 3;
         if (t >= mesh->n_triangles)
             break;
         uint32_t corner[3];
         mesh_corners(mesh, t, corner);
+        const bool ascends = corner[side % 3] == edge.a;
+        edge.against = n && ascends == first_ascends;
+        first_ascends = ascends;
         edge.triangle[n] = t;
         edge.opposite[n++] = corner[(side % 3 + 2) % 3];
         edge.area += mesh_triangle_area(mesh, t);
@@ -39,8 +43,8 @@ int mesh_edges_find(struct mesh_edges *edges, const struct mesh *mesh, struct cl
     if (mesh_sides_third(&sides, mesh->n_triangles, &third)) {
         code = cloth_fail(error, CLOTH_E_INPUT,
                           "triangle %u is the third at one edge (non-manifold); an edge may have "
-                          "at most two",
-                          third / 3);
+                          "at most two (triangles count from 1)",
+                          third / 3 + 1);
         goto done;
     }
     for (uint32_t i = 0; i < sides.n; i = mesh_sides_run(&sides, i))

@@ -54,9 +54,9 @@ static int check_length(const struct builder *builder, uint32_t a, uint32_t b, d
     if (length > 0 && isfinite(length))
         return CLOTH_OK;
     return cloth_fail(builder->error, CLOTH_E_INPUT,
-                      "vertices %u and %u (counted from 0) are %g m apart; vertices that a spring "
+                      "vertices %u and %u (counted from 1) are %g m apart; vertices that a spring "
                       "joins need a finite distance above 0",
-                      a, b, length);
+                      a + 1, b + 1, length);
 }
 
 /* area >= 0: modulus * area / length^2; else the modulus as it is. */
@@ -71,9 +71,9 @@ static int add(struct builder *builder, uint32_t a, uint32_t b, enum mesh_spring
         return CLOTH_OK;
     if (!isfinite(stiffness))
         return cloth_fail(builder->error, CLOTH_E_INPUT,
-                          "the spring between vertices %u and %u (counted from 0) has a stiffness "
+                          "the spring between vertices %u and %u (counted from 1) has a stiffness "
                           "of %g N/m; it must be finite",
-                          a, b, stiffness);
+                          a + 1, b + 1, stiffness);
     const struct mesh_spring spring = {a < b ? a : b, a < b ? b : a, stiffness, length, kind};
     return builder->take(builder, &spring);
 }

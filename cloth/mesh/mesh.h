@@ -194,6 +194,7 @@ struct mesh_edge {
     uint32_t
         opposite[2]; /* the third vertices of its triangles, in their order; UINT32_MAX: none */
     uint32_t triangle[2]; /* these; UINT32_MAX: none */
+    bool against;         /* both wind round in one direction here, so the mesh has no outside */
     double area;          /* sum of the areas of its triangles in the positions given, m^2 */
 };
 struct mesh_edges {

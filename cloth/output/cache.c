@@ -287,8 +287,9 @@ static int read_points(FILE *pc2, uint32_t n_points, uint64_t frame, double *pos
         for (size_t i = 0; i < some; i++, done++) {
             position[done] = (double)output_get_float(lump + 4 * i);
             if (!isfinite(position[done]))
-                return cloth_fail(error, CLOTH_E_INPUT, "frame %ju: vertex %zu is not finite",
-                                  (uintmax_t)frame, done / 3);
+                return cloth_fail(error, CLOTH_E_INPUT,
+                                  "frame %ju: vertex %zu is not finite (vertices count from 1)",
+                                  (uintmax_t)frame, done / 3 + 1);
         }
     }
     return 0;

@@ -151,8 +151,8 @@ int output_forces_frame(void *context, uint64_t frame, const double *force,
         if (!(fabs(force[i]) <= (double)FLT_MAX))
             return cloth_fail(error, CLOTH_E_RUN,
                               "frame %ju: vertex %zu has no finite force of contact; the frame is "
-                              "not written",
-                              (uintmax_t)frame, i / 3);
+                              "not written (vertices count from 1)",
+                              (uintmax_t)frame, i / 3 + 1);
         output_put_float(forces->bytes + 4 * i, (float)force[i]);
     }
     const int code = output_check_same(forces->file, forces->path, error);

@@ -360,8 +360,9 @@ static int encode(struct output_frames *frames, uint64_t frame, const double *po
     for (size_t i = 0; i < (size_t)3 * frames->n_points; i++) {
         if (!(fabs(position[i]) <= (double)FLT_MAX))
             return cloth_fail(error, CLOTH_E_RUN,
-                              "frame %ju: vertex %zu has no finite place; the frame is not written",
-                              (uintmax_t)frame, i / 3);
+                              "frame %ju: vertex %zu has no finite place; the frame is not written "
+                              "(vertices count from 1)",
+                              (uintmax_t)frame, i / 3 + 1);
         output_put_float(frames->bytes + 4 * i, (float)position[i]);
     }
     return 0;

@@ -39,6 +39,7 @@ libduite_cloth_a_SOURCES += \
 	cloth/scene/build/frames.c \
 	cloth/scene/build/hdf5.c \
 	cloth/scene/build/idle.c \
+	cloth/scene/build/unusual.c \
 	cloth/scene/build/joint.c \
 	cloth/scene/build/load.c \
 	cloth/scene/build/mannequin.c \

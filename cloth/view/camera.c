@@ -105,17 +105,39 @@ void view_fit_planes(struct view_fit *fit, size_t n, const double (*planes)[6])
     }
 }
 
-void view_fit_near(struct view_fit *fit, size_t n, const double (*vertex)[6])
+static bool is_near(const struct view_fit *fit, const double p[3])
 {
     const double margin = 0.5 * extent(fit);
+    bool near = true;
+    for (int k = 0; k < 3; k++)
+        near = near && p[k] >= fit->low[k] - margin && p[k] <= fit->high[k] + margin;
+    return near;
+}
+
+/* Something is near, and all of it is not so large that the cloth is lost in it. */
+static bool is_worn(const struct view_fit *fit, size_t n, const double (*vertex)[6])
+{
+    const double LARGEST = 4; /* of the points' extent */
+    bool near = false;
+    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
     for (size_t i = 0; i < n; i++) {
-        bool near = true;
-        for (int k = 0; k < 3; k++)
-            near = near && vertex[i][k] >= fit->low[k] - margin &&
-                   vertex[i][k] <= fit->high[k] + margin;
-        if (near)
-            show(fit, vertex[i]);
+        near = near || is_near(fit, vertex[i]);
+        for (int k = 0; k < 3; k++) {
+            low[k] = fmin(low[k], vertex[i][k]);
+            high[k] = fmax(high[k], vertex[i][k]);
+        }
     }
+    for (int k = 0; k < 3; k++)
+        near = near && high[k] - low[k] <= LARGEST * extent(fit);
+    return near;
+}
+
+void view_fit_near(struct view_fit *fit, size_t n, const double (*vertex)[6], bool body)
+{
+    const bool whole = body && is_worn(fit, n, vertex);
+    for (size_t i = 0; i < n; i++)
+        if (whole || is_near(fit, vertex[i]))
+            show(fit, vertex[i]);
 }
 
 static void place_eye(const struct view_fit *fit, double size, double eye[3])

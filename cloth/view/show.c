@@ -2,6 +2,7 @@
  * before there is an OpenGL context; the scene gets it when it is drawn. */
 #include "cloth/view/show.h"
 
+#include "cloth/contact/surface.h"
 #include "cloth/view/colours.h"
 
 #include <stdlib.h>
@@ -68,7 +69,15 @@ static void fit_obstacles(struct view_show *show)
 {
     const struct view_obstacles *obstacles = &show->obstacles;
     view_fit_planes(&show->sight.fit, obstacles->n_planes, (const double(*)[6])obstacles->plane);
-    view_fit_near(&show->sight.fit, obstacles->n_vertices, (const double(*)[6])obstacles->vertex);
+    const double(*vertex)[6] = (const double(*)[6])obstacles->vertex;
+    for (size_t i = 0; i < obstacles->n; i++) {
+        const struct contact_shape *shape = obstacles->shape + i;
+        uint32_t n, triangles;
+        contact_surface_count(shape, contact_bodies_at(obstacles->bodies, shape->body), &n,
+                              &triangles);
+        view_fit_near(&show->sight.fit, n, vertex, shape->body > 0);
+        vertex += n;
+    }
 }
 
 static int fit_camera(struct view_show *show, struct cloth_error *error)

@@ -61,8 +61,9 @@ void view_fit_start(struct view_fit *fit, double azimuth, double elevation, doub
 void view_fit_add(struct view_fit *fit, size_t n, const double *position);
 /* Adds what lies under the points on the planes (point, normal) that they are near to. */
 void view_fit_planes(struct view_fit *fit, size_t n, const double (*planes)[6]);
-/* Adds those of n points that are within half the points' extent of their box. */
-void view_fit_near(struct view_fit *fit, size_t n, const double (*vertex)[6]);
+/* Adds those of the n points of an obstacle that are within half the points' extent of their box;
+ * of a body that has one there all, unless it is more than four times as large. */
+void view_fit_near(struct view_fit *fit, size_t n, const double (*vertex)[6], bool body);
 /* The nearest camera of that direction that has all points within its margins. */
 void view_fit_camera(const struct view_fit *fit, struct view_camera *camera);
 

@@ -65,5 +65,17 @@ by_frames() { # at the last frame all is where the turn has it
             e = ($1 - 0.03) ^ 2 + ($2 - c * y - s * 0.05) ^ 2 + ($3 - s * y + c * 0.05) ^ 2 + ($4 - 0.03) ^ 2 + ($5 - c * y) ^ 2 + ($6 - s * y) ^ 2; print $0, e; exit !(e < 1e-24) }' found
 }
 ok "triangles of a body with frames take their vertices along" by_frames
+# The half of the sheet that follows one box moves away from that which follows the other.
+torn() { # WHERE: the second box goes so far
+    run follow.yaml --end 0.02 --set cloths[0].start=[] --set 'cloths[0].pins[0].box=[[-1, -1, -1], [0.01, 1, 1]]' --set 'cloths[0].pins[1]={box: [[0.04, -1, -1], [1, 1, 1]], follow: other}' \
+        --set "obstacles[1]={box: {name: other, centre: [0.5, -0.05, 0], size: [0.2, 0.1, 0.2], motion: {times: [0, 0.02], translate: [[0, 0, 0], $1]}}}" \
+        --set 'obstacles[0].box.motion={times: [0], translate: [[0, 0, 0]]}' --set contact.mode=project > said 2>&1
+    cat said
+}
+tears() {
+    torn '[0.02, 0, 0]' && grep -q "warning: .*: pins that follow obstacles stretch cloth 'sheet' by 40 % at 0.02 s: the edge between vertices [0-9]* and [0-9]* (counted from 1); pin fewer of its vertices" said &&
+        torn '[0.005, 0, 0]' && ! grep stretch said
+}
+ok "pins that follow two obstacles and stretch the cloth between them draw a warning" tears
 everywhere() { one=$(hash limited "$DUITE_CLOTH" follow.yaml "$@") && two=$(hash ranks 2 "$DUITE_CLOTH" follow.yaml "$@") && echo "$one $two" && test -n "$one" && test "$one" = "$two"; }
 ok "on every rank" everywhere --set "$frames"

@@ -197,6 +197,27 @@ bad "unknown key \"units\" in properties" -e 's/units_in_meter/units/'
 bad "units_in_meter is 0; it has to be 0.001 to 1e6" -e 's/"units_in_meter": 100/"units_in_meter": 0/'
 bad "units_in_meter is \"cm\"" -e 's/"units_in_meter": 100/"units_in_meter": "cm"/'
 bad "panel 'back' is 500 m large; panels have 0.001 to 100 m: is units_in_meter right?" -e 's/"units_in_meter": 100/"units_in_meter": 0.1/'
+ok "edges too short to be had" refused "edges of 1e-06 m give about 2e+11 vertices; up to 134217728 can be had" "$patterns/dart.json" --edge 1e-6 -o x.obj
+short_edges() { # by the scene, whose key is named
+    printf 'schema: 1\ncloths:\n  - mesh: {pattern: {garment: tshirt, edge: 1e-6}}\n    material: m\nmaterials: {m: {density: 0.2, stretch: 100}}\ntime: {h: 0.001, end: 0.001}\n' > short.yaml
+    status=0
+    limited "$DUITE_CLOTH" short.yaml --quiet > said 2>&1 || status=$?
+    cat said
+    test $status = 2 && grep -q "^duite-cloth: short.yaml:3:45: the pattern is to have [0-9]* vertices, which take [0-9]* GB of memory or more; this machine has " said
+}
+ok "also in a scene" short_edges
+units() { # UNITS: with so many in a metre the back has 0.5 m * 100 / UNITS
+    sed "s/\"units_in_meter\": 100/\"units_in_meter\": $1/" "$patterns/dart.json" > units.json && run units.json --vertices 300 -o x.obj --quiet 2> said
+    cat said
+}
+warns_of_units() {
+    units 5 && grep -qx "duite-garment: warning: units.json: panel 'back' is 10 m large; panels have 0.05 to 4 m: is units_in_meter right?" said &&
+        units 2000 && grep -q "panel 'back' is 0.025 m large" said && units 100 && ! test -s said &&
+        units 5 && printf 'schema: 1\ncloths: [{mesh: {pattern: {file: units.json, vertices: 300}}, material: m}]\nmaterials: {m: {density: 0.2, stretch: 100}}\n%s\n' \
+        'time: {h: 0.001, end: 0.001}' > units.yaml && limited "$DUITE_CLOTH" units.yaml --quiet 2> said && cat said &&
+        grep -q "units.yaml:2:[0-9]*: mesh: units.json: panel 'back' is 10 m large; panels have 0.05 to 4 m: is units_in_meter right?" said
+}
+ok "units that make a panel of 10 m draw a warning" warns_of_units
 bad "curvature_coords is world; it has to be" -e 's/"relative"/world/'
 bad "stitch 0: there is no panel 'front'" -e 's/"panel": "back", "edge": 4/"panel": "front", "edge": 4/'
 bad "stitch 0: the edge of panel 'back' is 7, but there are 7 edges, counted from 0" -e 's/"edge": 4/"edge": 7/'
@@ -207,6 +228,14 @@ bad "the file has no \"properties\"" -e 's/"properties"/"parameters"/'
 bad "the pattern has no panels" -e 's/"panels": {/"panels": {}, "panel_order": {/; s/"stitches": .*/"stitches": []/'
 bad "has the key edge twice" -e 's/"edge": 4/"edge": 4, "edge": 4/'
 bad "not JSON" -e 's/\[40, 0\],/[40, 0] "/'
+bad "bad.json:8:9: a comment begins here, and JSON has none: take it out" -e '8s,"translation",// "translation",'
+bad "bad.json:1:1: a comment begins here, and JSON has none: take it out" -e '1s,^,/* "a" */,'
+kept() { # slashes in a text are none
+    sed 's,"label": "",&,; s,"translation": ,"label": "http://a/*bc", "translation": ,' "$patterns/dart.json" > bad.json && run bad.json -e 0.05 -o x.obj 2> said
+    cat said
+    ! grep "a comment" said
+}
+ok "slashes in a text are no comment" kept
 
 hostile() { # NAME TEXT: no crash, one sentence
     printf '%b' "$2" > hostile.json

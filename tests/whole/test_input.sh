@@ -86,14 +86,14 @@ refused "a chain without EA" "mass.yaml:4:15: cloth 'cloth1' has edges without t
     )is expected: the spring constant of such an edge times its length (stretch is of triangles and threads)" mass.yaml
 sed -i 's/stretch: 500/ea: 500/' mass.yaml
 likewise "a vertex without mass" \
-    "mass.yaml:3:5: mass_per_vertex is missing: only edges or joints use vertex 0 of cloth 'cloth1', which have no area to take a$(
-    ) mass from; a finite number > 0 (kg) is expected" mass.yaml --grain 1
+    "mass.yaml:3:5: mass_per_vertex is missing: only edges or joints use vertex 1 of cloth 'cloth1', which have no area to take a$(
+    ) mass from; a finite number > 0 (kg) is expected (vertices count from 1)" mass.yaml --grain 1
 chain='cloths[0].mesh.inline.vertices=[[0, 0, 0], [0, 0, 0]]'
 ok "an edge of no length" says 1 \
-    "mass.yaml:3:20: cloth 'cloth1': vertices 0 and 1 (counted from 0) are 0 m apart; vertices that a spring joins need$(
+    "mass.yaml:3:20: cloth 'cloth1': vertices 1 and 2 (counted from 1) are 0 m apart; vertices that a spring joins need$(
     ) a finite distance above 0" mass.yaml --set "$chain" --set 'cloths[0].mass_per_vertex=1'
 ok "an edge of no length beside triangles" says 1 \
-    "mass.yaml:3:20: cloth 'cloth1': vertices 0 and 1 (counted from 0) are 0 m apart; the edge that joins them needs a length" mass.yaml \
+    "mass.yaml:3:20: cloth 'cloth1': vertices 1 and 2 (counted from 1) are 0 m apart; the edge that joins them needs a length" mass.yaml \
     --set "$chain" --set 'cloths[0].mass_per_vertex=1' --set materials.cotton.model=triangles
 changed fast '    pins.*' '    velocity: [0, 1000000, 0]'
 ok "a start that is too fast" says 1 \
@@ -101,8 +101,8 @@ ok "a start that is too fast" says 1 \
     ) is expected" fast.yaml
 changed far '    pins.*' '    transform: {scale: 1e7}'
 ok "a start that is too far" says 1 \
-    "far.yaml:3:18: vertex 0 of cloth 'cloth1' starts at (-5e+06, 0, -5e+06) m, after the transform; less than 1e+06 m$(
-    ) from the origin along each axis is expected" far.yaml
+    "far.yaml:3:18: vertex 1 of cloth 'cloth1' starts at (-5e+06, 0, -5e+06) m, after the transform; less than 1e+06 m$(
+    ) from the origin along each axis is expected (vertices count from 1)" far.yaml
 ok "a value longer than a message" says 1 \
     "--set gravity=$(printf %0192d 0)...: gravity is $(printf %060d 0); a list of 3 numbers (m/s^2) is expected" \
     scene.yaml --set "gravity=$(printf %01200d 0)"
@@ -145,7 +145,7 @@ warned() { # SENTENCE ARGUMENT...: a warning, and the run is made
 }
 ok "frames that are closer than steps" warned "--set time.fps=1e5: time.fps = 100000 gives 401 frames of 64 vertices up to 0.004 s, but there are 4 steps: each is shown 100 times; time.fps = 1000 shows each once" --set time.fps=1e5
 ok "frames between steps are fine" sh -c '"$0" scene.yaml --quiet --output fine --set time.fps=3000 2> said.err && test ! -s said.err' "$DUITE_CLOTH"
-ok "a cloth that is nearly nothing" warned "scene.yaml:8:11: in steps of 0.001 s the cloth is .* times stiffer than its mass \(vertex [0-9]+ of cloth 'cloth1'\): solves can fail, and the run can take up to 1024 times as many steps; give a density or mass .* times as large, or steps of at most .* s" \
+ok "a cloth that is nearly nothing" warned "scene.yaml:8:11: in steps of 0.001 s the cloth is .* times stiffer than its mass \(vertex [0-9]+ of cloth 'cloth1', counted from 1\): solves can fail, and the run can take up to 1024 times as many steps; give a density or mass .* times as large, or steps of at most .* s" \
     --set materials.cotton.density=1e-12
 for mass in 1 2; do
     test $mass = 1 && set -- || set -- --set 'cloths[0].mass_per_vertex=0.003'
@@ -193,6 +193,10 @@ awk 'BEGIN { print "schema: 1"; for (i = 0; i < 4096; i++) print "k" i ": 1" }' 
 ok "a scene of keys" says 1 "keys.yaml:1:1: a map of 4097 keys; a scene has at most 4096 in one map" keys.yaml
 awk 'BEGIN { print "schema: 1\na:"; for (i = 0; i < 1001; i++) print "  - &a" i " 1" }' > anchors.yaml
 ok "a scene of anchors" says 1 "anchors.yaml:1003: more than 1000 anchors, such as &name, are in the file; a scene needs a few" anchors.yaml
+awk 'BEGIN { print "schema: 1\nprobes:\n  - &p {vertices: [0]}"; for (i = 0; i < 200000; i++) print "  - *p" }' > probes.yaml
+ok "a scene of probes" says 1 "probes.yaml:3:3: probes is a list of 200001; a list of at most 4096 maps is expected" probes.yaml
+awk 'BEGIN { print "schema: 1\nphases:"; for (i = 0; i < 1000; i++) print "  - {name: p" i "}" }' > phases.yaml
+ok "a scene of phases" says 1 "phases.yaml:3:3: phases is a list of 1000; a list of 1 to 100 maps is expected" phases.yaml
 likewise "a probe of nothing" \
     "--set probes=[{vertices: [1], values: []}]: probes[0].values is an empty list; a non-empty list of words is expected" \
     scene.yaml --set 'probes=[{vertices: [1], values: []}]'

@@ -83,7 +83,10 @@ shown() { # WANTED SETTING...
     run --output frames "$@" && frames && test "$(frames)" = "$want" && test "$(od -An -tu4 -j28 -N4 frames/cloth.pc2 | tr -d ' ')" = "$(($(wc -l < frames/frames.csv) - 1))"
 }
 ok "frames go on, the end of a phase is the start of the next" shown "0 0 1 0.02 2 0.04 3 0.06 4 0.08 5 0.1" --set "$two" --set time.fps=50
-ok "a phase that ends between two frames shows its end" shown "0 0 1 0.03 2 0.04 3 0.07 4 0.1" --set "$two" --set time.fps=33.333333333
+on_the_clock="0 0 1 0.03 2 0.06 3 0.09"
+ok "frames stay on their clock where a phase ends between two" shown "$on_the_clock" --set "$two" --set time.fps=33.333333333
+ok "also where one shows none" shown "$on_the_clock" --set time.fps=33.333333333 \
+    --set 'phases=[{name: a, set: {time.end: 0.04}}, {name: b, set: {time.end: 0.01}}, {name: c, set: {time.end: 0.05, time.h: 0.0025}}]'
 counts_rows() { run --output frames --set "$two" && awk -F, 'NR > 1 { if ($1 != NR - 2 || ($2 - $1 * 1e-3) ^ 2 > 1e-24) bad = 1 } END { exit bad || NR != 102 }' frames/probes.csv; }
 ok "rows of probes go on, each step once" counts_rows
 same_rows() { run --output one && run --output frames --set "$two" && cut -d, -f3- one/probes.csv > a && cut -d, -f3- frames/probes.csv > b && cmp a b; }
@@ -243,6 +246,6 @@ says() { # SENTENCE PHASES
     cat said
     test $status = 2 && grep -qF -- "$1" said
 }
-ok "no phases" says "phases is an empty list; a non-empty list of maps is expected" "[]"
+ok "no phases" says "phases is an empty list; a list of 1 to 100 maps is expected" "[]"
 ok "a phase without a name" says "phases[0].name is missing; a text is expected" "[{set: {time.end: 1}}]"
 ok "two of one name" says "phases[1].name is 'a', as that of phases[0]; each phase has a name of its own" "[{name: a}, {name: a}]"

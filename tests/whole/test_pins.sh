@@ -164,5 +164,5 @@ ok "a plane with a direction" refused 'a pin to a plane has a direction, which i
 ok "a point with a normal" refused 'a pin to a point has a normal, which is that of a plane; to: plane is expected with it' \
     --set 'cloths[0].pins=[{vertices: [0], normal: [1, 0, 0]}]'
 ok "a direction that is none" refused 'the direction of a pin is zero; a direction is expected' --set 'cloths[0].pins[0].direction=[0, 0, 0]'
-ok "two pins that differ" refused ": vertex 0 of cloth 'cloth1' is held by two pins that do not hold and move alike" \
+ok "two pins that differ" refused ": vertex 1 of cloth 'cloth1' is held by two pins that do not hold and move alike" \
     --set 'cloths[0].pins=[{vertices: [0]}, {vertices: [0], to: line, direction: [1, 0, 0]}]'

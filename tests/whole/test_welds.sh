@@ -221,7 +221,7 @@ ok "a vertex with itself" refused "a weld is between vertex 0 of cloth 'a' and v
 ok "one pair twice" refused "a weld is between vertex 1 of cloth 'c' and vertex 1 of cloth 'b', where there is one already" \
     --set 'welds[2]={from: {cloth: c, vertex: 1}, to: {cloth: b, vertex: 1}}'
 ok "both ends of an edge" refused "welds make vertices 0 and 1 of cloth 'a' one, which an edge joins; it needs them apart" --set 'welds[0].to={cloth: a, vertex: 1}' --set 'welds[0].tolerance=9'
-ok "pins that do not hold alike" refused "vertex 1 of cloth 'c' is held by two pins that do not hold and move alike; one is expected" \
+ok "pins that do not hold alike" refused "vertex 2 of cloth 'c' is held by two pins that do not hold and move alike; one is expected (vertices count from 1)" \
     --set 'cloths[0].pins=[{vertices: [0], motion: {times: [0, 1], translate: [[0, 0, 0], [1, 0, 0]]}}]' --set 'cloths[2].pins=[{vertices: [1]}]'
 ok "a vertex that nothing uses" refused "one of which no face, edge or joint uses" --set 'cloths[2].mesh.inline={vertices: [[0, 0, 0], [0, 0, 1], [1, 1, 1]], edges: [[1, 2]]}' \
     --set 'welds[1].to.vertices=[0]'

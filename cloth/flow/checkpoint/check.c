@@ -53,8 +53,7 @@ static bool has_bools(const struct flow_saved *saved)
     const struct flow_lasting *lasting = &saved->lasting;
     return saved->has_ties <= 1 && saved->finished <= 1 && is_bool(&lasting->guard.off) &&
            is_bool(&lasting->settled_forces) && is_bool(&lasting->resting) &&
-           is_bool(&lasting->sewn) && is_bool(&lasting->over) && is_bool(&saved->report.shown) &&
-           is_bool(&saved->report.stopped);
+           is_bool(&lasting->sewn) && is_bool(&lasting->over) && is_bool(&saved->report.stopped);
 }
 
 /* Of one block: the others that it shares ties with ascend, and there is room for them. Places only

@@ -102,8 +102,7 @@ static void take_report(struct flow_state *state, const struct flow_saved *saved
     state->attempt.begin = state->grid.now;
     state->contact.attempt = saved->attempt;
     state->contact.accepted = saved->accepted;
-    const struct flow_before before = flow_before(state);
-    state->flow->frames = before.frames - before.shown + state->next_frame;
+    state->flow->frames = state->next_frame;
 }
 
 static int take_main(struct flow_state *state, const unsigned char *from)

@@ -241,9 +241,7 @@ static int hash_all(struct flow_state *state)
 
 int flow_last_frame(struct flow_state *state)
 {
-    const struct flow_before before = flow_before(state);
-    uint64_t broadcast[FLOW_BROADCAST] = {[FLOW_BROADCAST_FRAMES] =
-                                              before.frames - before.shown + state->next_frame};
+    uint64_t broadcast[FLOW_BROADCAST] = {[FLOW_BROADCAST_FRAMES] = state->next_frame};
     const int code = flow_shows(state) ? broadcast_result(state, broadcast) : DUITE_OK;
     if (code)
         return code;

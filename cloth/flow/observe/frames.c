@@ -1,14 +1,20 @@
-/* Frame k shows the state after the step whose end is nearest to k / fps. Where steps may be
- * shorter than h it is known only when the step beyond k / fps is accepted: then either this step's
- * end or its begin, which is kept, is shown. The frame before must have been written by then:
- * frames are written by rank 0, one after the other, and each frame's task holds the token. The
- * last frame of a run that is stopped shows the state that the run ends with, whenever that is. */
+/* Frame k shows the state after the step whose end is nearest to k / fps, by the time of all
+ * phases. Where steps may be shorter than h it is known only when the step beyond k / fps is
+ * accepted: then either this step's end or its begin, which is kept, is shown. The frame before
+ * must have been written by then: frames are written by rank 0, one after the other, and each
+ * frame's task holds the token. The last frame of a run that is stopped shows the state that the
+ * run ends with, whenever that is. */
 #include "cloth/flow/bodies.h"
 #include "cloth/flow/observe/observe.h"
 
-double flow_frame_tick(const struct model *model, uint64_t frame)
+/* The tick that a frame shows: whole where rounding alone kept it from being so. */
+static double frame_tick(const struct flow_state *state, uint64_t frame)
 {
-    return (double)frame / (model->fps * model->h) * FLOW_TICKS;
+    const double ROUNDED = 1e-3; /* of a tick: a millionth of h, more than rounding comes to */
+    const struct model *model = state->flow->model;
+    const double before = flow_before(state).time / model->h;
+    const double tick = ((double)frame / (model->fps * model->h) - before) * FLOW_TICKS;
+    return fabs(tick - nearbyint(tick)) < ROUNDED ? nearbyint(tick) : tick;
 }
 
 static void put_vector(struct flow *flow, uint32_t vertex, const phys_vec *x)
@@ -151,13 +157,12 @@ static int fork_frame(struct flow_state *state, double tick, bool kept)
     int64_t token;
     const struct flow_before before = flow_before(state);
     const uint64_t number = state->next_frame++;
-    const struct frame_args args = {.frame = before.frames - before.shown + number,
-                                    .time =
-                                        before.time + tick * state->flow->model->h / FLOW_TICKS};
+    const struct frame_args args = {
+        .frame = number, .time = before.time + tick * state->flow->model->h / FLOW_TICKS};
     state->shown = tick;
-    if (!flow_shows(state) || number < before.shown) /* only counted */
+    if (!flow_shows(state)) /* only counted */
         return DUITE_OK;
-    if (number > before.shown) {
+    if (number > before.frames) {
         const int code = duite_get(state->rt, state->run.token, &token);
         if (code)
             return code;
@@ -185,7 +190,7 @@ static int fork_frames(struct flow_state *state, double begin, double behind)
     const double now = (double)state->grid.now, middle = (begin + now) / 2;
     int code = DUITE_OK;
     while (!code) {
-        const double tick = flow_frame_tick(state->flow->model, state->next_frame);
+        const double tick = frame_tick(state, state->next_frame);
         if (!(tick < now + behind))
             break;
         const bool before = tick < middle && begin < now;

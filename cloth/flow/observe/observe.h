@@ -23,8 +23,6 @@ int flow_seams_fail(struct flow_state *state);
 /* The same if probes are wanted, and finds whether the run rests: when the step is accepted,
  * and for the start. */
 int flow_watched(struct flow_state *state);
-/* The tick, not rounded, that a frame shows. */
-double flow_frame_tick(const struct model *model, uint64_t frame);
 /* Forks the frames whose nearest end of a step is known: the last step, accepted, went from tick
  * `from` to grid.now. */
 int flow_frames(struct flow_state *state, uint64_t from);

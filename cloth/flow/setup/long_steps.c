@@ -35,18 +35,18 @@ static void warn_explicit(struct flow *flow, const struct flow_limit *limit)
     const double max = flow_limit_of(limit, model->integrator), turn = model->h * limit->omega;
     const size_t size = sizeof flow->warning[4];
     if (!(max > 0))
-        snprintf(
-            flow->warning[4], size,
-            "%.200s: no step is short enough for %s without damping: the fastest vibration "
-            "(up to %g rad/s, at vertex %u of cloth '%.60s') can grow by %g %% in each of %g s",
-            place, name, limit->omega, limit->vertex, limit->cloth->name,
-            100 * growth_of(model->integrator, turn), model->h);
+        snprintf(flow->warning[4], size,
+                 "%.200s: no step is short enough for %s without damping: the fastest vibration "
+                 "(up to %g rad/s, at vertex %u of cloth '%.60s', counted from 1) can grow by %g "
+                 "%% in each of %g s",
+                 place, name, limit->omega, limit->vertex + 1, limit->cloth->name,
+                 100 * growth_of(model->integrator, turn), model->h);
     else if (model->h > max)
         snprintf(
             flow->warning[4], size,
             "%.200s: steps of %g s are beyond the limit of %s, %g s: the fastest vibration (up "
-            "to %g rad/s, at vertex %u of cloth '%.60s') can grow in each",
-            place, model->h, name, max, limit->omega, limit->vertex, limit->cloth->name);
+            "to %g rad/s, at vertex %u of cloth '%.60s', counted from 1) can grow in each",
+            place, model->h, name, max, limit->omega, limit->vertex + 1, limit->cloth->name);
 }
 
 /* Springs of contacts, which may be faster than those of the cloth. */
@@ -73,10 +73,11 @@ static void warn_implicit(struct flow *flow, const struct flow_limit *limit)
     if (turn > MAX_TURN)
         snprintf(flow->warning[4], sizeof flow->warning[4],
                  "%.200s: in steps of %g s the cloth is %.1e times stiffer than its mass (vertex "
-                 "%u of cloth '%.60s'): solves can fail, and the run can take up to 1024 times as "
+                 "%u of cloth '%.60s', counted from 1): solves can fail, and the run can take up "
+                 "to 1024 times as "
                  "many steps; give a density or mass %.1e times as large, or steps of at most %.1e "
                  "s",
-                 place_of(model), model->h, turn * turn, limit->vertex, limit->cloth->name,
+                 place_of(model), model->h, turn * turn, limit->vertex + 1, limit->cloth->name,
                  turn * turn / (MAX_TURN * MAX_TURN), MAX_TURN / limit->omega);
 }
 

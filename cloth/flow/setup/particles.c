@@ -74,8 +74,8 @@ static int pins(struct flow_particles *p, uint32_t first, const struct model *mo
         if (!code && holder.torn != UINT32_MAX)
             code = model_fail(cloth->pins[i].pick.place, error,
                               "vertex %u of cloth '%.60s' is held by two pins that do not hold "
-                              "and move alike; one is expected",
-                              holder.torn, cloth->name);
+                              "and move alike; one is expected (vertices count from 1)",
+                              holder.torn + 1, cloth->name);
     }
     return code;
 }
@@ -127,15 +127,17 @@ static int no_mass(const struct model_cloth *cloth, uint32_t vertex, struct clot
         if (corner[0] == vertex || corner[1] == vertex || corner[2] == vertex)
             return model_fail(cloth->mesh_place, error,
                               "mesh: triangle %u of cloth '%.60s' (vertices %u, %u and %u, all "
-                              "counted from 0) has no area at rest, so that vertex %u has no mass; "
+                              "counted from 1) has no area at rest, so that vertex %u has no mass; "
                               "an area above 0 is expected, or mass_per_vertex",
-                              t, cloth->name, corner[0], corner[1], corner[2], vertex);
+                              t + 1, cloth->name, corner[0] + 1, corner[1] + 1, corner[2] + 1,
+                              vertex + 1);
     }
     return model_fail(
         cloth->place, error,
         "mass_per_vertex is missing: only edges or joints use vertex %u of cloth '%.60s', which "
-        "have no area to take a mass from; a finite number > 0 (kg) is expected",
-        vertex, cloth->name);
+        "have no area to take a mass from; a finite number > 0 (kg) is expected (vertices count "
+        "from 1)",
+        vertex + 1, cloth->name);
 }
 
 static int masses(struct flow_particles *p, uint32_t first, const struct model *model,
@@ -166,10 +168,11 @@ static int weights(struct flow_particles *p, uint32_t first, const struct model 
         const uint32_t v = first + i;
         const double mass = p->mass[flow_root(&p->welds, v)];
         if (p->used[v] && mass > 0 && !(mass >= MIN_MASS && mass <= MAX_MASS))
-            return model_fail(
-                cloth->place, error,
-                "vertex %u of cloth '%.60s' has a mass of %g kg; %g to %g is expected", i,
-                cloth->name, mass, MIN_MASS, MAX_MASS);
+            return model_fail(cloth->place, error,
+                              "vertex %u of cloth '%.60s' has a mass of %g kg; %g to %g is "
+                              "expected (vertices count "
+                              "from 1)",
+                              i + 1, cloth->name, mass, MIN_MASS, MAX_MASS);
         if (p->used[v] && !(mass > 0))
             return no_mass(cloth, i, error);
         if (p->load)
@@ -185,11 +188,11 @@ static int check_start(const struct model_cloth *cloth, struct cloth_error *erro
         phys_vec x;
         to_vector(cloth->mesh.position + 3 * (size_t)i, &x);
         if (phys_diverged(1, FLOW_BOUND, &x) == 0)
-            return model_fail(
-                cloth->mesh_place, error,
-                "vertex %u of cloth '%.60s' starts at (%g, %g, %g) m, after the "
-                "transform; less than %g m from the origin along each axis is expected",
-                i, cloth->name, x[0], x[1], x[2], FLOW_BOUND);
+            return model_fail(cloth->mesh_place, error,
+                              "vertex %u of cloth '%.60s' starts at (%g, %g, %g) m, after the "
+                              "transform; less than %g m from the origin along each axis is "
+                              "expected (vertices count from 1)",
+                              i + 1, cloth->name, x[0], x[1], x[2], FLOW_BOUND);
     }
     phys_vec v;
     to_vector(cloth->velocity, &v);

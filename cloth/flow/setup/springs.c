@@ -35,9 +35,9 @@ static int check_edges(const struct flow_springs *springs, uint32_t c, struct cl
             !memcmp(position + 3 * (size_t)edge->a, position + 3 * (size_t)edge->b,
                     3 * sizeof *position))
             return model_fail(cloth->mesh_place, error,
-                              "cloth '%.60s': vertices %u and %u (counted from 0) are 0 m apart; "
+                              "cloth '%.60s': vertices %u and %u (counted from 1) are 0 m apart; "
                               "the edge that joins them needs a length",
-                              cloth->name, edge->a, edge->b);
+                              cloth->name, edge->a + 1, edge->b + 1);
     }
     return CLOTH_OK;
 }

@@ -26,10 +26,11 @@ static int refuse(const struct model_cloth *cloth, uint32_t vertex, double (*sta
                   const char *place, struct cloth_error *error)
 {
     const double *x = start[vertex], *v = x + 3;
-    return model_fail(place, error,
-                      "vertex %u of cloth '%.60s' starts at (%g, %g, %g) m with the velocity (%g, "
-                      "%g, %g) m/s; less than %g along each axis is expected",
-                      vertex, cloth->name, x[0], x[1], x[2], v[0], v[1], v[2], FLOW_BOUND);
+    return model_fail(
+        place, error,
+        "vertex %u of cloth '%.60s' starts at (%g, %g, %g) m with the velocity (%g, "
+        "%g, %g) m/s; less than %g along each axis is expected (vertices count from 1)",
+        vertex + 1, cloth->name, x[0], x[1], x[2], v[0], v[1], v[2], FLOW_BOUND);
 }
 
 static double wave_at(const struct model_start *how, const double mesh[3])

@@ -16,9 +16,9 @@ static void describe_unusual(char *text, size_t size, const char *what,
     if (unusual->n)
         snprintf(text, size,
                  "%.200s%s%s that no face, edge or joint uses: %u, the first is vertex %u of cloth "
-                 "'%.60s'; %s",
+                 "'%.60s' (vertices count from 1); %s",
                  unusual->place ? unusual->place : "", unusual->place ? ": " : "", what, unusual->n,
-                 unusual->vertex, unusual->cloth->name, effect);
+                 unusual->vertex + 1, unusual->cloth->name, effect);
 }
 
 static void warn(struct flow *flow, const struct flow_particles *particles)
@@ -160,18 +160,146 @@ static void warn_of_inside(struct flow *flow)
             if (gap < -DEEP)
                 snprintf(flow->warning[9], size,
                          "%.200s%scloth '%.60s' starts inside obstacles[%u], a %s: vertex %u is %g "
-                         "m deep in it%s",
+                         "m deep in it (vertices count from 1)%s",
                          cloth->place ? cloth->place : "", cloth->place ? ": " : "",
                          cloth->name ? cloth->name : "", i,
-                         contact_kinds[model->obstacles[i].kind]->name, deepest, -gap,
+                         contact_kinds[model->obstacles[i].kind]->name, deepest + 1, -gap,
                          model_certifies(model)
                              ? ""
                              : "; the first step puts it out by the nearest way");
         }
 }
 
+/* Of the first cloth that has such. */
+static void warn_of_windings(struct flow *flow, const struct model_cloth *cloth,
+                             const struct mesh_edges *edges)
+{
+    const struct mesh_edge *first = NULL;
+    uint32_t n = 0;
+    for (uint32_t e = edges->n; e-- > 0;)
+        if (edges->edge[e].against) {
+            first = edges->edge + e;
+            n++;
+        }
+    if (first && !flow->warning[10][0])
+        snprintf(flow->warning[10], sizeof flow->warning[10],
+                 "%.200s%scloth '%.60s' has %u edges whose two triangles are wound against each "
+                 "other, the first is between vertices %u and %u (counted from 1): which side is "
+                 "its outside differs there; turn the faces of one side round",
+                 cloth->mesh_place ? cloth->mesh_place : "", cloth->mesh_place ? ": " : "",
+                 cloth->name ? cloth->name : "", n, first->a + 1, first->b + 1);
+}
+
+/* Where a vertex is that follows an obstacle, at a time, s; x: where it starts. */
+static void follow(const struct flow *flow, uint32_t motion, double time, phys_vec *x)
+{
+    const struct model *model = flow->model;
+    if (motion > model->n_motions) {
+        flow_anchor_place(model, flow->source.particles.anchor + (motion - model->n_motions - 1),
+                          time, x);
+        return;
+    }
+    const struct model_motion *m = model->motions + motion - 1;
+    struct phys_pose begin, pose;
+    if (!m->n)
+        return; /* what it follows stands still */
+    phys_pose_at(m->n, model->keys + m->first, m->about, 0, &begin);
+    phys_pose_at(m->n, model->keys + m->first, m->about, time, &pose);
+    phys_pose_back(&begin, x, x);
+    phys_pose_point(&pose, x, x);
+}
+
+static double distance(const double *a, const double *b)
+{
+    const phys_vec way = {b[0] - a[0], b[1] - a[1], b[2] - a[2], 0};
+    return sqrt(phys_dot(&way, &way));
+}
+
+/* What two ends of an edge that follow obstacles are apart at a time, m. */
+static double length_at(const struct flow *flow, uint32_t first, const struct model_cloth *cloth,
+                        const struct mesh_edge *edge, double time)
+{
+    const struct flow_particles *p = &flow->source.particles;
+    const uint32_t end[2] = {edge->a, edge->b};
+    phys_vec x[2];
+    for (int k = 0; k < 2; k++) {
+        const double *at =
+            p->start ? p->start[first + end[k]] : cloth->mesh.position + 3 * (size_t)end[k];
+        x[k] = (phys_vec){at[0], at[1], at[2], 0};
+        follow(flow, p->motion[flow_root(&p->welds, first + end[k])], time, x + k);
+    }
+    const phys_vec way = x[1] - x[0];
+    return sqrt(phys_dot(&way, &way));
+}
+
+/* Of one cloth: how much an edge is longer at some time than it starts, or is at rest. */
+struct stretched {
+    double by, time;
+    const struct mesh_edge *edge;
+};
+
+static void find_stretched(const struct flow *flow, const struct model_cloth *cloth, uint32_t first,
+                           const struct mesh_edges *edges, struct stretched *most)
+{
+    enum { TIMES = 50 };
+    const uint32_t *attached = flow->source.particles.attached + first;
+    const double *position = model_rest(cloth)->position;
+    for (uint32_t e = 0; e < edges->n; e++) {
+        const struct mesh_edge *edge = edges->edge + e;
+        if (!attached[edge->a] || !attached[edge->b])
+            continue;
+        const double rest =
+            distance(position + 3 * (size_t)edge->a, position + 3 * (size_t)edge->b);
+        const double length = fmax(rest, length_at(flow, first, cloth, edge, 0));
+        for (int i = 1; i <= TIMES; i++) {
+            const double time = flow->model->end * i / TIMES;
+            const double by = length_at(flow, first, cloth, edge, time) / length - 1;
+            if (by > most->by)
+                *most = (struct stretched){by, time, edge};
+        }
+    }
+}
+
+/* first: the number of the cloth's first vertex. */
+static void warn_of_follow(struct flow *flow, const struct model_cloth *cloth, uint32_t first,
+                           const struct mesh_edges *edges)
+{
+    struct stretched most = {.by = 0.2}; /* a body's skin stretches by so much at its joints */
+    find_stretched(flow, cloth, first, edges, &most);
+    if (most.edge && !flow->warning[11][0])
+        snprintf(flow->warning[11], sizeof flow->warning[11],
+                 "%.200s%spins that follow obstacles stretch cloth '%.60s' by %.0f %% at %.3g s: "
+                 "the edge between vertices %u and %u (counted from 1); pin fewer of its vertices",
+                 cloth->place ? cloth->place : "", cloth->place ? ": " : "",
+                 cloth->name ? cloth->name : "", 100 * most.by, most.time, most.edge->a + 1,
+                 most.edge->b + 1);
+}
+
+/* Grids are wound in one direction. Cloths without elements have no edges of their own. */
+static void warn_of_edges(struct flow *flow)
+{
+    const struct model *model = flow->model;
+    const bool attached = flow->source.particles.attached != NULL;
+    uint32_t first = 0;
+    for (uint32_t c = 0; c < model->n_cloths; first += model->cloths[c++].mesh.n_vertices) {
+        const struct model_cloth *cloth = model->cloths + c;
+        const struct mesh_edges *edges = flow->source.elements.edges + c;
+        struct mesh_edges found = {0};
+        struct cloth_error ignored = {0}; /* nothing is warned of then */
+        if (!attached && cloth->mesh.grid_nx)
+            continue;
+        if (!edges->n && !mesh_edges_find(&found, &cloth->mesh, &ignored))
+            edges = &found;
+        warn_of_windings(flow, cloth, edges);
+        if (attached)
+            warn_of_follow(flow, cloth, first, edges);
+        mesh_edges_free(&found);
+    }
+}
+
 int flow_warn(struct flow *flow, struct cloth_error *error)
 {
+    warn_of_edges(flow);
     warn(flow, &flow->source.particles);
     warn_of_moduli(flow);
     warn_of_shear(flow);

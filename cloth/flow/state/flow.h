@@ -88,8 +88,9 @@ struct flow {
     const struct flow_tie *tie; /* n_ties */
 
     /* Rank 0 only. */
-    char warning[10][512]; /* of all vertices, pinned ones, loaded ones, the solver, h, air, moduli,
-                             extents, shear, what starts inside; empty: none */
+    char warning[12][600]; /* of all vertices, pinned ones, loaded ones, the solver, h, air, moduli,
+                             extents, shear, what starts inside, windings, what follows; empty: none
+                           */
     struct flow_source source; /* until the tables are distributed */
     uint32_t *vertex;          /* by place; from then on */
     uint32_t *cloth_first;     /* n_cloths of the model: the first vertex of each among all */

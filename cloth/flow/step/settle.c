@@ -257,6 +257,7 @@ static int stop(struct flow_state *state)
 static int begin(struct flow_state *state)
 {
     flow_grid_begin(&state->grid, state->flow->n_steps);
+    state->next_frame = flow_before(state).frames;
     int code = watch_start(state);
     if (!code)
         code = flow_energy_begin(state);

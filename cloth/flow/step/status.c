@@ -22,11 +22,11 @@ int flow_check(const duite_call *call, const struct flow_table *t,
         status[FLOW_BEYOND] = 1;
     if (bad == t->n || !step->last)
         return 0;
-    return duite_fail(
-        call, FLOW_DIVERGED,
-        "step %.0f: the %s of vertex %u in block %u is (%g, %g, %g): the run diverged",
-        flow_step_number(step->begin), what, t->vertex[bad], step->block, y[bad][0], y[bad][1],
-        y[bad][2]);
+    return duite_fail(call, FLOW_DIVERGED,
+                      "step %.0f: the %s of vertex %u, counted from 1, in block %u is (%g, %g, "
+                      "%g): the run diverged",
+                      flow_step_number(step->begin), what, t->vertex[bad] + 1, step->block,
+                      y[bad][0], y[bad][1], y[bad][2]);
 }
 
 /* Rank 0 alone has the clock by which checkpoints are due. */

@@ -132,8 +132,9 @@ static int encode(const struct output_poses *poses, const struct pose_file *of, 
     for (size_t i = 0; i < 3 * (size_t)of->n_points; i++) {
         const double value = x[i / 3][i % 3];
         if (!(fabs(value) <= (double)FLT_MAX))
-            return cloth_fail(error, CLOTH_E_RUN, "%s: vertex %zu has no finite place", of->path,
-                              i / 3);
+            return cloth_fail(error, CLOTH_E_RUN,
+                              "%s: vertex %zu has no finite place (vertices count from 1)",
+                              of->path, i / 3 + 1);
         output_put_float(poses->bytes + 4 * i, (float)value);
     }
     return 0;

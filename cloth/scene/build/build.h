@@ -94,6 +94,14 @@ int scene_build_cloth_of(uint32_t *cloth, const char *what, const struct model *
 /* Warnings of keys that do nothing in this scene; after all others. */
 int scene_build_idle(struct model *model, const struct scene_tree *tree, struct cloth_error *error);
 
+/* Warnings of values that are hardly ever meant. */
+int scene_build_unusual(struct model *model, const struct scene_tree *tree,
+                        struct cloth_error *error);
+
+/* Warns of seams of one cloth that cross where it starts; after the seams. */
+int scene_build_warn_seams(struct model *model, const struct scene_tree *tree,
+                           struct cloth_error *error);
+
 /* Writes the settings of the model. Error: CLOTH_E_MEMORY. */
 int scene_build_settings(struct model *model, const struct scene_tree *tree,
                          struct cloth_error *error);

@@ -1,9 +1,11 @@
 /* Bodies whose surface goes through itself: nothing says there what is inside, and cloth that gets
- * between two of its parts is pinched. They are met all the same, with a warning. */
+ * between two of its parts is pinched. They are met all the same, with a warning. Seams that cross:
+ * they pull panels through each other. */
 #include "cloth/scene/build/build.h"
 #include "cloth/verify/verify.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 static int warn_of_pairs(struct model *model, const struct mesh *mesh,
                          const struct cloth_list *pairs, const struct scene_tree *tree, int file,
@@ -35,5 +37,131 @@ int scene_build_warn_crossed(struct model *model, const struct mesh *mesh, const
     if (!code)
         code = warn_of_pairs(model, mesh, &pairs, tree, file, error);
     free(pairs.items);
+    return code;
+}
+
+/* ---- Seams ---- */
+
+static const double END = 0.02; /* of the way between partners: so near to them seams may touch */
+
+/* What the threads of a cloth's seams sweep: of each two neighbours two triangles. */
+struct threads {
+    double (*x)[3];
+    uint32_t (*corner)[3], *seam; /* of each triangle, and the seam it is of */
+    uint32_t n_points, n_triangles;
+};
+
+/* A thread, from near the one partner to near the other. */
+static void add_thread(struct threads *to, const double *position, const uint32_t pair[2])
+{
+    const double *a = position + 3 * (size_t)pair[0], *b = position + 3 * (size_t)pair[1];
+    for (int k = 0; k < 3; k++) {
+        to->x[to->n_points][k] = a[k] + END * (b[k] - a[k]);
+        to->x[to->n_points + 1][k] = b[k] + END * (a[k] - b[k]);
+    }
+    to->n_points += 2;
+}
+
+/* Without its first and its last thread, which other seams can have, too. */
+static void add_seam(struct threads *to, const double *position, const struct model_seam *seam,
+                     uint32_t number)
+{
+    for (uint32_t i = 1; i + 1 < seam->n_pairs; i++) {
+        const uint32_t p = to->n_points;
+        add_thread(to, position, seam->pair[i]);
+        if (i == 1)
+            continue;
+        const uint32_t corner[2][3] = {{p - 2, p, p + 1}, {p - 2, p + 1, p - 1}};
+        for (int k = 0; k < 2; k++) {
+            memcpy(to->corner[to->n_triangles], corner[k], sizeof corner[k]);
+            to->seam[to->n_triangles++] = number;
+        }
+    }
+}
+
+/* The first two seams of which a good part of the one's threads goes through the other. Seams that
+ * begin at one corner may touch near it. Triangles are in the order of the seams, and so are pairs.
+ * crossed, last: room, of each seam: triangles of the one that go through it; the last of these. */
+static bool find_crossed(const struct threads *threads, const struct cloth_list *pairs,
+                         const struct model_seams *seams, uint32_t *crossed, uint32_t *last,
+                         uint32_t found[2])
+{
+    const double PART = 0.25;
+    uint32_t now = UINT32_MAX;
+    for (const struct verify_pair *pair = pairs->items, *end = pair + pairs->n; pair < end;
+         pair++) {
+        const uint32_t one = threads->seam[pair->triangle[0]];
+        const uint32_t other = threads->seam[pair->triangle[1]];
+        if (one != now)
+            memset(crossed, 0, seams->n * sizeof *crossed);
+        crossed[other] += !crossed[other] || last[other] != pair->triangle[0];
+        last[other] = pair->triangle[0];
+        now = one;
+        found[0] = one;
+        found[1] = other;
+        if (one != other && crossed[other] >= PART * 2 * seams->seam[one].n_pairs)
+            return true;
+    }
+    return false;
+}
+
+static int warn_of_threads(struct model *model, const struct model_cloth *cloth,
+                           const struct threads *threads, const struct cloth_list *pairs,
+                           const struct scene_tree *tree, int node, struct cloth_error *error)
+{
+    char one[MODEL_SEAM_NAME], other[MODEL_SEAM_NAME];
+    uint32_t found[2], *room = scene_build_array(2 * cloth->seams.n, sizeof *room, error);
+    const bool cross =
+        room && find_crossed(threads, pairs, &cloth->seams, room, room + cloth->seams.n, found);
+    free(room);
+    if (!cross)
+        return error->code;
+    model_name_seam(cloth, found[0], one);
+    model_name_seam(cloth, found[1], other);
+    return scene_build_warn(model, tree, node, error,
+                            "%.160s and %.160s cross where the run starts: what they pull goes "
+                            "through each other; place the panels otherwise, or see seams.reversed",
+                            one, other);
+}
+
+static int warn_of_seams(struct model *model, const struct model_cloth *cloth,
+                         const struct scene_tree *tree, int node, struct cloth_error *error)
+{
+    const struct model_seams *seams = &cloth->seams;
+    size_t n = 0;
+    for (uint32_t s = 0; s < seams->n; s++)
+        n += seams->seam[s].n_pairs;
+    struct threads threads = {.x = scene_build_array(2 * n, sizeof *threads.x, error),
+                              .corner = scene_build_array(2 * n, sizeof *threads.corner, error),
+                              .seam = scene_build_array(2 * n, sizeof *threads.seam, error)};
+    struct cloth_list pairs = {0};
+    for (uint32_t s = 0; s < seams->n && !error->code; s++)
+        add_seam(&threads, cloth->mesh.position, seams->seam + s, s);
+    const struct verify_soup soup = {.n_points = threads.n_points,
+                                     .n_triangles = threads.n_triangles,
+                                     .n_first = threads.n_triangles,
+                                     .x = (const double(*)[3])threads.x,
+                                     .corner = (const uint32_t(*)[3])threads.corner};
+    int code = error->code ? error->code : verify_pairs(&soup, &pairs, error);
+    if (!code)
+        code = warn_of_threads(model, cloth, &threads, &pairs, tree, node, error);
+    free(threads.x);
+    free(threads.corner);
+    free(threads.seam);
+    free(pairs.items);
+    return code;
+}
+
+int scene_build_warn_seams(struct model *model, const struct scene_tree *tree,
+                           struct cloth_error *error)
+{
+    const int list = scene_tree_get(tree, 1, "cloths");
+    int code = CLOTH_OK;
+    for (uint32_t i = 0; i < model->n_cloths && !code; i++) {
+        const struct model_cloth *cloth = model->cloths + i;
+        const int node = scene_tree_get(tree, scene_tree_item(tree, list, i), "seams");
+        if (cloth->seams.n && cloth->seams.state == MODEL_SEAMS_PULLED)
+            code = warn_of_seams(model, cloth, tree, node, error);
+    }
     return code;
 }

@@ -7,6 +7,7 @@
 #include "cloth/scene/pattern.h"
 #include "cloth/scene/schema/check.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -83,7 +84,11 @@ static int read_file(struct model *model, struct garment_pattern *pattern,
                      struct cloth_error *inner)
 {
     char *path = scene_build_path(model, tree, scene_tree_get(tree, node, "file"), error);
-    const int code = path ? scene_read_pattern(pattern, path, inner) : error->code;
+    char text[200];
+    int code = path ? scene_read_pattern(pattern, path, inner) : error->code;
+    if (!code && garment_pattern_unusual(pattern, text, sizeof text))
+        code = scene_build_warn(model, tree, scene_tree_get(tree, node, "file"), error,
+                                "mesh: %.200s: %s", path, text);
     free(path);
     return code == CLOTH_E_IO ? CLOTH_E_INPUT : code; /* a scene that names no readable file */
 }
@@ -168,6 +173,10 @@ int scene_build_pattern(struct model *model, struct model_cloth *cloth, struct s
     code = code ? code : check_fineness(&asked, tree, node, error);
     code = code ? code : take_pattern(model, &pattern, &asked, tree, node, error, inner);
     const struct garment_fineness fineness = {asked.edge, asked.vertices};
+    if (!code && asked.edge > 0)
+        code = scene_build_check_memory(
+            (uint64_t)fmin(garment_vertices(&pattern, asked.edge), 1e18), "the pattern is to have",
+            tree, scene_tree_get(tree, node, "edge"), error);
     code = code ? code : garment_make(&garment, &pattern, &fineness, inner);
     code = code ? code : take_mesh(&cloth->mesh, &garment, &pattern, inner);
     code = code ? code : take_seams(&cloth->seams, &garment, &pattern, error);

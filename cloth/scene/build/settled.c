@@ -105,9 +105,10 @@ static int take(struct model_cloth *cloth, const struct folder *folder, const do
         for (size_t c = 0; c < 3; c++) {
             const double x = place[3 * ((size_t)folder->first + v) + c];
             if (!isfinite(x))
-                return scene_tree_fail(tree, node, error,
-                                       "from: vertex %u of the frame in %.300s is nowhere", v,
-                                       folder->pc2);
+                return scene_tree_fail(
+                    tree, node, error,
+                    "from: vertex %u of the frame in %.300s is nowhere (vertices count from 1)",
+                    v + 1, folder->pc2);
             cloth->start[6 * (size_t)v + c] = x;
             cloth->start[6 * (size_t)v + 3 + c] = cloth->velocity[c];
         }

@@ -1,7 +1,6 @@
 /* The walk of a document along the rules, which checks, adds defaults and fills structures in one.
- * Its depth is the schema's, whatever the document (aliases may be circular). Every error is
- * reported by `wrong` or `unknown`, so all of them have one form. `base` is the structure that the
- * fields of a rule belong to; NULL: nothing is filled. */
+ * Its depth is the schema's. Errors are reported by `wrong` or `unknown`, so they have one form.
+ * `base` is the structure that the fields of a rule belong to; NULL: nothing is filled. */
 #include "cloth/scene/schema/check.h"
 #include "cloth/scene/schema/choice.h"
 #include "cloth/scene/schema/store.h"
@@ -68,19 +67,19 @@ static const struct {
     {"contact", "filter", "it is gone; contact: {mode: certified} or {mode: project} is there"},
     {"mode", "filter", "it is gone; certified knows of contact in the solve, too"}};
 
-static const char *outdated_of(const struct walk *walk, const struct place *at, int node)
+static const char *more_of(const struct walk *walk, const struct place *at, int node)
 {
     const char *value = scene_tree_scalar(walk->tree, node);
     for (size_t i = 0; at->key && value && i < sizeof outdated / sizeof *outdated; i++)
         if (!strcmp(outdated[i].key, at->key) && !strcmp(outdated[i].value, value))
             return outdated[i].now;
-    return NULL;
+    return value && scene_scalar_has_comma(value) ? SCENE_NO_COMMA : NULL;
 }
 
 static int wrong(struct walk *walk, const struct place *at, const struct scene_rule *rule, int node)
 {
     char path[200], is[100], expected[300];
-    const char *now = outdated_of(walk, at, node);
+    const char *now = more_of(walk, at, node);
     path_of(at, path, sizeof path);
     return scene_tree_fail(walk->tree, node, walk->error, "%s is %s; %s is expected%s%s", path,
                            found(walk, node, is, sizeof is),
@@ -143,6 +142,23 @@ static bool is_default(const struct walk *walk, int node)
     return scene_tree_node(walk->tree, node)->start_mark.index == SCENE_BY_DEFAULT;
 }
 
+/* {density: 0,2} is {density: 0, 2: } to YAML. Pair i is the second of these. */
+static int check_comma(struct walk *walk, const struct place *at, int map, size_t i)
+{
+    char path[200], number[100];
+    const struct scene_tree *tree = walk->tree;
+    const yaml_node_pair_t pair = scene_tree_pair(tree, map, i);
+    const yaml_node_pair_t before = scene_tree_pair(tree, map, i - 1);
+    const char *whole = scene_tree_scalar(tree, before.value);
+    snprintf(number, sizeof number, "%.40s,%.40s", whole ? whole : "",
+             scene_tree_scalar(tree, pair.key));
+    if (!scene_tree_empty(tree, pair.value) || !scene_scalar_has_comma(number))
+        return CLOTH_OK;
+    path_of(&(struct place){at, scene_tree_scalar(tree, before.key), 0}, path, sizeof path);
+    return scene_tree_fail(walk->tree, before.value, walk->error, "%s is %s; %s", path, number,
+                           SCENE_NO_COMMA);
+}
+
 /* Keys of a map are texts, each there once. */
 static int check_names(struct walk *walk, const struct place *at, int map)
 {
@@ -156,9 +172,8 @@ static int check_names(struct walk *walk, const struct place *at, int map)
                                    "a key of %s is %s; a text is expected", path,
                                    found(walk, key, is, sizeof is));
         for (size_t j = 0; j < i; j++) {
-            const char *other =
-                scene_tree_scalar(walk->tree, scene_tree_pair(walk->tree, map, j).key);
-            if (!strcmp(name, other))
+            const int other = scene_tree_pair(walk->tree, map, j).key;
+            if (!strcmp(name, scene_tree_scalar(walk->tree, other)))
                 return scene_tree_fail(walk->tree, key, walk->error,
                                        "%s is twice in %s; each key is allowed once", name, path);
         }
@@ -249,6 +264,8 @@ static int check_map(struct walk *walk, const struct place *at, const struct sce
                      int node, void *base)
 {
     int code = check_names(walk, at, node);
+    for (size_t i = 1; !code && i < scene_tree_length(walk->tree, node); i++)
+        code = check_comma(walk, at, node, i);
     scene_choice_settle(walk->tree, node, rule->inside, false);
     if (!code)
         code = check_values(walk, at, rule->inside, node, base);
@@ -307,7 +324,8 @@ static int check_list(struct walk *walk, const struct place *at, const struct sc
                       int node, void *base)
 {
     size_t n = scene_tree_length(walk->tree, node), step;
-    if ((rule->length && n != rule->length) || (rule->filled && !n))
+    if ((rule->length && n != rule->length) || (rule->filled && !n) ||
+        (rule->max > 0 && (double)n > rule->max))
         return wrong(walk, at, rule, node);
     char *items = items_of(walk, rule, node, base, &step);
     int code = walk->error->code;

@@ -8,6 +8,11 @@
 static const struct scene_rule number = {.type = SCENE_NUMBER, ITEM(double)};
 static const struct scene_rule positive = {
     .type = SCENE_NUMBER, .range = SCENE_POSITIVE, ITEM(double)};
+
+/* Names are compared with each other; a scene is read once for each phase. */
+#define MOST_NAMED  4096
+#define MOST_PHASES 100
+
 /* clang-format off */
 static const struct scene_rule damping_keys[] = {
     {"viscous", SCENE_NUMBER, "kg/s", "0", .range = SCENE_NOT_NEGATIVE,
@@ -306,9 +311,9 @@ static const struct scene_rule contact_keys[] = {
     {"friction", SCENE_NUMBER, .fallback = "0", .range = SCENE_COEFFICIENT,
      INTO(struct model_contact, friction),
      .about = "coefficient of materials and obstacles that give none; sides a and b: sqrt(a b)"},
-    {"pairs", SCENE_LIST, .fallback = "[]", .inside = &pair,
+    {"pairs", SCENE_LIST, .fallback = "[]", .max = MOST_NAMED, .inside = &pair,
      ARRAY(struct model_contact, pairs, n_pairs), .about = "two sides with a friction of their own"},
-    {"ignore", SCENE_LIST, .fallback = "[]", .inside = &ignored,
+    {"ignore", SCENE_LIST, .fallback = "[]", .max = MOST_NAMED, .inside = &ignored,
      .about = "[A, B]: cloths, obstacles or groups that do not meet"},
     {"stiffness", SCENE_NUMBER, "N/m", .range = SCENE_POSITIVE,
      INTO(struct model_contact, stiffness),
@@ -403,12 +408,12 @@ static const struct scene_rule scene_keys[] = {
      INTO(struct model, gravity), .about = "+y is up"},
     {"air", SCENE_MAP, .inside = air_keys, INTO(struct model, air),
      .about = "drag and wind on triangles; else there is none"},
-    {"cloths", SCENE_LIST, .required = true, .filled = true, .inside = &scene_cloth,
-     ARRAY(struct model, cloths, n_cloths), .about = "what moves"},
+    {"cloths", SCENE_LIST, .required = true, .filled = true, .max = MOST_NAMED,
+     .inside = &scene_cloth, ARRAY(struct model, cloths, n_cloths), .about = "what moves"},
     {"materials", SCENE_NAMED, .inside = &material, ARRAY(struct model, materials, n_materials),
      .name = FIELD(struct model_material, name),
      .about = "NAME is yours; rib_knit, silk, denim and polycotton are there"},
-    {"obstacles", SCENE_LIST, .fallback = "[]", .inside = &obstacle,
+    {"obstacles", SCENE_LIST, .fallback = "[]", .max = MOST_NAMED, .inside = &obstacle,
      .about = "what the cloth meets, still or moving by key frames"},
     {"contact", SCENE_MAP, .fallback = "{}", .inside = contact_keys, INTO(struct model, contact),
      .about = "how obstacles are met, and cloth"},
@@ -421,7 +426,7 @@ static const struct scene_rule scene_keys[] = {
     {"newton", SCENE_MAP, .fallback = "{}", .inside = newton_keys,
      .about = "Newton steps, with a line search, of implicit steps"},
     {"solver", SCENE_MAP, .fallback = "{}", .inside = solver_keys, .about = "of implicit steps"},
-    {"probes", SCENE_LIST, .fallback = "[]", .inside = &scene_probe,
+    {"probes", SCENE_LIST, .fallback = "[]", .max = MOST_NAMED, .inside = &scene_probe,
      ARRAY(struct model, probes, n_probes), .about = "what probes.csv reports after each step"},
     {"drape", SCENE_MAP, .inside = drape_keys, INTO(struct model, drape),
      .about = "the drape test: its coefficient is printed; else there is none"},
@@ -431,7 +436,8 @@ static const struct scene_rule scene_keys[] = {
      .about = "vertices of any cloths that are one"},
     {"output", SCENE_MAP, .fallback = "{}", .inside = scene_output_keys,
      .about = "files in the folder of --output that not every run has"},
-    {"phases", SCENE_LIST, .filled = true, .inside = &phase, ARRAY(struct model, phases, n_phases),
+    {"phases", SCENE_LIST, .filled = true, .max = MOST_PHASES, .inside = &phase,
+     ARRAY(struct model, phases, n_phases),
      .about = "runs of the scene, each from where the one before ended; else it is one run"},
     {"grain", SCENE_INTEGER, .fallback = "1000", .min = 1, INTO(struct model, grain),
      .about = "vertices a block"},

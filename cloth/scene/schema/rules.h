@@ -49,9 +49,9 @@ struct scene_rule {
     bool required;        /* without a default: whether the key must be there */
     bool choice;          /* of the keys of a map that are choices one must be there, and no more */
     enum scene_range range;
-    double min, max;                /* of integers; max 0: 2^32 - 1 */
-    size_t length;                  /* of lists; 0: any */
-    bool filled;                    /* lists: at least one entry */
+    double min, max; /* of integers; max 0: 2^32 - 1. max of lists: entries; 0: any */
+    size_t length;   /* of lists; 0: any */
+    bool filled;     /* lists: at least one entry */
     const struct model_word *words; /* choices, ended by one without a word */
     const struct scene_rule *inside;
     const char *about; /* for the list of keys */

@@ -108,6 +108,9 @@ static void list_expected(const struct scene_rule *rule, char *text, size_t size
                                  [SCENE_TEXT] = "texts"};
     if (rule->length)
         snprintf(text, size, "a list of %zu %s", rule->length, items[rule->inside->type]);
+    else if (rule->max > 0)
+        snprintf(text, size, "a list of %s %g %s", rule->filled ? "1 to" : "at most", rule->max,
+                 items[rule->inside->type]);
     else
         snprintf(text, size, "a %slist of %s", rule->filled ? "non-empty " : "",
                  items[rule->inside->type]);

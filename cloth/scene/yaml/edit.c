@@ -106,7 +106,11 @@ static int add_value(struct edit *edit, const char *text)
         node =
             parser.error == YAML_MEMORY_ERROR ? out_of_memory(edit->error) : edit_fails(edit, what);
     } else {
-        if (yaml_document_get_root_node(&document))
+        size_t line;
+        if (scene_tree_circle(&document, &line))
+            node = edit_fails(
+                edit, "the value is in itself, by an alias * of its anchor &; " SCENE_CIRCLE);
+        else if (yaml_document_get_root_node(&document))
             node = graft(edit, &document);
         else
             node = edit_fails(edit, "there is no value; KEY=VALUE is expected");

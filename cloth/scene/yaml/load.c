@@ -95,6 +95,28 @@ static int check_anchors(const char *path, const struct scene_words *words, cons
     return CLOTH_OK;
 }
 
+/* JSON is read as YAML, which would take a comment of other languages for something else. */
+static int check_comments(const char *path, const struct scene_words *words, const char *bytes,
+                          size_t size, struct cloth_error *error)
+{
+    size_t line = 1, begin = 0; /* of the line */
+    bool text = false;
+    for (size_t i = 0; i + 1 < size && !strcmp(words->form, "JSON"); i++) {
+        if (bytes[i] == '\n') {
+            line++;
+            begin = i + 1;
+        }
+        if (!text && bytes[i] == '/' && (bytes[i + 1] == '/' || bytes[i + 1] == '*'))
+            return cloth_fail(error, CLOTH_E_INPUT,
+                              "%s:%zu:%zu: a comment begins here, and JSON has none: take it out",
+                              path, line, i - begin + 1);
+        if (bytes[i] == '"')
+            text = !text;
+        i += text && bytes[i] == '\\'; /* what follows is no end of the text */
+    }
+    return CLOTH_OK;
+}
+
 /* Characters, not bytes, are counted: a byte 10xxxxxx continues one. */
 static void line_and_column(const char *bytes, size_t offset, size_t *line, size_t *column)
 {
@@ -157,6 +179,47 @@ static int check_maps(const struct scene_tree *tree, const struct scene_words *w
     return CLOTH_OK;
 }
 
+/* Part k of a list or map, keys before their values; 0: there are no more. */
+static int part_of(const yaml_node_t *node, size_t k)
+{
+    if (node->type == YAML_SEQUENCE_NODE) {
+        const yaml_node_item_t *item = node->data.sequence.items.start + k;
+        return item < node->data.sequence.items.top ? *item : 0;
+    }
+    if (node->type == YAML_SCALAR_NODE)
+        return 0;
+    const yaml_node_pair_t *pair = node->data.mapping.pairs.start + k / 2;
+    return pair < node->data.mapping.pairs.top ? (k % 2 ? pair->value : pair->key) : 0;
+}
+
+/* An alias names what ended before it, or what it is in. */
+int scene_tree_circle(const yaml_document_t *document, size_t *line)
+{
+    const yaml_node_t *first = document->nodes.start;
+    for (const yaml_node_t *node = first; node < document->nodes.top; node++) {
+        *line = node->start_mark.line;
+        for (size_t k = 0; part_of(node, k); k++) {
+            const yaml_node_t *part = first + part_of(node, k) - 1;
+            if (part <= node && part->type != YAML_SCALAR_NODE &&
+                part->end_mark.index >= node->end_mark.index)
+                return part_of(node, k);
+        }
+    }
+    return 0;
+}
+
+static int check_circles(struct scene_tree *tree, struct cloth_error *error)
+{
+    size_t line;
+    const int node = scene_tree_circle(&tree->document, &line);
+    return node ? scene_tree_fail(
+                      tree, node, error,
+                      "this %s is in itself, by an alias * of its anchor & in or below line "
+                      "%zu; " SCENE_CIRCLE,
+                      scene_tree_is(tree, node, YAML_SEQUENCE_NODE) ? "list" : "map", line + 1)
+                : CLOTH_OK;
+}
+
 static int parse(struct scene_tree *tree, const struct scene_words *words, yaml_parser_t *parser,
                  const char *bytes, size_t size, struct cloth_error *error)
 {
@@ -166,6 +229,7 @@ static int parse(struct scene_tree *tree, const struct scene_words *words, yaml_
     tree->loaded = true;
     int code = check_root(tree, words, error);
     code = code ? code : check_maps(tree, words, error);
+    code = code ? code : check_circles(tree, error);
     if (code)
         return code;
     yaml_document_t second;
@@ -196,6 +260,8 @@ int scene_tree_load(struct scene_tree *tree, const char *path, const struct scen
         code = check_depth(path, words, bytes, size, error);
     if (!code)
         code = check_anchors(path, words, bytes, size, error);
+    if (!code)
+        code = check_comments(path, words, bytes, size, error);
     if (!code) {
         if (yaml_parser_initialize(&parser)) {
             code = parse(tree, words, &parser, bytes, size, error);

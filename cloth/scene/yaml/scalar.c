@@ -3,6 +3,7 @@
 #include "cloth/scene/yaml/scalar.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 
 static const char *digits(const char *at)
@@ -55,4 +56,16 @@ bool scene_scalar_integer(const char *text, uint32_t *value)
         return false;
     *value = (uint32_t)number;
     return true;
+}
+
+bool scene_scalar_has_comma(const char *text)
+{
+    char number[60];
+    char *comma = number + snprintf(number, sizeof number, "%.59s", text);
+    while (comma > number && *comma != ',')
+        comma--;
+    if (*comma != ',')
+        return false;
+    *comma = '.';
+    return is_number(number);
 }

@@ -9,6 +9,9 @@
 bool scene_scalar_number(const char *text, double *value);
 
 /* [+-] digits, from 0 to 2^32 - 1. */
+/* It would be a number with a point in place of its comma. */
+bool scene_scalar_has_comma(const char *text);
+#define SCENE_NO_COMMA "a number has no comma: its decimals follow a point, as in 0.2"
 bool scene_scalar_integer(const char *text, uint32_t *value);
 
 #endif

@@ -38,6 +38,11 @@ int scene_tree_load(struct scene_tree *tree, const char *path, const struct scen
                     struct cloth_error *error);
 void scene_tree_free(struct scene_tree *tree);
 
+/* The number of a node that an alias within it names, and a line of what has the alias, counted
+ * from 0; 0: there is none. */
+int scene_tree_circle(const yaml_document_t *document, size_t *line);
+#define SCENE_CIRCLE "an alias may stand only behind what its anchor is of"
+
 /* Fails with CLOTH_E_INPUT and "place: sentence", where the place is the file, line and column of a
  * node, or the option it came by. */
 int scene_tree_fail(const struct scene_tree *tree, int node, struct cloth_error *error,

@@ -202,7 +202,7 @@ START_TEST(no_mass)
     setup.cloth.place = (char[]){"a.yaml:3:5"};
     record_run(&record, &setup.model);
     says(&record, CLOTH_E_INPUT,
-         "a.yaml:3:5: mass_per_vertex is missing: only edges or joints use vertex 0");
+         "a.yaml:3:5: mass_per_vertex is missing: only edges or joints use vertex 1");
     says(&record, CLOTH_E_INPUT, "; a finite number > 0 (kg) is expected");
     record_free(&record);
     setup_free(&setup);
@@ -215,9 +215,9 @@ START_TEST(no_mass)
     setup.cloth.mesh_place = (char[]){"a.yaml:4:9"};
     record_run(&record, &setup.model);
     says(&record, CLOTH_E_INPUT,
-         "a.yaml:4:9: mesh: triangle 0 of cloth 'test' (vertices 0, 2 and 3, ");
+         "a.yaml:4:9: mesh: triangle 1 of cloth 'test' (vertices 1, 3 and 4, ");
     says(&record, CLOTH_E_INPUT,
-         "has no area at rest, so that vertex 2 has no mass; an area above");
+         "has no area at rest, so that vertex 3 has no mass; an area above");
     record_free(&record);
     setup_free(&setup);
 }
@@ -233,7 +233,7 @@ START_TEST(masses_beyond_measure)
     for (size_t i = 0; i < sizeof masses / sizeof *masses; i++) {
         setup.cloth.mass_per_vertex = masses[i];
         record_run(&record, &setup.model);
-        says(&record, CLOTH_E_INPUT, "a.yaml:3:5: vertex 0 of cloth 'test' has a mass of ");
+        says(&record, CLOTH_E_INPUT, "a.yaml:3:5: vertex 1 of cloth 'test' has a mass of ");
         says(&record, CLOTH_E_INPUT, "1e-30 to 1e+30");
         record_free(&record);
     }
@@ -264,7 +264,7 @@ START_TEST(springs_of_no_length)
     setup.cloth.mesh.position[4] = 0;
     setup.cloth.mesh_place = (char[]){"a.yaml:4:9"};
     record_run(&record, &setup.model);
-    says(&record, CLOTH_E_INPUT, "a.yaml:4:9: cloth 'test': vertices 0 and 1 ");
+    says(&record, CLOTH_E_INPUT, "a.yaml:4:9: cloth 'test': vertices 1 and 2 ");
     says(&record, CLOTH_E_INPUT, "are 0 m apart");
     record_free(&record);
     setup_free(&setup);
@@ -287,9 +287,9 @@ START_TEST(elements_of_no_area)
                 2 * setup.cloth.mesh.position[3 * 5 + c] - setup.cloth.mesh.position[3 * 4 + c];
         record_run(&record, &setup.model);
         says(&record, CLOTH_E_INPUT,
-             bends ? "a.yaml:4:9: mesh: a triangle at the edge between vertices 4 and 5 of cloth "
+             bends ? "a.yaml:4:9: mesh: a triangle at the edge between vertices 5 and 6 of cloth "
                      "'test'"
-                   : "a.yaml:4:9: mesh: triangle 7 of cloth 'test' (vertices 4, 8 and 5, ");
+                   : "a.yaml:4:9: mesh: triangle 8 of cloth 'test' (vertices 5, 9 and 6, ");
         says(&record, CLOTH_E_INPUT, "has no area at rest; an area above 0 is expected");
         record_free(&record);
         setup_free(&setup);
@@ -334,7 +334,7 @@ START_TEST(starts_out_of_bounds)
     for (int i = 0; i < 2; i++) {
         setup.cloth.mesh.position[3 * 7 + 1] = i ? NAN : 1e6;
         record_run(&record, &setup.model);
-        says(&record, CLOTH_E_INPUT, "a.yaml:4:9: vertex 7 of cloth 'test' starts at (0, ");
+        says(&record, CLOTH_E_INPUT, "a.yaml:4:9: vertex 8 of cloth 'test' starts at (0, ");
         record_free(&record);
     }
     setup.cloth.mesh.position[3 * 7 + 1] = 0;
@@ -347,7 +347,7 @@ START_TEST(starts_out_of_bounds)
     setup.cloth.starts = starts;
     setup.cloth.n_starts = 2;
     record_run(&record, &setup.model);
-    says(&record, CLOTH_E_INPUT, "a.yaml:7:9: vertex 8 of cloth 'test' starts at (0.5, 0, 0.5) m ");
+    says(&record, CLOTH_E_INPUT, "a.yaml:7:9: vertex 9 of cloth 'test' starts at (0.5, 0, 0.5) m ");
     says(&record, CLOTH_E_INPUT, "velocity (1e+06, 0, -1e+06) m/s; less than 1e+06 along");
     record_free(&record);
     starts[0].pick.vertices[0] = 9;

@@ -199,8 +199,8 @@ START_TEST(two_pins_on_a_vertex)
         ck_assert_int_eq(record.code, i ? CLOTH_E_INPUT : CLOTH_OK);
         if (i)
             ck_assert_str_eq(record.error.text,
-                             "vertex 35 of cloth 'test' is held by two pins that do not hold and "
-                             "move alike; one is expected");
+                             "vertex 36 of cloth 'test' is held by two pins that do not hold and "
+                             "move alike; one is expected (vertices count from 1)");
         record_free(&record);
         setup_free(&g.setup);
     }

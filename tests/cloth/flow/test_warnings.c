@@ -31,8 +31,8 @@ START_TEST(vertices_without_faces)
         if (n) {
             ck_assert_uint_eq(flow_vertices(flow), 4);
             warns(flow, 0,
-                  "a.yaml:4:9: vertices that no face, edge or joint uses: 1, the first is vertex 3 "
-                  "of cloth 'test'; ");
+                  "a.yaml:4:9: vertices that no face, edge or joint uses: 1, the first is vertex 4 "
+                  "of cloth 'test' (vertices count from 1); ");
             ck_assert_ptr_null(flow_warning(flow, 1));
         } else {
             ck_assert_msg(
@@ -64,13 +64,13 @@ START_TEST(pins_and_loads_that_move_nothing)
     setup_load(&setup, 3, 0, 1, 0);
     setup.load.pick.place = (char[]){"a.yaml:6:9"};
     ck_assert_int_eq(flow_prepare(&flow, &setup.model, 1, &error), 0);
-    warns(flow, 0, "vertices that no face, edge or joint uses: 2, the first is vertex 3 ");
+    warns(flow, 0, "vertices that no face, edge or joint uses: 2, the first is vertex 4 ");
     warns(
         flow, 1,
-        "a.yaml:5:9: pinned vertices that no face, edge or joint uses: 2, the first is vertex 4 ");
+        "a.yaml:5:9: pinned vertices that no face, edge or joint uses: 2, the first is vertex 5 ");
     warns(flow, 2,
           "a.yaml:6:9: loads on vertices that no face, edge or joint uses: 1, the first is vertex "
-          "3 ");
+          "4 ");
     ck_assert_ptr_null(flow_warning(flow, 3));
     flow_free(flow);
     setup_free(&setup);
@@ -101,12 +101,39 @@ START_TEST(a_start_inside_an_obstacle)
         else
             warns(flow, 0,
                   i == 2 ? "a.yaml:4:9: cloth 'test' starts inside obstacles[1], a sphere: vertex "
-                           "4 is 0.6 m deep in it"
+                           "5 is 0.6 m deep in it (vertices count from 1)"
                          : "a.yaml:4:9: cloth 'test' starts inside obstacles[1], a sphere: vertex "
-                           "1 is 0.1 m deep in it");
+                           "2 is 0.1 m deep in it (vertices count from 1)");
         flow_free(flow);
         setup_free(&setup);
     }
+}
+END_TEST
+
+/* Two triangles of a square, the second one turned round. */
+START_TEST(windings_that_disagree)
+{
+    static const double place[] = {0, 0, 0, 1, 0, 0, 1, 0, 1, 0, 0, 1};
+    static const uint32_t triangles[2][6] = {{0, 2, 1, 0, 3, 2}, {0, 2, 1, 0, 2, 3}};
+    struct cloth_error error = {0};
+    struct flow *flow = NULL;
+    struct setup setup;
+    setup_sheet(&setup, 3);
+    mesh_free(&setup.cloth.mesh);
+    ck_assert_int_eq(mesh_inline(&setup.cloth.mesh, 4, place, 0, NULL, 2, triangles[_i], &error),
+                     0);
+    setup.cloth.mesh_place = (char[]){"a.yaml:4:9"};
+    setup.material.shear = 0;
+    ck_assert_int_eq(flow_prepare(&flow, &setup.model, 1, &error), CLOTH_OK);
+    if (_i)
+        warns(flow, 0,
+              "a.yaml:4:9: cloth 'test' has 1 edges whose two triangles are wound against each "
+              "other, the first is between vertices 1 and 3 (counted from 1): which side is its "
+              "outside differs there; turn the faces of one side round");
+    else
+        ck_assert_ptr_null(flow_warning(flow, 0));
+    flow_free(flow);
+    setup_free(&setup);
 }
 END_TEST
 
@@ -117,6 +144,7 @@ int main(void)
     tcase_add_test(cases, vertices_without_faces);
     tcase_add_test(cases, pins_and_loads_that_move_nothing);
     tcase_add_test(cases, a_start_inside_an_obstacle);
+    tcase_add_loop_test(cases, windings_that_disagree, 0, 2);
     suite_add_tcase(suite, cases);
     return unit_run(suite);
 }

@@ -247,13 +247,13 @@ static void fails(const struct mesh *mesh, double bend, const char *says)
 START_TEST(no_length)
 {
     struct mesh mesh = read_text("v 0 0 0\nv 1 0 0\nv 1 0 0\nf 1 2 3\n");
-    fails(&mesh, 0, "vertices 1 and 2 (counted from 0) are 0 m apart");
+    fails(&mesh, 0, "vertices 2 and 3 (counted from 1) are 0 m apart");
     mesh_free(&mesh);
     mesh = read_text("v 0 0 0\nv 1e200 0 0\nl 1 2\n");
-    fails(&mesh, 0, "vertices 0 and 1 (counted from 0) are inf m apart");
+    fails(&mesh, 0, "vertices 1 and 2 (counted from 1) are inf m apart");
     mesh_free(&mesh);
     mesh = read_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 1 0\nf 1 2 3\nf 2 1 4\n"); /* folded flat */
-    fails(&mesh, 1, "vertices 2 and 3 (counted from 0) are 0 m apart");
+    fails(&mesh, 1, "vertices 3 and 4 (counted from 1) are 0 m apart");
     struct mesh_lattice lattice = lattice_of(&mesh, 1, 1, 0, 1);
     ck_assert_uint_eq(lattice.n, 5);
     mesh_lattice_free(&lattice);
@@ -262,7 +262,7 @@ START_TEST(no_length)
     struct mesh_transform flat = mesh_identity;
     flat.scale[0] = 0;
     mesh_apply(&mesh, &flat);
-    fails(&mesh, 1, "vertices 0 and 1 (counted from 0) are 0 m apart");
+    fails(&mesh, 1, "vertices 1 and 2 (counted from 1) are 0 m apart");
     mesh_free(&mesh);
 }
 END_TEST

@@ -55,6 +55,24 @@ static struct model read_scene(const char *stitches, const char *keys)
     return model;
 }
 
+/* The sides of the front sewn to the same sides of the back, which faces the other way: the threads
+ * go across the bag, and through each other. */
+START_TEST(seams_that_cross)
+{
+    static const char *const stitches[] = {SIDES_OF, STITCH(1, 1) ", " STITCH(3, 3)};
+    struct model model = read_scene(stitches[_i], "{state: pulled}");
+    ck_assert_uint_eq(model.n_warnings, (uint32_t)_i);
+    if (_i)
+        ck_assert_msg(
+            strstr(model.warnings[0],
+                   ":6:12: seam 0 of cloth 'bag' (edge 1 of panel 'front', edge 1 of panel "
+                   "'back') and seam 1 of cloth 'bag' (edge 3 of panel 'front', edge 3 of panel "
+                   "'back') cross where the run starts: what they pull goes through each other"),
+            "%s", model.warnings[0]);
+    model_free(&model);
+}
+END_TEST
+
 /* A bag's corner at the bottom is in two seams: the second has one pair less. */
 START_TEST(joints_of_seams)
 {
@@ -392,6 +410,7 @@ int main(void)
 {
     Suite *suite = suite_create("seams");
     TCase *cases = tcase_create("seams");
+    tcase_add_loop_test(cases, seams_that_cross, 0, 2);
     tcase_add_test(cases, joints_of_seams);
     tcase_add_test(cases, keys_of_seams);
     tcase_add_loop_test(cases, some_seams, 0, sizeof SOME / sizeof *SOME);

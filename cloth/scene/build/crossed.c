@@ -136,7 +136,8 @@ static int warn_of_seams(struct model *model, const struct model_cloth *cloth,
                               .seam = scene_build_array(2 * n, sizeof *threads.seam, error)};
     struct cloth_list pairs = {0};
     for (uint32_t s = 0; s < seams->n && !error->code; s++)
-        add_seam(&threads, cloth->mesh.position, seams->seam + s, s);
+        if (seams->seam[s].sewing.state == MODEL_SEAMS_PULLED)
+            add_seam(&threads, cloth->mesh.position, seams->seam + s, s);
     const struct verify_soup soup = {.n_points = threads.n_points,
                                      .n_triangles = threads.n_triangles,
                                      .n_first = threads.n_triangles,
@@ -160,7 +161,7 @@ int scene_build_warn_seams(struct model *model, const struct scene_tree *tree,
     for (uint32_t i = 0; i < model->n_cloths && !code; i++) {
         const struct model_cloth *cloth = model->cloths + i;
         const int node = scene_tree_get(tree, scene_tree_item(tree, list, i), "seams");
-        if (cloth->seams.n && cloth->seams.state == MODEL_SEAMS_PULLED)
+        if (cloth->seams.n)
             code = warn_of_seams(model, cloth, tree, node, error);
     }
     return code;

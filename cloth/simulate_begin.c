@@ -92,10 +92,6 @@ static int read_and_cut(struct run *run, struct cloth_error *error)
     run->phases.keeps_start = options->checkpoint > 0;
     if (!code && options->restart)
         code = outputs_lock(&run->outputs, options, error);
-    if (!code && options->restart && run->phases.models->hdf5.every)
-        code = model_fail(run->phases.models->hdf5_place, error,
-                          "output.hdf5: frames in HDF5 do not go on after --restart; start the run "
-                          "anew, or take the key out of the scene for both runs");
     if (!code && options->restart)
         code = restart_read(&run->restart, options->restart, &run->phases, error);
     run->model = phases_model(&run->phases);

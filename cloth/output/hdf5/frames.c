@@ -220,11 +220,7 @@ static int open_all(struct output_hdf5 *frames, struct cloth_error *error)
     if (!code)
         code = take_states(frames, error);
     if (!code)
-        code = output_hdf5_remove(frames->folder, error);
-    if (!code)
-        code = output_make_folder(frames->own, error);
-    if (!code)
-        code = output_indexes_open(&frames->indexes, frames->folder, error);
+        code = output_indexes_open(&frames->indexes, frames->folder, frames->setup.n_frames, error);
     return code ? code : start_thread(frames, error);
 }
 

@@ -124,7 +124,7 @@ int output_forces_count(const char *folder, uint32_t n_vertices, uint64_t *n_fra
                         struct cloth_error *error);
 
 /* A folder's lock: DIR/duite.lock, which names the host and the process of the run that writes into
- * the folder. Local functions, on rank 0. */
+ * the folder, and since when that runs. Local functions, on rank 0. */
 struct output_lock;
 
 /* Takes the lock before anything else in the folder changes; the folder is made if missing. A lock

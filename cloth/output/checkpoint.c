@@ -171,7 +171,7 @@ static int write_file(const char *path, const struct output_part part[OUTPUT_CHE
         return -1;
     }
     XXH64_reset(to.hash, 0);
-    to.file = open(path, O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
+    to.file = output_open_file(path, O_WRONLY | O_CREAT);
     int bad = to.file < 0 || write_all(&to, part), reason = errno;
     if (to.file >= 0 && close(to.file) != 0 && !bad) {
         bad = 1;

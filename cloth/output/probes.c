@@ -161,7 +161,7 @@ int output_probes_sync(const char *folder, struct cloth_error *error)
     char *path = output_path(folder, NAME, "");
     if (!path)
         return cloth_fail(error, CLOTH_E_MEMORY, "no memory for the path of %s", NAME);
-    const int file = open(path, O_RDONLY | O_CLOEXEC);
+    const int file = output_open_file(path, O_RDONLY);
     const int code = file >= 0 && output_sync(file) != 0 ? output_fail(error, "write", path) : 0;
     if (file >= 0)
         close(file);

@@ -48,7 +48,7 @@ static int write_hidden(struct output_index *index)
     struct output_index_file *file = &index->hidden;
     const size_t n = index->text.n, end = strlen(index->form->end);
     if (file->file < 0) {
-        file->file = open(index->hidden_path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+        file->file = output_open_file(index->hidden_path, O_WRONLY | O_CREAT | O_TRUNC);
         file->n = 0;
     }
     if (file->file < 0 ||

@@ -113,8 +113,7 @@ static bool check_stop(struct run *run)
     MPI_Allreduce(MPI_IN_PLACE, &wanted, 1, MPI_INT, MPI_MAX, MPI_COMM_WORLD);
     run->stopped_before = wanted;
     if (wanted && run->rank == 0 && !run->phases.done[0].ended)
-        fprintf(stderr, "duite-cloth: stopped as asked by a signal before the first step; nothing "
-                        "was written\n");
+        simulate_say_unbegun();
     return wanted;
 }
 
@@ -187,6 +186,7 @@ int simulate_prepare(struct run *run)
     phases_share(&run->phases, &error);
     run->model = phases_model(&run->phases);
     const int code = simulate_agree(run, &error);
+    simulate_stop_by_step();
     if (code || check_stop(run))
         return code;
     if (run->rank == 0)

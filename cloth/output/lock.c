@@ -29,14 +29,19 @@ static char *_Atomic held[MAX]; /* paths of the locks of this process, for the s
 
 /* ---- Signals ---- */
 
-/* Ends the process as the signal would have without a handler. */
-static void end_by(int number)
+void output_locks_remove(void)
 {
     for (int i = 0; i < MAX; i++) {
         const char *path = held[i];
         if (path)
             unlink(path);
     }
+}
+
+/* Ends the process as the signal would have without a handler. */
+static void end_by(int number)
+{
+    output_locks_remove();
     signal(number, SIG_DFL);
     raise(number);
 }

@@ -138,6 +138,9 @@ int output_lock_take(struct output_lock **lock, const char *folder, struct cloth
 /* Removes it, if it is still that of this process; *lock becomes NULL. */
 void output_lock_free(struct output_lock **lock);
 
+/* Removes the locks of a process that ends without more. From any thread, and a signal handler. */
+void output_locks_remove(void);
+
 /* The table of probes, DIR/probes.csv: a header, then a row a step, written when the step is done:
  * a run that is killed leaves the rows so far. Local functions, on rank 0. */
 struct output_probes;

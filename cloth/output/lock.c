@@ -100,7 +100,7 @@ static bool read_holder(const char *path, struct holder *holder)
 {
     char text[TEXT] = "", format[64];
     *holder = (struct holder){.process = 0};
-    const int file = open(path, O_RDONLY | O_CLOEXEC);
+    const int file = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
     if (file < 0)
         return errno != ENOENT;
     const ssize_t n = read(file, text, sizeof text - 1);

@@ -4,6 +4,7 @@
  * an entry costs no copy of those before it. */
 #include "cloth/output/hdf5/hdf5.h"
 
+#include "cloth/base/file.h"
 #include "cloth/output/files/cut.h"
 #include "cloth/output/files/files.h"
 
@@ -17,7 +18,7 @@ bool output_index_is_ours(const char *path, const char *begin)
 {
     char bytes[256];
     const size_t n = strlen(begin);
-    FILE *file = fopen(path, "rbe");
+    FILE *file = cloth_file_open(path);
     const bool is =
         file && n <= sizeof bytes && fread(bytes, 1, n, file) == n && memcmp(bytes, begin, n) == 0;
     if (file)
@@ -139,10 +140,11 @@ static int keep_entries(struct output_index *index, const char *folder, uint64_t
 {
     char *text = NULL;
     size_t room = 0;
-    FILE *file = fopen(index->path, "rbe");
+    FILE *file = cloth_file_open(index->path);
     int code = CLOTH_OK;
     if (!file || getdelim(&text, &room, 0, file) < 0 || ferror(file))
-        code = output_refuse(error, "go on with", index->path);
+        code = cloth_fail(error, CLOTH_E_INPUT, "cannot go on with %s: %s", index->path,
+                          cloth_file_why());
     if (file)
         fclose(file);
     code = code ? code : keep(index, folder, text, n_frames, error);

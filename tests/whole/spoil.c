@@ -32,6 +32,26 @@ static struct flow_list *find_list(const struct opened *of)
     return NULL;
 }
 
+/* Rows of the first block: those of its places, which come first. */
+static uint32_t rows_of_first(const struct opened *of)
+{
+    uint64_t bytes;
+    memcpy(&bytes, of->flow + of->saved->main_bytes, sizeof bytes);
+    return (uint32_t)(bytes / sizeof(phys_vec));
+}
+
+/* The first corner in the first block comes to lie in the row after its last one. */
+static bool spoil_corner(const struct opened *of, struct flow_tie_corners *at)
+{
+    uint32_t k = 0;
+    while (k < at->n && at->block[k] > 0)
+        k++;
+    if (k == at->n)
+        return false;
+    at->row[k] = rows_of_first(of);
+    return true;
+}
+
 /* Of the first contact. */
 static bool spoil_contact(const struct opened *of, const char *what)
 {
@@ -43,6 +63,8 @@ static bool spoil_contact(const struct opened *of, const char *what)
         contact->point[0] = UINT32_MAX;
     else if (!strcmp(what, "row"))
         contact->at.row[0] = 1u << 30;
+    else if (!strcmp(what, "next"))
+        return spoil_corner(of, &contact->at);
     else if (!strcmp(what, "corners"))
         contact->at.n = 77;
     else if (!strcmp(what, "index"))

@@ -47,7 +47,7 @@ time: {h: 0.004, end: 0.2, fps: 50}
 grain: 120
 END
 box_obj 0 0 0 0.1 0.1 0.1 > low.obj
-box_obj 0 0 0 0.1 0.2 0.1 > high.obj
+box_obj 0 0 0 0.1 0.11 0.1 > high.obj
 sed 's/end: 2,/end: 1,/; s/h: 0.002/h: 0.005/' sheet.yaml > phases.yaml
 cat >> phases.yaml << 'END'
 phases: [{name: one}, {name: two, set: {gravity: [3, -9, 0]}}, {name: three, set: {gravity: [0, -9, 2], time.h: 0.0025}}]
@@ -209,6 +209,7 @@ pile room has contacts between blocks or obstacles that this scene does not have
 pile kept has contacts between blocks or obstacles that this scene does not have
 pile point has places or contacts that no run comes to
 pile row has places or contacts that no run comes to
+pile next has places or contacts that no run comes to
 pile corners has places or contacts that no run comes to
 pile place has places or contacts that no run comes to
 pile size has a block of another size

@@ -429,8 +429,8 @@ static int check_host(int rank, const struct simulate_options *run)
 int main(int argc, char **argv)
 {
     int provided, rank;
-    simulate_catch_signals();
-    if (MPI_Init_thread(&argc, &argv, MPI_THREAD_SERIALIZED, &provided) != MPI_SUCCESS)
+    simulate_block_signals();
+    if (MPI_Init_thread(&argc, &argv, MPI_THREAD_SERIALIZED, &provided) || simulate_catch_signals())
         return SIMULATE_FAILED;
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
     struct command command = {.talks = rank == 0};

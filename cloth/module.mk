@@ -29,7 +29,7 @@ duite_cloth_SOURCES = \
 	cloth/drape.c cloth/environment.c cloth/intersections.c cloth/intersections_model.c cloth/intersections_parts.h cloth/intersections_parts.c \
 	cloth/intersections_soup.h cloth/intersections_soup.c cloth/keeper.c cloth/outputs.c cloth/outputs_colours.c cloth/outputs_hdf5.c \
 	cloth/phases.c cloth/phases_check.c cloth/phases_motions.c cloth/progress.c cloth/restart.c cloth/room.c cloth/simulate.c \
-	cloth/simulate_begin.c cloth/start.c cloth/start_welds.c cloth/start_welds.h \
+	cloth/simulate_begin.c cloth/stops.c cloth/start.c cloth/start_welds.c cloth/start_welds.h \
 	cloth/shipped.h cloth/shipped.c \
 	cloth/outputs_setup.h cloth/outputs_setup.c \
 	cloth/summary.h cloth/summary.c cloth/summary_numbers.h cloth/summary_numbers.c cloth/summary_print.c cloth/summary_seams.h \

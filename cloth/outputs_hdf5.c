@@ -61,10 +61,10 @@ static uint32_t (*corners_of(const struct element_strains *strains, struct cloth
 }
 
 int outputs_hdf5_open(struct outputs_hdf5 *to, const struct model *model, const char *folder,
-                      struct cloth_error *error)
+                      const uint64_t *n_frames, struct cloth_error *error)
 {
     if (!model->hdf5.every)
-        return output_hdf5_forget(folder, error);
+        return output_hdf5_forget(folder, n_frames, error);
     const char *lacks = output_hdf5_lacks(model->hdf5.level);
     if (lacks)
         return model_fail(model->hdf5_place, error, "output.hdf5: %s", lacks);
@@ -75,6 +75,7 @@ int outputs_hdf5_open(struct outputs_hdf5 *to, const struct model *model, const 
     if (!triangle)
         return error->code;
     setup.folder = folder;
+    setup.n_frames = n_frames;
     setup.triangle = (const uint32_t(*)[3])triangle;
     setup.edge = (const uint32_t(*)[2])to->strains.edge;
     setup.context = to;

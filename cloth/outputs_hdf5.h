@@ -19,10 +19,11 @@ struct outputs_hdf5 {
 /* What a model's frames need on the disk, bytes a frame; 0: it has none. */
 double outputs_hdf5_bytes(const struct model *model);
 
-/* Begins them in a folder of frames, while there are meshes; or removes those of an earlier run.
+/* Begins them in a folder of frames, while there are meshes, or removes those of an earlier run. Of
+ * an earlier run that this one goes on with those of the first *n_frames stay; NULL: it is new.
  * Returns a cloth_code. */
 int outputs_hdf5_open(struct outputs_hdf5 *to, const struct model *model, const char *folder,
-                      struct cloth_error *error);
+                      const uint64_t *n_frames, struct cloth_error *error);
 /* Goes on with another model of the same cloths, while there are meshes. Returns a cloth_code. */
 int outputs_hdf5_go_on(struct outputs_hdf5 *to, const struct model *model,
                        struct cloth_error *error);

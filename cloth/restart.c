@@ -3,6 +3,7 @@
  */
 #include "cloth/restart.h"
 
+#include "cloth/base/file.h"
 #include "cloth/base/memory.h"
 #include "cloth/keeper.h"
 
@@ -34,12 +35,12 @@ static int put_file(FILE *to, const char *phase, const char *path, struct cloth_
 {
     unsigned char bytes[1 << 14];
     XXH64_state_t *hash = XXH64_createState();
-    FILE *file = fopen(path, "rbe");
+    FILE *file = cloth_file_open(path);
     int code = CLOTH_OK;
     if (!hash)
         code = cloth_fail(error, CLOTH_E_MEMORY, "no memory for a hash");
     else if (!file)
-        code = cloth_fail(error, CLOTH_E_INPUT, "cannot read %s again: %s", path, strerror(errno));
+        code = cloth_fail(error, CLOTH_E_INPUT, "cannot read %s again: %s", path, cloth_file_why());
     if (!code) {
         XXH64_reset(hash, 0);
         for (size_t n; (n = fread(bytes, 1, sizeof bytes, file)) > 0;)

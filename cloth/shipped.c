@@ -2,6 +2,8 @@
  * configure was told comes second. */
 #include "cloth/shipped.h"
 
+#include "cloth/base/file.h"
+
 #include <dirent.h>
 #include <limits.h>
 #include <stdlib.h>
@@ -61,7 +63,7 @@ static void print_line(FILE *file, const char *name, const char *line)
 static size_t print_scene(FILE *file, const char *folder, const char *name)
 {
     char *path = NULL, line[400] = "";
-    FILE *scene = asprintf(&path, "%s/%s", folder, name) < 0 ? NULL : fopen(path, "re");
+    FILE *scene = asprintf(&path, "%s/%s", folder, name) < 0 ? NULL : cloth_file_open(path);
     const size_t n = scene && fgets(line, sizeof line, scene) ? 1 : 0;
     if (n)
         print_line(file, name, line);

@@ -8,35 +8,9 @@
 
 #include <math.h>
 #include <mpi.h>
-#include <signal.h>
-#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <sys/resource.h>
-
-static atomic_int stop_requested; /* read by all threads, written by the signal's handler */
-
-static void request_stop(int signal)
-{
-    (void)signal;
-    atomic_store_explicit(&stop_requested, 1, memory_order_relaxed);
-}
-
-int simulate_stops(void *context)
-{
-    (void)context;
-    return atomic_load_explicit(&stop_requested, memory_order_relaxed);
-}
-
-void simulate_catch_signals(void)
-{
-    struct sigaction action = {.sa_handler = request_stop, .sa_flags = SA_RESTART};
-    sigemptyset(&action.sa_mask);
-    sigaction(SIGUSR1, &action, NULL);
-    sigaction(SIGTERM, &action, NULL);
-    action.sa_handler = SIG_IGN; /* the write fails with EFBIG, and that is said */
-    sigaction(SIGXFSZ, &action, NULL);
-}
 
 int simulate_agree(const struct run *run, const struct cloth_error *error)
 {

@@ -40,10 +40,14 @@ enum {
     SIMULATE_STOPPED = 5     /* stopped by a signal before its end */
 };
 
+/* Before any other thread begins: leaves SIGUSR1 and SIGTERM to simulate_catch_signals. SIGXFSZ
+ * becomes an error of the write, instead of ending the process. Local. */
+void simulate_block_signals(void);
+
 /* From now on SIGUSR1 and SIGTERM, on any rank, end a run: it finishes its step, writes a
- * checkpoint if they are asked for and a frame of the state after the step, and stops, or does not
- * begin. SIGXFSZ becomes an error of the write, instead of ending the process. Local. */
-void simulate_catch_signals(void);
+ * checkpoint if they are asked for and a frame of the state after the step, and stops. While files
+ * are read and the scene is built the process ends at once. Returns 0, or -1: no thread. Local. */
+int simulate_catch_signals(void);
 
 /* Reads, runs, reports. It finds every input error before it writes anything, and one rank prints
  * it. The caller initialises MPI. Returns the exit code, the same on all ranks but for

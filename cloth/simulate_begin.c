@@ -92,10 +92,6 @@ static int read_and_cut(struct run *run, struct cloth_error *error)
     run->phases.keeps_start = options->checkpoint > 0;
     if (!code && options->restart)
         code = outputs_lock(&run->outputs, options, error);
-    if (!code && options->restart && run->phases.models->hdf5.every)
-        code = model_fail(run->phases.models->hdf5_place, error,
-                          "output.hdf5: frames in HDF5 do not go on after --restart; start the run "
-                          "anew, or take the key out of the scene for both runs");
     if (!code && options->restart)
         code = restart_read(&run->restart, options->restart, &run->phases, error);
     run->model = phases_model(&run->phases);
@@ -117,8 +113,7 @@ static bool check_stop(struct run *run)
     MPI_Allreduce(MPI_IN_PLACE, &wanted, 1, MPI_INT, MPI_MAX, MPI_COMM_WORLD);
     run->stopped_before = wanted;
     if (wanted && run->rank == 0 && !run->phases.done[0].ended)
-        fprintf(stderr, "duite-cloth: stopped as asked by a signal before the first step; nothing "
-                        "was written\n");
+        simulate_say_unbegun();
     return wanted;
 }
 
@@ -191,6 +186,7 @@ int simulate_prepare(struct run *run)
     phases_share(&run->phases, &error);
     run->model = phases_model(&run->phases);
     const int code = simulate_agree(run, &error);
+    simulate_stop_by_step();
     if (code || check_stop(run))
         return code;
     if (run->rank == 0)

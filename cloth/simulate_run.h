@@ -38,6 +38,10 @@ int simulate_agree(const struct run *run, const struct cloth_error *error);
 
 /* Whether SIGUSR1 or SIGTERM came; has the form of flow_progress.stop. */
 int simulate_stops(void *context);
+/* From now on something may be written, and a stop waits for the step. */
+void simulate_stop_by_step(void);
+/* That it was asked to stop before. */
+void simulate_say_unbegun(void);
 
 /* All that can be wrong with the input, as far as it is known before the first phase has run; then
  * the folder of frames. Or it is asked to stop: stopped_before. Collective; returns a cloth_code,

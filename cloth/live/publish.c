@@ -87,6 +87,8 @@ static int start(struct live_publisher *publisher, const char *address, struct c
     if (publisher->wake < 0 || getrandom(&publisher->run, sizeof publisher->run, 0) < 0)
         return cloth_fail(error, CLOTH_E_LIBRARY, "--live: %s", strerror(errno));
     publisher->run |= 1; /* not 0 */
+    if (live_connections_open(publisher))
+        return fail_zmq("count connections", error);
     int code = set_options(publisher->socket, address, error);
     code = code ? code : listen_on(publisher, address, error);
     if (code)
@@ -237,6 +239,7 @@ void live_publish_close(struct live_publisher **publisher)
     }
     zmq_msg_close(&gone->scene_message);
     zmq_msg_close(&gone->frame_message);
+    live_connections_close(gone);
     if (gone->socket)
         zmq_close(gone->socket);
     if (gone->zmq)

@@ -29,6 +29,14 @@ struct live_viewer {
     double seen;               /* s: when it asked last, or was answered */
 };
 
+/* How many are connected, as ZeroMQ tells it. */
+struct live_door {
+    void *monitor; /* a socket that events come from */
+    int n, most;
+    bool is_shut, warned;
+    double opens; /* s: when it is shut */
+};
+
 struct live_publisher {
     void *zmq, *socket;
     int wake; /* an eventfd, which the run writes to when there is something new; -1: none */
@@ -54,7 +62,14 @@ struct live_publisher {
     uint64_t scene_number, frames; /* that it has; the newest one's number + 1 */
     struct live_viewer viewer[LIVE_VIEWERS];
     bool warned_version, warned_bytes;
+    struct live_door door;
 };
+
+/* Before the socket is bound; the thread looks whenever there are events, and while it is shut.
+ * Returns 0, or -1 with errno set. */
+int live_connections_open(struct live_publisher *publisher);
+void live_connections_look(struct live_publisher *publisher, double now);
+void live_connections_close(struct live_publisher *publisher);
 
 /* The thread. context: the publisher. */
 void *live_serve(void *context);

@@ -13,6 +13,7 @@
 static const double LATELY = 2; /* s: who asked, or was answered, within it is awake */
 static const double GRACE = 1;  /* s that viewers have at the end */
 enum { LINGER = 2000 };         /* ms that ZeroMQ has then to send what it took */
+enum { SHUT = 100 };            /* ms between two looks while nobody can connect */
 
 static double now(void)
 {
@@ -227,11 +228,13 @@ void *live_serve(void *context)
     struct live_publisher *p = context;
     double ended = 0;
     for (;;) {
-        zmq_pollitem_t item[2] = {{.socket = p->socket, .events = ZMQ_POLLIN},
-                                  {.fd = p->wake, .events = ZMQ_POLLIN}};
+        zmq_pollitem_t item[3] = {{.socket = p->socket, .events = ZMQ_POLLIN},
+                                  {.fd = p->wake, .events = ZMQ_POLLIN},
+                                  {.socket = p->door.monitor, .events = ZMQ_POLLIN}};
         const bool ending = ended > 0;
-        if (zmq_poll(item, 2, ending ? 10 : -1) < 0 && errno != EINTR)
+        if (zmq_poll(item, 3, ending ? 10 : p->door.is_shut ? SHUT : -1) < 0 && errno != EINTR)
             break;
+        live_connections_look(p, now());
         take_news(p);
         take_requests(p);
         for (int i = 0; i < LIVE_VIEWERS; i++)

@@ -1,5 +1,6 @@
 /* PC2 point caches: a header of 32 bytes, then x y z of each vertex in each frame, all of it
  * little-endian floats and whole numbers, whatever the machine. */
+#include "cloth/base/file.h"
 #include "cloth/base/memory.h"
 #include "cloth/mesh/mesh.h"
 
@@ -106,10 +107,10 @@ static int read_frames(FILE *file, const char *path, uint32_t n_vertices, uint32
 static FILE *open_frames(const char *path, uint32_t n_vertices, uint32_t *n_frames,
                          struct cloth_error *error)
 {
-    FILE *file = fopen(path, "rbe");
+    FILE *file = cloth_file_open(path);
     *n_frames = 0;
     if (!file) {
-        cloth_fail(error, CLOTH_E_IO, "%s: cannot be read: %s", path, strerror(errno));
+        cloth_fail(error, CLOTH_E_IO, "%s: cannot be read: %s", path, cloth_file_why());
         return NULL;
     }
     if (read_header(file, path, n_vertices, n_frames, error)) {

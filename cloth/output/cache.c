@@ -1,5 +1,6 @@
 /* A folder is believed as far as PC2's count goes: frames beyond it were never finished. All that
  * is counted must be there, or the folder is refused. */
+#include "cloth/base/file.h"
 #include "cloth/output/files/files.h"
 #include "cloth/output/files/json.h"
 #include "cloth/output/files/obstacles.h"
@@ -15,14 +16,13 @@ enum { MAX_TEXT = 1 << 30 };
 
 static int open_fail(struct cloth_error *error, const char *path)
 {
-    const char *reason = strerror(errno);
-    return cloth_fail(error, CLOTH_E_INPUT, "cannot read %s: %s", path, reason);
+    return cloth_fail(error, CLOTH_E_INPUT, "cannot read %s: %s", path, cloth_file_why());
 }
 
 /* The whole of a text file, ended by '\0'. */
 static int read_text(const char *path, char **text, struct cloth_error *error)
 {
-    FILE *file = fopen(path, "re");
+    FILE *file = cloth_file_open(path);
     if (!file)
         return open_fail(error, path);
     int code = 0;
@@ -119,7 +119,7 @@ static int open_points(const char *path, uint32_t n_vertices, const char *mesh, 
     unsigned char header[OUTPUT_PC2_HEADER];
     uint32_t n_points, n;
     struct stat status;
-    *pc2 = fopen(path, "rbe");
+    *pc2 = cloth_file_open(path);
     if (!*pc2)
         return open_fail(error, path);
     if (fread(header, sizeof header, 1, *pc2) != 1 || !output_pc2_parse(header, &n_points, &n))

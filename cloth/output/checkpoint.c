@@ -4,6 +4,7 @@
  */
 #include "cloth/output/checkpoint.h"
 
+#include "cloth/base/file.h"
 #include "cloth/output/files/files.h"
 
 #include <dirent.h>
@@ -16,7 +17,8 @@
 #include <xxhash.h>
 
 static const char MAGIC[8] = "duiteCP", FOLDER[] = "checkpoints", SUFFIX[] = ".checkpoint";
-enum { VERSION = 1, DIGITS = 6 };
+enum { VERSION = 1, DIGITS = 6, NAME = 64 };
+static const uint64_t LAST = UINT64_MAX / 2; /* no run comes from there to the end of numbers */
 static const uint64_t ORDER = 0x0102030405060708; /* of bytes */
 enum { FOUND = OUTPUT_CHECKPOINTS_KEPT + 1 };     /* a run that is killed may leave one more */
 
@@ -40,27 +42,30 @@ static size_t padded(size_t n)
 
 /* ---- Names ---- */
 
+static void put_name(char name[NAME], uint64_t number)
+{
+    snprintf(name, NAME, "%0*ju%s", DIGITS, (uintmax_t)number, SUFFIX);
+}
+
 /* The number of a file, or 0: no checkpoint has that name. */
 static uint64_t number_of(const char *name)
 {
-    char *end;
-    if (*name < '0' || *name > '9')
-        return 0;
-    errno = 0;
-    const uint64_t number = strtoull(name, &end, 10);
-    return errno || strcmp(end, SUFFIX) != 0 ? 0 : number;
+    char own[NAME];
+    const uint64_t number = strtoull(name, NULL, 10);
+    put_name(own, number);
+    return strcmp(name, own) == 0 ? number : 0;
 }
 
 static char *path_of(const char *folder, uint64_t number, const char *suffix)
 {
-    char name[64];
-    snprintf(name, sizeof name, "%0*ju%s", DIGITS, (uintmax_t)number, SUFFIX);
+    char name[NAME];
+    put_name(name, number);
     return output_path(folder, name, suffix);
 }
 
 static bool is_half(const char *name)
 {
-    char whole[64];
+    char whole[NAME];
     const size_t n = strlen(name), part = strlen(".part");
     if (n <= part || n >= sizeof whole || strcmp(name + n - part, ".part") != 0)
         return false;
@@ -117,6 +122,10 @@ int output_checkpoints_open(struct output_checkpoints **checkpoints, const char 
         code = output_refuse(error, "write checkpoints into", made->folder);
     if (!code && scan(made->folder, true, false, FOUND, made->kept) != 0)
         code = output_refuse(error, "remove half a checkpoint in", made->folder);
+    if (!code && made->kept[0] > LAST)
+        code = cloth_fail(error, CLOTH_E_INPUT,
+                          "%s/%ju%s: no number is left for a checkpoint after it; move it away",
+                          made->folder, (uintmax_t)made->kept[0], SUFFIX);
     if (code)
         output_checkpoints_close(checkpoints);
     else
@@ -171,7 +180,7 @@ static int write_file(const char *path, const struct output_part part[OUTPUT_CHE
         return -1;
     }
     XXH64_reset(to.hash, 0);
-    to.file = open(path, O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
+    to.file = output_open_file(path, O_WRONLY | O_CREAT);
     int bad = to.file < 0 || write_all(&to, part), reason = errno;
     if (to.file >= 0 && close(to.file) != 0 && !bad) {
         bad = 1;
@@ -281,14 +290,15 @@ static int damaged(struct cloth_error *error, const char *path, const char *how)
 static int read_bytes(const char *path, unsigned char **bytes, size_t *n, struct cloth_error *error)
 {
     struct stat status;
-    FILE *file = fopen(path, "rbe");
+    FILE *file = cloth_file_open(path);
     if (!file || fstat(fileno(file), &status) != 0) {
-        const int code = output_fail(error, "read", path);
+        const int code =
+            cloth_fail(error, CLOTH_E_IO, "cannot read %s: %s", path, cloth_file_why());
         if (file)
             fclose(file);
         return code;
     }
-    *n = status.st_size > 0 && S_ISREG(status.st_mode) ? (size_t)status.st_size : 0;
+    *n = (size_t)status.st_size;
     *bytes = malloc(*n + 8);
     int code = CLOTH_OK;
     if (!*bytes)

@@ -1,10 +1,10 @@
 /* What is read is the whole file as it was when it was opened, cut into records that are whole and
  * as large as their kind, and the mesh, say. Nothing beyond them is looked at. */
+#include "cloth/base/file.h"
 #include "cloth/base/memory.h"
 #include "cloth/output/files/files.h"
 #include "cloth/output/files/records.h"
 
-#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -19,12 +19,12 @@ struct output_colours_read {
 
 static int read_bytes(struct output_colours_read *colours, struct cloth_error *error)
 {
-    FILE *file = fopen(colours->path, "rbe");
+    FILE *file = cloth_file_open(colours->path);
     struct stat status;
     if (!file)
         return cloth_fail(error, CLOTH_E_INPUT,
                           "cannot read %s: %s; duite-cloth --output writes it beside the frames",
-                          colours->path, strerror(errno));
+                          colours->path, cloth_file_why());
     int code =
         fstat(fileno(file), &status) == 0 ? CLOTH_OK : output_fail(error, "read", colours->path);
     const size_t size = code ? 0 : (size_t)status.st_size;

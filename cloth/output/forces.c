@@ -1,6 +1,7 @@
 /* The forces of frames lie in a PC2 cache of their own, so that what reads cloth.pc2 reads it as
  * before. As there the count is rewritten last, when the floats that it counts are on the disk; it
  * never counts a frame that cloth.pc2 does not. */
+#include "cloth/base/file.h"
 #include "cloth/output/files/cut.h"
 #include "cloth/output/files/files.h"
 
@@ -35,7 +36,7 @@ static bool is_ours(const char *path)
 {
     unsigned char header[OUTPUT_PC2_HEADER];
     uint32_t n_points, n_frames;
-    const int file = open(path, O_RDONLY | O_CLOEXEC);
+    const int file = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
     if (file < 0)
         return false;
     const ssize_t n = read(file, header, sizeof header);
@@ -224,7 +225,7 @@ static int read_forces(const char *folder, uint32_t n_vertices, uint64_t frame, 
                        uint64_t *n_frames, struct cloth_error *error)
 {
     char *path = output_path(folder, NAME, "");
-    FILE *file = path ? fopen(path, "rbe") : NULL;
+    FILE *file = path ? cloth_file_open(path) : NULL;
     int code;
     if (!path)
         code = cloth_fail(error, CLOTH_E_MEMORY, "no memory for the path of %s", NAME);
@@ -232,7 +233,7 @@ static int read_forces(const char *folder, uint32_t n_vertices, uint64_t frame, 
         code = cloth_fail(error, CLOTH_E_INPUT,
                           "cannot read %s: %s; a run writes it if its scene has contact: {force: "
                           "on}",
-                          path, strerror(errno));
+                          path, cloth_file_why());
     else
         code = force ? read_frame(file, path, n_vertices, frame, force, error)
                      : read_count(file, path, n_vertices, n_frames, error);

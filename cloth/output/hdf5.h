@@ -45,9 +45,10 @@ struct output_hdf5_setup {
     const uint32_t (*triangle)[3];           /* read by output_hdf5_open only */
     const uint32_t (*edge)[2];               /* as that */
     bool wants[OUTPUT_FIELDS];
-    bool is_double; /* numbers on the disk; else float */
-    uint32_t every; /* > 0: of all frames each k-th, from the first on */
-    uint32_t level; /* of gzip, 0 to 9; 0: none */
+    bool is_double;           /* numbers on the disk; else float */
+    uint32_t every;           /* > 0: of all frames each k-th, from the first on */
+    const uint64_t *n_frames; /* of an earlier run's, how many of all stay, and go on; NULL: none */
+    uint32_t level;           /* of gzip, 0 to 9; 0: none */
     /* Fills the fields of cells from the positions. Called by the thread that writes. */
     void (*derive)(void *context, struct output_state *state);
     void *context;
@@ -60,9 +61,9 @@ const char *output_hdf5_lacks(uint32_t level);
 /* Bytes that a frame takes on the disk, at most about. */
 double output_hdf5_bytes(const struct output_hdf5_setup *setup);
 
-/* Begins. Frames and indexes of an earlier run are removed; what of these names is not of a run is
- * not: CLOTH_E_INPUT. Further errors: CLOTH_E_INPUT where it cannot be written, or the build has no
- * HDF5; CLOTH_E_MEMORY. */
+/* Begins. Frames and indexes of an earlier run are removed, or those beyond the ones that stay;
+ * what of these names is not of a run is not: CLOTH_E_INPUT. Further errors: CLOTH_E_INPUT where it
+ * cannot be written, lacks what is to stay, or the build has no HDF5; CLOTH_E_MEMORY. */
 int output_hdf5_open(struct output_hdf5 **frames, const struct output_hdf5_setup *setup,
                      struct cloth_error *error);
 
@@ -76,7 +77,7 @@ struct output_state *output_hdf5_begin(struct output_hdf5 *frames, uint64_t fram
 /* The frame that was begun is whole and goes to the thread. */
 void output_hdf5_end(struct output_hdf5 *frames);
 
-/* Until no frame is in flight. */
+/* Until no frame is in flight. From any thread. */
 void output_hdf5_wait(struct output_hdf5 *frames);
 
 /* Writes what is in flight and closes; a frame that was begun and has not ended is left out.
@@ -84,7 +85,8 @@ void output_hdf5_wait(struct output_hdf5 *frames);
  * and why. */
 int output_hdf5_close(struct output_hdf5 **frames, struct cloth_error *error);
 
-/* Removes the frames of an earlier run from a folder whose run has none. */
-int output_hdf5_forget(const char *folder, struct cloth_error *error);
+/* Removes the frames of an earlier run from a folder whose run has none, but for those of the first
+ * n_frames if it goes on with that run; NULL: it does not. Errors: of output_hdf5_open. */
+int output_hdf5_forget(const char *folder, const uint64_t *n_frames, struct cloth_error *error);
 
 #endif

@@ -1,6 +1,7 @@
 /* A lock is a file that its run alone made: O_EXCL holds on network file systems, too, where locks
  * of files often fail. Only one process at a time may judge a lock to be stale and replace it: the
- * one that made the file *.take. A lock that is not empty names its host and process. */
+ * one that made the file *.take. A lock that is not empty names its host and process, and, where
+ * the system says it, when that began: a later process may have the same number. */
 #include "cloth/output/files/files.h"
 
 #include <errno.h>
@@ -19,22 +20,28 @@ struct output_lock {
 
 struct holder {
     char host[HOST_NAME_MAX + 1];
-    long process; /* 0: the lock names none */
+    long process;             /* 0: the lock names none */
+    unsigned long long start; /* in ticks of the kernel since it began; 0: not known */
 };
 
-enum { MAX = 4 };
+enum { MAX = 4, TEXT = HOST_NAME_MAX + 128 };
 static char *_Atomic held[MAX]; /* paths of the locks of this process, for the signal handler */
 
 /* ---- Signals ---- */
 
-/* Ends the process as the signal would have without a handler. */
-static void end_by(int number)
+void output_locks_remove(void)
 {
     for (int i = 0; i < MAX; i++) {
         const char *path = held[i];
         if (path)
             unlink(path);
     }
+}
+
+/* Ends the process as the signal would have without a handler. */
+static void end_by(int number)
+{
+    output_locks_remove();
     signal(number, SIG_DFL);
     raise(number);
 }
@@ -53,9 +60,36 @@ static void catch_ends(void)
 
 /* ---- Who holds a lock ---- */
 
+/* What the kernel says of a process, field by field: man 5 proc, of /proc/PID/stat. */
+struct process {
+    char state;
+    long threads;
+    unsigned long long start;
+};
+
+/* Returns false where the system does not say. The name, in parentheses, may have any bytes. */
+static bool read_process(long number, struct process *process)
+{
+    char path[64], text[1024] = "";
+    snprintf(path, sizeof path, "/proc/%ld/stat", number);
+    FILE *file = fopen(path, "re");
+    if (!file)
+        return false;
+    const size_t n = fread(text, 1, sizeof text - 1, file);
+    fclose(file);
+    const char *after = n ? strrchr(text, ')') : NULL;
+    return after && sscanf(after,
+                           ") %c %*s %*s %*s %*s %*s %*s %*s %*s %*s %*s %*s %*s %*s %*s %*s %*s "
+                           "%ld %*s %llu",
+                           &process->state, &process->threads, &process->start) == 3;
+}
+
 static struct holder this_process(void)
 {
+    struct process process;
     struct holder self = {.process = (long)getpid()};
+    if (read_process(self.process, &process))
+        self.start = process.start;
     if (gethostname(self.host, sizeof self.host - 1) != 0)
         strcpy(self.host, "unknown");
     return self;
@@ -64,9 +98,9 @@ static struct holder this_process(void)
 /* Returns false where there is no lock. */
 static bool read_holder(const char *path, struct holder *holder)
 {
-    char text[HOST_NAME_MAX + 64] = "", format[64];
+    char text[TEXT] = "", format[64];
     *holder = (struct holder){.process = 0};
-    const int file = open(path, O_RDONLY | O_CLOEXEC);
+    const int file = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
     if (file < 0)
         return errno != ENOENT;
     const ssize_t n = read(file, text, sizeof text - 1);
@@ -74,6 +108,9 @@ static bool read_holder(const char *path, struct holder *holder)
     snprintf(format, sizeof format, "host %%%ds process %%ld", HOST_NAME_MAX);
     if (n <= 0 || sscanf(text, format, holder->host, &holder->process) != 2 || holder->process <= 0)
         holder->process = 0;
+    const char *start = strstr(text, "\nstart ");
+    if (start)
+        holder->start = strtoull(start + strlen("\nstart "), NULL, 10);
     return true;
 }
 
@@ -92,24 +129,38 @@ static bool is_ours(const struct holder *holder)
     return holds && is_same(holder, &self);
 }
 
+/* One that ended, and that its parent did not wait for, still has its number. */
+static bool runs(const struct holder *holder)
+{
+    struct process process;
+    if (kill((pid_t)holder->process, 0) != 0 && errno == ESRCH)
+        return false;
+    if (!read_process(holder->process, &process))
+        return true;
+    const bool over = (process.state == 'Z' || process.state == 'X') && process.threads <= 1;
+    return !over && (!holder->start || holder->start == process.start);
+}
+
 static bool is_stale(const struct holder *holder)
 {
     const struct holder self = this_process();
     if (!holder->process || strcmp(holder->host, self.host) != 0)
         return false;
-    return is_same(holder, &self) || (kill((pid_t)holder->process, 0) != 0 && errno == ESRCH);
+    return is_same(holder, &self) || !runs(holder);
 }
 
 /* ---- Taking one ---- */
 
 static int write_lock(const char *path)
 {
-    char text[HOST_NAME_MAX + 64];
+    char text[TEXT];
     const struct holder self = this_process();
     const int file = open(path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (file < 0)
         return -1;
-    const int n = snprintf(text, sizeof text, "host %s\nprocess %ld\n", self.host, self.process);
+    int n = snprintf(text, sizeof text, "host %s\nprocess %ld\n", self.host, self.process);
+    if (self.start)
+        n += snprintf(text + n, sizeof text - (size_t)n, "start %llu\n", self.start);
     int bad = output_write_at(file, text, (size_t)n, 0) != 0 || output_sync(file) != 0;
     int reason = errno;
     if (close(file) != 0 && !bad) {

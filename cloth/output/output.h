@@ -124,7 +124,7 @@ int output_forces_count(const char *folder, uint32_t n_vertices, uint64_t *n_fra
                         struct cloth_error *error);
 
 /* A folder's lock: DIR/duite.lock, which names the host and the process of the run that writes into
- * the folder. Local functions, on rank 0. */
+ * the folder, and since when that runs. Local functions, on rank 0. */
 struct output_lock;
 
 /* Takes the lock before anything else in the folder changes; the folder is made if missing. A lock
@@ -137,6 +137,9 @@ int output_lock_take(struct output_lock **lock, const char *folder, struct cloth
 
 /* Removes it, if it is still that of this process; *lock becomes NULL. */
 void output_lock_free(struct output_lock **lock);
+
+/* Removes the locks of a process that ends without more. From any thread, and a signal handler. */
+void output_locks_remove(void);
 
 /* The table of probes, DIR/probes.csv: a header, then a row a step, written when the step is done:
  * a run that is killed leaves the rows so far. Local functions, on rank 0. */

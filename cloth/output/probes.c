@@ -28,7 +28,7 @@ enum { NUMBER = 26 }; /* bytes of a number, at most, with its comma */
 static bool is_ours(const char *path)
 {
     char start[sizeof OURS] = "";
-    const int file = open(path, O_RDONLY | O_CLOEXEC);
+    const int file = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
     if (file < 0)
         return false;
     const ssize_t n = read(file, start, sizeof start - 1);
@@ -161,7 +161,7 @@ int output_probes_sync(const char *folder, struct cloth_error *error)
     char *path = output_path(folder, NAME, "");
     if (!path)
         return cloth_fail(error, CLOTH_E_MEMORY, "no memory for the path of %s", NAME);
-    const int file = open(path, O_RDONLY | O_CLOEXEC);
+    const int file = output_open_file(path, O_RDONLY | O_NONBLOCK);
     const int code = file >= 0 && output_sync(file) != 0 ? output_fail(error, "write", path) : 0;
     if (file >= 0)
         close(file);

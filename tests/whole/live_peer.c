@@ -4,6 +4,7 @@
  *                                       fails where none comes for two minutes
  *   live_peer frames DIR                the same of a folder of frames
  *   live_peer send HOST:PORT WHAT       sends WHAT ten times; prints the version of an answer
+ *   live_peer crowd ADDRESS:PORT N      connects N times, says so, and then sends nothing
  *   live_peer serve WHAT                prints a free port, and answers each request there by WHAT
  *
  * WHAT: foreign (bytes that are no message), version (a message of the next version), large (a
@@ -11,10 +12,12 @@
 #include "cloth/live/live.h"
 #include "cloth/live/message.h"
 
+#include <arpa/inet.h>
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 #include <xxhash.h>
 #include <zmq.h>
 
@@ -147,6 +150,28 @@ static int serve(void *zmq, const char *what)
     return code;
 }
 
+/* Until it is killed. */
+static int crowd(const char *host, int n)
+{
+    const char *colon = strchr(host, ':');
+    char address[64];
+    struct sockaddr_in to = {.sin_family = AF_INET};
+    snprintf(address, sizeof address, "%.*s", colon ? (int)(colon - host) : 0, host);
+    if (!colon || inet_pton(AF_INET, address, &to.sin_addr) != 1)
+        return fail("no address");
+    to.sin_port = htons((uint16_t)atoi(colon + 1));
+    for (int i = 0; i < n; i++) {
+        const int one = socket(AF_INET, SOCK_STREAM, 0);
+        if (one < 0)
+            return fail("no socket");
+        if (connect(one, (const struct sockaddr *)&to, sizeof to) != 0)
+            close(one); /* nobody listens now */
+    }
+    printf("connected\n");
+    fflush(stdout);
+    return pause();
+}
+
 int main(int argc, char **argv)
 {
     const char *mode = argc > 1 ? argv[1] : "";
@@ -158,6 +183,8 @@ int main(int argc, char **argv)
         code = print_frames(argv[2]);
     else if (!strcmp(mode, "send") && argc == 4)
         code = send_to(zmq, argv[2], argv[3]);
+    else if (!strcmp(mode, "crowd") && argc == 4)
+        code = crowd(argv[2], atoi(argv[3]));
     else if (!strcmp(mode, "serve") && argc == 3)
         code = serve(zmq, argv[2]);
     zmq_ctx_term(zmq);

@@ -1,5 +1,6 @@
 /* spoil FILE WHAT: changes one thing in a checkpoint, whose length and hash fit again. So a restart
- * sees what only its own checks keep away. */
+ * sees what only its own checks keep away.
+ * spoil FILE as OTHER: whether two checkpoints have the same state, whatever their reports say. */
 #include "cloth/flow/checkpoint/checkpoint.h"
 #include "cloth/flow/contact/contact.h"
 #include "cloth/output/checkpoint.h"
@@ -32,6 +33,26 @@ static struct flow_list *find_list(const struct opened *of)
     return NULL;
 }
 
+/* Rows of the first block: those of its places, which come first. */
+static uint32_t rows_of_first(const struct opened *of)
+{
+    uint64_t bytes;
+    memcpy(&bytes, of->flow + of->saved->main_bytes, sizeof bytes);
+    return (uint32_t)(bytes / sizeof(phys_vec));
+}
+
+/* The first corner in the first block comes to lie in the row after its last one. */
+static bool spoil_corner(const struct opened *of, struct flow_tie_corners *at)
+{
+    uint32_t k = 0;
+    while (k < at->n && at->block[k] > 0)
+        k++;
+    if (k == at->n)
+        return false;
+    at->row[k] = rows_of_first(of);
+    return true;
+}
+
 /* Of the first contact. */
 static bool spoil_contact(const struct opened *of, const char *what)
 {
@@ -43,6 +64,8 @@ static bool spoil_contact(const struct opened *of, const char *what)
         contact->point[0] = UINT32_MAX;
     else if (!strcmp(what, "row"))
         contact->at.row[0] = 1u << 30;
+    else if (!strcmp(what, "next"))
+        return spoil_corner(of, &contact->at);
     else if (!strcmp(what, "corners"))
         contact->at.n = 77;
     else if (!strcmp(what, "index"))
@@ -112,10 +135,37 @@ static bool write_back(const struct output_checkpoint *checkpoint, const char *p
     return file && fclose(file) == 0 && whole;
 }
 
+/* Says which byte of the state is the first that differs. */
+static int compare(const char *const path[2])
+{
+    struct output_checkpoint checkpoint[2] = {0};
+    struct cloth_error error = {0};
+    const unsigned char *bytes[2];
+    size_t n[2], i = 0;
+    for (int k = 0; k < 2; k++) {
+        if (output_checkpoint_read(checkpoint + k, path[k], &error)) {
+            fprintf(stderr, "%s\n", error.text);
+            return 99;
+        }
+        bytes[k] = checkpoint[k].part[2].bytes;
+        n[k] = checkpoint[k].part[2].n;
+        memset(&((struct flow_saved *)(void *)bytes[k])->report, 0, sizeof(struct flow_report));
+    }
+    while (i < n[0] && i < n[1] && bytes[0][i] == bytes[1][i])
+        i++;
+    const bool same = i == n[0] && i == n[1];
+    fprintf(stderr, "%zu of %zu and %zu bytes are the same\n", i, n[0], n[1]);
+    output_checkpoint_free(checkpoint);
+    output_checkpoint_free(checkpoint + 1);
+    return same ? 0 : 1;
+}
+
 int main(int argc, char **argv)
 {
     struct output_checkpoint checkpoint;
     struct cloth_error error = {0};
+    if (argc == 4 && !strcmp(argv[2], "as"))
+        return compare((const char *const[2]){argv[1], argv[3]});
     if (argc != 3 || output_checkpoint_read(&checkpoint, argv[1], &error)) {
         fprintf(stderr, "usage: spoil CHECKPOINT WHAT: %s\n", error.text);
         return 99;

@@ -130,6 +130,14 @@ pinching() {
     test $? = 1 && grep -q "pairs of features cannot be kept apart: obstacles or pins pinch the cloth.* the first of them at vertices [0-9].* of 'a' and obstacles.0., a box" said
 }
 ok "a box that goes through what a pin holds ends the run, with a pair" pinching
+# Pairs that lie at rest are in front of those of the corner that a pin leads through the sheet below.
+scene onto "$(sheet a 0.1 6 'translate: [0, 0, 0]' ', pins: [{box: [[-1, -1, -1], [1, 1, 1]]}]')
+$(sheet b 0.1 6 'translate: [0, 0.0021, 0]' ', pins: [{vertices: [35], motion: {times: [0, 0.02, 0.06], translate: [[0, 0, 0], [0, 0, 0], [0, -0.02, 0]]}}]')" '' 0.06
+cornered() {
+    limited "$DUITE_CLOTH" onto.yaml > said 2>&1
+    test $? = 1 && grep -q "pairs of features cannot be kept apart.*, the first of them at vertices .*36 (pinned) of " said
+}
+ok "of the pairs of a meeting one that fails is named" cornered
 
 # Blocks meet across ranks, and balancers move them; with DUITE_LONG=1 the wrung one is solved again and cut.
 cd "$OLDPWD" || exit 99

@@ -165,6 +165,15 @@ likewise "a broken scene" \
 likewise "an empty scene" "empty.yaml:1:1: the file is empty; a scene starts with 'schema: 1'" empty.yaml
 changed mesh 'grid: {width.*ny: 8}' 'file: mesh.obj'
 refused "a missing mesh" "mesh.yaml:3:18: mesh: mesh.obj: cannot be opened: No such file or directory" mesh.yaml
+mkfifo mesh.obj
+refused "a mesh that is a pipe" "mesh.yaml:3:18: mesh: mesh.obj: cannot be opened: it is no plain file, but a pipe, a device or the like" mesh.yaml
+rm mesh.obj
+mkdir mesh.obj
+likewise "a mesh that is a folder" "mesh.yaml:3:18: mesh: mesh.obj: cannot be opened: Is a directory" mesh.yaml
+rmdir mesh.obj
+mkfifo pattern.json
+changed piped 'mesh: {grid: {width.*ny: 8}}' 'mesh: {pattern: {file: pattern.json, edge: 0.1}}'
+likewise "a pattern that is a pipe" "piped.yaml:3:21: mesh: pattern.json: cannot open the pattern file: it is no plain file, but a pipe, a device or the like" piped.yaml
 printf 'v 0 0 0\nv 1 0 0\nv 0 0 1\nf 1 2 9\n' > mesh.obj
 ok "a bad mesh is told with both places" sh -c '
     "$0" mesh.yaml 2> said.err

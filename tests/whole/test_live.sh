@@ -176,3 +176,22 @@ hostile() { # whatever comes, the run goes on to its hash, and says once what ca
         grep -q 'is left without an answer: version 2 of the live view is spoken there' live
 }
 ok "hostile bytes" hostile
+# Of 256 descriptors a crowd that says nothing takes all that it is given: checkpoints are still written, and viewers come through.
+crowded() {
+    most=$(ulimit -S -n)
+    ulimit -S -n 256
+    start --end 1000 --output crowded --checkpoint 0.1
+    started=$?
+    ulimit -S -n "$most"
+    test $started = 0 || return 1
+    rm -f crowd
+    "$peer" crowd "$address" 336 > crowd &
+    server=$!
+    awaits $server test -s crowd && ls crowded/checkpoints > before
+    awaits $simulator eval '! ls crowded/checkpoints | cmp -s before - || grep "the run goes on" live'
+    follow followed && kill $server && stop 5 && server= && wait $follower && follower=
+    wrong=$?
+    ls -l crowded/checkpoints
+    test $wrong = 0 && test "$(grep -c warning live)" = 1 && grep -q 'warning: --live: more than 64 connections came to port [0-9]*: all are closed, and viewers connect again' live
+}
+ok "a crowd of connections" crowded

@@ -1,6 +1,6 @@
 #!/bin/sh
 # A folder belongs to one run at a time: a second one is refused before it touches anything, with a sentence that names the first.
-# A lock that a dead process left is replaced on the same host only.
+# A lock that a dead process left is replaced on the same host only, whoever has its number now, and whether or not its parent knows.
 # shellcheck disable=SC2086 # commands of several words
 . "${srcdir:-.}/tests/support/tap.sh"
 skip_unless "$DUITE_CLOTH"
@@ -99,6 +99,27 @@ ok "SIGTERM removes the lock" ended TERM
 ok "SIGINT removes the lock" ended INT
 crashed() { killed KILL && dead=$job && replaced; }
 ok "SIGKILL leaves a lock, which the next run replaces" crashed
+unreaped() { # as in a container without an init: nobody waits for the process that was killed
+    rm -rf frames zombie
+    # shellcheck disable=SC2016
+    sh -c '"$@" --threads 1 --quiet --output frames > first 2>&1 & echo $! > zombie; exec sleep 1000' - "$DUITE_CLOTH" scene.yaml &
+    job=$!
+    awaits $job test -e frames/cloth.pc2 && dead=$(cat zombie) && kill -KILL "$dead" && awaits $job grep -q '^State:.*Z' "/proc/$dead/status" && replaced
+    status=$?
+    kill $job
+    return $status
+}
+# A lock of this shell, as if it had begun then.
+begun() { left "$host" $$ && echo "start $1" >> frames/duite.lock; }
+alive() { begun "$(sed 's/.*) //' "/proc/$$/stat" | cut -d ' ' -f 20)" && refused "$(taken)"; }
+reused() { begun 1 && dead=$$ && replaced; }
+if test -e "/proc/$$/stat"; then
+    ok "SIGKILL of a run that nobody waits for leaves one, too" unreaped
+    ok "a lock of a process that runs" alive
+    ok "a lock of an earlier process with the same number" reused
+else
+    skip "processes that nobody waits for, and numbers that come again" "no /proc"
+fi
 failed() {
     run --output frames --set integrator=explicit_euler --set time.halving=off --set time.h=0.1 --end 500
     test $status = 1 && test ! -e frames/duite.lock

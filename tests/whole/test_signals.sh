@@ -77,20 +77,35 @@ ok "a frame that is due is not written twice" due
 
 # ---- Before the run begins
 
-before() { # COMMAND...: the scene comes through a pipe, which is open when rank 0 reads it
+before() { # COMMAND...: the scene comes through a pipe, which is open when rank 0 reads it, and stays empty
     rm -rf frames pid.* stopped.json
     mkdir frames && echo mine > frames/note && rm -f pipe.yaml && mkfifo pipe.yaml || return 1
     "$@" sh rank "$DUITE_CLOTH" pipe.yaml --output frames --report stopped.json > printed 2> complained &
     job=$!
     exec 3> pipe.yaml
-    kill -USR1 "$(cat "pid.$from")"
-    cat scene.yaml >&3
+    kill -"$signal" "$(cat "pid.$from")"
+    ends_well
+    ended=$?
     exec 3>&-
-    ends_well && test ! -s printed && test "$(ls frames)" = note && test ! -e stopped.json &&
+    test $ended = 0 && test ! -s printed && test "$(ls frames)" = note && test ! -e stopped.json &&
         grep -qx "duite-cloth: stopped as asked by a signal before the first step; nothing was written" complained
 }
-from=0
+from=0 signal=TERM
+ok "SIGTERM while the scene is read" before env
+signal=USR1
 ok "SIGUSR1 while the scene is read" before env
 ok "SIGUSR1 while the scene is read, 2 ranks" before $two
 from=1
 ok "SIGUSR1 to rank 1 while rank 0 reads the scene" before $two
+
+# A sheet is cut into many blocks, by METIS, which takes a SIGTERM that reaches it for an error of its own.
+sed 's/nx: 8, ny: 8/nx: 600, ny: 600/; s/\[0, 7\]/[0]/; s/fps.*/fps: 1}/' scene.yaml > large.yaml
+building() {
+    for moment in 0.7 1 1.3; do
+        "$DUITE_CLOTH" large.yaml --output built > printed 2> complained &
+        job=$!
+        sleep $moment
+        kill -TERM $job && ends_well || return 1
+    done
+}
+ok "SIGTERM while a scene is built" building

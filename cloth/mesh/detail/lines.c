@@ -2,6 +2,7 @@
  * the file, whatever its lines. */
 #include "cloth/mesh/detail/lines.h"
 
+#include "cloth/base/file.h"
 #include "cloth/mesh/detail/finish.h"
 
 #include <errno.h>
@@ -17,10 +18,10 @@ int mesh_lines_open(struct mesh_lines *lines, const char *path, struct cloth_err
     lines->chunk = cloth_alloc(CHUNK, 1, error);
     if (!lines->chunk)
         return CLOTH_E_MEMORY;
-    lines->file = fopen(path, "rb");
+    lines->file = cloth_file_open(path);
     if (!lines->file)
         return cloth_fail(error, CLOTH_E_IO, "%s: cannot be opened: %s", mesh_path_shown(path),
-                          strerror(errno));
+                          cloth_file_why());
     return CLOTH_OK;
 }
 

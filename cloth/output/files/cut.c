@@ -10,8 +10,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-static const char CHANGED[] = "the folder was changed since the checkpoint was written";
-
 /* Reads n bytes at an offset. Returns false where there are fewer. */
 static bool read_at(int file, void *bytes, size_t n, uint64_t at)
 {
@@ -43,13 +41,13 @@ int output_cut_cache(int file, const char *path, uint32_t n_points, uint64_t n_f
     if (!read_at(file, header, sizeof header, 0) || !output_pc2_parse(header, &points, &frames) ||
         points != n_points)
         return cloth_fail(error, CLOTH_E_INPUT, "%s is no point cache of %" PRIu32 " vertices: %s",
-                          path, n_points, CHANGED);
+                          path, n_points, OUTPUT_CHANGED);
     if (fstat(file, &status) != 0)
         return output_fail(error, "read", path);
     if (frames < n_frames || (uint64_t)status.st_size < size)
         return cloth_fail(error, CLOTH_E_INPUT,
                           "%s has %" PRIu32 " frames, the checkpoint comes after %" PRIu64 ": %s",
-                          path, frames, n_frames, CHANGED);
+                          path, frames, n_frames, OUTPUT_CHANGED);
     output_put_u32(count, (uint32_t)n_frames);
     if (output_write_at(file, count, sizeof count, OUTPUT_PC2_COUNT) != 0 || output_sync(file) != 0)
         return output_fail(error, "count the frames in", path);
@@ -71,7 +69,7 @@ int output_cut_lines(int file, const char *path, uint64_t n_lines, uint64_t *siz
     if (lines < n_lines)
         return cloth_fail(error, CLOTH_E_INPUT,
                           "%s has %" PRIu64 " lines, the checkpoint comes after %" PRIu64 ": %s",
-                          path, lines, n_lines, CHANGED);
+                          path, lines, n_lines, OUTPUT_CHANGED);
     return shorten(file, path, *size, error);
 }
 
@@ -84,5 +82,7 @@ int output_cut_header(int file, const char *path, const char *header, struct clo
     const bool same =
         read_at(file, bytes, n + 1, 0) && !memcmp(bytes, header, n) && bytes[n] == '\n';
     free(bytes);
-    return same ? 0 : cloth_fail(error, CLOTH_E_INPUT, "%s has other columns: %s", path, CHANGED);
+    return same
+               ? 0
+               : cloth_fail(error, CLOTH_E_INPUT, "%s has other columns: %s", path, OUTPUT_CHANGED);
 }

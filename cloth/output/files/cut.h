@@ -9,6 +9,9 @@
  * file that has less is refused: CLOTH_E_INPUT, before anything changes. Files are open for reading
  * and writing; else errors are CLOTH_E_IO. Local functions. */
 
+/* How a sentence about such a file ends. */
+#define OUTPUT_CHANGED "the folder was changed since the checkpoint was written"
+
 /* A PC2 cache of so many vertices keeps its first frames. The count of frames is changed before the
  * floats are cut off, so that a run which is killed here leaves whole frames, too. */
 int output_cut_cache(int file, const char *path, uint32_t n_points, uint64_t n_frames,

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <time.h>
 #include <unistd.h>
 
 char *output_path(const char *folder, const char *name, const char *suffix)
@@ -67,6 +68,18 @@ int output_make_folder(const char *folder, struct cloth_error *error)
     return output_refuse(error, "make the folder", folder);
 }
 
+int output_open_file(const char *path, int flags)
+{
+    enum { TRIES = 100, PAUSE = 10000000 /* ns */ };
+    const struct timespec pause = {.tv_nsec = PAUSE};
+    int file = open(path, flags | O_CLOEXEC, 0666);
+    for (int i = 0; i < TRIES && file < 0 && errno == EMFILE; i++) {
+        nanosleep(&pause, NULL);
+        file = open(path, flags | O_CLOEXEC, 0666);
+    }
+    return file;
+}
+
 int output_write_at(int file, const void *bytes, size_t n, uint64_t offset)
 {
     const char *next = bytes;
@@ -106,9 +119,14 @@ int output_sync(int file)
 int output_write_file(const char *path, int (*fill)(FILE *file, const void *what), const void *what,
                       struct cloth_error *error)
 {
-    FILE *file = fopen(path, "we");
-    if (!file)
-        return output_refuse(error, "write", path);
+    const int handle = output_open_file(path, O_WRONLY | O_CREAT | O_TRUNC);
+    FILE *file = handle < 0 ? NULL : fdopen(handle, "w");
+    if (!file) {
+        output_refuse(error, "write", path);
+        if (handle >= 0)
+            close(handle);
+        return error->code;
+    }
     int bad = fill(file, what) != 0 || fflush(file) != 0 || ferror(file);
     bad = bad || output_sync(fileno(file)) != 0;
     int reason = errno;

@@ -21,6 +21,11 @@ int output_refuse(struct cloth_error *error, const char *what, const char *path)
 /* Makes the folder and its parents. Errors: output_refuse. */
 int output_make_folder(const char *folder, struct cloth_error *error);
 
+/* Opens a file, as open does, to be closed when a program is executed. Where the process has no
+ * descriptor left it waits for one, a second at most: a crowd that comes to a live view is sent
+ * away meanwhile. */
+int output_open_file(const char *path, int flags);
+
 /* Writes all bytes at an offset, or fails with errno set (a short write counts as a full disk). */
 int output_write_at(int file, const void *bytes, size_t n, uint64_t offset);
 

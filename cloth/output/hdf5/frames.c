@@ -69,7 +69,7 @@ double output_hdf5_bytes(const struct output_hdf5_setup *setup)
 /* Makes a file of the bytes, on the disk. */
 static int fill(const struct output_hdf5 *frames, const char *path, struct cloth_error *error)
 {
-    const int file = open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    const int file = output_open_file(path, O_WRONLY | O_CREAT | O_TRUNC);
     if (file < 0)
         return output_fail(error, "write", path);
     int code = CLOTH_OK;
@@ -220,11 +220,7 @@ static int open_all(struct output_hdf5 *frames, struct cloth_error *error)
     if (!code)
         code = take_states(frames, error);
     if (!code)
-        code = output_hdf5_remove(frames->folder, error);
-    if (!code)
-        code = output_make_folder(frames->own, error);
-    if (!code)
-        code = output_indexes_open(&frames->indexes, frames->folder, error);
+        code = output_indexes_open(&frames->indexes, frames->folder, frames->setup.n_frames, error);
     return code ? code : start_thread(frames, error);
 }
 

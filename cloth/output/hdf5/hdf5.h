@@ -53,7 +53,11 @@ int output_image(const struct output_hdf5_setup *setup, const struct output_grid
                  const struct output_state *state, struct output_bytes *bytes,
                  struct cloth_error *error);
 
-/* An index: a text that is whole at any moment, in a folder that has a folder hdf5. */
+/* An index: a text that is whole at any moment, in a folder that has a folder hdf5. Its form: what
+ * begins the text, each entry, and ends it. */
+struct output_index_form {
+    const char *name, *begin, *entry, *end;
+};
 struct output_index_file {
     int file; /* -1: none */
     size_t n; /* bytes of the text that it has */
@@ -63,7 +67,7 @@ struct output_index {
         *spare_path; /* the last: a second name while two files change theirs */
     struct output_index_file shown, hidden;
     struct output_bytes text; /* all but its end */
-    const char *end;
+    const struct output_index_form *form;
     uint32_t n; /* entries */
 };
 #define OUTPUT_INDEX_NONE                                                                          \
@@ -76,9 +80,12 @@ struct output_index {
 #define OUTPUT_INDEX_SPARE  ".spare"
 /* Whether there is a file that begins as an index of ours does. */
 bool output_index_is_ours(const char *path, const char *begin);
-/* Begins a new one. begin and end stay the caller's. Errors: output_refuse. */
-int output_index_open(struct output_index *index, const char *folder, const char *name,
-                      const char *begin, const char *end, struct cloth_error *error);
+/* Begins a new one, or goes on with one that is there, with its entries of frames below *n_frames.
+ * The form stays the caller's. Errors: output_refuse; CLOTH_E_INPUT: it is not whole, or a frame
+ * that it names is gone. */
+int output_index_open(struct output_index *index, const char *folder,
+                      const struct output_index_form *form, const uint64_t *n_frames,
+                      struct cloth_error *error);
 /* Adds an entry, n bytes. A failed one leaves the others. Error: CLOTH_E_IO. */
 int output_index_add(struct output_index *index, const char *entry, size_t n,
                      struct cloth_error *error);
@@ -89,17 +96,19 @@ enum { OUTPUT_SERIES, OUTPUT_XMF, OUTPUT_INDEXES };
 struct output_indexes {
     struct output_index of[OUTPUT_INDEXES];
 };
+/* Removes what an earlier run left, but for the frames below *n_frames, NULL: all; then as
+ * output_index_open. In any case output_indexes_close follows. CLOTH_E_INPUT: an index is not one
+ * of ours. */
 int output_indexes_open(struct output_indexes *indexes, const char *folder,
-                        struct cloth_error *error);
+                        const uint64_t *n_frames, struct cloth_error *error);
 int output_indexes_add(struct output_indexes *indexes, const struct output_hdf5_setup *setup,
                        const struct output_grid *grid, const char *name, double time,
                        struct cloth_error *error);
 int output_indexes_close(struct output_indexes *indexes, struct cloth_error *error);
 
-/* hdf5/frame-NNNNNN.vtkhdf, of a folder. */
+/* hdf5/frame-NNNNNN.vtkhdf, of a folder: from OUTPUT_HDF5_FRAME on its number. */
 enum { OUTPUT_HDF5_NAME = 48 };
+#define OUTPUT_HDF5_FRAME "hdf5/frame-"
 void output_hdf5_name(char name[OUTPUT_HDF5_NAME], uint64_t frame);
-/* Removes frames and indexes of an earlier run. CLOTH_E_INPUT: an index is not one of ours. */
-int output_hdf5_remove(const char *folder, struct cloth_error *error);
 
 #endif

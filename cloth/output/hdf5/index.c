@@ -4,6 +4,8 @@
  * an entry costs no copy of those before it. */
 #include "cloth/output/hdf5/hdf5.h"
 
+#include "cloth/base/file.h"
+#include "cloth/output/files/cut.h"
 #include "cloth/output/files/files.h"
 
 #include <errno.h>
@@ -16,7 +18,7 @@ bool output_index_is_ours(const char *path, const char *begin)
 {
     char bytes[256];
     const size_t n = strlen(begin);
-    FILE *file = fopen(path, "rbe");
+    FILE *file = cloth_file_open(path);
     const bool is =
         file && n <= sizeof bytes && fread(bytes, 1, n, file) == n && memcmp(bytes, begin, n) == 0;
     if (file)
@@ -45,14 +47,14 @@ static int append(struct output_bytes *text, const char *bytes, size_t n)
 static int write_hidden(struct output_index *index)
 {
     struct output_index_file *file = &index->hidden;
-    const size_t n = index->text.n, end = strlen(index->end);
+    const size_t n = index->text.n, end = strlen(index->form->end);
     if (file->file < 0) {
-        file->file = open(index->hidden_path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+        file->file = output_open_file(index->hidden_path, O_WRONLY | O_CREAT | O_TRUNC);
         file->n = 0;
     }
     if (file->file < 0 ||
         output_write_at(file->file, index->text.data + file->n, n - file->n, file->n) != 0 ||
-        output_write_at(file->file, index->end, end, n) != 0 ||
+        output_write_at(file->file, index->form->end, end, n) != 0 ||
         ftruncate(file->file, (off_t)(n + end)) != 0)
         return -1;
     return output_sync(file->file);
@@ -80,38 +82,115 @@ static int swap(struct output_index *index)
     return 0;
 }
 
-/* ---- An index ---- */
+/* ---- The entries of an earlier run ---- */
 
-static int begin_index(struct output_index *index, const char *begin, struct cloth_error *error)
+static const char SEPARATOR[] = ",\n";
+
+static bool starts(const char *text, const char *with)
 {
-    if (!index->path || !index->hidden_path || !index->spare_path ||
-        append(&index->text, begin, strlen(begin)) != 0)
-        return cloth_fail(error, CLOTH_E_MEMORY, "no memory for an index of frames");
-    return write_hidden(index) == 0 && swap(index) == 0
-               ? CLOTH_OK
-               : output_refuse(error, "write", index->path);
+    return strncmp(text, with, strlen(with)) == 0;
 }
 
-int output_index_open(struct output_index *index, const char *folder, const char *name,
-                      const char *begin, const char *end, struct cloth_error *error)
+/* The frame that an entry names; UINT64_MAX: none. */
+static uint64_t frame_of(const char *entry)
+{
+    const char *name = strstr(entry, OUTPUT_HDF5_FRAME);
+    return name ? strtoull(name + strlen(OUTPUT_HDF5_FRAME), NULL, 10) : UINT64_MAX;
+}
+
+static int check_frame(const char *folder, uint64_t frame, struct cloth_error *error)
+{
+    char name[OUTPUT_HDF5_NAME];
+    output_hdf5_name(name, frame);
+    char *path = output_path(folder, name, "");
+    int code = path ? CLOTH_OK : cloth_fail(error, CLOTH_E_MEMORY, "no memory for a path");
+    if (!code && access(path, F_OK) != 0)
+        code = cloth_fail(error, CLOTH_E_INPUT, "%s is gone: %s", path, OUTPUT_CHANGED);
+    free(path);
+    return code;
+}
+
+/* Appends the entries of frames below n_frames, which come first in a text, with what begins it. */
+static int keep(struct output_index *index, const char *folder, const char *text, uint64_t n_frames,
+                struct cloth_error *error)
+{
+    const struct output_index_form *form = index->form;
+    const char *at = text + strlen(form->begin);
+    while (at && starts(at, form->entry) && frame_of(at) < n_frames) {
+        if (check_frame(folder, frame_of(at), error))
+            return error->code;
+        const char *next = strstr(at + 1, form->entry);
+        at = next ? next : strstr(at, form->end);
+        index->n++;
+    }
+    const bool more = at && starts(at, form->entry) && frame_of(at) < UINT64_MAX;
+    if (!more && (!at || strcmp(at, form->end) != 0))
+        return cloth_fail(error, CLOTH_E_INPUT, "%s is not whole: %s", index->path, OUTPUT_CHANGED);
+    size_t n = (size_t)(at - text), separator = strlen(SEPARATOR);
+    if (index->n && memcmp(at - separator, SEPARATOR, separator) == 0)
+        n -= separator;
+    return append(&index->text, text, n) == 0
+               ? CLOTH_OK
+               : cloth_fail(error, CLOTH_E_MEMORY, "no memory for an index of frames");
+}
+
+/* From the index that is there. */
+static int keep_entries(struct output_index *index, const char *folder, uint64_t n_frames,
+                        struct cloth_error *error)
+{
+    char *text = NULL;
+    size_t room = 0;
+    FILE *file = cloth_file_open(index->path);
+    int code = CLOTH_OK;
+    if (!file || getdelim(&text, &room, 0, file) < 0 || ferror(file))
+        code = cloth_fail(error, CLOTH_E_INPUT, "cannot go on with %s: %s", index->path,
+                          cloth_file_why());
+    if (file)
+        fclose(file);
+    code = code ? code : keep(index, folder, text, n_frames, error);
+    free(text);
+    return code;
+}
+
+/* ---- An index ---- */
+
+static int begin_index(struct output_index *index, const char *folder, const uint64_t *n_frames,
+                       struct cloth_error *error)
+{
+    const char *begin = index->form->begin;
+    int code = CLOTH_OK;
+    if (!index->path || !index->hidden_path || !index->spare_path)
+        return cloth_fail(error, CLOTH_E_MEMORY, "no memory for an index of frames");
+    if (n_frames && access(index->path, F_OK) == 0)
+        code = keep_entries(index, folder, *n_frames, error);
+    else if (append(&index->text, begin, strlen(begin)) != 0)
+        code = cloth_fail(error, CLOTH_E_MEMORY, "no memory for an index of frames");
+    if (!code && (write_hidden(index) != 0 || swap(index) != 0))
+        code = output_refuse(error, "write", index->path);
+    return code;
+}
+
+int output_index_open(struct output_index *index, const char *folder,
+                      const struct output_index_form *form, const uint64_t *n_frames,
+                      struct cloth_error *error)
 {
     char *hidden = output_path(folder, "hdf5", "");
     *index = OUTPUT_INDEX_NONE;
-    index->end = end;
-    index->path = output_path(folder, name, "");
+    index->form = form;
+    index->path = output_path(folder, form->name, "");
     if (hidden) {
-        index->hidden_path = output_path(hidden, name, OUTPUT_INDEX_HIDDEN);
-        index->spare_path = output_path(hidden, name, OUTPUT_INDEX_SPARE);
+        index->hidden_path = output_path(hidden, form->name, OUTPUT_INDEX_HIDDEN);
+        index->spare_path = output_path(hidden, form->name, OUTPUT_INDEX_SPARE);
     }
     free(hidden);
-    return begin_index(index, begin, error);
+    return begin_index(index, folder, n_frames, error);
 }
 
 int output_index_add(struct output_index *index, const char *entry, size_t n,
                      struct cloth_error *error)
 {
     const size_t before = index->text.n;
-    const char *comma = index->n && index->end[0] == ']' ? ",\n" : "";
+    const char *comma = index->n && index->form->end[0] == ']' ? SEPARATOR : "";
     int code = output_check_same(index->shown.file, index->path, error);
     if (!code &&
         (append(&index->text, comma, strlen(comma)) != 0 || append(&index->text, entry, n) != 0 ||
@@ -126,13 +205,14 @@ int output_index_add(struct output_index *index, const char *entry, size_t n,
 
 int output_index_close(struct output_index *index, struct cloth_error *error)
 {
+    const bool is_open = index->shown.file >= 0;
     int code = CLOTH_OK;
-    if (index->shown.file >= 0 && close(index->shown.file) != 0)
+    if (is_open && close(index->shown.file) != 0)
         code = output_fail(error, "close", index->path);
-    if (index->hidden.file >= 0) {
+    if (index->hidden.file >= 0)
         close(index->hidden.file);
+    if (is_open || index->hidden.file >= 0) /* one of an earlier run may have that name, unopened */
         unlink(index->hidden_path);
-    }
     free(index->path);
     free(index->hidden_path);
     free(index->spare_path);

@@ -1,10 +1,10 @@
 /* A cloth that starts where an earlier run left it: in a frame of its folder, which has the frames
  * of all its cloths in one file, and their names and numbers of vertices in cloth.obj. It starts at
  * rest there but for its own velocity; lengths at rest stay those of the mesh. */
+#include "cloth/base/file.h"
 #include "cloth/scene/build/build.h"
 #include "cloth/scene/schema/check.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -50,10 +50,10 @@ static void scan(FILE *file, const char *wanted, struct folder *folder)
 static int find_cloth(struct folder *folder, const char *wanted, const struct model_cloth *cloth,
                       const struct scene_tree *tree, int node, struct cloth_error *error)
 {
-    FILE *file = fopen(folder->obj, "re");
+    FILE *file = cloth_file_open(folder->obj);
     if (!file)
         return scene_tree_fail(tree, scene_tree_get(tree, node, "frames"), error,
-                               "from: cannot read %.300s: %s", folder->obj, strerror(errno));
+                               "from: cannot read %.300s: %s", folder->obj, cloth_file_why());
     scan(file, wanted, folder);
     const bool failed = ferror(file);
     fclose(file);

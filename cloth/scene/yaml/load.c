@@ -2,6 +2,8 @@
  * and column. */
 #include "cloth/scene/yaml/tree.h"
 
+#include "cloth/base/file.h"
+
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -30,13 +32,14 @@ static int read_all(FILE *file, char **bytes, size_t *size)
     return ferror(file) ? CLOTH_E_IO : CLOTH_OK;
 }
 
+/* A scene may come through a pipe, too. */
 static int read_file(const char *path, const struct scene_words *words, char **bytes, size_t *size,
                      struct cloth_error *error)
 {
-    FILE *file = fopen(path, "rb");
+    FILE *file = words == &scene_words ? fopen(path, "rb") : cloth_file_open(path);
     if (!file)
         return cloth_fail(error, CLOTH_E_INPUT, "%s: cannot open the %s file: %s", path,
-                          words->noun, strerror(errno));
+                          words->noun, cloth_file_why());
     int code = read_all(file, bytes, size);
     if (code == CLOTH_E_MEMORY)
         cloth_fail(error, code, "%s: out of memory", path);

@@ -1,5 +1,5 @@
 /* The index behind a list of contacts names, for each block, the contacts with a corner in it, as a
- * look through the whole list does. */
+ * look through the whole list does. And of contacts of a vertex with one point the list has one. */
 #include "cloth/flow/contact/contact.h"
 #include "tests/support/unit.h"
 
@@ -66,11 +66,40 @@ START_TEST(nothing_is_behind_an_empty_list)
 }
 END_TEST
 
+/* A vertex of the block, 2 mm off in a direction along y. */
+static struct flow_contact drawn(uint32_t kind, uint32_t vertex, double along)
+{
+    return (struct flow_contact){
+        .kind = kind,
+        .feature = {vertex},
+        .row = {.normal = {0, along, 0, 0}, .gap = 0.002, .thickness = 0.002}};
+}
+
+/* Triangles with a common edge or corner have the nearest point of a vertex in common: it is one
+ * contact. Where the vertex lies between two layers there are two. */
+START_TEST(a_point_is_met_once)
+{
+    struct flow_contact list[] = {
+        drawn(CONTACT_VT, 5, 1), drawn(CONTACT_VT, 5, 1), drawn(CONTACT_VT, 5, -1),
+        drawn(CONTACT_VT, 5, 1), drawn(CONTACT_VT, 6, 1), drawn(CONTACT_EE, 6, 1),
+        drawn(CONTACT_EE, 6, 1),
+    };
+    static const double along[] = {1, -1, 1, 1, 1};
+    static const uint32_t vertex[] = {5, 5, 6, 6, 6};
+    ck_assert_uint_eq(flow_contact_drop_repeated(list, sizeof list / sizeof *list), 5);
+    for (int i = 0; i < 5; i++) {
+        ck_assert_uint_eq(list[i].feature[0], vertex[i]);
+        ck_assert(list[i].row.normal[1] * along[i] > 0);
+    }
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("contact_index");
     TCase *lists = tcase_create("lists");
     tcase_add_loop_test(lists, each_block_finds_its_contacts, 0, 5);
+    tcase_add_test(lists, a_point_is_met_once);
     tcase_add_test(lists, nothing_is_behind_an_empty_list);
     suite_add_tcase(suite, lists);
     return unit_run(suite);

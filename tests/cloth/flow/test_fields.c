@@ -1,6 +1,7 @@
 /* The table of fields against runs: what exists is made in the size that the table says, and freed;
  * what a step does with a field between two steps is what the table calls it. Work fields may be
  * anything when a step begins; a state field may not. */
+#include "cloth/flow/checkpoint/checkpoint.h"
 #include "cloth/flow/contact/certify.h"
 #include "cloth/flow/contact/repel.h"
 #include "cloth/flow/setup/setup.h"
@@ -253,6 +254,49 @@ START_TEST(state_lasts)
 }
 END_TEST
 
+/* ---- What a checkpoint has of the main program ---- */
+
+static void take_checkpoint(void *context, struct flow_checkpoint state)
+{
+    ck_assert_ptr_nonnull(state.bytes);
+    *(struct flow_checkpoint *)context = state;
+}
+
+START_TEST(what_the_main_program_knows_lasts)
+{
+    struct session s;
+    struct flow_checkpoint saved = {0};
+    const struct flow_output output = {.save = take_checkpoint, .context = &saved};
+    kinds[_i](&s);
+    if (model_certifies(&s.setup.model)) { /* its lists would have to be made first */
+        setup_free(&s.setup);
+        return;
+    }
+    session_start(&s);
+    s.state.output = s.flow->output = &output;
+    s.state.contact.attempt = 11;
+    s.state.contact.accepted = 7;
+    s.state.saved_wall = 3;
+    s.report.steps = 5;
+    const struct flow_lasting lasting = s.state.lasting;
+    ck_assert_msg(!flow_save(&s.state, true), "%d: %s", _i, duite_message());
+    ck_assert_int_eq(duite_wait(s.rt), 0);
+    s.state.contact.attempt = s.state.contact.accepted = 0;
+    memset(&s.state.lasting, 1, sizeof s.state.lasting);
+    memset(&s.report, 0, sizeof s.report);
+    s.flow->from = saved;
+    s.state.head.resumed_bytes = ((const struct flow_saved *)(const void *)saved.bytes)->main_bytes;
+    ck_assert_int_eq(flow_resume_main(&s.state), 0);
+    ck_assert_uint_eq(s.state.contact.attempt, 11);
+    ck_assert_uint_eq(s.state.contact.accepted, 7);
+    ck_assert_uint_eq(s.report.steps, 5);
+    ck_assert_uint_eq(s.state.grid.now, lasting.grid.now);
+    ck_assert_uint_eq(s.state.grid.length, lasting.grid.length);
+    free(saved.bytes);
+    session_end(&s);
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("fields");
@@ -260,6 +304,7 @@ int main(void)
     tcase_add_loop_test(tcase, what_exists_is_made, 0, KINDS);
     tcase_add_loop_test(tcase, all_is_freed, 0, KINDS);
     tcase_add_test(tcase, every_field_has_a_run);
+    tcase_add_loop_test(tcase, what_the_main_program_knows_lasts, 0, KINDS);
     tcase_add_loop_test(tcase, work_is_written_before_it_is_read, 0, KINDS);
     tcase_add_loop_test(tcase, parameters_stand_in_order, 0, FLOW_KERNELS_OF_ALL);
     tcase_add_loop_test(tcase, state_lasts, 0, KINDS);

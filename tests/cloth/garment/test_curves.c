@@ -53,6 +53,8 @@ START_TEST(cubic_edges)
 }
 END_TEST
 
+/* The radius of the disc's other half is a rounded one, less than half its chord: a half circle,
+ * too. */
 START_TEST(circular_edges)
 {
     struct garment_pattern pattern;

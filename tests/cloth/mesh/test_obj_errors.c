@@ -129,10 +129,12 @@ START_TEST(unreadable)
     ck_assert_str_eq(error.text, "/nonexistent/a.obj: cannot be opened: No such file or directory");
     error = (struct cloth_error){0};
     ck_assert_int_eq(mesh_read_obj(&mesh, "/", &error), CLOTH_E_IO);
-    ck_assert_str_eq(error.text, "/: cannot be read: Is a directory");
+    ck_assert_str_eq(error.text, "/: cannot be opened: Is a directory");
     ck_assert_int_eq(mesh_read_obj(&mesh, "/nonexistent", NULL), CLOTH_E_IO);
     error = (struct cloth_error){0};
-    ck_assert_int_eq(mesh_read_obj(&mesh, "/dev/zero", &error), CLOTH_E_INPUT); /* has no end */
+    ck_assert_int_eq(mesh_read_obj(&mesh, "/dev/zero", &error), CLOTH_E_IO); /* has no end */
+    ck_assert_str_eq(error.text, "/dev/zero: cannot be opened: it is no plain file, but a pipe, a "
+                                 "device or the like");
 }
 END_TEST
 

@@ -188,6 +188,57 @@ START_TEST(counts_on)
 }
 END_TEST
 
+/* A file that a run would not have named so is none of its. */
+START_TEST(other_numbers_are_nobodys)
+{
+    static const char *const names[] = {"0000009", "9", "18446744073709551616", "+00009", "000000"};
+    char path[160];
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        snprintf(path, sizeof path, "%s/checkpoints/%s.checkpoint", sample.folder, names[i]);
+        sample_write(path, "x", 1);
+    }
+    write_one(1);
+    check_mark(1);
+    ck_assert_int_eq(note.code, 0);
+    output_checkpoints_close(&checkpoints);
+    ck_assert_int_eq(output_checkpoints_open(&checkpoints, sample.folder, &error), 0);
+    write_one(2);
+    ck_assert(is_there(2));
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        snprintf(path, sizeof path, "%s/checkpoints/%s.checkpoint", sample.folder, names[i]);
+        ck_assert_int_eq(unlink(path), 0);
+    }
+}
+END_TEST
+
+/* Numbers end somewhere: a run that could not count on does not begin. */
+START_TEST(the_last_number)
+{
+    char path[160];
+    write_one(1);
+    output_checkpoints_close(&checkpoints);
+    snprintf(path, sizeof path, "%s/checkpoints/18446744073709551615.checkpoint", sample.folder);
+    sample_write(path, "x", 1);
+    ck_assert_int_eq(output_checkpoints_open(&checkpoints, sample.folder, &error), CLOTH_E_INPUT);
+    ck_assert_ptr_nonnull(strstr(error.text, "18446744073709551615.checkpoint: no number is left"));
+    check_mark(1);
+    ck_assert_ptr_nonnull(strstr(note.text, "is no checkpoint of duite-cloth"));
+    ck_assert_int_eq(unlink(path), 0);
+}
+END_TEST
+
+/* A pipe has nobody at its other end, and is not waited for. */
+START_TEST(only_plain_files_are_read)
+{
+    char path[160];
+    write_one(1);
+    path_of(2, path);
+    ck_assert_int_eq(mkfifo(path, 0666), 0);
+    check_mark(1);
+    ck_assert_ptr_nonnull(strstr(note.text, "000002.checkpoint: it is no plain file"));
+}
+END_TEST
+
 /* ---- Damage ---- */
 
 static size_t read_file(unsigned number, unsigned char *bytes, size_t room)
@@ -322,6 +373,9 @@ int main(void)
     tcase_add_test(tcase, the_oldest_gives_its_room);
     tcase_add_test(tcase, what_has_another_name_stays);
     tcase_add_test(tcase, counts_on);
+    tcase_add_test(tcase, other_numbers_are_nobodys);
+    tcase_add_test(tcase, the_last_number);
+    tcase_add_test(tcase, only_plain_files_are_read);
     tcase_add_test(tcase, every_length);
     tcase_add_test(tcase, every_bit);
     tcase_add_test(tcase, none_is_said);

@@ -72,17 +72,22 @@ static void give(struct output_hdf5 *frames, uint64_t frame)
     output_hdf5_end(frames);
 }
 
-/* Writes those of n frames that it takes. */
-static void run(const struct output_hdf5_setup *setup, uint64_t n)
+/* Writes those of the frames from one up to, not including, another that it takes. */
+static void run_from(const struct output_hdf5_setup *setup, uint64_t first, uint64_t end)
 {
     struct cloth_error error = {0};
     struct output_hdf5 *frames;
     ck_assert_msg(output_hdf5_open(&frames, setup, &error) == 0, "%s", error.text);
-    for (uint64_t i = 0; i < n; i++)
+    for (uint64_t i = first; i < end; i++)
         if (output_hdf5_takes(frames, i))
             give(frames, i);
     ck_assert_msg(output_hdf5_close(&frames, &error) == 0, "%s", error.text);
     ck_assert_ptr_null(frames);
+}
+
+static void run(const struct output_hdf5_setup *setup, uint64_t n)
+{
+    run_from(setup, 0, n);
 }
 
 static const char *path_of(const char *name)
@@ -232,7 +237,7 @@ START_TEST(replaces_an_earlier_run)
     run(&setup, 1);
     ck_assert(is_there("hdf5/frame-000000.vtkhdf") && !is_there("hdf5/frame-000001.vtkhdf"));
     ck_assert(!is_there("hdf5/frame-000007.vtkhdf.part") && is_there("hdf5/mine.txt"));
-    ck_assert_int_eq(output_hdf5_forget(sample.folder, &error), 0);
+    ck_assert_int_eq(output_hdf5_forget(sample.folder, NULL, &error), 0);
     ck_assert(!is_there("hdf5/frame-000000.vtkhdf") && !is_there("cloth.xmf"));
     ck_assert(is_there("hdf5/mine.txt"));
 }
@@ -246,8 +251,126 @@ START_TEST(leaves_what_is_not_ours)
     sample_write(path_of("cloth.xmf"), "mine", 4);
     ck_assert_int_eq(output_hdf5_open(&frames, &setup, &error), CLOTH_E_INPUT);
     ck_assert_ptr_nonnull(strstr(error.text, "cloth.xmf is in the way"));
-    ck_assert_int_eq(output_hdf5_forget(sample.folder, &error), 0);
+    ck_assert_int_eq(output_hdf5_forget(sample.folder, NULL, &error), 0);
     ck_assert(is_there("cloth.xmf"));
+}
+END_TEST
+
+enum { TEXT = 65536 };
+static const char *const INDEXES[] = {"cloth.vtkhdf.series", "cloth.xmf"};
+
+static ino_t number_of(const char *name)
+{
+    struct stat status;
+    ck_assert_int_eq(stat(path_of(name), &status), 0);
+    return status.st_ino;
+}
+
+/* A run of five frames that is killed as it makes the next one, gone on with after `stay`: as one
+ * of seven that is left alone. */
+static void check_going_on(uint32_t every, uint64_t stay)
+{
+    static char alone[2][TEXT], text[TEXT];
+    struct output_hdf5_setup setup = setup_of(true, every, 0);
+    run(&setup, 7);
+    for (int i = 0; i < 2; i++)
+        sample_read(path_of(INDEXES[i]), alone[i], TEXT);
+    run(&setup, 5);
+    sample_write(path_of("hdf5/frame-000005.vtkhdf.part"), "x", 1);
+    sample_write(path_of("hdf5/cloth.xmf.part"), "x", 1);
+    sample_write(path_of("hdf5/cloth.xmf.spare"), "x", 1);
+    const ino_t first = number_of("hdf5/frame-000000.vtkhdf");
+    setup.n_frames = &stay;
+    run_from(&setup, stay, 7);
+    for (int i = 0; i < 2; i++) {
+        sample_read(path_of(INDEXES[i]), text, TEXT);
+        ck_assert_str_eq(text, alone[i]);
+    }
+    for (uint64_t frame = 0; frame < 7; frame += every)
+        check_frame(frame, true);
+    ck_assert(stay == 0 || number_of("hdf5/frame-000000.vtkhdf") == first);
+    ck_assert(!is_there("hdf5/frame-000005.vtkhdf.part") && !is_there("hdf5/cloth.xmf.part") &&
+              !is_there("hdf5/cloth.xmf.spare"));
+}
+
+START_TEST(goes_on_with_an_earlier_run)
+{
+    for (uint64_t stay = 0; stay <= 5; stay++)
+        for (uint32_t every = 1; every <= 2; every++)
+            check_going_on(every, stay);
+}
+END_TEST
+
+/* Frames that stay, and are not gone on with: a later scene does not ask for any. */
+START_TEST(keeps_frames_of_a_run_that_writes_no_more)
+{
+    static char alone[2][TEXT], text[TEXT];
+    struct cloth_error error = {0};
+    const uint64_t stay = 3;
+    const struct output_hdf5_setup setup = setup_of(true, 1, 0);
+    run(&setup, 3);
+    for (int i = 0; i < 2; i++)
+        sample_read(path_of(INDEXES[i]), alone[i], TEXT);
+    run(&setup, 5);
+    for (int again = 0; again < 2; again++)
+        ck_assert_int_eq(output_hdf5_forget(sample.folder, &stay, &error), 0);
+    for (int i = 0; i < 2; i++) {
+        sample_read(path_of(INDEXES[i]), text, TEXT);
+        ck_assert_str_eq(text, alone[i]);
+    }
+    check_frame(2, true);
+    ck_assert(!is_there("hdf5/frame-000003.vtkhdf") && !is_there("hdf5/cloth.xmf.part"));
+}
+END_TEST
+
+/* An earlier run that had none is gone on with from the frame that is next. */
+START_TEST(begins_with_a_later_frame)
+{
+    char text[512];
+    const uint64_t stay = 2;
+    struct output_hdf5_setup setup = setup_of(true, 1, 0);
+    setup.n_frames = &stay;
+    run_from(&setup, 2, 3);
+    sample_read(path_of(INDEXES[0]), text, sizeof text);
+    ck_assert_str_eq(text, "{\n\"file-series-version\": \"1.0\",\n\"files\": [\n"
+                           "{\"name\": \"hdf5/frame-000002.vtkhdf\", \"time\": "
+                           "0.080000000000000002}]\n}\n");
+}
+END_TEST
+
+static void refuse_to_go_on(const char *why)
+{
+    struct cloth_error error = {0};
+    struct output_hdf5 *frames;
+    const uint64_t stay = 2;
+    struct output_hdf5_setup setup = setup_of(true, 1, 0);
+    setup.n_frames = &stay;
+    ck_assert_msg(output_hdf5_open(&frames, &setup, &error) == CLOTH_E_INPUT, "%s", why);
+    ck_assert_msg(strstr(error.text, why), "%s", error.text);
+    ck_assert(is_there("hdf5/frame-000001.vtkhdf") && is_there("hdf5/frame-000002.vtkhdf"));
+}
+
+/* What is to stay, and does not: nothing is removed. */
+START_TEST(refuses_a_changed_folder)
+{
+    char text[TEXT];
+    const struct output_hdf5_setup setup = setup_of(true, 1, 0);
+    run(&setup, 4);
+    ck_assert_int_eq(unlink(path_of("hdf5/frame-000000.vtkhdf")), 0);
+    refuse_to_go_on("frame-000000.vtkhdf is gone: the folder was changed since the checkpoint");
+    run(&setup, 4);
+    ck_assert_int_eq(unlink(path_of("cloth.xmf")), 0);
+    refuse_to_go_on("cloth.xmf is gone: the folder was changed since the checkpoint");
+    for (int i = 0; i < 2; i++) {
+        run(&setup, 4);
+        sample_read(path_of(INDEXES[i]), text, TEXT);
+        const char *second = strstr(text, "000001"); /* the text is cut in its entry */
+        sample_write(path_of(INDEXES[i]), text, (size_t)(second - text));
+        refuse_to_go_on("is not whole: the folder was changed since the checkpoint");
+    }
+    run(&setup, 4);
+    sample_write(path_of("cloth.xmf"), "mine", 4);
+    refuse_to_go_on("cloth.xmf is in the way");
 }
 END_TEST
 
@@ -287,6 +410,10 @@ int main(void)
     tcase_add_test(c, replaces_an_earlier_run);
     tcase_add_test(c, leaves_what_is_not_ours);
     tcase_add_test(c, goes_on_without_a_frame);
+    tcase_add_test(c, goes_on_with_an_earlier_run);
+    tcase_add_test(c, keeps_frames_of_a_run_that_writes_no_more);
+    tcase_add_test(c, begins_with_a_later_frame);
+    tcase_add_test(c, refuses_a_changed_folder);
     Suite *s = suite_create("hdf5");
     suite_add_tcase(s, c);
     return unit_run(s);

@@ -1,0 +1,35 @@
+/* What is no plain file is told by ESPIPE, which no call that opens a file has. */
+#include "cloth/base/file.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+/* Without waiting: for a pipe's other end the system would. */
+FILE *cloth_file_open(const char *path)
+{
+    struct stat status;
+    const int handle = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+    if (handle < 0)
+        return NULL;
+    FILE *file = NULL;
+    int reason = 0;
+    if (fstat(handle, &status) != 0)
+        reason = errno;
+    else if (!S_ISREG(status.st_mode))
+        reason = S_ISDIR(status.st_mode) ? EISDIR : ESPIPE;
+    else if (!(file = fdopen(handle, "rb")))
+        reason = errno;
+    if (!file)
+        close(handle);
+    errno = reason;
+    return file;
+}
+
+const char *cloth_file_why(void)
+{
+    return errno == ESPIPE ? "it is no plain file, but a pipe, a device or the like"
+                           : strerror(errno);
+}

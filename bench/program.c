@@ -177,7 +177,7 @@ void program_command(const struct program *program, const char *ranks, const cha
 {
     const char *mpirun = getenv("MPIRUN");
     size_t n = 0;
-    if (program->hosts) {
+    if (program->hosts && ranks) {
         argv[n++] = "sh";
         argv[n++] = BENCH_HOSTS;
         argv[n++] = ranks;

@@ -56,9 +56,9 @@ EXTRA_DIST += tests/arrows.txt tests/support/policies.h tests/support/tap.sh tes
 	tests/support/count.sh \
     tests/support/lsan.supp tests/support/tsan.supp tests/support/valgrind.supp
 dist_check_SCRIPTS += tests/support/test_tap.sh tests/arrows.sh tests/documents.sh tests/install.sh tests/readme.sh tests/readme_long.sh \
-	tests/pages.sh tests/pages_long.sh tests/completion.sh
-TESTS += tests/support/test_tap.sh tests/arrows.sh tests/documents.sh tests/install.sh tests/readme.sh tests/pages.sh tests/completion.sh
-LONG_TESTS += tests/readme_long.sh tests/pages_long.sh
+	tests/pages.sh tests/pages_long.sh tests/completion.sh tests/bare.sh tests/bare_long.sh tests/bootstrap.sh
+TESTS += tests/support/test_tap.sh tests/arrows.sh tests/documents.sh tests/install.sh tests/readme.sh tests/pages.sh tests/completion.sh tests/bare.sh tests/bootstrap.sh
+LONG_TESTS += tests/readme_long.sh tests/pages_long.sh tests/bare_long.sh
 
 if HAVE_CHECK
 check_LIBRARIES += tests/support/libunit.a

@@ -20,10 +20,11 @@ static void plan(struct measure *measure, const struct bench_options *options)
         const char *from, *name;
     } figures[] = {{"own", "prediction_error_r%d"}, {"one", "prediction_error_r%d_from_r1"}};
     for (size_t i = 0; i < sizeof figures / sizeof *figures; i++) {
-        const struct measure_series *series = measure_series(
-            measure, (struct subject_shape){"duite", 0, 1}, "run side=%d grain=%d steps=%d from=%s",
-            options->quick ? QUICK_SIDE : SIDE, options->quick ? QUICK_GRAIN : GRAIN,
-            options->quick ? QUICK_STEPS : STEPS, figures[i].from);
+        const struct measure_series *series =
+            measure_series(measure, (struct subject_shape){"duite_hosts", 0, 1},
+                           "run side=%d grain=%d steps=%d from=%s",
+                           options->quick ? QUICK_SIDE : SIDE, options->quick ? QUICK_GRAIN : GRAIN,
+                           options->quick ? QUICK_STEPS : STEPS, figures[i].from);
         measure_value(measure, series, 1, "", figures[i].name, HOSTS);
     }
 }

@@ -17,7 +17,7 @@
 # Nothing is left behind, however it ends: all of it lives in namespaces without a name, and its processes in a PID namespace,
 # which the kernel ends with its first process; and that one is killed when this script dies.
 set -u
-PATH=$PATH:/usr/sbin:/sbin
+case $PATH in *sbin*) ;; *) PATH=$PATH:/usr/sbin:/sbin ;; esac # root has none after su
 self=$0
 
 cannot() {

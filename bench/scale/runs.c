@@ -37,7 +37,7 @@ static int run_cloth(struct serve_request *request, unsigned hosts, const char *
     if (hosts > 1)
         snprintf(before, sizeof before,
                  "sh '%s' %u '%s' --bind-to none -n %u "
-                 "sh -c 'exec taskset -c $OMPI_COMM_WORLD_RANK \"$@\"' cloth",
+                 "sh -c 'exec taskset -c ${OMPI_COMM_WORLD_RANK:-$PMI_RANK} \"$@\"' cloth",
                  BENCH_HOSTS, hosts, BENCH_MPIRUN, hosts);
     snprintf(arguments, sizeof arguments, "--threads %d --end %g --trace '%s'",
              hosts > 1 ? 1 : HOSTS, 1e-3 * (double)serve_number(request, "steps"), trace);

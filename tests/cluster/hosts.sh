@@ -38,6 +38,7 @@ outside() { # N RATE COMMAND...
         command -v $tool > /dev/null || cannot "$tool is missing (packages iproute2, util-linux, mount)"
     done
     test "$2" = none || command -v tc > /dev/null || cannot "tc is missing (package iproute2)"
+    is_openmpi || cannot "only Open MPI's mpirun knows how to reach the hosts"
     namespaces="--net --uts --ipc --mount --pid --fork --kill-child --mount-proc"
     # shellcheck disable=SC2086 # a list of options
     why=$(unshare $namespaces true 2>&1) || cannot "no namespaces here: $why"

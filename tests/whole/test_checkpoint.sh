@@ -10,7 +10,7 @@ cd "$scratch" || exit 99
 kills=2 rounds=2
 if quick; then kills=1 rounds=1; fi
 if test "${DUITE_LONG:-}" = 1; then kills=4 rounds=6; fi
-mpi="${MPIRUN:-mpirun} --oversubscribe --bind-to none -n"
+mpi="${MPIRUN:-mpirun} -n"
 
 cat > sheet.yaml << 'END'
 schema: 1
@@ -74,7 +74,7 @@ launch() { # OPTION...
     random 3 && ranks=$((chosen + 1))
     random 2 && threads=$((chosen + 1))
     rm -f main
-    set -- sh -c 'test "${OMPI_COMM_WORLD_RANK:-0}" != 0 || echo $$ > main; exec "$@"' - "$DUITE_CLOTH" "$scene.yaml" --threads $threads --quiet --report killed.json "$@"
+    set -- sh -c 'test "${OMPI_COMM_WORLD_RANK:-${PMI_RANK:-0}}" != 0 || echo $$ > main; exec "$@"' - "$DUITE_CLOTH" "$scene.yaml" --threads $threads --quiet --report killed.json "$@"
     test $ranks = 1 || set -- $mpi $ranks "$@"
     "$@" > said 2>&1 &
     job=$!

@@ -72,7 +72,7 @@ built() { # NAME LIBS MPIRUN HDF5 SETTING...
     want="$1: $2; $bin/$3; $4"
     shift 4
     rm -f got
-    (unset MPICC MPIRUN MPI_CFLAGS MPI_LIBS && export PATH="$bin:$PATH" LD_LIBRARY_PATH="$scratch/open:$scratch/mpich" && ./configure -q CC="$CC" "$@") || return 1
+    (unset MPICC MPIRUN MPI_CFLAGS MPI_LIBS PKG_CONFIG && export PATH="$bin:$PATH" LD_LIBRARY_PATH="$scratch/open:$scratch/mpich" && ./configure -q CC="$CC" "$@") || return 1
     sed 's/  */ /g; s/: */: /; s/ $//' got > tidy
     echo "$want" | sed 's/ $//' | diff - tidy
 }

@@ -8,9 +8,9 @@
  * a core at the same time answers at once, and then sleeps.
  *
  * A worker notices such a core by a gap between two idle looks, or after the last one, in which the
- * kernel took the core away. For LOST_FACTOR times as long it does not give way. So giving way costs
- * at most one part in LOST_FACTOR of the time, and a worker whose core is free again soon waits as
- * before. */
+ * kernel took the core away. For LOST_FACTOR times as long it does not give way. So giving way
+ * costs at most one part in LOST_FACTOR of the time, and a worker whose core is free again soon
+ * waits as before. */
 #include "runtime/base/clock.h"
 #include "runtime/workers/internal.h"
 

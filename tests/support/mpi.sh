@@ -1,5 +1,6 @@
 # Sourced by run.sh and tap.sh: what Open MPI and hwloc are to do where tests run. What the user set wins. MPICH does without: its mpirun
 # counts no slots, binds nothing and starts as root. So a test calls mpirun with -n alone; `is_openmpi` is for what only Open MPI can do.
+# Where the size of files is limited, UCX_TLS=self spares a process alone the shared memory of MPICH, which is 4 MiB.
 
 if test "$(id -u)" = 0; then
     export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1

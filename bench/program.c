@@ -31,7 +31,7 @@
 #ifdef HAVE_HDF5
 #define HDF5_MISSING ""
 #else
-#define HDF5_MISSING "libhdf5-openmpi-dev"
+#define HDF5_MISSING "libhdf5-dev"
 #endif
 
 #ifdef HAVE_ZMQ
@@ -167,6 +167,8 @@ void program_environment(const struct program *program, unsigned cores)
      * which can take seconds */
     set("HWLOC_HIDE_ERRORS=2");
     set("HWLOC_COMPONENTS=-gl");
+    set("OMPI_MCA_rmaps_base_oversubscribe=1");
+    set("OMPI_MCA_hwloc_base_binding_policy=none"); /* the programs bind themselves */
     if (geteuid() == 0) {
         set("OMPI_ALLOW_RUN_AS_ROOT=1");
         set("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1");
@@ -177,16 +179,13 @@ void program_command(const struct program *program, const char *ranks, const cha
 {
     const char *mpirun = getenv("MPIRUN");
     size_t n = 0;
-    if (program->hosts) {
+    if (program->hosts && ranks) {
         argv[n++] = "sh";
         argv[n++] = BENCH_HOSTS;
         argv[n++] = ranks;
     }
     if (ranks) {
         argv[n++] = mpirun && *mpirun ? mpirun : BENCH_MPIRUN;
-        argv[n++] = "--oversubscribe";
-        argv[n++] = "--bind-to"; /* the programs bind themselves */
-        argv[n++] = "none";
         argv[n++] = "-n";
         argv[n++] = ranks;
     }

@@ -11,7 +11,8 @@ struct program {
     const char *missing; /* the package that configure did not find, or "" */
     const char *other;   /* the kind of the same program in another setting, or NULL */
     const char *tool;    /* a program that it calls, to be found as a shell does; NULL: none */
-    bool hosts;          /* each rank on a host of its own, by tests/cluster/hosts.sh */
+    bool hosts;          /* each rank on a host of its own, by tests/cluster/hosts.sh, or
+                             without ranks: it starts runs on such hosts itself */
     /* NAME=VALUE words where each thread has a core, and where not; a user's own setting of a name
      * goes first */
     const char *settings[5], *crowded[5];

@@ -2,6 +2,8 @@
  * wrong answer, says so and goes on. */
 #include "bench/serve.h"
 
+#include "tests/support/rank.h"
+
 #include <sched.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -122,7 +124,7 @@ const char *serve_kind(void)
 
 int serve(const char *settings, const struct serve_run *const *runs, void *context)
 {
-    const char *rank = getenv("OMPI_COMM_WORLD_RANK");
+    const char *rank = rank_said();
     FILE *bench = connect_to(getenv("DUITE_BENCH_SOCKET"));
     if (!bench) {
         fprintf(stderr, "this program is started by duite-bench\n");

@@ -12,6 +12,8 @@ views='--camera=25,5 --size 320x448'
 if test "$(id -u)" = 0; then # Open MPI refuses root unless told twice
     export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 fi
+# More ranks than Open MPI counts slots are welcome, and the workers bind themselves.
+export OMPI_MCA_rmaps_base_oversubscribe=1 OMPI_MCA_hwloc_base_binding_policy=none
 # hwloc: silent about caches that a virtual machine reports wrongly, and no look for graphics cards on X displays.
 export HWLOC_HIDE_ERRORS=2 HWLOC_COMPONENTS="${HWLOC_COMPONENTS:--gl}"
 
@@ -20,10 +22,10 @@ says() {
     "$@" < /dev/null
 }
 
-simulate() { # SCENE OPTION...: more ranks than Open MPI counts slots are welcome, and the workers bind themselves
+simulate() { # SCENE OPTION...
     scene=$1
     shift
-    says "${MPIRUN:-mpirun}" --oversubscribe --bind-to none -n $ranks ./duite-cloth "$srcdir/cloth/scenes/$scene.yaml" "$@"
+    says "${MPIRUN:-mpirun}" -n $ranks ./duite-cloth "$srcdir/cloth/scenes/$scene.yaml" "$@"
     echo
 }
 

@@ -34,7 +34,7 @@ AC_DEFUN([DUITE_RIVALS], [
     STARPU_CFLAGS=`AS_ECHO(["$STARPU_CFLAGS"]) | $SED 's/-I/-isystem /g'` # its macros are not pedantic
     DUITE_RIVAL([STARPU], [$duite_found], [libstarpu-dev], [StarPU])
     AS_IF([test -n "$MPIRUN"], [duite_found=yes], [duite_found=no])
-    DUITE_RIVAL([MPI], [$duite_found], [mpirun (openmpi-bin)], [MPI])
+    DUITE_RIVAL([MPI], [$duite_found], [mpirun (openmpi-bin or mpich)], [MPI])
     AC_OPENMP
     AS_IF([test "x$ac_cv_prog_c_openmp" = xunsupported || test "x$ac_cv_prog_c_openmp" = xunknown],
         [duite_found=no], [duite_found=yes])

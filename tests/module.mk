@@ -52,13 +52,14 @@ check-programs: $(check_PROGRAMS)
 .PHONY: check-long check-threads check-threads-long check-programs
 
 EXTRA_DIST += tests/arrows.txt tests/support/policies.h tests/support/tap.sh tests/support/predicted.sh tests/support/commands.sh \
-	tests/support/bodies.sh tests/support/probes.sh tests/support/dress.awk tests/support/mpi.sh tests/support/run.sh tests/support/screen.sh \
+	tests/support/bodies.sh tests/support/probes.sh tests/support/dress.awk tests/support/mpi.sh tests/support/rank.h tests/support/run.sh tests/support/screen.sh \
 	tests/support/count.sh \
     tests/support/lsan.supp tests/support/tsan.supp tests/support/valgrind.supp
 dist_check_SCRIPTS += tests/support/test_tap.sh tests/arrows.sh tests/documents.sh tests/install.sh tests/readme.sh tests/readme_long.sh \
-	tests/pages.sh tests/pages_long.sh tests/completion.sh
-TESTS += tests/support/test_tap.sh tests/arrows.sh tests/documents.sh tests/install.sh tests/readme.sh tests/pages.sh tests/completion.sh
-LONG_TESTS += tests/readme_long.sh tests/pages_long.sh
+	tests/pages.sh tests/pages_long.sh tests/completion.sh tests/bare.sh tests/bare_long.sh tests/bootstrap.sh tests/two_mpis.sh
+TESTS += tests/support/test_tap.sh tests/arrows.sh tests/documents.sh tests/install.sh tests/readme.sh tests/pages.sh tests/completion.sh tests/bare.sh \
+	tests/bootstrap.sh tests/two_mpis.sh
+LONG_TESTS += tests/readme_long.sh tests/pages_long.sh tests/bare_long.sh
 
 if HAVE_CHECK
 check_LIBRARIES += tests/support/libunit.a

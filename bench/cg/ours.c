@@ -9,6 +9,7 @@
 #include "cloth/flow/setup/setup.h"
 #include "cloth/flow/solver/solve.h"
 #include "cloth/flow/step/step.h"
+#include "tests/support/rank.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -31,7 +32,7 @@ int cg_start_runtime(struct serve_request *request, struct flow *flow, duite **r
 
 int cg_make_flow(const struct model *model, struct flow **flow)
 {
-    const char *rank = getenv("OMPI_COMM_WORLD_RANK"); /* MPI may not have begun */
+    const char *rank = rank_said(); /* MPI may not have begun */
     struct cloth_error error = {0};
     const int code =
         rank && atoi(rank) > 0 ? flow_join(flow, &error) : flow_prepare(flow, model, 1, &error);

@@ -3,6 +3,7 @@
 
 #include "bench/serve.h"
 #include "cloth/physics/particle.h"
+#include "tests/support/rank.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -54,7 +55,7 @@ void sheet_model(struct sheet *sheet, uint32_t side, uint32_t grain)
 
 int sheet_own_rank(void)
 {
-    const char *rank = getenv("OMPI_COMM_WORLD_RANK");
+    const char *rank = rank_said();
     return rank ? atoi(rank) : 0;
 }
 

@@ -17,7 +17,7 @@ enum { FEW = 10, MORE = 20, WAITS = 500, QUICK_WAITS = 20 };
 static const struct measure_series *iterations(struct measure *measure,
                                                const struct bench_options *options, unsigned count)
 {
-    return measure_series(measure, (struct subject_shape){"duite", 0, 1},
+    return measure_series(measure, (struct subject_shape){"duite_hosts", 0, 1},
                           "iterations hosts=%d side=%d grain=%d count=%u", HOSTS,
                           options->quick ? QUICK_SIDE : SIDE, options->quick ? QUICK_GRAIN : GRAIN,
                           count);

@@ -20,10 +20,11 @@ static void plan(struct measure *measure, const struct bench_options *options)
         const char *from, *name;
     } figures[] = {{"own", "prediction_error_r%d"}, {"one", "prediction_error_r%d_from_r1"}};
     for (size_t i = 0; i < sizeof figures / sizeof *figures; i++) {
-        const struct measure_series *series = measure_series(
-            measure, (struct subject_shape){"duite", 0, 1}, "run side=%d grain=%d steps=%d from=%s",
-            options->quick ? QUICK_SIDE : SIDE, options->quick ? QUICK_GRAIN : GRAIN,
-            options->quick ? QUICK_STEPS : STEPS, figures[i].from);
+        const struct measure_series *series =
+            measure_series(measure, (struct subject_shape){"duite_hosts", 0, 1},
+                           "run side=%d grain=%d steps=%d from=%s",
+                           options->quick ? QUICK_SIDE : SIDE, options->quick ? QUICK_GRAIN : GRAIN,
+                           options->quick ? QUICK_STEPS : STEPS, figures[i].from);
         measure_value(measure, series, 1, "", figures[i].name, HOSTS);
     }
 }
@@ -36,7 +37,7 @@ static int run_cloth(struct serve_request *request, unsigned hosts, const char *
     if (hosts > 1)
         snprintf(before, sizeof before,
                  "sh '%s' %u '%s' --bind-to none -n %u "
-                 "sh -c 'exec taskset -c $OMPI_COMM_WORLD_RANK \"$@\"' cloth",
+                 "sh -c 'exec taskset -c ${OMPI_COMM_WORLD_RANK:-$PMI_RANK} \"$@\"' cloth",
                  BENCH_HOSTS, hosts, BENCH_MPIRUN, hosts);
     snprintf(arguments, sizeof arguments, "--threads %d --end %g --trace '%s'",
              hosts > 1 ? 1 : HOSTS, 1e-3 * (double)serve_number(request, "steps"), trace);

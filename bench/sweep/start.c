@@ -115,8 +115,7 @@ static void make_line(const struct compare *compare, const struct compare_config
     append_pair(line, "timeout", "-k");
     append_pair(line, "5", seconds);
     if (strcmp(config->value[RANKS], "1") != 0) {
-        append_pair(line, BENCH_MPIRUN, "--oversubscribe");
-        append_pair(line, "--bind-to", "none");
+        append(line, BENCH_MPIRUN);
         append_pair(line, "-n", config->value[RANKS]);
     }
     if (is_scene(subject)) {

@@ -171,7 +171,7 @@ int comm_agree(struct comm *comm, struct comm_word *own, void (*between)(void *c
                                       .not_fingerprint = ~own->fingerprint,
                                       .homes = homes,
                                       .not_homes = ~homes,
-                                      .failed = 0 - own->failed};
+                                      .failed = own->failed != 0};
     int code = collective_run(comm, COMM_AGREES, reduced_settle, between, context);
     if (code)
         return code;
@@ -180,7 +180,7 @@ int comm_agree(struct comm *comm, struct comm_word *own, void (*between)(void *c
             between(context);
         return comm_broken(comm);
     }
-    own->failed = 0 - comm->max.failed;
+    own->failed = comm->max.failed;
     return DUITE_OK;
 }
 

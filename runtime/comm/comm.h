@@ -157,8 +157,8 @@ struct comm_word {
 };
 
 /* One small reduction, which compares own->fingerprint (the forks) and the homes of all ranks.
- * own->failed becomes that of the first failed task of all ranks, or 0. Calls between(context)
- * while it waits, so that others get on; it has to poll. DUITE_E_DIFFERENT if ranks differ: then
+ * own->failed becomes 1 if a task failed on any rank, else 0. Calls between(context) while it
+ * waits, so that others get on; it has to poll. DUITE_E_DIFFERENT if ranks differ: then
  * communication is broken, and the message names the first difference. Collective, main thread. */
 int comm_agree(struct comm *comm, struct comm_word *own, void (*between)(void *context),
                void *context);

@@ -191,10 +191,11 @@ void comm_heartbeat_stop(struct comm *comm);
 
 /* ---- Collective calls (collective.c) ---- */
 
-/* What a small reduction takes the largest of; complements make it the smallest as well. */
+/* What a small reduction takes the largest of; complements make it the smallest as well. MPICH 4.0
+ * compares them as if they had a sign. */
 struct comm_reduced {
     uint64_t fingerprint, not_fingerprint, homes, not_homes;
-    uint64_t failed; /* minus comm_word.failed: the first failed task of all ranks, or 0 */
+    uint64_t failed; /* 1 if a task failed on any rank, else 0 */
 };
 enum { COMM_REDUCED = sizeof(struct comm_reduced) / sizeof(uint64_t) };
 

@@ -7,9 +7,10 @@
  * beside four), and the message comes meanwhile. It spins for a moment, since a neighbour that has
  * a core at the same time answers at once, and then sleeps.
  *
- * A worker notices such a core by a gap between two idle looks in which the kernel took the core
- * away. For LOST_FACTOR times as long it does not give way. So giving way costs at most one part in
- * LOST_FACTOR of the time, and a worker whose core is free again soon waits as before. */
+ * A worker notices such a core by a gap between two idle looks, or after the last one, in which the
+ * kernel took the core away. For LOST_FACTOR times as long it does not give way. So giving way
+ * costs at most one part in LOST_FACTOR of the time, and a worker whose core is free again soon
+ * waits as before. */
 #include "runtime/base/clock.h"
 #include "runtime/workers/internal.h"
 
@@ -153,12 +154,13 @@ void work_stir(struct worker *worker)
 {
     const struct comm *comm = worker->pool->setup.comm;
     if (worker->idle_since) {
-        uint64_t idle = base_ticks() - worker->idle_since;
+        const uint64_t now = base_ticks(), idle = now - worker->idle_since;
         uint64_t exposed = comm ? comm_awaited_ticks(comm) - worker->awaited_then : 0;
         work_bump(&worker->counts.idle, idle);
         work_bump(&worker->counts.exposed, exposed);
         worker->within += idle;
         work_note_idle(worker, idle, exposed);
+        work_is_crowded(worker, now); /* the core may have been away until what it idled for came */
     }
     worker->idle_since = 0;
     worker->pause = WORK_FIRST_PAUSE_SECONDS;

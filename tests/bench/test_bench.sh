@@ -109,11 +109,6 @@ there_and_back() {
 }
 
 instructions_counted() { grep -q '^instructions_per_task_chain: 1000 instructions' "$scratch/lines"; }
-# Where there is no valgrind its metrics say so.
-without_valgrind() {
-    mkdir -p "$scratch/empty" && (PATH=$scratch/empty && export PATH && "$bench" tasks --quick --only instructions) > "$scratch/bare" 2>&1 &&
-        grep -q '^instructions_per_task_fib: not installed: valgrind' "$scratch/bare"
-}
 
 # A verdict says how the median and the target compare, whichever side it should be on.
 verdicts_right() {
@@ -146,7 +141,6 @@ ok "its JSON is well-formed" well_formed "$scratch/json"
 ok "its JSON has the figures of its lines" same_figures "$scratch/lines" "$scratch/json"
 ok "every metric listed has its line" every_metric "$scratch/lines" "not built: |not found " tasks
 ok "instructions a task are counted" instructions_counted
-ok "without valgrind they are not, which is said" without_valgrind
 ok "the metrics that have a target, and which" targets_listed
 ok "no targets with --quick" no_targets --quick
 ok "no targets with other threads" no_targets --threads 3

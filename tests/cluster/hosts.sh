@@ -17,7 +17,7 @@
 # Nothing is left behind, however it ends: all of it lives in namespaces without a name, and its processes in a PID namespace,
 # which the kernel ends with its first process; and that one is killed when this script dies.
 set -u
-PATH=$PATH:/usr/sbin:/sbin
+case $PATH in *sbin*) ;; *) PATH=$PATH:/usr/sbin:/sbin ;; esac # root has none after su
 self=$0
 
 cannot() {
@@ -38,6 +38,7 @@ outside() { # N RATE COMMAND...
         command -v $tool > /dev/null || cannot "$tool is missing (packages iproute2, util-linux, mount)"
     done
     test "$2" = none || command -v tc > /dev/null || cannot "tc is missing (package iproute2)"
+    is_openmpi || cannot "only Open MPI's mpirun knows how to reach the hosts"
     namespaces="--net --uts --ipc --mount --pid --fork --kill-child --mount-proc"
     # shellcheck disable=SC2086 # a list of options
     why=$(unshare $namespaces true 2>&1) || cannot "no namespaces here: $why"

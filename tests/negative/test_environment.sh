@@ -7,7 +7,7 @@ dot=tests/examples/dot
 
 # between SETTINGS SETTINGS: dot on two ranks, each with an environment of its own
 between() {
-    limited "${MPIRUN:-mpirun}" --oversubscribe --bind-to none -n 1 env $1 $dot : -n 1 env $2 $dot
+    limited "${MPIRUN:-mpirun}" -n 1 env $1 $dot : -n 1 env $2 $dot
 }
 differs() { # WORD SETTINGS SETTINGS
     differs_word=$1

@@ -82,14 +82,15 @@ static struct prog_setup draw_setup(const struct settings *settings, uint64_t se
 /* The rank of the group that found something first; -1 if none did. */
 static int finder(const struct prog_setup *setup, const struct prog_report *report)
 {
-    unsigned long long mine = ~0ull, first;
+    const unsigned long long none = ~0ull >> 1; /* MPICH 4.0 compares as if they had a sign */
+    unsigned long long mine = none, first;
     int rank;
 
     MPI_Comm_rank(setup->comm, &rank);
     if (report->text[0])
         mine = (unsigned long long)report->op << 16 | (unsigned)rank;
     MPI_Allreduce(&mine, &first, 1, MPI_UNSIGNED_LONG_LONG, MPI_MIN, setup->comm);
-    return first == ~0ull ? -1 : (int)(first & 0xffff);
+    return first == none ? -1 : (int)(first & 0xffff);
 }
 
 /* Interprets and runs `repeat` times; returns whether something was found, the same on the whole

@@ -2,6 +2,8 @@
  * a rank that waits must not give its core away again and again. The time in which sched_yield did
  * is at most a part of the whole: the runtime means to lose a hundredth so, and lost most of it
  * when it always yielded. Run under mpirun. */
+#include "tests/support/rank.h"
+
 #include <duite.h>
 #include <sched.h>
 #include <signal.h>
@@ -136,7 +138,7 @@ static int run(duite *rt, double *seconds)
 int main(void)
 {
     static const duite_kernel *const KERNELS[] = {&NEXT, NULL};
-    const char *rank = getenv("OMPI_COMM_WORLD_RANK");
+    const char *rank = rank_said();
     duite_options options = duite_options_default();
     duite *rt;
 

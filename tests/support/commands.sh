@@ -55,7 +55,10 @@ case \$* in
 esac
 END
     printf '#!/bin/sh\nexec "$@"\n' > "$scratch/bin/sudo"
-    chmod +x "$scratch/bin/make" "$scratch/bin/sudo" && install_duite "$usr"
+    # MPICH's mpirun needs no such option, and has none.
+    is_openmpi || printf '#!/bin/sh\nfor word; do shift; test "$word" = --oversubscribe || set -- "$@" "$word"; done\nexec %s "$@"\n' \
+        "${MPIRUN:-mpirun}" > "$scratch/bin/mpirun"
+    chmod +x "$scratch"/bin/* && install_duite "$usr"
 }
 PATH=$scratch/bin:$usr/bin:$PATH
 PKG_CONFIG_PATH=$usr/lib/pkgconfig

@@ -1,4 +1,6 @@
-# Sourced by run.sh and tap.sh: what Open MPI and hwloc are to do where tests run. What the user set wins.
+# Sourced by run.sh and tap.sh: what Open MPI and hwloc are to do where tests run. What the user set wins. MPICH does without: its mpirun
+# counts no slots, binds nothing and starts as root. So a test calls mpirun with -n alone; `is_openmpi` is for what only Open MPI can do.
+# Where the size of files is limited, UCX_TLS=self spares a process alone the shared memory of MPICH, which is 4 MiB.
 
 if test "$(id -u)" = 0; then
     export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
@@ -11,6 +13,7 @@ export OMPI_MCA_mpi_yield_when_idle=1
 export OMPI_MCA_pml="${OMPI_MCA_pml:-ob1}" OMPI_MCA_btl="${OMPI_MCA_btl:-^ofi,openib}" OMPI_MCA_ess_singleton_isolated=1
 # mpirun ends a job of which a rank failed at once, not after a second.
 export OMPI_MCA_odls_base_sigkill_timeout="${OMPI_MCA_odls_base_sigkill_timeout:-0}"
+is_openmpi() { "${MPIRUN:-mpirun}" --version 2> /dev/null | grep 'Open MPI\|OpenRTE' > /dev/null; }
 # What a user chose for programs of duite in general is not what is tested or measured.
 unset DUITE_SCHEDULER DUITE_MAPPING DUITE_BALANCE DUITE_THREADS DUITE_SEED DUITE_TRACE
 # hwloc: silent about caches that a virtual machine reports wrongly, and no look for graphics cards on ten X displays, which

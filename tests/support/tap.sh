@@ -123,7 +123,7 @@ ranks() {
         [12]\ *) ;;
         *address*) set -- env ASAN_OPTIONS="${ASAN_OPTIONS:-}:fast_unwind_on_malloc=1:detect_leaks=0" "$@" ;; # as in run.sh
     esac
-    limited "${MPIRUN:-mpirun}" --oversubscribe --bind-to none -n "$tap_n" "$@"
+    limited "${MPIRUN:-mpirun}" -n "$tap_n" "$@"
 }
 
 locations() {

@@ -3,6 +3,8 @@
 
 #include "tests/support/unit.h"
 
+#include "tests/support/rank.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -21,7 +23,7 @@ __attribute__((constructor)) static void prepare(void)
 
 int unit_run(Suite *suite)
 {
-    const char *rank = getenv("OMPI_COMM_WORLD_RANK");
+    const char *rank = rank_said();
     SRunner *runner = srunner_create(suite);
 
     if (rank != NULL) /* MPI knows this process, not a child of it */

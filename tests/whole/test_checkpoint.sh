@@ -11,7 +11,7 @@ cd "$scratch" || exit 99
 kills=2 rounds=2
 if quick; then kills=1 rounds=1; fi
 if test "${DUITE_LONG:-}" = 1; then kills=4 rounds=6; fi
-mpi="${MPIRUN:-mpirun} --oversubscribe --bind-to none -n"
+mpi="${MPIRUN:-mpirun} -n"
 
 cat > sheet.yaml << 'END'
 schema: 1
@@ -84,7 +84,7 @@ launch() { # OPTION...
     random 3 && ranks=$((chosen + 1))
     random 2 && threads=$((chosen + 1))
     rm -f main
-    set -- sh -c 'test "${OMPI_COMM_WORLD_RANK:-0}" != 0 || echo $$ > main; exec "$@"' - "$DUITE_CLOTH" "$scene.yaml" --threads $threads --quiet --report killed.json "$@"
+    set -- sh -c 'test "${OMPI_COMM_WORLD_RANK:-${PMI_RANK:-0}}" != 0 || echo $$ > main; exec "$@"' - "$DUITE_CLOTH" "$scene.yaml" --threads $threads --quiet --report killed.json "$@"
     test $ranks = 1 || set -- $mpi $ranks "$@"
     "$@" > said 2>&1 &
     job=$!
@@ -221,7 +221,7 @@ ok "an index that is spoilt is made again" healed
 # A limit on the size of files stands for a full disk: checkpoints are larger than all else. The last good one stays, and the run goes on.
 full() {
     rm -rf short && again sheet.yaml --quiet --end 0.1 --set time.fps=1 --set 'probes=[]' --output short --checkpoint 100 || return 1
-    (ulimit -f 64 && exec "$DUITE_CLOTH" sheet.yaml --quiet --set time.fps=1 --set 'probes=[]' --restart short --checkpoint 0.02 --report full.json) > said 2>&1
+    (ulimit -f 64 && exec env UCX_TLS=self "$DUITE_CLOTH" sheet.yaml --quiet --set time.fps=1 --set 'probes=[]' --restart short --checkpoint 0.02 --report full.json) > said 2>&1
     status=$?
     cat said
     ls -l short/checkpoints

@@ -18,7 +18,7 @@ materials:
 time: {h: 0.001, end: 5000, fps: 1000}
 grain: 20
 END
-two="${MPIRUN:-mpirun} --oversubscribe --bind-to none -n 2"
+two="${MPIRUN:-mpirun} -n 2"
 host=$(uname -n)
 dead=$(sh -c 'echo $$') # a process that was
 

@@ -167,7 +167,7 @@ ok "DUITE_SEED that is no number" wrong_variable \
 ok "DUITE_TRACE that is empty" wrong_variable "duite-cloth: DUITE_TRACE= in the environment: the name of a file is expected" DUITE_TRACE=
 on_one_rank() {
     status=0
-    limited "${MPIRUN:-mpirun}" --oversubscribe --bind-to none -n 1 "$DUITE_CLOTH" scene.yaml --quiet : \
+    limited "${MPIRUN:-mpirun}" -n 1 "$DUITE_CLOTH" scene.yaml --quiet : \
         -n 1 env DUITE_MAPPING=flat "$DUITE_CLOTH" scene.yaml --quiet > complained 2>&1 || status=$?
     cat complained
     test $status = 2 && grep -q "duite-cloth: DUITE_MAPPING=flat in the environment: there is no mapping" complained

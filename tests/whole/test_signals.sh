@@ -21,10 +21,10 @@ probes:
 time: {h: 0.001, end: 100000, fps: 1e-5}
 grain: 20
 END
-two="${MPIRUN:-mpirun} --oversubscribe --bind-to none -n 2"
+two="${MPIRUN:-mpirun} -n 2"
 # Says which process a rank is.
 cat > rank << 'END'
-echo $$ > pid.${OMPI_COMM_WORLD_RANK:-0}
+echo $$ > pid.${OMPI_COMM_WORLD_RANK:-${PMI_RANK:-0}}
 exec "$@"
 END
 

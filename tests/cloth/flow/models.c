@@ -1,6 +1,8 @@
 /* A failure of the machinery (memory, MPI) ends the test program at once: no case is about it. */
 #include "tests/cloth/flow/models.h"
 
+#include "tests/support/rank.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -164,7 +166,7 @@ static void begin_mpi(void)
         return;
     if (MPI_Init_thread(NULL, NULL, MPI_THREAD_SERIALIZED, &provided))
         die("MPI does not start");
-    if (getenv("OMPI_COMM_WORLD_RANK")) /* alone, MPI may stay: what it leaks can then be told from
+    if (rank_said()) /* alone, MPI may stay: what it leaks can then be told from
                                            ours */
         atexit(end_mpi);
 }

@@ -1,0 +1,55 @@
+#!/bin/sh
+# README's two commands on a bare Debian of this machine's release, which debootstrap fetches from this machine's mirror (DUITE_MIRROR names
+# another) with nothing but what every Debian has; and on one with MPICH alone the build, README's first program and the tests of the runtime.
+# Half an hour on two cores, 3 GB each. What is tested is a clone: the last commit.
+. "${srcdir:-.}/tests/support/tap.sh"
+test "$(id -u)" = 0 || skip_all "only root may enter another system"
+for tool in debootstrap unshare git apt-get; do
+    command -v $tool > "$scratch/output" || skip_all "$tool is missing (packages debootstrap, util-linux, git, apt)"
+done
+why=$(unshare --mount --pid --fork true 2>&1) || skip_all "no namespaces here: $why"
+git -C "$srcdir" rev-parse --git-dir > "$scratch/output" 2>&1 || skip_all "no sources of git"
+release=$(sed -n 's/^VERSION_CODENAME=//p' /etc/os-release)
+mirror=${DUITE_MIRROR:-$(apt-get indextargets --format '$(CODENAME) $(REPO_URI)' 'Created-By: Packages' | sed -n "s/^$release //p" | head -n 1)}
+test -n "$mirror" || skip_all "the sources of apt name no mirror of '$release'"
+plan_later
+DUITE_TIMEOUT=7200
+
+# enter SYSTEM COMMAND: as root in its folder of the clone; all that it started ends with it, and all that is mounted.
+# shellcheck disable=SC2016 # for the shell inside
+enter() {
+    limited unshare --mount --pid --fork --kill-child sh -c '
+        mount -t proc proc "$1/proc" && mount -t tmpfs tmpfs "$1/dev/shm" && mount -t devpts -o newinstance,ptmxmode=0666 devpts "$1/dev/pts" || exit
+        mount -t sysfs -o ro sysfs "$1/sys" || echo "without /sys"
+        exec chroot "$1" /usr/bin/env -i HOME=/root PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin \
+            DUITE_QUICK="$DUITE_QUICK" http_proxy="$http_proxy" https_proxy="$https_proxy" sh -c "cd /root/duite && $2"
+        ' enter "$scratch/$1" "$2" > "$scratch/said" 2>&1 && status=0 || status=$?
+    grep '^FAIL\|^ERROR' "$scratch/said"
+    tail -n 60 "$scratch/said"
+    return $status
+}
+system() {
+    debootstrap --variant=minbase "$release" "$scratch/one" "$mirror" > "$scratch/said" 2>&1 || { tail -n 20 "$scratch/said" && return 1; }
+    echo "127.0.0.1 localhost" > "$scratch/one/etc/hosts" && git clone -q "$srcdir" "$scratch/one/root/duite" && cp -a "$scratch/one" "$scratch/mpich"
+}
+command_of_readme() { grep -qxF "$1" "$srcdir/README.md" && enter one "$1"; }
+pictures() { test -s "$scratch/one/root/duite/demo/sheet-008.png" && test -s "$scratch/one/root/duite/demo/dressing.png"; }
+
+only_mpich() {
+    enter mpich "apt-get update -qq && apt-get install -qq --no-install-recommends libmpich-dev mpich && ./bootstrap && make && make install" &&
+        ! ls "$scratch"/mpich/usr/lib/*/libmpi.so.40 && grep -qx 'mpi=MPICH' "$scratch/mpich/usr/local/lib/pkgconfig/duite.pc"
+}
+first() {
+    sed -n '/^<!-- first.c -->/,/^```$/p' "$srcdir/README.md" | sed '/^<!--/d; /^```/d' > "$scratch/mpich/root/first.c"
+    enter mpich 'cd /root && cc first.c -o first $(pkg-config --cflags --libs duite) && ldd first | grep libmpi && { ./first; mpirun -n 2 ./first; mpirun -n 3 ./first; }' &&
+        test "$(grep -c '^170634668000$' "$scratch/said")" = 3
+}
+runtime() { enter mpich 'make check TESTS="$(make -s --eval='\''print-list:;@echo $(filter tests/runtime/%,$(TESTS))'\'' print-list)"'; }
+
+ok "a bare $release" system
+ok "README: ./bootstrap && make demo" command_of_readme './bootstrap && make demo'
+ok "pictures of it" pictures
+ok "README: ./bootstrap && make check" command_of_readme './bootstrap && make check'
+ok "MPICH alone: build" only_mpich
+ok "MPICH alone: README's first program on 1, 2 and 3 ranks" first
+ok "MPICH alone: the tests of the runtime" runtime

@@ -120,11 +120,9 @@ TESTS += tests/runtime/test_chart.sh
 TESTS += tests/runtime/test_vite.sh
 
 if HAVE_CHECK
-AHEAD_TESTS = tests/runtime/test_window tests/runtime/test_rename tests/runtime/test_memo tests/runtime/test_memo_ahead
+AHEAD_TESTS = tests/runtime/test_window tests/runtime/test_memo tests/runtime/test_memo_ahead
 check_PROGRAMS += $(AHEAD_TESTS)
 TESTS += $(AHEAD_TESTS)
-tests_runtime_test_rename_SOURCES = tests/runtime/test_rename.c tests/negative/misuse.c tests/negative/misuse.h
-tests_runtime_test_rename_LDADD = $(DUITE_TEST_LIBS)
 MEMO_FILES = tests/runtime/repeated.c tests/runtime/repeated.h tests/negative/misuse.c tests/negative/misuse.h
 tests_runtime_test_memo_ahead_SOURCES = tests/runtime/test_memo_ahead.c $(MEMO_FILES)
 tests_runtime_test_memo_ahead_LDADD = $(DUITE_TEST_LIBS)

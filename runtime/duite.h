@@ -27,7 +27,6 @@
 #include <mpi.h>
 #include <stddef.h>
 #include <stdint.h>
-#include <stdio.h>
 
 #ifdef __cplusplus
 #include <initializer_list>
@@ -645,16 +644,6 @@ int duite_graph_rounds(duite *rt, duite_graph graph, uint64_t *rounds);
  * (DUITE_E_BINDING) of the replay, so that they may be exchanged. Collective. */
 int duite_graph_args(duite *rt, duite_graph graph, size_t k, const void *args);
 int duite_graph_bind(duite *rt, duite_graph graph, duite_object recorded, duite_object object);
-
-/* Writes one round of the graph to `file` (open for writing, and left open) in the language of
- * Graphviz' dot. A fork is a box with the kernel's name, the rank if one was named, and a line for
- * each parameter: its mode, the slot and generation of the object that the next replay takes, for
- * cw the law. Ellipses are sets, and places where contributions are added to their object (those
- * still open at the end of the round are drawn as added there). Edges are the dependences of a
- * replay: solid within a round, dashed from one round to the next. Errors: DUITE_E_OBJECT,
- * DUITE_E_ARGUMENT, DUITE_E_MEMORY, and DUITE_E_SYSTEM if writing fails; none of them is
- * remembered. Local; the same text on every rank. */
-int duite_graph_print(duite *rt, duite_graph graph, FILE *file);
 
 /* Frees a graph; replays that are on their way come to their end. Collective. */
 int duite_graph_free(duite *rt, duite_graph graph);

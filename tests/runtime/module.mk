@@ -135,7 +135,7 @@ RUNTIME_TESTS = tests/runtime/test_late tests/runtime/test_predict tests/runtime
 	tests/runtime/test_laws tests/runtime/test_settle tests/runtime/test_balance tests/runtime/test_sched \
 	tests/runtime/test_sched_knowing tests/runtime/test_sched_told tests/runtime/test_makespan tests/runtime/test_watchdog \
 	tests/runtime/test_traced tests/runtime/test_check tests/runtime/test_environment \
-    tests/runtime/test_nested_tasks tests/runtime/test_stack tests/runtime/test_graphs tests/runtime/test_graphs_change tests/runtime/test_graphs_refused tests/runtime/test_graph_print tests/runtime/test_views
+    tests/runtime/test_nested_tasks tests/runtime/test_stack tests/runtime/test_graphs tests/runtime/test_graphs_change tests/runtime/test_graphs_refused tests/runtime/test_views
 check_PROGRAMS += $(RUNTIME_TESTS)
 TESTS += $(RUNTIME_TESTS)
 PREDICTED_FILES = tests/runtime/predicted.c tests/runtime/predicted.h tests/support/trace_file.c tests/support/trace_file.h
@@ -200,8 +200,6 @@ tests_runtime_test_views_LDADD = $(DUITE_TEST_LIBS)
 RUNTIME_TESTS += tests/runtime/test_predict_rounds
 tests_runtime_test_predict_rounds_SOURCES = tests/runtime/test_predict_rounds.c tests/negative/misuse.c tests/negative/misuse.h
 tests_runtime_test_predict_rounds_LDADD = tests/support/libunit.a $(PREDICT_LIBS) $(CHECK_LIBS)
-tests_runtime_test_graph_print_SOURCES = tests/runtime/test_graph_print.c
-tests_runtime_test_graph_print_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_graphs_change_LDADD = $(DUITE_TEST_LIBS)
 PASSES_TESTS = tests/runtime/test_passes tests/runtime/test_passes_random tests/runtime/test_emit tests/runtime/test_graph_sums \
     tests/runtime/test_lines

@@ -184,7 +184,6 @@ static void add_counters(duite_counters *to, const duite_counters *of)
     to->bytes += of->bytes;
     to->busy += of->busy;
     to->idle += of->idle;
-    to->renamed += of->renamed;
     to->graphs_recorded += of->graphs_recorded;
     to->delegated += of->delegated;
     to->awaited += of->awaited;

@@ -13,6 +13,7 @@
 #include "cloth/intersections.h"
 
 #include <inttypes.h>
+#include <stdio.h>
 #include <stdlib.h>
 
 static const double REACH = 10 * CONTACT_MARGIN; /* m: what is farther all the way does not touch */

@@ -27,7 +27,6 @@
 #include <mpi.h>
 #include <stddef.h>
 #include <stdint.h>
-#include <stdio.h>
 
 #ifdef __cplusplus
 #include <initializer_list>
@@ -253,7 +252,6 @@ typedef struct duite_options {
     int bind;              /* bind workers to cores where the rank owns enough. Default 1 */
     size_t window;         /* max. tasks of this rank that are unfinished when a fork returns, see
                               duite_fork. Default 0: any number */
-    size_t rename_bytes;   /* how many bytes of this rank renaming may take, see below. Default 0 */
     double stuck_seconds;  /* when nothing moves for so long, standard error tells who waits for
                               what, see below; 0: never. Default 60, or what DUITE_STUCK_SECONDS in
                               the environment says */
@@ -314,15 +312,6 @@ const char *const *duite_balancer_names(void);
  * freed. Objects keep their home if a task of the main program ran for them whose kernel says
  * `fixed`; tasks whose fork named a rank run there whatever moves. Results are the same. `wander`
  * moves objects, and tasks, anywhere at any replay, for tests. */
-
-/* Renaming: a task may overwrite an object (w) which earlier tasks still read, write or send. With
- * renaming it is given fresh memory and does not wait for them. All such memory of a rank, headers
- * included, stays within options.rename_bytes; at the limit a w waits. The memory counts from the
- * fork until the last of those tasks is over. Results are the same. This pays where a program
- * overwrites one object again and again for tasks that have nothing else in common (a temporary, a
- * halo that is being sent). It brings nothing where the writer needs the results of the readers
- * anyway, as in stencils over two buffers and most iterations. There it costs a task some
- * allocations and its data leave the caches: so a program has to ask for it. */
 
 /* Checking mode: each body works on private copies of its parameters, between guard pages that are
  * taken away afterwards, and runs twice if it has no side effects and forks nothing. The task fails
@@ -512,8 +501,8 @@ void duite_prefetch(const duite *rt, size_t n, const duite_object *objects);
  * is each round that it is part of. Any other call of the main program ends it, and it begins again
  * after two equal rounds. It needs bodies that have run, to know that they are short: on one thread
  * with window 0 none runs before the first get or wait, and nothing is recognised. Rounds whose
- * arguments come to more than 1 MiB ahead of the bodies are forked. Not in checking mode, not with
- * a trace, and not with renaming. options.memo switches it off. */
+ * arguments come to more than 1 MiB ahead of the bodies are forked. Neither in checking mode
+ * nor with a trace. options.memo switches it off. */
 int duite_fork(duite *rt, const duite_kernel *kernel, const void *args, size_t n,
                const duite_object *objects);
 
@@ -656,16 +645,6 @@ int duite_graph_rounds(duite *rt, duite_graph graph, uint64_t *rounds);
 int duite_graph_args(duite *rt, duite_graph graph, size_t k, const void *args);
 int duite_graph_bind(duite *rt, duite_graph graph, duite_object recorded, duite_object object);
 
-/* Writes one round of the graph to `file` (open for writing, and left open) in the language of
- * Graphviz' dot. A fork is a box with the kernel's name, the rank if one was named, and a line for
- * each parameter: its mode, the slot and generation of the object that the next replay takes, for
- * cw the law. Ellipses are sets, and places where contributions are added to their object (those
- * still open at the end of the round are drawn as added there). Edges are the dependences of a
- * replay: solid within a round, dashed from one round to the next. Errors: DUITE_E_OBJECT,
- * DUITE_E_ARGUMENT, DUITE_E_MEMORY, and DUITE_E_SYSTEM if writing fails; none of them is
- * remembered. Local; the same text on every rank. */
-int duite_graph_print(duite *rt, duite_graph graph, FILE *file);
-
 /* Frees a graph; replays that are on their way come to their end. Collective. */
 int duite_graph_free(duite *rt, duite_graph graph);
 
@@ -707,7 +686,6 @@ typedef struct duite_counters {
     uint64_t bytes;    /* sent between ranks, headers included */
     double busy;       /* seconds in bodies, over all workers */
     double idle;       /* seconds without a task, over all workers, up to each one's last task */
-    uint64_t renamed;  /* tasks' parameters (w) that got fresh memory instead of waiting */
     uint64_t graphs_recorded; /* calls of build functions; the same on every rank, counted once */
     uint64_t delegated;       /* tasks that ran on another rank than duite_fork says */
     double awaited; /* seconds in which a rank awaited messages, times its workers, over all ranks:

@@ -167,19 +167,6 @@ int duite_graph_bind(duite *rt, duite_graph graph, duite_object recorded, duite_
     return code ? code : api_remember(rt, plan_record_bind(found->record, recorded, object));
 }
 
-int duite_graph_print(duite *rt, duite_graph graph, FILE *file)
-{
-    int code = api_enter(rt, "duite_graph_print");
-    if (code)
-        return code;
-    const struct recorded_graph *found = graph_find(rt, graph);
-    if (!found)
-        return DUITE_E_OBJECT;
-    if (!file)
-        return base_error(DUITE_E_ARGUMENT, "duite_graph_print: no file");
-    return plan_record_print(found->record, file);
-}
-
 /* ---- Replays ---- */
 
 static int graph_check_rounds(const struct plan_record *record, uint64_t rounds)

@@ -87,7 +87,6 @@ static int instance_start_graph(duite *rt, const duite_options *options)
                                    code ? NULL : options->laws);
     if (!code)
         code = started;
-    rt->graph.rename_max = options->rename_bytes;
     if (!code && options->check)
         code = check_start(&rt->check);
     if (!code && n > 1)
@@ -98,7 +97,7 @@ static int instance_start_graph(duite *rt, const duite_options *options)
 /* Where repeated forks are to be recognised and can be. */
 static int instance_start_memo(duite *rt, const duite_options *options)
 {
-    if (!options->memo || rt->comm || rt->trace || options->check || options->rename_bytes)
+    if (!options->memo || rt->comm || rt->trace || options->check)
         return DUITE_OK;
     rt->memo = plan_memo_new(&rt->graph, rt->worker, options->memo > 1);
     return rt->memo ? DUITE_OK : base_no_memory("the runtime");

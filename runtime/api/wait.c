@@ -271,7 +271,7 @@ int duite_wait(duite *rt)
 
 /* ---- Counters ---- */
 
-enum { COUNTER_SUMS = 13 }; /* over all ranks */
+enum { COUNTER_SUMS = 12 }; /* over all ranks */
 
 int duite_count_all(duite *rt, duite_counters *counters)
 {
@@ -284,19 +284,9 @@ int duite_count_all(duite *rt, duite_counters *counters)
     if (rt->comm)
         comm_count(rt->comm, &own.messages, &own.bytes);
     double sums[COUNTER_SUMS] = {
-        (double)own.tasks,
-        (double)own.placed,
-        (double)own.stolen,
-        (double)own.chained,
-        (double)own.messages,
-        (double)own.bytes,
-        own.busy,
-        own.idle,
-        (double)atomic_load_explicit(&rt->graph.renamed, memory_order_relaxed),
-        (double)own.delegated,
-        own.awaited,
-        own.exposed,
-        (double)own.stolen_far};
+        (double)own.tasks,     (double)own.placed, (double)own.stolen, (double)own.chained,
+        (double)own.messages,  (double)own.bytes,  own.busy,           own.idle,
+        (double)own.delegated, own.awaited,        own.exposed,        (double)own.stolen_far};
     code = wait_enter(rt, "duite_count_all", "duite_count_all");
     struct comm_word agreed = {.fingerprint = rt->graph.fingerprint};
     work_waits(rt->pool, &(struct work_why){"duite_count_all", "the other ranks", NULL});
@@ -316,11 +306,10 @@ int duite_count_all(duite *rt, duite_counters *counters)
                                  .bytes = (uint64_t)sums[5],
                                  .busy = sums[6],
                                  .idle = sums[7],
-                                 .renamed = (uint64_t)sums[8],
-                                 .delegated = (uint64_t)sums[9],
-                                 .awaited = sums[10],
-                                 .exposed = sums[11],
-                                 .stolen_far = (uint64_t)sums[12],
+                                 .delegated = (uint64_t)sums[8],
+                                 .awaited = sums[9],
+                                 .exposed = sums[10],
+                                 .stolen_far = (uint64_t)sums[11],
                                  .graphs_recorded = rt->graphs_recorded,
                                  .migrated = rt->migration.objects,
                                  .recognised = rt->memo ? rt->memo->tasks : 0,

@@ -45,12 +45,6 @@ static inline size_t data_packet_lines(size_t bytes)
     return 1 + (bytes + 63) / 64;
 }
 
-/* Bytes that a packet takes, its header included. */
-static inline size_t data_packet_memory(size_t bytes)
-{
-    return data_packet_lines(bytes) * sizeof(struct data_packet);
-}
-
 /* A packet for so many bytes, payload zeroed or not; NULL without memory. */
 struct data_packet *data_packet_new(size_t bytes, bool zero);
 void data_packet_free(struct data_packet *packet); /* NULL is fine */

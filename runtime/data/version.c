@@ -67,10 +67,6 @@ void data_version_poison(struct data_version *version, const struct data_failure
 
 void data_version_drop(struct data_version *version)
 {
-    if (version->renamed)
-        atomic_fetch_sub_explicit(version->rename_bytes,
-                                  data_packet_memory(data_version_room(version)),
-                                  memory_order_relaxed);
     struct data_packet *packet = data_version_packet(version);
     if (packet && packet->lines == 2) /* most are of one line: of a constant size */
         base_pool_give(packet, 2 * sizeof *packet);

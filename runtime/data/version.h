@@ -91,13 +91,9 @@ struct data_version {
     bool sized : 1; /* its size is its own */
     bool lent : 1;  /* its memory is that of a scope, which lives longer: see task_cell */
     bool poisoned;  /* in place of bytes; set before it is produced */
-    bool renamed;   /* other bytes took its place, see rename_bytes */
     uint8_t type;
     size_t max; /* elements there may be; there are as many, or fewer if it is sized */
-    union {     /* set before the object's hold is released */
-        struct data_waiter *heir;
-        _Atomic uint64_t *rename_bytes; /* renamed: there its room is counted until it dies */
-    };
+    struct data_waiter *heir; /* set before the object's hold is released */
     union {
         struct data_packet *packet;         /* NULL: no bytes yet; they are undefined */
         const struct data_failure *failure; /* poisoned: why; never NULL */
@@ -188,12 +184,6 @@ static inline void data_version_hold(struct data_version *version)
     atomic_fetch_add_explicit(&version->holds, 1, memory_order_relaxed);
 }
 
-/* Whether nobody but the object that has it holds the version: it stays so. */
-static inline bool data_version_is_alone(const struct data_version *version)
-{
-    return atomic_load_explicit(&version->holds, memory_order_relaxed) == 1;
-}
-
 /* No hold is left, and there is no heir: frees it with its bytes. */
 void data_version_drop(struct data_version *version);
 
@@ -214,7 +204,7 @@ static inline void data_version_take_over(struct data_version *old, const struct
 /* No hold is left: returns the heir, or frees a version without one. */
 static inline struct data_waiter *data_version_end(struct data_version *version)
 {
-    struct data_waiter *heir = version->renamed ? NULL : version->heir;
+    struct data_waiter *heir = version->heir;
     if (!heir)
         data_version_drop(version);
     else if (heir->back)

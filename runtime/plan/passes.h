@@ -18,8 +18,8 @@
  *
  * Everything in this header is plain data: no pass of it needs a task graph, a table of objects or
  * a worker, calls a body or touches a value. So whoever has a round in some form can have it
- * compiled: the plan and the printer from a record, the mappings (tasks.c), and the predictor from
- * the words of a trace.
+ * compiled: the plan from a record, the mappings (tasks.c), and the predictor from the words of a
+ * trace.
  *
  * How the predictor uses it: it fills a plan_source with the forks of a recorded graph. Modes are
  * those of the kernels in the trace, laws are NULL, since a trace has none, and the owner is that

@@ -5,8 +5,6 @@
 #include "runtime/plan/passes.h"
 #include "runtime/task/task.h"
 
-#include <stdio.h>
-
 /* Recorded graphs: what a build function forked, kept for replays.
  *
  * The record is the program's view: forks in order, with the objects and arguments that the next
@@ -146,9 +144,6 @@ uint32_t plan_record_flag(const struct plan_record *record, duite_object flag);
 
 /* What mappings see of a round of it. Errors: memory; plan_tasks_free is due all the same. */
 int plan_record_tasks(const struct plan_record *record, struct plan_tasks *tasks);
-
-/* Writes the record as dot, with the objects of the next replay. Errors: memory, DUITE_E_SYSTEM. */
-int plan_record_print(const struct plan_record *record, FILE *file);
 
 /* Was it recorded, and do all bound objects exist? */
 bool plan_record_fits(struct plan_record *record);

@@ -32,26 +32,6 @@ int task_overwrite(struct task_graph *graph, struct task *task, size_t i,
     return DUITE_OK;
 }
 
-struct data_version *task_rename(struct task_graph *graph, struct worker *worker,
-                                 struct data_object *object)
-{
-    struct data_version *version = object->current;
-    uint64_t bytes = data_packet_memory(object->room);
-    if (!version || bytes > graph->rename_max || data_version_is_alone(version))
-        return version;
-    if (atomic_fetch_add_explicit(&graph->rename_bytes, bytes, memory_order_relaxed) >
-        graph->rename_max - bytes) {
-        atomic_fetch_sub_explicit(&graph->rename_bytes, bytes, memory_order_relaxed);
-        return version;
-    }
-    atomic_fetch_add_explicit(&graph->renamed, 1, memory_order_relaxed);
-    version->renamed = true;
-    version->rename_bytes = &graph->rename_bytes;
-    object->current = NULL;
-    task_release(graph, worker, version);
-    return NULL;
-}
-
 /* ---- Versions on this rank ---- */
 
 struct data_version *task_local(struct task_graph *graph, struct data_object *object)
@@ -191,8 +171,6 @@ static int access_write(struct task_fork_call *call, size_t i, struct data_objec
         task_forget(graph, call->worker, object);
         return DUITE_OK;
     }
-    if (task_immediate(declared) == DUITE_W)
-        version = task_rename(graph, call->worker, object);
     return task_postponed(declared)
                ? access_lend(call, i, object, version)
                : task_overwrite(graph, call->task, i, object, version, &call->done);

@@ -162,8 +162,6 @@ int task_graph_start(struct task_graph *graph, int rank, int n_ranks,
     graph->root.graph = graph;
     graph->root.top = &graph->root;
     atomic_init(&graph->given_up, 0);
-    atomic_init(&graph->rename_bytes, 0);
-    atomic_init(&graph->renamed, 0);
     atomic_init(&graph->offloaded, 0);
     pthread_mutex_init(&graph->lock, NULL); /* cannot fail with default attributes */
     int code = data_table_start(&graph->table, n_ranks);

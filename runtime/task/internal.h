@@ -42,11 +42,6 @@ void task_read(struct task *task, size_t i, struct data_version *version, uint32
 int task_overwrite(struct task_graph *graph, struct task *task, size_t i,
                    struct data_object *object, struct data_version *version, uint32_t *done);
 
-/* A w is about to overwrite the current version on this rank: returns the version to be
- * overwritten, or NULL if there are to be fresh bytes. */
-struct data_version *task_rename(struct task_graph *graph, struct worker *worker,
-                                 struct data_object *object);
-
 /* This rank's copy of the current version, which is to be here or on its way (task_fetch); zeros
  * if it was never written. NULL: out of memory, broken. */
 struct data_version *task_local(struct task_graph *graph, struct data_object *object);

@@ -172,8 +172,7 @@ static int view_gather_here(struct task_graph *graph, struct worker *worker,
     task->access[0].waiter.mode = DUITE_R;
     task_read(task, 0, version, &done);
     task->access[1].waiter.mode = DUITE_W;
-    version = task_rename(graph, worker, object);
-    int code = task_overwrite(graph, task, 1, object, version, &done);
+    int code = task_overwrite(graph, task, 1, object, object->current, &done);
     if (code) {
         task_void(graph, worker, task, 1, done);
         return code;

@@ -90,11 +90,8 @@ PLAIN_INLINE void plain_make(const struct plain_fork *fork, const void *args)
 PLAIN_INLINE bool plain_overwrite(const struct plain_fork *fork, struct task_access *access,
                                   struct data_object *object, uint32_t *done)
 {
-    struct task_graph *const graph = fork->graph;
     struct data_version *version = object->current;
     object->number++; /* of an object that is nowhere else: its holder stays this rank */
-    if (access->waiter.mode == DUITE_W && graph->rename_max)
-        version = task_rename(graph, fork->worker, object);
     struct data_version *out = fork->nested ? task_child_version(fork->scope, object, !version)
                                             : data_object_version(object);
     if (!out)

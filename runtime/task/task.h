@@ -226,12 +226,9 @@ struct task_graph {
     uint64_t fingerprint;           /* of the main program's calls */
     struct task_history *history;   /* of them; NULL on one rank */
     uint64_t tasks;                 /* of this rank that it forked, or that serve it */
-    uint64_t rename_max;            /* limit of `rename_bytes` */
     struct data_table table;
     /* Seldom used. */
     _Alignas(64) _Atomic int broken; /* memory ran out in a fork: the code of every later call */
-    _Atomic uint64_t rename_bytes;   /* of packets that exist since a w did not wait */
-    _Atomic uint64_t renamed;        /* such w */
     _Atomic uint64_t offloaded;      /* tasks of other ranks that are here */
     pthread_mutex_t lock;            /* of the rest, and of the failures of scopes */
     struct task_failure *failures;

@@ -114,12 +114,10 @@ static void read_1(void)
     read_version(1);
 }
 
-/* The object takes other bytes: whoever is the last to release the version frees it. */
-static void rename_away(void)
+/* The object gives the version up: whoever is the last to release it frees it. */
+static void forget(void)
 {
-    its.version->renamed = true;
-    its.version->rename_bytes = &its.graph.rename_bytes;
-    task_release(&its.graph, NULL, its.version);
+    task_forget(&its.graph, NULL, &its.object);
 }
 
 /* ---- Before and after ---- */
@@ -172,10 +170,10 @@ static const struct explore_case overwritten = {.name = "overwritten after two r
                                                 .start = start_read,
                                                 .thread = {read_0, read_1, fork_writer},
                                                 .end = end_overwritten};
-static const struct explore_case renamed = {.name = "freed after two readers",
-                                            .start = start_read,
-                                            .thread = {read_0, read_1, rename_away},
-                                            .end = end_freed};
+static const struct explore_case forgotten = {.name = "freed after two readers",
+                                              .start = start_read,
+                                              .thread = {read_0, read_1, forget},
+                                              .end = end_freed};
 
 int main(int argc, char **argv)
 {
@@ -187,11 +185,11 @@ int main(int argc, char **argv)
     explore_passes(&read_only);
     explore_passes(&all_three);
     explore_passes(&overwritten);
-    explore_passes(&renamed);
+    explore_passes(&forgotten);
     explore_finds(&read_only, produced);
     explore_finds(&all_three, produced);
     explore_finds(&all_three, release);
     explore_finds(&overwritten, release);
-    explore_finds(&renamed, release);
+    explore_finds(&forgotten, release);
     return explore_end();
 }

@@ -61,7 +61,6 @@ static void graphs_without_runtime(void)
     ck_assert_int_eq(duite_graph_args(NULL, graph, 0, NULL), DUITE_E_ARGUMENT);
     ck_assert_int_eq(duite_graph_bind(NULL, graph, a, b), DUITE_E_ARGUMENT);
     ck_assert_int_eq(duite_graph_free(NULL, graph), DUITE_E_ARGUMENT);
-    ck_assert_int_eq(duite_graph_print(NULL, graph, stdout), DUITE_E_ARGUMENT);
 }
 
 START_TEST(no_runtime)

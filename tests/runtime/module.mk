@@ -120,11 +120,9 @@ TESTS += tests/runtime/test_chart.sh
 TESTS += tests/runtime/test_vite.sh
 
 if HAVE_CHECK
-AHEAD_TESTS = tests/runtime/test_window tests/runtime/test_rename tests/runtime/test_memo tests/runtime/test_memo_ahead
+AHEAD_TESTS = tests/runtime/test_window tests/runtime/test_memo tests/runtime/test_memo_ahead
 check_PROGRAMS += $(AHEAD_TESTS)
 TESTS += $(AHEAD_TESTS)
-tests_runtime_test_rename_SOURCES = tests/runtime/test_rename.c tests/negative/misuse.c tests/negative/misuse.h
-tests_runtime_test_rename_LDADD = $(DUITE_TEST_LIBS)
 MEMO_FILES = tests/runtime/repeated.c tests/runtime/repeated.h tests/negative/misuse.c tests/negative/misuse.h
 tests_runtime_test_memo_ahead_SOURCES = tests/runtime/test_memo_ahead.c $(MEMO_FILES)
 tests_runtime_test_memo_ahead_LDADD = $(DUITE_TEST_LIBS)
@@ -137,7 +135,7 @@ RUNTIME_TESTS = tests/runtime/test_late tests/runtime/test_predict tests/runtime
 	tests/runtime/test_laws tests/runtime/test_settle tests/runtime/test_balance tests/runtime/test_sched \
 	tests/runtime/test_sched_knowing tests/runtime/test_sched_told tests/runtime/test_makespan tests/runtime/test_watchdog \
 	tests/runtime/test_traced tests/runtime/test_check tests/runtime/test_environment \
-    tests/runtime/test_nested_tasks tests/runtime/test_stack tests/runtime/test_graphs tests/runtime/test_graphs_change tests/runtime/test_graphs_refused tests/runtime/test_graph_print tests/runtime/test_views
+    tests/runtime/test_nested_tasks tests/runtime/test_stack tests/runtime/test_graphs tests/runtime/test_graphs_change tests/runtime/test_graphs_refused tests/runtime/test_views
 check_PROGRAMS += $(RUNTIME_TESTS)
 TESTS += $(RUNTIME_TESTS)
 PREDICTED_FILES = tests/runtime/predicted.c tests/runtime/predicted.h tests/support/trace_file.c tests/support/trace_file.h
@@ -202,8 +200,6 @@ tests_runtime_test_views_LDADD = $(DUITE_TEST_LIBS)
 RUNTIME_TESTS += tests/runtime/test_predict_rounds
 tests_runtime_test_predict_rounds_SOURCES = tests/runtime/test_predict_rounds.c tests/negative/misuse.c tests/negative/misuse.h
 tests_runtime_test_predict_rounds_LDADD = tests/support/libunit.a $(PREDICT_LIBS) $(CHECK_LIBS)
-tests_runtime_test_graph_print_SOURCES = tests/runtime/test_graph_print.c
-tests_runtime_test_graph_print_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_graphs_change_LDADD = $(DUITE_TEST_LIBS)
 PASSES_TESTS = tests/runtime/test_passes tests/runtime/test_passes_random tests/runtime/test_emit tests/runtime/test_graph_sums \
     tests/runtime/test_lines

@@ -335,7 +335,7 @@ static void check_runs(bool checking)
 static void run(const struct settings *settings)
 {
     static const double spins[] = {0, 1e-6, 1e-4};
-    static const size_t windows[] = {0, 0, 1, 3}, renames[] = {0, 0, 0, 300, 5000, SIZE_MAX};
+    static const size_t windows[] = {0, 0, 1, 3};
     uint64_t random = ~program.seed;
     duite_object object[NEST_MAX_OBJECTS];
     duite_options options = duite_options_default();
@@ -352,7 +352,6 @@ static void run(const struct settings *settings)
     const char *scheduler =
         policies_at(duite_scheduler_names(), sched_test_names(), duite_random(&random) % n);
     options.window = windows[duite_random(&random) % 4];
-    options.rename_bytes = renames[duite_random(&random) % 6];
     if (settings->threads)
         options.threads = settings->threads;
     if (settings->scheduler)

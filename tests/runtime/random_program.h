@@ -127,7 +127,7 @@ struct prog_setup {
     const char *scheduler, *mapping, *balance;
     uint64_t seed;
     double spin;
-    size_t window, rename;
+    size_t window;
     int verbose;
 };
 

@@ -17,7 +17,7 @@ struct settings {
     uint64_t seed; /* of one program, or the first of many */
     int one, ranks, threads, window, verbose;
     unsigned long programs, repeat;
-    const char *scheduler, *mapping, *balance, *rename;
+    const char *scheduler, *mapping, *balance;
 };
 
 static char running[256]; /* the program that runs, for the handler */
@@ -51,7 +51,6 @@ static const char *draw_policy(uint64_t *random, const char *const *names,
 static struct prog_setup draw_setup(const struct settings *settings, uint64_t seed, MPI_Comm comm)
 {
     static const double SPINS[] = {0, 1e-6, 100e-6};
-    static const size_t RENAMES[] = {0, 128, 1000, 20000, SIZE_MAX};
     static const size_t WINDOWS[] = {0, 0, 1, 1, 2, 7, 30};
     struct prog_setup setup = {.comm = comm, .verbose = settings->verbose};
     uint64_t random = ~seed;
@@ -60,7 +59,6 @@ static struct prog_setup draw_setup(const struct settings *settings, uint64_t se
     setup.threads = 1 + (unsigned)(duite_random(&random) % 4);
     setup.spin = SPINS[duite_random(&random) % 3];
     setup.window = WINDOWS[duite_random(&random) % (sizeof WINDOWS / sizeof *WINDOWS)];
-    setup.rename = RENAMES[duite_random(&random) % (sizeof RENAMES / sizeof *RENAMES)];
     setup.scheduler = draw_policy(&random, duite_scheduler_names(), sched_test_names());
     setup.mapping = draw_policy(&random, duite_mapping_names(), (const char *[]){NULL});
     setup.balance = draw_policy(&random, duite_balancer_names(), balance_test_names());
@@ -68,8 +66,6 @@ static struct prog_setup draw_setup(const struct settings *settings, uint64_t se
         setup.balance = settings->balance;
     if (settings->window >= 0)
         setup.window = (size_t)settings->window;
-    if (settings->rename)
-        setup.rename = strtoull(settings->rename, NULL, 10);
     if (settings->threads > 0)
         setup.threads = (unsigned)settings->threads;
     if (settings->scheduler)
@@ -179,9 +175,9 @@ static int run_seed(const struct settings *settings, uint64_t seed, MPI_Comm com
     MPI_Comm_size(comm, &ranks);
     snprintf(running, sizeof running,
              "--seed %llu --ranks %d --threads %u --scheduler %s --mapping %s --balance %s "
-             "--window %zu --rename %zu",
+             "--window %zu",
              (unsigned long long)seed, ranks, setup.threads, setup.scheduler, setup.mapping,
-             setup.balance, setup.window, setup.rename);
+             setup.balance, setup.window);
     prog = prog_make(seed, ranks);
     if (!prog)
         MPI_Abort(MPI_COMM_WORLD, 99);
@@ -246,8 +242,7 @@ static int read_options(int argc, char **argv, struct settings *settings)
         {"seed", 1, NULL, 's'},    {"base", 1, NULL, 'b'},    {"ranks", 1, NULL, 'r'},
         {"threads", 1, NULL, 't'}, {"repeat", 1, NULL, 'n'},  {"programs", 1, NULL, 'p'},
         {"mapping", 1, NULL, 'm'}, {"verbose", 0, NULL, 'v'}, {"scheduler", 1, NULL, 'q'},
-        {"balance", 1, NULL, 'a'}, {"window", 1, NULL, 'w'},  {"rename", 1, NULL, 'e'},
-        {NULL, 0, NULL, 0}};
+        {"balance", 1, NULL, 'a'}, {"window", 1, NULL, 'w'},  {NULL, 0, NULL, 0}};
 
     for (int c; (c = getopt_long(argc, argv, "", OPTIONS, NULL)) != -1;) {
         settings->one |= c == 's';
@@ -257,8 +252,6 @@ static int read_options(int argc, char **argv, struct settings *settings)
             settings->ranks = atoi(optarg);
         else if (c == 't')
             settings->threads = atoi(optarg);
-        else if (c == 'e')
-            settings->rename = optarg;
         else if (c == 'w')
             settings->window = atoi(optarg);
         else if (c == 'n')
@@ -311,11 +304,8 @@ int main(int argc, char **argv)
         fprintf(
             stderr,
             "%s: --base SEED --programs N, on 1 to 16 ranks; or --seed SEED --ranks R [--threads "
-            "T] "
-            "[--scheduler S] [--mapping M] [--balance B] [--window W] [--rename BYTES] [--repeat "
-            "N] [--verbose], "
-            "on R ranks or "
-            "more\n",
+            "T] [--scheduler S] [--mapping M] [--balance B] [--window W] [--repeat N] [--verbose], "
+            "on R ranks or more\n",
             argv[0]);
         MPI_Abort(MPI_COMM_WORLD, 2);
     }

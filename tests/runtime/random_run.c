@@ -324,7 +324,6 @@ static void run_operations(struct run *run, const struct prog_setup *setup,
     options.spin_seconds = setup->spin;
     options.bind = 0;
     options.window = setup->window;
-    options.rename_bytes = setup->rename;
     comm_piece_bytes = PIECES[setup->seed % (sizeof PIECES / sizeof *PIECES)];
     run->moves = options.balance->migrate || options.mapping->map_tasks;
     const int code = duite_start(&run->rt, &options);

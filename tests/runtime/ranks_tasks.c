@@ -3,6 +3,7 @@
 #include "tests/negative/misuse.h"
 
 #include <duite_policy.h>
+#include <stdio.h>
 #include <string.h>
 
 enum { CHAINS = 12, LENGTH = 6, WIDTH = 100 };

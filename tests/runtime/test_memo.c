@@ -6,6 +6,7 @@
 #include "tests/support/unit.h"
 
 #include <stdint.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -33,18 +34,16 @@ END_TEST
 START_TEST(nothing_is_recognised_where_it_is_off)
 {
     duite_options off = repeated_options(0), checked = repeated_options(ALWAYS);
-    duite_options traced = repeated_options(ALWAYS), renamed = repeated_options(ALWAYS);
+    duite_options traced = repeated_options(ALWAYS);
     char trace[] = "/tmp/test_memo_XXXXXX";
     const int file = mkstemp(trace);
 
     ck_assert_int_ge(file, 0);
     checked.check = 1;
     traced.trace = trace;
-    renamed.rename_bytes = 1 << 20;
     ck_assert_uint_eq(run_rounds(&off), 0);
     ck_assert_uint_eq(run_rounds(&checked), 0);
     ck_assert_uint_eq(run_rounds(&traced), 0);
-    ck_assert_uint_eq(run_rounds(&renamed), 0);
     close(file);
     unlink(trace);
 }

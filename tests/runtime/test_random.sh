@@ -14,9 +14,9 @@ for n in 5 7 8 16; do
     ok "$((programs / 100)) on $n ranks" ranks $n tests/runtime/random_programs --base 80${n}000 --programs $((programs / 100))
 done
 
-# On one rank half of the programs fork the same tasks again and again; with renaming they stay forks.
+# On one rank half of the programs fork the same tasks again and again.
 repeated() {
-    limited env DUITE_MEMO="$1" tests/runtime/random_programs --base "$2" --programs $programs --rename 0 > "$scratch/repeated" &&
+    limited env DUITE_MEMO="$1" tests/runtime/random_programs --base "$2" --programs $programs > "$scratch/repeated" &&
         cat "$scratch/repeated" && if [ "$1" = 0 ]; then grep -x '# 0 tasks recognised' "$scratch/repeated"
         else grep -x '# [1-9][0-9]* tasks recognised' "$scratch/repeated"; fi
 }

@@ -23,5 +23,5 @@ for seed in 1 2 3 4; do
 done
 for part in 0 1 2 3 4 5 6 7; do
     ok "10000 on one rank, repeated forks recognised, part $part" \
-        limited env DUITE_MEMO=always tests/runtime/random_programs --base 13${part}00000 --programs 10000 --rename 0
+        limited env DUITE_MEMO=always tests/runtime/random_programs --base 13${part}00000 --programs 10000
 done

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Random programs a hundred times each, in a build with ThreadSanitizer: it must find no race, whatever comes first.
-# Window 1 and renaming limit 0 are among them by name, other limits by the seeds.
+# Window 1 is among them by name, other windows by the seeds.
 . "${srcdir:-.}/tests/support/tap.sh"
 
 case "${SANITIZER:-}" in *thread*) ;; *) skip_all "built without --enable-sanitizer=thread" ;; esac
@@ -18,12 +18,10 @@ programs=200
 if quick; then programs=2; fi
 repeat "$programs programs a hundred times" --base 51000000 --programs $programs
 repeat "with window 1" --base 52000000 --programs $programs --window 1
-repeat "with window 1 and no renaming" --base 53000000 --programs $programs --window 1 --rename 0
-repeat "without a window, renaming everything" --base 54000000 --programs $programs --window 0 --rename 1000000000
 for scheduler in steal fifo lifo priority static shuffle; do
     repeat "by $scheduler on four threads" --base 55000000 --programs $programs --threads 4 --scheduler $scheduler
 done
 DUITE_MEMO=always
 export DUITE_MEMO
-repeat "with repeated forks" --base 57000000 --programs $programs --ranks 1 --rename 0
+repeat "with repeated forks" --base 57000000 --programs $programs --ranks 1
 ok "random trees of tasks" limited tests/runtime/nested_programs --seed 56000000 --programs $((100 * programs))

@@ -265,7 +265,6 @@ static int count(struct flow_state *state)
     now->bytes -= before->bytes;
     now->busy -= before->busy;
     now->idle -= before->idle;
-    now->renamed -= before->renamed;
     now->graphs_recorded -= before->graphs_recorded;
     now->delegated -= before->delegated;
     now->migrated -= before->migrated;

@@ -15,7 +15,7 @@
  * plan. Then each fork that is the expected one becomes a run of its node, in an open replay. Any
  * other fork or call closes that.
  * Recognised are forks without options of plain kernels that write something, on objects of fixed
- * size that are not views. */
+ * size. */
 
 enum {
     MEMO_HISTORY = 2 * PLAN_OPEN_MAX, /* hashes kept; a power of 2 */

@@ -49,10 +49,6 @@ static void print_round(const struct plan_record *record, const struct plan_roun
         if (node->kind == PLAN_SUM) {
             fputs("duite_sum", file);
             print_use(record, round->use[node->first_use].place, DUITE_RW, file);
-        } else if (node->kind == PLAN_VIEW) {
-            fputs("duite_view", file);
-            print_use(record, round->use[node->first_use].place, DUITE_R, file);
-            print_use(record, round->use[node->first_use + 1].place, DUITE_W, file);
         } else {
             print_fork(record, &record->fork[node->fork], file);
         }

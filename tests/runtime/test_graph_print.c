@@ -141,42 +141,6 @@ START_TEST(bound)
 }
 END_TEST
 
-static int build_views(duite *rt, void *context)
-{
-    const duite_object *objects = context; /* an object, its view, another */
-
-    DUITE_FORK(rt, &COPY, NULL, objects[1], objects[2]);
-    DUITE_FORK(rt, &GIVE, NULL, objects[1], objects[2]);
-    DUITE_FORK(rt, &STEP, NULL, objects[0]);
-    DUITE_FORK(rt, &COPY, NULL, objects[1], objects[2]);
-    return 0;
-}
-
-/* A view is gathered once for all who read it until its object is written. */
-START_TEST(views)
-{
-    struct made m = begin();
-    duite_object objects[3] = {m.a, DUITE_NO_OBJECT, m.b};
-    duite_graph graph;
-    char *text;
-
-    ck_assert_int_eq(duite_view(m.rt, m.a, 1, (size_t[]){0}, &objects[1]), 0);
-    ck_assert_int_eq(duite_graph_new(m.rt, build_views, objects, &graph), 0);
-    text = printed(m.rt, graph);
-    ck_assert_ptr_nonnull(strstr(text,
-                                 "    n0 [label=\"duite_view\\nr 1.1\\nw 4.1\", shape=ellipse];\n"
-                                 "    n1 [label=\"copy \\\"\\\\\\nr 4.1\\nw 2.1\"];\n"
-                                 "    n2 [label=\"give\\nr 4.1\\ncw 2.1 min\"];\n"
-                                 "    n3 [label=\"step\\nrw 1.1\"];\n"));
-    ck_assert_ptr_nonnull(strstr(text, "    n4 [label=\"duite_view\\nr 1.1\\nw 4.1\""));
-    ck_assert_ptr_nonnull(strstr(text, "    n0 -> n2;\n"));
-    free(text);
-    ck_assert_int_eq(duite_graph_free(m.rt, graph), 0);
-    ck_assert_int_eq(duite_free(m.rt, objects[1]), 0);
-    end(&m);
-}
-END_TEST
-
 START_TEST(nothing_recorded)
 {
     struct made m = begin();
@@ -216,7 +180,6 @@ int main(void)
 
     tcase_add_test(test, all_of_it);
     tcase_add_test(test, bound);
-    tcase_add_test(test, views);
     tcase_add_test(test, nothing_recorded);
     tcase_add_test(test, refused);
     suite_add_tcase(suite, test);

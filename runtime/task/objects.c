@@ -1,6 +1,6 @@
-/* What the program does to objects without forking a task of its own: it frees, reads, sets
- * and resizes them, and their homes move. Each of these leaves a version, or a task of the runtime
- * that makes one, as if it had been forked; every rank concludes the same. */
+/* What the program does to objects without forking a task of its own: it frees, reads, sets and
+ * resizes them, and their homes move. Each of these leaves a version, or a task of the runtime that
+ * makes one, as if it had been forked; every rank concludes the same. */
 #include "runtime/task/scope.h"
 
 #include "runtime/base/error.h"

@@ -1,8 +1,8 @@
 /* The short way of most forks: of a plain kernel, which lists a few parameters under r, w and rw
  * and nothing else (task_fixed.plain), where no other rank has part in the task. It makes of a fork
  * what fork.c and depend.c make of it together, in one go over the objects. Whatever it does not
- * know it leaves to them, before anything is changed: contributions, values that are not
- * here, and all errors but want of memory. So no rule stands here alone. */
+ * know it leaves to them, before anything is changed: contributions, values that are not here,
+ * and all errors but want of memory. So no rule stands here alone. */
 #include "runtime/task/ready.h"
 #include "runtime/task/scope.h"
 

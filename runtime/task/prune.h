@@ -6,8 +6,8 @@
 /* Forks of which nothing is on this rank: most of them, where there are many ranks. What task_fork
  * would conclude about them is that other ranks have new versions and copies; it is noted in one
  * go. What is not plain (accumulation, further objects than the listed ones, values that are here,
- * too) is left to task_prune_more, and anything wrong to task_fork. Inline: the
- * call that forks is as short as this. */
+ * too) is left to task_prune_more, and anything wrong to task_fork. Inline: the call that
+ * forks is as short as this. */
 
 static inline struct data_object *prune_object(const struct data_table *table, duite_object name)
 {

@@ -1,7 +1,7 @@
 /* The other forks whose task runs elsewhere and asks nothing of this rank, though something of its
  * objects may be here: a value that its rank has, too; a sum to which it contributes. Whatever asks
- * more (a value that is sent from here, or goes stale here, the first contribution, anything
- * wrong) is left to task_fork. */
+ * more (a value that is sent from here, or goes stale here, the first contribution, anything wrong)
+ * is left to task_fork. */
 #include "runtime/task/prune.h"
 
 #include "runtime/data/law.h"

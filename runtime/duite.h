@@ -54,9 +54,8 @@ enum {
     DUITE_E_BINDING = -13,  /* what is bound to an object of a recorded graph does not fit it */
     DUITE_E_SIZE = -14,  /* an object grows beyond its maximum, or changes a size that is fixed */
     DUITE_E_CHECK = -15, /* checking mode: a body does not keep to what its kernel declares */
-    DUITE_E_VIEW = -16, /* a view is used otherwise than under r, or cannot be, or is left behind */
-    DUITE_E_LOST = -17, /* a rank is lost: killed, or its host cut off */
-    DUITE_E_DEPTH = -18 /* bodies that wait are nested more deeply than the stack has room for */
+    DUITE_E_LOST = -17,  /* a rank is lost: killed, or its host cut off */
+    DUITE_E_DEPTH = -18  /* bodies that wait are nested more deeply than the stack has room for */
 };
 
 /* The error message of the last call of this thread that failed; never NULL. Valid until the next
@@ -403,23 +402,6 @@ int duite_new(duite *rt, duite_type type, size_t count, duite_object *object);
  * Collective; no communication. */
 int duite_new_sized(duite *rt, duite_type type, size_t count, size_t max, duite_object *object);
 
-/* Makes a view of an object: a name for n of its elements, used like that of an object of its own.
- * The elements stand in the order of `indices` (copied; each below the object's count; one may come
- * several times). A task that reads the view (r, rp) finds the elements as the tasks forked so far
- * leave them, poison as well, and only these elements travel between ranks. So does duite_get. A
- * view has the home of its object. To the order of tasks, reading it is a read of the whole object:
- * it ends contributions. Where the object has changed since the view was read last, its elements
- * are gathered once, on the rank that holds the object, for all who read the view until the next
- * change. A task may read views of an object that it writes: they have the elements from before. In
- * replays a view is what it was when the graph was recorded, or what is bound to it; a view can be
- * bound to an object that the graph does not write (DUITE_E_VIEW).
- *
- * DUITE_E_VIEW: an index is too large; the object is a view itself, or changes its size. Later: a
- * view is used otherwise than under r and rp, or set, hinted, or part of duite_colocate; an object
- * is freed before its views (duite_free frees these). DUITE_E_ARGUMENT: n is 0. Main program only.
- * Collective; no communication. */
-int duite_view(duite *rt, duite_object object, size_t n, const size_t *indices, duite_object *view);
-
 /* Frees an object after the last earlier access; `object` names nothing afterwards. Collective. */
 int duite_free(duite *rt, duite_object object);
 
@@ -496,7 +478,7 @@ void duite_prefetch(const duite *rt, size_t n, const duite_object *objects);
  * A program of one rank that forks the same tasks round after round has them replayed, as if it had
  * recorded them: same results, failures and task numbers, in less time. Recognised are up to 4,096
  * forks a round without options, of kernels of up to 16 parameters under r, w and rw that write
- * something, on objects of fixed size that are no views; arguments may change. A kernel that
+ * something, on objects of fixed size; arguments may change. A kernel that
  * accumulates, postpones, is replicated or allows further parameters (variadic) is left out, and so
  * is each round that it is part of. Any other call of the main program ends it, and it begins again
  * after two equal rounds. It needs bodies that have run, to know that they are short: on one thread

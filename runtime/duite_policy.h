@@ -115,7 +115,7 @@ typedef struct duite_object_graph {
 /* One round of a recorded graph as a graph of tasks, and the blocks of objects (a leader and those
  * that follow it) that they run for. */
 typedef struct duite_task_graph {
-    size_t n; /* tasks in fork order, those that the runtime adds (sums, views, sets) among them */
+    size_t n; /* tasks in fork order, those that the runtime adds (sums, sets) among them */
     /* n: seconds, as the fork said; else, from the graph's second replay on, this task's share of
      * what was measured for its block; else the mean of those that are known, or 1 microsecond.
      * 0 of what the runtime adds. */

@@ -64,27 +64,6 @@ static void object_mix_name(duite *rt, duite_object object)
     task_mix(&rt->graph, task_name_bits(object));
 }
 
-int duite_view(duite *rt, duite_object object, size_t n, const size_t *indices, duite_object *view)
-{
-    if (view)
-        *view = DUITE_NO_OBJECT;
-    int code = api_enter(rt, "duite_view");
-    if (code)
-        return code;
-    if (!view)
-        return api_remember(rt,
-                            base_error(DUITE_E_ARGUMENT, "duite_view: nowhere to put the view"));
-    object_mix_name(rt, object);
-    task_mix(&rt->graph, n);
-    for (size_t i = 0; indices && i < n; i++)
-        task_mix(&rt->graph, indices[i]);
-    task_mixed(&rt->graph, TASK_CALLED, TASK_CALLED_VIEW);
-    code = data_view_new(&rt->graph.table, object, n, indices, view);
-    if (!code)
-        trace_object(rt->trace, &rt->graph.table, *view);
-    return api_remember(rt, code);
-}
-
 static void object_mix_double(duite *rt, double value)
 {
     uint64_t bits;
@@ -151,11 +130,8 @@ int duite_is_local(duite *rt, duite_object object)
 {
     if (api_enter_any(rt, "duite_is_local") || api_settle(rt))
         return 1;
-    struct data_table *table = &rt->graph.table;
-    const struct data_object *found = data_object_find(table, object);
-    if (!found || object_is_here(rt, found))
-        return 1;
-    return found->view && object_is_here(rt, &table->object[found->view->parent]);
+    const struct data_object *found = data_object_find(&rt->graph.table, object);
+    return !found || object_is_here(rt, found);
 }
 
 void duite_prefetch(const duite *rt, size_t n, const duite_object *objects)

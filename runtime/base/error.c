@@ -79,8 +79,6 @@ const char *duite_code_text(int code)
         return "law does not fit";
     case DUITE_E_SIZE:
         return "size out of bounds";
-    case DUITE_E_VIEW:
-        return "a view can only be read";
     case DUITE_E_LOST:
         return "a rank is lost";
     case DUITE_E_DEPTH:

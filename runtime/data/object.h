@@ -22,18 +22,18 @@ struct data_object {
     struct data_version *current; /* this rank's copy of the current version, or NULL */
     uint64_t leaves;              /* contributions forked since the last other access;
                                      DATA_VACANT */
-    struct data_view *view;       /* it is a view; NULL: it is none */
     uint64_t mark;                /* the last fork that named it: one task names an object once */
     uint32_t block;               /* its place among the leaders with its home, in the order they
                                      were made; followers share their leader's */
     uint32_t hint;                /* while home is -1: its place in `unsettled` */
     const duite_law *law;         /* of the contributions */
-    struct data_sum *sum;         /* those that concern this rank, or NULL */
+    /* The second line. */
+    struct data_sum *sum; /* those that concern this rank, or NULL */
     duite_type type;
-    uint32_t n_views;    /* views of it that are alive */
     size_t count, bytes; /* at first, when all elements are zero */
     size_t max, room;    /* elements and bytes of the largest version */
     uint64_t : 64;       /* of two lines: in the table, which begins at one, each begins at one */
+    uint64_t : 64;
 };
 _Static_assert(sizeof(struct data_object) == 2 * BASE_LINE, "objects begin at cache lines");
 
@@ -106,13 +106,13 @@ static inline struct data_object *data_object_here(struct data_table *table, dui
         name.slot < table->n_slots && object->generation == name.generation && name.generation % 2;
     return here ? object : NULL;
 }
-/* The same, but only if it is no view and has no contributions. */
+/* The same, but only if it has no contributions. */
 static inline struct data_object *data_object_usual(struct data_object *first, uint32_t n_slots,
                                                     duite_object name)
 {
     struct data_object *object = &first[name.slot];
-    const bool usual = name.slot < n_slots && object->generation == name.generation &&
-                       !((uintptr_t)object->view | object->leaves);
+    const bool usual =
+        name.slot < n_slots && object->generation == name.generation && !object->leaves;
     return usual ? object : NULL;
 }
 static inline struct data_object *data_object_find(struct data_table *table, duite_object name)
@@ -160,41 +160,6 @@ static inline duite_object data_object_name(const struct data_table *table,
 {
     return (duite_object){(uint32_t)(object - table->object), object->generation};
 }
-
-/* ---- Views ---- */
-
-/* Views: an index list of an object, and the object of its own that has the listed elements. That
- * one is written by nobody but the task that gathers them (task/objects.c). The list is shared by
- * the view, tasks that gather, and plans; it never changes. */
-struct data_view {
-    _Atomic uint32_t refs;
-    /* Main thread only. */
-    uint32_t parent; /* slot; alive as long as the view is */
-    uint64_t seen;   /* version of the parent that was gathered last, plus 1 */
-    /* Anybody who holds it. */
-    size_t n;
-    size_t index[];
-};
-
-/* Makes a view of the object, which has the object's home. Errors: DUITE_E_OBJECT, DUITE_E_VIEW,
- * DUITE_E_ARGUMENT, memory. */
-int data_view_new(struct data_table *table, duite_object object, size_t n, const size_t *indices,
-                  duite_object *name);
-
-/* DUITE_E_VIEW, with the message set, if the object is a view. */
-int data_view_refuse(const struct data_table *table, const struct data_object *object,
-                     const char *call);
-
-/* Writes the listed elements, of so many bytes each. */
-void data_view_gather(const struct data_view *view, size_t element, const void *from, void *to);
-
-static inline struct data_view *data_view_hold(struct data_view *view)
-{
-    atomic_fetch_add_explicit(&view->refs, 1, memory_order_relaxed);
-    return view;
-}
-
-void data_view_release(struct data_view *view); /* NULL is fine */
 
 #pragma GCC visibility pop
 

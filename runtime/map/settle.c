@@ -15,11 +15,9 @@
 
 /* ---- Hints ---- */
 
-/* It exists and is no view, whose home is its object's. */
-static int hint_check_object(struct data_table *table, duite_object name, const char *call)
+static int hint_check_object(struct data_table *table, duite_object name)
 {
-    const struct data_object *object = data_object_find(table, name);
-    return object ? data_view_refuse(table, object, call) : DUITE_E_OBJECT;
+    return data_object_find(table, name) ? DUITE_OK : DUITE_E_OBJECT;
 }
 
 static int hint_check_weight(const char *what, double weight)
@@ -36,7 +34,7 @@ static int hint_check_edges(struct data_table *table, size_t n, const duite_obje
     if (n && !neighbours)
         return base_error(DUITE_E_ARGUMENT, "duite_hint: no neighbours");
     for (size_t i = 0; i < n; i++) {
-        int code = hint_check_object(table, neighbours[i], "duite_hint");
+        int code = hint_check_object(table, neighbours[i]);
         if (!code)
             code = hint_check_weight("edge weight", edge_weights ? edge_weights[i] : 1);
         if (code)
@@ -66,7 +64,7 @@ static int hint_add_edges(struct data_hint *hint, size_t n, const duite_object *
 int map_hint(struct data_table *table, duite_object object, double weight, size_t n,
              const duite_object *neighbours, const double *edge_weights)
 {
-    int code = hint_check_object(table, object, "duite_hint");
+    int code = hint_check_object(table, object);
     if (!code)
         code = hint_check_weight("weight", weight);
     if (!code)
@@ -92,9 +90,9 @@ static bool leader_is_above(struct data_table *table, uint32_t slot, uint32_t ob
 
 int map_colocate(struct data_table *table, duite_object object, duite_object leader)
 {
-    int code = hint_check_object(table, object, "duite_colocate");
+    int code = hint_check_object(table, object);
     if (!code)
-        code = hint_check_object(table, leader, "duite_colocate");
+        code = hint_check_object(table, leader);
     if (code)
         return code;
     struct data_hint *hint = data_hint_find(table, object.slot);

@@ -1,9 +1,8 @@
 /* Assignment: which ranks run each node and need each version. Nodes of one rank: tasks, by the
- * owner rule; sums of large objects, at the home; views, where their object was written. All other
- * nodes run wherever what they make is needed: tasks of replicated kernels, sets, sums of small
- * objects (which cost as many messages of contributions as one more message would) and views of
- * what such nodes make. Who needs what is gone through backwards until nothing changes; a version
- * that leaves the round is needed where the next one begins with it. */
+ * owner rule; sums of large objects, at the home. All other nodes run wherever what they make is
+ * needed: tasks of replicated kernels, sets, sums of small objects (which cost as many messages of
+ * contributions as one more message would). Who needs what is gone through backwards until nothing
+ * changes; a version that leaves the round is needed where the next one begins with it. */
 #include "runtime/plan/passes.h"
 
 #include "runtime/base/memory.h"
@@ -182,16 +181,12 @@ static int assign_task(const struct plan_assignment *a, const struct plan_round_
 static int assign_rank(const struct plan_assignment *a, const struct plan_round_node *node)
 {
     const struct plan_node_use *use = &a->round->use[node->first_use];
-    uint32_t maker;
     switch (node->kind) {
     case PLAN_TASK:
         return assign_task(a, node);
     case PLAN_SUM:
-        return a->round->source->object[use->place].bytes <= SMALL_SUM_BYTES ? PLAN_MANY
-                                                                             : assign_home(a, node);
-    case PLAN_VIEW:
-        maker = plan_maker(a, a->reads[node->first_use]);
-        return maker == PLAN_NONE ? a->home[use->place] : a->at[maker];
+        return a->round->source->bytes[use->place] <= SMALL_SUM_BYTES ? PLAN_MANY
+                                                                      : assign_home(a, node);
     default:
         return PLAN_MANY;
     }
@@ -208,25 +203,6 @@ static void assign_node(struct assigning *s, size_t n)
         a->set[n] = sets_alone(&a->sets, at);
     if (node->kind == PLAN_FLAG)
         a->set[n] = sets_all(&a->sets);
-}
-
-/* Those that make what a round begins with may come later in the list: views are placed last. */
-static void assign_nodes(struct assigning *s)
-{
-    struct plan_assignment *a = s->a;
-    size_t n_views = 0;
-    for (size_t n = 0; n < a->round->n_nodes; n++) {
-        const bool view = a->round->node[n].kind == PLAN_VIEW;
-        n_views += view;
-        if (!view)
-            assign_node(s, n);
-    }
-    for (size_t n = 0; n_views; n++) {
-        const bool view = a->round->node[n].kind == PLAN_VIEW;
-        n_views -= view;
-        if (view)
-            assign_node(s, n);
-    }
 }
 
 /* What the node reads is needed where it runs. */
@@ -279,7 +255,8 @@ static bool assign_keeps(const struct plan_assignment *a, size_t n)
 static void assign_all(struct assigning *s)
 {
     struct plan_assignment *a = s->a;
-    assign_nodes(s);
+    for (size_t n = 0; n < a->round->n_nodes; n++)
+        assign_node(s, n);
     for (size_t n = 0; n < a->round->n_nodes; n++)
         assign_inputs(a, n);
     assign_settle(s);

@@ -11,11 +11,8 @@
 #include <string.h>
 
 /* Of a whole replay on one rank. */
-static duite_mode emit_mode(const struct plan_record *record,
-                            const struct plan_recorded_object *object)
+static duite_mode emit_mode(const struct plan_recorded_object *object)
 {
-    if (plan_recorded_gathers(record->object, object))
-        return DUITE_W;
     if (!object->written && !object->sums)
         return DUITE_R;
     return object->reads_old ? DUITE_RW : DUITE_W;
@@ -36,7 +33,7 @@ static void emit_places(struct plan *plan, const struct emit *from)
     for (size_t i = 0; i < record->n_objects; i++) {
         const struct plan_recorded_object *object = &record->object[i];
         plan->place[i] = (struct plan_place){
-            .type = object->type, .mode = emit_mode(record, object), .count = object->count};
+            .type = object->type, .mode = emit_mode(object), .count = object->count};
     }
     if (plan->n_objects > record->n_objects) {
         const struct data_object *object = &record->graph->table.object[from->flag->slot];
@@ -100,14 +97,6 @@ static void emit_params(struct plan *plan)
     }
 }
 
-/* The one that a node gathers. */
-static struct data_view *emit_view(const struct plan *plan, const struct plan_record *record,
-                                   const struct plan_node *node)
-{
-    uint32_t view = plan->use[node->first_use + 1].place;
-    return data_view_hold(record->graph->table.object[record->object[view].recorded.slot].view);
-}
-
 /* What a task or a set is given; at_home: it runs for an object. */
 static void emit_call(struct plan *plan, const struct plan_record *record,
                       const struct plan_round_node *from, struct task *task, bool at_home)
@@ -132,15 +121,11 @@ static void emit_call(struct plan *plan, const struct plan_record *record,
 
 static enum task_type emit_type(enum plan_kind kind)
 {
-    static const enum task_type type[] = {[PLAN_TASK] = TASK_NODE,
-                                          [PLAN_SET] = TASK_NODE_SET,
-                                          [PLAN_SUM] = TASK_NODE_SUM,
-                                          [PLAN_VIEW] = TASK_NODE_VIEW,
-                                          [PLAN_FLAG] = TASK_NODE_FLAG,
-                                          [PLAN_COPY] = TASK_NODE_COPY,
-                                          [PLAN_PARTIAL] = TASK_NODE_PARTIAL,
-                                          [PLAN_SEND] = TASK_NODE_SEND,
-                                          [PLAN_RECEIVE] = TASK_NODE_RECEIVE};
+    static const enum task_type type[] = {
+        [PLAN_TASK] = TASK_NODE,      [PLAN_SET] = TASK_NODE_SET,
+        [PLAN_SUM] = TASK_NODE_SUM,   [PLAN_FLAG] = TASK_NODE_FLAG,
+        [PLAN_COPY] = TASK_NODE_COPY, [PLAN_PARTIAL] = TASK_NODE_PARTIAL,
+        [PLAN_SEND] = TASK_NODE_SEND, [PLAN_RECEIVE] = TASK_NODE_RECEIVE};
     return type[kind];
 }
 
@@ -183,9 +168,6 @@ static void emit_node(struct plan *plan, const struct emit *emit, size_t i)
     if (!from->within)
         plan->root[plan->n_roots++] = task;
     plan->n_sinks += node->sink;
-    plan->n_filled++;
-    if (from->kind == PLAN_VIEW)
-        node->view = emit_view(plan, record, node);
     if (emit_adds(from)) {
         node->tree = &plan->tree[plan->n_trees++];
         plan->tree[plan->n_trees - 1] =
@@ -352,9 +334,6 @@ void plan_release(struct plan *plan)
         return;
     if (plan->channels.close)
         plan->channels.close(&plan->channels);
-    for (size_t i = 0; i < plan->n_filled; i++)
-        if (plan_task(plan, i)->type == TASK_NODE_VIEW)
-            data_view_release(plan_task(plan, i)->node->view);
     base_free(plan->memory);
     base_free(plan->args);
     base_free(plan->buffers);

@@ -1,7 +1,7 @@
 /* Lowering: from the forks of a round to its nodes. What the runtime adds to a program's forks
- * stands here and nowhere else: when contributions end, when a view is gathered, and the tree in
- * which contributions combine. It holds throughout that the nodes so far are all that has to run
- * before the next fork, in an order in which a program could run them one after the other. */
+ * stands here and nowhere else: when contributions end, and the tree in which they combine. It
+ * holds throughout that the nodes so far are all that has to run before the next fork, in an order
+ * in which a program could run them one after the other. */
 #include "runtime/plan/passes.h"
 
 #include "runtime/base/memory.h"
@@ -10,16 +10,13 @@
 struct lower_object {
     uint32_t first, last, n_open; /* buffers of the contributions that are open */
     const duite_law *law;         /* of these */
-    bool written;                 /* somewhere in the round */
-    bool fresh;                   /* a view: gathered, and its object was not written since */
 };
 
 struct lowering {
     struct plan_round *round;
-    size_t n_sums, n_views; /* accesses that contribute; that name views */
+    size_t n_sums; /* accesses that contribute */
     struct lower_object *object;
-    uint32_t *next;          /* by buffer, less n_objects: the next of the same sum */
-    uint32_t *view, *sister; /* by object: a view of it, plus 1; by view: another of its object */
+    uint32_t *next; /* by buffer, less n_objects: the next of the same sum */
 };
 
 /* ---- A round under construction ---- */
@@ -122,31 +119,6 @@ static void lower_sum(struct lowering *l, uint32_t name, size_t fork)
     object->n_open = 0;
 }
 
-/* ---- Views ---- */
-
-/* Before a view is read: its elements are those of its object now. */
-static void lower_view(struct lowering *l, uint32_t view, size_t fork)
-{
-    const struct plan_source_object *objects = l->round->source->object;
-    if (!objects[view].parent || !l->object[objects[view].parent - 1].written)
-        return;
-    uint32_t parent = objects[view].parent - 1;
-    lower_sum(l, parent, fork);
-    if (l->object[view].fresh)
-        return;
-    l->object[view].fresh = true;
-    struct plan_round_node *node = plan_round_add(l->round, PLAN_VIEW, fork);
-    node->owner = view;
-    plan_round_use(l->round, node, parent, true, false);
-    plan_round_use(l->round, node, view, false, true);
-}
-
-static void lower_stale(struct lowering *l, uint32_t object)
-{
-    for (uint32_t view = l->view[object]; view; view = l->sister[view - 1])
-        l->object[view - 1].fresh = false;
-}
-
 /* ---- Forks ---- */
 
 /* What comes before the fork. */
@@ -154,11 +126,9 @@ static void lower_ends(struct lowering *l, size_t i)
 {
     const struct plan_source_fork *fork = &l->round->source->fork[i];
     const struct plan_access *access = l->round->source->access + fork->first;
-    for (uint32_t k = 0; k < fork->n; k++) {
+    for (uint32_t k = 0; k < fork->n; k++)
         if (access[k].mode != DUITE_CW || access[k].law != l->object[access[k].object].law)
             lower_sum(l, access[k].object, i);
-        lower_view(l, access[k].object, i);
-    }
 }
 
 static void lower_fork(struct lowering *l, size_t i)
@@ -166,7 +136,7 @@ static void lower_fork(struct lowering *l, size_t i)
     struct plan_round *round = l->round;
     const struct plan_source_fork *fork = &round->source->fork[i];
     const struct plan_access *access = round->source->access + fork->first;
-    if (l->n_sums + l->n_views)
+    if (l->n_sums)
         lower_ends(l, i);
     struct plan_round_node *node = plan_round_add(round, fork->sets ? PLAN_SET : PLAN_TASK, i);
     node->owner = fork->owner;
@@ -176,8 +146,6 @@ static void lower_fork(struct lowering *l, size_t i)
             plan_round_use(round, node, lower_contribution(l, &access[k]), false, true);
         else
             plan_round_use(round, node, access[k].object, mode != DUITE_W, mode != DUITE_R);
-        if (mode != DUITE_R && l->n_views)
-            lower_stale(l, access[k].object);
     }
 }
 
@@ -203,37 +171,16 @@ static void lower_count(struct lowering *l)
     const struct plan_source *source = l->round->source;
     for (size_t i = 0; i < source->n_accesses; i++)
         l->n_sums += source->access[i].mode == DUITE_CW;
-    bool views = false;
-    for (size_t i = 0; i < source->n_objects; i++)
-        views |= source->object[i].parent != 0;
-    for (size_t i = 0; i < source->n_accesses && views; i++)
-        l->n_views += source->object[source->access[i].object].parent != 0;
 }
 
-static void lower_begin(struct lowering *l)
-{
-    const struct plan_source *source = l->round->source;
-    for (size_t i = 0; i < source->n_accesses && l->n_views; i++)
-        l->object[source->access[i].object].written |= source->access[i].mode != DUITE_R;
-    for (uint32_t i = 0; i < source->n_objects; i++) {
-        uint32_t parent = source->object[i].parent;
-        if (!parent)
-            continue;
-        l->sister[i] = l->view[parent - 1];
-        l->view[parent - 1] = i + 1;
-    }
-}
-
-/* A sum has at least one contribution, and uses it and its object; a view's node uses two. */
+/* A sum has at least one contribution, and uses it and its object. */
 static bool lower_room(struct lowering *l)
 {
     const struct plan_source *source = l->round->source;
-    const size_t more = l->n_sums + l->n_views + 1, objects = source->n_objects;
+    const size_t more = l->n_sums + 1, objects = source->n_objects;
     l->object = base_alloc_zero((objects + 1) * sizeof *l->object);
     l->next = base_alloc_zero((l->n_sums + 1) * sizeof *l->next);
-    l->view = base_alloc_zero((objects + 1) * sizeof *l->view);
-    l->sister = base_alloc_zero((objects + 1) * sizeof *l->sister);
-    return l->object && l->next && l->view && l->sister &&
+    return l->object && l->next &&
            plan_round_room(l->round, source->n_forks + more, source->n_accesses + 2 * more,
                            objects + l->n_sums, l->n_sums);
 }
@@ -244,13 +191,9 @@ bool plan_lower(struct plan_round *round, const struct plan_source *source)
     round->source = source;
     lower_count(&l);
     const bool fine = lower_room(&l);
-    if (fine) {
-        lower_begin(&l);
+    if (fine)
         lower_all(&l);
-    }
     base_free(l.object);
     base_free(l.next);
-    base_free(l.view);
-    base_free(l.sister);
     return fine;
 }

@@ -13,9 +13,8 @@
  * Each fork is hashed (kernel and objects). When the last forks repeat those before them, and
  * bodies are short, the next round is recorded while it is forked, and a thread compiles it to a
  * plan. Then each fork that is the expected one becomes a run of its node, in an open replay. Any
- * other fork or call closes that.
- * Recognised are forks without options of plain kernels that write something, on objects of fixed
- * size that are not views. */
+ * other fork or call closes that. Recognised are forks without options of plain kernels that write
+ * something, on objects of fixed size. */
 
 enum {
     MEMO_HISTORY = 2 * PLAN_OPEN_MAX, /* hashes kept; a power of 2 */

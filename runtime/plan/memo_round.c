@@ -77,7 +77,7 @@ bool memo_round_add(struct plan_memo *memo, const duite_kernel *kernel, const vo
         return false;
     for (size_t i = 0; i < n; i++) {
         const struct data_object *object = data_object_here(&graph->table, objects[i]);
-        if (!object || object->view || object->leaves || object->sized || !object->current)
+        if (!object || object->leaves || object->sized || !object->current)
             return false;
     }
     return !plan_record_fork(memo->record, &(struct task_options){.at = TASK_ANYWHERE}, kernel,
@@ -169,7 +169,7 @@ static bool round_fill(struct plan_memo_round *round, const struct plan_memo *me
         round->hash[i] = memo->hash[(memo->pos - round->n + i) % MEMO_HISTORY];
     if (!round->gate)
         round->gate = base_alloc_zero(sizeof *round->gate);
-    return !record->forked && !record->views && !record->trails && round->hash && round->gate &&
+    return !record->forked && !record->trails && round->hash && round->gate &&
            round_fill_steps(round);
 }
 

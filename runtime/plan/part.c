@@ -317,7 +317,7 @@ static void part_sum(struct parting *p, size_t n)
     plan_reduce_fold(p->part, made, p->row, rows);
 }
 
-/* A task, a set, a view or the flag. */
+/* A task, a set or the flag. */
 static void part_plain(struct parting *p, size_t n)
 {
     const struct plan_round_node *node = &p->round->node[n];

@@ -47,7 +47,7 @@ enum {
 
 /* How a fork, with its descendants, uses an object: r, w, rw or cw. */
 struct plan_access {
-    uint32_t object; /* of plan_source.object */
+    uint32_t object; /* below plan_source.n_objects */
     duite_mode mode;
     const duite_law *law; /* cw: compared only; two accesses with NULL have the same law */
 };
@@ -61,15 +61,10 @@ struct plan_source_fork {
     double cost;           /* seconds; 0: not said */
 };
 
-struct plan_source_object {
-    uint32_t parent; /* of a view: the place of its object, plus 1; else 0 */
-    size_t bytes;
-};
-
 struct plan_source {
     struct plan_source_fork *fork; /* in order */
     const struct plan_access *access;
-    struct plan_source_object *object;
+    size_t *bytes; /* by object */
     size_t n_forks, n_accesses, n_objects;
     uint32_t flag; /* the object that decides on a further round, or PLAN_NONE */
 };
@@ -80,7 +75,6 @@ enum plan_kind {
     PLAN_TASK,    /* a fork */
     PLAN_SET,     /* a duite_set */
     PLAN_SUM,     /* adds contributions to their object */
-    PLAN_VIEW,    /* gathers a view */
     PLAN_FLAG,    /* reads the flag */
     PLAN_COPY,    /* of several ranks, as are the following ones */
     PLAN_PARTIAL, /* combines some contributions of one sum */
@@ -148,9 +142,7 @@ struct plan_round {
 /* Takes a source; leaves the nodes of a round for all ranks, without edges:
  * - each fork is one TASK or SET, in order, and what the runtime adds comes before the fork that
  *   needs it: a SUM before the first access that ends contributions (contributions still open at
- *   the end of the round end there), a VIEW before the first read of a round and the first after
- *   each write of its object; last the FLAG, if there is one. A view of an object that the round
- *   does not write has no node: it is gathered before the replay;
+ *   the end of the round end there); last the FLAG, if there is one;
  * - the uses of a TASK are its accesses in order; a cw uses a buffer of its own, which one SUM
  *   reads: its uses are the object and the buffers in the order of forks;
  * - the merges of a SUM make the reduction tree of data/reduce.h; all pieces come to lie in its
@@ -230,7 +222,7 @@ struct plan_assignment {
 
 /* Takes a lowered round and the home of each object; leaves:
  * - a task of the program runs on the rank that its fork named, else on the home of its owner; a
- *   sum of a large object on the object's home; a view where its object was written;
+ *   sum of a large object on the object's home;
  * - all other nodes (of replicated kernels, sets, sums of small objects) run on every rank that
  *   reads what they make, in this round or at the beginning of the next, and nowhere else; one that
  *   nobody reads runs on its owner's home if it is a task or leaves the round, else nowhere;

@@ -19,7 +19,6 @@ struct plan_node {
     struct plan *plan;
     union {
         void *args;                   /* or what a set writes; NULL: zeros */
-        struct data_view *view;       /* NODE_VIEW: held */
         struct plan_channel *channel; /* NODE_SEND, NODE_RECEIVE */
         const struct plan_tree *tree; /* NODE_SUM, NODE_PARTIAL */
     };
@@ -70,7 +69,6 @@ struct plan {
     _Atomic uint32_t refs; /* the record, and each replay on its way */
     struct task_graph *graph;
     _Atomic uint32_t n_affine; /* places with an affinity */
-    size_t n_filled;           /* nodes that were made so far */
     size_t n_nodes, n_calls, n_uses, n_roots, n_sinks, n_places;
     size_t n_objects;     /* places that are objects */
     void *memory;         /* of all arrays from here to `tree`, but for arguments and buffers */

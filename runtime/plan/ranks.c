@@ -20,7 +20,6 @@ static bool ranks_room(struct plan *plan, size_t words)
     return plan->enter && plan->end && plan->home;
 }
 
-/* A view that is gathered within the round is nobody's from outside. */
 static void ranks_take_sets(struct plan *plan, const struct plan_record *record,
                             const struct plan_messages *messages)
 {
@@ -32,7 +31,7 @@ static void ranks_take_sets(struct plan *plan, const struct plan_record *record,
         plan->home[i] = a->home[i];
         if (maker == PLAN_NONE) {
             memcpy(enter, plan_needs_set(a, i), bytes);
-        } else if (!plan_recorded_gathers(record->object, &record->object[i])) {
+        } else {
             memcpy(end, plan_runs_set(a, maker), bytes);
             if (record->object[i].reads_old)
                 memcpy(enter, end, bytes);

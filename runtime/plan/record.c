@@ -68,7 +68,7 @@ static bool record_reserve(struct plan_record *record, size_t n, size_t bytes)
            ROOM(call, calls_capacity, record->n_calls + 1) &&
            ROOM(access, accesses_capacity, record->n_accesses + n + 1) &&
            ROOM(names, names_capacity, n + 1) &&
-           ROOM(object, objects_capacity, record->n_objects + 2 * n + 1) &&
+           ROOM(object, objects_capacity, record->n_objects + n + 1) &&
            ROOM(args, args_capacity, record->args_bytes + bytes + 1);
 #undef ROOM
 }
@@ -77,7 +77,7 @@ static struct plan_recorded_object *record_find(const struct plan_record *record
 {
     uint32_t index = name.slot < record->n_slots ? record->index[name.slot] : 0;
     struct plan_recorded_object *object = index ? &record->object[index - 1] : NULL;
-    bool found = object && object->named && object->recorded.generation == name.generation;
+    bool found = object && object->recorded.generation == name.generation;
     return found ? object : NULL;
 }
 
@@ -114,26 +114,12 @@ static inline void record_note(struct plan_recorded_object *object, duite_mode m
     object->trails = false;
 }
 
-/* A fork reads the views that it names before it does anything to their objects. */
-static void record_use_view(struct plan_record *record, duite_object name)
-{
-    const struct data_table *table = &record->graph->table;
-    const struct data_view *view = table->object[name.slot].view;
-    if (!view)
-        return;
-    uint32_t parent = record_index(record, data_object_name(table, &table->object[view->parent]));
-    record_note(&record->object[parent], DUITE_R);
-    record->object[record_index(record, name)].parent = parent + 1;
-    record->views = true;
-}
-
 /* Returns the object's place. */
 static inline uint32_t record_use(struct plan_record *record, duite_object name, duite_mode mode,
                                   const duite_law *law)
 {
     const uint32_t index = record_index(record, name);
     record->access[record->n_accesses++] = (struct plan_access){index, mode, law};
-    record->object[index].named = true;
     record_note(&record->object[index], mode);
     return index;
 }
@@ -183,8 +169,6 @@ static struct plan_recorded_fork *record_append(struct plan_record *record, uint
 
 static void record_use_all(struct plan_record *record, const struct task_fork_call *call)
 {
-    for (size_t i = 0; i < call->n && call->views; i++)
-        record_use_view(record, call->objects[i]);
     for (size_t i = 0; i < call->n; i++) {
         const duite_mode held = data_mode_of(call->kernel, i), mode = task_immediate(held);
         const duite_law *law = mode == DUITE_CW ? data_law_of(call->kernel, i) : NULL;
@@ -228,7 +212,7 @@ int plan_record_set(struct plan_record *record, duite_object name, const void *v
         return DUITE_E_OBJECT;
     size_t count = wanted ? *wanted : object->max;
     size_t bytes = values ? count * data_type_size(object->type) : 0;
-    int code = task_set_check(record->graph, object, name, count);
+    int code = task_set_check(object, name, count);
     if (code)
         return code;
     struct plan_recorded_fork *fork =
@@ -307,17 +291,12 @@ int plan_record_bind(struct plan_record *record, duite_object recorded, duite_ob
             recorded.slot, recorded.generation, object->sized ? "at most " : "", object->count,
             data_type_name(object->type), name.slot, name.generation,
             other->sized ? "at most " : "", other->max, data_type_name(other->type));
-    if (object->written || object->sums) {
-        int code = data_view_refuse(&record->graph->table, other, "duite_graph_bind");
-        if (code)
-            return code;
-    }
     task_mix(record->graph, task_name_bits(recorded));
     task_mix(record->graph, task_name_bits(name));
     task_mixed(record->graph, TASK_CALLED, TASK_CALLED_GRAPH_BIND);
     object->bound = name;
     record->graph->table.object[name.slot].fixed |= object->fixed;
-    record->rebound = record->ever_bound = true;
+    record->rebound = true;
     if (record->plan)
         record->plan->at_home = 0;
     return DUITE_OK;
@@ -349,8 +328,6 @@ int plan_record_distinct(struct plan_record *record)
     for (size_t i = 0; i < record->n_objects && !code; i++) {
         const struct plan_recorded_object *object = &record->object[i];
         uint64_t *mark = &table->object[object->bound.slot].mark;
-        if (!object->named)
-            continue;
         if (*mark)
             code = base_error(DUITE_E_BINDING,
                               "objects %u.%u and %u.%u of a recorded graph are both bound to %u.%u",

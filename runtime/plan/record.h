@@ -36,9 +36,7 @@ struct plan_recorded_object {
     bool sums;          /* contributed to */
     bool reads_old;     /* the first access is not a w */
     bool leads, trails; /* contributions before any other access in a round, and after all others */
-    bool named;         /* by a fork or set; else by its views only, and cannot be bound */
     bool fixed;         /* tasks that must stay run for it */
-    uint32_t parent;    /* of a view: the place of its object in `object`, plus 1; else 0 */
 };
 
 struct plan;
@@ -47,16 +45,6 @@ struct plan;
  * runs for none, or where it says, or everywhere. */
 uint32_t plan_recorded_owner(const struct plan_record *record,
                              const struct plan_recorded_fork *fork);
-
-/* The recorded object is a view of one that the graph writes: rounds gather it. */
-static inline bool plan_recorded_gathers(const struct plan_recorded_object *objects,
-                                         const struct plan_recorded_object *object)
-{
-    if (!object->parent)
-        return false;
-    const struct plan_recorded_object *parent = &objects[object->parent - 1];
-    return parent->written || parent->sums;
-}
 
 /* Arguments that changed since the last replay; one block of memory. */
 struct plan_change {
@@ -81,16 +69,14 @@ struct plan_record {
     size_t n_slots;
     duite_object *names; /* for the objects of one fork */
     size_t names_capacity;
-    bool whole;      /* build came to its end */
-    uint64_t fits;   /* table->changes, plus 1, when all bound objects were last found to exist */
-    bool rebound;    /* since the bindings were last found to be different objects */
-    bool ever_bound; /* some object is bound, maybe to itself */
-    bool forked; /* has no plan: contributions of one round and of the next make one sum, the size
-                    of an object changes, or a right is postponed */
-    bool views;  /* reads views */
-    bool leads;  /* contributions to some object come before any other access in a round */
-    bool trails; /* some object's contributions end the round: they stay open after the last */
-    int failed;  /* code of the first call of build that failed */
+    bool whole;    /* build came to its end */
+    uint64_t fits; /* table->changes, plus 1, when all bound objects were last found to exist */
+    bool rebound;  /* since the bindings were last found to be different objects */
+    bool forked;   /* has no plan: contributions of one round and of the next make one sum, the size
+                      of an object changes, or a right is postponed */
+    bool leads;    /* contributions to some object come before any other access in a round */
+    bool trails;   /* some object's contributions end the round: they stay open after the last */
+    int failed;    /* code of the first call of build that failed */
     char message[512]; /* of it */
     struct plan *plan;
     struct plan_change *changes; /* since the last replay of the plan */

@@ -18,26 +18,11 @@ static bool replay_continues_sums(const struct plan_record *record)
     return false;
 }
 
-/* A plan knows the views that were recorded: nothing is bound in their place, or in that of their
- * objects, and no other object by a view. */
-static bool replay_changes_views(const struct plan_record *record, const duite_object *flag)
-{
-    const struct data_object *objects = record->graph->table.object;
-    bool changed = flag && objects[flag->slot].view;
-    for (size_t i = 0; i < record->n_objects && record->ever_bound && !changed; i++) {
-        duite_object bound = record->object[i].bound, recorded = record->object[i].recorded;
-        if (bound.slot != recorded.slot || bound.generation != recorded.generation)
-            changed = record->views || objects[bound.slot].view;
-    }
-    return changed;
-}
-
 void plan_replay_split(const struct plan_record *record, const duite_object *flag, uint64_t rounds,
                        uint64_t *before, uint64_t *after)
 {
     bool begins = rounds && replay_continues_sums(record);
-    bool forked = record->forked || (flag && record->graph->table.object[flag->slot].sized) ||
-                  replay_changes_views(record, flag);
+    bool forked = record->forked || (flag && record->graph->table.object[flag->slot].sized);
     /* A flag's own contributions end with the round, since it is read. */
     for (size_t i = 0; flag && record->trails && i < record->n_objects; i++)
         forked |=
@@ -144,17 +129,6 @@ static int replay_use_object(struct task_graph *graph, struct task *task, size_t
     return task_overwrite(graph, task, i, object, version, done);
 }
 
-/* Views that the rounds read but do not gather. */
-static int replay_gather_views(struct plan_record *record, struct worker *worker)
-{
-    int code = DUITE_OK;
-    for (size_t i = 0; i < record->n_objects && record->views && !code; i++)
-        if (!plan_recorded_gathers(record->object, &record->object[i]))
-            code = task_view_gather(record->graph, worker,
-                                    &record->graph->table.object[record->object[i].bound.slot]);
-    return code;
-}
-
 static int replay_use_all(struct plan_record *record, struct worker *worker, struct task *task,
                           const duite_object *flag)
 {
@@ -188,8 +162,6 @@ int plan_replay_plan(struct plan_record *record, struct worker *worker, const du
     struct task_graph *graph = record->graph;
     int code = DUITE_OK;
     struct plan *plan = replay_plan_for(record, worker, flag, &code);
-    if (!code)
-        code = replay_gather_views(record, worker);
     if (code)
         return code;
     struct task *task =

@@ -243,8 +243,7 @@ static void node_run_sum(struct task *task)
         node->tree->law->combine(param[0].data, param[1].data, param->count, param->type);
 }
 
-/* A view, or a copy. */
-static void node_run_view(struct task *task)
+static void node_run_copy(struct task *task)
 {
     struct plan_node *node = task->node;
     const duite_param *param = node->param; /* from, to */
@@ -254,10 +253,7 @@ static void node_run_view(struct task *task)
         plan_node_set_poison(node->plan, task, failure);
     if (failure)
         return;
-    if (task->type == TASK_NODE_VIEW)
-        data_view_gather(node->view, data_type_size(param->type), param[0].data, param[1].data);
-    else
-        memcpy(param[1].data, param[0].data, param->count * data_type_size(param->type));
+    memcpy(param[1].data, param[0].data, param->count * data_type_size(param->type));
 }
 
 bool plan_flag_holds(duite_type type, const void *values)
@@ -298,8 +294,8 @@ bool plan_node_run(struct task_graph *graph, struct worker *worker, struct task 
         node_run_set(task);
     else if (task->type == TASK_NODE_SUM || task->type == TASK_NODE_PARTIAL)
         node_run_sum(task);
-    else if (task->type == TASK_NODE_VIEW || task->type == TASK_NODE_COPY)
-        node_run_view(task);
+    else if (task->type == TASK_NODE_COPY)
+        node_run_copy(task);
     else
         node_run_flag(graph, task);
     return false;

@@ -32,26 +32,25 @@ bool plan_record_source(const struct plan_record *record, const duite_object *fl
 {
     size_t n = record->n_objects;
     struct plan_source_fork *fork = base_alloc((record->n_forks + 1) * sizeof *fork);
-    struct plan_source_object *object = base_alloc_zero((n + 1) * sizeof *object);
+    size_t *bytes = base_alloc_zero((n + 1) * sizeof *bytes);
     *source = (struct plan_source){.fork = fork,
                                    .access = record->access,
-                                   .object = object,
+                                   .bytes = bytes,
                                    .n_forks = record->n_forks,
                                    .n_accesses = record->n_accesses,
                                    .n_objects = n,
                                    .flag = flag ? plan_record_flag(record, *flag) : PLAN_NONE};
-    if (!fork || !object)
+    if (!fork || !bytes)
         return false;
     for (size_t i = 0; i < record->n_forks; i++)
         fork[i] = source_fork(record, &record->fork[i]);
     for (size_t i = 0; i < n; i++) {
         const struct plan_recorded_object *from = &record->object[i];
-        object[i] =
-            (struct plan_source_object){from->parent, from->count * data_type_size(from->type)};
+        bytes[i] = from->count * data_type_size(from->type);
     }
     if (flag && source->flag == n) {
         const struct data_object *from = &record->graph->table.object[flag->slot];
-        object[source->n_objects++].bytes = from->count * data_type_size(from->type);
+        bytes[source->n_objects++] = from->count * data_type_size(from->type);
     }
     return true;
 }
@@ -59,5 +58,5 @@ bool plan_record_source(const struct plan_record *record, const duite_object *fl
 void plan_source_free(struct plan_source *source)
 {
     base_free(source->fork);
-    base_free(source->object);
+    base_free(source->bytes);
 }

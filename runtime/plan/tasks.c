@@ -31,13 +31,12 @@ static bool tasks_room(struct plan_tasks *tasks, const struct plan_round *round)
            tasks->bytes;
 }
 
-/* A view is gathered where its object is. */
 static uint32_t tasks_owner(const struct plan_round *round, const struct plan_round_node *node)
 {
     const struct plan_source_fork *fork = &round->source->fork[node->fork];
     if (node->kind == PLAN_TASK && (fork->replicated || fork->rank != PLAN_BY_OWNER))
         return PLAN_NONE;
-    return node->kind == PLAN_VIEW ? round->use[node->first_use].place : node->owner;
+    return node->owner;
 }
 
 static void tasks_fill_nodes(struct plan_tasks *tasks, const struct plan_round *round)
@@ -53,7 +52,7 @@ static void tasks_fill_nodes(struct plan_tasks *tasks, const struct plan_round *
 
 static double tasks_bytes(const struct plan_round *round, size_t place)
 {
-    return (double)round->source->object[round->place[place].object].bytes;
+    return (double)round->source->bytes[round->place[place].object];
 }
 
 /* Goes through two rounds with the last writer of each place, and keeps the rows of the second:

@@ -258,35 +258,7 @@ void predict_overwrite(struct predict_graph *graph, uint32_t node, uint32_t obje
     o->readers = o->copies = PREDICT_NONE;
 }
 
-/* ---- Views and sets ---- */
-
-void predict_gather(struct predict_graph *graph, uint32_t view, int host)
-{
-    const bool all = host == PREDICT_ALL;
-    const uint32_t parent = graph->object[view].parent;
-    const uint32_t value = predict_fetch(graph, parent, host);
-    uint32_t task =
-        predict_own_node(graph, all ? PREDICT_EVERYWHERE : PREDICT_TASK, all ? 0 : (uint32_t)host,
-                         graph->replays ? TASK_NODE_VIEW : TASK_VIEW, 0);
-    if (graph->failed)
-        return;
-    graph->linked = false;
-    predict_use(graph, task, parent, DUITE_R, value);
-    predict_overwrite(graph, task, view, host);
-    predict_hold(graph, task);
-    graph->object[view].gathered = graph->object[parent].writer;
-}
-
-/* Outside of rounds a view is gathered where its object is, as a task that reads it. */
-static void view_refresh(struct predict_graph *graph, uint32_t view)
-{
-    const uint32_t parent = graph->object[view].parent;
-    if (graph->object[parent].leaves != PREDICT_NONE)
-        predict_reduce(graph, parent, graph->object[parent].home);
-    const struct predict_object *o = &graph->object[parent];
-    if (!graph->failed && graph->object[view].gathered != o->writer)
-        predict_gather(graph, view, o->holder == PREDICT_ALL ? o->home : o->holder);
-}
+/* ---- Sets ---- */
 
 void predict_set(struct predict_graph *graph, uint32_t object, int host)
 {
@@ -309,8 +281,6 @@ uint32_t predict_prepare(struct predict_graph *graph, uint32_t object, duite_mod
         return PREDICT_NONE;
     if (graph->object[object].leaves != PREDICT_NONE)
         predict_reduce(graph, object, graph->object[object].home);
-    if (graph->object[object].parent != PREDICT_NONE && !graph->failed)
-        view_refresh(graph, object);
     return mode == DUITE_W || graph->failed ? PREDICT_NONE : predict_fetch(graph, object, host);
 }
 

@@ -63,14 +63,12 @@ struct predict_object {
     uint32_t writer;                  /* node, or NONE */
     uint32_t readers, copies, leaves; /* lists in `link` */
     uint64_t bytes;
-    uint32_t parent;   /* of a view: object; else NONE */
-    uint32_t leader;   /* that it follows, or NONE */
-    uint32_t hints;    /* list in `hint` */
-    uint32_t gathered; /* a view: the writer of its object then */
-    uint32_t place;    /* in the record that is replayed, plus 1, while its round is compiled */
-    bool shown;        /* counted among what its writer shows */
-    bool written;      /* a task has */
-    bool lasts;        /* its value is of before the trace, and no task of the trace writes it */
+    uint32_t leader; /* that it follows, or NONE */
+    uint32_t hints;  /* list in `hint` */
+    uint32_t place;  /* in the record that is replayed, plus 1, while its round is compiled */
+    bool shown;      /* counted among what its writer shows */
+    bool written;    /* a task has */
+    bool lasts;      /* its value is of before the trace, and no task of the trace writes it */
 };
 
 enum { PREDICT_ALL = -1 }; /* holder */
@@ -166,10 +164,8 @@ uint32_t predict_prepare(struct predict_graph *graph, uint32_t object, duite_mod
 void predict_use(struct predict_graph *graph, uint32_t node, uint32_t object, duite_mode mode,
                  uint32_t prepared);
 /* What a round adds to its forks; a host, or PREDICT_ALL: those that the round says. The
- * contributions to the object that are open combine; there are some. The view is gathered. The
- * object is set. */
+ * contributions to the object that are open combine; there are some. The object is set. */
 void predict_reduce(struct predict_graph *graph, uint32_t object, int host);
-void predict_gather(struct predict_graph *graph, uint32_t view, int host);
 void predict_set(struct predict_graph *graph, uint32_t object, int host);
 /* The object has another home from now on: its value goes there. */
 void predict_rehome(struct predict_graph *graph, uint32_t object, int host);

@@ -77,18 +77,10 @@ static bool move_begin(struct move *m)
     return true;
 }
 
-/* The block of an object of the main program; a view has none of its own. */
+/* The block of an object of the main program. */
 static uint32_t move_block(const struct move *m, uint32_t object)
 {
-    uint32_t slot = m->p->name[object].slot;
-    return slot ? m->moves.blocks.of[slot] : MAP_NO_BLOCK;
-}
-
-/* The block that policies see behind an object. A view is in the block of its object. */
-static uint32_t move_block_seen(const struct move *m, uint32_t object)
-{
-    const uint32_t parent = m->p->graph->object[object].parent;
-    return move_block(m, parent == PREDICT_NONE ? object : parent);
+    return m->moves.blocks.of[m->p->name[object].slot];
 }
 
 static void move_weigh(struct move *m)
@@ -133,10 +125,9 @@ static bool move_traffic(struct move *m, const struct predict_recorded *recorded
         for (size_t k = 0; k < fork->n && fine && own != PREDICT_NONE; k++) {
             uint32_t object = recorded->bound[fork->object[k]];
             if (trace_mode(kernel, k) != DUITE_W)
-                fine = map_traffic_read(&m->moves.traffic, move_block_seen(m, recorded->bound[own]),
-                                        move_block_seen(m, object),
-                                        (double)recorded->rounds *
-                                            (double)graph->object[object].bytes);
+                fine = map_traffic_read(
+                    &m->moves.traffic, move_block(m, recorded->bound[own]), move_block(m, object),
+                    (double)recorded->rounds * (double)graph->object[object].bytes);
         }
     }
     return fine;
@@ -179,7 +170,7 @@ static int move_call_mapping(struct move *m, struct predict_recorded *recorded)
     uint32_t *block = base_alloc((recorded->n_objects + 1) * sizeof *block);
     struct map_tasks tasks = {0};
     for (size_t i = 0; i < recorded->n_objects && block; i++)
-        block[i] = move_block_seen(m, recorded->bound[i]);
+        block[i] = move_block(m, recorded->bound[i]);
     int code = block && predict_round_tasks(m->p, recorded, block, &tasks)
                    ? map_tasks_complete(&tasks, m->moves.blocks.n, m->moves.seconds)
                    : base_no_memory("the tasks of a recorded graph");
@@ -231,9 +222,6 @@ static void move_homes(struct move *m)
         predict_rehome(graph, object, own->home);
         graph->migrated++;
     }
-    for (size_t i = 0; i < p->slots_capacity; i++)
-        if (p->slot[i] < graph->n_objects && graph->object[p->slot[i]].parent != PREDICT_NONE)
-            graph->object[p->slot[i]].home = graph->object[graph->object[p->slot[i]].parent].home;
 }
 
 /* The next call counts from here. */

@@ -37,11 +37,10 @@ uint32_t predict_object_at(struct predict_program *p, uint32_t slot)
     return found < p->graph->n_objects ? found : 0;
 }
 
-void predict_make(struct predict_program *p, bool view)
+void predict_make(struct predict_program *p)
 {
     struct predict_graph *graph = p->graph;
-    uint32_t slot = trace_words_next(&p->words),
-             parent = view ? predict_object_at(p, trace_words_next(&p->words)) : PREDICT_NONE;
+    uint32_t slot = trace_words_next(&p->words);
     uint64_t bytes = trace_words_next2(&p->words);
     void *moved = base_grow(graph->object, &graph->objects_capacity, graph->n_objects + 1,
                             sizeof *graph->object);
@@ -60,16 +59,11 @@ void predict_make(struct predict_program *p, bool view)
                                  .readers = PREDICT_NONE,
                                  .copies = PREDICT_NONE,
                                  .leaves = PREDICT_NONE,
-                                 .parent = parent,
                                  .leader = PREDICT_NONE,
-                                 .hints = PREDICT_NONE,
-                                 .gathered = PREDICT_NONE - 1};
+                                 .hints = PREDICT_NONE};
     p->name[graph->n_objects] = DUITE_NO_OBJECT;
-    if (view) {
-        new.home = new.holder = graph->object[parent].home;
-    } else if (data_object_new(&p->table, DUITE_BYTE, 1, &p->name[graph->n_objects])) {
+    if (data_object_new(&p->table, DUITE_BYTE, 1, &p->name[graph->n_objects]))
         graph->failed = true;
-    }
     graph->object[graph->n_objects] = new;
     *slot_object(p, slot) = (uint32_t)graph->n_objects++;
 }
@@ -157,7 +151,7 @@ void predict_homes(struct predict_program *p, size_t n)
     for (size_t i = 0; i < n && !p->code && !p->words.short_of && !p->damaged; i++) {
         uint32_t own = predict_object_at(p, trace_words_next(&p->words)),
                  home = trace_words_next(&p->words);
-        if (!p->damaged && p->name[own].slot)
+        if (!p->damaged)
             home_give(p, own, home);
     }
 }

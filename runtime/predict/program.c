@@ -286,8 +286,7 @@ static void entry_read(struct predict_program *p)
     }
     switch (first & 0xff) {
     case TRACE_OBJECT:
-    case TRACE_VIEW:
-        predict_make(p, (first & 0xff) == TRACE_VIEW);
+        predict_make(p);
         break;
     case TRACE_FREE:
         predict_drop(p);

@@ -100,7 +100,7 @@ struct predict_program {
 /* The object that a slot names. */
 uint32_t predict_object_at(struct predict_program *p, uint32_t slot);
 /* Entries of the program; n: their count. */
-void predict_make(struct predict_program *p, bool view);
+void predict_make(struct predict_program *p);
 void predict_drop(struct predict_program *p);
 void predict_hint(struct predict_program *p, size_t n);
 void predict_follow(struct predict_program *p);

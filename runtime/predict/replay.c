@@ -123,7 +123,7 @@ static void replay_gate(struct predict_program *p, const struct predict_recorded
             predict_prepare(graph, bound[i], DUITE_R, graph->object[bound[i]].home);
     for (size_t i = 0; i < n && !graph->failed && !graph->plain; i++) {
         struct predict_object *o = &graph->object[bound[i]];
-        if (o->holder == PREDICT_ALL || o->parent != PREDICT_NONE)
+        if (o->holder == PREDICT_ALL)
             continue;
         uint32_t host = (uint32_t)o->holder;
         if (graph->began[host] == PREDICT_NONE)
@@ -196,22 +196,17 @@ static void round_travel(struct predict_graph *graph, const struct predict_round
     graph->travel.phase = maker ? round->messages.phase[maker - 1] : 0;
 }
 
-/* The round gathers a view of what it writes; any other is gathered before, if it is stale. */
 uint32_t predict_round_fetch(struct predict_program *p, const struct predict_fork *fork,
                              const struct predict_where *where, size_t k)
 {
     struct predict_graph *graph = p->graph;
     const struct predict_round *round = where->round;
     const size_t use = round->nodes.node[where->node].first_use + k;
-    const uint32_t object = fork->object[k], place = round->nodes.use[use].place;
     const duite_mode mode = trace_mode(&graph->run->kernel[fork->kernel], k);
     if (mode == DUITE_CW)
         return PREDICT_NONE;
     round_travel(graph, round, where->node, use);
-    const uint32_t parent = round->source.plain.object[place].parent;
-    if (parent && plan_maker(&round->assignment, parent - 1) != PLAN_NONE)
-        return mode == DUITE_W ? PREDICT_NONE : predict_fetch(graph, object, where->host);
-    return predict_prepare(graph, object, mode, where->host);
+    return predict_prepare(graph, fork->object[k], mode, where->host);
 }
 
 /* Contributions end: on the hosts that the round says, if any. */
@@ -259,10 +254,8 @@ static void round_own(struct predict_program *p, const uint32_t *bound,
         round_reduce(graph, round, n, bound[use->place], host);
     else if (node->kind == PLAN_FLAG)
         replay_decide(graph, round->flag);
-    else if (host != ROUND_NOWHERE && node->kind == PLAN_SET)
-        predict_set(graph, bound[use->place], host);
     else if (host != ROUND_NOWHERE)
-        predict_gather(graph, bound[use[1].place], host);
+        predict_set(graph, bound[use->place], host);
 }
 
 static void round_nodes(struct predict_program *p, const struct predict_recorded *recorded,

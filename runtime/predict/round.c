@@ -31,32 +31,25 @@ static void round_fork(const struct predict_program *p, struct plan_source *sour
             (struct plan_access){.object = fork->object[k], .mode = predict_fork_mode(p, fork, k)};
 }
 
-/* The objects of a record, and a flag that is none of them. The object of a view is among them if
- * the graph names it. NULL without memory. */
-static struct plan_source_object *round_objects(const struct predict_program *p,
-                                                const struct predict_recorded *recorded,
-                                                uint32_t flag, size_t *n, uint32_t *place)
+/* The bytes of a record's objects, and of a flag that is none of them. NULL without memory. */
+static size_t *round_bytes(const struct predict_program *p, const struct predict_recorded *recorded,
+                           uint32_t flag, size_t *n, uint32_t *place)
 {
     struct predict_object *all = p->graph->object;
-    struct plan_source_object *objects =
-        base_alloc_zero((recorded->n_objects + 2) * sizeof *objects);
+    size_t *bytes = base_alloc_zero((recorded->n_objects + 2) * sizeof *bytes);
     *n = recorded->n_objects;
-    for (uint32_t i = 0; i < *n && objects; i++)
+    for (uint32_t i = 0; i < *n && bytes; i++) {
         all[recorded->bound[i]].place = i + 1;
-    for (uint32_t i = 0; i < *n && objects; i++) {
-        const struct predict_object *bound = &all[recorded->bound[i]];
-        objects[i].bytes = bound->bytes;
-        if (bound->parent != PREDICT_NONE)
-            objects[i].parent = all[bound->parent].place;
+        bytes[i] = all[recorded->bound[i]].bytes;
     }
     *place = PLAN_NONE;
-    if (flag != PREDICT_NONE && objects) {
+    if (flag != PREDICT_NONE && bytes) {
         *place = all[flag].place ? all[flag].place - 1 : (uint32_t)(*n)++;
-        objects[*place].bytes = all[flag].bytes;
+        bytes[*place] = all[flag].bytes;
     }
     for (uint32_t i = 0; i < recorded->n_objects; i++)
         all[recorded->bound[i]].place = 0;
-    return objects;
+    return bytes;
 }
 
 /* Takes the objects. False without memory; round_source_free is due all the same. */
@@ -70,7 +63,7 @@ static bool round_source_make(const struct predict_program *p,
     struct plan_source *plain = &source->plain;
     plain->access = source->access = base_alloc((uses + 1) * sizeof *source->access);
     plain->fork = base_alloc((recorded->n_forks + 1) * sizeof *plain->fork);
-    if (!plain->access || !plain->fork || !plain->object)
+    if (!plain->access || !plain->fork || !plain->bytes)
         return false;
     for (size_t i = 0; i < recorded->n_forks; i++)
         round_fork(p, plain, source->access, &recorded->fork[i]);
@@ -80,7 +73,7 @@ static bool round_source_make(const struct predict_program *p,
 static void round_source_free(struct predict_source *source)
 {
     base_free(source->plain.fork);
-    base_free(source->plain.object);
+    base_free(source->plain.bytes);
     base_free(source->access);
 }
 
@@ -91,8 +84,8 @@ bool predict_round_tasks(const struct predict_program *p, const struct predict_r
     struct plan_round round = {0};
     struct plan_tasks *all = &tasks->tasks;
     *tasks = (struct map_tasks){0};
-    source.plain.object =
-        round_objects(p, recorded, PREDICT_NONE, &source.plain.n_objects, &source.plain.flag);
+    source.plain.bytes =
+        round_bytes(p, recorded, PREDICT_NONE, &source.plain.n_objects, &source.plain.flag);
     bool fine = round_source_make(p, recorded, &source) && plan_lower(&round, &source.plain) &&
                 plan_tasks_find(all, &round);
     if (fine)
@@ -127,9 +120,6 @@ static bool source_is_forked(const struct plan_source *source, struct round_ends
         const struct plan_source_fork *fork = &source->fork[i];
         const struct plan_access *access = source->access + fork->first;
         for (uint32_t k = 0; k < fork->n; k++)
-            if (source->object[access[k].object].parent)
-                ends_note(&ends[source->object[access[k].object].parent - 1], false);
-        for (uint32_t k = 0; k < fork->n; k++)
             ends_note(&ends[access[k].object], access[k].mode == DUITE_CW);
     }
     for (uint32_t i = 0; i < source->n_objects; i++) {
@@ -161,8 +151,7 @@ static bool round_fits(const struct predict_round *there, const struct predict_r
     const struct plan_source *a = &there->source.plain, *b = &wanted->source.plain;
     bool fits = a->n_objects == b->n_objects && a->flag == b->flag;
     for (size_t i = 0; i < b->n_objects && fits; i++)
-        fits = a->object[i].parent == b->object[i].parent &&
-               a->object[i].bytes == b->object[i].bytes && there->home[i] == wanted->home[i];
+        fits = a->bytes[i] == b->bytes[i] && there->home[i] == wanted->home[i];
     return fits;
 }
 
@@ -223,10 +212,10 @@ bool predict_round_prepare(struct predict_program *p, struct predict_recorded *r
     bool fine = round;
     if (fine) {
         struct plan_source *source = &round->source.plain;
-        source->object = round_objects(p, recorded, flag, &source->n_objects, &source->flag);
+        source->bytes = round_bytes(p, recorded, flag, &source->n_objects, &source->flag);
         round->home = base_alloc((recorded->n_objects + 2) * sizeof *round->home);
         round->flag = flag;
-        fine = source->object && round->home;
+        fine = source->bytes && round->home;
         for (size_t i = 0; i < source->n_objects && fine; i++)
             round->home[i] =
                 p->graph->object[i < recorded->n_objects ? recorded->bound[i] : flag].home;

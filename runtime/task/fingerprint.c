@@ -8,7 +8,6 @@ static const char *const CALLED_NAMES[TASK_N_CALLED] = {
     [TASK_CALLED_OTHER] = "a function of duite",
     [TASK_CALLED_NEW] = "duite_new",
     [TASK_CALLED_NEW_SIZED] = "duite_new_sized",
-    [TASK_CALLED_VIEW] = "duite_view",
     [TASK_CALLED_HINT] = "duite_hint",
     [TASK_CALLED_COLOCATE] = "duite_colocate",
     [TASK_CALLED_SET] = "duite_set",

@@ -53,7 +53,6 @@ enum task_called {
     TASK_CALLED_OTHER, /* none of these */
     TASK_CALLED_NEW,
     TASK_CALLED_NEW_SIZED,
-    TASK_CALLED_VIEW,
     TASK_CALLED_HINT,
     TASK_CALLED_COLOCATE,
     TASK_CALLED_SET,

@@ -97,16 +97,13 @@ static int fork_check_object(struct task_fork_call *call, size_t i)
                           "kernel %s, parameter %zu: the task names object %u.%u twice",
                           kernel->name, i, name.slot, name.generation);
     int code = DUITE_OK;
-    if (object->view && mode != DUITE_R)
-        code = data_view_refuse(&scope->graph->table, object, kernel->name);
-    if (!code && mode == DUITE_CW)
+    if (mode == DUITE_CW)
         code = fork_check_law(kernel, i, object, name);
     if (!code && right == DUITE_CWP && data_law_of(kernel, i) != object->law)
         code = task_wrong_law(scope, kernel, i, name);
     if (code)
         return code;
     object->mark = scope->forks + 1;
-    call->views |= object->view != NULL;
     if (i < TASK_FEW)
         call->object[i] = object;
     return DUITE_OK;
@@ -135,7 +132,7 @@ static bool fork_take_objects(struct task_fork_call *call)
     for (size_t i = 0; i < n; i++) {
         struct data_object *object =
             table ? data_object_here(table, name[i]) : task_find_given(scope, name[i], mode[i]);
-        if (object && object->mark != mark && !object->view) {
+        if (object && object->mark != mark) {
             object->mark = mark;
             call->object[i] = object;
             continue;
@@ -197,7 +194,6 @@ static void fork_call_init(struct task_fork_call *call, struct task_scope *scope
     call->objects = objects;
     call->task = NULL;
     call->done = 0;
-    call->views = false;
 }
 
 int task_check_fork(struct task_fork_call *call, struct task_scope *scope, int at,
@@ -309,15 +305,6 @@ static struct task *fork_body(const struct task_fork_call *call, const struct ta
     return NULL;
 }
 
-/* All of them before any other access: the task may write their parents. */
-static int fork_gather_views(const struct task_fork_call *call)
-{
-    int code = DUITE_OK;
-    for (size_t i = 0; i < call->n && !code; i++)
-        code = task_view_gather(call->scope->graph, call->worker, task_fork_object(call, i));
-    return code;
-}
-
 /* The task runs for the object; `follows`: where that one's home is. */
 static void fork_give_block(struct task *task, struct data_object *own, bool follows)
 {
@@ -338,9 +325,6 @@ static int fork_checked(struct task_fork_call *call, const struct task_options *
     const bool replicated = call->kernel->replicated;
     struct data_object *own =
         call->owner == TASK_NOBODY ? NULL : task_fork_object(call, call->owner);
-    int code = call->views ? fork_gather_views(call) : DUITE_OK;
-    if (code)
-        return code;
     call->at = call->scope->depth ? graph->rank
                                   : task_owner_rank(options->at, replicated, own ? own->home : -1);
     if (call->at == TASK_EVERYWHERE)

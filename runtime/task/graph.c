@@ -325,12 +325,11 @@ const char *task_own_name(uint32_t number)
 {
     static const char *const own[] = {
         [TASK_COMBINE] = "duite_sum",      [TASK_PIECES] = "duite_sum",
-        [TASK_GATHER] = "duite_sum",       [TASK_VIEW] = "duite_view",
-        [TASK_COPY] = "duite_get",         [TASK_MOVE] = "duite_replay",
-        [TASK_TRACED_VOID] = "duite_fork", [TASK_REPLAY] = "duite_replay",
-        [TASK_NODE_SET] = "duite_set",     [TASK_NODE_SUM] = "duite_sum",
-        [TASK_NODE_PARTIAL] = "duite_sum", [TASK_NODE_COPY] = "duite_replay",
-        [TASK_NODE_VIEW] = "duite_view",   [TASK_NODE_FLAG] = "duite_replay_while"};
+        [TASK_GATHER] = "duite_sum",       [TASK_COPY] = "duite_get",
+        [TASK_MOVE] = "duite_replay",      [TASK_TRACED_VOID] = "duite_fork",
+        [TASK_REPLAY] = "duite_replay",    [TASK_NODE_SET] = "duite_set",
+        [TASK_NODE_SUM] = "duite_sum",     [TASK_NODE_PARTIAL] = "duite_sum",
+        [TASK_NODE_COPY] = "duite_replay", [TASK_NODE_FLAG] = "duite_replay_while"};
     const char *name = number < sizeof own / sizeof own[0] ? own[number] : NULL;
     return name ? name : "duite";
 }

@@ -68,10 +68,6 @@ int task_fetch(struct task_graph *graph, struct worker *worker, struct data_obje
 /* The same for all ranks. */
 int task_fetch_all(struct task_graph *graph, struct worker *worker, struct data_object *object);
 
-/* The object may be a view: sees to it that it has the elements that the forks so far leave in its
- * parent, before it is read. */
-int task_view_gather(struct task_graph *graph, struct worker *worker, struct data_object *object);
-
 /* The object has a new version on another rank: this rank's copy is stale. */
 void task_forget(struct task_graph *graph, struct worker *worker, struct data_object *object);
 /* A version of the object that has these bytes (values NULL: zeros), which the object alone is to
@@ -182,7 +178,6 @@ struct task_fork_call {
     uint32_t index;                       /* of the kernel, in the list given at start */
     uint32_t owner;                       /* the parameter it runs for, or TASK_NOBODY */
     uint32_t done;                        /* accesses that have nothing to wait for, so far */
-    bool views;                           /* some objects are views */
     bool plain;                           /* its kernel is */
     struct data_object *object[TASK_FEW]; /* the first ones */
 };
@@ -264,8 +259,7 @@ int task_check_fork(struct task_fork_call *call, struct task_scope *scope, int a
                     const duite_object *objects);
 
 /* May the object be set to so many elements? */
-int task_set_check(const struct task_graph *graph, const struct data_object *object,
-                   duite_object name, size_t count);
+int task_set_check(const struct data_object *object, duite_object name, size_t count);
 
 /* Memory ran out at access `made`: the accesses before it are kept, or others would wait for ever.
  */

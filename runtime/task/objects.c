@@ -1,6 +1,6 @@
-/* What the program does to objects without forking a task of its own: it frees, reads, sets, views
- * and resizes them, and their homes move. Each of these leaves a version, or a task of the runtime
- * that makes one, as if it had been forked; every rank concludes the same. */
+/* What the program does to objects without forking a task of its own: it frees, reads, sets and
+ * resizes them, and their homes move. Each of these leaves a version, or a task of the runtime that
+ * makes one, as if it had been forked; every rank concludes the same. */
 #include "runtime/task/scope.h"
 
 #include "runtime/base/error.h"
@@ -15,9 +15,6 @@ int task_free_object(struct task_scope *scope, struct worker *worker, duite_obje
     struct data_object *object = task_find_object(scope, name, &right);
     if (!object)
         return DUITE_E_OBJECT;
-    if (object->n_views)
-        return base_error(DUITE_E_VIEW, "duite_free: object %u.%u has %u views that are not freed",
-                          name.slot, name.generation, object->n_views);
     if (!scope->depth) {
         task_mix(graph, task_name_bits(name));
         task_mixed(graph, TASK_CALLED, TASK_CALLED_FREE);
@@ -42,8 +39,6 @@ int task_copy(struct task_graph *graph, struct worker *worker, duite_object name
                           graph->n_ranks - 1);
     task_mix(graph, (uint64_t)name.slot << 32 | (uint32_t)to);
     int code = object->leaves ? task_reduce(&graph->root, worker, object) : DUITE_OK;
-    if (!code)
-        code = task_view_gather(graph, worker, object);
     if (!code)
         code = to == TASK_ANYWHERE ? task_fetch_all(graph, worker, object)
                                    : task_fetch(graph, worker, object, to);
@@ -111,12 +106,8 @@ struct data_version *task_value_version(const struct data_object *object, const 
     return version;
 }
 
-int task_set_check(const struct task_graph *graph, const struct data_object *object,
-                   duite_object name, size_t count)
+int task_set_check(const struct data_object *object, duite_object name, size_t count)
 {
-    int code = data_view_refuse(&graph->table, object, "duite_set");
-    if (code)
-        return code;
     if (count == object->max || (object->sized && count < object->max))
         return DUITE_OK;
     return base_error(DUITE_E_SIZE, "duite_set_sized: %zu elements, and object %u.%u has %s%zu",
@@ -133,7 +124,7 @@ int task_set_object(struct task_scope *scope, struct worker *worker, duite_objec
     if (!object)
         return DUITE_E_OBJECT;
     size_t count = wanted ? *wanted : object->max;
-    int code = task_set_check(graph, object, name, count);
+    int code = task_set_check(object, name, count);
     if (code)
         return code;
     if (!scope->depth) {
@@ -153,50 +144,6 @@ int task_set_object(struct task_scope *scope, struct worker *worker, duite_objec
     task_forget(graph, worker, object);
     object->current = version;
     return code;
-}
-
-/* ---- Views are gathered when they are asked for. The forks so far may leave a newer version of
- * the parent than the one that the view was taken from. Then the view gets a new version: a task
- * that reads the parent writes it, where the parent's value is. From then on the view is an object
- * like any other, and what travels between ranks is the view ---- */
-
-static int view_gather_here(struct task_graph *graph, struct worker *worker,
-                            struct data_object *object, struct data_object *parent)
-{
-    struct data_version *version = task_local(graph, parent);
-    struct task *task = version ? task_new(&graph->root, TASK_VIEW, 2, 0) : NULL;
-    if (!task)
-        return DUITE_E_MEMORY;
-    uint32_t done = 0;
-    task->block = object->block;
-    task->access[0].waiter.mode = DUITE_R;
-    task_read(task, 0, version, &done);
-    task->access[1].waiter.mode = DUITE_W;
-    int code = task_overwrite(graph, task, 1, object, object->current, &done);
-    if (code) {
-        task_void(graph, worker, task, 1, done);
-        return code;
-    }
-    task->view = data_view_hold(object->view);
-    task_settled(graph, worker, task, done);
-    return DUITE_OK;
-}
-
-int task_view_gather(struct task_graph *graph, struct worker *worker, struct data_object *object)
-{
-    struct data_view *view = object->view;
-    if (!view)
-        return DUITE_OK;
-    struct data_object *parent = &graph->table.object[view->parent];
-    int code = parent->leaves ? task_reduce(&graph->root, worker, parent) : DUITE_OK;
-    if (code || view->seen == parent->number + 1)
-        return code;
-    view->seen = parent->number + 1;
-    task_note_version(object, parent->holder);
-    if (parent->holder == graph->rank)
-        return view_gather_here(graph, worker, object, parent);
-    task_forget(graph, worker, object);
-    return DUITE_OK;
 }
 
 /* ---- Homes that change: a value is not tied to its object's home, since who reads it finds its

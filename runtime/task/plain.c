@@ -1,8 +1,8 @@
 /* The short way of most forks: of a plain kernel, which lists a few parameters under r, w and rw
  * and nothing else (task_fixed.plain), where no other rank has part in the task. It makes of a fork
  * what fork.c and depend.c make of it together, in one go over the objects. Whatever it does not
- * know it leaves to them, before anything is changed: views, contributions, values that are not
- * here, and all errors but want of memory. So no rule stands here alone. */
+ * know it leaves to them, before anything is changed: contributions, values that are not here,
+ * and all errors but want of memory. So no rule stands here alone. */
 #include "runtime/task/ready.h"
 #include "runtime/task/scope.h"
 
@@ -43,8 +43,7 @@ PLAIN_INLINE bool plain_take_objects(const struct plain_fork *fork, const duite_
     for (; access < end; access++, like++, name++) {
         struct data_object *object = fork->nested ? task_find_given(scope, *name, like->waiter.mode)
                                                   : data_object_usual(first, n_slots, *name);
-        if (!object || object->mark == mark ||
-            (fork->nested && ((uintptr_t)object->view | object->leaves)) ||
+        if (!object || object->mark == mark || (fork->nested && object->leaves) ||
             (!object->current && like->waiter.mode != DUITE_W)) {
             plain_unmark(fork->task, access);
             return false;

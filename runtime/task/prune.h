@@ -6,8 +6,8 @@
 /* Forks of which nothing is on this rank: most of them, where there are many ranks. What task_fork
  * would conclude about them is that other ranks have new versions and copies; it is noted in one
  * go. What is not plain (accumulation, further objects than the listed ones, values that are here,
- * too) is left to task_prune_more, and the rest (views, anything wrong) to task_fork. Inline: the
- * call that forks is as short as this. */
+ * too) is left to task_prune_more, and anything wrong to task_fork. Inline: the call that
+ * forks is as short as this. */
 
 static inline struct data_object *prune_object(const struct data_table *table, duite_object name)
 {
@@ -30,7 +30,7 @@ static inline bool prune_look_up(const struct task_graph *graph, int at, size_t 
         alive &= name.generation;
         others |= (uint32_t)(object->holder ^ at);
         wrong |= (uint64_t)(object->generation ^ name.generation) | (object->mark == mark);
-        wrong |= (uintptr_t)object->current | (uintptr_t)object->view | object->leaves;
+        wrong |= (uintptr_t)object->current | object->leaves;
         object->mark = mark;
         *hash = task_fork_hash_on(*hash, name);
     }

@@ -1,7 +1,7 @@
 /* The other forks whose task runs elsewhere and asks nothing of this rank, though something of its
  * objects may be here: a value that its rank has, too; a sum to which it contributes. Whatever asks
- * more (a value that is sent from here, or goes stale here, the first contribution, views, anything
- * wrong) is left to task_fork. */
+ * more (a value that is sent from here, or goes stale here, the first contribution, anything wrong)
+ * is left to task_fork. */
 #include "runtime/task/prune.h"
 
 #include "runtime/data/law.h"
@@ -33,8 +33,7 @@ static bool more_look_up(const struct task_graph *graph, const duite_kernel *ker
         const duite_object name = objects[i];
         struct data_object *object = found[i] = prune_object(&graph->table, name);
         const bool alive = object->generation == name.generation && name.generation % 2;
-        if (!alive || object->mark == mark || object->view ||
-            !more_asks_nothing(graph, kernel, i, at, object))
+        if (!alive || object->mark == mark || !more_asks_nothing(graph, kernel, i, at, object))
             return false;
         object->mark = mark;
         *hash = task_fork_hash_on(*hash, name);

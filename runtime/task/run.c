@@ -233,19 +233,6 @@ void task_run_result(struct task_graph *graph, struct task *task, task_take_resu
 
 /* ---- By type ---- */
 
-static void view_run(struct task *task)
-{
-    const struct data_version *in = task->access[0].waiter.version;
-    struct data_version *out = task->access[1].waiter.version;
-    const struct data_failure *failure =
-        data_failure_first(data_version_failure(in), version_prepare(task, &task->access[1]));
-    if (!failure)
-        data_view_gather(task->view, data_type_size((duite_type)in->type), data_payload(in->packet),
-                         data_payload(out->packet));
-    data_version_poison(out, failure);
-    data_view_release(task->view);
-}
-
 static void copy_run(struct task_graph *graph, struct task *task)
 {
     struct task_copy *copy = task->copy;
@@ -282,9 +269,6 @@ bool task_run(struct task_graph *graph, struct worker *worker, struct task *task
         break;
     case TASK_GATHER:
         task_run_gather(task);
-        break;
-    case TASK_VIEW:
-        view_run(task);
         break;
     case TASK_COPY:
         copy_run(graph, task);

@@ -26,7 +26,6 @@ enum task_type {
     TASK_PIECES = 2,  /* combines this rank's contributions, and sends them */
     TASK_GATHER = 3,  /* combines the contributions of a task's children into one of its own */
     TASK_SEND = 4,    /* sends a version to another rank */
-    TASK_VIEW = 5,    /* writes a view's elements from its object */
     TASK_COPY = 6,    /* duite_get: copies a version to the main program */
     TASK_MOVE = 7,    /* an object that moves here has come: nothing is left to do */
     TASK_TRACED_VOID = 8,
@@ -39,7 +38,6 @@ enum task_type {
     TASK_NODE_PARTIAL = 16, /* combines this rank's contributions as far as they go */
     TASK_NODE_COPY =
         17, /* copies a value that is about to be overwritten, or came from elsewhere */
-    TASK_NODE_VIEW = 18,   /* writes a view's elements from its object */
     TASK_NODE_FLAG = 19,   /* decides whether there is another round */
     TASK_NODE_SEND = 20,   /* sends a message to another rank, */
     TASK_NODE_RECEIVE = 21 /* or awaits one: both are the communication's to run */
@@ -85,7 +83,6 @@ struct task {
         struct task_sum *sum;           /* COMBINE, PIECES, GATHER */
         struct task_send *send;         /* SEND; as long as it is DELEGATED or LEAVES */
         struct offload_task *offloaded; /* OFFLOADED */
-        struct data_view *view;         /* VIEW: held */
         struct task_copy *copy;         /* COPY */
         struct plan_replay *replay;     /* REPLAY */
         struct plan_node *node;         /* NODE... */
@@ -136,7 +133,7 @@ uint64_t task_later_round(const struct task *task);
 #define TASK_TYPES_NODE                                                                            \
     (TASK_TYPE_BIT(TASK_NODE) | TASK_TYPE_BIT(TASK_NODE_SET) | TASK_TYPE_BIT(TASK_NODE_SUM) |      \
      TASK_TYPE_BIT(TASK_NODE_PARTIAL) | TASK_TYPE_BIT(TASK_NODE_COPY) |                            \
-     TASK_TYPE_BIT(TASK_NODE_VIEW) | TASK_TYPE_BIT(TASK_NODE_FLAG) | TASK_TYPES_CHANNEL)
+     TASK_TYPE_BIT(TASK_NODE_FLAG) | TASK_TYPES_CHANNEL)
 #define TASK_TYPES_WITH_BODY                                                                       \
     (TASK_TYPE_BIT(TASK_BODY) | TASK_TYPE_BIT(TASK_NODE) | TASK_TYPE_BIT(TASK_OFFLOADED))
 

@@ -17,7 +17,6 @@ struct chain_moment {
 
 struct chain_object {
     struct chain_moment value, sum; /* its last value; the last contribution to it */
-    uint32_t parent;                /* slot of the object that it is a view of, or 0 */
 };
 
 /* A task and the one that it began after. Kept only where the tasks of the chain are asked for. */
@@ -88,12 +87,10 @@ static struct chain_moment chain_later(struct chain_moment a, struct chain_momen
     return b.end > a.end ? b : a;
 }
 
-/* When the value of an object is there; of a view: that of the object that it is gathered from. */
+/* When the value of an object is there. */
 static struct chain_moment chain_value(struct chain *c, uint32_t slot)
 {
     const struct chain_object *object = chain_object(c, slot);
-    if (object && object->parent)
-        object = chain_object(c, object->parent);
     return object ? chain_later(object->value, object->sum) : (struct chain_moment){0, 0};
 }
 
@@ -253,13 +250,12 @@ static void chain_replay(struct chain *c, size_t n_objects)
 
 /* ---- The main program ---- */
 
-static void chain_make(struct chain *c, bool view)
+static void chain_make(struct chain *c)
 {
     struct chain_object *object = chain_object(c, trace_words_next(&c->words));
-    const uint32_t parent = view ? trace_words_next(&c->words) : 0;
     trace_words_next2(&c->words); /* bytes */
     if (object)
-        *object = (struct chain_object){.parent = parent};
+        *object = (struct chain_object){0};
 }
 
 static void chain_skip(struct chain *c, size_t n)
@@ -273,8 +269,7 @@ static void chain_entry(struct chain *c)
     const size_t n = first >> 8;
     switch (first & 0xff) {
     case TRACE_OBJECT:
-    case TRACE_VIEW:
-        chain_make(c, (first & 0xff) == TRACE_VIEW);
+        chain_make(c);
         break;
     case TRACE_FREE:
         chain_skip(c, 1);

@@ -65,10 +65,8 @@ void trace_object(struct trace *trace, const struct data_table *table, duite_obj
     if (!trace_keeps_words(trace))
         return;
     const struct data_object *object = &table->object[name.slot];
-    entry_begin(trace, object->view ? TRACE_VIEW : TRACE_OBJECT, 0);
+    entry_begin(trace, TRACE_OBJECT, 0);
     word_put(trace, name.slot);
-    if (object->view)
-        word_put(trace, object->view->parent);
     word_put_long(trace, object->room);
 }
 

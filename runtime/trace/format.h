@@ -108,8 +108,7 @@ struct trace_counters {
 enum trace_call {
     TRACE_FILLS,    /* no entry: the last word of a section that fills its 64 bits */
     TRACE_OBJECT,   /* slot; bytes (64 bits) */
-    TRACE_VIEW,     /* slot; of slot; bytes (64 bits) */
-    TRACE_FREE,     /* slot */
+    TRACE_FREE = 3, /* slot; the number before stays unused */
     TRACE_HINT,     /* slot; weight (double); n neighbours: slot; weight (double) */
     TRACE_COLOCATE, /* slot; its leader's */
     TRACE_HOMES,    /* n: slot; home: by the mapping, of all that had none, or by migration */

@@ -20,7 +20,6 @@ bool work_run_task(struct task_graph *graph, struct worker *worker, struct task 
     case TASK_NODE_SUM:
     case TASK_NODE_PARTIAL:
     case TASK_NODE_COPY:
-    case TASK_NODE_VIEW:
     case TASK_NODE_FLAG:
         return plan_node_run(graph, worker, task, call);
     case TASK_OFFLOADED:

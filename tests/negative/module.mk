@@ -34,7 +34,7 @@ LONG_TESTS += tests/negative/test_lost_long.sh tests/negative/test_memory_long.s
 if HAVE_CHECK
 NEGATIVE_TESTS = tests/negative/test_arguments tests/negative/test_accesses tests/negative/test_start \
                  tests/negative/test_state tests/negative/test_failures tests/negative/test_laws \
-                 tests/negative/test_sizes tests/negative/test_nested tests/negative/test_views
+                 tests/negative/test_sizes tests/negative/test_nested
 check_PROGRAMS += $(NEGATIVE_TESTS)
 TESTS += $(NEGATIVE_TESTS)
 tests_negative_test_arguments_SOURCES = tests/negative/test_arguments.c $(MISUSE)
@@ -53,6 +53,4 @@ tests_negative_test_nested_SOURCES = tests/negative/test_nested.c $(MISUSE)
 tests_negative_test_nested_LDADD = $(DUITE_TEST_LIBS)
 tests_negative_test_sizes_SOURCES = tests/negative/test_sizes.c $(MISUSE)
 tests_negative_test_sizes_LDADD = $(DUITE_TEST_LIBS)
-tests_negative_test_views_SOURCES = tests/negative/test_views.c $(MISUSE)
-tests_negative_test_views_LDADD = $(DUITE_TEST_LIBS)
 endif

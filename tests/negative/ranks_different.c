@@ -127,7 +127,6 @@ enum difference {
     ANOTHER_SIZE,
     ANOTHER_MAXIMUM,
     ANOTHER_COUNT,
-    ANOTHER_VIEW,
     ONE_SET_MORE,
     ONE_FREE_MORE,
     ANOTHER_HINT,
@@ -187,8 +186,6 @@ static void differ(duite *rt, enum difference what, duite_object a, duite_object
         duite_new_sized(rt, DUITE_I32, 2, odd ? 5 : 6, &made);
     if (what == ANOTHER_COUNT && !duite_new_sized(rt, DUITE_I32, 2, 6, &made))
         duite_set_sized(rt, made, NULL, odd ? 3 : 4);
-    if (what == ANOTHER_VIEW)
-        duite_view(rt, a, 2, odd ? (size_t[]){0, 1} : (size_t[]){0, 2}, &made);
     if (what == ONE_SET_MORE && odd)
         duite_set(rt, a, NULL);
     if (what == ONE_FREE_MORE && odd)
@@ -219,8 +216,6 @@ static const struct {
      "called duite_new_sized with other arguments"},
     {"another count of values", "after fork 20", "called duite_set",
      "called duite_set with other arguments"},
-    {"another view", "after fork 20", "called duite_view",
-     "called duite_view with other arguments"},
     {"a set more", "after fork 20", NULL, "called duite_set"},
     {"a free more", "after fork 20", NULL, "called duite_free"},
     {"another hint", "after fork 20", "called duite_hint",

@@ -114,20 +114,6 @@ static int nest(duite *rt)
     return value[0] == 4 * ranks && sum[0] == 4 * ranks;
 }
 
-/* A view goes to another rank, before and after its object changes. */
-static void look(duite *rt, duite_object a)
-{
-    const int32_t value = 8;
-    duite_object view, seen;
-    if (duite_view(rt, a, 2, (size_t[]){COUNT - 1, 0}, &view))
-        return;
-    seen = misuse_new(rt, COUNT);
-    duite_fork_at(rt, ranks - 1, &COPY, NULL, 2, (duite_object[]){view, seen});
-    duite_fork_at(rt, 0, &SET, &value, 1, &seen);
-    duite_free(rt, view);
-    duite_free(rt, seen);
-}
-
 /* One run; returns whether it ended as it may. */
 static int run(void)
 {
@@ -145,7 +131,6 @@ static int run(void)
     duite_colocate(rt, a[2], a[1]);
     work(rt, a);
     grow(rt);
-    look(rt, a[1]);
     fine = right(rt, a) && nest(rt);
     code = duite_wait(rt);
     for (int i = 1; i < OBJECTS; i++)

@@ -236,7 +236,7 @@ START_TEST(words)
                                 DUITE_E_MPI,     DUITE_E_DIFFERENT, DUITE_E_STATE,
                                 DUITE_E_SYSTEM,  DUITE_E_NOT_FREED, DUITE_E_LAW,
                                 DUITE_E_BINDING, DUITE_E_SIZE,      DUITE_E_CHECK,
-                                DUITE_E_VIEW,    DUITE_E_LOST,    DUITE_E_DEPTH,      1};
+                                DUITE_E_LOST,    DUITE_E_DEPTH,     1};
 
     ck_assert_ptr_nonnull(duite_message());
     for (size_t i = 0; i < sizeof CODES / sizeof *CODES; i++) {

@@ -7,7 +7,7 @@
 #include <pthread.h>
 #include <stdint.h>
 
-enum { CALLS = 13 };
+enum { CALLS = 12 };
 
 struct attempt {
     duite *rt;
@@ -36,7 +36,6 @@ static void try_all(struct attempt *attempt)
     *code++ = duite_get_at(rt, object, 0, &value);
     *code++ = duite_hint(rt, object, 1, 0, NULL, NULL);
     *code++ = duite_colocate(rt, object, object);
-    *code++ = duite_view(rt, object, 1, (size_t[]){0}, &made);
     *code++ = duite_wait(rt);
     *code++ = duite_count_all(rt, &counters);
 }
@@ -73,8 +72,7 @@ static void start(struct attempt *attempt, unsigned threads)
 /* Bodies may fork, on what is theirs. */
 static const int IN_A_BODY[CALLS] = {DUITE_E_RIGHT, DUITE_E_STATE, DUITE_E_RIGHT, DUITE_OK,
                                      DUITE_E_RIGHT, DUITE_E_RIGHT, DUITE_E_RIGHT, DUITE_E_STATE,
-                                     DUITE_E_STATE, DUITE_E_STATE, DUITE_E_STATE, DUITE_OK,
-                                     DUITE_E_STATE};
+                                     DUITE_E_STATE, DUITE_E_STATE, DUITE_OK,      DUITE_E_STATE};
 
 /* All were refused (codes NULL: with DUITE_E_STATE), nothing comes back later, and only the main
  * program's task has written. */

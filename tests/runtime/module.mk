@@ -1,7 +1,7 @@
 check_PROGRAMS += tests/runtime/random_programs
 tests_runtime_random_programs_SOURCES = tests/runtime/random_programs.c tests/runtime/random_program.h \
     tests/runtime/random_make.c tests/runtime/random_make.h tests/runtime/random_graphs.c tests/runtime/random_cells.c \
-    tests/runtime/random_cells.h tests/runtime/random_print.c tests/runtime/random_views.c tests/runtime/random_laws.c \
+    tests/runtime/random_cells.h tests/runtime/random_print.c tests/runtime/random_laws.c \
     tests/runtime/random_bodies.c tests/runtime/random_interpret.c tests/runtime/random_run.c tests/runtime/random_run.h \
     tests/runtime/random_places.c tests/runtime/random_rounds.c
 tests_runtime_random_programs_LDADD = $(CORE_LIBS)
@@ -18,11 +18,6 @@ TESTS += tests/runtime/test_policy_tasks.sh
 check_PROGRAMS += tests/runtime/ranks_homes
 tests_runtime_ranks_homes_SOURCES = tests/runtime/ranks_homes.c tests/negative/misuse.c tests/negative/misuse.h
 tests_runtime_ranks_homes_LDADD = $(CORE_LIBS)
-check_PROGRAMS += tests/runtime/ranks_views
-tests_runtime_ranks_views_SOURCES = tests/runtime/ranks_views.c tests/negative/misuse.c tests/negative/misuse.h
-tests_runtime_ranks_views_LDADD = $(CORE_LIBS)
-dist_check_SCRIPTS += tests/runtime/test_ranks_views.sh
-TESTS += tests/runtime/test_ranks_views.sh
 check_PROGRAMS += tests/runtime/ranks_replicated
 tests_runtime_ranks_replicated_SOURCES = tests/runtime/ranks_replicated.c tests/negative/misuse.c tests/negative/misuse.h
 tests_runtime_ranks_replicated_LDADD = $(CORE_LIBS)
@@ -135,7 +130,8 @@ RUNTIME_TESTS = tests/runtime/test_late tests/runtime/test_predict tests/runtime
 	tests/runtime/test_laws tests/runtime/test_settle tests/runtime/test_balance tests/runtime/test_sched \
 	tests/runtime/test_sched_knowing tests/runtime/test_sched_told tests/runtime/test_makespan tests/runtime/test_watchdog \
 	tests/runtime/test_traced tests/runtime/test_check tests/runtime/test_environment \
-    tests/runtime/test_nested_tasks tests/runtime/test_stack tests/runtime/test_graphs tests/runtime/test_graphs_change tests/runtime/test_graphs_refused tests/runtime/test_views
+    tests/runtime/test_nested_tasks tests/runtime/test_stack tests/runtime/test_graphs tests/runtime/test_graphs_change \
+    tests/runtime/test_graphs_refused
 check_PROGRAMS += $(RUNTIME_TESTS)
 TESTS += $(RUNTIME_TESTS)
 PREDICTED_FILES = tests/runtime/predicted.c tests/runtime/predicted.h tests/support/trace_file.c tests/support/trace_file.h
@@ -195,8 +191,6 @@ tests_runtime_test_graphs_change_SOURCES = tests/runtime/test_graphs_change.c \
 tests_runtime_test_graphs_refused_SOURCES = tests/runtime/test_graphs_refused.c \
     tests/runtime/graphs_fixture.c tests/runtime/graphs_fixture.h
 tests_runtime_test_graphs_refused_LDADD = $(DUITE_TEST_LIBS)
-tests_runtime_test_views_SOURCES = tests/runtime/test_views.c
-tests_runtime_test_views_LDADD = $(DUITE_TEST_LIBS)
 RUNTIME_TESTS += tests/runtime/test_predict_rounds
 tests_runtime_test_predict_rounds_SOURCES = tests/runtime/test_predict_rounds.c tests/negative/misuse.c tests/negative/misuse.h
 tests_runtime_test_predict_rounds_LDADD = tests/support/libunit.a $(PREDICT_LIBS) $(CHECK_LIBS)

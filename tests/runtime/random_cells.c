@@ -38,21 +38,8 @@ void prog_cell_contribute(struct prog_cell *cell, unsigned char *leaf)
     cell->subtree[cell->n_subtrees++] = leaf;
 }
 
-/* A view has what its object has now. */
-static void look(struct prog_cell *view)
-{
-    const struct prog_cell *parent = prog_cell_settle(view->parent);
-    const size_t size = prog_size(view->type);
-
-    for (size_t i = 0; i < view->count; i++)
-        memcpy(view->value + i * size, parent->value + view->index[i] * size, size);
-    view->poison = parent->poison;
-}
-
 struct prog_cell *prog_cell_settle(struct prog_cell *cell)
 {
-    if (cell->parent && cell->value)
-        look(cell);
     if (cell->n_subtrees) {
         unsigned char *tree = cell->subtree[cell->n_subtrees - 1];
 

@@ -23,8 +23,6 @@ struct prog_cell {
     unsigned char *value;
     struct prog_failure poison;
     struct prog_failure pending; /* of the contributions */
-    struct prog_cell *parent;    /* a view: its object; NULL: it is none */
-    size_t *index;               /* a view: which elements; count of them */
     enum prog_law law;           /* of the contributions */
     unsigned n_subtrees, level[PROG_MAX_LEVELS];
     unsigned char *subtree[PROG_MAX_LEVELS];
@@ -36,8 +34,7 @@ size_t prog_cell_bytes(const struct prog_cell *cell);
 /* Adds a leaf, which becomes the cell's. */
 void prog_cell_contribute(struct prog_cell *cell, unsigned char *leaf);
 
-/* Every access but cw, and cw by another law, ends a run of contributions. A view gets the elements
- * of its object, of which it is an access. Returns the cell. */
+/* Every access but cw, and cw by another law, ends a run of contributions. Returns the cell. */
 struct prog_cell *prog_cell_settle(struct prog_cell *cell);
 
 #endif

@@ -260,29 +260,12 @@ static int change_args(struct machine *m, struct graph *graph, const struct prog
     return graph->whole ? DUITE_OK : refuse(m, DUITE_E_ARGUMENT);
 }
 
-/* Does a recorded operation do something else to the object than read it? */
-static int writes(const struct prog *prog, const struct graph *graph, unsigned object)
-{
-    for (size_t i = 0; i < graph->n; i++) {
-        const struct prog_op *op = &graph->op[i];
-
-        if (op->kind == PROG_GRAPH_SET && op->object == object)
-            return 1;
-        for (unsigned k = 0; op->kind == PROG_GRAPH_FORK && k < op->n; k++)
-            if (op->objects[k] == object && prog_mode(&prog->kernel[op->kernel], k) != DUITE_R)
-                return 1;
-    }
-    return 0;
-}
-
 static int bind(struct machine *m, struct graph *graph, const struct prog_op *op)
 {
     if (!m->cells[op->objects[0]].value)
         return refuse(m, DUITE_E_OBJECT);
     if (!graph->whole || !prog_records(m->prog, graph->first, op->object))
         return refuse(m, DUITE_E_BINDING);
-    if (prog_is_view(m->prog, op->objects[0]) && writes(m->prog, graph, op->object))
-        return refuse(m, DUITE_E_VIEW);
     graph->bound[op->object] = op->objects[0];
     return DUITE_OK;
 }
@@ -340,24 +323,10 @@ static int make_object(struct machine *m, const struct prog_op *op)
     return cell->value ? 0 : -1;
 }
 
-static int make_view(struct machine *m, const struct prog_op *op)
-{
-    struct prog_cell *cell = &m->cells[op->object];
-
-    if (make_object(m, op) || !(cell->index = calloc(op->count, sizeof *cell->index)))
-        return -1;
-    prog_indices(m->prog, op, cell->index);
-    cell->parent = &m->cells[op->objects[0]];
-    return 0;
-}
-
-/* To free a view is no access of its object. */
 static void free_object(struct prog_cell *cell)
 {
-    free(cell->parent ? cell->value : prog_cell_settle(cell)->value);
-    free(cell->index);
+    free(prog_cell_settle(cell)->value);
     cell->value = NULL;
-    cell->index = NULL;
 }
 
 static int operation(struct machine *m, const struct prog_op *op, struct prog_expect *expect)
@@ -367,8 +336,6 @@ static int operation(struct machine *m, const struct prog_op *op, struct prog_ex
     switch (op->kind) {
     case PROG_NEW:
         return make_object(m, op);
-    case PROG_VIEW:
-        return make_view(m, op);
     case PROG_FREE:
         free_object(cell);
         return 0;
@@ -385,7 +352,7 @@ static int operation(struct machine *m, const struct prog_op *op, struct prog_ex
         expect->code = wait_all(m);
         return 0;
     case PROG_WRONG:
-        expect->code = refuse(m, cell->parent ? DUITE_E_VIEW : DUITE_E_ACCESS);
+        expect->code = refuse(m, DUITE_E_ACCESS);
         return 0;
     default:
         return op->kind >= PROG_GRAPH && !prog_is_recorded(m->prog, (size_t)(op - m->prog->ops))

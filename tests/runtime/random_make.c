@@ -128,16 +128,12 @@ static void make_new(struct maker *m)
         op->count = like->count;
         op->max = like->max;
     }
-    prog->objects[prog->n_objects] = (struct prog_object){op->type, op->count, op->max, -1, -1};
+    prog->objects[prog->n_objects] = (struct prog_object){op->type, op->count, op->max, -1};
     m->live[m->n_live++] = (unsigned)prog->n_objects++;
 }
 
-/* Its views, which are younger, before it. */
 static void free_place(struct maker *m, unsigned place)
 {
-    for (unsigned i = m->n_live; i-- > place + 1;)
-        if (m->prog->objects[m->live[i]].parent == (int)m->live[place])
-            free_place(m, i);
     make_push(m, PROG_FREE, m->live[place]);
     memmove(&m->live[place], &m->live[place + 1], (--m->n_live - place) * sizeof *m->live);
 }
@@ -148,24 +144,14 @@ unsigned make_draw_object(struct maker *m)
         ->live[make_one_in(m, 2) ? make_below(m, m->n_live) : make_below(m, (m->n_live + 3) / 4)];
 }
 
-unsigned make_draw_plain(struct maker *m)
-{
-    const unsigned object = make_draw_object(m);
-    const int parent = m->prog->objects[object].parent;
-
-    return parent < 0 ? object : (unsigned)parent;
-}
-
 /* An object that the operation does not name yet; -1 if none was found. */
-static int draw_other(struct maker *m, const struct prog_op *op, int may_bytes, int may_numbers,
-                      int may_views)
+static int draw_other(struct maker *m, const struct prog_op *op, int may_bytes, int may_numbers)
 {
     for (int attempt = 0; attempt < 30; attempt++) {
         const unsigned object = make_draw_object(m);
         int taken = m->prog->objects[object].type == DUITE_BYTE ? !may_bytes : !may_numbers;
 
         taken |= m->prog->objects[object].max && !(may_bytes && may_numbers);
-        taken |= prog_is_view(m->prog, object) && !may_views;
 
         for (unsigned i = 0; i < op->n; i++)
             taken |= op->objects[i] == object;
@@ -182,7 +168,7 @@ static int draw_parameter(struct maker *m, const struct prog_op *op)
     const int any = prog_mode(kernel, op->n) != DUITE_CW;
     const int weave = prog_law(kernel, op->n) == PROG_WEAVE;
 
-    return draw_other(m, op, any || weave, any || !weave, prog_mode(kernel, op->n) == DUITE_R);
+    return draw_other(m, op, any || weave, any || !weave);
 }
 
 struct prog_op *make_push_fork(struct maker *m, const struct prog_op *draft)
@@ -251,11 +237,11 @@ static void make_burst(struct maker *m)
 
 static void make_hint(struct maker *m)
 {
-    struct prog_op *op = make_push(m, PROG_HINT, make_draw_plain(m));
+    struct prog_op *op = make_push(m, PROG_HINT, make_draw_object(m));
 
     op->weight = (double)make_below(m, 5);
     for (unsigned i = 0; i < 3; i++) {
-        const int other = draw_other(m, op, 1, 1, 0);
+        const int other = draw_other(m, op, 1, 1);
 
         if (other >= 0 && (unsigned)other != op->object)
             op->objects[op->n++] = (unsigned)other;
@@ -269,8 +255,7 @@ static void make_follow(struct maker *m)
     struct prog_object *object = &m->prog->objects[m->live[place]];
     const unsigned leader = m->live[make_below(m, place)];
 
-    if (object->leader >= 0 || m->live[place] < m->unsettled || object->parent >= 0 ||
-        prog_is_view(m->prog, leader))
+    if (object->leader >= 0 || m->live[place] < m->unsettled)
         return;
     object->leader = (int)leader;
     make_push(m, PROG_FOLLOW, m->live[place])->objects[0] = leader;
@@ -298,7 +283,7 @@ static void make_count(struct maker *m)
 
 void make_set(struct maker *m, enum prog_kind kind, int zeros)
 {
-    struct prog_op *op = make_push(m, kind, make_draw_plain(m));
+    struct prog_op *op = make_push(m, kind, make_draw_object(m));
     const struct prog_object *object = &m->prog->objects[op->object];
 
     op->count = object->max ? make_below(m, (unsigned)object->max + 1) : object->count;
@@ -355,8 +340,6 @@ static void make_operations(struct maker *m, size_t n)
 
         if (m->n_live < 2 || (choice < 8 && m->n_live < m->most_live))
             make_new(m);
-        else if (make_one_in(m, m->viewing))
-            make_view(m);
         else if (rounds && make_one_in(m, 12) && rounds--)
             make_rounds(m), n += prog->n_ops - before;
         else if (choice < 12)
@@ -382,7 +365,6 @@ static void draw_character(struct maker *m)
     m->pausing = make_one_in(m, 2) ? 1 + make_below(m, 10) : 0;
     m->wrong = make_one_in(m, 8);
     m->graphs = make_one_in(m, 2);
-    m->viewing = make_one_in(m, 2) ? 4 + make_below(m, 12) : 0;
     m->sized = m->graphs && !make_one_in(m, 4) ? 0 : 4; /* such graphs have no plan */
     m->repeats = m->prog->n_ranks == 1 && make_one_in(m, 2);
 }

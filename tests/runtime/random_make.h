@@ -19,7 +19,6 @@ struct maker {
     unsigned pausing;         /* one body in so many wastes time; 0: none */
     int wrong;                /* refused forks as well */
     int refused;              /* one waits to be told; get_at tells it on one rank only */
-    unsigned viewing;         /* one operation in so many makes a view; 0: none */
     unsigned sized;           /* one object in so many changes its size; 0: none */
     int graphs;               /* records and replays graphs */
     int repeats;              /* forks the same tasks again and again */
@@ -30,7 +29,6 @@ unsigned make_below(struct maker *m, unsigned n);
 int make_one_in(struct maker *m, unsigned n); /* never if n is 0 */
 struct prog_op *make_push(struct maker *m, enum prog_kind kind, unsigned object);
 unsigned make_draw_object(struct maker *m);
-unsigned make_draw_plain(struct maker *m); /* no view */
 
 /* Chooses kernel and objects of a fork; returns whether there were enough. Then appends it, under
  * the kind of the draft. */
@@ -39,9 +37,6 @@ struct prog_op *make_push_fork(struct maker *m, const struct prog_op *draft);
 
 /* Sets some object. */
 void make_set(struct maker *m, enum prog_kind kind, int zeros);
-
-/* Makes a view of some object. */
-void make_view(struct maker *m);
 
 /* Forks the same tasks again and again, MOST_REPEATED operations at most. */
 void make_rounds(struct maker *m);

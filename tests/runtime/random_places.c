@@ -78,8 +78,6 @@ void prog_check_places(struct run *run, const struct prog_context *context,
         run->at = i;
         if (op->kind == PROG_FOLLOW && are_apart(run, op))
             prog_found(run, "object %u does not live with %u", op->object, op->objects[0]);
-        if (op->kind == PROG_VIEW && are_apart(run, op))
-            prog_found(run, "view %u does not live with %u", op->object, op->objects[0]);
         if (op->kind != PROG_FORK && op->kind != PROG_GRAPH_FORK)
             continue;
         if (op->kind == PROG_GRAPH_FORK && run->prog->n_ranks > 1 && rebound)

@@ -38,10 +38,10 @@ static void print_graph(FILE *file, const struct prog_op *op)
 void prog_print(FILE *file, const struct prog *prog, size_t index)
 {
     static const char *const KINDS[] = {
-        "skip",   "new",          "view",   "free",       "set",        "fork",
-        "get",    "get_at",       "count",  "wait",       "hint",       "follow",
-        "home",   "wrong",        "graph",  "  fork",     "  set",      "graph again",
-        "replay", "replay while", "rounds", "graph args", "graph bind", "graph free"};
+        "skip",         "new",    "free",       "set",        "fork",        "get",
+        "get_at",       "count",  "wait",       "hint",       "follow",      "home",
+        "wrong",        "graph",  "  fork",     "  set",      "graph again", "replay",
+        "replay while", "rounds", "graph args", "graph bind", "graph free"};
     static const char *const TYPES[] = {"", "byte", "i32", "i64", "f32", "f64"};
     static const char *const MODES[] = {"", "r", "w", "rw", "cw"};
     static const char *const LAWS[] = {"", ",min:", ",max:", ",mix:", ",weave:"};
@@ -65,8 +65,6 @@ void prog_print(FILE *file, const struct prog *prog, size_t index)
     for (unsigned i = 0; (forks || op->kind < PROG_GRAPH) && i < op->n; i++)
         fprintf(file, " %s%s%u", forks ? MODES[prog_mode(&prog->kernel[op->kernel], i)] : "",
                 forks ? LAWS[prog_law(&prog->kernel[op->kernel], i)] : "", op->objects[i]);
-    if (op->kind == PROG_VIEW)
-        fprintf(file, " x %zu", op->count);
     if (op->kind == PROG_FOLLOW)
         fprintf(file, " leader %u", op->objects[0]);
     if (op->rank >= 0)

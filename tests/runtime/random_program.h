@@ -17,7 +17,6 @@ enum { PROG_MAX_PARAMS = 32, PROG_MAX_KERNELS = 8, PROG_ARGS_PADDING = 64 };
 enum prog_kind {
     PROG_SKIP, /* left out by shrinking */
     PROG_NEW,
-    PROG_VIEW, /* of objects[0]; `count` indices, drawn from the seed */
     PROG_FREE,
     PROG_SET,
     PROG_FORK, /* at a rank if rank >= 0 */
@@ -84,7 +83,6 @@ struct prog_object {
     duite_type type;
     size_t count, max; /* most 0: the size is fixed */
     int leader;        /* follows this object for certain; -1: none */
-    int parent;        /* is a view of this object; -1: is none */
 };
 
 struct prog {
@@ -159,12 +157,6 @@ void prog_neutral(enum prog_law law, duite_type type, size_t count, void *values
 enum prog_law prog_law(const duite_kernel *kernel, size_t i);
 const duite_law *prog_law_given(enum prog_law law);
 extern const duite_law *const prog_own_laws[];
-
-/* Views: is it one; the indices, op->count of them; makes it. */
-int prog_is_view(const struct prog *prog, unsigned object);
-void prog_indices(const struct prog *prog, const struct prog_op *op, size_t *indices);
-int prog_make_view(duite *rt, const struct prog *prog, const struct prog_op *op,
-                   duite_object parent, duite_object *view);
 
 /* The recorded operation `index` of a graph is there and may be replayed. */
 int prog_is_recorded(const struct prog *prog, size_t index);

@@ -104,14 +104,13 @@ static int fork_task(struct run *run, const struct prog_op *op)
     return code;
 }
 
-/* A kernel that contributes to one object is given it twice; a view it could not have at all. */
+/* A kernel that contributes to one object is given it twice. */
 static void wrong_fork(struct run *run, const struct prog_op *op, int expected)
 {
     const duite_object objects[] = {run->object[op->object], run->object[op->object]};
     const struct prog_args args = {0};
-    const size_t n = prog_is_view(run->prog, op->object) ? 1 : 2;
 
-    expect(run, "fork", duite_fork(run->rt, &run->prog->kernel[0], &args, n, objects), expected);
+    expect(run, "fork", duite_fork(run->rt, &run->prog->kernel[0], &args, 2, objects), expected);
 }
 
 static void hint(struct run *run, const struct prog_op *op)
@@ -160,11 +159,7 @@ static void make(struct run *run, const struct prog_op *op)
 {
     duite_object *object = &run->object[op->object];
 
-    if (op->kind == PROG_VIEW)
-        expect(run, "view",
-               prog_make_view(run->rt, run->prog, op, run->object[op->objects[0]], object),
-               DUITE_OK);
-    else if (op->max)
+    if (op->max)
         expect(run, "new_sized", duite_new_sized(run->rt, op->type, op->count, op->max, object),
                DUITE_OK);
     else
@@ -258,7 +253,6 @@ static void operation(struct run *run, const struct prog_op *op, const struct pr
 
     switch (op->kind) {
     case PROG_NEW:
-    case PROG_VIEW:
         make(run, op);
         break;
     case PROG_FREE:

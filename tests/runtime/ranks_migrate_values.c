@@ -1,5 +1,5 @@
-/* Objects that move between replays have the values, views, contributions and failures that they
- * would have if they stayed. */
+/* Objects that move between replays have the values, contributions and failures that they would
+ * have if they stayed. */
 
 #include "tests/runtime/moving.h"
 
@@ -56,36 +56,6 @@ static void values(void)
     moving_end(rt, nothing, "stops");
 }
 
-/* Views of what moves, in graphs and by hand, before and after. */
-static void views(void)
-{
-    duite *rt = moving_start(&TOLD);
-    const duite_graph nothing = moving_begin(rt);
-    duite_object whole = misuse_new(rt, 100), sum = misuse_new(rt, 1), view;
-    int right = 1;
-
-    duite_view(rt, whole, 1, &(size_t){50}, &view);
-    const duite_graph reads = moving_record(
-        rt, (struct things){{sum, view}, .kernel = &STEP, .at = -1, .n = 2, .tasks = 1});
-
-    for (int32_t i = 0; i < 4; i++) {
-        DUITE_FORK(rt, &SET, &i, whole);
-        if (i % 2)
-            right &= value_of(rt, view) == i;
-        moving(rt, nothing, NEXT);
-        right &= duite_home(rt, view) == duite_home(rt, whole);
-        duite_replay(rt, reads, 2);
-        right &= value_of(rt, view) == i;
-    }
-    tap_case(right, "views move with their objects");
-    tap_case(value_of(rt, sum) == 2 * (0 + 1 + 2 + 3) + 8, "and have their elements");
-    duite_free(rt, view);
-    duite_free(rt, whole);
-    duite_free(rt, sum);
-    duite_graph_free(rt, reads);
-    moving_end(rt, nothing, "stops");
-}
-
 /* Replays with a flag, of which the flag moves, too. */
 static void flags(void)
 {
@@ -115,7 +85,6 @@ int main(void)
     MPI_Comm_size(MPI_COMM_WORLD, &ranks);
     contributions();
     values();
-    views();
     flags();
     return tap_done();
 }

@@ -23,7 +23,8 @@ static int mean(const duite_call *call)
     double *to = duite_out(call, 0, double);
 
     for (size_t i = 0; i < LENGTH; i++) {
-        const double l = i ? here[i - 1] : left[0], r = i + 1 < LENGTH ? here[i + 1] : right[0];
+        const double l = i ? here[i - 1] : left[LENGTH - 1],
+                     r = i + 1 < LENGTH ? here[i + 1] : right[0];
 
         to[i] = 0.5 * (l + r);
         duite_out(call, 1, double)[0] += to[i] * to[i];
@@ -56,7 +57,7 @@ static const duite_kernel JUDGE = {
 static const duite_kernel SCALE = {.name = "scale", .body = scale, .access = {DUITE_R, DUITE_RW}};
 
 struct rod {
-    duite_object x[2][BLOCKS], first[2][BLOCKS], last[2][BLOCKS], sum, scale, flag;
+    duite_object x[2][BLOCKS], sum, scale, flag;
 };
 
 /* There and back; the sum over the second half decides. */
@@ -68,8 +69,7 @@ static int rounds(duite *rt, void *context)
         duite_set(rt, rod->sum, NULL);
         for (int b = 0; b < BLOCKS; b++)
             DUITE_FORK(rt, &MEAN, NULL, rod->x[!way][b], rod->sum, rod->x[way][b],
-                       rod->last[way][(b + BLOCKS - 1) % BLOCKS],
-                       rod->first[way][(b + 1) % BLOCKS]);
+                       rod->x[way][(b + BLOCKS - 1) % BLOCKS], rod->x[way][(b + 1) % BLOCKS]);
     }
     DUITE_FORK(rt, &JUDGE, NULL, rod->sum, rod->scale, rod->flag);
     for (int b = 0; b < BLOCKS; b++)
@@ -79,8 +79,6 @@ static int rounds(duite *rt, void *context)
 
 static void make(duite *rt, struct rod *rod)
 {
-    const size_t left = 0, right = LENGTH - 1;
-
     for (int way = 0; way < 2; way++)
         for (int b = 0; b < BLOCKS; b++) {
             duite_new(rt, DUITE_F64, LENGTH, &rod->x[way][b]);
@@ -93,21 +91,15 @@ static void make(duite *rt, struct rod *rod)
     duite_new(rt, DUITE_F64, 1, &rod->scale);
     duite_new(rt, DUITE_I64, 1, &rod->flag);
     for (int way = 0; way < 2; way++)
-        for (int b = 0; b < BLOCKS; b++) {
-            duite_view(rt, rod->x[way][b], 1, &left, &rod->first[way][b]);
-            duite_view(rt, rod->x[way][b], 1, &right, &rod->last[way][b]);
+        for (int b = 0; b < BLOCKS; b++)
             DUITE_FORK(rt, &START, DUITE_ARGS(int, b), rod->x[way][b]);
-        }
 }
 
 static void unmake(duite *rt, struct rod *rod)
 {
     for (int way = 0; way < 2; way++)
-        for (int b = 0; b < BLOCKS; b++) {
-            duite_free(rt, rod->first[way][b]);
-            duite_free(rt, rod->last[way][b]);
+        for (int b = 0; b < BLOCKS; b++)
             duite_free(rt, rod->x[way][b]);
-        }
     duite_free(rt, rod->sum);
     duite_free(rt, rod->scale);
     duite_free(rt, rod->flag);

@@ -51,12 +51,7 @@ static uint32_t number_after(const char **text)
 static void make_objects(struct rounds_made *made, const char *text)
 {
     while (*text) {
-        struct plan_source_object *object = &made->object[made->source.n_objects++];
-        object->bytes = number_after(&text);
-        if (*text == '<') {
-            text++;
-            object->parent = 1 + number_after(&text);
-        }
+        made->bytes[made->source.n_objects++] = number_after(&text);
         while (*text == ' ')
             text++;
     }
@@ -85,7 +80,7 @@ void rounds_make(struct rounds_made *made, const char *objects, const char *fork
     *made = (struct rounds_made){.source.flag = PLAN_NONE};
     made->source.fork = made->fork;
     made->source.access = made->access;
-    made->source.object = made->object;
+    made->source.bytes = made->bytes;
     make_objects(made, objects);
     while (*forks) {
         rounds_fork(made);
@@ -127,7 +122,7 @@ static const char *gap(const struct text *text)
 
 const char *rounds_nodes(const struct plan_round *round)
 {
-    static const char *const name[] = {"task", "set",     "sum",  "view",   "flag",
+    static const char *const name[] = {"task", "set",     "sum",  "flag",
                                        "copy", "partial", "send", "receive"};
     static struct text text;
     text = (struct text){0};

@@ -11,13 +11,13 @@ struct rounds_made {
     struct plan_source source;
     struct plan_source_fork fork[ROUNDS_MAX];
     struct plan_access access[ROUNDS_ACCESSES];
-    struct plan_source_object object[ROUNDS_MAX];
+    size_t bytes[ROUNDS_MAX];
 };
 
 /* Two laws that differ. */
 extern const duite_law rounds_law[2];
 
-/* objects: their bytes, a view with < and its object: "8 8 4096 8<0". forks, ended by `;`: accesses
+/* objects: their bytes: "8 8 4096". forks, ended by `;`: accesses
  * r, w, u (rw), c and C (cw of two laws) with an object, in front of them R (replicated), = (a
  * set), @ and a rank: "w0; r0 c1; R r0 w2; @1 r2; =0". */
 void rounds_make(struct rounds_made *made, const char *objects, const char *forks);

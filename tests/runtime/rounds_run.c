@@ -43,29 +43,19 @@ static void reference_sum(struct reference *r, uint32_t object)
     r->n_open[object] = 0;
 }
 
-static uint64_t reference_value(const struct reference *r, uint32_t object)
-{
-    uint32_t parent = r->source->object[object].parent;
-    if (!parent || !r->written[parent - 1])
-        return r->value[object];
-    return mix(object, r->value[parent - 1]);
-}
-
 static void reference_fork(struct reference *r, int round, size_t i)
 {
     const struct plan_source_fork *fork = &r->source->fork[i];
     const struct plan_access *access = r->source->access + fork->first;
     uint64_t found = i;
     for (uint32_t k = 0; k < fork->n; k++) {
-        uint32_t object = access[k].object, parent = r->source->object[object].parent;
+        uint32_t object = access[k].object;
         if (access[k].mode != DUITE_CW || access[k].law != r->law[object])
             reference_sum(r, object);
-        if (parent && r->written[parent - 1])
-            reference_sum(r, parent - 1);
     }
     for (uint32_t k = 0; k < fork->n; k++)
         if (access[k].mode == DUITE_R || access[k].mode == DUITE_RW)
-            found = mix(found, reference_value(r, access[k].object));
+            found = mix(found, r->value[access[k].object]);
     for (uint32_t k = 0; k < fork->n; k++) {
         uint32_t object = access[k].object;
         if (access[k].mode == DUITE_CW) {
@@ -81,8 +71,6 @@ static void reference_fork(struct reference *r, int round, size_t i)
 void reference_run(struct reference *r, const struct plan_source *source)
 {
     *r = (struct reference){.source = source};
-    for (size_t i = 0; i < source->n_accesses; i++)
-        r->written[source->access[i].object] |= source->access[i].mode != DUITE_R;
     for (uint32_t i = 0; i < source->n_objects; i++)
         r->value[i] = initial(i);
     for (int round = 0; round < ROUNDS; round++) {
@@ -166,9 +154,6 @@ static void run_node(struct run *run, int at, size_t n)
     case PLAN_SUM:
     case PLAN_PARTIAL:
         run_sum(rank, node);
-        break;
-    case PLAN_VIEW:
-        rank->value[use[1].place] = mix(use[1].place, rank->value[use[0].place]);
         break;
     case PLAN_COPY:
         rank->value[use[1].place] = rank->value[use[0].place];

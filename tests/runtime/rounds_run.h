@@ -14,7 +14,6 @@ enum { ROUNDS = 3, MAX_RANKS = 16, PLACES = 1024, QUEUE = 256, PHASES = 64 };
 
 struct reference {
     const struct plan_source *source;
-    bool written[ROUNDS_MAX];
     uint64_t value[ROUNDS_MAX];
     uint64_t open[ROUNDS_MAX][ROUNDS_ACCESSES];
     size_t n_open[ROUNDS_MAX];

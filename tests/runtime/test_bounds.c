@@ -70,26 +70,6 @@ START_TEST(contributions_end_together)
 }
 END_TEST
 
-static void put_long(struct trace_file *file, uint32_t value)
-{
-    trace_file_word(file, value);
-    trace_file_word(file, 0);
-}
-
-/* What reads a view reads what its object has then: 2 + 1. */
-START_TEST(views_follow_their_objects)
-{
-    struct trace_file file = begun(2);
-    trace_file_word(&file, TRACE_VIEW);
-    trace_file_word(&file, 3);
-    trace_file_word(&file, 1);
-    put_long(&file, 8);
-    trace_file_fork(&file, FILE_W, 2 * MS, 0, 1, SLOTS(1));
-    trace_file_fork(&file, FILE_R_W, 1 * MS, 0, 2, SLOTS(3, 2));
-    bounds_are(&file, 3 * MS, 3 * MS);
-}
-END_TEST
-
 /* Three rounds of 1 + 2 in a row, then 1 more on what the last one left. */
 static const struct trace_file_node NODES[] = {{FILE_RW, 1 * MS, 0, 1, {0}},
                                                {FILE_R_W, 2 * MS, 0, 2, {0, 1}}};
@@ -163,7 +143,6 @@ int main(void)
     tcase_add_test(cases, values_make_chains);
     tcase_add_test(cases, writers_begin_chains);
     tcase_add_test(cases, contributions_end_together);
-    tcase_add_test(cases, views_follow_their_objects);
     tcase_add_test(cases, rounds_follow_rounds);
     tcase_add_test(cases, flags_hold_rounds);
     tcase_add_test(cases, poisoned_rounds_take_no_time);

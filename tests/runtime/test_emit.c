@@ -35,10 +35,9 @@ static void make(struct made *made)
     *made = (struct made){.kernel = {&FILL, &GIVE, &READ}, .args = {7}};
     made->graph.n_ranks = 1;
     made->graph.kernels = made->kernel;
-    made->object[0] = (struct plan_recorded_object){
-        .type = DUITE_F64, .count = 3, .named = true, .written = true};
+    made->object[0] = (struct plan_recorded_object){.type = DUITE_F64, .count = 3, .written = true};
     made->object[1] = (struct plan_recorded_object){
-        .type = DUITE_F32, .count = 5, .named = true, .sums = true, .reads_old = true};
+        .type = DUITE_F32, .count = 5, .sums = true, .reads_old = true};
     made->access[0] = (struct plan_access){0, DUITE_W, NULL};
     made->access[1] = made->access[3] = (struct plan_access){0, DUITE_R, NULL};
     made->access[2] = made->access[4] = (struct plan_access){1, DUITE_CW, &SUM};
@@ -74,14 +73,12 @@ START_TEST(source)
     make(&made);
     made.fork[1].options.at = 0;
     made.fork[2].kernel = PLAN_SETS;
-    made.object[1].parent = 1;
     ck_assert(plan_record_source(&made.record, NULL, &plain));
     ck_assert(plain.n_forks == 4 && plain.n_objects == 2 && plain.n_accesses == 6);
     ck_assert_ptr_eq(plain.access, made.access);
     ck_assert_uint_eq(plain.flag, PLAN_NONE);
-    ck_assert_uint_eq(plain.object[0].bytes, 3 * sizeof(double));
-    ck_assert_uint_eq(plain.object[1].bytes, 5 * sizeof(float));
-    ck_assert(!plain.object[0].parent && plain.object[1].parent == 1);
+    ck_assert_uint_eq(plain.bytes[0], 3 * sizeof(double));
+    ck_assert_uint_eq(plain.bytes[1], 5 * sizeof(float));
     ck_assert(plain.fork[0].rank == PLAN_BY_OWNER && plain.fork[1].rank == 0);
     ck_assert(!plain.fork[1].sets && plain.fork[2].sets && !plain.fork[2].replicated);
     ck_assert(plain.fork[3].replicated && plain.fork[3].owner == 1 && plain.fork[3].first == 5);

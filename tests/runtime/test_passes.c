@@ -45,17 +45,6 @@ START_TEST(lower_trees)
 }
 END_TEST
 
-/* A view is gathered before its first read and the first after each write, and not at all if its
- * object is not written. */
-START_TEST(lower_views)
-{
-    lowered("8 8<0", "r1; r1; w0; r1; r1;", PLAN_NONE,
-            "view(r0 w1) task(r1) task(r1) task(w0) view(r0 w1) task(r1) task(r1)");
-    lowered("8 8<0", "r1; r0;", PLAN_NONE, "task(r1) task(r0)");
-    lowered("8 8<0", "c0; r1;", PLAN_NONE, "task(w2) sum(u0 r2) view(r0 w1) task(r1)");
-}
-END_TEST
-
 /* ---- Edges ---- */
 
 static void edged(const char *objects, const char *forks, uint32_t flag, const char *expected)
@@ -281,7 +270,6 @@ int main(void)
     tcase_add_test(test, lower_forks);
     tcase_add_test(test, lower_sums);
     tcase_add_test(test, lower_trees);
-    tcase_add_test(test, lower_views);
     tcase_add_test(test, edges_within_and_between);
     tcase_add_test(test, edges_of_flags);
     tcase_add_test(test, exchange);

@@ -21,7 +21,7 @@ static void random_access(struct rounds_made *made, uint64_t *random, uint32_t o
     static const duite_mode modes[] = {DUITE_R, DUITE_R, DUITE_W, DUITE_RW, DUITE_CW, DUITE_CW};
     const struct plan_source_fork *fork = &made->fork[made->source.n_forks - 1];
     duite_mode mode = modes[draw(random, 6)];
-    if (made->object[object].parent || (mode == DUITE_CW && fork->replicated))
+    if (mode == DUITE_CW && fork->replicated)
         mode = DUITE_R;
     rounds_access(made, object, fork->sets ? DUITE_W : mode, draw(random, 8) == 0);
 }
@@ -33,7 +33,7 @@ static void random_fork(struct rounds_made *made, uint64_t *random, int n_ranks)
     struct plan_source_fork *fork = &made->fork[made->source.n_forks - 1];
     uint64_t kind = draw(random, 8);
     uint32_t objects = (uint32_t)made->source.n_objects;
-    fork->sets = kind == 0 && !made->object[first % objects].parent;
+    fork->sets = kind == 0;
     fork->replicated = kind == 1 || kind == 2;
     if (kind == 3)
         fork->rank = (int)draw(random, (uint64_t)n_ranks);
@@ -46,20 +46,13 @@ static void random_round(struct rounds_made *made, uint64_t *random, int n_ranks
 {
     rounds_make(made, "", "");
     size_t objects = 2 + draw(random, OBJECTS - 1), forks = 1 + draw(random, FORKS);
-    for (uint32_t i = 0; i < objects; i++) {
-        bool view = i && draw(random, 4) == 0;
-        uint32_t parent = view ? (uint32_t)draw(random, i) : 0;
-        made->object[i].bytes = draw(random, 2) ? 8 : 4096;
-        if (view && !made->object[parent].parent)
-            made->object[i].parent = parent + 1;
-    }
+    for (uint32_t i = 0; i < objects; i++)
+        made->bytes[i] = draw(random, 2) ? 8 : 4096;
     made->source.n_objects = objects;
     for (size_t i = 0; i < forks; i++)
         random_fork(made, random, n_ranks);
     if (draw(random, 3) == 0)
         made->source.flag = (uint32_t)draw(random, objects);
-    if (made->source.flag != PLAN_NONE && made->object[made->source.flag].parent)
-        made->source.flag = PLAN_NONE;
 }
 
 /* Sums of many ranks: contributions in random order, then tasks on some ranks that read the sum. A
@@ -83,7 +76,7 @@ static void wide_round(struct rounds_made *made, uint64_t *random)
     rounds_make(made, "", "");
     made->source.n_objects = 6 + draw(random, 15);
     for (size_t i = 0; i < made->source.n_objects; i++)
-        made->object[i].bytes = draw(random, 2) ? 8 : 4096;
+        made->bytes[i] = draw(random, 2) ? 8 : 4096;
     const uint64_t sums = 1 + draw(random, 2);
     for (uint64_t i = 0; i < sums; i++)
         wide_sum(made, random, (uint32_t)draw(random, 2));
@@ -221,7 +214,7 @@ static void run_parts(struct run *run, const struct plan_round *round, const int
     ck_assert_uint_eq(run->tasks, expected);
     for (int r = 0; r < run->n_ranks; r++) {
         for (uint32_t i = 0; i < round->n_objects; i++)
-            if (run->reference->written[i] && plan_is_there(&a, i, r))
+            if (plan_is_there(&a, i, r))
                 ck_assert_uint_eq(run->rank[r].value[i], run->reference->value[i]);
         plan_round_free(&run->rank[r].part);
     }

@@ -12,7 +12,7 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { OBJECTS = 5, VIEWS = 3, NAMES = OBJECTS + VIEWS, MOST_FORKS = 24, COUNT = 4 };
+enum { OBJECTS = 5, MOST_FORKS = 24, COUNT = 4 };
 
 /* ---- Kernels: what they do does not matter ---- */
 
@@ -41,7 +41,7 @@ enum { N_KERNELS = sizeof PARAMETERS / sizeof *PARAMETERS };
 
 static struct {
     uint64_t random;
-    duite_object name[NAMES]; /* views at the end */
+    duite_object name[OBJECTS];
     const struct plan_record *record;
 } now;
 
@@ -50,15 +50,14 @@ static size_t draw(size_t n)
     return (size_t)(duite_random(&now.random) % n);
 }
 
-/* Different objects, views only where parameters are read. */
+/* Different objects. */
 static void draw_objects(size_t kernel, duite_object *objects)
 {
     uint32_t used = 0;
     for (size_t i = 0; i < PARAMETERS[kernel]; i++) {
-        const duite_mode mode = i && kernel == 4 ? DUITE_R : KERNELS[kernel]->access[i];
         size_t name;
         do
-            name = draw(mode == DUITE_R ? NAMES : OBJECTS);
+            name = draw(OBJECTS);
         while (used >> name & 1);
         used |= 1u << name;
         objects[i] = now.name[name];
@@ -102,19 +101,17 @@ static int map_by_turns(const duite_object_graph *graph, int n_ranks, uint64_t s
     return DUITE_OK;
 }
 
-/* Blocks have other names than objects, but one each; views are of the blocks of their objects. */
+/* Blocks have other names than objects, but one each. */
 static void same_blocks(const duite_task_graph *graph)
 {
-    uint32_t object_of[NAMES];
+    uint32_t object_of[OBJECTS];
     memset(object_of, 0xff, sizeof object_of);
     for (size_t i = 0; i < graph->n; i++) {
         const uint32_t block = graph->block[i];
-        uint32_t owner = expected.owner[i];
+        const uint32_t owner = expected.owner[i];
         ck_assert_int_eq(block == DUITE_NO_BLOCK, owner == PLAN_NONE);
         if (block == DUITE_NO_BLOCK)
             continue;
-        if (now.record->object[owner].parent)
-            owner = now.record->object[owner].parent - 1;
         ck_assert_uint_lt(block, OBJECTS);
         ck_assert(object_of[block] == UINT32_MAX || object_of[block] == owner);
         for (uint32_t other = 0; other < OBJECTS; other++)
@@ -149,11 +146,8 @@ static const duite_mapping COMPARE = {
 
 static void make_objects(duite *rt)
 {
-    static const size_t index[2] = {0, COUNT - 1};
     for (int i = 0; i < OBJECTS; i++)
         ck_assert(!duite_new(rt, DUITE_F64, COUNT, &now.name[i]));
-    for (int i = 0; i < VIEWS; i++)
-        ck_assert(!duite_view(rt, now.name[i / 2], 2, index, &now.name[OBJECTS + i]));
     for (int i = 0; i < OBJECTS; i++)
         ck_assert(!duite_fork(rt, &CHANGE, NULL, 1, &now.name[i]));
 }

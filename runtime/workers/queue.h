@@ -92,8 +92,7 @@ struct task *work_queue_take(struct work_queue *queue, duite_end end);
 int64_t work_queue_mark(struct work_queue *queue);
 /* Anybody, of a queue without owner. NULL: empty, or the token's holder will look again. */
 struct task *work_queue_take_shared(struct work_queue *queue, duite_end end);
-/* A thief, who may take the whole inbox of a busy owner: all but the first go to the thief's own
- * queue. */
+/* A thief. It may take the whole inbox of a busy owner: all but the first go to its own queue. */
 struct task *work_queue_steal(struct work_queue *victim, struct work_queue *own);
 
 /* Anybody; a look without order. */

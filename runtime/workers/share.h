@@ -7,18 +7,18 @@
 
 struct work_share {
     unsigned cores;   /* of this rank */
-    unsigned workers; /* as many as were asked for, else one a core, or fewer by the environment */
-    bool limited;     /* the rank may use more cores than are its own: others may be on these */
+    unsigned workers; /* as many as wanted, else one a core, or fewer by the environment */
+    bool limited;     /* the rank may run on more cores than its share: others may use these */
     char from[160];   /* for people: the source of the numbers */
 };
 
 /* A rank and its surroundings. */
 struct work_surroundings {
-    unsigned cores;      /* that it may use, */
-    unsigned ranks;      /* and so many ranks may, itself among them */
-    unsigned asked;      /* workers that were asked for; 0: none were */
-    const char *cgroups; /* the file with the cgroups of the process; */
-    const char *mounted; /* the folder where all are */
+    unsigned cores;      /* that it may use */
+    unsigned ranks;      /* that may use them, itself included */
+    unsigned asked;      /* workers wanted; 0: as many as the rule gives */
+    const char *cgroups; /* the file with the cgroups of the process */
+    const char *mounted; /* the folder with all cgroups */
 };
 #define WORK_CGROUPS     "/proc/self/cgroup"
 #define WORK_CGROUP_ROOT "/sys/fs/cgroup"

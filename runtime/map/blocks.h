@@ -71,8 +71,8 @@ bool map_moves_is_allowed(const struct map_moves *moves, size_t block, int n_ran
 /* The error of a policy that did neither: "mapping" or "balancer", and its name. */
 int map_moves_refused(const char *kind, const char *name);
 
-/* The view of a balancer; the caller adds the numbers that belong to no block. Points into the
- * moves, whose traffic was ended. */
+/* The blocks as a balancer sees them; the caller adds the numbers that belong to no block. Points
+ * into the moves, whose traffic was ended. */
 duite_blocks map_moves_shown(const struct map_moves *moves);
 
 /* Gives each block that moves a number that no other block ever had at its new home. */

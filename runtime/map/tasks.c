@@ -1,5 +1,5 @@
-/* The view of task mappings: the tasks of a record, the block that each runs for, and its cost. The
- * cost is the fork's, else the measured one, else a guess. */
+/* Tasks as mappings see them: the tasks of a record, the block that each runs for, and its cost.
+ * The cost is the fork's, else the measured one, else a guess. */
 #include "runtime/map/tasks.h"
 
 #include "runtime/base/error.h"

@@ -127,9 +127,9 @@ static int fork_task(duite *rt, const struct task_options *options, const duite_
     return code || rt->graph.broken ? api_remember(rt, code) : DUITE_OK;
 }
 
-/* True for a usual fork outside of bodies: it is the main thread's, the runtime is not broken, no
- * graph is recorded, all homes are settled, and the program does not hold MPI. Only ranks and a
- * trace may then ask for more. */
+/* True for a usual fork outside of bodies: by the main thread, with nothing broken, no graph being
+ * recorded, all homes settled, and MPI not held by the program. Only ranks and a trace may then ask
+ * for more. */
 static inline bool fork_is_usual(const duite *rt)
 {
     const uint64_t more = (uintptr_t)rt->building | rt->graph.table.n_unsettled |

@@ -1,6 +1,6 @@
-/* A start succeeds on all ranks or on none, and all ranks start alike: the same kernels, laws, seed
- * and policies. Each rank sends one word of fixed size; all compare all words, so all find the same
- * first difference. */
+/* A start succeeds on all ranks or on none, with the same kernels, laws, seed and policies on all.
+ * Each rank sends one word of fixed size; all compare all words, so all find the same first
+ * difference. */
 #include "runtime/api/instance.h"
 
 #include "runtime/base/error.h"
@@ -28,11 +28,11 @@ static uint64_t start_hash_kernels(const struct task_graph *graph)
     return hash;
 }
 
-/* What must be the same on all ranks, and what they report to one another besides. */
+/* Values that must be the same on all ranks, and two more that they report to one another. */
 struct start_word {
     uint64_t kernels, laws, seed, scheduler, mapping, balance;
-    uint64_t traced, first, end; /* the name of the trace, 0: there is none; and of which steps */
-    double lost_seconds;         /* that of rank 0 counts */
+    uint64_t traced, first, end; /* hash of the trace's name, 0: there is none; its steps */
+    double lost_seconds;         /* rank 0's counts */
     char host[64];
 };
 

@@ -1,4 +1,4 @@
-/* The calls of a running body: the same as the main program's, on its own scope. None is
+/* The calls of a running body: the same as the main program's, on its own scope, and not
  * collective. A call that returns at once remembers its error for the body's next get or wait; an
  * error that no call returned fails the body. */
 #include "runtime/api/instance.h"
@@ -8,8 +8,8 @@
 #include <stdio.h>
 #include <string.h>
 
-/* The errors of the calls that bodies make most often are out of their way, or each call would save
- * registers for them. */
+/* Errors of the most frequent calls are functions apart, or each call would save registers for
+ * them. */
 #define BODY_ERROR __attribute__((noinline, cold)) static int
 
 BODY_ERROR body_keep(struct duite_call_private *body, int code)
@@ -25,7 +25,7 @@ static inline int body_remember(struct duite_call_private *body, int code)
     return code ? body_keep(body, code) : DUITE_OK;
 }
 
-/* Whether the body may make a call. It may not after memory ran out in a fork of any task. */
+/* True if the body may make a call: not after memory ran out in a fork of any task. */
 static inline bool body_may_call(const struct duite_call_private *body)
 {
     return !atomic_load_explicit(&body->graph->broken, memory_order_relaxed);
@@ -130,14 +130,14 @@ int api_body_set(struct duite_call_private *body, duite_object object, const voi
     return body_remember(body, code);
 }
 
-/* The sentence is what the task says of its failure, should the body return the code. */
+/* `text` becomes the task's message if the body returns the code. */
 BODY_ERROR body_too_deep(struct duite_call_private *body, const char *text)
 {
     snprintf(body->text, sizeof body->text, "%s", text);
     return DUITE_E_DEPTH;
 }
 
-/* The wait was not begun (code), or ended early, as everything did. */
+/* The wait did not begin (code), or ended early because communication broke. */
 static int body_broken(struct duite_call_private *body, int code)
 {
     if (code)
@@ -152,7 +152,7 @@ static bool version_is_there(void *context)
     return data_version_ready(context);
 }
 
-/* The value of the version, or how many bytes it has. */
+/* Copies the version's value, or only counts its bytes. */
 static int body_read(struct duite_call_private *body, struct data_version *version, void *values,
                      size_t *bytes)
 {
@@ -199,7 +199,7 @@ __attribute__((noinline)) static int get_any(struct duite_call_private *body, du
     return before ? before : code;
 }
 
-/* The short way of most gets: of one number that a child writes, or wrote. */
+/* The short way of most gets, of one number that a child writes or wrote. */
 int api_body_get(struct duite_call_private *body, duite_object object, void *values, size_t *count,
                  const char *call)
 {

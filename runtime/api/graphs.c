@@ -1,6 +1,6 @@
-/* Recorded graphs as the main program knows them: a slot's generation is odd while a graph lives in
- * it. Before a replay the graph is recorded again if it names objects that are gone; then its
- * rounds go where they can run: to the plan, or through the forks of the dynamic path. */
+/* The main program's recorded graphs: a slot's generation is odd while a graph lives in it. Before
+ * a replay the graph is recorded again if it names objects that are gone. Then its rounds run by
+ * the plan or, where that cannot be, through the forks of the dynamic path. */
 #include "runtime/api/instance.h"
 
 #include "runtime/base/clock.h"
@@ -57,7 +57,7 @@ static struct recorded_graph *graph_find(duite *rt, duite_graph name)
     return NULL;
 }
 
-/* A call on a graph begins: *found is the graph. That there is none is remembered. */
+/* A call on a graph begins: *found is the graph. A missing graph is remembered as an error. */
 static int graph_enter(duite *rt, const char *call, duite_graph name, struct recorded_graph **found)
 {
     const int code = api_enter(rt, call);
@@ -67,7 +67,7 @@ static int graph_enter(duite *rt, const char *call, duite_graph name, struct rec
     return *found ? DUITE_OK : api_remember(rt, DUITE_E_OBJECT);
 }
 
-/* A slot with an empty record; 0 without memory. */
+/* Takes a slot with an empty record; 0 without memory. */
 static uint32_t graph_take_slot(duite *rt)
 {
     size_t slot = 0;
@@ -193,7 +193,7 @@ int api_graphs_each(duite *rt, int (*visit)(void *context, const struct plan_rec
     return code;
 }
 
-/* The graph fits what it is bound to, and its objects live where they are to. */
+/* Makes the graph fit the objects it is bound to, and gives objects their homes. */
 static int graph_prepare(duite *rt, struct recorded_graph *slot, uint64_t rounds)
 {
     int code = api_settle(rt);
@@ -224,8 +224,7 @@ static int replay_fork_rounds(duite *rt, struct plan_record *record, uint64_t fi
     return code;
 }
 
-/* Tags were handed out to so many plans that they must be used again: of plans that are over on all
- * ranks. */
+/* All tags are handed out to plans: reuses those of plans that are over on all ranks. */
 static int replay_make_tags(duite *rt)
 {
     int code = api_meet(rt, "duite_replay");
@@ -283,7 +282,7 @@ int duite_replay(duite *rt, duite_graph graph, uint64_t rounds)
     return api_remember(rt, code ? code : replay_all_rounds(rt, found->record, rounds));
 }
 
-/* Rounds of the dynamic path, the flag read after each. */
+/* Runs rounds of the dynamic path, and reads the flag after each. */
 static int replay_fork_while(duite *rt, struct plan_record *record, duite_object flag, uint64_t max)
 {
     const struct data_object *object = data_object_find(&rt->graph.table, flag);

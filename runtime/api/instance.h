@@ -13,8 +13,8 @@
 
 #pragma GCC visibility push(hidden) /* called directly: no other library can replace them */
 
-/* A running runtime: its parts, and the error that the next get, wait or stop still has to return.
- * Main thread only. */
+/* A running runtime: its parts, and the error that the next get, wait or stop will return. Main
+ * thread only. */
 struct duite {
     MPI_Comm mpi;
     struct task_graph graph;
@@ -24,7 +24,7 @@ struct duite {
     struct worker *worker;  /* the main thread's; as is: */
     const void *thread;     /* task_thread_mark() */
     struct plan_memo *memo; /* recognises repeated forks; NULL: they stay forks */
-    struct trace *trace;    /* NULL: nothing is written down */
+    struct trace *trace;    /* NULL: there is none */
     bool traced;            /* the trace is closed */
     struct base_monitor monitor;
     struct base_watchdog *watchdog; /* NULL: all policies are built in, or nobody watches them */
@@ -42,38 +42,37 @@ struct duite {
     struct plan_record *building; /* the one that build forks into, or NULL */
     uint64_t graphs_recorded;
     struct instance_migration {
-        uint64_t replays, due; /* so far; at how many the homes are looked at next */
+        uint64_t replays, due; /* so far; the number at which the homes are looked at next */
         uint64_t looked;       /* replays before the last look; */
         double since;          /* when the last look was over, on the clock of this rank; */
         double took;           /* seconds */
-        uint64_t objects;      /* that moved so far; the same on all ranks */
+        uint64_t objects;      /* moved so far; the same on all ranks */
     } migration;
 };
 
-/* True once nothing but stop is left: memory ran out in a fork, the ranks differ, a message was
+/* True once only stop is left: memory ran out in a fork, the ranks differ, or a message was
  * lost. */
 bool api_is_broken(const duite *rt);
 
-/* For a broken runtime: tells the other ranks, awaits nothing any more, and returns when no task is
+/* For a broken runtime: tells the other ranks, stops awaiting data, and returns when no task is
  * left. Does nothing the second time. */
 void api_give_up(duite *rt);
 
 /* ---- agree.c: collective ---- */
 
-/* DUITE_OK if no rank failed so far. Else the code of this rank; on a rank that did not fail itself
- * DUITE_E_DIFFERENT (of memory: DUITE_E_MEMORY), with the message of the first rank whose failure
- * is the worst. */
+/* DUITE_OK if no rank failed so far. Else this rank's code; if it did not fail itself
+ * DUITE_E_DIFFERENT (for memory DUITE_E_MEMORY), with the message of the first rank with the worst
+ * failure. */
 int api_agree_on_code(MPI_Comm mpi, int code);
 /* This rank's parts have started, or failed with `code`. Compares codes and options of all ranks:
- * all succeed, or all fail. Errors: those of the ranks; DUITE_E_DIFFERENT, which names what differs
- * and on which ranks. */
+ * all succeed, or all fail. Errors: those of the ranks; DUITE_E_DIFFERENT, which names the
+ * difference and the ranks. */
 int api_agree_at_start(duite *rt, const duite_options *options, int code);
 
 /* ---- options.c ---- */
 
-/* Check the options: the first function those without which the ranks cannot even be asked, the
- * second the rest. The rest may be wrong on one rank alone; all ranks agree on that later. Errors:
- * arguments. */
+/* Check the options: first those without which the ranks cannot even talk, then the rest. The rest
+ * may be wrong on one rank alone; all ranks agree on that later. Errors: arguments. */
 int api_check_options(const duite_options *options);
 int api_check_options_rest(const duite_options *options);
 
@@ -83,55 +82,55 @@ int api_watch_policies(duite *rt, const duite_options *options);
 
 /* ---- program.c, wait.c ---- */
 
-/* Whether this call may be made now: DUITE_OK, or the error to return. */
+/* DUITE_OK if this call may be made now, else the error to return. */
 int api_enter(duite *rt, const char *call);
 /* The same, even while a graph is recorded. */
 int api_enter_any(duite *rt, const char *call);
-/* Keeps an error for the next get, wait or stop; inside a build function for the call that builds.
+/* Keeps an error for the next get, wait or stop, or in a build function for the call that builds.
  * Returns code. */
 int api_remember(duite *rt, int code);
 /* Settles the homes of all objects. */
 int api_settle(duite *rt);
 /* Works while more tasks are unfinished than the window allows. Called after forks. */
 void api_throttle(duite *rt);
-/* Waits until all ranks made this call, found that they forked the same, and have no task left that
- * was forked before it. */
+/* Waits until all ranks made this call, found that they forked the same, and ended all tasks forked
+ * before it. */
 int api_meet(duite *rt, const char *call);
 /* One reduction over all ranks: own, whose head is filled in here, gets the first failure's number.
  * There are several ranks. Errors: as comm_agree. */
 int api_agree(duite *rt, const struct work_why *why, struct comm_word *own);
-/* Gathers words: own, whose head is filled in; *words, one a rank. All ranks have agreed on the
- * call that this is a part of. */
+/* Gathers a word of each rank: own, whose head is filled in; *words, one a rank. All ranks have
+ * agreed on the call around it. */
 int api_gather(duite *rt, const struct work_why *why, struct comm_word *own,
                struct comm_word **words);
 
 /* ---- migrate.c ---- */
 
-/* The `replay`-th replay of a recorded graph begins, from 0: if it is time, blocks of objects move
- * where the mapping, or the balancer, wants them. `*map_at`: the replay before which the mapping is
- * to see its tasks (again); it begins with 0. */
+/* The `replay`-th replay of a recorded graph begins, from 0: if due, blocks of objects move where
+ * the mapping, or the balancer, wants them. `*map_at`: the replay before which the mapping is to
+ * see its tasks (again); it begins with 0. */
 int api_migrate(duite *rt, const struct plan_record *record, uint64_t replay, uint64_t *map_at);
 
 /* ---- wait.c, trace.c ---- */
 
-/* duite_wait, under the name of who calls it. */
+/* duite_wait; messages name `call`. */
 int api_wait(duite *rt, const char *call);
-/* The trace ends, if there is one that did not: as duite_trace_end, under the name of who calls. */
+/* Ends the trace, if there is one that has not ended, as duite_trace_end; messages name `call`. */
 int api_trace_end(duite *rt, const char *call);
-/* Recording begins. All ranks have started. */
+/* Begins to record. All ranks have started. */
 void api_trace_begin(duite *rt);
 /* Opens the trace that the options want. Local. */
 int api_trace_open(duite *rt, const duite_options *options);
 
-/* Copies the bytes to `values`, or the number of elements to `count`: whichever is not NULL, and on
- * the ranks that want it. */
+/* Copies the bytes to `values`, or the number of elements to `count`, if not NULL, on the ranks
+ * that want it. */
 int api_get(duite *rt, duite_object object, int rank, void *values, size_t *count,
             const char *call);
 
 /* ---- graphs.c ---- */
 
-/* Visits all graphs that were replayed since the last time, with the record and the number of
- * rounds that ran. No replay is on its way. Errors: those of `visit`. */
+/* Visits all graphs replayed since the last call, with the record and the number of rounds that
+ * ran. No replay is under way. Errors: those of `visit`. */
 int api_graphs_each(duite *rt, int (*visit)(void *context, const struct plan_record *, double),
                     void *context);
 
@@ -144,7 +143,7 @@ void api_graphs_stop(duite *rt);
 
 /* ---- bodies.c ---- */
 
-/* The body that runs on this thread, or NULL; and its calls. */
+/* The body that runs on this thread, or NULL. Its calls follow. */
 static inline struct duite_call_private *api_body(const duite *rt)
 {
     return rt ? task_running(&rt->graph) : NULL;

@@ -1,8 +1,8 @@
-/* Homes that change, at the beginning of a replay that is due, when all ranks have come to it and
- * no task is left. Each rank reports what the bodies of its blocks took. Rank 0 asks the mapping,
- * or the balancer, and broadcasts the moves. All ranks move the same blocks in the same order.
- * Everything that follows from homes (who runs a task, where values are needed, plans of recorded
- * graphs) is derived from them again. */
+/* Homes change at the beginning of a replay that is due, when all ranks have come to it and no task
+ * is left. Each rank reports the seconds in bodies of its blocks. Rank 0 asks the mapping, or the
+ * balancer, and broadcasts the moves. All ranks move the same blocks in the same order. The rank of
+ * each task, the ranks that need a value and the plans of recorded graphs are then derived
+ * again. */
 #include "runtime/api/instance.h"
 
 #include "runtime/base/clock.h"
@@ -11,8 +11,8 @@
 #include "runtime/map/blocks.h"
 #include "runtime/map/tasks.h"
 
-/* Places in `values`. Before its blocks a rank reports about itself; before the blocks that move
- * rank 0 answers for all. */
+/* Places in `values`: a rank's report, about itself and then its blocks; rank 0's answer, for all
+ * and then the blocks that move. */
 enum { REPORT_WORKERS, REPORT_OTHER, REPORT_BLOCKS };
 enum { ANSWER_CODE, ANSWER_REFUSED, ANSWER_NEXT, ANSWER_AGAIN, ANSWER_MOVES, ANSWER_BLOCKS };
 
@@ -21,11 +21,11 @@ enum { ANSWER_CODE, ANSWER_REFUSED, ANSWER_NEXT, ANSWER_AGAIN, ANSWER_MOVES, ANS
 struct migration {
     duite *rt;
     const struct plan_record
-        *record;            /* whose tasks the mapping is to see; NULL: the balancer's turn */
+        *record;            /* the mapping is to see its tasks; NULL: the balancer's turn */
     struct map_moves moves; /* measured values: on rank 0 */
     size_t *first;          /* n_ranks + 1: of each rank's blocks in `row` */
     uint32_t *row;          /* blocks by home */
-    double *values;         /* what this rank says, then what rank 0 answers */
+    double *values;         /* this rank's report, then rank 0's answer */
     double *other;          /* n_ranks; rank 0 */
 };
 
@@ -70,7 +70,7 @@ static int migration_begin(struct migration *m)
     return DUITE_OK;
 }
 
-/* ---- What was measured comes to rank 0 ---- */
+/* ---- Measurements go to rank 0 ---- */
 
 /* Seconds s of a fixed block are reported as -1 - s. */
 static void migration_fill_own(struct migration *m)
@@ -165,8 +165,8 @@ static uint64_t migration_ask(struct migration *m)
     return work_migrate(rt->pool, &blocks, m->moves.home);
 }
 
-/* Shows the mapping the tasks of the graph. *again: some costs were guessed, so the mapping is to
- * see them once more, with measured ones. */
+/* Shows the mapping the tasks of the graph. *again: some costs were guessed, so it is to see them
+ * once more when they are measured. */
 static int migration_ask_mapping(struct migration *m, bool *again)
 {
     duite *rt = m->rt;
@@ -241,7 +241,7 @@ static int migration_announce(struct migration *m)
     return code;
 }
 
-/* All ranks got the same answer: they move the same blocks, in the same order. */
+/* All ranks got the same answer, so they move the same blocks in the same order. */
 static int migration_move(struct migration *m)
 {
     struct task_graph *graph = &m->rt->graph;
@@ -270,7 +270,7 @@ static int migration_move(struct migration *m)
     return code;
 }
 
-/* Notes when the mapping, or the balancer, is asked again. */
+/* Notes when to ask the mapping, or the balancer, again. */
 static void migration_schedule(const struct migration *m, uint64_t replay, uint64_t *map_at)
 {
     struct instance_migration *last = &m->rt->migration;
@@ -306,7 +306,7 @@ static int migration_run(struct migration *m, uint64_t replay, uint64_t *map_at)
     if (!code)
         code = migration_gather(m);
     const double begun =
-        base_seconds(); /* measured from here on: before, this rank also waited for tasks */
+        base_seconds(); /* measured from here: before, this rank also waited for tasks */
     const uint64_t ticks = base_ticks(), moved = rt->migration.objects;
     if (!code && !rt->graph.rank)
         code = migration_decide(m);

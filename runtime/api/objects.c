@@ -8,7 +8,8 @@
 
 #include <string.h>
 
-/* By the main program; apart, or each call of a body would save registers for it. */
+/* duite_new by the main program; a function apart, or each call of a body would save registers for
+ * it. */
 __attribute__((noinline)) static int main_new(duite *rt, duite_type type, size_t count,
                                               duite_object *object)
 {
@@ -119,7 +120,7 @@ int duite_home(duite *rt, duite_object object)
     return found ? found->home : -1;
 }
 
-/* Whether something of the object is here. */
+/* True if this rank has some part of the object. */
 static bool object_is_here(const duite *rt, const struct data_object *object)
 {
     int rank = rt->graph.rank;

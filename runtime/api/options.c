@@ -1,6 +1,6 @@
-/* What a runtime is started with: the defaults, and what is refused. The environment is read with
- * the defaults, so that what the program sets goes before it. A wrong value there leaves a default
- * that is refused unless the program replaces it. */
+/* The options of a start: their defaults and checks. The environment is read with the defaults, so
+ * the program's own settings override it. A wrong value there leaves a default that is refused
+ * unless the program replaces it. */
 #include "runtime/api/instance.h"
 
 #include "runtime/balance/balance.h"
@@ -17,11 +17,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What no program means: the environment's number makes no sense. */
+/* Values that no program means: the environment's number makes no sense. */
 static const unsigned NO_THREADS = UINT_MAX;
 static const uint64_t NO_SEED = UINT64_MAX;
 
-/* A number of the environment, or -1 if it is none. */
+/* Returns the number in the environment, or -1 if the text is none. */
 static double environment_seconds(const char *text, double otherwise)
 {
     char *end;
@@ -31,7 +31,7 @@ static double environment_seconds(const char *text, double otherwise)
     return end == text || *end ? -1 : seconds;
 }
 
-/* A whole number of the environment, or `wrong` if it is none up to `max`. */
+/* Returns the whole number in the environment, or `wrong` if the text is none up to `max`. */
 static uint64_t environment_number(const char *text, uint64_t otherwise, uint64_t max,
                                    uint64_t wrong)
 {
@@ -104,7 +104,7 @@ int api_check_options(const duite_options *options)
     if (!options)
         return base_error(DUITE_E_ARGUMENT,
                           "duite_start: no options; begin with duite_options_default()");
-    if (options->comm == (MPI_Comm)0) /* for some MPIs a handle that ends the process */
+    if (options->comm == (MPI_Comm)0) /* this handle ends the process in some MPIs */
         return base_error(
             DUITE_E_ARGUMENT,
             "duite_start: no communicator (comm); begin with duite_options_default(), "
@@ -114,7 +114,7 @@ int api_check_options(const duite_options *options)
     return DUITE_OK;
 }
 
-/* The environment names a policy that cannot be found; its message is that of the search. */
+/* The environment names a policy that cannot be found; the search has set the message. */
 static int options_no_policy(const char *variable)
 {
     char why[1024];
@@ -123,7 +123,7 @@ static int options_no_policy(const char *variable)
                       getenv(variable), why);
 }
 
-/* What the environment chose, and the program left as it is. */
+/* Checks the environment's choices that the program did not replace. */
 static int options_check_environment(const duite_options *options)
 {
     const char *scheduler = getenv("DUITE_SCHEDULER"), *mapping = getenv("DUITE_MAPPING"),

@@ -1,6 +1,6 @@
-/* The calls of the main program; those of a body go on to bodies.c. Each checks that it may be
+/* The calls of the main program; those of a body go on to bodies.c. Each call checks that it may be
  * made, settles the homes of new objects where they matter, and leaves the work to task/ and plan/.
- * An error of a call that returns at once is remembered for the next get, wait or stop. */
+ * Calls that return at once remember their error for the next get, wait or stop. */
 #include "runtime/api/instance.h"
 
 #include "runtime/base/error.h"
@@ -27,7 +27,7 @@ int api_enter_any(duite *rt, const char *call)
             base_error(DUITE_E_STATE, "%s: not between duite_mpi_begin and duite_mpi_end", call));
     if (!rt->comm || !comm_broken(rt->comm))
         return DUITE_OK;
-    api_give_up(rt); /* once the program knows of it no body finds its context gone */
+    api_give_up(rt); /* before the program knows: then no body finds its context gone */
     return comm_broken(rt->comm);
 }
 
@@ -63,7 +63,7 @@ int api_settle(duite *rt)
     int code = map_settle(&rt->graph.table, &rt->mapping, rt->seed);
     if (!code)
         trace_settled(rt->trace, table);
-    else if (rt->comm && code != DUITE_E_MEMORY)     /* of which api_remember makes more */
+    else if (rt->comm && code != DUITE_E_MEMORY)     /* api_remember handles that */
         comm_broke(rt->comm, code, duite_message()); /* other ranks may have homes now */
     return code;
 }
@@ -97,11 +97,11 @@ int duite_mpi_end(duite *rt)
 
 /* ---- Tasks ---- */
 
-/* This ends: consider, of all unfinished tasks of all ranks, the first in fork order. What it waits
- * for was forked before it, and is over. A rank that has not come to its fork yet does not send
- * what it needs; but such a rank is not throttled: all its tasks are even earlier, so they are
- * over. Contributions do not wait for the access that combines them, and what combines waits for
- * earlier tasks only. Messages go on, since a throttled rank sends and receives as it works. */
+/* This ends. Consider the first in fork order of the unfinished tasks of all ranks: it waits for
+ * tasks forked earlier, which are over. A rank that has not come to its fork yet does not send its
+ * inputs, but is not throttled: all its tasks are even earlier, so they are over. Contributions do
+ * not wait for the access that combines them, and that waits for earlier tasks only. Messages go
+ * on, since a throttled rank sends and receives as it works. */
 void api_throttle(duite *rt)
 {
     if (rt->window)
@@ -127,8 +127,9 @@ static int fork_task(duite *rt, const struct task_options *options, const duite_
     return code || rt->graph.broken ? api_remember(rt, code) : DUITE_OK;
 }
 
-/* Whether no more is to be done for a fork outside of bodies than its ranks and a trace ask for, as
- * for most: it is the main program's, while nothing is recorded or to be settled. */
+/* True for a usual fork outside of bodies: by the main thread, with nothing broken, no graph being
+ * recorded, all homes settled, and MPI not held by the program. Only ranks and a trace may then ask
+ * for more. */
 static inline bool fork_is_usual(const duite *rt)
 {
     const uint64_t more = (uintptr_t)rt->building | rt->graph.table.n_unsettled |
@@ -146,8 +147,8 @@ __attribute__((noinline)) static int fork_other(duite *rt, const duite_kernel *k
                             objects);
 }
 
-/* A usual fork that asks nothing of this rank is done by task_prune or task_prune_more. Every so
- * many such forks messages are polled all the same, and broken communication is noticed. */
+/* task_prune or task_prune_more do a usual fork that needs nothing of this rank. After every so
+ * many of them messages are polled, and broken communication is noticed. */
 __attribute__((noinline)) static int fork_ranks(duite *rt, const duite_kernel *kernel,
                                                 const void *args, size_t n,
                                                 const duite_object *objects)
@@ -175,7 +176,7 @@ static inline int fork_direct(duite *rt, const duite_kernel *kernel, const void 
     return DUITE_OK;
 }
 
-/* Apart, since it needs most registers. */
+/* A function apart, since it needs most registers. */
 __attribute__((noinline)) static int fork_memo(duite *rt, const duite_kernel *kernel,
                                                const void *args, size_t n,
                                                const duite_object *objects)
@@ -264,7 +265,7 @@ int duite_set_sized(duite *rt, duite_object object, const void *values, size_t c
     return object_set(rt, object, values, &count, "duite_set_sized");
 }
 
-/* ---- Who am I ---- */
+/* ---- Ranks, threads and cores ---- */
 
 int duite_rank(const duite *rt)
 {

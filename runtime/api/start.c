@@ -1,5 +1,5 @@
-/* Start and stop: the parts are started from the bottom up and stopped from the top down; what
- * failed half-way is stopped by the same path (instance_end). */
+/* Start and stop: the parts start from the bottom up and stop from the top down; a start that
+ * failed half-way stops by the same path (instance_end). */
 #include "runtime/api/instance.h"
 
 #include "runtime/balance/balance.h"
@@ -17,11 +17,12 @@
 
 /* ---- MPI ---- */
 
-static _Atomic int alive; /* runtimes that are not stopped, or were cut off from other ranks */
+static _Atomic int
+    alive; /* runtimes not yet stopped, or cut off from other ranks when they stopped */
 
-/* MPI cannot be initialised twice: what start initialised stays until the process ends, so that
- * start and stop may repeat. A process that ends without a stop leaves MPI as it is: workers still
- * call it, and other ranks wait for what does not come any more. */
+/* MPI cannot be initialised twice: if start initialised it, it stays until the process ends, so
+ * that start and stop may repeat. A process that ends without a stop does not finalise MPI: workers
+ * still call it, and other ranks wait for messages that never come. */
 static void mpi_finalise_at_exit(void)
 {
     int over = 1;
@@ -94,7 +95,7 @@ static int instance_start_graph(duite *rt, const duite_options *options)
     return code;
 }
 
-/* Where repeated forks are to be recognised and can be. */
+/* Starts to recognise repeated forks, if that is wanted and possible. */
 static int instance_start_memo(duite *rt, const duite_options *options)
 {
     if (!options->memo || rt->comm || rt->trace || options->check)
@@ -103,8 +104,8 @@ static int instance_start_memo(duite *rt, const duite_options *options)
     return rt->memo ? DUITE_OK : base_no_memory("the runtime");
 }
 
-/* Collective. Workers of a rank whose cores others may use, too, sleep where they are more than its
- * share, and are not bound: all who are bound would be on the first cores. */
+/* Collective. If other processes may use the rank's cores, its workers sleep when they are more
+ * than its share. They are not bound, as all processes would bind to the first cores. */
 static int instance_share(duite *rt, const duite_options *options, const struct work_cores *cores,
                           struct comm_host *host)
 {
@@ -128,7 +129,7 @@ static int instance_start_workers(duite *rt, const duite_options *options, int c
     struct comm_host host = {.ranks = 1};
     if (!code)
         code = work_cores_find(&cores);
-    /* Collective: a rank that failed takes part. */
+    /* Collective: a failed rank takes part. */
     int asked = instance_share(rt, options, &cores, &host);
     if (!code)
         code = asked;
@@ -174,8 +175,8 @@ struct instance_leftovers {
     struct work_stillness still;
 };
 
-/* What MPI does not finish any more once a rank is lost, and all that waits behind it, is left: it
- * stays where it is. */
+/* True if no task is left, or if a rank is lost and nothing moves. Tasks that wait for transfers
+ * which MPI cannot finish then stay where they are. */
 static bool instance_has_nothing_left(void *context)
 {
     struct instance_leftovers *leftovers = context;
@@ -210,7 +211,7 @@ static void instance_end(duite *rt)
     trace_free(rt->trace, whole);
     if (whole)
         MPI_Comm_free(&rt->mpi);
-    if (whole || !comm_is_cut(rt->comm)) /* else MPI would wait for the lost when it is finalised */
+    if (whole || !comm_is_cut(rt->comm)) /* else MPI_Finalize would wait for the lost rank */
         atomic_fetch_sub(&alive, 1);
     offload_stop(&rt->graph);
     task_graph_stop(&rt->graph);
@@ -248,7 +249,7 @@ int duite_start(duite **out, const duite_options *options)
         return code;
     }
     atomic_fetch_add(&alive, 1);
-    /* From here on every rank comes to start_agree(), whatever fails. */
+    /* From here on every rank comes to api_agree_at_start(), even if a part fails. */
     code = api_agree_at_start(rt, options, instance_start_parts(rt, mpi, options));
     if (code) {
         instance_end(rt);

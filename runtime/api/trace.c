@@ -1,5 +1,5 @@
-/* The trace as the main program sees it: it is opened with the workers, recording changes between
- * steps while no task is left, and it is closed before the workers go. */
+/* The main program's calls for the trace. It opens with the workers, recording changes between
+ * steps while no task is left, and it closes before the workers go. */
 #include "runtime/api/instance.h"
 
 #include "runtime/base/error.h"
@@ -28,8 +28,8 @@ void api_trace_begin(duite *rt)
         trace_switch(rt->trace, true, 0, 0);
 }
 
-/* Waits for all tasks as duite_wait does, and writes the wait down: without it the time would count
- * as the main program's own. */
+/* Waits for all tasks as duite_wait does, and records the wait: else the time would count as the
+ * main program's own. */
 static int step_meet(duite *rt, const char *call)
 {
     const uint64_t from = base_ticks();

@@ -1,6 +1,6 @@
 /* The calls of the main program that block: gets, waits and sums over all ranks. All ranks make the
- * same calls. Each rank logs its own, so that a difference is found even where one rank waits for
- * data that no other rank will send. */
+ * same calls. Each rank logs its own, so that a difference is found even if a rank waits for data
+ * that no other rank will send. */
 #include "runtime/api/instance.h"
 
 #include "runtime/base/clock.h"
@@ -8,7 +8,7 @@
 
 #include <stdio.h>
 
-/* The remembered error, which is returned once. */
+/* Returns the remembered error, once. */
 static int wait_recall(duite *rt)
 {
     int code = rt->remembered;
@@ -26,7 +26,7 @@ static void wait_work_once(void *context)
     work_once(context);
 }
 
-/* What this rank reports to the others: what it forked, and what failed. */
+/* This rank's report to the others: the hash of its forks, and its first failure. */
 static struct comm_word wait_own_word(const struct task_graph *graph)
 {
     struct comm_word own = {.fingerprint = graph->fingerprint};
@@ -38,7 +38,7 @@ static struct comm_word wait_own_word(const struct task_graph *graph)
     return own;
 }
 
-/* A collective call begins; other ranks may not come to it, which the divergence check finds. */
+/* A collective call begins. The divergence check finds ranks that do not come to it. */
 static void collective_begin(duite *rt, const struct work_why *why, struct comm_word *own)
 {
     own->fingerprint = rt->graph.fingerprint;
@@ -70,14 +70,14 @@ int api_gather(duite *rt, const struct work_why *why, struct comm_word *own,
     return collective_end(rt, comm_gather(rt->comm, own, words, wait_work_once, rt->pool));
 }
 
-/* The word of the first failure of all ranks, of which some has one. */
+/* Finds the word of the first failure of all ranks; some rank has one. */
 static int wait_find_first(duite *rt, const struct work_why *why, struct comm_word *own)
 {
     collective_begin(rt, why, own);
     return collective_end(rt, comm_first(rt->comm, own, wait_work_once, rt->pool));
 }
 
-/* This rank makes a call that blocks, as all do; `kind` is what must be the same on all. */
+/* This rank makes a call that blocks, as all do; `kind` must be the same on all. */
 static int wait_enter(duite *rt, const char *kind, const char *call)
 {
     struct comm_word own = {0};
@@ -99,7 +99,7 @@ static void wait_for_copy(duite *rt, const struct work_why *why, struct task_cop
     if (rt->comm)
         comm_waits(rt->comm, false);
     if (!copy_is_done(copy))
-        api_give_up(rt); /* then the task that would have copied is over */
+        api_give_up(rt); /* afterwards the task that would have copied is over */
 }
 
 /* Copies the bytes to `values`, or the number of elements to `count`: whichever is not NULL, and on
@@ -122,7 +122,7 @@ int api_get(duite *rt, duite_object object, int rank, void *values, size_t *coun
     wait_for_copy(rt, &(struct work_why){call, NULL, &key}, &copy);
     if (rt->comm && comm_broken(rt->comm))
         return comm_broken(rt->comm);
-    if (!values && !count) /* found out only now: the other ranks count on this one */
+    if (!values && !count) /* checked only now: the other ranks count on this one */
         return base_error(DUITE_E_ARGUMENT, "%s: nowhere to put the answer", call);
     if (copy.failure)
         return task_failure_error(&rt->graph, copy.failure);
@@ -131,7 +131,7 @@ int api_get(duite *rt, duite_object object, int rank, void *values, size_t *coun
     return DUITE_OK;
 }
 
-/* The get does its work, whatever was remembered. */
+/* The get does its work even if an error was remembered. */
 static int get_and_recall(duite *rt, duite_object object, int rank, void *values, size_t *count,
                           const char *call)
 {
@@ -173,11 +173,11 @@ static bool wait_is_drained(void *context)
     return work_is_drained(context);
 }
 
-/* No task's: after all that are. */
+/* No task's number: after all of those. */
 #define POLICY_FAILED UINT64_MAX
 
-/* What this rank reports when all its tasks are over; a scheduler that never ended a round is part
- * of it. */
+/* This rank's report when all its tasks are over. A scheduler that never ended a round counts as a
+ * failure. */
 static struct comm_word wait_last_word(const duite *rt)
 {
     struct comm_word own = wait_own_word(&rt->graph);
@@ -191,8 +191,8 @@ static struct comm_word wait_last_word(const duite *rt)
     return own;
 }
 
-/* Ranks that forked different tasks may wait here for what nobody sends: the divergence check finds
- * it. */
+/* Ranks that forked different tasks may wait here for data that no rank sends: the divergence check
+ * finds it. */
 static int wait_for_own_tasks(duite *rt, const char *call)
 {
     work_tick(rt->pool);
@@ -216,8 +216,8 @@ int api_meet(duite *rt, const char *call)
     return code || !rt->comm ? code : api_agree(rt, &why, &own);
 }
 
-/* All ranks have ended their tasks. *word has the first failure of all ranks, if there is one; it
- * is looked for only then. */
+/* Waits until all ranks have ended their tasks. *word: the first failure of all ranks, searched for
+ * only if there is one. */
 static int wait_meet(duite *rt, const char *call, struct comm_word *word)
 {
     const struct work_why why = {call, "the tasks of other ranks", NULL};
@@ -256,7 +256,7 @@ int api_wait(duite *rt, const char *call)
                           "scheduler %s names victims without an end (seen on rank %d): its victim "
                           "has to return DUITE_NO_QUEUE at last",
                           failure->text, failure->rank);
-    task_first_failure(&rt->graph.root); /* returned: it does not count again */
+    task_first_failure(&rt->graph.root); /* it is returned here and does not count again */
     return task_failure_error(&rt->graph, failure);
 }
 

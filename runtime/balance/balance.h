@@ -22,7 +22,7 @@ BALANCE_TEST_ROWS(BALANCE_DECLARE)
 /* The names of those for tests, ended by NULL. */
 const char *const *balance_test_names(void);
 
-/* Whether the balancer is not built in. */
+/* True if the balancer is not built in. */
 bool balance_is_foreign(const duite_balancer *balancer);
 
 #endif

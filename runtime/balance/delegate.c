@@ -1,13 +1,13 @@
 /* delegate: an idle rank requests tasks of one other, the one that granted last or a random one,
  * and waits ever longer before its next request. The granter grants up to half of its ready tasks,
- * and only such as cost more than their transfer. Half, because it works on meanwhile; and the last
- * ready task stays, since its own worker takes it next. Of tasks whose subtrees are of unknown size
- * it grants a single one, the oldest: nearest to the root, it is the largest as far as anybody can
- * tell. Who got too much grants in turn. After Blumofe & Leiserson (1999), with half of a queue
- * instead of one task: Hendler & Shavit, Non-blocking steal-half work queues, PODC 2002. */
+ * and only those that cost more than their transfer. It keeps half, because it works on meanwhile,
+ * and the last ready task, since its own worker takes it next. It grants one task with a subtree of
+ * unknown size, the oldest: that is nearest to the root, so probably the largest. A rank that got
+ * too much grants in turn. After Blumofe & Leiserson (1999), with half of a queue instead of one
+ * task: Hendler & Shavit, Non-blocking steal-half work queues, PODC 2002. */
 #include "runtime/balance/balance.h"
 
-/* How long a request stands: the first, and the longest. */
+/* Seconds that a request stands: the first, and the longest. */
 #define FIRST_SECONDS   5e-4
 #define LONGEST_SECONDS 5e-2
 

@@ -1,6 +1,6 @@
 /* migrate: blocks get other homes when a rank's tasks take longer than those of the others.
- * Measured loads are never quite even: small differences move nothing. A difference that comes back
- * after a move was not due to the blocks: such differences move ever less. */
+ * Measured loads are never quite even, so small differences move nothing. A difference that comes
+ * back after a move was not due to the blocks, so it moves ever less. */
 #include "runtime/balance/balance.h"
 #include "runtime/balance/refine.h"
 #include "runtime/base/memory.h"
@@ -8,11 +8,11 @@
 #include <string.h>
 
 #define LEAST_SLACK                                                                                \
-    0.05 /* a rank may have so much more than the mean; it grows if moves are in vain */
+    0.05 /* a rank may have so much more than the mean; grows if moves are in vain */
 #define MAX_SLACK  0.4
-#define LEAST_LOAD 1e-3 /* seconds a worker: what is less says nothing yet */
+#define LEAST_LOAD 1e-3 /* seconds a worker: less is not yet significant */
 #define LOOK_SHARE 0.01 /* of the time may go into deciding and moving */
-#define ANEW       0.95 /* of what a few moves come to: then a new map, which moves many, is better */
+#define ANEW       0.95 /* of a few moves' cost: a new map, which moves many, must be below */
 
 enum { LONGEST = 32, MAX_REPLAYS = 1 << 20 };
 
@@ -30,14 +30,14 @@ static void migrate_start(void *state, int rank, int n_ranks, unsigned worker, u
     *(struct migrate_state *)state = (struct migrate_state){.slack = LEAST_SLACK, .interval = 1};
 }
 
-/* What the homes cost over the time to come. */
+/* The cost of the homes over the time to come. */
 static double bill_total(const struct balance_bill *bill, double periods)
 {
     return (bill->max + bill->cut) * periods + bill->move;
 }
 
-/* The better ones of refined and new homes, if they are better than the present ones. The program
- * is expected to go on for as long as it has run. Returns whether `home` was changed. */
+/* Takes the better of refined and new homes if they are better than the present ones. Assumes that
+ * the program goes on for as long as it has run. Returns whether `home` changed. */
 static bool homes_improve(const duite_blocks *blocks, const struct balance_bill *now,
                           double periods, int *home)
 {
@@ -64,7 +64,7 @@ static bool homes_improve(const duite_blocks *blocks, const struct balance_bill 
     return changed;
 }
 
-/* Differences that a move left as they were are noise. */
+/* A difference that a move did not change is noise. */
 static void slack_learn(struct migrate_state *own, double excess)
 {
     if (own->before > 0 && excess > 0.75 * own->before)
@@ -74,7 +74,7 @@ static void slack_learn(struct migrate_state *own, double excess)
     own->before = 0;
 }
 
-/* Not so often that the decisions take more time than they are worth. */
+/* Rarely enough that decisions and moves take only LOOK_SHARE of the time. */
 static uint64_t migrate_next_look(const struct migrate_state *own, const duite_blocks *blocks)
 {
     double replay = blocks->seconds / (double)blocks->since;
@@ -88,7 +88,7 @@ static uint64_t migrate_blocks(void *state, const duite_blocks *blocks, int *hom
 {
     struct migrate_state *own = state;
     struct balance_bill now;
-    if (blocks->replays < 2) /* the first replay is that of cold caches */
+    if (blocks->replays < 2) /* the first replay has cold caches */
         return 1;
     double periods = (double)blocks->replays / (double)blocks->since;
     bool moved = false;

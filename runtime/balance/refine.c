@@ -1,6 +1,6 @@
 /* Loads are seconds a worker; a move keeps them up to date. Each move lowers the sum of their
  * squares, so the moves come to an end. After Fiduccia & Mattheyses (DAC 1982), with balance first
- * and the cut second, since the homes to begin with have a small cut already. */
+ * and the cut second, since the first homes have a small cut already. */
 #include "runtime/balance/refine.h"
 
 #include "runtime/base/memory.h"
@@ -11,7 +11,7 @@
 
 #define GOAL    1.01  /* balanced enough: the largest load over the mean */
 #define WORTH   0.002 /* of the mean: moves that relieve a rank by less are not made */
-#define MAX_OPS 1e8   /* pairs of a block and a rank that are looked at, about */
+#define MAX_OPS 1e8   /* about so many pairs of a block and a rank are looked at */
 
 struct parts {
     const duite_blocks *blocks;
@@ -73,7 +73,7 @@ bool balance_bill(const duite_blocks *blocks, const int *present, const int *hom
     return true;
 }
 
-/* By how much the larger of two ranks' loads falls if the block moves from one to the other. */
+/* The fall of the larger of two ranks' loads if the block moves from one to the other. */
 static double move_relief(const struct parts *parts, size_t block, int from, int to)
 {
     double left = parts->load[from] - load_share(parts->blocks, block, from);
@@ -81,7 +81,7 @@ static double move_relief(const struct parts *parts, size_t block, int from, int
     return parts->load[from] - (left > there ? left : there);
 }
 
-/* Whether a move saves more time than sending the block takes. */
+/* True if a move saves more time than sending the block takes. */
 static bool move_pays(const struct parts *parts, size_t block, double relief)
 {
     bool moved = parts->home[block] != parts->present[block];
@@ -127,8 +127,8 @@ static void move_add_edges(struct parts *parts, size_t block, bool clear)
     }
 }
 
-/* Of all moves that bring at least `least`, the one that cuts least; of equals the one that brings
- * more, then the first. */
+/* Finds the move with the least cut whose relief is at least `least`; of equals the one with more
+ * relief, then the first. */
 static bool move_choose(struct parts *parts, int from, double least, struct move *best)
 {
     bool found = false;
@@ -194,7 +194,7 @@ bool balance_refine(const duite_blocks *blocks, double periods, int *home)
 
 /* ---- Anew ---- */
 
-/* How much of a part lives on a rank. */
+/* The bytes of a part that live on a rank. */
 struct overlap {
     double bytes;
     int part, rank;
@@ -210,7 +210,7 @@ static int overlap_compare(const void *a, const void *b)
     return x->rank < y->rank ? -1 : x->rank > y->rank;
 }
 
-/* Gives each part the name of a rank, those that share most first. */
+/* Gives each part the name of a rank, in the order of the bytes that they share. */
 static void parts_name(struct overlap *overlap, int n_ranks, int *rank_of)
 {
     size_t n = (size_t)n_ranks, pairs = n * n;

@@ -7,7 +7,7 @@
 /* New homes for blocks, starting from the present ones. Pure functions of their arguments,
  * but that the calling worker has a mark for the watchdog while it asks a mapping. */
 
-/* What some homes cost in the time that was measured. */
+/* The cost of some homes in the measured time. */
 struct balance_bill {
     double max;  /* seconds a worker of the rank that has most to do */
     double even; /* the mean: `max` if all ranks had equal work */
@@ -19,15 +19,15 @@ struct balance_bill {
 bool balance_bill(const duite_blocks *blocks, const int *present, const int *home,
                   struct balance_bill *bill);
 
-/* Moves single blocks away from the rank that has most to do, as long as that helps, to ranks with
- * less: of those that help about as much as the best, the one that cuts least. A move that takes
- * longer than it saves in `periods` times the measured time is not made. home: the present ones,
- * changed. False without memory. */
+/* Moves single blocks away from the rank with most to do, as long as that helps. Takes, of the
+ * moves that help at least half as much as the best, the one with the least cut. No move takes
+ * longer than it saves in `periods` times the measured time. home: the present ones, changed. False
+ * without memory. */
 bool balance_refine(const duite_blocks *blocks, double periods, int *home);
 
-/* Maps the blocks again, by the program's mapping, with the measured work; names the parts so that
- * as many bytes as possible stay; and refines. home: the present ones, changed. False if that is
- * not possible: memory, or the mapping fails. */
+/* Maps the blocks again by the program's mapping, with the measured work; names the parts so that
+ * many bytes stay; and refines. home: the present ones, changed. False without memory, or if the
+ * mapping fails. */
 bool balance_anew(const duite_blocks *blocks, double periods, int *home);
 
 #endif

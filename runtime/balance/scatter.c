@@ -1,5 +1,5 @@
 /* scatter: an adversary for tests. Every task that may go runs on a random rank from the seed,
- * whatever it costs and whoever has time. */
+ * regardless of costs and loads. */
 #include "runtime/balance/balance.h"
 
 struct scatter_state {

@@ -1,5 +1,5 @@
 /* wander: an adversary for tests. At random replays random blocks move to random ranks, and leaf
- * tasks run on any rank, whatever they cost and whoever has time. */
+ * tasks run on any rank, regardless of costs and loads. */
 #include "runtime/balance/balance.h"
 
 struct wander_state {
@@ -24,7 +24,7 @@ static int wander_place(void *state, const duite_leaf *leaf)
     return wander_rank(state);
 }
 
-/* None, some, or all of them; mostly at the next replay again. */
+/* Moves none, some, or all blocks; mostly asks to be called at the next replay again. */
 static uint64_t wander_migrate(void *state, const duite_blocks *blocks, int *home)
 {
     struct wander_state *own = state;

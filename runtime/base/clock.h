@@ -12,8 +12,8 @@ static inline double base_seconds(void)
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-/* A counter of constant rate that is cheaper to read, for what is timed with every task: the
- * processor's, where it has one. Differences between cores are far below a microsecond. */
+/* A counter of constant rate that is cheaper to read, for times taken with every task: the
+ * processor's, if it has one. Differences between cores are far below a microsecond. */
 static inline uint64_t base_ticks(void)
 {
 #if defined(__x86_64__)

@@ -9,7 +9,7 @@
 
 static _Thread_local char message[1024];
 
-/* A message that is too long, because of a path say, loses its middle; the reason is at its end. */
+/* A message that is too long, say by a path, loses its middle; the reason is at its end. */
 static void message_cut_middle(const char *whole)
 {
     enum { HEAD = sizeof message / 4, GAP = 6, TAIL = sizeof message - HEAD - GAP };
@@ -17,7 +17,7 @@ static void message_cut_middle(const char *whole)
              whole + strlen(whole) - TAIL);
 }
 
-/* The arguments may point into the message before: so the new one is written elsewhere first. */
+/* The arguments may point into the previous message, so the new one is written elsewhere first. */
 int base_error(int code, const char *format, ...)
 {
     char *whole = NULL;

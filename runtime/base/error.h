@@ -3,8 +3,8 @@
 
 #include <duite.h>
 
-/* Sets this thread's message, which duite_message returns (printf form; of a long one the middle is
- * left out). Returns code. Any thread. */
+/* Sets this thread's message, which duite_message returns (printf form; a long one loses its
+ * middle). Returns code. Any thread. */
 int base_error(int code, const char *format, ...) __attribute__((cold, format(printf, 2, 3)));
 
 /* The message of a failed allocation: "out of memory for " and `what`. Returns DUITE_E_MEMORY. */

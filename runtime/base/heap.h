@@ -5,15 +5,14 @@
 #include <stddef.h>
 #include <string.h>
 
-/* The binary heap, in an array of its owner: no entry comes before its parent, (i - 1) / 2. `size`
- * is that of an entry, `before` an order in which no two entries are equal; both are constants
- * where they are called, so that each heap is compiled for its own entries. Not for several threads
- * at a time. */
+/* The binary heap, in an array of its owner: no entry comes before its parent, (i - 1) / 2. `size`:
+ * of an entry. `before`: an order without equal entries. Callers pass both as constants, so that
+ * each heap is compiled for its own entries. Not for several threads at a time. */
 
-/* Whether a comes before b. `context`: whatever the order needs, or NULL. */
+/* True if a comes before b. `context`: data for the order, or NULL. */
 typedef bool base_before(const void *a, const void *b, const void *context);
 
-/* Adds an entry to n others; the array has room for it, and the entry is no part of it. */
+/* Adds an entry to n others; the array has room for it and does not contain it. */
 static inline __attribute__((always_inline)) void base_heap_push(void *array, size_t n,
                                                                  const void *entry, size_t size,
                                                                  base_before *before,

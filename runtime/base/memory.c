@@ -20,7 +20,7 @@ void *base_alloc(size_t size)
     const size_t steps = (size + step - 1) / step;
     void *memory = aligned_alloc(step, (steps ? steps : 1) * step);
     if (memory &&
-        size >= PAGE) /* only advice; the rest behind the last whole page has small ones */
+        size >= PAGE) /* only advice; the rest behind the last large page has small ones */
         madvise(memory, size / PAGE * PAGE, MADV_HUGEPAGE);
     return memory;
 }
@@ -38,7 +38,7 @@ void base_free(void *memory)
     free(memory);
 }
 
-/* The capacity that an array gets; 0: there is no such memory. */
+/* The new capacity of an array; 0: it would exceed the address space. */
 static size_t grown_capacity(size_t capacity, size_t needed, size_t element, size_t factor)
 {
     size_t wanted = capacity ? capacity : 16;
@@ -47,7 +47,7 @@ static size_t grown_capacity(size_t capacity, size_t needed, size_t element, siz
     return wanted <= SIZE_MAX / element ? wanted : 0;
 }
 
-/* The array in a new block of so many elements. */
+/* Moves the array to a new block of so many elements. */
 static void *grown_block(void *array, size_t *capacity, size_t wanted, size_t element)
 {
     void *moved = wanted ? base_alloc(wanted * element) : NULL;
@@ -60,8 +60,8 @@ static void *grown_block(void *array, size_t *capacity, size_t wanted, size_t el
     return moved;
 }
 
-/* From a large page on arrays lie in such pages and quadruple, so that little is copied: what is
- * not used yet takes no memory. Very large ones are moved by the system, without a copy. */
+/* Arrays of a large page or more lie in such pages and quadruple, so that little is copied: unused
+ * pages take no memory. The system moves very large arrays without a copy. */
 void *base_grow_more(void *array, size_t *capacity, size_t needed, size_t element)
 {
     const size_t large = PAGE / element, very_large = 32 * large;
@@ -85,12 +85,12 @@ void *base_grow_lines(void *array, size_t *capacity, size_t needed, size_t eleme
 
 /* ---- Small blocks ---- */
 
-/* A free block is in one place: a magazine, which one thread or the common store holds. Blocks are
- * named by pointers in magazines, not linked, so that taking and giving never touch a block's own
+/* A free block is in one magazine, which one thread or the common store holds. Magazines have
+ * pointers to blocks instead of links in them, so that taking and giving never touch a block's own
  * memory: it may still lie in another core's cache. After Bonwick & Adams, Magazines and vmem,
  * USENIX 2001. `lock` is held for a few instructions, once per magazine.
  *
- * New blocks are cut one after another from a thread's region, so that what is taken together lies
+ * New blocks are cut one after another from a thread's region, so blocks taken together lie
  * together. */
 
 enum { N_SIZES = BASE_POOL_LARGEST / BASE_POOL_GRAIN + 1 };
@@ -117,10 +117,9 @@ static struct region *regions;
 static size_t chunk_bytes; /* of all chunks */
 static unsigned runtimes;
 
-/* What a thread has at hand. For variables of the initial-exec model a program that loads this
- * library late has room for some hundred bytes only. So the shelves themselves are cut from a
- * region when the thread first needs them (shelves_own). Until then it has those that stay empty.
- */
+/* A thread's own blocks. A program that loads this library late has room for only some hundred
+ * bytes of initial-exec variables. So the shelves themselves are cut from a region when the thread
+ * first needs them (shelves_own); until then it has no_shelves, which stay empty. */
 static struct base_shelf no_shelves[N_SIZES];
 _Thread_local struct base_shelf *base_shelves = no_shelves;
 #define THREAD_OWN static _Thread_local __attribute__((tls_model("initial-exec")))
@@ -169,7 +168,7 @@ static bool region_next(void)
     return true;
 }
 
-/* Blocks of whole cache lines begin with one, all others with a multiple of 16 bytes. */
+/* Blocks of whole cache lines begin at a line, all others at a multiple of 16 bytes. */
 static void *region_cut(size_t bytes)
 {
     size_t align = bytes % BASE_LINE ? 2 * BASE_POOL_GRAIN : BASE_LINE;
@@ -185,7 +184,7 @@ static void *region_cut(size_t bytes)
     }
 }
 
-/* What lies from `begin` to `end` is for the next thread, if it is worth it. */
+/* Leaves the memory from `begin` to `end` to the next thread, if it is enough. */
 static void region_leave(char *begin, char *end)
 {
     size_t skip = -(uintptr_t)begin % BASE_LINE;
@@ -226,9 +225,9 @@ static struct base_magazine *magazine_new(void)
     return empty;
 }
 
-/* Small ones are cut several at a time: the others are at hand then, and come in the order in which
- * they lie. So blocks of an odd number of grains come in even numbers, and nothing is lost between
- * them and others. Nothing is loaded, or an empty magazine. */
+/* Cuts several small blocks at a time: the others are then at hand, in the order in which they lie.
+ * Blocks of an odd number of grains come in even numbers, so no room between blocks is lost.
+ * `loaded` is NULL or empty. */
 static void *blocks_new(struct base_shelf *shelf, size_t size)
 {
     enum { AT_ONCE = 16, SMALL = 256 /* bytes */ };
@@ -245,10 +244,11 @@ static void *blocks_new(struct base_shelf *shelf, size_t size)
     return block;
 }
 
-/* A full magazine of the store, or NULL; `empty`, which may be NULL, goes there for it. */
+/* Returns a full magazine of the store, or NULL; `empty`, which may be NULL, goes there in
+ * exchange. */
 static struct base_magazine *store_exchange(struct base_magazine *empty, size_t size)
 {
-    /* While blocks get more and more nothing is there: seen without the lock. */
+    /* While the number of blocks grows the store is empty: seen without the lock. */
     if (!atomic_load_explicit(&store[size], memory_order_relaxed))
         return NULL;
     pool_lock();
@@ -277,8 +277,8 @@ void *base_pool_take_more(size_t size)
     return full->block[--full->n];
 }
 
-/* Both magazines are full, or not there yet. Without memory for one more, or for the shelves, the
- * block is lost until the last runtime ends. */
+/* Both magazines are full, or missing. Without memory for one more, or for the shelves, the block
+ * is lost until the last runtime ends. */
 static void store_give(void *block, size_t size)
 {
     struct base_shelf *shelf = &base_shelves[size];

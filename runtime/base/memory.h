@@ -27,8 +27,8 @@ static inline void *base_grow(void *array, size_t *capacity, size_t needed, size
 void *base_grow_lines(void *array, size_t *capacity, size_t needed, size_t element);
 
 /* Arrays that come and go together, in one block: so most of them lie in large pages. A function
- * that takes them one after the other is called twice. At first, with `block` NULL, it adds up
- * `bytes`; then base_cut_begin gets the block, and it cuts them. Who cuts frees the block by
+ * that takes them one after the other is called twice: with `block` NULL it adds up `bytes`; then
+ * base_cut_begin gets the block, and the second call cuts it. The caller frees the block by
  * base_free. */
 struct base_cut {
     char *block;
@@ -48,8 +48,8 @@ static inline void *base_cut_begin(struct base_cut *cut)
     return cut->block;
 }
 
-/* Prefetches a line that is written soon: it comes here as this core's own, so that the first
- * write, or an atomic operation behind it, need not wait. */
+/* Prefetches a line that will soon be written: it becomes this core's own, so the first write, or
+ * an atomic operation behind it, need not wait. */
 static inline void base_prefetch(const void *line)
 {
 #if defined(__x86_64__)
@@ -64,10 +64,10 @@ static inline void base_prefetch(const void *line)
 
 /* Small blocks that live briefly and are often freed on another thread than the one that took them:
  * tasks, versions, messages. Each thread keeps some of each size at hand, and whole batches move
- * between threads. (The general allocator would lock, and a futex costs more than a task.)
+ * between threads. The general allocator would lock, and a futex costs more than a task.
  *
- * Taking and giving are inline as far as they end with what the thread has at hand: most sizes are
- * constants, and little is left then. */
+ * Taking and giving are inline where the thread's own blocks suffice: most sizes are constants, so
+ * little code is left. */
 
 /* Sanitizers must see when each block is taken and given back. */
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
@@ -85,7 +85,7 @@ enum {
     BASE_POOL_GRAIN = 8,
     BASE_POOL_LARGEST = 1536, /* bytes of a block */
     BASE_POOL_AHEAD = 2,
-    BASE_POOL_AHEAD_LINES = 4, /* of a block: what most write at once */
+    BASE_POOL_AHEAD_LINES = 4, /* of a block: usually all written at once */
     BASE_POOL_MAGAZINE = 30    /* blocks: a magazine takes four cache lines */
 };
 
@@ -101,15 +101,15 @@ struct base_shelf {
     struct base_magazine *loaded, *spare;
 };
 
-/* By size, in grains. By the initial-exec model they are reached without a call. */
+/* By size, in grains. The initial-exec model reaches them without a call. */
 extern _Thread_local struct base_shelf *base_shelves __attribute__((tls_model("initial-exec")));
 
-/* What is left when nothing fitting is at hand; sizes in grains. */
+/* The slow paths, when the thread's magazines do not suffice; sizes in grains. */
 void *base_pool_take_more(size_t size);
 void base_pool_give_more(void *memory, size_t size);
 
 #if !BASE_POOL_DIRECT
-/* Sizes that vary, a task's, are of two lines mostly. */
+/* Variable sizes, those of tasks, are mostly two lines. */
 static inline void pool_prefetch(char *block, size_t bytes)
 {
     enum { MOST = BASE_POOL_AHEAD_LINES * BASE_LINE };
@@ -154,7 +154,7 @@ static inline void *base_pool_take(size_t bytes)
     return base_alloc(bytes);
 }
 
-/* Gives back what was taken with the same size, on any thread. NULL is fine. */
+/* Gives back a block that was taken with the same size, on any thread. NULL is fine. */
 static inline void base_pool_give(void *block, size_t bytes)
 {
 #if !BASE_POOL_DIRECT
@@ -168,11 +168,11 @@ static inline void base_pool_give(void *block, size_t bytes)
     base_free(block);
 }
 
-/* A runtime begins, and ends; with the last one all memory goes back. */
+/* A runtime begins, or ends; with the last one all memory goes back. */
 void base_pool_enter(void);
 void base_pool_leave(void);
 
-/* The calling thread ends: what it has at hand goes to the others. */
+/* The calling thread ends: its blocks go to the others. */
 void base_pool_thread_end(void);
 
 #pragma GCC visibility pop

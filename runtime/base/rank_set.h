@@ -6,8 +6,8 @@
 #include <stdint.h>
 #include <string.h>
 
-/* Sets of ranks: a bit a rank, in as many words as all ranks take. Whoever keeps a set has the
- * words, one set behind the other where there are many. Not for several threads at a time. */
+/* Sets of ranks: a bit a rank, in as many words as all ranks take. The owner keeps the words; of
+ * many sets one behind the other. Not for several threads at a time. */
 
 /* Words of a set. */
 static inline size_t base_ranks_words(int n_ranks)
@@ -52,7 +52,7 @@ static inline uint32_t base_ranks_count(const uint64_t *set, size_t words)
     return n;
 }
 
-/* The first rank of the set that is not below `from`; -1: there is none. */
+/* The first rank >= `from` of the set; -1: there is none. */
 static inline int base_ranks_next(const uint64_t *set, size_t words, int from)
 {
     size_t i = (size_t)from / 64;
@@ -62,7 +62,7 @@ static inline int base_ranks_next(const uint64_t *set, size_t words, int from)
     return word ? (int)(64 * i) + __builtin_ctzll(word) : -1;
 }
 
-/* Whether each rank of `set` is one of `other`. */
+/* True if each rank of `set` is in `other`. */
 static inline bool base_ranks_within(const uint64_t *set, const uint64_t *other, size_t words)
 {
     uint64_t outside = 0;

@@ -1,6 +1,6 @@
 /* Standard error may be a pipe that nobody reads: a write to it would block, and with it the
- * monitor and its heartbeats. So a pipe or terminal is opened once more, not to block; the flag
- * then holds for this opening alone, not for the other programs that write there. */
+ * monitor and its heartbeats. So a pipe or terminal is opened once more, non-blocking; the flag
+ * holds for this opening alone, not for other programs that write there. */
 #include "runtime/base/report.h"
 
 #include "runtime/base/clock.h"
@@ -14,7 +14,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#define REPORT_SECONDS 0.05 /* that a report waits for room at most */
+#define REPORT_SECONDS 0.05 /* the longest wait of a report for room */
 
 /* A descriptor of standard error that does not block; -1: there is none. */
 static int report_open(const struct stat *file)
@@ -24,7 +24,7 @@ static int report_open(const struct stat *file)
     return open("/proc/self/fd/2", O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
 }
 
-/* As write. Files do not block; where nothing is known it may. */
+/* As write. Files do not block; without a descriptor of its own it may block. */
 static ssize_t report_write(int own, bool socket, const char *text, size_t length)
 {
     if (socket)

@@ -4,13 +4,14 @@
 #include <stdatomic.h>
 #include <stddef.h>
 
-/* The lock-free stack: any thread pushes a node, and one thread takes all nodes at once. A single
- * node is never taken: so no node returns to the stack while another thread still compares with it.
+/* The lock-free stack: any thread pushes a node, and one thread takes all nodes at once. Single
+ * nodes are never taken, so no node returns to the stack while another thread still compares with
+ * it.
  *
  * A stack is an `_Atomic(T *)`, NULL while it is empty; T has a member `T *next`, which belongs to
- * the stack from the push to the take. These are macros for the sake of T: tasks, pieces and
- * waiters keep their own types. (The list of a version's waiters is no such stack: its producer
- * closes it, see data/version.h.) */
+ * the stack from the push to the take. These are macros so that tasks, pieces and waiters keep
+ * their own types T. The list of a version's waiters is no such stack: its producer closes it, see
+ * data/version.h. */
 
 /* Pushes a node. `order`: memory_order_release, or memory_order_seq_cst where the push must also be
  * ordered before a later look at something else. */
@@ -23,11 +24,11 @@
                                                       memory_order_relaxed));                      \
     } while (0)
 
-/* Takes all nodes: the list, newest first, linked by next. Sees what their threads did before they
- * pushed them. */
+/* Takes all nodes: the list, newest first, linked by next. Sees all that their threads did before
+ * the push. */
 #define BASE_STACK_TAKE(stack) atomic_exchange_explicit(stack, NULL, memory_order_acquire)
 
-/* Whether nothing lies in the stack; a look without order. */
+/* True if the stack is empty; a look without order. */
 #define BASE_STACK_IS_EMPTY(stack) (!atomic_load_explicit(stack, memory_order_relaxed))
 
 /* Reverses a list that was taken: oldest first. `list` is a variable. */

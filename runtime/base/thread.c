@@ -1,5 +1,5 @@
-/* A thread whose stack cannot be mapped fails with EAGAIN, as one beyond the limit of processes
- * does: which it was is found by mapping as much. */
+/* A thread fails with EAGAIN if its stack cannot be mapped, and beyond the limit of processes:
+ * mapping as much tells which it was. */
 #include "runtime/base/thread.h"
 
 #include "runtime/base/error.h"

@@ -5,8 +5,8 @@
 #include <stddef.h>
 
 /* pthread_create with the default attributes. `what`: the thread's name in messages, "worker thread
- * 1 of 4". Errors: DUITE_E_MEMORY where the system has no room for the thread's stack, with its
- * bytes, else DUITE_E_SYSTEM with the system's reason. Local. */
+ * 1 of 4". Errors: DUITE_E_MEMORY, with the stack's bytes, if the system has no room for it; else
+ * DUITE_E_SYSTEM with the system's reason. Local. */
 int base_thread_start(pthread_t *thread, const char *what, void *(*body)(void *), void *context);
 
 /* The calling thread's stack. */

@@ -1,8 +1,9 @@
-/* block: contiguous ranges of objects, in the order they were made, of equal weight. Few messages
- * where neighbours are made one after another, whatever the hints say. */
+/* block: contiguous ranges of objects, in the order they were made, of equal weight. Ignores hints;
+ * few messages if neighbours are made one after another. */
 #include "runtime/map/map.h"
 
-/* Object i goes where the middle of its weight falls; fewer objects than ranks go round. */
+/* Object i goes to the rank where the middle of its weight falls; fewer objects than ranks go
+ * round. */
 static int block_map(const duite_object_graph *graph, int n_ranks, uint64_t seed, int *home)
 {
     (void)seed;

@@ -1,5 +1,5 @@
-/* Blocks as they are found in the table, what tasks read between them, and blocks that move. A
- * block is known by its home and its number there, which no other block ever had. */
+/* Blocks found in the table, the traffic between them, and blocks that move. A block is known by
+ * its home and its number there, which no other block ever had. */
 #include "runtime/map/blocks.h"
 
 #include "runtime/base/error.h"
@@ -16,14 +16,15 @@ struct block_key {
     uint32_t number;
 };
 
-/* A block in the table, which is there while blocks are found. */
+/* An entry of the hash table that lives while blocks are found. */
 struct block_entry {
     struct block_key key;
     bool lost; /* the table had no memory for it */
     UT_hash_handle hh;
 };
 
-/* `table`: of the n_blocks first entries, in the order of blocks. False without memory. */
+/* `table`: the hash table of the first blocks->n entries, in the order of blocks. False without
+ * memory. */
 static bool block_add(struct map_blocks *blocks, struct block_entry **table,
                       struct block_entry *entries, const struct data_object *object, uint32_t slot)
 {
@@ -72,9 +73,9 @@ void map_blocks_free(struct map_blocks *blocks)
 
 /* ---- Traffic ---- */
 
-/* What recorded tasks read from other blocks than their own: what would travel if these lived on
+/* The bytes that recorded tasks read from blocks other than their own, and that would travel from
  * another rank. A value that two tasks of a block read counts twice, though it travels once. That
- * is accepted: the sums are compared with one another, and both reads tie the two blocks. */
+ * is accepted: only sums are compared, and both reads tie the two blocks. */
 
 static bool traffic_add_edge(struct map_traffic *traffic, uint32_t from, uint32_t to, double bytes)
 {

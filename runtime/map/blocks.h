@@ -5,14 +5,13 @@
 
 #include <duite_policy.h>
 
-/* Blocks, and what recorded tasks carry from one to another. A block is a leader with all objects
- * that follow it: they live together, with the same home and the same number there. It exists as
- * long as one of them is alive. The list of blocks is made from the table whenever it is asked for,
- * which is seldom. */
+/* Blocks, and the bytes that recorded tasks read from one for another. A block is a leader with all
+ * objects that follow it: they share a home and a number there. It exists as long as one of them is
+ * alive. The list of blocks is made from the table on each request, which is seldom. */
 struct map_block {
     int home;
     uint32_t number; /* data_object.block */
-    bool fixed;      /* tasks that must not move run for one of its objects */
+    bool fixed;      /* tasks that must not move run for one of its objects: the block stays */
     size_t objects, bytes;
 };
 
@@ -41,18 +40,18 @@ struct map_traffic {
     double *bytes;
 };
 
-/* Adds what a record's forks read from other blocks in so many rounds. Errors: memory. */
+/* Adds the bytes that a record's forks read from other blocks in so many rounds. Errors: memory. */
 int map_traffic_add(struct map_traffic *traffic, const struct map_blocks *blocks,
                     const struct plan_record *record, double rounds);
 /* Adds that a task which runs for one block reads so many bytes of another. False without memory.
  */
 bool map_traffic_read(struct map_traffic *traffic, uint32_t own, uint32_t other, double bytes);
-/* Makes the rows, each neighbour once. Nothing is added afterwards. Errors: memory. */
+/* Makes the rows, each neighbour once. Called last, after all additions. Errors: memory. */
 int map_traffic_end(struct map_traffic *traffic, const struct map_blocks *blocks);
 void map_traffic_free(struct map_traffic *traffic);
 
-/* Blocks that may move: what a policy is to see of them, and the homes that it wants. The runtime
- * fills it with what it measured, the predictor with what a trace says. */
+/* Blocks that may move, as a policy sees them, and the homes that it wants. The runtime fills in
+ * its measurements, the predictor those of a trace. */
 struct map_moves {
     struct map_blocks blocks;
     struct map_traffic traffic;
@@ -67,16 +66,16 @@ struct map_moves {
 int map_moves_new(const struct data_table *table, struct map_moves *moves);
 void map_moves_free(struct map_moves *moves);
 
-/* Whether the policy left a fixed block where it is, and named a rank that exists. */
+/* True if the policy left a fixed block where it is, and named a rank that exists. */
 bool map_moves_is_allowed(const struct map_moves *moves, size_t block, int n_ranks);
 /* The error of a policy that did neither: "mapping" or "balancer", and its name. */
 int map_moves_refused(const char *kind, const char *name);
 
-/* What a balancer sees, but for what is no block's: the caller adds that. Points into the moves,
- * whose traffic was ended. */
+/* The blocks as a balancer sees them; the caller adds the numbers that belong to no block. Points
+ * into the moves, whose traffic was ended. */
 duite_blocks map_moves_shown(const struct map_moves *moves);
 
-/* A block that moves gets a number that no other block ever had at its new home. */
+/* Gives each block that moves a number that no other block ever had at its new home. */
 void map_moves_number(struct map_moves *moves, struct data_table *table);
 
 #endif

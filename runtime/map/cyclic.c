@@ -1,4 +1,4 @@
-/* cyclic: object after object to rank after rank. Balances numbers, and separates all neighbours:
+/* cyclic: object after object to rank after rank. Balances numbers but separates all neighbours:
  * the worst sensible case. */
 #include "runtime/map/map.h"
 

@@ -1,10 +1,10 @@
 /* list: earliest finish time. The tasks of a recorded graph are visited by their upward rank: the
  * longest path of costs and transfers to the end. The first task of each block takes the block to
- * the rank where that task would end first. This counts when a worker of the rank is idle and when
- * what the task reads arrives. The block's other tasks follow. After Topcuoglu, Hariri & Wu,
- * Performance-effective and low-complexity task scheduling for heterogeneous computing (HEFT), IEEE
- * TPDS 13(3), 2002, without insertion into gaps. Only what a round reads of itself counts. Until a
- * graph is replayed, homes are those of `metis`. */
+ * the rank where that task would end first, given when a worker there is idle and the task's inputs
+ * arrive. The block's other tasks follow. After Topcuoglu, Hariri & Wu, Performance-effective and
+ * low-complexity task scheduling for heterogeneous computing (HEFT), IEEE TPDS 13(3), 2002, without
+ * insertion into gaps. Only reads within a round count. Until a graph is replayed, homes are those
+ * of `metis`. */
 #include "runtime/map/map.h"
 
 #include "runtime/base/error.h"
@@ -20,7 +20,7 @@ struct list_plan {
     uint32_t *order; /* tasks by upward rank */
     double *end;     /* by task: when it ends */
     int *rank;       /* by task: where it runs; DUITE_NO_RANK: everywhere */
-    double *free;    /* by worker, rank after rank: when it is idle */
+    double *free;    /* by worker, rank after rank: when it becomes idle */
     size_t *first;   /* n_ranks + 1: of each rank's workers */
 };
 
@@ -29,8 +29,8 @@ static double list_edge_seconds(const duite_task_graph *graph, size_t edge)
     return graph->message_seconds + graph->bytes[edge] * graph->byte_seconds;
 }
 
-/* Rows name earlier tasks. So in a pass from the last task back, all readers of a task's result
- * come before the task. */
+/* Rows name earlier tasks, so a pass from the last task back visits all readers of a result before
+ * its task. */
 static void list_rank_upward(struct list_plan *plan)
 {
     const duite_task_graph *graph = plan->graph;
@@ -52,7 +52,7 @@ static int list_compare(const void *a, const void *b, void *context)
     return left != right ? (left > right ? -1 : 1) : (x < y ? -1 : x > y);
 }
 
-/* When all that the task reads has arrived on the rank. */
+/* The time when all inputs of the task have arrived on the rank. */
 static double list_arrival(const struct list_plan *plan, size_t task, int rank)
 {
     const duite_task_graph *graph = plan->graph;
@@ -68,7 +68,7 @@ static double list_arrival(const struct list_plan *plan, size_t task, int rank)
     return all;
 }
 
-/* The worker of the rank that is idle first. */
+/* The rank's worker that becomes idle first. */
 static size_t list_first_idle(const struct list_plan *plan, int rank)
 {
     size_t best = plan->first[rank];

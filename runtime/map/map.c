@@ -1,4 +1,4 @@
-/* The built-in mappings by name: the rows of map.h; and how any mapping is asked. */
+/* The built-in mappings by name (the rows of map.h), and the calls of any mapping. */
 #include "runtime/map/map.h"
 
 #include "runtime/base/error.h"
@@ -6,7 +6,7 @@
 
 #define MAP_TABLE(name) &map_##name,
 
-/* None is for tests. */
+/* No mapping is for tests only. */
 static const char *const map_names[] = {MAP_ROWS(BASE_POLICY_NAME) NULL, NULL};
 static const void *const map_tables[] = {MAP_ROWS(MAP_TABLE) NULL, NULL};
 static const struct base_policies mappings = {"mapping", "duite_own_mapping", map_names,

@@ -19,11 +19,11 @@
 #define MAP_DECLARE(name) extern const duite_mapping map_##name;
 MAP_ROWS(MAP_DECLARE)
 
-/* The function `map` of `metis`: equal weights, few bytes between ranks. Other mappings begin with
- * it. */
+/* The function `map` of `metis`: equal weights, few bytes between ranks. Other mappings use it,
+ * too. */
 int map_by_metis(const duite_object_graph *graph, int n_ranks, uint64_t seed, int *home);
 
-/* Whether the mapping is not built in. */
+/* True if the mapping is not built in. */
 bool map_is_foreign(const duite_mapping *mapping);
 
 /* A mapping, and the mark of the worker that asks it. */

@@ -1,8 +1,8 @@
 /* metis: equal weights, few bytes between ranks: METIS' recursive bisection of the hinted graph
  * (Karypis & Kumar, SIAM J. Sci. Comput. 20(1), 1998), with the seed of the run. A graph without
- * edges, or with no more objects than ranks, goes to `block`; but to `cyclic` if nothing at all was
- * hinted. Then nobody knows which objects the program's loops work on together, and work that moves
- * on over the objects, as a factorisation does, keeps all ranks busy. */
+ * edges, or with no more objects than ranks, goes to `block`; but without any hint to `cyclic`.
+ * Then it is unknown which objects the program's loops use together, and work that moves on over
+ * the objects, as in a factorisation, keeps all ranks busy. */
 #include "runtime/map/map.h"
 
 #include "runtime/base/error.h"
@@ -48,7 +48,7 @@ static int metis_partition(const duite_object_graph *graph, int n_ranks, uint64_
     return DUITE_OK;
 }
 
-/* Neither edges nor weights. */
+/* True if there are no edges and all weights are equal. */
 static bool metis_knows_nothing(const duite_object_graph *graph)
 {
     bool equal = !graph->start[graph->n];

@@ -1,5 +1,5 @@
-/* random: a rank by a coin toss for each object. What a mapping that knows something has to beat,
- * and what hashing would do. */
+/* random: a random rank for each object, as by hashing. The least that a mapping with knowledge has
+ * to beat. */
 #include "runtime/map/map.h"
 
 static int random_map(const duite_object_graph *graph, int n_ranks, uint64_t seed, int *home)

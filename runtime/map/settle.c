@@ -1,9 +1,8 @@
 /* Hints, and the homes that follow from them. A program says which objects belong together, the
  * same on every rank. When homes are needed, the graph of leaders, in the order they were made,
- * goes to the mapping, and objects that are colocated with a leader get its home. Every rank comes
- * to the same homes; no rank asks another. All objects without a home are alive, since a
- * free settles them first; the work is in proportion to them and their hints, however many others
- * there are. */
+ * goes to the mapping, and objects colocated with a leader get its home. Every rank comes to the
+ * same homes; no rank asks another. All objects without a home are alive, since a free settles them
+ * first. The work is proportional to these objects and their hints, not to all objects. */
 #include "runtime/map/map.h"
 
 #include "runtime/base/error.h"
@@ -76,7 +75,7 @@ int map_hint(struct data_table *table, duite_object object, double weight, size_
     return n ? hint_add_edges(hint, n, neighbours, edge_weights) : DUITE_OK;
 }
 
-/* Whether `object` is on the chain of leaders that begins with `slot`. */
+/* True if `object` is on the chain of leaders that begins with `slot`. */
 static bool leader_is_above(struct data_table *table, uint32_t slot, uint32_t object)
 {
     while (slot != object) {
@@ -110,7 +109,7 @@ int map_colocate(struct data_table *table, duite_object object, duite_object lea
 
 struct nodes {
     duite_object_graph graph; /* points into the rest */
-    size_t *node; /* by place in `unsettled`: its leader's node; NO_NODE: settled before */
+    size_t *node; /* by place in `unsettled`: its leader's node; NO_NODE: that is settled */
     double *weight, *edge_weight;
     size_t *start, *end; /* by node: its row of edges while it grows */
     uint32_t *neighbour;
@@ -148,9 +147,8 @@ static size_t node_of(const struct data_table *table, const struct nodes *nodes,
     return hint ? nodes->node[hint - table->unsettled] : NO_NODE;
 }
 
-/* Lets each object follow the end of its chain of leaders directly. The end is an object without a
- * home that follows none, or one with a home. Each link is walked a few times only, since every
- * chain that was walked is cut short. */
+/* Lets each object follow the end of its chain of leaders directly: an object that follows none, or
+ * one with a home. Each link is walked a few times only, since walked chains are cut short. */
 static void leaders_shorten(struct data_table *table)
 {
     for (size_t i = 0; i < table->n_unsettled; i++) {
@@ -186,7 +184,7 @@ static void nodes_count_edge(struct nodes *nodes, size_t a, size_t b, double wei
     nodes->start[a + 1]++;
 }
 
-/* Adds to the edge if it is there already. Rows are short: a block has few neighbours. */
+/* Adds an edge, or to one that is there. Rows are short: a block has few neighbours. */
 static void nodes_add_edge(struct nodes *nodes, size_t a, size_t b, double weight)
 {
     size_t i = nodes->start[a];
@@ -267,7 +265,7 @@ static int nodes_ask(const struct data_table *table, struct nodes *nodes,
     return DUITE_OK;
 }
 
-/* Leaders get their homes and are numbered there; the other objects get their leader's home. */
+/* Gives leaders their homes and numbers there, and the other objects their leader's home. */
 static void nodes_settle(struct data_table *table, const struct nodes *nodes)
 {
     for (size_t i = 0; i < table->n_unsettled; i++) {

@@ -1,8 +1,7 @@
-/* taskgraph: METIS on the tasks of a recorded graph instead of on hints. A block weighs what its
- * tasks cost. Blocks are tied by the bytes that tasks of one read from tasks of the other, in a
- * round and from round to round. So Zara's Athapascan did in the end (2001): the graph that the
- * program itself unfolds is partitioned, and nobody has to describe it. Until a graph is replayed,
- * homes are those of `metis`. */
+/* taskgraph: METIS on the tasks of a recorded graph instead of on hints. A block weighs the cost of
+ * its tasks. Blocks are tied by the bytes that tasks of one read from tasks of the other, in a
+ * round and from round to round. As in Zara's Athapascan (2001), the program unfolds the graph
+ * itself and need not describe it. Until a graph is replayed, homes are those of `metis`. */
 #include "runtime/map/map.h"
 
 #include "runtime/base/error.h"
@@ -61,7 +60,7 @@ static void taskgraph_release(struct taskgraph *work)
     base_free(work->tied);
 }
 
-/* Blocks that no task runs for stay where they are. */
+/* Blocks without tasks, and fixed ones, stay where they are. */
 static void taskgraph_weigh(struct taskgraph *work, const duite_task_graph *graph)
 {
     for (size_t b = 0; b < graph->n_blocks; b++)

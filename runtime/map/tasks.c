@@ -1,5 +1,5 @@
-/* What task mappings see: the tasks of a record, the block that each runs for, and its cost. The
- * cost is what the fork said, else what was measured, else a guess. */
+/* Tasks as mappings see them: the tasks of a record, the block that each runs for, and its cost.
+ * The cost is the fork's, else the measured one, else a guess. */
 #include "runtime/map/tasks.h"
 
 #include "runtime/base/error.h"
@@ -12,8 +12,7 @@ static bool task_lacks_cost(const struct plan_tasks *tasks, size_t i)
     return tasks->program[i] && !(tasks->cost[i] > 0);
 }
 
-/* Splits the measured seconds of each block evenly over those of its tasks whose forks said no
- * cost. */
+/* Splits the measured seconds of each block evenly over its tasks whose forks named no cost. */
 static bool tasks_share_out(struct map_tasks *tasks, size_t n_blocks, const double *seconds)
 {
     struct plan_tasks *all = &tasks->tasks;

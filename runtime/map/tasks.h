@@ -11,7 +11,7 @@ struct map_tasks {
     duite_task_graph graph; /* n, cost, block and the rows are filled in; points into the rest */
     struct plan_tasks tasks;
     uint32_t *block;
-    bool guessed; /* some of the program's tasks did not say what they cost */
+    bool guessed; /* some of the program's tasks had no cost */
 };
 
 /* seconds: of each block, as measured. Errors: memory; map_tasks_free is due all the same. */

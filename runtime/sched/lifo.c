@@ -1,6 +1,5 @@
-/* lifo: one queue for all, served from the end where tasks became ready last. What was made just
- * now is run while its data are warm, on whichever worker; the oldest may starve until the rest is
- * done. */
+/* lifo: one queue for all, newest first. A new task runs while its data are warm, on any worker;
+ * the oldest may starve until the rest is done. */
 #include "runtime/sched/sched.h"
 
 const duite_scheduler sched_lifo = {

@@ -1,8 +1,8 @@
-/* locality: as `steal`, but an idle worker tries the others by their distance in the machine. First
- * come those that share most with it (a core, a cache, a package), from a random one on; then the
- * next ring. So data leave a cache or a package only when there is no work left in it. Without
- * distances all others are one ring. After Quintin & Wagner, Hierarchical work-stealing, Euro-Par
- * 2010. */
+/* locality: as `steal`, but an idle worker tries the others by their distance in the machine. The
+ * ring of those that share most with it (a core, a cache, a package) comes first, from a random one
+ * on; then the next ring. So data leave a cache or a package only when no work is left in it.
+ * Without distances all others are one ring. After Quintin & Wagner, Hierarchical work-stealing,
+ * Euro-Par 2010. */
 #include "runtime/sched/sched.h"
 
 struct locality_state {

@@ -1,7 +1,7 @@
-/* owner: each block of objects has a worker, which gets the tasks of these objects, the newest
- * first; an idle one takes the oldest of a random other. Data stay in the cache of one core, as
- * with `static`, and stealing evens out unequal work. After Markatos & LeBlanc, Using processor
- * affinity in loop scheduling on shared-memory multiprocessors, IEEE TPDS 5(4), 1994. */
+/* owner: each block of objects has a worker, which gets its tasks, newest first; an idle worker
+ * takes the oldest of a random other. Data stay in the cache of one core, as with `static`, and
+ * stealing evens out unequal work. After Markatos & LeBlanc, Using processor affinity in loop
+ * scheduling on shared-memory multiprocessors, IEEE TPDS 5(4), 1994. */
 #include "runtime/sched/sched.h"
 
 const duite_scheduler sched_owner = {

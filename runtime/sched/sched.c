@@ -1,4 +1,4 @@
-/* The built-in schedulers by name, the rows of sched.h; and the decisions that several of them
+/* The built-in schedulers by name (the rows of sched.h), and decisions that several of them
  * share. */
 #include "runtime/sched/sched.h"
 
@@ -37,8 +37,8 @@ bool sched_is_foreign(const duite_scheduler *scheduler)
 
 /* ---- Decisions ---- */
 
-/* Decisions that several schedulers share. A function that reads its state expects a sched_state
- * there, or a structure that begins with one. */
+/* A function that reads its state expects a sched_state there, or a structure that begins with
+ * one. */
 
 void sched_start(void *state, unsigned worker, unsigned n_workers, uint64_t seed)
 {

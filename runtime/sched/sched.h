@@ -24,7 +24,7 @@ SCHED_TEST_ROWS(SCHED_DECLARE)
 /* The names of those for tests, ended by NULL. */
 const char *const *sched_test_names(void);
 
-/* Whether the scheduler is not built in. */
+/* True if the scheduler is not built in. */
 bool sched_is_foreign(const duite_scheduler *scheduler);
 
 struct sched_state {
@@ -46,12 +46,12 @@ duite_end sched_serve_newest(void *state);
 duite_end sched_serve_oldest(void *state);
 duite_end sched_serve_highest(void *state);
 
-/* Whom to steal from: no worker; or each other worker once a round, beginning with a random one. */
+/* The victims: no worker; or each other worker once a round, from a random one on. */
 unsigned sched_no_victim(void *state, unsigned attempt);
 unsigned sched_any_victim(void *state, unsigned attempt);
 
 int sched_never_chain(void *state, const duite_ready *task);
-/* Whether affinity, or the owner, would place the task on this worker. */
+/* True if affinity, or the owner, would place the task on this worker. */
 int sched_chain_affinity(void *state, const duite_ready *task);
 int sched_chain_owner(void *state, const duite_ready *task);
 

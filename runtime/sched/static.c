@@ -1,6 +1,6 @@
 /* static: the worker of each block is fixed, its tasks run in the order in which they became ready,
- * and nobody steals. The baseline of every comparison: data stay where they are, and nothing evens
- * out an uneven distribution of blocks. */
+ * and nobody steals. The baseline of every comparison: data stay where they are, and uneven blocks
+ * stay uneven. */
 #include "runtime/sched/sched.h"
 
 const duite_scheduler sched_static = {

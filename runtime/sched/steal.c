@@ -1,8 +1,8 @@
 /* steal: a worker keeps what it makes ready and works on the newest, whose data are warm; an idle
  * one takes the oldest of a random victim. After Blumofe & Leiserson, Scheduling multithreaded
- * computations by work stealing, JACM 46(5), 1999. In a replay the same data are worked on again:
- * their next task goes to the worker that ran the last one, and what was stolen stays stolen. After
- * Acar, Blelloch & Blumofe, The data locality of work stealing, SPAA 2000. */
+ * computations by work stealing, JACM 46(5), 1999. In a replay the next task on the same data goes
+ * to the worker that ran the last one: stolen data stay with the thief. After Acar, Blelloch &
+ * Blumofe, The data locality of work stealing, SPAA 2000. */
 #include "runtime/sched/sched.h"
 
 const duite_scheduler sched_steal = {

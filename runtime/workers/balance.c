@@ -1,5 +1,5 @@
-/* Each of the balancer's states belongs to one worker. Any worker may write the numbers that say
- * when this rank requests tasks next: a request too many or too few does no harm. */
+/* Each of the balancer's states belongs to one worker. Any worker may write the time of the rank's
+ * next request: a request too many or too few does no harm. */
 #include "runtime/base/clock.h"
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
@@ -11,9 +11,8 @@
 #include <string.h>
 
 enum {
-    DEPTH = 64, /* tasks of a queue that are looked at for one request */
-    STOCK = 4,  /* offloaded tasks a worker, the one that runs among them: with fewer it requests
-                   more */
+    DEPTH = 64, /* tasks of a queue looked at for one request */
+    STOCK = 4, /* offloaded tasks a worker, the running one included: with fewer it requests more */
 };
 
 #define FIRST_REQUEST_SECONDS   2e-5 /* so long a worker idles before its rank requests tasks */
@@ -140,8 +139,8 @@ double work_other_seconds(struct work_pool *pool)
 
 /* ---- Tasks that may go ---- */
 
-/* Seconds that a ready task is thought to take; 0: not known. What bodies took says nothing of one
- * whose children do the work. */
+/* Estimated seconds of a ready task; 0: unknown. Earlier bodies tell nothing of a task whose
+ * children do the work. */
 static double task_cost(const struct work_pool *pool, const struct task *task)
 {
     if (task->cost > 0)
@@ -182,9 +181,9 @@ static bool leaf_send(struct worker *worker, struct task *task, int to)
     return true;
 }
 
-/* The leaf goes to a rank that requests one before a worker of this rank can take it. In a tree
- * whose tasks become ready a few at a time, hardly a leaf would be left between two tasks. Not so a
- * subtree of unknown size: what just became ready is mostly smaller than what lies in the queue. */
+/* Grants the leaf to a requesting rank before a worker here can take it. In a tree whose tasks
+ * become ready a few at a time, hardly a leaf is left between two tasks. Subtrees of unknown size
+ * do not go: those in the queue are mostly larger. */
 static bool leaf_grant_at_once(struct worker *worker, struct task *task, const duite_leaf *leaf)
 {
     const struct work_pool *pool = worker->pool;
@@ -223,7 +222,8 @@ struct grant {
     duite_request asked;
 };
 
-/* Oldest first: the owner works on the newest. What is not granted goes back in its old order. */
+/* Grants oldest first: the owner works on the newest. The other tasks go back in their old
+ * order. */
 static void grant_or_keep(struct grant *grant, struct work_queue *queue, struct task *task)
 {
     const struct work_pool *pool = grant->worker->pool;
@@ -264,7 +264,7 @@ static void grant_queues(struct worker *worker, const struct comm_requester *req
         grant_from(&grant, &pool->shared);
         atomic_flag_clear_explicit(&pool->shared.token, memory_order_seq_cst);
     }
-    /* Those who did not find them meanwhile look again. */
+    /* The tasks could not be found meanwhile: a worker looks again. */
     atomic_thread_fence(memory_order_seq_cst);
     if (grant.asked.ready > grant.asked.granted)
         work_wake_one(pool, DUITE_NO_QUEUE);
@@ -315,7 +315,7 @@ static void request_send(struct worker *worker)
     atomic_store_explicit(&balance->next, now + (uint64_t)(seconds / balance->tick),
                           memory_order_relaxed);
     atomic_store_explicit(&balance->attempt, attempt + 1, memory_order_relaxed);
-    /* What came may have ended the last task: running out of work again tells the main thread. */
+    /* A message may have ended the last task: running out of work again tells the main thread. */
     if (work_poll(worker))
         work_stir(worker);
 }

@@ -1,6 +1,6 @@
-/* Tasks that were forked, one after another, as run_any of worker.c runs all of them. They are
- * nobody's but the worker's until they are finished. The counters of tasks are exact after each of
- * them, the time in bodies after each batch. */
+/* Runs forked tasks one after another, as run_any of worker.c runs all kinds. A task is the
+ * worker's alone until it is finished. The counters of tasks are exact after each task, the time in
+ * bodies after each batch. */
 #include "runtime/base/clock.h"
 #include "runtime/task/call.h"
 #include "runtime/workers/internal.h"
@@ -8,7 +8,7 @@
 /* Tasks between two looks at the clock. */
 enum { BATCH = 16 };
 
-/* Tasks of the queue, before the worker looks whether what it waits for is there. */
+/* Tasks from the queue before the worker looks around again. */
 enum { IN_TURN = 16 };
 
 uint64_t work_batch_ends(struct worker *worker, struct work_batch *batch)
@@ -23,7 +23,8 @@ uint64_t work_batch_ends(struct worker *worker, struct work_batch *batch)
     return took;
 }
 
-/* Runs a task; what it leaves becomes ready. `batch` NULL: its time is that of a body below. */
+/* Runs and finishes a task, which makes others ready. `batch` NULL: its time counts for a body
+ * below. */
 __attribute__((always_inline)) static inline void
 bodies_run(struct worker *worker, struct task_frame *frame, struct task *task,
            struct work_batch *batch, unsigned length)
@@ -41,8 +42,8 @@ bodies_run(struct worker *worker, struct task_frame *frame, struct task *task,
     worker->may_chain = false;
 }
 
-/* Nothing runs inline: the next task of the worker's own queue, if that is what it would take.
- * NULL: let it look around. */
+/* Without an inline task: the next one of the worker's own queue, if it would take that. NULL: let
+ * it look around. */
 static inline struct task *bodies_take(struct worker *worker, unsigned in_turn)
 {
     struct work_queue *queue = &worker->queue;
@@ -84,7 +85,7 @@ static inline struct task *bodies_take_child(struct worker *worker)
     if (!task || task->scope == worker->waits)
         return task;
     work_queue_push(queue, task);
-    work_wake_one(worker->pool, DUITE_NO_QUEUE); /* who did not find it meanwhile looks again */
+    work_wake_one(worker->pool, DUITE_NO_QUEUE); /* it could not be found meanwhile */
     return NULL;
 }
 

@@ -1,13 +1,13 @@
-/* Each number has one writer, the worker that measures, so that none needs an atomic addition. */
+/* Each number has one writer, the worker that measures: no addition need be atomic. */
 #include "runtime/workers/cost.h"
 
 #include "runtime/base/memory.h"
 
 enum { MEMORY_SHIFT = 3 }; /* of means: the last 2^3 bodies count most */
 
-/* ---- What was spent for blocks ---- */
+/* ---- Ticks spent for blocks ---- */
 
-/* Its place in its row, whose number is the highest bit of block + 1. */
+/* The block's place in its row; *row: the highest bit of block + 1. */
 static uint64_t spent_place(uint32_t block, unsigned *row)
 {
     uint64_t number = (uint64_t)block + 1;

@@ -7,8 +7,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Ticks that one worker spent for each block of its rank. The worker adds; the main thread takes
- * what was added since it took last, at any time. */
+/* Ticks that one worker spent for each block of its rank. The worker adds; the main thread takes,
+ * at any time, the ticks added since its last take. */
 struct work_spent_for {
     _Atomic uint64_t ticks;
     uint64_t taken; /* of them; the main thread's */
@@ -16,22 +16,22 @@ struct work_spent_for {
 
 enum { WORK_SPENT_ROWS = 33 };
 
-/* Zeroed to begin with. Row k, made when it is needed and never moved, has 2^k blocks. */
+/* Zeroed to begin with. Row k has 2^k blocks; it is made when it is needed and never moves. */
 struct work_spent {
     _Alignas(64) struct work_spent_for otherwise; /* for no block */
     _Atomic(struct work_spent_for *) row[WORK_SPENT_ROWS];
 };
 
-/* Add ticks for a block, or for none; without memory for a row they are dropped. Take: what was
- * added since the last take. */
+/* Add ticks for a block, or for none; without memory for a row they are dropped. Take: returns the
+ * ticks added since the last take. */
 void work_spend(struct work_spent *spent, uint32_t block, uint64_t ticks);
 void work_spend_else(struct work_spent *spent, uint64_t ticks);
 uint64_t work_spent_take(struct work_spent *spent, uint32_t block);
 uint64_t work_spent_take_else(struct work_spent *spent);
 void work_spent_free(struct work_spent *spent);
 
-/* What bodies cost, measured by the workers of a rank: a mean for each kernel, and, if blocks may
- * move, what was spent for each. */
+/* The cost of bodies, measured by the workers of a rank: a mean for each kernel and, if blocks may
+ * move, the ticks of each block. */
 struct work_cost {
     unsigned workers;
     size_t row;
@@ -43,15 +43,14 @@ struct work_cost {
 bool work_cost_start(struct work_cost *cost, unsigned workers, uint32_t kernels, bool by_block);
 void work_cost_stop(struct work_cost *cost);
 
-/* Notes that the body of a task took so many ticks on `worker`, which is the caller. */
+/* Notes the ticks that the body of a task took on `worker`, the caller. */
 void work_cost_learn(struct work_cost *cost, unsigned worker, const struct task *task,
                      uint64_t ticks);
 
-/* Ticks of a body of the kernel: the mean over the workers that ran one; 0: none did. Any worker.
- */
+/* Mean ticks of a body of the kernel, over the workers that ran one; 0: none did. Any worker. */
 double work_cost_mean(const struct work_cost *cost, uint32_t kernel);
 
-/* Ticks since the last time: in bodies that ran for the block; in all that ran for no block. Main
+/* Ticks since the last call in bodies that ran for the block; in those for no block. Main
  * thread. */
 uint64_t work_cost_take_block(struct work_cost *cost, uint32_t block);
 uint64_t work_cost_take_other(struct work_cost *cost);

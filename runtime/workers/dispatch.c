@@ -1,6 +1,6 @@
-/* A task's type says whose it is: the program's and the runtime's own are run and ended by task/,
- * nodes of recorded graphs by plan/, tasks of other ranks by offload/. The choice is made here and
- * nowhere else; below this folder nobody knows the types of another one. */
+/* Chooses by a task's type where it runs and ends. Tasks of the program and the runtime: task/;
+ * nodes of recorded graphs: plan/; tasks of other ranks: offload/. Only this file chooses; the
+ * folders below do not know each other's types. */
 #include "runtime/offload/offload.h"
 #include "runtime/plan/plan.h"
 #include "runtime/workers/internal.h"
@@ -29,7 +29,7 @@ bool work_run_task(struct task_graph *graph, struct worker *worker, struct task 
     }
 }
 
-/* Ends a task that did not stay what it was. */
+/* Ends a task whose state or type changed. */
 static void finish_changed(struct task_graph *graph, struct worker *worker, struct task *task)
 {
     if (task->state == TASK_DELEGATED)

@@ -1,16 +1,16 @@
-/* How an idle worker waits: it spins, then gives way, then sleeps until somebody wakes it. Of the
- * idle workers of a rank one is the poller: it looks for messages and sleeps for short pauses only,
- * so no message waits while a worker idles. A worker that gets busy leaves that to another one.
+/* An idle worker spins, then gives way, then sleeps until it is woken. One idle worker of a rank is
+ * the poller: it looks for messages and sleeps for short pauses only, so no message waits while a
+ * worker idles. A poller that gets busy leaves that to another worker.
  *
- * On a core of its own a worker gives way by sched_yield. On a core that busy programs use as well
- * it does not. There sched_yield gives the core away for a slice of each of the others (15 to 60 ms
- * beside four), and the message comes meanwhile. It spins for a moment, since a neighbour that has
- * a core at the same time answers at once, and then sleeps.
+ * On a core of its own a worker gives way by sched_yield. On a crowded core, which busy programs
+ * use as well, it does not. There sched_yield would give each of the others a slice (15 to 60 ms
+ * beside four), and the message would come meanwhile. It spins for a moment, since a neighbour that
+ * runs at the same time answers at once, and then sleeps.
  *
- * A worker notices such a core by a gap between two idle looks, or after the last one, in which the
- * kernel took the core away. For LOST_FACTOR times as long it does not give way. So giving way
- * costs at most one part in LOST_FACTOR of the time, and a worker whose core is free again soon
- * waits as before. */
+ * A worker notices a crowded core by a gap between two idle looks, or after the last one, in which
+ * the kernel took the core away. It does not give way for LOST_FACTOR times the gap. So giving way
+ * costs at most one part in LOST_FACTOR of the time, and soon after the core is free again the
+ * worker waits as before. */
 #include "runtime/base/clock.h"
 #include "runtime/workers/internal.h"
 
@@ -23,13 +23,13 @@ enum { LOST_FACTOR = 100 };
 /* The longest pause of a poller that sleeps. */
 #define LONGEST_PAUSE_SECONDS 1e-3
 
-/* A gap that counts; and how long a rank in the middle of a replay spins on a crowded core: while
- * its neighbour has a core, too, messages come within that. */
+/* The shortest gap that counts; and the time that a rank in a replay spins on a crowded core. A
+ * message comes within it if the neighbour has a core, too. */
 #define LOST_SECONDS    2e-4
 #define CROWDED_SECONDS 5e-4
 
-/* ---- A place to sleep: `asleep` goes from 0 to 1 by the worker, and back by whoever gets there
- * first: a waker, or the worker itself ---- */
+/* ---- A place to sleep: the worker sets `asleep` to 1; a waker or the worker itself, whichever is
+ * first, sets it back to 0 ---- */
 
 bool work_park_start(struct work_park *park)
 {
@@ -121,7 +121,7 @@ void work_notify(struct work_pool *pool)
 
 /* ---- The poller ---- */
 
-/* Makes the idle worker the poller if there is none. Returns whether it is. */
+/* Makes the idle worker the poller if there is none. Returns whether it is the poller. */
 static bool poller_take(struct worker *worker)
 {
     struct work_pool *pool = worker->pool;
@@ -168,8 +168,8 @@ void work_stir(struct worker *worker)
 
 /* ---- Spinning ---- */
 
-/* Whether the kernel took the core away since the last time this was asked: a long look may have
- * moved a long message. A thread that never was counted says no. */
+/* True if the kernel took the core away since the last call; a long gap alone may be the work on a
+ * long message. False on the first call. */
 static bool core_was_taken(struct worker *worker)
 {
     struct rusage usage;
@@ -227,8 +227,8 @@ static bool idle_spin(struct worker *worker)
 
 /* ---- Sleeping ---- */
 
-/* Sleeps until woken, or for so many seconds if they are > 0. Returns a task if there was one at
- * the last look; does not sleep if nobody polls. */
+/* Sleeps until woken, or for so many seconds if they are > 0. If there is no poller it becomes the
+ * poller instead. Returns a task if the last look found one. */
 static struct task *idle_sleep(struct worker *worker, double seconds, const struct work_wish *wish)
 {
     struct work_pool *pool = worker->pool;

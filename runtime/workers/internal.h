@@ -24,19 +24,19 @@
 /* A worker that sleeps for short pauses begins with this one; each is twice as long as the last. */
 #define WORK_FIRST_PAUSE_SECONDS 2e-5
 
-/* The place where one worker sleeps. To miss no wake-up a worker announces that it will sleep,
- * looks once more for what it waits for, and then sleeps or cancels. Whoever makes something
- * available reads `asleep` afterwards. Both sides are sequentially consistent, so at least one sees
- * the other. */
+/* The place where one worker sleeps. A worker announces its sleep, looks once more for what it
+ * waits for, and then sleeps or cancels. A thread that makes something available reads `asleep`
+ * afterwards. Both sides are sequentially consistent, so at least one sees the other: no wake-up is
+ * missed. */
 struct work_park {
     _Atomic int asleep;
     pthread_mutex_t lock;
     pthread_cond_t wake;
 };
 
-/* What the main program waits for; atomic, so that nobody has to stop for the look at it. */
+/* The main program's reason to wait. Atomic, so that the monitor can look without stopping it. */
 struct work_waits {
-    _Atomic(const char *) call; /* NULL: it does not wait; written last */
+    _Atomic(const char *) call; /* written last; NULL: it does not wait */
     _Atomic(const char *) what; /* NULL: an object's version, the next three */
     _Atomic uint32_t slot, generation;
     _Atomic uint64_t number;
@@ -65,8 +65,8 @@ struct work_counts {
 struct work_awaits {
     struct task *node; /* NULL: none */
     bool on;           /* it may await one */
-    uint8_t pass;      /* how often it runs out of nodes before it may again; */
-    uint8_t vain;      /* what that was after the last wait; 0: the node came */
+    uint8_t pass;      /* it runs out of nodes so often before it may again */
+    uint8_t vain;      /* `pass` after the last wait; 0: the node came */
 };
 
 struct worker {
@@ -110,7 +110,7 @@ struct work_pool {
     unsigned char *states;
     double tick; /* seconds */
     uint64_t poll_ticks, spin_ticks, yield_ticks, await_ticks, brief_ticks;
-    uint64_t affinity_ticks; /* of what leaves one; on one worker nothing does, if by_affinity */
+    uint64_t affinity_ticks; /* of a task that leaves one; never on one worker by_affinity */
     bool by_affinity; /* the scheduler's `place` and `chain` are those of sched.h by affinity */
     bool plain;       /* there is neither another rank nor a trace: see bodies.c */
     bool plain_nodes; /* both: see nodes.c */
@@ -122,10 +122,10 @@ struct work_pool {
     struct work_balance *balance; /* NULL: nothing moves between ranks */
     _Alignas(64) _Atomic int stop;
     _Atomic int endless;             /* the scheduler named victims without an end */
-    _Atomic int watched;             /* somebody reads the tasks that run: they must not go on */
+    _Atomic int watched;             /* the running tasks are being read: they must not go on */
     _Alignas(64) _Atomic int parked; /* workers that sleep or are about to */
     _Alignas(64) _Atomic int poller; /* 1: an idle worker polls */
-    /* Of the throttled main thread, see wait.c. */
+    /* The throttled main thread, see wait.c. */
     uint64_t look;                        /* how many tasks it forks before it counts again */
     _Alignas(64) _Atomic uint64_t wanted; /* fewer unfinished tasks than that, or 0 */
     _Atomic uint64_t awaited;             /* by the main thread that waits: all these, or 0 */
@@ -149,13 +149,13 @@ static inline const struct task *work_enters(struct worker *worker, const struct
     return below;
 }
 
-/* Whether a body runs on the worker's thread. */
+/* True if a body runs on the worker's thread. */
 static inline bool work_in_body(const struct worker *worker)
 {
     return atomic_load_explicit(&worker->runs, memory_order_relaxed) != NULL;
 }
 
-/* The worker's task is over, but nothing of it was published or freed yet. */
+/* The worker's task is over, but not yet published or freed. */
 static inline void work_leaves(struct worker *worker, const struct task *below)
 {
     atomic_store_explicit(&worker->runs, below, memory_order_release);
@@ -164,15 +164,15 @@ static inline void work_leaves(struct worker *worker, const struct task *below)
         work_standstill_passes(worker->pool);
 }
 
-/* Whether any task that may run on top of the body that waits does so, in whatever order: below
- * this many the stack does not matter, and the order of the queues is the faster one. */
+/* True if so few bodies wait on the worker's stack that its depth does not matter. Then tasks that
+ * may run on top run in the order of the queues, which is faster. */
 enum { WORK_NESTED_FREELY = 64 };
 static inline bool work_nests_freely(const struct worker *worker)
 {
     return worker->nested <= WORK_NESTED_FREELY;
 }
 
-/* The task that became ready by the one that ran, and runs next on this worker; NULL: none. */
+/* The task that the last one made ready, to run next on this worker; NULL: none. */
 static inline struct task *work_take_next(struct worker *worker)
 {
     struct task *task = worker->next;
@@ -190,7 +190,7 @@ static inline void work_pause_core(void)
 #endif
 }
 
-/* What an idle worker waits for beside tasks, and how it may sleep meanwhile. */
+/* A condition that an idle worker waits for beside tasks, and how it may sleep meanwhile. */
 struct work_wish {
     bool (*done)(void *context); /* NULL: nothing */
     void *context;
@@ -209,67 +209,65 @@ struct work_ran {
 void *work_thread(void *worker);
 /* A task, or NULL: in its own queue, in the shared one, or with a victim of the scheduler. */
 struct task *work_find(struct worker *worker);
-/* Whether a scheduler names victims without an end, in one round: the next duite_wait then returns
- * an error. */
+/* True if a scheduler names victims without end in one round; the next duite_wait then returns an
+ * error. */
 bool work_is_endless(struct work_pool *pool, unsigned attempt);
 /* Looks for work once; idles for a moment if there is none. */
 void work_look(struct worker *worker, const struct work_wish *wish);
 /* Runs the task and those that run inline after it. */
 void work_run(struct worker *worker, struct task *task);
-/* Whether one more task may run inline after `length` of them. Tasks that run inline, moved to
- * another worker, take all their data along: so it may while there is no other, and in between some
- * run without a look at the queues. */
+/* True if one more task may run inline after `length` of them. A chain goes on while the queues
+ * have no other task, since another worker would need all its data. The queues are looked at once
+ * in WORK_LONGEST_INLINE tasks. */
 enum { WORK_LONGEST_INLINE = 64 };
 bool work_has_no_other(const struct worker *worker);
 static inline bool work_goes_on(const struct worker *worker, unsigned length)
 {
     return length % WORK_LONGEST_INLINE || work_has_no_other(worker);
 }
-/* When it begins, if the last one ended then. */
+/* The start of the next inline task, if the last one ended at `end`. */
 uint64_t work_inline_start(struct worker *worker, unsigned length, uint64_t end);
-/* Sends and receives; whether anything happened. */
+/* Sends and receives. Returns whether anything happened. */
 bool work_poll(struct worker *worker);
 
-/* ---- nodes.c: nodes of a replay that have bodies. They own no versions and no memory, so most of
- * what work_run does with a task is not needed ---- */
+/* ---- nodes.c: nodes of a replay that have bodies. They own no versions and no memory, so most
+ * steps of work_run are not needed ---- */
 
-/* Whether the worker may run the task so. */
+/* True if the worker may run the task so. */
 static inline bool work_is_plain_node(const struct worker *worker, const struct task *task)
 {
     return task->type == TASK_NODE && worker->pool->plain_nodes && !worker->waits;
 }
-/* Runs the node and the nodes that run inline after it; *length counts them. Returns what is to run
- * inline next and is no such node, or NULL. */
+/* Runs the node and the nodes that run inline after it; *length counts them. Returns the task of
+ * another kind that runs inline next, or NULL. */
 struct task *work_run_nodes(struct worker *worker, struct task *task, unsigned *length);
 
-/* ---- bodies.c: tasks that were forked, with bodies. Where there is one rank and no trace, most of
- * what run_any does with a task is not needed ---- */
+/* ---- bodies.c: tasks that were forked, with bodies. On one rank without a trace, most steps of
+ * run_any are not needed ---- */
 
-/* Whether the worker may run the task so. */
+/* True if the worker may run the task so. */
 static inline bool work_is_plain_body(const struct worker *worker, const struct task *task)
 {
     return task->type == TASK_BODY && task->state == TASK_LOCAL && worker->pool->plain;
 }
-/* Runs the task, those that run inline after it, and while they are brief a few more of the queue;
- * *length counts those that run inline in turn. Returns what is to run inline next and is no such
- * task, or NULL. */
+/* Runs the task and those inline after it; while they are brief, a few more from the queue. *length
+ * counts inline tasks in turn. Returns the task of another kind that runs inline next, or NULL. */
 struct task *work_run_bodies(struct worker *worker, struct task *task, unsigned *length);
 
-/* Where a scheduler goes by affinity, too: on top of the body that waits on this worker, runs
- * children of that body from the worker's own queue, newest first, until what it waits for is there
- * or another task is the newest. All that runs so is part of the time of the body that waits: the
- * clock is not read. */
+/* For a scheduler by affinity: runs children of the body that waits on this worker, on top of it.
+ * Takes them from the worker's own queue, newest first, until done(context) or the newest is
+ * another task. Their time counts as the waiting body's, so the clock is not read. */
 void work_run_children(struct worker *worker, bool (*done)(void *context), void *context);
 
-/* Tasks since the clock was read, in these two loops. It is read after each of them, until so many
- * in turn were brief; then once for so many, until these take longer. */
+/* Tasks since the clock was read, in these two loops. The clock is read after each task until a
+ * batch of them in turn were brief; then once a batch, until one takes longer. */
 struct work_batch {
     uint64_t start;
     uint64_t limit;  /* ticks of a brief task; */
     unsigned *brief; /* so many in turn were */
     unsigned tasks;
 };
-/* Reads the clock after the last task of a batch, which ends. Returns what it took. */
+/* Ends a batch: reads the clock. Returns the ticks that it took. */
 uint64_t work_batch_ends(struct worker *worker, struct work_batch *batch);
 
 /* ---- idle.c ---- */
@@ -289,14 +287,14 @@ bool work_park_wake(struct work_park *park);
  * steal the task. Before the call the task was published by a sequentially consistent
  * read-modify-write, or before a fence: a worker that announces its sleep then sees it. */
 void work_wake_one(struct work_pool *pool, unsigned queue);
-/* Nothing to do: one moment of idling. */
+/* Idles for one moment. */
 void work_idle(struct worker *worker, const struct work_wish *wish);
 /* Idling begins, now in ticks. */
 void work_idles(struct worker *worker, uint64_t now);
 /* Something happened: a new idle time begins. */
 void work_stir(struct worker *worker);
 /* The worker has something to do again. If it was the poller it wakes a sleeper, which becomes the
- * poller. Inline as far as it did not idle. */
+ * poller. Inline for workers that did not idle. */
 void work_idle_over(struct worker *worker);
 static inline void work_busy_again(struct worker *worker)
 {
@@ -309,26 +307,26 @@ bool work_is_crowded(struct worker *worker, uint64_t now);
 
 /* ---- wait.c ---- */
 
-/* The worker finds no task: wakes the main thread if it waits for just that. */
+/* The worker finds no task: wakes the main thread if it waits and enough tasks are over. */
 void work_ran_out(struct worker *worker);
 
 /* ---- pool.c: for the trace, if there is one ---- */
 
 /* A task that ran and is not finished yet. */
 void work_note_task(struct worker *worker, const struct task *task, const struct work_ran *ran);
-/* Whether the ring was full: then this worker may have written it to the file. */
+/* True if the ring was full: this worker may then have written it to the file. */
 bool work_note_relieve(struct worker *worker);
 /* The worker idled for so many ticks since idle_since. */
 void work_note_idle(struct worker *worker, uint64_t idle, uint64_t exposed);
-/* Called around what a worker that does not idle does for messages: looking for them, sending,
- * taking them. A begin within another one does not count. Nothing below a microsecond is noted. */
+/* Called around the work of a busy worker on messages: looking for them, sending, taking them. A
+ * begin within another one does not count. Times below a microsecond are not noted. */
 bool work_note_messages_begin(struct worker *worker);
 void work_note_messages_end(struct worker *worker, bool begun);
 void work_note_message(struct worker *worker, bool sends, int peer, size_t bytes);
 
-/* ---- balance.c: what workers do for a balancer. They measure what bodies cost, request tasks of
- * other ranks when there are none, and grant some to those that request them. A pool without a
- * balancer, or with one that moves nothing, or on one rank, has none of this (NULL) ---- */
+/* ---- balance.c: the workers' part of a balancer. They measure bodies, request tasks of other
+ * ranks when they have none, and grant tasks that are requested. A pool has none (NULL) without a
+ * balancer, with one that moves nothing, or on one rank ---- */
 
 /* The pool has its setup and its workers. *balance NULL: nothing moves. Errors: memory. */
 int work_balance_start(struct work_balance **balance, struct work_pool *pool);
@@ -340,8 +338,8 @@ bool work_placed_away(struct worker *worker, struct task *task);
 /* A task of another rank came. */
 void work_offloaded_came(struct work_balance *balance, const struct task *task);
 
-/* A task is about to run: one of the last of other ranks', with nothing else here, is the moment to
- * request more. Whether that took time. */
+/* A task is about to run. Requests more if it is one of the last of other ranks' and nothing else
+ * is here. Returns whether that took time. */
 bool work_begins(struct worker *worker, const struct task *task);
 
 /* The body of a task took so many ticks. */
@@ -350,8 +348,7 @@ void work_learn(struct worker *worker, const struct task *task, uint64_t ticks);
 /* Between tasks: grants tasks to the ranks that request some. */
 void work_grant(struct worker *worker);
 
-/* The worker, which polls for all that idle, has had nothing to do for so many ticks: requests
- * tasks. */
+/* The poller has idled for so many ticks: requests tasks. */
 void work_request(struct worker *worker, uint64_t idle);
 
 /* ---- standstill.c: the monitor looks, eight times in so many seconds, whether the main program
@@ -375,7 +372,7 @@ static inline unsigned work_victim(struct worker *worker, unsigned attempt)
     return victim;
 }
 
-/* Whether a scheduler that goes by affinity keeps the task with the worker that made it ready. */
+/* True if a scheduler by affinity keeps the task with the worker that made it ready. */
 static inline bool work_keeps(const struct worker *worker, const struct task *task)
 {
     const uint32_t affinity = plan_task_affinity(task);

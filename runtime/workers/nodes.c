@@ -1,15 +1,15 @@
-/* Nodes of a replay, one after another, as work_run runs tasks: each makes others ready, of which
- * the first is the next. The counters of tasks are exact after each of them. The clock is read
- * after each node, until BATCH in turn are so short that all of them together would leave no
- * affinity; then once for BATCH, until these take longer.
+/* Nodes of a replay, one after another, as work_run runs tasks: each makes others ready, and the
+ * first of these is the next. The counters of tasks are exact after each node. The clock is read
+ * after each node until BATCH in turn are so short that together they would leave no affinity; then
+ * once a BATCH, until one takes longer.
  *
- * Where two workers need each other's result at each step, the one that is done first has nothing
- * left, and the other one makes both next nodes ready. To hand one over by a queue moves six cache
- * lines in turn from core to core. So the first one awaits a node that lacks one more predecessor:
- * it looks at the counter of the node alone, and the other one leaves that node to it. Nobody else
- * can run the node meanwhile. So the worker waits no longer than a node may take that leaves no
- * affinity, not while any queue has a task, and not on a core that other programs use. A wait that
- * was vain costs it twice as many times without one as the last. */
+ * If two workers need each other's result at each step, the first to finish has nothing left, and
+ * the other makes both next nodes ready. To hand one over by a queue moves six cache lines, one
+ * after another, from core to core. So the first worker awaits a node that lacks one more
+ * predecessor: it looks at that node's counter alone, and the other worker leaves the node to it.
+ * No third worker can run the node meanwhile. So the wait is no longer than a node that leaves no
+ * affinity may take, and it ends when a queue has a task or other programs use the core. After a
+ * vain wait the worker passes over twice as many waits as the last time. */
 #include "runtime/base/clock.h"
 #include "runtime/plan/node.h"
 #include "runtime/workers/internal.h"
@@ -55,7 +55,7 @@ static inline bool nodes_await(struct worker *worker, struct task *task)
     return true;
 }
 
-/* Whether any worker has tasks to run. */
+/* True if any queue has tasks. */
 static bool nodes_elsewhere(const struct work_pool *pool)
 {
     bool some = !work_queue_is_empty(&pool->shared);
@@ -64,7 +64,7 @@ static bool nodes_elsewhere(const struct work_pool *pool)
     return some;
 }
 
-/* Waits for the node, as long as there is nothing else to do. Returns whether it came. */
+/* Waits for the node while there is nothing else to do. Returns whether it came. */
 static bool awaits_node(struct worker *worker, struct task *task, struct work_batch *batch)
 {
     const struct work_pool *pool = worker->pool;
@@ -110,7 +110,7 @@ nodes_count_down_awaiting(struct worker *worker, struct task *task, struct work_
 
 /* ---- One after another ---- */
 
-/* Runs a node; what it leaves becomes ready. */
+/* Runs a node and makes its successors ready. */
 static inline void nodes_run(struct worker *worker, struct task_frame *frame, struct task *task,
                              struct work_batch *batch, unsigned length)
 {

@@ -1,6 +1,6 @@
-/* Starting and stopping the workers of a rank, and what its graph asks of checking mode and of the
- * communication, which it does not know. A pool that failed half-way is stopped by the same path as
- * a whole one. */
+/* Starts and stops the workers of a rank, and passes its graph's calls on to checking mode and
+ * communication, which the graph does not know. A pool that failed half-way stops by the same path
+ * as a whole one. */
 #include "runtime/base/clock.h"
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
@@ -12,13 +12,13 @@
 #include <stdio.h>
 /* Between polls while there is work. */
 #define POLL_SECONDS 5e-6
-/* A poller without a core of its own gives way for so long before it pauses. */
+/* A poller without a core of its own gives way so long before it pauses. */
 #define YIELD_SECONDS 1e-4
-/* A rank in the middle of a replay does so for longer: its neighbours are, too, and if each sleeps
- * until the other wakes, they go on doing so. */
+/* In the middle of a replay a poller gives way longer: neighbours that each sleep until the other
+ * wakes would go on doing so. */
 #define AWAIT_SECONDS 1e-2
-/* Tasks that take less run sixteen at a time between two looks at the clock, and so delay nobody
- * who waits by a millisecond. */
+/* Tasks that take less run sixteen between two looks at the clock: that delays a waiter by less
+ * than a millisecond. */
 #define BRIEF_SECONDS 1e-5
 
 /* ---- Start ---- */
@@ -149,7 +149,7 @@ void work_stop(struct work_pool *pool)
     base_free(pool);
 }
 
-/* ---- What the graph asks: task/above.h ---- */
+/* ---- Calls of the graph: task/above.h ---- */
 
 int work_check_body(struct work_pool *pool, const duite_kernel *kernel, uint64_t number,
                     duite_call *call)
@@ -264,7 +264,7 @@ bool work_note_messages_begin(struct worker *worker)
 
 void work_note_messages_end(struct worker *worker, bool begun)
 {
-    const double least = 1e-6; /* s: an event for each look would cost as much as the look */
+    const double least = 1e-6; /* s: to note each look would cost as much as the look */
     if (!begun)
         return;
     const uint64_t took = base_ticks() - worker->messaging;

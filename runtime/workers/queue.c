@@ -2,8 +2,8 @@
  * Only the owner moves tasks from inbox to deque to heap.
  *
  * Deque: oldest <= newest, but for the moment in which the owner takes from an empty deque. A task
- * leaves the deque by the owner, or by whoever moves `oldest` past it. Heap: the worker that
- * entered it has it alone; others read `n` at most. */
+ * leaves the deque to the owner, or to the thread that moves `oldest` past it. Heap: a worker that
+ * entered has it alone; others only read `n`. */
 #include "runtime/workers/queue.h"
 
 #include "runtime/base/heap.h"
@@ -70,8 +70,8 @@ static inline int64_t deque_end(const struct work_deque *deque)
     return atomic_load_explicit(&deque->newest, memory_order_relaxed);
 }
 
-/* Slots from the end on are filled, and shown to others all at once with the new end. False without
- * memory. */
+/* Fills the slot `newest`, at the end or beyond; deque_show shows all filled slots at once. False
+ * without memory. */
 static inline bool deque_fill(struct work_deque *deque, int64_t newest, struct task *task)
 {
     struct work_ring *ring = atomic_load_explicit(&deque->ring, memory_order_relaxed);
@@ -87,7 +87,7 @@ static inline bool deque_fill(struct work_deque *deque, int64_t newest, struct t
 
 static inline void deque_show(struct work_deque *deque, int64_t newest)
 {
-    /* Sequentially consistent: whoever pushes looks for sleepers next. */
+    /* Sequentially consistent: a look for sleepers follows. */
     atomic_exchange_explicit(&deque->newest, newest, memory_order_seq_cst);
 }
 
@@ -253,7 +253,7 @@ static struct task *inbox_take_all(struct work_queue *queue)
     return task;
 }
 
-/* A list, oldest first. What finds no memory for a larger ring goes to the inbox, which has no
+/* A list, oldest first. Without memory for a larger ring the rest goes to the inbox, which has no
  * bound. */
 static void queue_push_all(struct work_queue *queue, struct task *task)
 {
@@ -301,8 +301,9 @@ static struct task *queue_take_highest(struct work_queue *queue)
     return task;
 }
 
-/* A scheduler may serve by priority now and otherwise later. So every way of taking finds what lies
- * in the heap. Whoever goes round the queue from its old end to the new one comes by all of it. */
+/* A scheduler may serve by priority now and otherwise later, so every way of taking also looks into
+ * the heap. A worker that takes at the old end and pushes at the new one thus comes by all
+ * tasks. */
 static struct task *queue_take(struct work_queue *queue, duite_end end)
 {
     struct task *came = inbox_take_all(queue);
@@ -345,8 +346,8 @@ struct task *work_queue_take_shared(struct work_queue *queue, duite_end end)
         if (atomic_flag_test_and_set_explicit(&queue->token, memory_order_seq_cst))
             return deque_take_oldest(&queue->deque);
         task = work_queue_take(queue, end);
-        /* Other workers did not get the token. They may have been woken for a task that came after
-         * this look; if it stayed in the inbox none of them would come back. */
+        /* Workers that did not get the token may have been woken for a task that came after this
+         * look. If it stayed in the inbox, none of them would come back. */
         atomic_flag_clear_explicit(&queue->token,
                                    task ? memory_order_release : memory_order_seq_cst);
     } while (!task && atomic_load_explicit(&queue->inbox, memory_order_seq_cst));

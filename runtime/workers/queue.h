@@ -11,12 +11,12 @@
 
 #pragma GCC visibility push(hidden) /* called directly: no other library can replace them */
 
-/* Queues of ready tasks, and the two things that they are made of: a deque and a heap. */
+/* Queues of ready tasks, and their two parts: a deque and a heap. */
 
 /* ---- Deque ---- */
 
-/* A work-stealing deque: its owner pushes and takes at the new end, anybody takes at the old end,
- * nobody locks. Chase & Lev, SPAA 2005, with the fences of Lê, Pop, Cohen & Zappa Nardelli, PPoPP
+/* A work-stealing deque without locks: its owner pushes and takes at the new end, anybody takes at
+ * the old end. Chase & Lev, SPAA 2005, with the fences of Lê, Pop, Cohen & Zappa Nardelli, PPoPP
  * 2013. */
 struct work_ring {
     uint64_t mask;
@@ -44,8 +44,8 @@ struct task *work_deque_take_oldest(struct work_deque *deque, bool *again);
 
 /* ---- Heap ---- */
 
-/* Tasks by priority; of equals the one with the longest path, then the one that came first. Whoever
- * holds `busy` may look inside; `n` anybody may read. */
+/* Tasks by priority, then by the longest path, then by arrival. The holder of `busy` may look
+ * inside; anybody may read `n`. */
 struct work_heap {
     struct work_ranked *entry;
     size_t capacity;
@@ -57,20 +57,20 @@ struct work_heap {
 void work_heap_start(struct work_heap *heap);
 void work_heap_stop(struct work_heap *heap);
 
-/* Nobody waits: false if another one is at it. */
+/* Does not wait: false if another thread has entered. */
 bool work_heap_enter(struct work_heap *heap);
 void work_heap_leave(struct work_heap *heap);
 
-/* For who entered. False without memory: the task is not in it. */
+/* After entering. False without memory: the task is not in it. */
 bool work_heap_push(struct work_heap *heap, struct task *task);
-/* For who entered. NULL: empty. */
+/* After entering. NULL: empty. */
 struct task *work_heap_pop(struct work_heap *heap);
 
 /* ---- Queue ---- */
 
 /* A queue of ready tasks: a deque for its owner and thieves, and an inbox into which anybody puts.
- * The shared queue has no owner: whoever gets `token` is it for a moment. When it is served by
- * priority, inbox and deque are emptied into the heap first. */
+ * The shared queue's owner is the present holder of `token`. To serve by priority, inbox and deque
+ * are emptied into the heap first. */
 struct work_queue {
     struct work_deque deque;
     struct work_heap heap;
@@ -87,13 +87,12 @@ void work_queue_put(struct work_queue *queue, struct task *task);
 void work_queue_push(struct work_queue *queue, struct task *task);
 /* The owner. NULL: empty. */
 struct task *work_queue_take(struct work_queue *queue, duite_end end);
-/* The owner. Never the same after something was pushed or put and before it is taken; -1 or more.
- */
+/* The owner. A mark >= -1, which differs from an earlier one while a task pushed or put since is
+ * there. */
 int64_t work_queue_mark(struct work_queue *queue);
-/* Anybody, of a queue without owner. NULL: empty, or another one is at it and will look again. */
+/* Anybody, of a queue without owner. NULL: empty, or the token's holder will look again. */
 struct task *work_queue_take_shared(struct work_queue *queue, duite_end end);
-/* A thief, who may take the whole inbox of a busy owner: all but the first go to the thief's own
- * queue. */
+/* A thief. It may take the whole inbox of a busy owner: all but the first go to its own queue. */
 struct task *work_queue_steal(struct work_queue *victim, struct work_queue *own);
 
 /* Anybody; a look without order. */
@@ -115,8 +114,8 @@ static inline size_t work_queue_size(const struct work_queue *queue)
            atomic_load_explicit(&queue->heap.n, memory_order_relaxed);
 }
 
-/* Are there tasks in the heap? Who finds another one at it goes away empty-handed, and may sleep:
- * whoever took a task and leaves some there wakes another. */
+/* True if there are tasks in the heap. A worker that finds the heap busy goes away and may sleep,
+ * so one that takes a task and leaves some wakes another. */
 static inline bool work_queue_ranks(struct work_queue *queue)
 {
     return atomic_load_explicit(&queue->heap.n, memory_order_relaxed) != 0;

@@ -1,5 +1,5 @@
-/* A rank's share of the cores. Batch systems and containers give a process fewer cores than it may
- * use where they do not bind it; each says so in its own way, and the least counts. */
+/* A rank's share of the cores. Batch systems and containers that do not bind a process may still
+ * grant it fewer cores than it can use. Each says so in its own way; the least counts. */
 #include "runtime/workers/share.h"
 
 #include <limits.h>
@@ -10,7 +10,7 @@
 
 /* ---- Quotas of cgroups ---- */
 
-/* How many numbers, of two at most, the file begins with. */
+/* Reads up to two numbers from the file's beginning. Returns how many it read. */
 static int quota_read(const char *folder, const char *name, double number[2])
 {
     char path[PATH_MAX + 40];
@@ -34,7 +34,7 @@ static double quota_here(const char *folder)
     return INFINITY;
 }
 
-/* The least of a cgroup and all above it. In a container its path may be that of the host, which is
+/* The least quota of a cgroup and all above it. In a container the path may be the host's, which is
  * not there: then the topmost folder is the container's. */
 static double quota_up(const char *root, const char *hierarchy, const char *group)
 {
@@ -86,8 +86,8 @@ static double quota_find(const char *cgroups, const char *root)
 
 /* ---- The rule ---- */
 
-/* A whole number from 1 on at its beginning: lists, of OMP_NUM_THREADS for parts within parts,
- * begin with the outermost. Else UINT_MAX. */
+/* The variable's first whole number >= 1, else UINT_MAX. OMP_NUM_THREADS may be a list for nested
+ * parallel regions, the outermost first. */
 static unsigned number_of(const char *variable)
 {
     const char *text = getenv(variable);

@@ -1,9 +1,9 @@
-/* Cores of the machine, and how far the workers on them are from each other. All of it is read at
- * start. hwloc takes most of a millisecond for the machine's topology: twenty times all else that a
- * start does. So a process loads it once and keeps it.
+/* Cores of the machine, and the distances of the workers on them, read at start. To load the
+ * topology takes hwloc most of a millisecond, twenty times the rest of a start. So a process loads
+ * it once and keeps it.
  *
- * Every worker's row of others has all of them, nearest first. Equally near ones begin with the
- * next number, so that workers which go by the row alone do not all try the same one first. */
+ * A worker's row has all others, nearest first. Equally near ones begin with the next number, so
+ * that not all workers try the same one first. */
 #include "runtime/workers/topology.h"
 
 #include "runtime/base/error.h"
@@ -21,7 +21,6 @@
 static pthread_mutex_t topology_lock = PTHREAD_MUTEX_INITIALIZER;
 static hwloc_topology_t topology; /* NULL: not loaded; `topology_lock` */
 
-/* By errno. */
 static int topology_refuse(const char *call)
 {
     const int reason = errno;
@@ -55,7 +54,7 @@ __attribute__((destructor)) static void topology_unload(void)
         hwloc_topology_destroy(topology);
 }
 
-/* Those that this process may use now. */
+/* Lists the cores that this process may use now. */
 static int cores_list(struct work_cores *cores)
 {
     hwloc_bitmap_t allowed = hwloc_bitmap_alloc();
@@ -130,7 +129,7 @@ void work_cores_bind(int unit)
 
 /* ---- Workers and their distances ---- */
 
-/* Insertion keeps equals in the order in which they come. */
+/* An insertion sort, which keeps the order of equals. */
 static void near_fill_row(struct work_near *near, unsigned worker)
 {
     unsigned others = near->n - 1;

@@ -17,15 +17,15 @@ struct work_cores {
 int work_cores_find(struct work_cores *cores);
 void work_cores_free(struct work_cores *cores);
 
-/* How many levels of the topology lie between two processing units and the smallest part of the
- * machine that has both; 0 if it is one or hwloc does not know them. After work_cores_find. */
+/* Levels of the topology from unit a up to the smallest part of the machine that has b, too.
+ * Returns 0 for the same unit, or if hwloc does not know one. After work_cores_find. */
 unsigned work_cores_distance(int a, int b);
 
-/* Binds the calling thread to one processing unit; -1: leaves it where it is. A refusal is not an
- * error: binding is a favour. */
+/* Binds the calling thread to one processing unit; -1: leaves it where it is. A refusal is no
+ * error. */
 void work_cores_bind(int unit);
 
-/* How far the workers of a rank are from each other, as schedulers are told it: fixed at start. */
+/* Distances between the workers of a rank, as schedulers see them: fixed at start. */
 struct work_near {
     unsigned n;            /* workers */
     unsigned *distance;    /* n x n, row after row */
@@ -33,8 +33,8 @@ struct work_near {
     duite_near *of;        /* n: each one's view */
 };
 
-/* cores: n of them, or NULL: the workers are not bound, and as far from one as from the other.
- * False without memory; work_near_stop is due all the same. */
+/* cores: n of them; NULL: the workers are not bound, and all distances are equal. False without
+ * memory; work_near_stop is due all the same. */
 bool work_near_start(struct work_near *near, unsigned n, const int *cores);
 void work_near_stop(struct work_near *near);
 
@@ -43,7 +43,7 @@ static inline const duite_near *work_near_of(const struct work_near *near, unsig
     return &near->of[worker];
 }
 
-/* Whether others are nearer to the worker than this one. */
+/* True if another worker is nearer than `other`. */
 static inline bool work_near_is_far(const struct work_near *near, unsigned worker, unsigned other)
 {
     return near->distance[worker * near->n + other] > near->of[worker].distance[0];

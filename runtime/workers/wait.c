@@ -1,14 +1,13 @@
-/* Waiting: who waits works meanwhile.
+/* Waiting: a thread that waits works meanwhile.
  *
  * The main thread is worker 0. It works while the main program waits, is throttled, or forks, and
- * it waits for tasks to be over. Each worker counts its own tasks on its own cache lines, and who
- * wants to know adds them up: so a task costs no line that workers share. While the main thread
- * sleeps, it has said how many tasks it forked (`awaited`). While it is throttled, it has also said
- * how many may be left (`wanted`). A worker that runs out of work and finds one of these reached
- * wakes it; if the main thread is throttled, a worker does so at the end of a task, too.
+ * it waits for tasks to be over. Each worker counts its own tasks on its own cache lines, and
+ * readers add them up: so a task costs no shared line. Before the main thread sleeps it says how
+ * many tasks it forked (`awaited`) and, if throttled, how many may be left (`wanted`). A worker
+ * that runs out of work wakes it if that is reached; if it is throttled, so does a worker that ends
+ * a task.
  *
- * A body that waits has only such tasks run on top of it as come before what it does next: see
- * below. */
+ * Only tasks that come before a waiting body's next step run on top of it: see below. */
 #include "runtime/base/clock.h"
 #include "runtime/base/error.h"
 #include "runtime/workers/internal.h"
@@ -19,8 +18,8 @@
 
 /* ---- Tasks that are over ---- */
 
-/* Never more than there are: what is waited for beside the forked tasks is counted in `more` before
- * it can be over, and here it is the ends that are looked at first. */
+/* Never counts too many: things awaited beside forked tasks count in `more` before they can be
+ * over, and here `over` is read first. */
 static uint64_t tasks_over(const struct work_pool *pool)
 {
     uint64_t sum = 0;
@@ -38,11 +37,11 @@ uint64_t work_unfinished(const struct work_pool *pool)
 
 bool work_is_drained(struct work_pool *pool)
 {
-    /* What lies in its own queue is not over: the others' counters need not be read. */
+    /* A task in its own queue is not over: no need to read the others' counters. */
     return work_queue_is_empty(&pool->worker[0].queue) && !work_unfinished(pool);
 }
 
-/* Whether the main thread waits, and for no more than is over. */
+/* True if the main thread waits and enough tasks are over. */
 static bool main_has_enough(const struct work_pool *pool)
 {
     uint64_t awaited = atomic_load_explicit(&pool->awaited, memory_order_relaxed);
@@ -73,7 +72,7 @@ void work_ran_out(struct worker *worker)
     struct work_pool *pool = worker->pool;
     if (!worker->index)
         return;
-    /* Against the main thread, which says what it waits for and then adds up. */
+    /* Pairs with the main thread, which says what it waits for and then adds up. */
     atomic_thread_fence(memory_order_seq_cst);
     if (main_has_enough(pool) || task_has_given_up(pool->setup.graph))
         work_notify(pool);
@@ -137,7 +136,7 @@ void work_throttle(struct work_pool *pool, uint64_t max)
         atomic_store(&pool->wanted, 0);
         left = work_unfinished(pool);
     }
-    /* There cannot be more than `max` before so many are added. */
+    /* More than `max` are possible only after so many more forks. */
     pool->look = graph->tasks + (left < max ? max - left : 0) + 1;
 }
 
@@ -180,54 +179,52 @@ bool work_may_fork(struct work_pool *pool)
 
 /* ---- A body that waits ---- */
 
-/* A body that waits has its worker run, on top of it, tasks that come before what the body does
- * next, and no others. So nothing can wait for a body that is buried on a stack. Proof: take the
- * first in the reference order of all that is not over. It waits for nothing. If it is a task,
- * every waiting worker may run it, or waits for its own descendants alone, which will be over
- * without it. If it is a body that waits, all above it on its stack would come even earlier. So it
- * is on top, and its descendants are over. A task that a worker finds and may not run goes where
- * others look.
+/* A waiting body's worker runs on top of it only tasks that come before the body's next step. So
+ * nothing can wait for ever for a body that is buried on a stack. Proof: take the first unfinished
+ * task or body in the reference order. It waits for nothing. If it is a task, every waiting worker
+ * may run it, or waits for its own descendants alone, which end without it. If it is a waiting
+ * body, all bodies above it on its stack would come even earlier. Hence it is on top, and its
+ * descendants are over. A task that a worker finds and may not run goes where others look.
  *
- * The nodes of an open replay whose tasks were never forked stand in that order between the last
- * task of the replay and the next fork, whose number they have (plan_node_renumber). They wait for
- * each other and for what is earlier, and have no body. So they may run on top of any later body,
- * and the proof holds for them, too.
+ * Nodes of an open replay whose tasks were never forked have the number of the next fork
+ * (plan_node_renumber), and come before it and after the replay's last task. They wait only for
+ * each other and for earlier tasks, and have no body. So they may run on top of any later body, and
+ * the proof holds for them, too.
  *
- * Offloaded tasks and their descendants, on all ranks, wait for nothing but one another. For them
- * the same holds by themselves: their order is that of all ranks, and what descends from a waiting
- * body may have come from another rank. A body that is none of them may run any of them on top, as
- * they never wait for it; they run nothing of the others. */
+ * On all ranks, offloaded tasks and their descendants wait only for one another. The proof holds
+ * for them alone: their order spans all ranks, and a descendant of a waiting body may have come
+ * from another rank. Local bodies may run any of them on top, as they never wait for local bodies;
+ * offloaded bodies run no local task. */
 enum {
     NOT_BARREN = -1,
-    LOOKED_AT = 16, /* of a queue's new end, when one of them may run: the earliest is taken */
+    LOOKED_AT = 16, /* tasks of a queue's new end, if one may run: the earliest is taken */
     MAX_REFUSED = 4 /* tasks taken from others in vain between two pauses */
 };
 #define LONGEST_INSIDE_SECONDS 2e-4
 
-/* A body on top may wait, too, and have further ones run on top of it. So that few do, children
- * come first; of other tasks the earliest that is at hand, which has most of what it needs. Where
- * more than WORK_NESTED_FREELY bodies wait on a stack it is the earliest of all that lie in the
- * worker's queue and the shared one: nothing there is earlier than that, so that it adds one level,
- * and no more until something new becomes ready. What is nested by itself, children that wait for
- * theirs, ends where the stack does: the wait then is an error. */
+/* A body on top may wait, too, and have further ones on top of it. To keep these few, children come
+ * first, then the earliest other task at hand, which has most of its inputs. If more than
+ * WORK_NESTED_FREELY bodies wait on a stack, it is the earliest of the whole own and shared queues.
+ * That adds one level, and no more until a new task becomes ready. Children that wait for children
+ * nest until the stack is full: the wait then is an error. */
 
-/* What a waiting worker knows. */
+/* The state of a waiting worker. */
 struct inside_wait {
     const struct task_scope *scope;
-    unsigned look;    /* at so many tasks of a queue, though one may run already */
+    unsigned look;    /* at so many tasks of a queue, even after one that may run */
     unsigned refused; /* tasks taken from others in vain since the last pause */
     bool paused;      /* just now */
-    int64_t barren;   /* the mark of its own queue when nothing in it might run, or NOT_BARREN */
+    int64_t barren;   /* mark of its own queue when no task in it might run, or NOT_BARREN */
 };
 
-/* What a look through a queue found: the one to run, and those that go back, newest last. */
+/* The result of a look through a queue: the task to run, and those that go back, newest last. */
 struct inside_look {
     const struct task_scope *scope;
     struct task *best, *aside;
     bool child; /* it is a descendant of the body */
 };
 
-/* The task was taken from the queue. */
+/* Sorts in a task taken from the queue. */
 static void look_at(struct inside_look *look, struct task *task)
 {
     struct task *other = task;
@@ -246,9 +243,9 @@ static void look_at(struct inside_look *look, struct task *task)
     }
 }
 
-/* Looks from the new end on, at `most` tasks, and at so many only if one of those may run; then at
- * the oldest. Those that do not run go back, and those who did not find them meanwhile look again.
- */
+/* Looks from the new end at up to `most` tasks, at only wait->look if one of these may run; then at
+ * the oldest. The others go back, and a worker is woken, since they could not be found
+ * meanwhile. */
 static struct task *inside_dig(struct work_pool *pool, struct work_queue *queue,
                                const struct inside_wait *wait, unsigned most)
 {
@@ -272,8 +269,8 @@ static struct task *inside_dig(struct work_pool *pool, struct work_queue *queue,
     return look.best;
 }
 
-/* The same of the shared queue; a few at its new end, and one at the old end, which goes to the new
- * one, so that all come by. */
+/* The same for the shared queue: a few at its new end, and one at the old end, which goes back to
+ * the new one, so that all come by. */
 static struct task *inside_dig_shared(struct work_pool *pool, const struct inside_wait *wait)
 {
     struct work_queue *queue = &pool->shared;
@@ -284,7 +281,7 @@ static struct task *inside_dig_shared(struct work_pool *pool, const struct insid
     return task;
 }
 
-/* Takes from another; what may not run here is left where everybody looks. */
+/* Takes from another worker; a task that may not run here goes to the shared queue. */
 static struct task *inside_steal_from(struct worker *worker, unsigned victim,
                                       struct inside_wait *wait)
 {
@@ -304,8 +301,8 @@ static struct task *inside_steal_from(struct worker *worker, unsigned victim,
     return NULL;
 }
 
-/* Of the scheduler's victims; of all, when it has waited for long: what it waits for may lie with
- * one that waits for what lies here. */
+/* Steals from the scheduler's victims; after a pause from all workers, as two waiting workers may
+ * hold the tasks that each other needs. */
 static struct task *inside_steal(struct worker *worker, struct inside_wait *wait)
 {
     struct work_pool *pool = worker->pool;
@@ -322,7 +319,7 @@ static struct task *inside_steal(struct worker *worker, struct inside_wait *wait
     return task;
 }
 
-/* Nothing to do for a moment. Nobody wakes a worker that waits in a body: it sleeps briefly. */
+/* Idles for a moment. A worker that waits in a body is never woken: it sleeps briefly. */
 static void inside_idle(struct worker *worker, struct inside_wait *wait)
 {
     const struct work_pool *pool = worker->pool;
@@ -363,7 +360,7 @@ static struct task *inside_find(struct worker *worker, struct inside_wait *wait)
     return task;
 }
 
-/* The body waits longer than for children that lie in its worker's own queue. */
+/* The body waits for more than children in its worker's own queue. */
 __attribute__((noinline)) static void inside_wait(struct worker *worker,
                                                   const struct task_scope *scope,
                                                   bool (*done)(void *context), void *context)

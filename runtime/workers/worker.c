@@ -1,7 +1,7 @@
 /* A worker owns its queue, its scheduler's state and its counters; others reach it through its
- * inbox and its park only. One turn of its loop: it finds a task, in its own queue, the shared one,
- * or with a victim that the scheduler names. It runs the task and what runs inline after it, and
- * looks for messages in between. Without a task it idles (idle.c). */
+ * inbox and its park only. One turn of its loop: it finds a task in its own queue, the shared one,
+ * or that of a victim named by the scheduler. It runs the task and those inline after it, and looks
+ * for messages in between. Without a task it idles (idle.c). */
 #include "runtime/base/clock.h"
 #include "runtime/base/memory.h"
 #include "runtime/base/report.h"
@@ -10,7 +10,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* Among the tasks that run inline, those before which the clock is read. */
+/* The clock is read before one in so many inline tasks. */
 enum { CLOCKED = 16 };
 
 /* Tries of a scheduler that names victims, in one round. */
@@ -36,9 +36,9 @@ __attribute__((noinline)) static void ready_put(struct worker *worker, struct ta
 {
     struct work_pool *pool = worker->pool;
     work_bump(&worker->counts.placed, 1);
-    /* What the main program forks is left for others to take all at once, which costs both sides
-     * less than a deque that one fills as the other empties it. What a body forks it mostly waits
-     * for itself. */
+    /* Forks of the main program go to the inbox, where others take all at once. That costs both
+     * sides less than a deque that one fills while the other empties it. A body mostly waits for
+     * its forks itself. */
     if (queue == worker->index && (worker->finishing || work_in_body(worker)))
         work_queue_push(&worker->queue, task);
     else if (queue < pool->setup.threads)
@@ -57,7 +57,7 @@ static unsigned ready_place(const struct worker *worker, const duite_ready *read
     return queue;
 }
 
-/* Whether the scheduler wants the task to run inline after the one that made it ready. */
+/* True if the scheduler wants the task inline after the one that made it ready. */
 static bool ready_runs_inline(const struct worker *worker, const duite_ready *ready)
 {
     base_mark_begin(worker->mark, BASE_SCHEDULER_CHAIN);
@@ -66,13 +66,13 @@ static bool ready_runs_inline(const struct worker *worker, const duite_ready *re
     return is_inline;
 }
 
-/* Whether it need not be asked. */
+/* True if the scheduler need not be asked: the task stays. */
 static bool ready_stays(const struct worker *worker, const struct task *task)
 {
     return worker->pool->by_affinity && work_keeps(worker, task);
 }
 
-/* Whether the task may run on top of the body that waits, if one does. */
+/* True if no body waits, or the task may run on top of it. */
 static inline bool ready_fits(const struct worker *worker, const struct task *task)
 {
     return !worker->waits || task->scope == worker->waits ||
@@ -90,7 +90,7 @@ __attribute__((noinline)) static void ready_ask(struct worker *worker, struct ta
         ready_put(worker, task, ready_place(worker, &ready));
 }
 
-/* Whether the task went to another rank. */
+/* Returns whether the task went to another rank. */
 static bool ready_goes_away(struct worker *worker, struct task *task)
 {
     if (task->type == TASK_OFFLOADED)
@@ -98,7 +98,7 @@ static bool ready_goes_away(struct worker *worker, struct task *task)
     return work_placed_away(worker, task);
 }
 
-/* Whether nothing is asked where the task goes, as for most. */
+/* True if no policy is asked where the task goes, as for most. */
 static inline bool ready_is_straight(const struct work_pool *pool, const struct task *task)
 {
     return task->type == TASK_BODY && task->state == TASK_LOCAL && pool->by_affinity &&
@@ -129,7 +129,7 @@ __attribute__((noinline)) static void ready_any(struct work_pool *pool, struct w
         ready_put(worker, task, worker->index);
 }
 
-/* A body waits below: the task may have to go to a queue. */
+/* A body waits below: the task goes to a queue if it may not run on top. */
 __attribute__((noinline)) static void ready_on_top(struct worker *worker, struct task *task)
 {
     if (ready_fits(worker, task))
@@ -138,7 +138,7 @@ __attribute__((noinline)) static void ready_on_top(struct worker *worker, struct
         ready_put(worker, task, worker->index);
 }
 
-/* Each of these calls is the last thing that is done: most tasks, which are next, save nothing. */
+/* All calls are tail calls: for most tasks, which become next, no register is saved. */
 void work_ready(struct work_pool *pool, struct worker *worker, struct task *task)
 {
     if (!ready_is_straight(pool, task))
@@ -169,7 +169,7 @@ static void steal_count(struct worker *worker, unsigned victim)
     trace_mark(worker->ring, TRACE_STEAL, victim, 0);
 }
 
-/* A task, or NULL: in its own queue, the shared one, a victim's. */
+/* Takes a task from its own queue, the shared one, or a victim's; NULL: none. */
 static struct task *worker_find(struct worker *worker)
 {
     struct work_pool *pool = worker->pool;
@@ -212,8 +212,8 @@ bool work_has_no_other(const struct worker *worker)
            work_queue_is_empty(&worker->pool->shared);
 }
 
-/* When the inline task after this one begins. Reading the clock costs as much as all else that lies
- * between two short tasks. So mostly that time is taken to be what it was before. */
+/* The start of the next inline task. Reading the clock costs as much as all else between two short
+ * tasks, so the last measured gap is mostly used again. */
 uint64_t work_inline_start(struct worker *worker, unsigned length, uint64_t end)
 {
     if (!worker->pool->setup.comm && length % CLOCKED)
@@ -223,9 +223,8 @@ uint64_t work_inline_start(struct worker *worker, unsigned length, uint64_t end)
     return now;
 }
 
-/* Runs the task's body and adds up what it took: of its time in the body, `own` is what its worker
- * spent neither in other tasks nor idle meanwhile. Returns when it was over. The task is not
- * finished yet. */
+/* Runs the task's body and adds up its time; `own` is without the worker's other tasks, messages
+ * and idling inside the body. Returns the end. The task is not finished yet. */
 static uint64_t run_body(struct worker *worker, struct task *task, uint64_t start, bool inlined)
 {
     struct work_pool *pool = worker->pool;
@@ -247,7 +246,7 @@ static uint64_t run_body(struct worker *worker, struct task *task, uint64_t star
     return end;
 }
 
-/* What the task leaves becomes ready: one of these tasks may be the worker's next. */
+/* Finishes the task, which makes others ready: one of them may be the worker's next. */
 static void run_finish(struct worker *worker, struct task *task, unsigned length)
 {
     struct work_pool *pool = worker->pool;
@@ -261,7 +260,7 @@ static void run_finish(struct worker *worker, struct task *task, unsigned length
     worker->may_chain = false;
 }
 
-/* Between two tasks: messages, and tasks for ranks that asked, now and then. */
+/* Between two tasks, now and then: messages, and grants to ranks that request tasks. */
 static void run_poll(struct worker *worker, struct comm *comm, uint64_t now)
 {
     if (!comm_posted(comm) && now - worker->polled <= worker->pool->poll_ticks)
@@ -272,8 +271,8 @@ static void run_poll(struct worker *worker, struct comm *comm, uint64_t now)
         work_grant(worker);
 }
 
-/* Runs the task and those that run inline after it; *length counts them. Returns what is to run
- * inline next in another loop, or NULL. */
+/* Runs the task and those inline after it; *length counts them. Returns the task that runs inline
+ * next in another loop, or NULL. */
 static struct task *run_any(struct worker *worker, struct task *task, unsigned *length)
 {
     struct work_pool *pool = worker->pool;
@@ -294,8 +293,8 @@ static struct task *run_any(struct worker *worker, struct task *task, unsigned *
     }
 }
 
-/* An exception, or the end of its thread, leaves a function of the program and this loop with it.
- * The task can neither be finished nor run again: others would wait for it for ever. */
+/* A C++ exception or the end of the thread left a function of the program, and this loop with it.
+ * The task can neither be finished nor run again, and others would wait for it for ever. */
 static void run_is_left(struct worker *const *running)
 {
     char text[512];

@@ -12,9 +12,9 @@
 #pragma GCC visibility push(hidden) /* called directly: no other library can replace them */
 
 /* The workers of a rank: worker 0 is the main thread, which works while the main program waits; the
- * others are threads of ours. A worker runs what it finds in its own queue, the shared one, or
- * those of the victims that the scheduler names. Between tasks it polls for messages. When it finds
- * nothing it spins for a while and then sleeps. One of the idle workers keeps polling. */
+ * others are threads of ours. A worker runs tasks of its own queue, the shared one, or those of the
+ * victims that the scheduler names. Between tasks it polls for messages. When it finds nothing it
+ * spins for a while and then sleeps. One of the idle workers keeps polling. */
 struct work_pool;
 struct worker;
 
@@ -22,18 +22,18 @@ struct work_setup {
     struct task_graph *graph; /* its `pool` is set by work_start */
     struct comm *comm;        /* NULL: one rank */
     struct check *check;      /* NULL: bodies are called directly */
-    struct trace *trace;      /* NULL: nobody writes down what happens */
+    struct trace *trace;      /* NULL: there is none */
     const duite_scheduler *scheduler;
     const duite_balancer *balancer; /* NULL: nothing moves */
     struct base_monitor *monitor;   /* of this rank */
     struct base_watchdog *watchdog; /* of those of the two that are not built in; NULL: none */
-    bool measures;                  /* what bodies take is asked for, whatever the balancer */
+    bool measures;                  /* bodies are timed even if the balancer does not need it */
     void *context;                  /* for bodies */
     duite *rt;                      /* for bodies */
     unsigned threads;
     uint64_t seed;
     double spin_seconds;  /* 0: workers outnumber cores */
-    double stuck_seconds; /* a standstill that is told; 0: none is */
+    double stuck_seconds; /* of a standstill until it is reported; 0: never */
     const int *cores; /* threads of them to bind to, as the operating system numbers them; NULL: no
                          binding */
 };
@@ -46,20 +46,20 @@ void work_stop(struct work_pool *pool);
 /* Worker 0, for calls by the main thread. */
 struct worker *work_main(struct work_pool *pool);
 
-/* What the main program waits for, for those who ask when nothing moves: words, or a version. */
+/* The main program's reason to wait, for the report of a standstill: words, or a version. */
 struct work_why {
     const char *call, *what; /* constants; what NULL: the version */
     const struct data_key *key;
 };
 
-/* From now on the main program waits; NULL: it does not. Main thread. */
+/* The main program waits from now on; NULL: it does not. Main thread. */
 void work_waits(struct work_pool *pool, const struct work_why *why);
 
 /* Works until done(context) or communication broke. Main thread. */
 void work_until(struct work_pool *pool, const struct work_why *why, bool (*done)(void *context),
                 void *context);
 
-/* The same, whether communication broke or not, and for what nobody is woken for: asks done() again
+/* The same, even after communication broke, and for conditions that wake nobody: asks done() again
  * and again. */
 void work_drain(struct work_pool *pool, bool (*done)(void *context), void *context);
 
@@ -68,21 +68,21 @@ struct work_stillness {
     uint64_t movement, since;
 };
 
-/* Whether no worker has run a body, and nothing of this rank has moved, for a moment: what is
- * unfinished waits for something that never comes. Asked again and again by the main thread, which
- * works meanwhile. */
+/* True if for a moment no worker has run a body and nothing of this rank has moved: the unfinished
+ * tasks wait for something that never comes. The main thread asks again and again, and works
+ * meanwhile. */
 bool work_stands_still(struct work_pool *pool, struct work_stillness *still);
 
-/* Works until done(context) in the middle of a body, with whose scope it waits: runs tasks that
- * task_may_run on top of it, on its stack. Returns early if communication broke. The worker whose
- * body it is. DUITE_E_DEPTH: its stack has no room for a further body, and it did not wait. */
+/* Works until done(context) in the middle of a body, which waits with its scope: runs tasks that
+ * task_may_run on top of it, on its stack. Returns early if communication broke. Called by the
+ * body's worker. DUITE_E_DEPTH: its stack has no room for a further body; it did not wait. */
 int work_inside(struct worker *worker, const struct task_scope *scope, bool (*done)(void *context),
                 void *context);
 
 /* One look around by the main thread: a task or a poll; idles a moment if there is nothing. */
 void work_once(struct work_pool *pool);
 
-/* The main thread has done with work_once: what follows is not idling. */
+/* The main thread has done with work_once: its idle time ends. */
 void work_idle_ends(struct work_pool *pool);
 
 /* Sends what was posted and, now and then, polls: the main thread calls it as it forks. */
@@ -91,27 +91,27 @@ void work_tick(struct work_pool *pool);
 /* Tasks of this rank that are not over. Main thread. */
 uint64_t work_unfinished(const struct work_pool *pool);
 
-/* Whether there are none; asked after each task by the main thread, which waits for just that. */
+/* True if there are none. Cheap: the main thread asks after each task. */
 bool work_is_drained(struct work_pool *pool);
 
 /* The name of the scheduler if it named victims without an end, which is an error; else NULL. */
 const char *work_endless(const struct work_pool *pool);
 
-/* Works while more than `max` of them are not, until a quarter less is, or communication broke.
- * Main thread. */
+/* If more than `max` tasks are unfinished: works until at most 3/4 of `max` are, or communication
+ * broke. Main thread. */
 void work_throttle(struct work_pool *pool, uint64_t max);
 
 /* Counts of all workers of this rank. Exact when no task is left. */
 void work_count(struct work_pool *pool, duite_counters *counters);
 
-/* Of a balancer that moves homes, on several ranks. The first two: seconds since the last time in
- * bodies of tasks that run for a block of this rank, and in all others. The third is the balancer's
+/* For a balancer that moves homes, on several ranks. The first two: seconds since the last call in
+ * bodies of tasks that run for a block of this rank, and in all others. The third: the balancer's
  * answer, see duite_balancer.migrate. Main thread. */
 double work_block_seconds(struct work_pool *pool, uint32_t block);
 double work_other_seconds(struct work_pool *pool);
 uint64_t work_migrate(struct work_pool *pool, const duite_blocks *blocks, int *home);
 
-/* For the trace: an event of worker 0; what each worker of this rank counted. Main thread. */
+/* For the trace: an event of worker 0; the counts of each worker of this rank. Main thread. */
 void work_note(struct work_pool *pool, const struct trace_event *event);
 void work_note_counters(struct work_pool *pool, struct trace_counters *counters);
 

@@ -5,8 +5,8 @@
 
 #include <stdint.h>
 
-/* What charts are drawn on: pixels from the upper left corner, colours 0xRRGGBB. Whatever fails
- * does so at the end of the picture. */
+/* Charts are drawn on a canvas: pixels from the upper left corner, colours 0xRRGGBB. Failures are
+ * reported at the end of the picture. */
 
 enum chart_anchor { CHART_START, CHART_MIDDLE, CHART_END };
 
@@ -30,7 +30,7 @@ int chart_new(struct chart **chart, const struct trace_run *run,
               const struct chart_options *options);
 int chart_width(const struct chart *chart);
 int chart_height(const struct chart *chart);
-/* What the chart says in words. */
+/* A summary of the chart in words. */
 const char *chart_title(const struct chart *chart);
 /* Errors: memory. */
 int chart_draw(const struct chart *chart, const struct chart_canvas *canvas);

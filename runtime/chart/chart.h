@@ -5,8 +5,8 @@
 #include <stdio.h>
 
 /* The Gantt chart of a traced run: a row a worker, ranks one below the other, kernels in colours.
- * What is drawn depends on the size alone, not on how many tasks there were: each column of pixels
- * has the shares of its time. */
+ * The amount drawn depends on the size alone, not on the number of tasks: each column of pixels has
+ * the shares of its time. */
 
 struct trace_run;
 
@@ -15,7 +15,7 @@ enum { CHART_WIDTH = 1280, CHART_MIN_WIDTH = 400, CHART_MIN_HEIGHT = 200, CHART_
 struct chart_options {
     double from, to;   /* s since the first event, on the clock of rank 0; infinite: all there is */
     bool shares;       /* they are shares of the run, 0 .. 1 */
-    int width, height; /* pixels; height 0: what the rows need */
+    int width, height; /* pixels; height 0: as the rows need */
 };
 
 /* All of the run, CHART_WIDTH wide. */
@@ -27,8 +27,8 @@ bool chart_window_parse(const char *text, struct chart_options *options);
 bool chart_size_parse(const char *text, struct chart_options *options);
 
 /* Write the chart to `file`, which stays open. Errors: memory; DUITE_E_ARGUMENT for a size out of
- * range and for a window without anything of the run; of PNG also for a build without cairo.
- * Whether the file took all of it is for the caller to see (ferror). */
+ * range and for a window without anything of the run; of PNG also for a build without cairo. The
+ * caller sees by ferror whether the file took all of it. */
 int chart_write_svg(const struct trace_run *run, const struct chart_options *options, FILE *file);
 int chart_write_png(const struct trace_run *run, const struct chart_options *options, FILE *file);
 

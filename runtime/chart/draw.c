@@ -1,4 +1,4 @@
-/* Draws a chart that is laid out: what lies lower comes first. */
+/* Draws a chart that is laid out, lower layers first. */
 #include "runtime/chart/layout.h"
 
 #include "runtime/base/error.h"
@@ -174,14 +174,14 @@ static void draw_rows(const struct drawing *d)
     draw_ranks(d);
 }
 
-/* ---- What joins them ---- */
+/* ---- Lines between rows ---- */
 
 static double middle_of(const struct chart *chart, uint32_t worker)
 {
     return chart_row_top(chart, chart->model.row_of[worker]) + chart->row_height / 2.0;
 }
 
-/* A line between two moments, cut to what is shown. */
+/* A line between two moments, cut to the part shown. */
 static void draw_span(const struct drawing *d, double from, double from_y, double to, double to_y,
                       double width, uint32_t rgb)
 {

@@ -1,5 +1,5 @@
-/* What a chart says, and where everything is in it. Fonts differ from viewer to viewer: room for
- * words is guessed from their length. */
+/* The words of a chart, and the places of all its parts. Fonts differ from viewer to viewer: room
+ * for words is guessed from their length. */
 #include "runtime/chart/layout.h"
 
 #include "runtime/base/error.h"
@@ -138,7 +138,7 @@ double chart_x(const struct chart *chart, double seconds)
     return CHART_LEFT + chart->columns * (seconds - model->from) / (model->to - model->from);
 }
 
-/* Between ranks, in all: many ranks have no room for it. */
+/* Chooses the gap between ranks (none if there are many) and returns the sum of gaps. */
 static int gaps_choose(struct chart *chart)
 {
     const uint32_t n = chart->model.run->n_ranks;

@@ -4,8 +4,8 @@
 #include "runtime/chart/canvas.h"
 #include "runtime/chart/model.h"
 
-/* Where things are in a chart, in pixels. From the top: the caption, the legend, the critical path,
- * rows, messages, the axis. To the left of the time: names. */
+/* The places of things in a chart, in pixels. From the top: the caption, the legend, the critical
+ * path, rows, messages, the axis. To the left of the time: names. */
 
 enum {
     CHART_MARGIN = 12,
@@ -16,7 +16,7 @@ enum {
     CHART_APART = 8   /* between these and the rows */
 };
 
-/* What stands before a word of the legend. */
+/* The sign before a word of the legend. */
 enum chart_sign { SIGN_NONE, SIGN_BOX, SIGN_PATH, SIGN_MESSAGE };
 
 struct chart_word {
@@ -39,7 +39,7 @@ struct chart {
 
 /* The upper edge of a row; below the last one: n_rows. */
 int chart_row_top(const struct chart *chart, uint32_t row);
-/* Where a moment is. */
+/* The place of a moment. */
 double chart_x(const struct chart *chart, double seconds);
 
 #endif

@@ -1,5 +1,5 @@
-/* What a chart shows, worked out in two parts: what its words say, then, when the words have their
- * place and the rest is known, what is drawn. */
+/* The content of a chart, worked out in two parts: first the words; then, when these have their
+ * places and the remaining room is known, the drawing. */
 #include "runtime/chart/model.h"
 
 #include "runtime/base/error.h"
@@ -16,7 +16,7 @@ static const uint32_t COLOURS[CHART_MAX_KERNELS] = {0x0072B2, 0xE69F00, 0x009E73
                                                     0x56B4E9, 0xD55E00, 0xF0E442};
 enum { OTHER_COLOUR = 0xBBBBBB, RUNTIME_COLOUR = 0x666666 };
 
-/* ---- What takes how long ---- */
+/* ---- Times ---- */
 
 struct ranked {
     double seconds;
@@ -31,8 +31,8 @@ static int compare_ranked(const void *a, const void *b)
     return (x->kernel > y->kernel) - (x->kernel < y->kernel);
 }
 
-/* Names are the program's, and go into files of which each has a rule of its own about characters:
- * what is not plain becomes a question mark, what is long ends in points. */
+/* Names are the program's and go into files with rules of their own about characters. So a special
+ * character becomes a question mark, and a long name ends in points. */
 static void name_copy(char *to, const char *name)
 {
     size_t i;

@@ -6,13 +6,13 @@
 
 #include <stdint.h>
 
-/* What a chart shows, in seconds and counts: shares of time by columns and rows, the critical path,
- * messages. */
+/* The content of a chart, in seconds and counts: shares of time by columns and rows, the critical
+ * path, messages. */
 
 /* ---- shares.c ---- */
 
-/* What takes the time of a worker: a kernel, by its place in the trace's list, or behind these one
- * of the states. Time without any of them is the rest. */
+/* A worker's time goes to slots: kernels, by their place in the trace's list, and behind these the
+ * states. The rest is time without any of them. */
 enum chart_state {
     CHART_OWN,      /* the runtime's own tasks */
     CHART_MESSAGES, /* MPI, of workers that are not idle */
@@ -25,7 +25,7 @@ enum chart_state {
 #define CHART_NONE UINT32_MAX
 
 /* Seconds by row, column and slot. Time within other tasks, idling and messages counts there alone,
- * so what is shared out of a moment of a worker is at most all of it. */
+ * so no moment of a worker is shared out twice. */
 struct chart_shares {
     double from, column; /* s: where column 0 begins, and how long each is */
     uint32_t n_rows, n_columns, n_slots;
@@ -51,8 +51,7 @@ static inline const double *chart_shares_of(const struct chart_shares *shares, u
 
 /* ---- traffic.c ---- */
 
-/* A task of the critical path where it ran: of one that ran on several ranks, where it took
- * longest. */
+/* A task of the critical path where it ran, or where it took longest if it ran on several ranks. */
 struct chart_step {
     double begin, end; /* s */
     uint32_t worker;   /* of all ranks */
@@ -72,7 +71,7 @@ int chart_path_find(const struct trace_run *run, struct chart_path *path);
 struct chart_traffic {
     size_t n;                       /* messages sent within from .. to */
     uint32_t *count;                /* of these, by column */
-    struct trace_messages messages; /* those that are on their way then, if n <= max */
+    struct trace_messages messages; /* those on their way then, if n <= max */
 };
 
 /* To be freed by base_free(count), base_free(messages.message), after an error, too. Errors:
@@ -84,7 +83,7 @@ int chart_traffic_find(const struct trace_run *run, double from, double to, uint
 
 enum { CHART_MAX_KERNELS = 7, CHART_MAX_SLOTS = CHART_MAX_KERNELS + 2, CHART_NAME = 32 };
 
-/* What has a colour: kernels by their time, all other kernels, the runtime. */
+/* Each slot has a colour: the kernels with most time, all other kernels, the runtime. */
 struct chart_slot {
     char name[CHART_NAME];
     double seconds;
@@ -93,13 +92,13 @@ struct chart_slot {
 
 struct chart_model {
     const struct trace_run *run;
-    double from, to;    /* s: what is shown */
+    double from, to;    /* s: the part shown */
     double first, last; /* s: the run */
     uint32_t n_workers, n_slots;
     struct chart_slot slot[CHART_MAX_SLOTS];
     uint32_t *slot_of;   /* by kernel and state */
     double busy, idle;   /* s, of all workers */
-    double path_seconds; /* s of the critical path in what is shown */
+    double path_seconds; /* s of the critical path in the part shown */
     const char *limit;
     struct chart_path path;
     uint32_t n_rows;
@@ -111,11 +110,11 @@ struct chart_model {
 };
 
 /* The first part: all but rows and shares. max_lines: see chart_traffic_find. Errors: memory;
- * DUITE_E_ARGUMENT: nothing is within the window. */
+ * DUITE_E_ARGUMENT: the window is empty. */
 int chart_model_make(struct chart_model *model, const struct trace_run *run,
                      const struct chart_options *options, uint32_t n_columns, size_t max_lines);
-/* The second part. Workers of a rank share rows where there are more than `max_rows`, and ranks do
- * where that is not enough; max_rows: 1 at least. Errors: memory. */
+/* The second part. Workers of a rank share rows if there are more than `max_rows`, and ranks do if
+ * that is not enough; max_rows: 1 at least. Errors: memory. */
 int chart_model_fill(struct chart_model *model, uint32_t n_columns, uint32_t max_rows);
 /* All zero is fine. */
 void chart_model_free(struct chart_model *model);

@@ -10,8 +10,8 @@ struct chart_options chart_options_default(void)
     return (struct chart_options){.from = -INFINITY, .to = INFINITY, .width = CHART_WIDTH};
 }
 
-/* A number from 0 on, of at most 100 percent if that is wanted, that ends at `end`; nothing at all
- * leaves *value. */
+/* Parses a number from 0 on (to 100 if `percent`) that ends at `end`; an empty text leaves *value.
+ */
 static bool window_end_parse(const char *text, const char *end, bool percent, double *value)
 {
     char *behind = NULL;

@@ -1,6 +1,6 @@
-/* Each event is shared out once: to the columns that it covers, less what lies within it. A piece
- * of a worker has its events in the order of their ends, so whoever reads it backwards meets a task
- * before what ran inside of it. */
+/* Each event is shared out once: to the columns that it covers, less the events within it. A piece
+ * of a worker has its events in the order of their ends, so reading it backwards meets a task
+ * before the events inside of it. */
 #include "runtime/chart/model.h"
 
 #include "runtime/base/error.h"
@@ -39,7 +39,7 @@ void chart_shares_add(struct chart_shares *shares, uint32_t row, uint32_t slot, 
     }
 }
 
-/* A task around what is read next. */
+/* A task around the event that is read next. */
 struct around {
     double begin, end;
     uint32_t slot;
@@ -77,13 +77,13 @@ static uint32_t slot_of_event(const struct filling *filling, const struct trace_
     }
 }
 
-/* What trace_event.within counts. */
+/* True if trace_event.within counts the event. */
 static bool event_is_within(const struct trace_event *event)
 {
     return event->kind <= TRACE_IDLE || event->kind == TRACE_MESSAGES;
 }
 
-/* The task around an event is without what the event takes. */
+/* Takes the event's time away from the task around it. */
 static void around_subtract(struct filling *filling, struct nest *nest, uint32_t row, double begin,
                             double end)
 {

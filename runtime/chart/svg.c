@@ -1,5 +1,4 @@
-/* A chart as SVG. What has the same style and follows one another is one path, so the file is
- * small. */
+/* A chart as SVG. Successive shapes of one style are one path, so the file is small. */
 #include "runtime/chart/canvas.h"
 
 #include <inttypes.h>

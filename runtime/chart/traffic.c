@@ -1,4 +1,4 @@
-/* What joins the rows of a chart: the critical path from task to task, messages from rank to
+/* Lines between the rows of a chart: the critical path from task to task, messages from rank to
  * rank. */
 #include "runtime/chart/model.h"
 
@@ -78,7 +78,7 @@ static void sends_count(void *context, const struct trace_seen *seen)
     sends->traffic->count[column < sends->n_columns ? column : sends->n_columns - 1]++;
 }
 
-/* Those that are on their way within the window stay. */
+/* Keeps the messages that are on their way within the window. */
 static int messages_take(const struct trace_run *run, double from, double to,
                          struct trace_messages *messages)
 {

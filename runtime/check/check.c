@@ -1,4 +1,4 @@
-/* A frame is one call of a body on one thread: its regions, and where to jump when it faults.
+/* A frame is one call of a body on one thread: its regions, and a place to jump to when it faults.
  * Frames of a thread nest. Regions of finished calls stay in a ring for a while, and the fault
  * handler searches the ring, too. */
 #include "runtime/check/check.h"
@@ -18,8 +18,8 @@
 /* ---- Frames ---- */
 
 enum { RETIRED = 4096 }; /* regions whose address space stays taken */
-/* What bodies find in place of values that they are to overwrite, and around all values: other
- * bytes when they run again. */
+/* The bytes in place of values that a body overwrites, and around all values: others when it runs
+ * again. */
 static const unsigned char FILL[2] = {0xa5, 0x5a}, REST[2] = {0xc3, 0x3c};
 static const size_t NONE = SIZE_MAX;
 
@@ -37,10 +37,10 @@ struct frame {
     struct check_region *region; /* n_params, and the arguments */
     duite_param *param;          /* n_params, of the copies */
     unsigned again;              /* 1: the body ran before */
-    size_t odd;                  /* the region around which it finds what it did not; or NONE */
+    size_t odd;                  /* the region with other bytes around it; or NONE */
     sigjmp_buf jump;
-    struct check_region hit; /* what the fault was about */
-    const char *at;          /* where it was */
+    struct check_region hit; /* the region of the fault */
+    const char *at;          /* its address */
 };
 
 static _Atomic(struct check *) installed;
@@ -51,7 +51,7 @@ static size_t frame_param_bytes(const duite_param *param)
     return param->count * data_type_size(param->type);
 }
 
-/* What the body may touch: under w and rw an object that changes size may grow. */
+/* The bytes that the body may touch: under w and rw an object that changes size may grow. */
 static size_t frame_param_room(const duite_param *param, duite_mode mode)
 {
     size_t n = mode == DUITE_R || param->max < param->count ? param->count : param->max;
@@ -210,8 +210,8 @@ static void region_retire(struct check *check, struct check_region *region)
 
 /* ---- One run ---- */
 
-/* Runs the body on copies; frame->param gets what it leaves. Returns its code, or that of the
- * fault. */
+/* Runs the body on copies; frame->param gets the results. Returns its code, or that of the fault.
+ */
 static int frame_run(struct frame *frame)
 {
     const duite_call *original = frame->call;
@@ -255,7 +255,7 @@ static bool kernel_is_repeatable(const duite_kernel *kernel, size_t n)
     return plain;
 }
 
-/* What two runs wrote, byte by byte. */
+/* Compares the values that two runs wrote, byte by byte. */
 static int frames_compare(const struct frame *first, const struct frame *second)
 {
     const duite_call *call = first->call;
@@ -284,7 +284,7 @@ static int frames_compare(const struct frame *first, const struct frame *second)
     return DUITE_OK;
 }
 
-/* The same, and of the code that the second run returned. */
+/* The same, and the code that the second run returned. */
 static int frames_differ(const struct frame *first, const struct frame *second, int again)
 {
     if (again > 0)
@@ -293,9 +293,9 @@ static int frames_differ(const struct frame *first, const struct frame *second, 
     return again ? again : frames_compare(first, second);
 }
 
-/* The region around which other bytes alone change what becomes of the second run, which returned
- * `again`; NONE if a run like it already differs. A run that fails tells nothing. The one in
- * `third` is made and given up several times. */
+/* Finds the region around which other bytes alone change the outcome of the second run, which
+ * returned `again`; NONE if even a run with the same bytes differs. A run that fails is no
+ * evidence. The run in `third` is made and given up several times. */
 static size_t frames_blame(struct check *check, const struct frame *second, int again,
                            struct frame *third)
 {

@@ -3,18 +3,18 @@
 
 #include <duite.h>
 
-/* Checking mode: bodies work on private copies between guards, which are taken away afterwards. So
- * what a body does beyond its declaration is found where it happens:
+/* Checking mode: bodies work on private copies between guards, which are taken away afterwards.
+ * Violations of a body's declaration are found where they happen:
  *
- * - These accesses fault, and the fault becomes the failure of the task: a write to an r parameter
- *   or to the arguments; an access beyond either end of a parameter; an access to what an earlier
- *   task was given (a stale or undeclared pointer).
+ * - Some accesses fault, and the fault becomes the failure of the task. They are a write to an r
+ *   parameter or to the arguments, an access beyond either end of a parameter, and an access
+ *   through a stale or undeclared pointer, to the parameters of an earlier task.
  * - A body runs twice, with different fills under w. A byte that keeps its fill was not written; a
  *   byte that differs otherwise shows that the kernel is not deterministic. Kernels with side
  *   effects or postponed modes, and bodies that fork, run once.
  *
  * Memory that is none of duite's (globals, heap, stack) is not watched. A body that faults is left
- * by a jump: what it held (memory, locks) stays held. */
+ * by a jump: memory and locks that it held stay held. */
 struct check;
 
 /* The task whose body is called. */
@@ -30,7 +30,7 @@ int check_start(struct check **check);
 /* No body runs. Gives the signals back. NULL is fine. */
 void check_stop(struct check *check);
 
-/* Calls the body on copies; what it wrote is copied back if it kept to its declaration. Returns its
+/* Calls the body on copies; its results are copied back if it kept to its declaration. Returns its
  * code, or DUITE_E_CHECK or DUITE_E_MEMORY with the message set (duite_fail). Any thread; bodies
  * may nest. */
 int check_call(struct check *check, const struct check_task *task, duite_call *call);

@@ -6,16 +6,16 @@
 #include <stdint.h>
 
 /* Bytes on pages of their own, with a guard on either side. The bytes end as near to the second
- * guard as their alignment (64) allows; the rest of the pages is filled with a known byte, and
- * compared later: it shows writes. A read there shows by what becomes of it if the byte is another
- * one. */
+ * guard as their alignment (64) allows. The rest of the pages is filled with a known byte;
+ * comparing it later shows writes there. Reads there show when another fill byte changes the
+ * outcome. */
 struct check_region {
     char *base; /* of the mapping: guard, pages, guard; NULL: none */
     size_t mapped;
     char *data;
     size_t bytes;
-    unsigned char rest; /* what the pages are filled with */
-    /* Whose: the task, its kernel, which parameter (CHECK_ARGS: its arguments). */
+    unsigned char rest; /* the byte that fills the pages */
+    /* The owner: the task, its kernel, the parameter (CHECK_ARGS: the arguments). */
     uint64_t number;
     const char *kernel;
     size_t param;
@@ -36,10 +36,10 @@ void check_region_forbid(const struct check_region *region);
 /* Gives the address space back. */
 void check_region_unmap(struct check_region *region);
 
-/* Whether every byte around the data still is what it was filled with. */
+/* True if every byte around the data still is the fill byte. */
 bool check_region_whole(const struct check_region *region);
 
-/* Whether the address is in the region or in a guard of it. Safe in a signal handler. */
+/* True if the address is in the region or in a guard of it. Safe in a signal handler. */
 bool check_region_has(const struct check_region *region, const void *address);
 
 #endif

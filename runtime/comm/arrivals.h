@@ -8,9 +8,9 @@
 #include <stdatomic.h>
 #include <stdbool.h>
 
-/* For how long messages were awaited. `clock` is one word, so that it is read without a lock: while
- * none is awaited the ticks so far, with bit 0 clear; else these minus the moment since when, with
- * bit 0 set. Written under the lock of whoever counts. */
+/* The time in which messages were awaited. `clock` is one word, so it can be read without a lock.
+ * While none is awaited it holds the ticks so far, with bit 0 clear. Otherwise it holds these minus
+ * the moment at which waiting began, with bit 0 set. Written under the lock of its owner. */
 struct comm_gauge {
     uint64_t awaited; /* messages */
     _Atomic uint64_t clock;
@@ -23,7 +23,7 @@ static inline uint64_t comm_gauge_ticks(const struct comm_gauge *gauge)
     return clock & 1 ? clock - 1 + base_ticks() : clock;
 }
 
-/* So many messages more are awaited, or fewer. Under the lock. */
+/* Adds `messages`, which may be negative, to those awaited. Under the lock. */
 static inline void comm_gauge_add(struct comm_gauge *gauge, int64_t messages)
 {
     uint64_t before = gauge->awaited;
@@ -36,8 +36,7 @@ static inline void comm_gauge_add(struct comm_gauge *gauge, int64_t messages)
     atomic_store_explicit(&gauge->clock, clock, memory_order_relaxed);
 }
 
-/* Brings packets that arrive together with whom they are for, whichever comes first. Safe from any
- * thread. */
+/* Matches packets that arrive with their targets, whichever comes first. Safe from any thread. */
 struct comm_arrivals {
     pthread_mutex_t lock;
     bool closed;
@@ -47,7 +46,7 @@ struct comm_arrivals {
 };
 
 void comm_arrivals_start(struct comm_arrivals *arrivals);
-void comm_arrivals_stop(struct comm_arrivals *arrivals); /* frees packets that nobody wanted */
+void comm_arrivals_stop(struct comm_arrivals *arrivals); /* frees packets never wanted */
 
 /* Notes a target for so many packets; *early gets those that came already, linked by next. False
  * without memory. */
@@ -57,25 +56,25 @@ bool comm_arrivals_expect(struct comm_arrivals *arrivals, struct data_key key,
 enum comm_take {
     COMM_WANTED, /* *target is set: deliver it */
     COMM_KEPT,   /* until it is expected */
-    COMM_LOST    /* nobody will ever want it, or there is no memory: the caller frees it */
+    COMM_LOST    /* it is wanted nowhere, or there is no memory: the caller frees it */
 };
 
 /* A packet came. */
 enum comm_take comm_arrivals_take(struct comm_arrivals *arrivals, struct data_packet *packet,
                                   struct comm_target *target);
 
-/* So many messages more, or fewer, are awaited elsewhere: for the gauge. */
+/* Adds messages that are awaited elsewhere to the gauge; negative: takes them off. */
 void comm_arrivals_also(struct comm_arrivals *arrivals, int messages);
 
-/* Calls back with all that is awaited, and how many packets of it. Meanwhile nobody is given a
- * packet that is awaited here. */
+/* Calls back with everything awaited and its number of packets. No awaited packet is handed out
+ * during the call. */
 void comm_arrivals_look(struct comm_arrivals *arrivals,
                         void (*awaited)(void *context, const struct data_key *key,
                                         const struct comm_target *target, uint32_t packets),
                         void *context);
 
-/* From the first call on nothing is expected any more, and what comes is lost. Returns one by one
- * the targets that wait, each once for every packet that it wants; false: there are no more. */
+/* After the first call no packet is expected, and those that come are lost. Each call takes one
+ * waiting target, once for every packet that it wants; false: there are no more. */
 bool comm_arrivals_close(struct comm_arrivals *arrivals, struct comm_target *target);
 
 #endif

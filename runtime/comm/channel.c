@@ -1,9 +1,9 @@
-/* A channel's turn counts its messages from the opening on, over all replays; a message lies in the
- * buffer of its turn's parity. A large one is written and read without the lock, and comes in
- * pieces; its receive is posted when its node is ready, not a round early. A sender is not told
- * that its message was read: in most graphs it cannot get far without an answer. So that no rank
- * gets too far, every sixteenth message of a channel, and every large one, is sent synchronously:
- * MPI tells when it was received. This bounds by how many rounds a rank is ahead. */
+/* A channel's turn counts its messages since the opening, over all replays; the turn's parity
+ * selects the buffer. A large message is written and read without the lock and comes in pieces; its
+ * receive is posted when its node is ready, not a round early. A sender does not learn that its
+ * message was read: in most graphs it cannot get far without an answer. To bound how many rounds a
+ * rank can be ahead, every sixteenth message of a channel, and every large one, is sent
+ * synchronously: MPI tells when it was received. */
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
 #include "runtime/base/stack.h"
@@ -37,11 +37,11 @@ bool comm_channels_start(struct comm *comm)
     int *max = NULL, known = 0;
     if (MPI_Comm_get_attr(comm->mpi, MPI_TAG_UB, &max, &known))
         return false;
-    comm_tags_start(&comm->channels.tags, known ? *max : 32767); /* what MPI guarantees */
+    comm_tags_start(&comm->channels.tags, known ? *max : 32767); /* guaranteed by MPI */
     return true;
 }
 
-/* Without the lock: to free large buffers takes long. */
+/* Without the lock: freeing large buffers takes long. */
 static void group_free(struct comm_group *group)
 {
     for (size_t i = 0; i < group->n; i++) {
@@ -60,7 +60,7 @@ static void groups_free(struct comm_group *group)
     }
 }
 
-/* Whether MPI has done with the group's memory. */
+/* True if MPI is done with the group's memory. */
 static bool group_is_quiet(struct comm_group *group)
 {
     for (size_t i = 0; i < group->n; i++) {
@@ -71,7 +71,7 @@ static bool group_is_quiet(struct comm_group *group)
     return true;
 }
 
-/* Takes the closed groups whose memory MPI has done with, to be freed. */
+/* Takes out the closed groups whose memory MPI is done with; the caller frees them. */
 static struct comm_group *channels_sweep(struct comm *comm)
 {
     struct comm_group **link = &comm->channels.closed, *quiet = NULL;
@@ -211,8 +211,8 @@ int comm_channels_open(struct comm *comm, struct plan_channels *channels)
     return code;
 }
 
-/* Under the lock. Whether a plan that the program no longer holds has open channels, or messages
- * that are still being sent. */
+/* True while a plan that the program dropped has open channels, or messages still being sent. Under
+ * the lock. */
 static bool channels_linger(struct comm *comm)
 {
     size_t open = 0;
@@ -254,7 +254,7 @@ static void node_push(struct task **list, struct task *node)
     *list = node;
 }
 
-/* Sends the message, which was written if it is large. Returns its bytes. */
+/* Sends the message; a large one is already written. Returns its bytes. */
 static size_t channel_isend(struct comm *comm, struct task *node, struct channel_side *side)
 {
     const struct plan_channel *channel = side->channel;
@@ -306,7 +306,7 @@ static void channel_send(struct comm *comm, struct task *node, struct channel_si
     node_push(&found->nodes, node);
 }
 
-/* From now on the receive that was posted is looked for. */
+/* Moves the posted receive to the requests that are tested. */
 static void channel_listen(struct comm *comm, struct channel_side *side)
 {
     MPI_Request *request = &side->request[side->turn % 2];
@@ -352,7 +352,7 @@ static bool channel_fits(struct comm *comm, int mpi)
     return false;
 }
 
-/* A piece of a large message came. Whether it was the last one. */
+/* A piece of a large message came. True if it was the last one. */
 static bool channel_is_through(struct comm *comm, struct comm_found *found,
                                struct channel_side *side)
 {

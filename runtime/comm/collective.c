@@ -1,12 +1,11 @@
-/* Collective calls of the main thread. There are four kinds: a small reduction, by which all ranks
- * find whether they forked the same; a gathering of words; a sum; and a search for the word of the
- * first failure. The last three only follow a reduction that told all ranks alike to go on. So
- * ranks that run different programs are in the same kind of call nevertheless.
+/* Collective calls of the main thread. There are four kinds: a small reduction, which finds whether
+ * all ranks forked the same; a gathering of words; a sum; a search for the first failure's word.
+ * The last three only follow a reduction that let all ranks go on. So even ranks that run different
+ * programs are in the same kind of call.
  *
- * A rank leaves a call before it is over when communication broke; MPI goes on using the buffers,
- * which therefore are the comm's own. No rank is more than one call ahead of another: at stop the
- * ranks that did not come to the last one join it after all, in the kind that the abort message
- * tells. */
+ * A rank leaves an unfinished call when communication breaks. MPI goes on using the buffers, so
+ * they belong to the comm. No rank is more than one call ahead of another. At stop, ranks that
+ * missed the last call join it, in the kind that the abort message tells. */
 #include "runtime/base/error.h"
 #include "runtime/comm/internal.h"
 
@@ -14,8 +13,7 @@
 
 /* ---- Words ---- */
 
-/* Of two words the one whose failure is first in fork order; of equal ones that of the lower rank.
- */
+/* Keeps the word whose failure is first in fork order; between equal ones, the lower rank's. */
 static void word_first(void *from, void *to, int *n, MPI_Datatype *type)
 {
     const struct comm_word *one = from;
@@ -143,7 +141,7 @@ int comm_sum(struct comm *comm, double *numbers, int n, void (*between)(void *co
 
 /* ---- Agreeing ---- */
 
-/* All ranks have the same: the largest is the smallest. */
+/* True if all ranks have the same: the largest is the smallest. */
 static bool reduced_are_same(const struct comm *comm)
 {
     const struct comm_reduced *max = &comm->max;

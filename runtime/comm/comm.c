@@ -1,6 +1,6 @@
-/* Start, stop and progress. What is to be sent waits in a lock-free stack, linked by the tasks
- * themselves, until somebody polls. MPI is called by the holder of the lock; what a poll found is
- * delivered after it is let go. */
+/* Start, stop and progress. Tasks to be sent wait in a lock-free stack, linked by the tasks
+ * themselves, until a thread polls. The holder of the lock calls MPI; a poll delivers its findings
+ * after it has let go of the lock. */
 #include "runtime/comm/comm.h"
 
 #include "runtime/base/clock.h"
@@ -67,7 +67,7 @@ void comm_open(struct comm *comm, bool requests)
     comm_unlock(comm);
 }
 
-/* Whether nothing is on its way any more, at a good stop or after communication broke. */
+/* True once no message is on its way, at a good stop or after communication broke. */
 static bool comm_is_over(struct comm *comm)
 {
     if (comm_is_broken(comm))
@@ -128,7 +128,7 @@ void comm_hold(struct comm *comm)
 
 void comm_let_go(struct comm *comm)
 {
-    comm_unlock(comm); /* what was posted meanwhile is sent by the next poll */
+    comm_unlock(comm); /* the next poll sends the posts made meanwhile */
 }
 
 void comm_workers_end(struct comm *comm)
@@ -142,10 +142,10 @@ void comm_workers_end(struct comm *comm)
 
 /* ---- Progress ---- */
 
-/* Nodes that are finished make others ready: those are taken by the pass that finished them. */
+/* Finished nodes make others ready; the pass that finished them takes those. */
 static _Thread_local bool passing __attribute__((tls_model("initial-exec")));
 
-/* While a recorded graph waits for its messages others are looked for less often. */
+/* Other messages are looked for less often while a recorded graph waits for its own. */
 enum { SELDOM = 8 };
 
 static void comm_receive_seldom(struct comm *comm, struct comm_found *found)
@@ -229,8 +229,8 @@ uint64_t comm_movement(struct comm *comm)
            atomic_load_explicit(&comm->came, memory_order_relaxed);
 }
 
-/* Whoever polls has the lock for microseconds, or as long as its thread has no core. One that
- * stands still inside MPI keeps it: then nobody can look. */
+/* A poll holds the lock for microseconds, or as long as its thread has no core. A thread that
+ * stands still inside MPI keeps the lock: then no look is possible. */
 static bool comm_lock_soon(struct comm *comm)
 {
     enum { TRIES = 100 };
@@ -254,6 +254,6 @@ bool comm_look(struct comm *comm, const struct comm_looker *looker)
             looker->sending(looker->context, task->send);
     }
     comm_channels_look(comm, looker);
-    comm_unlock(comm); /* what was posted meanwhile is sent by the next poll */
+    comm_unlock(comm); /* the next poll sends the posts made meanwhile */
     return true;
 }

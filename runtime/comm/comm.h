@@ -8,28 +8,27 @@
 
 #include <mpi.h>
 
-/* Messages between ranks. A message is a packet, named by its key; it is sent as soon as its bytes
- * are there and may arrive before this rank has forked the task that wants it. Whoever polls does
- * what there is to do; nobody waits inside.
+/* Messages between ranks. A message is a packet, named by its key. It is sent as soon as its bytes
+ * are there and may arrive before its receiver has forked the task that wants it. A poll does all
+ * it can and never waits.
  *
- * MPI is called by one thread at a time, the one that holds `lock`; packets are delivered after it
- * is let go. */
+ * Only the holder of `lock` calls MPI; packets are delivered after the lock is let go. */
 struct comm;
 
-/* To whom a packet goes: one of the two is set; and the rank it comes from, or -1: several. */
+/* A packet's target, one of the two, and the rank it comes from (-1: several). */
 struct comm_target {
     struct data_version *version;
     struct data_sum *sum;
     int from;
 };
 
-/* On mpi, which stays the caller's and is for these messages only; the monitor gives heartbeats.
- * Local. Errors: DUITE_E_MPI, memory; comm_stop is due all the same. */
+/* Starts on mpi, which stays the caller's and is for these messages only; the monitor gives
+ * heartbeats. Local. Errors: DUITE_E_MPI, memory; comm_stop is due even then. */
 int comm_start(struct comm **comm, MPI_Comm mpi, struct task_graph *graph,
                struct base_monitor *monitor);
 
-/* Before comm_open, on all ranks alike: a rank that sends no heartbeat for so many seconds is lost
- * (0: never). host: that of the rank before this one in the ring. comm NULL is fine. */
+/* Before comm_open, on all ranks alike. A rank that sends no heartbeat for so many seconds is lost
+ * (0: never). `host`: of the rank before this one in the ring. NULL is fine. */
 void comm_ring(struct comm *comm, double seconds, const char *host);
 
 /* Before comm_open: `report` is called for each message that a worker sends or receives, with its
@@ -37,14 +36,14 @@ void comm_ring(struct comm *comm, double seconds, const char *host);
 typedef void comm_report(struct worker *worker, bool sends, int peer, size_t bytes);
 void comm_set_report(struct comm *comm, comm_report *report);
 
-/* From now on messages are sent and received; `requests`: ranks may request tasks of
- * others, the same on all. Before, the lock keeps workers out of MPI, so that the main thread may
- * call it while it starts. All ranks come here or none. NULL is fine. */
+/* Messages are sent and received from now on. `requests`, the same on all ranks: ranks may request
+ * tasks of others. Until then the lock keeps workers out of MPI, so that the main thread may call
+ * it while it starts. All ranks call this or none. NULL is fine. */
 void comm_open(struct comm *comm, bool requests);
 
-/* Frees everything; no other thread is left, no task either. All ranks have agreed (comm_agree)
- * that nothing is on its way; or communication is broken, and it waits until that is so:
- * collective. False if MPI may still use its communicator, which then must not be freed. */
+/* Frees everything; no other thread and no task is left. Collective: all ranks have agreed
+ * (comm_agree) that nothing is on its way; or communication is broken, and this waits until that is
+ * so. False if MPI may still use its communicator, which then must not be freed. */
 bool comm_stop(struct comm *comm);
 
 /* Posts a ready SEND. The next poll sends it, and work_finish ends it once it is sent. comm_posted:
@@ -54,21 +53,21 @@ bool comm_posted(struct comm *comm);
 
 /* Opens the channels of a recorded graph (work_open). Main thread, all ranks alike. Errors:
  * DUITE_E_MPI, memory; or PLAN_NEEDS_TAGS on all ranks: then the ranks meet, settle, meet again,
- * have met, and try once more. Settle: waits until the channels that the program dropped on this
- * rank are closed. */
+ * call comm_channels_met, and try once more. Settling (comm_channels_settle) waits until the
+ * channels that the program dropped on this rank are closed. */
 int comm_channels_open(struct comm *comm, struct plan_channels *channels);
 int comm_channels_settle(struct comm *comm);
 void comm_channels_met(struct comm *comm);
 
-/* A node of a channel is ready: sends what it sends right now, or awaits its message; it is
- * finished when that is through. Any thread. */
+/* A node of a channel is ready: sends its message right now, or awaits it. The node finishes when
+ * the message is through. Any thread. */
 void comm_channel_ready(struct comm *comm, struct worker *worker, struct task *node);
 
-/* Whether messages of recorded graphs are awaited. Any thread. */
+/* True while messages of recorded graphs are awaited. Any thread. */
 bool comm_awaits(struct comm *comm);
 
-/* The packets of that key belong to a version, or to a sum; those that came already are delivered.
- * Main thread. */
+/* Sets the target of the packets of that key; those that came already are delivered. Main thread.
+ */
 int comm_expect(struct comm *comm, struct worker *worker, struct data_key key,
                 struct comm_target target, uint32_t packets);
 
@@ -76,15 +75,16 @@ int comm_expect(struct comm *comm, struct worker *worker, struct data_key key,
  * thread. */
 bool comm_poll(struct comm *comm, struct worker *worker);
 
-/* Calls back with all that is awaited (see comm_arrivals_look), and with what is being sent if the
- * lock can be had. Returns whether it could. A task that waits for something awaited stays as it is
- * during the call. Any thread. */
+/* Calls back with everything awaited (see comm_arrivals_look) and, if the lock can be had, with
+ * everything being sent. Returns whether it could be had. A task that waits for something awaited
+ * stays as it is during the call. Any thread. */
 struct comm_looker {
     void *context;
     void (*awaited)(void *context, const struct data_key *key, const struct comm_target *target,
                     uint32_t packets);
     void (*sending)(void *context, const struct task_send *send);
-    /* Of a recorded graph: one that has not come; or, if it sends, that waits for its buffer. */
+    /* A channel of a recorded graph: its message has not come or, if it sends, waits for its
+     * buffer. */
     void (*channel)(void *context, const struct plan_channel *channel);
 };
 bool comm_look(struct comm *comm, const struct comm_looker *looker);
@@ -108,14 +108,14 @@ int comm_host_find(struct comm_host *host, MPI_Comm mpi, uint64_t hash);
 /* threads: workers of this rank. Collective over the ranks of the host. Errors: DUITE_E_MPI. */
 int comm_host_count(struct comm_host *host, unsigned threads);
 
-/* Measures what a message costs between ranks. Before comm_open; collective, blocks. A failure is
+/* Measures the cost of a message between ranks. Before comm_open; collective, blocks. A failure is
  * told by the next call. */
 void comm_measure(struct comm *comm);
 
-/* Seconds for a message there and another one back, of so many bytes together. */
+/* Seconds for a message and its answer, of so many bytes together. */
 double comm_transfer(const struct comm *comm, size_t bytes);
 
-/* ---- Ranks that have nothing to do ---- */
+/* ---- Idle ranks ---- */
 
 /* Requests tasks of a rank, for so many idle workers; the request stands for so many seconds.
  * False: not now. */
@@ -128,16 +128,15 @@ struct comm_requester {
     double until;
 };
 
-/* Whether there may be a request; takes one (false: there is none now); puts one back that got no
- * grant. */
+/* True if there may be a request; takes one (false: none now); puts back one that got no grant. */
 bool comm_has_requests(struct comm *comm);
 bool comm_take_request(struct comm *comm, struct comm_requester *requester);
 void comm_return_request(struct comm *comm, const struct comm_requester *requester);
 
 /* ---- Calls that block, made by all ranks alike ---- */
 
-/* This rank enters a blocking call, and has forked what the fingerprint says. True if so many calls
- * were logged that all ranks must agree now. Main thread. */
+/* This rank enters a blocking call; the fingerprint is that of its forks so far. True if the log is
+ * full: all ranks must agree now. Main thread. */
 bool comm_call(struct comm *comm, const char *name, uint64_t fingerprint);
 
 /* This rank waits for data in the call, or no longer waits. If a difference between ranks is found
@@ -146,7 +145,7 @@ void comm_waits(struct comm *comm, bool waits);
 
 enum { COMM_SUMMED = 16, COMM_WORD_NUMBERS = sizeof(struct data_failure) / sizeof(double) };
 
-/* What a rank tells the others in a collective call. */
+/* A rank's contribution to a collective call. */
 struct comm_word {
     uint64_t fingerprint; /* to be the same on all */
     uint64_t failed;      /* number + 1 of this rank's first failed task in fork order, or 0 */
@@ -158,7 +157,7 @@ struct comm_word {
 
 /* One small reduction, which compares own->fingerprint (the forks) and the homes of all ranks.
  * own->failed becomes 1 if a task failed on any rank, else 0. Calls between(context) while it
- * waits, so that others get on; it has to poll. DUITE_E_DIFFERENT if ranks differ: then
+ * waits, so that others get on; it must poll. DUITE_E_DIFFERENT if ranks differ: then
  * communication is broken, and the message names the first difference. Collective, main thread. */
 int comm_agree(struct comm *comm, struct comm_word *own, void (*between)(void *context),
                void *context);
@@ -168,8 +167,8 @@ int comm_agree(struct comm *comm, struct comm_word *own, void (*between)(void *c
 int comm_gather(struct comm *comm, const struct comm_word *own, struct comm_word **all,
                 void (*between)(void *context), void *context);
 
-/* Of all ranks' words the one whose failed task is first in fork order: *own, the same on all. Some
- * rank has one: comm_agree said so. As comm_gather, by one reduction. */
+/* *own becomes, on all ranks alike, the word whose failed task is first in fork order. Some rank
+ * has one: comm_agree said so. As comm_gather, by one reduction. */
 int comm_first(struct comm *comm, struct comm_word *own, void (*between)(void *context),
                void *context);
 
@@ -179,19 +178,19 @@ int comm_sum(struct comm *comm, double *numbers, int n, void (*between)(void *co
 
 /* ---- When it breaks ----
  *
- * A rank on which a message was lost, or that cannot go on for another reason, breaks: it sends
- * nothing but an abort message with the reason to all others, which break in turn. Blocking calls
- * return the code; the main thread gives up what is still expected; stop is all that is left. */
+ * A rank that lost a message, or cannot go on for another reason, breaks. From then on it sends
+ * only an abort message with the reason to all others, which break in turn. Blocking calls return
+ * the code; the main thread gives up everything still expected; only stop is left. */
 
 /* Breaks; the first reason counts. Any thread. */
 void comm_broke(struct comm *comm, int code, const char *message);
-/* The same for want of memory for something. */
+/* The same, for want of memory for `what`. */
 void comm_broke_memory(struct comm *comm, const char *what);
 
 /* The code with the message set once communication is broken, else 0. */
 int comm_broken(struct comm *comm);
 
-/* Whether it is broken because MPI failed or a rank was lost: then MPI must not be relied on, nor
+/* True if it broke because MPI failed or a rank was lost: then MPI must not be relied on, nor
  * finalised. */
 bool comm_is_cut(struct comm *comm);
 
@@ -202,10 +201,10 @@ void comm_part(struct comm *comm, struct worker *worker);
 void comm_hold(struct comm *comm);
 void comm_let_go(struct comm *comm);
 
-/* The workers end: nobody wakes them any more if communication breaks. Main thread. */
+/* The workers end: they are no longer woken if communication breaks. Main thread. */
 void comm_workers_end(struct comm *comm);
 
-/* After it broke: whatever is expected is taken for lost. Main thread. */
+/* After it broke: takes everything expected for lost. Main thread. */
 void comm_give_up(struct comm *comm, struct worker *worker);
 
 /* Ticks so far in which this rank awaited messages. Any thread. */

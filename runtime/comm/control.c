@@ -11,8 +11,8 @@
 
 /* ---- Start and stop ---- */
 
-/* Requests for what must be sent without memory, an abort message, one of a loss and a last one to
- * each rank, and for one message more. */
+/* Requests for the messages that must go without further memory (abort, loss and last message to
+ * each rank), and for one message more. */
 static size_t control_reserve(int n_ranks)
 {
     return 3 * (size_t)n_ranks + 1;
@@ -206,7 +206,7 @@ bool comm_request(struct comm *comm, int rank, unsigned idle, double seconds)
         packet->key.number = (uint64_t)(1e9 * seconds);
         sent = comm_control_send(comm, rank, packet);
     }
-    comm_unlock(comm); /* what was posted meanwhile is sent by the caller's next poll */
+    comm_unlock(comm); /* the caller's next poll sends the posts made meanwhile */
     atomic_fetch_add_explicit(&comm->control.requested, sent, memory_order_relaxed);
     return sent;
 }
@@ -258,8 +258,8 @@ void comm_return_request(struct comm *comm, const struct comm_requester *request
 
 /* ---- The end ---- */
 
-/* Whether the rank gets a last message of this one, and this one of it: both may send one another
- * control messages. Any rank may request tasks of any other; checks go along the tree. */
+/* True if that rank and this one send each other a last message, as they may send each other
+ * control messages. Requests go between any two ranks, checks along the tree. */
 static bool last_is_for(const struct comm *comm, int rank)
 {
     return rank != comm->rank && (comm->may_request || comm_check_joins(comm->rank, rank));

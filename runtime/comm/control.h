@@ -4,15 +4,14 @@
 #include "runtime/comm/comm.h"
 #include "runtime/comm/requests.h"
 
-/* What the ranks tell one another beside values and tasks, of this folder only: control messages,
- * the divergence check, and the search for the first difference. Everything here is under the lock
- * of the comm unless it says otherwise. */
+/* Messages between ranks beside values and tasks, for this folder only: control messages, the
+ * divergence check, and the search for the first difference. Everything here is under the lock of
+ * the comm unless it says otherwise. */
 
 /* ---- Control messages (control.c) ---- */
 
-/* Control messages: what the ranks tell one another beside values and tasks. Each is a packet of a
- * kind of this folder's own and travels like a value, so that messages between two ranks keep their
- * order. All of them share one set of MPI requests. */
+/* Kinds of control messages. Each is a packet and travels like a value, so that messages between
+ * two ranks keep their order. All of them share one set of MPI requests. */
 enum comm_kind {
     COMM_ABORT = 64, /* communication is broken on the sender: struct comm_abort */
     COMM_LOSS,    /* a rank is lost, which was found after the sender's abort message: the same */
@@ -25,9 +24,8 @@ enum comm_kind {
 };
 
 /* The abort message. A rank on which communication is broken sends it once to each other rank and
- * nothing after it. So whoever has the abort messages of all others knows that nothing is on its
- * way any more. One thing may follow: the news that a rank is lost, which would never send its
- * own. */
+ * nothing after it. So a rank that has the abort messages of all others knows that nothing more is
+ * on its way. Only the news that a rank is lost may follow: that rank would never send its own. */
 struct comm_abort {
     uint64_t entered; /* collective calls so far */
     int32_t code;
@@ -35,8 +33,8 @@ struct comm_abort {
     char message[1008];
 };
 
-/* A request for tasks stands at the rank that got it until a task is granted or its time is over; a
- * newer one of the same rank takes its place. Nobody waits for a grant, and requests are no
+/* A request for tasks stands at its receiver until a task is granted or its time is over; a newer
+ * one of the same rank replaces it. No rank waits for a grant, and requests do not count as
  * movement of the program. */
 struct comm_standing {
     double until; /* 0: none */
@@ -53,7 +51,7 @@ struct comm_control {
     int32_t kind;              /* of the last of these */
     int last_heard;
     struct comm_standing *standing; /* by rank */
-    int turn;                       /* whose request is looked at next */
+    int turn;                       /* the rank whose request was looked at last */
     _Atomic int standing_any;       /* there may be some; any thread */
     _Atomic uint64_t requested;     /* requests sent; any thread */
 };
@@ -75,15 +73,15 @@ bool comm_control_hear(struct comm *comm, struct data_packet *packet);
  * communication is broken. */
 void comm_control_pass(struct comm *comm);
 
-/* Tells those who may still send control messages that this rank stops. Takes the lock, since
+/* Tells the ranks that may still send control messages that this rank stops. Takes the lock, since
  * heartbeats go on. */
 void comm_control_end(struct comm *comm);
 
-/* Takes the lock. Communication is whole: no message is on its way to or from this rank, nor will
- * be. */
+/* While communication is whole: true if no message is on its way to or from this rank, nor will be.
+ * Takes the lock. */
 bool comm_control_over(struct comm *comm);
 
-/* After communication broke: whether nothing at all is on its way to or from this rank, nor will
+/* After communication broke: true if no message at all is on its way to or from this rank, nor will
  * be. Takes the lock. */
 bool comm_is_quiet(struct comm *comm);
 
@@ -92,15 +90,15 @@ bool comm_is_quiet(struct comm *comm);
 /* The divergence check finds ranks that make different calls, even where one waits for data that no
  * other rank will ever send.
  *
- * Every rank logs its blocking calls: number, name, and the fingerprint of all that it forked
- * before. A rank that waits long in a call sends its entry of the log along a binomial tree over
- * all ranks, in which rank r has the parent r & (r - 1). Each rank passes on the first entry of a
- * number that it sees, whether it made that call yet or not, and compares it with its own and with
- * all further ones of that number. So a call costs a rank at most one message for each of its
- * neighbours in the tree, at most log2 of the number of ranks. Since the tree joins all ranks, any
- * difference is seen somewhere. Nothing is sent as long as nobody waits long. */
+ * Every rank logs its blocking calls: number, name, and the fingerprint of its forks before. A rank
+ * that waits long in a call sends the call's entry along a binomial tree over all ranks; the parent
+ * of rank r is r & (r - 1). Each rank passes on the first entry of a number that it sees, even
+ * before it makes that call. It compares that entry with its own and with all later ones of the
+ * number. So a call costs a rank at most one message for each neighbour in the tree, at most log2
+ * of the number of ranks. Since the tree joins all ranks, any difference is seen somewhere. The
+ * check sends no messages while no rank waits long. */
 
-/* So many calls are logged; then all ranks agree that they were the same, and a new log begins. */
+/* After so many logged calls all ranks agree that they were the same, and a new log begins. */
 enum { COMM_LOGGED_CALLS = 1024 };
 
 /* A blocking call of a rank. */
@@ -129,10 +127,10 @@ struct comm_calls {
 bool comm_calls_start(struct comm_calls *calls);
 void comm_calls_stop(struct comm_calls *calls);
 
-/* Whether two ranks are neighbours in the tree. */
+/* True if two ranks are neighbours in the tree. */
 bool comm_check_joins(int a, int b);
 
-/* Under the lock: compares what this rank called meanwhile, and begins a check when one is due. */
+/* Under the lock: compares this rank's new calls, and begins a check when one is due. */
 void comm_check_pass(struct comm *comm);
 
 /* Under the lock: a neighbour sent, or passed on, an entry. */
@@ -154,9 +152,9 @@ struct comm_difference {
     struct difference_inquiry *inquiry; /* rank 0's */
 };
 
-/* Under the lock: ranks differ, as was found at the blocking call of that number; which breaks
- * communication soon, with a sentence that names the first difference, the same on all ranks. The
- * sentence given is for the case that it stays unknown. */
+/* Under the lock: ranks were found to differ at the blocking call of that number. Communication
+ * breaks soon, with the same sentence on all ranks: it names the first difference, or is `message`
+ * if that stays unknown. */
 void comm_difference_found(struct comm *comm, uint64_t number, const char *message);
 
 /* Under the lock: a control message about it came. */

@@ -1,8 +1,8 @@
-/* The first difference between ranks, found when a difference is already certain. Rank 0 alone asks
- * all ranks for their histories, once, and breaks with one sentence, which its abort message takes
- * to all. Whoever finds a difference tells rank 0. Rank 0 waits as long as answers come: none for
- * so long that a silent rank would be lost, and it breaks with what it knows. So does the rank that
- * told rank 0, after twice that time.
+/* Finds the first difference between ranks when a difference is already certain. The rank that
+ * finds a difference tells rank 0. Rank 0 alone asks all ranks for their histories, once, and
+ * breaks with one sentence, which its abort message takes to all. Rank 0 waits as long as answers
+ * come. If none comes for so long that a silent rank would be lost, it breaks with what it knows.
+ * The rank that told rank 0 does the same after twice that time.
  *
  * The reference is a history that grows: rank 0's, and beyond its end the calls of ranks that have
  * the same up to there. The fingerprint of a call depends on all calls before it, so two histories
@@ -39,7 +39,7 @@ static void difference_conclude(struct comm *comm)
     comm_broke(comm, DUITE_E_DIFFERENT, verdict.text);
 }
 
-/* From now on it waits for as long as all ranks may be silent. */
+/* From now on it waits for as long as a rank may be silent; other ranks than 0 twice as long. */
 static void difference_wait(struct comm *comm)
 {
     const double seconds = comm->heartbeat.seconds;
@@ -49,7 +49,7 @@ static void difference_wait(struct comm *comm)
 
 /* ---- Answers, on rank 0 ---- */
 
-/* The reference grows by what the rank called beyond its end. */
+/* Appends the rank's calls beyond the end of the reference. */
 static void reference_extend(struct task_history_copy *reference,
                              const struct task_history_copy *history)
 {

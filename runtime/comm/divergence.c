@@ -83,7 +83,7 @@ static void check_send(struct comm *comm, int to, const struct comm_called *call
 {
     struct data_packet *packet = data_packet_new(sizeof *call, true);
     if (!packet)
-        return; /* the run goes on: a wait finds what a check would have found earlier */
+        return; /* the run goes on: a wait finds the difference, only later */
     packet->kind = COMM_CHECK;
     memcpy(data_payload(packet), call, sizeof *call);
     comm_control_send(comm, to, packet);
@@ -117,7 +117,7 @@ static void call_compare(struct comm *comm, const struct comm_called *a,
     comm_difference_found(comm, a->number, message);
 }
 
-/* An entry of this rank itself, or one that `from` sent. */
+/* Takes an entry of this rank itself, or one that `from` sent. */
 static void check_see(struct comm *comm, int from, const struct comm_called *call)
 {
     struct comm_calls *calls = &comm->calls;

@@ -34,7 +34,7 @@ static bool heartbeat_expect(struct comm *comm)
     return comm_mpi_ok(comm, mpi, "MPI_Irecv of a heartbeat");
 }
 
-/* Whether a heartbeat came since the last call; once the last one came, always. */
+/* True if a heartbeat came since the last call, and always once the last one came. */
 static bool heartbeat_hear(struct comm *comm)
 {
     struct comm_heartbeat *heartbeat = &comm->heartbeat;
@@ -102,7 +102,7 @@ static bool heartbeat_look(void *context)
     const bool made = locked || before == COMM_LOOK_MADE;
     atomic_store_explicit(state, made ? COMM_LOOK_NOT_DUE : COMM_LOOK_DUE, memory_order_relaxed);
     if (locked)
-        comm_unlock(comm); /* what was posted meanwhile is sent by the next poll */
+        comm_unlock(comm); /* the next poll sends the posts made meanwhile */
     return made;
 }
 
@@ -135,8 +135,7 @@ void comm_heartbeat_open(struct comm *comm, double seconds, const char *host)
 /* ---- The end ---- */
 
 /* Sends the last heartbeat and awaits that of the rank before, which comes when the bodies of that
- * rank are over. In a long gap between two looks this process itself was stopped: such a gap is no
- * silence. */
+ * rank are over. A long gap between two looks is no silence: this process itself was stopped. */
 static void heartbeat_take_leave(struct comm *comm)
 {
     struct comm_heartbeat *heartbeat = &comm->heartbeat;

@@ -1,6 +1,5 @@
-/* What ranks find out about their machine at start: who shares cores with whom, and what a message
- * costs between ranks that are far apart. Nothing here needs memory: a rank that had none would
- * leave the others waiting. */
+/* The machine, explored at start: which ranks share cores, and the cost of a message between ranks
+ * far apart. No function here needs memory: a rank without any would leave the others waiting. */
 #include "runtime/base/clock.h"
 #include "runtime/base/error.h"
 #include "runtime/comm/internal.h"
@@ -37,9 +36,9 @@ int comm_host_count(struct comm_host *host, unsigned threads)
     return code;
 }
 
-/* ---- What a message costs ---- */
+/* ---- The cost of a message ---- */
 
-#define LEAST_PER_BYTE 1e-12 /* s: what else goes on may hide it, but no way is free */
+#define LEAST_PER_BYTE 1e-12 /* s: other load may hide it, but no way is free */
 
 enum { SMALL_LINES = 1, LARGE_LINES = 1024, ROUNDS = 12 };
 

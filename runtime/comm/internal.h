@@ -7,18 +7,17 @@
 #include "runtime/comm/comm.h"
 #include "runtime/comm/control.h"
 
-/* Shared by the files of this folder only: what a comm consists of, part by part (control.h has the
- * control messages), and at the end the comm itself. "Under the lock" means: the caller holds
- * comm->lock. */
+/* For the files of this folder only: the parts of a comm (control.h has the control messages), then
+ * the comm itself. "Under the lock" means: the caller holds comm->lock. */
 
-/* Tags: of packets, of heartbeats, some of the pieces of packets, and from the last one on of
- * channels. */
+/* Tags of packets, of heartbeats and of pieces of packets; channels have COMM_CHANNELS and all
+ * above. */
 enum { COMM_PIECE_TAGS = 16 };
 enum { COMM_PACKETS, COMM_HEARTBEATS, COMM_PIECES, COMM_CHANNELS = COMM_PIECES + COMM_PIECE_TAGS };
 
 /* ---- Transport: packets between ranks (transport.c) ---- */
 
-/* What one poll found, delivered after the lock is let go. */
+/* The findings of one poll, delivered after the lock is let go. */
 struct comm_found {
     struct data_packet *packets;
     struct task *sent;
@@ -28,11 +27,11 @@ struct comm_found {
     bool more; /* so much came that the lock is let go before the rest is received */
 };
 
-/* Under the lock: sends what was posted, and receives what came. */
+/* Under the lock: sends posted tasks; receives messages. */
 void comm_transport_send(struct comm *comm, struct comm_found *found);
 void comm_transport_receive(struct comm *comm, struct comm_found *found);
 
-/* Without the lock: delivers all of it to whatever expects it. */
+/* Without the lock: delivers the findings. */
 void comm_transport_deliver(struct comm *comm, struct worker *worker, struct comm_found *found);
 
 /* ---- Pieces (pieces.c) ---- */
@@ -48,14 +47,14 @@ static inline bool comm_is_large(size_t bytes)
     return bytes > comm_piece_bytes;
 }
 
-/* Whether no other piece of a message of so many bytes follows the one that begins at `at`. */
+/* True if the piece that begins at `at` is the last one of a message of so many bytes. */
 static inline bool comm_is_last_piece(size_t bytes, size_t at)
 {
     return bytes - at <= comm_piece_bytes;
 }
 
-/* The next three return what MPI does, and are under the lock. Sends all pieces; the request is
- * over when the receiver has them, but for a last one that it is receiving. */
+/* The next three are under the lock; their codes are MPI's. Sends all pieces; the request is over
+ * when the receiver has all but the last, which it is receiving. */
 int comm_pieces_send(struct comm *comm, const void *from, size_t bytes, int to, int tag,
                      MPI_Request *request);
 
@@ -115,7 +114,7 @@ struct comm_channels {
     unsigned looks;
     struct comm_tags tags;
     _Atomic bool awaits; /* there are some */
-    bool lost;           /* nothing comes any more */
+    bool lost;           /* messages no longer come */
 };
 
 /* Starts the channels: asks MPI for its largest tag. False if that fails. Before the lock is used.
@@ -146,25 +145,25 @@ void comm_channels_look(struct comm *comm, const struct comm_looker *looker);
 /* Ranks stand in a ring: each sends the next one a heartbeat sixteen times in `seconds`, and
  * listens to the one before it. If that one is not heard at sixteen looks in a row it is lost: then
  * communication breaks, and abort messages tell all others. So a rank sends and hears one message a
- * look, however many ranks there are. Wherever the ring is cut in two, both parts find out, since
- * on each side a rank listens to one of the other side.
+ * look, however many ranks there are. If the ring is cut in two, both parts find out: on each side
+ * a rank listens to one of the other side.
  *
  * The monitor sends heartbeats, not the poll of the workers: all workers may be inside long bodies,
- * and such a rank is not lost. The monitor calls MPI under the lock, like the workers. While they
- * move large messages the lock is hardly ever free, so whoever has it makes the look that is due.
+ * and such a rank is not lost. The monitor calls MPI under the lock, like the workers. The lock is
+ * hardly ever free while they move large messages, so its holder makes the look that is due.
  * Silence is counted in looks, not in seconds, so that the time in which this process itself was
  * stopped, or got no core, does not count. */
 enum { COMM_SILENT_LOOKS = 16, COMM_HOST_NAME = 64 };
 
-/* Of the look that the monitor cannot make: it says that the look is due, whoever has the lock
- * makes it, and the monitor takes notice. */
+/* State of a look that the monitor cannot make itself: it declares the look due, the holder of the
+ * lock makes it, and the monitor takes notice. */
 enum comm_look_state { COMM_LOOK_NOT_DUE, COMM_LOOK_DUE, COMM_LOOK_MADE };
 
 struct comm_heartbeat {
     struct base_monitor *monitor;
     struct base_look look;
     _Atomic int state;         /* enum comm_look_state */
-    double seconds;            /* until a silent rank is lost; 0: nobody listens */
+    double seconds;            /* until a silent rank is lost; 0: no rank listens */
     char host[COMM_HOST_NAME]; /* of the rank before this one */
     /* Under the lock of the comm: */
     bool last_sent, last_heard;
@@ -184,15 +183,15 @@ void comm_heartbeat_pass(struct comm *comm);
  * `host`: of the rank before this one. */
 void comm_heartbeat_open(struct comm *comm, double seconds, const char *host);
 
-/* No other thread but the monitor is left, which looks no more. With all ranks at their end, and
- * communication whole or broken but not lost, takes leave of both neighbours, so that no heartbeat
- * is on its way afterwards. */
+/* Ends the monitor's looks; no other thread but the monitor is left. All ranks are at their end.
+ * Unless communication is lost, takes leave of both neighbours, so that no heartbeat is on its way
+ * afterwards. */
 void comm_heartbeat_stop(struct comm *comm);
 
 /* ---- Collective calls (collective.c) ---- */
 
-/* What a small reduction takes the largest of; complements make it the smallest as well. MPICH 4.0
- * compares them as if they had a sign. */
+/* Numbers of a small reduction, which finds the largest; complements give the smallest as well.
+ * MPICH 4.0 compares them as if they had a sign. */
 struct comm_reduced {
     uint64_t fingerprint, not_fingerprint, homes, not_homes;
     uint64_t failed; /* 1 if a task failed on any rank, else 0 */
@@ -218,7 +217,7 @@ struct comm {
     struct comm_arrivals arrivals;
     struct comm_channels channels;
     _Atomic int broken;
-    _Atomic bool lost;    /* MPI failed or a rank is lost, for whatever reason it broke before */
+    _Atomic bool lost;    /* MPI failed or a rank is lost, even if it broke for another reason */
     atomic_flag breaking; /* taken by the one who breaks */
     struct comm_abort reason; /* of `broken`, written before it is set */
     struct comm_control control;
@@ -226,7 +225,7 @@ struct comm {
     struct comm_calls calls;
     struct comm_difference difference;
     comm_report *report;                           /* NULL: nobody */
-    struct worker *worker;                         /* under the lock: who passes */
+    struct worker *worker;                         /* under the lock: the one that passes */
     bool open, may_request;                        /* comm_open was called; with requests */
     double latency, per_byte;                      /* seconds: of the slowest link measured */
     uint64_t entered;                              /* collective calls */
@@ -238,7 +237,7 @@ struct comm {
     _Atomic uint64_t messages, bytes, came; /* sent, and of these the bytes; received */
 };
 
-/* Makes what collective calls need of MPI, and frees it. False: MPI failed. */
+/* Makes and frees the MPI objects of collective calls. False: MPI failed. */
 bool comm_collective_start(struct comm *comm);
 void comm_collective_stop(struct comm *comm);
 /* Joins the collective calls that other ranks entered before communication broke. All ranks are at
@@ -248,7 +247,7 @@ void comm_catch_up(struct comm *comm);
 /* True for MPI_SUCCESS; else communication is broken. */
 bool comm_mpi_ok(struct comm *comm, int mpi, const char *what);
 
-/* Reports a message that is sent or came, if anybody wants to know. Under the lock. */
+/* Reports a message that is sent or came, if there is a report. Under the lock. */
 static inline void comm_note(const struct comm *comm, bool sends, int peer, size_t bytes)
 {
     if (comm->report)
@@ -260,7 +259,7 @@ static inline bool comm_is_broken(struct comm *comm)
     return atomic_load_explicit(&comm->broken, memory_order_acquire) != 0;
 }
 
-/* MPI itself failed, or a rank is lost: what is on its way may stay there. */
+/* True if MPI itself failed, or a rank is lost: messages may stay on their way for ever. */
 static inline bool comm_is_lost(struct comm *comm)
 {
     return atomic_load_explicit(&comm->lost, memory_order_acquire);
@@ -276,23 +275,23 @@ static inline void comm_unlock(struct comm *comm)
     atomic_flag_clear_explicit(&comm->lock, memory_order_release);
 }
 
-/* Somebody posted something that is not sent yet. Any thread. */
+/* True if a posted task is not sent yet. Any thread. */
 static inline bool comm_has_posts(struct comm *comm)
 {
     return !BASE_STACK_IS_EMPTY(&comm->posts) || !BASE_STACK_IS_EMPTY(&comm->channels.ready);
 }
 
-/* To be asked after comm_unlock: tasks that were posted meanwhile, by threads that did not get the
- * lock, must not wait for the next poll. Pairs with comm_send: it tries the lock after this look,
- * or its post is seen here. */
+/* Ask after comm_unlock: tasks posted meanwhile, by threads that did not get the lock, must not
+ * wait for the next poll. Pairs with comm_send: it tries the lock after this look, or this look
+ * sees its post. */
 static inline bool comm_left_to_us(struct comm *comm)
 {
     atomic_thread_fence(memory_order_seq_cst);
     return comm_has_posts(comm);
 }
 
-/* Whether comm_control_pass finds anything to do. Nothing is due on most polls, so it is a look at
- * five numbers in place of five calls. Under the lock. */
+/* True if comm_control_pass has work. Most polls have none, so this looks at five numbers instead
+ * of making five calls. Under the lock. */
 static inline bool comm_control_is_due(struct comm *comm)
 {
     const struct comm_calls *calls = &comm->calls;

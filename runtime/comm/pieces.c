@@ -1,6 +1,6 @@
 /* The pieces of a message are received one after the other: the next receive is posted when the one
- * before is over. Since the last piece is sent synchronously, its request is over only when the
- * receiver has all others: so nobody keeps theirs. */
+ * before is over. The last piece is sent synchronously, so its request is over only when the
+ * receiver has all others: their requests are not kept. */
 #include "runtime/comm/internal.h"
 
 size_t comm_piece_bytes = COMM_PIECE_BYTES;

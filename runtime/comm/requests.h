@@ -23,8 +23,8 @@ void comm_requests_started(struct comm_requests *requests, void *what);
 /* Memory for so many at once, so that places are always there. False without. */
 bool comm_requests_room(struct comm_requests *requests, size_t n);
 
-/* Tests all; moves what is done to the end of the arrays: what[n .. n + *done). Returns MPI's code.
- */
+/* Tests all; moves the finished ones to the end of the arrays: what[n .. n + *done). Returns MPI's
+ * code. */
 int comm_requests_test(struct comm_requests *requests, int *done);
 
 void comm_requests_free(struct comm_requests *requests);

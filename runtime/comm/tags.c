@@ -1,7 +1,7 @@
-/* Which tags a plan has must be the same on all ranks, though plans end at other moments on each of
- * them. So it depends on the main program's calls alone, which are the same everywhere: tags are
- * handed out upwards, and what lies below the next one is handed out again only after all ranks met
- * and closed the plans that the program dropped. */
+/* A plan's tags must be the same on all ranks, though plans end at other moments on each of them.
+ * So tags depend on the main program's calls alone, which are the same everywhere. They are handed
+ * out upwards. Tags below the next one are handed out again only after all ranks met and closed the
+ * plans that the program dropped. */
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
 #include "runtime/comm/internal.h"

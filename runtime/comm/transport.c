@@ -1,10 +1,10 @@
 /* Packets between ranks: a SEND becomes a message, and a message that comes goes to the version,
- * sum or task that expects it. Once communication is broken nothing is sent any more: posted tasks
- * end as if they had been sent.
+ * sum or task that expects it. Once communication is broken, posted tasks are not sent but end as
+ * if they had been.
  *
- * Of a large packet the header is a message of its own, and the payload follows in pieces, by a tag
- * that the key gives. Of two that go to the same rank by the same tag the second waits until the
- * first is through: so pieces of two messages are never mixed up. */
+ * A large packet's header is a message of its own; the payload follows in pieces, by a tag that the
+ * key gives. A second one to the same rank by the same tag waits until the first is through, so the
+ * pieces of two messages never mix. */
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
 #include "runtime/base/stack.h"
@@ -24,7 +24,7 @@ static int pieces_tag(const struct data_packet *packet)
     return COMM_PIECES + (int)((packet->key.slot + packet->key.number) % COMM_PIECE_TAGS);
 }
 
-/* Whether a large message must wait for another one. */
+/* True if a large message must wait for another one. */
 static bool message_stalls(struct comm *comm, struct task *task)
 {
     const struct data_packet *packet = comm_is_broken(comm) ? NULL : task_send_packet(task);
@@ -110,8 +110,8 @@ void comm_transport_send(struct comm *comm, struct comm_found *found)
 
 /* ---- Receiving ---- */
 
-/* A message that there is no memory for. A control message needs none: a rank that is about to
- * leave must not break for want of memory, since others may have left. Any other is lost: MPI
+/* Receives a message without memory for it. A control message needs none: a rank about to leave
+ * must not break for want of memory, since others may have left. Any other message is lost: MPI
  * forgets it, and its sender goes on. */
 static void message_receive_scarce(struct comm *comm, MPI_Message *message, int lines, int from)
 {
@@ -171,7 +171,7 @@ static void large_begin(struct comm *comm, struct data_packet *header, int from)
     data_packet_free(header);
 }
 
-/* A piece came. Whether it was the last one. */
+/* A piece came. True if it was the last one. */
 static bool large_is_through(struct comm *comm, struct comm_found *found,
                              struct data_packet *packet)
 {

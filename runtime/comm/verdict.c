@@ -1,5 +1,5 @@
 /* The first difference is the earliest call that differs from the reference's. Ranks that did the
- * same at that call are a group; the sentence names the groups and what each of them did. */
+ * same at that call are a group; the sentence names the groups and the call of each. */
 #include "runtime/comm/verdict.h"
 
 #include "runtime/base/memory.h"
@@ -70,7 +70,7 @@ static void text_add_call(struct comm_verdict *text, const struct task_graph *gr
 
 /* ---- Groups of ranks ---- */
 
-/* Ranks by what they did at call `at`. */
+/* Ranks grouped by their call `at`. */
 struct difference_groups {
     int n, *of; /* of each rank, or -1: unknown */
     uint64_t fingerprint[SHOWN_GROUPS], call[SHOWN_GROUPS];
@@ -89,8 +89,8 @@ static int groups_find(struct difference_groups *groups, uint64_t fingerprint, u
     return i;
 }
 
-/* The first call that is known to differ, by some rank; NULL: none is. One before which nothing was
- * compared counts only where there is no other. */
+/* The first call that is known to differ, by some rank; NULL: none is. A call with no compared call
+ * before it counts only if there is no other. */
 static const struct difference_rank *difference_first(const struct comm *comm)
 {
     const struct difference_inquiry *inquiry = comm->difference.inquiry;
@@ -166,7 +166,7 @@ static void difference_say(const struct comm *comm, const struct difference_rank
     difference_say_groups(comm, groups, text);
 }
 
-/* Whether homes differ, which rank 0 says then. */
+/* True if homes differ; the text says so then. */
 static bool difference_say_homes(const struct comm *comm, struct difference_groups *groups,
                                  struct comm_verdict *text)
 {

@@ -7,10 +7,10 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* What rank 0 concludes from the histories of all ranks: the sentence that names their first
- * difference. Of this folder only. */
+/* Rank 0's conclusion from the histories of all ranks: the sentence that names their first
+ * difference. For this folder only. */
 
-/* What rank 0 knows of a rank. */
+/* Rank 0's knowledge of a rank. */
 struct difference_rank {
     bool answered, has_homes;
     bool compared; /* some of its calls, with the reference */
@@ -28,14 +28,14 @@ struct difference_inquiry {
     struct difference_rank rank[];
 };
 
-/* A sentence under construction; what does not fit is cut off. */
+/* A sentence under construction, cut off where it no longer fits. */
 struct comm_verdict {
     size_t length;
     char text[900];
 };
 
-/* Writes the best sentence there is into an empty verdict. Without an inquiry, and where the
- * histories do not tell, that is comm->difference.message. Under the lock. */
+/* Writes the best sentence there is into an empty verdict. It is comm->difference.message without
+ * an inquiry, or if the histories do not tell. Under the lock. */
 struct comm;
 void comm_verdict_find(const struct comm *comm, struct comm_verdict *verdict);
 

@@ -7,14 +7,14 @@
 /* The message of an offloaded task and that of its result; shared by send.c and receive.c.
  * Everything after the first table begins on a cache line of its own.
  *
- * There, a packet of kind DATA_OFFLOADED (key.slot: the rank it comes from, key.number: its name
- * there: names.h): an offload_message, an offload_param for each parameter, the arguments, and the
- * values that the body reads.
+ * The way there is a packet of kind DATA_OFFLOADED; key.slot is the rank it comes from, key.number
+ * its name there (names.h). It has an offload_message, an offload_param for each parameter, the
+ * arguments, and the values that the body reads.
  *
- * Back, DATA_RESULT (key.number: that name). A body that did not fail: an offload_left for each
- * parameter, then their values, those that the body wrote before those that its children left;
- * then, with MESSAGE_FAILED_BELOW, the first failure among its descendants. One that failed,
- * MESSAGE_FAILED: its failure, then that first one. */
+ * The way back is a DATA_RESULT (key.number: that name). If the body did not fail, it has an
+ * offload_left for each parameter, then the values that the body wrote, then those that its
+ * children left. MESSAGE_FAILED_BELOW: the first failure among its descendants follows.
+ * MESSAGE_FAILED, the body failed: it has the body's failure, then that first one. */
 struct offload_message {
     uint64_t number; /* of the main program's task that it is or descends from */
     uint64_t index;  /* in its scope */
@@ -31,8 +31,8 @@ struct offload_param {
     uint32_t type, sized;
 };
 
-/* What there is of a parameter behind all this: its value; nothing, where it was only read and
- * where no child contributed; its failure. */
+/* The part of a parameter that follows: its value; nothing, if it was only read or no child
+ * contributed; or its failure. */
 enum offload_what { LEFT_VALUE, LEFT_NOTHING, LEFT_POISON };
 struct offload_left {
     uint64_t bytes;
@@ -46,27 +46,28 @@ static inline size_t message_lines(size_t bytes)
     return (bytes + 63) / 64 * 64;
 }
 
-/* Of a value that is read: each has an address of its own, even if it is empty. */
+/* The bytes of a value that is read, 0 for others. Each has an address of its own, even if it is
+ * empty. */
 static inline size_t message_value(uint32_t declared, size_t bytes)
 {
     const duite_mode mode = task_immediate((duite_mode)declared);
     return mode == DUITE_R || mode == DUITE_RW ? message_lines(bytes ? bytes : 1) : 0;
 }
 
-/* Where the arguments begin. */
+/* The place of the arguments. */
 static inline size_t message_args_at(size_t n)
 {
     return message_lines(sizeof(struct offload_message) + n * sizeof(struct offload_param));
 }
 
-/* Where the values of a result begin. */
+/* The place of the values of a result. */
 static inline size_t message_values_at(size_t n)
 {
     return message_lines(n * sizeof(struct offload_left));
 }
 
 /* Copies bytes to a place in a packet's payload, and clears the rest of the last line; returns the
- * place of what follows. */
+ * place behind them. */
 size_t offload_message_put(struct data_packet *packet, size_t at, const void *from, size_t bytes);
 
 /* At home: a delegated task, until its result came. */
@@ -83,8 +84,8 @@ struct offload_task {
     struct task_scope above;   /* first: the top of its reference order; the failures of its subtree
                                    end up here */
     struct data_failure place; /* where it stands at home: number and path */
-    struct data_packet *message; /* what came; the body reads there */
-    struct data_packet *result;  /* what goes; the body writes there */
+    struct data_packet *message; /* the one that came; the body reads there */
+    struct data_packet *result;  /* the one that goes; the body writes there */
     struct task *task;
     struct task_scope *inner; /* of its children, or NULL; gone once they are over */
     const struct data_failure *failure;

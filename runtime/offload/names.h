@@ -4,9 +4,9 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Names of tasks that run on another rank: what travels with a task and comes back with its result
- * is a number, never an address. A name is a slot and its generation, which grows whenever the slot
- * is given back; so a name that came twice, or was never given, names nothing. Callers lock. */
+/* Names of tasks that run on another rank: a number, never an address, travels with a task and
+ * comes back with its result. A name is a slot and its generation, which grows whenever the slot is
+ * given back. So a name that came twice, or was never given, names no task. Callers lock. */
 
 struct offload_pending;
 
@@ -21,14 +21,14 @@ struct offload_names {
     struct offload_name *slot;
     size_t capacity;
     uint32_t n;       /* slots that were ever used */
-    uint64_t refused; /* names that came and named nothing */
+    uint64_t refused; /* names that came and named no task */
     uint32_t free;    /* index + 1 of the first free one, or 0 */
 };
 
 /* Gives the task a name, which is never 0. 0: no memory. */
 uint64_t offload_name_give(struct offload_names *names, struct offload_pending *pending);
 
-/* Whose name it is, which is given up; NULL: nobody's, which is counted in `refused`. */
+/* Gives up the name and returns its task; NULL: it names none, which `refused` counts. */
 struct offload_pending *offload_name_take(struct offload_names *names, uint64_t name);
 
 void offload_names_free(struct offload_names *names);

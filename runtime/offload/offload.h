@@ -3,33 +3,33 @@
 
 #include "runtime/task/task.h"
 
-/* Offloading: tasks that run on another rank than the one that forked them, with their subtrees.
+/* Tasks are offloaded, with their subtrees, to another rank than the one that forked them.
  *
  * At home (send.c) such a task is delegated: it stays unfinished until its result comes; then it
  * does what its body and its children would have done. On the other rank (receive.c) it is an
  * offloaded task, with a small reference order of its own. It waits for nothing, its descendants
- * wait for nothing but one another, and no rank's count of tasks has it. Of its descendants any may
- * be delegated in turn, to a third rank or back home. The layers above decide which tasks go, and
+ * wait only for one another, and no rank's count of tasks has it. Any of its descendants may be
+ * delegated in turn, to a third rank or back home. The layers above decide which tasks go, and
  * measure. Any worker may call these functions. */
 
-/* Whether a ready task may run on another rank; *bytes: how many go there and come back. */
+/* True if a ready task may run on another rank; *bytes: how many go there and come back. */
 bool offload_may_go(const struct task_graph *graph, const struct task *task, size_t *bytes);
 
 /* Sends a ready task that may go to rank `to`. False without memory, or if everything is being
  * given up: then the task stays as it was. */
 bool offload_send(struct task_graph *graph, struct worker *worker, struct task *task, int to);
 
-/* What a delegated task left came; the callee owns it. A result that names no delegated task is
- * dropped. After offload_lost that is what was given up. Before, each delegated task has one
- * result, so such a result is an error of the rank that sent it. It is counted (offload_refused),
- * and a standstill's report names the count. */
+/* The result of a delegated task came; the callee owns it. A result that names no delegated task is
+ * dropped. After offload_lost its task was given up. Before, each delegated task has one result, so
+ * such a result is an error of its sender. It is counted (offload_refused), and a standstill's
+ * report names the count. */
 void offload_result_arrived(struct task_graph *graph, struct worker *worker,
                             struct data_packet *packet);
 
 /* Communication broke: no task comes home any more, and none goes. */
 void offload_lost(struct task_graph *graph, struct worker *worker);
 
-/* No task is left and no message comes any more: frees what was kept for them. */
+/* Frees everything, when no task is left and no message comes any more. */
 void offload_stop(struct task_graph *graph);
 
 /* Calls back with each delegated task, which stays so during the call. */
@@ -59,7 +59,7 @@ void offload_sent(struct task_graph *graph, struct worker *worker, struct task *
 /* The rank that an offloaded task comes from. */
 int offload_home(const struct task *own);
 
-/* Offloaded tasks that are here, until their results are sent. */
+/* The number of offloaded tasks here whose results are not sent yet. */
 static inline uint64_t offload_count(const struct task_graph *graph)
 {
     return atomic_load_explicit(&graph->offloaded, memory_order_acquire);

@@ -1,7 +1,7 @@
-/* Offloaded tasks on the rank that runs them. The body works on the message that came and on the
- * result that goes, without versions. The task has a top of its scopes of its own, so that failures
- * get their place from home and are told there. It is over when all that it forked is; then its
- * result is sent. */
+/* This rank runs offloaded tasks. The body works on the incoming message and on the outgoing
+ * result, without versions. The task has a top of its scopes of its own, so that failures get their
+ * place from home and are told there. It is over when all its descendants are; then its result is
+ * sent. */
 #include "runtime/offload/message.h"
 
 #include "runtime/base/memory.h"
@@ -75,7 +75,7 @@ bool offload_arrived(struct task_graph *graph, struct worker *worker, struct dat
 
 /* ---- Running ---- */
 
-/* For what the body, or its children, leave of a parameter. */
+/* Room for the value that the body, or its children, leave of a parameter. */
 static size_t result_room(const struct task *task, size_t i)
 {
     const struct offload_param *param = &param_of(task->offloaded)[i];
@@ -86,8 +86,8 @@ static size_t result_room(const struct task *task, size_t i)
                                                                   : bytes;
 }
 
-/* What the body finds under w is unspecified; under rw it is what came, under cw the law's neutral
- * element. */
+/* Sets the value that the body finds: unspecified under w, the one that came under rw, the law's
+ * neutral element under cw. */
 static void result_fill(const struct task *task, size_t i, const void *came, void *data)
 {
     const struct offload_param *param = &param_of(task->offloaded)[i];
@@ -98,7 +98,7 @@ static void result_fill(const struct task *task, size_t i, const void *came, voi
         data_law_neutral(data_law_of(kernel, i), data, param->max, (duite_type)param->type);
 }
 
-/* What the children are given, and the body does not see. False without memory. */
+/* Lends the parameter to the children; the body does not see it. False without memory. */
 static bool param_lend(struct task *task, size_t i, const void *came, duite_param *param)
 {
     const struct offload_param *from = &param_of(task->offloaded)[i];
@@ -167,7 +167,7 @@ static bool params_lay_out(struct task *task, duite_param *param, const void **a
 }
 
 /* The values move together: those of objects that change their size may be smaller than their room.
- * What the children will leave is to follow. */
+ * The children's values follow later. */
 static void result_close_up(const struct task *task, const duite_param *param)
 {
     struct data_packet *result = task->offloaded->result;
@@ -259,7 +259,7 @@ static void result_append(struct data_packet *packet, const void *from, size_t b
     offload_message_put(packet, at, from, bytes);
 }
 
-/* What the children left of the parameters that were lent to them. */
+/* Appends the values that the children left of the parameters lent to them. */
 static void result_append_lent(const struct task *task, struct data_packet *result)
 {
     struct offload_left *answer = data_payload(result);
@@ -277,7 +277,7 @@ static void result_append_lent(const struct task *task, struct data_packet *resu
     }
 }
 
-/* Nobody needs what was lent any more. */
+/* Drops the lent values, which are no longer needed. */
 static void lent_drop(struct task *task)
 {
     for (uint32_t i = 0; i < task->n; i++)
@@ -309,7 +309,7 @@ void offload_over(struct task_scope *above, struct worker *worker)
         result->key = own->send.key;
     }
     task->state = TASK_LEAVES;
-    task->n = 0; /* nothing of what it read is sent */
+    task->n = 0; /* no value that it read is sent */
     task->send = &own->send;
     work_ready(graph->pool, worker, task);
 }

@@ -1,5 +1,5 @@
 /* Delegated tasks, at home. The versions that such a task reads and takes over stay here, held by
- * it as before, so nothing else changes for those who wait for it. The task goes on when two things
+ * it as before, so nothing changes for the tasks that wait for it. The task goes on when two things
  * happened, in any order: its packet is sent, and the answer came. */
 #include "runtime/offload/message.h"
 
@@ -21,7 +21,7 @@ size_t offload_message_put(struct data_packet *packet, size_t at, const void *fr
     return end;
 }
 
-/* What became of access i if it is postponed, else NULL. */
+/* The object lent for access i if it is postponed, else NULL. */
 static const struct data_object *access_lent(const struct task *task, size_t i)
 {
     const struct task_access *access = &task->access[i];
@@ -36,8 +36,8 @@ static bool access_reads(const struct task_access *access)
     return mode == DUITE_R || mode == DUITE_RW;
 }
 
-/* The value that is sent along: of what the body, or a child, may read. What a ready task changes
- * has the value already. */
+/* The value that is sent along, if the body or a child may read it, else NULL. The version that a
+ * ready task changes has the value already. */
 static const struct data_version *access_value(const struct task *task, size_t i)
 {
     const struct data_object *lent = access_lent(task, i);
@@ -46,7 +46,7 @@ static const struct data_version *access_value(const struct task *task, size_t i
     return lent ? lent->current : task->access[i].waiter.version;
 }
 
-/* A body waits for what it reads; one whose children read does not. */
+/* A body waits for the values that it reads, but not for those that its children read. */
 static bool value_may_go(const struct task *task, size_t i, const struct data_version *value)
 {
     return (!access_lent(task, i) || data_version_ready(value)) && data_version_packet(value);
@@ -64,8 +64,7 @@ static size_t access_room(const struct task *task, size_t i)
     return access->waiter.mode == DUITE_CW ? data_sum_bytes(access->leaf->sum) : 0;
 }
 
-/* Whether nothing of its place is cut off: by places the ranks know which task comes before which.
- */
+/* True if the task's place is not cut off: places tell the ranks which task comes first. */
 static bool place_is_whole(const struct task *task)
 {
     struct data_failure place = {0};
@@ -208,7 +207,7 @@ static const struct data_failure *result_unpack_failures(const struct task *task
     return task_fail(graph, &both[0], false);
 }
 
-/* Gives the parameters what the body left. Returns its failure, if it failed. */
+/* Gives the parameters the values that the body left. Returns its failure, if it failed. */
 static const struct data_failure *result_unpack(const struct task *task, duite_param *param,
                                                 struct data_packet *packet)
 {
@@ -239,8 +238,8 @@ static struct task_left_value left_unpack(struct task_graph *graph, const struct
     return (struct task_left_value){.values = from, .bytes = left->bytes};
 }
 
-/* What the descendants left, of a task whose body did not fail: values, and their first failure.
- * The task's own scope is there again. */
+/* Takes the values that the descendants left, and their first failure; the body did not fail. The
+ * task's own scope is there again. */
 static void result_unpack_below(struct task *task, struct worker *worker,
                                 struct data_packet *packet)
 {

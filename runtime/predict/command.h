@@ -3,8 +3,8 @@
 
 #include <argp.h>
 
-/* What the command lines of duite-predict and duite-trace have in common: one argument, the file of
- * a trace. */
+/* Shared by the command lines of duite-predict and duite-trace: one argument, the file of a trace.
+ */
 
 /* The cases of an argp parser that are no options. Writes the argument to *file, which is NULL
  * before. Ends the program with a message if there is none, or more than one. */

@@ -1,5 +1,5 @@
-/* The tasks of a trace as files, by the traced homes: for Graphviz, what each waited for; and as a
- * graph file, who reads whose result, in fork order. */
+/* Writes the tasks of a trace, by the traced homes. For Graphviz each has the tasks that it waited
+ * for; in a graph file, in fork order, the tasks whose results it reads. */
 #include "runtime/predict/graph.h"
 
 #include "runtime/base/error.h"

@@ -1,7 +1,8 @@
-/* Nodes of a predicted run, and what each waits for. Dependences are those that the runtime derives
- * from the accesses in fork order: readers wait for the last writer, and a writer waits for the
- * readers where it overwrites. A value that is read on another host is one message there, whoever
- * reads it. In a replay the compiled round says who runs what and who needs a value (replay.c). */
+/* Nodes of a predicted run, and the nodes that each waits for. Dependences are those that the
+ * runtime derives from the accesses in fork order: readers wait for the last writer, and a writer
+ * waits for the readers where it overwrites. A value that is read on another host is one message
+ * there, however many read it. In a replay the compiled round says which hosts run a node and which
+ * need a value (replay.c). */
 #include "runtime/predict/graph.h"
 
 #include "runtime/base/memory.h"
@@ -111,7 +112,8 @@ void predict_hint_add(struct predict_graph *graph, uint32_t object, uint32_t oth
     }
 }
 
-/* Of an object, what a host gets. Blocks there that read the same element count it once each. */
+/* The bytes of an object that a host gets. Blocks there that read the same element count it once
+ * each. */
 static uint64_t transfer_bytes(const struct predict_graph *graph, uint32_t object, uint32_t host)
 {
     const uint64_t whole = graph->object[object].bytes;
@@ -126,8 +128,8 @@ static uint64_t transfer_bytes(const struct predict_graph *graph, uint32_t objec
     return packed > 0 && packed < (double)whole ? (uint64_t)(packed + 0.5) : whole;
 }
 
-/* Who sends a host the object's value, in a round of a replay, and in which phase: the holder, or,
- * where it goes from host to host, one that has it before. */
+/* The host that sends another one the object's value, and the phase of a replay's round: the
+ * holder, or an earlier receiver if the value goes from host to host. */
 static int transfer_source(struct predict_graph *graph, uint32_t object, uint32_t host,
                            uint32_t *phase)
 {
@@ -176,8 +178,8 @@ static uint32_t exchange_receivers(struct predict_graph *graph, const struct pre
     return base_ranks_count(graph->among, words);
 }
 
-/* The packets of a value that goes to n hosts, the set graph->among: from host to host, where those
- * that get it another way send it on, too; or directly. */
+/* The packets of a value that goes to n hosts, the set graph->among: directly, or from host to
+ * host. Hosts that get it another way send it on, too. */
 static int32_t exchange_packets(struct predict_graph *graph, struct predict_node *node, uint32_t n)
 {
     const uint64_t *need = graph->replays ? graph->travel.need : NULL;
@@ -198,7 +200,7 @@ static int32_t exchange_packets(struct predict_graph *graph, struct predict_node
     return predict_packets(graph, phase, node->host, graph->among, n);
 }
 
-/* All that need the object's value have it after this. */
+/* Adds a node after which all hosts that need the object's value have it. */
 static uint32_t exchange_value(struct predict_graph *graph, uint32_t object)
 {
     struct predict_object *o = &graph->object[object];
@@ -298,7 +300,7 @@ void predict_use(struct predict_graph *graph, uint32_t node, uint32_t object, du
         predict_overwrite(graph, node, object, host);
 }
 
-/* Where it was, there is a copy. */
+/* A copy stays at the old home. */
 void predict_rehome(struct predict_graph *graph, uint32_t object, int host)
 {
     struct predict_object *o = &graph->object[object];

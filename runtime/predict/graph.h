@@ -6,9 +6,8 @@
 
 #include <duite.h>
 
-/* The run as a graph: nodes in an order in which no edge points back, and what the main program
- * does with them. Plain data of one thread; whoever declares a graph frees it by
- * predict_graph_free. */
+/* The run as a graph: nodes in an order in which no edge points back, and the main program's steps.
+ * Plain data of one thread; its owner frees it by predict_graph_free. */
 
 #define PREDICT_NONE UINT32_MAX
 
@@ -17,7 +16,7 @@ enum predict_kind {
     PREDICT_EVERYWHERE, /* on several hosts at once, with the time of a worker, but on none of them
                          */
     PREDICT_MESSAGE,    /* from `host` to `block`; number: bytes */
-    PREDICT_EXCHANGE,   /* number bytes from those that have them to those that need them */
+    PREDICT_EXCHANGE,   /* number bytes from their holders to the hosts that need them */
     PREDICT_INSTANT     /* takes no time */
 };
 
@@ -32,23 +31,23 @@ struct predict_node {
         struct {
             float cost, path;
         };
-        uint64_t copies; /* of exchanges: of the bytes that each sends, all together */
+        uint64_t copies; /* of exchanges: of the bytes that each sends, in all */
     };
     uint32_t pending; /* edges that end here, and 1 for the main program */
     uint32_t edge;    /* the first of those that begin here, or NONE */
-    /* In a replay, of a task of the program: 1 and the object; 0: by none. Of exchanges: the copies
-     * that go through the busiest card. */
+    /* Tasks of the program in a replay: 1 + the object that places it; 0: none. Exchanges: the
+     * copies that go through the busiest card. */
     uint32_t placed;
     enum predict_kind kind;
 };
 
 struct predict_edge {
     uint32_t to : 31;
-    uint32_t reads : 1; /* what the one writes; else `to` only comes later */
+    uint32_t reads : 1; /* `to` reads a result; else it only comes later */
     uint32_t next;
 };
 
-/* What the main program does: it forks the nodes up to `end`, `each` seconds apart. Then it waits
+/* A step of the main program: it forks the nodes up to `end`, `each` seconds apart. Then it waits
  * for `node`, or for all nodes so far (NONE), or not at all. */
 struct predict_op {
     uint32_t end, node;
@@ -58,7 +57,7 @@ struct predict_op {
 
 struct predict_object {
     int home;   /* a host */
-    int holder; /* who has the value; EVERYWHERE: all */
+    int holder; /* the host that has the value; PREDICT_ALL: all */
     uint32_t block;
     uint32_t writer;                  /* node, or NONE */
     uint32_t readers, copies, leaves; /* lists in `link` */
@@ -66,7 +65,7 @@ struct predict_object {
     uint32_t leader; /* that it follows, or NONE */
     uint32_t hints;  /* list in `hint` */
     uint32_t place;  /* in the record that is replayed, plus 1, while its round is compiled */
-    bool shown;      /* counted among what its writer shows */
+    bool shown;      /* counted in `shown` of its writer */
     bool written;    /* a task has */
     bool lasts;      /* its value is of before the trace, and no task of the trace writes it */
 };
@@ -83,18 +82,18 @@ struct predict_hint {
     double bytes;
 };
 
-/* What a round of a replay says of the value, or of the sum, that comes next. */
+/* A replay's round gives this for the value, or the sum, that comes next. */
 struct predict_travel {
     const uint64_t *need; /* the hosts that read it; NULL: outside of rounds, all */
     const uint64_t *runs; /* of a sum: the hosts that make it */
     uint32_t phase;       /* it moves in */
-    /* Of a sum that goes from host to host: n_hops in so many rounds, the first one in a phase. */
+    /* If a sum goes from host to host: n_hops in so many rounds, the first one in a phase. */
     const struct predict_hop *hop;
     size_t n_hops;
     uint32_t rounds, sum_phase;
 };
 
-/* What a host sends another one of a sum, in a round of its way: so many subtrees. */
+/* In a round of a sum's way one host sends another n subtrees. */
 struct predict_hop {
     uint32_t round, from, to, n;
 };
@@ -128,14 +127,14 @@ struct predict_graph {
     int *ring;       /* hosts, for a moment */
     uint32_t *phase; /* by host: that its pieces of a sum move in */
     struct predict_travel travel;
-    uint32_t round;  /* the first node of this round of a replay, or NONE */
-    uint32_t flag;   /* the node that decided on this round, or NONE */
-    double overhead; /* s between two tasks, */
-    double message;  /* of a core, to send or to take one, */
-    double look;     /* and to look for one, which workers do now and then; 0: nobody sends any */
+    uint32_t round;         /* the first node of this round of a replay, or NONE */
+    uint32_t flag;          /* the node that decided on this round, or NONE */
+    double overhead;        /* s between two tasks, */
+    double message;         /* of a core, to send or to take one, */
+    double look;            /* and to look for one, which workers do now and then; 0: no messages */
     double bodies, medians; /* s, as predict_result has them */
     uint64_t n_tasks, migrated;
-    bool plain;           /* tasks and what they read alone: replays have no gates */
+    bool plain;           /* only tasks and their reads: replays have no gates */
     bool replays, failed; /* failed: no memory */
     bool linked;          /* the node that is being made has an edge from its own round */
 };
@@ -144,7 +143,7 @@ struct predict_graph {
 uint32_t predict_add(struct predict_graph *graph, const struct predict_node *node);
 /* `to` waits for `from`; NONE is fine. */
 void predict_edge(struct predict_graph *graph, uint32_t from, uint32_t to);
-/* The same; `reads`: `from` writes what `to` needs, and not only comes before it. */
+/* The same; `reads`: `to` needs a result of `from`, which otherwise only comes before it. */
 void predict_edge_kind(struct predict_graph *graph, uint32_t from, uint32_t to, bool reads);
 /* The same, for the value of an object. */
 void predict_edge_value(struct predict_graph *graph, uint32_t from, uint32_t to, uint32_t object);
@@ -156,37 +155,37 @@ uint32_t predict_own_node(struct predict_graph *graph, enum predict_kind kind, u
 void predict_overwrite(struct predict_graph *graph, uint32_t node, uint32_t object, int host);
 /* The node after which the object's value is on the host, or everywhere; NONE: it always was. */
 uint32_t predict_fetch(struct predict_graph *graph, uint32_t object, int host);
-/* Called before a node on `host` (PREDICT_ALL: everywhere) that uses the object is made. Makes what
- * comes before that node. Returns the node after which the value is there; NONE: the value always
- * was, or is not read. */
+/* Called before a node on `host` (PREDICT_ALL: everywhere) that uses the object is made. Makes the
+ * nodes that come before it. Returns the node after which the value is there; NONE: the value
+ * always was, or is not read. */
 uint32_t predict_prepare(struct predict_graph *graph, uint32_t object, duite_mode mode, int host);
-/* The node uses the object, with what predict_prepare returned. */
+/* The node uses the object; `prepared`: from predict_prepare. */
 void predict_use(struct predict_graph *graph, uint32_t node, uint32_t object, duite_mode mode,
                  uint32_t prepared);
-/* What a round adds to its forks; a host, or PREDICT_ALL: those that the round says. The
- * contributions to the object that are open combine; there are some. The object is set. */
+/* A round adds these to its forks, on a host, or on those that the round says (PREDICT_ALL). The
+ * open contributions to the object combine; there are some. The object is set. */
 void predict_reduce(struct predict_graph *graph, uint32_t object, int host);
 void predict_set(struct predict_graph *graph, uint32_t object, int host);
 /* The object has another home from now on: its value goes there. */
 void predict_rehome(struct predict_graph *graph, uint32_t object, int host);
-/* All nodes are there: those of sums, whose seconds are numbers of merges so far, get seconds of so
- * many for each. */
+/* Called when all nodes are there. The seconds of sums, numbers of merges so far, become `seconds`
+ * for each merge. */
 void predict_sums_take(struct predict_graph *graph, double seconds);
-/* The hint of a block for mappings: what it and another one send each other, in bytes. */
+/* A block's hint for mappings: the bytes that it and another one send each other. */
 void predict_hint_add(struct predict_graph *graph, uint32_t object, uint32_t other, double bytes);
 /* Called when all edges to the node are there, which began with `linked` false. A node waits for
- * what decided on its round, if nothing of the round comes before it. */
+ * the node that decided on its round, unless one of the round comes before it. */
 void predict_hold(struct predict_graph *graph, uint32_t node);
 
 /* A round of a replay begins: no packet of it is on its way. */
 void predict_packets_clear(struct predict_graph *graph);
-/* How many packets of this round something adds that goes from a host to another in a phase; to n
- * of a set of hosts, without `from`. Outside of replays each message is one. */
+/* The packets that a message from a host to another adds to a phase of this round. predict_packets:
+ * one to n hosts of a set, without `from`. Outside of replays each message is one packet. */
 int32_t predict_packet(struct predict_graph *graph, uint32_t phase, uint32_t from, uint32_t to);
 int32_t predict_packets(struct predict_graph *graph, uint32_t phase, uint32_t from,
                         const uint64_t *to, uint32_t n);
 
-/* Whether both are valid: DUITE_OK or DUITE_E_ARGUMENT. */
+/* Checks both: DUITE_OK or DUITE_E_ARGUMENT. */
 int predict_check(const struct trace_run *run, const struct predict_cluster *cluster);
 
 /* Makes the graph of a trace. Errors as of predict. */
@@ -202,7 +201,7 @@ struct predict_times;
 /* `steady`: bodies take the median of their kernel. NULL without memory. */
 struct predict_times *predict_times_new(const struct trace_run *run, bool steady);
 void predict_times_free(struct predict_times *times);
-/* Whether the task ran; and for how long. */
+/* True if the task ran; *seconds: for how long. */
 bool predict_times_find(const struct predict_times *times, uint64_t number, double *seconds);
 /* The mean of the tasks of a kernel, or their median; of the runtime's own tasks of a kind; between
  * two tasks. */
@@ -211,11 +210,11 @@ double predict_times_own(const struct predict_times *times, uint32_t kind);
 /* All seconds of the runtime's own tasks that combine contributions. */
 double predict_times_sums(const struct predict_times *times);
 double predict_times_gap(const struct predict_times *times);
-/* All seconds of bodies; and what they were if each had taken the median of its kernel. */
+/* All seconds of bodies; and all had each taken the median of its kernel. */
 void predict_times_spread(const struct predict_times *times, double *bodies, double *medians);
-/* Seconds of a core that a message took in the trace, at each of its ends, and a look for messages
- * that found none, if each worker looks between two tasks PREDICT_LOOKS apart. False: no worker
- * that had tasks sent or took one. */
+/* Seconds of a core in the trace: for a message at each of its ends, and for a look that found
+ * none. Each worker is assumed to look between two tasks PREDICT_LOOKS apart. False: no worker that
+ * had tasks sent or took a message. */
 #define PREDICT_LOOKS 5e-6
 bool predict_times_messages(const struct predict_times *times, double *message, double *look);
 

@@ -1,5 +1,5 @@
-/* The parts of the machine: queues, the events to come, the network, what a scheduler sees of a
- * task; and how a machine starts and stops. */
+/* The parts of the machine: queues, the events to come, the network, a task as schedulers see it;
+ * its start and stop. */
 #include "runtime/predict/machine.h"
 
 #include "runtime/base/heap.h"
@@ -29,7 +29,7 @@ static bool queue_room(struct predict_queue *queue)
     return true;
 }
 
-/* The larger priority; of equals the longer path; of these the one that was forked first. */
+/* The larger priority comes first, then the longer path, then the earlier fork. */
 static bool queue_before(const void *left, const void *right, const void *all)
 {
     const struct predict_node *nodes = all;
@@ -161,7 +161,7 @@ duite_ready predict_describe(const struct predict_machine *m, uint32_t node)
 
 /* ---- Start and stop ---- */
 
-/* What a worker sees of the others of its host: the next numbers first, nobody nearer. */
+/* A worker sees the others of its host in the order of their numbers, all equally near. */
 static bool machine_near(struct predict_machine *m)
 {
     const size_t cores = m->cluster->cores, others = cores - 1;

@@ -3,8 +3,8 @@
 
 #include "runtime/predict/graph.h"
 
-/* The machine in virtual time: what waits where, and what happens next. The files machine.c,
- * simulate.c and predict.c share it. One thread. */
+/* The machine in virtual time: its queues and its events. The files machine.c, simulate.c and
+ * predict.c share it. One thread. */
 
 /* Ready tasks of a worker, or that a host shares: a ring, or a heap if they are served by priority.
  */
@@ -23,8 +23,8 @@ uint32_t predict_queue_take(struct predict_queue *queue, const struct predict_no
 
 #define PREDICT_COMES (PREDICT_NONE - 1) /* in place of a worker */
 
-/* At a time a node is over, on a worker or (NONE) on none; or a message COMES to its host. Of the
- * events of one time the one that was put first comes first. */
+/* At a time a node is over, on a worker or (NONE) on none; or a message COMES to its host. Events
+ * of one time come in the order in which they were put. */
 struct predict_event {
     double time;
     uint64_t order;
@@ -48,14 +48,14 @@ struct predict_network {
 /* When a message that is ready now has arrived; *flight: how much of that is latency. */
 double predict_message(struct predict_network *network, double now,
                        const struct predict_node *message, double *flight);
-/* When all that need it have what one host, or several, send. */
+/* When the hosts that need it have all that one host, or several, send. */
 double predict_exchange(struct predict_network *network, double now,
                         const struct predict_node *message, double *flight);
 
 enum { IDLE, BUSY, RESERVED }; /* of a worker; the last: it is the main program's */
 
-/* Why a node began, or was ready, when it did. Another node was over: it made this one ready, or
- * left its worker to it, or let the main program go on, which then forked it. */
+/* The cause for a node to be ready, or to begin: another node was over. That node made this one
+ * ready, or left it its worker, or let the main program go on, which then forked it. */
 struct predict_cause {
     uint32_t by; /* NONE: the beginning */
     enum { MADE_READY, LEFT_WORKER, FORKED } kind;
@@ -76,9 +76,9 @@ struct predict_machine {
     unsigned char *state;                 /* by worker */
     uint32_t *next;                       /* by worker: to be run inline, or NONE */
     uint32_t *ran;                        /* by worker: the node it ran last */
-    uint32_t *affinity;                   /* by object: who ran a replayed task of it, or NONE */
-    uint32_t *last;                       /* by host: the worker that ended last */
-    uint32_t *idle;                       /* by host: how many */
+    uint32_t *affinity; /* by object: the worker of its last replayed task, or NONE */
+    uint32_t *last;     /* by host: the worker that ended last */
+    uint32_t *idle;     /* by host: how many */
     struct predict_events events;
     struct predict_network network;
     double *looked;              /* by worker: when it looked for messages */
@@ -97,8 +97,8 @@ struct predict_machine {
     uint32_t went_on; /* ... when the main program went on last; NONE: it never waited */
 };
 
-/* The machine before its first event. `paje`: it keeps who runs what. False without memory;
- * predict_machine_stop is due all the same. */
+/* Makes the machine before its first event. `paje`: it keeps the worker of each node. False without
+ * memory; predict_machine_stop is due all the same. */
 bool predict_machine_start(struct predict_machine *machine, bool paje);
 void predict_machine_stop(struct predict_machine *machine);
 
@@ -110,7 +110,7 @@ static inline void *predict_worker_state(const struct predict_machine *machine, 
 /* The task as schedulers see it. */
 duite_ready predict_describe(const struct predict_machine *machine, uint32_t node);
 
-/* What came of a run that is over. Uses `begin` for other things. */
+/* Sums up a run that is over. Overwrites `begin`. */
 void predict_conclude(struct predict_machine *machine, struct predict_result *result,
                       double *kernels);
 int predict_write_paje(const struct predict_machine *machine, FILE *file);

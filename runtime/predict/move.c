@@ -1,7 +1,7 @@
-/* Homes that change at the beginning of a replay: by a mapping that sees the tasks of the graph, or
- * by a balancer that sees what tasks took for each block. They are called when and how
- * api/migrate.c calls them. In place of what a run measures they get what the trace says. The time
- * since the last call is that of the host with the largest load per core. */
+/* Homes change at the beginning of a replay, by a mapping that sees the tasks of the graph, or a
+ * balancer that sees the seconds of each block's tasks. They are called when and how api/migrate.c
+ * calls them, with numbers of the trace in place of measurements. The time since the last call is
+ * that of the host with the largest load per core. */
 #include "runtime/predict/program.h"
 
 #include "runtime/base/error.h"
@@ -65,7 +65,7 @@ void predict_spend(struct predict_program *p, uint32_t object, int host, double 
     spent[slot] += seconds;
 }
 
-/* ---- What policies see ---- */
+/* ---- Numbers for policies ---- */
 
 static bool move_begin(struct move *m)
 {
@@ -96,7 +96,7 @@ static void move_weigh(struct move *m)
     }
 }
 
-/* Of the host with the largest load per core. */
+/* The seconds per core of the host with the largest load per core. */
 static double move_seconds(const struct move *m)
 {
     const uint32_t hosts = m->p->graph->cluster->hosts;

@@ -110,7 +110,7 @@ void predict_follow(struct predict_program *p)
     p->code = map_colocate(&p->table, p->name[own], p->name[leader]);
 }
 
-/* Blocks with homes that were traced: numbered on their host in the order in which they came there.
+/* Blocks with traced homes are numbered on their host in the order in which they came there.
  * `block`: their number among all. */
 static uint32_t home_block(struct predict_program *p, uint32_t block, int host)
 {
@@ -141,7 +141,7 @@ static void home_give(struct predict_program *p, uint32_t own, uint32_t traced)
         o->holder = o->home;
 }
 
-/* What was traced; or, of objects that had none, what the mapping says. */
+/* Gives objects the traced homes; or, if there is a mapping, its homes to objects without one. */
 void predict_homes(struct predict_program *p, size_t n)
 {
     const struct predict_cluster *cluster = p->graph->cluster;

@@ -1,5 +1,5 @@
-/* A prediction: what is asked for is checked, the graph is made once and then run, and what the run
- * says is added up. */
+/* A prediction: the input is checked, the graph is made once and then run, and the results are
+ * added up. */
 #include "runtime/predict/machine.h"
 
 #include "runtime/balance/balance.h"
@@ -76,7 +76,7 @@ int predict_check(const struct trace_run *run, const struct predict_cluster *c)
     return DUITE_OK;
 }
 
-/* ---- What a run says when it is over: nothing of it changes any more ---- */
+/* ---- Results, when the run is over and no longer changes ---- */
 
 static double conclude_path(const struct predict_graph *graph, double *path)
 {
@@ -93,7 +93,8 @@ static double conclude_path(const struct predict_graph *graph, double *path)
     return longest;
 }
 
-/* From the last node back along what each waited for. kernels: NULL, or its bodies by kernels. */
+/* Goes back from the last node along the causes. kernels: NULL, or seconds of the chain's bodies by
+ * kernel. */
 static void conclude_chain(const struct predict_machine *m, double *chain, double *kernels)
 {
     const struct predict_graph *graph = m->graph;

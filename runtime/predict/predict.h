@@ -16,13 +16,13 @@ struct predict_cluster {
     double bandwidth;      /* bytes/s of a network card: one message out and one in at a time */
     double capacity;       /* bytes/s of the switch, all messages together; infinite: enough */
     double core_speed;     /* times that of the traced run */
-    double bodies;         /* they take so many times as long as in the trace; 0: as long */
+    double bodies;         /* they take this many times as long as in the trace; 0: as long */
     bool (*grows)(const char *kernel); /* which do; NULL: all */
     double overhead; /* s, of the runtime between two tasks; < 0: as it was seen */
     double message;  /* s of a core, to send or to take one; < 0: as it was seen, else 5e-7 */
     double look;     /* s of a core, to look for one; < 0: as it was seen, else `message`, at most
                         5e-7 */
-    bool steady;     /* bodies take the median of their kernel, not what each took */
+    bool steady;     /* bodies take the median of their kernel, not their own time */
     bool
         packed; /* in replays a block sends a host no more than the hints of its blocks there say */
     const duite_scheduler *scheduler;
@@ -33,11 +33,11 @@ struct predict_cluster {
     double policy_seconds; /* a policy that is not built in is named after that; 0: never */
 };
 
-/* One that says nothing but the network card (10 Gbit/s), the scheduler steal and the seed 1: all
- * else is as it was seen, or not there. Hosts, cores and latency are the caller's to fill in. */
+/* Sets only the network card (10 Gbit/s), the scheduler steal and the seed 1; all else is as seen
+ * in the trace, or absent. Hosts, cores and latency are the caller's to fill in. */
 struct predict_cluster predict_cluster_default(void);
 
-/* What holds up the last task, and all: seconds along the chain of causes that ends with it. */
+/* Limits of a run: seconds along the chain of causes that ends with the last task. */
 enum predict_limit {
     PREDICT_WORK,      /* tasks that waited for a worker */
     PREDICT_PATH,      /* tasks that began when the one before them ended */
@@ -61,7 +61,7 @@ struct predict_result {
     enum predict_limit limit; /* the largest of them */
 };
 
-/* What a prediction may say beside its result; all is the caller's. */
+/* Further results of a prediction; all is the caller's. */
 struct predict_more {
     FILE *paje;    /* the predicted run as a Paje trace; NULL: not written */
     double *chain; /* room for the trace's n_kernels: s of the bodies of each on the chain; NULL */
@@ -70,19 +70,18 @@ struct predict_more {
 /* The names of the limits, for people. */
 const char *predict_limit_name(enum predict_limit limit);
 
-/* `more`: NULL, or what else is wanted. Deterministic. Errors:
- * memory; DUITE_E_ARGUMENT for a trace with losses or without a whole program, a mapping that
- * fails, and an invalid cluster. */
+/* `more`: NULL, or the further results wanted. Deterministic. Errors: memory; DUITE_E_ARGUMENT for
+ * a trace with losses or without a whole program, a mapping that fails, and an invalid cluster. */
 int predict(const struct trace_run *run, const struct predict_cluster *cluster,
             struct predict_result *result, const struct predict_more *more);
 
-/* The tasks, and what each waited for, in the language of Graphviz' dot; the homes are those that
- * were traced. Errors as of predict. */
+/* Writes the tasks, and the tasks that each waited for, in the language of Graphviz' dot; the homes
+ * are the traced ones. Errors as of predict. */
 int predict_write_dot(const struct trace_run *run, FILE *file);
 
 /* The same tasks for schedulers that know nothing of the program: lines of bench/sweep/graph.h,
- * whose costs are the seconds of the bodies. A task that ran on every rank is one task; what the
- * main program waited for is left out. Errors as of predict. */
+ * whose costs are the seconds of the bodies. A task that ran on every rank is one task; waits of
+ * the main program are left out. Errors as of predict. */
 int predict_write_graph(const struct trace_run *run, FILE *file);
 
 #endif

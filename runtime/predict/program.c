@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* s: of a message, and of a look at most, where nobody measured them: in a host's memory. */
+/* s: of a message, and of a look at most, if not measured: in a host's memory. */
 #define SOME_MESSAGE 5e-7
 /* The cost of a fork on a rank that has no part in it, over that on a rank that runs it: 47 to 53
  * ms a step against 119 for cloth in 16,000 blocks, whose neighbours are partly on other ranks.
@@ -180,15 +180,14 @@ void predict_op_wait(struct predict_program *p)
         last->waits = true;
 }
 
-/* Over one fork of a rank's own: what a fork takes on the average where so many of n are its own.
- */
+/* The mean time of n forks, so many of them a rank's own, over that of one of its own. */
 static double op_share(double own, double n)
 {
     return n > 0 ? (own + FOREIGN_FORK * (n - own)) / n : 1;
 }
 
-/* Each host forks what is its own, and passes over what is others'. What the busiest takes for each
- * node of an op, over a fork of its own. */
+/* Each host forks its own nodes and passes over others'. Returns the busiest one's time for each
+ * node of an op, over that of a fork of its own. */
 static double op_busiest(struct predict_graph *graph, size_t op)
 {
     const uint32_t begin = op ? graph->op[op - 1].end : 0, end = graph->op[op].end;
@@ -248,8 +247,8 @@ static void entry_wait(struct predict_program *p)
     op_end(p, from, to, PREDICT_NONE, true);
 }
 
-/* Which values last: who reads them has them since before the trace. One walk over the whole trace
- * finds them, on one host, where nothing travels. */
+/* Finds the values that last: their readers have them since before the trace. One walk over the
+ * whole trace finds them, on one host, where nothing travels. */
 static void lasting_find(struct predict_program *p)
 {
     struct predict_graph *graph = p->graph;
@@ -351,8 +350,8 @@ static int program_walk(struct predict_program *p)
     return graph->failed ? base_no_memory("the graph of a trace") : DUITE_OK;
 }
 
-/* Each task that ran left an event. At least one task in 16 ran of the rounds that count; the
- * others were poisoned. The constant is for rounds without tasks. */
+/* Each task that ran left an event. In rounds that count at least one task in 16 ran; the others
+ * were poisoned. The constant is for rounds without tasks. */
 static uint64_t program_max_replayed(const struct trace_run *run)
 {
     uint64_t n = 0;
@@ -361,7 +360,7 @@ static uint64_t program_max_replayed(const struct trace_run *run)
     return 16 * n + 1000;
 }
 
-/* What messages take of the cores: as it is said, else as in the trace. */
+/* The cores' time for messages: as the cluster says, else as in the trace. */
 static void program_messages(struct predict_graph *graph, const struct predict_times *times)
 {
     const struct predict_cluster *cluster = graph->cluster;

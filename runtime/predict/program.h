@@ -22,7 +22,7 @@ struct predict_fork {
 struct predict_recorded {
     struct predict_fork *fork;
     uint32_t *use;
-    bool *writes; /* n_objects: whether a fork does more with it than read it */
+    bool *writes; /* n_objects: true if a fork does more than read it */
     size_t n_forks, n_objects, n_calls;
     uint64_t replays, map_at;    /* so far; at this many the mapping is called again */
     uint64_t rounds;             /* since the last call of the balancer */
@@ -35,7 +35,7 @@ struct predict_source {
     struct plan_access *access; /* of plain */
 };
 
-/* A round that was compiled, and what it was compiled for. */
+/* A compiled round, and its inputs. */
 struct predict_round {
     struct predict_source source;
     struct plan_round nodes;
@@ -51,7 +51,7 @@ struct predict_round {
     bool forked;       /* it has no plan: nothing behind `home` is there */
 };
 
-/* Where a task runs: for which object or NONE, and on which host or PREDICT_ALL. */
+/* A task's place: the object that it runs for, or NONE, and its host, or PREDICT_ALL. */
 struct predict_where {
     uint32_t own;
     int host;
@@ -60,8 +60,8 @@ struct predict_where {
     size_t node;
 };
 
-/* Homes that change: what a balancer sees, as in api/migrate.c. Seconds are those since its last
- * call. */
+/* A balancer's data for changing homes, as in api/migrate.c. Seconds are those since its last call.
+ */
 struct predict_moves {
     double *spent; /* by slot of `table`: in bodies of tasks that ran for it */
     size_t spent_capacity;
@@ -109,13 +109,13 @@ void predict_homes(struct predict_program *p, size_t n);
 /* Room for the objects of a fork. */
 bool predict_room(struct predict_program *p, size_t n);
 void predict_fork(struct predict_program *p, const struct predict_fork *fork);
-/* What a fork of a recorded graph does with its object k; a set writes. */
+/* The access of a recorded graph's fork to its object k; a set writes. */
 duite_mode predict_fork_mode(const struct predict_program *p, const struct predict_fork *fork,
                              size_t k);
-/* The same where it is known already where the task runs. */
+/* The same for a fork whose place is already known. */
 void predict_task(struct predict_program *p, const struct predict_fork *fork,
                   const struct predict_where *where);
-/* In a round: the node after which the k-th value that the task reads is where it runs, or NONE. */
+/* In a round: the node after which the task's k-th value is on its host, or NONE. */
 uint32_t predict_round_fetch(struct predict_program *p, const struct predict_fork *fork,
                              const struct predict_where *where, size_t k);
 

@@ -1,14 +1,14 @@
-/* Replays: to what comes before and after, a replay on a host is one task that reads or writes each
- * object there; inside, a round begins where dependences allow, or when a flag was read. The
- * compiled round (round.c) says which nodes it has, where they run, and who needs what they make.
- */
+/* Replays. To nodes before and after it, a replay on a host is one task that reads or writes each
+ * object there. Inside, a round begins where dependences allow, or when a flag was read. The
+ * compiled round (round.c) says which nodes it has, where they run, and which hosts need their
+ * results. */
 #include "runtime/predict/program.h"
 
 #include "runtime/base/memory.h"
 
 #include <stdlib.h>
 
-enum { ROUND_NOWHERE = -2 }; /* in place of a host: what it makes is overwritten unread */
+enum { ROUND_NOWHERE = -2 }; /* in place of a host: the result is overwritten unread */
 
 /* ---- Recorded graphs ---- */
 
@@ -97,8 +97,8 @@ void predict_graphs_free(struct predict_program *p)
 
 /* ---- Rounds ---- */
 
-/* Whether the round counts: one of its tasks ran. If none did, no later one counts either: the flag
- * ended the replay, or what poisoned all of the round poisons all that follow. */
+/* True if the round counts: one of its tasks ran. If none did, no later one counts either: the flag
+ * ended the replay, or the poison of the whole round poisons all that follow. */
 static bool round_ran(const struct predict_program *p, const struct predict_recorded *recorded,
                       uint64_t first)
 {
@@ -163,7 +163,7 @@ static bool round_bind(struct predict_program *p, const struct predict_recorded 
     return true;
 }
 
-/* A round that is forked: by the rules of forks, not of rounds. */
+/* Forks a round: by the rules of forks, not of rounds. */
 static void round_forks(struct predict_program *p, const struct predict_recorded *recorded,
                         uint64_t first)
 {
@@ -182,7 +182,7 @@ static void round_forks(struct predict_program *p, const struct predict_recorded
     }
 }
 
-/* What the round says of the value that a node reads. */
+/* Sets graph->travel from the round, for the value that a node reads. */
 static void round_travel(struct predict_graph *graph, const struct predict_round *round,
                          size_t node, size_t use)
 {
@@ -209,7 +209,7 @@ uint32_t predict_round_fetch(struct predict_program *p, const struct predict_for
     return predict_prepare(graph, fork->object[k], mode, where->host);
 }
 
-/* Contributions end: on the hosts that the round says, if any. */
+/* Contributions combine on the hosts that the round says, if any. */
 static void round_reduce(struct predict_graph *graph, const struct predict_round *round, size_t n,
                          uint32_t object, int host)
 {
@@ -241,7 +241,7 @@ static int round_host(const struct predict_round *round, size_t n)
     return set <= (uint32_t)a->n_ranks ? (int)set - 1 : PREDICT_ALL;
 }
 
-/* What the runtime adds to a round, or a set. */
+/* Makes a node that the runtime adds to a round, or a set. */
 static void round_own(struct predict_program *p, const uint32_t *bound,
                       const struct predict_round *round, size_t n)
 {

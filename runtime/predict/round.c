@@ -1,6 +1,6 @@
 /* A round of a recorded graph, compiled from the words of a trace by the passes of plan/passes.h,
- * as in a run. They say which nodes it has, which hosts run them, which hosts need what they make,
- * and in which phase it moves. Mappings see the same rows as in a run, too. */
+ * as in a run. They say which nodes it has, which hosts run them, which hosts need their results,
+ * and in which phases these move. Mappings see the same rows as in a run, too. */
 #include "runtime/predict/program.h"
 
 #include "runtime/base/memory.h"
@@ -111,8 +111,8 @@ static void ends_note(struct round_ends *ends, bool contributes)
     ends->touched = true;
 }
 
-/* Whether contributions of one round and of the next make one sum, or a flag waits for
- * contributions to be continued: such rounds are forked, as plan_replay_split has it. */
+/* True if contributions of one round and of the next make one sum, or a flag waits for
+ * contributions to be continued. Such rounds are forked, as plan_replay_split has it. */
 static bool source_is_forked(const struct plan_source *source, struct round_ends *ends)
 {
     bool forked = false;
@@ -145,7 +145,7 @@ void predict_round_free(struct predict_round *round)
     base_free(round);
 }
 
-/* Is the round that is there the one that is wanted? */
+/* True if the round that is there is the wanted one. */
 static bool round_fits(const struct predict_round *there, const struct predict_round *wanted)
 {
     const struct plan_source *a = &there->source.plain, *b = &wanted->source.plain;
@@ -234,8 +234,8 @@ bool predict_round_prepare(struct predict_program *p, struct predict_recorded *r
 
 /* ---- Packets ---- */
 
-/* In a round all that goes from one host to another in a phase is one message, as plan/messages.c
- * has it. The set of a round's packets is an open table. Outside of replays each message is one. */
+/* In a round all values from one host to another in a phase are one message, as in plan/messages.c.
+ * The set of a round's packets is an open table. Outside of replays each message is one. */
 
 void predict_packets_clear(struct predict_graph *graph)
 {
@@ -244,7 +244,7 @@ void predict_packets_clear(struct predict_graph *graph)
     graph->n_packets = 0;
 }
 
-/* Where it is, or goes. */
+/* The key's place in the table, or for it. */
 static uint64_t *packet_place(uint64_t *table, size_t capacity, uint64_t key)
 {
     uint64_t state = key;
@@ -269,7 +269,7 @@ static bool packet_room(struct predict_graph *graph)
     return true;
 }
 
-/* Whether it is the first of its packet. */
+/* True if the message is the first of its packet. */
 static bool packet_leads(struct predict_graph *graph, uint32_t phase, uint32_t from, uint32_t to)
 {
     const uint64_t hosts = graph->cluster->hosts;

@@ -11,11 +11,11 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* ---- What messages take of the cores ---- */
+/* ---- The cores' time for messages ---- */
 
-/* A host handles one message after the other, whichever core does it, and the latency has what the
- * handling of a single one takes: so a message waits for those before it. Returns when the host
- * comes to what is there now. */
+/* A host handles one message after the other, on whichever core. The latency includes the handling
+ * of a single message, so a message only waits for those before it. Returns when the host comes to
+ * the present one. */
 static double message_handle(struct predict_machine *m, uint32_t host, int32_t packets)
 {
     if (packets <= 0) /* it travels with another message */
@@ -26,8 +26,8 @@ static double message_handle(struct predict_machine *m, uint32_t host, int32_t p
     return begins;
 }
 
-/* Of all that a host sends or takes at once the last waits for the others; what goes from host to
- * host comes one at a time. */
+/* The last message of all that a host sends or takes at once waits for the others; those from host
+ * to host come one at a time. */
 static double exchange_send(struct predict_machine *m, const struct predict_node *exchange,
                             double *flight)
 {
@@ -45,8 +45,8 @@ static double exchange_send(struct predict_machine *m, const struct predict_node
            (exchange->hops > 1 ? 0 : fmax(0, own - m->graph->message));
 }
 
-/* A worker begins a task. Before that it does what is left to do for messages, if no core was idle,
- * and now and then it looks for more. */
+/* A worker begins a task. Before that it does the work left for messages, if no core was idle, and
+ * now and then it looks for more. */
 static double worker_pay(struct predict_machine *m, uint32_t worker, uint32_t host)
 {
     const bool none_idle = m->state[worker] != IDLE && !m->idle[host];
@@ -121,7 +121,7 @@ static void worker_look(struct predict_machine *m, uint32_t worker)
     }
 }
 
-/* Wakes a worker for what lies in `queue`: its owner, or one that may take it. */
+/* Wakes a worker for the tasks in `queue`: its owner, or one that may take them. */
 static void host_wake(struct predict_machine *m, uint32_t host, unsigned queue)
 {
     const uint32_t cores = m->cluster->cores, first = host * cores;
@@ -212,7 +212,7 @@ static void node_count_down(struct predict_machine *m, uint32_t node, uint32_t b
 
 /* ---- The main program ---- */
 
-/* Whether what it waits for is there. */
+/* True if its wait is over. */
 static bool main_may_go_on(const struct predict_machine *m)
 {
     const struct predict_op *op = &m->graph->op[m->op];
@@ -293,7 +293,7 @@ static void worker_free(struct predict_machine *m, uint32_t worker)
     m->next[worker] = PREDICT_NONE;
     bool taken = !m->blocked && m->op < m->graph->n_ops && worker % m->cluster->cores == 0;
     if (worker == 0 && m->wanted) {
-        if (node != PREDICT_NONE) /* others take what it would have run */
+        if (node != PREDICT_NONE) /* others take the node that it would have run */
             m->failed |= !predict_queue_put(&m->queue[0], m->graph->node, node);
         m->state[0] = RESERVED;
         m->went_on = m->latest;

@@ -1,7 +1,7 @@
 /* Sums of a predicted run: each host that contributes combines its contributions, and sends one
  * piece to the host that adds up. A replay whose result is read on several hosts exchanges pieces,
- * and each of these hosts adds. What a sum costs a host follows from the contributions and pieces
- * that it combines, whatever it cost where it was traced. */
+ * and each of these hosts adds. A sum's cost on a host follows from the contributions and pieces
+ * that it combines, not from its cost in the trace. */
 #include "runtime/predict/graph.h"
 
 #include "runtime/base/rank_set.h"
@@ -19,8 +19,8 @@ static uint32_t leaves_count(struct predict_graph *graph, uint32_t object)
     return most;
 }
 
-/* Zeros again. Adds the merges that the sum took where it was traced: as many as contributions, and
- * one for what each other rank sent to each that added up. Returns how many hosts contribute. */
+/* Zeros the counts. Adds the merges that the sum took in the trace: one for each contribution, and
+ * one for each piece from a rank to another that added up. Returns how many hosts contribute. */
 static uint32_t leaves_forget(struct predict_graph *graph, uint32_t object, bool all)
 {
     const struct predict_object *o = &graph->object[object];
@@ -94,7 +94,8 @@ static void pieces_send(struct predict_graph *graph, uint32_t object, uint32_t h
     }
 }
 
-/* What goes from host to host. Returns the most subtrees that one host takes. */
+/* Counts the copies and packets from host to host. Returns the most subtrees that one host takes.
+ */
 static uint32_t hops_count(struct predict_graph *graph, struct predict_node *node)
 {
     const struct predict_travel *travel = &graph->travel;
@@ -116,7 +117,8 @@ static uint32_t hops_count(struct predict_graph *graph, struct predict_node *nod
     return most;
 }
 
-/* What each host that contributes sends to those that add up. Returns the most that one takes. */
+/* Counts the pieces from contributing hosts to those that add up. Returns the most that one takes.
+ */
 static uint32_t exchange_count(struct predict_graph *graph, uint32_t object,
                                struct predict_node *node)
 {
@@ -144,7 +146,7 @@ static uint32_t exchange_count(struct predict_graph *graph, uint32_t object,
     return in;
 }
 
-/* Each host sends what it has to all others that add up. *most: what one of them takes. */
+/* Each host sends its pieces to all others that add up. *most: the most that one of them takes. */
 static uint32_t pieces_exchange(struct predict_graph *graph, uint32_t object, uint32_t *most)
 {
     const struct predict_object *o = &graph->object[object];

@@ -1,5 +1,5 @@
-/* What the events say about seconds: of each body (trace/sums.h), of a kernel's bodies in the
- * mean or the median, of the runtime's own tasks, between two tasks, and of messages. */
+/* Seconds from the events: of each body (trace/sums.h), of a kernel's bodies in the mean or the
+ * median, of the runtime's own tasks, between two tasks, and of messages. */
 #include "runtime/predict/graph.h"
 
 #include "runtime/base/memory.h"
@@ -47,7 +47,7 @@ static void times_event(struct predict_times *times, const struct trace_event *e
         mean_add(&times->kernel[event->kernel], seconds);
 }
 
-/* Between two tasks of a worker, with nothing else there: what the runtime takes. */
+/* The runtime's time between two tasks of a worker, with no event between them. */
 static void times_gap(struct predict_times *times, const struct trace_event *event, double tick)
 {
     const struct trace_event *next = event + 1;
@@ -69,8 +69,8 @@ static uint64_t times_marks(const struct trace_event *first, const struct trace_
     return n;
 }
 
-/* Of one worker. What it did for messages while it had nothing else to do delays nobody, and is no
- * event of its own. Looks shorter than such events are in the gaps. */
+/* Takes one worker's messages. Work for messages while the worker was idle delays no task, and is
+ * no event of its own. Looks shorter than such events are in the gaps. */
 static void times_messages(struct predict_times *times, const struct trace_piece *piece,
                            double tick)
 {
@@ -117,7 +117,7 @@ static int times_compare_bodies(const void *a, const void *b)
     return (x->seconds > y->seconds) - (x->seconds < y->seconds);
 }
 
-/* Of the runtime's own tasks, too; false: it is another event. */
+/* The body of an event, of the runtime's own tasks, too; false: it has none. */
 static bool times_body_of(const struct predict_times *times, const struct trace_event *event,
                           double tick, struct times_body *body)
 {

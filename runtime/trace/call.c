@@ -47,7 +47,7 @@ static bool entry_begin(struct trace *trace, enum trace_call call, size_t n)
     return n < MAX_ENTRY;
 }
 
-/* Whether entries are kept here: such as are always there, and such as depend on the step. */
+/* True if this rank keeps entries: those always there, and those that depend on the step. */
 static bool trace_keeps_words(const struct trace *trace)
 {
     return trace && trace->word;

@@ -1,8 +1,8 @@
 /* The JSON of Chrome's trace viewer (the Trace Event Format), which Perfetto opens: times in
- * microseconds, a process a rank, a thread a worker. As Perfetto takes them: no process or thread
- * is 0 (that is its idle thread, which swallows others), no time is below 0 (such events are
- * dropped), and what lies in or after something in the trace does so in whole nanoseconds, too
- * (spans that overlap are dropped). */
+ * microseconds, a process a rank, a thread a worker. Perfetto has three rules. No process or thread
+ * is 0 (its idle thread, which swallows others). No time is below 0 (such events are dropped). A
+ * span that lies in or after another one in the trace does so in whole nanoseconds, too (spans that
+ * overlap are dropped). */
 #include "runtime/trace/export.h"
 
 #include "runtime/base/memory.h"
@@ -116,9 +116,9 @@ static void chrome_put_end(FILE *file, char phase, size_t id, uint32_t rank, uin
     fprintf(file, ",\"ph\":\"%c\",\"bp\":\"e\"}", phase);
 }
 
-/* Perfetto joins what began last on a thread before the arrow's end, here the send and the receive:
- * so arrows come behind all events. It drops an arrow that ends before it begins, which clocks of
- * two ranks may say. */
+/* Perfetto joins an arrow's end to the event that began last before it on the thread, here the send
+ * or the receive: so arrows come behind all events. It drops an arrow that ends before it begins,
+ * as clocks of two ranks may have it. */
 static void chrome_put_arrow(FILE *file, const struct trace_message *message, size_t id)
 {
     const int64_t sent = chrome_nanoseconds(message->sent),

@@ -1,7 +1,7 @@
-/* Clocks: rank 0 asks each rank in turn what time it is there. Of several round trips the shortest
- * counts: the other rank answered between its two ends, so that half of it bounds the error
- * (Cristian, 1989). The buffers that MPI may still write to belong to the trace, which is not freed
- * if a rank did not answer in time. */
+/* Clocks: rank 0 asks each rank in turn for its time. The shortest of several round trips counts:
+ * the other rank answered between its two ends, so that half of it bounds the error (Cristian,
+ * 1989). The buffers that MPI may still write to belong to the trace, which is not freed if a rank
+ * did not answer in time. */
 #include "runtime/trace/internal.h"
 
 #include <math.h>

@@ -1,4 +1,4 @@
-/* A head line, then a line an event; columns that an event has nothing for are empty. */
+/* A head line, then a line an event; columns that an event lacks are empty. */
 #include "runtime/trace/export.h"
 
 #include <inttypes.h>

@@ -5,8 +5,8 @@
 
 #include <stdio.h>
 
-/* The forms in which others read a run. A form is one file, which defines its table, and one row
- * here; duite-trace has an option for each row. */
+/* Forms of a run for other tools. A form is one file, which defines its table, and one row here;
+ * duite-trace has an option for each row. */
 #define TRACE_EXPORT_ROWS(ROW)                                                                     \
     ROW(paje)                                                                                      \
     ROW(chrome)                                                                                    \
@@ -14,8 +14,8 @@
 
 struct trace_export {
     const char *option, *help; /* of duite-trace */
-    /* Writes the run to `file`, which stays open. Errors: memory. Whether the file took all of it
-     * is for the caller to see (ferror). */
+    /* Writes the run to `file`, which stays open. Errors: memory. The caller sees by ferror whether
+     * the file took all of it. */
     int (*write)(const struct trace_run *run, FILE *file);
 };
 
@@ -24,7 +24,7 @@ TRACE_EXPORT_ROWS(TRACE_EXPORT_DECLARE)
 
 /* ---- Paje ---- */
 
-/* What lasted, of one kind: on workers of all ranks, numbered through. */
+/* A span of one kind. Workers of all ranks are numbered through. */
 struct trace_span {
     double begin, end; /* s */
     const char *name;

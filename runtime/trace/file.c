@@ -1,5 +1,5 @@
 /* Writing: one thread at a time, under the lock. The file always ends with a whole section. The
- * first failure ends all writing; what comes later is counted as lost. */
+ * first failure ends all writing; everything later is counted as lost. */
 #include "runtime/trace/internal.h"
 
 #include "runtime/base/error.h"
@@ -51,7 +51,7 @@ bool trace_write(struct trace *trace, enum trace_section_kind kind, uint32_t wor
     return false;
 }
 
-/* The header where it lies, even on a full disk. */
+/* Rewrites the header in place, even on a full disk. */
 static bool file_write_header(struct trace *trace)
 {
     const struct trace_header header = trace->header;
@@ -134,8 +134,8 @@ static bool trace_make(struct trace *trace, const struct trace_setup *setup)
     return rings_new(trace) && trace->path && (trace->word || setup->rank);
 }
 
-/* A file that is there goes first: another run may still write to it, and must not write into
- * ours. What is no file, a pipe or /dev/null, is written to as it is. */
+/* Removes an existing file first: another run may still write to it, and must not write into ours.
+ * A pipe or /dev/null is written to as it is. */
 static int file_open_fresh(const char *path)
 {
     struct stat there;
@@ -171,7 +171,7 @@ int trace_open(struct trace **out, const struct trace_setup *setup)
 
 /* ---- Rings ---- */
 
-/* Under the lock. What cannot be written any more is lost. */
+/* Under the lock. Events that can no longer be written are lost. */
 static void ring_write(struct trace *trace, struct trace_ring *ring)
 {
     uint64_t tail = atomic_load_explicit(&ring->tail, memory_order_relaxed);
@@ -246,8 +246,8 @@ static void file_write_counters(struct trace *trace, const struct trace_counters
                     1);
 }
 
-/* Whether some name still leads to what was written; the program may have changed its folder, so
- * the path may not any more. */
+/* True if some name still leads to the file. The path may not: the program may have changed its
+ * folder. */
 static bool file_is_there(const struct trace *trace)
 {
     struct stat here;
@@ -277,7 +277,7 @@ int trace_close(struct trace *trace, const struct trace_counters *counters)
     pthread_mutex_unlock(&trace->lock);
     if (!trace->error && there)
         return DUITE_OK;
-    if (!there) /* both may be true: then both are said */
+    if (!there) /* both may be true: then the message has both */
         return base_error(DUITE_E_SYSTEM,
                           "the trace %s was removed or replaced while the run wrote to it%s%s",
                           trace->path, trace->error ? ", and is not whole: " : "",

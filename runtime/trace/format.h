@@ -11,8 +11,8 @@
  * A file is a header, rewritten when the trace ends, and sections up to header.bytes, each a
  * trace_section and so many bytes behind it, a multiple of 8. All numbers are of the byte order and
  * the sizes of the host that wrote them; header.order tells a reader with others. A section is
- * written whole or taken back: if the disk is full the file ends with the last whole one, and what
- * was not written is counted in header.lost. */
+ * written whole or taken back: if the disk is full the file ends with the last whole one, and
+ * header.lost counts the rest. */
 
 #define TRACE_MAGIC "duitetrc"
 enum { TRACE_VERSION = 3 };
@@ -34,7 +34,7 @@ struct trace_header {
     uint64_t first, end; /* steps to record: first .. end - 1 */
 };
 
-/* What follows a section's head. */
+/* The content of a section. */
 enum trace_section_kind {
     TRACE_KERNELS = 1, /* `worker` of them: a trace_kernel each, then their names, ended by 0 */
     TRACE_EVENTS,      /* trace_event, of one worker, in the order of their ends */
@@ -55,7 +55,7 @@ struct trace_kernel {
     uint32_t unused;
 };
 
-/* What happened on a worker. Times are ticks of its rank's clock. */
+/* An event of a worker. Times are ticks of its rank's clock. */
 enum trace_kind {
     TRACE_TASK = 1, /* a body; kernel, number */
     TRACE_OWN,      /* a task of the runtime's own; kernel: its place among task_type */
@@ -71,7 +71,7 @@ enum trace_kind {
     TRACE_KINDS
 };
 
-/* Of a TASK. */
+/* Flags of a TASK. */
 enum {
     TRACE_NESTED = 1,    /* a descendant of the main program's task with this number */
     TRACE_OFFLOADED = 2, /* of another rank's program, delegated to this one */
@@ -93,7 +93,7 @@ struct trace_clock {
     double at, ahead, bound;
 };
 
-/* What the worker counted from start to end, over all steps: numbers of tasks, and ticks. */
+/* A worker's counts from start to end, over all steps: numbers of tasks, and ticks. */
 struct trace_counters {
     uint64_t tasks, stolen, chained, delegated, busy, idle;
     uint64_t messages, bytes; /* of the rank; worker 0 */
@@ -101,10 +101,10 @@ struct trace_counters {
 
 /* ---- The program ----
  *
- * What the main program called, which is the same on every rank. An entry begins with its kind in
- * the lowest 8 bits of a word and a count n in the others. Objects are named by slots: a slot means
- * what was made in it last. 64-bit numbers are two words, the low one first. Objects, homes and
- * graphs are always there; all others only while steps are recorded. */
+ * The calls of the main program, the same on every rank. An entry begins with its kind in the
+ * lowest 8 bits of a word and a count n in the others. Objects are named by slots: a slot means the
+ * object that was made in it last. 64-bit numbers are two words, the low one first. Objects, homes
+ * and graphs are always there; all others only while steps are recorded. */
 enum trace_call {
     TRACE_FILLS,    /* no entry: the last word of a section that fills its 64 bits */
     TRACE_OBJECT,   /* slot; bytes (64 bits) */
@@ -125,7 +125,7 @@ enum trace_call {
     TRACE_CALLS
 };
 
-/* TRACE_GRAPH goes on with the number of its forks and sets, and each of these: kernel or -1 (set);
+/* TRACE_GRAPH goes on with the number of its forks and sets. Each of these is: kernel or -1 (set);
  * n; rank or -1; priority; cost (float); n places among the graph's objects. */
 
 #endif

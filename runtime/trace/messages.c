@@ -1,5 +1,5 @@
-/* What was sent, and where it was received. No event says which message it is, so the k-th from one
- * rank to another is taken to be the k-th that is received there. */
+/* Matches messages sent with messages received. Events do not name their message, so the k-th from
+ * one rank to another is taken to be the k-th that is received there. */
 #include "runtime/trace/read.h"
 
 #include "runtime/base/error.h"
@@ -49,7 +49,7 @@ static int compare_ends(const void *a, const void *b)
     return (x->at > y->at) - (x->at < y->at);
 }
 
-/* Both are sorted. What is received before anything was sent came from before the trace began. */
+/* Both are sorted. A message received before any was sent comes from before the trace. */
 static void ends_match(const struct ends *ends, struct trace_messages *messages)
 {
     const uint32_t n = ends->run->n_ranks;

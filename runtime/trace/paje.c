@@ -1,9 +1,9 @@
-/* Paje (Schnorr, de Oliveira Stein & Chassin de Kergommeaux, 2013), which ViTE opens: ranks hold
+/* Paje (Schnorr, de Oliveira Stein & Chassin de Kergommeaux, 2013), which ViTE opens. Ranks hold
  * workers, whose states are pushed and popped; steals, sends and receives are events, messages are
  * links.
  *
- * Paje wants its lines in the order of time: spans become two moments each. Of those at one time
- * ends come first, the inner ones before the outer; spans without a duration are left out. */
+ * Paje wants its lines in the order of time, so a span becomes two moments. At one time ends come
+ * first, the inner ones before the outer; spans without a duration are left out. */
 #include "runtime/trace/export.h"
 
 #include "runtime/base/error.h"
@@ -134,7 +134,7 @@ static void paje_put_moment(FILE *file, const struct moment *moment)
     }
 }
 
-/* At most two moments; how many. */
+/* Adds at most two moments; returns how many. */
 static size_t paje_take_span(struct moment *moment, const struct trace_span *s)
 {
     const uint32_t worker = s->worker;
@@ -149,7 +149,7 @@ static size_t paje_take_span(struct moment *moment, const struct trace_span *s)
     return 2;
 }
 
-/* Two moments. Clocks of two ranks may say that it was received first. */
+/* Adds two moments. By the clocks of two ranks the message may be received first. */
 static size_t paje_take_message(struct moment *moment, const struct trace_message *message,
                                 size_t key)
 {

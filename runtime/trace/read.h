@@ -40,8 +40,9 @@ struct trace_run {
 };
 
 /* Reads FILE and those of the other ranks beside it. `partial`: a run that did not come to its end
- * has what is whole. Errors: DUITE_E_SYSTEM, memory; DUITE_E_ARGUMENT for a file that is foreign,
- * newer, truncated, damaged or of another run: the message has the byte. *run is NULL then. */
+ * has its whole sections. Errors: DUITE_E_SYSTEM, memory; DUITE_E_ARGUMENT for a file that is
+ * foreign, newer, truncated, damaged or of another run: the message has the byte. *run is NULL
+ * then. */
 int trace_read(struct trace_run **run, const char *file, bool partial);
 void trace_run_free(struct trace_run *run);
 
@@ -53,7 +54,7 @@ double trace_lasts(const struct trace_run *run, uint32_t rank, uint64_t ticks);
 const char *trace_event_name(const struct trace_run *run, const struct trace_event *event);
 const char *trace_kind_name(unsigned kind);
 
-/* Whether it has a duration; if not, it happens at its beginning. */
+/* True if it has a duration; if not, it happens at its beginning. */
 bool trace_event_lasts(const struct trace_event *event);
 
 /* Workers of all ranks before those of this one. */
@@ -63,7 +64,7 @@ uint32_t trace_first_worker(const struct trace_run *run, uint32_t rank);
 struct trace_seen {
     const struct trace_event *event;
     uint32_t rank, worker;
-    double begin, end; /* s; as aligned, so nothing overlaps that did not */
+    double begin, end; /* s; as aligned, without new overlaps */
     double took;       /* s of its own clock */
 };
 void trace_each(const struct trace_run *run,
@@ -71,8 +72,8 @@ void trace_each(const struct trace_run *run,
 
 /* ---- Messages ---- */
 
-/* A message of which both ends are known. Clocks of two ranks agree within run->bound only, so it
- * may be received before it is sent, by that. */
+/* A message with both ends known. Clocks of two ranks agree within run->bound only, so it may be
+ * received before it is sent, by that. */
 struct trace_message {
     double sent, received; /* s */
     uint32_t from, to;     /* workers, numbered through all ranks */

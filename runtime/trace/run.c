@@ -1,10 +1,10 @@
-/* What is asked of a run that was read: times on one clock, names, its events one after the other.
- * Nothing here fails, since trace_read has checked all of it. */
+/* Queries of a run that was read: times on one clock, names, its events one after the other. They
+ * cannot fail, since trace_read has checked all of it. */
 #include "runtime/trace/read.h"
 
 #include "runtime/task/task.h"
 
-/* How far the clock is ahead of rank 0's: in a straight line between what was measured. */
+/* How far the clock is ahead of rank 0's: in a straight line between the measurements. */
 static double run_clock_ahead(const struct trace_rank *rank, double at)
 {
     const struct trace_clock *c = rank->clock;

@@ -153,7 +153,7 @@ bool trace_sums_agree(const struct trace_run *run, FILE *file)
  * tasks its subtree is one task. A replicated task has the mean over the ranks that ran it. */
 struct body {
     uint64_t number; /* 0: free */
-    double seconds;  /* float would lose what is added to many */
+    double seconds;  /* float would lose small bodies among many */
     uint32_t n;      /* bodies, nested ones left out */
 };
 

@@ -5,7 +5,7 @@
 
 #include <stdio.h>
 
-/* What the events of a run add up to. */
+/* Sums over the events of a run. */
 struct trace_sums {
     uint64_t tasks, stolen, chained, delegated, messages, bytes, received, migrated;
     double busy, idle, exposed, flush; /* s, over all workers; flush: writing the trace */
@@ -23,8 +23,8 @@ struct trace_sums {
 int trace_sum(const struct trace_run *run, struct trace_sums *sums);
 void trace_sums_free(struct trace_sums *sums);
 
-/* Whether the events of each worker add up to what it counted. Only for runs of which all was
- * recorded and nothing was lost. Prints each difference. */
+/* True if the events of each worker add up to its counters. Only for runs recorded in full, without
+ * losses. Prints each difference. */
 bool trace_sums_agree(const struct trace_run *run, FILE *file);
 
 /* Prints the table of duite-trace, for people. */
@@ -40,7 +40,7 @@ struct trace_bodies;
 struct trace_bodies *trace_bodies_new(const struct trace_run *run);
 void trace_bodies_free(struct trace_bodies *bodies);
 
-/* Whether the task of this number ran; and for how long, 0 if it did not. */
+/* True if the task of this number ran; *seconds: for how long, 0 if it did not. */
 bool trace_bodies_find(const struct trace_bodies *bodies, uint64_t number, double *seconds);
 
 /* ---- Bounds ---- */

@@ -11,8 +11,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* What a running rank writes down. Workers put events into rings of their own; the main thread
- * writes them to the file between steps, and a worker its own between two tasks when its ring gets
+/* A running rank writes its trace. Workers put events into rings of their own. The main thread
+ * writes these to the file between steps; a worker writes its own between two tasks when it gets
  * full. Events that do not fit are counted as lost. A failure of the file ends the writing, not the
  * run; trace_close returns it. */
 struct trace;
@@ -35,16 +35,15 @@ int trace_open(struct trace **trace, const struct trace_setup *setup);
  * Collective, main thread. */
 void trace_align(struct trace *trace, MPI_Comm mpi);
 
-/* Ends the trace: writes what is left. `counters`: one a worker, or NULL for want of memory.
- * Returns 0, or DUITE_E_SYSTEM with a message if not everything was written. Main thread; no task
- * runs. */
+/* Ends the trace: writes the rest. `counters`: one a worker, or NULL for want of memory. Returns 0,
+ * or DUITE_E_SYSTEM with a message if not everything was written. Main thread; no task runs. */
 int trace_close(struct trace *trace, const struct trace_counters *counters);
 /* Frees the trace, closed or not. `mpi`: MPI may be called; then this is collective. NULL is fine.
  */
 void trace_free(struct trace *trace, bool mpi);
 
-/* Whether this step is to be recorded; whether all steps are, and what comes before them; whether
- * events are recorded at the moment. */
+/* True if this step is to be recorded; if everything is, from the start; if events are recorded at
+ * the moment. */
 bool trace_wants(const struct trace *trace, uint64_t step);
 bool trace_wants_all(const struct trace *trace);
 bool trace_is_on(const struct trace *trace);
@@ -104,7 +103,7 @@ static inline void trace_mark(struct trace_ring *ring, enum trace_kind kind, uin
                                               .kind = (uint8_t)kind});
 }
 
-/* Whether the ring is to be written soon. By the worker. */
+/* True if the ring must be written soon. By the worker. */
 static inline bool trace_is_full(const struct trace_ring *ring)
 {
     uint64_t head = atomic_load_explicit(&ring->head, memory_order_relaxed);
@@ -114,14 +113,13 @@ static inline bool trace_is_full(const struct trace_ring *ring)
 /* The ring of a worker; NULL on a rank without a trace. */
 struct trace_ring *trace_ring(struct trace *trace, unsigned worker);
 
-/* Writes the worker's ring if it is nearly full and nobody else is writing. By that worker, between
- * two tasks. */
+/* Writes the worker's ring if it is nearly full and no other thread is writing. By that worker,
+ * between two tasks. */
 void trace_relieve(struct trace *trace, struct trace_ring *ring);
 /* Writes all rings. Main thread. */
 void trace_flush(struct trace *trace);
 
-/* ---- What the main program calls. Main thread; nothing on other ranks than 0. NULL is fine. ----
- */
+/* ---- Calls of the main program. Main thread; only rank 0 writes. NULL is fine. ---- */
 
 void trace_object(struct trace *trace, const struct data_table *table, duite_object name);
 void trace_freed(struct trace *trace, duite_object name);

@@ -39,8 +39,10 @@ struct base_stack base_stack_here(void)
     void *lowest = NULL;
     if (pthread_getattr_np(pthread_self(), &attributes))
         return stack;
-    if (!pthread_attr_getstack(&attributes, &lowest, &stack.bytes))
-        stack.floor = (const char *)lowest + stack.bytes / 4;
+    if (!pthread_attr_getstack(&attributes, &lowest, &stack.bytes)) {
+        const char *here = __builtin_frame_address(0);
+        stack.floor = here - (here - (const char *)lowest) / 4 * 3;
+    }
     pthread_attr_destroy(&attributes);
     return stack;
 }

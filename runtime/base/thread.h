@@ -12,7 +12,8 @@ int base_thread_start(pthread_t *thread, const char *what, void *(*body)(void *)
 /* The calling thread's stack. */
 struct base_stack {
     size_t bytes;      /* of all of it; 0: unknown */
-    const char *floor; /* an address below this one lies in its last quarter; NULL: unknown */
+    const char *floor; /* below this address lies the last quarter of what was left at the call;
+                          NULL: unknown */
 };
 struct base_stack base_stack_here(void);
 

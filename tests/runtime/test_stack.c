@@ -8,7 +8,12 @@
 #include <string.h>
 #include <sys/resource.h>
 
+/* ThreadSanitizer keeps much of its own there. */
+#if defined(__SANITIZE_THREAD__)
+enum { MANY = 3000, STACK_BYTES = 4 << 20 };
+#else
 enum { MANY = 3000, STACK_BYTES = 1 << 20 };
+#endif
 
 static int increase(const duite_call *call)
 {

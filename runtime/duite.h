@@ -689,13 +689,6 @@ int duite_trace_step(duite *rt, uint64_t step);
  * reason that the message gives. Does nothing without a trace, and the second time. Collective. */
 int duite_trace_end(duite *rt);
 
-/* Bounds that no schedule could have beaten in the run of a trace, which is closed on all ranks.
- * *critical_path: seconds of the longest chain of tasks each of which needs what the one before it
- * wrote. *lower_bound: the larger of that and the seconds in bodies over all workers. Of the steps
- * that were recorded. Reads the files of all ranks. DUITE_E_SYSTEM if one is missing,
- * DUITE_E_ARGUMENT if they are not whole. Local; needs no runtime. */
-int duite_trace_bounds(const char *trace, double *critical_path, double *lower_bound);
-
 /* ---- Counters ---- */
 
 typedef struct duite_counters {

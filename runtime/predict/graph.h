@@ -43,9 +43,7 @@ struct predict_node {
 };
 
 struct predict_edge {
-    uint32_t to : 31;
-    uint32_t reads : 1; /* what the one writes; else `to` only comes later */
-    uint32_t next;
+    uint32_t to, next;
 };
 
 /* What the main program does: it forks the nodes up to `end`, `each` seconds apart. Then it waits
@@ -137,7 +135,7 @@ struct predict_graph {
     double look;     /* and to look for one, which workers do now and then; 0: nobody sends any */
     double bodies, medians; /* s, as predict_result has them */
     uint64_t n_tasks, migrated;
-    bool plain;           /* tasks and what they read alone: replays have no gates */
+    bool plain;           /* tasks and what they read alone: no edges of other kinds, no gates */
     bool replays, failed; /* failed: no memory */
     bool linked;          /* the node that is being made has an edge from its own round */
 };
@@ -195,6 +193,8 @@ int predict_check(const struct trace_run *run, const struct predict_cluster *clu
 
 /* Makes the graph of a trace. Errors as of predict. */
 int predict_build(struct predict_graph *graph);
+/* The plain graph, on one host. Errors as of predict; predict_graph_free is due all the same. */
+int predict_build_plain(struct predict_graph *graph, const struct trace_run *run);
 void predict_graph_free(struct predict_graph *graph);
 
 /* Runs it. */

@@ -76,6 +76,20 @@ int predict_check(const struct trace_run *run, const struct predict_cluster *c)
     return DUITE_OK;
 }
 
+int predict_build_plain(struct predict_graph *graph, const struct trace_run *run)
+{
+    static const struct predict_cluster one = {.hosts = 1,
+                                               .cores = 1,
+                                               .bandwidth = INFINITY,
+                                               .capacity = INFINITY,
+                                               .core_speed = 1,
+                                               .mapping = &map_block,
+                                               .scheduler = &sched_steal};
+    *graph = (struct predict_graph){.run = run, .cluster = &one, .plain = true};
+    const int code = predict_check(run, &one);
+    return code ? code : predict_build(graph);
+}
+
 /* ---- What a run says when it is over: nothing of it changes any more ---- */
 
 static double conclude_path(const struct predict_graph *graph, double *path)

@@ -76,6 +76,19 @@ const char *predict_limit_name(enum predict_limit limit);
 int predict(const struct trace_run *run, const struct predict_cluster *cluster,
             struct predict_result *result, const struct predict_more *more);
 
+/* Lower bounds of the seconds that any schedule of a run's bodies takes. That a writer waits for
+ * the readers of the value before is left out: this depends on homes and memory. */
+struct predict_bounds {
+    double path;  /* the longest chain of tasks, each of which needs what the one before wrote */
+    double lower; /* the larger of that and the bodies over all workers of the run */
+    uint64_t *number; /* n: of the chain's tasks, the first one first: they rise */
+    size_t n;
+};
+
+/* Errors as of predict; predict_bounds_free is due all the same. */
+int predict_bounds(const struct trace_run *run, struct predict_bounds *bounds);
+void predict_bounds_free(struct predict_bounds *bounds);
+
 /* The tasks, and what each waited for, in the language of Graphviz' dot; the homes are those that
  * were traced. Errors as of predict. */
 int predict_write_dot(const struct trace_run *run, FILE *file);

@@ -1,7 +1,6 @@
 #ifndef DUITE_PREDICT_GRAPH_H
 #define DUITE_PREDICT_GRAPH_H
 
-#include "runtime/base/policy.h"
 #include "runtime/predict/predict.h"
 
 #include <duite.h>
@@ -102,7 +101,6 @@ struct predict_hop {
 struct predict_graph {
     const struct trace_run *run;
     const struct predict_cluster *cluster;
-    struct base_watchdog *watchdog; /* of policies that are not built in; NULL: all are */
     struct predict_node *node;
     size_t n_nodes, nodes_capacity;
     float *shown; /* plain: by node, bytes that it writes and tasks of other blocks read */

@@ -30,7 +30,6 @@ struct predict_cluster {
         *mapping; /* NULL: the homes that were traced; as many hosts as ranks then */
     const duite_balancer *balance; /* NULL: none; one that moves blocks needs a mapping */
     uint64_t seed;
-    double policy_seconds; /* a policy that is not built in is named after that; 0: never */
 };
 
 /* One that says nothing but the network card (10 Gbit/s), the scheduler steal and the seed 1: all

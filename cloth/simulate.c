@@ -5,6 +5,7 @@
 #include "cloth/keeper.h"
 #include "cloth/shipped.h"
 #include "cloth/summary.h"
+#include "runtime/predict/predict.h"
 
 #include <math.h>
 #include <mpi.h>
@@ -210,6 +211,21 @@ static int run_phases(struct run *run)
     return code;
 }
 
+/* Both stay no numbers if the trace is not whole. */
+static void find_bounds(const char *trace, double *path, double *lower)
+{
+    struct trace_run *traced;
+    struct predict_bounds bounds;
+    if (trace_read(&traced, trace, false))
+        return;
+    if (!predict_bounds(traced, &bounds)) {
+        *path = bounds.path;
+        *lower = bounds.lower;
+    }
+    predict_bounds_free(&bounds);
+    trace_run_free(traced);
+}
+
 static int conclude(struct run *run)
 {
     struct cloth_error error = {0};
@@ -224,7 +240,7 @@ static int conclude(struct run *run)
     if (outputs->drape)
         drape_find(outputs->drape, &outputs->drapes, &error);
     if (run->rank == 0 && run->options->trace)
-        duite_trace_bounds(run->options->trace, &path, &bound); /* else it has none */
+        find_bounds(run->options->trace, &path, &bound);
     if (run->rank == 0) {
         const struct summary summary = {
             .options = run->options,

@@ -246,20 +246,17 @@ typedef struct duite_options {
     const struct duite_scheduler *scheduler; /* default: DUITE_SCHEDULER, else steal */
     const struct duite_mapping *mapping;     /* default: DUITE_MAPPING, else metis */
     const struct duite_balancer *balance;    /* default: DUITE_BALANCE, else none; see below */
-    uint64_t seed;         /* of everything random in policies. Default: DUITE_SEED, else 1 */
-    double spin_seconds;   /* how long an idle worker spins before it sleeps. Default 100e-6 */
-    int bind;              /* bind workers to cores where the rank owns enough. Default 1 */
-    size_t window;         /* max. tasks of this rank that are unfinished when a fork returns, see
-                              duite_fork. Default 0: any number */
-    double stuck_seconds;  /* when nothing moves for so long, standard error tells who waits for
-                              what, see below; 0: never. Default 60, or what DUITE_STUCK_SECONDS in
-                              the environment says */
-    double lost_seconds;   /* a rank that sends no heartbeat for so long is lost, see below; 0:
-                              never. What rank 0 says counts for all. Default 8, or what
-                              DUITE_LOST_SECONDS in the environment says */
-    double policy_seconds; /* a function of a policy that is not built in is named on standard error
-                              when it did not return for so long, see duite_policy.h; 0: never.
-                              Default 10, or what DUITE_POLICY_SECONDS in the environment says */
+    uint64_t seed;        /* of everything random in policies. Default: DUITE_SEED, else 1 */
+    double spin_seconds;  /* how long an idle worker spins before it sleeps. Default 100e-6 */
+    int bind;             /* bind workers to cores where the rank owns enough. Default 1 */
+    size_t window;        /* max. tasks of this rank that are unfinished when a fork returns, see
+                             duite_fork. Default 0: any number */
+    double stuck_seconds; /* when nothing moves for so long, standard error tells who waits for
+                             what, see below; 0: never. Default 60, or what DUITE_STUCK_SECONDS in
+                             the environment says */
+    double lost_seconds;  /* a rank that sends no heartbeat for so long is lost, see below; 0:
+                             never. What rank 0 says counts for all. Default 8, or what
+                             DUITE_LOST_SECONDS in the environment says */
     const char *trace; /* a file in which each rank writes down what happens, see duite_trace_step.
                           NULL: none. Default: DUITE_TRACE, else NULL */
     uint64_t trace_first, trace_end; /* steps that are written down: from trace_first on, before
@@ -323,13 +320,14 @@ const char *const *duite_balancer_names(void);
  * jump: what it held stays held. The signals SIGSEGV and SIGBUS are the runtime's meanwhile; faults
  * that are none of these go on to the handler there was. */
 
-/* A standstill: the main program waits (in a get, a wait, a stop, or a fork, for the window) and
- * for options.stuck_seconds no task of this rank began or ended and no message came. Then this rank
- * writes to standard error, in at most 20 lines, what the main program waits for, which bodies run,
- * which tasks wait for them, and which wait for objects from which rank. A long body looks the
- * same; nothing is changed or ended. It is reported again once it lasts twice as long. Tasks that
- * wait for nothing which can be found are reported, too: a body may have written beyond its
- * objects, and DUITE_CHECK=accesses names such a body. */
+/* A standstill: the main program waits (in a get, a wait, a stop, or a fork, for the window), or is
+ * in a function of a policy that is not built in, and for options.stuck_seconds no task of this
+ * rank began or ended and no message came. Then this rank writes to standard error, in at most 20
+ * lines, what the main program waits for, which functions of policies have not returned, which
+ * bodies run, which tasks wait for them, and which wait for objects from which rank. A long body
+ * looks the same; nothing is changed or ended. It is reported again once it lasts twice as long.
+ * Tasks that wait for nothing which can be found are reported, too: a body may have written beyond
+ * its objects, and DUITE_CHECK=accesses names such a body. */
 
 /* A lost rank: on several ranks a thread of each sends the next rank a heartbeat sixteen times in
  * options.lost_seconds, however busy its workers and however large its messages are. A rank that
@@ -649,13 +647,6 @@ int duite_trace_step(duite *rt, uint64_t step);
  * duite_trace_step. DUITE_E_SYSTEM: this rank's file is not whole, or is there no more, for the
  * reason that the message gives. Does nothing without a trace, and the second time. Collective. */
 int duite_trace_end(duite *rt);
-
-/* Bounds that no schedule could have beaten in the run of a trace, which is closed on all ranks.
- * *critical_path: seconds of the longest chain of tasks each of which needs what the one before it
- * wrote. *lower_bound: the larger of that and the seconds in bodies over all workers. Of the steps
- * that were recorded. Reads the files of all ranks. DUITE_E_SYSTEM if one is missing,
- * DUITE_E_ARGUMENT if they are not whole. Local; needs no runtime. */
-int duite_trace_bounds(const char *trace, double *critical_path, double *lower_bound);
 
 /* ---- Counters ---- */
 

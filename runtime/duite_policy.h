@@ -6,14 +6,14 @@
  * sleep, wake-up and messages. Functions of a table take no locks, read no clock, and draw random
  * numbers only from their own state.
  *
- * A function that does not return: the run waits for it. Once it has run for options.policy_seconds
- * (10 s; 0: never) a watchdog names it on standard error, with the policy, the function, rank and
- * worker. The watchdog names it again after twice as long, four times as long, and so on. The
- * function is not broken off; when it returns the run goes on. The time in which the process was
- * stopped does not count. Built-in policies are not watched.
+ * A function that does not return: the run waits for it. Once nothing else of its rank has moved
+ * for options.stuck_seconds (60 s; 0: never) the report of a standstill (duite.h) names the policy,
+ * the function, rank and worker. The function is not broken off; when it returns the run goes on.
+ * Built-in policies are not named.
  *
- * A function that is watched and calls exit ends the process with EXIT_FAILURE, whatever status it
- * asked for, and standard error names the policy and the function. */
+ * In a run, a function of a policy that is not built in and calls exit ends the process with
+ * EXIT_FAILURE, whatever status it asked for, and standard error names the policy and the function.
+ */
 
 #include <stddef.h>
 #include <stdint.h>

@@ -133,14 +133,14 @@ static void make_line(const struct compare *compare, const struct compare_config
     append_pair(line, "--balance", config->value[BALANCE]);
 }
 
-/* A policy that does not return is named well before its run is stopped, so that the page can say
- * it. What the user said counts. */
-static void name_policies_by(unsigned timeout)
+/* A policy that does not return is named by the report of a standstill, well before its run is
+ * stopped, so that the page can say it. The user's own setting counts. */
+static void report_standstills_by(unsigned timeout)
 {
-    const double usual = 10, soon = timeout / 4.0;
+    const double usual = 60, soon = timeout / 4.0;
     char seconds[30];
     snprintf(seconds, sizeof seconds, "%g", soon < usual ? soon : usual);
-    setenv("DUITE_POLICY_SECONDS", seconds, 0);
+    setenv("DUITE_STUCK_SECONDS", seconds, 0);
 }
 
 static int execute(const struct compare *compare, struct line *line)
@@ -153,7 +153,7 @@ static int execute(const struct compare *compare, struct line *line)
     pid_t child = fork();
     if (!child) {
         environment_forget();
-        name_policies_by(compare->timeout);
+        report_standstills_by(compare->timeout);
         if (freopen(log, "w", stdout))
             dup2(STDOUT_FILENO, STDERR_FILENO);
         execvp(line->word[0], line->word);
@@ -208,6 +208,14 @@ static bool is_error(const char *line)
     return false;
 }
 
+/* A report of a standstill has many lines, and each rank writes one: the line that names a policy
+ * counts more than what these say after it. */
+static bool is_said_after(const char *line, const char *last)
+{
+    return strstr(last, ", which has not returned;") && !strncmp(line, "duite: rank ", 12) &&
+           !strstr(line, ", which has not returned;");
+}
+
 /* The last line of the log that a program of ours has said, else the last line. mpirun and argp add
  * theirs behind it. */
 static void find_last_error(const char *log, char *last, size_t size)
@@ -217,7 +225,7 @@ static void find_last_error(const char *log, char *last, size_t size)
     FILE *in = fopen(log, "r");
     while (in && fgets(line, sizeof line, in)) {
         line[strcspn(line, "\n")] = 0;
-        if (!*line || (found && !is_error(line)))
+        if (!*line || (found && (!is_error(line) || is_said_after(line, last))))
             continue;
         found = is_error(line);
         snprintf(last, size, "%s", line);

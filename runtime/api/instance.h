@@ -27,7 +27,7 @@ struct duite {
     struct trace *trace;    /* NULL: there is none */
     bool traced;            /* the trace is closed */
     struct base_monitor monitor;
-    struct base_watchdog *watchdog; /* NULL: all policies are built in, or nobody watches them */
+    struct base_marks *marks; /* NULL: all policies are built in */
     struct map_policy mapping;
     const duite_balancer *balance;
     uint64_t seed;
@@ -78,7 +78,7 @@ int api_check_options_rest(const duite_options *options);
 
 /* Policies that are not built in are watched from now on: one that does not return is named. The
  * runtime knows its ranks and threads. Local. Errors: memory, DUITE_E_SYSTEM. */
-int api_watch_policies(duite *rt, const duite_options *options);
+int api_mark_policies(duite *rt, const duite_options *options);
 
 /* ---- program.c, wait.c ---- */
 

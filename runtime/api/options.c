@@ -82,7 +82,6 @@ duite_options duite_options_default(void)
         .trace = getenv("DUITE_TRACE"),
         .stuck_seconds = environment_seconds(getenv("DUITE_STUCK_SECONDS"), 60),
         .lost_seconds = environment_seconds(getenv("DUITE_LOST_SECONDS"), 8),
-        .policy_seconds = environment_seconds(getenv("DUITE_POLICY_SECONDS"), 10),
         .spin_seconds = 100e-6,
         .trace_end = UINT64_MAX,
         .bind = 1};
@@ -134,6 +133,11 @@ static int options_check_environment(const duite_options *options)
         return options_no_policy("DUITE_MAPPING");
     if (!options->balance && balance && !duite_balancer_find(balance))
         return options_no_policy("DUITE_BALANCE");
+    if (getenv("DUITE_POLICY_SECONDS"))
+        return base_error(DUITE_E_ARGUMENT,
+                          "duite_start: DUITE_POLICY_SECONDS in the environment is not known any "
+                          "more: DUITE_STUCK_SECONDS says when a policy that does not return is "
+                          "named");
     if (options->threads == NO_THREADS && environment_threads() == NO_THREADS)
         return base_error(DUITE_E_ARGUMENT,
                           "duite_start: DUITE_THREADS=%s in the environment: a whole number from 0 "
@@ -176,10 +180,6 @@ static int options_check_seconds(const duite_options *options)
         return base_error(DUITE_E_ARGUMENT,
                           "duite_start: lost_seconds (or DUITE_LOST_SECONDS) is not a number "
                           "from 0 to 1e9");
-    if (!(options->policy_seconds >= 0 && options->policy_seconds <= 1e9))
-        return base_error(DUITE_E_ARGUMENT,
-                          "duite_start: policy_seconds (or DUITE_POLICY_SECONDS) is not a number "
-                          "from 0 to 1e9");
     return DUITE_OK;
 }
 
@@ -216,20 +216,17 @@ int api_check_options_rest(const duite_options *options)
 
 /* ---- Policies that are not built in ---- */
 
-/* Such a policy may never return: the watchdog names it then. */
-int api_watch_policies(duite *rt, const duite_options *options)
+/* Such a policy may never return, or exit: it is named then. */
+int api_mark_policies(duite *rt, const duite_options *options)
 {
     const char *policy[BASE_POLICY_KINDS] = {
         [BASE_SCHEDULER] = sched_is_foreign(options->scheduler) ? options->scheduler->name : NULL,
         [BASE_MAPPING] = map_is_foreign(options->mapping) ? options->mapping->name : NULL,
         [BASE_BALANCER] = balance_is_foreign(options->balance) ? options->balance->name : NULL};
-    if (!(options->policy_seconds > 0) ||
-        !(policy[BASE_SCHEDULER] || policy[BASE_MAPPING] || policy[BASE_BALANCER]))
+    if (!(policy[BASE_SCHEDULER] || policy[BASE_MAPPING] || policy[BASE_BALANCER]))
         return DUITE_OK;
-    const int code =
-        base_watchdog_start(&rt->watchdog, &rt->monitor, policy, options->policy_seconds,
-                            rt->share.workers, rt->graph.rank);
+    const int code = base_marks_start(&rt->marks, policy, rt->share.workers, rt->graph.rank);
     if (!code)
-        rt->mapping.mark = base_watchdog_mark(rt->watchdog, BASE_MAPPING, 0);
+        rt->mapping.mark = base_mark_of(rt->marks, BASE_MAPPING, 0);
     return code;
 }

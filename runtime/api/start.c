@@ -135,7 +135,7 @@ static int instance_start_workers(duite *rt, const duite_options *options, int c
         code = asked;
     bool bind = options->bind && !rt->oversubscribed && !rt->share.limited;
     if (!code)
-        code = api_watch_policies(rt, options);
+        code = api_mark_policies(rt, options);
     if (!code && options->trace)
         code = api_trace_open(rt, options);
     if (!code)
@@ -148,7 +148,7 @@ static int instance_start_workers(duite *rt, const duite_options *options, int c
                                  .scheduler = options->scheduler,
                                  .balancer = options->balance,
                                  .monitor = &rt->monitor,
-                                 .watchdog = rt->watchdog,
+                                 .marks = rt->marks,
                                  .measures = options->mapping->map_tasks != NULL,
                                  .context = options->context,
                                  .rt = rt,
@@ -204,7 +204,7 @@ static void instance_end(duite *rt)
     if (api_is_broken(rt))
         api_give_up(rt);
     work_stop(rt->pool);
-    base_watchdog_stop(rt->watchdog);
+    base_marks_stop(rt->marks);
     plan_memo_free(rt->memo);
     api_graphs_stop(rt); /* closes their channels */
     bool whole = comm_stop(rt->comm);

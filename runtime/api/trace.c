@@ -4,9 +4,6 @@
 
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
-#include "runtime/trace/sums.h"
-
-#include <math.h>
 
 int api_trace_open(duite *rt, const duite_options *options)
 {
@@ -86,23 +83,4 @@ int duite_trace_end(duite *rt)
 {
     int code = api_enter(rt, "duite_trace_end");
     return code ? code : api_trace_end(rt, "duite_trace_end");
-}
-
-int duite_trace_bounds(const char *trace, double *critical_path, double *lower_bound)
-{
-    struct trace_run *run;
-    struct trace_bounds bounds;
-    if (!trace || !critical_path || !lower_bound)
-        return base_error(DUITE_E_ARGUMENT, "duite_trace_bounds: no %s",
-                          trace ? "place for the bounds" : "trace");
-    int code = trace_read(&run, trace, false);
-    if (code)
-        return code;
-    code = trace_bounds_find(run, &bounds);
-    if (!code) {
-        *critical_path = bounds.path;
-        *lower_bound = fmax(bounds.path, bounds.work / trace_first_worker(run, run->n_ranks));
-    }
-    trace_run_free(run);
-    return code;
 }

@@ -4,7 +4,6 @@
 #include "runtime/balance/refine.h"
 
 #include "runtime/base/memory.h"
-#include "runtime/base/policy.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -246,21 +245,11 @@ static bool parts_rename(const duite_blocks *blocks, const int *home, int *part)
     return fine;
 }
 
-/* By the program's mapping, which may not return. */
-static bool parts_map(const duite_blocks *blocks, int *part)
-{
-    struct base_mark *mark = base_watchdog_mark_here(BASE_MAPPING);
-    base_mark_begin(mark, BASE_MAPPING_MAP);
-    const int code = blocks->mapping->map(&blocks->graph, blocks->n_ranks, blocks->seed, part);
-    base_mark_end(mark);
-    return !code;
-}
-
 bool balance_anew(const duite_blocks *blocks, double periods, int *home)
 {
     size_t n = blocks->graph.n;
     int *part = base_alloc(n * sizeof *part + 1);
-    bool fine = part && parts_map(blocks, part);
+    bool fine = part && !blocks->mapping->map(&blocks->graph, blocks->n_ranks, blocks->seed, part);
     for (size_t i = 0; i < n && fine; i++)
         fine = part[i] >= 0 && part[i] < blocks->n_ranks;
     fine = fine && parts_rename(blocks, home, part) && balance_refine(blocks, periods, part);

@@ -4,8 +4,7 @@
 #include <duite_policy.h>
 #include <stdbool.h>
 
-/* New homes for blocks, starting from the present ones. Pure functions of their arguments,
- * but that the calling worker has a mark for the watchdog while it asks a mapping. */
+/* New homes for blocks, starting from the present ones. Pure functions of their arguments. */
 
 /* The cost of some homes in the measured time. */
 struct balance_bill {

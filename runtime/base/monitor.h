@@ -5,7 +5,7 @@
 #include <stdbool.h>
 
 /* The monitor: the one service thread of a rank. It makes looks, each with a period of its own, and
- * sleeps in between: the heartbeat of comm, the standstill of workers, the watchdog of policies.
+ * sleeps in between: the heartbeat of comm, the standstill of workers.
  *
  * The thread starts with the first look that is added and ends with the last one that is removed; a
  * monitor that is all zero has none. It takes no signals. One look is made at a time, so a look

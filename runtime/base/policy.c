@@ -3,9 +3,9 @@
 #include "runtime/base/policy.h"
 
 #include "runtime/base/error.h"
-#include "runtime/base/report.h"
 
 #include <dlfcn.h>
+#include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -86,24 +86,12 @@ bool base_policy_is_ours(const struct base_policies *policies, const void *table
     return policy_built_in(policies, NULL, table) != NULL;
 }
 
-/* ---- The watchdog ---- */
+/* ---- Marks ---- */
 
-/* A mark is written by its worker alone, with relaxed stores: the watchdog orders nothing by it. It
- * has the number of the call, so that two looks at a function that is called all the time are not
- * taken for one call that stands. The watchdogs of a process stand in a list, for the function that
- * runs when it exits. */
-
-enum { LOOKS = 16, WHERE = 64 }; /* LOOKS: in `seconds`, until a call is reported */
-
-struct base_watchdog {
-    struct base_monitor *monitor;
-    struct base_look look;
+struct base_marks {
     const char *policy[BASE_POLICY_KINDS];
-    double seconds;
     int rank;
-    unsigned n;
-    struct base_mark *mark;     /* n of them */
-    struct base_watchdog *next; /* of all in this process */
+    struct base_mark *mark; /* by worker */
 };
 
 static const char *const kinds[] = {
@@ -128,177 +116,87 @@ static const struct {
     [BASE_BALANCER_MIGRATE] = {BASE_BALANCER, "migrate"},
 };
 
-/* " (rank 1, worker 2)", or nothing where there are no ranks. */
-static const char *watchdog_where(const struct base_watchdog *watchdog, unsigned worker,
-                                  char text[WHERE])
+/* The mark of the function that this thread is in, for the end of the process. */
+static _Thread_local const struct base_mark *entered;
+
+void base_mark_enter(struct base_mark *mark, enum base_policy_call call)
 {
-    text[0] = 0;
-    if (watchdog->rank >= 0)
-        snprintf(text, WHERE, " (rank %d, worker %u)", watchdog->rank, worker);
-    return text;
+    const uint64_t before = atomic_load_explicit(&mark->inside, memory_order_relaxed);
+    atomic_store_explicit(&mark->inside, before + 256 + (uint64_t)call, memory_order_relaxed);
+    entered = mark;
 }
 
-/* ---- The looks of the watchdog ---- */
-
-static void watchdog_report(const struct base_watchdog *watchdog, unsigned worker)
+void base_mark_leave(struct base_mark *mark)
 {
-    const struct base_mark *mark = &watchdog->mark[worker];
-    const enum base_policy_call call = (enum base_policy_call)(mark->seen % 256);
-    char text[WHERE], report[WHERE + 400];
-    snprintf(report, sizeof report,
-             "duite: %s %.200s: its %s has not returned for %g s%s; the run goes on when it does\n",
-             kinds[functions[call].kind], watchdog->policy[functions[call].kind],
-             functions[call].name, watchdog->seconds * (double)mark->looks / LOOKS,
-             watchdog_where(watchdog, worker, text));
-    base_report(report);
-}
-
-static void watchdog_look_at(const struct base_watchdog *watchdog, unsigned worker)
-{
-    struct base_mark *mark = &watchdog->mark[worker];
     const uint64_t inside = atomic_load_explicit(&mark->inside, memory_order_relaxed);
-    if (inside != mark->seen || inside % 256 == BASE_NO_CALL) {
-        mark->seen = inside;
-        mark->looks = 0;
-        mark->next = LOOKS;
-    } else if (++mark->looks == mark->next) {
-        mark->next *= 2;
-        watchdog_report(watchdog, worker);
-    }
+    atomic_store_explicit(&mark->inside, inside & ~(uint64_t)255, memory_order_relaxed);
+    entered = NULL;
 }
 
-static bool watchdog_look(void *context)
+bool base_mark_name(const struct base_marks *marks, unsigned worker, uint64_t inside,
+                    struct base_named *named)
 {
-    const struct base_watchdog *watchdog = context;
-    for (unsigned i = 0; i < watchdog->n; i++)
-        watchdog_look_at(watchdog, i);
+    const enum base_policy_call call = (enum base_policy_call)(inside % 256);
+    if (!marks || call == BASE_NO_CALL || base_mark_inside(marks, worker) != inside)
+        return false;
+    *named = (struct base_named){kinds[functions[call].kind], marks->policy[functions[call].kind],
+                                 functions[call].name};
     return true;
 }
 
-/* ---- Policies that exit ---- */
-
-static pthread_mutex_t listing = PTHREAD_MUTEX_INITIALIZER;
-static struct base_watchdog *watchdogs; /* under the lock above */
-
-/* The call of a policy that the calling thread is in, and which worker that is; or BASE_NO_CALL. */
-static enum base_policy_call watchdog_find_call(const struct base_watchdog *watchdog,
-                                                unsigned *worker)
+uint64_t base_mark_inside(const struct base_marks *marks, unsigned worker)
 {
-    for (unsigned i = 0; i < watchdog->n; i++) {
-        const struct base_mark *mark = &watchdog->mark[i];
-        const uint64_t inside = atomic_load_explicit(&mark->inside, memory_order_relaxed);
-        const pthread_t thread = atomic_load_explicit(&mark->thread, memory_order_relaxed);
-        *worker = i;
-        if (inside % 256 != BASE_NO_CALL && pthread_equal(thread, pthread_self()))
-            return (enum base_policy_call)(inside % 256);
-    }
-    return BASE_NO_CALL;
+    return marks ? atomic_load_explicit(&marks->mark[worker].inside, memory_order_relaxed) : 0;
 }
 
 /* The thread that exits may do so in a call. */
-static void watchdog_on_exit(void)
+static void mark_on_exit(void)
 {
-    enum base_policy_call call = BASE_NO_CALL;
-    unsigned worker = 0;
-    char text[WHERE];
-    pthread_mutex_lock(&listing);
-    const struct base_watchdog *watchdog = watchdogs;
-    while (watchdog && !(call = watchdog_find_call(watchdog, &worker)))
-        watchdog = watchdog->next;
-    pthread_mutex_unlock(&listing);
-    if (!call)
+    struct base_named named;
+    if (!entered)
         return;
-    fprintf(stderr, "duite: %s %.200s: its %s called exit%s; this process ends with status %d\n",
-            kinds[functions[call].kind], watchdog->policy[functions[call].kind],
-            functions[call].name, watchdog_where(watchdog, worker, text), EXIT_FAILURE);
+    const struct base_marks *marks = entered->of;
+    const unsigned worker = (unsigned)(entered - marks->mark);
+    if (!base_mark_name(marks, worker, base_mark_inside(marks, worker), &named))
+        return;
+    fprintf(stderr,
+            "duite: %s %.200s: its %s called exit (rank %d, worker %u); this process ends with "
+            "status %d\n",
+            named.kind, named.policy, named.function, marks->rank, worker, EXIT_FAILURE);
     fflush(NULL);
     _exit(EXIT_FAILURE);
 }
 
-struct base_mark *base_watchdog_mark_here(enum base_policy_kind kind)
+static void mark_watch_exits(void)
 {
-    struct base_mark *mark = NULL;
-    pthread_mutex_lock(&listing);
-    for (const struct base_watchdog *watchdog = watchdogs; watchdog && !mark;
-         watchdog = watchdog->next)
-        for (unsigned i = 0; i < watchdog->n && watchdog->policy[kind] && !mark; i++)
-            if (pthread_equal(atomic_load_explicit(&watchdog->mark[i].thread, memory_order_relaxed),
-                              pthread_self()))
-                mark = &watchdog->mark[i];
-    pthread_mutex_unlock(&listing);
-    return mark;
+    atexit(mark_on_exit); /* if it cannot, an exit passes as before */
 }
 
-static void watchdog_watch_exits(void)
-{
-    atexit(watchdog_on_exit); /* if it cannot, an exit passes as before */
-}
-
-static void watchdog_enlist(struct base_watchdog *watchdog)
+int base_marks_start(struct base_marks **out, const char *const policy[BASE_POLICY_KINDS],
+                     unsigned n, int rank)
 {
     static pthread_once_t once = PTHREAD_ONCE_INIT;
-    pthread_once(&once, watchdog_watch_exits);
-    pthread_mutex_lock(&listing);
-    watchdog->next = watchdogs;
-    watchdogs = watchdog;
-    pthread_mutex_unlock(&listing);
-}
-
-static void watchdog_delist(const struct base_watchdog *watchdog)
-{
-    pthread_mutex_lock(&listing);
-    struct base_watchdog **at = &watchdogs;
-    while (*at && *at != watchdog)
-        at = &(*at)->next;
-    if (*at)
-        *at = watchdog->next;
-    pthread_mutex_unlock(&listing);
-}
-
-/* ---- The watchdog starts and stops ---- */
-
-int base_watchdog_start(struct base_watchdog **out, struct base_monitor *monitor,
-                        const char *const policy[BASE_POLICY_KINDS], double seconds, unsigned n,
-                        int rank)
-{
-    struct base_watchdog *watchdog = *out = base_alloc_zero(sizeof *watchdog);
-    if (!watchdog)
-        return base_no_memory("the watchdog of policies");
-    watchdog->monitor = monitor;
-    watchdog->seconds = seconds;
-    watchdog->rank = rank;
-    watchdog->mark = base_alloc_zero(n * sizeof *watchdog->mark);
-    if (!watchdog->mark)
-        return base_no_memory("the watchdog of policies");
-    watchdog->n = n;
+    struct base_marks *marks = *out = base_alloc_zero(sizeof *marks);
+    if (!marks || !(marks->mark = base_alloc_zero(n * sizeof *marks->mark)))
+        return base_no_memory("the marks of policies");
+    marks->rank = rank;
     for (int kind = 0; kind < BASE_POLICY_KINDS; kind++)
-        watchdog->policy[kind] = policy[kind];
+        marks->policy[kind] = policy[kind];
     for (unsigned i = 0; i < n; i++)
-        base_watchdog_here(watchdog, i);
-    watchdog_enlist(watchdog);
-    watchdog->look =
-        (struct base_look){.look = watchdog_look, .context = watchdog, .seconds = seconds / LOOKS};
-    return base_monitor_add(monitor, &watchdog->look);
+        marks->mark[i].of = marks;
+    pthread_once(&once, mark_watch_exits);
+    return DUITE_OK;
 }
 
-void base_watchdog_stop(struct base_watchdog *watchdog)
+void base_marks_stop(struct base_marks *marks)
 {
-    if (!watchdog)
-        return;
-    base_monitor_remove(watchdog->monitor, &watchdog->look);
-    watchdog_delist(watchdog);
-    base_free(watchdog->mark);
-    base_free(watchdog);
+    if (marks)
+        base_free(marks->mark);
+    base_free(marks);
 }
 
-struct base_mark *base_watchdog_mark(struct base_watchdog *watchdog, enum base_policy_kind kind,
-                                     unsigned worker)
+struct base_mark *base_mark_of(struct base_marks *marks, enum base_policy_kind kind,
+                               unsigned worker)
 {
-    return watchdog && watchdog->policy[kind] ? &watchdog->mark[worker] : NULL;
-}
-
-void base_watchdog_here(struct base_watchdog *watchdog, unsigned worker)
-{
-    if (watchdog)
-        atomic_store_explicit(&watchdog->mark[worker].thread, pthread_self(), memory_order_relaxed);
+    return marks && marks->policy[kind] ? &marks->mark[worker] : NULL;
 }

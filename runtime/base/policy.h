@@ -2,7 +2,6 @@
 #define DUITE_BASE_POLICY_H
 
 #include "runtime/base/memory.h"
-#include "runtime/base/monitor.h"
 
 #include <stdatomic.h>
 #include <stdbool.h>
@@ -39,15 +38,12 @@ const char *const *base_policy_test_names(const struct base_policies *policies);
 /* Whether the table is one of the built-in ones, those for tests among them. */
 bool base_policy_is_ours(const struct base_policies *policies, const void *table);
 
-/* ---- The watchdog ---- */
+/* ---- Marks ---- */
 
-/* The watchdog names policies that do not return: a scheduler, mapping or balancer that is not
- * built in may loop or sleep for ever. Every worker has a mark, which says which function of such a
- * policy it is in. The monitor looks at the marks sixteen times in `seconds`. A call that stood
- * through sixteen looks is named on standard error, with policy, function, rank and worker, and
- * again after twice as many, four times as many, and so on. Nothing else happens: the call goes on.
- * To break it off would leave the policy's locks and memory, and the heap, in any state. Time is
- * counted in looks, so that the time in which the process itself was stopped does not count.
+/* Policies that are not built in may loop or sleep for ever, or end the process. Every worker has a
+ * mark, which says which function of such a policy it is in. The standstill report names a function
+ * that does not return. To break it off would leave the policy's locks and memory, and the heap, in
+ * any state.
  *
  * A policy that calls exit is named, too, and the process then ends with EXIT_FAILURE, whatever it
  * asked for: it must not pass for a program that ended. */
@@ -72,55 +68,51 @@ enum base_policy_call {
     BASE_POLICY_CALLS /* at most 256 */
 };
 
-/* Of one worker, who alone writes `inside`. */
+struct base_marks;
+
+/* Of one worker, who alone writes `inside`, with relaxed stores: readers order nothing by it. */
 struct base_mark {
     _Alignas(BASE_LINE) _Atomic uint64_t inside; /* 256 times how many calls so far, and which of
                                                     base_policy_call it is in */
-    _Atomic pthread_t thread;
-    /* The watchdog's: */
-    uint64_t seen;        /* `inside` at the last look */
-    uint64_t looks, next; /* how many saw this call; at how many it is reported next */
+    const struct base_marks *of;
 };
 
-struct base_watchdog;
-
 /* policy: the names of those that are not built in, by kind; NULL: it is built in, or there is
- * none. seconds > 0; n workers, of which the calling thread is all so far; rank: for the message;
- * -1: there are no ranks. base_watchdog_stop is due all the same. Errors: memory, DUITE_E_SYSTEM.
- */
-int base_watchdog_start(struct base_watchdog **watchdog, struct base_monitor *monitor,
-                        const char *const policy[BASE_POLICY_KINDS], double seconds, unsigned n,
-                        int rank);
-/* No worker makes a mark any more. By the thread that started it. NULL is fine. */
-void base_watchdog_stop(struct base_watchdog *watchdog);
+ * none. n workers of this rank. base_marks_stop is due all the same. Errors: memory. */
+int base_marks_start(struct base_marks **marks, const char *const policy[BASE_POLICY_KINDS],
+                     unsigned n, int rank);
+/* No worker makes a mark any more. NULL is fine. */
+void base_marks_stop(struct base_marks *marks);
 
 /* The mark that this worker sets around calls of its policy of this kind. NULL: the policy is built
- * in, or the watchdog is NULL. */
-struct base_mark *base_watchdog_mark(struct base_watchdog *watchdog, enum base_policy_kind kind,
-                                     unsigned worker);
+ * in, or there are no marks. */
+struct base_mark *base_mark_of(struct base_marks *marks, enum base_policy_kind kind,
+                               unsigned worker);
 
-/* The same for the worker that the calling thread is, for those who do not know it: a search. NULL
- * also if the thread is none. */
-struct base_mark *base_watchdog_mark_here(enum base_policy_kind kind);
+/* The worker's `inside`: it is in a function unless this is a multiple of 256. 0: no marks. */
+uint64_t base_mark_inside(const struct base_marks *marks, unsigned worker);
 
-/* The calling thread is this worker from now on. NULL is fine. */
-void base_watchdog_here(struct base_watchdog *watchdog, unsigned worker);
+struct base_named {
+    const char *kind, *policy, *function; /* "scheduler", its name, "place" */
+};
+/* Names the function that the worker is in; false unless it is in one since `inside` was read. */
+bool base_mark_name(const struct base_marks *marks, unsigned worker, uint64_t inside,
+                    struct base_named *named);
+
+void base_mark_enter(struct base_mark *mark, enum base_policy_call call);
+void base_mark_leave(struct base_mark *mark);
 
 /* A call begins; a call is over. Of a NULL mark they do nothing. */
 static inline void base_mark_begin(struct base_mark *mark, enum base_policy_call call)
 {
-    if (__builtin_expect(!mark, 1))
-        return;
-    const uint64_t before = atomic_load_explicit(&mark->inside, memory_order_relaxed);
-    atomic_store_explicit(&mark->inside, before + 256 + (uint64_t)call, memory_order_relaxed);
+    if (__builtin_expect(mark != NULL, 0))
+        base_mark_enter(mark, call);
 }
 
 static inline void base_mark_end(struct base_mark *mark)
 {
-    if (__builtin_expect(!mark, 1))
-        return;
-    const uint64_t inside = atomic_load_explicit(&mark->inside, memory_order_relaxed);
-    atomic_store_explicit(&mark->inside, inside & ~(uint64_t)255, memory_order_relaxed);
+    if (__builtin_expect(mark != NULL, 0))
+        base_mark_leave(mark);
 }
 
 #endif

@@ -4,7 +4,7 @@
 
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
-#include "runtime/trace/sums.h"
+#include "runtime/predict/predict.h"
 
 #include <stdlib.h>
 
@@ -42,11 +42,13 @@ static void path_look(void *context, const struct trace_seen *seen)
 
 int chart_path_find(const struct trace_run *run, struct chart_path *path)
 {
-    struct trace_path found;
-    int code = trace_path_find(run, &found);
-    *path = (struct chart_path){.known = !code, .seconds = found.seconds};
-    if (code)
+    struct predict_bounds found;
+    int code = predict_bounds(run, &found);
+    *path = (struct chart_path){.known = !code, .seconds = found.path};
+    if (code) {
+        predict_bounds_free(&found);
         return code == DUITE_E_ARGUMENT ? DUITE_OK : code;
+    }
     path->step = base_alloc((found.n + 1) * sizeof *path->step);
     if (path->step) {
         for (size_t i = 0; i < found.n; i++)
@@ -56,7 +58,7 @@ int chart_path_find(const struct trace_run *run, struct chart_path *path)
             if (path->step[i].end >= path->step[i].begin)
                 path->step[path->n++] = path->step[i];
     }
-    base_free(found.number);
+    predict_bounds_free(&found);
     return path->step ? DUITE_OK : base_no_memory("the critical path of a chart");
 }
 

@@ -29,7 +29,7 @@ bool map_is_foreign(const duite_mapping *mapping);
 /* A mapping, and the mark of the worker that asks it. */
 struct map_policy {
     const duite_mapping *own;
-    struct base_mark *mark; /* NULL: the mapping is built in, or nobody watches it */
+    struct base_mark *mark; /* NULL: the mapping is built in, or predicted with */
 };
 
 /* Call duite_mapping.map and map_tasks. Main thread. Errors: those of the mapping. */

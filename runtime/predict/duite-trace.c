@@ -11,6 +11,7 @@
 
 #include <argp.h>
 #include <errno.h>
+#include <math.h>
 #include <string.h>
 
 enum { FAILED = 1, BAD_INPUT = 2 };
@@ -140,6 +141,14 @@ static int write_form(const struct trace_run *run, const struct command *command
     return code ? FAILED : 0;
 }
 
+static int table_write(const struct trace_run *run)
+{
+    struct predict_bounds bounds;
+    const double path = predict_bounds(run, &bounds) ? (double)NAN : bounds.path;
+    predict_bounds_free(&bounds);
+    return trace_print(run, path, stdout);
+}
+
 static int forms_write(const struct command *command, const struct trace_run *run)
 {
     bool asked = command->check;
@@ -154,7 +163,7 @@ static int forms_write(const struct command *command, const struct trace_run *ru
     }
     if (command->check && !code && !trace_sums_agree(run, stderr))
         code = FAILED;
-    if (!asked && trace_print(run, stdout))
+    if (!asked && table_write(run))
         code = FAILED;
     if (fflush(stdout) && !code)
         code = write_failed("standard output");

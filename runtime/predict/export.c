@@ -4,7 +4,6 @@
 
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
-#include "runtime/map/map.h"
 #include "runtime/sched/sched.h"
 #include "runtime/task/task.h"
 
@@ -113,13 +112,6 @@ static void rows_free(struct rows *rows)
     base_free(rows->place);
 }
 
-/* The line that an edge leads to, from a task that is read; NONE: another kind of edge. */
-static uint32_t rows_reader(const struct predict_graph *graph, const struct rows *rows,
-                            uint32_t edge)
-{
-    return graph->edge[edge].reads ? rows->line[graph->edge[edge].to] : PREDICT_NONE;
-}
-
 /* Edges are kept where they begin; rows where they end. */
 static void rows_transpose(const struct predict_graph *graph, struct rows *rows)
 {
@@ -130,7 +122,7 @@ static void rows_transpose(const struct predict_graph *graph, struct rows *rows)
             if (rows->line[i] == PREDICT_NONE)
                 continue;
             for (uint32_t e = graph->node[i].edge; e != PREDICT_NONE; e = graph->edge[e].next) {
-                uint32_t to = rows_reader(graph, rows, e);
+                uint32_t to = rows->line[graph->edge[e].to];
                 if (to == PREDICT_NONE)
                     continue;
                 if (fill)
@@ -189,18 +181,9 @@ static void rows_put(const struct predict_graph *graph, struct rows *rows, FILE 
 
 int predict_write_graph(const struct trace_run *run, FILE *file)
 {
-    const struct predict_cluster cluster = {.hosts = 1,
-                                            .cores = 1,
-                                            .bandwidth = INFINITY,
-                                            .capacity = INFINITY,
-                                            .core_speed = 1,
-                                            .mapping = &map_block,
-                                            .scheduler = &sched_steal};
-    struct predict_graph graph = {.run = run, .cluster = &cluster, .plain = true};
+    struct predict_graph graph;
     struct rows rows = {0};
-    int code = predict_check(run, &cluster);
-    if (!code)
-        code = predict_build(&graph);
+    int code = predict_build_plain(&graph, run);
     if (!code && !rows_room(&rows, &graph))
         code = base_no_memory("the graph of a trace");
     if (!code) {

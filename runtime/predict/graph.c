@@ -13,8 +13,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define MAX_NODE 0x7fffffffu /* as many bits as there are for them */
-
 static bool graph_room(struct predict_graph *graph, void *array, size_t *capacity, size_t n,
                        size_t size)
 {
@@ -30,7 +28,7 @@ static bool graph_room(struct predict_graph *graph, void *array, size_t *capacit
 
 uint32_t predict_add(struct predict_graph *graph, const struct predict_node *node)
 {
-    graph->failed |= graph->n_nodes >= MAX_NODE;
+    graph->failed |= graph->n_nodes >= PREDICT_NONE;
     if (!graph_room(graph, &graph->node, &graph->nodes_capacity, graph->n_nodes,
                     sizeof *graph->node))
         return 0;
@@ -48,13 +46,12 @@ uint32_t predict_add(struct predict_graph *graph, const struct predict_node *nod
 
 void predict_edge_kind(struct predict_graph *graph, uint32_t from, uint32_t to, bool reads)
 {
-    if (from == PREDICT_NONE || from == to ||
+    if (from == PREDICT_NONE || from == to || (graph->plain && !reads) ||
         !graph_room(graph, &graph->edge, &graph->edges_capacity, graph->n_edges,
                     sizeof *graph->edge))
         return;
     graph->linked |= from >= graph->round;
-    graph->edge[graph->n_edges] =
-        (struct predict_edge){to & MAX_NODE, reads, graph->node[from].edge};
+    graph->edge[graph->n_edges] = (struct predict_edge){to, graph->node[from].edge};
     graph->node[from].edge = (uint32_t)graph->n_edges++;
     graph->node[to].pending++;
 }
@@ -294,10 +291,10 @@ void predict_use(struct predict_graph *graph, uint32_t node, uint32_t object, du
     predict_edge_value(graph, prepared, node, object);
     if (mode == DUITE_CW)
         link_push(graph, &graph->object[object].leaves, node, at);
-    else if (mode == DUITE_R)
-        link_push(graph, &graph->object[object].readers, node, at);
-    else
+    else if (mode != DUITE_R)
         predict_overwrite(graph, node, object, host);
+    else if (!graph->plain) /* there no writer waits for readers */
+        link_push(graph, &graph->object[object].readers, node, at);
 }
 
 /* A copy stays at the old home. */

@@ -1,7 +1,6 @@
 #ifndef DUITE_PREDICT_GRAPH_H
 #define DUITE_PREDICT_GRAPH_H
 
-#include "runtime/base/policy.h"
 #include "runtime/predict/predict.h"
 
 #include <duite.h>
@@ -42,9 +41,7 @@ struct predict_node {
 };
 
 struct predict_edge {
-    uint32_t to : 31;
-    uint32_t reads : 1; /* `to` reads a result; else it only comes later */
-    uint32_t next;
+    uint32_t to, next;
 };
 
 /* A step of the main program: it forks the nodes up to `end`, `each` seconds apart. Then it waits
@@ -101,7 +98,6 @@ struct predict_hop {
 struct predict_graph {
     const struct trace_run *run;
     const struct predict_cluster *cluster;
-    struct base_watchdog *watchdog; /* of policies that are not built in; NULL: all are */
     struct predict_node *node;
     size_t n_nodes, nodes_capacity;
     float *shown; /* plain: by node, bytes that it writes and tasks of other blocks read */
@@ -134,7 +130,7 @@ struct predict_graph {
     double look;            /* and to look for one, which workers do now and then; 0: no messages */
     double bodies, medians; /* s, as predict_result has them */
     uint64_t n_tasks, migrated;
-    bool plain;           /* only tasks and their reads: replays have no gates */
+    bool plain;           /* only tasks and what they read: no edges of other kinds, no gates */
     bool replays, failed; /* failed: no memory */
     bool linked;          /* the node that is being made has an edge from its own round */
 };
@@ -190,6 +186,8 @@ int predict_check(const struct trace_run *run, const struct predict_cluster *clu
 
 /* Makes the graph of a trace. Errors as of predict. */
 int predict_build(struct predict_graph *graph);
+/* The plain graph, on one host. Errors as of predict; predict_graph_free is due all the same. */
+int predict_build_plain(struct predict_graph *graph, const struct trace_run *run);
 void predict_graph_free(struct predict_graph *graph);
 
 /* Runs it. */

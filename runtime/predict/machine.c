@@ -215,17 +215,11 @@ static void machine_scheduler(struct predict_machine *m, uint32_t worker)
     const uint32_t cores = m->cluster->cores;
     const duite_scheduler *scheduler = m->scheduler;
     void *state = predict_worker_state(m, worker);
-    base_mark_begin(m->mark, BASE_SCHEDULER_START);
     if (scheduler->start)
         scheduler->start(state, worker % cores, cores, m->cluster->seed);
-    base_mark_end(m->mark);
-    base_mark_begin(m->mark, BASE_SCHEDULER_LOCATE);
     if (scheduler->locate)
         scheduler->locate(state, &m->near[worker % cores]);
-    base_mark_end(m->mark);
-    base_mark_begin(m->mark, BASE_SCHEDULER_SERVE);
     m->queue[worker].heap = scheduler->serve(state) == DUITE_HIGHEST;
-    base_mark_end(m->mark);
 }
 
 static void machine_init(struct predict_machine *m)

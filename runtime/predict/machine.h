@@ -66,7 +66,6 @@ struct predict_machine {
     struct predict_graph *graph;
     const struct predict_cluster *cluster;
     const duite_scheduler *scheduler;
-    struct base_mark *mark; /* around its calls; NULL: it is built in */
     uint32_t n_workers;
     unsigned char *states;
     size_t stride;

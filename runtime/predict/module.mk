@@ -1,6 +1,6 @@
 # Predictions of traced runs: no part of libduite. Programs that predict link it before libduite_core.
 noinst_LIBRARIES += libduite_predict.a
-libduite_predict_a_SOURCES = runtime/predict/export.c runtime/predict/graph.c runtime/predict/graph.h runtime/predict/machine.c \
+libduite_predict_a_SOURCES = runtime/predict/bounds.c runtime/predict/export.c runtime/predict/graph.c runtime/predict/graph.h runtime/predict/machine.c \
 	runtime/predict/machine.h runtime/predict/move.c runtime/predict/objects.c runtime/predict/predict.c runtime/predict/predict.h \
 	runtime/predict/program.c runtime/predict/program.h runtime/predict/replay.c runtime/predict/round.c runtime/predict/simulate.c \
 	runtime/predict/sum.c runtime/predict/times.c

@@ -28,11 +28,8 @@ bool predict_moves_start(struct predict_program *p)
     if (!balance || !balance->migrate)
         return p->moves.other != NULL;
     p->moves.state = base_alloc_zero(balance->state_size + 1);
-    struct base_mark *mark = base_watchdog_mark(p->graph->watchdog, BASE_BALANCER, 0);
-    base_mark_begin(mark, BASE_BALANCER_START);
     if (p->moves.state && balance->start)
         balance->start(p->moves.state, 0, (int)cluster->hosts, 0, cluster->seed);
-    base_mark_end(mark);
     return p->moves.other && p->moves.state;
 }
 
@@ -156,10 +153,7 @@ static int move_call_balancer(struct move *m)
     blocks.since = moves->replays - moves->looked;
     blocks.mapping = cluster->mapping;
     blocks.seed = cluster->seed;
-    struct base_mark *mark = base_watchdog_mark(m->p->graph->watchdog, BASE_BALANCER, 0);
-    base_mark_begin(mark, BASE_BALANCER_MIGRATE);
     uint64_t next = cluster->balance->migrate(moves->state, &blocks, m->moves.home);
-    base_mark_end(mark);
     moves->due = next ? moves->replays + next : UINT64_MAX;
     return DUITE_OK;
 }
@@ -181,10 +175,8 @@ static int move_call_mapping(struct move *m, struct predict_recorded *recorded)
     tasks.graph.message_seconds = cluster->latency;
     tasks.graph.seed = cluster->seed;
     if (!code)
-        code = map_ask_tasks(
-            &(struct map_policy){cluster->mapping,
-                                 base_watchdog_mark(m->p->graph->watchdog, BASE_MAPPING, 0)},
-            &tasks.graph, m->moves.home);
+        code = map_ask_tasks(&(struct map_policy){.own = cluster->mapping}, &tasks.graph,
+                             m->moves.home);
     recorded->map_at = tasks.guessed && !recorded->replays ? 1 : UINT64_MAX;
     m->p->moves.due += m->p->moves.due == m->p->moves.replays;
     map_tasks_free(&tasks);

@@ -145,8 +145,7 @@ static void home_give(struct predict_program *p, uint32_t own, uint32_t traced)
 void predict_homes(struct predict_program *p, size_t n)
 {
     const struct predict_cluster *cluster = p->graph->cluster;
-    const struct map_policy mapping = {cluster->mapping,
-                                       base_watchdog_mark(p->graph->watchdog, BASE_MAPPING, 0)};
+    const struct map_policy mapping = {.own = cluster->mapping};
     p->code = map_settle(&p->table, &mapping, cluster->seed);
     for (size_t i = 0; i < n && !p->code && !p->words.short_of && !p->damaged; i++) {
         uint32_t own = predict_object_at(p, trace_words_next(&p->words)),

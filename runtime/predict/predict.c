@@ -29,8 +29,7 @@ struct predict_cluster predict_cluster_default(void)
                                     .overhead = -1,
                                     .message = -1,
                                     .look = -1,
-                                    .seed = 1,
-                                    .policy_seconds = duite_options_default().policy_seconds};
+                                    .seed = 1};
 }
 
 int predict_check(const struct trace_run *run, const struct predict_cluster *c)
@@ -52,10 +51,6 @@ int predict_check(const struct trace_run *run, const struct predict_cluster *c)
                           "the homes that were traced are those of %u ranks, not %u hosts: name a "
                           "mapping",
                           run->n_ranks, c->hosts);
-    if (!(c->policy_seconds >= 0 && c->policy_seconds <= 1e9))
-        return base_error(DUITE_E_ARGUMENT,
-                          "the seconds of a policy (DUITE_POLICY_SECONDS) are no number from 0 to "
-                          "1e9");
     if (c->scheduler->state_size > BASE_MAX_STATE ||
         (c->balance && c->balance->state_size > BASE_MAX_STATE))
         return base_error(DUITE_E_ARGUMENT,
@@ -74,6 +69,20 @@ int predict_check(const struct trace_run *run, const struct predict_cluster *c)
                           "the balancer %s moves what a mapping placed: name a mapping",
                           c->balance->name);
     return DUITE_OK;
+}
+
+int predict_build_plain(struct predict_graph *graph, const struct trace_run *run)
+{
+    static const struct predict_cluster one = {.hosts = 1,
+                                               .cores = 1,
+                                               .bandwidth = INFINITY,
+                                               .capacity = INFINITY,
+                                               .core_speed = 1,
+                                               .mapping = &map_block,
+                                               .scheduler = &sched_steal};
+    *graph = (struct predict_graph){.run = run, .cluster = &one, .plain = true};
+    const int code = predict_check(run, &one);
+    return code ? code : predict_build(graph);
 }
 
 /* ---- Results, when the run is over and no longer changes ---- */
@@ -178,34 +187,16 @@ void predict_conclude(struct predict_machine *m, struct predict_result *result, 
 
 /* ---- All of it ---- */
 
-/* Policies that are not built in are watched: one that does not return is named. */
-static int watch_policies(struct predict_graph *graph, struct base_monitor *monitor)
-{
-    const struct predict_cluster *c = graph->cluster;
-    const char *policy[BASE_POLICY_KINDS] = {
-        [BASE_SCHEDULER] = sched_is_foreign(c->scheduler) ? c->scheduler->name : NULL,
-        [BASE_MAPPING] = c->mapping && map_is_foreign(c->mapping) ? c->mapping->name : NULL,
-        [BASE_BALANCER] = c->balance && balance_is_foreign(c->balance) ? c->balance->name : NULL};
-    if (!(c->policy_seconds > 0) ||
-        !(policy[BASE_SCHEDULER] || policy[BASE_MAPPING] || policy[BASE_BALANCER]))
-        return DUITE_OK;
-    return base_watchdog_start(&graph->watchdog, monitor, policy, c->policy_seconds, 1, -1);
-}
-
 int predict(const struct trace_run *run, const struct predict_cluster *cluster,
             struct predict_result *result, const struct predict_more *more)
 {
     static const struct predict_more nothing = {0};
-    struct base_monitor monitor = {0};
     struct predict_graph graph = {.run = run, .cluster = cluster};
     int code = predict_check(run, cluster);
-    if (!code)
-        code = watch_policies(&graph, &monitor);
     if (!code)
         code = predict_build(&graph);
     if (!code)
         code = predict_simulate(&graph, result, more ? more : &nothing);
     predict_graph_free(&graph);
-    base_watchdog_stop(graph.watchdog);
     return code;
 }

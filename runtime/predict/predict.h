@@ -30,7 +30,6 @@ struct predict_cluster {
         *mapping; /* NULL: the homes that were traced; as many hosts as ranks then */
     const duite_balancer *balance; /* NULL: none; one that moves blocks needs a mapping */
     uint64_t seed;
-    double policy_seconds; /* a policy that is not built in is named after that; 0: never */
 };
 
 /* Sets only the network card (10 Gbit/s), the scheduler steal and the seed 1; all else is as seen
@@ -74,6 +73,19 @@ const char *predict_limit_name(enum predict_limit limit);
  * a trace with losses or without a whole program, a mapping that fails, and an invalid cluster. */
 int predict(const struct trace_run *run, const struct predict_cluster *cluster,
             struct predict_result *result, const struct predict_more *more);
+
+/* Lower bounds of the seconds that any schedule of a run's bodies takes. That a writer waits for
+ * the readers of the value before is left out: this depends on homes and memory. */
+struct predict_bounds {
+    double path;  /* the longest chain of tasks, each of which needs what the one before wrote */
+    double lower; /* the larger of that and the bodies over all workers of the run */
+    uint64_t *number; /* n: of the chain's tasks, the first one first: they rise */
+    size_t n;
+};
+
+/* Errors as of predict; predict_bounds_free is due all the same. */
+int predict_bounds(const struct trace_run *run, struct predict_bounds *bounds);
+void predict_bounds_free(struct predict_bounds *bounds);
 
 /* Writes the tasks, and the tasks that each waited for, in the language of Graphviz' dot; the homes
  * are the traced ones. Errors as of predict. */

@@ -90,16 +90,12 @@ static uint32_t worker_search(struct predict_machine *m, uint32_t worker)
     const struct predict_node *nodes = m->graph->node;
     const uint32_t cores = m->cluster->cores, host = worker / cores, first = host * cores;
     void *state = predict_worker_state(m, worker);
-    base_mark_begin(m->mark, BASE_SCHEDULER_SERVE);
     duite_end end = m->scheduler->serve(state);
-    base_mark_end(m->mark);
     uint32_t node = predict_queue_take(&m->queue[worker], nodes, end);
     if (node == PREDICT_NONE)
         node = predict_queue_take(&m->shared[host], nodes, end);
     for (unsigned attempt = 0; node == PREDICT_NONE && attempt < 64 + 16 * cores; attempt++) {
-        base_mark_begin(m->mark, BASE_SCHEDULER_VICTIM);
         unsigned victim = m->scheduler->victim(state, attempt);
-        base_mark_end(m->mark);
         if (victim >= cores)
             break;
         if (first + victim != worker)
@@ -145,17 +141,12 @@ static void node_task_ready(struct predict_machine *m, uint32_t node, uint32_t w
     duite_ready ready = predict_describe(m, node);
     m->begin[node] = m->now; /* until it starts: since when it is ready */
     if (here && m->next[worker] == PREDICT_NONE) {
-        base_mark_begin(m->mark, BASE_SCHEDULER_CHAIN);
-        const int chained = m->scheduler->chain(state, &ready);
-        base_mark_end(m->mark);
-        if (chained) {
+        if (m->scheduler->chain(state, &ready)) {
             m->next[worker] = node;
             return;
         }
     }
-    base_mark_begin(m->mark, BASE_SCHEDULER_PLACE);
     unsigned queue = m->scheduler->place(state, &ready);
-    base_mark_end(m->mark);
     bool own = queue < cores;
     m->failed |= !predict_queue_put(own ? &m->queue[host * cores + queue] : &m->shared[host],
                                     m->graph->node, node);
@@ -360,7 +351,6 @@ int predict_simulate(struct predict_graph *graph, struct predict_result *result,
     struct predict_machine m = {.graph = graph,
                                 .cluster = graph->cluster,
                                 .scheduler = graph->cluster->scheduler,
-                                .mark = base_watchdog_mark(graph->watchdog, BASE_SCHEDULER, 0),
                                 .n_workers = graph->cluster->hosts * graph->cluster->cores,
                                 .network = {.cluster = graph->cluster},
                                 .latest = PREDICT_NONE,

@@ -281,26 +281,23 @@ const char *trace_limit_name(const struct trace_shares *shares)
     return limit[largest].name;
 }
 
-static void sums_print_limit(const struct trace_run *run, const struct trace_sums *sums, double all,
-                             FILE *file)
+static void sums_print_limit(const struct trace_sums *sums, double path, double all, FILE *file)
 {
     const double span = sums->last - sums->first;
     struct trace_shares shares = {.work = sums_ratio(sums->busy, all),
                                   .messages = sums_ratio(sums->messaging + sums->exposed, all),
                                   .starved = sums_ratio(sums->idle - sums->exposed, all)};
-    struct trace_bounds bounds = {0};
     shares.runtime = 1 - shares.work - shares.messages - shares.starved;
-    if (trace_bounds_find(run, &bounds)) {
+    if (isnan(path)) {
         fputs("  critical path unknown\n", file);
     } else {
-        shares.path = sums_ratio(bounds.path, span);
-        fprintf(file, "  critical path %.6f s, %.1f %% of the time\n", bounds.path,
-                100 * shares.path);
+        shares.path = sums_ratio(path, span);
+        fprintf(file, "  critical path %.6f s, %.1f %% of the time\n", path, 100 * shares.path);
     }
     fprintf(file, "  limited by    %s\n", trace_limit_name(&shares));
 }
 
-int trace_print(const struct trace_run *run, FILE *file)
+int trace_print(const struct trace_run *run, double path, FILE *file)
 {
     struct trace_sums sums;
     int code = trace_sum(run, &sums);
@@ -321,7 +318,7 @@ int trace_print(const struct trace_run *run, FILE *file)
         fprintf(file, "  LOST          %" PRIu64 " events or words of the program\n", run->lost);
     if (!run->whole)
         fputs("  NOT WHOLE     the run did not come to its end\n", file);
-    sums_print_limit(run, &sums, all, file);
+    sums_print_limit(&sums, path, all, file);
     sums_print_shares(&sums, all, file);
     sums_print_kernels(run, &sums, file);
     trace_sums_free(&sums);

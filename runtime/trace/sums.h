@@ -27,8 +27,9 @@ void trace_sums_free(struct trace_sums *sums);
  * losses. Prints each difference. */
 bool trace_sums_agree(const struct trace_run *run, FILE *file);
 
-/* Prints the table of duite-trace, for people. */
-int trace_print(const struct trace_run *run, FILE *file);
+/* Prints the table of duite-trace, for people. path: seconds of the critical path; not a number:
+ * unknown. */
+int trace_print(const struct trace_run *run, double path, FILE *file);
 
 /* ---- Bodies ---- */
 
@@ -42,28 +43,6 @@ void trace_bodies_free(struct trace_bodies *bodies);
 
 /* True if the task of this number ran; *seconds: for how long, 0 if it did not. */
 bool trace_bodies_find(const struct trace_bodies *bodies, uint64_t number, double *seconds);
-
-/* ---- Bounds ---- */
-
-/* Lower bounds of the time that any schedule of a run's bodies takes, in seconds. */
-struct trace_bounds {
-    double path; /* the longest chain of tasks, each of which needs what the one before it wrote */
-    double work; /* in bodies, all workers together */
-};
-
-/* Errors: memory; DUITE_E_ARGUMENT for a trace with losses, without a whole program, damaged or
- * without tasks. */
-int trace_bounds_find(const struct trace_run *run, struct trace_bounds *bounds);
-
-/* The tasks of the longest chain, the first one first: their numbers rise. */
-struct trace_path {
-    double seconds;   /* as trace_bounds.path */
-    uint64_t *number; /* n; to be freed by base_free, NULL after an error */
-    size_t n;
-};
-
-/* Errors as of trace_bounds_find. */
-int trace_path_find(const struct trace_run *run, struct trace_path *path);
 
 /* ---- What limits ---- */
 

@@ -53,7 +53,7 @@ int work_balance_start(struct work_balance **out, struct work_pool *pool)
     if (!work_cost_start(&balance->cost, n, graph->n_kernels, measures) || !balance->states)
         return base_no_memory("the balancer");
     for (unsigned i = 0; i < n && balancer->start; i++) {
-        struct base_mark *mark = base_watchdog_mark(pool->setup.watchdog, BASE_BALANCER, i);
+        struct base_mark *mark = base_mark_of(pool->setup.marks, BASE_BALANCER, i);
         base_mark_begin(mark, BASE_BALANCER_START);
         balancer->start(balance->states + i * balance->stride, graph->rank, graph->n_ranks, i,
                         pool->setup.seed);
@@ -82,7 +82,7 @@ static void *balance_state(const struct worker *worker)
 
 static struct base_mark *balance_mark(const struct worker *worker)
 {
-    return base_watchdog_mark(worker->pool->setup.watchdog, BASE_BALANCER, worker->index);
+    return base_mark_of(worker->pool->setup.marks, BASE_BALANCER, worker->index);
 }
 
 static int balancer_victim(const struct worker *worker, unsigned attempt, int giver,
@@ -112,11 +112,13 @@ static int balancer_place(const struct worker *worker, const duite_leaf *leaf)
     return rank;
 }
 
+/* A balancer that is built in may ask the mapping, which is not. */
 uint64_t work_migrate(struct work_pool *pool, const duite_blocks *blocks, int *home)
 {
     const struct work_balance *balance = pool->balance;
-    struct base_mark *mark = balance_mark(&pool->worker[0]);
-    base_mark_begin(mark, BASE_BALANCER_MIGRATE);
+    struct base_mark *own = balance_mark(&pool->worker[0]);
+    struct base_mark *mark = own ? own : base_mark_of(pool->setup.marks, BASE_MAPPING, 0);
+    base_mark_begin(mark, own ? BASE_BALANCER_MIGRATE : BASE_MAPPING_MAP);
     const uint64_t next = balance->balancer->migrate(balance->states, blocks, home);
     base_mark_end(mark);
     return next;

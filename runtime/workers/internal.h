@@ -46,9 +46,10 @@ struct work_waits {
 
 struct work_standstill {
     struct base_look look;
-    double patience; /* seconds of a standstill until it is reported */
-    double since;    /* when something moved last, as far as was seen; */
-    uint64_t before; /* what was read then */
+    double patience;  /* seconds of a standstill until it is reported */
+    double since;     /* when something moved last, as far as was seen; */
+    uint64_t before;  /* what was read then */
+    uint64_t *inside; /* by worker: its mark at the last look */
     bool reported;
     pthread_mutex_t lock; /* held while it reports, see work_leaves */
     struct work_waits waits;
@@ -352,9 +353,9 @@ void work_grant(struct worker *worker);
 void work_request(struct worker *worker, uint64_t idle);
 
 /* ---- standstill.c: the monitor looks, eight times in so many seconds, whether the main program
- * waits and nothing of this rank moves. Then it reports on standard error, once, who waits for
- * what. Another standstill is reported if it lasts twice as long, and so on, so that slow tasks do
- * not fill the screen ---- */
+ * waits, or is in a function of a policy, and nothing of this rank moves. Then it reports on
+ * standard error, once, who waits for what. Another standstill is reported if it lasts twice as
+ * long, and so on, so that slow tasks do not fill the screen ---- */
 
 /* Begins and ends the looks; 0 seconds: there are none; else the workers are there. Errors: memory,
  * DUITE_E_SYSTEM. */

@@ -27,7 +27,7 @@ static void worker_start_scheduler(struct worker *worker)
 {
     const struct work_setup *setup = &worker->pool->setup;
     const duite_scheduler *scheduler = setup->scheduler;
-    worker->mark = base_watchdog_mark(setup->watchdog, BASE_SCHEDULER, worker->index);
+    worker->mark = base_mark_of(setup->marks, BASE_SCHEDULER, worker->index);
     base_mark_begin(worker->mark, BASE_SCHEDULER_START);
     if (scheduler->start)
         scheduler->start(worker->state, worker->index, setup->threads, setup->seed);
@@ -105,6 +105,7 @@ int work_start(struct work_pool **out, const struct work_setup *setup)
     setup->graph->paths = setup->scheduler->paths;
     bool fine = pool->worker && pool->states && work_near_start(&pool->near, n, setup->cores) &&
                 work_queue_start(&pool->shared);
+    const int watched = work_standstill_start(pool, fine ? setup->stuck_seconds : 0);
     for (unsigned i = 0; i < n && fine; i++)
         fine = worker_prepare(pool, i, setup->cores ? setup->cores[i] : -1);
     if (fine)
@@ -114,7 +115,6 @@ int work_start(struct work_pool **out, const struct work_setup *setup)
     if (setup->trace && setup->comm)
         comm_set_report(setup->comm, work_note_message);
     int code = fine ? pool_start_threads(pool) : base_no_memory("the workers");
-    int watched = work_standstill_start(pool, code ? 0 : setup->stuck_seconds);
     return code ? code : watched;
 }
 
@@ -122,18 +122,20 @@ int work_start(struct work_pool **out, const struct work_setup *setup)
 
 void work_stop(struct work_pool *pool)
 {
+    static const struct work_why end = {.call = "duite_stop", .what = "the workers of this rank"};
     if (!pool)
         return;
     if (pool->setup.comm)
         comm_workers_end(pool->setup.comm);
     pool->setup.graph->pool = NULL;
     atomic_store(&pool->stop, 1);
-    work_standstill_stop(pool);
+    work_waits(pool, &end);
     for (unsigned i = 1; i < pool->started; i++) {
         atomic_thread_fence(memory_order_seq_cst);
         work_park_wake(&pool->worker[i].park);
         pthread_join(pool->worker[i].thread, NULL);
     }
+    work_standstill_stop(pool);
     if (pool->started && pool->worker[0].unit >= 0)
         sched_setaffinity(0, sizeof pool->worker[0].binding, &pool->worker[0].binding);
     for (unsigned i = 0; pool->worker && i < pool->setup.threads; i++) {

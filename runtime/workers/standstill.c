@@ -8,6 +8,8 @@
  * membarrier(2) on the monitor's side alone, which runs one on all threads of the process. So it
  * costs a task no more than a store and a load. */
 #include "runtime/base/clock.h"
+#include "runtime/base/error.h"
+#include "runtime/base/memory.h"
 #include "runtime/base/report.h"
 #include "runtime/offload/offload.h"
 #include "runtime/workers/internal.h"
@@ -186,6 +188,23 @@ static unsigned report_bodies(struct report *report, bool held)
     return n;
 }
 
+/* Reports the functions of policies that workers were in at the last look already; returns how
+ * many. */
+static unsigned report_policies(struct report *report)
+{
+    const struct work_setup *setup = &report->pool->setup;
+    struct base_named named;
+    unsigned n = 0;
+    for (unsigned i = 0; i < setup->threads; i++)
+        if (base_mark_name(setup->marks, i, report->pool->standstill.inside[i], &named) &&
+            n++ < MAX_BODIES)
+            report_line(report,
+                        "worker %u%s is in the %s of %s %.60s, which has not returned; the run "
+                        "goes on when it does",
+                        i, i ? "" : " (the main thread)", named.function, named.kind, named.policy);
+    return n;
+}
+
 /* ---- Messages ---- */
 
 static void report_awaited(void *context, const struct data_key *key,
@@ -252,7 +271,8 @@ static void report_refused(struct report *report, uint64_t refused)
 
 /* ---- All of it ---- */
 
-static void report_main(struct report *report, double seconds)
+/* Whether the main program waits in a call. */
+static bool report_main(struct report *report, double seconds)
 {
     struct work_waits *waits = &report->pool->standstill.waits;
     const char *call = atomic_load_explicit(&waits->call, memory_order_acquire);
@@ -266,7 +286,12 @@ static void report_main(struct report *report, double seconds)
     report_line(
         report,
         "%s waits for %s, and for %.3g s no task of this rank began or ended and no message came",
-        call ? call : "the main program", what ? what : object, seconds);
+        call ? call : "the main program",
+        !call  ? "a policy's function"
+        : what ? what
+               : object,
+        seconds);
+    return call;
 }
 
 static uint64_t report_unfinished(const struct work_pool *pool)
@@ -286,14 +311,16 @@ static void standstill_report(struct work_pool *pool, double seconds)
                                        .sending = report_sending,
                                        .channel = report_channel};
     pthread_mutex_lock(&pool->standstill.lock);
-    report_main(&report, seconds);
-    const unsigned bodies = report_bodies(&report, report_hold_workers(pool)),
-                   before = report.lines;
+    const bool waits = report_main(&report, seconds);
+    const unsigned policies = report_policies(&report);
+    const unsigned bodies = policies + report_bodies(&report, report_hold_workers(pool));
+    const unsigned before = report.lines;
     const bool looked = !pool->setup.comm || comm_look(pool->setup.comm, &looker);
     offload_look(pool->setup.graph, report_away, &report);
     report_refused(&report, offload_refused(pool->setup.graph));
-    const uint64_t left = report_unfinished(pool);
-    report_line(&report, "unfinished tasks of this rank: %llu", (unsigned long long)left);
+    const uint64_t left = waits ? report_unfinished(pool) : 0;
+    if (waits)
+        report_line(&report, "unfinished tasks of this rank: %llu", (unsigned long long)left);
     if (looked && left && !bodies && report.lines == before + 1 && !report.left_out)
         report_line(&report,
                     "they wait for nothing that duite knows of: a body may have written beyond its "
@@ -314,10 +341,12 @@ static bool standstill_look(void *context)
 {
     struct work_pool *pool = context;
     struct work_standstill *standstill = &pool->standstill;
+    const struct base_marks *marks = pool->setup.marks;
     const double now = base_seconds();
-    const uint64_t moved = pool_movement(pool);
-    if (moved != standstill->before ||
-        !atomic_load_explicit(&standstill->waits.call, memory_order_relaxed)) {
+    const bool waits = atomic_load_explicit(&standstill->waits.call, memory_order_relaxed);
+    const uint64_t main = waits ? 0 : base_mark_inside(marks, 0);
+    const uint64_t moved = pool_movement(pool) + main;
+    if (moved != standstill->before || !(waits || main % 256 != BASE_NO_CALL)) {
         standstill->before = moved;
         standstill->since = now;
         standstill->reported = false;
@@ -326,6 +355,8 @@ static bool standstill_look(void *context)
         standstill->reported = true;
         standstill->patience *= 2;
     }
+    for (unsigned i = 0; i < pool->setup.threads; i++)
+        standstill->inside[i] = base_mark_inside(marks, i);
     return true;
 }
 
@@ -335,6 +366,9 @@ int work_standstill_start(struct work_pool *pool, double seconds)
     pthread_mutex_init(&standstill->lock, NULL);
     if (seconds <= 0)
         return DUITE_OK;
+    standstill->inside = base_alloc_zero(pool->setup.threads * sizeof *standstill->inside);
+    if (!standstill->inside)
+        return base_no_memory("the standstill report");
     standstill->patience = seconds;
     standstill->since = base_seconds();
     standstill->before = pool_movement(pool);
@@ -346,6 +380,7 @@ int work_standstill_start(struct work_pool *pool, double seconds)
 void work_standstill_stop(struct work_pool *pool)
 {
     base_monitor_remove(pool->setup.monitor, &pool->standstill.look);
+    base_free(pool->standstill.inside);
     pthread_mutex_destroy(&pool->standstill.lock);
 }
 

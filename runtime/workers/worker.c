@@ -356,7 +356,6 @@ void *work_thread(void *argument)
     struct work_pool *pool = worker->pool;
     work_cores_bind(worker->unit);
     worker->stack = base_stack_here();
-    base_watchdog_here(pool->setup.watchdog, worker->index);
     while (!atomic_load_explicit(&pool->stop, memory_order_acquire))
         work_look(worker, &(struct work_wish){0});
     base_pool_thread_end();

@@ -26,7 +26,7 @@ struct work_setup {
     const duite_scheduler *scheduler;
     const duite_balancer *balancer; /* NULL: nothing moves */
     struct base_monitor *monitor;   /* of this rank */
-    struct base_watchdog *watchdog; /* of those of the two that are not built in; NULL: none */
+    struct base_marks *marks;       /* of policies that are not built in; NULL: all are */
     bool measures;                  /* bodies are timed even if the balancer does not need it */
     void *context;                  /* for bodies */
     duite *rt;                      /* for bodies */

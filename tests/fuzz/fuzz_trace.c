@@ -32,7 +32,9 @@ static void predict_run(const struct trace_run *run)
 static void write_forms(const struct trace_run *run, FILE *file)
 {
     const struct chart_options options = chart_options_default();
-    trace_print(run, file);
+    struct predict_bounds bounds;
+    trace_print(run, predict_bounds(run, &bounds) ? (double)NAN : bounds.path, file);
+    predict_bounds_free(&bounds);
     trace_sums_agree(run, file);
     trace_export_paje.write(run, file);
     trace_export_chrome.write(run, file);

@@ -47,16 +47,14 @@ TESTS += tests/runtime/random_programs tests/runtime/test_random.sh tests/runtim
     tests/runtime/test_memcheck.sh
 LONG_TESTS += tests/runtime/test_random_long.sh tests/runtime/test_memcheck_long.sh tests/runtime/test_threads_long.sh
 SAID_FILES = tests/support/said.c tests/support/said.h
-check_PROGRAMS += tests/runtime/ranks_watchdog
-tests_runtime_ranks_watchdog_SOURCES = tests/runtime/ranks_watchdog.c tests/runtime/passive.h tests/negative/misuse.c tests/negative/misuse.h $(SAID_FILES)
-tests_runtime_ranks_watchdog_LDADD = $(CORE_LIBS)
+check_PROGRAMS += tests/runtime/ranks_stuck_policies
+tests_runtime_ranks_stuck_policies_SOURCES = tests/runtime/ranks_stuck_policies.c tests/negative/misuse.c tests/negative/misuse.h $(SAID_FILES)
+tests_runtime_ranks_stuck_policies_LDADD = $(CORE_LIBS)
 check_PROGRAMS += tests/runtime/ranks_mappings
 tests_runtime_ranks_mappings_SOURCES = tests/runtime/ranks_mappings.c tests/negative/misuse.c tests/negative/misuse.h
 tests_runtime_ranks_mappings_LDADD = $(CORE_LIBS)
 dist_check_SCRIPTS += tests/runtime/test_mappings.sh
 TESTS += tests/runtime/test_mappings.sh
-dist_check_SCRIPTS += tests/runtime/test_watchdog.sh
-TESTS += tests/runtime/test_watchdog.sh
 check_PROGRAMS += tests/runtime/overrun
 tests_runtime_overrun_SOURCES = tests/runtime/overrun.c
 tests_runtime_overrun_LDADD = $(CORE_LIBS)
@@ -128,7 +126,7 @@ tests_runtime_test_window_LDADD = $(DUITE_TEST_LIBS)
 RUNTIME_TESTS = tests/runtime/test_late tests/runtime/test_predict tests/runtime/test_predict_replays tests/runtime/test_predict_costs \
 	tests/runtime/test_predict_refused tests/runtime/test_pool tests/runtime/test_owner tests/runtime/test_offload_names \
 	tests/runtime/test_laws tests/runtime/test_settle tests/runtime/test_balance tests/runtime/test_sched \
-	tests/runtime/test_sched_knowing tests/runtime/test_sched_told tests/runtime/test_makespan tests/runtime/test_watchdog \
+	tests/runtime/test_sched_knowing tests/runtime/test_sched_told tests/runtime/test_makespan tests/runtime/test_monitor \
 	tests/runtime/test_traced tests/runtime/test_check tests/runtime/test_environment \
     tests/runtime/test_nested_tasks tests/runtime/test_stack tests/runtime/test_graphs tests/runtime/test_graphs_change \
     tests/runtime/test_graphs_refused
@@ -147,8 +145,8 @@ RUNTIME_TESTS += tests/runtime/test_shares
 tests_runtime_test_shares_SOURCES = tests/runtime/test_shares.c
 tests_runtime_test_shares_LDADD = $(CHART_LIBS) $(DUITE_TEST_LIBS)
 RUNTIME_TESTS += tests/runtime/test_bounds
-tests_runtime_test_bounds_SOURCES = tests/runtime/test_bounds.c tests/support/trace_file.c tests/support/trace_file.h
-tests_runtime_test_bounds_LDADD = $(DUITE_TEST_LIBS)
+tests_runtime_test_bounds_SOURCES = tests/runtime/test_bounds.c $(PREDICTED_FILES)
+tests_runtime_test_bounds_LDADD = tests/support/libunit.a $(PREDICT_LIBS) $(CHECK_LIBS)
 tests_runtime_test_environment_SOURCES = tests/runtime/test_environment.c tests/negative/misuse.c tests/negative/misuse.h
 tests_runtime_test_environment_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_check_SOURCES = tests/runtime/test_check.c
@@ -182,8 +180,8 @@ tests_runtime_test_makespan_SOURCES = tests/runtime/test_makespan.c tests/negati
 tests_runtime_test_makespan_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_traced_SOURCES = tests/runtime/test_traced.c tests/negative/misuse.c tests/negative/misuse.h
 tests_runtime_test_traced_LDADD = $(DUITE_TEST_LIBS)
-tests_runtime_test_watchdog_SOURCES = tests/runtime/test_watchdog.c tests/negative/misuse.c tests/negative/misuse.h $(SAID_FILES)
-tests_runtime_test_watchdog_LDADD = $(DUITE_TEST_LIBS)
+tests_runtime_test_monitor_SOURCES = tests/runtime/test_monitor.c
+tests_runtime_test_monitor_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_graphs_SOURCES = tests/runtime/test_graphs.c
 tests_runtime_test_graphs_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_graphs_change_SOURCES = tests/runtime/test_graphs_change.c \

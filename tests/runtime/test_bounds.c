@@ -1,30 +1,26 @@
-/* duite_trace_bounds against chains worked out by hand. */
-#include "tests/support/trace_file.h"
+/* The bounds of a run against chains worked out by hand. */
+#include "tests/runtime/predicted.h"
 #include "tests/support/unit.h"
 
 #include <math.h>
 #include <stdio.h>
-#include <unistd.h>
-
-#define SLOTS(...) ((const uint32_t[]){__VA_ARGS__})
-#define MS         1e-3
 
 static struct trace_file begun(uint32_t n)
 {
-    struct trace_file file = {0};
-    for (uint32_t slot = 1; slot <= n; slot++)
-        trace_file_object(&file, slot, 8);
-    trace_file_begin(&file, n);
-    return file;
+    return predicted_trace(n, 8);
 }
 
 static int bounds_of(struct trace_file *file, double *path, double *bound)
 {
-    char name[64];
-    snprintf(name, sizeof name, "test_bounds.%d.trace", (int)getpid());
-    ck_assert(trace_file_write(file, name));
-    const int code = duite_trace_bounds(name, path, bound);
-    unlink(name);
+    struct predict_bounds bounds;
+    struct trace_run *run = predicted_run(file);
+    const int code = predict_bounds(run, &bounds);
+    for (size_t i = 1; i < bounds.n; i++)
+        ck_assert_uint_gt(bounds.number[i], bounds.number[i - 1]);
+    *path = bounds.path;
+    *bound = bounds.lower;
+    predict_bounds_free(&bounds);
+    trace_run_free(run);
     return code;
 }
 
@@ -96,6 +92,22 @@ START_TEST(flags_hold_rounds)
 }
 END_TEST
 
+/* The second task waits for the flag, too, although one of its own round reads what it overwrites:
+ * 2 (the first round's flag) + 1 (the second round's second task) + 3. */
+START_TEST(readers_do_not_hide_flags)
+{
+    static const struct trace_file_node nodes[] = {{FILE_R_W, 2 * MS, 0, 2, {0, 1}},
+                                                   {FILE_W, 1 * MS, 0, 1, {0}}};
+    struct trace_file file = begun(2);
+    trace_file_graph(&file, 2, 2, nodes);
+    const size_t at = file.n_words;
+    trace_file_replay(&file, 2, 2, nodes, 2);
+    file.word[at + 2] = 2;
+    trace_file_fork(&file, FILE_RW, 3 * MS, 0, 1, SLOTS(1));
+    bounds_are(&file, 6 * MS, 9 * MS);
+}
+END_TEST
+
 /* Of a replay that was poisoned from its second round on, later rounds count nothing. */
 START_TEST(poisoned_rounds_take_no_time)
 {
@@ -145,6 +157,7 @@ int main(void)
     tcase_add_test(cases, contributions_end_together);
     tcase_add_test(cases, rounds_follow_rounds);
     tcase_add_test(cases, flags_hold_rounds);
+    tcase_add_test(cases, readers_do_not_hide_flags);
     tcase_add_test(cases, poisoned_rounds_take_no_time);
     tcase_add_test(cases, damage_is_refused);
     suite_add_tcase(suite, cases);

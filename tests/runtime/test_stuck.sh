@@ -48,6 +48,8 @@ case_of "a body that naps in a replay" ranks 2 $stuck 2 0 2 0 replay
 tells "0: worker [01].* runs task [0-9]* (kernel nap)"
 tells "1: kernel take of a recorded graph waits for a message that has not come from rank 0"
 
+ok "a policy's function that does not return on one of 2 ranks is named there" ranks 2 tests/runtime/ranks_stuck_policies
+
 # What a body overwrote beyond its object was a task's: nobody knows any more what that waits for.
 overrun() {
     tests/runtime/overrun &
@@ -86,3 +88,7 @@ ok "looked at all the time, three ranks" ranks 3 tests/runtime/random_programs -
 
 DUITE_STUCK_SECONDS=soon
 exits 3 "seconds that are none" limited $stuck 1 0 0 0 get
+unset DUITE_STUCK_SECONDS
+exits 3 "seconds of policies are refused" env DUITE_POLICY_SECONDS=1 $stuck 1 0 0 0 get
+cp "$scratch/output" "$scratch/told"
+ok "... and it is said what there is instead" grep "DUITE_POLICY_SECONDS .* DUITE_STUCK_SECONDS" "$scratch/told"

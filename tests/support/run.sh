@@ -20,7 +20,7 @@ case $1 in
     *tests/cloth/flow/test_run | *tests/cloth/flow/test_failures | *tests/cloth/flow/test_memory | *tests/cloth/flow/test_ranks*.sh) ;;
     *tests/whole/test_input.sh | *tests/whole/test_lock.sh | *tests/whole/test_signals.sh) ;;
     *tests/cloth/flow/* | *tests/whole/* | *tests/examples/* | *tests/negative/test_environment.sh | *tests/negative/test_lost*.sh | \
-        *tests/runtime/test_exit.sh | *tests/runtime/test_stuck.sh | *tests/runtime/test_loaded.sh | *tests/runtime/test_watchdog.sh)
+        *tests/runtime/test_exit.sh | *tests/runtime/test_stuck.sh | *tests/runtime/test_loaded.sh)
         export ASAN_OPTIONS="$ASAN_OPTIONS:fast_unwind_on_malloc=1:detect_leaks=0" ;;
 esac
 folder=$(mktemp -d "${TMPDIR:-/tmp}/duite.XXXXXX") || exit 99

@@ -1,7 +1,6 @@
-/* Policies of which a function does not return on one rank until that rank has named it twice: then
- * it goes on, and all ranks end with the right values. */
+/* Policies of which a function does not return on one rank until that rank's standstill report has
+ * named it: then it goes on, and all ranks end with the right values. */
 #include "tests/negative/misuse.h"
-#include "tests/runtime/passive.h"
 #include "tests/support/said.h"
 
 #include <duite_policy.h>
@@ -17,15 +16,15 @@ enum { TASKS = 20, MOST_WAITS = 120000 };
 static int rank;
 static const char *kind;            /* of the policy that hangs */
 static _Atomic(const char *) hangs; /* the function that does on this rank; NULL: none any more */
-static _Atomic int named;           /* ... was, twice */
+static _Atomic int entered;         /* that function was called */
 
-/* So many seconds on. */
-static int told(const char *function, double seconds)
+static int told(const char *function)
 {
     char begin[100], wanted[100];
 
-    snprintf(begin, sizeof begin, "duite: %s hanging: its %s ", kind, function);
-    snprintf(wanted, sizeof wanted, "has not returned for %g s (rank %d, worker ", seconds, rank);
+    snprintf(begin, sizeof begin, "duite: rank %d: worker ", rank);
+    snprintf(wanted, sizeof wanted, " is in the %s of %s hanging, which has not returned", function,
+             kind);
     return said_lines(begin, wanted);
 }
 
@@ -36,9 +35,9 @@ static void may_hang(const char *function)
     if (!name || strcmp(name, function) != 0 ||
         !atomic_compare_exchange_strong(&hangs, &name, NULL))
         return;
-    for (int i = 0; i < MOST_WAITS && !told(function, 2 * SECONDS); i++)
+    atomic_store(&entered, 1);
+    for (int i = 0; i < MOST_WAITS && !told(function); i++)
         nanosleep(&(struct timespec){.tv_nsec = 1000000}, NULL);
-    atomic_store(&named, told(function, SECONDS) <= 1 && told(function, 2 * SECONDS) == 1 ? 1 : -1);
 }
 
 /* ---- Policies that otherwise work ---- */
@@ -117,6 +116,37 @@ static void begin(void *state, int own, int n_ranks, unsigned worker, uint64_t s
     *(int *)state = own;
 }
 
+static void start(void *state, unsigned worker, unsigned n_workers, uint64_t seed)
+{
+    (void)n_workers;
+    (void)seed;
+    may_hang("start");
+    *(unsigned *)state = worker;
+}
+
+static void locate(void *state, const duite_near *near)
+{
+    (void)state;
+    (void)near;
+    may_hang("locate");
+}
+
+static unsigned victim(void *state, unsigned attempt)
+{
+    (void)attempt;
+    if (*(unsigned *)state) /* not the main thread's */
+        may_hang("victim");
+    return DUITE_NO_QUEUE;
+}
+
+static int chain(void *state, const duite_ready *task)
+{
+    (void)state;
+    (void)task;
+    may_hang("chain");
+    return 1;
+}
+
 static unsigned place(void *state, const duite_ready *task)
 {
     (void)state;
@@ -128,6 +158,7 @@ static unsigned place(void *state, const duite_ready *task)
 static duite_end serve(void *state)
 {
     (void)state;
+    may_hang("serve");
     return DUITE_NEWEST;
 }
 
@@ -150,10 +181,13 @@ static const duite_balancer ASKING = {.name = "hanging",
                                 .name = "hanging", .summary = "for tests", .migrate = migrate};
 static const duite_scheduler SCHEDULER = {.name = "hanging",
                                           .summary = "for tests",
+                                          .state_size = sizeof(unsigned),
+                                          .start = start,
+                                          .locate = locate,
                                           .place = place,
                                           .serve = serve,
-                                          .victim = passive_victim,
-                                          .chain = passive_chain};
+                                          .victim = victim,
+                                          .chain = chain};
 
 /* ---- Programs ---- */
 
@@ -178,16 +212,16 @@ static int build(duite *rt, void *context)
     return 0;
 }
 
-static int named_body(const duite_call *call)
+static int entered_body(const duite_call *call)
 {
-    *duite_out(call, 0, int32_t) = atomic_load(&named);
+    *duite_out(call, 0, int32_t) = atomic_load(&entered);
     return 0;
 }
 
-static const duite_kernel NAMED = {.name = "named", .body = named_body, .access = {DUITE_W}};
+static const duite_kernel ENTERED = {.name = "entered", .body = entered_body, .access = {DUITE_W}};
 
-/* Leaves on rank 0, where all objects are, and a recorded graph; until rank `where` was hung, and
- * went on. The values are right. */
+/* Leaves on rank 0, where all objects are, and a recorded graph; until rank `where` was hung. The
+ * values are right. */
 static int works(duite *rt, int where)
 {
     duite_object object[TASKS], seen = misuse_new(rt, 1);
@@ -206,7 +240,7 @@ static int works(duite *rt, int where)
         duite_set(rt, object[0], &zero);
         code = code ? code : duite_replay(rt, graph, 1);
         code = code ? code : duite_get(rt, object[TASKS - 1], &value);
-        code = code ? code : duite_fork_at(rt, where, &NAMED, NULL, 1, &seen);
+        code = code ? code : duite_fork_at(rt, where, &ENTERED, NULL, 1, &seen);
         code = code ? code : duite_get(rt, seen, &state);
         code = code ? code : duite_wait(rt);
     }
@@ -221,7 +255,7 @@ static int works(duite *rt, int where)
 static void one_hangs(const char *what, const char *function, int where,
                       const duite_options *policies)
 {
-    static const duite_kernel *const KERNELS[] = {&SET, &COPY, &ADD, &SLOW, &NAMED, NULL};
+    static const duite_kernel *const KERNELS[] = {&SET, &COPY, &ADD, &SLOW, &ENTERED, NULL};
     duite_options options = misuse_options(MPI_COMM_WORLD);
     duite *rt = NULL;
     char name[100];
@@ -230,18 +264,22 @@ static void one_hangs(const char *what, const char *function, int where,
     options.scheduler = policies->scheduler ? policies->scheduler : options.scheduler;
     options.mapping = policies->mapping ? policies->mapping : duite_mapping_find("block");
     options.balance = policies->balance ? policies->balance : options.balance;
-    options.policy_seconds = SECONDS;
+    options.stuck_seconds = SECONDS;
     snprintf(name, sizeof name, "%s of a %s%s hangs on rank %d", function, what,
              policies->mapping && policies->balance ? " that a balancer asks" : "", where);
     kind = what;
-    atomic_store(&named, 0);
-    atomic_store(&hangs, NULL);
+    const int starts = !strcmp(function, "start") || !strcmp(function, "locate");
+    atomic_store(&entered, 0);
+    atomic_store(&hangs, starts && rank == where ? function : NULL);
     said_begin();
     int right = !duite_start(&rt, &options);
-    atomic_store(&hangs, rank == where ? function : NULL);
+    if (!starts)
+        atomic_store(&hangs, rank == where ? function : NULL);
     right = right && works(rt, where);
     right = right && !duite_stop(&rt);
-    right = right && (rank == where || !said_lines("duite: ", "has not returned"));
+    right =
+        right && (rank == where ? told(function) == 1 && said_lines("duite: ", "not returned") == 1
+                                : !said_lines("duite: ", "not returned"));
     said_end();
     tap_case(right, name);
 }
@@ -250,10 +288,11 @@ int main(void)
 {
     misuse_mpi();
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-    for (int where = 0; where < 2; where++) {
+    static const char *const SCHEDULES[] = {"place", "serve", "victim", "chain", "start", "locate"};
+    for (int where = 0; where < 2; where++)
         one_hangs("mapping", "map", where, &(duite_options){.mapping = &MAPPING});
-        one_hangs("scheduler", "place", where, &(duite_options){.scheduler = &SCHEDULER});
-    }
+    for (int i = 0; i < 6; i++)
+        one_hangs("scheduler", SCHEDULES[i], i % 2, &(duite_options){.scheduler = &SCHEDULER});
     one_hangs("mapping", "map_tasks", 0, &(duite_options){.mapping = &MAPPING});
     one_hangs(
         "mapping", "map", 0,

@@ -1,5 +1,5 @@
-/* A law is pure: what it makes depends on the bytes it is given and on nothing else, so that the
- * tree alone decides the bits of a result. */
+/* A law is pure: its result depends only on the given bytes, so the tree alone decides the bits of
+ * a result. */
 #include "runtime/data/law.h"
 
 #include "runtime/base/error.h"

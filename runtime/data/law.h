@@ -7,9 +7,9 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* What a kernel says of its parameters: element types, modes and laws. */
+/* A kernel's parameters: element types, modes and laws. */
 
-/* Element types: bytes of an element, 0 for no type; their name in a message. */
+/* Element types: bytes of an element, 0 for an invalid type; the type's name in messages. */
 static inline size_t data_type_size(duite_type type)
 {
     static const unsigned char size[] = {
@@ -29,15 +29,15 @@ static inline duite_mode data_mode_of(const duite_kernel *kernel, size_t i)
 
 /* ---- Laws ---- */
 
-/* Laws by which contributions combine. A kernel points at the laws of its cw parameters; all of
- * them were found in the list given at start, or are built in. */
+/* Contributions combine by laws. A kernel points at the laws of its cw parameters; each is built in
+ * or in the list given at start. */
 
-/* The laws of the list are whole and have different names, none that of a built-in one. `laws` may
- * be NULL: none. DUITE_E_LAW. */
+/* Checks that the listed laws are complete and that their names are unique, also among the built-in
+ * ones. `laws` NULL: none are listed. Error: DUITE_E_LAW. */
 int data_laws_check(const duite_law *const *laws);
 
-/* The kernel, whose modes were checked, names laws for cw parameters only, each built in or listed.
- * DUITE_E_LAW. */
+/* Checks that the kernel names laws only for cw and cwp parameters, each built in or listed. Its
+ * modes were checked before. Error: DUITE_E_LAW. */
 int data_law_check_kernel(const duite_kernel *kernel, const duite_law *const *laws);
 
 /* The law of parameter i, which is cw. Never NULL. */
@@ -46,10 +46,10 @@ const duite_law *data_law_of(const duite_kernel *kernel, size_t i);
 /* Writes the law's neutral elements. */
 void data_law_neutral(const duite_law *law, void *values, size_t count, duite_type type);
 
-/* Whether the law is for objects of this type. */
+/* True if the law is for objects of this type. */
 bool data_law_fits(const duite_law *law, duite_type type);
 
-/* Of names and types: the laws listed, and those a kernel names. */
+/* Hashes the names and types of the listed laws, and of the laws that a kernel names. */
 uint64_t data_laws_hash(const duite_law *const *laws, uint64_t hash);
 uint64_t data_law_hash_kernel(const duite_kernel *kernel, uint64_t hash);
 

@@ -1,5 +1,5 @@
-/* A slot's generation is odd while an object lives in it and grows by one at birth and at death, so
- * that a stale name never fits again (until 2^31 objects have lived in one slot). */
+/* A slot's generation is odd while an object lives in it. It grows by one at birth and at death, so
+ * a stale name never fits again (until 2^31 objects have lived in one slot). */
 #include "runtime/data/object.h"
 
 #include "runtime/base/error.h"

@@ -6,12 +6,12 @@
 
 #pragma GCC visibility push(hidden) /* called directly: no other library can replace them */
 
-/* Shared objects as every rank knows them. The main thread alone reads and writes this table. What
- * the table says about other ranks follows from the forks, which are the same everywhere: no rank
- * is ever asked. */
+/* Shared objects as every rank knows them. Only the main thread reads and writes this table. Its
+ * knowledge of other ranks follows from the forks, which are the same everywhere: no rank is ever
+ * asked. */
 struct data_object {
-    /* What a fork of other ranks' tasks (task/prune.h) and a replay read and write has one cache
-     * line. */
+    /* One cache line holds all that a replay, or a fork of another rank's task (task/prune.h),
+     * reads and writes. */
     uint32_t generation; /* even: the slot is free */
     int home;            /* -1: not decided yet */
     int holder;          /* the rank that has the current version for certain */
@@ -37,10 +37,10 @@ struct data_object {
 };
 _Static_assert(sizeof(struct data_object) == 2 * BASE_LINE, "objects begin at cache lines");
 
-/* `leaves` of a free slot: who finds none there need not ask whether it is free. */
+/* `leaves` of a free slot: a slot without leaves is thus in use, and needs no other check. */
 #define DATA_VACANT UINT64_C(1)
 
-/* What the program hinted about an object, until its home is settled. */
+/* The program's hints about an object, kept until its home is settled. */
 struct data_hint {
     uint32_t slot, leader;
     double weight;
@@ -60,8 +60,8 @@ struct data_table {
     struct data_hint *unsettled; /* objects without a home, in the order they were made */
     size_t n_unsettled, unsettled_capacity;
     uint32_t *blocks; /* by rank: how many leaders got their home there so far */
-    uint64_t changes; /* of names and homes so far: objects freed, homes given. What was found of
-                         objects by their names lasts until there is another one */
+    uint64_t changes; /* of names and homes so far: objects freed, homes given. Results of lookups
+                         by name hold until the next change */
     uint64_t settled; /* objects that got a home by the mapping so far */
     uint64_t homes;   /* a hash of these homes: the same on every rank */
 };
@@ -69,8 +69,8 @@ struct data_table {
 int data_table_start(struct data_table *table, int n_ranks);
 void data_table_stop(struct data_table *table);
 
-/* Whether an object may have this type and these counts. Errors: type, count. The second is the
- * whole check, the first ends at once for what is beyond doubt. */
+/* Checks an object's type and counts. Errors: type, count. data_object_refuse is the whole check;
+ * data_object_check accepts clear cases at once. */
 int data_object_refuse(duite_type type, size_t count, size_t max);
 static inline int data_object_check(duite_type type, size_t count, size_t max)
 {
@@ -79,11 +79,11 @@ static inline int data_object_check(duite_type type, size_t count, size_t max)
     return fits && count <= max ? 0 : data_object_refuse(type, count, max);
 }
 
-/* Makes an object without home. Errors: type, count, memory. */
+/* Makes an object without a home. Errors: type, count, memory. */
 int data_object_new(struct data_table *table, duite_type type, size_t count, duite_object *name);
 
-/* All zero. In two parts: for so many bytes at once gcc takes a string instruction, which takes
- * longer to begin than these few words to write. */
+/* Zeroes the object in two parts: for all its bytes at once gcc uses a string instruction, which
+ * starts more slowly than these few words are written. */
 static inline void data_object_clear(struct data_object *object)
 {
     enum { HALF = sizeof *object / 2 };
@@ -91,14 +91,14 @@ static inline void data_object_clear(struct data_object *object)
     memset((char *)object + HALF, 0, sizeof *object - HALF);
 }
 
-/* The same with versions of 0 to `max` elements, count of them to begin with. */
+/* As data_object_new, with versions of 0 to `max` elements, `count` at first. */
 int data_object_new_sized(struct data_table *table, duite_type type, size_t count, size_t max,
                           duite_object *name);
 
-/* Sets the message of the error that no object has this name. Returns NULL. */
+/* Sets the error message for a name without an object. Returns NULL. */
 struct data_object *data_object_missing(const struct data_table *table, duite_object name);
 
-/* The object of that name, or NULL; and the same with the error's message set. */
+/* The object of that name, or NULL. data_object_find also sets the error's message. */
 static inline struct data_object *data_object_here(struct data_table *table, duite_object name)
 {
     struct data_object *object = &table->object[name.slot];
@@ -124,8 +124,8 @@ static inline struct data_object *data_object_find(struct data_table *table, dui
 /* Takes the name out of use. The caller has released `current`. */
 void data_object_drop(struct data_table *table, duite_object name);
 
-/* Copies of the current version: whether a rank has one; notes that a rank has one; notes that only
- * the new holder has one. */
+/* Copies of the current version. The functions tell whether a rank has one, note that a rank has
+ * one, and note that only the new holder has one. */
 bool data_object_has_copy(const struct data_table *table, const struct data_object *object,
                           int rank);
 void data_object_add_copy(struct data_table *table, struct data_object *object, int rank);
@@ -147,8 +147,8 @@ static inline struct data_version *data_object_version(const struct data_object 
 /* The hint of the object in a slot, or NULL if its home is settled. The slot is not free. */
 struct data_hint *data_hint_find(const struct data_table *table, uint32_t slot);
 
-/* An object without a home gets one: settle gives it `home`, join that of its leader, which has
- * one. Its hint no longer counts. */
+/* Gives an object a home: settle gives it `home`, join the home of its leader, which has one. Its
+ * hint no longer counts. */
 void data_object_settle(struct data_table *table, uint32_t slot, int home);
 void data_object_join(struct data_table *table, uint32_t slot, uint32_t leader);
 

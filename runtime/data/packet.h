@@ -14,7 +14,7 @@ enum data_packet_kind {
     DATA_PIECES,
     DATA_POISON,
     DATA_OFFLOADED, /* a task to be run here */
-    DATA_RESULT,    /* what such a task left */
+    DATA_RESULT,    /* the results of such a task */
 };
 
 /* Names a version on all ranks: the object and how many writes it had. */
@@ -25,7 +25,7 @@ struct data_key {
 
 struct data_packet {
     struct data_key key;
-    uint64_t bytes; /* of what follows, and is sent */
+    uint64_t bytes; /* of the payload that follows, and is sent */
     uint32_t kind;
     uint32_t pieces;          /* DATA_PIECES: how many */
     struct data_packet *next; /* for whoever holds it; means nothing to the receiver */
@@ -49,17 +49,17 @@ static inline size_t data_packet_lines(size_t bytes)
 struct data_packet *data_packet_new(size_t bytes, bool zero);
 void data_packet_free(struct data_packet *packet); /* NULL is fine */
 
-/* A packet was received, header and all, into memory for as many bytes as it has. */
+/* A packet was received with its header, into memory for just its bytes. */
 static inline void data_packet_came(struct data_packet *packet)
 {
     packet->lines = data_packet_lines(packet->bytes);
 }
 
-/* Returns the packet, or one that takes its place, with memory for so many bytes. `keep`: with its
- * payload, too. NULL without memory: then the packet was freed. */
+/* Returns the packet, or a replacement, with memory for so many bytes. `keep`: its payload is kept.
+ * NULL without memory: then the packet was freed. */
 struct data_packet *data_packet_room(struct data_packet *packet, size_t bytes, bool keep);
 
-/* From now on it has so many bytes, for which there is room. */
+/* Sets the number of the packet's bytes, for which it has room. */
 void data_packet_resize(struct data_packet *packet, size_t bytes);
 
 static inline void *data_payload(struct data_packet *packet)

@@ -6,27 +6,26 @@
 #include <stdint.h>
 
 /* The reduction tree, which decides every bit of a sum. Its leaves are the contributions in fork
- * order. Equal complete subtrees combine, as in a binary counter; what is left when all leaves are
- * in folds from the right. For 7 leaves:
+ * order. Equal complete subtrees combine, as in a binary counter; once all leaves are in, the
+ * remaining subtrees fold from the right. For 7 leaves:
  *
  *     ((0 1) (2 3)) ((4 5) 6)
  *
- * So the shape depends on the number of leaves and on nothing else. Each rank, and each node of a
- * plan, may reduce the leaves that it has: what comes of them are complete subtrees of the one
- * tree, and whoever has them all finishes it. The rule stands here; sums in flight (sum.h) and
- * plans of recorded rounds (plan/) follow it. */
+ * So the shape depends only on the number of leaves. Each rank, and each node of a plan, may reduce
+ * its own leaves to complete subtrees of the one tree. The holder of all subtrees finishes it. The
+ * rule stands here; sums in flight (sum.h) and plans of recorded rounds (plan/) follow it. */
 
 /* A complete subtree: leaves first .. first + 2^level - 1. */
 struct data_subtree {
     uint64_t first;
     uint32_t level;
-    uint32_t where; /* its value, by a number of the caller's; nothing to the rule */
+    uint32_t where; /* its value, by a number of the caller's; the rule ignores it */
 };
 
 /* Combines two values into that of `left`. */
 typedef void data_combine(void *context, uint32_t left, uint32_t right);
 
-/* Whether both are the halves of one complete subtree. */
+/* True if the two are the halves of one complete subtree. */
 static inline bool data_subtree_are_halves(const struct data_subtree *left,
                                            const struct data_subtree *right)
 {
@@ -35,8 +34,8 @@ static inline bool data_subtree_are_halves(const struct data_subtree *left,
            left->first % (2 * half) == 0;
 }
 
-/* A subtree, right of the others, was put behind n of them in a row: combines what are halves then.
- * Returns how many are left in the row; of leaves without a gap never more than 64. */
+/* A subtree, right of the others, was put behind n of them in a row: combines halves as long as
+ * there are any. Returns how many subtrees are left; at most 64 if the leaves have no gap. */
 static inline size_t data_reduce_push(struct data_subtree *row, size_t n, data_combine *combine,
                                       void *context)
 {

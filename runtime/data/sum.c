@@ -27,7 +27,7 @@ struct data_sum *data_sum_new(int n_ranks, const duite_law *law, duite_type type
     return sum;
 }
 
-/* Combines two neighbours into the left one; what is absent is skipped. */
+/* Combines two neighbours into the left one; absent values are skipped. */
 static void pieces_combine(const struct data_sum *sum, struct data_piece *left,
                            struct data_piece *right)
 {
@@ -143,7 +143,7 @@ static size_t pieces_count(const struct data_piece *piece)
 }
 
 /* All pieces, local and arrived, in one array by `first`; false without memory. Leaves were put at
- * the front of their list: so they stand in order, from the end of their part on. */
+ * the front of their list, so filling their part from its end puts them in order. */
 static bool pieces_collect(struct data_sum *sum, struct data_pieces *pieces)
 {
     struct data_piece *arrived = atomic_load_explicit(&sum->arrived, memory_order_acquire);
@@ -168,7 +168,8 @@ void data_pieces_free(struct data_pieces *pieces)
     base_pool_give(pieces->piece, pieces->room);
 }
 
-/* Reduces all pieces; `fold`: and what is left into the first one. `row`: room for all. */
+/* Reduces all pieces; `fold`: also folds the remaining ones into the first. `row` has room for
+ * all. */
 static void pieces_reduce(struct data_sum *sum, bool fold, struct data_pieces *pieces,
                           struct data_subtree *row)
 {

@@ -34,7 +34,7 @@ struct data_sum {
         *reducer; /* the task that combines or sends; set before the open hold is released */
     struct data_sum *next;   /* its owner's */
     size_t bytes;            /* of all this */
-    uint64_t contributors[]; /* the set of these ranks (base/rank_set.h) */
+    uint64_t contributors[]; /* the ranks that `senders` counts (base/rank_set.h) */
 };
 
 /* An open sum without leaves, for so many ranks. NULL without memory. */
@@ -45,7 +45,7 @@ void data_sum_free(struct data_sum *sum);
 /* Notes that a rank contributes; counts each once. */
 void data_sum_sender(struct data_sum *sum, int rank);
 
-/* Of a value: of a leaf, a piece or the whole. */
+/* Bytes of a value: of a leaf, a piece or the whole. */
 static inline size_t data_sum_bytes(const struct data_sum *sum)
 {
     return sum->count * data_type_size(sum->type);

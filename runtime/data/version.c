@@ -1,5 +1,5 @@
-/* Of packets, and of versions what is not done with every task. A packet owns its bytes; whoever
- * holds its only pointer may write them. */
+/* Packets, and the rarer operations on versions. A packet owns its bytes; the holder of its only
+ * pointer may write them. */
 #include "runtime/data/version.h"
 
 #include "runtime/base/memory.h"
@@ -78,9 +78,9 @@ void data_version_drop(struct data_version *version)
 /* ---- Places of failures ---- */
 
 /* The code of a path: an index below 0x80 is one byte; a larger one is its bytes, highest first,
- * behind 0x80 plus their number. No byte of an index is a zero at its beginning, so that a path is
- * smaller than all that continue it. PATH_CUT stands for an index that did not fit. Whatever fits
- * in its place is less than that index, and begins with a smaller byte. */
+ * behind 0x80 plus their number. An index never begins with a zero byte, so a path is smaller than
+ * its continuations. PATH_CUT stands for an index that did not fit. Any index that fits in its
+ * place is smaller, and begins with a smaller byte. */
 enum { PATH_CUT = 0xff };
 
 static unsigned path_index_bytes(uint64_t index)

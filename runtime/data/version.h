@@ -17,10 +17,11 @@
 /* Why a value is poisoned: the task that failed. Plain bytes: it travels between ranks in place of
  * the value.
  *
- * Its place in the reference order is `number` and, for a task forked by a task, `path`: its index
- * among the children of each ancestor, outermost first, in a code that orders like the numbers
- * (data_path_add). Of paths that are longer the end is cut off: among tasks that differ there only
- * any one may be taken for the first. A path that is cut off and a whole one are in order. */
+ * Its place in the reference order is `number` and, for a task forked by a task, `path`. The path
+ * has the task's index among the children of each ancestor, outermost first, in a code that orders
+ * like the numbers (data_path_add). The end of a longer path is cut off: among tasks that differ
+ * only there, any one may count as the first. A path that is cut off and a whole one are in
+ * order. */
 struct data_failure {
     int32_t code;         /* of the body, or of the runtime (memory) */
     int32_t rank;         /* where the task ran */
@@ -51,20 +52,21 @@ static inline const struct data_failure *data_failure_first(const struct data_fa
 
 /* ---- Versions ---- */
 
-/* What makes a task wait for a version or a sum: embedded in the task. A reader is a link in the
- * version's list until the value is there, and only then knows the version. An heir knows the
- * version that it writes, which gets the bytes of the old one with the last hold on that. */
+/* A task's link to a version or a sum that it waits for, embedded in the task. A reader is a link
+ * in the version's list until the value is there, and only then knows the version. An heir knows
+ * the version that it writes, which gets the old version's bytes when the last hold on them is
+ * released. */
 struct data_waiter {
     union {
         struct data_waiter *next;     /* of a reader that waits */
         struct data_version *version; /* to be read, or written */
     };
-    uint32_t back; /* bytes from the beginning of the task; 0: it is no task that waits */
+    uint32_t back; /* bytes from the beginning of the task; 0: the waiter is no task */
     uint32_t mode; /* of the access it is embedded in */
 };
 
-/* A packet for one line of values at most, not zeroed. Most have no more: inline, and of a constant
- * size. NULL without memory. */
+/* A packet for at most one line of values, not zeroed. It is inline, with a constant size, because
+ * most packets need no more. NULL without memory. */
 static inline struct data_packet *data_packet_line(size_t bytes)
 {
     struct data_packet *packet = base_pool_take(2 * sizeof *packet);
@@ -79,11 +81,10 @@ static inline struct data_packet *data_packet_line(size_t bytes)
 
 /* The value of an object between two writes, on one rank.
  *
- * A version is held by its producer (a task, or a message on its way), by the object while it is
- * the current one, and by each task that reads it. Whoever releases the last hold passes the
- * bytes on: to the version that its heir writes, a task that overwrites them in place, or, if there
- * is no heir, to the allocator. So a writer waits for one thing only, and no list of readers
- * is kept. */
+ * A version has these holders: its producer (a task, or a message on its way), the object while the
+ * version is current, and each task that reads it. Releasing the last hold passes the bytes to the
+ * heir, a task that overwrites them in place, or to the allocator if there is no heir. So a writer
+ * waits for one thing only, and no list of readers is kept. */
 struct data_version {
     _Atomic(struct data_waiter *)
         waiters; /* tasks that want to read; DATA_PRODUCED once they may */
@@ -158,8 +159,8 @@ static inline bool data_version_await(struct data_version *version, struct data_
     return true;
 }
 
-/* Those who wait for the value, linked by next, as long as somebody keeps it from being there; NULL
- * if it is. */
+/* The waiters, linked by next; NULL if the value is there. The list is valid as long as something
+ * keeps the value from being produced. */
 static inline const struct data_waiter *data_version_waiters(const struct data_version *version)
 {
     struct data_waiter *first = atomic_load_explicit(&version->waiters, memory_order_acquire);
@@ -173,7 +174,7 @@ static inline struct data_waiter *data_version_produced(struct data_version *ver
     return atomic_exchange_explicit(&version->waiters, DATA_PRODUCED, memory_order_acq_rel);
 }
 
-/* Whether the value is there. */
+/* True if the value is there. */
 static inline bool data_version_ready(const struct data_version *version)
 {
     return atomic_load_explicit(&version->waiters, memory_order_acquire) == DATA_PRODUCED;
@@ -187,8 +188,8 @@ static inline void data_version_hold(struct data_version *version)
 /* No hold is left, and there is no heir: frees it with its bytes. */
 void data_version_drop(struct data_version *version);
 
-/* The bytes go on to the version that a task writes in place, and old poison where the task reads
- * it, too. Frees the old version. */
+/* Hands the bytes to the version that the heir writes, or the poison if the heir also reads (rw).
+ * Frees the old version. */
 static inline void data_version_take_over(struct data_version *old, const struct data_waiter *heir)
 {
     struct data_version *version = heir->version;
@@ -213,7 +214,7 @@ static inline struct data_waiter *data_version_end(struct data_version *version)
 }
 
 /* Releases a hold. Returns the heir if this was the last one, and NULL otherwise. The version is
- * freed then, but for an heir that is no task. The last release sees every access to the bytes. */
+ * then freed, unless its heir is no task. The last release sees every access to the bytes. */
 static inline struct data_waiter *data_version_release(struct data_version *version)
 {
     if (atomic_fetch_sub_explicit(&version->holds, 1, memory_order_acq_rel) != 1)

@@ -8,8 +8,8 @@
 
 #pragma GCC visibility push(hidden) /* called directly: no other library can replace them */
 
-/* What task/, plan/ and offload/ ask of the workers and of the communication. They know these by
- * their names alone: workers/ defines the functions. `worker` is whoever calls. */
+/* Functions of the workers and of the communication that task/, plan/ and offload/ call. They know
+ * only the names: workers/ defines the functions. `worker` is the caller. */
 struct plan_channels;
 struct task;
 struct task_graph;
@@ -28,30 +28,30 @@ bool work_run_task(struct task_graph *graph, struct worker *worker, struct task 
 /* A task that ran, was sent or received is over: ends it, by its type. */
 void work_finish(struct task_graph *graph, struct worker *worker, struct task *task);
 
-/* The task of another rank whose order has this top is over, with all that it forked. */
+/* The task of another rank with this top scope is over, with all its descendants. */
 void work_offloaded_over(struct task_scope *top, struct worker *worker);
 
-/* So many more tasks of the main program are over; -1: there is one more to come. The second: one
- * is over, as mostly. */
+/* So many more tasks of the main program are over; -1: one more is to come. work_over_one: one is
+ * over, the usual case. */
 void work_over(struct work_pool *pool, struct worker *worker, int tasks);
 void work_over_one(struct work_pool *pool, struct worker *worker);
 
-/* Bodies that ran on this rank so far, and the seconds in them: about. Main thread. */
+/* About how many bodies ran on this rank so far, and the seconds in them. Main thread. */
 void work_bodies(struct work_pool *pool, uint64_t *bodies, double *seconds);
 
-/* Something the main program may be waiting for happened. pool NULL: nobody waits any more. */
+/* Something happened that the main program may wait for. pool NULL: nobody waits any more. */
 void work_notify(struct work_pool *pool);
 
 /* Checking mode: calls the body of the task with that number, and returns its code. */
 int work_check_body(struct work_pool *pool, const duite_kernel *kernel, uint64_t number,
                     duite_call *call);
 
-/* The version or the pieces of that key come from that rank, or from several (-1): each packet is
- * handed to task_arrived or task_pieces_arrived. 0, or DUITE_E_MEMORY. */
+/* Expects the version or the pieces of that key from that rank, or from several (-1). Each packet
+ * goes to task_arrived or task_pieces_arrived. Returns 0 or DUITE_E_MEMORY. */
 int work_expect(struct work_pool *pool, struct worker *worker, struct data_key key, int from,
                 struct data_version *version, struct data_sum *sum, uint32_t packets);
 
-/* Opens channels, which all ranks do alike. Main thread. Errors: memory, DUITE_E_MPI. */
+/* Opens channels. Main thread, collective. Errors: memory, DUITE_E_MPI. */
 int work_open(struct work_pool *pool, struct plan_channels *channels);
 
 /* Memory ran out for something that other ranks wait for: the work of all ends. */

@@ -1,8 +1,7 @@
-/* Postponed parameters of a task that runs on another rank, with all that it forks. There the
- * scope begins with the values that came, and each parameter goes back to a version, or to a leaf,
- * that nobody waits for: whoever answers reads it when the subtree is over. At home nothing is ever
- * forked in the scope. It gets what was left there, as a duite_set would, and ends like any other.
- */
+/* Postponed parameters of a task that runs on another rank, with all that it forks. There the scope
+ * begins with the values that came. Each parameter goes back to a version, or to a leaf, without
+ * waiters; the answer is read from it when the subtree is over. At home nothing is ever forked in
+ * the scope. It gets the results as by duite_set, and ends like any other. */
 #include "runtime/task/scope.h"
 
 #include "runtime/data/law.h"

@@ -5,7 +5,7 @@
 
 #pragma GCC visibility push(hidden) /* called directly: no other library can replace them */
 
-/* A running body, and what the calls ask for that it makes. On the thread that runs it. */
+/* A running body, and the functions behind its calls. They run on the body's thread. */
 
 struct duite_call_private {
     struct duite_call_private *outer; /* the body that waits below on this thread */
@@ -14,17 +14,17 @@ struct duite_call_private {
     struct task *task;
     const duite_param *param; /* as the runtime keeps them */
     struct task_scope *scope; /* what its children may use, or NULL as long as it has none */
-    int refused;       /* code of a duite_resize or duite_contribute that failed, or 0: it fails
-                          with that at least */
+    int refused;       /* code of a duite_resize or duite_contribute that failed, or 0: the body
+                          then fails at least with it */
     int remembered;    /* the first error of its calls that it may not have looked at */
     char message[204]; /* of `remembered` */
-    char text[sizeof((struct data_failure *)0)->text]; /* what it says of its failure */
+    char text[sizeof((struct data_failure *)0)->text]; /* its message about its failure */
 };
 
-/* The innermost body on this thread, or NULL; and that if it runs for this graph. */
+/* The innermost body on this thread, or NULL. task_running: the same if it runs for this graph. */
 extern _Thread_local struct duite_call_private *task_innermost
     __attribute__((tls_model("initial-exec")));
-/* What tells the calling thread from all others, without a call. */
+/* A mark that only the calling thread has, found without a call. */
 static inline const void *task_thread_mark(void)
 {
     return &task_innermost;
@@ -35,7 +35,7 @@ static inline struct duite_call_private *task_running(const struct task_graph *g
     return body && body->graph == graph ? body : NULL;
 }
 
-/* Whether a body, running or just over, forked a task or made an object. */
+/* True if a body, running or just over, forked a task or made an object. */
 static inline bool task_body_forked(const duite_call *call)
 {
     return call->own->scope != NULL;
@@ -48,15 +48,15 @@ static inline struct task_scope *task_inside(struct duite_call_private *body)
     return body->scope ? body->scope : task_scope_begin(body);
 }
 
-/* Makes an object of `count` zeros, and at most `max` elements if its size changes, that belongs
- * to the task. Errors: type, count, memory. */
+/* Makes an object that belongs to the task, of `count` zeros; at most `max` elements if its size
+ * changes. Errors: type, count, memory. */
 int task_make_object(struct duite_call_private *body, duite_type type, size_t count, size_t max,
                      bool sized, duite_object *name);
 
-/* All tasks forked in this scope are over, with their descendants. */
+/* True if all tasks forked in this scope are over, with their descendants. */
 bool task_alone(struct task_scope *scope);
 
-/* What a body does from now on comes after the tasks it forked so far. */
+/* From now on, the body's actions come after the tasks that it forked so far. */
 static inline void task_close_segment(struct task_scope *scope)
 {
     scope->segment = ++scope->forks;
@@ -77,17 +77,17 @@ int task_see(struct duite_call_private *body, const char *call, duite_object nam
              struct data_version **version, size_t *size);
 /* The same version if nothing is to be done for it; else NULL. */
 struct data_version *task_see_given(struct duite_call_private *body, duite_object name);
-/* Whether the object, whose name was checked, is a parameter of the body. */
+/* True if the object is a parameter of the body. Its name was checked. */
 bool task_lent(const struct duite_call_private *body, duite_object object);
 
-/* Whether a body that waits in `scope` may have this task run on top of it. It may if the task is a
- * descendant. If its descendants may wait for tasks outside, it also may if the task comes earlier
- * in the reference order. A body that is neither an offloaded task's nor its descendant's may have
- * any of theirs. One that is may have, of those, what comes earlier in the order of all ranks. */
+/* True if a body that waits in `scope` may run this task on top. It may run its descendants. If its
+ * descendants may wait for tasks outside, it may also run tasks that come earlier in the reference
+ * order. Local bodies may run all offloaded tasks and their descendants. Bodies of offloaded tasks
+ * and of their descendants may run those that come earlier in the order of all ranks. */
 bool task_may_run_other(const struct task_scope *scope, const struct task *task);
-/* Whether the task descends from the body whose scope it is. */
+/* True if the task descends from the body of this scope. */
 bool task_descends(const struct task_scope *scope, const struct task *task);
-/* Whether a comes before b in the reference order; offloaded tasks and their descendants come
+/* True if a comes before b in the reference order; offloaded tasks and their descendants come
  * before all others. Both may run on top of one body, and neither descends from the other. */
 bool task_is_earlier(const struct task *a, const struct task *b);
 static inline bool task_may_run(const struct task_scope *scope, const struct task *task)

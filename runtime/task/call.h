@@ -5,9 +5,9 @@
 
 #pragma GCC visibility push(hidden) /* called directly: no other library can replace them */
 
-/* Calling a body: inline, for whatever runs the tasks of the program. */
+/* Calls bodies; inline, for all runners of the program's tasks. */
 
-/* What the body says of its failure with this code. */
+/* The body's failure with this code. */
 const struct data_failure *task_body_failure(const struct duite_call_private *body, int code);
 
 /* Why nothing runs any more, or NULL. */
@@ -29,14 +29,15 @@ static inline void task_body_ends(const struct duite_call_private *body)
     task_innermost = body->outer;
 }
 
-/* What a body is called with, and what its calls go by. One frame may serve many bodies, one after
- * another. */
+/* A body's call, and the state behind the calls that it makes. One frame may serve many bodies, one
+ * after another. */
 struct task_frame {
     struct duite_call_private body;
     duite_call call;
 };
 
-/* What is the same for all bodies of a worker. The rest stays unset until a body is called. */
+/* Sets the part that is the same for all bodies of a worker. The rest stays unset until a body is
+ * called. */
 static inline void task_frame_init(struct task_frame *frame, struct task_graph *graph,
                                    struct worker *worker, const duite_call *template)
 {
@@ -46,9 +47,8 @@ static inline void task_frame_init(struct task_frame *frame, struct task_graph *
     frame->body.worker = worker;
 }
 
-/* Calls the task's body; returns its failure, or NULL. An error of its calls that it did not look
- * at is one. *scope is what its children may use: NULL if it has none, also afterwards if it did
- * not get one. */
+/* Calls the task's body; returns its failure, or NULL. An unread error of its calls counts as one.
+ * *scope is its children's scope; NULL as long as there is none. */
 __attribute__((always_inline)) static inline const struct data_failure *
 task_frame_call(struct task_frame *frame, struct task *task, const void *args,
                 const duite_param *param, struct task_scope **scope)
@@ -75,8 +75,8 @@ task_frame_call(struct task_frame *frame, struct task *task, const void *args,
     return task_body_failure(body, code ? code : body->refused ? body->refused : body->remembered);
 }
 
-/* Runs a ready BODY that is LOCAL, in a frame that is set: its body is called, or it is known why
- * not. Returns whether it was. task_finish then ends the task. */
+/* Runs a ready BODY that is LOCAL, in an initialised frame. True if its body was called; else its
+ * outputs are poisoned. task_finish then ends the task. */
 bool task_run_body(struct task_frame *frame, struct task *task);
 
 /* Calls a body with a frame of its own. */

@@ -1,8 +1,7 @@
-/* Dependences, the second stage of a task: what it reads and what it makes, as versions on this
- * rank. Each access of a task becomes one of four: a hold on the version it reads, the place of an
- * heir of the one it overwrites, a leaf of a sum, a lent object. On other ranks the same call
- * forgets what got stale, and sends or awaits copies. What is not there yet wakes the task later:
- * ready.c. */
+/* Dependences, the second stage of a task: its accesses become versions on this rank. Each access
+ * becomes a hold on the version that it reads, the heir of the one that it overwrites, a leaf of a
+ * sum, or a lent object. On other ranks the same call forgets stale versions, and sends or awaits
+ * copies. Values that are not there yet wake the task later: ready.c. */
 #include "runtime/task/internal.h"
 
 #include "runtime/base/error.h"
@@ -159,7 +158,7 @@ static int access_fetch(struct task_fork_call *call, struct data_object *object,
                       : task_fetch(graph, call->worker, object, call->at);
 }
 
-/* The task is the object's writer: on this rank it has a new version, or none any more. */
+/* The task writes the object, which then has a new version on this rank, or none. */
 static int access_write(struct task_fork_call *call, size_t i, struct data_object *object,
                         struct data_version *version, duite_mode declared, bool everywhere)
 {

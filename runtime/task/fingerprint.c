@@ -1,5 +1,5 @@
-/* The ring is read while the main thread writes it: what it may have overwritten meanwhile is left
- * out of the copy. */
+/* The ring is read while the main thread writes it: the copy leaves out entries that may have been
+ * overwritten meanwhile. */
 #include "runtime/task/fingerprint.h"
 
 #include <string.h>

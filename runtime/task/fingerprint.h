@@ -6,10 +6,10 @@
 #include <stdatomic.h>
 
 /* The fingerprint's formula, and the history of calls, in one place. All ranks make the same calls,
- * so each mixes the same numbers into one hash; a rank whose hash is another one made other calls.
- * A fork mixes in its kernel's index, the rank it names and its objects; priority and cost are the
- * running rank's and stay out. The history keeps the last calls, so that the first difference
- * between ranks can be named. */
+ * so each mixes the same numbers into one hash; a rank with another hash made other calls. A fork
+ * mixes in its kernel's index, the rank it names and its objects; priority and cost are the running
+ * rank's and stay out. The history keeps the last calls, so that the first difference between ranks
+ * can be named. */
 
 /* ---- The formula ---- */
 
@@ -42,7 +42,8 @@ static inline uint64_t task_fork_hash_all(uint32_t kernel, int at, size_t n,
 
 enum { TASK_HISTORY_CALLS = 1024 };
 
-/* What a call was: its kind, for a fork its kernel, and the forks of the main program up to it. */
+/* A call in the history: its kind, for a fork its kernel, and the forks of the main program up to
+ * it. */
 enum task_call_kind {
     TASK_FORKED,   /* a kernel */
     TASK_RECORDED, /* a kernel, while a graph is recorded */

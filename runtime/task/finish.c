@@ -1,6 +1,5 @@
-/* Finishing, the last stage of a task: what it wrote is published once, what it read is released,
- * and the task is freed. What comes from other ranks, or does not, is published by the same means.
- */
+/* Finishing, the last stage of a task: its outputs are published once, its inputs released, and the
+ * task is freed. Values that other ranks send, or fail to send, are published by the same means. */
 #include "runtime/task/ready.h"
 
 static inline void access_release(struct task_graph *graph, struct worker *worker,

@@ -1,9 +1,9 @@
 /* Forking, the first stage of a task. Every rank comes through here for every task of the main
  * program, in the same order. Each draws the same conclusions about where the task runs and which
  * versions move. A rank keeps only what it runs, sends or receives itself. A task forks by the same
- * rules in its own scope, whose objects are here and nowhere else. What is wrong is refused before
- * anything is changed; afterwards nothing but memory can be missing. The next stage is depend.c;
- * prune.h is the short way for tasks of which nothing is here. */
+ * rules in its own scope, whose objects are here and nowhere else. Errors are refused before
+ * anything is changed; afterwards only memory can be missing. The next stage is depend.c; prune.h
+ * is the short way for tasks of which nothing is here. */
 #include "runtime/task/scope.h"
 
 #include "runtime/base/error.h"
@@ -13,7 +13,7 @@
 
 #include <string.h>
 
-/* ---- What a fork checks ---- */
+/* ---- The checks of a fork ---- */
 
 static int fork_kernel(const struct task_graph *graph, const duite_kernel *kernel, uint32_t *index)
 {
@@ -78,7 +78,7 @@ static int fork_check_law(const duite_kernel *kernel, size_t i, const struct dat
                       name.generation, data_type_name(object->type));
 }
 
-/* It exists, is named once, may be used so, and can be accumulated into where it is. */
+/* The object exists, is named once, may be used so and, under cw, can be accumulated into. */
 static int fork_check_object(struct task_fork_call *call, size_t i)
 {
     struct task_scope *scope = call->scope;
@@ -109,7 +109,8 @@ static int fork_check_object(struct task_fork_call *call, size_t i)
     return DUITE_OK;
 }
 
-/* A body's rights. What it reads may come into its scope, whose objects move then. */
+/* Checks a body's rights. The objects that it reads may come into its scope, whose objects then
+ * move. */
 static int fork_check_rights(const struct task_fork_call *call)
 {
     int code = DUITE_OK;
@@ -119,8 +120,8 @@ static int fork_check_rights(const struct task_fork_call *call)
     return code;
 }
 
-/* Whether each object needs no second look: it may be used so, and nothing is to be done for that.
- * Most forks are such. Else nothing was done, and fork_check_object says what is wrong. */
+/* True if no object needs a second look: each may be used so as it is, as in most forks. Else
+ * nothing was done, and fork_check_object says what is wrong. */
 static bool fork_take_objects(struct task_fork_call *call)
 {
     struct task_scope *const scope = call->scope;
@@ -144,7 +145,7 @@ static bool fork_take_objects(struct task_fork_call *call)
     return call->plain;
 }
 
-/* The first n objects are not named by this fork after all. */
+/* Unmarks the first n objects: this fork does not name them after all. */
 static void fork_unmark(const struct task_fork_call *call, size_t n)
 {
     for (size_t i = 0; i < n; i++)
@@ -182,7 +183,7 @@ static int fork_check(struct task_fork_call *call, int at, const void *args)
     return code ? code : fork_check_objects(call);
 }
 
-/* `object` stays unset, which would take time: each is looked up before it is used. */
+/* `object` stays unset to save time: each is looked up before it is used. */
 static void fork_call_init(struct task_fork_call *call, struct task_scope *scope,
                            struct worker *worker, const duite_kernel *kernel, size_t n,
                            const duite_object *objects)
@@ -207,7 +208,7 @@ int task_check_fork(struct task_fork_call *call, struct task_scope *scope, int a
     return code;
 }
 
-/* ---- What it makes ---- */
+/* ---- The task of a fork ---- */
 
 struct task *task_make(struct task_scope *scope, enum task_type type, size_t n, size_t extra)
 {
@@ -305,7 +306,7 @@ static struct task *fork_body(const struct task_fork_call *call, const struct ta
     return NULL;
 }
 
-/* The task runs for the object; `follows`: where that one's home is. */
+/* Makes the task run for the object; `follows`: at the object's home. */
 static void fork_give_block(struct task *task, struct data_object *own, bool follows)
 {
     task->block = own->block;
@@ -317,7 +318,7 @@ static void fork_give_block(struct task *task, struct data_object *own, bool fol
     }
 }
 
-/* Checked: nothing but memory can be missing. */
+/* Forks after the checks: only memory can be missing. */
 static int fork_checked(struct task_fork_call *call, const struct task_options *options,
                         const void *args)
 {

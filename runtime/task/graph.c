@@ -13,7 +13,7 @@ struct task_failure {
     struct data_failure failure;
 };
 
-/* What runs on several ranks leaves the same everywhere, and nothing else. */
+/* A replicated kernel leaves the same values on all ranks, and has no other effect. */
 static int kernel_check_replicated(const duite_kernel *kernel)
 {
     const char *why = kernel->side_effects ? "has side effects" : NULL;
@@ -29,7 +29,7 @@ static int kernel_check_replicated(const duite_kernel *kernel)
                : DUITE_OK;
 }
 
-/* What task_prune is to know of the kernel. */
+/* Sets the facts about the kernel that task_prune needs. */
 static void kernel_sort_objects(const duite_kernel *kernel, struct task_fixed *fixed)
 {
     fixed->prunes = fixed->n && !kernel->replicated;
@@ -83,7 +83,7 @@ static int kernel_check_unique(const duite_kernel *const kernels[], uint32_t ind
     return DUITE_OK;
 }
 
-/* What a fork finds out of a plain kernel, found out once. */
+/* Finds out once what each fork of a plain kernel needs. */
 static int kernel_prepare(const struct task_graph *graph, uint32_t index)
 {
     struct task_fixed *fixed = &graph->fixed[index];
@@ -232,15 +232,16 @@ const struct data_failure *task_fail(struct task_graph *graph, const struct data
     return failure_keep(graph, failure, report ? &graph->root : NULL);
 }
 
-/* Where the task that an offloaded one is or descends from stands at home; NULL: it is at home. The
- * main program's scope is not read: the main thread writes its cache line with every fork. */
+/* The place at home of the offloaded task that a task of this scope is or descends from; NULL: it
+ * is at home. The main program's scope is not read: the main thread writes its cache line with
+ * every fork. */
 static const struct data_failure *failure_home(const struct task_scope *scope)
 {
     return scope->top == &scope->graph->root ? NULL : scope->top->place;
 }
 
-/* What a body does after a wait comes after the children before it. The place of an offloaded task
- * goes on from the one it has at home. */
+/* A body's actions after a wait come after the children forked before it. The place of an offloaded
+ * task continues its place at home. */
 void task_failure_place(struct data_failure *failure, const struct task *task,
                         const struct task_scope *inner)
 {

@@ -16,7 +16,7 @@ struct task *task_new(struct task_scope *scope, enum task_type type, size_t n, s
 /* The same, not counted. NULL without memory: nothing else happened. */
 struct task *task_make(struct task_scope *scope, enum task_type type, size_t n, size_t extra);
 
-/* How large such a task is, in units of TASK_GRAIN. */
+/* The size of such a task in units of TASK_GRAIN. */
 static inline size_t task_grains(size_t n, size_t extra)
 {
     return (sizeof(struct task) + n * sizeof(struct task_access) + extra + TASK_GRAIN - 1) /
@@ -36,19 +36,19 @@ void task_publish(struct task_graph *graph, struct worker *worker, struct data_v
 struct data_waiter *task_produced(struct task_graph *graph, struct worker *worker,
                                   struct data_version *version);
 
-/* Makes access i of the task a reader of `version`, or its heir that writes the new version
- * returned by task_overwrite. *done grows by one if there is nothing to wait for. */
+/* Makes access i of the task a reader of `version` (task_read), or its heir, which writes a new
+ * version (task_overwrite). Adds one to *done if there is nothing to wait for. */
 void task_read(struct task *task, size_t i, struct data_version *version, uint32_t *done);
 int task_overwrite(struct task_graph *graph, struct task *task, size_t i,
                    struct data_object *object, struct data_version *version, uint32_t *done);
 
-/* This rank's copy of the current version, which is to be here or on its way (task_fetch); zeros
- * if it was never written. NULL: out of memory, broken. */
+/* This rank's copy of the current version, which must be here or on its way (task_fetch); zeros if
+ * it was never written. NULL without memory: the graph is broken. */
 struct data_version *task_local(struct task_graph *graph, struct data_object *object);
 
-/* What every rank notes of every task, whether it has part in it or not. Rank `rank` reads the
- * current version: whether it gets a copy only now. Rank `holder` makes a new version, of which it
- * alone has a copy. */
+/* Every rank notes this for every task, even if it has no part in it. task_note_copy: `rank` reads
+ * the current version; true if it gets a copy only now. task_note_version: `holder` makes a new
+ * version, and alone has a copy. */
 static inline bool task_note_copy(struct task_graph *graph, struct data_object *object, int rank)
 {
     if (object->holder == rank || data_object_has_copy(&graph->table, object, rank))
@@ -70,8 +70,8 @@ int task_fetch_all(struct task_graph *graph, struct worker *worker, struct data_
 
 /* The object has a new version on another rank: this rank's copy is stale. */
 void task_forget(struct task_graph *graph, struct worker *worker, struct data_object *object);
-/* A version of the object that has these bytes (values NULL: zeros), which the object alone is to
- * hold. NULL without memory. */
+/* A version of the object with these bytes (values NULL: zeros), for the object alone to hold. NULL
+ * without memory. */
 struct data_version *task_value_version(const struct data_object *object, const void *values,
                                         size_t bytes);
 
@@ -81,19 +81,19 @@ int task_contribute(const struct task_fork_call *call, struct data_object *objec
 int task_reduce(struct task_scope *scope, struct worker *worker, struct data_object *object);
 void task_run_combine(struct task *task);
 void task_run_pieces(struct task *task);
-/* Makes the contributions of a task's children `leaf`, which is the task's. */
+/* Combines the contributions of a task's children into `leaf`, which is the task's. */
 int task_gather(struct task_scope *scope, struct worker *worker, struct data_object *object,
                 struct data_piece *leaf);
 void task_run_gather(struct task *task);
 
-/* Where a search for a kernel begins in the table of their addresses. */
+/* The place where a search for a kernel begins in the table of kernel addresses. */
 static inline uint32_t task_kernel_hash(const duite_kernel *kernel)
 {
     return (uint32_t)((uint64_t)(uintptr_t)kernel * 0x9e3779b97f4a7c15u >> 32);
 }
 
-/* The kernel among those given at start, or NULL. Each fork asks: so this is an open table and no
- * uthash, which takes a hash of all bytes of the key and two dependent loads more. */
+/* The kernel among those given at start, or NULL. Each fork asks, so this is an open table: uthash
+ * would hash all bytes of the key and take two more dependent loads. */
 static inline const struct task_fixed *task_kernel_find(const struct task_graph *graph,
                                                         const duite_kernel *kernel)
 {
@@ -119,15 +119,16 @@ const char *task_mode_name(duite_mode mode);
 
 /* The scope of a task that has room for n postponed parameters. NULL without memory. */
 struct task_scope *task_scope_new(const struct task *task, size_t n);
-/* An access of a task, a postponed parameter, moves into the task's scope: the object with its
- * version, and `out` or a leaf of `sum`, to be passed back at the end. */
+/* Moves a postponed parameter into the task's scope: the object with its version, and `out` or the
+ * access's leaf, to be passed back at the end. */
 void task_lend(struct task_scope *inner, struct task_access *access,
                const struct data_object *object, struct data_version *version,
                struct data_version *out);
-/* Of a task that runs on another rank (away.c). There: the same, for an object with this value; its
- * `current` does not count. Later what is left of it: no values where it was only read, where
- * nobody contributed, and of poison. The values are the access's until it is dropped, which is due
- * for all that was lent. At home: the scope gets what was left there, of which it keeps a copy. */
+/* A task on another rank (away.c). There, task_lend_value does the same for an object with this
+ * value; the object's `current` does not count. Later, task_lent_left returns the result: no values
+ * if the object was only read, got no contributions, or is poisoned. The access owns the values
+ * until task_lent_drop, which is due for each lent parameter. At home, task_lent_comes_home gives
+ * the scope a copy of the result. */
 struct task_left_value {
     const void *values;
     size_t bytes;
@@ -139,15 +140,15 @@ struct task_left_value task_lent_left(const struct task_access *access);
 void task_lent_drop(struct task_access *access);
 void task_lent_comes_home(struct task_scope *inner, struct worker *worker, size_t lent,
                           const struct task_left_value *left);
-/* The object that became of a postponed parameter: access->lent. */
+/* The object in the scope of a postponed parameter; `lent` is access->lent. */
 struct data_object *task_lent_object(struct task_scope *scope, size_t lent);
-/* The task of the scope failed, or read poison: all that it leaves is poisoned. */
+/* The task of the scope failed, or read poison: its results will be poisoned. */
 void task_scope_fail(struct task_scope *scope, const struct data_failure *failure);
-/* The body is over, or never ran: what the children leave goes to the scope above, poisoned if the
- * scope was told of a failure. */
+/* The body is over, or never ran: the children's results go to the scope above, poisoned after
+ * task_scope_fail. */
 void task_scope_end(struct task_scope *scope, struct worker *worker);
-/* A task of the scope is over with its descendants, or a value was passed on. Whoever leaves a
- * task's scope last frees it, and leaves the one above: that is not inline. */
+/* A task of the scope is over with its descendants, or a value was passed on. The last to leave a
+ * task's scope frees it and leaves the one above: task_left_last, not inline. */
 void task_left_last(struct task_graph *graph, struct task_scope *scope, struct worker *worker);
 static inline void task_left(struct task_graph *graph, struct task_scope *scope,
                              struct worker *worker)
@@ -163,9 +164,8 @@ static inline void task_left(struct task_graph *graph, struct task_scope *scope,
 struct data_object *task_find_object(struct task_scope *scope, duite_object name,
                                      duite_mode *right);
 
-/* A fork under way. fork.c checks it, and says where its task runs; depend.c goes through its
- * objects. Passed on by pointer: what a fork costs is mostly what its stages hand to one another.
- */
+/* A fork under way. fork.c checks it and decides where its task runs; depend.c goes through its
+ * objects. It is passed by pointer, since handing data between stages is most of a fork's cost. */
 enum { TASK_FEW = 16 };
 struct task_fork_call {
     struct task_scope *scope; /* where it is forked */
@@ -182,27 +182,27 @@ struct task_fork_call {
     struct data_object *object[TASK_FEW]; /* the first ones */
 };
 
-/* task_fork in the general way, which is due where the short one of plain.c does not do. */
+/* The general way of task_fork, for forks that the short one (plain.c) does not take. */
 int task_fork_any(struct task_scope *scope, struct worker *worker,
                   const struct task_options *options, const duite_kernel *kernel, const void *args,
                   size_t n, const duite_object *objects);
 
-/* Object i of the fork, whose name was checked: the first ones were looked up then. */
+/* Object i of the fork. The check of the names already looked up the first TASK_FEW. */
 static inline struct data_object *task_fork_object(const struct task_fork_call *call, size_t i)
 {
     duite_mode right;
     return i < TASK_FEW ? call->object[i] : task_find_object(call->scope, call->objects[i], &right);
 }
 
-/* What the task reads and makes, as versions on this rank. The task is ready once all of it is
- * there. Errors: memory, broken; the accesses before that are kept, and the task is void. */
+/* Turns the task's accesses into versions on this rank. The task is ready once all its inputs are
+ * there. Errors: memory, broken; the accesses before the error are kept, and the task is void. */
 int task_depend(struct task_fork_call *call);
 
-/* Takes the name of an object that the task made out of use. */
+/* Retires the name of an object that the task made. */
 void task_drop(struct task_scope *scope, struct data_object *object);
 /* The slots of the names that bodies use: parameters first, then the objects they made. */
 #define TASK_LOCAL_NAME UINT32_C(0x80000000)
-/* Their generations: numbers that no other task or object of this process has had for 2^32 of them.
+/* The generations of such names: each number recurs in this process only after 2^32 of them.
  * Threads draw them in batches. */
 enum { TASK_STAMPS = 1 << 20 /* a batch */ };
 extern _Thread_local uint32_t task_stamp __attribute__((tls_model("initial-exec")));
@@ -211,22 +211,22 @@ static inline uint32_t task_new_stamp(void)
 {
     return (task_stamp + 1) % TASK_STAMPS ? ++task_stamp : task_new_stamps();
 }
-/* Passes the value on to which the waiter of a version without task belongs. Returns the heir of
- * the version it became, if that has no more holds. */
+/* Passes a value on for a waiter that is no task (a task_exit). Returns the heir of the version
+ * that gets the value, if that version has no more holds. */
 struct data_waiter *task_pass(struct worker *worker, struct data_waiter *waiter);
-/* Whether a child may have the object with this mode. For the message: the call, or its kernel,
- * and which parameter it is. */
+/* Checks that a child may have the object with this mode. The message names `call` (a call or a
+ * kernel) and parameter i. */
 int task_check_right(struct task_scope *scope, const char *call, size_t i, duite_object name,
                      duite_mode wanted);
 /* DUITE_E_RIGHT: a child contributes by another law than that of the contribution it is part of. */
 int task_wrong_law(const struct task_scope *scope, const duite_kernel *kernel, size_t i,
                    duite_object name);
-/* The body, which begins, has a scope already. */
+/* A body begins that has a scope already: notes the body in it. */
 void task_body_enters(struct duite_call_private *body);
 
 /* ---- Failures ---- */
 
-/* What a BODY writes by this access: w or rw. */
+/* The version that a BODY writes by this access (w, rw), or NULL. */
 static inline struct data_version *task_written(const struct task_access *access)
 {
     const uint32_t mode = access->waiter.mode;
@@ -236,15 +236,15 @@ static inline struct data_version *task_written(const struct task_access *access
 /* Keeps a failure until stop; `report`: the next wait returns it. Never NULL. */
 const struct data_failure *task_fail(struct task_graph *graph, const struct data_failure *failure,
                                      bool report);
-/* The same of a task, with its scope or NULL: its place is filled in; the waits of all scopes above
- * return it, too. */
+/* The same for a task, with its scope or NULL. Fills in the failure's place; the waits of all
+ * scopes above return it, too. */
 const struct data_failure *task_fail_task(const struct task *task, const struct task_scope *inner,
                                           struct data_failure *failure);
 /* Its place: number and path. */
 void task_failure_place(struct data_failure *failure, const struct task *task,
                         const struct task_scope *inner);
-/* The failure of a descendant of this scope, whose place it has: the waits of the scope and of all
- * above return it. */
+/* The same for a descendant of this scope, with the place filled in: the waits of the scope and of
+ * all above return it. */
 const struct data_failure *task_fail_below(struct task_graph *graph,
                                            const struct data_failure *failure,
                                            struct task_scope *scope);
@@ -252,13 +252,13 @@ const struct data_failure *task_fail_below(struct task_graph *graph,
 const struct data_failure *task_fail_memory(const struct task *task);
 struct data_packet *task_poison_packet(struct data_key key, const struct data_failure *failure);
 
-/* Fits a fork kernel, arguments and objects? Then *call says what was found: the kernel's index,
- * the parameter it runs for, the objects. */
+/* Checks that a fork fits its kernel, arguments and objects. *call then has the kernel's index, the
+ * parameter that the task runs for, and the objects. */
 int task_check_fork(struct task_fork_call *call, struct task_scope *scope, int at,
                     const duite_kernel *kernel, const void *args, size_t n,
                     const duite_object *objects);
 
-/* May the object be set to so many elements? */
+/* Checks that the object may be set to so many elements. */
 int task_set_check(const struct data_object *object, duite_object name, size_t count);
 
 /* Memory ran out at access `made`: the accesses before it are kept, or others would wait for ever.
@@ -266,10 +266,10 @@ int task_set_check(const struct data_object *object, duite_object name, size_t c
 void task_void(struct task_graph *graph, struct worker *worker, struct task *task, size_t made,
                uint32_t done);
 
-/* What did not come since communication broke. */
+/* The failure of values that did not come because communication broke. */
 const struct data_failure *task_lost_failure(void);
 
-/* Of an object of the main program. */
+/* The key of the current version of a main program's object. */
 static inline struct data_key task_key(const struct task_graph *graph,
                                        const struct data_object *object)
 {

@@ -1,6 +1,6 @@
-/* What the program does to objects without forking a task of its own: it frees, reads, sets and
- * resizes them, and their homes move. Each of these leaves a version, or a task of the runtime that
- * makes one, as if it had been forked; every rank concludes the same. */
+/* Operations on objects without a task of the program: free, read, set, resize, and moves of homes.
+ * Each leaves a version, or a task of the runtime that makes one, as a fork would; every rank
+ * concludes the same. */
 #include "runtime/task/scope.h"
 
 #include "runtime/base/error.h"
@@ -146,11 +146,11 @@ int task_set_object(struct task_scope *scope, struct worker *worker, duite_objec
     return code;
 }
 
-/* ---- Homes that change: a value is not tied to its object's home, since who reads it finds its
- * holder. So a move is one more copy, of which the new home becomes the holder; what other ranks
- * have of it stays good ---- */
+/* ---- Homes that change: a value is not tied to its object's home, since readers find its holder.
+ * So a move is one more copy, whose holder is then the new home; copies on other ranks stay good
+ * ---- */
 
-/* Somebody has to wait for what comes: messages belong to tasks, and none may be left at stop. */
+/* A task waits for the value that comes: messages belong to tasks, and none may be left at stop. */
 static int move_await(struct task_graph *graph, struct worker *worker,
                       const struct data_object *object)
 {
@@ -208,7 +208,8 @@ int task_move_object(struct task_graph *graph, struct worker *worker, struct dat
  * elements there are. The packet it leaves has just these, and so have its readers and messages
  * ---- */
 
-/* Of parameter i; false in a plan, whose objects have fixed sizes. */
+/* True if the object of parameter i changes its size; false in a plan, whose objects have fixed
+ * sizes. */
 static bool param_is_sized(const duite_call *call, size_t i)
 {
     const struct task *task = call->own->task;

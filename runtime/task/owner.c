@@ -1,11 +1,11 @@
-/* The owner rule by modes and a number of objects: nothing else decides. */
+/* The owner rule: only the modes and the number of objects decide. */
 #include "runtime/task/owner.h"
 
 uint32_t task_owner(const duite_mode *access, duite_mode variadic, size_t n)
 {
     uint32_t first_read = TASK_NOBODY;
     bool ended = false;
-    for (uint32_t i = 0; i < n && i <= DUITE_MAX_ACCESS; i++) { /* what follows is like the last */
+    for (uint32_t i = 0; i < n && i <= DUITE_MAX_ACCESS; i++) { /* further ones are like the last */
         ended |= i == DUITE_MAX_ACCESS || access[i] == DUITE_NONE;
         switch (ended ? variadic : access[i]) {
         case DUITE_W:

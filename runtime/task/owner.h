@@ -22,8 +22,8 @@ enum {
  * have the mode `variadic`. */
 uint32_t task_owner(const duite_mode *access, duite_mode variadic, size_t n);
 
-/* Whether the home of that object says where a task of the main program runs: its fork names no
- * rank, and its kernel is not replicated. */
+/* True if that object's home decides where a task of the main program runs: its fork names no rank,
+ * and its kernel is not replicated. */
 static inline bool task_owner_decides(int at, bool replicated)
 {
     return at == TASK_ANYWHERE && !replicated;

@@ -1,8 +1,7 @@
-/* The short way of most forks: of a plain kernel, which lists a few parameters under r, w and rw
- * and nothing else (task_fixed.plain), where no other rank has part in the task. It makes of a fork
- * what fork.c and depend.c make of it together, in one go over the objects. Whatever it does not
- * know it leaves to them, before anything is changed: contributions, values that are not here,
- * and all errors but want of memory. So no rule stands here alone. */
+/* The short way of most forks. The kernel is plain (task_fixed.plain): it lists a few parameters,
+ * all under r, w or rw. No other rank has part in the task. One pass over the objects does the work
+ * of fork.c and depend.c. Other cases are left to them before anything is changed: contributions,
+ * values that are not here, and all errors but lack of memory. So no rule stands here alone. */
 #include "runtime/task/ready.h"
 #include "runtime/task/scope.h"
 
@@ -23,7 +22,7 @@ struct plain_fork {
     bool nested; /* a body's */
 };
 
-/* The objects of the accesses before `end` are not named by this fork after all. */
+/* Unmarks the objects of the accesses before `end`: this fork does not name them after all. */
 static void plain_unmark(struct task *task, const struct task_access *end)
 {
     for (struct task_access *access = task->access; access < end; access++)
@@ -66,7 +65,7 @@ static inline void plain_copy_args(void *to, const void *from, size_t size)
         memcpy(to, from, size);
 }
 
-/* All of the task but its accesses; it counts as unfinished. */
+/* Makes all of the task but its accesses; it counts as unfinished. */
 PLAIN_INLINE void plain_make(const struct plain_fork *fork, const void *args)
 {
     const struct task_fixed *fixed = fork->fixed;
@@ -145,7 +144,7 @@ PLAIN_INLINE int plain_fork(const struct plain_fork *fork, const struct task_opt
     return DUITE_E_MEMORY;
 }
 
-/* Whether the fork is such: then there is memory for its task, and its objects are found. */
+/* True if the fork is of this kind: then its task has memory, and its objects are found. */
 PLAIN_INLINE bool plain_fits(struct plain_fork *fork, const duite_kernel *kernel, const void *args,
                              size_t n, const duite_object *objects)
 {

@@ -3,20 +3,19 @@
 
 #include "runtime/task/internal.h"
 
-/* Forks of which nothing is on this rank: most of them, where there are many ranks. What task_fork
- * would conclude about them is that other ranks have new versions and copies; it is noted in one
- * go. What is not plain (accumulation, further objects than the listed ones, values that are here,
- * too) is left to task_prune_more, and anything wrong to task_fork. Inline: the call that
- * forks is as short as this. */
+/* Forks of which nothing is on this rank: most of them, if there are many ranks. All that task_fork
+ * would conclude is that other ranks have new versions and copies; task_prune notes that in one go.
+ * Other forks (accumulation, objects beyond the listed ones, values that are here, too) are left to
+ * task_prune_more, and errors to task_fork. Inline: the call that forks is as short as this. */
 
 static inline struct data_object *prune_object(const struct data_table *table, duite_object name)
 {
     return &table->object[name.slot < table->n_slots ? name.slot : 0];
 }
 
-/* Whether the objects exist, are different ones, and this rank has no copy and no part in a sum of
- * them. One look decides about all: which of them is to blame does not matter. Marks are not those
- * of task_fork. *moves: whether rank `at` is not the holder of some of them. */
+/* True if the objects exist and differ, and this rank has no copy of them and no part in a sum of
+ * them. One look decides about all; it does not tell which one failed. The marks differ from those
+ * of task_fork. *moves: rank `at` is not the holder of some of them. */
 static inline bool prune_look_up(const struct task_graph *graph, int at, size_t n,
                                  const duite_object *objects, struct data_object **found,
                                  uint64_t *hash, bool *moves)
@@ -38,7 +37,8 @@ static inline bool prune_look_up(const struct task_graph *graph, int at, size_t 
     return !wrong && alive;
 }
 
-/* Rank `at` gets copies of what it reads and does not hold. False: this rank holds some of that. */
+/* Notes that rank `at` gets copies of the objects that it reads and does not hold. False: this rank
+ * holds one of the objects. */
 static inline bool prune_note_copies(struct task_graph *graph, const struct task_fixed *fixed,
                                      int at, struct data_object *const *found)
 {
@@ -51,9 +51,9 @@ static inline bool prune_note_copies(struct task_graph *graph, const struct task
     return true;
 }
 
-/* Forks a task of the main program if neither the task nor anything it names is on this rank: then
- * there is only something to note. False: nothing was done, task_fork is due. Main thread;
- * collective with task_fork on other ranks; the homes of all objects are settled. */
+/* Forks a task of the main program if neither the task nor anything it names is on this rank: it
+ * only notes the fork. False: nothing was done, task_fork is due. Main thread; collective with
+ * task_fork on other ranks; the homes of all objects are settled. */
 __attribute__((always_inline)) static inline bool task_prune(struct task_graph *graph,
                                                              const duite_kernel *kernel,
                                                              const void *args, size_t n,
@@ -78,7 +78,7 @@ __attribute__((always_inline)) static inline bool task_prune(struct task_graph *
     return true;
 }
 
-/* The same where something of its objects may be here, of which the task asks nothing
+/* The same if parts of its objects may be here, but the task asks nothing of them
  * (prune_more.c). */
 bool task_prune_more(struct task_graph *graph, const duite_kernel *kernel, const void *args,
                      size_t n, const duite_object *objects);

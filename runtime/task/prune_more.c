@@ -1,13 +1,13 @@
-/* The other forks whose task runs elsewhere and asks nothing of this rank, though something of its
- * objects may be here: a value that its rank has, too; a sum to which it contributes. Whatever asks
- * more (a value that is sent from here, or goes stale here, the first contribution, anything wrong)
- * is left to task_fork. */
+/* The other forks whose task runs elsewhere and asks nothing of this rank. Parts of its objects may
+ * be here: a value that the task's rank has, too, or a sum to which it contributes. Forks that ask
+ * more are left to task_fork: a value is sent from here or goes stale here, it is the first
+ * contribution, or there is an error. */
 #include "runtime/task/prune.h"
 
 #include "runtime/data/law.h"
 
-/* Whether a task on rank `at` that uses the object so asks nothing of this rank. A sum that this
- * rank adds up is open here. */
+/* True if a task on rank `at` that uses the object so asks nothing of this rank. A sum that this
+ * rank adds up must be open here. */
 static inline bool more_asks_nothing(const struct task_graph *graph, const duite_kernel *kernel,
                                      size_t i, int at, const struct data_object *object)
 {
@@ -22,8 +22,8 @@ static inline bool more_asks_nothing(const struct task_graph *graph, const duite
     return !held && !object->current;
 }
 
-/* Whether the objects exist, are different ones, and ask nothing. What is to blame does not matter.
- * Marks are not those of task_fork. */
+/* True if the objects exist, differ, and ask nothing. The result does not tell which one failed.
+ * The marks differ from those of task_fork. */
 static bool more_look_up(const struct task_graph *graph, const duite_kernel *kernel, int at,
                          size_t n, const duite_object *objects, struct data_object **found,
                          uint64_t *hash)

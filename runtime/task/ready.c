@@ -1,5 +1,5 @@
 /* Ready, the third stage of a task. `pending` counts the accesses that the task waits for, and one
- * hold of the fork itself; at 0 the task may run. Whoever takes the last one hands the task to the
+ * hold of the fork itself; at 0 the task may run. The taker of the last one hands the task to the
  * workers, which run it: run.c. A version wakes its readers when its value is there, and its heir
  * when nobody holds it any more. */
 #include "runtime/task/ready.h"

@@ -7,7 +7,7 @@
 
 #pragma GCC visibility push(hidden) /* called directly: no other library can replace them */
 
-/* What ready.c says of versions and those that wait for them, inline for the files that do it with
+/* The functions of ready.c on versions and their waiters, inline for files that call them with
  * every access. */
 
 /* An heir that is no task passes the value on to the scope above. Not inline: it is rare. */

@@ -8,8 +8,8 @@
 
 #include <string.h>
 
-/* A piece on its way: where it stands in the tree; the values follow all of these, each filled up
- * to a multiple of 16 bytes. */
+/* A piece in a message: its place in the tree. The values follow all places, each filled up to a
+ * multiple of 16 bytes. */
 struct piece_place {
     uint64_t first;
     uint32_t level, absent; /* absent: without a value, though there is room for one */
@@ -20,7 +20,7 @@ static const struct data_failure sum_no_memory = {
 
 /* ---- Contributing: at forks ---- */
 
-/* The object has a sum from now on. False without memory. */
+/* Gives the object a sum. False without memory. */
 static bool sum_open(const struct task_graph *graph, struct data_object *object)
 {
     if (!object->sum)
@@ -78,8 +78,8 @@ static void *contribute_refuse(const duite_call *call, size_t i, int code)
     return NULL;
 }
 
-/* Nothing closes the sum before the body is over: under cwp the children may do nothing else. So
- * the leaf is not counted among those that the sum waits for. */
+/* The sum stays open until the body is over: under cwp the children may only contribute. So the
+ * leaf is not counted among those that the sum waits for. */
 void *duite_contribute(const duite_call *call, size_t i)
 {
     const struct duite_call_private *body = call->own;
@@ -100,8 +100,8 @@ void *duite_contribute(const duite_call *call, size_t i)
 
 /* ---- Reducing ---- */
 
-/* A task that waits for all contributions, which leave the object; pending counts them as one.
- * Without memory they stay there until stop. */
+/* A task that waits for all contributions and takes them from the object; pending counts them as
+ * one. Without memory they stay there until stop. */
 static struct task *sum_reducer(struct task_scope *scope, struct data_object *object,
                                 enum task_type type, size_t n)
 {
@@ -168,8 +168,8 @@ static int sum_send_pieces(struct task_scope *scope, struct worker *worker,
     return DUITE_OK;
 }
 
-/* The contributions to an object of a task, which there is no memory to combine, are kept until
- * stop: their tasks may still run. */
+/* Keeps the contributions to a task's object until stop if there is no memory to combine them:
+ * their tasks may still run. */
 static void sum_keep_unclosed(struct task_graph *graph, struct data_object *object)
 {
     struct data_sum *sum = object->sum;
@@ -292,14 +292,14 @@ void task_run_pieces(struct task *task)
         packet = task_poison_packet(sum->send.key, failure ? failure : task_fail_memory(task));
     data_pieces_free(&pieces);
     data_sum_free(sum->sum);
-    sum->send.packet = packet; /* NULL is noticed by whoever sends */
+    sum->send.packet = packet; /* the sender notices NULL */
     task->state = TASK_LEAVES;
     task->send = &sum->send;
 }
 
 /* ---- Pieces of other ranks ---- */
 
-/* Takes over the piece and its packet. Without memory for it the sum must not be taken for
+/* Takes over the piece and its packet. Without memory the sum is marked lost, or it would count as
  * complete. */
 static bool piece_add(struct task_graph *graph, struct data_sum *sum, struct data_piece piece)
 {

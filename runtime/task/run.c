@@ -1,6 +1,6 @@
-/* Running, the fourth stage of a task: a ready task alone accesses the bytes of what it writes.
- * Poison among what it reads goes on to what it writes, and its body does not run. Nothing is
- * published here: finish.c. */
+/* Running, the fourth stage of a task: a ready task alone accesses the bytes of its outputs. Poison
+ * in its inputs goes on to its outputs, and its body does not run. Publishing comes later:
+ * finish.c. */
 #include "runtime/task/call.h"
 
 #include "runtime/base/memory.h"
@@ -10,9 +10,9 @@
 #include <stdio.h>
 #include <string.h>
 
-/* ---- What a body is given ---- */
+/* ---- The parameters of a body ---- */
 
-/* The version that is written gets bytes where it found none that fit. */
+/* Gives the written version bytes if it has none that fit. */
 static const struct data_failure *version_make_room(const struct task *task,
                                                     struct data_version *out, bool keep)
 {
@@ -24,8 +24,8 @@ static const struct data_failure *version_make_room(const struct task *task,
     return out->packet ? NULL : task_fail_memory(task);
 }
 
-/* The version that is written, which has the bytes of the one before it, is to have enough of them.
- * Returns the poison that it has in place of bytes, or NULL. */
+/* Makes sure that the written version has enough bytes; it may have those of the version before it.
+ * Returns the poison in place of bytes, or NULL. */
 static inline const struct data_failure *version_prepare(const struct task *task,
                                                          const struct task_access *access)
 {
@@ -37,13 +37,13 @@ static inline const struct data_failure *version_prepare(const struct task *task
                : version_make_room(task, out, access->waiter.mode == DUITE_RW);
 }
 
-/* Whether the version has bytes, no poison, and always as many elements: so most have. */
+/* True for most versions: with bytes, without poison, and with a fixed number of elements. */
 static inline bool version_is_usual(const struct data_version *version)
 {
     return !version->sized && !version->poisoned && version->packet;
 }
 
-/* What the body gets of a usual version. */
+/* The parameter for a usual version. */
 static inline void param_describe(duite_param *param, const struct data_version *version)
 {
     param->data = data_payload(version->packet);
@@ -52,8 +52,8 @@ static inline void param_describe(duite_param *param, const struct data_version 
     param->max = version->max;
 }
 
-/* What it gets of any version; what it writes finds unspecified bytes there, unless it is to change
- * them. Returns the poison in place of bytes, or NULL. */
+/* The parameter for any version; under w the bytes are unspecified. Returns the poison in place of
+ * bytes, or NULL. */
 static const struct data_failure *
 param_prepare_version(const struct task *task, const struct task_access *access, duite_param *param)
 {
@@ -88,7 +88,7 @@ static const struct data_failure *leaf_open(const struct task *task,
     return failure;
 }
 
-/* What is no usual version: another one, what contributes, or what belongs to the children. */
+/* Slow path: other versions, contributions, postponed parameters. */
 __attribute__((noinline)) static const struct data_failure *
 param_prepare_other(const struct task *task, const struct task_access *access, duite_param *param)
 {
@@ -133,7 +133,7 @@ int duite_fail(const duite_call *call, int code, const char *format, ...)
     return code;
 }
 
-/* Its own message, or that of the call whose code it returns. */
+/* The message is the body's own, or that of the call whose code it returns. */
 const struct data_failure *task_body_failure(const struct duite_call_private *body, int code)
 {
     struct data_failure failure = {.code = code};
@@ -144,7 +144,7 @@ const struct data_failure *task_body_failure(const struct duite_call_private *bo
     return task_fail_task(body->task, body->scope, &failure);
 }
 
-/* What it writes is poisoned. */
+/* Poisons the task's outputs. */
 static void outputs_poison(struct task *task, const struct data_failure *failure)
 {
     for (uint32_t i = 0; i < task->n; i++) {
@@ -159,7 +159,7 @@ static void outputs_poison(struct task *task, const struct data_failure *failure
         task_scope_fail(task->inner, failure);
 }
 
-/* What the body wrote has the sizes that it said. */
+/* Gives the outputs the sizes that the body set. */
 static void outputs_resize(struct task *task, const duite_param *param)
 {
     for (uint32_t i = 0; i < task->n; i++) {
@@ -169,14 +169,14 @@ static void outputs_resize(struct task *task, const duite_param *param)
     }
 }
 
-/* Another rank ran the body: what gives the parameters what it left. */
+/* The results of a body that another rank ran: `take` fills the parameters with them. */
 struct body_elsewhere {
     task_take_result *take;
     struct data_packet *result;
 };
 
-/* Whether the body ran; `elsewhere` NULL: it is to run here, in the frame. Inline, for the sake of
- * its callers that pass constants. */
+/* Returns true if the body ran here, in the frame; `elsewhere` is NULL unless another rank ran it.
+ * Inline because its callers pass constants. */
 __attribute__((always_inline)) static inline bool body_run(struct task_graph *graph,
                                                            struct task_frame *frame,
                                                            struct task *task, duite_param *param,

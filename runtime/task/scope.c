@@ -1,12 +1,12 @@
 /* Tasks that fork: the scope of a task, while its body runs. It has an object of its own for each
- * that the children may use. What the task was lent is a stretch of the chain of versions of the
- * scope above. The local object begins with the version that the task would have taken over. When
- * the body is over, scope_end.c gives back what the children leave. So nobody waits for a task with
- * postponed parameters, only for the values. A contribution is lent as a sum of its own, whose
- * result becomes the leaf. What a task may give to a child is what its kernel's modes say, and all
- * of what it made.
+ * that the children may use. A lent object is a stretch of the chain of versions of the scope
+ * above: it begins with the version that the task would have taken over. When the body is over,
+ * scope_end.c gives back what the children leave. So nobody waits for a task with postponed
+ * parameters, only for the values. A contribution is lent as a sum of its own, whose result becomes
+ * the leaf. A task may give a child the rights that its kernel's modes allow, and all objects that
+ * it made.
  *
- * While the body runs its worker alone uses the objects. */
+ * While the body runs, only its worker uses the objects. */
 #include "runtime/task/scope.h"
 
 #include "runtime/base/error.h"
@@ -15,7 +15,7 @@
 
 #include <string.h>
 
-/* By the initial-exec model, also for this file: no call then stands between a thread and these. */
+/* With the initial-exec model, also in this file, a thread reaches these without a call. */
 #define THREAD_OWN _Thread_local __attribute__((tls_model("initial-exec")))
 THREAD_OWN struct duite_call_private *task_innermost;
 
@@ -28,7 +28,7 @@ void task_body_enters(struct duite_call_private *body)
 
 THREAD_OWN uint32_t task_stamp = UINT32_MAX; /* the last one of no batch */
 
-/* Multiples of a batch are left out, and with them 0, which is no name's. */
+/* Multiples of a batch are left out, and so is 0, which no name has. */
 uint32_t task_new_stamps(void)
 {
     static _Atomic uint32_t batches;
@@ -66,7 +66,7 @@ static size_t nest_lines(size_t bytes)
 
 enum { CELLS = 2 }; /* of a scope to which nothing is lent */
 
-/* Inline, for the sake of the caller that passes a constant. */
+/* Inline because a caller passes a constant. */
 static inline struct task_scope *nest_new(const struct task *task, size_t n)
 {
     enum { SPARE = 3 };

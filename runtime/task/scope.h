@@ -5,9 +5,9 @@
 
 #pragma GCC visibility push(hidden) /* called directly: no other library can replace them */
 
-/* What a task's scope consists of; shared by scope.c and scope_end.c. */
+/* The parts of a task's scope, for the files that make, use and end it. */
 
-/* Where a lent parameter goes back to. */
+/* The way back of a lent parameter. */
 struct task_exit {
     struct data_waiter waiter; /* first; heir of `in`, without a task */
     struct task_scope *scope;
@@ -16,7 +16,7 @@ struct task_exit {
     struct data_piece *leaf;
     const struct data_failure *failure; /* of the task itself */
     size_t bytes;
-    bool overwrites, untouched; /* wp; and nobody did: then old poison does not count */
+    bool overwrites, untouched; /* wp; and no child wrote it: then old poison does not count */
 };
 
 struct task_nest {
@@ -69,8 +69,8 @@ static inline struct data_version *task_child_version(struct task_scope *scope,
     return &cell->version;
 }
 
-/* Whether the name means something in the scope of a running body: then the right held on it and,
- * unless the body uses it itself, the object. */
+/* True if the scope of a running body knows the name. *right is the right held on it; *local the
+ * object, or NULL if only the body itself uses it. */
 static inline bool task_name_known(struct task_scope *scope, duite_object name, duite_mode *right,
                                    struct data_object **local)
 {
@@ -97,7 +97,7 @@ static inline bool task_name_known(struct task_scope *scope, duite_object name, 
     return (*local)->generation == name.generation;
 }
 
-/* Whether a task that holds a right on an object may give a child the other one. */
+/* True if a task that holds a right on an object may give a child the wanted one. */
 static inline bool task_right_gives(duite_mode held, duite_mode wanted)
 {
     if (held == DUITE_RWP)
@@ -106,9 +106,8 @@ static inline bool task_right_gives(duite_mode held, duite_mode wanted)
            task_immediate(wanted) == task_immediate(held);
 }
 
-/* The object of that name, if a child of the body may have it with this mode and nothing is to be
- * done for that. Else NULL; task_check_right says why, or does it. Inline: each fork and get asks.
- */
+/* The object of that name, if a child of the body may have it with this mode at once. Else NULL;
+ * task_check_right says why, or prepares it. Inline: each fork and get asks. */
 static inline struct data_object *task_find_given(struct task_scope *scope, duite_object name,
                                                   duite_mode wanted)
 {
@@ -118,10 +117,11 @@ static inline struct data_object *task_find_given(struct task_scope *scope, duit
                                                                                          : NULL;
 }
 
-/* The children may read what the body reads: the scope gets the objects. Errors: memory. */
+/* Adds the objects that the body reads to its scope, so that children may read them. Errors:
+ * memory. */
 int task_lend_reads(struct task_scope *scope);
 
-/* The failure of what a task leaves for want of memory. */
+/* The failure of a task's results for lack of memory. */
 const struct data_failure *task_nest_no_memory(void);
 
 #pragma GCC visibility pop

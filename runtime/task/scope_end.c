@@ -1,7 +1,7 @@
 /* The end of a task that forked, and waiting for those it forked. When the body is over, the last
  * version that the children make of a lent object gets an `exit` as its heir. The exit passes the
- * bytes on to the version that the scope above has waited for since the fork. The exits belong to
- * whoever releases the last hold on a version. The scope is freed with the last count of
+ * bytes on to the version that the scope above has waited for since the fork. An exit belongs to
+ * the thread that releases the last hold on its version. The scope is freed with the last count of
  * `unfinished`. */
 #include "runtime/task/ready.h"
 #include "runtime/task/scope.h"
@@ -40,7 +40,7 @@ const struct data_failure *task_nest_no_memory(void)
     return &scope_no_memory;
 }
 
-/* Nobody wrote the version: zeros, as many as there can be. */
+/* Gives the maximum number of zeros, as no child wrote the version. */
 static void exit_give_zeros(const struct task_exit *exit)
 {
     struct data_version *out = exit->out;
@@ -129,8 +129,8 @@ void task_scope_end(struct task_scope *scope, struct worker *worker)
     task_left(graph, scope, worker);
 }
 
-/* ---- Waiting: whether the children are over, what failed among them, and which tasks may run on
- * top of the one that waits ---- */
+/* ---- Waiting: whether the children are over, their first failure, and which tasks may run on top
+ * of the waiting body ---- */
 
 bool task_alone(struct task_scope *scope)
 {
@@ -147,9 +147,9 @@ const struct data_failure *task_first_failure(struct task_scope *scope)
     return failure;
 }
 
-/* Whether a comes before b, or is the same; both are offloaded or descend from such. What was sent
- * has a place that is not cut off (offload_may_go). So this is right for a task that just came,
- * whoever waits. */
+/* True if a comes before b, or is the same; both are offloaded or descend from such. A task that
+ * was sent has a place that is not cut off (offload_may_go). So this is right for a task that just
+ * came, under any waiting body. */
 static bool place_is_earlier(const struct task *a, const struct task *b)
 {
     struct data_failure left = {0}, right = {0};
@@ -159,7 +159,7 @@ static bool place_is_earlier(const struct task *a, const struct task *b)
                                        : memcmp(left.path, right.path, right.path_length) <= 0;
 }
 
-/* Whether number a_number of scope a comes before b_number of b, or is the same; both scopes have
+/* True if number a_number of scope a comes before b_number of b, or is the same; both scopes have
  * the same top. */
 static bool number_is_earlier(const struct task_scope *a, uint64_t a_number,
                               const struct task_scope *b, uint64_t b_number)

@@ -14,12 +14,12 @@
 
 /* Tasks and what they wait for, on one rank.
  *
- * The main thread forks: it derives from the accesses, in fork order, which rank runs a task, which
- * versions it reads and makes here, and which of them must be sent or awaited. Workers run what is
- * ready and publish what it wrote. Nothing but versions and sums joins the two sides. */
+ * The main thread forks. In fork order, it derives from the accesses which rank runs a task, which
+ * versions the task reads and makes here, and which must be sent or awaited. Workers run ready
+ * tasks and publish their results. Only versions and sums join the two sides. */
 
-/* What a task is, from its birth to its end. The numbers are those of traces, where
- * TASK_TRACED_VOID is a task that could not be forked. */
+/* A task's type, from its birth to its end. Traces use the same numbers; there, TASK_TRACED_VOID is
+ * a task that could not be forked. */
 enum task_type {
     TASK_BODY = 0,    /* a task of the program */
     TASK_COMBINE = 1, /* combines the contributions with an object */
@@ -29,7 +29,7 @@ enum task_type {
     TASK_COPY = 6,    /* duite_get: copies a version to the main program */
     TASK_MOVE = 7,    /* an object that moves here has come: nothing is left to do */
     TASK_TRACED_VOID = 8,
-    TASK_OFFLOADED = 10, /* a task of another rank that runs here, and sends what it left */
+    TASK_OFFLOADED = 10, /* a task of another rank that runs here, and sends its results */
     TASK_REPLAY = 12,    /* replays of a recorded graph: begins them; over when the last round is */
     /* Nodes of a replay: */
     TASK_NODE = 13,         /* a task of the program */
@@ -43,18 +43,18 @@ enum task_type {
     TASK_NODE_RECEIVE = 21 /* or awaits one: both are the communication's to run */
 };
 
-/* What has become of it. */
+/* A task's state. */
 enum task_state {
     TASK_LOCAL = 0, /* nothing: it waits, runs and ends here, as its type says */
     TASK_VOID, /* memory ran out while it was forked: does not run, and poisons what it writes */
     TASK_DELEGATED, /* a BODY: goes to another rank in a message, until that rank answers */
-    TASK_LEAVES     /* PIECES, OFFLOADED: it ran, and what it left is to be sent */
+    TASK_LEAVES     /* PIECES, OFFLOADED: it ran, and its results are to be sent */
 };
 
 struct task_scope;
 
-/* One parameter of a task: a quarter of a cache line. Everything else about the object is said by
- * the version, the sum, or, if it is postponed, by the task's scope. */
+/* One parameter of a task: a quarter of a cache line. The version, the sum or, if it is postponed,
+ * the task's scope says the rest about the object. */
 struct task_access {
     union {
         struct data_waiter waiter; /* r, w, rw: the version, or waits for it */
@@ -72,14 +72,14 @@ struct task_access {
 };
 _Static_assert(sizeof(struct task_access) == 16, "tasks that wait take little memory");
 
-/* One cache line, then the accesses, then, on a multiple of 16 bytes, arguments or what the union
- * points to. */
+/* One cache line, then the accesses, then, at a multiple of 16 bytes, the arguments or the union's
+ * target. */
 struct task {
     _Atomic uint32_t pending; /* accesses that wait, and 1 while it is being forked */
     uint32_t n;
     struct task *next; /* a link for whoever holds the task: queues, lists */
     union {
-        struct task_scope *inner;       /* BODY: what its children may use, or NULL */
+        struct task_scope *inner;       /* BODY: its children's scope, or NULL */
         struct task_sum *sum;           /* COMBINE, PIECES, GATHER */
         struct task_send *send;         /* SEND; as long as it is DELEGATED or LEAVES */
         struct offload_task *offloaded; /* OFFLOADED */
@@ -107,26 +107,27 @@ struct task {
 
 enum { TASK_GRAIN = 16, TASK_MAX_OBJECTS = 1 << 26 /* of a task */ };
 
-/* What lies behind the accesses: of a BODY its copy of the arguments. n is as when it was made. */
+/* The bytes behind the accesses: in a BODY its copy of the arguments. n: as when the task was
+ * made. */
 static inline void *task_rest(struct task *task, size_t n)
 {
     return (char *)task + sizeof *task + n * sizeof task->access[0];
 }
 
-/* Whether a fork gives arguments where its kernel takes some, and none where it takes none. */
+/* True if a fork gives arguments exactly when its kernel takes some. */
 static inline bool task_args_fit(const void *args, size_t args_size)
 {
     return !args == !args_size;
 }
 
-/* Where behind the arguments a BODY that is `later` has its round; and the round. */
+/* The offset in task_rest of the round of a BODY that is `later`; and that round. */
 static inline size_t task_round_at(size_t args_size)
 {
     return (args_size + sizeof(uint64_t) - 1) / sizeof(uint64_t) * sizeof(uint64_t);
 }
 uint64_t task_later_round(const struct task *task);
 
-/* Whether it is one of these types; each is named. */
+/* True if the task has one of these types, a set of TASK_TYPE_BITs. */
 #define TASK_IS(task, types) ((types) >> (task)->type & 1)
 #define TASK_TYPE_BIT(type)  (UINT32_C(1) << (type))
 #define TASK_TYPES_CHANNEL   (TASK_TYPE_BIT(TASK_NODE_SEND) | TASK_TYPE_BIT(TASK_NODE_RECEIVE))
@@ -137,7 +138,7 @@ uint64_t task_later_round(const struct task *task);
 #define TASK_TYPES_WITH_BODY                                                                       \
     (TASK_TYPE_BIT(TASK_BODY) | TASK_TYPE_BIT(TASK_NODE) | TASK_TYPE_BIT(TASK_OFFLOADED))
 
-/* Whether it is a node of a replay. */
+/* True for a node of a replay. */
 static inline bool task_is_node(const struct task *task)
 {
     return TASK_IS(task, TASK_TYPES_NODE);
@@ -170,10 +171,10 @@ struct task_copy {
     _Atomic int done;
 };
 
-/* Where tasks are forked: the main program, or a task. A task's scope (scope.c) holds the objects
- * that its children may use, each the same chain of versions as the main program's; it lives until
- * all of its descendants are over. While the body runs the scope is its worker's alone; afterwards
- * nobody forks here, and only `unfinished` and `failure` change. */
+/* Tasks are forked in a scope: the main program's, or a task's. A task's scope (scope.c) holds the
+ * objects that its children may use, each a chain of versions like the main program's. It lives
+ * until all of the task's descendants are over. While the body runs, only its worker uses the
+ * scope; afterwards nothing forks here, and only `unfinished` and `failure` change. */
 struct task_scope {
     struct task_graph *graph;
     struct task_scope *parent;   /* where its task was forked; NULL: the main program, or the
@@ -181,8 +182,8 @@ struct task_scope {
     struct task_scope *top;      /* the last of the parents: the main program's, or an offloaded
                                     task's */
     _Atomic uint64_t unfinished; /* tasks forked here, each with its descendants; values to be
-                                    passed to the scope above; 1 while the body runs. Of the main
-                                    program: see work_over */
+                                    passed to the scope above; 1 while the body runs. The main
+                                    program's: see work_over */
     uint64_t forks;              /* so far; inside a task waits count, too */
     const struct data_failure *failure; /* first in reference order since the last wait; `lock` */
     uint64_t number;                    /* of its task; as are: */
@@ -206,9 +207,9 @@ struct task_graph {
         uint32_t grains;   /* of a task with n objects */
         bool plain;        /* r, w and rw alone, few of them, no others; and it is not replicated */
         bool direct;       /* ... and there is one rank */
-        bool prunes;       /* task_prune may note its tasks: what its n objects are to them is */
-        uint64_t reads, writes; /* ... a bit an object; no other use */
-        struct task *head; /* plain: a task that was just forked, but for what differs; owned */
+        bool prunes;       /* task_prune may note its tasks */
+        uint64_t reads, writes; /* a bit an object, for task_prune alone */
+        struct task *head;      /* plain: template of a task that was just forked; owned */
     } * fixed;
     uint32_t n_kernels;
     struct task_fixed **kernel_place; /* by address, open addressing */
@@ -216,7 +217,7 @@ struct task_graph {
     bool paths; /* plans are to know the paths of their tasks; set before the first of them */
     _Atomic int given_up;   /* bodies do not run any more */
     bool checks;            /* bodies are called by work_check_body */
-    struct work_pool *pool; /* who runs the tasks; NULL: nobody yet, or no more */
+    struct work_pool *pool; /* runs the tasks; NULL: not yet, or no more */
     /* The main thread's, written with every fork: on cache lines of its own. */
     _Alignas(
         64) struct task_scope root; /* the main program; its `forks` are the same on all ranks */
@@ -231,22 +232,22 @@ struct task_graph {
     struct task_failure *failures;
     struct offload_names *offload_names; /* tasks on other ranks, or NULL */
     bool offload_closed;                 /* no more of them */
-    struct data_sum *unclosed; /* of tasks that are over: there was no memory to combine them */
+    struct data_sum *unclosed;           /* sums of ended tasks, kept for want of memory */
 };
 
-/* kernels: ended by NULL, checked, the list copied; laws likewise, or NULL, not kept. `pool` and
- * `checks` are set by whoever runs the tasks. Errors: DUITE_E_KERNEL, DUITE_E_LAW, memory;
- * task_graph_stop is due all the same. */
+/* Checks `kernels`, which NULL ends, and copies the list; checks `laws`, likewise or NULL, and does
+ * not keep it. The runner of the tasks sets `pool` and `checks`. Errors: DUITE_E_KERNEL,
+ * DUITE_E_LAW, memory; task_graph_stop is due all the same. */
 int task_graph_start(struct task_graph *graph, int rank, int n_ranks,
                      const duite_kernel *const *kernels, const duite_law *const *laws);
-/* No task is left. Frees everything, objects that were not freed among it. */
+/* Frees everything, also objects that were not freed. No task is left. */
 void task_graph_stop(struct task_graph *graph);
 
 /* ---- Main thread, collective; the homes of all objects are settled ---- */
 
-/* Makes something that all ranks do alike part of the fingerprint, if there are others. Forks,
- * sets, frees and copies do so themselves. Once all of a call is mixed in, task_mixed enters the
- * call into the history. */
+/* Mixes a value that is the same on all ranks into the fingerprint, if there are several ranks.
+ * Forks, sets, frees and copies do so themselves. Once all of a call is mixed in, task_mixed enters
+ * the call into the history. */
 static inline void task_mix(struct task_graph *graph, uint64_t value)
 {
     if (graph->n_ranks == 1)
@@ -261,7 +262,7 @@ static inline void task_mixed(struct task_graph *graph, enum task_call_kind kind
     task_history_add(graph->history, graph->fingerprint,
                      task_call_bits(kind, which, graph->root.forks));
 }
-/* Both, of a fork on several ranks; kind: it is recorded, or not. */
+/* Does both for a fork on several ranks; `kind` tells whether it is recorded. */
 static inline void task_mix_fork(struct task_graph *graph, uint64_t hash, enum task_call_kind kind,
                                  uint32_t kernel)
 {
@@ -273,8 +274,7 @@ static inline void task_mix_fork(struct task_graph *graph, uint64_t hash, enum t
 /* ---- Main thread with the graph's root as scope: collective, the homes of all objects are
  * settled. Or a body with its own scope: local; the task forked runs here. ---- */
 
-/* What a fork says of how its task runs. Priority and cost are the running rank's; they do not
- * belong to the fingerprint. */
+/* A fork's options. Priority and cost are the running rank's and stay out of the fingerprint. */
 struct task_options {
     int at; /* a rank, or TASK_ANYWHERE */
     int32_t priority;
@@ -284,14 +284,13 @@ struct task_options {
 
 int task_fork(struct task_scope *scope, struct worker *worker, const struct task_options *options,
               const duite_kernel *kernel, const void *args, size_t n, const duite_object *objects);
-/* The same without options: of the main program, and of a body. */
+/* The same without options: for the main program, and for a body. */
 int task_fork_main(struct task_graph *graph, struct worker *worker, const duite_kernel *kernel,
                    const void *args, size_t n, const duite_object *objects);
 int task_fork_nested(struct task_scope *scope, struct worker *worker, const duite_kernel *kernel,
                      const void *args, size_t n, const duite_object *objects);
-/* Overwrites with a copy of *count values, or with zeros if they are NULL, without waiting for
- * anything. count NULL: as many as the object has at most. Errors: objects, DUITE_E_SIZE, memory.
- */
+/* Overwrites the object with a copy of *count values, or with zeros if `values` is NULL; waits for
+ * nothing. `count` NULL: the object's maximum. Errors: objects, DUITE_E_SIZE, memory. */
 int task_set_object(struct task_scope *scope, struct worker *worker, duite_object object,
                     const void *values, const size_t *count);
 int task_free_object(struct task_scope *scope, struct worker *worker, duite_object object);
@@ -309,45 +308,44 @@ void task_release(struct task_graph *graph, struct worker *worker, struct data_v
  * tasks of all types. `call` has context, rt, rank and worker set. Returns whether a body ran. */
 bool task_run(struct task_graph *graph, struct worker *worker, struct task *task,
               const duite_call *call);
-/* The task is over: publishes what it wrote, releases what it read, makes its successors ready,
- * frees it. */
+/* Ends a task: publishes its outputs, releases its inputs, makes its successors ready, frees it. */
 void task_finish(struct task_graph *graph, struct worker *worker, struct task *task);
 
-/* Gives the parameters, prepared for the body of the task, what the body left on another rank; or
- * returns its failure. */
+/* Fills the task's prepared parameters with the results of its body on another rank, or returns the
+ * body's failure. */
 typedef const struct data_failure *task_take_result(const struct task *task, duite_param *param,
                                                     struct data_packet *result);
-/* The body of the task, a leaf, ran on another rank: `take` does what is left of it. Then the task
- * is to be finished. */
+/* Completes a task, a leaf, whose body ran on another rank: `take` fetches the results. The task
+ * must then be finished. */
 void task_run_result(struct task_graph *graph, struct task *task, task_take_result *take,
                      struct data_packet *result);
 
-/* Whether bodies do not run any more. */
+/* True once bodies no longer run. */
 static inline bool task_has_given_up(const struct task_graph *graph)
 {
     return atomic_load_explicit(&graph->given_up, memory_order_relaxed);
 }
 
-/* It is to be sent now: it was made for that, or that has become of it. */
+/* True if the task is to be sent now, by its type or by its state. */
 static inline bool task_to_send(const struct task *task)
 {
     return task->type == TASK_SEND || task->state == TASK_DELEGATED || task->state == TASK_LEAVES;
 }
 
-/* The task whose link it is, if it is a task that waits. */
+/* The task that the waiter is embedded in; only for a waiter that is a task's. */
 static inline const struct task *task_who_waits(const struct data_waiter *waiter)
 {
     return (const struct task *)(const void *)((const char *)waiter - waiter->back);
 }
 
-/* Whether it is run by who communicates. */
+/* True if the communication runs the task. */
 static inline bool task_is_channel(const struct task *task)
 {
     return TASK_IS(task, TASK_TYPES_CHANNEL);
 }
 
-/* Whether a task of the main program, or the one that this descends from, runs where it does for an
- * object's home; then that one's block. */
+/* True if an object's home decided where the task, or its ancestor in the main program, runs. Then
+ * *block is that object's. */
 static inline bool task_follows(const struct task *task, uint32_t *block)
 {
     const struct task_scope *scope = task->scope;
@@ -360,18 +358,18 @@ static inline bool task_follows(const struct task *task, uint32_t *block)
     return scope->placed;
 }
 
-/* The number of the main program's task that it is or descends from, of whatever rank; nested: it
- * descends. */
+/* The number of the main program's task, on any rank, that the task is or descends from. *nested:
+ * it descends. */
 uint64_t task_main_number(const struct task *task, bool *nested);
 
-/* The number of a task without a body in traces; and what one with that number is called. */
+/* In traces: the number of a task without a body, and the name for a number. */
 static inline uint32_t task_own_number(const struct task *task)
 {
     return task->state == TASK_VOID ? TASK_TRACED_VOID : task->type;
 }
 const char *task_own_name(uint32_t number);
 
-/* Whether the task calls a body of the program. */
+/* True if the task calls a body of the program. */
 static inline bool task_has_body(const struct task *task)
 {
     return task->state == TASK_LOCAL && TASK_IS(task, TASK_TYPES_WITH_BODY);
@@ -383,7 +381,7 @@ void task_arrived(struct task_graph *graph, struct worker *worker, struct data_v
 void task_pieces_arrived(struct task_graph *graph, struct worker *worker, struct data_sum *sum,
                          struct data_packet *packet);
 
-/* What was expected will not come: poison in its place. */
+/* An expected version, or pieces, will not come: puts poison in their place. */
 void task_lost(struct task_graph *graph, struct worker *worker, struct data_version *version);
 void task_pieces_lost(struct task_graph *graph, struct worker *worker, struct data_sum *sum);
 
@@ -391,9 +389,10 @@ void task_pieces_lost(struct task_graph *graph, struct worker *worker, struct da
  * frees once it is sent. NULL without memory. */
 struct data_packet *task_send_packet(struct task *send);
 
-/* The object gets another home. The value that the forks so far leave goes there if the old home
- * holds it; that rank then frees it, since nobody else would. What is being contributed to stays
- * until it is overwritten. No task is left on any rank. Main thread, collective. Errors: memory. */
+/* Gives the object another home. The value that the forks so far leave goes there if the old home
+ * holds it; the old home then frees it, since no other rank would. If the object has contributions,
+ * its value stays until it is overwritten. No task is left on any rank. Main thread, collective.
+ * Errors: memory. */
 int task_move_object(struct task_graph *graph, struct worker *worker, struct data_object *object,
                      int home);
 

@@ -18,6 +18,21 @@
 
 /* ---- Runtimes ---- */
 
+static void finalise(void)
+{
+    MPI_Finalize();
+}
+
+/* A runtime is kept while another one makes the state of the next request: then both may call MPI.
+ * On several ranks none is made meanwhile, and MPI's locks would cost time. */
+static void start_mpi(void)
+{
+    int begun = 1, given;
+    if (!rank_said() && !MPI_Initialized(&begun) && !begun &&
+        !MPI_Init_thread(NULL, NULL, MPI_THREAD_MULTIPLE, &given))
+        atexit(finalise);
+}
+
 int cg_start_runtime(struct serve_request *request, struct flow *flow, duite **rt)
 {
     char scheduler[40];
@@ -27,6 +42,7 @@ int cg_start_runtime(struct serve_request *request, struct flow *flow, duite **r
     options.context = flow;
     options.threads = (unsigned)serve_number(request, "threads");
     options.scheduler = duite_scheduler_find(scheduler);
+    start_mpi();
     return tasks_code(duite_start(rt, &options));
 }
 

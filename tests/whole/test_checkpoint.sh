@@ -59,7 +59,7 @@ fi
 
 # What a report has that neither times nor the machine decide.
 totals() {
-    sed -E '/"(ranks|threads|limited_by|[a-z_]*seconds_[a-z_]*|wall_seconds|tasks[a-z_]*|messages|bytes_moved|[a-z_]*fraction|overhead_ns_per_task|peak_memory_bytes|delegated_tasks|migrated_objects|critical_path_seconds|lower_bound_seconds|graphs_recorded)":/ { /"phases"/ !{ /"name":/ !d } }; s/"wall_seconds": [^,}]*/"wall_seconds": 0/' "$1"
+    sed -E '/"(ranks|threads|cores|cores_from|limited_by|[a-z_]*seconds_[a-z_]*|wall_seconds|tasks[a-z_]*|messages|bytes_moved|[a-z_]*fraction|overhead_ns_per_task|peak_memory_bytes|delegated_tasks|migrated_objects|critical_path_seconds|lower_bound_seconds|graphs_recorded)":/ { /"phases"/ !{ /"name":/ !d } }; s/"wall_seconds": [^,}]*/"wall_seconds": 0/' "$1"
 }
 same_as() { # SCENE FOLDER REPORT: as the run that was left alone
     for file in cloth.pc2 frames.csv probes.csv contact.pc2 cloth.obj scene.json body-0.obj body-0.pc2 cloth.xmf cloth.vtkhdf.series hdf5; do

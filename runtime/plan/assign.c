@@ -1,8 +1,8 @@
-/* Assignment: which ranks run each node and need each version. Nodes of one rank: tasks, by the
- * owner rule; sums of large objects, at the home. All other nodes run wherever what they make is
- * needed: tasks of replicated kernels, sets, sums of small objects (which cost as many messages of
- * contributions as one more message would). Who needs what is gone through backwards until nothing
- * changes; a version that leaves the round is needed where the next one begins with it. */
+/* Assignment: which ranks run each node and need each version. Tasks run on one rank, by the owner
+ * rule; sums of large objects at the home. All other nodes run wherever their result is needed:
+ * tasks of replicated kernels, sets, sums of small objects (whose contributions cost no more
+ * messages than the sum would). Needs are found by a backward fixpoint; a version that leaves the
+ * round is needed where the next round begins with it. */
 #include "runtime/plan/passes.h"
 
 #include "runtime/base/memory.h"
@@ -29,8 +29,8 @@ void plan_assignment_free(struct plan_assignment *a)
 
 /* ---- Sets of ranks ---- */
 
-/* A new row, all zeros. 0 and sets->failed without memory: then it is the row of the empty set, and
- * the caller leaves it alone. */
+/* A new row of zeros. Without memory sets sets->failed and returns 0, the row of the empty set,
+ * which the caller must not change. */
 static uint32_t sets_add_row(struct plan_rank_sets *sets)
 {
     void *moved = base_grow(sets->word, &sets->words_capacity, (sets->n_rows + 1) * sets->words,
@@ -69,7 +69,7 @@ static uint32_t sets_alone(struct plan_rank_sets *sets, int rank)
     return set;
 }
 
-/* A set that may grow, with the ranks of another; that one if there is no memory. */
+/* A set that may grow, with the ranks of `from`; `from` itself without memory. */
 static uint32_t sets_copy(struct plan_rank_sets *sets, uint32_t from)
 {
     const uint32_t row = sets_add_row(sets);
@@ -80,7 +80,7 @@ static uint32_t sets_copy(struct plan_rank_sets *sets, uint32_t from)
     return (uint32_t)sets->n_ranks + 1 + row;
 }
 
-/* Of sets_join, where ids do not say it. */
+/* Part of sets_join: compares and joins rows. */
 static bool sets_join_more(struct plan_rank_sets *sets, uint32_t *to, uint32_t from)
 {
     const uint32_t few = (uint32_t)sets->n_ranks + 1;
@@ -163,7 +163,7 @@ static bool assign_versions(struct plan_assignment *a)
     return a->need;
 }
 
-/* ---- Who runs what ---- */
+/* ---- The ranks of each node ---- */
 
 static int assign_home(const struct plan_assignment *a, const struct plan_round_node *node)
 {
@@ -205,7 +205,7 @@ static void assign_node(struct assigning *s, size_t n)
         a->set[n] = sets_all(&a->sets);
 }
 
-/* What the node reads is needed where it runs. */
+/* The ranks of a node need its inputs. */
 static bool assign_inputs(struct plan_assignment *a, size_t n)
 {
     const struct plan_round_node *node = &a->round->node[n];
@@ -216,7 +216,8 @@ static bool assign_inputs(struct plan_assignment *a, size_t n)
     return changed;
 }
 
-/* The node makes the version; the last one of a round is what the next round begins with. */
+/* The node that makes a version runs where it is needed; the next round begins with the last
+ * version. */
 static bool assign_where_needed(struct plan_assignment *a, size_t n, uint32_t version)
 {
     uint32_t object = a->version[version].object;
@@ -226,7 +227,7 @@ static bool assign_where_needed(struct plan_assignment *a, size_t n, uint32_t ve
     return changed;
 }
 
-/* Nodes of several ranks, the last ones first, until nothing changes. */
+/* Goes through nodes of several ranks, last first, until nothing changes. */
 static void assign_settle(struct assigning *s)
 {
     struct plan_assignment *a = s->a;
@@ -243,7 +244,7 @@ static void assign_settle(struct assigning *s)
     }
 }
 
-/* A body runs in any case; a set or sum that is overwritten before anybody reads it need not. */
+/* A body always runs; a set or sum that is overwritten unread need not. */
 static bool assign_keeps(const struct plan_assignment *a, size_t n)
 {
     const struct plan_round_node *node = &a->round->node[n];
@@ -260,7 +261,7 @@ static void assign_all(struct assigning *s)
     for (size_t n = 0; n < a->round->n_nodes; n++)
         assign_inputs(a, n);
     assign_settle(s);
-    for (size_t k = 0; k < s->n_many; k++) { /* what no task needs is kept somewhere */
+    for (size_t k = 0; k < s->n_many; k++) { /* results that no task needs are kept at home */
         size_t n = s->many[k];
         if (plan_is_dead(a, n) && assign_keeps(a, n))
             a->set[n] = sets_alone(&a->sets, assign_home(a, &a->round->node[n]));

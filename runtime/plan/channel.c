@@ -1,7 +1,7 @@
 /* The messages of a plan. A message has all values that a round makes on one rank for another in
- * one phase, in the order of the node's uses, which is the same on both sides; what is poisoned has
- * its failure at the end instead. A node that sends or receives is ready like any other: when what
- * it sends is made, or when nobody reads any more what it overwrites. */
+ * one phase. Their order is that of the node's uses, the same on both sides. The failures of
+ * poisoned values follow at the end. SENDs and RECEIVEs become ready like any node: when the values
+ * to send are made, or when the values to overwrite have been read. */
 #include "runtime/plan/plan.h"
 #include "runtime/task/internal.h"
 
@@ -59,7 +59,7 @@ const struct task *plan_channel_waits(const struct task *task, unsigned *more)
     return one;
 }
 
-/* As plan_node_run begins: from now on the node counts for its next round. */
+/* Like the beginning of plan_node_run: from now on the node counts for its next round. */
 static struct plan *channel_begin(struct task *task)
 {
     atomic_store_explicit(&task->pending, task->node->steady, memory_order_relaxed);
@@ -101,7 +101,7 @@ size_t plan_channel_pack(struct task *task, void *bytes)
     return (size_t)(at - (char *)bytes);
 }
 
-/* Poisons, or heals, what came. */
+/* Poisons or heals the received places. */
 static void channel_unpack_failures(struct plan *plan, const struct task *task,
                                     const struct message *message, const char *at)
 {

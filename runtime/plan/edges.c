@@ -1,20 +1,20 @@
-/* Edges: what a node waits for. The pass goes through two rounds in a row with the last writer of
- * each place and the readers since. A node that waits for one of its own round gives an edge within
- * a round; a node that waits for one of the round before gives an edge from round to round. Each
- * edge joins two uses of one place, one of which writes, but for edges of the deciding node: so
- * conflicts are symmetric. A node that comes after T in a round and releases T of the next one runs
- * after T; one that comes before T runs, in the next round, after T. So nothing counts a node down
- * for the next round before the node has begun this one. The roots of a round and the deciding node
- * are joined both ways for the same reason. */
+/* Edges: the predecessors of each node. The pass goes through two rounds in a row with the last
+ * writer of each place and the readers since. Waiting for a node of the same round gives an edge
+ * within a round, waiting for a node of the previous round an edge from round to round. Each edge,
+ * except those of the deciding node, joins two uses of one place, one of which writes: so conflicts
+ * are symmetric. A node after T in the round that releases T of the next round runs after T; a node
+ * before T runs, in the next round, after T. So no node is counted down for the next round before
+ * it has begun this one. The roots of a round and the deciding node are joined both ways for the
+ * same reason. */
 #include "runtime/plan/passes.h"
 
 #include "runtime/base/memory.h"
 
-/* Nodes here are those of two rounds: the second round's follow the first one's. All are kept plus
- * one; 0: none. */
+/* Nodes of two rounds: the second round's numbers follow the first one's. All are stored plus 1; 0:
+ * none. */
 struct edge_place {
     uint32_t writer; /* the last one */
-    uint32_t reader; /* the first in a list of those since */
+    uint32_t reader; /* the first in a list of readers since */
 };
 
 struct edge_reader {
@@ -26,8 +26,8 @@ struct edges {
     struct edge_place *place;
     struct edge_reader *reader;
     uint32_t n_readers;
-    uint32_t *mark;   /* by node: the last one that an edge goes to from here */
-    size_t n_pending; /* places that the first round writes, and the second one does not yet */
+    uint32_t *mark;   /* by node: the last one that an edge from here goes to, plus 1 */
+    size_t n_pending; /* places written in the first round, but not yet in the second */
 };
 
 static void edge_add(struct edges *e, uint32_t from, uint32_t to)
@@ -70,8 +70,7 @@ static void edge_to_writer(struct edges *e, struct edge_place *place, uint32_t n
     place->writer = node + 1;
 }
 
-/* Once the second round has written all that the first one did, places join no more nodes of both.
- */
+/* No place joins nodes of both rounds once the second has written every place of the first. */
 static void edges_of_places(struct edges *e, uint32_t to)
 {
     const struct plan_round *round = e->round;
@@ -88,7 +87,7 @@ static void edges_of_places(struct edges *e, uint32_t to)
     }
 }
 
-/* What orders rounds, beside places. */
+/* Edges that order rounds, beside those of places. */
 static void edges_of_rounds(struct edges *e, uint32_t to)
 {
     const struct plan_round *round = e->round;
@@ -103,12 +102,12 @@ static void edges_of_rounds(struct edges *e, uint32_t to)
         return;
     if (decides)
         edge_add(e, decider, to);
-    else if (!node->cyclic) /* it conflicts with nothing: one round after the other */
+    else if (!node->cyclic) /* no conflict orders its rounds */
         edge_add(e, to - n, to);
 }
 
-/* A use joins its node to at most one of the first round in each of both, and as one of the first
- * round to at most one that comes later; rounds are joined by at most two edges a node. */
+/* Each use gives at most three edges: one from a node of the first round in each of the two rounds,
+ * and one to a later node. Rounds are joined by at most two edges per node. */
 static bool edges_room(struct edges *e)
 {
     struct plan_round *round = e->round;

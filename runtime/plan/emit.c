@@ -1,5 +1,5 @@
 /* Emitting: from a round in its intermediate form to the flat arrays of a plan. A plan is written
- * once, here; afterwards only bindings, arguments and what runs change it. It lives as long as its
+ * once, here; afterwards only bindings, arguments and replays change it. It lives as long as its
  * record or a replay of it. */
 #include "runtime/plan/plan.h"
 #include "runtime/task/internal.h"
@@ -10,7 +10,7 @@
 
 #include <string.h>
 
-/* Of a whole replay on one rank. */
+/* The mode of a whole replay on one rank. */
 static duite_mode emit_mode(const struct plan_recorded_object *object)
 {
     if (!object->written && !object->sums)
@@ -18,12 +18,12 @@ static duite_mode emit_mode(const struct plan_recorded_object *object)
     return object->reads_old ? DUITE_RW : DUITE_W;
 }
 
-/* What a plan is made from. */
+/* The inputs of a plan. */
 struct emit {
     const struct plan_record *record;
     const duite_object *flag;
-    const struct plan_round *round; /* of one rank: all of it; of several: this rank's part */
-    const float *path;              /* by fork, or NULL: nobody asks */
+    const struct plan_round *round; /* with several ranks: this rank's part */
+    const float *path;              /* by fork, or NULL: not wanted */
 };
 
 static void emit_places(struct plan *plan, const struct emit *from)
@@ -51,7 +51,7 @@ static void emit_places(struct plan *plan, const struct emit *from)
         plan->place[i].bytes = plan->place[i].count * data_type_size(plan->place[i].type);
 }
 
-/* For all that is used and is no object's from outside. */
+/* Buffers for all places in use, except objects with values from outside. */
 static bool emit_buffers(struct plan *plan)
 {
     static unsigned char used;
@@ -97,7 +97,7 @@ static void emit_params(struct plan *plan)
     }
 }
 
-/* What a task or a set is given; at_home: it runs for an object. */
+/* Kernel, arguments and options of a task or set; at_home: it runs for an object. */
 static void emit_call(struct plan *plan, const struct plan_record *record,
                       const struct plan_round_node *from, struct task *task, bool at_home)
 {
@@ -134,7 +134,7 @@ static bool emit_adds(const struct plan_round_node *node)
     return node->kind == PLAN_SUM || node->kind == PLAN_PARTIAL;
 }
 
-/* What all nodes have. */
+/* The fields that all nodes have. */
 static struct task *emit_task(struct plan *plan, const struct emit *emit, size_t i)
 {
     const struct plan_round_node *from = &emit->round->node[i];
@@ -179,13 +179,13 @@ static void emit_node(struct plan *plan, const struct emit *emit, size_t i)
         task->path = emit->path[from->fork];
 }
 
-/* Whether the runtime runs it by itself: no body, and no message, which the communication runs. */
+/* Returns whether the node has no body and no message, which the communication runs. */
 static bool emit_is_own(enum plan_kind kind)
 {
     return kind != PLAN_TASK && kind != PLAN_SEND && kind != PLAN_RECEIVE;
 }
 
-/* Successors in one row, those of the next round before those of the same. */
+/* Successors in one row, the next round's before this round's. */
 static void emit_next(struct plan *plan, const struct plan_round *round)
 {
     struct task **at = plan->next;
@@ -276,8 +276,8 @@ bool plan_fits(struct plan *plan, const struct plan_record *record, const duite_
            place->count == object->count;
 }
 
-/* All passes in order; of several ranks those between lowering and edges leave this rank's part,
- * and the nodes of all ranks go as soon as the paths are known: the plan takes their memory. */
+/* All passes in order. With several ranks, those between lowering and edges make this rank's part.
+ * The nodes of all ranks are freed once the paths are known, since the plan takes their memory. */
 static int plan_compile(struct plan *plan, const struct plan_record *record,
                         const duite_object *flag, const struct plan_source *source)
 {

@@ -1,14 +1,14 @@
-/* Lowering: from the forks of a round to its nodes. What the runtime adds to a program's forks
- * stands here and nowhere else: when contributions end, and the tree in which they combine. It
- * holds throughout that the nodes so far are all that has to run before the next fork, in an order
- * in which a program could run them one after the other. */
+/* Lowering: from the forks of a round to its nodes. Only this pass adds nodes to a program's forks:
+ * it decides when contributions end, and the tree in which they combine. Invariant: the nodes so
+ * far are all those that must run before the next fork, in an order in which a program could run
+ * them one after the other. */
 #include "runtime/plan/passes.h"
 
 #include "runtime/base/memory.h"
 
-/* What happened so far in the round. */
+/* The open contributions of an object. */
 struct lower_object {
-    uint32_t first, last, n_open; /* buffers of the contributions that are open */
+    uint32_t first, last, n_open; /* their buffers */
     const duite_law *law;         /* of these */
 };
 
@@ -81,7 +81,7 @@ void plan_reduce_fold(struct plan_round *round, struct plan_round_node *node,
 
 /* ---- Contributions ---- */
 
-/* A buffer for a contribution, the last of those that are open. */
+/* A buffer for a contribution, which becomes the last open one. */
 static uint32_t lower_contribution(struct lowering *l, const struct plan_access *access)
 {
     struct lower_object *object = &l->object[access->object];
@@ -95,7 +95,7 @@ static uint32_t lower_contribution(struct lowering *l, const struct plan_access 
     return leaf;
 }
 
-/* The contributions to the object end here, if there are any. */
+/* Ends the open contributions to the object, if any. */
 static void lower_sum(struct lowering *l, uint32_t name, size_t fork)
 {
     struct plan_round *round = l->round;
@@ -121,7 +121,7 @@ static void lower_sum(struct lowering *l, uint32_t name, size_t fork)
 
 /* ---- Forks ---- */
 
-/* What comes before the fork. */
+/* Adds the sums that must come before the fork. */
 static void lower_ends(struct lowering *l, size_t i)
 {
     const struct plan_source_fork *fork = &l->round->source->fork[i];
@@ -173,7 +173,7 @@ static void lower_count(struct lowering *l)
         l->n_sums += source->access[i].mode == DUITE_CW;
 }
 
-/* A sum has at least one contribution, and uses it and its object. */
+/* A sum uses its object and at least one contribution. */
 static bool lower_room(struct lowering *l)
 {
     const struct plan_source *source = l->round->source;

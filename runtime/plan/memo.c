@@ -1,16 +1,16 @@
-/* The watch over forks (memo.h). All hashes since `begin` are in the history, up to its length, and
- * nothing but forks lies between them. A hash only raises a suspicion: what is recorded are the
- * forks themselves, and a replay takes a fork only if it is the expected one. So a wrong guess
- * costs time and nothing else. Each comparison of hashes is counted: a program that repeats itself
- * only almost is left alone for ever longer times. */
+/* The watch over forks (memo.h). The history has all hashes since `begin`, up to its length, with
+ * no other call between them. A hash only raises a suspicion: the forks themselves are recorded,
+ * and a replay takes a fork only if it is the expected one. So a wrong guess costs only time.
+ * Comparisons of hashes are counted: a program that only almost repeats itself is left alone for
+ * ever longer times. */
 #include "runtime/plan/memo.h"
 
 #include "runtime/plan/memo_round.h"
 
 #include "runtime/base/memory.h"
 
-/* Forks that must repeat earlier ones; failures first skip so many, and at most; comparisons
- * granted; bodies that make a mean; forks in which a plan must be there. */
+/* Forks that must repeat earlier ones; forks skipped after the first failure, and at most;
+ * comparisons granted; bodies per mean; forks within which a plan must be there. */
 enum {
     MEMO_REPEATED = 64,
     MEMO_PENALTY = 256,
@@ -20,7 +20,7 @@ enum {
     MEMO_PATIENCE = 1 << 16
 };
 
-/* Where bodies take longer, forks do not matter; and what has no part in a replay waits for it. */
+/* With longer bodies forks do not matter, and calls outside a replay would wait for it. */
 #define MEMO_LONG_SECONDS 10e-6
 
 struct plan_memo *plan_memo_new(struct task_graph *graph, struct worker *worker, bool always)
@@ -64,7 +64,7 @@ static void memo_watch(struct plan_memo *memo)
     memo->spent = 0;
 }
 
-/* It was not worth while: what follows is left alone for a time. */
+/* It did not pay: ignores forks for a time. */
 static void memo_punish(struct plan_memo *memo)
 {
     memo_watch(memo);
@@ -121,7 +121,7 @@ void plan_memo_next_round(struct plan_memo *memo)
 
 /* ---- Periods ---- */
 
-/* Whether all forks since `wanted` ones before the next are those of `period` before. */
+/* Returns whether each of the last `wanted` forks equals the one `period` forks before it. */
 static bool memo_repeats(struct plan_memo *memo, uint64_t period)
 {
     const uint64_t wanted = 2 * period > MEMO_REPEATED ? 2 * period : MEMO_REPEATED;
@@ -135,7 +135,7 @@ static bool memo_repeats(struct plan_memo *memo, uint64_t period)
     return true;
 }
 
-/* The same for whichever fork a round begins with. */
+/* A round's key, the same for any first fork. */
 static uint64_t memo_key(const struct plan_memo *memo, uint64_t period)
 {
     uint64_t sum = 0;
@@ -144,7 +144,7 @@ static uint64_t memo_key(const struct plan_memo *memo, uint64_t period)
     return sum;
 }
 
-/* Whether bodies are so short lately that a replay is worth while. */
+/* Returns whether recent bodies are so short that a replay pays. */
 static bool memo_pays(struct plan_memo *memo)
 {
     uint64_t bodies;
@@ -175,7 +175,7 @@ static void memo_begin(struct plan_memo *memo, uint64_t period)
     }
     if (memo->found) {
         if (memo_round_is_made(memo->found, &fails) && !fails && !memo_round_is_idle(memo->found))
-            memo_later(memo); /* the main program is too far ahead of it */
+            memo_later(memo); /* the main program is too far ahead of its last replay */
         else
             memo_enter(memo, MEMO_SEEK);
         return;
@@ -228,7 +228,7 @@ static bool memo_record(struct plan_memo *memo, uint32_t hash, const duite_kerne
     return false;
 }
 
-/* The fork is the first of the round, and its forks were the last ones. */
+/* Returns whether the fork is the round's first, and the last forks were the round's. */
 static bool seek_finds(const struct plan_memo *memo, const duite_kernel *kernel, const void *args,
                        size_t n, const duite_object *objects)
 {

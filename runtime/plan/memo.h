@@ -6,19 +6,19 @@
 #include <pthread.h>
 #include <string.h>
 
-/* Repeated forks are recognised: a main program that forks the same tasks round after round, but
- * for their arguments, has them replayed without asking for it. Same bytes, failures, numbers and
- * windows as without. Main thread of a runtime of one rank.
+/* Repeated forks are recognised: if a main program forks the same tasks round after round,
+ * arguments aside, they are replayed without being asked for. Bytes, failures, numbers and windows
+ * stay the same. Main thread of a runtime of one rank.
  *
  * Each fork is hashed (kernel and objects). When the last forks repeat those before them, and
  * bodies are short, the next round is recorded while it is forked, and a thread compiles it to a
  * plan. Then each fork that is the expected one becomes a run of its node, in an open replay. Any
- * other fork or call closes that. Recognised are forks without options of plain kernels that write
- * something, on objects of fixed size. */
+ * other fork or call closes that. Only forks without options, of plain kernels that write
+ * something, on objects of fixed size are recognised. */
 
 enum {
     MEMO_HISTORY = 2 * PLAN_OPEN_MAX, /* hashes kept; a power of 2 */
-    MEMO_HASHED = 16,                 /* objects of a fork at most, else it is like no other */
+    MEMO_HASHED = 16,                 /* max. objects of a fork; a larger fork resembles no other */
     MEMO_ANCHORS = 8,
     MEMO_PLANS = 8
 };
@@ -26,7 +26,7 @@ enum {
 /* A fork of a round. */
 struct plan_memo_step {
     const duite_kernel *kernel;
-    size_t n, bytes, args;             /* objects; of arguments, and where they lie in a round's */
+    size_t n, bytes, args; /* objects; bytes of arguments and their place in a round's */
     const struct plan_memo_step *next; /* the last one's: the first */
     duite_object object[];
 };
@@ -34,15 +34,15 @@ struct plan_memo_step {
 /* A round that was recognised. */
 struct plan_memo_round {
     struct plan_record *record;   /* with its plan; NULL: free */
-    struct plan_memo_step *first; /* they follow one another */
+    struct plan_memo_step *first; /* contiguous */
     uint32_t *hash;               /* of each fork */
-    uint64_t key;                 /* of the hashes, whichever comes first */
+    uint64_t key;                 /* of the hashes, whichever fork is first */
     size_t n;
-    uint64_t used;          /* when it was opened last, in openings */
-    struct plan_gate *gate; /* stays when the round goes: see plan_gate */
-    pthread_t thread;       /* compiles the plan; */
-    bool compiles;          /* it has not ended, as far as the main thread knows */
-    _Atomic int made;       /* 1: the plan is there; -1: there is none for it */
+    uint64_t used;          /* its last opening, by number */
+    struct plan_gate *gate; /* outlives the round, see plan_gate */
+    pthread_t thread;       /* compiles the plan */
+    bool compiles;          /* the thread is not joined yet */
+    _Atomic int made;       /* 1: the plan is there; -1: it failed */
 };
 
 enum plan_memo_state { MEMO_WATCH, MEMO_RECORD, MEMO_SEEK };
@@ -51,27 +51,28 @@ struct plan_memo {
     struct task_graph *graph;
     struct worker *worker;
     /* The open replay. */
-    const struct plan_memo_step *step; /* the fork expected; NULL: none is open */
+    const struct plan_memo_step *step; /* the expected fork; NULL: no replay is open */
     struct plan *plan;
     unsigned char *args;         /* of this round */
     uint32_t at;                 /* the node of `step` */
-    uint64_t round, room, first; /* rounds forked; rounds with room for arguments; first task */
-    uint64_t tasks, rounds;      /* recognised in all, those of closed replays */
+    uint64_t round, room, first; /* rounds forked; with room for arguments; first task */
+    uint64_t tasks, rounds;      /* recognised, in closed replays */
     /* The watch. */
-    uint64_t skip;       /* forks that are not looked at */
-    uint64_t begin, pos; /* forks since `begin` are in the history, this is the next one */
-    uint64_t due;        /* from this one on each fork is looked at */
-    uint32_t anchor;     /* so is each with this hash */
+    uint64_t skip;       /* forks still to be ignored */
+    uint64_t begin, pos; /* the history has the forks from `begin` on; next fork */
+    uint64_t due;        /* each fork from this one on is looked at */
+    uint32_t anchor;     /* each fork with this hash is looked at, too */
     uint32_t n_anchors;
-    uint64_t anchored[MEMO_ANCHORS]; /* where it was, newest first */
+    uint64_t anchored[MEMO_ANCHORS]; /* its forks, newest first */
     uint64_t spent;                  /* comparisons since `begin` */
     uint64_t penalty;                /* forks to skip after the next failure */
     bool always;                     /* see plan_memo_new */
-    uint64_t bodies;                 /* that ran when it was looked last; they took */
-    double seconds, mean;            /* so long; and each one lately */
+    uint64_t bodies;                 /* run at the last look */
+    double seconds, mean;            /* of those bodies; of a recent body */
     enum plan_memo_state state;
     size_t period;
-    uint64_t since, seen; /* where this state began; MEMO_SEEK: forks until the round began last */
+    uint64_t since, seen; /* where this state began; MEMO_SEEK: forks from there to the last begin
+                             of the round */
     struct plan_memo_round *found; /* MEMO_SEEK: its round */
     struct plan_record *record;    /* MEMO_RECORD */
     uint64_t openings;
@@ -79,19 +80,19 @@ struct plan_memo {
     uint32_t hash[MEMO_HISTORY];
 };
 
-/* Always: even where bodies take so long that forks do not matter, and plans are compiled at once.
- * NULL without memory. */
+/* Always: replays even long bodies, and compiles plans at once. NULL without memory. */
 struct plan_memo *plan_memo_new(struct task_graph *graph, struct worker *worker, bool always);
-/* No task is left; NULL is fine. */
+/* Only once no task is left; NULL is fine. */
 void plan_memo_free(struct plan_memo *memo);
 
-/* Something else than the expected fork: an open replay is closed, and the history begins again. */
+/* Another call than the expected fork: closes an open replay and begins the history again. */
 void plan_memo_break(struct plan_memo *memo);
 
-/* Of plan_memo_fork: a fork that may end a period, or is to be recorded. True: it is made. */
+/* Part of plan_memo_fork, for a fork that may end a period or is to be recorded. True: the fork is
+ * made. */
 bool plan_memo_look(struct plan_memo *memo, uint32_t hash, const duite_kernel *kernel,
                     const void *args, size_t n, const duite_object *objects);
-/* A round was forked: room for the arguments of the next one, or the replay is closed. */
+/* A round was forked: makes room for the arguments of the next one, or closes the replay. */
 void plan_memo_next_round(struct plan_memo *memo);
 
 /* Sums of products: no multiplication waits for another one. */
@@ -136,8 +137,8 @@ static inline void plan_memo_take(struct plan_memo *memo, const struct plan_memo
         plan_memo_next_round(memo);
 }
 
-/* A fork without options by the main program, while nothing is recorded or to be settled. True: it
- * is made. False: it is to be made. */
+/* A fork without options by the main program, outside builds and with homes settled. True: the fork
+ * is made. False: the caller makes it. */
 static inline bool plan_memo_fork(struct plan_memo *memo, const duite_kernel *kernel,
                                   const void *args, size_t n, const duite_object *objects)
 {

@@ -1,7 +1,7 @@
-/* Rounds that were recognised (memo_round.h). A round is compiled as a recorded graph of its own,
- * with two differences. All that it writes counts as read before, since its last round may end
- * after any fork: what that one did not come to write stays as it was. And arguments lie in a ring
- * of rounds, since the main program runs ahead. */
+/* Recognised rounds (memo_round.h). A round is compiled as a recorded graph of its own, with two
+ * differences. All objects that it writes count as read before, since its last round may end after
+ * any fork and leave the others unchanged. Arguments lie in a ring of rounds, since the main
+ * program runs ahead. */
 #include "runtime/plan/memo_round.h"
 
 #include "runtime/base/memory.h"
@@ -9,8 +9,8 @@
 #include "runtime/data/object.h"
 #include "runtime/task/internal.h"
 
-/* Rounds of so many forks are compiled at once, in about 0.1 ms, which is less than it takes until
- * a thread does it beside workers that have all cores. */
+/* Rounds of up to so many forks are compiled at once, in about 0.1 ms: a thread would take longer
+ * to start while workers hold all cores. */
 enum { ROUND_SHORT = 256 };
 
 /* Bytes of a ring; rounds in it, at least and at most. */
@@ -29,7 +29,7 @@ struct plan_memo_round *memo_round_find(struct plan_memo *memo, uint64_t key, si
 bool memo_round_is_made(struct plan_memo_round *round, bool *fails)
 {
     const int made = atomic_load_explicit(&round->made, memory_order_relaxed);
-    if (made && round->compiles) { /* the plan is seen by the join */
+    if (made && round->compiles) { /* the join makes the plan visible */
         pthread_join(round->thread, NULL);
         round->compiles = false;
     }
@@ -58,8 +58,8 @@ void memo_round_free(struct plan_memo_round *round, struct worker *worker)
 
 /* ---- Recording ---- */
 
-/* What is written orders the task's runs one after the other, as their forks would. A task that
- * writes nothing would wait for itself in a plan, and for nothing without. */
+/* Writes order the runs of a task, as forks would. A task without writes would wait for itself in a
+ * plan, and for nothing without. */
 static bool round_writes(const duite_kernel *kernel, size_t n)
 {
     bool writes = false;
@@ -116,7 +116,7 @@ static bool round_make_ring(struct plan *plan, const struct plan_record *record)
     return rounds * record->args_bytes <= RING_BYTES && plan_ring(plan, rounds, record->args_bytes);
 }
 
-/* Forks know no paths, so schedulers are told of none. */
+/* Forked tasks have no paths, so these tasks get none. */
 static void round_forget_paths(struct plan *plan)
 {
     for (size_t i = 0; i < plan->n_nodes; i++)
@@ -140,7 +140,7 @@ static void *round_thread(void *context)
     return NULL;
 }
 
-/* The one that was used longest ago, and is not in use. */
+/* The least recently used round that is not in use. */
 static struct plan_memo_round *round_place(struct plan_memo *memo)
 {
     struct plan_memo_round *place = NULL;
@@ -157,7 +157,7 @@ static struct plan_memo_round *round_place(struct plan_memo *memo)
     return place;
 }
 
-/* All of the round but its plan. */
+/* Fills the round except its plan. */
 static bool round_fill(struct plan_memo_round *round, const struct plan_memo *memo)
 {
     struct plan_record *record = round->record;
@@ -197,7 +197,7 @@ struct plan_memo_round *memo_round_make(struct plan_memo *memo, uint64_t key)
 
 /* ---- Replays ---- */
 
-/* An object of it may have been freed since, and another one have its slot. */
+/* Returns whether all objects live: one may have been freed, and its slot reused. */
 static bool round_lives(const struct plan_memo *memo, struct plan_memo_round *round)
 {
     if (plan_record_fits(round->record))

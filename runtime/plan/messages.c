@@ -1,8 +1,8 @@
-/* Messages: when nodes run at the earliest, counted in messages, and what moves between ranks. What
- * one rank makes goes to those that need it: versions, and of sums the pieces that a rank can
- * combine alone. All that goes from one rank to another in one phase is one message. All ranks go
- * through the round in the same order, so both sides list the same items. Each item names its
- * version or its piece, so no pass pairs them by counting. */
+/* Messages: the earliest phase of each node, counted in messages, and the values that move between
+ * ranks. Versions made on one rank go to the ranks that need them, as do the pieces of sums that a
+ * rank can combine alone. All values from one rank to another in one phase are one message. All
+ * ranks go through the round in the same order, so both sides list the same items. Each item names
+ * its version or its piece, so no pass pairs them by counting. */
 #include "runtime/plan/passes.h"
 
 #include "runtime/base/memory.h"
@@ -13,7 +13,7 @@ struct finding {
     struct plan_messages *m;
     uint32_t *heads; /* by pair of ranks, see message_head: the last message, plus 1 */
     int *ring;       /* scratch, by rank */
-    uint32_t leaves; /* the phase of the last leaf of the sum that is gone through */
+    uint32_t leaves; /* the phase of the present sum's last leaf */
     bool failed;
 };
 
@@ -22,13 +22,13 @@ static uint32_t phase_later(uint32_t a, uint32_t b)
     return a > b ? a : b;
 }
 
-/* The task that contributes what a sum reads. */
+/* The task that fills a buffer of a sum. */
 static uint32_t message_leaf(const struct plan_messages *m, const struct plan_node_use *use)
 {
     return m->leaf[use->place - m->assignment->round->n_objects];
 }
 
-/* Whether a set has ranks that another one has not. Most often they are the same. */
+/* Returns whether `set` has ranks that `has` lacks. Mostly the two are equal. */
 static inline bool message_is_outside(const struct plan_assignment *a, uint32_t set, uint32_t has)
 {
     return set != has &&
@@ -37,14 +37,14 @@ static inline bool message_is_outside(const struct plan_assignment *a, uint32_t 
 
 /* ---- Phases ---- */
 
-/* What happened to an object so far in the round: the highest phases of its accesses. */
+/* The highest phases of an object's accesses so far in the round. */
 struct phase_past {
-    int rank;           /* that has the present version, or PLAN_MANY */
-    uint32_t here, any; /* there; on all ranks */
+    int rank;           /* has the present version; or PLAN_MANY */
+    uint32_t here, any; /* on that rank; on any rank */
 };
 
-/* How many messages one after the other the version takes to the node: none, if the node runs on no
- * rank that does not have it. */
+/* The number of successive messages that bring the version to the node; 0 if all ranks of the node
+ * have it. */
 static uint32_t phase_crosses(const struct plan_assignment *a, size_t n, uint32_t version)
 {
     const uint32_t maker = plan_maker(a, version);
@@ -132,7 +132,7 @@ static bool pieces_join(const struct plan_piece *l, const struct plan_piece *r)
     return l->rank == r->rank && plan_leaves_are_halves(&l->leaves, &r->leaves);
 }
 
-/* One rank contributes alone; and it reads alone. */
+/* Returns whether one rank contributes alone; *alone: and reads alone. */
 static bool pieces_of_one(const struct plan_messages *m, size_t n, bool *alone)
 {
     const struct plan_assignment *a = m->assignment;
@@ -148,7 +148,7 @@ static bool pieces_of_one(const struct plan_messages *m, size_t n, bool *alone)
     return one;
 }
 
-/* A rank's pieces move when its last leaf is there. `latest` is by rank. */
+/* A rank's pieces move once its last leaf is there. `latest` is by rank. */
 static void pieces_set_phases(const struct plan_messages *m, size_t n, size_t first,
                               uint32_t *latest)
 {
@@ -230,7 +230,7 @@ static uint32_t message_find(struct finding *f, int from, int to, uint32_t phase
     return *head - 1;
 }
 
-/* Appends an item to the message from one rank to another in a phase, if the caller wants it. */
+/* Appends an item to the message between two ranks in a phase, if m->rank takes part. */
 static void message_add(struct finding *f, int from, int to, uint32_t phase, struct plan_item item)
 {
     struct plan_messages *m = f->m;
@@ -255,8 +255,8 @@ static void message_add(struct finding *f, int from, int to, uint32_t phase, str
     message->last = m->n_items;
 }
 
-/* Adds the item for each rank of a set but the one that has it. If the messages are those of one
- * rank that does not send, that rank is the one receiver. */
+/* Adds the item for each rank of a set except `from`. If m->rank is one rank and does not send,
+ * only it can be the receiver. */
 static void message_add_to_set(struct finding *f, int from, const uint64_t *set, uint32_t phase,
                                struct plan_item item)
 {
@@ -270,7 +270,7 @@ static void message_add_to_set(struct finding *f, int from, const uint64_t *set,
             message_add(f, from, to, phase, item);
 }
 
-/* The version goes from rank to rank. */
+/* The version is relayed. */
 static void message_version_relay(struct finding *f, const struct plan_item *item, uint32_t phase)
 {
     size_t n = 0;
@@ -280,7 +280,8 @@ static void message_version_relay(struct finding *f, const struct plan_item *ite
             message_add(f, f->ring[i], f->ring[i + far], phase + round, *item);
 }
 
-/* What is made on several ranks is made wherever it is needed. */
+/* Versions made on several ranks are made wherever they are needed, so only versions of one rank
+ * move. */
 static void message_version(struct finding *f, uint32_t version)
 {
     const struct plan_assignment *a = f->m->assignment;
@@ -300,7 +301,7 @@ static void message_version(struct finding *f, uint32_t version)
         message_add_to_set(f, a->at[maker], plan_needs_set(a, version), phase, item);
 }
 
-/* What a sum's relay passes on; its rounds are as many phases, after that of the last leaf. */
+/* Items of a sum's relay. Each round is one phase, after that of the last leaf. */
 static void message_hop(void *context, const struct plan_hop *hop)
 {
     struct finding *f = context;
@@ -315,7 +316,7 @@ static void message_hop(void *context, const struct plan_hop *hop)
                                        .made = plan_moment_sum(hop->node, hop->round)});
 }
 
-/* The pieces of each rank go to those that add them all up. */
+/* The pieces of each rank go to the ranks that run the sum. */
 static void message_pieces(struct finding *f, size_t n)
 {
     const struct plan_messages *m = f->m;

@@ -6,27 +6,27 @@
 
 #pragma GCC visibility push(hidden) /* called directly: no other library can replace them */
 
-/* A node's body and what follows, inline for those who run nodes: run.c, and the loop of workers.
- * What holds of the two is said in run.c. */
+/* A node's body and its end, inline in run.c and in the workers' loop. run.c states their
+ * invariants. */
 
 /* With a flag the number of rounds is not known beforehand. Each sink of each round takes one from
- * this, and the node that decides to stop takes the remainder. */
+ * this; the node that decides to stop takes the remainder. */
 #define PLAN_UNKNOWN (INT64_C(1) << 62)
 
-/* Why a node that reads poison does not run, or NULL. */
+/* The failure that keeps a node from running because it reads poison, or NULL. */
 const struct data_failure *plan_node_poison(const struct plan *plan, const struct task *task);
-/* Poisons, or heals, what the node writes. */
+/* Poisons the places that the node writes, or heals them (NULL). */
 void plan_node_set_poison(struct plan *plan, const struct task *task,
                           const struct data_failure *failure);
-/* What bodies find under cw. */
+/* Writes the neutral elements that bodies find under cw. */
 void plan_node_clear_leaves(const struct plan *plan, const struct task *task);
-/* The body forked tasks on objects of its own and on what it read. */
+/* The body forked tasks on its own objects and on its parameters. */
 void plan_node_leave_scope(struct task_scope *scope, struct worker *worker,
                            const struct data_failure *failure);
-/* The node's last predecessor is over. What a message waits for is not queued behind other tasks:
- * it runs here and now. (What it makes ready is a node that sends, and tasks.) */
+/* The node's last predecessor is over. A node that a message waits for runs at once, never queued
+ * behind other tasks. (It makes ready a node that sends, and tasks.) */
 void plan_node_ready(struct task_graph *graph, struct worker *worker, struct task *task);
-/* After the last sink of the last of so many rounds. */
+/* Called after the last sink of the last of so many rounds. */
 void plan_replay_end(struct task_graph *graph, struct worker *worker, struct plan *plan,
                      uint64_t rounds);
 
@@ -36,7 +36,7 @@ static inline void plan_taint(struct plan *plan, uint32_t bit)
         atomic_fetch_or_explicit(&plan->tainted, bit, memory_order_relaxed);
 }
 
-/* Of an open replay, a task that was never forked, or any for want of memory. */
+/* The task of an open replay was never forked, or the replay had no memory. */
 static inline bool plan_node_is_void(const struct plan *plan, const struct task *task,
                                      uint32_t taint)
 {
@@ -44,7 +44,7 @@ static inline bool plan_node_is_void(const struct plan *plan, const struct task 
            task->number >= atomic_load_explicit(&plan->unforked, memory_order_relaxed);
 }
 
-/* Those of its round. */
+/* The arguments of its current round. */
 static inline const void *plan_node_args(const struct plan *plan, const struct plan_node *node)
 {
     const unsigned char *args = node->args;
@@ -54,7 +54,7 @@ static inline const void *plan_node_args(const struct plan *plan, const struct p
     return args + (round & plan->ring_mask) * plan->stride;
 }
 
-/* As the body counts: to those of an open replay there is no replay. */
+/* The round as bodies see it; bodies of an open replay know of no replay. */
 static inline uint64_t plan_node_round(const struct plan *plan, const struct plan_node *node)
 {
     if (plan->gate)
@@ -63,8 +63,8 @@ static inline uint64_t plan_node_round(const struct plan *plan, const struct pla
 }
 
 /* A node whose task was never forked takes the number of the first task after the replay. So
- * task_may_run lets each body that was forked later run it on top while it waits; it has no body of
- * its own that could wait. */
+ * task_may_run lets each later body run it on top while it waits; it has no body of its own that
+ * could wait. */
 static inline void plan_node_renumber(const struct plan *plan, struct task *task)
 {
     const uint64_t end = atomic_load_explicit(&plan->unforked, memory_order_relaxed);
@@ -72,7 +72,8 @@ static inline void plan_node_renumber(const struct plan *plan, struct task *task
         task->number = end;
 }
 
-/* Whether a node that waits for nothing else may run; if not, it is not the caller's any more. */
+/* Returns whether a node that waits for nothing else may run. False: it no longer belongs to the
+ * caller. */
 static inline bool plan_node_may_run(struct plan *plan, struct task *task)
 {
     if (!plan->gate)
@@ -115,9 +116,9 @@ __attribute__((always_inline)) static inline bool plan_node_run_body(struct task
     return runs;
 }
 
-/* A worker that counts down a node for which one more is missing may await it: then whoever is that
- * leaves the node alone, and the worker runs it once nothing is missing, or gives it up before.
- * Meanwhile the replay cannot end, since the node is certain to run. */
+/* A worker that counts down a node with one more predecessor to come may await it. That predecessor
+ * then leaves the node alone, and the worker runs it once nothing is missing, or gives it up
+ * before. Meanwhile the replay cannot end, since the node is certain to run. */
 #define PLAN_AWAITED (UINT32_C(1) << 31) /* in `pending` */
 
 static inline bool plan_node_await(struct task *task)
@@ -127,7 +128,7 @@ static inline bool plan_node_await(struct task *task)
                                                    memory_order_acq_rel, memory_order_relaxed);
 }
 
-/* Whether nothing is missing any more. */
+/* Returns whether nothing is missing any more. */
 static inline bool plan_node_came(struct task *task)
 {
     return atomic_load_explicit(&task->pending, memory_order_acquire) == PLAN_AWAITED;
@@ -144,9 +145,9 @@ static inline bool plan_node_give_up(struct task *task)
 typedef void plan_ready(struct task_graph *graph, struct worker *worker, struct task *task);
 typedef bool plan_awaits(struct worker *worker, struct task *task);
 
-/* A node is over: counts its successors down; `ready` gets each for which it was the last. `awaits`
- * (or NULL) is asked of each for which one more is missing, and says whether it is awaited now. It
- * is asked of no node of a round that may not come: such a node does not keep the replay from its
+/* A node is over: counts its successors down; `ready` gets each that waits for nothing else.
+ * `awaits` (or NULL) gets each with one more predecessor to come, and returns whether it is awaited
+ * now. Never await nodes of a round that a flag may cancel: they do not keep the replay from its
  * end. */
 __attribute__((always_inline)) static inline void
 plan_node_count_down(struct task_graph *graph, struct worker *worker, struct task *task,
@@ -161,7 +162,7 @@ plan_node_count_down(struct task_graph *graph, struct worker *worker, struct tas
     const bool decides = task->type == TASK_NODE_FLAG;
     const bool last = plan->decides ? decides && plan->stop : round == end;
     int64_t counts = node->sink && (plan->decides || last);
-    if (decides && last) /* the other sinks take one a round, and so did this one until now */
+    if (decides && last) /* each sink, this one included, has taken one a round until now */
         counts = PLAN_UNKNOWN - (int64_t)((round + 1) * plan->n_sinks - 1);
     if (plan->gate && task->number < atomic_load_explicit(&plan->unforked, memory_order_relaxed))
         work_over(graph->pool, worker, 1); /* a task that was forked */
@@ -172,7 +173,7 @@ plan_node_count_down(struct task_graph *graph, struct worker *worker, struct tas
         const uint32_t before = atomic_load_explicit(pending, memory_order_acquire);
         if (awaits && before == 2 && next >= certain && awaits(worker, *next))
             continue;
-        /* The last one needs no atomic subtraction: nobody else has the counter then. */
+        /* The last one needs no atomic subtraction: no other predecessor has the counter then. */
         const bool was_last =
             before == 1 || atomic_fetch_sub_explicit(pending, 1, memory_order_acq_rel) == 1;
         if (was_last && plan_node_may_run(plan, *next))

@@ -1,18 +1,17 @@
 /* Open replays. The main program forks the tasks of rounds one after the other, as it would without
- * a plan, and each becomes a node's next run. The gate says how far it is. A node that waits for
+ * a plan, and each becomes a node's next run. The gate counts these forks. A node that waits for
  * nothing else runs if its task was forked; otherwise it is parked, and the main thread finds it
- * there when it forks that task. Both sides write before they look (sequentially consistent), so
- * one of them sees the other; whoever takes the number away again has the node.
+ * when it forks that task. Both sides write before they look (sequentially consistent), so one of
+ * them sees the other. The node belongs to the thread that takes its number away.
  *
- * The end is a round that runs no body. A node that finishes its last task cannot know that it was
- * the last: so it always counts down its successors in the round after it. Once no more tasks are
- * forked all nodes pass the gate. Those of tasks that never were forked do nothing but count down,
- * and the sinks of the first round that has no other tasks end the replay. To them its number is
- * known, since they come after the gate was opened.
+ * The end is a round that runs no body. A node cannot know that it has finished its last task, so
+ * it always counts down its successors in the next round. Once no more tasks are forked, all nodes
+ * pass the gate. Nodes of tasks that were never forked only count down. The sinks of the first
+ * round with no other tasks end the replay: they know its number, since they come after the gate
+ * was opened.
  *
- * A worker that parks a node looks at the gate once more, and then the replay may be over. So gates
- * outlive plans. Numbers of tasks are never used twice: what such a worker takes away is its own.
- */
+ * A worker that parks a node looks at the gate once more, when the replay may be over. So gates
+ * outlive plans. Numbers of tasks are never used twice, so the worker takes away only its own. */
 #include "runtime/plan/node.h"
 
 #include "runtime/base/memory.h"
@@ -38,7 +37,7 @@ bool plan_passes(struct plan *plan, struct task *task)
                                                    memory_order_relaxed);
 }
 
-/* The number counts: meanwhile the node may have been taken, run, and parked for its next task. */
+/* Checks the number: the node may meanwhile have been taken, run, and parked for its next task. */
 void plan_unpark(struct plan *plan, struct worker *worker, uint32_t i, uint64_t number)
 {
     struct task *task = plan_task(plan, i);

@@ -1,9 +1,8 @@
-/* The part of one rank: its nodes in the order of the round. Nodes that receive come first. A node
- * that sends comes as soon as the last thing that its message carries is made. What a rank writes
- * lies in its objects' own places. What it receives lies in a buffer for each version and piece,
- * which no other node writes; a node that would write on from there gets a copy first. What is
- * overwritten before its message can go is copied aside. Edges follow from these places as on one
- * rank. */
+/* The part of one rank: its nodes in the order of the round. RECEIVEs come first. A SEND comes once
+ * the last item of its message is made. A rank's writes go to its objects' own places. Each
+ * received version or piece has a buffer that no other node writes; a node that modifies such a
+ * version gets a copy first. Values overwritten before their message can go are copied aside. Edges
+ * follow from these places as on one rank. */
 #include "runtime/plan/passes.h"
 
 #include "runtime/base/memory.h"
@@ -17,19 +16,19 @@ struct parting {
     const struct plan_assignment *a;
     const struct plan_round *round; /* of all ranks */
     struct plan_round *part;
-    uint32_t *replica;   /* by version: the buffer that it is received in */
+    uint32_t *replica;   /* by version: the buffer that receives it */
     uint32_t *arrival;   /* by piece: likewise */
-    uint32_t *place;     /* by item: where it lies when its message goes; where it comes */
+    uint32_t *place;     /* by item: its place when its message goes, or comes */
     uint32_t *leaf;      /* by buffer of the round, less n_objects: its place here, plus 1; or 0 */
     plan_moment *spoilt; /* by version: when the rank overwrites it */
-    size_t next_item;    /* the first that is not made */
-    plan_moment next;    /* when it is, or when the next message goes */
-    uint32_t *order;     /* the messages that go, by the moment they are ready */
+    size_t next_item;    /* the first that is not made yet */
+    plan_moment next;    /* when it is made, or the next message goes */
+    uint32_t *order;     /* messages to send, by the moment they are ready */
     size_t n_sends, next_send;
-    struct data_subtree *row; /* scratch: of one sum */
-    /* What this rank has of the sum that is gone through; where: its place. */
+    struct data_subtree *row; /* scratch, for one sum */
+    /* This rank's leaves of the present sum; where: their place. */
     struct plan_leaves *state, *joined, *came;
-    uint32_t *param; /* by entry of `state`: of the PARTIAL that is being made, or PLAN_NONE */
+    uint32_t *param; /* by entry of `state`: in the present PARTIAL, or PLAN_NONE */
     size_t n_state;
 };
 
@@ -49,14 +48,14 @@ static uint32_t part_leaf(struct parting *p, uint32_t place)
     return *leaf - 1;
 }
 
-/* Where this rank has a version that it reads. */
+/* The place of a version that this rank reads. */
 static uint32_t part_version(const struct parting *p, uint32_t version)
 {
     return plan_is_there(p->a, version, p->m->rank) ? p->a->version[version].object
                                                     : p->replica[version];
 }
 
-/* The round's buffer that a piece of this rank begins with, where all of it comes to lie. */
+/* The place of a piece of this rank: the buffer of its first leaf. */
 static uint32_t part_piece(struct parting *p, const struct plan_piece *piece)
 {
     const struct plan_round_node *sum = &p->round->node[piece->node];
@@ -100,7 +99,7 @@ static int message_compare(const void *a, const void *b, void *context)
     return left != right ? (left > right) - (left < right) : (l > r) - (l < r);
 }
 
-/* The messages as channels of the part, and memory for what is received. */
+/* Makes the part's channels, and buffers for the items received. */
 static void part_channels(struct parting *p)
 {
     const struct plan_messages *m = p->m;
@@ -138,7 +137,7 @@ static void part_message(struct parting *p, uint32_t message, size_t fork)
         plan_round_use(p->part, node, p->place[i - 1], sends, !sends);
 }
 
-/* What a sum's relay passes on: until the next round joins it with what comes. */
+/* The place of leaves that a sum's relay passes on, valid until the next round joins them. */
 static uint32_t part_passed(const struct parting *p, const struct plan_leaves *leaves)
 {
     size_t i = 0;
@@ -147,13 +146,13 @@ static uint32_t part_passed(const struct parting *p, const struct plan_leaves *l
     return p->state[i].tree.where;
 }
 
-/* Where an item lies that was made just now: copied aside if it is overwritten too soon. */
+/* Finds the place of an item just made; copies it aside if it is overwritten too soon. */
 static void part_made(struct parting *p, size_t i, size_t fork)
 {
     const struct plan_item *item = &p->m->item[i];
     plan_moment spoilt;
     if (item->version != PLAN_NONE) {
-        p->place[i] = part_version(p, item->version); /* received, if this rank passes it on */
+        p->place[i] = part_version(p, item->version); /* a received one if this rank passes it on */
         spoilt = p->place[i] == item->object ? p->spoilt[item->version] : NEVER;
     } else if (item->piece == PLAN_NONE) {
         p->place[i] = part_passed(p, &item->leaves);
@@ -180,7 +179,7 @@ static void part_look_ahead(struct parting *p)
         p->next = m->message[p->order[p->next_send]].ready;
 }
 
-/* A moment has come: what it makes has its place, and messages that are ready go. */
+/* At this moment: finds the places of items just made, and sends the messages that are ready. */
 static void part_moment(struct parting *p, plan_moment now, size_t fork)
 {
     const struct plan_messages *m = p->m;
@@ -196,7 +195,7 @@ static void part_moment(struct parting *p, plan_moment now, size_t fork)
 
 /* ---- Nodes ---- */
 
-/* A node writes on what came from elsewhere: into the object's own place. */
+/* Copies received versions that the node modifies into the objects' own places. */
 static void part_bring_home(struct parting *p, size_t n)
 {
     const struct plan_round_node *node = &p->round->node[n];
@@ -209,7 +208,7 @@ static void part_bring_home(struct parting *p, size_t n)
     }
 }
 
-/* The contributions of this rank become pieces where that takes more than one. */
+/* Combines the contributions of this rank to pieces of more than one leaf. */
 static void part_partial(struct parting *p, size_t n)
 {
     const struct plan_round_node *node = &p->round->node[n];
@@ -233,8 +232,7 @@ static void part_partial(struct parting *p, size_t n)
     }
 }
 
-/* Of a sum that goes from rank to rank this rank begins with its own pieces; of others all are
- * there at once. */
+/* A relayed sum begins with this rank's own pieces, any other sum with all pieces. */
 static void part_begin_sum(struct parting *p, size_t n)
 {
     p->n_state = 0;
@@ -249,7 +247,7 @@ static void part_begin_sum(struct parting *p, size_t n)
     }
 }
 
-/* The parameter of the PARTIAL that is an entry's place. */
+/* The parameter of the PARTIAL for an entry's place. */
 static uint32_t part_param(struct parting *p, struct plan_round_node *made, size_t entry)
 {
     if (p->param[entry] == PLAN_NONE) {
@@ -259,7 +257,7 @@ static uint32_t part_param(struct parting *p, struct plan_round_node *made, size
     return p->param[entry];
 }
 
-/* The last two of so many entries are halves. */
+/* Combines the last two entries, which are halves. */
 static void part_combine(struct parting *p, struct plan_round_node *made, size_t entries)
 {
     struct plan_leaves *left = &p->state[entries - 2], *right = left + 1;
@@ -270,7 +268,7 @@ static void part_combine(struct parting *p, struct plan_round_node *made, size_t
     left->n += right->n;
 }
 
-/* What came in this round, in items from `first` on, joins what is there. */
+/* Joins the leaves received in this round, in items from `first` on, with those present. */
 static void part_join(struct parting *p, size_t n, size_t first)
 {
     const struct plan_round_node *node = &p->round->node[n];
@@ -299,7 +297,7 @@ static void part_join(struct parting *p, size_t n, size_t first)
     p->n_state = entries;
 }
 
-/* All that there is of the sum, and the object. */
+/* Adds all leaves of the sum to the object. */
 static void part_sum(struct parting *p, size_t n)
 {
     const struct plan_round_node *node = &p->round->node[n];
@@ -334,7 +332,7 @@ static void part_plain(struct parting *p, size_t n)
     }
 }
 
-/* Until all is there that this rank adds up. */
+/* Everything before the sum: this rank's pieces, and the rounds of the relay. */
 static void part_before_sum(struct parting *p, size_t n)
 {
     const uint32_t rounds = p->m->rounds[n];
@@ -373,8 +371,8 @@ static void part_nodes(struct parting *p)
 
 /* ---- The pass ---- */
 
-/* Memory for what this rank runs: a node each, and copies of what it writes on from; of each sum
- * its contributions and pieces, and of each item a copy and what joins it. */
+/* Memory: for each node that this rank runs, and copies of what it modifies; for each sum's
+ * contributions and pieces; for a copy and a join of each item. */
 static bool part_round_room(struct parting *p)
 {
     const struct plan_messages *m = p->m;

@@ -1,31 +1,30 @@
 #ifndef DUITE_PLAN_PASSES_H
 #define DUITE_PLAN_PASSES_H
 
-/* The compiler of recorded graphs: its passes, in order, and what each takes and leaves.
+/* The compiler of recorded graphs. Its passes in order, with input and output:
  *
  *   record   record.c   calls of a build function   -> plan_record: forks, objects, arguments
  *            source.c   plan_record                 -> plan_source: the same as plain data
- *   lower    lower.c    plan_source                 -> plan_round: nodes and what they use
- *   assign   assign.c   plan_round, homes           -> plan_assignment: who runs and who needs what
- *   messages messages.c plan_assignment             -> plan_messages: phases, and what each carries
- *            relay.c    plan_messages               -> the way of sums that go from rank to rank
+ *   lower    lower.c    plan_source                 -> plan_round: nodes and their uses
+ *   assign   assign.c   plan_round, homes           -> plan_assignment: ranks by node and version
+ *   messages messages.c plan_assignment             -> plan_messages: phases and their messages
+ *            relay.c    plan_messages               -> the rounds of relayed sums
  *   part     part.c     plan_messages of a rank     -> plan_round: the nodes of that rank
  *   edges    edges.c    plan_round                  -> its edges, within a round and to the next
  *   emit     emit.c     plan_round                  -> plan: flat arrays (plan.h)
  *   run      run.c      plan                        -> replays, as replay_call.c asks for them
  *
- * On one rank there is nothing to assign or to send: edges follow lowering.
+ * On one rank nothing is assigned or sent, so edges follow lowering.
  *
- * Everything in this header is plain data: no pass of it needs a task graph, a table of objects or
- * a worker, calls a body or touches a value. So whoever has a round in some form can have it
- * compiled: the plan from a record, the mappings (tasks.c), and the predictor from the words of a
- * trace.
+ * Everything in this header is plain data: its passes need no task graph, table of objects or
+ * worker, call no body and touch no value. So a round in any form can be compiled: by the plan from
+ * a record, by the mappings (tasks.c), and by the predictor from a trace.
  *
- * How the predictor uses it: it fills a plan_source with the forks of a recorded graph. Modes are
- * those of the kernels in the trace, laws are NULL, since a trace has none, and the owner is that
- * of task_owner. After plan_lower either plan_tasks_find makes the rows that mappings see, or
- * plan_assign places the nodes on hosts and plan_messages_find (PLAN_NO_RANK) finds phases and
- * pieces. Who makes a plan_source owns it and keeps it as long as its round. */
+ * How the predictor uses it: it fills a plan_source with the forks of a recorded graph. Modes come
+ * from the kernels in the trace, the owner from task_owner; laws are NULL, since a trace has none.
+ * After plan_lower, plan_tasks_find makes the rows for mappings; or plan_assign places the nodes on
+ * hosts, and plan_messages_find (PLAN_NO_RANK) finds phases and pieces. The maker of a plan_source
+ * owns it and keeps it as long as its round. */
 
 #include "runtime/base/rank_set.h"
 #include "runtime/data/reduce.h"
@@ -37,13 +36,13 @@
 
 #define PLAN_NONE UINT32_MAX
 enum {
-    PLAN_BY_OWNER = -1, /* in place of the rank that a fork runs on: the home of its owner says */
-    PLAN_MANY = -1,     /* in place of the rank that runs a node: a set of ranks */
-    PLAN_ALL = -1,      /* in place of the rank whose messages are asked for */
-    PLAN_NO_RANK = -2   /* the same: phases and pieces alone, no messages */
+    PLAN_BY_OWNER = -1, /* instead of the rank of a fork: the home of its owner */
+    PLAN_MANY = -1,     /* instead of the rank that runs a node: a set of ranks */
+    PLAN_ALL = -1,      /* instead of the rank of plan_messages_find: all messages */
+    PLAN_NO_RANK = -2   /* likewise: phases and pieces alone, no messages */
 };
 
-/* ---- A round as plain data: what lowering takes ---- */
+/* ---- A round as plain data: the input of lowering ---- */
 
 /* How a fork, with its descendants, uses an object: r, w, rw or cw. */
 struct plan_access {
@@ -56,9 +55,9 @@ struct plan_source_fork {
     size_t first; /* of its n accesses */
     uint32_t n;
     uint32_t owner;        /* the object that it runs for, see task_owner; or PLAN_NONE */
-    int rank;              /* that it is to run on, or PLAN_BY_OWNER */
+    int rank;              /* to run on, or PLAN_BY_OWNER */
     bool sets, replicated; /* replicated: no cw among its accesses */
-    double cost;           /* seconds; 0: not said */
+    double cost;           /* seconds; 0: not given */
 };
 
 struct plan_source {
@@ -76,13 +75,13 @@ enum plan_kind {
     PLAN_SET,     /* a duite_set */
     PLAN_SUM,     /* adds contributions to their object */
     PLAN_FLAG,    /* reads the flag */
-    PLAN_COPY,    /* of several ranks, as are the following ones */
+    PLAN_COPY,    /* this and the following: only with several ranks */
     PLAN_PARTIAL, /* combines some contributions of one sum */
     PLAN_SEND,
     PLAN_RECEIVE
 };
 
-/* What a node does to a place. */
+/* How a node uses a place. */
 struct plan_node_use {
     uint32_t place;
     bool reads, writes;
@@ -95,19 +94,19 @@ struct plan_merge {
 
 struct plan_round_node {
     enum plan_kind kind;
-    uint32_t fork;             /* that it stands for, or that it comes before */
+    uint32_t fork;             /* that it runs, or that it comes before */
     uint32_t owner;            /* the object that it runs for, or PLAN_NONE */
     uint32_t n_uses, n_merges; /* merges: SUM, PARTIAL */
     uint32_t channel;          /* SEND, RECEIVE */
     size_t first_use, first_merge;
     const duite_law *law;    /* of the merges */
-    uint32_t within, cyclic; /* predecessors in its round; in the round before */
+    uint32_t within, cyclic; /* predecessors in its round; in the previous round */
     uint32_t n_next, n_next_cyclic;
 };
 
 /* Bytes that nodes use: place i < n_objects is object i, the others are buffers. */
 struct plan_round_place {
-    uint32_t object;      /* that a buffer is for, or itself */
+    uint32_t object;      /* the object of a buffer, or itself */
     const duite_law *law; /* buffer: of the contribution in it, or NULL */
 };
 
@@ -116,7 +115,7 @@ struct plan_round_edge {
     bool cyclic; /* from a round to the next one */
 };
 
-/* A message a round, to or from another rank; its node's uses are what it carries, in order. */
+/* A message of each round to or from another rank; it carries its node's uses in order. */
 struct plan_round_channel {
     int peer;
     uint32_t phase;
@@ -139,19 +138,18 @@ struct plan_round {
     size_t n_channels;
 };
 
-/* Takes a source; leaves the nodes of a round for all ranks, without edges:
- * - each fork is one TASK or SET, in order, and what the runtime adds comes before the fork that
- *   needs it: a SUM before the first access that ends contributions (contributions still open at
- *   the end of the round end there); last the FLAG, if there is one;
- * - the uses of a TASK are its accesses in order; a cw uses a buffer of its own, which one SUM
- *   reads: its uses are the object and the buffers in the order of forks;
- * - the merges of a SUM make the reduction tree of data/reduce.h; all pieces come to lie in its
+/* From a source to the nodes of a round for all ranks, without edges:
+ * - Each fork is one TASK or SET, in order. A SUM comes before the first access that ends the
+ *   contributions to an object, else at the end of the round. The FLAG, if any, comes last.
+ * - The uses of a TASK are its accesses in order; a cw uses a buffer of its own. The uses of a SUM
+ *   are the object and the buffers of its contributions in fork order.
+ * - The merges of a SUM make the reduction tree of data/reduce.h and leave the result in its
  *   parameter 1.
  * False without memory; plan_round_free is due all the same. *round is zero before. */
 bool plan_lower(struct plan_round *round, const struct plan_source *source);
 void plan_round_free(struct plan_round *round);
 
-/* For passes that make a round: memory for so many at most. False without. */
+/* Memory for a round of at most so many. False without. */
 bool plan_round_room(struct plan_round *round, size_t nodes, size_t uses, size_t places,
                      size_t merges);
 /* Appends a node; a use to the last node; a buffer, and returns its place. */
@@ -181,7 +179,7 @@ size_t plan_reduce_push(struct plan_round *round, struct plan_round_node *node,
 void plan_reduce_fold(struct plan_round *round, struct plan_round_node *node,
                       const struct data_subtree *row, size_t n);
 
-/* ---- Assign: who runs what ---- */
+/* ---- Assign: the ranks that run each node ---- */
 
 /* The value of an object between two writes. */
 struct plan_version {
@@ -189,15 +187,16 @@ struct plan_version {
     uint32_t maker; /* node, plus 1; 0: it enters the round */
 };
 
-/* Sets of ranks, named by numbers: 0 is empty, 1 + r has rank r alone, and larger ones are of one
- * node or one version. Only the last kind takes a row of words for each, so a round on thousands of
- * ranks needs few rows: most nodes run on one rank. */
+/* Sets of ranks by number: 0 is empty, 1 + r has rank r alone, larger numbers belong to one node or
+ * version. Only the last kind takes a row of words each. Most nodes run on one rank, so a round on
+ * thousands of ranks needs few rows. */
 struct plan_rank_sets {
     int n_ranks;
     size_t words; /* of a row */
     uint64_t *word;
     size_t n_rows, words_capacity;
-    uint32_t *few; /* n_ranks + 1: the row of an empty set or one of one rank; PLAN_NONE: not yet */
+    uint32_t *few; /* n_ranks + 1: the rows of the empty set and of each rank alone; PLAN_NONE: not
+                      yet made */
     bool failed;   /* no memory */
 };
 
@@ -207,12 +206,12 @@ struct plan_assignment {
     int n_ranks;
     size_t words; /* of a set of ranks */
     int *home;    /* by object */
-    /* By node: the rank that runs it, or PLAN_MANY; and all that do, a set of `sets`. */
+    /* By node: the rank that runs it, or PLAN_MANY; all ranks that do, a set of `sets`. */
     int *at;
     uint32_t *set;
-    /* By use: the version that it reads, and the one that it makes, or PLAN_NONE. */
+    /* By use: the version that it reads, the version that it makes, or PLAN_NONE. */
     uint32_t *reads, *makes;
-    /* Version i < n_objects is the one of object i that enters the round. */
+    /* Version i < n_objects: the version of object i that enters the round. */
     struct plan_version *version;
     uint32_t *need; /* by version: the ranks that read it, a set of `sets` */
     size_t n_versions;
@@ -220,14 +219,14 @@ struct plan_assignment {
     struct plan_rank_sets sets;
 };
 
-/* Takes a lowered round and the home of each object; leaves:
- * - a task of the program runs on the rank that its fork named, else on the home of its owner; a
- *   sum of a large object on the object's home;
- * - all other nodes (of replicated kernels, sets, sums of small objects) run on every rank that
- *   reads what they make, in this round or at the beginning of the next, and nowhere else; one that
- *   nobody reads runs on its owner's home if it is a task or leaves the round, else nowhere;
- * - each rank that runs a node needs each version that the node reads;
- * - so only what is made on one rank ever travels within a round.
+/* From a lowered round and the home of each object:
+ * - A task of the program runs on the rank that its fork named, else on the home of its owner. A
+ *   sum of a large object runs on the object's home.
+ * - All other nodes (replicated kernels, sets, sums of small objects) run exactly on the ranks that
+ *   read their result, in this round or at the beginning of the next. A node without readers runs
+ *   on its owner's home if it is a task or its result leaves the round, else nowhere.
+ * - Each rank that runs a node needs each version that the node reads.
+ * - So only versions made on one rank travel within a round.
  * Every rank computes the same. False without memory; plan_assignment_free is due all the same. */
 bool plan_assign(struct plan_assignment *assignment, const struct plan_round *round,
                  const int *home, int n_ranks);
@@ -253,13 +252,13 @@ static inline bool plan_runs(const struct plan_assignment *a, size_t node, int r
     const uint32_t set = a->set[node], few = (uint32_t)a->n_ranks + 1;
     return set < few ? set == (uint32_t)rank + 1 : base_ranks_has(plan_ranks(&a->sets, set), rank);
 }
-/* Nobody runs the node: what it makes is overwritten unread. */
+/* No rank runs the node: its result is overwritten unread. */
 static inline bool plan_is_dead(const struct plan_assignment *assignment, size_t node)
 {
     return !assignment->set[node];
 }
-/* The node that makes the version; of one that enters the round, the one that made it in the round
- * before. PLAN_NONE: the graph does not write the object. */
+/* The node that makes the version; if it enters the round, the node that made it in the previous
+ * round. PLAN_NONE: the graph does not write the object. */
 static inline uint32_t plan_maker(const struct plan_assignment *a, uint32_t version)
 {
     const struct plan_version *found = &a->version[version];
@@ -267,17 +266,17 @@ static inline uint32_t plan_maker(const struct plan_assignment *a, uint32_t vers
         found = &a->version[a->last[found->object]];
     return found->maker - 1;
 }
-/* Whether a rank has the version without a message within the round. */
+/* Returns whether the rank has the version without a message within the round. */
 static inline bool plan_is_there(const struct plan_assignment *a, uint32_t version, int rank)
 {
     const uint32_t maker = plan_maker(a, version);
     return maker == PLAN_NONE || plan_runs(a, maker, rank);
 }
 
-/* ---- Messages: what moves, and when ---- */
+/* ---- Messages: which values move, and when ---- */
 
-/* A moment in the round: its beginning, 0; when the pieces of the sum at node n are made; after
- * some rounds of its way from rank to rank; when node n is over. */
+/* A moment in the round: 0, its beginning; the pieces of the sum at node n are made, or some rounds
+ * of its relay are over; node n is over. */
 typedef uint64_t plan_moment;
 static inline plan_moment plan_moment_sum(size_t n, uint32_t rounds)
 {
@@ -290,7 +289,7 @@ static inline plan_moment plan_moment_over(size_t n)
 
 /* Some leaves of a sum in a row, combined: a complete subtree, or all leaves. */
 struct plan_leaves {
-    struct data_subtree tree; /* where: for whoever has a use for it */
+    struct data_subtree tree; /* where: free for the caller */
     uint32_t n;               /* leaves, from tree.first on */
 };
 
@@ -298,11 +297,11 @@ struct plan_leaves {
 struct plan_piece {
     uint32_t node; /* the sum */
     struct plan_leaves leaves;
-    int rank;       /* that has all of them */
-    uint32_t phase; /* that it moves in, if it goes directly */
+    int rank;       /* has all of them */
+    uint32_t phase; /* in which it moves if sent directly */
 };
 
-/* What a rank sends another one in a round of a sum's way from rank to rank. */
+/* Pieces that one rank sends another in a round of a sum's relay. */
 struct plan_hop {
     uint32_t node, round; /* of the sum */
     int from, to;
@@ -311,29 +310,29 @@ struct plan_hop {
 };
 typedef void plan_relay_visit(void *context, const struct plan_hop *hop);
 
-/* A message a round: all that goes from one rank to another in one phase. */
+/* A message of each round: all items from one rank to another in one phase. */
 struct plan_message {
     int from, to;
     uint32_t phase;
-    plan_moment ready;  /* all that it carries is made */
+    plan_moment ready;  /* all its items are made */
     size_t first, last; /* items, plus 1; 0: none */
-    uint32_t next;      /* another between the two ranks, plus 1 */
+    uint32_t next;      /* the next one between the two ranks, plus 1 */
 };
 
-/* One thing in one message: a version, a piece, or what a sum's relay passes on. */
+/* One item in one message: a version, a piece, or leaves of a sum's relay. */
 struct plan_item {
     uint32_t message, object;
     uint32_t version, piece;   /* ids, or PLAN_NONE */
-    struct plan_leaves leaves; /* if both are none: of the sum whose moment `made` is */
+    struct plan_leaves leaves; /* if both are none: of the sum at the moment `made` */
     plan_moment made;
     size_t next; /* of the same message, plus 1 */
 };
 
 struct plan_messages {
     const struct plan_assignment *assignment;
-    int rank;                 /* whose messages these are, or PLAN_ALL */
-    uint32_t *phase;          /* by node: rank crossings on the longest path to it, at most */
-    uint8_t *rounds;          /* by node: of a sum that goes from rank to rank; 0: directly */
+    int rank;                 /* of these messages, or PLAN_ALL, PLAN_NO_RANK */
+    uint32_t *phase;          /* by node: upper bound of rank crossings on a path to it */
+    uint8_t *rounds;          /* by node: rounds of a relayed sum; 0: sent directly */
     uint32_t *leaf;           /* by buffer, less n_objects: the node that fills it */
     struct plan_piece *piece; /* of all sums and ranks, in order */
     size_t n_pieces;
@@ -344,40 +343,37 @@ struct plan_messages {
     size_t n_items, items_capacity;
 };
 
-/* Takes an assignment; leaves:
- * - the phase of a node is at least that of all that comes before it on its rank, for whatever
- *   reason, and above that of each message that it waits for; the phase of a message is that of the
- *   nodes that make what it carries. So a message waits for messages of lower phases only, never in
- *   a ring;
- * - the pieces of a sum cover its leaves in order, each once, and each of them is a complete
- *   subtree, or all leaves. A sum that one rank contributes to and reads alone has a piece a leaf,
- *   one that nobody runs has none;
- * - a version that one rank makes is an item for each other rank that needs it; so is a piece for
- *   each other rank that runs its sum. Where these are more than four ranks, and for a version more
- *   than half of all, they go from rank to rank in rounds, in as many phases (relay.c);
- * - items are in order of `made`, the same from the sender's and the receiver's side.
- * Messages and items are those from and to `rank`, or all, or none (PLAN_NO_RANK). False without
- * memory; plan_messages_free is due all the same. */
+/* From an assignment:
+ * - The phase of a node is at least that of every node that it follows on its rank, and above that
+ *   of each message that it waits for. The phase of a message is that of the nodes that make its
+ *   items. So a message waits only for messages of lower phases, never in a ring.
+ * - The pieces of a sum cover its leaves in order, each once. Each piece is a complete subtree, or
+ *   all leaves. A sum that one rank contributes to and reads alone has one piece per leaf; a sum
+ *   that no rank runs has none.
+ * - A version made by one rank is an item for each other rank that needs it, a piece for each other
+ *   rank that runs its sum. If these are more than four ranks, and for a version more than half of
+ *   all, they are relayed in rounds, one phase each (relay.c).
+ * - Items are in order of `made`, the same on the sender's and the receiver's side.
+ * Messages and items are those from and to `rank`, or all (PLAN_ALL), or none (PLAN_NO_RANK). False
+ * without memory; plan_messages_free is due all the same. */
 bool plan_messages_find(struct plan_messages *messages, const struct plan_assignment *assignment,
                         int rank);
 void plan_messages_free(struct plan_messages *messages);
 
-/* Of sums that go from rank to rank; of plan_messages_find. The first finds messages->rounds, when
- * leaves are known; the second walks through the hops of one, round by round, when pieces are. Both
- * are false without memory. */
+/* Parts of plan_messages_find for relayed sums. The first finds messages->rounds once leaves are
+ * known. The second visits the hops of one sum, round by round, once pieces are known. Both are
+ * false without memory. */
 bool plan_relay_find(struct plan_messages *messages);
 bool plan_relay_walk(const struct plan_messages *messages, size_t node, plan_relay_visit *visit,
                      void *context);
-/* Rounds in which a value goes from the rank that has it, and on from rank to rank, to a set of
- * ranks; 0: directly. The ring (NULL: it is not wanted; room for all ranks) begins with that rank:
- * in round s the first 2^s of the ring send to the 2^s after them. The second asks for a version.
- */
+/* Rounds of the relay of a value from the rank that has it to a set of ranks; 0: sent directly. The
+ * ring (room for all ranks, or NULL) begins with that rank: in round s its first 2^s ranks send to
+ * the next 2^s. The second takes a version. */
 uint32_t plan_relay_ring(const uint64_t *set, int n_ranks, int from, int *ring, size_t *n);
 uint32_t plan_relay_version(const struct plan_assignment *assignment, uint32_t version, int *ring,
                             size_t *n);
-/* Lists of leaves, in order and without a leaf in two of them. What a list has that another one has
- * not; both in one, of which what lies in something larger is left out. `out` has room for all.
- * Return how many. */
+/* Lists of leaves in order, no leaf twice. Missing: entries of `from` that `has` lacks. Join: both
+ * lists in one, without entries inside larger ones. `out` has room for all. Return how many. */
 size_t plan_leaves_missing(const struct plan_leaves *has, size_t n_has,
                            const struct plan_leaves *from, size_t n_from, struct plan_leaves *out);
 size_t plan_leaves_join(const struct plan_leaves *a, size_t n_a, const struct plan_leaves *b,
@@ -386,43 +382,44 @@ bool plan_leaves_are_halves(const struct plan_leaves *left, const struct plan_le
 
 /* ---- Part: the nodes of one rank ---- */
 
-/* Takes the messages of a rank (not PLAN_ALL); leaves its nodes, without edges:
- * - those of the round that the rank runs, in order; a RECEIVE for each message to it comes first,
- * a SEND for each from it as soon as the last thing that it carries is made; the uses of both are
- *   its items in order, so that both sides agree on the layout;
- * - what the rank writes lies in the objects' own places, what it receives in a buffer for each
- *   version or piece, which nobody but the RECEIVE, a PARTIAL and a sum writes;
- * - a COPY comes before a node that writes on from a received version, and keeps aside what is
- *   overwritten before its message goes;
- * - a PARTIAL combines this rank's contributions to pieces of more than one leaf; and, of a sum
- * that goes from rank to rank, what came in a round with what is there. False without memory;
- * plan_round_free is due all the same. *part is zero before. */
+/* From the messages of a rank (not PLAN_ALL) to its nodes, without edges:
+ * - The nodes of the round that the rank runs, in order. A RECEIVE for each message to it comes
+ *   first; a SEND for each message from it comes once its last item is made. The uses of both are
+ *   its items in order, so both sides agree on the layout.
+ * - The rank's writes go to the objects' own places. Each received version or piece has a buffer,
+ *   which only the RECEIVE, a PARTIAL and a sum write.
+ * - A COPY brings a received version home before a node modifies it, and keeps aside a value that
+ *   is overwritten before its message goes.
+ * - A PARTIAL combines this rank's contributions to pieces of more than one leaf, and for a relayed
+ *   sum the leaves received in a round with those present.
+ * False without memory; plan_round_free is due all the same. *part is zero before. */
 bool plan_part(struct plan_round *part, const struct plan_messages *messages);
 
 /* ---- Edges ---- */
 
-/* Takes the nodes of a round and what they use; adds its edges, and to each node how many it has:
- * - a node waits for the last writer of each place that it reads, and for the readers since (or the
- *   writer, if there are none) of each place that it writes, over two rounds in a row; edges within
- *   a round lead to later nodes, are in order of `to`, and no two join the same nodes;
- * - conflicts are symmetric, so a node that releases another one's next round waited for it in this
- *   round: a node never hears of the next round before it has begun this one;
- * - with a FLAG, it waits for all roots and all roots of the next round wait for it; without, a
- *   root that conflicts with nothing waits for itself in the round before.
+/* Adds the edges of a round to its nodes, and counts them by node:
+ * - A node waits for the last writer of each place that it reads, and for the readers since (if
+ *   none, that writer) of each place that it writes, over two rounds in a row. Edges within a round
+ *   lead to later nodes, are in order of `to`, and no two join the same nodes.
+ * - Conflicts are symmetric, so a node that releases another one's next round waited for it in this
+ *   round: no node is counted down for the next round before it has begun this one.
+ * - A FLAG waits for all roots, and all roots of the next round wait for it. Without a FLAG, a root
+ *   that conflicts with nothing waits for itself in the previous round.
  * False without memory. */
 bool plan_edges(struct plan_round *round);
 
-/* ---- What mappings see ---- */
+/* ---- Rows for mappings ---- */
 
-/* The nodes of a round in order, and who reads whose results. Says nothing of ranks. */
+/* The nodes of a round in order, and the results that each reads. Independent of ranks. */
 struct plan_tasks {
     size_t n;
-    bool *program;   /* n: a task of the program; else the runtime's */
-    double *cost;    /* n: seconds, as its fork says; 0: not said, or not the program's */
-    uint32_t *owner; /* n: the object that it runs for; PLAN_NONE: for none, or where it says, or
-                        everywhere */
+    bool *program;   /* n: a task of the program, not of the runtime */
+    double *cost;    /* n: seconds as given at the fork; 0: not given, or not the program's */
+    uint32_t *owner; /* n: the object that it runs for; PLAN_NONE: none, or it runs on a named rank
+                        or everywhere */
     size_t *start;   /* n + 1: of its rows */
-    uint32_t *from;  /* whose result it reads: before it, or, not before it, of the last round */
+    uint32_t *from;  /* start[n]: the node whose result it reads; if not an earlier one, of the last
+                        round */
     double *bytes;   /* of it */
 };
 
@@ -430,11 +427,11 @@ struct plan_tasks {
 bool plan_tasks_find(struct plan_tasks *tasks, const struct plan_round *round);
 void plan_tasks_free(struct plan_tasks *tasks);
 
-/* ---- What schedulers see ---- */
+/* ---- Paths for schedulers ---- */
 
 /* Takes a lowered round with its edges. Returns, by fork, the seconds on the longest path from it
- * to the end of the round, see duite_ready.path. A fork that did not say its cost counts the mean
- * of those that did. The caller frees it by base_free. NULL without memory. */
+ * to the end of the round (duite_ready.path). A fork without a cost counts as the mean of those
+ * with one. The caller frees it by base_free. NULL without memory. */
 float *plan_paths_find(const struct plan_round *round);
 
 #endif

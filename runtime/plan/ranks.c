@@ -1,7 +1,7 @@
-/* A plan of several ranks: each has its own nodes, and agrees with the others, without asking, on
- * which object's value must be where when a round begins, and where it is when the last one is
- * over. What is not written stays where it is read; of what is written, the value lies before and
- * after each round where its last writer runs, and goes from there to who reads it first. */
+/* A plan of several ranks: each has its own nodes. All agree, without messages, where each object's
+ * value must be when a round begins, and where it is after the last one. Objects that are not
+ * written stay on their readers. The value of a written object lies on its last writer's ranks
+ * before and after each round, and goes from there to its first readers. */
 #include "runtime/plan/plan.h"
 #include "runtime/task/internal.h"
 
@@ -42,7 +42,7 @@ static void ranks_take_sets(struct plan *plan, const struct plan_record *record,
             plan->channels.phases = (int)messages->phase[n] + 1;
 }
 
-/* Where the objects of a round live; NULL without memory. */
+/* The homes of a round's objects; NULL without memory. */
 static int *ranks_find_homes(const struct plan *plan, const struct plan_record *record,
                              const duite_object *flag)
 {
@@ -127,7 +127,7 @@ int plan_fetch(const struct plan *plan, struct worker *worker, size_t i, struct 
     return code;
 }
 
-/* Its home holds it, if that is one of those that have it, else the first of them. */
+/* The home holds the object if it is one of the ranks that have it, else the first of them does. */
 bool plan_moves(const struct plan *plan, size_t i, struct data_object *object)
 {
     const int first = ranks_next(plan, plan->end, i, 0);

@@ -1,6 +1,6 @@
-/* A record is whole or not begun: a call of build that fails leaves nothing behind. What build
- * named stays as it was (`recorded`); replays use what is bound to it. Arguments lie in one block,
- * which plans copy. A plan gets what changes later as a list of changes. */
+/* A record is whole or not begun: a call of build that fails leaves nothing behind. The names that
+ * build used stay (`recorded`); replays use the objects bound to them. Arguments lie in one block,
+ * which plans copy. Later changes reach a plan as a list. */
 #include "runtime/plan/plan.h"
 #include "runtime/task/internal.h"
 
@@ -50,7 +50,7 @@ void plan_record_free(struct plan_record *record, struct worker *worker)
     base_free(record);
 }
 
-/* ---- What build calls ---- */
+/* ---- The calls of build ---- */
 
 /* Room for one more fork with n objects and so many bytes of arguments, and for the index. */
 static bool record_reserve(struct plan_record *record, size_t n, size_t bytes)
@@ -81,7 +81,7 @@ static struct plan_recorded_object *record_find(const struct plan_record *record
     return found ? object : NULL;
 }
 
-/* An object that is named for the first time; its place. */
+/* Adds an object that is named for the first time. Returns its place. */
 __attribute__((noinline)) static uint32_t record_add(struct plan_record *record, duite_object name)
 {
     const struct data_object *object = &record->graph->table.object[name.slot];
@@ -133,7 +133,7 @@ uint32_t plan_recorded_owner(const struct plan_record *record,
     return fork->owner;
 }
 
-/* The object that it runs for keeps its home, and so does whatever is bound to it. */
+/* The object that the fork runs for keeps its home, as does any object bound to it. */
 static void record_fix_owner(struct plan_record *record, const struct plan_recorded_fork *fork)
 {
     uint32_t owner = plan_recorded_owner(record, fork);
@@ -144,7 +144,7 @@ static void record_fix_owner(struct plan_record *record, const struct plan_recor
     record->graph->table.object[object->bound.slot].fixed = true;
 }
 
-/* Without objects, owner and arguments, for which there is room now. */
+/* Appends a fork without objects, owner and arguments, and makes room for them. */
 static struct plan_recorded_fork *record_append(struct plan_record *record, uint32_t kernel,
                                                 const struct task_options *options, size_t n,
                                                 size_t bytes)
@@ -302,7 +302,7 @@ int plan_record_bind(struct plan_record *record, duite_object recorded, duite_ob
     return DUITE_OK;
 }
 
-/* What is bound existed then. */
+/* `fits` is the state of the table when all bound objects existed. */
 bool plan_record_fits(struct plan_record *record)
 {
     const struct data_table *table = &record->graph->table;
@@ -316,7 +316,7 @@ bool plan_record_fits(struct plan_record *record)
     return record->whole;
 }
 
-/* Marks each bound object with the place it is bound to, plus one. */
+/* Marks each bound object with its place in the record, plus one. */
 int plan_record_distinct(struct plan_record *record)
 {
     struct data_table *table = &record->graph->table;

@@ -7,11 +7,11 @@
 
 /* Recorded graphs: what a build function forked, kept for replays.
  *
- * The record is the program's view: forks in order, with the objects and arguments that the next
- * replay uses. From it comes a plan (plan.h), which one rank replays by itself; any number of
- * ranks can fork the record round by round instead, with the same results. Main thread only. */
+ * The record is the program's view: forks in order, with the objects and arguments of the next
+ * replay. It is compiled to a plan (plan.h), or forked round by round with the same results. Main
+ * thread only. */
 
-#define PLAN_SETS UINT32_MAX /* in place of a kernel: a duite_set */
+#define PLAN_SETS UINT32_MAX /* instead of a kernel: a duite_set */
 
 struct plan_record;
 
@@ -22,27 +22,27 @@ struct plan_recorded_fork {
     uint32_t owner; /* the place in `object` that it runs for, or PLAN_NONE */
     uint32_t call;  /* forks before it, sets left out */
     size_t first;   /* of its n objects in `access` */
-    size_t args;    /* where its arguments, or the values it sets, lie in `args` */
+    size_t args;    /* of its arguments, or of the values it sets, in `args` */
     bool zeros;     /* it sets zeros */
     size_t count;   /* elements it sets */
 };
 
 struct plan_recorded_object {
-    duite_object recorded, bound; /* as named by build, and what the next replay takes instead */
+    duite_object recorded, bound; /* as named by build; used instead by the next replay */
     duite_type type;
     size_t count;       /* at most */
     bool sized;         /* its size changes */
-    bool read, written; /* by something else than a contribution */
+    bool read, written; /* other than by a contribution */
     bool sums;          /* contributed to */
     bool reads_old;     /* the first access is not a w */
-    bool leads, trails; /* contributions before any other access in a round, and after all others */
-    bool fixed;         /* tasks that must stay run for it */
+    bool leads, trails; /* contributions before any other access in a round; after all others */
+    bool fixed;         /* tasks of `fixed` kernels run for it */
 };
 
 struct plan;
 
-/* The place in record->object that a fork runs for by the owner rule; PLAN_NONE: it is a set, or
- * runs for none, or where it says, or everywhere. */
+/* The place in record->object that a fork runs for by the owner rule; PLAN_NONE: it is a set, has
+ * no owner, names a rank, or runs everywhere. */
 uint32_t plan_recorded_owner(const struct plan_record *record,
                              const struct plan_recorded_fork *fork);
 
@@ -61,7 +61,7 @@ struct plan_record {
     size_t n_accesses, accesses_capacity;
     unsigned char *args;
     size_t args_bytes, args_capacity;
-    size_t *call; /* the forks that are not sets: these have numbers */
+    size_t *call; /* the forks that are not sets, which have numbers */
     size_t n_calls, calls_capacity;
     struct plan_recorded_object *object;
     size_t n_objects, objects_capacity;
@@ -71,21 +71,20 @@ struct plan_record {
     size_t names_capacity;
     bool whole;    /* build came to its end */
     uint64_t fits; /* table->changes, plus 1, when all bound objects were last found to exist */
-    bool rebound;  /* since the bindings were last found to be different objects */
-    bool forked;   /* has no plan: contributions of one round and of the next make one sum, the size
-                      of an object changes, or a right is postponed */
+    bool rebound;  /* since all bound objects were last found to differ */
+    bool forked;   /* has no plan: contributions of two rounds make one sum, the size of an object
+                      changes, or a right is postponed */
     bool leads;    /* contributions to some object come before any other access in a round */
-    bool trails;   /* some object's contributions end the round: they stay open after the last */
+    bool trails;   /* some object's contributions stay open after the last round */
     int failed;    /* code of the first call of build that failed */
     char message[512]; /* of it */
     struct plan *plan;
     struct plan_change *changes; /* since the last replay of the plan */
-    uint64_t rounds;             /* of the last replay, but for those of the plan */
-    bool by_plan;                /* there were some of the plan */
+    uint64_t rounds;             /* of the last replay, without those of the plan */
+    bool by_plan;                /* the last replay had rounds of the plan */
 };
 
-/* Of a record of many objects, what the runtime knows of them lies far apart: whoever goes through
- * them fetches one of those to come. */
+/* The objects of a large record lie far apart in the table: loops over them fetch one ahead. */
 enum { PLAN_AHEAD = 12 };
 static inline void plan_prefetch(const struct plan_record *record, size_t i)
 {
@@ -97,15 +96,15 @@ enum { PLAN_MAX_TASKS_BITS = 48 }; /* rounds times forks of one replay are below
 
 /* An empty record; NULL without memory. */
 struct plan_record *plan_record_new(struct task_graph *graph);
-/* Replays of it may be on their way. */
+/* Replays may be unfinished. */
 void plan_record_free(struct plan_record *record, struct worker *worker);
-/* Forgets everything recorded, bindings among it: build is called again. */
+/* Forgets everything recorded, bindings included: build is called again. */
 void plan_record_clear(struct plan_record *record, struct worker *worker);
 
-/* The next plan is made from the arguments as they are. */
+/* Drops the changes, since the next plan is made from the present arguments. */
 void plan_record_forget_changes(struct plan_record *record);
 
-/* What build calls. Errors as of task_fork and task_set_object, nothing is recorded then. */
+/* The calls of build. Errors as of task_fork and task_set_object; then nothing is recorded. */
 int plan_record_fork(struct plan_record *record, const struct task_options *options,
                      const duite_kernel *kernel, const void *args, size_t n,
                      const duite_object *objects);
@@ -125,37 +124,37 @@ bool plan_record_source(const struct plan_record *record, const duite_object *fl
                         struct plan_source *source);
 void plan_source_free(struct plan_source *source);
 
-/* The place of a flag among the objects; behind them if it is none of them. */
+/* The place of a flag among the objects; n_objects if it is none of them. */
 uint32_t plan_record_flag(const struct plan_record *record, duite_object flag);
 
-/* What mappings see of a round of it. Errors: memory; plan_tasks_free is due all the same. */
+/* The rows of a round for mappings. Errors: memory; plan_tasks_free is due all the same. */
 int plan_record_tasks(const struct plan_record *record, struct plan_tasks *tasks);
 
-/* Was it recorded, and do all bound objects exist? */
+/* Returns whether it was recorded and all bound objects exist. */
 bool plan_record_fits(struct plan_record *record);
 /* DUITE_E_BINDING if two recorded objects are bound to one. */
 int plan_record_distinct(struct plan_record *record);
 
 /* ---- Replays: every rank, fork order ---- */
 
-/* How many of the rounds must be forked, before and after those of the plan, since contributions
- * cross the edges between them; all of them come before, if nothing is left for the plan. */
+/* The rounds that must be forked before and after those of the plan, since contributions cross
+ * between them; all rounds come before if none is left for the plan. */
 void plan_replay_split(const struct plan_record *record, const duite_object *flag, uint64_t rounds,
                        uint64_t *before, uint64_t *after);
 
 /* Forks all tasks once, as round `round` of the replay. */
 int plan_replay_fork(struct plan_record *record, struct worker *worker, uint64_t round);
 
-/* Replays the plan: so many rounds, or while the first element of the flag is not zero, at most so
- * many. PLAN_NEEDS_TAGS: nothing is done yet. */
+/* Replays the plan for so many rounds, or at most so many while the first element of the flag is
+ * not zero. PLAN_NEEDS_TAGS: nothing was done. */
 int plan_replay_plan(struct plan_record *record, struct worker *worker, const duite_object *flag,
                      uint64_t rounds);
 
-/* Are all replays of the plan over? Then the rounds of the last one. */
+/* Returns whether all replays of the plan are over; then, the rounds of the last one. */
 bool plan_replay_over(const struct plan_record *record);
 uint64_t plan_replay_rounds(const struct plan_record *record);
 
-/* Is the first element something else than zero? */
+/* Returns whether the first element is not zero. */
 bool plan_flag_holds(duite_type type, const void *values);
 
 #endif

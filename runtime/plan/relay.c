@@ -1,15 +1,14 @@
-/* Sums that go from rank to rank. Those that contribute to a sum or add it up stand in a ring, in
- * the order of their numbers. In round s each sends what it has to the one 2^s places before it,
- * and takes what the one 2^s places behind it has. So after as many rounds as their number has bits
- * all have everything. What a rank has is a list of complete subtrees in the order of their leaves.
- * Halves combine as soon as both are there, and of subtrees one of which lies in the other the
- * larger one counts. So the bits are those of the tree (data/reduce.h), whatever the ranks and the
- * way. Every rank follows all lists, so all know what each message carries. */
+/* Relayed sums. The ranks that contribute to a sum or add it up form a ring in rank order. In round
+ * s each sends its list to the rank 2^s places before it, and takes the list of the rank 2^s places
+ * behind it. So all n ranks have everything after log2(n) rounds, rounded up. A list has complete
+ * subtrees in the order of their leaves. Halves combine once both are there; a subtree inside a
+ * larger one is dropped. So the result has the bits of the tree (data/reduce.h) for any ranks and
+ * any relay. Every rank follows all lists, so all know the items of each message. */
 #include "runtime/plan/passes.h"
 
 #include "runtime/base/memory.h"
 
-enum { DIRECT_RANKS = 4 }; /* up to so many send directly: one hop */
+enum { DIRECT_RANKS = 4 }; /* up to so many ranks: sent directly, in one hop */
 
 struct relay_list {
     struct plan_leaves *at; /* owned */
@@ -49,7 +48,8 @@ size_t plan_leaves_missing(const struct plan_leaves *has, size_t n_has,
     return n;
 }
 
-/* Before the other in the order of leaves; of two that begin alike the larger one. */
+/* Returns whether `a` is before `b` in the order of leaves; of equal beginnings the larger is
+ * first. */
 static bool leaves_before(const struct plan_leaves *a, const struct plan_leaves *b)
 {
     return a->tree.first != b->tree.first ? a->tree.first < b->tree.first : a->n >= b->n;
@@ -111,7 +111,7 @@ uint32_t plan_relay_ring(const uint64_t *set, int n_ranks, int from, int *ring, 
 {
     const size_t ranks =
         base_ranks_count(set, base_ranks_words(n_ranks)) + !base_ranks_has(set, from);
-    /* What goes to neighbours alone rides with what they are sent anyway. */
+    /* Values for few ranks ride in messages that are sent anyway. */
     if (ranks <= DIRECT_RANKS || 2 * ranks <= (size_t)n_ranks)
         return 0;
     if (!ring)
@@ -193,7 +193,8 @@ static bool relay_begin(struct relay *r)
     return fine;
 }
 
-/* One member takes what another one has. In the last round who does not add up takes nothing. */
+/* One member takes the list of another. In the last round, ranks that do not need the sum receive
+ * nothing. */
 static bool relay_hop(struct relay *r, struct plan_hop *hop, size_t from, size_t to,
                       plan_relay_visit *visit, void *context)
 {

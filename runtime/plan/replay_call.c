@@ -1,6 +1,6 @@
-/* Replays as the main program asks for them. To the rest of the graph a replay of a plan is one
- * task that reads or writes each of its objects; forked rounds are tasks like any other. Both leave
- * the same bytes, the same poison and the same numbers of tasks. */
+/* The main program's calls for replays. To the rest of the graph a replay of a plan is one task
+ * that reads or writes each of its objects; forked rounds are tasks like any other. Both leave the
+ * same bytes, the same poison and the same numbers of tasks. */
 #include "runtime/plan/plan.h"
 #include "runtime/task/internal.h"
 
@@ -8,7 +8,7 @@
 #include "runtime/base/memory.h"
 #include "runtime/data/object.h"
 
-/* Do open contributions go on in the first round? */
+/* Returns whether open contributions go on in the first round. */
 static bool replay_continues_sums(const struct plan_record *record)
 {
     for (size_t i = 0; i < record->n_objects && record->leads; i++)
@@ -33,7 +33,7 @@ void plan_replay_split(const struct plan_record *record, const duite_object *fla
     *after = !flag && !forked && record->trails && rounds > *before;
 }
 
-/* On the record's names. */
+/* Forks a task on the objects in record->names. */
 static int replay_fork_task(const struct plan_record *record, struct worker *worker,
                             const struct task_options *options,
                             const struct plan_recorded_fork *fork, const void *args)
@@ -87,8 +87,8 @@ static struct data_object *replay_object(const struct plan_record *record, size_
     return &record->graph->table.object[name.slot];
 }
 
-/* Before an object is used: all ranks know where its value must be now, and where it will be. The
- * copies of ranks that do not write it are stale. */
+/* Brings an object's value where the plan needs it, and notes where the plan leaves it, on all
+ * ranks. Copies on ranks that do not write it become stale. */
 static int replay_move_object(const struct plan *plan, struct worker *worker, size_t i,
                               struct data_object *object, duite_mode mode)
 {
@@ -110,7 +110,7 @@ static int replay_move_object(const struct plan *plan, struct worker *worker, si
     return DUITE_OK;
 }
 
-/* One access of the replay's task: as that of any task on one rank. */
+/* One access of the replay's task, like that of any task on one rank. */
 static int replay_use_object(struct task_graph *graph, struct task *task, size_t i, duite_mode mode,
                              struct data_object *object, uint32_t *done)
 {

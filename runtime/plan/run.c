@@ -1,14 +1,13 @@
-/* Running a plan. From the moment its counter is 0 until its last successor is counted down, a node
- * belongs to the worker that runs it; one that a worker awaits (node.h) does from the moment when
- * nothing is missing. Before the first of these decrements its own counter goes back to `steady`,
- * so that it counts for its next round: no node that it waits for there has run yet (see edges.c).
- * A replay is over when all sinks of its last round are. Each other node of any round comes before
- * one of these, and a node that still has successors to count down keeps one of them waiting. So
- * after its last decrement, of a successor or of the sinks, a worker must not touch the plan: it
- * may be freed.
+/* Running a plan. A node belongs to the worker that runs it from the moment its counter is 0 until
+ * its last successor is counted down; a worker owns an awaited node (node.h) from the moment
+ * nothing is missing. Its own counter goes back to `steady` before the first of these decrements,
+ * to count for its next round, where no node that it waits for has run yet (see edges.c). A replay
+ * is over when all sinks of its last round are. Every other node comes before one of these, and a
+ * node with successors to count down keeps one of them waiting. So after its last decrement, of a
+ * successor or of the sinks, a worker must not touch the plan: it may be freed.
  *
  * Poison is kept by place, under the same dependences as the bytes. Workers look at it only once
- * something failed: what sees the effects of a failure sees `tainted`. */
+ * something failed: a worker that sees the effects of a failure also sees `tainted`. */
 #include "runtime/plan/node.h"
 
 #include "runtime/base/error.h"
@@ -28,8 +27,8 @@ static void place_move(struct plan *plan, struct plan_place *place, void *data)
         plan->param[plan->param_of[place->first_param + i]].data = data;
 }
 
-/* The bytes that an object's version has now, and its poison; rounds work on them in place. False
- * without memory. */
+/* Takes the present bytes of an object's version, and its poison; rounds work on them in place.
+ * False without memory. */
 static bool place_bind(struct plan *plan, const struct task_access *access,
                        struct plan_place *place)
 {
@@ -41,7 +40,7 @@ static bool place_bind(struct plan *plan, const struct task_access *access,
     if (place->failure)
         plan_taint(plan, PLAN_POISONED);
     struct data_packet *packet = data_version_packet(version);
-    if (place->mode != DUITE_R && !packet) { /* to be poisoned again at the end */
+    if (place->mode != DUITE_R && !packet) { /* poisoned again at the end */
         packet = data_packet_new(place->bytes, false);
         version->poisoned = false;
         version->packet = packet;
@@ -84,14 +83,14 @@ static void run_reset_nodes(struct plan *plan, const struct plan_replay *replay)
     atomic_fetch_add_explicit(&plan->begun, 1, memory_order_release);
 }
 
-/* What the main thread sets when it opens a replay. */
+/* The main thread sets these itself for an open replay. */
 static void run_reset_bounds(struct plan *plan, uint64_t rounds)
 {
     atomic_store_explicit(&plan->last, rounds - 1, memory_order_relaxed);
     atomic_store_explicit(&plan->tainted, 0, memory_order_relaxed);
 }
 
-/* There is no memory: nothing runs. */
+/* There is no memory: no task runs. */
 static void run_starve(struct plan *plan, struct task *task)
 {
     const struct data_failure *failure = task_fail_memory(task);

@@ -1,5 +1,5 @@
-/* A record as plain data. The passes that follow know nothing of the task graph, so all that they
- * need of a fork's kernel or of an object stands here. */
+/* A record as plain data. Later passes know nothing of the task graph, so it has all they need of a
+ * fork's kernel or of an object. */
 #include "runtime/plan/record.h"
 
 #include "runtime/base/memory.h"

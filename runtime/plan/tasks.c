@@ -1,5 +1,5 @@
-/* What mappings and schedulers see of a round: who reads whose results, and the paths to its end.
- * Rows say who reads whose result; paths count every dependence, those that carry nothing too. */
+/* A round for mappings and schedulers: rows with the results that each node reads, and the paths to
+ * the round's end. Paths count every dependence, even those without data. */
 #include "runtime/plan/record.h"
 
 #include "runtime/base/error.h"
@@ -55,8 +55,8 @@ static double tasks_bytes(const struct plan_round *round, size_t place)
     return (double)round->source->bytes[round->place[place].object];
 }
 
-/* Goes through two rounds with the last writer of each place, and keeps the rows of the second:
- * what was written last in the first one was written by the reader itself or after it. */
+/* Goes through two rounds with the last writer of each place, and keeps the rows of the second. A
+ * writer from the first round is then the reader itself or comes after it. */
 static bool tasks_fill_rows(struct plan_tasks *tasks, const struct plan_round *round)
 {
     size_t n = round->n_nodes, at = 0;
@@ -104,7 +104,7 @@ int plan_record_tasks(const struct plan_record *record, struct plan_tasks *tasks
 
 /* ---- Paths ---- */
 
-/* The cost of a fork that did not say one: the mean of those that did, or 1. */
+/* The cost of a fork without one: the mean of the others, or 1. */
 static double path_usual_cost(const struct plan_source *source)
 {
     double sum = 0, said = 0;
@@ -115,9 +115,9 @@ static double path_usual_cost(const struct plan_source *source)
     return said > 0 ? sum / said : 1;
 }
 
-/* Edges within a round lead to later nodes, and stand in their order. So the pass goes back from
- * the last edge, and the path behind an edge is known when the edge's turn comes. `longest` is by
- * node, without the node's own cost until that is added. */
+/* Edges within a round lead to later nodes, and are in their order. So the pass goes backwards from
+ * the last edge, and the path behind each edge is already known. `longest` is by node, without the
+ * node's own cost until that is added. */
 static void path_find(const struct plan_round *round, double *longest)
 {
     double usual = path_usual_cost(round->source);

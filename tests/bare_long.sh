@@ -22,7 +22,7 @@ enter() {
         mount -t proc proc "$1/proc" && mount -t tmpfs tmpfs "$1/dev/shm" && mount -t devpts -o newinstance,ptmxmode=0666 devpts "$1/dev/pts" || exit
         mount -t sysfs -o ro sysfs "$1/sys" || echo "without /sys"
         exec chroot "$1" /usr/bin/env -i HOME=/root PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin \
-            DUITE_QUICK="$DUITE_QUICK" http_proxy="$http_proxy" https_proxy="$https_proxy" sh -c "cd /root/duite && $2"
+            http_proxy="$http_proxy" https_proxy="$https_proxy" sh -c "cd /root/duite && $2"
         ' enter "$scratch/$1" "$2" > "$scratch/said" 2>&1 && status=0 || status=$?
     grep '^FAIL\|^ERROR' "$scratch/said"
     tail -n 60 "$scratch/said"

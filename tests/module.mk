@@ -25,7 +25,6 @@ AM_TESTS_ENVIRONMENT = \
     ASAN_OPTIONS=fast_unwind_on_malloc=0:intercept_tls_get_addr=0:$$ASAN_OPTIONS; export ASAN_OPTIONS; \
     LSAN_OPTIONS=suppressions=$$support/lsan.supp:print_suppressions=0; export LSAN_OPTIONS; \
     TSAN_OPTIONS=suppressions=$$support/tsan.supp; export TSAN_OPTIONS;
-AM_DISTCHECK_CONFIGURE_FLAGS = DUITE_QUICK=1
 
 # In place of automake's rule of this name: one plain line with the sums of all cases at the end, also after a failure. TEST_JOBS
 # tests run at once, whatever make's own -j: most have several ranks or threads, and wait for them.
@@ -37,9 +36,11 @@ check-TESTS: $(check_PROGRAMS)
 	  $(MAKE) $(AM_MAKEFLAGS) -j$(TEST_JOBS) $(TEST_SUITE_LOG) TEST_LOGS="`echo $$logs`" || status=$$?; \
 	  $(SHELL) $(srcdir)/tests/support/count.sh $$trs; exit $$status
 
-# Long tests fill the machine, and run one by one.
+# The whole of each test, not its quick form; then the long tests, which fill the machine, one by one.
 check-long:
-	$(MAKE) $(AM_MAKEFLAGS) check TEST_JOBS=1 TESTS='$(LONG_TESTS)' TEST_SUITE_LOG=test-suite-long.log
+	@status=0; $(MAKE) $(AM_MAKEFLAGS) check DUITE_QUICK=0 || status=$$?; \
+	  $(MAKE) $(AM_MAKEFLAGS) check DUITE_QUICK=0 TEST_JOBS=1 TESTS='$(LONG_TESTS)' TEST_SUITE_LOG=test-suite-long.log || \
+	  status=$$?; exit $$status
 
 # For ThreadSanitizer: the test programs of what has threads, without the scripts that start ranks.
 check-threads:
@@ -47,7 +48,7 @@ check-threads:
 	  tests/runtime/* | tests/negative/* | tests/cloth/flow/* | tests/support/*) echo $$test;; esac; done | tr '\n' ' '`"
 # The random programs a hundred times each; takes about half an hour.
 check-threads-long:
-	$(MAKE) $(AM_MAKEFLAGS) check TESTS=tests/runtime/test_threads_long.sh TEST_SUITE_LOG=test-suite-long.log
+	$(MAKE) $(AM_MAKEFLAGS) check DUITE_QUICK=0 TESTS=tests/runtime/test_threads_long.sh TEST_SUITE_LOG=test-suite-long.log
 check-programs: $(check_PROGRAMS)
 .PHONY: check-long check-threads check-threads-long check-programs
 

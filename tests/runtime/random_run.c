@@ -297,8 +297,24 @@ static void operation(struct run *run, const struct prog_op *op, const struct pr
     }
 }
 
-/* Bytes of the pieces of large messages; what a program sends has some hundreds at most. */
-static const size_t PIECES[] = {40, 100, 300, COMM_PIECE_BYTES};
+/* Bytes of the pieces of large messages: small ones, but at most so many of the largest object,
+ * since MPI looks through all that wait. */
+enum { MOST_PIECES = 200 };
+
+static size_t piece_bytes(const struct prog *prog, uint64_t seed)
+{
+    static const size_t PIECES[] = {40, 100, 300, COMM_PIECE_BYTES};
+    size_t bytes = PIECES[seed % (sizeof PIECES / sizeof *PIECES)];
+
+    for (size_t i = 0; i < prog->n_objects; i++) {
+        const struct prog_object *object = &prog->objects[i];
+        const size_t most = object->max ? object->max : object->count;
+
+        if (most * prog_size(object->type) / MOST_PIECES > bytes)
+            bytes = most * prog_size(object->type) / MOST_PIECES;
+    }
+    return bytes;
+}
 
 static void run_operations(struct run *run, const struct prog_setup *setup,
                            struct prog_context *context, volatile size_t *where)
@@ -318,7 +334,7 @@ static void run_operations(struct run *run, const struct prog_setup *setup,
     options.spin_seconds = setup->spin;
     options.bind = 0;
     options.window = setup->window;
-    comm_piece_bytes = PIECES[setup->seed % (sizeof PIECES / sizeof *PIECES)];
+    comm_piece_bytes = piece_bytes(prog, setup->seed);
     run->moves = options.balance->migrate || options.mapping->map_tasks;
     const int code = duite_start(&run->rt, &options);
 

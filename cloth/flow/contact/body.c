@@ -1,5 +1,5 @@
-/* Every rank makes the same bytes of the bodies that all have, so nothing of a body travels. Of
- * those that stand still points and boxes are made once. */
+/* Every rank makes the same bytes of the bodies that all have, so bodies are never sent. Points and
+ * boxes of bodies that stand still are made once. */
 #include "cloth/flow/contact/body.h"
 
 #include "cloth/flow/bodies.h"
@@ -138,7 +138,7 @@ int flow_bodies_follow(struct flow_state *state)
     return flow_fork_one(state, &flow_kernel_body_refit, &args);
 }
 
-/* ---- What a contact is in the step to come ---- */
+/* ---- A contact in the next step ---- */
 
 /* The body carries its corners, and so its point, straight through the step. */
 void flow_body_ahead(const struct flow *flow, double from, double to,

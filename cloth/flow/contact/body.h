@@ -12,15 +12,15 @@
  * in the order of the obstacles.
  */
 
-/* Where in these fields an obstacle begins: bytes, vertices, points, bytes. Of model->n_obstacles:
- * where the last one ends. Local. */
+/* Where an obstacle begins in these fields: bytes, vertices, points, bytes; for model->n_obstacles,
+ * the end of the last one. Local. */
 struct flow_body_place {
     size_t skin, vertex, point, boxes;
 };
 struct flow_body_place flow_body_place(const struct model *model, uint32_t obstacle);
 
-/* Whether a scene has bodies that contact is certified with; whether any of them moves or changes
- * its shape. Local. */
+/* True if a scene has bodies that contact is certified with; if any of them moves or changes its
+ * shape. Local. */
 bool flow_bodies_are_met(const struct model *model);
 bool flow_bodies_move(const struct model *model);
 

@@ -13,7 +13,8 @@ int flow_contact_begin(struct flow_state *state);
 /* When x and v are moved: certifies the step, solves it again or cuts it, and finds the contacts of
  * the next one. */
 int flow_contact_settle(struct flow_state *state);
-/* Whether a step that contact cuts too much of ends the run: none is shorter. Local. */
+/* True if no shorter step is possible: contact that cuts too much of the step then ends the run.
+ * Local. */
 bool flow_contact_is_last(const struct flow_state *state);
 /* Adds to the status of the step what its other solves took, and how many vertices were cut. The
  * step was accepted or given up. Local. */

@@ -1,7 +1,7 @@
 /* Ways are cut where solving again does not help: each corner of a pair that fails goes only as far
- * as divides the pair. Of several pairs the shortest way counts, so their order does not matter. A
- * row that is cut has the velocity of the way that is left. In how many steps in a row that was so
- * is counted; steps that are given up do not count. */
+ * as divides the pair. The shortest way counts among several pairs, so their order does not matter.
+ * A cut row gets the velocity of its remaining way. The steps in a row that cut it are counted, but
+ * for steps that are given up. */
 #include "cloth/flow/contact/contact.h"
 #include "cloth/flow/contact/cut_run.h"
 #include "cloth/flow/step/step.h"

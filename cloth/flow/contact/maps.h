@@ -5,9 +5,9 @@
 
 #include "cloth/contact/image.h"
 
-/* Maps of the bodies that are met by them (cloth/contact/image.h), in the field `maps`: each of the
- * first blocks has a strip of every one of them, in the order of the obstacles. Every rank draws
- * all strips, so nothing of a map travels. A kernel that meets obstacles declares ALL(maps). */
+/* Maps of the bodies that are met by maps (cloth/contact/image.h), in the field `maps`. Each of the
+ * first blocks has a strip of every map, in the order of the obstacles. Every rank draws all
+ * strips, so maps are never sent. A kernel that meets obstacles declares ALL(maps). */
 
 /* How many blocks have strips, and bytes of them; 0: no body is met by maps. Local. */
 uint32_t flow_map_strips(const struct flow *flow);

@@ -75,7 +75,7 @@ struct row_args {
     struct flow_tie_room room; /* of its table */
 };
 
-/* ---- What a block says ---- */
+/* ---- The record of a block ---- */
 
 enum { AT_RECORD, AT_RECORD_LISTS };
 
@@ -112,7 +112,7 @@ const duite_kernel flow_count_ties = {.name = "tie_count",
                                       .variadic = DUITE_R,
                                       .args_size = sizeof(struct row_args)};
 
-/* What all blocks say, one after the other; on every rank. */
+/* Joins the records of all blocks, on every rank. */
 FLOW_KERNEL_WITH(tie_say, FLOW_COLLIDE, struct flow_block_args, (W(tie_said), ALL(tie_record)),
                  .replicated = 1)
 static int tie_say_body(const duite_call *call, const struct tie_say_fields *on)

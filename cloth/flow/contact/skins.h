@@ -12,8 +12,8 @@ int flow_skins_keep(struct flow_state *state);
 /* Forks what makes `skin_x`, x of the points as it is, twice, and `skin_boxes` of that. */
 int flow_skins_place(struct flow_state *state);
 
-/* Forks what makes `skin_x`, kept_x of the points of each block's skin and then x of them, and
- * `skin_boxes`, the boxes of the way from the one to the other (contact_refit). */
+/* Forks the tasks that make `skin_x`, first kept_x and then x of each block's skin points, and
+ * `skin_boxes`, the boxes of the way between (contact_refit). */
 int flow_skins_refit(struct flow_state *state);
 
 #endif

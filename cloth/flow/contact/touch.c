@@ -1,6 +1,6 @@
-/* The contacts of a block: those whose first feature its skin stands for. They are state, from one
- * step to the next: what presses and what sticks is handed over to the pair of features that comes
- * after. A list has the order of its keys, so that it does not depend on who found what first. */
+/* The contacts of a block: those whose first feature belongs to its skin. They are state: each step
+ * hands load and slip over to the pair of features that follows. A list is sorted by its keys, so
+ * that it does not depend on the order of finding. */
 #include "cloth/flow/contact/contact.h"
 #include "cloth/flow/step/step.h"
 
@@ -9,18 +9,17 @@
 
 struct touch_args {
     uint32_t block, room;
-    uint32_t accept; /* not zero: the step is over, what is near are the contacts; else they are
-                      * those there are, pressed, and what fails */
+    uint32_t accept; /* not zero: the step is over, near pairs become contacts; else the present
+                      * ones stay, pressed, with failing pairs */
     double stiffness;
     double from, to; /* s: of the step */
 };
 
-/* Parameters: r the contacts there are, w those to be, r the block's own points, cw what energy the
- * contacts to be hold; then of each meeting its list and, if another block is in it, the points of
- * that. */
+/* Parameters: r the present contacts, w the next ones, r the block's own points, cw the energy of
+ * the next contacts; then each meeting's list and, with another block, its points. */
 enum { AT_BEFORE, AT_AFTER, AT_POINTS, AT_ENERGY, AT_MEETINGS };
 
-/* What the body works on. */
+/* State of the body. */
 struct touching {
     const duite_call *call;
     const struct touch_args *args;
@@ -81,7 +80,7 @@ static const phys_vec *ends_in(const duite_call *call, size_t at)
     return duite_in(call, at, phys_vec) + n;
 }
 
-/* Whether a meeting is of two blocks: the points of the other one follow its list. */
+/* True if a meeting is of two blocks: the other one's points follow its list. */
 static bool is_between_blocks(const duite_call *call, const struct flow_list *list)
 {
     return list->side[0] != list->side[1] && list->side[1] < flow_of(call)->tables.n_blocks;
@@ -179,7 +178,7 @@ static void accept(struct touching *t, const struct flow_near *near)
         t->after[t->n++] = near->contact;
 }
 
-/* What presses and what sticks goes on. */
+/* Carries load and slip to the successor. */
 static void hand_over(struct touching *t, size_t from, size_t to)
 {
     const struct flow_contact *before = t->before + from;
@@ -193,7 +192,7 @@ static void hand_over(struct touching *t, size_t from, size_t to)
     t->used[from] = t->used[t->n_before + to] = 1;
 }
 
-/* Nothing goes on. */
+/* Ends a contact without a successor. */
 static void part(struct touching *t, const struct flow_contact *before)
 {
     struct contact_row row;

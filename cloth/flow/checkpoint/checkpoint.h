@@ -5,14 +5,14 @@
 
 /* Checkpoints of a run: save.c makes them, resume.c goes on from one. Rank 0 has the bytes:
  *
- * struct flow_saved the main program's state
- * arrays of it of ties: rooms, first, other, place; of meetings: struct flow_saved_side; of each
- * block how many contacts it keeps at most
- * of each block the objects of FLOW_EACH_SAVED, in that order: a uint64_t with how many bytes, then
- * these, up to a multiple of 8
- * at last those of the run, alike
+ *   struct flow_saved     the main program's state
+ *   arrays of it          of ties: rooms, first, other, place; of meetings: struct flow_saved_side;
+ *                         of each block how many contacts it keeps at most
+ *   of each block         the objects of FLOW_EACH_SAVED, in that order: a uint64_t with how many
+ *                         bytes, then these, up to a multiple of 8
+ *   at last               those of the run, alike
  *
- * Blocks are the same on any ranks, so none of it knows of ranks. */
+ * Blocks do not depend on ranks, so a checkpoint does not either. */
 struct flow_saved {
     uint64_t layout;     /* of these bytes: flow_saved_layout */
     uint64_t main_bytes; /* this, and the arrays */

@@ -232,10 +232,10 @@ static void take_entries(struct solve_system *system, const duite_call *call,
     }
 }
 
-/* ---- Ties on rank 0. Weights w_k of a tie and its value N give pairs with -w_k w_l N. If the
- * weights do not sum to zero, pairs with the ground, a held vertex behind all others, have the
- * rest. ----
- */
+/* ---- Ties on rank 0 ----
+ *
+ * The weights w_k of a tie and its value N give pairs with -w_k w_l N. If the weights do not sum to
+ * zero, pairs with the ground, a held vertex behind all others, have the rest. */
 
 /* The pairs that the ties of all parts make. */
 struct tied_pairs {

@@ -9,8 +9,7 @@
  * body has a skin (cloth/contact/body_skin.h), in fields of the run that all ranks have:
  * `body_skins` the tables, `body_fans` a facet of each vertex, `body_points` where each vertex is
  * at the begin and at the end of a step, `body_boxes` the boxes of its way. In each the bodies come
- * in the order of the obstacles.
- */
+ * in the order of the obstacles. */
 
 /* Where an obstacle begins in these fields: bytes, vertices, points, bytes; for model->n_obstacles,
  * the end of the last one. Local. */

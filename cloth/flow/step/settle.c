@@ -13,8 +13,7 @@
 /* A step of at most this length that gains energy is not halved. */
 enum { LEAST_GUARDED = FLOW_TICKS / 16 };
 /* Steps do not grow back for this many ticks after one was halved for energy. Longer steps strain
- * the edges more, and the first long one would regain the energy that the short ones released.
- */
+ * the edges more, and the first long one would regain the energy that the short ones released. */
 enum { CALM_AFTER_GAIN = 8 * FLOW_TICKS };
 
 /* Shows a finished step to the program; on rank 0. */

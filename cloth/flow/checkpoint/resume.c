@@ -73,7 +73,7 @@ static int send_main(const duite_call *call)
 const duite_kernel flow_send_main = {
     .name = "resume_main", .body = send_main, .access = {DUITE_W}, .fixed = 1};
 
-/* To all ranks. */
+/* Sends it to all ranks. */
 static int share_main(struct flow_state *state, unsigned char *received)
 {
     duite_object object;
@@ -141,7 +141,7 @@ struct load_args {
     bool keeps;     /* the last one is the list of its contacts */
 };
 
-/* How many bytes an object has; UINT64_MAX: there are not so many. */
+/* How many bytes an object has; UINT64_MAX: the checkpoint ends before. */
 static uint64_t bytes_at(const struct flow_checkpoint *from, uint64_t at)
 {
     uint64_t bytes;

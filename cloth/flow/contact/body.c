@@ -10,7 +10,7 @@ static const struct contact_body *body_of(const struct model *model, uint32_t ob
     return contact_bodies_at(&model->bodies, model->obstacles[obstacle].body);
 }
 
-/* ---- Where it is ---- */
+/* ---- Places in the fields ---- */
 
 static size_t whole_lines(size_t bytes)
 {
@@ -64,7 +64,7 @@ void flow_body_open(const struct model *model, uint32_t obstacle, const unsigned
 
 /* ---- Skins ---- */
 
-/* Ids behind those of the cloth, so that no vertex of it has one of them. */
+/* Makes ids behind those of the cloth, so that none is also a vertex of it. */
 FLOW_KERNEL_WITH(body_skin, FLOW_COLLIDE, struct flow_block_args, (W(body_skins), W(body_fans)),
                  .replicated = 1)
 static int body_skin_body(const duite_call *call, const struct body_skin_fields *on)

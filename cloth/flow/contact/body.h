@@ -34,9 +34,9 @@ void flow_body_ahead(const struct flow *flow, double from, double to,
 
 /* Functions of the main program. Collective; they return what the runtime does. */
 
-/* Forks what makes the skins. Before anything else about bodies. */
+/* Forks the making of skins. Called before anything else about bodies. */
 int flow_bodies_make(struct flow_state *state);
-/* Forks what makes points and boxes of the step under way, if they are not those already. */
+/* Forks the making of points and boxes of the step under way, unless they are made. */
 int flow_bodies_follow(struct flow_state *state);
 
 #endif

@@ -56,8 +56,8 @@ static uint32_t cloth_of(const struct flow *flow, uint32_t vertex)
     return c;
 }
 
-/* Writes what a pair is of: vertices as their meshes count them, from 1, and the obstacle. Rank 0
- * alone knows them. */
+/* Writes the parts of a pair: vertices as their meshes count them, from 1, and the obstacle. Only
+ * rank 0 knows them. */
 static void describe(const struct flow_state *state, const struct flow_near *near, size_t size,
                      char *text)
 {
@@ -109,7 +109,7 @@ static int describe_first(struct flow_state *state, const struct flow_meeting *m
     return code;
 }
 
-/* Describes the first pair that the last look found to fail; nothing but on rank 0. */
+/* Describes the first failing pair of the last look; on rank 0 only. */
 static int describe_failing(struct flow_state *state, size_t size, char *text)
 {
     const struct flow_meetings *meetings = &state->contact.meetings;
@@ -152,7 +152,7 @@ static int note_pinch(struct flow_state *state, uint64_t fails)
 
 /* ---- The begin of a step ---- */
 
-/* again: it was looked at before. */
+/* again: this step was looked at before. */
 static int look(struct flow_state *state, bool again, struct flow_seen *seen)
 {
     struct flow_report *report = state->report;
@@ -213,7 +213,7 @@ static int again(struct flow_state *state, const double status[FLOW_STATUS])
     const double nothing[FLOW_STATUS] = {0};
     state->contact.iterations += status[FLOW_ITERATIONS];
     state->contact.restarts += status[FLOW_RESTARTS];
-    state->smooth = 0; /* a step by BDF2 has changed what it goes on from */
+    state->smooth = 0; /* a BDF2 step has changed the state that it goes on from */
     state->report->contact_solves++;
     int code = flow_contact_again(state);
     if (!code)
@@ -225,8 +225,7 @@ static int again(struct flow_state *state, const double status[FLOW_STATUS])
     return code ? code : flow_step_again(state);
 }
 
-/* Cuts until nothing fails, or nothing can be cut: where no row moved, another look finds the same.
- */
+/* Cuts until no pair fails, or no row can be cut: another look would then find the same. */
 static int cut(struct flow_state *state, struct flow_seen *seen)
 {
     struct flow_report *report = state->report;

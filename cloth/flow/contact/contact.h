@@ -18,7 +18,7 @@
 /* Two features that are near each other, as the first one's block keeps it. Corners of a body have
  * no rows: `at` counts those of the cloth alone, and has the weights of the others behind them. */
 struct flow_contact {
-    uint32_t side[2];    /* the block that keeps it; what it meets */
+    uint32_t side[2];    /* the block that keeps it; the side that it meets */
     uint32_t kind;       /* enum contact_pair, CONTACT_TV or FLOW_CONTACT_SHAPE */
     uint32_t feature[2]; /* of the skin of each side; CONTACT_TV, a vertex of a body and a triangle
                           * of the first side: of the body's, then of the block's */
@@ -49,9 +49,10 @@ static inline size_t flow_list_bytes(size_t n, size_t item)
     return sizeof(struct flow_list) + n * item;
 }
 
-/* A list of contacts that a block keeps ends with which of them have corners in which block. Bytes
- * of the whole list at most; writes that part, behind the contacts, and returns the bytes; finds
- * those of a block: n places in the list, ascending. Local. (index.c) */
+/* A list of contacts that a block keeps ends with an index of them by the blocks of their corners.
+ * The first returns the most bytes of the whole list. The second writes the index and returns the
+ * bytes. The third finds the contacts of a block: n places in the list, ascending. Local.
+ * (index.c) */
 size_t flow_contact_index_room(size_t n, uint32_t n_blocks);
 size_t flow_contact_index(struct flow_list *list, uint32_t n_blocks);
 const uint32_t *flow_contact_of(const struct flow_list *list, uint32_t block, uint32_t n_blocks,
@@ -74,8 +75,8 @@ static inline double flow_friction_of(const struct flow *flow, uint32_t cloth, u
     return flow
         ->friction[(size_t)cloth * ((size_t)flow->n_cloths + flow->model->n_obstacles) + other];
 }
-/* The cloth that n points of a feature are of: a point that welds make one of several cloths is of
- * the first of them. */
+/* The cloth of n points of a feature. A point that is welded from several cloths belongs to the
+ * first of them. */
 static inline uint32_t flow_cloth_of(const struct contact_skin *skin, uint32_t n,
                                      const uint32_t *point)
 {
@@ -105,8 +106,8 @@ static inline bool flow_is_attached(const uint32_t *attached, uint32_t n, const 
  * A vertex above a triangle is near the triangle's neighbours too, aslant: they would hold it up as
  * it slides. marks: n, zero before and after. */
 size_t flow_contact_drop_aslant(struct flow_contact *list, size_t n, unsigned char *marks);
-/* A vertex above an edge or a vertex is nearest to that on each triangle there. Springs would add
- * up, so the first is the contact. */
+/* A vertex above an edge or a vertex has the same nearest point on each triangle there. Their
+ * springs would add up, so only the first is a contact. */
 size_t flow_contact_drop_repeated(struct flow_contact *list, size_t n);
 
 /* Functions of the main program. Collective; they return what the runtime does. */
@@ -144,7 +145,7 @@ int flow_contact_none(struct flow_state *state); /* there are none yet */
 void flow_contact_keep_again(struct flow_state *state, uint32_t block, uint32_t n);
 int flow_contact_again(struct flow_state *state);
 int flow_contact_accept(struct flow_state *state);
-/* Forks what makes ties of the contacts, for the next solve. (rows.c) */
+/* Forks the tasks that make ties of the contacts, for the next solve. (rows.c) */
 int flow_contact_tie(struct flow_state *state);
 /* Cuts the ways of the corners of pairs that fail. (cut.c) */
 struct flow_cut {
@@ -169,8 +170,8 @@ void flow_contact_ahead(const struct flow *flow, double from, double to,
 /* N/m: the k of contact_row.h in a step of h. */
 double flow_contact_stiffness(const struct flow *flow, double h);
 
-/* m: nearer features are contacts. Implicit steps know of what may come near, too: rows that hardly
- * open (row.h), the band of springs (repulse.h). */
+/* m: nearer features are contacts. Implicit steps also need features that may come near: rows that
+ * hardly open (row.h), the band of springs (repulse.h). */
 static inline double flow_contact_reach(const struct model *model)
 {
     return (model_is_implicit(model) ? 1.3 : 1) * model->contact.thickness;

@@ -31,7 +31,7 @@ enum {
     AT_LISTS
 };
 
-/* The part of its way that each row may go, of all pairs that fail. */
+/* Finds the part of its way that each row may go, by all failing pairs. */
 static void find_parts(const duite_call *call, uint32_t block, double *part)
 {
     for (size_t at = AT_LISTS; at < call->n_params; at++) {
@@ -46,7 +46,7 @@ static void find_parts(const duite_call *call, uint32_t block, double *part)
     }
 }
 
-/* Where a row goes to: the same sum as where certificates are made. */
+/* Moves a row by the same sum as certificates use. */
 static void cut_row(const struct flow_step_args *step, double part, double thickness, double mass,
                     const phys_vec *from, phys_vec *x, phys_vec *v, double *counts)
 {

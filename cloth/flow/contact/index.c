@@ -7,7 +7,7 @@
 static uint32_t *index_of(const struct flow_list *list)
 {
     const struct flow_contact *contact = (const struct flow_contact *)(list + 1);
-    return (uint32_t *)(void *)(contact + list->n); /* who only reads does not write */
+    return (uint32_t *)(void *)(contact + list->n); /* readers do not write */
 }
 
 size_t flow_contact_index_room(size_t n, uint32_t n_blocks)

@@ -37,7 +37,7 @@ static size_t part_bytes(const struct flow *flow, uint32_t obstacle, uint32_t bl
     return (bytes + CONTACT_ALIGN - 1) / CONTACT_ALIGN * CONTACT_ALIGN;
 }
 
-/* Where it begins; of n_obstacles: where the last one ends. */
+/* The begin of an obstacle's part; for n_obstacles, the end of the last one. */
 static size_t part_at(const struct flow *flow, uint32_t obstacle, uint32_t block)
 {
     size_t at = 0;

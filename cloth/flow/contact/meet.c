@@ -48,7 +48,7 @@ static void find_corners(const struct meeting *m, const struct contact_candidate
     }
 }
 
-/* Only what is listed needs it. */
+/* Only listed pairs need it. */
 static void find_held(const struct meeting *m, struct corners *to)
 {
     to->held = 0;

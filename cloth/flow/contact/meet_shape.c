@@ -76,7 +76,7 @@ static void describe(const struct meeting *m, uint32_t n, const uint32_t *point,
     }
 }
 
-/* ---- Where it would be ---- */
+/* ---- The gap ahead ---- */
 
 static bool is_certified(const struct meeting *m, const phys_vec x[3], const phys_vec y[3])
 {
@@ -107,7 +107,7 @@ static bool fails_alone(const struct meeting *m, const phys_vec x[3], const phys
     return fails;
 }
 
-/* on: where the step begins. Where no cut will do, the parts stay 1, as in meet.c. */
+/* on: at the step's begin. The parts stay 1 if no cut helps, as in meet.c. */
 static void fail(struct meeting *m, uint32_t n, const uint32_t *point, const phys_vec x[3],
                  const phys_vec y[3], const struct contact_solid_point *on, struct flow_near *near)
 {
@@ -177,7 +177,8 @@ static void find_vertex(const struct meeting *m, enum contact_end end, const phy
     memcpy(on->weight, (const double[3]){1, 0, 0}, sizeof on->weight);
 }
 
-/* Where it ends the step. A vertex that is to come too near in the next step is a contact, too. */
+/* Lists a vertex at the step's end. A vertex that would come too near in the next step is a
+ * contact, too. */
 static void list_vertex(struct meeting *m, uint32_t point, const phys_vec x[3], const phys_vec y[3],
                         struct flow_near *near)
 {

@@ -1,9 +1,9 @@
-/* Which sides are near each other. A meeting is two sides whose boxes over the step came near at
- * some time; its object is the list of what they found. Meetings stay while boxes are near with
- * something to spare, so that the set changes seldom. Every rank has the same meetings, since all
- * get the same boxes.
+/* Finds the sides that are near each other. A meeting is two sides whose boxes over the step came
+ * near at some time; its object is the list of their findings. Meetings stay while boxes are near
+ * with something to spare, so that the set changes seldom. Every rank has the same meetings, since
+ * all get the same boxes.
  *
- * In reading order: boxes of all blocks, meetings, who needs which, their tasks. */
+ * In reading order: boxes of all blocks, meetings, the meetings of a block, their tasks. */
 #include "cloth/flow/checkpoint/checkpoint.h"
 #include "cloth/flow/contact/body.h"
 #include "cloth/flow/contact/contact.h"
@@ -12,7 +12,7 @@
 
 #include "cloth/contact/solid.h"
 
-/* m: boxes so much farther apart than a contact reaches still meet. */
+/* m: boxes still meet if they are this much farther apart than a contact reaches. */
 static const double SPARE = 0.02;
 enum { LEAST_ROOM = 256, FLOW_MEET_OBJECTS = 3 };
 
@@ -26,7 +26,7 @@ static int root_body(const duite_call *call, const struct root_fields *on)
     return 0;
 }
 
-/* On every rank; of obstacles that are no bodies zeros. */
+/* On every rank; zeros for obstacles that are no bodies. */
 FLOW_KERNEL_WITH(roots, FLOW_COLLIDE, struct flow_block_args,
                  (W(roots), IF_MADE(body_boxes), ALL(root)), .replicated = 1)
 static int roots_body(const duite_call *call, const struct roots_fields *on)
@@ -268,7 +268,7 @@ static int fork_meeting(struct flow_state *state, uint32_t number)
                       refs);
 }
 
-/* All of them, and their counts. */
+/* Forks all meetings and gets their counts. */
 static int meet(struct flow_state *state)
 {
     struct flow_meetings *meetings = &state->contact.meetings;
@@ -315,7 +315,7 @@ static void sum_up(struct flow_state *state, struct flow_seen *seen)
     }
 }
 
-/* Where the shapes are over the step. */
+/* Places the shapes over the step. */
 static void place_shapes(struct flow_state *state)
 {
     const struct model *model = state->flow->model;

@@ -4,8 +4,8 @@
 #include "cloth/contact/repulse.h"
 #include "cloth/flow/state/state.h"
 
-/* Contact by springs (cloth/contact/repulse.h). A step finds what is too near where it begins. Its
- * forces know of that, wherever it goes; nothing looks at it afterwards. */
+/* Contact by springs (cloth/contact/repulse.h). A step finds the pairs that are too near at its
+ * begin. Its forces push these pairs, wherever it goes; its end is not checked. */
 
 /* The springs that push contacts apart in a step of h, s. The scene gives k. Its default is 0.1 m /
  * H^2 in explicit steps, m the mean mass of a vertex and H the scene's step; in implicit ones

@@ -6,10 +6,10 @@
 /* The skins of all blocks in a step (cloth/flow/state/skin.h), of runs that find contacts.
  * Functions of the main program. Collective; they return what the runtime does. */
 
-/* Forks what keeps the halos of x, beside flow_keep: kept_halo_x is halo_x as it is now. */
+/* Forks the keeping of the halos of x, beside flow_keep: kept_halo_x becomes halo_x. */
 int flow_skins_keep(struct flow_state *state);
 
-/* Forks what makes `skin_x`, x of the points as it is, twice, and `skin_boxes` of that. */
+/* Forks the tasks that make `skin_x`, the present x of the points, twice, and its `skin_boxes`. */
 int flow_skins_place(struct flow_state *state);
 
 /* Forks the tasks that make `skin_x`, first kept_x and then x of each block's skin points, and

@@ -39,7 +39,7 @@ static int compare_u32(uint32_t a, uint32_t b)
     return (a > b) - (a < b);
 }
 
-/* By what the first side knows, then by the second. */
+/* Order by the first side, then by the second. */
 static int compare_first(const struct flow_contact *a, const struct flow_contact *b)
 {
     const int kind = compare_u32(a->kind, b->kind);
@@ -203,9 +203,9 @@ static void part(struct touching *t, const struct flow_contact *before)
     t->lent += contact_row_lent(&row, &point, before->row.energy, 0);
 }
 
-/* The place in a triangle that is nearest to a shape jumps along it where both are almost parallel.
- * A contact goes on at the place where it was if that is hardly farther: else what rests would rock
- * from step to step. */
+/* The place in a triangle that is nearest to a shape jumps along it if both are almost parallel. A
+ * contact stays at its place if that is hardly farther: else resting cloth would rock from step to
+ * step. */
 static void stay(const struct touching *t, const struct flow_contact *before,
                  struct flow_contact *after)
 {
@@ -241,7 +241,7 @@ static size_t successor(const struct touching *t, const struct flow_contact *bef
     return t->n;
 }
 
-/* A run starts: what is about to rest is in the first solve, though nothing presses yet. And it has
+/* At a run's start, contacts about to rest are in the first solve, though without load. They have
  * the energy to rise by a tenth of the thickness. */
 static void begin_all(struct touching *t)
 {
@@ -288,7 +288,7 @@ static void sum_energy(const struct touching *t, double held[FLOW_HELD])
 
 /* ---- Both ---- */
 
-/* Takes up what the meetings of the block listed for it. */
+/* Takes the pairs that the block's meetings listed for it. */
 static void take_lists(struct touching *t)
 {
     const duite_call *call = t->call;
@@ -379,7 +379,7 @@ int flow_contact_none(struct flow_state *state)
     return code;
 }
 
-/* The meetings of a block and what they are about. Returns the end. */
+/* Adds the meetings of a block and the points of their other blocks. Returns the end. */
 static duite_object *add_meetings(const struct flow_state *state, uint32_t block,
                                   duite_object *refs)
 {

@@ -90,7 +90,7 @@ static inline phys_vec *flow_stage_slopes(const duite_call *call, const struct f
     return a;
 }
 
-/* It ends: the halo of what has moved, which is checked. Returns the body's code. */
+/* A stage ends: writes the halos of the moved rows and checks the rows. Returns the body's code. */
 static inline int flow_stage_end(const duite_call *call, const struct flow_table *t,
                                  const struct flow_step_args *step, struct flow_moved moved)
 {

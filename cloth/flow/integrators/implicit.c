@@ -1,7 +1,7 @@
 /* Steps that solve a linear system, or several. One Newton step of implicit Euler is forked whole.
- * With more of them the main program looks at each: whether it was the last, and whether it went
- * too far. BDF2 needs to know how the step before ended, so all of a step by it comes after that.
- * The recorded round of conjugate gradients serves all solves. */
+ * With more of them the main program checks each: was it the last, did it go too far? BDF2 needs to
+ * know how the step before ended, so all of its step comes after that. The recorded round of
+ * conjugate gradients serves all solves. */
 #include "cloth/flow/integrators/integrator.h"
 #include "cloth/flow/solver/solve.h"
 #include "cloth/flow/step/sliders.h"
@@ -104,8 +104,8 @@ void flow_note_solve(const duite_call *call, const struct flow_table *t,
     status[FLOW_RESTARTS] = scalars->restarts;
 }
 
-/* v += dv, x += h v of a block; notes what the solve took and lost of the momentum. A solve that
- * failed in a step that must not leaves no scalars: then this does not run. */
+/* v += dv, x += h v of a block; notes the solve's cost and the momentum that it lost. It does not
+ * run after a solve that failed in a step that must not, as that leaves no scalars. */
 static int implicit_move(const duite_call *call, const struct flow_table *t,
                          const struct flow_step_args *step, const struct flow_solved *solved,
                          const struct flow_move *m)

@@ -1,5 +1,5 @@
 /* The coarse part of a preconditioner, P C^-1 P' (cloth/solve/coarse.h): motions of patches of
- * blocks (cloth/solve/patches.h). A block's task makes what its patches add to C; one task on every
+ * blocks (cloth/solve/patches.h). A block's task makes its patches' part of C; one task on every
  * rank assembles C. A pass leaves the right side P' q of its patches; the task of the scalars
  * solves for the motion of all patches. The next pass adds P times that motion to its own rows and
  * its ghosts.

@@ -170,8 +170,8 @@ static void correct_cut(struct block *block, const struct shown *shown)
     }
 }
 
-/* Edges inside of a block that were all within the tolerance still are, unless a row moved. calm:
- * whether they were, and the largest excess that they have. */
+/* Edges inside a block that were all within the tolerance still are, unless a row moved. calm: 1 if
+ * they were, and their largest excess. */
 static void correct_rest(struct block *block, double calm[2])
 {
     const struct solve_excess cut = block->excess;

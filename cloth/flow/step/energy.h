@@ -16,7 +16,7 @@ struct flow_step_args;
 struct flow_guard {
     bool off;           /* the last step touched something: energies are not checked */
     double lowest;      /* of their sum, since the start, a touch, or a gain that was accepted */
-    double max;         /* of motion and strain together, since the start; no less than what
+    double max;         /* of motion and strain together, since the start; at least the energy that
                          * weights and loads can set free (flow_source_release) */
     uint64_t calm;      /* tick: steps grow back from there on */
     double sum, moving; /* of the step under way: their sum; motion and strain; */

@@ -1,5 +1,6 @@
 /* The steps of a run: each begins while the one before it is settled, that is, accepted or refused
- * by what all blocks noted in its status. Decisions use only values that are equal on all ranks. */
+ * by the notes of all blocks in its status. Decisions use only values that are equal on all
+ * ranks. */
 #include "cloth/flow/checkpoint/checkpoint.h"
 #include "cloth/flow/contact/certify.h"
 #include "cloth/flow/integrators/integrator.h"

@@ -1,7 +1,7 @@
 /* An index behind the contacts of a block lists them by the blocks of their corners, so that no
- * block searches all contacts of others. It has n + 2 numbers for n blocks: the contacts of block b
- * begin at number b and end at number b + 1. Their places in the list follow, ascending for each
- * block. */
+ * block searches all contacts of others. It has n + 2 numbers for n blocks: number b is the begin
+ * of block b's contacts, number b + 1 their end. The places of contacts in the list follow,
+ * ascending for each block. */
 #include "cloth/flow/contact/contact.h"
 
 static uint32_t *index_of(const struct flow_list *list)

@@ -9,7 +9,8 @@
 /* Forks the keeping of the halos of x, beside flow_keep: kept_halo_x becomes halo_x. */
 int flow_skins_keep(struct flow_state *state);
 
-/* Forks the tasks that make `skin_x`, the present x of the points, twice, and its `skin_boxes`. */
+/* Forks the tasks that make `skin_x`, the present x of the points, twice, and `skin_boxes` of
+ * them. */
 int flow_skins_place(struct flow_state *state);
 
 /* Forks the tasks that make `skin_x`, first kept_x and then x of each block's skin points, and

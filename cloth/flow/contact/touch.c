@@ -86,7 +86,7 @@ static bool is_between_blocks(const duite_call *call, const struct flow_list *li
     return list->side[0] != list->side[1] && list->side[1] < flow_of(call)->tables.n_blocks;
 }
 
-/* Those of the block that a contact meets, or of its own. */
+/* The points of the block that a contact meets, or of its own. */
 static const phys_vec *ends_of(const struct touching *t, uint32_t side)
 {
     const duite_call *call = t->call;
@@ -102,7 +102,7 @@ static const phys_vec *ends_of(const struct touching *t, uint32_t side)
     return NULL;
 }
 
-/* Where the step puts the point of a contact (contact_row.h). Returns false where the two blocks
+/* Finds the point of a contact (contact_row.h) at the step's end. Returns false if the two blocks
  * have parted: they have no meeting any more. */
 static bool find_point(const struct touching *t, const struct flow_contact *contact,
                        phys_vec *point)

@@ -19,7 +19,7 @@ static uint32_t *add_joined(const struct flow *flow, uint32_t joins, uint32_t k,
     return to;
 }
 
-/* Those of patch k of block b, ascending. Returns the end. */
+/* Appends the neighbours of patch k of block b, ascending. Returns the end. */
 static uint32_t *add_neighbours(const struct flow *flow, uint32_t b, uint32_t k, uint32_t *to)
 {
     const struct flow_table *t = flow->tables.block + b;

@@ -47,7 +47,7 @@ struct flow_pins {
 /* At a time, s: in a step its end. */
 void flow_pins_begin(const duite_call *call, const struct flow_table *t, double time,
                      struct flow_pins *pins);
-/* That of sliding row i. */
+/* The slider of sliding row i. */
 void flow_pins_slider(struct flow_pins *pins, uint32_t i, struct flow_slider *slider);
 /* The part of S of a row, NULL without a slider; for rows in ascending order. Valid until the next
  * call. */

@@ -1,6 +1,5 @@
-/* A checkpoint may have the right hash and still be no run's: whatever is used as a length, a
- * number of something or an index is compared with the scene before anything is made of it. All
- * functions are pure. */
+/* A checkpoint may have the right hash and still fit no run: every length, count and index is
+ * compared with the scene before its use. All functions are pure. */
 #include "cloth/flow/checkpoint/checkpoint.h"
 
 #include "cloth/flow/contact/contact.h"
@@ -11,7 +10,7 @@
 /* No run has more contacts of a block, or items in a meeting; lengths of lists stay in range. */
 enum { MOST_ITEMS = 1 << 24 };
 
-/* ---- What the main program knew ---- */
+/* ---- State of the main program ---- */
 
 static bool is_bool(const bool *value)
 {
@@ -56,8 +55,8 @@ static bool has_bools(const struct flow_saved *saved)
            is_bool(&lasting->sewn) && is_bool(&lasting->over) && is_bool(&saved->report.stopped);
 }
 
-/* Of one block: the others that it shares ties with ascend, and there is room for them. Places only
- * say whether links changed: flow_ties_adopt finds them again before a table is made with them. */
+/* True if the blocks that a block shares ties with ascend and have room. Places only tell if links
+ * changed: flow_ties_adopt finds them again before it makes a table. */
 static bool has_others(const struct flow_saved *saved, const struct flow_tied_blocks *tied,
                        uint32_t b)
 {
@@ -132,7 +131,7 @@ const char *flow_saved_wrong(const struct flow *flow, const unsigned char *bytes
     return NULL;
 }
 
-/* ---- What blocks had ---- */
+/* ---- State of blocks ---- */
 
 bool flow_saved_is_place(const double *numbers, size_t n)
 {

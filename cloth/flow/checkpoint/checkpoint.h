@@ -5,14 +5,14 @@
 
 /* Checkpoints of a run: save.c makes them, resume.c goes on from one. Rank 0 has the bytes:
  *
- *   struct flow_saved     what the main program knows
+ *   struct flow_saved     the main program's state
  *   arrays of it          of ties: rooms, first, other, place; of meetings: struct flow_saved_side;
  *                         of each block how many contacts it keeps at most
  *   of each block         the objects of FLOW_EACH_SAVED, in that order: a uint64_t with how many
  *                         bytes, then these, up to a multiple of 8
  *   at last               those of the run, alike
  *
- * Blocks are the same on any ranks, so none of it knows of ranks. */
+ * Blocks do not depend on ranks, so a checkpoint does not either. */
 struct flow_saved {
     uint64_t layout;     /* of these bytes: flow_saved_layout */
     uint64_t main_bytes; /* this, and the arrays */
@@ -44,18 +44,18 @@ size_t flow_saved_main_bytes(const struct flow_saved *saved);
 struct flow_saved_arrays flow_saved_arrays(const struct flow_saved *saved,
                                            const unsigned char *bytes);
 
-/* What is wrong with what the main program knew, as the end of a sentence; NULL: it may be that of
- * a run of this flow, which is prepared. bytes: all of main_bytes, aligned to 8. Pure. (check.c) */
+/* The fault of the saved main program's state, as the end of a sentence; NULL: it fits a run of
+ * this flow, which is prepared. bytes: all of main_bytes, aligned to 8. Pure. (check.c) */
 const char *flow_saved_wrong(const struct flow *flow, const unsigned char *bytes);
-/* Whether n numbers are rows of places or speeds that a run may come to. Pure. (check.c) */
+/* True if n numbers are rows of places or speeds that a run may reach. Pure. (check.c) */
 bool flow_saved_is_place(const double *numbers, size_t n);
-/* Whether n bytes begin as a list of contacts that a block may keep (contact.h); its index is not
- * looked at. On any rank of a run. Pure. (check.c) */
+/* True if n bytes begin as a list of contacts that a block may keep (contact.h); the index is not
+ * checked. On any rank of a run. Pure. (check.c) */
 bool flow_saved_are_contacts(const struct flow *flow, uint32_t block, const unsigned char *bytes,
                              size_t n);
 
-/* What a checkpoint of a model has: fields, types and structures. Another version has another one.
- * Pure. */
+/* Identifies the contents of a model's checkpoint: fields, types and structures. It differs between
+ * versions. Pure. */
 uint64_t flow_saved_layout(const struct model *model);
 
 /* Puts the objects of a block that a checkpoint has into `refs`, in their order; block n_blocks:
@@ -66,10 +66,10 @@ duite_object *flow_saved_objects(const struct flow_state *state, uint32_t block,
 /* Bytes of a number of an object. */
 size_t flow_saved_width(duite_type type);
 
-/* Collective; they return what the runtime does. The first forks what hands a checkpoint to the
- * program, if it wants any; finished: the run is over, and its report whole. Of a run that goes on
- * from one, the second takes what the main program knew, before ties are chosen; the third makes
- * the blocks what they were. */
+/* Collective; they return what the runtime does. The first forks the tasks that hand a checkpoint
+ * to the program, if it wants any; finished: the run is over, and its report whole. The others
+ * resume a run: the second takes the main program's state, before ties are chosen; the third
+ * restores the blocks. */
 int flow_save(struct flow_state *state, bool finished);
 int flow_resume_main(struct flow_state *state);
 int flow_resume_blocks(struct flow_state *state);

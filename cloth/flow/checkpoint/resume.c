@@ -1,6 +1,6 @@
-/* A run goes on from a checkpoint of another one. Rank 0 has its bytes; what the main program knew
- * goes to all ranks, and what blocks had to where they live now. All that follows from that, halos
- * and tables, is made again. */
+/* A run goes on from another run's checkpoint. Rank 0 has its bytes; it sends the main program's
+ * state to all ranks, and each block's state to the block's present home. Halos and tables are made
+ * again. */
 #include "cloth/flow/checkpoint/checkpoint.h"
 
 #include "cloth/flow/bodies.h"
@@ -25,7 +25,7 @@ static int refuse(struct cloth_error *error, const char *why)
     return cloth_fail(error, CLOTH_E_INPUT, "the checkpoint %s", why);
 }
 
-/* Whether the run that a checkpoint is of is not to go on. */
+/* True if the checkpoint's run is complete: it cannot go on. */
 static bool is_complete(const struct flow_saved *saved, uint64_t end)
 {
     return saved->finished && (saved->lasting.over || saved->lasting.grid.now >= end);
@@ -63,7 +63,7 @@ int flow_resume(struct flow *flow, struct flow_checkpoint from, struct flow_resu
     return CLOTH_OK;
 }
 
-/* ---- What the main program knew ---- */
+/* ---- State of the main program ---- */
 
 static int send_main(const duite_call *call)
 {
@@ -73,7 +73,7 @@ static int send_main(const duite_call *call)
 const duite_kernel flow_send_main = {
     .name = "resume_main", .body = send_main, .access = {DUITE_W}, .fixed = 1};
 
-/* To all ranks. */
+/* Sends it to all ranks. */
 static int share_main(struct flow_state *state, unsigned char *received)
 {
     duite_object object;
@@ -86,7 +86,7 @@ static int share_main(struct flow_state *state, unsigned char *received)
     return code ? code : freed;
 }
 
-/* The frames that only the end of the run before called for are shown again, where they belong. */
+/* Frames that only the end of the earlier run called for are shown again, at their right times. */
 static void take_report(struct flow_state *state, const struct flow_saved *saved)
 {
     const uint64_t end = state->grid.end;
@@ -132,7 +132,7 @@ int flow_resume_main(struct flow_state *state)
     return code;
 }
 
-/* ---- What blocks had ---- */
+/* ---- State of blocks ---- */
 
 /* Where the objects of the next block are, on rank 0: bytes of the checkpoint. */
 struct load_args {
@@ -141,7 +141,7 @@ struct load_args {
     bool keeps;     /* the last one is the list of its contacts */
 };
 
-/* How many bytes an object has; UINT64_MAX: there are not so many. */
+/* How many bytes an object has; UINT64_MAX: the checkpoint ends before. */
 static uint64_t bytes_at(const struct flow_checkpoint *from, uint64_t at)
 {
     uint64_t bytes;
@@ -157,7 +157,7 @@ static uint64_t next_at(uint64_t at, uint64_t bytes)
     return bytes == UINT64_MAX ? bytes : at + sizeof bytes + (bytes + 7) / 8 * 8;
 }
 
-/* Its index is made again. */
+/* Checks the list and makes its index again. */
 static bool is_list(const duite_call *call, size_t i, uint64_t bytes)
 {
     const struct load_args *args = call->args;
@@ -171,7 +171,7 @@ static bool is_list(const duite_call *call, size_t i, uint64_t bytes)
                         flow_contact_index(list, n_blocks) == bytes);
 }
 
-/* Of a block x and v come first. */
+/* Checks the numbers of x and v, the first objects of a block. */
 static bool is_field(const duite_call *call, size_t i)
 {
     const struct load_args *args = call->args;
@@ -180,7 +180,7 @@ static bool is_field(const duite_call *call, size_t i)
            flow_saved_is_place(to->data, to->count);
 }
 
-/* Parameters: w what was saved. */
+/* Parameters: w the saved objects. */
 static int load(const duite_call *call)
 {
     const struct load_args *args = call->args;
@@ -209,7 +209,7 @@ const duite_kernel flow_load_block = {.name = "resume_load",
                                       .args_size = sizeof(struct load_args),
                                       .fixed = 1};
 
-/* Where the block lives: who writes an object last holds it. */
+/* Runs at the block's home and writes last, so that the home holds the objects. */
 FLOW_KERNEL(resume, FLOW_NO_PART, struct flow_block_args,
             (R(table), RW(x), RW(v), W(halo_x), W(halo_v)))
 static int resume_body(const duite_call *call, const struct resume_fields *on)

@@ -1,7 +1,6 @@
-/* A checkpoint is copied on rank 0 by tasks that read what lasts, a block after the other, as a
- * frame is: the next step need not wait until the bytes are on a disk. Each task holds the token of
- * frames, so that bytes follow each other in the order of blocks, and all frames and rows before
- * the checkpoint are written when the program gets it. */
+/* Tasks on rank 0 copy the lasting state block after block, as for a frame: the next step need not
+ * wait for the disk. Each task holds the token of frames. So bytes are in the order of blocks, and
+ * all earlier frames and rows are written when the program gets the checkpoint. */
 #include "cloth/flow/checkpoint/checkpoint.h"
 
 #include "cloth/flow/bodies.h"
@@ -54,7 +53,7 @@ struct save_args {
     uint32_t last; /* not zero: nothing follows */
 };
 
-/* Parameters: rw the token, then r what is saved. */
+/* Parameters: rw the token, then r the objects to save. */
 static int save(const duite_call *call)
 {
     const struct save_args *args = call->args;
@@ -81,7 +80,7 @@ const duite_kernel flow_save_block = {.name = "save",
                                       .side_effects = 1,
                                       .fixed = 1};
 
-/* ---- What the main program knows ---- */
+/* ---- State of the main program ---- */
 
 static struct flow_saved describe(const struct flow_state *state, bool finished)
 {
@@ -138,7 +137,7 @@ static void put_main(const struct flow_state *state, const struct flow_saved *sa
     memset(to, 0, (size_t)(end - to));
 }
 
-/* So much is needed without lists, whose length the main program does not know. */
+/* Bytes of a checkpoint without lists, whose length the main program does not know. */
 static size_t fields_bytes(const struct flow_state *state)
 {
     const uint32_t n_blocks = state->flow->tables.n_blocks;

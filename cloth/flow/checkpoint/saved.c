@@ -1,12 +1,12 @@
-/* What a checkpoint has. Fields come from their table (cloth/flow/state/fields.h): one that lasts
- * from step to step is in every checkpoint without a word here. */
+/* The contents of a checkpoint. Fields come from their table (cloth/flow/state/fields.h): every
+ * lasting field is saved without a word here. */
 #include "cloth/flow/checkpoint/checkpoint.h"
 
 #include "cloth/flow/contact/contact.h"
 
 #include <string.h>
 
-enum { LAYOUT_VERSION = 1 }; /* of what sizes and names do not show */
+enum { LAYOUT_VERSION = 1 }; /* raised for changes that sizes and names do not show */
 
 size_t flow_saved_width(duite_type type)
 {
@@ -37,7 +37,7 @@ struct flow_saved_arrays flow_saved_arrays(const struct flow_saved *saved,
     struct flow_saved_arrays arrays = {0};
     const void *at = bytes + sizeof *saved;
     if (saved->has_ties) {
-        arrays.tied.room = (void *)at; /* who has const arrays does not write */
+        arrays.tied.room = (void *)at; /* users of const arrays do not write */
         arrays.tied.first = (void *)(arrays.tied.room + saved->n_blocks);
         arrays.tied.other = arrays.tied.first + saved->n_blocks + 1;
         arrays.tied.place = arrays.tied.other + saved->n_others;
@@ -48,7 +48,7 @@ struct flow_saved_arrays flow_saved_arrays(const struct flow_saved *saved,
     return arrays;
 }
 
-/* One that takes turns is the object whose turn it is. */
+/* A field that takes turns is saved by the object whose turn it is. */
 static bool is_saved(const struct model *model, int field)
 {
     return !flow_fields[field].place && flow_fields[field].life(model) == FLOW_STATE_FIELD;

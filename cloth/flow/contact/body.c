@@ -1,5 +1,5 @@
-/* Every rank makes the same bytes of the bodies that all have, so nothing of a body travels. Of
- * those that stand still points and boxes are made once. */
+/* Every rank makes the same bytes of the bodies that all have, so bodies are never sent. Points and
+ * boxes of bodies that stand still are made once. */
 #include "cloth/flow/contact/body.h"
 
 #include "cloth/flow/bodies.h"
@@ -10,7 +10,7 @@ static const struct contact_body *body_of(const struct model *model, uint32_t ob
     return contact_bodies_at(&model->bodies, model->obstacles[obstacle].body);
 }
 
-/* ---- Where it is ---- */
+/* ---- Places in the fields ---- */
 
 static size_t whole_lines(size_t bytes)
 {
@@ -64,7 +64,7 @@ void flow_body_open(const struct model *model, uint32_t obstacle, const unsigned
 
 /* ---- Skins ---- */
 
-/* Ids behind those of the cloth, so that no vertex of it has one of them. */
+/* Makes ids behind those of the cloth, so that none is also a vertex of it. */
 FLOW_KERNEL_WITH(body_skin, FLOW_COLLIDE, struct flow_block_args, (W(body_skins), W(body_fans)),
                  .replicated = 1)
 static int body_skin_body(const duite_call *call, const struct body_skin_fields *on)
@@ -138,7 +138,7 @@ int flow_bodies_follow(struct flow_state *state)
     return flow_fork_one(state, &flow_kernel_body_refit, &args);
 }
 
-/* ---- What a contact is in the step to come ---- */
+/* ---- A contact in the next step ---- */
 
 /* The body carries its corners, and so its point, straight through the step. */
 void flow_body_ahead(const struct flow *flow, double from, double to,

@@ -9,18 +9,17 @@
  * body has a skin (cloth/contact/body_skin.h), in fields of the run that all ranks have:
  * `body_skins` the tables, `body_fans` a facet of each vertex, `body_points` where each vertex is
  * at the begin and at the end of a step, `body_boxes` the boxes of its way. In each the bodies come
- * in the order of the obstacles.
- */
+ * in the order of the obstacles. */
 
-/* Where in these fields an obstacle begins: bytes, vertices, points, bytes. Of model->n_obstacles:
- * where the last one ends. Local. */
+/* Where an obstacle begins in these fields: bytes, vertices, points, bytes; for model->n_obstacles,
+ * the end of the last one. Local. */
 struct flow_body_place {
     size_t skin, vertex, point, boxes;
 };
 struct flow_body_place flow_body_place(const struct model *model, uint32_t obstacle);
 
-/* Whether a scene has bodies that contact is certified with; whether any of them moves or changes
- * its shape. Local. */
+/* True if a scene has bodies that contact is certified with; if any of them moves or changes its
+ * shape. Local. */
 bool flow_bodies_are_met(const struct model *model);
 bool flow_bodies_move(const struct model *model);
 
@@ -35,9 +34,9 @@ void flow_body_ahead(const struct flow *flow, double from, double to,
 
 /* Functions of the main program. Collective; they return what the runtime does. */
 
-/* Forks what makes the skins. Before anything else about bodies. */
+/* Forks the making of skins. Called before anything else about bodies. */
 int flow_bodies_make(struct flow_state *state);
-/* Forks what makes points and boxes of the step under way, if they are not those already. */
+/* Forks the making of points and boxes of the step under way, unless they are made. */
 int flow_bodies_follow(struct flow_state *state);
 
 #endif

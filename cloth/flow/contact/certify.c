@@ -1,8 +1,8 @@
 /* A step with certified contact. Its solve knows the contacts that the step begins with. Then all
  * pairs of features are certified on their way through the step. Those that fail become contacts,
- * and the step is solved again from where it began. What still fails after a few solves is cut. So
- * no state is ever accepted in which a pair is not certified. Every decision follows from counts
- * that all ranks get alike. */
+ * and the step is solved again from where it began. Pairs that still fail after a few solves are
+ * cut, so every pair of an accepted state is certified. Decisions use only counts that are equal on
+ * all ranks. */
 #include "cloth/flow/contact/certify.h"
 #include "cloth/flow/contact/body.h"
 #include "cloth/flow/contact/contact.h"
@@ -18,9 +18,9 @@
 #include <string.h>
 
 enum { MAX_SOLVES = 5, MAX_CUTS = 8 };
-/* Of the contacts: where more rows than that lose half of their way, the step is too long. */
+/* Halve the step if more rows than this share of the contacts lose half of their way. */
 static const double TOO_MANY = 0.01;
-/* Of the contacts: so few pairs that fail are cut at once. */
+/* Cut at once if failing pairs are at most this share of the contacts. */
 static const double FEW = 0.001;
 
 double flow_contact_stiffness(const struct flow *flow, double h)
@@ -34,7 +34,7 @@ bool flow_contact_is_last(const struct flow_state *state)
     return state->attempt.length == 1 || !state->flow->model->halving;
 }
 
-/* ---- What cannot be kept apart ---- */
+/* ---- Pairs that cannot be kept apart ---- */
 
 /* Appends to a text as far as it has room. */
 __attribute__((format(printf, 3, 4))) static void append(char *text, size_t size,
@@ -56,8 +56,8 @@ static uint32_t cloth_of(const struct flow *flow, uint32_t vertex)
     return c;
 }
 
-/* Writes what a pair is of: vertices as their meshes count them, from 1, and the obstacle. Rank 0
- * alone knows them. */
+/* Writes the parts of a pair: vertices as their meshes count them, from 1, and the obstacle. Only
+ * rank 0 knows them. */
 static void describe(const struct flow_state *state, const struct flow_near *near, size_t size,
                      char *text)
 {
@@ -109,7 +109,7 @@ static int describe_first(struct flow_state *state, const struct flow_meeting *m
     return code;
 }
 
-/* Describes the first pair that the last look found to fail; nothing but on rank 0. */
+/* Describes the first failing pair of the last look; on rank 0 only. */
 static int describe_failing(struct flow_state *state, size_t size, char *text)
 {
     const struct flow_meetings *meetings = &state->contact.meetings;
@@ -120,7 +120,7 @@ static int describe_failing(struct flow_state *state, size_t size, char *text)
     return i < meetings->n ? describe_first(state, meetings->all + i, size, text) : DUITE_OK;
 }
 
-/* The reason of a failure. what: is wrong with n pairs; cure: what helps. */
+/* The reason of a failure. what: the fault of n pairs; cure: its remedy. */
 static int say_why(struct flow_state *state, uint64_t n, const char *what, const char *cure)
 {
     char first[200];
@@ -131,7 +131,7 @@ static int say_why(struct flow_state *state, uint64_t n, const char *what, const
     return code;
 }
 
-/* Nothing can be cut any more, and pairs fail: the step is halved for it, or the run ends. */
+/* Pairs fail that cannot be cut further: the step is halved, or the run ends. */
 static int note_pinch(struct flow_state *state, uint64_t fails)
 {
     struct flow_report *report = state->report;
@@ -150,9 +150,9 @@ static int note_pinch(struct flow_state *state, uint64_t fails)
     return code;
 }
 
-/* ---- What a step begins with ---- */
+/* ---- The begin of a step ---- */
 
-/* again: it was looked at before. */
+/* again: this step was looked at before. */
 static int look(struct flow_state *state, bool again, struct flow_seen *seen)
 {
     struct flow_report *report = state->report;
@@ -206,14 +206,14 @@ int flow_contact_begin(struct flow_state *state)
 
 /* ---- The step ---- */
 
-/* Goes back to where the step began and makes it once more, with the contacts as they are now. What
- * its solves took is added up. */
+/* Returns to the step's begin and makes it again with the present contacts. Adds up the cost of its
+ * solves. */
 static int again(struct flow_state *state, const double status[FLOW_STATUS])
 {
     const double nothing[FLOW_STATUS] = {0};
     state->contact.iterations += status[FLOW_ITERATIONS];
     state->contact.restarts += status[FLOW_RESTARTS];
-    state->smooth = 0; /* a step by BDF2 has changed what it goes on from */
+    state->smooth = 0; /* a BDF2 step has changed the state that it goes on from */
     state->report->contact_solves++;
     int code = flow_contact_again(state);
     if (!code)
@@ -225,8 +225,7 @@ static int again(struct flow_state *state, const double status[FLOW_STATUS])
     return code ? code : flow_step_again(state);
 }
 
-/* Cuts until nothing fails, or nothing can be cut: where no row moved, another look finds the same.
- */
+/* Cuts until no pair fails, or no row can be cut: another look would then find the same. */
 static int cut(struct flow_state *state, struct flow_seen *seen)
 {
     struct flow_report *report = state->report;
@@ -249,7 +248,7 @@ static int cut(struct flow_state *state, struct flow_seen *seen)
     return !code && seen->fails ? note_pinch(state, seen->fails) : code;
 }
 
-/* Whether the step as it was solved is of any use. */
+/* True if the step's solve succeeded. */
 static bool is_solved(const double status[FLOW_STATUS])
 {
     return !(status[FLOW_FAILED] + status[FLOW_BEYOND] > 0);

@@ -3,8 +3,8 @@
 
 #include "cloth/flow/state/state.h"
 
-/* Certified contact, as a step uses it. Collective, but for what is local; they return what the
- * runtime does. */
+/* Certified contact, as a step uses it. Collective unless they say local; they return the runtime's
+ * code. */
 
 /* Finds the contacts of a run's start. FLOW_TANGLED, with the reason, where cloth touches. */
 int flow_contact_start(struct flow_state *state);
@@ -13,10 +13,11 @@ int flow_contact_begin(struct flow_state *state);
 /* When x and v are moved: certifies the step, solves it again or cuts it, and finds the contacts of
  * the next one. */
 int flow_contact_settle(struct flow_state *state);
-/* Whether a step that contact cuts too much of ends the run: none is shorter. Local. */
+/* True if no shorter step is possible: contact that cuts too much of the step then ends the run.
+ * Local. */
 bool flow_contact_is_last(const struct flow_state *state);
-/* Adds to the status of the step what its other solves took, and how many vertices were cut. The
- * step was accepted or given up. Local. */
+/* The first adds the cost of the step's other solves, and the number of vertices cut, to its
+ * status. The second is told if the step was accepted or given up. Local. */
 void flow_contact_status(const struct flow_state *state, double status[FLOW_STATUS]);
 void flow_contact_settled(struct flow_state *state, bool accepted);
 

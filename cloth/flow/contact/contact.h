@@ -8,17 +8,17 @@
 
 /* Certified contact of a step, as its main program drives it. In reading order: certify.c is the
  * step: solve, look, solve again or cut. pairs.c finds which sides are near each other. meet.c is
- * the task of two of them: it certifies what may touch and lists what is near. touch.c makes of
- * that the contacts of a block, which are state. index.c says which of them have corners where.
- * rows.c brings contacts to the blocks that have their corners, and into the system of the step.
- * cut.c cuts ways.
+ * the task of two sides: it certifies pairs that may touch and lists near ones. touch.c makes the
+ * contacts of a block from these lists; they are state. index.c lists contacts by the blocks of
+ * their corners. rows.c brings contacts to the blocks that have their corners, and into the system
+ * of the step. cut.c cuts ways.
  *
  * A side is a block of cloth or an obstacle. Sides have numbers: blocks, then obstacles. */
 
 /* Two features that are near each other, as the first one's block keeps it. Corners of a body have
  * no rows: `at` counts those of the cloth alone, and has the weights of the others behind them. */
 struct flow_contact {
-    uint32_t side[2];    /* the block that keeps it; what it meets */
+    uint32_t side[2];    /* the block that keeps it; the side that it meets */
     uint32_t kind;       /* enum contact_pair, CONTACT_TV or FLOW_CONTACT_SHAPE */
     uint32_t feature[2]; /* of the skin of each side; CONTACT_TV, a vertex of a body and a triangle
                           * of the first side: of the body's, then of the block's */
@@ -31,7 +31,7 @@ struct flow_contact {
 /* With a shape the second feature is where on the cloth the contact is. */
 enum { FLOW_CONTACT_SHAPE = 8, FLOW_ON_VERTEX = 0, FLOW_ON_TRIANGLE };
 
-/* What two sides found: a contact to be, or a pair whose certificate fails in this step. */
+/* A finding of two sides: a future contact, or a pair that fails its certificate in this step. */
 struct flow_near {
     struct flow_contact contact;
     bool fails, presses; /* of those that fail: it is to be a contact of the next solve */
@@ -49,17 +49,17 @@ static inline size_t flow_list_bytes(size_t n, size_t item)
     return sizeof(struct flow_list) + n * item;
 }
 
-/* A list of contacts that a block keeps ends with which of them have corners in which block. Bytes
- * of the whole list at most; writes that part, behind the contacts, and returns the bytes; finds
- * those of a block: n places in the list, ascending. Local. (index.c) */
+/* A list of contacts that a block keeps ends with an index of them by the blocks of their corners.
+ * The first returns the most bytes of the whole list. The second writes the index and returns the
+ * bytes. The third finds the contacts of a block: n places in the list, ascending. Local.
+ * (index.c) */
 size_t flow_contact_index_room(size_t n, uint32_t n_blocks);
 size_t flow_contact_index(struct flow_list *list, uint32_t n_blocks);
 const uint32_t *flow_contact_of(const struct flow_list *list, uint32_t block, uint32_t n_blocks,
                                 size_t *n);
 
-/* Numbers that a task of two sides adds to the counts, at FLOW_COUNTS times its number: pairs that
- * fail; that are certified; items of its list, there or not; those that the first side keeps; the
- * second. */
+/* Counts that a task of two sides adds at FLOW_COUNTS times its number: failing pairs; certified
+ * pairs; items of its list, with or without room; items that the first side keeps; the second. */
 enum {
     FLOW_COUNT_FAILS,
     FLOW_COUNT_PASSES,
@@ -75,8 +75,8 @@ static inline double flow_friction_of(const struct flow *flow, uint32_t cloth, u
     return flow
         ->friction[(size_t)cloth * ((size_t)flow->n_cloths + flow->model->n_obstacles) + other];
 }
-/* The cloth that n points of a feature are of: a point that welds make one of several cloths is of
- * the first of them. */
+/* The cloth of n points of a feature. A point that is welded from several cloths belongs to the
+ * first of them. */
 static inline uint32_t flow_cloth_of(const struct contact_skin *skin, uint32_t n,
                                      const uint32_t *point)
 {
@@ -85,13 +85,13 @@ static inline uint32_t flow_cloth_of(const struct contact_skin *skin, uint32_t n
         cloth = skin->cloth[point[k]] > cloth ? skin->cloth[point[k]] : cloth;
     return cloth;
 }
-/* Whether a block may leave out features of another block, or of itself; with an obstacle, of that:
- * cloths that do not meet it, or features with a corner whose pin follows it. */
+/* True if a block may leave out features of a block or, with `obstacle`, of an obstacle: some
+ * cloths do not meet it, or a pin of a corner follows it. */
 static inline bool flow_leaves_out(const struct model *model, bool obstacle)
 {
     return model->contact.apart.apart || (obstacle ? model_follows(model) : !model->contact.self);
 }
-/* Whether one of n points is attached to an obstacle, by number. attached: of their skin. */
+/* True if one of n points is attached to an obstacle, by number. attached: of their skin. */
 static inline bool flow_is_attached(const uint32_t *attached, uint32_t n, const uint32_t *point,
                                     uint32_t obstacle)
 {
@@ -101,13 +101,13 @@ static inline bool flow_is_attached(const uint32_t *attached, uint32_t n, const 
     return is;
 }
 
-/* Take out of a list of contacts, sorted as touch.c has them, what is none; return how many are
- * left. Local. (pick.c)
- * A vertex that meets a triangle from above is near to its neighbours as well, aslant: they would
- * hold it up as it slides. marks: n, zero before and after. */
+/* Drop false contacts from a list that is sorted as in touch.c; return how many are left. Local.
+ * (pick.c)
+ * A vertex above a triangle is near the triangle's neighbours too, aslant: they would hold it up as
+ * it slides. marks: n, zero before and after. */
 size_t flow_contact_drop_aslant(struct flow_contact *list, size_t n, unsigned char *marks);
-/* A vertex above an edge or a vertex is nearest to that on each triangle there. Springs would add
- * up, so the first is the contact. */
+/* A vertex above an edge or a vertex has the same nearest point on each triangle there. Their
+ * springs would add up, so only the first is a contact. */
 size_t flow_contact_drop_repeated(struct flow_contact *list, size_t n);
 
 /* Functions of the main program. Collective; they return what the runtime does. */
@@ -123,7 +123,7 @@ struct flow_meet_args {
 int flow_contact_room(struct flow_state *state, uint32_t n);
 void flow_contact_part(struct flow_state *state);
 
-/* What a look at the step found. */
+/* Counts of one look at the step. */
 struct flow_seen {
     uint64_t fails, passes, contacts;
 };
@@ -137,15 +137,15 @@ int flow_contact_meet_again(struct flow_state *state, uint32_t n,
                             const struct flow_saved_side *side); /* those of a checkpoint */
 uint32_t flow_contact_lists(const struct flow_state *state, uint32_t block, duite_object *to);
 void flow_contact_keepers(const struct flow_state *state, uint32_t block, unsigned char *keeps);
-/* Forks what makes the contacts of all blocks: those of the solve, pressed, and the pairs that
- * fail; or, at the end of a step, those that are near. (touch.c) */
+/* Fork the tasks that make the contacts of all blocks: `again` those of the solve, pressed, and the
+ * failing pairs; `accept`, at the end of a step, the near pairs. (touch.c) */
 int flow_contact_none(struct flow_state *state); /* there are none yet */
 /* Room for the contacts of a block, at most n, that a checkpoint has, in its list of the step's
  * begin. */
 void flow_contact_keep_again(struct flow_state *state, uint32_t block, uint32_t n);
 int flow_contact_again(struct flow_state *state);
 int flow_contact_accept(struct flow_state *state);
-/* Forks what makes ties of the contacts, for the next solve. (rows.c) */
+/* Forks the tasks that make ties of the contacts, for the next solve. (rows.c) */
 int flow_contact_tie(struct flow_state *state);
 /* Cuts the ways of the corners of pairs that fail. (cut.c) */
 struct flow_cut {
@@ -156,8 +156,8 @@ struct flow_cut {
 int flow_contact_cut(struct flow_state *state, struct flow_cut *cut);
 int flow_contact_cut_none(struct flow_state *state); /* no row was cut yet */
 
-/* Of a contact with a convex shape: normal and gap of row's origin at the end of a step between two
- * times (s). Local. (meet_shape.c) */
+/* Sets the normal and gap of row's origin at the end of a step between two times (s), for a contact
+ * with a convex shape. Local. (meet_shape.c) */
 void flow_contact_end(const struct flow *flow, double from, double to,
                       const struct flow_contact *contact, struct contact_row *row);
 
@@ -170,8 +170,8 @@ void flow_contact_ahead(const struct flow *flow, double from, double to,
 /* N/m: the k of contact_row.h in a step of h. */
 double flow_contact_stiffness(const struct flow *flow, double h);
 
-/* m: nearer features are contacts. Implicit steps know of what may come near, too: rows that hardly
- * open (row.h), the band of springs (repulse.h). */
+/* m: nearer features are contacts. Implicit steps also need features that may come near: rows that
+ * hardly open (row.h), the band of springs (repulse.h). */
 static inline double flow_contact_reach(const struct model *model)
 {
     return (model_is_implicit(model) ? 1.3 : 1) * model->contact.thickness;

@@ -1,7 +1,7 @@
 /* Ways are cut where solving again does not help: each corner of a pair that fails goes only as far
- * as divides the pair. Of several pairs the shortest way counts, so their order does not matter. A
- * row that is cut has the velocity of the way that is left. In how many steps in a row that was so
- * is counted; steps that are given up do not count. */
+ * as divides the pair. The shortest way counts among several pairs, so their order does not matter.
+ * A cut row gets the velocity of its remaining way. The steps in a row that cut it are counted, but
+ * for steps that are given up. */
 #include "cloth/flow/contact/contact.h"
 #include "cloth/flow/contact/cut_run.h"
 #include "cloth/flow/step/step.h"
@@ -31,7 +31,7 @@ enum {
     AT_LISTS
 };
 
-/* The part of its way that each row may go, of all pairs that fail. */
+/* Finds the part of its way that each row may go, by all failing pairs. */
 static void find_parts(const duite_call *call, uint32_t block, double *part)
 {
     for (size_t at = AT_LISTS; at < call->n_params; at++) {
@@ -46,7 +46,7 @@ static void find_parts(const duite_call *call, uint32_t block, double *part)
     }
 }
 
-/* Where a row goes to: the same sum as where certificates are made. */
+/* Moves a row by the same sum as certificates use. */
 static void cut_row(const struct flow_step_args *step, double part, double thickness, double mass,
                     const phys_vec *from, phys_vec *x, phys_vec *v, double *counts)
 {

@@ -1,13 +1,13 @@
-/* Behind the contacts that a block keeps: which of them have corners in which block, so that no
- * block looks through all that others keep. For n blocks there are n + 2 numbers, of which number b
- * says where the contacts of block b begin, and number b + 1 where they end; then the contacts, by
- * their places in the list, ascending for each block. */
+/* An index behind the contacts of a block lists them by the blocks of their corners, so that no
+ * block searches all contacts of others. It has n + 2 numbers for n blocks: number b is the begin
+ * of block b's contacts, number b + 1 their end. The places of contacts in the list follow,
+ * ascending for each block. */
 #include "cloth/flow/contact/contact.h"
 
 static uint32_t *index_of(const struct flow_list *list)
 {
     const struct flow_contact *contact = (const struct flow_contact *)(list + 1);
-    return (uint32_t *)(void *)(contact + list->n); /* who only reads does not write */
+    return (uint32_t *)(void *)(contact + list->n); /* readers do not write */
 }
 
 size_t flow_contact_index_room(size_t n, uint32_t n_blocks)
@@ -16,7 +16,7 @@ size_t flow_contact_index_room(size_t n, uint32_t n_blocks)
            (n_blocks + 2 + SOLVE_TIE_CORNERS * n) * sizeof(uint32_t);
 }
 
-/* Whether no earlier corner is in the block of corner k. */
+/* True if no earlier corner is in the block of corner k. */
 static bool is_first(const struct flow_tie_corners *at, uint32_t k)
 {
     bool first = true;

@@ -1,5 +1,5 @@
-/* Maps of what keeps its shape are drawn once, in its own axes, however it moves; those of a body
- * with frames again in each step, until the last frame is over. */
+/* Maps of rigid bodies are drawn once, in the body's own axes. Maps of a body with frames are drawn
+ * again in each step until its last frame is over. */
 #include "cloth/flow/contact/maps.h"
 
 #include "cloth/flow/bodies.h"
@@ -37,7 +37,7 @@ static size_t part_bytes(const struct flow *flow, uint32_t obstacle, uint32_t bl
     return (bytes + CONTACT_ALIGN - 1) / CONTACT_ALIGN * CONTACT_ALIGN;
 }
 
-/* Where it begins; of n_obstacles: where the last one ends. */
+/* The begin of an obstacle's part; for n_obstacles, the end of the last one. */
 static size_t part_at(const struct flow *flow, uint32_t obstacle, uint32_t block)
 {
     size_t at = 0;
@@ -114,7 +114,7 @@ static int map_draw_body(const duite_call *call, const struct map_draw_fields *o
     return 0;
 }
 
-/* What changes its shape alone. */
+/* Redraws only bodies that change their shape. */
 FLOW_KERNEL_WITH(map_draw_again, FLOW_COLLIDE, struct flow_block_args, (RW(maps)), .replicated = 1)
 static int map_draw_again_body(const duite_call *call, const struct map_draw_again_fields *on)
 {

@@ -10,7 +10,7 @@
 
 #include <math.h>
 
-/* What the visits of a query work on. */
+/* The state of a query's visits. */
 struct meeting {
     const struct flow *flow;
     const struct model *model;
@@ -28,7 +28,7 @@ struct meeting {
     double *counts;
 };
 
-/* Of two features: their corners, and where these are. */
+/* The corners of two features, and their positions. */
 struct corners {
     enum contact_pair pair;
     uint32_t point[4];
@@ -48,7 +48,7 @@ static void find_corners(const struct meeting *m, const struct contact_candidate
     }
 }
 
-/* Only what is listed needs it. */
+/* Only listed pairs need it. */
 static void find_held(const struct meeting *m, struct corners *to)
 {
     to->held = 0;
@@ -64,7 +64,7 @@ static uint32_t side_of(const struct meeting *m, const uint32_t point[4],
                                  : flow_cloth_of(m->skin + side[from], n, point + from);
 }
 
-/* Of the two features. */
+/* The friction coefficient of two features. */
 static double friction_of(const struct meeting *m, enum contact_pair pair, const uint32_t point[4],
                           const unsigned char side[4])
 {
@@ -74,7 +74,7 @@ static double friction_of(const struct meeting *m, enum contact_pair pair, const
                                  : flow_friction_of(m->flow, b, a);
 }
 
-/* Of a body's vertex and a triangle of the block the latter comes first. */
+/* True for a body's vertex and a block's triangle: the triangle comes first. */
 static bool is_turned(const struct meeting *m, const struct corners *corners)
 {
     return m->body && corners->side[0] == 1;
@@ -93,7 +93,7 @@ static void describe_corner(const struct corners *corners, const struct contact_
     to->at.held |= (unsigned char)((corners->held >> from & 1) << k);
 }
 
-/* What is kept of them, in memory that is zero. places: of the corners, where its row begins. */
+/* Fills a contact, in zeroed memory. places: of the corners; they give the row's origin. */
 static void describe(const struct meeting *m, const struct contact_candidate *candidate,
                      const struct corners *corners, const phys_vec places[4],
                      const struct contact_nearest *nearest, struct flow_contact *to)
@@ -131,10 +131,10 @@ static void append(struct meeting *m, const struct flow_near *near)
     m->counts[first ? FLOW_COUNT_FIRST : FLOW_COUNT_SECOND]++;
 }
 
-/* Whether a surface has a ridge at an edge, towards what is nearest to it: on a flat or hollow one
- * vertices and triangles are nearer than the edge is, and a contact of their own is enough. At a
- * border of the cloth a flat triangle counts. Of an edge between two skins one triangle decides.
- * sign: 1 where the normal points away from what is nearest, else -1. */
+/* True if a surface has a ridge at an edge, towards the other feature. On a flat or hollow surface
+ * vertices and triangles are nearer than the edge, and their contacts are enough. A flat triangle
+ * counts at a border of the cloth. One triangle decides for an edge between two skins. sign: 1 if
+ * the normal points away from the other feature, else -1. */
 static bool is_ridge(const struct meeting *m, int side, uint32_t edge, const phys_vec *normal,
                      double sign)
 {
@@ -156,9 +156,9 @@ static bool is_ridge(const struct meeting *m, int side, uint32_t edge, const phy
 
 /* The same of a feature of the block and one of a body, whose surface goes on all around. It is one
  * if the nearest point is inside the block's feature, and the direction there is in the cone that
- * the body leaves open. Others are those of a neighbour of a feature, seen aslant: they would hold
- * up what slides over an edge. Where the body is flat, vertices of the cloth are nearer to it than
- * its edges and triangles are. */
+ * the body leaves open. Other pairs are those of a neighbour, seen aslant: they would hold up cloth
+ * that slides over an edge. Where the body is flat, vertices of the cloth are nearer to it than its
+ * edges and triangles are. */
 static bool presses_body(const struct meeting *m, const struct corners *corners,
                          const struct contact_nearest *nearest)
 {
@@ -182,7 +182,7 @@ static bool presses_body(const struct meeting *m, const struct corners *corners,
            (one || contact_body_bends(m->body, m->fan, y, n, vertex));
 }
 
-/* Whether two features are nearest inside both: a vertex is above the inside of a triangle, edges
+/* True if two features are nearest inside both: a vertex is above the inside of a triangle, edges
  * cross. */
 static bool is_inside(const struct contact_nearest *nearest)
 {
@@ -192,9 +192,9 @@ static bool is_inside(const struct contact_nearest *nearest)
     return inside;
 }
 
-/* Whether two features are a contact at the end of the step. A vertex beside a triangle is one
- * where it is too near alone: the plane across the way to it would hold up what slides over an
- * edge. What is nearest at an end of an edge is such a vertex. */
+/* True if two features are a contact at the end of the step. A vertex beside a triangle is a
+ * contact only if it is too near: its plane would hold up cloth that slides over an edge. An edge
+ * that is nearest at its end is such a vertex. */
 static bool presses(const struct meeting *m, const struct contact_candidate *candidate,
                     const struct corners *corners, const struct contact_nearest *nearest)
 {
@@ -208,7 +208,7 @@ static bool presses(const struct meeting *m, const struct contact_candidate *can
            is_ridge(m, 1, candidate->of[1], &nearest->normal, -1);
 }
 
-/* What is near at the end of the step. */
+/* Appends a pair that is near at the end of the step. */
 static void list(struct meeting *m, const struct contact_candidate *candidate,
                  struct corners *corners, const struct contact_nearest *nearest)
 {
@@ -221,7 +221,7 @@ static void list(struct meeting *m, const struct contact_candidate *candidate,
     append(m, &near);
 }
 
-/* What the gap becomes in the step, along the normal of its begin. */
+/* The gap at the step's end, along the normal of its begin. */
 static double gap_ahead(const struct corners *corners, const struct contact_nearest *nearest)
 {
     phys_vec way = {0};
@@ -230,8 +230,8 @@ static double gap_ahead(const struct corners *corners, const struct contact_near
     return nearest->gap + phys_dot(&nearest->normal, &way);
 }
 
-/* What the step drives into each other. Where no cut will do, the parts stay 1: the pair fails
- * again in the next look, and after the last one the step is given up. */
+/* Appends a pair that the step drives into each other. The parts stay 1 if no cut helps: the pair
+ * fails again in the next look, and the step is given up after the last one. */
 static void fail(struct meeting *m, const struct contact_candidate *candidate,
                  struct corners *corners)
 {
@@ -277,7 +277,7 @@ static void look_at(struct meeting *m, const struct contact_candidate *candidate
         list(m, candidate, corners, &nearest);
 }
 
-/* Whether the two sides do not meet, or the feature of the block is attached to the body. */
+/* True if the two sides do not meet, or the block's feature is attached to the body. */
 static bool is_left_out(const struct meeting *m, const struct contact_candidate *candidate)
 {
     uint32_t point[4];

@@ -1,8 +1,8 @@
 /* A block meets a convex shape: each of its triangles is certified on its way through the step.
- * Where contact is not certified it meets any obstacle, and only what is near counts.
- * Vertices near the shape at the end of the step are contacts, and so are places on edges and in
- * triangles that are nearer to it than their corners: a corner of a box under the middle of a
- * triangle is one. */
+ * Without certified contact it meets any obstacle, and only near points count.
+ * Contacts are vertices near the shape at the end of the step, and places on edges and in triangles
+ * that are nearer to it than their corners, such as the middle of a triangle on a corner of a
+ * box. */
 #include "cloth/flow/contact/body.h"
 #include "cloth/flow/contact/contact.h"
 #include "cloth/flow/state/skin.h"
@@ -38,7 +38,7 @@ static void append(struct meeting *m, const struct flow_near *near)
     m->counts[FLOW_COUNT_FIRST]++;
 }
 
-/* Of the cloth that n points are of, and the shape. */
+/* The friction coefficient of the shape and the cloth of n points. */
 static double friction_of(const struct meeting *m, uint32_t n, const uint32_t *point)
 {
     return flow_friction_of(m->flow, flow_cloth_of(&m->skin, n, point), m->obstacle);
@@ -50,8 +50,8 @@ static bool is_left_out(const struct meeting *m, uint32_t n, const uint32_t *poi
            flow_is_attached(m->attached, n, point, m->obstacle - m->flow->n_cloths);
 }
 
-/* What is kept of a point of the cloth, in memory that is zero: n corners at places, whose weights
- * `on` has. What follows of the shape's place is found when a step begins (flow_contact_ahead). */
+/* Fills the contact of a point of the cloth, in zeroed memory: n corners at places, weights in
+ * `on`. The begin of a step adds the shape's motion (flow_contact_ahead). */
 static void describe(const struct meeting *m, uint32_t n, const uint32_t *point,
                      const phys_vec *places, const struct contact_solid_point *on,
                      struct flow_near *near)
@@ -76,15 +76,15 @@ static void describe(const struct meeting *m, uint32_t n, const uint32_t *point,
     }
 }
 
-/* ---- Where it would be ---- */
+/* ---- The gap ahead ---- */
 
 static bool is_certified(const struct meeting *m, const phys_vec x[3], const phys_vec y[3])
 {
     return contact_solid_certify(&m->solid, x, y, m->model->contact.thickness);
 }
 
-/* What the gap at a point becomes while the point and the shape go on for a step as they did in
- * this one; or in this one, from its begin. */
+/* The gap at a point one step later, if point and shape move on as in this step; from the begin of
+ * this step, the gap at its end. */
 static double gap_ahead(const struct meeting *m, const phys_vec *x, const phys_vec *y,
                         const struct contact_solid_point *on)
 {
@@ -107,7 +107,7 @@ static bool fails_alone(const struct meeting *m, const phys_vec x[3], const phys
     return fails;
 }
 
-/* on: where the step begins. Where no cut will do, the parts stay 1, as in meet.c. */
+/* on: at the step's begin. The parts stay 1 if no cut helps, as in meet.c. */
 static void fail(struct meeting *m, uint32_t n, const uint32_t *point, const phys_vec x[3],
                  const phys_vec y[3], const struct contact_solid_point *on, struct flow_near *near)
 {
@@ -169,7 +169,7 @@ static void look_at_triangle(struct meeting *m, uint32_t triangle)
 
 /* ---- Vertices ---- */
 
-/* Of a vertex as a triangle whose corners are one. */
+/* A vertex is a triangle of three equal corners. */
 static void find_vertex(const struct meeting *m, enum contact_end end, const phys_vec x[3],
                         struct contact_solid_point *on)
 {
@@ -177,7 +177,8 @@ static void find_vertex(const struct meeting *m, enum contact_end end, const phy
     memcpy(on->weight, (const double[3]){1, 0, 0}, sizeof on->weight);
 }
 
-/* Where it ends the step. A vertex that is to come too near in the next step is a contact, too. */
+/* Lists a vertex at the step's end. A vertex that would come too near in the next step is a
+ * contact, too. */
 static void list_vertex(struct meeting *m, uint32_t point, const phys_vec x[3], const phys_vec y[3],
                         struct flow_near *near)
 {
@@ -212,9 +213,9 @@ static void look_at_vertex(struct meeting *m, uint32_t vertex)
     append(m, &near);
 }
 
-/* ---- What is not certified ---- */
+/* ---- Contact that is not certified ---- */
 
-/* What the shape carries along in the step is taken off the slip, as flow_contact_ahead does. */
+/* The shape's motion in the step is taken off the slip, as flow_contact_ahead does. */
 static void list_place(struct meeting *m, uint32_t vertex, const struct contact_hit *hit)
 {
     const uint32_t point = m->skin.vertex[vertex];
@@ -230,8 +231,8 @@ static void list_place(struct meeting *m, uint32_t vertex, const struct contact_
     append(m, &near);
 }
 
-/* Vertices are put out of whatever they are in. Those that follow each other are near to each
- * other, so many at once are found sooner. */
+/* Vertices are put out of obstacles. Those that follow each other are near to each other, so many
+ * at once are found sooner. */
 static void look_at_vertices(struct meeting *m)
 {
     enum { AT_ONCE = 64 };

@@ -1,5 +1,5 @@
-/* What contacts have besides fields: memory of the main program, and objects whose number
- * or size changes while the run is on. */
+/* Memory of contacts besides fields: the main program's, and objects whose number or size changes
+ * during the run. */
 #include "cloth/flow/contact/certify.h"
 #include "cloth/flow/contact/contact.h"
 #include "cloth/flow/setup/setup.h"

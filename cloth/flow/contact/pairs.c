@@ -1,9 +1,9 @@
-/* Which sides are near each other. A meeting is two sides whose boxes over the step came near at
- * some time; its object is the list of what they found. Meetings stay while boxes are near with
- * something to spare, so that the set changes seldom. Every rank has the same meetings, since all
- * get the same boxes.
+/* Finds the sides that are near each other. A meeting is two sides whose boxes over the step came
+ * near at some time; its object is the list of their findings. Meetings stay while boxes are near
+ * with something to spare, so that the set changes seldom. Every rank has the same meetings, since
+ * all get the same boxes.
  *
- * In reading order: boxes of all blocks, meetings, who needs which, their tasks. */
+ * In reading order: boxes of all blocks, meetings, the meetings of a block, their tasks. */
 #include "cloth/flow/checkpoint/checkpoint.h"
 #include "cloth/flow/contact/body.h"
 #include "cloth/flow/contact/contact.h"
@@ -12,7 +12,7 @@
 
 #include "cloth/contact/solid.h"
 
-/* m: boxes so much farther apart than a contact reaches still meet. */
+/* m: boxes still meet if they are this much farther apart than a contact reaches. */
 static const double SPARE = 0.02;
 enum { LEAST_ROOM = 256, FLOW_MEET_OBJECTS = 3 };
 
@@ -26,7 +26,7 @@ static int root_body(const duite_call *call, const struct root_fields *on)
     return 0;
 }
 
-/* On every rank; of obstacles that are no bodies zeros. */
+/* On every rank; zeros for obstacles that are no bodies. */
 FLOW_KERNEL_WITH(roots, FLOW_COLLIDE, struct flow_block_args,
                  (W(roots), IF_MADE(body_boxes), ALL(root)), .replicated = 1)
 static int roots_body(const duite_call *call, const struct roots_fields *on)
@@ -57,7 +57,7 @@ static int get_roots(struct flow_state *state)
     return code ? code : duite_get(state->rt, state->run.roots, state->contact.root);
 }
 
-/* Whether two boxes are nearer than so much. */
+/* True if two boxes are nearer than reach. */
 static bool is_near(const double *a, const double *b, double reach)
 {
     bool near = true;
@@ -68,7 +68,7 @@ static bool is_near(const double *a, const double *b, double reach)
 
 /* ---- Meetings ---- */
 
-/* Whether any cloth of block a meets the other side. */
+/* True if any cloth of block a meets the other side. */
 static bool sides_meet(const struct flow_state *state, uint32_t a, uint32_t b)
 {
     const struct flow *flow = state->flow;
@@ -84,8 +84,8 @@ static bool sides_meet(const struct flow_state *state, uint32_t a, uint32_t b)
     return meet;
 }
 
-/* Whether a block meets an obstacle by its triangles and vertices: bodies that certified contact is
- * with have skins. */
+/* True if a block meets an obstacle by its own triangles and vertices: bodies of certified contact
+ * have skins instead. */
 static bool is_shape(const struct flow_state *state, uint32_t side)
 {
     const struct model *model = state->flow->model;
@@ -110,7 +110,7 @@ static uint32_t count_sides(const struct flow_state *state)
     return state->flow->tables.n_blocks + state->flow->model->n_obstacles;
 }
 
-/* Whether each two sides that are near have a meeting. */
+/* True if every two near sides have a meeting. */
 static bool all_meet(const struct flow_state *state)
 {
     const struct flow_meetings *meetings = &state->contact.meetings;
@@ -193,9 +193,9 @@ int flow_contact_meet_again(struct flow_state *state, uint32_t n,
     return n ? make_counts(state) : DUITE_OK;
 }
 
-/* ---- Who needs which ---- */
+/* ---- The meetings of a block ---- */
 
-/* Whether a block may have a corner of what a side keeps: it is that side or a neighbour of it. */
+/* True if a block may have a corner of a side's contacts: it is the side or its neighbour. */
 static bool has_corners(const struct flow_state *state, uint32_t block, uint32_t side)
 {
     if (side >= state->flow->tables.n_blocks)
@@ -268,7 +268,7 @@ static int fork_meeting(struct flow_state *state, uint32_t number)
                       refs);
 }
 
-/* All of them, and their counts. */
+/* Forks all meetings and gets their counts. */
 static int meet(struct flow_state *state)
 {
     struct flow_meetings *meetings = &state->contact.meetings;
@@ -278,7 +278,7 @@ static int meet(struct flow_state *state)
     return code ? code : duite_get(state->rt, meetings->counts, meetings->count);
 }
 
-/* Makes the lists that were full again, with room for what they are to hold. Whether any was. */
+/* Makes full lists again with room for all their items. Returns true if any was full. */
 static bool make_longer(struct flow_state *state)
 {
     struct flow_meetings *meetings = &state->contact.meetings;
@@ -297,7 +297,7 @@ static bool make_longer(struct flow_state *state)
     return any;
 }
 
-/* What the counts say of all sides, and how many contacts each block is to keep. */
+/* Sums the counts of all meetings, and how many contacts each block is to keep. */
 static void sum_up(struct flow_state *state, struct flow_seen *seen)
 {
     const struct flow_meetings *meetings = &state->contact.meetings;
@@ -315,7 +315,7 @@ static void sum_up(struct flow_state *state, struct flow_seen *seen)
     }
 }
 
-/* Where the shapes are over the step. */
+/* Places the shapes over the step. */
 static void place_shapes(struct flow_state *state)
 {
     const struct model *model = state->flow->model;

@@ -1,14 +1,14 @@
-/* Of what is near a feature, some are no contacts of it: neighbours of what it is above. Lists have
- * the order of touch.c, so those of a feature are side by side. */
+/* Some near features are no contacts: neighbours of the feature below. Lists have the order of
+ * touch.c, so the contacts of a feature are side by side. */
 #include "cloth/flow/contact/contact.h"
 
-/* Whether two contacts are of the same feature of the block. */
+/* True if two contacts are of the same feature of the block. */
 static bool are_of_one(const struct flow_contact *a, const struct flow_contact *b)
 {
     return a->kind == b->kind && a->feature[0] == b->feature[0];
 }
 
-/* Whether the nearest point is inside the triangle that a vertex meets. */
+/* True if the nearest point is inside the triangle that a vertex meets. */
 static bool is_inside(const struct flow_contact *contact)
 {
     bool inside = true;
@@ -17,7 +17,7 @@ static bool is_inside(const struct flow_contact *contact)
     return inside;
 }
 
-/* Whether the vertex of a contact meets a triangle of that surface from above. */
+/* True if the vertex of a contact meets a triangle of that surface from above. */
 static bool is_met(const struct flow_contact *list, size_t n, size_t i)
 {
     const struct flow_contact *contact = list + i;
@@ -43,7 +43,7 @@ size_t flow_contact_drop_aslant(struct flow_contact *list, size_t n, unsigned ch
     return kept;
 }
 
-/* Whether two contacts of a vertex are with the same point of a surface. */
+/* True if two contacts of a vertex are with the same point of a surface. */
 static bool are_same(const struct flow_contact *a, const struct flow_contact *b)
 {
     const phys_vec between = a->row.gap * a->row.normal - b->row.gap * b->row.normal;

@@ -1,6 +1,6 @@
-/* A step whose contacts push apart. It begins with a look at what is too near then. These are ties
- * of the step, as those of certified contact are, and their lists live as long as it does. No state
- * follows from them, so a step that is given up leaves nothing behind. */
+/* A step whose contacts push apart. Its begin finds the pairs that are too near then. They are ties
+ * of the step, as in certified contact, and their lists live as long as it does. They leave no
+ * state, so a step that is given up leaves no trace. */
 #include "cloth/flow/contact/repel.h"
 #include "cloth/flow/contact/contact.h"
 #include "cloth/flow/step/step.h"
@@ -36,7 +36,7 @@ int flow_repulsion_start(struct flow_state *state)
     return flow_contact_none(state);
 }
 
-/* A step with contacts goes on from where it begins alone: BDF2 would take the jump of a force for
+/* A step with contacts uses only the state of its begin: BDF2 would take the jump of a force for
  * motion. */
 static void note(struct flow_state *state, const struct flow_seen *seen)
 {

@@ -1,10 +1,10 @@
 /* Contacts become ties of the blocks that have their corners (cloth/flow/state/ties.h). Each of
- * these blocks computes a whole contact from its own rows and what the others show it, as elements
- * are. A block finds its contacts in the lists of those that may keep one. First it says how many
- * there are and whom it shares them with. When all ranks know that and have made room, it makes its
- * table.
+ * these blocks computes a whole contact from its own rows and the rows that others show, as with
+ * elements. A block finds its contacts in the lists of blocks that may keep one. First its record
+ * gives their number and the blocks that share them. It makes its table when all ranks know the
+ * records and have made room.
  *
- * In reading order: finding them, what a block says, its table, their part of a system. */
+ * In reading order: finding them, the record of a block, its table, their part of a system. */
 #include "cloth/contact/repulse.h"
 #include "cloth/flow/contact/contact.h"
 #include "cloth/flow/contact/repel.h"
@@ -22,7 +22,7 @@ struct found {
     struct flow_tie_corners *corners;
 };
 
-/* From the parameters `at` on. Returns false without memory. */
+/* Finds them in the parameters from `at` on. Returns false without memory. */
 static bool find(const duite_call *call, size_t at, uint32_t block, struct found *to)
 {
     const uint32_t n_blocks = flow_of(call)->tables.n_blocks;
@@ -75,7 +75,7 @@ struct row_args {
     struct flow_tie_room room; /* of its table */
 };
 
-/* ---- What a block says ---- */
+/* ---- The record of a block ---- */
 
 enum { AT_RECORD, AT_RECORD_LISTS };
 
@@ -112,7 +112,7 @@ const duite_kernel flow_count_ties = {.name = "tie_count",
                                       .variadic = DUITE_R,
                                       .args_size = sizeof(struct row_args)};
 
-/* What all blocks say, one after the other; on every rank. */
+/* Joins the records of all blocks, on every rank. */
 FLOW_KERNEL_WITH(tie_say, FLOW_COLLIDE, struct flow_block_args, (W(tie_said), ALL(tie_record)),
                  .replicated = 1)
 static int tie_say_body(const duite_call *call, const struct tie_say_fields *on)
@@ -181,7 +181,7 @@ static int say(struct flow_state *state, struct row_args *args)
 
 enum { AT_TABLE, AT_LINKS, AT_TIES, AT_ROWS, AT_OBSTACLES, AT_TABLE_LISTS };
 
-/* Every byte: rows that are not there as well. */
+/* Writes every byte, also of unused rows. */
 static void write_rows(const struct flow *flow, const struct flow_step_args *step,
                        const struct found *found, const struct flow_ties *ties,
                        struct contact_row *row, uint32_t *obstacle)
@@ -272,7 +272,7 @@ int flow_contact_tie(struct flow_state *state)
 
 /* ---- Their part of a system ---- */
 
-/* The point of a contact (contact_row.h) where corners are after `ahead` seconds at their
+/* The point of a contact (contact_row.h) after corners have moved for `ahead` seconds at their
  * velocities. */
 static void find_point(const struct flow_ties *ties, const struct flow_view *view, double ahead,
                        uint32_t i, phys_vec *point)
@@ -305,14 +305,14 @@ static void find_speed(const struct flow_ties *ties, const struct flow_view *vie
         *speed += ties->weight[i][k] * *flow_tie_v(ties, view, ties->corner[i][k]);
 }
 
-/* The force of a contact, and its value in a step of h. against: its part that resists where the
- * point goes, without what resists its speed. */
+/* The force of a contact, and its value in a step of h. against: the part of the value that resists
+ * the point's motion, without the part that resists its speed. */
 struct pressed {
     phys_vec force, value, against;
 };
 
-/* Where the second side is carried is a part of the slip, so it is one of the speed. Without
- * velocities this is the way from the row's origin, over h. */
+/* The second side's motion is part of the slip, and so of the speed. Without velocities the speed
+ * is the way from the row's origin, over h. */
 static void repel(const struct flow *flow, const struct flow_ties *ties,
                   const struct flow_view *view, double h, uint32_t i, const phys_vec *point,
                   struct pressed *to)
@@ -331,13 +331,14 @@ static void repel(const struct flow *flow, const struct flow_ties *ties,
     contact_repelled_value(&repelled, &row->normal, h, &to->value);
 }
 
-/* Where a point is beside a second side that has a part of its way through the step before it. */
+/* Moves a point to its place beside a second side that still has the part `left` of its way through
+ * the step. */
 static void shift(const struct contact_row *row, double left, phys_vec *point)
 {
     *point -= left * row->slip;
 }
 
-/* ahead: s, that corners are moved on at their velocities. left: of the step's time. */
+/* ahead: s, for which corners move on at their velocities. left: part of the step's time. */
 static void press(const struct flow *flow, const struct flow_ties *ties,
                   const struct flow_view *view, double h, double ahead, double left, uint32_t i,
                   struct pressed *to)
@@ -385,7 +386,7 @@ void flow_contact_solved(const struct flow *flow, const struct flow_view *view,
     }
 }
 
-/* The right side of a step whose forces are there already: what they lose while it moves. */
+/* For a right side that has the forces already: adds their loss while the step moves. */
 static void resist(const struct flow_ties *ties, const struct flow_view *view, double h, uint32_t i,
                    const phys_vec *value, phys_vec *b)
 {

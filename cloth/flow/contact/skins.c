@@ -19,7 +19,7 @@ int flow_skins_keep(struct flow_state *state)
     return flow_fork_each(state, &flow_kernel_keep_halo, &args);
 }
 
-/* The rows of the points. */
+/* Gathers the rows of the points. */
 static void gather(const struct flow_skin *skin, uint32_t n_neighbours, const phys_vec *own,
                    const duite_param *halo, phys_vec *to)
 {

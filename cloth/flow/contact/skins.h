@@ -6,14 +6,15 @@
 /* The skins of all blocks in a step (cloth/flow/state/skin.h), of runs that find contacts.
  * Functions of the main program. Collective; they return what the runtime does. */
 
-/* Forks what keeps the halos of x, beside flow_keep: kept_halo_x is halo_x as it is now. */
+/* Forks the keeping of the halos of x, beside flow_keep: kept_halo_x becomes halo_x. */
 int flow_skins_keep(struct flow_state *state);
 
-/* Forks what makes `skin_x`, x of the points as it is, twice, and `skin_boxes` of that. */
+/* Forks the tasks that make `skin_x`, the present x of the points, twice, and `skin_boxes` of
+ * them. */
 int flow_skins_place(struct flow_state *state);
 
-/* Forks what makes `skin_x`, kept_x of the points of each block's skin and then x of them, and
- * `skin_boxes`, the boxes of the way from the one to the other (contact_refit). */
+/* Forks the tasks that make `skin_x`, first kept_x and then x of each block's skin points, and
+ * `skin_boxes`, the boxes of the way between (contact_refit). */
 int flow_skins_refit(struct flow_state *state);
 
 #endif

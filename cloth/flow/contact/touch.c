@@ -1,6 +1,6 @@
-/* The contacts of a block: those whose first feature its skin stands for. They are state, from one
- * step to the next: what presses and what sticks is handed over to the pair of features that comes
- * after. A list has the order of its keys, so that it does not depend on who found what first. */
+/* The contacts of a block: those whose first feature belongs to its skin. They are state: each step
+ * hands load and slip over to the pair of features that follows. A list is sorted by its keys, so
+ * that it does not depend on the order of finding. */
 #include "cloth/flow/contact/contact.h"
 #include "cloth/flow/step/step.h"
 
@@ -9,18 +9,17 @@
 
 struct touch_args {
     uint32_t block, room;
-    uint32_t accept; /* not zero: the step is over, what is near are the contacts; else they are
-                      * those there are, pressed, and what fails */
+    uint32_t accept; /* not zero: the step is over, near pairs become contacts; else the present
+                      * ones stay, pressed, with failing pairs */
     double stiffness;
     double from, to; /* s: of the step */
 };
 
-/* Parameters: r the contacts there are, w those to be, r the block's own points, cw what energy the
- * contacts to be hold; then of each meeting its list and, if another block is in it, the points of
- * that. */
+/* Parameters: r the present contacts, w the next ones, r the block's own points, cw the energy of
+ * the next contacts; then each meeting's list and, with another block, its points. */
 enum { AT_BEFORE, AT_AFTER, AT_POINTS, AT_ENERGY, AT_MEETINGS };
 
-/* What the body works on. */
+/* State of the body. */
 struct touching {
     const duite_call *call;
     const struct touch_args *args;
@@ -40,7 +39,7 @@ static int compare_u32(uint32_t a, uint32_t b)
     return (a > b) - (a < b);
 }
 
-/* By what the first side knows, then by the second. */
+/* Order by the first side, then by the second. */
 static int compare_first(const struct flow_contact *a, const struct flow_contact *b)
 {
     const int kind = compare_u32(a->kind, b->kind);
@@ -81,13 +80,13 @@ static const phys_vec *ends_in(const duite_call *call, size_t at)
     return duite_in(call, at, phys_vec) + n;
 }
 
-/* Whether a meeting is of two blocks: the points of the other one follow its list. */
+/* True if a meeting is of two blocks: the other one's points follow its list. */
 static bool is_between_blocks(const duite_call *call, const struct flow_list *list)
 {
     return list->side[0] != list->side[1] && list->side[1] < flow_of(call)->tables.n_blocks;
 }
 
-/* Those of the block that a contact meets, or of its own. */
+/* The points of the block that a contact meets, or of its own. */
 static const phys_vec *ends_of(const struct touching *t, uint32_t side)
 {
     const duite_call *call = t->call;
@@ -103,7 +102,7 @@ static const phys_vec *ends_of(const struct touching *t, uint32_t side)
     return NULL;
 }
 
-/* Where the step puts the point of a contact (contact_row.h). Returns false where the two blocks
+/* Finds the point of a contact (contact_row.h) at the step's end. Returns false if the two blocks
  * have parted: they have no meeting any more. */
 static bool find_point(const struct touching *t, const struct flow_contact *contact,
                        phys_vec *point)
@@ -179,7 +178,7 @@ static void accept(struct touching *t, const struct flow_near *near)
         t->after[t->n++] = near->contact;
 }
 
-/* What presses and what sticks goes on. */
+/* Carries load and slip to the successor. */
 static void hand_over(struct touching *t, size_t from, size_t to)
 {
     const struct flow_contact *before = t->before + from;
@@ -193,7 +192,7 @@ static void hand_over(struct touching *t, size_t from, size_t to)
     t->used[from] = t->used[t->n_before + to] = 1;
 }
 
-/* Nothing goes on. */
+/* Ends a contact without a successor. */
 static void part(struct touching *t, const struct flow_contact *before)
 {
     struct contact_row row;
@@ -204,9 +203,9 @@ static void part(struct touching *t, const struct flow_contact *before)
     t->lent += contact_row_lent(&row, &point, before->row.energy, 0);
 }
 
-/* The place in a triangle that is nearest to a shape jumps along it where both are almost parallel.
- * A contact goes on at the place where it was if that is hardly farther: else what rests would rock
- * from step to step. */
+/* The place in a triangle that is nearest to a shape jumps along it if both are almost parallel. A
+ * contact stays at its place if that is hardly farther: else resting cloth would rock from step to
+ * step. */
 static void stay(const struct touching *t, const struct flow_contact *before,
                  struct flow_contact *after)
 {
@@ -242,7 +241,7 @@ static size_t successor(const struct touching *t, const struct flow_contact *bef
     return t->n;
 }
 
-/* A run starts: what is about to rest is in the first solve, though nothing presses yet. And it has
+/* At a run's start, contacts about to rest are in the first solve, though without load. They have
  * the energy to rise by a tenth of the thickness. */
 static void begin_all(struct touching *t)
 {
@@ -289,7 +288,7 @@ static void sum_energy(const struct touching *t, double held[FLOW_HELD])
 
 /* ---- Both ---- */
 
-/* Takes up what the meetings of the block listed for it. */
+/* Takes the pairs that the block's meetings listed for it. */
 static void take_lists(struct touching *t)
 {
     const duite_call *call = t->call;
@@ -380,7 +379,7 @@ int flow_contact_none(struct flow_state *state)
     return code;
 }
 
-/* The meetings of a block and what they are about. Returns the end. */
+/* Adds the meetings of a block and the points of their other blocks. Returns the end. */
 static duite_object *add_meetings(const struct flow_state *state, uint32_t block,
                                   duite_object *refs)
 {

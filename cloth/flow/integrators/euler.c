@@ -2,7 +2,7 @@
  * one. */
 #include "cloth/flow/integrators/explicit.h"
 
-/* x and v by the forces at where they are. */
+/* Moves x and v by the forces at the present state. */
 static int euler_move(const duite_call *call, const struct flow_table *t,
                       const struct flow_step_args *step, const struct flow_view *view,
                       const struct flow_move *m)
@@ -54,8 +54,8 @@ static int euler_next_body(const duite_call *call, const struct euler_next_field
     return euler_move(call, &table, on->args, &view, &move);
 }
 
-/* Pins write into the state before the forces: then it is copied first. Recorded rounds of a
- * correction name the objects of the state: then these stay. */
+/* The state is copied first with pins, which write into it before the forces. Its objects stay with
+ * recorded rounds of a correction, which name them. */
 bool flow_euler_keeps(const struct model *model)
 {
     return model->halving && !model_is_driven(model) && !model->correction_rounds;

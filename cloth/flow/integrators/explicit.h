@@ -7,13 +7,13 @@
 #include "cloth/physics/particle.h"
 #include "cloth/physics/stage.h"
 
-/* What explicit integrators share: they solve nothing (cloth/physics/stage.h). Each step begins and
- * ends with x, v and their halos; what else an integrator keeps from step to step is said with it.
- * A task that finds forces reads its neighbours' halos and moves its own rows at once. It writes
- * its next rows to spare halos. These become the halos when all such tasks are forked. So no block
- * waits for its neighbours to have seen it, and forces do not leave the caches. */
+/* Shared by explicit integrators: they have no solve (cloth/physics/stage.h). Each step begins and
+ * ends with x, v and their halos; each integrator's file names its other state. A task that finds
+ * forces reads its neighbours' halos and moves its own rows at once. It writes its next rows to
+ * spare halos. These become the halos when all such tasks are forked. So blocks do not wait until
+ * neighbours have read them, and forces stay in the caches. */
 
-/* What a task wrote to the spare halos is what neighbours read next: when all tasks are forked. */
+/* Spare halos become the halos that neighbours read next. Called when all tasks are forked. */
 static inline void flow_swap_halos_v(struct flow_state *state)
 {
     flow_fields_swap(state, FLOW_FIELD_halo_v, FLOW_FIELD_spare_halo_v);
@@ -42,8 +42,8 @@ static inline struct flow_step_args flow_explicit_args(const struct flow_state *
     return args;
 }
 
-/* Asks memory for what a task comes to when its long loops, which ask for themselves, are done:
- * a halo of its own that it writes, and rows of the neighbours' halos. */
+/* Prefetch the data that a task uses after its long loops, which prefetch their own: its own halo,
+ * which it writes, and rows of the neighbours' halos. */
 static inline void flow_fetch_own(const struct flow_table *t, const phys_vec *halo)
 {
     enum { ROWS = 2 }; /* a cache line */
@@ -62,8 +62,8 @@ static inline void flow_fetch_halos(const struct flow_table *t, const struct flo
     }
 }
 
-/* What a stage has moved: the block's rows, and their halo beside the one that neighbours still
- * read; status: where it says that a row has gone too far. */
+/* Output of a stage: the block's rows, and their halo beside the one that neighbours still read;
+ * status notes rows that went too far. */
 struct flow_moved {
     phys_vec *x, *v, *halo_x, *halo_v;
     double *status;
@@ -72,7 +72,7 @@ struct flow_moved {
     ((struct flow_moved){(on)->x, (on)->v, (on)->spare_halo_x, (on)->spare_halo_v, (on)->status})
 
 /* A stage begins: the accelerations of the block's rows where they are, in room of the worker's;
- * what slides keeps to its way. */
+ * sliding rows keep to their way. */
 static inline phys_vec *flow_stage_slopes(const duite_call *call, const struct flow_table *t,
                                           const struct flow_step_args *step,
                                           const struct flow_view *view, const phys_vec *halo_x,
@@ -90,7 +90,7 @@ static inline phys_vec *flow_stage_slopes(const duite_call *call, const struct f
     return a;
 }
 
-/* It ends: the halo of what has moved, which is checked. Returns the body's code. */
+/* A stage ends: writes the halos of the moved rows and checks the rows. Returns the body's code. */
 static inline int flow_stage_end(const duite_call *call, const struct flow_table *t,
                                  const struct flow_step_args *step, struct flow_moved moved)
 {

@@ -1,7 +1,7 @@
 /* Steps that solve a linear system, or several. One Newton step of implicit Euler is forked whole.
- * With more of them the main program looks at each: whether it was the last, and whether it went
- * too far. BDF2 needs to know how the step before ended, so all of a step by it comes after that.
- * The recorded round of conjugate gradients serves all solves. */
+ * With more of them the main program checks each: was it the last, did it go too far? BDF2 needs to
+ * know how the step before ended, so all of its step comes after that. The recorded round of
+ * conjugate gradients serves all solves. */
 #include "cloth/flow/integrators/integrator.h"
 #include "cloth/flow/solver/solve.h"
 #include "cloth/flow/step/sliders.h"
@@ -35,13 +35,13 @@ static int fork_system(struct flow_state *state, struct flow_step_args args)
     return code ? code : flow_cg_start(state);
 }
 
-/* What the solves of a step are filtered by, from x and v. */
+/* Forks the filter of a step's solves, from x and v. */
 static int fork_filter(struct flow_state *state, struct flow_step_args args)
 {
     return model_is_filtered(state->flow->model) ? flow_contact_filter(state, args) : DUITE_OK;
 }
 
-/* Of a filtered solve: forces, filter and matrix are tasks of their own. */
+/* A filtered solve makes forces, filter and matrix in separate tasks. */
 static int assemble_held(struct flow_state *state, struct flow_step_args args)
 {
     int code = fork_force(state, args);
@@ -69,7 +69,7 @@ static int linearise(struct flow_state *state)
 
 /* ---- One linear step: v += dv, x += h v ---- */
 
-/* What a filtered solve lost: entries to held rows and to filtered ones do not cancel. */
+/* The loss of a filtered solve: entries to held and to filtered rows do not cancel. */
 static void sum_rows(size_t n, const phys_vec *r, double sum[3])
 {
     for (size_t a = 0; a < n; a++)
@@ -77,7 +77,7 @@ static void sum_rows(size_t n, const phys_vec *r, double sum[3])
             sum[c] += r[a][c];
 }
 
-/* What a solve lost. */
+/* The loss of a solve. */
 static void note_lost(const struct flow_table *t, const struct flow_solved *solved, double lost[3])
 {
     solve_lost(&t->matrix, &t->held, solved->value, solved->b, solved->dv, lost);
@@ -104,8 +104,8 @@ void flow_note_solve(const duite_call *call, const struct flow_table *t,
     status[FLOW_RESTARTS] = scalars->restarts;
 }
 
-/* v += dv, x += h v of a block; notes what the solve took and lost of the momentum. A solve that
- * failed in a step that must not leaves no scalars: then this does not run. */
+/* v += dv, x += h v of a block; notes the solve's cost and the momentum that it lost. It does not
+ * run after a solve that failed in a step that must not, as that leaves no scalars. */
 static int implicit_move(const duite_call *call, const struct flow_table *t,
                          const struct flow_step_args *step, const struct flow_solved *solved,
                          const struct flow_move *m)
@@ -156,8 +156,9 @@ static int implicit_next_body(const duite_call *call, const struct implicit_next
     return implicit_move(call, t, on->args, &solved, &move);
 }
 
-/* Pins and contact write into the state before the solve, recorded rounds of a correction name its
- * objects, and Newton steps have bases: then it is copied first. */
+/* The state is copied first with pins or contact, which write into it before the solve, with
+ * recorded rounds of a correction, which name its objects, and with Newton steps, which have
+ * bases. */
 bool flow_implicit_euler_keeps(const struct model *model)
 {
     return model_keeps(model) && !flow_step_is_driven(model) && !model->correction_rounds &&
@@ -193,8 +194,8 @@ static int residual_body(const duite_call *call, const struct residual_fields *o
     return 0;
 }
 
-/* The slope along dv where it has led, kg m^2/s^2, and with it the right side of a Newton step from
- * there. */
+/* The slope along dv at the present state, kg m^2/s^2. Also makes the right side of a Newton step
+ * from there. */
 static int get_slope(struct flow_state *state, struct flow_step_args args, double *slope)
 {
     int code = fork_force(state, args);
@@ -272,8 +273,7 @@ static int correct_body(const duite_call *call, const struct correct_fields *on)
     return code ? code : flow_check(call, t, on->args, on->x, "position", on->status);
 }
 
-/* v and x by all of dv; what is reported of the solve goes to the status, or to one in its place.
- */
+/* Moves v and x by all of dv; the solve's report goes to the status, or to one in its place. */
 static int fork_correct(struct flow_state *state, struct flow_step_args args,
                         const struct flow_as *as)
 {
@@ -281,7 +281,7 @@ static int fork_correct(struct flow_state *state, struct flow_step_args args,
     return code ? code : flow_fork_each_as(state, &flow_kernel_correct, &args, as);
 }
 
-/* One Newton step. *sums: what it reported. */
+/* One Newton step. *sums: its report. */
 static int newton_step(struct flow_state *state, struct flow_step_args args,
                        double sums[FLOW_STATUS])
 {
@@ -291,7 +291,7 @@ static int newton_step(struct flow_state *state, struct flow_step_args args,
     return code ? code : duite_get(state->rt, state->run.trial, sums);
 }
 
-/* Of all Newton steps together; the last one's errors count. */
+/* Sums all Newton steps; only the last one's errors count. */
 static void sum_up(double all[FLOW_STATUS], const double last[FLOW_STATUS])
 {
     const double iterations = all[FLOW_ITERATIONS], restarts = all[FLOW_RESTARTS];
@@ -355,7 +355,8 @@ int flow_implicit_euler_end(struct flow_state *state)
 
 /* ---- BDF2 ---- */
 
-/* Along what a slider holds a row goes where its v says, as one that is held whole does. */
+/* Along directions that a slider holds, a row goes where its v says, like a row that is held
+ * whole. */
 static void constrain_bases(const duite_call *call, const struct flow_table *t,
                             const struct flow_step_args *step, const struct phys_states *s)
 {

@@ -1,5 +1,5 @@
-/* The integrators of a run, a row each. BDF2 needs to know how the step before ended, so that
- * nothing of its steps is forked ahead. */
+/* The integrators of a run, a row each. BDF2 needs to know how the step before ended, so no part of
+ * its steps is forked ahead. */
 #include "cloth/flow/integrators/integrator.h"
 
 const struct flow_integrator flow_integrators[] = {

@@ -5,12 +5,12 @@
 
 /* An integrator: its part of a step. A new one is a file and a row of flow_integrators. */
 struct flow_integrator {
-    /* Forks what of a step leaves x and v as they are; NULL: nothing. */
+    /* Forks the part of a step that leaves x and v as they are; NULL: no such part. */
     int (*begin)(struct flow_state *state);
     /* Forks the rest, which ends with the new x and v and their halos; contact comes after it. */
     int (*end)(struct flow_state *state);
-    /* Whether its steps leave the state before them as what is kept; NULL: it is copied before a
-     * step. Then what makes that the state again; NULL: a copy back. */
+    /* keeps: true if its steps leave the state before them as the kept one; NULL: it is copied
+     * before a step. restore: makes that the state again; NULL: a copy back. */
     bool (*keeps)(const struct model *model);
     void (*restore)(struct flow_state *state);
 };
@@ -33,10 +33,10 @@ int flow_verlet_end(struct flow_state *state);
 int flow_midpoint_end(struct flow_state *state);
 int flow_runge_end(struct flow_state *state);
 
-/* Whether steps of a model do (keeps). Local. */
+/* True if steps of a model keep the state before them (keeps). Local. */
 bool flow_integrator_keeps(const struct model *model);
-/* What a task of a block moves, from x and v in place or beside the state; status: where it says
- * that a row has gone too far. */
+/* The rows that a task of a block moves, from x and v in place or beside the state; status notes
+ * rows that went too far. */
 struct flow_move {
     const phys_vec *from_x, *from_v;
     phys_vec *x, *v, *halo_x, *halo_v;
@@ -47,20 +47,20 @@ struct flow_move {
     ((struct flow_move){(on)->x, (on)->v, (on)->to_x, (on)->to_v, (on)->to_halo_x,                 \
                         (on)->to_halo_v, (on)->status})
 
-/* When all tasks of such a step are forked: what they wrote beside the state becomes the state, and
- * that is what is kept. Once more: back. */
+/* Swaps the state and the rows written beside it: the old state is then the kept one. Called when
+ * all tasks of such a step are forked; a second call swaps back. */
 static inline void flow_swap_kept(struct flow_state *state)
 {
     flow_fields_swap(state, FLOW_FIELD_x, FLOW_FIELD_kept_x);
     flow_fields_swap(state, FLOW_FIELD_v, FLOW_FIELD_kept_v);
 }
 
-/* ---- Of implicit steps ---- */
+/* ---- Implicit steps ---- */
 
-/* Whether the step under way is by BDF2, and not by implicit Euler as the first one is. */
+/* True if the step under way is by BDF2, not by implicit Euler as the first one. */
 bool flow_implicit_is_second(const struct flow_state *state);
-/* When the status of a step is known: adds what its Newton steps noted. Then, when it is accepted
- * or not: what the next step may build on, and the report. */
+/* The first adds the notes of Newton steps to a step's status, when that is known. The second, when
+ * the step is accepted or not, updates the report and the state that the next step builds on. */
 void flow_implicit_status(const struct flow_state *state, double status[FLOW_STATUS]);
 void flow_implicit_settle(struct flow_state *state, bool accepted,
                           const double status[FLOW_STATUS]);

@@ -1,12 +1,12 @@
-/* The explicit midpoint method (Runge 1895): a half step by explicit Euler finds the slopes with
- * which x and v go the whole step from where it began. Each of the two is a task a block. */
+/* The explicit midpoint method (Runge 1895): a half step by explicit Euler finds the slopes that
+ * move x and v through the whole step from its begin. Each of the two is a task a block. */
 #include "cloth/flow/integrators/explicit.h"
 
 #include <string.h>
 
 enum { MIDPOINT_STAGES = 2 };
 
-/* Stage 0 keeps where the step begins, in x0 and v0; the slopes are v and a at x, v. */
+/* Stage 0 keeps the state of the step's begin in x0 and v0; the slopes are v and a at x, v. */
 static void midpoint_stage(const struct flow_table *t, const struct flow_stage_args *args,
                            const phys_vec *a, phys_vec *x0, phys_vec *v0, phys_vec *x, phys_vec *v)
 {

@@ -1,5 +1,6 @@
-/* Velocity Verlet. f, without the drag, stays from step to step: what ends one begins the next,
- * unless contact, pins or a correction moved something in between, or the step was taken back. */
+/* Velocity Verlet. f, without the drag, stays from step to step: the last forces of a step begin
+ * the next one, unless contact, pins or a correction moved something in between, or the step was
+ * taken back. */
 #include "cloth/flow/integrators/explicit.h"
 
 int flow_verlet_begin(struct flow_state *state)

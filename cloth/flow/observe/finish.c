@@ -1,5 +1,5 @@
-/* What a report needs of the whole state, gathered when the last step is done. The hash is made on
- * rank 0 and broadcast to all. */
+/* Gathers the whole state's part of the report when the last step is done. The hash is made on rank
+ * 0 and broadcast to all. */
 #include "cloth/flow/bodies.h"
 #include "cloth/flow/observe/observe.h"
 #include "cloth/flow/setup/setup.h"
@@ -13,7 +13,7 @@ static int largest_stretch(struct flow_state *state)
     return code ? code : flow_stretch_get(state, &state->report->max_stretch);
 }
 
-/* Runs when nothing else does. */
+/* Runs alone. */
 FLOW_KERNEL(seconds, FLOW_NO_PART, struct flow_block_args, (SUM(seconds)))
 static int seconds_body(const duite_call *call, const struct seconds_fields *on)
 {
@@ -108,7 +108,7 @@ static int collect_body(const duite_call *call, const struct collect_fields *on)
     return code;
 }
 
-/* Sends this vector of these blocks to rank 0, which has each of them only for a moment. */
+/* Sends a vector of some blocks to rank 0, which holds each only for a moment. */
 static int collect(struct flow_state *state, uint32_t n, const uint32_t *block,
                    enum flow_field_id vector, const struct part *part)
 {
@@ -251,7 +251,7 @@ int flow_last_frame(struct flow_state *state)
     return DUITE_OK;
 }
 
-/* What the run itself was, without its preparations. */
+/* The counters of the run itself, without its preparations. */
 static int count(struct flow_state *state)
 {
     duite_counters *now = &state->report->counters;

@@ -1,13 +1,12 @@
 /* Frame k shows the state after the step whose end is nearest to k / fps, by the time of all
- * phases. Where steps may be shorter than h it is known only when the step beyond k / fps is
- * accepted: then either this step's end or its begin, which is kept, is shown. The frame before
- * must have been written by then: frames are written by rank 0, one after the other, and each
- * frame's task holds the token. The last frame of a run that is stopped shows the state that the
- * run ends with, whenever that is. */
+ * phases. If steps may be shorter than h, the end is known only when the step beyond k / fps is
+ * accepted: then the frame shows this step's end or its begin, which is kept. The frame before must
+ * be written by then: rank 0 writes frames one after the other, and each frame's task holds the
+ * token. The last frame of a stopped run shows its final state. */
 #include "cloth/flow/bodies.h"
 #include "cloth/flow/observe/observe.h"
 
-/* The tick that a frame shows: whole where rounding alone kept it from being so. */
+/* The tick that a frame shows; rounding errors of whole ticks are removed. */
 static double frame_tick(const struct flow_state *state, uint64_t frame)
 {
     const double ROUNDED = 1e-3; /* of a tick: a millionth of h, more than rounding comes to */
@@ -43,7 +42,7 @@ static void put_numbers(const struct flow *flow, uint32_t vertex, uint32_t block
     flow->rank_of[vertex] = flow->home[block];
 }
 
-/* Which blocks vertices are of, and who keeps these. */
+/* The block of each vertex, and the rank that keeps it. */
 static void put_places(const struct flow *flow)
 {
     for (uint32_t b = 0; b < flow->tables.n_blocks; b++) {
@@ -58,7 +57,7 @@ static void put_places(const struct flow *flow)
         flow->block_of[flow->unused.vertex[i]] = flow->rank_of[flow->unused.vertex[i]] = -1;
 }
 
-/* Those of a frame that is written next. */
+/* Hands the places of the next frame to the program. */
 static int show_places(struct flow *flow, uint64_t frame)
 {
     const struct flow_places places = {flow->block_of, flow->tables.n_blocks, flow->home};
@@ -95,7 +94,7 @@ static int frame_body(const duite_call *call, const struct frame_fields *on)
     return 0;
 }
 
-/* Of the vertices that no block has: no force; then again their places. */
+/* Fills in vertices that no block has: zero forces, or their places. */
 static void put_unused(const struct flow *flow, bool force)
 {
     for (uint32_t i = 0; i < flow->unused.n; i++)
@@ -119,7 +118,7 @@ static int frame_beside_body(const duite_call *call, const struct frame_beside_f
     return failed ? not_written(call, flow) : 0;
 }
 
-/* No frame is under way. */
+/* Called while no frame is under way. */
 static void find_homes(struct flow_state *state)
 {
     for (uint32_t b = 0; b < state->flow->tables.n_blocks; b++) {
@@ -184,7 +183,7 @@ int flow_frame_last(struct flow_state *state)
     return state->shown < now ? fork_frame(state, now, false) : DUITE_OK;
 }
 
-/* Those that the step shows, if what lies up to so many ticks behind its end is shown there. */
+/* Forks the frames that the step shows. Its end shows frames up to `behind` ticks after it. */
 static int fork_frames(struct flow_state *state, double begin, double behind)
 {
     const double now = (double)state->grid.now, middle = (begin + now) / 2;
@@ -199,8 +198,8 @@ static int fork_frames(struct flow_state *state, double begin, double behind)
     return code;
 }
 
-/* What lies so far behind now is certainly shown now: no end of a step can be nearer. A run that
- * goes on later does so without the frames that only its end made certain. */
+/* Frames within half the shortest step after now are certain: no other end can be nearer. A resumed
+ * run takes back the frames that only the end of the earlier run made certain. */
 int flow_frames(struct flow_state *state, uint64_t from)
 {
     const double most = FLOW_TICKS / 2.0, begin = (double)from;

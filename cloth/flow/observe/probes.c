@@ -4,7 +4,7 @@
 #include "cloth/flow/observe/observe.h"
 #include "cloth/flow/step/sliders.h"
 
-/* ---- Of a block ---- */
+/* ---- A block's values ---- */
 
 struct probe_args {
     uint32_t block;
@@ -25,7 +25,7 @@ static void reaction_of_held(const duite_call *call, const struct flow_table *t,
     *pull = t->mass[row] * a - on->probe_force[row];
 }
 
-/* (I - S) (m a - f) of one that a slider leaves free in part; else nothing. */
+/* (I - S) (m a - f) of a row that a slider leaves free in part; else 0. */
 static void reaction_of_sliding(const duite_call *call, const struct flow_table *t, uint32_t row,
                                 const struct probe_fields *on, phys_vec *pull)
 {
@@ -138,7 +138,7 @@ static int row_body(const duite_call *call, const struct row_fields *on)
     return 0;
 }
 
-/* The row before must have been written by then. */
+/* Waits until the row before is written. */
 int flow_probes_row(struct flow_state *state)
 {
     int64_t token;

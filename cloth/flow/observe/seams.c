@@ -1,5 +1,5 @@
-/* How far the partners of pulled seams are from each other. Each block says it of the joints that
- * have an end there, so that both blocks of a joint say the same. */
+/* Distances between partners of pulled seams. Each block reports the joints that have an end in it,
+ * so both blocks of a joint report the same. */
 #include "cloth/flow/bodies.h"
 #include "cloth/flow/observe/observe.h"
 #include "cloth/flow/step/step.h"
@@ -73,7 +73,7 @@ int flow_seams_find(struct flow_state *state)
     return DUITE_OK;
 }
 
-/* Of the seam that pulls, by number from 0. On rank 0. */
+/* The pairs of a pulling seam, by number from 0. On rank 0. */
 static const struct model_pairs *pairs_of(const struct model *model, uint32_t number)
 {
     uint32_t j = 0;

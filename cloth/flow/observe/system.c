@@ -1,7 +1,7 @@
-/* The system of the last step, brought together on rank 0: each block reports its part of it, in
- * numbers, and one task on rank 0 makes plain arrays of all parts. An entry between two blocks is
- * reported by both; the report of the lower block counts. Ties (cloth/flow/state/ties.h) are
- * reported by all blocks that they have corners in, and become a pair for each two corners. */
+/* The system of the last step, gathered on rank 0. Each block reports its part in numbers; one task
+ * on rank 0 makes plain arrays of all parts. An entry between two blocks is reported by both; the
+ * report of the lower block counts. Ties (cloth/flow/state/ties.h) are reported by all blocks that
+ * they have corners in, and become a pair for each two corners. */
 #include "cloth/flow/bodies.h"
 #include "cloth/flow/observe/observe.h"
 #include "cloth/flow/step/step.h"
@@ -206,7 +206,7 @@ static void nine_of(double scale, const double value[4], double nine[SOLVE_NINE]
             nine[3 * c + d] = scale * (value[c] * value[d] + (c == d ? value[3] : 0));
 }
 
-/* Of block b, by the parts of all blocks. */
+/* Takes the entries of block b; parts: of all blocks. */
 static void take_entries(struct solve_system *system, const duite_call *call,
                          const duite_param *parts, uint32_t b)
 {
@@ -232,18 +232,19 @@ static void take_entries(struct solve_system *system, const duite_call *call,
     }
 }
 
-/* ---- Ties on rank 0: all weights w_k of a tie and the value N are pairs with -w_k w_l N, and one
- * with the ground, a held vertex behind all others, for what the weights do not add up to zero ----
- */
+/* ---- Ties on rank 0 ----
+ *
+ * The weights w_k of a tie and its value N give pairs with -w_k w_l N. If the weights do not sum to
+ * zero, pairs with the ground, a held vertex behind all others, have the rest. */
 
-/* What the ties of all parts come to. */
+/* The pairs that the ties of all parts make. */
 struct tied_pairs {
     size_t n;
     bool springs; /* each is a spring */
     bool ground;  /* some are with the ground */
 };
 
-/* Whether there is a tie, and this is its lowest block. */
+/* True if there is a tie, and b is its lowest block. */
 static bool counts(const double *tie, uint32_t b)
 {
     bool lowest = false;
@@ -256,7 +257,7 @@ static bool counts(const double *tie, uint32_t b)
     return lowest;
 }
 
-/* What the weights add up to; as good as nothing is nothing. */
+/* The sum of the weights; rounding errors count as zero. */
 static double sum_of_weights(const double *tie)
 {
     double sum = 0;

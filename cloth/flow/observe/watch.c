@@ -1,7 +1,7 @@
-/* The state after a step is watched when the step has been forked whole; when it is accepted,
- * probes report it, and the main program may find that the run rests. What is watched of a state
- * waits where the next but one is watched, as the status of a step does. Nothing here changes the
- * state, nor is it forked for a run that has neither probes nor rest. */
+/* The state after a step is watched when the whole step is forked. When it is accepted, probes
+ * report it, and the main program may find that the run rests. The watched values alternate between
+ * two objects, like a step's status. Watching leaves the state as it is and is forked only for runs
+ * with probes or rest. */
 #include "cloth/flow/bodies.h"
 #include "cloth/flow/observe/observe.h"
 #include "cloth/flow/step/step.h"
@@ -48,7 +48,7 @@ int flow_watch(struct flow_state *state)
     return code;
 }
 
-/* Whether the run rests, by the speeds at the end of a step. */
+/* Finds if the run rests, by the speeds at the end of a step. */
 static int find_rest(struct flow_state *state)
 {
     const struct model *model = state->flow->model;

@@ -1,9 +1,9 @@
 /* Conjugate gradients by tasks (Zara 2001), recorded once a run and replayed in each step until
  * their scalars say that they are done. A round is two passes (pass.c), which read the halos of s
- * in turn: the one that others still read is not the one that is written. A small task on every
- * rank makes the factors of the next pass of what all blocks summed; they are a shared object, so
- * every body reads the same bits and does the same. When the solve is done with the first pass of a
- * round, the second one does nothing.
+ * in turn, so a pass never writes the halo that others still read. A small task on every rank makes
+ * the next pass's factors from the sums of all blocks; they are a shared object, so every body
+ * reads the same bits and does the same. If the solve is done with the first pass of a round, the
+ * second does nothing.
  *
  * In reading order: a solve, its recorded round, the scalars. */
 #include "cloth/flow/solver/levels.h"
@@ -15,7 +15,7 @@
 
 /* ---- A solve ---- */
 
-/* dv of the step before, as it is in a step of this length. */
+/* The factor of the last step's dv that fits a step of this length; 0: no guess. */
 static double guess_of(const struct flow_state *state)
 {
     const struct model *model = state->flow->model;
@@ -25,13 +25,13 @@ static double guess_of(const struct flow_state *state)
     return wanted && state->guessed ? (double)state->attempt.length / state->guessed : 0;
 }
 
-/* Of the tasks that make the scalars before the first pass. */
+/* Arguments of the tasks that make the scalars before the first pass. */
 struct begin_args {
     union {
         uint32_t block;
         struct flow_step_args step;
     };
-    double phase; /* that the solve begins with */
+    double phase; /* the first one of the solve */
 };
 
 /* The scalars before the first pass, and the coarse part of s that it begins with. */
@@ -46,8 +46,8 @@ static int fork_begin(struct flow_state *state, bool guess)
     return code ? code : flow_levels_fork_top(state, &flow_kernel_cg_begin_coarse, &args, false);
 }
 
-/* Blocks of which one task follows another are taken by so many: the second still finds in caches
- * what the first one left there. */
+/* The number of blocks whose two tasks are forked together: the second still finds the data of the
+ * first in caches. */
 enum { BLOCKS_TOGETHER = 4 * FLOW_FORKS_AHEAD };
 
 int flow_cg_start(struct flow_state *state)
@@ -192,8 +192,8 @@ static int broken_down(const duite_call *call, const struct solve_scalars *now)
                       flow_step_number(now->step), now->curvature, now->square);
 }
 
-/* What solve_scalars_next makes of these dots under the model's stop, or its failure: of what is
- * the same on every rank, the model too. */
+/* Makes the next scalars from these dots and the model's stop, or fails. Uses only values that are
+ * equal on all ranks. */
 static int next_scalars(const duite_call *call, const double dots[SOLVE_DOTS],
                         const struct solve_scalars *before, struct solve_scalars *after)
 {

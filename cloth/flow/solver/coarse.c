@@ -1,12 +1,12 @@
 /* The coarse part of a preconditioner, P C^-1 P' (cloth/solve/coarse.h): motions of patches of
- * blocks (cloth/solve/patches.h). A block's task makes what its patches add to C; one task on every
- * rank puts it together. A pass leaves the right side P' q of its patches; the task of the scalars
- * solves for the motion of all patches. The next pass adds P times it to its own rows and to its
- * ghosts alike.
+ * blocks (cloth/solve/patches.h). A block's task makes its patches' part of C; one task on every
+ * rank assembles C. A pass leaves the right side P' q of its patches; the task of the scalars
+ * solves for the motion of all patches. The next pass adds P times that motion to its own rows and
+ * its ghosts.
  *
- * In reading order: the space P, once a run or, where the solve is filtered, in each step; C and
- * its factor, in each step; what a pass and its scalars do with them. Its pattern is made once a
- * run (pattern.c). */
+ * In reading order: the space P, made once a run or, for filtered solves, in each step; C and its
+ * factor, made in each step; their use in a pass and in its scalars. Its pattern is made once a run
+ * (pattern.c). */
 #include "cloth/flow/solver/levels.h"
 #include "cloth/flow/solver/solve.h"
 #include "cloth/flow/solver/solver.h"
@@ -85,13 +85,13 @@ FLOW_KERNEL(couple, FLOW_CG, struct flow_block_args,
             (R(table), R(a), R(basis), R(basis_ghosts), W(coupling), IF_MADE(tie_table),
              TIED(tie_basis)))
 
-/* A tie as the coarse space sees it: of each patch that it has corners in, P' of its weights. */
+/* A tie as the coarse space sees it: P' of its weights, for each patch that it has corners in. */
 struct coupled_tie {
     uint32_t n, patch[SOLVE_TIE_CORNERS];
     struct solve_lifted lifted[SOLVE_TIE_CORNERS];
 };
 
-/* What is looked up once for ties that follow each other. */
+/* Data that ties in a row share, looked up once. */
 struct coupled_ties {
     const struct flow *flow;
     const struct couple_fields *on;
@@ -137,9 +137,8 @@ static void see_tie(struct coupled_ties *m, uint32_t i, struct coupled_tie *tie)
     }
 }
 
-/* Finds where a tie between these patches adds: each block has its own patches as rows. One that
- * leads to patches beyond the pattern adds what it has on the diagonal alone, so that C stays
- * definite. */
+/* Finds the targets of a tie between these patches: each block has its own patches as rows. A tie
+ * to patches beyond the pattern adds only its diagonal part, so that C stays definite. */
 static void find_targets(struct coupled_ties *m, const struct coupled_tie *tie)
 {
     const uint32_t first = m->flow->patches * m->on->args->block;
@@ -161,7 +160,7 @@ static void find_targets(struct coupled_ties *m, const struct coupled_tie *tie)
         }
 }
 
-/* Adds what ties make of C. */
+/* Adds the ties' part of C. */
 static void couple_ties(const struct flow *flow, const phys_vec *value,
                         const struct couple_fields *on)
 {
@@ -228,7 +227,7 @@ static int factor_coarse_body(const duite_call *call, const struct factor_coarse
     return 0;
 }
 
-/* The factor is on its way while blocks factorise theirs. */
+/* The coarse factor is made while blocks factorise theirs. */
 static int fork_factor(struct flow_state *state)
 {
     struct flow_block_args args;
@@ -260,7 +259,7 @@ void flow_coarse_restrict(const struct flow_preconditioner *m, const phys_vec *q
     }
 }
 
-/* Of patch k of a block. room: for it, where it is a sum. */
+/* The motion of patch k of a block. room: for the sum over levels. */
 static const double *motion_of(const struct flow_preconditioner *m, uint32_t block, uint32_t k,
                                double room[SOLVE_COARSE])
 {

@@ -1,20 +1,20 @@
-/* The tasks of groups (levels.c). In each step one makes the factor of what a group covers, and
- * what it has of the matrix of all groups. After a pass one reads what its blocks and those of the
- * layer leave. It solves for the motion of what the group covers, and hands on the dots of its own
- * blocks, with its share of q.s, and nine numbers, in the form of a block's part. On
- * higher levels the same tasks read the parts of groups. */
+/* The tasks of groups (levels.c). In each step one task makes the factor of a group's cover, and
+ * the group's part of the matrix of all groups. After a pass another reads the parts of the group's
+ * blocks and of the layer. It solves for the motion of the cover. It hands on, in the form of a
+ * block's part, the dots of its own blocks with its share of q.s, and nine numbers. The same tasks
+ * read the parts of groups on higher levels. */
 #include "cloth/flow/solver/levels.h"
 #include "cloth/flow/solver/solver.h"
 
 #include <string.h>
 
-/* ---- What a task has ---- */
+/* ---- The group of a task ---- */
 
 struct group_args {
     uint32_t level, group;
 };
 
-/* What a task has of its group. */
+/* A group, as its task sees it. */
 struct group {
     const struct flow *flow;
     const struct solve_level *level;
@@ -37,8 +37,8 @@ static struct group group_of(const duite_call *call, const double *lift)
                           .among_all = flow->first_group[args->level] + args->group};
 }
 
-/* The parameter that has the numbers of the node at a place; they are given in order of nodes, from
- * `param` on. *at: of the place before, and of this one; it begins at zero. */
+/* The numbers of the node at a place. Parameters are in order of nodes, from `param` on. *at: the
+ * parameter of the place before, then of this one; it begins at zero. */
 static const double *numbers_at(const struct group *group, const duite_param *param, uint32_t place,
                                 uint32_t *at)
 {
@@ -54,8 +54,8 @@ static bool is_own(const struct group *group, uint32_t place)
     return group->level->group[group->cover->node[place]] == group->number;
 }
 
-/* Appends the objects of what a group covers to refs: parts of blocks or of groups below, or
- * couplings. Returns how many there are then. */
+/* Appends the objects that a group covers to refs: parts of blocks or of groups below, or
+ * couplings. Returns the new number of objects. */
 static size_t add_covered(const struct flow_state *state, const struct group_args *args,
                           bool couplings, size_t n)
 {
@@ -159,8 +159,8 @@ static void add_dots(const struct group *group, const duite_param *param, double
     }
 }
 
-/* Solves for the motion. Adds its share of q.s to the dots, and the right side of what covers the
- * group to the part. */
+/* Solves for the motion. Adds its share of q.s to the dots, and the group's right side on the next
+ * level to the part. */
 static void solve_group(const struct group *group, const double *factor, const duite_param *param,
                         double *motion, double *part)
 {
@@ -183,7 +183,7 @@ static void solve_group(const struct group *group, const double *factor, const d
 
 enum { SOLVE_MOTION, SOLVE_PART, SOLVE_LIFT, SOLVE_FACTOR, SOLVE_COVERED };
 
-/* param: of what is covered. */
+/* param: the parts of the cover. */
 static void solve_or_sum(const duite_call *call, bool moves, const duite_param *param)
 {
     const struct group group = group_of(call, duite_in(call, SOLVE_LIFT, double));

@@ -1,8 +1,8 @@
 /* A pass reads q of neighbours on the same rank from their halos. For each other rank a block has
- * one packed halo, with the rows that blocks there need. So a message holds nothing else. A task of
- * its own packs it, since the neighbours' passes still read its other half. Which it is depends on
- * the homes that the blocks have when a run begins and changes no result. All ranks know the rows
- * of all packed halos. */
+ * one packed halo, with the rows that blocks there need. So messages hold only these rows. A
+ * separate task packs the halo, since the neighbours' passes still read its other half. The choice
+ * between the two halos depends on the blocks' homes at the run's begin and changes no result. All
+ * ranks know the rows of all packed halos. */
 #include "cloth/flow/bodies.h"
 #include "cloth/flow/solver/solve.h"
 
@@ -45,7 +45,7 @@ void flow_halo_free(struct flow_state *state)
     state->flow->packed_halo = NULL;
 }
 
-/* Neighbour s of block b, for who reads: the neighbour's place among all, its rows. */
+/* Neighbour s of block b, for a reader: the neighbour's place among all, its rows. */
 struct reader {
     size_t neighbour;
     const uint32_t *row;
@@ -68,7 +68,7 @@ static struct reader reader_of(struct flow_state *state, uint32_t b, uint32_t ne
 }
 
 /* Numbers the rows of block b that blocks of this home read, and lists their places in its halo in
- * `row`, which has room for them. Returns how many there are. */
+ * `row`, which has room for them. Returns their number. */
 static uint32_t number_rows(struct flow_state *state, uint32_t b, int home, uint32_t *row)
 {
     const struct flow_table *t = state->flow->tables.block + b;
@@ -124,7 +124,7 @@ static void read_halos(struct flow_state *state, uint32_t b, uint32_t neighbour)
         state->packed.read[i][reader.neighbour] = state->block[b].halo_q[i];
 }
 
-/* Whether neighbour s of a block is the first one with its home. */
+/* True if neighbour s of a block is the first one with its home. */
 static bool is_first(const struct flow_packed *packed, const struct flow_table *t, uint32_t s)
 {
     for (uint32_t i = 0; i < s; i++)

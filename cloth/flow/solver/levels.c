@@ -1,10 +1,10 @@
-/* The coarse part by groups (cloth/solve/levels.h), where patches are too many for one factor: what
- * groups are, and what comes before and behind their tasks (groups.c). A group's objects live with
- * its first block.
+/* The coarse part by groups (cloth/solve/levels.h), for more patches than one factor can take: the
+ * groups, and the work before and after their tasks (groups.c). A group's objects live with its
+ * first block.
  *
- * In reading order: objects; how nodes lie in their groups, once a run; where the numbers of a
- * node are; the top, which the task of the scalars solves as it does for patches where they are
- * few; what a pass reads, which adds up what all levels have of the motion of a patch. */
+ * In reading order: objects; the lifts of nodes into their groups, once a run; the places of a
+ * node's numbers; the top, which the task of the scalars solves like few patches; the motions that
+ * a pass reads and sums over all levels for each patch. */
 #include "cloth/flow/solver/levels.h"
 #include "cloth/flow/solver/solver.h"
 
@@ -73,7 +73,7 @@ void flow_levels_make(struct flow_state *state)
             make_group(state, level, g);
 }
 
-/* ---- How nodes lie in their groups ---- */
+/* ---- The lifts of nodes into their groups ---- */
 
 FLOW_KERNEL(patch_frame, FLOW_NO_PART, struct flow_block_args, (R(table), W(patch_frame)))
 static int patch_frame_body(const duite_call *call, const struct patch_frame_fields *on)
@@ -86,7 +86,7 @@ static int patch_frame_body(const duite_call *call, const struct patch_frame_fie
     return 0;
 }
 
-/* Of a node of a level, from those of all patches. */
+/* The frame of a node of a level, from the frames of all patches. */
 static struct solve_frame frame_of(const struct flow *flow, const duite_param *patch,
                                    uint32_t level, uint32_t node)
 {
@@ -128,7 +128,7 @@ int flow_levels_initialise(struct flow_state *state)
     return code ? code : flow_fork_one(state, &flow_kernel_lift, &args);
 }
 
-/* ---- Where the numbers of a node are ---- */
+/* ---- The places of a node's numbers ---- */
 
 uint32_t flow_levels_holder(const struct flow *flow, uint32_t level, uint32_t node)
 {
@@ -164,9 +164,9 @@ int flow_levels_fork_top(struct flow_state *state, const struct flow_kernel *ker
     return duite_fork(state->rt, &kernel->task, args, n, state->refs);
 }
 
-/* ---- What a pass reads ---- */
+/* ---- The motions that a pass reads ---- */
 
-/* Marks the groups that cover what holds the patches of a block. */
+/* Marks the groups that cover the patches of a block, on all levels. */
 static void mark_block(struct flow_state *state, uint32_t block)
 {
     const struct flow *flow = state->flow;

@@ -4,30 +4,29 @@
 #include "cloth/flow/bodies.h"
 #include "cloth/flow/solver/solver.h"
 
-/* The coarse part by groups, on as many levels as there are (flow->n_levels): cloth/solve/levels.h.
- * Without levels nothing is done. Collective, but for what is local; they return what the runtime
- * does. */
+/* The coarse part by groups (cloth/solve/levels.h), on flow->n_levels levels. Without levels these
+ * functions do nothing. Collective unless they say local; they return the runtime's code. */
 
-/* Memory of groups: its error is in flow->trouble. Their objects, when those of blocks are made;
- * the next get returns a failure. Local. */
+/* Take and free the memory of groups; errors go to flow->trouble. Make their objects, when those of
+ * blocks are made; the next get returns a failure. Local. */
 int flow_levels_take(struct flow_state *state);
 void flow_levels_free(struct flow_state *state);
 void flow_levels_make(struct flow_state *state);
 
-/* Fork the tasks of all groups: once a run, how nodes lie in their groups; in each step the
- * factors; before the first pass of a solve, and after a pass that is recorded, their motions. */
+/* Fork the tasks of all groups: the lifts of nodes into their groups, once a run; the factors, in
+ * each step; the motions, before the first pass of a solve; the motions after a recorded pass. */
 int flow_levels_initialise(struct flow_state *state);
 int flow_levels_factor(struct flow_state *state);
 int flow_levels_start(struct flow_state *state);
 int flow_levels_solve(struct flow_state *state);
 
-/* Forks a kernel on top, whose last parameter is ALL of `part`, or of `coupling`: it gets those of
- * the groups on the highest level in their place, if there are levels. */
+/* Forks a kernel on top. Its last parameter is ALL of `part`, or of `coupling`. With levels it gets
+ * those of the highest level's groups instead. */
 int flow_levels_fork_top(struct flow_state *state, const struct flow_kernel *kernel,
                          const void *args, bool couplings);
 
 /* Appends to the n objects in state->refs the motions that a pass over a block needs, of its own
- * patches, its neighbours' and those that ties join it with. Returns how many there are then. */
+ * patches, its neighbours' and those that ties join it with. Returns the new number of objects. */
 size_t flow_levels_seen(struct flow_state *state, uint32_t block, size_t n);
 
 /* The graph of the nodes on top: patches, or groups of the highest level. Local. */
@@ -44,8 +43,8 @@ static inline struct flow_graph flow_levels_graph(const struct flow *flow)
     return (struct flow_graph){top->n_groups, top->group_first, top->group_neighbour};
 }
 
-/* Of a node of a level, or of one on top: whose parameter has its numbers, where its coupling
- * begins there, its right side of a part. Local. */
+/* For a node of a level or on top: the holder of its numbers, the begin of its coupling there, its
+ * right side in a part. Local. */
 uint32_t flow_levels_holder(const struct flow *flow, uint32_t level, uint32_t node);
 size_t flow_levels_coupling_at(const struct flow *flow, uint32_t level, uint32_t node);
 const double *flow_levels_right(const struct flow *flow, uint32_t level, uint32_t node,

@@ -1,10 +1,10 @@
-/* A pass of conjugate gradients over a block (cloth/solve/cg.h): one body, with a preconditioner or
- * without, where z is r and s is q. A block keeps z and p of its ghosts, the rows of others that
- * its cut entries end at, and changes them as their owner does: of a neighbour it reads rows of s
- * only. What a pass sums is its part: without a preconditioner a contribution to the sums of all
- * blocks; with one the block's own, with the coarse right side P' q behind the dots.
+/* A pass of conjugate gradients over a block (cloth/solve/cg.h): one body with and without a
+ * preconditioner; without one z is r and s is q. A block keeps z and p of its ghosts, the other
+ * ends of its cut entries. It changes them as their owner does, so it reads only rows of s of a
+ * neighbour. The sums of a pass are its part. Without a preconditioner they go to the sums of all
+ * blocks. With one they are the block's own, with the coarse right side P' q behind the dots.
  *
- * In reading order: what a solve begins with, a pass by its phases, its kernels, the forks. */
+ * In reading order: the begin of a solve, a pass by its phases, its kernels, the forks. */
 #include "cloth/flow/solver/levels.h"
 #include "cloth/flow/solver/solve.h"
 #include "cloth/flow/solver/solver.h"
@@ -29,7 +29,7 @@ struct pass {
     const duite_param *tied_q, *tied_basis; /* of the blocks of these; tied_basis: if coarse */
 };
 
-/* Shows the neighbours s of the new q, and sums what a preconditioner leaves of that. */
+/* Shows the neighbours s of the new q, and sums the preconditioner's dot. */
 static void show_product(struct pass *pass, double dots[SOLVE_DOTS])
 {
     const struct solve_rows *rows = &pass->rows;
@@ -39,9 +39,9 @@ static void show_product(struct pass *pass, double dots[SOLVE_DOTS])
     flow_pack_halo(&pass->table, rows->s, pass->halo);
 }
 
-/* ---- What a solve begins with ---- */
+/* ---- The begin of a solve ---- */
 
-/* Its vectors, and what neighbours read of them. */
+/* Makes the vectors, and the halo that neighbours read. */
 static void begin(struct pass *pass, double *ghosts, size_t n_ghosts)
 {
     const struct flow_table *t = &pass->table;
@@ -113,7 +113,7 @@ static int cg_guess_body(const duite_call *call, const struct cg_guess_fields *o
 
 /* ---- A pass, by its phases ---- */
 
-/* Where ghosts of neighbour s are in what this block reads of the neighbour. */
+/* The places of neighbour s's ghosts in the halo that this block reads. */
 static const uint32_t *places_of(const struct pass *pass, uint32_t s)
 {
     const struct flow *flow = flow_of(pass->call);
@@ -172,7 +172,7 @@ static struct solve_cut cut_of(const struct pass *pass)
     return cut;
 }
 
-/* Adds what stops by norms ask for to the dots of a pass. */
+/* Adds the norms that some stops need to the dots of a pass. */
 static void add_norms(const struct pass *pass, double dots[SOLVE_DOTS])
 {
     const struct flow_table *t = &pass->table;
@@ -342,7 +342,7 @@ static int cg_pass_preconditioned_body(const duite_call *call,
 
 /* ---- Forks ---- */
 
-/* The vectors of blocks. */
+/* Forks the vectors of blocks. */
 static int fork_start(struct flow_state *state, uint32_t first, uint32_t end)
 {
     struct flow_block_args args;
@@ -370,8 +370,7 @@ int flow_pass_start(struct flow_state *state, uint32_t first, uint32_t end, doub
     return code;
 }
 
-/* What it reads of the neighbours are their halos or packed ones (halo.c). Behind all else come
- * motions of groups, if there are any. */
+/* Reads the neighbours' halos or packed ones (halo.c). Motions of groups, if any, come last. */
 static int fork_block(struct flow_state *state, const struct flow_block_args *args)
 {
     const struct flow_table *t = state->flow->tables.block + args->block;
@@ -387,8 +386,8 @@ static int fork_block(struct flow_state *state, const struct flow_block_args *ar
     return duite_fork(state->rt, &kernel->task, args, n, state->refs);
 }
 
-/* Passes go to and fro over the blocks: those that come last in one, whose rows the caches still
- * have, come first in the next. */
+/* Passes go to and fro over the blocks: the last blocks of one, still in caches, come first in the
+ * next. */
 int flow_pass_fork(struct flow_state *state)
 {
     const uint32_t n = state->flow->tables.n_blocks;

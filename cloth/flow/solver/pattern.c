@@ -1,5 +1,5 @@
-/* The pattern of the coarse matrix (coarse.c): which patches anything joins, ties that come later
- * too. It is the same on every rank, and is made once a run. */
+/* The pattern of the coarse matrix (coarse.c): the patches that anything joins, later ties too. It
+ * is the same on every rank, and is made once a run. */
 #include "cloth/flow/setup/setup.h"
 #include "cloth/flow/solver/levels.h"
 #include "cloth/flow/solver/solver.h"
@@ -19,7 +19,7 @@ static uint32_t *add_joined(const struct flow *flow, uint32_t joins, uint32_t k,
     return to;
 }
 
-/* Those of patch k of block b, ascending. Returns the end. */
+/* Appends the neighbours of patch k of block b, ascending. Returns the end. */
 static uint32_t *add_neighbours(const struct flow *flow, uint32_t b, uint32_t k, uint32_t *to)
 {
     const struct flow_table *t = flow->tables.block + b;
@@ -71,7 +71,7 @@ static uint32_t *insert_tied(const struct flow *flow, uint32_t b, uint32_t p, ui
     return end;
 }
 
-/* How many neighbours all patches can have. */
+/* The most neighbours that all patches can have. */
 static size_t max_patch_neighbours(const struct flow *flow)
 {
     size_t neighbours = 0;
@@ -82,7 +82,7 @@ static size_t max_patch_neighbours(const struct flow *flow)
     return neighbours * flow->patches * flow->patches;
 }
 
-/* Returns whether it has memory for the graph of all patches. */
+/* Returns false without memory for the graph of all patches. */
 static bool join_patches(struct flow *flow)
 {
     const uint32_t n_blocks = flow->tables.n_blocks;

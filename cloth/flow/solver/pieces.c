@@ -1,14 +1,13 @@
-/* What a solve leaves of a free piece's momentum. A solve ends with a residual r = b - A dv, and
- * the sum of r over the rows of a piece that nothing holds is momentum that the step lost. The
- * entries of A cancel in that sum, so that it is of the rows alone: b - D dv - w x dv, D the
- * diagonal besides entries, w the antisymmetric part (cloth/solve/format.h). On a uniform motion c
- * a row of A gives D c - w x c, and w cancels over a piece. So the c that takes the sum away is
- * exact, and needs no iteration. */
+/* Restores the momentum that a solve loses to free pieces. A solve ends with a residual r = b - A
+ * dv. The sum of r over the rows of a free piece is momentum that the step lost. The entries of A
+ * cancel in that sum. It has only terms of rows: b - D dv - w x dv, D the diagonal besides entries,
+ * w the antisymmetric part (cloth/solve/format.h). On a uniform motion c a row of A gives D c - w x
+ * c, and w cancels over a piece. So the c that removes the sum is exact, and needs no iteration. */
 #include "cloth/flow/solver/solver.h"
 #include "cloth/flow/step/step.h"
 
-/* What is summed over a piece: the lost momentum, its antisymmetric part, its D, kg, and how many
- * of its rows a slider or the program's filter holds. */
+/* Sums over a piece: the lost momentum, the antisymmetric part, D, kg, and the number of rows that
+ * a slider or the program's filter holds. */
 enum { LOST, TURN = 3, MASS = 6, HELD };
 
 static bool is_held(const struct flow_table *t, uint32_t row)
@@ -22,8 +21,8 @@ static bool is_held(const struct flow_table *t, uint32_t row)
 FLOW_KERNEL(piece_sums, FLOW_CG, struct flow_block_args,
             (R(table), R(f), R(a), R(dv), SUM(pieces), IF_MADE(groups)))
 
-/* The sums that a piece takes part in, from 1: pieces that ties join are one. 0: none, for what a
- * pin holds. */
+/* The number of a piece's sums, from 1; pieces joined by ties share them. 0: none, as a pin holds
+ * the piece. */
 static uint64_t group_of(const uint64_t *groups, uint32_t piece)
 {
     return groups ? groups[piece - 1] : piece;
@@ -55,8 +54,8 @@ static int piece_sums_body(const duite_call *call, const struct piece_sums_field
     return 0;
 }
 
-/* c of m c + w x c = l: c = (m l - w x l + (w.l / m) w) / (m^2 + w.w). Zero for a piece of which a
- * row is held. */
+/* c of m c + w x c = l: c = (m l - w x l + (w.l / m) w) / (m^2 + w.w). Zero if a row of the piece
+ * is held. */
 static void shift_of(const double *sums, phys_vec *shift)
 {
     const phys_vec l = {sums[LOST], sums[LOST + 1], sums[LOST + 2], 0};

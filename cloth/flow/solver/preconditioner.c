@@ -1,12 +1,11 @@
-/* Preconditioners of a solve: M is none, of each block alone (cloth/solve/local.h), or that with a
+/* Preconditioners of a solve: none, one of each block alone (cloth/solve/local.h), or that with a
  * coarse part (coarse.c).
  *
- * In reading order: which one a run has, the factor of a block in each step, what a
- * pass does with it. */
+ * In reading order: the choice for a run, the factor of a block in each step, its use in a pass. */
 #include "cloth/flow/solver/solve.h"
 #include "cloth/flow/solver/solver.h"
 
-/* ---- Which one ---- */
+/* ---- The choice ---- */
 
 void flow_preconditioner_choose(struct flow *flow, uint32_t n_blocks)
 {
@@ -41,7 +40,7 @@ static int factor_body(const duite_call *call, const struct factor_fields *on)
     struct solve_cut cut = flow_table_cut_entries(t);
     cut.ties = &solved;
     const int tried = solve_local_factor(&t->matrix, &cut, values, local, on->factor);
-    /* The object has room for entries that are there twice, too (flow_table): zeros. */
+    /* The object also has room for double entries (flow_table): zeros. */
     const size_t used = solve_local_doubles(t->n, t->matrix.row[t->n], local);
     memset(on->factor + used, 0,
            (solve_local_doubles(t->n, t->n_entries, local) - used) * sizeof *on->factor);

@@ -3,38 +3,38 @@
 
 #include "cloth/flow/bodies.h"
 
-/* What the files of the solver share. In reading order: system.c makes the system of a step. cg.c
+/* Shared by the files of the solver. In reading order: system.c makes the system of a step. cg.c
  * solves it, in rounds of passes (pass.c), with a preconditioner (preconditioner.c, coarse.c) or
- * none. halo.c and ties.c are what a pass reads of other blocks. pieces.c corrects the momentum of
+ * none. halo.c and ties.c bring other blocks' data to a pass. pieces.c corrects the momentum of
  * free pieces after a solve.
  *
  * Patch k of block b has the number flow->patches * b + k. */
 
 /* ---- Tasks of a solve. Collective. They return 0 or what duite_fork returned ---- */
 
-/* The first forks the vectors of blocks first to before end, before the first pass, and what
- * neighbours read of them. They are made of `guess` times dv, or of nothing (0). The second forks
- * pass number state->pass of a recorded round on all blocks. (pass.c) */
+/* The first forks the vectors of blocks first .. end - 1 before the first pass, and the halos that
+ * neighbours read. They begin with `guess` times dv, or with zero (0). The second forks pass number
+ * state->pass of a recorded round on all blocks. (pass.c) */
 int flow_pass_start(struct flow_state *state, uint32_t first, uint32_t end, double guess);
 int flow_pass_fork(struct flow_state *state);
 
-/* Fork what shows a block's corners of ties, if it has any into other blocks: what the first pass
- * of a solve reads, or after a pass of a recorded round the next one. What shows the coarse
- * functions there, of all blocks, once a solve. (ties.c) */
+/* Fork the tasks that show a block's corners of ties into other blocks, if it has any. The first
+ * serves the first pass of a solve, the second the next pass of a recorded round. The third shows
+ * the coarse functions there, of all blocks, once a solve. (ties.c) */
 int flow_ties_pack_start(struct flow_state *state, uint32_t block, bool guess);
 int flow_ties_pack(struct flow_state *state, uint32_t block);
 int flow_ties_show_basis(struct flow_state *state);
 
-/* Fork what comes of a step's matrix before its solve: the coarse factor; the factors of blocks.
- * Nothing where there is none. (coarse.c, preconditioner.c) */
+/* Fork the factors of a step's matrix before its solve: the coarse one; those of blocks. Each does
+ * nothing if there is none. (coarse.c, preconditioner.c) */
 int flow_coarse_start(struct flow_state *state);
 int flow_preconditioner_factor(struct flow_state *state, uint32_t first, uint32_t end);
 
-/* Fork what takes out of dv what a solve left of the momentum of free pieces, if there are any.
- * (pieces.c) */
+/* Forks the tasks that correct dv by the momentum that a solve lost to free pieces, if there are
+ * any. (pieces.c) */
 int flow_pieces_fork(struct flow_state *state);
 
-/* The pattern of the coarse factor, in memory of the flow: all ranks agree on whether they have it.
+/* The pattern of the coarse factor, in memory of the flow; all ranks have it, or none.
  * (pattern.c) */
 int flow_coarse_prepare(struct flow_state *state);
 void flow_coarse_free(struct flow *flow);
@@ -54,14 +54,14 @@ struct flow_preconditioner {
     size_t n_seen;
 };
 
-/* s = M^-1 q but for the coarse part, of which `right` gets the right side, P' q of each patch.
+/* s = M^-1 q without the coarse part; `right` gets the coarse right side, P' q of each patch.
  * Returns q.s. (preconditioner.c) */
 double flow_precondition(const struct flow_preconditioner *m, const phys_vec *q, phys_vec *s,
                          double *right);
 
-/* Adds the coarse part to s. The first half of a pass (solve_advance) for the ghosts of one
- * neighbour, with that part; halo: of its s. `at`: of all ghosts of the block, places in what is
- * read. (coarse.c) */
+/* The first adds the coarse part to s. The second is the first half of a pass (solve_advance) for
+ * the ghosts of one neighbour, with that part; halo: of its s; `at`: of all ghosts of the block,
+ * their places in the halos read. (coarse.c) */
 void flow_coarse_prolong(const struct flow_preconditioner *m, phys_vec *s);
 void flow_coarse_advance_ghosts(const struct flow_preconditioner *m, uint32_t neighbour,
                                 const struct solve_scalars *scalars, const double *halo,
@@ -73,14 +73,15 @@ void flow_coarse_advance_ties(const struct flow_preconditioner *m, const struct 
 /* P' q of each patch. */
 void flow_coarse_restrict(const struct flow_preconditioner *m, const phys_vec *q, double *right);
 
-/* Whether a pass with these scalars makes a new q, for which there is a coarse part of s. */
+/* True if a pass with these scalars makes a new q, and so needs a coarse part of s. */
 static inline bool flow_coarse_moves(const struct solve_scalars *scalars)
 {
     return scalars->phase == SOLVE_ON || scalars->phase == SOLVE_AGAIN;
 }
 
-/* In the task of the scalars: the coarse part of s, of the parts of all blocks, or with levels of
- * the groups on top; how many parts there are. Returns its share in q.s. (coarse.c) */
+/* In the task of the scalars: the number of parts, those of all blocks or, with levels, of the
+ * groups on top; then the coarse part of s from these parts. Returns its share in q.s.
+ * (coarse.c) */
 static inline uint32_t flow_parts(const struct flow *flow)
 {
     return flow->n_levels ? flow->level[flow->n_levels - 1].n_groups : flow->tables.n_blocks;
@@ -90,7 +91,7 @@ double flow_coarse_motion(const struct flow *flow, const double *factor, const d
 
 /* ---- Sizes ---- */
 
-/* What a preconditioned pass leaves of its block: the dots, then the coarse right side of each
+/* The part of a block after a preconditioned pass: the dots, then the coarse right side of each
  * patch. */
 enum { FLOW_PART_COARSE = SOLVE_DOTS };
 static inline size_t flow_part_doubles(const struct flow *flow)
@@ -107,11 +108,11 @@ static inline size_t flow_motion_doubles(const struct flow *flow)
 /* The patch of a row of a block. */
 uint32_t flow_patch_of(const struct flow *flow, uint32_t block, uint32_t row);
 
-/* Whether the pattern has room for what couples two patches, or a patch with itself. */
+/* True if the pattern has room for the coupling of two patches, or of a patch with itself. */
 bool flow_patches_joined(const struct flow *flow, uint32_t p, uint32_t q);
 
-/* For patches p <= q: the number of 9 x 9 blocks before theirs in the coupling of p's block. That
- * has for each patch its own block and those with its neighbours behind it, of which q is one. */
+/* For patches p <= q: the number of 9 x 9 blocks before theirs in the coupling of p's block. The
+ * coupling has each patch's own block, then those with its later neighbours, q among them. */
 size_t flow_coupling_at(const struct flow *flow, uint32_t p, uint32_t q);
 
 #endif

@@ -8,7 +8,7 @@
 
 #include <string.h>
 
-/* What is made in a body. */
+/* The making of a system in a body. */
 struct making {
     const duite_call *call;
     const struct flow_table *t;
@@ -19,8 +19,8 @@ struct making {
     struct phys_pair *sums; /* NULL: springs are the entries */
 };
 
-/* Writes the diagonal of the matrix and a filter that lets all pass until the one of
- * the step comes (flow_contact_constrain); what follows is for the values. */
+/* Writes the diagonal of the matrix and an open filter, which the step's filter replaces
+ * (flow_contact_constrain). Returns the place of the values. */
 static void *begin_matrix(const duite_call *call, const struct flow_table *t, double h,
                           phys_vec *matrix)
 {
@@ -38,8 +38,8 @@ static void *begin_matrix(const duite_call *call, const struct flow_table *t, do
 
 /* ---- Springs ---- */
 
-/* The springs of a block, or some of them, into values. Those into neighbour s; UINT32_MAX: inner.
- */
+/* Puts springs of a block, all or some, into values. s: the neighbour that they lead to;
+ * UINT32_MAX: inner ones. */
 static void some_springs(const struct making *m, const struct phys_springs *springs, uint32_t s,
                          phys_vec *value)
 {
@@ -82,8 +82,8 @@ static void all_springs(const struct making *m)
 
 /* ---- Both ---- */
 
-/* b of what does not come with the matrix: unless forces are in it, those of the outside and of
- * kinds of elements that have no system. */
+/* Begins b with the forces that do not come with the matrix, unless b has them: loads, drag, and
+ * element kinds without a system. */
 static void begin_right_side(const struct making *m, const struct phys_sight *sight)
 {
     const struct flow_table *t = m->t;
@@ -99,7 +99,7 @@ static void begin_right_side(const struct making *m, const struct phys_sight *si
         flow_elements_stiffness(m->call, t, m->h * m->h, sight, m->b);
 }
 
-/* The values from the sums. The object has room for what is joined twice, too: zeros. */
+/* Makes the values from the sums. The object also has room for double entries: zeros. */
 static void end_matrix(const struct making *m, const struct solve_cut *cut)
 {
     const struct flow_table *t = m->t;
@@ -149,7 +149,7 @@ static struct phys_pair *sums_of(const duite_call *call, const struct flow_table
     return t->format == SOLVE_SPRINGS ? NULL : flow->sums + call->worker * flow->n_sums;
 }
 
-/* push: h, or 0 where the forces are in b. b: NULL, and push 0: the matrix alone. */
+/* push: h, or 0 if b has the forces. b: NULL, and push 0: the matrix alone. */
 static void make_system(const duite_call *call, const struct flow_table *t,
                         const struct flow_step_args *step, double push,
                         const struct flow_view *view, phys_vec *b, phys_vec *matrix)
@@ -177,7 +177,7 @@ static int system_body(const duite_call *call, const struct system_fields *on)
     return 0;
 }
 
-/* Where f has the forces. */
+/* The system, if f has the forces. */
 FLOW_KERNEL(system_of_forces, FLOW_MATRIX, struct flow_step_args,
             (R(table), R(x), R(v), RW(f), W(a), NEIGHBOURS(halo_x), NEIGHBOURS(halo_v),
              IF_MADE(tie_table), IF_MADE(contact_rows), TIED(tie_halo)))

@@ -1,11 +1,10 @@
-/* Ties in a solve (cloth/flow/state/ties.h): those that it reads in every pass; and what it shows
- * of their corners: rows of s to the blocks that they lead to, after each pass, and once a solve
- * the coarse functions there. */
+/* Ties in a solve (cloth/flow/state/ties.h): the ties that every pass reads, and the corners that
+ * blocks show each other: rows of s after each pass, coarse functions once a solve. */
 #include "cloth/flow/solver/solver.h"
 
-/* ---- Those that add something ---- */
+/* ---- Ties that add something ---- */
 
-/* How many there are, then what there is room for. */
+/* Their number, then arrays with room for all ties. */
 struct acting {
     uint64_t *n;
     phys_vec *value;
@@ -13,11 +12,11 @@ struct acting {
     uint32_t (*corner)[SOLVE_TIE_CORNERS];
 };
 
-/* Their rows are behind the values of all. */
+/* Finds them behind the values of all ties. */
 static struct acting find_acting(const struct flow_ties *ties, const phys_vec *value)
 {
     const size_t room = ties->room.ties;
-    phys_vec *rows = (phys_vec *)value + room; /* who only reads does not write */
+    phys_vec *rows = (phys_vec *)value + room; /* readers do not write */
     return (struct acting){(void *)rows, rows + 1, (void *)(rows + 1 + room),
                            (void *)(rows + 1 + 2 * room)};
 }
@@ -57,9 +56,9 @@ struct solve_ties flow_ties_solved(const struct flow_ties *ties, const phys_vec 
     };
 }
 
-/* ---- What it shows ---- */
+/* ---- Corners that are shown ---- */
 
-/* Rows that others see; zero where there are none. */
+/* Packs the rows that others see; zeros in spare room. */
 static void pack(const struct flow_ties *ties, const phys_vec *y, double *to)
 {
     solve_pack(ties->n_shown, ties->shown, y, to);
@@ -67,7 +66,7 @@ static void pack(const struct flow_ties *ties, const phys_vec *y, double *to)
            3 * (flow_ties_rows(ties) - ties->n_shown) * sizeof *to);
 }
 
-/* What the first pass of a solve reads; q: what the fork gives for it. */
+/* For the first pass of a solve; the fork puts another vector in place of q. */
 FLOW_KERNEL(tie_pack, FLOW_CG, struct flow_block_args, (R(tie_table), R(q), W(tie_q)))
 static int tie_pack_body(const duite_call *call, const struct tie_pack_fields *on)
 {
@@ -77,7 +76,7 @@ static int tie_pack_body(const duite_call *call, const struct tie_pack_fields *o
     return 0;
 }
 
-/* What the next one does, when the pass with these scalars is over. */
+/* For the next pass, after the one with these scalars. */
 FLOW_KERNEL(tie_pack_pass, FLOW_CG, struct flow_block_args,
             (R(tie_table), R(scalars), R(dv), R(q), W(tie_q_next)))
 static int tie_pack_pass_body(const duite_call *call, const struct tie_pack_pass_fields *on)
@@ -107,7 +106,7 @@ static bool is_tied(const struct flow_state *state, uint32_t block)
     return first && first[block] < first[block + 1];
 }
 
-/* Where there is a preconditioner, s is what others need of q. */
+/* With a preconditioner others need s, without one q. */
 static enum flow_field_id product_of(const struct flow_state *state)
 {
     return flow_is_preconditioned(state->flow) ? FLOW_FIELD_s : FLOW_FIELD_q;

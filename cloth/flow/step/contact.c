@@ -1,5 +1,5 @@
-/* What holds rows in the solve, and what puts them out of obstacles after it. A row that a slider
- * holds is filtered by it. Then the program's own filter has its part. */
+/* The filter that holds rows in the solve, and the projection out of obstacles after it. Sliders
+ * filter their rows; the program's own filter follows. */
 #include "cloth/contact/meet.h"
 #include "cloth/flow/contact/maps.h"
 #include "cloth/flow/step/sliders.h"
@@ -58,7 +58,7 @@ static int constrain_body(const duite_call *call, const struct constrain_fields 
     const struct flow_table table = flow_table_in(call, on->table), *t = &table;
     for (uint32_t i = 0; i < t->n; i++) {
         solve_filter(on->filter + i, on->f + i);
-        solve_filter(on->filter + i, on->f + i); /* once leaves a rounding of what it takes away */
+        solve_filter(on->filter + i, on->f + i); /* one pass would leave a rounding error */
     }
     memcpy(on->a + flow_diagonal_rows(t), on->filter, t->n * sizeof *on->filter);
     return 0;
@@ -70,7 +70,7 @@ int flow_contact_constrain(struct flow_state *state)
     return flow_fork_each(state, &flow_kernel_constrain, &args);
 }
 
-/* ---- After a step: what is inside an obstacle is put on it ---- */
+/* ---- After a step: rows inside an obstacle are put on it ---- */
 
 /* An obstacle as the rows of a block meet it. */
 struct meeting {
@@ -83,7 +83,7 @@ struct meeting {
     phys_vec *x, *v;
 };
 
-/* Whether a row's cloth meets it; looked for from the cloth of the row before. */
+/* True if a row's cloth meets the obstacle. The search begins at the cloth of the row before. */
 static bool is_met(const struct meeting *m, uint32_t row, uint32_t *cloth)
 {
     if (!m->apart->apart)
@@ -92,7 +92,7 @@ static bool is_met(const struct meeting *m, uint32_t row, uint32_t *cloth)
     return !contact_are_apart(m->apart, *cloth, m->other);
 }
 
-/* Rows from .. to - 1, those of cloths that meet it. Returns how many were put out. */
+/* Puts out rows from .. to - 1 of cloths that meet the obstacle. Returns how many it moved. */
 static size_t project(const struct meeting *m, uint32_t from, uint32_t to)
 {
     size_t touched = 0;

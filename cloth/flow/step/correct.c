@@ -10,7 +10,7 @@
 
 #include "cloth/flow/integrators/integrator.h"
 
-/* ---- Where the rounds begin ---- */
+/* ---- The begin of the rounds ---- */
 
 struct edge_args {
     union {
@@ -20,7 +20,7 @@ struct edge_args {
     double t; /* s: x = X + t v */
 };
 
-/* What others need of the rows of the halo. */
+/* Writes the data of halo rows that other blocks need. */
 static void show_ends(const duite_call *call, const struct flow_table *t, double time,
                       const phys_vec *base, const phys_vec *begin, phys_vec *ends)
 {
@@ -64,7 +64,7 @@ static int edge_begin_body(const duite_call *call, const struct edge_begin_field
 
 /* ---- A round ---- */
 
-/* What a round has of a block. */
+/* A block in a round. */
 struct block {
     const struct flow_table *t;
     struct solve_correction correction;
@@ -170,8 +170,8 @@ static void correct_cut(struct block *block, const struct shown *shown)
     }
 }
 
-/* Edges inside of a block that were all within the tolerance still are, unless a row moved. calm:
- * whether they were, and the largest excess that they have. */
+/* Edges inside a block that were all within the tolerance still are, unless a row moved. calm: 1 if
+ * they were, and their largest excess. */
 static void correct_rest(struct block *block, double calm[2])
 {
     const struct solve_excess cut = block->excess;
@@ -185,7 +185,7 @@ static void correct_rest(struct block *block, double calm[2])
     block->excess.corrected = cut.corrected > 0 || !(calm[0] > 0);
 }
 
-/* The halo that is written has x of before while the edges between blocks are corrected. */
+/* Until the edges between blocks are corrected, the written halo has the old x. */
 FLOW_KERNEL(edge_round, FLOW_CORRECTION, struct flow_block_args,
             (R(table), RW(x), R(kept_x), R(edge_base), RW(edge_moved), W(edge_x_next),
              RW(edge_calm), R(edge_rounds), MAX(edge_excess), NEIGHBOURS(edge_x),
@@ -242,7 +242,7 @@ static int build(duite *rt, void *context)
     return code;
 }
 
-/* ---- When they are over ---- */
+/* ---- The end of the rounds ---- */
 
 static void note(const struct solve_rounds *rounds, double *status)
 {

@@ -1,5 +1,5 @@
 /* Elements see rows of neighbours as ghosts, which a task takes from the halos where it runs; each
- * worker has room for those of one block. Kinds are worked on in their order, each in that of its
+ * worker has room for those of one block. Kinds come in their order, elements in that of their
  * list. */
 #include "cloth/flow/bodies.h"
 
@@ -39,7 +39,7 @@ struct phys_sight flow_elements_see(const duite_call *call, const struct flow_ta
     return sight;
 }
 
-/* Whether its matrix comes with the right side. */
+/* True if a kind makes its matrix with its right side. */
 static bool has_system(int kind)
 {
     return element_kinds[kind]->system != NULL;

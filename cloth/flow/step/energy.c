@@ -1,4 +1,4 @@
-/* Energies are of the state that the tasks forked so far leave, and change nothing of it. A spring
+/* Energies are of the state that the tasks forked so far leave, and do not change it. A spring
  * between two blocks gives half of its own to each. Sums are contributions, so that they are the
  * same for any ranks and threads. */
 #include "cloth/flow/step/sliders.h"
@@ -36,7 +36,7 @@ static int energy_body(const duite_call *call, const struct energy_fields *on)
     return 0;
 }
 
-/* f becomes v and half a kick more: the velocity where x is, of steps that hold them half a step
+/* f becomes v plus half a kick: the velocity at the time of x, for steps that hold them half a step
  * apart. */
 FLOW_KERNEL(level, FLOW_NO_PART, struct flow_step_args, (R(table), R(v), RW(f)))
 static int level_body(const duite_call *call, const struct level_fields *on)
@@ -49,8 +49,8 @@ static int level_body(const duite_call *call, const struct level_fields *on)
     return 0;
 }
 
-/* By symplectic Euler x moved with v: it is the velocity half a step before. With that at x the
- * energy is off by the square of h only. */
+/* Symplectic Euler moved x with v: v is the velocity half a step before x. With v at the time of x
+ * the energy is off only by the square of h. */
 static int fork_level(struct flow_state *state, struct flow_step_args args)
 {
     const int code = flow_fork_each(state, &flow_kernel_force, &args);
@@ -69,7 +69,7 @@ int flow_energies(struct flow_state *state, struct flow_step_args args, enum flo
     return code ? code : flow_fork_each_as(state, &flow_kernel_energy, &args, as);
 }
 
-/* Whether energies are looked at after the step under way. */
+/* True if energies are checked after the step under way. */
 static bool looks(const struct flow_state *state)
 {
     const struct model *model = state->flow->model;
@@ -82,7 +82,7 @@ int flow_energy_fork(struct flow_state *state)
                         : DUITE_OK;
 }
 
-/* What the contacts hold that the state was accepted with, or is to be. */
+/* Gets the energy of the contacts of the accepted state, or of the one to be accepted. */
 static int get_contact(struct flow_state *state, double *energy)
 {
     double held[FLOW_HELD] = {0};
@@ -119,8 +119,8 @@ bool flow_energy_gained(const struct flow_state *state, bool touched)
            guard->sum - guard->lowest > model->energy_growth * fmax(guard->max, guard->moving);
 }
 
-/* The guard is on from the second step without contact on: what the first one begins with was not
- * looked at. */
+/* The guard is on from the second step without contact: the energies at the begin of the first are
+ * not known. */
 static void note_guard(struct flow_state *state, bool touched)
 {
     struct flow_guard *guard = &state->guard;
@@ -133,7 +133,7 @@ static void note_guard(struct flow_state *state, bool touched)
     guard->max = fmax(guard->max, guard->moving);
 }
 
-/* The sum less all that was lent so far. */
+/* Notes the sum less all loans so far. */
 static void note_unlent(struct flow_report *report, double sum)
 {
     report->energy_gained_unlent =

@@ -1,5 +1,5 @@
-/* All forces on the rows of a block, in an order that its table gives. What a body needs of
- * neighbours it finds in their halos. */
+/* All forces on the rows of a block, in an order that its table gives. Bodies read neighbours'
+ * halos. */
 #include "cloth/flow/bodies.h"
 
 #include "cloth/physics/particle.h"

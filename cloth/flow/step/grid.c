@@ -1,4 +1,4 @@
-/* Whatever is decided here follows from the grid and the verdict, which all ranks have alike. */
+/* Decisions use only the grid and the verdict, which are equal on all ranks. */
 #include "cloth/flow/step/grid.h"
 
 #include <math.h>

@@ -18,27 +18,27 @@ struct flow_grid {
 
 void flow_grid_begin(struct flow_grid *grid, uint64_t n_steps);
 
-/* After a step that was refused: the next one has half the length. Returns false where it was one
- * tick. */
+/* Halves the next step after a refused one. Returns false if that had one tick. */
 bool flow_grid_halve(struct flow_grid *grid);
 
 /* After a step that was accepted; calm: the next one may have twice the length, if the grid lets
  * it. */
 void flow_grid_accept(struct flow_grid *grid, bool calm);
 
-/* What a step of a run changed, and what it may. */
+/* Changes of a step, and their limits. */
 struct flow_verdict {
-    double before, after; /* largest stretch at its begin and end; NaN: something is none */
+    double before, after; /* largest stretch at its begin and end; NaN: some stretch is not a
+                           * number */
     double max, growth;   /* the limit of the stretch and of its growth in a step; 0: none */
     bool failed;          /* the solve failed, or a number is beyond all measure */
 };
 
-/* Whether a step is refused: it failed, it ends above the limit and higher than it began, or the
- * stretch grew by more than it may. */
+/* True if a step is refused: it failed, it ends above the limit and higher than it began, or its
+ * stretch grew too much. */
 bool flow_verdict_refuses(const struct flow_verdict *verdict);
 
-/* Whether twice the length should be tried: the stretch grew by at most half of what it may, and,
- * growing on like that, stays below the limit. */
+/* True if twice the length should be tried: the stretch grew by at most half its limit of growth,
+ * and stays below the limit if it grows on like that. */
 bool flow_verdict_calm(const struct flow_verdict *verdict);
 
 #endif

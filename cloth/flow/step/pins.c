@@ -28,7 +28,8 @@ static const struct phys_pose *pose_of(struct flow_pins *pins, uint32_t motion)
     return &pins->pose;
 }
 
-/* Where a motion, or an anchor behind all motions, has what starts at x then. */
+/* The place, at the time of the pins, of a vertex that starts at x, by a motion or by an anchor,
+ * numbered behind all motions. */
 static void place(struct flow_pins *pins, uint32_t motion, const phys_vec *x, phys_vec *to)
 {
     const uint32_t n = pins->model->n_motions;
@@ -38,7 +39,7 @@ static void place(struct flow_pins *pins, uint32_t motion, const phys_vec *x, ph
     }
     *to = *x;
     if (!pins->model->motions[motion - 1].n)
-        return; /* it follows what stands still */
+        return; /* it follows an obstacle at rest */
     const struct phys_pose *pose = pose_of(pins, motion);
     if (pins->model->motions[motion - 1].follow)
         phys_pose_back(&pins->begin, to, to);
@@ -98,7 +99,7 @@ void flow_sliders_keep(const duite_call *call, const struct flow_table *t, doubl
 
 /* ---- A step ---- */
 
-/* On the blocks that have such pins. */
+/* Forks a kernel on the blocks with such pins. */
 static int fork_moved(struct flow_state *state, const struct flow_kernel *kernel)
 {
     struct flow_step_args args = flow_attempt_args(state);
@@ -181,7 +182,7 @@ static void pins_of(const duite_call *call, const struct flow_two_steps *steps,
         flow_pins_begin(call, NULL, steps->end - back[i], pins + i);
 }
 
-/* Of what was at x[2], x[1], x[0] in turn. */
+/* The acceleration of a point that was at x[2], x[1], x[0] in turn. */
 static void second_difference(const struct flow_two_steps *steps, const phys_vec x[3], phys_vec *a)
 {
     *a = ((x[0] - x[1]) / steps->h - (x[1] - x[2]) / steps->before) / steps->h;
@@ -198,8 +199,8 @@ void flow_due_acceleration(const duite_call *call, const struct flow_two_steps *
     second_difference(steps, x, a);
 }
 
-/* With R the slider's rotation: of the point of the slider where the vertex is, and twice dR/dt RT
- * on its velocity along the slider (Coriolis). */
+/* The acceleration of the slider's point at the vertex, plus twice dR/dt RT times its velocity
+ * along the slider (Coriolis). R: the slider's rotation. */
 void flow_slider_acceleration(const duite_call *call, const struct flow_two_steps *steps,
                               uint32_t slider, const phys_vec *x, const phys_vec *v, phys_vec *a)
 {

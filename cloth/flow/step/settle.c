@@ -1,6 +1,6 @@
 /* The steps of a run: each begins while the one before it is settled, that is, accepted or refused
- * by what all blocks noted in its status. What is decided follows from values that all ranks get
- * alike. */
+ * by the notes of all blocks in its status. Decisions use only values that are equal on all
+ * ranks. */
 #include "cloth/flow/checkpoint/checkpoint.h"
 #include "cloth/flow/contact/certify.h"
 #include "cloth/flow/integrators/integrator.h"
@@ -11,11 +11,10 @@
 #include <math.h>
 #include <stdio.h>
 
-/* A step that gains energy in so many ticks is not made shorter still. */
+/* A step of at most this length that gains energy is not halved. */
 enum { LEAST_GUARDED = FLOW_TICKS / 16 };
-/* For so many ticks after one was halved for energy, steps do not grow back. Longer steps strain
- * the edges more, and the first long one would gain again what the short ones before it released.
- */
+/* Steps do not grow back for this many ticks after one was halved for energy. Longer steps strain
+ * the edges more, and the first long one would regain the energy that the short ones released. */
 enum { CALM_AFTER_GAIN = 8 * FLOW_TICKS };
 
 /* Shows a finished step to the program; on rank 0. */
@@ -56,7 +55,7 @@ static void note(struct flow_state *state, const double status[FLOW_STATUS])
     report_progress(state, iterations);
 }
 
-/* No step is short enough. */
+/* Ends the run: no step is short enough. */
 static int give_up(struct flow_state *state, const struct flow_verdict *verdict)
 {
     const struct flow_step_args args = flow_attempt_args(state);
@@ -72,7 +71,7 @@ static int give_up(struct flow_state *state, const struct flow_verdict *verdict)
     return FLOW_STRETCHED;
 }
 
-/* The next step has half the length. Returns false where that is less than a tick. */
+/* The next step has half the length. Returns false if that is less than a tick. */
 static bool halve(struct flow_state *state, enum flow_cause cause)
 {
     const bool halved = flow_grid_halve(&state->grid);
@@ -100,9 +99,9 @@ static int refuse(struct flow_state *state, const double status[FLOW_STATUS],
     return flow_restore(state);
 }
 
-/* Whether a step that gained too much energy can be made again with less. One by BDF2 is made again
- * by implicit Euler, which goes on from the restored state alone. Others are made again with half
- * the length. */
+/* True if a step that gained too much energy can be made again with less. A BDF2 step is made again
+ * by implicit Euler, which needs only the restored state. Others are made again with half the
+ * length. */
 static bool can_lose(const struct flow_state *state)
 {
     return flow_implicit_is_second(state) ||
@@ -120,7 +119,7 @@ static int retake(struct flow_state *state, bool second)
     return flow_restore(state);
 }
 
-/* Waits for what is known of the step that was forked whole. */
+/* Waits for the status and verdict of the step that was forked whole. */
 static int await(struct flow_state *state, double status[FLOW_STATUS], struct flow_verdict *verdict)
 {
     const struct model *model = state->flow->model;
@@ -143,14 +142,14 @@ static int await(struct flow_state *state, double status[FLOW_STATUS], struct fl
     return DUITE_OK;
 }
 
-/* Whether a vertex was moved by contact beyond what was solved, or a tie came or went: then a step
- * may gain energy. */
+/* True if contact moved a vertex beyond the solve, or a tie came or went: then a step may gain
+ * energy. */
 static bool is_disturbed(const struct flow_state *state, const double status[FLOW_STATUS])
 {
     return status[FLOW_TOUCHED] > 0 || flow_ties_changed(state);
 }
 
-/* With its frames. */
+/* Accepts a step and forks its frames. */
 static int accept(struct flow_state *state, const double status[FLOW_STATUS],
                   const struct flow_verdict *verdict)
 {
@@ -189,7 +188,7 @@ static int settle_step(struct flow_state *state)
     return refused ? refuse(state, status, &verdict) : retake(state, second);
 }
 
-/* The step that follows what is under way, if that is accepted. */
+/* The step that follows the one under way, if that is accepted. */
 static struct flow_attempt next_attempt(const struct flow_state *state)
 {
     const struct flow_attempt *attempt = &state->attempt;
@@ -198,9 +197,9 @@ static struct flow_attempt next_attempt(const struct flow_state *state)
                                  .parity = 1 - attempt->parity};
 }
 
-/* Settles what is under way while `next` begins. A step that follows a shorter one does not begin
- * before: its length is not known. Neither does one that has other ties: what is reported of the
- * step before is by its own. *begun: next has begun and follows what was accepted. */
+/* Settles the step under way while `next` begins. A step waits for the one before if that is
+ * shorter, as its own length is not known then, or if its ties differ, as the report needs those of
+ * the step before. *begun: next has begun and follows an accepted step. */
 static int settle_overlapped(struct flow_state *state, bool *begun)
 {
     const struct flow_attempt before = state->attempt;
@@ -246,7 +245,7 @@ static int watch_start(struct flow_state *state)
     return code ? code : flow_watched(state);
 }
 
-/* Before the end, where it was asked for. */
+/* Ends the run early, on request. */
 static int stop(struct flow_state *state)
 {
     const int code = flow_save(state, false);
@@ -266,7 +265,7 @@ static int begin(struct flow_state *state)
     return code ? code : first_stretch(state);
 }
 
-/* What is due between two steps. frame: the one that was next before the last step. */
+/* The work between two steps. frame: the next one before the last step. */
 static int pause(struct flow_state *state, uint64_t frame)
 {
     state->over = (state->resting || state->sewn) && state->next_frame > frame;

@@ -5,15 +5,15 @@
 #include "cloth/flow/bodies.h"
 #include "cloth/physics/motion.h"
 
-/* In bodies of tasks: what pins leave of their vertices' freedom at the end of the step under way.
+/* In bodies of tasks: the freedom that pins leave their vertices at the end of the step under way.
  * Local functions. */
 
-/* Of a row: its part of S (solve_filter) and a point of the line or plane. */
+/* The slider of a row: its part of S (solve_filter) and a point of the line or plane. */
 struct flow_slider {
     phys_vec filter, at;
 };
 
-/* y becomes `from` but for what the slider leaves free: from + S (y - from). */
+/* Keeps only the free part of y - from: y = from + S (y - from). */
 PHYS_INLINE void flow_slider_keep(const struct flow_slider *slider, const phys_vec *from,
                                   phys_vec *y)
 {
@@ -23,7 +23,7 @@ PHYS_INLINE void flow_slider_keep(const struct flow_slider *slider, const phys_v
 }
 
 /* up, of length 1, becomes the way along which a row leaves a plane with this normal at the same
- * pace: that of S up. Returns false where it cannot. */
+ * pace: that of S up. Returns false if it cannot. */
 PHYS_INLINE bool flow_slider_way(const phys_vec *filter, phys_vec *up)
 {
     phys_vec way = *up;
@@ -33,7 +33,7 @@ PHYS_INLINE bool flow_slider_way(const phys_vec *filter, phys_vec *up)
     return pace > 1e-12;
 }
 
-/* The pins of a block at one time, and how far somebody came who goes through its rows. */
+/* The pins of a block at one time, and the place of a walk through its rows. */
 struct flow_pins {
     const struct flow *flow;
     const struct model *model;
@@ -47,9 +47,9 @@ struct flow_pins {
 /* At a time, s: in a step its end. */
 void flow_pins_begin(const duite_call *call, const struct flow_table *t, double time,
                      struct flow_pins *pins);
-/* That of sliding row i. */
+/* The slider of sliding row i. */
 void flow_pins_slider(struct flow_pins *pins, uint32_t i, struct flow_slider *slider);
-/* The part of S of a row, NULL where no slider is; for rows in ascending order. Good until the next
+/* The part of S of a row, NULL without a slider; for rows in ascending order. Valid until the next
  * call. */
 const phys_vec *flow_pins_filter(struct flow_pins *pins, uint32_t row);
 
@@ -73,11 +73,11 @@ void flow_sliders_keep(const duite_call *call, const struct flow_table *t, doubl
 struct flow_two_steps {
     double end, h, before;
 };
-/* The acceleration that a motion gives a vertex that starts there: the change of its mean velocity
- * from the step before to the later one over the length of the later one. */
+/* The acceleration that a motion gives a vertex that begins at `start`: the change of its mean
+ * velocity between the two steps over the later one's length. */
 void flow_due_acceleration(const duite_call *call, const struct flow_two_steps *steps,
                            uint32_t motion, const phys_vec *start, phys_vec *a);
-/* That which a slider gives a vertex at x, v; only its part that S takes away means anything. */
+/* The acceleration that a slider gives a vertex at x, v; only the part that S removes counts. */
 void flow_slider_acceleration(const duite_call *call, const struct flow_two_steps *steps,
                               uint32_t slider, const phys_vec *x, const phys_vec *v, phys_vec *a);
 

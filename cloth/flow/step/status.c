@@ -1,5 +1,4 @@
-/* What the tasks of a step note in its status: rows beyond all bounds, and that a stop is asked
- * for, or a checkpoint due. */
+/* Tasks note in a step's status: rows beyond all bounds, a requested stop, a checkpoint due. */
 #include "cloth/flow/bodies.h"
 #include "cloth/flow/step/step.h"
 
@@ -45,7 +44,7 @@ static int status_body(const duite_call *call, const struct status_fields *on)
     return 0;
 }
 
-/* On every rank, also one of no block. */
+/* Runs on every rank, with or without blocks. */
 int flow_status_fork(struct flow_state *state)
 {
     const struct flow_block_args args = {0};

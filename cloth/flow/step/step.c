@@ -20,7 +20,7 @@ struct flow_step_args flow_attempt_args(const struct flow_state *state)
                                    .now = end};
 }
 
-/* ---- When there is a stage ---- */
+/* ---- Conditions of stages ---- */
 
 static bool certifies(const struct model *model)
 {
@@ -48,7 +48,7 @@ static bool corrects(const struct model *model)
     return model->correction_rounds > 0;
 }
 
-/* Velocities change before the forces: the copy is made before that. */
+/* The copy comes first if velocities change before the forces. */
 static bool keeps_first(const struct model *model)
 {
     return model_keeps(model) && flow_step_is_driven(model);
@@ -77,7 +77,7 @@ static int fork_end(struct flow_state *state)
     return flow_integrators[state->flow->model->integrator].end(state);
 }
 
-/* What a stage is for. PREDICT, SOLVE: a step's begin, which leaves x and v as they are,
+/* The part of a step. PREDICT, SOLVE: its begin, which leaves x and v as they are,
  * unless velocities change first (flow_step_is_driven). */
 enum stage_part { PREDICT, SOLVE, CORRECT, CERTIFY, OBSERVE };
 
@@ -105,7 +105,7 @@ static const struct stage stages[] = {
     {"status", OBSERVE, always, flow_status_fork},
 };
 
-/* Those of the parts from .. to. */
+/* Forks the stages of the parts from .. to. */
 static int fork_stages(struct flow_state *state, enum stage_part from, enum stage_part to)
 {
     int code = DUITE_OK;

@@ -3,7 +3,7 @@
 
 #include "cloth/flow/state/state.h"
 
-/* A step: its stages, and what settles it. Collective; they return what the runtime does. */
+/* A step: its stages and its settling. Collective; they return what the runtime does. */
 
 /* Arguments of tasks of the step under way. */
 struct flow_step_args flow_attempt_args(const struct flow_state *state);
@@ -16,19 +16,20 @@ static inline bool flow_is_judged(const struct model *model)
  * unless velocities change before the forces; the rest. */
 int flow_step_begin(struct flow_state *state);
 int flow_step_end(struct flow_state *state);
-/* Forks the stages of the step under way up to the one that certifies it, from the state that was
- * restored. */
+/* Forks the stages of the step under way, from the restored state, up to the one that certifies
+ * it. */
 int flow_step_again(struct flow_state *state);
-/* Whether they do: such a step does not begin before the one before it is accepted. */
+/* True if velocities change before the forces: such a step waits until the one before it is
+ * accepted. */
 bool flow_step_is_driven(const struct model *model);
-/* Forks a step of length h whole, which nobody judges and whose solve has no guess. */
+/* Forks a whole step of length h, which is not judged and whose solve has no guess. */
 int flow_step(struct flow_state *state);
 /* All steps from the start on, with their frames; ends early if a stop was agreed. */
 int flow_steps(struct flow_state *state);
-/* Forks what notes in the status of the step whether a rank is asked to stop. */
+/* Forks the tasks that note in the step's status if a rank is asked to stop. */
 int flow_status_fork(struct flow_state *state);
 
-/* Fork what moves the pins of a step: before its forces, and when x has moved. */
+/* Fork the tasks that move the pins of a step: before its forces, and after x has moved. */
 int flow_pins_prescribe_velocity(struct flow_state *state);
 int flow_pins_prescribe_position(struct flow_state *state);
 

@@ -57,7 +57,7 @@ static bool take(const struct flow *flow, const struct flow_ties *ties,
     return some->n > 0;
 }
 
-/* Adds what springs do to their first points to the rows of the block, by their weights. */
+/* Adds the springs' effects on their first points to the rows of the block, by their weights. */
 static void scatter(const struct flow_ties *ties, const struct some_joints *some,
                     const phys_vec *add, phys_vec *y)
 {
@@ -103,7 +103,7 @@ void flow_ties_system(const struct flow *flow, const struct flow_view *view, dou
     }
 }
 
-/* Which part of a tie's corners the block has. */
+/* The part of a tie's corners that the block has. */
 static double share_of(const struct flow_ties *ties, uint32_t i)
 {
     double own = 0, all = 0;
@@ -131,8 +131,8 @@ double flow_ties_energy(const struct flow *flow, const struct flow_view *view)
     return sum;
 }
 
-/* dv of what is held is zero. Of a tie between free rows whose weights come to nothing all N dv
- * cancel. */
+/* dv of held rows is zero. All N dv of a tie between free rows cancel if the weights sum to
+ * zero. */
 void flow_ties_lost(const unsigned char *tie_table, const phys_vec *value, const phys_vec *dv,
                     double lost[3])
 {

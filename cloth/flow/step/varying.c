@@ -1,5 +1,5 @@
-/* Loads that vary are those of the time of the state whose forces are asked for; by implicit steps
- * the end of the step. */
+/* Varying loads are those at the time of the state whose forces are computed; the end of the step
+ * for implicit ones. */
 #include "cloth/flow/bodies.h"
 
 void flow_varying_add(const duite_call *call, const struct flow_table *t, double now, phys_vec *f)

@@ -7,16 +7,15 @@
 #include <math.h>
 #include <string.h>
 
-/* What the bodies of kernels have in common. Local functions. */
+/* Functions that the bodies of kernels share. Local. */
 
 static inline struct flow *flow_of(const duite_call *call)
 {
     return call->context;
 }
 
-/* The block of a task, with which the arguments of any kernel begin. Functions that bodies share
- * are given what else they need, from `on->args`: what a kernel's arguments lack does not compile.
- */
+/* The block of a task: the arguments of every kernel begin with it. Bodies pass shared functions
+ * all else from `on->args`: an argument that the kernel lacks does not compile. */
 static inline uint32_t flow_block_of(const duite_call *call)
 {
     return *(const uint32_t *)call->args;
@@ -93,8 +92,8 @@ static inline const phys_vec *flow_tie_values(const struct flow_table *t, const 
     return (const phys_vec *)values + flow_value_rows(t);
 }
 
-/* Behind those, what a solve reads of ties in every pass: the ones that add something, side by side
- * in their order, for most contacts of a pile do not press. Rows that they take: */
+/* Ties that add something, side by side in their order behind those values: a solve reads them in
+ * every pass, and most contacts of a pile do not press. The rows that they take: */
 static inline size_t flow_acting_rows(uint32_t room)
 {
     return room ? 1 + 2 * (size_t)room + (room + 1) / 2 : 0;
@@ -136,14 +135,13 @@ void flow_ties_force(const struct flow *flow, const struct flow_view *view, phys
 void flow_ties_system(const struct flow *flow, const struct flow_view *view, double h, double push,
                       phys_vec *b, phys_vec *value);
 double flow_ties_energy(const struct flow *flow, const struct flow_view *view);
-/* Contacts of a block (contact/rows.c). Adds their forces where x is at the time of
- * the step, N. Their part of a system:
- * where h v leads if push is h; where x is, with - h^2 K v on the right side, if it is 0; the
- * matrix alone where b is NULL. */
+/* Contacts of a block (contact/rows.c). Adds their forces at the time of the step, N. Adds their
+ * part of a system: at x + h v if push is h; at x, with - h^2 K v on the right side, if push is 0;
+ * only the matrix if b is NULL. */
 void flow_contact_force(const struct flow *flow, const struct flow_view *view,
                         const struct flow_step_args *step, phys_vec *f);
-/* Adds to f the forces that they had in the step that ended at x, N; value: of the solve's matrix,
- * obstacle: of each, from 1, or 0. What an obstacle puts on rows that are here is added to its
+/* Adds to f the forces that they had in the step that ended at x, N. value: of the solve's matrix,
+ * obstacle: of each, from 1, or 0. Adds the forces of an obstacle on rows of this block to its
  * vector, too. */
 void flow_contact_solved(const struct flow *flow, const struct flow_view *view,
                          const uint32_t *obstacle, const phys_vec *value, phys_vec *f,
@@ -154,7 +152,7 @@ void flow_contact_system(const struct flow *flow, const struct flow_view *view, 
 void flow_ties_lost(const unsigned char *tie_table, const phys_vec *value, const phys_vec *dv,
                     double lost[3]);
 
-/* Elements of a block (elements.c). What they see of a view; one at a time on a worker, until its
+/* Elements of a block (elements.c). Their sight of a view; one at a time on a worker, until its
  * task ends. */
 bool flow_has_elements(const struct flow_table *t);
 struct phys_sight flow_elements_see(const duite_call *call, const struct flow_table *t,
@@ -167,8 +165,8 @@ void flow_elements_force_beside(const duite_call *call, const struct flow_table 
 /* y -= scale K v of the same. */
 void flow_elements_stiffness(const duite_call *call, const struct flow_table *t, double scale,
                              const struct phys_sight *sight, phys_vec *y);
-/* Adds their part of the matrix to the sums of its entries and, unless b is NULL, what the other
- * kinds add to the right side with it (system in cloth/element/kind.h). */
+/* Adds their part of the matrix to the sums of its entries. Unless b is NULL, adds the right side
+ * of the other kinds (system in cloth/element/kind.h). */
 void flow_elements_assemble(const duite_call *call, const struct flow_table *t, double h,
                             double push, const struct phys_sight *sight, phys_vec *b,
                             struct phys_pair *sums);
@@ -215,7 +213,7 @@ static inline void flow_pack_halo(const struct flow_table *t, const phys_vec *y,
         halo[0] = halo[1] = halo[2] = 0;
 }
 
-/* What a solve left of a block. */
+/* The result of a solve for a block. */
 struct flow_solved {
     const void *value; /* of the matrix */
     const phys_vec *b, *dv, *r;

@@ -17,9 +17,9 @@ struct flow_energy {
     double contact; /* what certified contacts hold (contact/row.h) */
 };
 
-/* Why a step is begun again with half its length: its solve failed; a position, velocity or edge is
- * beyond all bounds or no number; an edge is stretched too far; it gained energy; contact cuts too
- * much of it. The first that holds. */
+/* The first reason why a step is begun again with half its length: its solve failed; a position,
+ * velocity or edge is out of bounds or no number; an edge is stretched too far; it gained energy;
+ * contact cuts too much of it. */
 enum flow_cause {
     FLOW_CAUSE_SOLVE,
     FLOW_CAUSE_BOUNDS,
@@ -29,8 +29,7 @@ enum flow_cause {
     FLOW_CAUSES
 };
 
-/* What was run and how long it took; filled on every rank, the same on all of them but for times.
- */
+/* The result of a run; filled on every rank, alike on all except for times. */
 struct flow_report {
     uint64_t vertices, triangles, blocks, grain, partition_hash;
     uint64_t steps;                            /* made, of any length */
@@ -94,7 +93,7 @@ struct flow_report {
     duite_counters counters;
 };
 
-/* What there is before a run that goes on where others ended. */
+/* The runs before one that continues them. */
 struct flow_before {
     bool goes_on;           /* it does; else all of this is zero */
     uint64_t frames, steps; /* of the runs before it, all together; frames keep their clock */
@@ -108,8 +107,7 @@ struct flow_checkpoint {
     size_t n;
 };
 
-/* What scientific frames have of n vertices beside positions and forces, in the numbering of the
- * input meshes. */
+/* Other fields of scientific frames, of n vertices in the numbering of the input meshes. */
 struct flow_beside {
     const double *velocity;      /* n x 3, m/s */
     const int32_t *block, *rank; /* n: the block, and the rank that has it; -1 of vertices that no
@@ -162,8 +160,8 @@ struct flow_output {
     void (*save)(void *context, struct flow_checkpoint state);
 };
 
-/* What a run says while it goes on; `step` is called by the main thread of rank 0 after each step,
- * when the next one is under way. May be NULL. */
+/* Calls made during a run; the main thread of rank 0 calls `step` after each step, when the next
+ * one is under way. May be NULL. */
 struct flow_progress {
     void *context;
     /* The meshes of the model are not read any more: all blocks have their tables. Called once,
@@ -202,9 +200,9 @@ struct flow_rows {
 };
 struct flow_filter {
     void *context;
-    /* Called from tasks, of several blocks at once, on the rank that has the block; again where a
-     * step is made again. What it writes must come of the rows, and of what is alike on all ranks,
-     * alone: blocks are on any rank. + - * / and sqrt, for results that are the same everywhere. */
+    /* Called from tasks, of several blocks at once, on the rank that has the block; again if a step
+     * is made again. Blocks are on any rank: write only results of the rows and of values that all
+     * ranks have alike. Use + - * / and sqrt: they round alike everywhere. */
     void (*rows)(void *context, const struct flow_rows *rows);
 };
 
@@ -212,11 +210,10 @@ struct flow_filter {
  * flow_prepare); without, the function is not called. Local. */
 void flow_filter_by(struct flow *flow, struct flow_filter filter);
 
-/* On rank 0 of the run: cuts the model into blocks and makes ready what the tables are made from.
- * No runtime needed. Checks what a scene alone cannot: pins inside the mesh, masses, lengths of
- * springs, starts out of bounds, more ranks than blocks; errors begin with the place that the model
- * gives. The model must outlive the flow, its meshes until flow_progress.distributed is called.
- * Local. */
+/* On rank 0 of the run: cuts the model into blocks and prepares their tables. Needs no runtime.
+ * Checks pins inside the mesh, masses, lengths of springs, starts out of bounds, more ranks than
+ * blocks, which a scene alone cannot. Errors begin with the place that the model gives. The model
+ * must outlive the flow, its meshes until flow_progress.distributed is called. Local. */
 int flow_prepare(struct flow **flow, const struct model *model, int ranks,
                  struct cloth_error *error);
 
@@ -266,8 +263,8 @@ const double (*flow_unwelded(const struct flow *flow))[3];
  * whether a pin holds it or moves it, 1 or 0. On rank 0, before the run. Local. */
 void flow_starts(const struct flow *flow, double (*start)[6], unsigned char *held);
 
-/* Of each vertex, in the input's numbering: the obstacle, from 1, that its pin follows, or 0. NULL:
- * none does. On rank 0 when the flow is prepared. Lives as long as the flow. Local. */
+/* The obstacle, from 1, that the pin of each vertex follows, or 0; in the input's numbering. NULL:
+ * no pin follows one. On rank 0 when the flow is prepared. Lives as long as the flow. Local. */
 const uint32_t *flow_attached(const struct flow *flow);
 
 /* Names of the columns of the table of probes, with commas between: step, time, then those of its
@@ -275,8 +272,8 @@ const uint32_t *flow_attached(const struct flow *flow);
  * Lives as long as the flow. Local. */
 const char *flow_header(const struct flow *flow);
 
-/* What is unusual about the model but no error: sentence i, counted from 0, with its place; NULL:
- * there are no more. Lives as long as the flow. Local. */
+/* Warning i about the model, counted from 0, with its place; NULL: there are no more. Lives as long
+ * as the flow. Local. */
 const char *flow_warning(const struct flow *flow, size_t i);
 
 void flow_free(struct flow *flow);

@@ -10,8 +10,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* The parts of a model (model.h): materials, cloths and what picks, holds, moves, loads and joins
- * their vertices, or reports of them. SI units. What they point to belongs to the model. */
+/* The parts of a model (model.h): materials, cloths and what picks, holds, moves, loads, joins or
+ * reports their vertices. SI units. The model owns all that they point to. */
 
 struct model_material {
     char *name;
@@ -90,8 +90,8 @@ struct model_curve {
     double frequency, phase;
 };
 
-/* A force: on each of the picked vertices, newton; or, if there are edges, along these,
- * newton a metre of the length at rest, half of an edge's on each end. */
+/* A force on each picked vertex, N; or along the edges, if there are any, N a metre of rest length,
+ * half of an edge's on each end. */
 struct model_load {
     struct model_pick pick; /* a vertex that stands twice gets it twice; edges: its place alone */
     uint32_t n_edges;
@@ -113,9 +113,8 @@ struct model_wave {
     double translate[3], velocity[3]; /* m, m/s */
 };
 
-/* How the picked vertices start, if not where the mesh has them: x -> about + rotate(scale * (x -
- * about)) + translate; then v, or what it was before, + spin x (x - about). The wave is added to
- * both. */
+/* Moves the picked vertices from the mesh: x -> about + rotate(scale * (x - about)) + translate.
+ * Then v, or the velocity before, gets + spin x (x - about). The wave is added to both. */
 struct model_start {
     struct model_pick pick;
     struct mesh_transform transform;
@@ -145,7 +144,7 @@ enum model_seams_state {
     MODEL_SEAMS_STATES
 };
 
-/* What is made of a seam. */
+/* How a seam is sewn. */
 struct model_sewing {
     enum model_seams_state state;
     double stiffness, damping; /* pulled: N/m, > 0, and kg/s, >= 0, of each joint */
@@ -168,16 +167,16 @@ struct model_seam {
     struct model_sewing sewing;
 };
 
-/* Seams that are sewn otherwise, by number or by their two panels; of its sewing what the scene
- * gives counts. */
+/* Seams that are sewn otherwise, by number or by their two panels; only the keys that the scene
+ * gives of its sewing count. */
 struct model_some_seams {
     uint32_t n;
     uint32_t *number; /* n */
     struct model_sewing sewing;
 };
 
-/* The seams of a cloth, and what is made of them: joints or welds of the model, whose pairs name
- * their seam. */
+/* The seams of a cloth and how they are sewn: joints or welds of the model, whose pairs name their
+ * seam. */
 struct model_seams {
     struct model_sewing sewing; /* of all that are not named in `some` */
     uint32_t n, n_reversed, n_some;
@@ -242,13 +241,13 @@ struct model_joint {
     double begin, end;         /* s, >= 0; end 0: never */
 };
 
-/* Whether it comes or goes while the run is on. */
+/* True if it begins or ends during the run. */
 static inline bool model_is_timed(const struct model_joint *joint)
 {
     return joint->begin > 0 || joint->end > 0;
 }
 
-/* Whether it is a tie: it is timed, or ends on edges. */
+/* True if it is a tie: timed, or ending on edges. */
 static inline bool model_is_tied(const struct model_joint *joint)
 {
     return model_is_timed(joint) || joint->pairs.end[1].edges;
@@ -260,7 +259,7 @@ struct model_weld {
     double tolerance; /* m: they start at most so far from each other */
 };
 
-/* What is reported of vertices after each step. */
+/* Reports on vertices after each step. */
 struct model_probe {
     char *name;
     uint32_t cloth;

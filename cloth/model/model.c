@@ -280,7 +280,7 @@ static bool key_differs(const struct phys_key *a, const struct phys_key *b)
     return differs;
 }
 
-/* Whether the model's n keys from `first` on move anything after a time. */
+/* True if the model's n keys from `first` on move anything after a time. */
 static bool keys_move(const struct model *model, uint32_t first, uint32_t n, double time)
 {
     bool moves = false;

@@ -122,7 +122,7 @@ static void walk_hinges(struct walk *walk)
     }
 }
 
-/* Whether an edge of a grid is a diagonal of a cell. */
+/* True if an edge of a grid is a diagonal of a cell. */
 static bool is_diagonal(const struct mesh *mesh, const struct mesh_edge *edge)
 {
     const uint32_t nx = mesh->grid_nx;

@@ -33,9 +33,8 @@ static const struct element_fold *find(const struct element_cloths *cloths, uint
                : NULL;
 }
 
-/* The fold that a hinge has; across a seam that of either side. *s: its 2 sin(theta / 2) at rest,
- * from corner 0 of the hinge to corner 1, where both normals are those of its triangles (0, 1, 2)
- * and (1, 0, 3). */
+/* The fold of a hinge; across a seam, that of either side. *s: its 2 sin(theta / 2) at rest, from
+ * corner 0 of the hinge to corner 1, by the normals of its triangles (0, 1, 2) and (1, 0, 3). */
 static const struct element_fold *fold_of(const struct element_cloths *cloths,
                                           const struct element *element, double *s)
 {
@@ -157,7 +156,7 @@ int element_folds_make(struct element_cloths *cloths, struct cloth_error *error)
     return code;
 }
 
-/* ---- What has no hinge ---- */
+/* ---- Folds without a hinge ---- */
 
 /* Marks the folds that seams have. One that both sides say would be said twice. */
 static int mark_seams(const struct element_cloths *cloths, unsigned char *mark,

@@ -11,7 +11,7 @@
  * All other code walks the table of kinds and asks; none names a kind. To add a force: one file in
  * cloth/physics, one descriptor here, its name in ELEMENT_ALL, its keys in the scene. */
 
-/* What each element of a kind is made from, of a cloth's mesh. Corners in this order. */
+/* The part of a cloth's mesh that each element of a kind is made of. Corners in this order. */
 enum element_part {
     ELEMENT_TRIANGLES, /* of each triangle: its corners */
     ELEMENT_FACES,     /* the same, and the fourth corner of its cell where the cloth has cells */
@@ -70,19 +70,19 @@ struct element_kind {
 
     /* ---- On rank 0, when a run is set up ---- */
 
-    /* Whether a cloth has such elements; then all its parts are elements. Asks for its materials
-     * and for the model, not for its mesh. */
+    /* True if a cloth has such elements; then all its parts are elements. Reads its materials and
+     * the model, not its mesh. */
     bool (*has)(const struct model *model, const struct model_cloth *cloth);
     /* Optional: CLOTH_E_INPUT, with the place, for parts of a cloth that can be no such elements.
      */
     int (*check)(const struct element_cloths *cloths, uint32_t cloth, struct cloth_error *error);
-    /* Of kinds with anything in their lists: writes vector and numbers of entry e of a list, whose
-     * corners are there; corners that it has not got are PHYS_NO_CORNER until it uses them. */
+    /* For kinds with vectors or numbers: writes those of entry e of a list, whose corners are
+     * there. Corners that it lacks are PHYS_NO_CORNER until it uses them. */
     void (*pack)(const struct element_cloths *cloths, const struct element *element,
                  const struct element_list *list, uint32_t e);
-    /* Of kinds with material_bytes: writes what elements have of a material of any kind. */
+    /* For kinds with material_bytes: writes the elements' data of a material of any kind. */
     void (*material)(const struct model_material *material, void *to);
-    /* Of kinds without pairs: writes why steps of the model are too long for their force on a
+    /* For kinds without pairs: writes why steps of the model are too long for their force on a
      * cloth, or the empty string. */
     void (*warn)(const struct element_sheet *sheet, char *text, size_t size);
 
@@ -101,7 +101,7 @@ struct element_kind {
     void (*system)(const struct element_list *list, size_t from, size_t to,
                    const struct phys_step *step, double push, const struct phys_sight *sight,
                    const uint32_t *at, phys_vec *b, struct phys_pair *pair);
-    /* Of kinds without system: y -= scale K v. */
+    /* For kinds without system: y -= scale K v. */
     void (*stiffness)(const struct element_list *list, int full, double scale,
                       const struct phys_sight *sight, phys_vec *y);
     /* Energy (J) of the elements that count here: whose corner 0 is one of the block's rows. */

@@ -170,7 +170,7 @@ void flow_elements_stiffness(const duite_call *call, const struct flow_table *t,
 void flow_elements_assemble(const duite_call *call, const struct flow_table *t, double h,
                             double push, const struct phys_sight *sight, phys_vec *b,
                             struct phys_pair *sums);
-/* Their energy, J, of those that count here, to whose uncorrected forces' torque, N m, it adds. */
+/* The energy, J, of the elements that count here. Adds the torque, N m, of uncorrected forces. */
 double flow_elements_energy(const duite_call *call, const struct flow_table *t,
                             const struct flow_view *view, double torque[3]);
 

@@ -29,8 +29,8 @@
 enum { FLOW_KERNELS(FLOW_KERNEL_NUMBER) FLOW_KERNELS_OF_ALL };
 FLOW_KERNELS(FLOW_KERNEL_EXTERN)
 
-/* Kernels of objects that are no fields. */
-extern const duite_kernel flow_broadcast_head; /* Kernels of objects that are not fields. */
+/* Kernels of objects that are not fields. */
+extern const duite_kernel flow_broadcast_head; /* w head: on rank 0 */
 extern const duite_kernel
     flow_broadcast_shared; /* w shared: obstacles, motions, shapes, neighbours; on rank 0 */
 extern const duite_kernel flow_ready; /* cw ready: fails if this rank cannot begin */

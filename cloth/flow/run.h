@@ -217,8 +217,8 @@ void flow_filter_by(struct flow *flow, struct flow_filter filter);
 int flow_prepare(struct flow **flow, const struct model *model, int ranks,
                  struct cloth_error *error);
 
-/* On the other ranks, which know no model: what they need rank 0 sends them in flow_run. Error:
- * CLOTH_E_MEMORY. Local. */
+/* On the other ranks, which know no model: rank 0 sends it in flow_run. Error: CLOTH_E_MEMORY.
+ * Local. */
 int flow_join(struct flow **flow, struct cloth_error *error);
 
 /* On rank 0, before flow_run: the run goes on from a checkpoint of the same model, whose end may be

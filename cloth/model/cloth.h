@@ -68,7 +68,7 @@ struct model_pin {
     uint32_t slider; /* number of the model's slider, from 1; 0: it holds points */
 };
 
-/* Through each vertex that it has, where it starts: a line, or a plane. */
+/* A line or a plane through the start of each of its vertices. */
 struct model_slider {
     enum { MODEL_LINE, MODEL_PLANE } kind;
     uint32_t motion;     /* that it takes part in, from 1; 0: none */

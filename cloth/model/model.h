@@ -193,7 +193,7 @@ static inline const char *model_contact_cure(const struct model *model)
                : "";
 }
 
-/* Likewise, of a start that certified contact cannot take: what helps. */
+/* Likewise for a start that certified contact cannot take: the remedy. */
 const char *model_start_cure(const struct model *model);
 
 /* The area of a cloth at rest, m^2; while it has its mesh. */
@@ -330,8 +330,8 @@ static inline bool model_has_cells(const struct model *model, const struct model
     return cloth->mesh.grid_nx && !model_has_triangles(model, cloth);
 }
 
-/* The material, by number, of what n > 0 vertices of the cloth's mesh have in common: that of the
- * last region that has them all, else the cloth's. */
+/* The material, by number, that n > 0 vertices of the cloth's mesh share: that of the last region
+ * that has them all, else the cloth's. */
 static inline uint32_t model_material_of(const struct model_cloth *cloth, size_t n,
                                          const uint32_t *vertex)
 {
@@ -339,8 +339,8 @@ static inline uint32_t model_material_of(const struct model_cloth *cloth, size_t
     return region < 0 ? cloth->material : cloth->region[region];
 }
 
-/* Cosine and sine of the angle by which the warp is turned where n > 0 vertices of the cloth's mesh
- * are; NULL: it is not. */
+/* Cosine and sine of the angle that turns the warp at n > 0 vertices of the cloth's mesh; NULL: it
+ * is not turned. */
 static inline const double *model_grain(const struct model_cloth *cloth, size_t n,
                                         const uint32_t *vertex)
 {

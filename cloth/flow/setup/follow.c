@@ -27,8 +27,7 @@ static void start_of(const struct flow_particles *p, const struct model *model, 
     *x = (phys_vec){at[0], at[1], at[2], 0};
 }
 
-/* Of all vertices that follow an obstacle; those that welds make one with them are attached, too.
- */
+/* Marks all vertices that follow an obstacle, and those welded to them. */
 static int mark(struct flow_particles *p, const struct model *model, struct cloth_error *error)
 {
     p->attached = cloth_alloc(p->n, sizeof *p->attached, error);

@@ -1,6 +1,6 @@
-/* Joints are springs between vertices of any cloths, as the scene names them. Those that are there
- * in all steps come after the springs of all cloths, in the scene's order; those that come or go,
- * or end on edges, are ties (cloth/flow/state/ties.h). */
+/* Joints are springs between vertices of any cloths, as the scene names them. Joints that act in
+ * all steps come after the springs of all cloths, in the scene's order. Timed joints, and those
+ * that end on edges, are ties (cloth/flow/state/ties.h). */
 #include "cloth/flow/setup/source.h"
 #include "cloth/flow/step/grid.h"
 

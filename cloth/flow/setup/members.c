@@ -1,5 +1,5 @@
-/* Every block that owns a corner of an element has it in its lists, in the order of all: so cut
- * entries of the matrix are summed up alike on both sides. */
+/* Every block that owns a corner of an element lists it, in the order of all elements. So both
+ * sides sum up cut entries of the matrix alike. */
 #include "cloth/flow/setup/source.h"
 
 #include "cloth/base/memory.h"

@@ -27,7 +27,7 @@ struct holder {
     uint32_t torn; /* a vertex that another pin moves in another way, or holds; UINT32_MAX: none */
 };
 
-/* Whether two sliders, by number, hold alike; both may be none. */
+/* True if two sliders, by number, hold alike; both may be none. */
 static bool alike(const struct model_slider *sliders, uint32_t a, uint32_t b)
 {
     if (a == b || !a || !b)
@@ -218,7 +218,8 @@ static int cloth_particles(struct flow_particles *p, uint32_t first, const struc
     return code ? code : masses(p, first, model, cloth, error);
 }
 
-/* What acts on them, when the masses of all cloths are there: a welded vertex has several. */
+/* Adds forces to the vertices of a cloth after the masses of all cloths: a welded vertex has
+ * several. */
 static int cloth_forces(struct flow_particles *p, uint32_t first, const struct model *model,
                         const struct model_cloth *cloth, struct cloth_error *error)
 {
@@ -316,7 +317,7 @@ int flow_particles_make(struct flow_particles *particles, const struct model *mo
     return code;
 }
 
-/* What a slider leaves of a velocity. */
+/* Takes out of a velocity what a slider forbids. */
 static void constrain_velocity(const struct model_slider *slider, phys_vec *v)
 {
     phys_vec filter;
@@ -352,7 +353,7 @@ void flow_particle_of(const struct flow_particles *particles, const struct model
         particle->load = particles->load[vertex];
 }
 
-/* Of the vertices of one cloth, the first of which is `first`. */
+/* The release of the vertices of one cloth, the first of which is `first`. */
 static double release(const struct flow_particles *p, const struct model *model,
                       const struct model_cloth *cloth, uint32_t first)
 {

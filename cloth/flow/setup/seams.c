@@ -27,7 +27,7 @@ static int compare_borders(const void *va, const void *vb)
     return order ? order : cloth_compare_u32(a->edge, b->edge);
 }
 
-/* Whether a vertex has several names. */
+/* True if a root has several names. */
 static bool is_welded(const struct flow_welds *welds, uint32_t root)
 {
     uint32_t low = 0, high = welds->n;
@@ -72,7 +72,7 @@ static bool is_shared(const struct border *a, const struct border *b)
     return a->root[0] == b->root[0] && a->root[1] == b->root[1];
 }
 
-/* What welds say of a root. */
+/* The welds of a root. */
 struct welded {
     double tolerance; /* m: the largest */
     bool sewn;        /* a weld of it is a seam's */
@@ -134,7 +134,7 @@ static int list_stitches(struct cloth_list *list, const struct model *model,
     return CLOTH_OK;
 }
 
-/* Of the edge between two roots; < 0: as the materials. */
+/* The bending of the edge between two roots; < 0: as the materials. */
 static double bending_of(const struct cloth_list *stitches, const uint32_t root[2])
 {
     const struct stitch key = {{root[0], root[1]}, 0};

@@ -1,4 +1,4 @@
-/* What is kept of the springs is which blocks they join, and where. */
+/* Only the blocks that springs join, and where, are kept of the springs. */
 #include "cloth/flow/setup/source.h"
 
 #include "cloth/base/memory.h"

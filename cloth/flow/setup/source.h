@@ -12,8 +12,8 @@
 
 #include <stdbool.h>
 
-/* What rank 0 makes the tables from. It never has all of them, nor all springs, at once: springs
- * are gone through again for each group of blocks, and a table is made when it is wanted. */
+/* The data from which rank 0 makes the tables. It never has all tables, nor all springs, at once:
+ * each group of blocks goes through the springs again, and a table is made when it is wanted. */
 
 /* How many vertices are unusual, and the first of them: in the numbering of its cloth's mesh. */
 struct flow_unusual {
@@ -175,16 +175,16 @@ struct flow_spring {
     uint32_t seam;                     /* of those that pull, from 1; 0: it is no joint of one */
     const struct model_correction *correction; /* of such a one; NULL: it has none */
 };
-/* A spring that welds make parallel to another, of the same length at rest, by its number among all
- * springs of the cloths: the first of them is all, the others are gone. */
+/* A spring, by its number among all springs of the cloths, that welds make parallel to others of
+ * the same rest length. The first of them stands for all; the others are gone. */
 struct flow_merged {
     uint64_t number;
     double stiffness, damping;
     bool gone;
 };
-/* A joint that comes or goes while the run is on, or that ends on an edge; it is a tie, and none of
- * the springs. Its spring is between the points that its vertices make by their weights, which come
- * to 0: from those above 0 to those below. a and b of the spring are not used. */
+/* A joint that begins or ends during the run, or that ends on an edge: a tie, and none of the
+ * springs. Its spring joins two points that its vertices make by their weights, whose sum is 0:
+ * from the weights above 0 to those below. a and b of the spring are not used. */
 struct flow_timed {
     struct flow_spring spring;
     uint32_t n, vertex[SOLVE_TIE_CORNERS]; /* of all cloths */
@@ -223,7 +223,7 @@ struct flow_source;
  * CLOTH_E_MEMORY. Local. */
 int flow_joints_make(struct flow_springs *springs, const struct flow_particles *particles,
                      struct cloth_error *error);
-/* Whether a step of the model's h has a timed joint. Local. */
+/* True if a step of the model's h has a timed joint. Local. */
 bool flow_joints_act(const struct model *model, const struct flow_timed *timed);
 /* A timed joint as a tie between rows of blocks, when these are there. Local. */
 struct flow_tie flow_joints_tie(const struct flow_source *source, const struct flow_timed *timed);
@@ -231,7 +231,8 @@ struct flow_tie flow_joints_tie(const struct flow_source *source, const struct f
  * outside its mesh. Local. */
 int flow_joints_use(const struct model *model, unsigned char *used, struct cloth_error *error);
 
-/* Who reads what of whom: neighbours of all blocks, block after block, as every rank knows them. */
+/* The neighbours of all blocks, block after block, and the rows read of them, as every rank knows
+ * them. */
 struct flow_neighbours {
     uint32_t n_neighbours, n_ghosts;
     uint32_t *neighbour;   /* n_neighbours: blocks, ascending in a block, */
@@ -241,10 +242,10 @@ struct flow_neighbours {
     uint32_t *ghost;       /* n_ghosts: places in the halo of the neighbour's block, ascending */
 };
 
-/* The vertices that probes are at. A row of the table of probes has step and time, then n_columns
- * numbers: FLOW_RUN_COLUMNS of the run, then of each probe, of each of its vertices, position,
- * velocity and reaction as far as they are wanted, then the sum of reactions, if it is. Where there
- * are no probes, n_columns is 0. */
+/* The vertices of probes. A row of the table of probes has step and time, then n_columns numbers:
+ * FLOW_RUN_COLUMNS of the run, then those of each probe. A probe has position, velocity and
+ * reaction of each of its vertices, as far as they are wanted, then the sum of reactions, if it is.
+ * Without probes n_columns is 0. */
 enum {
     FLOW_COLUMN_ITERATIONS,
     FLOW_COLUMN_LONGEST,
@@ -318,13 +319,13 @@ int flow_source_gather(struct flow_source *source, uint32_t from, uint32_t to,
 
 void flow_source_forget(struct flow_source *source);
 
-/* Makes the table of a block of the group: writes every byte of its memory. Of different blocks by
- * several threads at once. Local. */
+/* Makes the table of a block of the group: writes every byte of its memory. Several threads may
+ * make different blocks at once. Local. */
 void flow_source_table(const struct flow_source *source, uint32_t block, void *memory);
 
-/* Finds whose triangles are, and adds the sizes of skins to the shapes, when these are there; the
- * skin of a block, as the field `skin` has it: writes every byte of it. Errors: CLOTH_E_MEMORY.
- * Local. */
+/* Finds the block of each triangle, and adds the sizes of skins to the shapes, when these are
+ * there. The other makes the skin of a block, as the field `skin` has it: writes every byte of it.
+ * Errors: CLOTH_E_MEMORY. Local. */
 int flow_skins_make(struct flow_source *source, struct cloth_error *error);
 void flow_skins_free(struct flow_skins *skins);
 int flow_source_skin(const struct flow_source *source, uint32_t block, void *memory,
@@ -361,12 +362,12 @@ int flow_limit_find(const struct flow_source *source, struct flow_limit *limit,
 /* The longest step, s, in which an integrator does not let it grow; infinite for implicit ones. */
 double flow_limit_of(const struct flow_limit *limit, enum model_integrator integrator);
 
-/* Of a model whose contact is certified: that no triangle has an edge that is shorter at rest than
+/* Checks a model with certified contact: no triangle may have an edge that is shorter at rest than
  * the thickness. Error: CLOTH_E_INPUT. Local. */
 int flow_thickness_check(const struct model *model, struct cloth_error *error);
 
-/* What measures residuals, kg m^2: the mass of all vertices that no pin holds times the square of
- * the mean length at rest of all edges that can be stretched; 0 where there are none. Local. */
+/* The scale of residuals, kg m^2: the mass of all vertices that no pin holds times the square of
+ * the mean rest length of stretchable edges; 0 without these. Local. */
 double flow_source_inertia(const struct flow_source *source);
 
 /* A scale of the energy, J: twice the sum of |force| times distance from the cloth's centre at the
@@ -374,8 +375,8 @@ double flow_source_inertia(const struct flow_source *source);
  * vertex moves to the centre and as far on. 0 without weights and loads. Local. */
 double flow_source_release(const struct flow_source *source);
 
-/* What contacts are measured by (stiffness.c): N/m, of a contact; kg, of a vertex, the mean. Local.
- */
+/* The scales of contacts (stiffness.c): the stiffness of a contact, N/m; the mean mass of a vertex,
+ * kg. Local. */
 double flow_source_stiffness(const struct flow_source *source);
 double flow_source_mass(const struct flow_source *source);
 

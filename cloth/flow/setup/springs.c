@@ -154,8 +154,8 @@ static void link_cells(const struct visitor *visitor, const struct mesh *mesh)
         }
 }
 
-/* Whether a cloth of springs may lack those between corners of its triangles: springs of 0 N/m are
- * none. */
+/* True if a cloth of springs may lack springs between corners of its triangles: a spring of 0 N/m
+ * is none. */
 static bool lacks_springs(const struct model *model, const struct model_cloth *cloth)
 {
     bool lacks = false;
@@ -179,8 +179,8 @@ static void link_triangles(const struct visitor *visitor, const struct mesh *mes
     }
 }
 
-/* What the elements of a cloth join, and its edges without triangles, which are springs as in any
- * cloth. */
+/* Visits the links that a cloth's elements make, and its edges without triangles, which are springs
+ * in any cloth. */
 static void each_link(const struct flow_springs *springs, uint32_t c, const struct visitor *visitor)
 {
     const struct model *model = springs->model;
@@ -243,7 +243,7 @@ static void pass_merged(void *context, const struct flow_spring *s)
     merger->visit(merger->to, &sum);
 }
 
-/* What hinges across seams join. */
+/* Visits the links that hinges across seams make. */
 static void each_seam(const struct flow_springs *springs,
                       void (*visit)(void *to, const struct flow_spring *spring), void *to)
 {

@@ -1,5 +1,4 @@
-/* What is unusual about a model but no error. Each kind of warning has its place in flow->warning,
- * and says at most one thing. */
+/* Warnings about a model. Each kind has its place in flow->warning, and says at most one thing. */
 #include "cloth/flow/setup/long_steps.h"
 #include "cloth/flow/setup/setup.h"
 #include "cloth/flow/state/state.h"
@@ -32,8 +31,8 @@ static void warn(struct flow *flow, const struct flow_particles *particles)
                      "they move nothing");
 }
 
-/* What a material says that its cloth has nothing for; NULL: nothing. A chain beside a grid may
- * share a material that shears. */
+/* Names a key of a material that its cloth has no use for; NULL: there is none. A chain beside a
+ * grid may share a material that shears. */
 static const char *idle_key(const struct model *model, const struct model_material *material,
                             const struct model_cloth *cloth)
 {
@@ -170,7 +169,7 @@ static void warn_of_inside(struct flow *flow)
         }
 }
 
-/* Of the first cloth that has such. */
+/* Warns of the first cloth that has such edges. */
 static void warn_of_windings(struct flow *flow, const struct model_cloth *cloth,
                              const struct mesh_edges *edges)
 {
@@ -215,7 +214,7 @@ static double distance(const double *a, const double *b)
     return sqrt(phys_dot(&way, &way));
 }
 
-/* What two ends of an edge that follow obstacles are apart at a time, m. */
+/* The distance of two ends of an edge that follow obstacles at a time, m. */
 static double length_at(const struct flow *flow, uint32_t first, const struct model_cloth *cloth,
                         const struct mesh_edge *edge, double time)
 {
@@ -232,7 +231,7 @@ static double length_at(const struct flow *flow, uint32_t first, const struct mo
     return sqrt(phys_dot(&way, &way));
 }
 
-/* Of one cloth: how much an edge is longer at some time than it starts, or is at rest. */
+/* The most that an edge of one cloth gets longer than at the start, or at rest; and when. */
 struct stretched {
     double by, time;
     const struct mesh_edge *edge;

@@ -148,7 +148,7 @@ void flow_welds_free(struct flow_welds *welds)
     *welds = (struct flow_welds){0};
 }
 
-/* ---- What a welded vertex is ---- */
+/* ---- Welded vertices ---- */
 
 static int check_distance(const struct flow_particles *p, const struct model *model,
                           const struct flow_pair *pair, double max, struct cloth_error *error)
@@ -189,9 +189,9 @@ static const struct model_material *material_of(const struct model *model, uint3
     return model->materials + model_material_of(model->cloths + at->cloth, 1, &own);
 }
 
-/* Of a root and n other names: drag by viscous damping, of which a vertex has one, the largest; by
- * mass damping, of which each part has its own. Where all have the same rate it is of the whole
- * mass: equal cloths have the bits of one. */
+/* The drag of a root with n other names. A vertex has one viscous damping, the largest; each part
+ * has its own mass damping. If all have the same rate it takes the whole mass: equal cloths have
+ * the bits of one. */
 static double drag_of(const struct flow_particles *p, const struct model *model, uint32_t root,
                       const uint32_t (*name)[2], uint32_t n)
 {
@@ -209,8 +209,8 @@ static double drag_of(const struct flow_particles *p, const struct model *model,
     return viscous + (alike ? first->damping_mass * p->mass[root] : sum);
 }
 
-/* All start at the mean of their places, with the mean of their velocities by mass. Of equal ones
- * it is the same bits. */
+/* All start at the mean of their places, with the mean of their velocities by mass. The mean of
+ * equal ones has the same bits. */
 static void meet(struct flow_particles *p, uint32_t root, const uint32_t (*name)[2], uint32_t n)
 {
     double *start = p->start[root], away[6] = {0};

@@ -42,8 +42,8 @@ struct element_cloths {
     struct element_fold *fold; /* edges of all cloths whose rest angle is given, by their ends */
 };
 
-/* Finds the edges, and what is wrong with rest shapes. Errors: CLOTH_E_INPUT for triangles without
- * area and what does not suit its material, with the place; CLOTH_E_MEMORY. Local. */
+/* Finds the edges and checks the rest shapes. Errors: CLOTH_E_INPUT for triangles without area and
+ * parts that do not suit their material, with the place; CLOTH_E_MEMORY. Local. */
 int element_cloths_make(struct element_cloths *cloths, const struct model *model,
                         struct cloth_error *error);
 void element_cloths_free(struct element_cloths *cloths);

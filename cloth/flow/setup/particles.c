@@ -218,7 +218,7 @@ static int cloth_particles(struct flow_particles *p, uint32_t first, const struc
     return code ? code : masses(p, first, model, cloth, error);
 }
 
-/* Adds forces to the vertices of a cloth after the masses of all cloths: a welded vertex has
+/* Sets weights, loads and pins, when the masses of all cloths are there: a welded vertex has
  * several. */
 static int cloth_forces(struct flow_particles *p, uint32_t first, const struct model *model,
                         const struct model_cloth *cloth, struct cloth_error *error)

@@ -44,7 +44,7 @@ static void normalise(phys_vec *x, const phys_vec *other)
     *x = square > 0 ? *x / sqrt(square) : *other;
 }
 
-/* Of a triangle that has no area: any, which do not turn with it. */
+/* The axes of a triangle. Without area it gets any axes, which do not turn with it. */
 static void find_axes(const phys_vec x[3], phys_vec axis[3])
 {
     const phys_vec first = {1, 0, 0, 0}, last = {0, 0, 1, 0}, side = x[2] - x[0];

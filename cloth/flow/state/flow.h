@@ -10,8 +10,8 @@
 #include "cloth/solve/levels.h"
 #include "cloth/solve/local.h"
 
-/* What the bodies of tasks share, the runtime's context. Bodies see objects, arguments and the
- * constant part of the flow; what else they touch is said here. */
+/* Data that the bodies of tasks share, the runtime's context. Bodies see objects, arguments and the
+ * constant part of the flow; everything else that they touch is named here. */
 
 /* Parts of a step whose seconds the report gives. */
 enum flow_part {
@@ -89,8 +89,7 @@ struct flow {
 
     /* Rank 0 only. */
     char warning[12][600]; /* of all vertices, pinned ones, loaded ones, the solver, h, air, moduli,
-                             extents, shear, what starts inside, windings, what follows; empty: none
-                           */
+                              extents, shear, starts inside, windings, followers; empty: none */
     struct flow_source source; /* until the tables are distributed */
     uint32_t *vertex;          /* by place; from then on */
     uint32_t *cloth_first;     /* n_cloths of the model: the first vertex of each among all */
@@ -103,7 +102,7 @@ struct flow {
     struct flow_filter filter;   /* the program's; rows NULL: none */
     struct flow_checkpoint from; /* that the run goes on from; bytes NULL: none */
 
-    /* Of the run that is on. */
+    /* The run under way. */
     uint32_t made[FLOW_FIELDS_OF_ALL]; /* in which blocks a field exists: in none from there on */
     const struct flow_progress *progress; /* tasks ask it whether to stop; NULL: nobody is asked */
     unsigned n_clocks;
@@ -146,7 +145,7 @@ struct flow {
     size_t saving_room;            /* bytes */
 };
 
-/* What a run's preconditioner is made of. An explicit run has none. */
+/* The parts of a run's preconditioner. An explicit run has none. */
 static inline bool flow_is_preconditioned(const struct flow *flow)
 {
     return flow->preconditioner != MODEL_PLAIN;

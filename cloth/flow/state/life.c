@@ -1,4 +1,4 @@
-/* What fields are between two steps: the last column of their list, as functions. */
+/* The use of fields between two steps: the last column of their list, as functions. */
 #include "cloth/flow/state/life.h"
 
 #include "cloth/flow/contact/body.h"

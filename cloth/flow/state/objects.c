@@ -1,6 +1,6 @@
-/* Objects of fields are made, freed, found and swapped by loops over their table (fields.h). A
- * block's objects live where its positions live; the graph that mappings see is the one of the
- * blocks: a block weighs its vertices, and two blocks exchange what each has as ghosts. */
+/* Loops over the table of fields (fields.h) make, free, find and swap their objects. A block's
+ * objects live where its positions live. Mappings see the graph of the blocks: a block weighs its
+ * vertices, and two blocks exchange the ghosts of each. */
 #include "cloth/flow/bodies.h"
 
 #include <stddef.h>

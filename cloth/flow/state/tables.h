@@ -7,16 +7,17 @@
 #include "cloth/solve/correction.h"
 #include "cloth/solve/patches.h"
 
-/* What does not change during a run. Every rank knows the shapes of all blocks and who their
- * neighbours are; the rest of a block is its table, a shared object beside the block's others,
- * which tasks read where they run. All cloths of a model together: vertices are numbered cloth
- * after cloth in the input's order, places block after block (cloth/mesh/blocks.h). */
+/* Data that do not change during a run. Every rank knows the shapes and neighbours of all blocks.
+ * The rest of a block is its table, a shared object beside the block's others, which tasks read
+ * where they run. Numbers are of all cloths together: vertices cloth after cloth in the input's
+ * order, places block after block (cloth/mesh/blocks.h). */
 
 /* Positions and speeds of this size (m, m/s, along an axis) are no cloth's: a run does not start
  * with them, and a run that comes to them diverged. */
 #define FLOW_BOUND 1e6
 
-/* How large the skin of a block is (skin.h); zero but where contact is certified. */
+/* A position or speed of this size (m, m/s, along an axis) is an error: a run does not start with
+ * it, and a run that reaches it diverged. */
 struct flow_skin_size {
     uint32_t n_points, n_triangles, n_edges, n_vertices;
     uint32_t cloth[2]; /* its points are of these cloths and some between them */
@@ -31,10 +32,10 @@ struct flow_cut_edge {
 };
 
 /* One block. Its springs: first the inner ones, sorted by (lower row, higher row), then those cut
- * by its border, neighbour after neighbour. A cut spring is known to both blocks. The entries of
- * its matrix (cloth/solve/format.h) are in that order, too: the springs themselves or, in half
- * storage, the pairs of rows that anything joins, each once. What elements join has a spring
- * without stiffness, a link. */
+ * by its border, neighbour after neighbour. Both blocks know a cut spring. The entries of its
+ * matrix (cloth/solve/format.h) have the same order: the springs themselves or, in half storage,
+ * the pairs of rows that anything joins, each once. Rows that elements join have a spring without
+ * stiffness, a link. */
 struct flow_table {
     /* Its shape, known to every rank: all before `neighbour` is broadcast as it stands. */
     uint32_t n, first;                               /* rows, place of row 0 */

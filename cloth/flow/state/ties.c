@@ -11,7 +11,7 @@
 
 /* ---- Memory ---- */
 
-/* What a table begins with. */
+/* The head of a table. */
 struct head {
     uint32_t n_inner, n, n_rows, n_ghosts, n_shown, n_others, n_halo;
     struct flow_tie_room room;
@@ -168,7 +168,7 @@ static uint32_t sort_once(struct own *own, size_t n)
     return kept;
 }
 
-/* Whether an earlier corner of the tie is in the same block as corner l. */
+/* True if an earlier corner of the tie is in the same block as corner l. */
 static bool is_again(const struct flow_tie_corners *tie, uint32_t l)
 {
     bool again = false;

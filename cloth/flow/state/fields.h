@@ -14,9 +14,9 @@
 
 /* The fields of a run: every shared object that lives as long as the run, in one list. A row
  * has a field's name, the number of its objects, the type of its numbers in C, numbers a row, and
- * the number of rows (at least one is made). Then it says when the field exists, and its use between
- * two steps (enum flow_life). The words in the last three columns are functions of fields.c and
- * life.c. Loops over the list make, free and colocate objects (objects.c); kernels name them
+ * the number of rows (at least one is made). Then it says when the field exists, and its use
+ * between two steps (enum flow_life). The words in the last three columns are functions of fields.c
+ * and life.c. Loops over the list make, free and colocate objects (objects.c); kernels name them
  * (kernel.h). A checkpoint must have the fields that the last column says; test_fields.c holds runs
  * to it. A new field is one row.
  *

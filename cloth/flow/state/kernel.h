@@ -17,8 +17,9 @@
  *
  * The rest follows: the body's struct of pointers, the parameters' modes, and the objects at the
  * fork, `flow_fork_each(state, &flow_kernel_velocity, &args)`. A pointer has the type that the
- * field's row says, const under R. A field that is undeclared or misspelt does not compile, nor does
- * a kernel that is missing in the list of kernels.h. A kernel's name in traces is its name here.
+ * field's row says, const under R. A field that is undeclared or misspelt does not compile, nor
+ * does a kernel that is missing in the list of kernels.h. A kernel's name in traces is its name
+ * here.
  *
  *     R W RW     reads, overwrites, changes: a field of the task's block or of the run
  *     SUM MAX    contributes to it, added up, or the largest counts

@@ -96,7 +96,7 @@ static int seam_rest(const struct element_cloths *cloths, const struct element_s
     return code;
 }
 
-/* The rigidity across an edge whose direction is the mean of what its triangles say. */
+/* The rigidity across an edge whose direction is the mean of its triangles' directions. */
 static double rigidity_of(const struct element_cloths *cloths, uint32_t cloth,
                           const uint32_t triangle[2], const uint32_t corner[4],
                           const struct model_material *material)

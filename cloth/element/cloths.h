@@ -37,7 +37,7 @@ struct element_cloths {
     struct mesh_edges *edges; /* a cloth; none where it has no elements */
     double (*axis)[2][3];     /* a cloth: directions of warp and weft where its mesh has no uv */
     uint32_t n_seams;
-    struct element_seam *seam; /* of cloths with hinges; added by who knows of welds */
+    struct element_seam *seam; /* of cloths with hinges; added when welds are known */
     uint32_t n_folds;
     struct element_fold *fold; /* edges of all cloths whose rest angle is given, by their ends */
 };
@@ -76,7 +76,7 @@ void element_alone(const struct element_cloths *cloths, const struct element *el
 /* The shape at rest of a cloth: vertices lie at mesh_place, m. */
 const struct mesh *element_rest(const struct element_cloths *cloths, uint32_t cloth);
 
-/* How long an edge is at rest, m. */
+/* The length of an edge at rest, m. */
 double element_rest_length(const struct element_cloths *cloths, const struct element *element);
 
 /* Coordinates along warp and weft (phys_triangle_local) of a triangle's corners, in any order,
@@ -84,7 +84,7 @@ double element_rest_length(const struct element_cloths *cloths, const struct ele
 void element_rest_local(const struct element_cloths *cloths, uint32_t cloth, uint32_t triangle,
                         const uint32_t corner[3], double local[6]);
 
-/* The material, by number, of an element: of what its first n corners have in common. */
+/* The material, by number, of an element: that which its first n corners share. */
 static inline uint32_t element_material(const struct element_cloths *cloths,
                                         const struct element *element, size_t n)
 {

@@ -33,16 +33,16 @@ struct element_list {
     uint32_t *at;          /* n x pairs: the entry of each, as solve_assemble_pairs wants it */
     phys_vec *vector;      /* n, or none */
     double *number[ELEMENT_NUMBERS]; /* n each; those of the kind come first */
-    void *material;                  /* a material: what elements have of it; or none */
+    void *material;                  /* the elements' data of a material; or none */
 };
 
-/* When and in what world forces act. The model has no cloths and no materials. */
+/* The time and the world of forces. The model has no cloths and no materials. */
 struct element_world {
     const struct model *model;
     double time; /* s */
 };
 
-/* A cloth, for what limits steps. */
+/* A cloth, to limit steps. */
 struct element_sheet {
     const struct model *model;
     const struct model_cloth *cloth;
@@ -104,7 +104,8 @@ struct element_kind {
     /* For kinds without system: y -= scale K v. */
     void (*stiffness)(const struct element_list *list, int full, double scale,
                       const struct phys_sight *sight, phys_vec *y);
-    /* Energy (J) of the elements that count here: whose corner 0 is one of the block's rows. */
+    /* Energy (J) of the elements that count here: those whose corner 0 is one of the block's rows.
+     */
     double (*energy)(const struct element_list *list, const struct phys_sight *sight);
     /* Optional: adds the torques (N m) that the forces of elements that count here leave. */
     void (*torque)(const struct element_list *list, const struct phys_sight *sight,
@@ -129,8 +130,8 @@ ELEMENT_ALL(ELEMENT_DECLARE)
 
 extern const struct element_kind *const element_kinds[ELEMENT_KINDS];
 
-/* Which parts of a cloth are elements: bit 1 << part. The first kind of them that the matrix knows;
- * NULL: none, so that a matrix of springs can hold the cloth. */
+/* The parts of a cloth that are elements, as bits 1 << part. The first kind of them that the matrix
+ * knows; NULL: none, so that a matrix of springs can hold the cloth. */
 unsigned element_parts(const struct model *model, const struct model_cloth *cloth);
 const struct element_kind *element_in_matrix(const struct model *model,
                                              const struct model_cloth *cloth);

@@ -51,7 +51,8 @@ struct flow_view {
     const struct contact_row *contact_rows; /* of those ties that are contacts; NULL: none is asked
                                              * for, or the run has none */
 };
-/* That of a body whose kernel declares x, v, the neighbours' halos of both, ties and contacts. */
+/* The view of a body whose kernel declares x, v, the neighbours' halos of both, ties and contacts.
+ */
 #define FLOW_VIEW(on)                                                                              \
     {                                                                                              \
         (on)->x, (on)->v, (on)->halo_x, (on)->halo_v, (on)->tie_table, (on)->tied_tie_halo,        \
@@ -100,12 +101,12 @@ static inline size_t flow_acting_rows(uint32_t room)
 }
 /* Writes them (solver/ties.c). value: of all ties; the rows follow. */
 void flow_ties_gather(const struct flow_ties *ties, phys_vec *value);
-/* They as a solve sees them. p_other: p of the ghosts of ties, in a pass. */
+/* The ties as a solve sees them. p_other: p of the ghosts of ties, in a pass. */
 struct solve_ties flow_ties_solved(const struct flow_ties *ties, const phys_vec *value,
                                    const phys_vec *p_other);
 
-/* A corner of a tie: a row of the block's own, or of what the blocks that it shares ties with show
- * it. shown: TIED of a field whose rows are those shown, once (part 0) or twice (0, 1). */
+/* A corner of a tie: a row of the block, or one that a block shows which shares ties with it.
+ * shown: TIED of a field whose rows are those shown, once (part 0) or twice (0, 1). */
 static inline const phys_vec *flow_tie_row(const struct flow_ties *ties, uint32_t corner,
                                            const phys_vec *own, const duite_param *shown, int part)
 {
@@ -148,7 +149,7 @@ void flow_contact_solved(const struct flow *flow, const struct flow_view *view,
                          phys_vec *by_obstacle);
 void flow_contact_system(const struct flow *flow, const struct flow_view *view, double h,
                          double push, phys_vec *b, phys_vec *value);
-/* Takes out of lost[3] what solve_lost cannot know: N dv of ties that lead to held ends. */
+/* Takes N dv of ties that lead to held ends out of lost[3]: solve_lost cannot know it. */
 void flow_ties_lost(const unsigned char *tie_table, const phys_vec *value, const phys_vec *dv,
                     double lost[3]);
 
@@ -194,8 +195,8 @@ static inline phys_vec *flow_force_room(const duite_call *call)
     return flow->forces + call->worker * flow->n_forces;
 }
 
-/* Copies the rows that neighbours need. halo: n_halo rows; one, which nobody reads, if there are
- * none. */
+/* Copies the rows that neighbours need. halo: n_halo rows; a single unread one if there are none.
+ */
 static inline void flow_write_halo(const struct flow_table *table, const phys_vec *y,
                                    phys_vec *halo)
 {
@@ -205,7 +206,7 @@ static inline void flow_write_halo(const struct flow_table *table, const phys_ve
         halo[0] = (phys_vec){0};
 }
 
-/* A halo of the solve: three numbers a row; one row, which nobody reads, if there are none. */
+/* A halo of the solve: three numbers a row; a single unread row if there are none. */
 static inline void flow_pack_halo(const struct flow_table *t, const phys_vec *y, double *halo)
 {
     solve_pack(t->n_halo, t->halo, y, halo);
@@ -220,7 +221,8 @@ struct flow_solved {
     const struct solve_scalars *scalars;
     const unsigned char *tie_table; /* NULL: the run has no ties */
 };
-/* Notes it in the status: what it took, its error, the momentum that it lost, whether it failed. */
+/* Notes the solve in the status: its iterations and restarts, its error, the momentum that it lost,
+ * its failure. */
 void flow_note_solve(const duite_call *call, const struct flow_table *table,
                      const struct flow_solved *solved, double *status);
 
@@ -233,15 +235,16 @@ static inline void flow_put_double(unsigned char *bytes, double value)
         bytes[i] = (unsigned char)(bits >> (8 * i));
 }
 
-/* How many of the dots a pass sums: without a preconditioner r.z is r.r, and the rest is for stops
- * by norms. */
+/* The number of dots that a pass sums: without a preconditioner r.z is r.r, and the rest is for
+ * stops by norms. */
 static inline size_t flow_dots(const struct flow *flow)
 {
     return flow_is_preconditioned(flow) || model_stops_by_norms(flow->model) ? SOLVE_DOTS
                                                                              : SOLVE_RZ;
 }
 
-/* In a body: what it did since it began, or since this was called, was this part of the step. */
+/* In a body: counts its seconds since it began, or since the last call, for this part of the step.
+ */
 static inline void flow_part_ends(const duite_call *call, enum flow_part part)
 {
     struct flow_clock *clock = flow_of(call)->clock + call->worker;

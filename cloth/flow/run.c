@@ -260,7 +260,7 @@ int flow_run_begin(struct flow_state *state)
     return code;
 }
 
-/* Where a run starts that does not go on from a checkpoint. */
+/* Starts a run that does not go on from a checkpoint. */
 static int start(struct flow_state *state)
 {
     int code = flow_initialise(state);
@@ -302,8 +302,7 @@ static int code_of_cloth(int code)
     return code > 0 ? CLOTH_E_RUN : CLOTH_E_LIBRARY;
 }
 
-/* The sentence that a body gave its failure, without what the runtime says of the task before it.
- */
+/* A body's own failure sentence, without the runtime's words about the task before it. */
 static const char *own_sentence(const char *message, int code)
 {
     char before[32];

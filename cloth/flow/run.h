@@ -14,7 +14,7 @@
  * whose v is that of half a step before x, `kinetic` is that of v half a step on. */
 struct flow_energy {
     double kinetic, elastic, gravity, loads;
-    double contact; /* what certified contacts hold (contact/row.h) */
+    double contact; /* held by certified contacts (contact/row.h) */
 };
 
 /* The first reason why a step is begun again with half its length: its solve failed; a position,
@@ -48,7 +48,7 @@ struct flow_report {
     uint64_t contacts_now;           /* at the end of the last step accepted */
     uint64_t contact_pinches;        /* pairs that nothing kept apart, so that a step was halved; */
     char contact_pinch[240];         /* the first of them; on rank 0, else empty */
-    double contact_cut_momentum;     /* kg m/s: what cuts changed, summed over the steps made */
+    double contact_cut_momentum;     /* kg m/s: changed by cuts, summed over the steps made */
     uint64_t steps_retaken; /* how often one by BDF2 gained energy and was made again by implicit
                                Euler */
     uint64_t frames;        /* with those before the run */
@@ -114,35 +114,35 @@ struct flow_beside {
                                   * block has */
 };
 
-/* Where vertices and blocks are when a frame is shown. */
+/* The places of vertices and blocks when a frame is shown. */
 struct flow_places {
     const int32_t *block; /* of each vertex; -1 of those that no block has */
     uint32_t n_blocks;
     const int32_t *rank; /* n_blocks: that keeps each */
 };
 
-/* Where frames and systems go: handed over by the program. Called on rank 0 only, from one task at
- * a time. */
+/* The receivers of frames and systems, from the program. Called on rank 0 only, from one task at a
+ * time. */
 struct flow_output {
     void *context;
     struct flow_before before; /* numbers and times of frames and rows count from it; the same on
                                   all ranks */
-    /* On rank 0: room for 6 numbers a vertex, for where the run ends, as model_cloth.start has
-     * them. NULL: it is not wanted. */
+    /* On rank 0: room for 6 numbers a vertex, the end of the run, as model_cloth.start has them.
+     * NULL: it is not wanted. */
     double (*end)[6];
     /* Frames in their order; NULL: none are wanted. */
     /* position: vertices x 3 in the numbering of the input meshes, cloth after cloth. time in
      * seconds. Returns 0 or a code and fills error. */
     int (*frame)(void *context, uint64_t frame, double time, const double *position,
                  struct cloth_error *error);
-    /* How many there are for certain when one failed, which may be one before that. NULL: all that
-     * were handed over before. */
+    /* The number of frames that are written for certain after one failed, which may be one before
+     * that. NULL: all that were handed over before. */
     uint64_t (*written)(void *context);
-    /* Before it the places in it. The arrays are lent. NULL: they are not wanted. */
+    /* The places in a frame, before it. The arrays are lent. NULL: they are not wanted. */
     int (*places)(void *context, uint64_t frame, const struct flow_places *places,
                   struct cloth_error *error);
-    /* After it the force of contact on each vertex in the step that ended there, N, alike, of a run
-     * whose contact is certified; NULL: it is not wanted. */
+    /* The force of contact on each vertex in the step that ended at a frame, N, after the frame and
+     * arranged as its positions. Only with certified contact. NULL: it is not wanted. */
     int (*force)(void *context, uint64_t frame, const double *force, struct cloth_error *error);
     /* After a frame that model.hdf5 takes, its other fields, unless none is wanted. The arrays are
      * lent. */
@@ -252,15 +252,15 @@ int flow_run(struct flow *flow, duite *rt, const struct flow_output *output,
 /* Vertices of all cloths together; 0 where a flow only joined and has not run. Local. */
 uint64_t flow_vertices(const struct flow *flow);
 
-/* Where a run starts: 3 numbers a vertex, m, in the input's numbering. On rank 0, before the run.
+/* The start of a run: 3 numbers a vertex, m, in the input's numbering. On rank 0, before the run.
  * Local. */
 void flow_start(const struct flow *flow, double *position);
 
 /* The same before seams are welded, by vertex; NULL: none are. Lives until the run. */
 const double (*flow_unwelded(const struct flow *flow))[3];
 
-/* The same with velocities, m/s: of each vertex 6 numbers, as model_cloth.start has them; and
- * whether a pin holds it or moves it, 1 or 0. On rank 0, before the run. Local. */
+/* The start with velocities, m/s: 6 numbers a vertex, as model_cloth.start has them. held: 1 if a
+ * pin holds or moves the vertex, else 0. On rank 0, before the run. Local. */
 void flow_starts(const struct flow *flow, double (*start)[6], unsigned char *held);
 
 /* The obstacle, from 1, that the pin of each vertex follows, or 0; in the input's numbering. NULL:

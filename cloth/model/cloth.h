@@ -17,30 +17,31 @@ struct model_material {
     char *name;
     double density; /* kg/m^2, > 0; 0: all its cloths have mass_per_vertex */
     enum { MODEL_SPRINGS, MODEL_TRIANGLES } model;
-    double stretch, weft_excess; /* membrane moduli, N/m, >= 0: along the warp, and what that along
-                                    the weft is more */
-    double shear, bend;          /* likewise; bend: of springs only */
-    double poisson;              /* triangles: nu12, nu12 nu21 < 1 */
-    bool uncorrected;            /* triangles: with the papers' forces (cloth/physics/triangle.h) */
+    double stretch,
+        weft_excess;    /* membrane moduli, N/m, >= 0: along the warp; the weft's less the warp's */
+    double shear, bend; /* likewise; bend: of springs only */
+    double poisson;     /* triangles: nu12, nu12 nu21 < 1 */
+    bool uncorrected;   /* triangles: with the papers' forces (cloth/physics/triangle.h) */
     enum { MODEL_NO_BENDING, MODEL_HINGES, MODEL_QUADRATIC } bending; /* besides bend springs */
     double rigidity[2];       /* N m, of warp and weft, >= 0 */
     double damping_viscous;   /* kg/s a vertex */
     double damping_mass;      /* 1/s: a force -damping_mass * m * v */
     double damping_stiffness; /* s: along each spring, times its k; of strains and angles too */
-    double damping_excess;    /* s: what it is of bending less that */
+    double damping_excess;    /* s: that of bending less damping_stiffness */
     double ea;                /* N, >= 0: force / strain of an edge without triangles */
     double limit_strain;      /* >= 0: edges stretched beyond it are pulled back, */
     double limit_stiffness;   /* by so many N/m, >= 0; 0: they are not */
     struct model_correction {
-        double at, tolerance; /* >= 0: edges that would be stretched beyond it have their velocities
-                               * corrected; > 0: what may be left, of the length at rest */
-        uint32_t rounds;      /* at most; 0: they are not */
+        double at,
+            tolerance;   /* >= 0: edges that would be stretched beyond it have their velocities
+                            corrected; > 0: the excess that may be left, of the length at rest */
+        uint32_t rounds; /* at most; 0: they are not */
     } correction;
     double friction;    /* coefficient, >= 0: of contact that is certified */
     int both_diagonals; /* grids: shear springs along both diagonals of a cell */
 };
 
-/* A word of scenes, and what it means: the value of an enum, mostly. */
+/* A word of scenes and its meaning: the value of an enum, mostly. */
 struct model_word {
     const char *word; /* NULL ends a list */
     int value;
@@ -79,11 +80,11 @@ struct model_slider {
 struct model_motion {
     uint32_t first, n; /* n > 0, */
     double about[3];
-    uint32_t follow; /* unless it is that of an obstacle, by number from 1, whose keys these are: it
-                      * takes along what is there at time 0 */
+    uint32_t follow; /* unless it follows an obstacle, by number from 1, whose keys these are: it
+                        takes along what is there at time 0 */
 };
 
-/* How a load varies: by keys first .. first + n - 1 of the model's; n 0: as a sine of the
+/* The variation of a load: by keys first .. first + n - 1 of the model's; n 0: as a sine of the
  * frequency (1/s) and phase (turns). */
 struct model_curve {
     uint32_t first, n;
@@ -127,8 +128,8 @@ struct model_start {
 struct model_fold {
     uint32_t n;
     uint32_t *vertices; /* of the cloth's mesh */
-    bool sewn;          /* along a seam, where nothing folds unless it is welded, */
-    bool open;          /* and nothing pulls it */
+    bool sewn;          /* along a seam, which folds only if it is welded */
+    bool open;          /* and the seam is open */
     double angle; /* degrees, above -180 and below 180; above 0: a ridge on the side from which the
                      triangles are counterclockwise */
     char *place;
@@ -199,7 +200,7 @@ struct model_cloth {
     double (*grain)[2];   /* cosine and sine of the angle from u towards v; */
     uint64_t *grain_mask; /* by vertex, which of these have it: mesh_region; NULL: none */
     double weld;          /* m: vertices that lie so near are one, by a weld; 0: none are */
-    uint32_t n_unjoined;  /* vertices that lie on another's place, and nothing joins them */
+    uint32_t n_unjoined;  /* vertices at another's place that are not joined with it */
     double mass_per_vertex; /* kg, replaces density * area where > 0 */
     double velocity[3];     /* at the start, m/s */
     double *start;          /* n_vertices x 6: where they start (m) and how fast (m/s), the shape of
@@ -219,7 +220,7 @@ struct model_cloth {
 struct model_end {
     uint32_t cloth, n;
     uint32_t *vertices;   /* n; NULL: there are edges, */
-    uint32_t (*edges)[2]; /* n, between whose ends a and b is the point (1 - at) a + at b */
+    uint32_t (*edges)[2]; /* n, with ends a and b: the point is (1 - at) a + at b */
     double *at;           /* n, 0 to 1 */
 };
 

@@ -218,7 +218,7 @@ void model_parts(const struct model *model, uint32_t material, bool *triangles, 
     }
 }
 
-/* Alike but for rounding, of cells that are at other places. */
+/* The common value of two that differ by rounding at most, of cells at other places; else NAN. */
 static double common(double a, double b)
 {
     return fabs(a - b) <= 1e-9 * fabs(a) ? a : NAN;

@@ -47,16 +47,16 @@ enum model_contact_mode {
     MODEL_CONTACT_REPULSION, /* springs push apart what is too near when a step begins */
     MODEL_CONTACT_CERTIFIED  /* the solve knows of contacts; a step ends where all are certified */
 };
-/* The coefficient of two sides, in place of what theirs make. of: numbers of materials; those of
- * obstacles follow. */
+/* The coefficient of two sides, in place of theirs. of: numbers of materials; those of obstacles
+ * follow. */
 struct model_rub {
     uint32_t of[2];
     double friction;
 };
 struct model_contact {
     enum model_contact_mode mode;
-    bool assumed;     /* nobody chose the mode: it is the default of the scene */
-    bool idle;        /* there is nothing to touch: steps need not look for anything */
+    bool assumed;     /* it is the default of the scene */
+    bool idle;        /* there is nothing to touch: steps need not look */
     bool self;        /* a cloth touches itself, too */
     bool untangle;    /* a start that is not free is made so */
     bool force;       /* frames have the force of contact on each vertex */
@@ -65,7 +65,7 @@ struct model_contact {
                          sides a and b rub on each other by sqrt(a b), */
     uint32_t n_pairs; /* unless one of these is of them: the last counts */
     struct model_rub *pairs;
-    struct contact_apart apart; /* what does not meet */
+    struct contact_apart apart; /* sides that do not meet */
     double stiffness;           /* repulsion: N/m, > 0; 0: as flow_repulsion_of finds */
     double damping; /* repulsion: >= 0; part of the critical damping of a vertex of mean mass */
 };
@@ -167,7 +167,7 @@ struct model {
     uint32_t n_files;
     char **files; /* that were read, by the paths they were opened by; the first is the scene */
     uint32_t n_warnings;
-    char **warnings; /* what is unusual about the scene but no error, each with its place */
+    char **warnings; /* unusual things in the scene that are no errors, each with its place */
     char *settings;  /* a line `key: value` of each that the state depends on, sorted */
 };
 
@@ -201,7 +201,7 @@ static inline double model_area(const struct model_cloth *cloth)
 {
     return mesh_surface(cloth->rest ? cloth->rest : &cloth->mesh);
 }
-/* That of the disc of a drape test, m^2. */
+/* The area of the disc of a drape test, m^2. */
 static inline double model_disc(const struct model_drape *drape)
 {
     return 3.14159265358979323846 * drape->radius * drape->radius;
@@ -308,7 +308,7 @@ static inline struct mesh_moduli model_moduli(const struct model_material *m)
                                 m->weft_excess, NULL,     m->ea};
 }
 
-/* The stiffness damping of what resists bending, s, >= 0. */
+/* The stiffness damping of bending, s, >= 0. */
 static inline double model_damping_bending(const struct model_material *material)
 {
     return material->damping_stiffness + material->damping_excess;
@@ -355,10 +355,10 @@ model_material(const struct model *model, const struct model_cloth *cloth, uint3
     return model->materials + (i ? cloth->region[i - 1] : cloth->material);
 }
 
-/* The moduli that a material, by number, gives to the cloths that have it, for small strains.
- * Triangles have their own in any mesh; springs have them from the cells of grids. NaN: none is
- * known, since no cloth has the material, or a mesh that is no grid, or cloths whose cells make
- * different ones. Before the meshes are freed. */
+/* The moduli that a material, by number, gives its cloths, for small strains. Triangles have their
+ * own in any mesh; springs have them from the cells of grids. NaN: unknown, as no cloth has the
+ * material, its mesh is no grid, or cloths whose cells make different ones. Before the meshes are
+ * freed. */
 struct mesh_elastic model_elastic(const struct model *model, uint32_t material);
 
 /* Finds whether cloths that have the material, by number, have triangles, and edges without

@@ -21,7 +21,7 @@ static const size_t SHAPE = offsetof(struct flow_table, neighbour);
 
 /* ---- Broadcasts ---- */
 
-/* Frictions of all sides; bytes of what says which do not meet. */
+/* Frictions of all sides; bytes of the marks of sides that do not meet. */
 static size_t n_frictions(const struct model *model)
 {
     return (size_t)model->n_cloths * ((size_t)model->n_cloths + model->n_obstacles);
@@ -361,7 +361,7 @@ int flow_distribute(struct flow_state *state)
     int code = DUITE_OK;
     for (uint32_t from = 0; from < n && !code; from += group) {
         const uint32_t to = from + smaller(group, n - from);
-        if (makes) /* what fails here, the tasks say */
+        if (makes) /* tasks report its failures */
             flow_source_gather(&flow->source, from, to, &flow->trouble);
         for (uint32_t b = from; b < to && !code; b += TRAVEL)
             code = distribute(state, b, b + smaller(TRAVEL, to - b));

@@ -38,7 +38,7 @@ static int mark(struct flow_particles *p, const struct model *model, struct clot
     return CLOTH_OK;
 }
 
-/* Those of an obstacle, whose vertices are at `place`. */
+/* Adds the anchors of an obstacle, whose vertices are at `place`. */
 static void add_anchors(struct flow_particles *p, const struct model *model, uint32_t obstacle,
                         const phys_vec *place)
 {

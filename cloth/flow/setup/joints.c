@@ -9,8 +9,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Stored for a length of 0: at one place, too, the spring is then longer than at rest, and
- * stretches in all directions alike. To every other length it is as 0. */
+/* Stands for a length of 0: a spring whose ends are at one place is then longer than at rest, too,
+ * and stretches in all directions alike. Beside every other length it is as 0. */
 static const double NO_LENGTH = -1e-300;
 
 int flow_joints_use(const struct model *model, unsigned char *used, struct cloth_error *error)

@@ -129,7 +129,7 @@ static void visit_element(void *to, const struct element *element)
         }
 }
 
-/* The vertex whose block over its mass is largest. */
+/* Finds the vertex whose block over its mass is largest. */
 static void find(struct visitor *visitor, struct flow_limit *limit)
 {
     double best = 0;

@@ -1,4 +1,4 @@
-/* A run that is warned of is made all the same: what is estimated here is the start. */
+/* A warned run is made all the same: the estimate is of the start alone. */
 #include "cloth/flow/setup/long_steps.h"
 
 #include "cloth/base/memory.h"

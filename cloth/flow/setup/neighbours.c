@@ -148,7 +148,7 @@ static size_t count(struct flow_source *source, struct need *need, size_t n)
     return kept;
 }
 
-/* Which patches of a reader are joined with the one that a place is in. */
+/* The patches of a reader that are joined with the patch of a place. */
 static uint32_t joins_of(const struct flow_source *source, const struct need *need)
 {
     const uint32_t there = patch_of(source, need->other, need->place);

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* kg of a vertex: squares of momenta beyond these would be nothing, or infinite. */
+/* kg of a vertex: squares of momenta beyond these would vanish or be infinite. */
 static const double MIN_MASS = 1e-30, MAX_MASS = 1e30;
 
 PHYS_INLINE void to_vector(const double *x, phys_vec *y)
@@ -87,7 +87,7 @@ struct weigher {
     double mass;
 };
 
-/* To a vertex of all cloths: what a name has is its root's. */
+/* Adds a mass to a vertex of all cloths: a name's mass goes to its root. */
 static void weigh(struct flow_particles *p, uint32_t vertex, double mass)
 {
     p->mass[flow_root(&p->welds, vertex)] += mass;
@@ -118,7 +118,7 @@ static int more_masses(struct flow_particles *p, uint32_t first, const struct mo
     return code;
 }
 
-/* That none of its triangles, if it has any, gives a vertex a mass. */
+/* Fails: no triangle of the vertex, if it has any, gives it a mass. */
 static int no_mass(const struct model_cloth *cloth, uint32_t vertex, struct cloth_error *error)
 {
     for (uint32_t t = 0; t < cloth->mesh.n_triangles; t++) {
@@ -158,7 +158,7 @@ static int masses(struct flow_particles *p, uint32_t first, const struct model *
     return more_masses(p, first, cloth, error);
 }
 
-/* That all masses of a cloth are there and can be; and their weights. */
+/* Checks that all masses of a cloth are there and in bounds; sets their weights. */
 static int weights(struct flow_particles *p, uint32_t first, const struct model *model,
                    const struct model_cloth *cloth, struct cloth_error *error)
 {
@@ -231,7 +231,7 @@ static int cloth_forces(struct flow_particles *p, uint32_t first, const struct m
     return code;
 }
 
-/* The same for all cloths, one after the other. */
+/* Does it for all cloths, one after the other. */
 static int each_cloth(struct flow_particles *p, const struct model *model,
                       int (*make)(struct flow_particles *p, uint32_t first,
                                   const struct model *model, const struct model_cloth *cloth,

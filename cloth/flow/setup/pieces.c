@@ -1,5 +1,5 @@
-/* A piece is what springs and elements join, directly or through others. Pieces are numbered by
- * their lowest vertex, so that the numbers depend on the scene alone. */
+/* A piece has all vertices that springs and elements join, directly or through others. Pieces are
+ * numbered by their lowest vertex, so that the numbers depend on the scene alone. */
 #include "cloth/flow/setup/source.h"
 
 #include "cloth/base/memory.h"

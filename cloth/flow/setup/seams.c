@@ -1,5 +1,5 @@
-/* Where welds bring the borders of two cloths together, or two parts of the border of one, the edge
- * that both share is a hinge as inner edges are. */
+/* Welds may join the borders of two cloths, or two parts of the border of one. The edge that both
+ * share is then a hinge as inner edges are. */
 #include "cloth/flow/setup/source.h"
 
 #include "cloth/base/memory.h"
@@ -41,7 +41,7 @@ static bool is_welded(const struct flow_welds *welds, uint32_t root)
     return low < welds->n && welds->name[low][0] == root;
 }
 
-/* Those of a cloth, the first vertex of which is `first`. */
+/* Finds the borders of a cloth, the first vertex of which is `first`. */
 static int find_borders(struct cloth_list *list, const struct element_cloths *elements,
                         const struct flow_welds *welds, uint32_t cloth, uint32_t first,
                         struct cloth_error *error)
@@ -78,7 +78,7 @@ struct welded {
     bool sewn;        /* a weld of it is a seam's */
 };
 
-/* By root. The caller frees it; NULL: no memory. */
+/* The welds of all roots, by root. The caller frees it; NULL: no memory. */
 static struct welded *find_welded(const struct model *model, const struct flow_welds *welds,
                                   struct cloth_error *error)
 {

@@ -15,7 +15,7 @@
 /* The data from which rank 0 makes the tables. It never has all tables, nor all springs, at once:
  * each group of blocks goes through the springs again, and a table is made when it is wanted. */
 
-/* How many vertices are unusual, and the first of them: in the numbering of its cloth's mesh. */
+/* The number of unusual vertices, and the first of them: in the numbering of its cloth's mesh. */
 struct flow_unusual {
     uint32_t n, vertex;
     const struct model_cloth *cloth;
@@ -73,22 +73,23 @@ int flow_particles_make(struct flow_particles *particles, const struct model *mo
                         struct cloth_error *error);
 void flow_particles_free(struct flow_particles *particles);
 
-/* Where the vertices of a cloth, the first of which is `first`, start and how fast, as the part of
- * flow_particles_make that is about it; after `used`. Does nothing unless particles->start. Local.
- */
+/* Sets places and velocities at the start for the vertices of a cloth, the first of which is
+ * `first`; a part of flow_particles_make, after `used`. Does nothing unless particles->start.
+ * Local. */
 int flow_starts_make(struct flow_particles *particles, uint32_t first,
                      const struct model_cloth *cloth, struct cloth_error *error);
 
-/* The same of all vertices, as they have been made. Local. */
+/* Copies the starts of all vertices, as they have been made. Local. */
 void flow_starts_take(const struct flow_particles *particles, const struct model *model,
                       double (*start)[6]);
 
-/* Finds what follows obstacles, when starts and pins are there. Error: CLOTH_E_MEMORY. Local. */
+/* Finds the vertices that follow obstacles, when starts and pins are there. Error: CLOTH_E_MEMORY.
+ * Local. */
 int flow_follow_make(struct flow_particles *particles, const struct model *model,
                      struct cloth_error *error);
 
-/* The loads of a cloth, the first vertex of which is `first`, as the part of flow_particles_make
- * that is about them; after weights. Local. */
+/* Makes the loads of a cloth, the first vertex of which is `first`; a part of flow_particles_make,
+ * after weights. Local. */
 int flow_loads_make(struct flow_particles *particles, uint32_t first,
                     const struct model_cloth *cloth, struct cloth_error *error);
 
@@ -105,17 +106,17 @@ struct flow_pair {
  * outside their mesh and a vertex with itself; CLOTH_E_MEMORY. Local. */
 int flow_pairs_list(struct cloth_list *list, const struct model *model,
                     const struct model_pairs *pairs, const char *what, struct cloth_error *error);
-/* That no pair is in the list twice, which is then in another order. Error: CLOTH_E_INPUT. Local.
- */
+/* Checks that no pair is in the list twice; leaves the list in another order. Error: CLOTH_E_INPUT.
+ * Local. */
 int flow_pairs_once(struct cloth_list *list, const struct model *model, const char *what,
                     struct cloth_error *error);
-/* CLOTH_E_INPUT with a sentence: what is between the two, then `why`. */
+/* CLOTH_E_INPUT with a sentence: the thing between the two, then `why`. */
 int flow_pair_fail(const struct model *model, const struct flow_pair *pair, const char *what,
                    const char *why, struct cloth_error *error);
 
 /* Finds the vertices that are one. n, used: of all cloths. Errors: CLOTH_E_INPUT as of
- * flow_pairs_list, for pairs that stand twice, vertices that nothing uses, and welds that make two
- * corners of a triangle or two ends of an edge one; CLOTH_E_MEMORY. Local. */
+ * flow_pairs_list, for pairs that stand twice, unused vertices, and welds that make two corners of
+ * a triangle or two ends of an edge one; CLOTH_E_MEMORY. Local. */
 int flow_welds_make(struct flow_welds *welds, const struct model *model, uint32_t n,
                     const unsigned char *used, struct cloth_error *error);
 void flow_welds_free(struct flow_welds *welds);
@@ -123,7 +124,7 @@ void flow_welds_free(struct flow_welds *welds);
  * CLOTH_E_MEMORY. Local. */
 int flow_seams_make(struct element_cloths *elements, const struct flow_welds *welds,
                     struct cloth_error *error);
-/* That welds leave hinges their four corners. Error: CLOTH_E_INPUT. Local. */
+/* Checks that welds leave hinges their four corners. Error: CLOTH_E_INPUT. Local. */
 int flow_welds_check(const struct flow_welds *welds, const struct element_cloths *elements,
                      struct cloth_error *error);
 /* Gives roots their start and drag, when masses and starts are there. Errors: CLOTH_E_INPUT for
@@ -141,7 +142,7 @@ int flow_names_make(struct flow_names *names, const struct flow_welds *welds,
 /* The first of them at or after a place. */
 uint32_t flow_names_from(const struct flow_names *names, uint32_t place);
 
-/* A part of the scene that picks vertices, and what becomes of each. */
+/* A part of the scene that picks vertices, and the function that gets each. */
 struct flow_picking {
     const struct model_pick *pick;
     const struct model_cloth *cloth;
@@ -152,7 +153,7 @@ struct flow_picking {
 };
 /* Errors: CLOTH_E_INPUT for vertices outside the mesh and boxes without a vertex. Local. */
 int flow_pick(const struct flow_picking *picking, struct cloth_error *error);
-/* That of a vertex outside the mesh. */
+/* The error of a vertex outside the mesh. */
 int flow_no_vertex(const struct model_cloth *cloth, const char *what, uint32_t vertex,
                    const char *place, struct cloth_error *error);
 
@@ -339,7 +340,7 @@ int flow_source_meet(struct flow_source *source, struct cloth_error *error);
  * or elements join. Error: CLOTH_E_MEMORY. Local. */
 int flow_pieces_make(struct flow_source *source, struct cloth_error *error);
 
-/* Finds what is watched, when blocks are there. Errors: as of flow_pick, and CLOTH_E_INPUT for
+/* Finds the watched vertices, when blocks are there. Errors: as of flow_pick, and CLOTH_E_INPUT for
  * vertices that no face or edge uses; CLOTH_E_MEMORY. Local. */
 int flow_watched_make(struct flow_watched *watched, const struct flow_source *source,
                       struct cloth_error *error);

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Those of the regions of a cloth, for its lattice. */
+/* Finds the moduli of the regions of a cloth, for its lattice. */
 static int find_regions(struct flow_springs *springs, uint32_t c, struct mesh_regions *regions,
                         struct cloth_error *error)
 {
@@ -85,7 +85,7 @@ struct visitor {
     const struct model_cloth *cloth;
 };
 
-/* The material of what joins two vertices of the cloth's mesh. */
+/* The material of a link between two vertices of the cloth's mesh. */
 static const struct model_material *material_of(const struct visitor *visitor, uint32_t a,
                                                 uint32_t b)
 {
@@ -140,7 +140,7 @@ static void link_pair(const struct visitor *visitor, const struct mesh *mesh,
     visitor->visit(visitor->to, &spring);
 }
 
-/* Across the diagonals of cells, whose corners share the force of the air. */
+/* Links the diagonals of cells, whose corners share the force of the air. */
 static void link_cells(const struct visitor *visitor, const struct mesh *mesh)
 {
     const uint32_t nx = mesh->grid_nx;

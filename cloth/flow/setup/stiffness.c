@@ -2,7 +2,7 @@
  * vertex. */
 #include "cloth/flow/setup/source.h"
 
-/* Contacts are so much softer than the cloths: their multipliers carry what rests on them, so the
+/* Contacts are softer than the cloths by this factor: their multipliers carry the load, so the
  * matrix keeps its condition (docs/physics.md). */
 static const double SOFTER = 0.03;
 

@@ -7,7 +7,7 @@
 #include <stdio.h>
 
 static const double LEAST_EXTENT = 0.01, MAX_EXTENT = 10; /* m: of a garment */
-static const double DEEP = 1e-6; /* m: what lies on a surface is less deep in it */
+static const double DEEP = 1e-6; /* m: a point on a surface is less deep in it */
 
 static void describe_unusual(char *text, size_t size, const char *what,
                              const struct flow_unusual *unusual, const char *effect)
@@ -63,7 +63,7 @@ static const char *idle_key(const struct model *model, const struct model_materi
                : NULL;
 }
 
-/* Diagonals that nothing but such triangles holds fold without a force. */
+/* Diagonals that only such triangles hold fold without a force. */
 static void warn_of_shear(struct flow *flow)
 {
     const struct model *model = flow->model;
@@ -189,7 +189,7 @@ static void warn_of_windings(struct flow *flow, const struct model_cloth *cloth,
                  cloth->name ? cloth->name : "", n, first->a + 1, first->b + 1);
 }
 
-/* Where a vertex is that follows an obstacle, at a time, s; x: where it starts. */
+/* The place of a vertex that follows an obstacle, at a time, s; x: its start. */
 static void follow(const struct flow *flow, uint32_t motion, double time, phys_vec *x)
 {
     const struct model *model = flow->model;
@@ -201,7 +201,7 @@ static void follow(const struct flow *flow, uint32_t motion, double time, phys_v
     const struct model_motion *m = model->motions + motion - 1;
     struct phys_pose begin, pose;
     if (!m->n)
-        return; /* what it follows stands still */
+        return; /* the obstacle stands still */
     phys_pose_at(m->n, model->keys + m->first, m->about, 0, &begin);
     phys_pose_at(m->n, model->keys + m->first, m->about, time, &pose);
     phys_pose_back(&begin, x, x);
@@ -284,7 +284,7 @@ static void warn_of_edges(struct flow *flow)
         const struct model_cloth *cloth = model->cloths + c;
         const struct mesh_edges *edges = flow->source.elements.edges + c;
         struct mesh_edges found = {0};
-        struct cloth_error ignored = {0}; /* nothing is warned of then */
+        struct cloth_error ignored = {0}; /* without edges there are no warnings */
         if (!attached && cloth->mesh.grid_nx)
             continue;
         if (!edges->n && !mesh_edges_find(&found, &cloth->mesh, &ignored))

@@ -1,5 +1,5 @@
 /* A watched vertex stands once in the list of places, however many probes have it: a probe knows
- * where in the list. So blocks report each of their vertices once. */
+ * its index in the list. So blocks report each of their vertices once. */
 #include "cloth/flow/setup/source.h"
 
 #include "cloth/base/memory.h"

@@ -1,6 +1,6 @@
-/* A weld makes vertices one, of any cloths. They stay names of it: files, pins, loads and probes
- * name each of them, and what they have adds up. The lowest of them, the root, stands for all: it
- * alone has a row. */
+/* A weld makes vertices of any cloths one. They stay names of it: files, pins, loads and probes
+ * name each of them, and their masses and loads add up. The lowest of them, the root, stands for
+ * all: it alone has a row. */
 #include "cloth/flow/setup/source.h"
 
 #include "cloth/base/memory.h"
@@ -73,7 +73,8 @@ static const char *place_of(const struct model *model, uint32_t cloth, uint32_t 
     return NULL;
 }
 
-/* That n vertices of a cloth, which one thing joins, stay as many. root: by vertex of the cloth. */
+/* Checks that welds keep n vertices of a cloth, which one thing joins, apart. root: by vertex of
+ * the cloth. */
 static int check_apart(const struct model *model, uint32_t cloth, const uint32_t *root,
                        const uint32_t *vertex, uint32_t n, const char *what,
                        struct cloth_error *error)
@@ -226,7 +227,7 @@ static void meet(struct flow_particles *p, uint32_t root, const uint32_t (*name)
             p->start[name[i][1]][c] = start[c];
 }
 
-/* Where all vertices are before welds of seams move them. */
+/* Keeps the places of all vertices before welds of seams move them. */
 static int keep_unwelded(struct flow_particles *p, const struct model *model,
                          struct cloth_error *error)
 {

@@ -93,7 +93,7 @@ static void find_others(const struct flow_tied *tied, uint32_t n_blocks, bool ke
     to->first[n_blocks] = n;
 }
 
-/* Where block b stands among the others of a block, of which it is one. */
+/* The index of block b among the others of a block, which has it. */
 static uint32_t number_of(const struct flow_tied_blocks *blocks, uint32_t block, uint32_t b)
 {
     uint32_t low = blocks->first[block], high = blocks->first[block + 1];

@@ -17,7 +17,7 @@ void flow_anchor_places(const struct model *model, uint32_t obstacle, phys_vec *
 void flow_anchor_find(const struct model *model, uint32_t obstacle, const phys_vec *place,
                       const phys_vec *x, struct flow_anchor *anchor);
 
-/* Where the vertex is at a time, s. Local. */
+/* The place of the vertex at a time, s. Local. */
 void flow_anchor_place(const struct model *model, const struct flow_anchor *anchor, double time,
                        phys_vec *to);
 

@@ -40,7 +40,7 @@ static void say_joints(const struct flow *flow, uint64_t tick, struct flow_tied 
 
 /* ---- The choice ---- */
 
-/* From which tick until which one the ties are those of this tick. */
+/* Finds the ticks between which the ties are those of this tick. */
 static void find_interval(const struct flow *flow, uint64_t tick, struct flow_tied *tied)
 {
     tied->from = 0;
@@ -133,7 +133,7 @@ static bool is_empty(const struct flow_tie_room *room)
 /* Forks those of all blocks at first, then those of blocks that have ties or had some. */
 static int fork_tables(struct flow_state *state, bool all)
 {
-    const struct flow_tied *tied = &state->tied; /* next: what was before */
+    const struct flow_tied *tied = &state->tied; /* next: the state before */
     struct tie_args args = {.tick = state->attempt.begin};
     int code = DUITE_OK;
     for (; args.block < state->flow->tables.n_blocks && !code; args.block++) {

@@ -194,7 +194,7 @@ struct flow_objects {
     };
 };
 
-/* Those of the run; by number from FLOW_FIELDS_OF_BLOCK on. */
+/* The objects of the run; by number from FLOW_FIELDS_OF_BLOCK on. */
 struct flow_run_objects {
     union {
         duite_object of[FLOW_FIELDS_OF_RUN];
@@ -227,20 +227,22 @@ struct flow_field {
     enum flow_life (*life)(const struct model *model);
 };
 
-/* By number; one that takes turns is there twice. */
+/* All fields by number; one that takes turns is there twice. */
 extern const struct flow_field flow_fields[FLOW_FIELDS_OF_ALL];
 
 /* Numbers of a field in a block; of one of the run in all, whatever the block. Local. */
 size_t flow_field_numbers(const struct flow_state *state, enum flow_field_id field, uint32_t block);
 
-/* The object of a field, of a block or of the run; of two that take turns, whose turn it is. */
+/* The object of a field, of a block or of the run; of two that take turns, the one whose turn it
+ * is. */
 duite_object flow_field_object(const struct flow_state *state, enum flow_field_id field,
                                uint32_t block);
 
-/* Where that is among the objects of its block, or, from FLOW_FIELDS_OF_BLOCK on, of the run. */
+/* The index of that among the objects of its block, or, from FLOW_FIELDS_OF_BLOCK on, of the run.
+ */
 size_t flow_field_place(const struct flow_state *state, enum flow_field_id field);
 
-/* In all blocks the names of two fields pass to each other's objects. Both exist, alike. */
+/* Swaps the objects of two fields in all blocks. Both exist, alike. */
 void flow_fields_swap(struct flow_state *state, enum flow_field_id a, enum flow_field_id b);
 
 /* All objects that exist. A failure is returned by the next get. */

@@ -11,7 +11,7 @@ static enum flow_field_id given_for(const struct flow_as *as, enum flow_field_id
     return declared;
 }
 
-/* Where the objects of a kernel's parameters are: the same in all blocks. */
+/* The places of a kernel's objects: the same in all blocks. */
 struct places {
     size_t n;
     struct {

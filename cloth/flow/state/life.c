@@ -21,8 +21,8 @@ enum flow_life flow_is_work(const struct model *model)
     return FLOW_WORK;
 }
 
-/* With sliders that move, or of a program, the filter, and so the basis, is another in each step.
- */
+/* The filter, and so the basis, changes in each step with sliders that move, or with a program's
+ * filter. */
 enum flow_life flow_is_derived_once(const struct model *model)
 {
     return model_is_filtered(model) ? FLOW_WORK : FLOW_DERIVED;

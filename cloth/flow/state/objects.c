@@ -5,7 +5,8 @@
 
 #include <stddef.h>
 
-/* One that exists, beside x but for x itself. A failure is returned once more by the next get. */
+/* Makes a field's object if it exists, beside x (except x itself). The next get returns a failure
+ * again. */
 static void make_field(struct flow_state *state, enum flow_field_id field, uint32_t block,
                        duite_object *object)
 {
@@ -77,7 +78,7 @@ void flow_objects_fit(struct flow_state *state, uint32_t block, const struct flo
     }
 }
 
-/* Frees what was made; the others are the zero object. Returns the first failure. */
+/* Frees the objects that were made; the others are zero. Returns the first failure. */
 static int free_objects(duite *rt, size_t n, const duite_object *object)
 {
     int code = DUITE_OK;

@@ -4,10 +4,10 @@
 #include "cloth/contact/skin.h"
 #include "cloth/flow/state/tables.h"
 
-/* The skin of a block, the field `skin`: its contact_skin, with which the object begins, and where
- * the block finds its points. A triangle of the whole cloth belongs to the block of that of its
- * corners whose place is the lowest; ids are places. Points are in the order of their places, so
- * the block's own rows come first; others are in the halo of a neighbour. */
+/* The skin of a block, the field `skin`: its contact_skin, with which the object begins, and the
+ * places of its points. A triangle of the whole cloth belongs to the block of its corner with the
+ * lowest place; ids are places. Points are in the order of their places, so the block's own rows
+ * come first; others are in the halo of a neighbour. */
 struct flow_skin {
     struct contact_skin skin;
     const uint32_t

@@ -25,8 +25,8 @@ struct flow_block_args {
  */
 struct flow_step_args {
     uint32_t block;
-    uint32_t last;   /* not zero: what goes wrong in this step is an error of its body; else it is
-                      * only counted, and the step is made again with half the length */
+    uint32_t last;   /* not zero: a failure in this step is an error of its body; else it is only
+                        counted, and the step is made again with half the length */
     double h, begin; /* s: length of the step; FLOW_TICKS: when it begins */
     double time;     /* s: at the end of the step */
     double now;      /* s: of what varies, where forces and energies are */
@@ -79,9 +79,9 @@ enum { FLOW_ROOT = 6 };
 /* Counts of cuts: rows; rows that lose more than half; the change of their momentum, three numbers,
  * kg m/s. */
 enum { FLOW_CUT_ROWS, FLOW_CUT_HALVED, FLOW_CUT_MOMENTUM, FLOW_CUT_COUNTS = FLOW_CUT_MOMENTUM + 3 };
-/* Energy that contacts hold, and of it what they were lent in the step. */
+/* Energy that contacts hold, and the part of it that they were lent in the step. */
 enum { FLOW_HELD_ALL, FLOW_HELD_LENT, FLOW_HELD };
-/* Indices into what rank 0 broadcasts, I64 x 2. */
+/* Indices into the broadcast of rank 0, I64 x 2. */
 enum { FLOW_BROADCAST_FRAMES, FLOW_BROADCAST_HASH, FLOW_BROADCAST };
 
 /* A position or velocity as it is hashed: little-endian doubles x y z. */
@@ -92,7 +92,7 @@ struct flow_head {
     uint64_t n_steps, partition_hash;
     double inertia, release, contact_stiffness, vertex_mass;
     uint64_t shared_bytes;  /* of the next broadcast */
-    uint64_t resumed_bytes; /* what the main program knew of a checkpoint; 0: there is none */
+    uint64_t resumed_bytes; /* the main program's part of a checkpoint; 0: there is none */
     uint32_t n_vertices, n_triangles, n_blocks, n_neighbours, n_ghosts; /* of all blocks */
     uint32_t max_rows, max_neighbours, max_halo, max_entries;           /* of any block */
     uint32_t max_ghosts, n_pieces, n_ties, n_anchors, feels_contact;
@@ -147,9 +147,9 @@ struct flow_tied {
         next; /* next: the state before; while ties are chosen, the coming one */
     struct flow_tie_records said; /* for flow_ties_adopt */
     uint64_t *scratch;            /* to make the records of joints */
-    uint32_t (*links)[2];         /* what is set into the field `tie_links` of a block */
+    uint32_t (*links)[2];         /* values for the field `tie_links` of a block */
     uint32_t *parent;             /* a piece: room to unite them */
-    uint64_t *group;              /* a piece: what is set into the field `groups` */
+    uint64_t *group;              /* a piece: values for the field `groups` */
 };
 
 /* Two sides whose features may come near each other (cloth/flow/contact/contact.h). */
@@ -162,8 +162,8 @@ struct flow_meeting {
 struct flow_meetings {
     uint32_t n, room;
     struct flow_meeting *all;
-    duite_object counts; /* what their tasks count, and */
-    double *count;       /* what that was when it was looked at last */
+    duite_object counts; /* the counts of their tasks, and */
+    double *count;       /* their values at the last look */
 };
 
 /* The contacts of a block: lists of struct flow_contact, for so many. They take turns. */
@@ -197,7 +197,7 @@ struct flow_contact_state {
                       * step, low and high, m */
     uint32_t *found; /* a block: contacts that the last look found */
     unsigned char *mark; /* a block: room */
-    unsigned char *said; /* what all blocks said of their ties */
+    unsigned char *said; /* the records of all blocks' ties */
     duite_object *refs;  /* room for the objects of any task */
     uint64_t near;       /* how many contacts there are at the end of the step */
     uint64_t cut;        /* how often a way was cut in the step */
@@ -205,7 +205,7 @@ struct flow_contact_state {
     uint64_t cut_run;    /* most steps in a row that a row was cut in, of those cut in the step */
     uint32_t attempt, accepted; /* the step under way, of all that were begun, from 1 on; the last
                                  * one that was accepted; 0: none */
-    double cut_momentum;        /* kg m/s: what cuts in the step changed */
+    double cut_momentum;        /* kg m/s: changed by cuts in the step */
     bool failed; /* no cut ends the step: it is to be made again with half the length */
     double iterations, restarts; /* of the solves of this step but the last */
 };
@@ -222,7 +222,7 @@ struct flow_attempt {
 struct flow_newton {
     uint64_t steps;
     bool converged;
-    double status[FLOW_STATUS]; /* in place of what the solve of a linear step notes */
+    double status[FLOW_STATUS]; /* in place of the notes of a linear step's solve */
 };
 
 /* The state of the main program between two steps, from which the next ones go on: checkpoints have
@@ -282,8 +282,8 @@ struct flow_state {
     size_t max_refs;       /* of so many each */
     double *rows;          /* room for the rows of any block, or a number for each neighbour */
     unsigned char *bytes;  /* rank 0: a part of the state, to be hashed, */
-    XXH64_state_t *hash;   /* and what was hashed so far */
-    duite_counters before; /* what was counted before the first step */
+    XXH64_state_t *hash;   /* and its hash so far */
+    duite_counters before; /* the counters before the first step */
     union {                /* by name, or all of it */
         struct flow_lasting lasting;
         struct {
@@ -360,7 +360,7 @@ int flow_restore(struct flow_state *state);
 /* ---- ties (adopted.c, chosen.c). Collective unless local; they return what the runtime does ----
  */
 
-/* Memory for what is chosen, a part of flow_memory_take. Local. */
+/* Takes memory for the choice, a part of flow_memory_take. Local. */
 void flow_ties_take(struct flow_state *state);
 void flow_ties_free(struct flow_state *state);
 /* Takes the records of all blocks, state->tied.said, the same on every rank: finds rooms, the
@@ -372,8 +372,8 @@ void flow_ties_free(struct flow_state *state);
 int flow_ties_adopt(struct flow_state *state);
 /* Sets tied.now from a checkpoint, before the first step. */
 int flow_ties_again(struct flow_state *state, const struct flow_tied_blocks *tied);
-/* How many pairs (block, other block) share ties at most, in a run with so many joints that come
- * and go; seeks: contacts are ties, too. Pure. */
+/* The most pairs (block, other block) that share ties, in a run with so many timed joints; seeks:
+ * contacts are ties, too. Pure. */
 size_t flow_tied_others(uint32_t n_blocks, uint32_t n_joints, bool seeks);
 /* Unites the free pieces of cloth that the joints of the step join, for the momentum that a solve
  * left of them. No piece is free if the records have contacts. */

@@ -23,8 +23,8 @@ struct flow_skin_size {
     uint32_t cloth[2]; /* its points are of these cloths and some between them */
 };
 
-/* An edge whose velocities are corrected, cut by the border of a block: its ends are a row of the
- * halo here, and of that of a neighbour. */
+/* An edge whose velocities are corrected, cut by the border of a block: one end is a row of the
+ * halo here, the other of that of a neighbour. */
 struct flow_cut_edge {
     struct solve_edge edge;
     uint32_t row, neighbour; /* row here; which of the neighbours */
@@ -98,7 +98,7 @@ struct flow_tables {
     const uint32_t *neighbour, *ghost; /* of all blocks, block after block; not owned */
 };
 
-/* The arrays of a table as they lie in its memory, one piece, for who makes it. */
+/* The arrays of a table as they lie in its memory, one piece, while it is made. */
 struct flow_layout {
     phys_vec *load, *position, *velocity; /* n */
     double *mass, *drag, *free;           /* n */
@@ -128,10 +128,10 @@ struct flow_layout {
 size_t flow_table_bytes(const struct flow_table *table);
 struct flow_layout flow_table_layout(const struct flow_table *table, void *memory);
 
-/* Lets the arrays of a table that has its shape point into its memory. */
+/* Points the arrays of a table that has its shape into its memory. */
 void flow_table_open(struct flow_table *table, const void *memory);
 
-/* Where a row of the halo of neighbour s is among the block's ghosts. */
+/* The index of a row of the halo of neighbour s among the block's ghosts. */
 uint32_t flow_table_ghost(const struct flow_table *table, uint32_t s, uint32_t row);
 
 /* The inner springs of a block; those into neighbour s. */

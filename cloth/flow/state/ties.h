@@ -36,7 +36,7 @@ struct flow_tie_corners {
 /* A joint that is no spring of the tables: one that comes or goes while the run is on, or that ends
  * on an edge. */
 struct flow_tie {
-    struct flow_tie_corners at;        /* whose weights come to 0 */
+    struct flow_tie_corners at;        /* weights sum to 0 */
     uint32_t piece[SOLVE_TIE_CORNERS]; /* of free pieces, from 1; 0: none (flow_particles) */
     double stiffness, damping, length; /* N/m, kg/s, m: those of a spring */
     uint64_t begin, end;               /* ticks: steps that begin from .. to - 1 have it */
@@ -137,7 +137,7 @@ static inline size_t flow_ties_rows(const struct flow_ties *ties)
 /* Finds the arrays of a table. NULL: there are no ties. */
 struct flow_ties flow_ties_open(const void *memory);
 
-/* How many blocks it shares ties with. */
+/* The number of blocks that it shares ties with. */
 uint32_t flow_ties_others(const void *memory);
 
 #endif

@@ -44,7 +44,7 @@
 #define FLOW_KERNEL(name, part, arguments, fields)                                                 \
     FLOW_KERNEL_WITH(name, part, arguments, fields, .side_effects = 0)
 
-/* With more members of duite_kernel, such as .replicated = 1 or .side_effects = 1. */
+/* The same with more members of duite_kernel, such as .replicated = 1 or .side_effects = 1. */
 #define FLOW_KERNEL_WITH(name, part, arguments, fields, ...)                                       \
     FLOW_KERNEL_DECLARE(name, arguments, fields)                                                   \
     static int name##_task(const duite_call *call)                                                 \
@@ -240,7 +240,7 @@ struct flow_kernel {
                  __VA_ARGS__},                                                                     \
         .parameter = {FLOW_EACH(FLOW_GIVEN, k, fields)}};
 
-/* flow_type_of_name: what a field's object is in C. */
+/* flow_type_of_name: the C type of a field's object. */
 #define FLOW_FIELD_TYPE(name, many, type, ...) FLOW_FIELD_TYPE_##many(name, type)
 #define FLOW_FIELD_TYPE_ONE(name, type)        typedef type flow_type_of_##name;
 #define FLOW_FIELD_TYPE_SIZED(name, type)      typedef type flow_type_of_##name;
@@ -251,7 +251,7 @@ FLOW_FIELDS(FLOW_FIELD_TYPE)
 
 /* ---- Forks ---- */
 
-/* Where a kernel names `declared`, the fork gives `given`: a field of the same shape. */
+/* The fork gives the field `given` where a kernel declares `declared`, of the same shape. */
 struct flow_as {
     enum flow_field_id declared, given;
 };
@@ -266,9 +266,9 @@ struct flow_as {
 enum { FLOW_FORKS_AHEAD = 8 }; /* forks whose objects are found before the first of them */
 
 /* Fork a kernel with the objects that it declares: on the block that the arguments name, on each
- * block, on those from first to before end, or on a rank. On several blocks they write its number
- * into the arguments. On each: before a kernel that reads TIED(tie_halo) they fork what shows the
- * ties. as: NULL, or FLOW_AS. Collective. They return what the runtime does. */
+ * block, on the blocks from first to before end, or on a rank. On several blocks they write its
+ * number into the arguments. On each: they call flow_ties_show before a kernel that reads
+ * TIED(tie_halo). as: NULL, or FLOW_AS. Collective. They return what the runtime does. */
 int flow_fork_one(struct flow_state *state, const struct flow_kernel *kernel, const void *args);
 int flow_fork_one_as(struct flow_state *state, const struct flow_kernel *kernel, const void *args,
                      const struct flow_as *as);

@@ -52,7 +52,7 @@ int element_seams_check(const struct element_cloths *cloths, struct cloth_error 
 
 /* Finds the folds of all cloths, when edges are there. Errors: CLOTH_E_INPUT for cloths whose
  * bending knows no rest angle and an edge that is folded twice, with the place; CLOTH_E_MEMORY. The
- * other: CLOTH_E_INPUT for folds at borders that no seam has, when seams are there. Local. */
+ * check, when seams are there: CLOTH_E_INPUT for folds at borders without a seam. Local. */
 int element_folds_make(struct element_cloths *cloths, struct cloth_error *error);
 int element_folds_check(const struct element_cloths *cloths, struct cloth_error *error);
 

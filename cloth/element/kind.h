@@ -53,9 +53,9 @@ struct element_sheet {
 struct element;
 struct element_cloths;
 
-/* A descriptor. Functions are local and pure, but for what they add to or write. Those on lists
+/* A descriptor. Functions are local and pure, except for their sums and outputs. Functions on lists
  * work on elements in order, and an element's numbers depend on its corners alone
- * (cloth/physics/element.h). A part that a kind has not is NULL or 0;
+ * (cloth/physics/element.h). A part that a kind lacks is NULL or 0;
  * tests/cloth/element/test_kinds.c says which go together. */
 struct element_kind {
     const char *name; /* in the plural, as sentences have it */

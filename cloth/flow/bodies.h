@@ -62,9 +62,9 @@ struct flow_view {
 /* Notes in the status that this rank is asked to stop, if it is. */
 void flow_note_stop(const duite_call *call, double *status);
 
-/* Fails if a row diverged, naming it by the input's number, or, where the step can be made again,
- * notes it in the status. Notes there, too, that a stop is asked for. what: "position"
- * or "velocity". */
+/* Fails if a row diverged, naming it by the input's number; if the step can be made again, notes it
+ * in the status instead. Notes there, too, that a stop is asked for. what: "position" or
+ * "velocity". */
 int flow_check(const duite_call *call, const struct flow_table *table,
                const struct flow_step_args *step, const phys_vec *y, const char *what,
                double *status);

@@ -10,8 +10,8 @@
 
 /* Runs a model on a duite runtime. The same on every rank. */
 
-/* Energies, J. Those of weights and of constant forces are zero at the origin. By symplectic Euler,
- * whose v is that of half a step before x, `kinetic` is that of v half a step on. */
+/* Energies, J. Those of weights and of constant forces are zero at the origin. Symplectic Euler has
+ * v half a step before x; `kinetic` is of v half a step on. */
 struct flow_energy {
     double kinetic, elastic, gravity, loads;
     double contact; /* held by certified contacts (contact/row.h) */
@@ -147,8 +147,8 @@ struct flow_output {
     /* After a frame that model.hdf5 takes, its other fields, unless none is wanted. The arrays are
      * lent. */
     int (*beside)(void *context, const struct flow_beside *beside, struct cloth_error *error);
-    /* A row of the table of probes: n numbers, whose names are flow_header's, of the state after so
-     * many steps, from 0 on. Returns 0 or a code and fills error. NULL: it is not wanted. */
+    /* A row of the table of probes, of the state after so many steps, from 0 on: n numbers with the
+     * names of flow_header. Returns 0 or a code and fills error. NULL: it is not wanted. */
     int (*row)(void *context, uint64_t step, double time, size_t n, const double *values,
                struct cloth_error *error);
     /* The system of the last step and the state after it, once, of an implicit run that made a
@@ -206,8 +206,8 @@ struct flow_filter {
     void (*rows)(void *context, const struct flow_rows *rows);
 };
 
-/* Before flow_run, on every rank, for a model whose own_filter is set (on rank 0, before
- * flow_prepare); without, the function is not called. Local. */
+/* Sets the filter; before flow_run, on every rank, if the model's own_filter is set (on rank 0,
+ * before flow_prepare); else the function is not called. Local. */
 void flow_filter_by(struct flow *flow, struct flow_filter filter);
 
 /* On rank 0 of the run: cuts the model into blocks and prepares their tables. Needs no runtime.
@@ -221,10 +221,10 @@ int flow_prepare(struct flow **flow, const struct model *model, int ranks,
  * Local. */
 int flow_join(struct flow **flow, struct cloth_error *error);
 
-/* On rank 0, before flow_run: the run goes on from a checkpoint of the same model, whose end may be
- * later. The bytes, which begin at a multiple of 8, must live until flow_run returns. *at says how
- * far it is. Errors: CLOTH_E_INPUT, it is not one of this model, or of another version: a sentence
- * about "the checkpoint". Local. */
+/* On rank 0, before flow_run: lets the run go on from a checkpoint of the same model, whose end may
+ * be later. The bytes begin at a multiple of 8 and must live until flow_run returns. *at says how
+ * far it is. Error: CLOTH_E_INPUT if it is of another model or version: a sentence about "the
+ * checkpoint". Local. */
 struct flow_resumed {
     uint64_t steps;  /* of the run that it is of: rows of its table of probes */
     uint64_t frames; /* that are to stay; of this run, and those before it */
@@ -256,7 +256,7 @@ uint64_t flow_vertices(const struct flow *flow);
  * Local. */
 void flow_start(const struct flow *flow, double *position);
 
-/* The same before seams are welded, by vertex; NULL: none are. Lives until the run. */
+/* The start before seams are welded, by vertex; NULL: none are. Lives until the run. */
 const double (*flow_unwelded(const struct flow *flow))[3];
 
 /* The start with velocities, m/s: 6 numbers a vertex, as model_cloth.start has them. held: 1 if a

@@ -10,8 +10,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* The parts of a model (model.h): materials, cloths and what picks, holds, moves, loads, joins or
- * reports their vertices. SI units. The model owns all that they point to. */
+/* The parts of a model (model.h): materials, cloths, and the picks, pins, motions, loads, joints
+ * and probes of their vertices. SI units. The model owns all that they point to. */
 
 struct model_material {
     char *name;
@@ -224,8 +224,8 @@ struct model_end {
     double *at;           /* n, 0 to 1 */
 };
 
-/* Pairs of vertices, of two cloths or of one: vertex i of one end and vertex i of the other, of
- * which there are as many. The other end of a joint may have points on edges. */
+/* Pairs of vertices, of two cloths or of one: vertex i of one end and vertex i of the other. Both
+ * ends have as many. The other end of a joint may have points on edges. */
 struct model_pairs {
     struct model_end end[2];
     char *place;

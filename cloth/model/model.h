@@ -44,7 +44,7 @@ enum model_integrator {
 enum { MODEL_INTEGRATORS = MODEL_BDF2 + 1 };
 enum model_contact_mode {
     MODEL_CONTACT_PROJECT,   /* vertices in an obstacle are put onto it after the step */
-    MODEL_CONTACT_REPULSION, /* springs push apart what is too near when a step begins */
+    MODEL_CONTACT_REPULSION, /* springs push apart near features when a step begins */
     MODEL_CONTACT_CERTIFIED  /* the solve knows of contacts; a step ends where all are certified */
 };
 /* The coefficient of two sides, in place of theirs. of: numbers of materials; those of obstacles
@@ -183,7 +183,7 @@ static inline bool model_certifies(const struct model *model)
            !model->contact.idle;
 }
 
-/* The end of a sentence that refuses what certified contact cannot do: how to do without it; empty
+/* The end of a sentence that refuses something with certified contact: how to do without it; empty
  * if the scene chose it. */
 static inline const char *model_contact_cure(const struct model *model)
 {
@@ -210,7 +210,6 @@ static inline double model_disc(const struct model_drape *drape)
 /* True if a probe reports the force of contact. On the rank that has the probes. */
 bool model_feels_contact(const struct model *model);
 
-/* True if springs push apart what is too near. */
 static inline bool model_repels(const struct model *model)
 {
     return model->contact.mode == MODEL_CONTACT_REPULSION;

@@ -30,8 +30,8 @@ int flow_joints_use(const struct model *model, unsigned char *used, struct cloth
     return code;
 }
 
-/* The vertices of a pair with their weights; the lower one of two comes first. In this order the
- * weights come to 0 without rounding. Returns how many. */
+/* Finds the vertices of a pair and their weights; the lower one of two comes first. In this order
+ * the weights sum to 0 without rounding. Returns how many. */
 static uint32_t weigh(const struct flow_pair *pair, uint32_t vertex[3], double weight[3])
 {
     const uint32_t a = pair->vertex[0], b = pair->vertex[1];

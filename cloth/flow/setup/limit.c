@@ -44,7 +44,7 @@ static void add(struct block *block, double times, const struct flow_spring *s, 
     block->damping += times * s->damping;
 }
 
-/* A spring between the points that n vertices make by their weights, which come to 0. */
+/* Visits a spring between the points that n vertices make by their weights, whose sum is 0. */
 static void visit_weighted(struct visitor *visitor, const struct flow_spring *s, uint32_t n,
                            const uint32_t *vertex, const double *weight)
 {

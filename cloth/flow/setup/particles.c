@@ -1,5 +1,5 @@
-/* Particles carry what a vertex is on its own: mass, drag, load, whether a pin holds it. Vertices
- * that no face, edge or joint uses stay where they are, at rest, and are never asked for a mass. */
+/* Particles carry the data of a vertex on its own: mass, drag, load, whether a pin holds it.
+ * Vertices that no face, edge or joint uses stay where they are, at rest, and need no mass. */
 #include "cloth/flow/setup/source.h"
 
 #include "cloth/base/memory.h"

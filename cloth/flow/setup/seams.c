@@ -8,7 +8,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* An edge at the border of its mesh, both of whose ends are welded. */
+/* An edge at the border of its mesh with two welded ends. */
 struct border {
     uint32_t root[2]; /* ascending */
     uint32_t cloth, edge;

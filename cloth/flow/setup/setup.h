@@ -10,7 +10,7 @@ int flow_warn(struct flow *flow, struct cloth_error *error);
 
 /* Functions of the main program. Collective. They return 0 or what duite returned, which flow_run
  * turns into a sentence. */
-/* Calls all functions below: the run is ready for its first task. End it as flow_run does. */
+/* Takes all steps below: the run is ready for its first task. End it as flow_run does. */
 int flow_run_begin(struct flow_state *state);
 /* Broadcasts the sizes for all later ones (struct flow_head). */
 int flow_share_head(struct flow_state *state);

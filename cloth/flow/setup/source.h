@@ -205,7 +205,7 @@ struct flow_springs {
     size_t n_merged;
     struct flow_merged *merged; /* by number; NULL: none */
 };
-/* Welds, and elements, whose links come after the springs of their cloth, must outlive them.
+/* Welds and elements must outlive them; links of elements come after the springs of their cloth.
  * Errors: CLOTH_E_INPUT as of mesh_lattice_build, with the place; CLOTH_E_MEMORY. Local. */
 int flow_springs_make(struct flow_springs *springs, const struct model *model,
                       const struct flow_welds *welds, const struct element_cloths *elements,
@@ -304,7 +304,7 @@ struct flow_source {
 int flow_source_make(struct flow_source *source, const struct model *model, int ranks,
                      struct cloth_error *error);
 
-/* Counts the elements of each block, whose shapes they are added to. Local. */
+/* Counts the elements of each block, in its shape. Local. */
 void flow_source_count(struct flow_source *source);
 
 /* The part of flow_source_gather, and of flow_source_table, that is about elements. */

@@ -97,7 +97,7 @@ static int sort(struct flow_watched *watched, const struct flow_source *source, 
     return CLOTH_OK;
 }
 
-/* Marks entries whose vertex an earlier entry of their probe has by another name. */
+/* Marks entries whose vertex an earlier entry of their probe names otherwise. */
 static int find_again(struct flow_watched *watched, uint32_t n_probes, struct cloth_error *error)
 {
     uint32_t *last = cloth_alloc(watched->n, sizeof *last, error); /* probe, from 1 */

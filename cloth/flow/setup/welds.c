@@ -302,7 +302,7 @@ uint32_t flow_names_from(const struct flow_names *names, uint32_t place)
 
 /* ---- Springs ---- */
 
-/* A spring both of whose ends are welded, by its number among all. */
+/* A spring with two welded ends, by its number among all. */
 struct candidate {
     uint32_t a, b; /* roots, a < b */
     unsigned char stretch;

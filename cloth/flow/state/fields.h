@@ -142,7 +142,7 @@ enum {
     X(body_fans,    ONE,     uint32_t,      1, body_fans,    meets_bodies, is_derived)             \
     X(body_points,  ONE,     phys_vec,      4, body_points,  meets_bodies, is_derived_of_bodies)   \
     X(body_boxes,   ONE,     unsigned char, 1, body_boxes,   meets_bodies, is_derived_of_bodies)   \
-    /* its rounds, and what the last one found */                                                  \
+    /* its rounds, and the result of the last one */                                               \
     X(edge_rounds,  BY_PASS, struct solve_rounds, SOLVE_ROUNDS_NUMBERS, one, corrected, is_work)   \
     X(edge_excess,  BY_PASS, double,        2, one,           corrected,    is_work)               \
     /* a solve. Coarse, motion: factor, and its part of s. Lift: places of patches in groups, and  \
@@ -156,7 +156,7 @@ enum {
     /* a piece: the lowest one that ties join it with, counted from 1; 0: they join it with what a  \
      * pin holds */                                                                                \
     X(groups,       ONE,     uint64_t,      1, pieces,        tied_pieces,  is_derived)            \
-    /* reports; who holds the token writes a frame or a row */                                     \
+    /* reports; the holder of the token writes a frame or a row */                                 \
     X(token,        ONE,     int64_t,       1, one,           always,       is_work)               \
     X(seconds,      ONE,     double,        FLOW_PARTS, one,           always,       is_work)      \
     X(energy,       ONE,     double,        FLOW_SUMS, one,           always,       is_work)       \
@@ -233,8 +233,7 @@ extern const struct flow_field flow_fields[FLOW_FIELDS_OF_ALL];
 /* Numbers of a field in a block; of one of the run in all, whatever the block. Local. */
 size_t flow_field_numbers(const struct flow_state *state, enum flow_field_id field, uint32_t block);
 
-/* The object of a field, of a block or of the run; of two that take turns, the one whose turn it
- * is. */
+/* The object of a field, of a block or of the run; of two, the one whose turn it is. */
 duite_object flow_field_object(const struct flow_state *state, enum flow_field_id field,
                                uint32_t block);
 

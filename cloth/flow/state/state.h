@@ -119,7 +119,7 @@ struct flow_groups {
     uint32_t n;
     struct flow_group {
         duite_object factor, coupling; /* of what it covers; as a node of the level above */
-        duite_object part, motion;     /* what a pass leaves of it; its part of s */
+        duite_object part, motion;     /* its result of a pass; its part of s */
     } * all;
     unsigned char *mark; /* n: room */
 };

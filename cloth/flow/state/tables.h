@@ -12,8 +12,8 @@
  * where they run. Numbers are of all cloths together: vertices cloth after cloth in the input's
  * order, places block after block (cloth/mesh/blocks.h). */
 
-/* Positions and speeds of this size (m, m/s, along an axis) are no cloth's: a run does not start
- * with them, and a run that comes to them diverged. */
+/* A position or speed of this size (m, m/s, along an axis) is an error: a run does not start with
+ * it, and a run that reaches it diverged. */
 #define FLOW_BOUND 1e6
 
 /* A position or speed of this size (m, m/s, along an axis) is an error: a run does not start with

@@ -1,4 +1,4 @@
-/* A table of ties is one piece of memory: what it has room for, then arrays whose places follow
+/* A table of ties is one piece of memory: its head with its room, then arrays whose places follow
  * from that. Rows of other blocks, and rows shown to them, are keys that are sorted by block and
  * row: both sides of a pair of blocks sort the same rows.
  *
@@ -293,8 +293,8 @@ static size_t put_corners(const struct own *own, struct arrays *to)
     return n;
 }
 
-/* Numbers the ghosts, of which there are n keys, and gives the corners there their numbers. Returns
- * false if there is no room, or no such other block. */
+/* Numbers the ghosts, by n keys, and gives the corners there their numbers. Returns false if there
+ * is no room, or no such other block. */
 static bool put_ghosts(struct own *own, size_t n, struct arrays *to)
 {
     struct head *head = to->head;

@@ -47,8 +47,8 @@ static inline bool flow_tie_acts(const struct flow_tie *tie, uint64_t tick)
     return tie->begin <= tick && tick < tie->end;
 }
 
-/* A list of ties in which those of one block are: n_joints joints, of which those count that act at
- * the tick, then n others. A tie's number in the list is its place among all of them. */
+/* A list of ties, among them those of one block: n_joints joints, of which those that act at the
+ * tick count, then n others. A tie's number in the list is its place among all of them. */
 struct flow_tie_list {
     uint32_t n_joints, n;
     const struct flow_tie *joint; /* n_joints */

@@ -34,7 +34,8 @@ static const struct element_fold *find(const struct element_cloths *cloths, uint
 }
 
 /* The fold of a hinge; across a seam, that of either side. *s: its 2 sin(theta / 2) at rest, from
- * corner 0 of the hinge to corner 1, by the normals of its triangles (0, 1, 2) and (1, 0, 3). */
+ * corner 0 of the hinge to corner 1. The normals are those of its triangles (0, 1, 2) and (1, 0,
+ * 3). */
 static const struct element_fold *fold_of(const struct element_cloths *cloths,
                                           const struct element *element, double *s)
 {

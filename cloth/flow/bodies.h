@@ -137,8 +137,8 @@ void flow_ties_system(const struct flow *flow, const struct flow_view *view, dou
                       phys_vec *b, phys_vec *value);
 double flow_ties_energy(const struct flow *flow, const struct flow_view *view);
 /* Contacts of a block (contact/rows.c). Adds their forces at the time of the step, N. Adds their
- * part of a system: at x + h v if push is h; at x, with - h^2 K v on the right side, if push is 0;
- * only the matrix if b is NULL. */
+ * part of a system: at x + h v if push is h; at x, with - h^2 K v on the right side, if it is 0.
+ * Only the matrix if b is NULL. */
 void flow_contact_force(const struct flow *flow, const struct flow_view *view,
                         const struct flow_step_args *step, phys_vec *f);
 /* Adds to f the forces that they had in the step that ended at x, N. value: of the solve's matrix,

@@ -218,7 +218,7 @@ static void describe(const struct flow_state *state)
 }
 
 /* Makes objects, then tables, which go to the ranks of their objects. Everything that bodies find
- * by their context is made before waiting for the tables: a rank that is ahead may send tasks here
+ * by their context is made before waiting for the tables. A rank that is ahead may send tasks here
  * that this rank's main program has not reached. */
 static int make(struct flow_state *state)
 {

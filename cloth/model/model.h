@@ -129,9 +129,9 @@ struct model {
                               grows by more, */
     double stretch_limit;  /* or that ends with a larger one; 0: no limit */
     double energy_growth;  /* part of flow_source_release or of the largest energy of motion and
-                              strain so far: where energy is guarded, a step that ends above an
-                              earlier energy by more is made again. BDF2 then takes implicit Euler,
-                              others a shorter step. 0: by any gain */
+                              strain so far; 0: energy is not guarded. A step that ends above an
+                              earlier energy by more is made again: of BDF2 by implicit Euler,
+                              others shorter */
     struct model_rest rest;
     double sewn; /* m: it ends when the partners of pulled seams are at most so far from each other;
                     0: it does not end so */
@@ -146,8 +146,8 @@ struct model {
 
     enum model_stop stop; /* relative: |r| <= tolerance |b|; absolute: |r| <= tolerance (kg m/s);
                              count: no test; mass_norm: the error of dv <= tolerance |dv|;
-                             normalised: (h / l) sqrt(r.D^-1 r / m) <= tolerance. Of all free
-                             vertices: m the mass, l the mean rest length of edges */
+                             normalised: (h / l) sqrt(r.D^-1 r / m) <= tolerance. There m is the
+                             mass of all free vertices, l the mean rest length of edges */
     double tolerance;
     uint32_t max_iterations; /* count: exactly so many */
     enum model_guess guess;  /* of dv */

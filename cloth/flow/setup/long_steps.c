@@ -9,7 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* The h w, w the fastest vibration, above which solves of implicit steps are expected to fail: the
+/* The h w, w the fastest vibration, above which solves of implicit steps are expected to fail. The
  * matrix is (h w)^2 times the masses, and rounding leaves 1e-16 times that of dv's error. */
 static const double MAX_TURN = 1e4;
 

@@ -184,8 +184,8 @@ struct flow_merged {
     bool gone;
 };
 /* A joint that begins or ends during the run, or that ends on an edge: a tie, and none of the
- * springs. Its spring joins two points that its vertices make by their weights, whose sum is 0:
- * from the weights above 0 to those below. a and b of the spring are not used. */
+ * springs. Its vertices make two points by their weights, whose sum is 0. Its spring goes from the
+ * point of the weights above 0 to that of those below. a and b of the spring are not used. */
 struct flow_timed {
     struct flow_spring spring;
     uint32_t n, vertex[SOLVE_TIE_CORNERS]; /* of all cloths */

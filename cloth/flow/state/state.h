@@ -57,7 +57,7 @@ enum {
     FLOW_DUE,    /* a checkpoint is due */
     FLOW_STATUS
 };
-/* Indices into the peaks of a watched state, F64, each the largest of any block: square of the
+/* Indices into the peaks of a watched state, F64. Each is the largest of any block: square of the
  * speed; l / L of the springs that count for it; minus that. */
 enum { FLOW_PEAK_SPEED, FLOW_PEAK_LONGEST, FLOW_PEAK_SHORTEST, FLOW_PEAKS };
 /* Numbers of a watched vertex: position, velocity, reaction, force of contact; sums of a free

@@ -88,12 +88,11 @@ struct flow_tie_room {
     uint32_t ties, rows, others; /* rows: of ghosts, and of rows shown */
 };
 
-/* The ties of one block: inner ones, whose corners are all in the block, then those that end in
- * other blocks, by the lowest of these; in both the order of the list. Corners are rows of the
- * block or, from n_rows on, ghosts: rows of other blocks, each once, by block and row. Missing
- * corners are row 0 with the weight 0. The block shows each other block the rows that are corners
- * of ties of both, ascending: they are the ghosts there, in this order. Arrays lie in the memory of
- * the table. */
+/* The ties of one block: inner ones, whose corners are all in the block, then the others, by their
+ * lowest other block. Both are in the order of the list. Corners are rows of the block or, from
+ * n_rows on, ghosts: rows of other blocks, each once, by block and row. Missing corners are row 0
+ * with the weight 0. The block shows each other block the rows that are corners of ties of both,
+ * ascending: they are the ghosts there, in this order. Arrays lie in the memory of the table. */
 struct flow_ties {
     uint32_t n_inner, n, n_rows, n_ghosts, n_shown, n_others, n_halo;
     struct flow_tie_room room;

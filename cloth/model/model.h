@@ -128,10 +128,10 @@ struct model {
     double stretch_growth; /* so is one in which the largest length / rest length of stretch springs
                               grows by more, */
     double stretch_limit;  /* or that ends with a larger one; 0: no limit */
-    double energy_growth;  /* part of flow_source_release or of the largest energy of motion and
-                              strain so far; 0: energy is not guarded. A step that ends above an
-                              earlier energy by more is made again: of BDF2 by implicit Euler,
-                              others shorter */
+    double energy_growth;  /* part of the larger of flow_source_release and the largest energy of
+                              motion and strain so far; 0: energy is not guarded. A step that ends
+                              above an earlier energy by more is made again: of BDF2 by implicit
+                              Euler, others shorter */
     struct model_rest rest;
     double sewn; /* m: it ends when the partners of pulled seams are at most so far from each other;
                     0: it does not end so */

@@ -55,8 +55,8 @@ static double difference(const double *a, const double *b, const double *z, doub
     return sum;
 }
 
-/* Whether both sides of a seam, ends of the edge first, have it at one place. Then the second is
- * moved onto the first, by nothing where they are equal. */
+/* True if both sides of a seam, ends of the edge first, have the edge at one place. Then moves the
+ * second side onto the first, by nothing if they are equal. */
 static bool seam_meets(const struct element_seam *seam, const double a[9], double b[9])
 {
     const double rounding = 1e-6, most = 1e-2; /* of the length of the edge */
@@ -72,8 +72,8 @@ static bool seam_meets(const struct element_seam *seam, const double a[9], doubl
     return true;
 }
 
-/* Across a seam: as the meshes lie where both have the edge at one place; else, and where it is
- * sewn, flat: where a pattern places panels says nothing of the angle between them. */
+/* The rest angle across a seam: as the meshes lie if both have the edge at one place and it is not
+ * sewn; else flat. A pattern places panels without regard to the angle between them. */
 static int seam_rest(const struct element_cloths *cloths, const struct element_seam *seam,
                      struct phys_bend_rest *rest)
 {
@@ -96,7 +96,7 @@ static int seam_rest(const struct element_cloths *cloths, const struct element_s
     return code;
 }
 
-/* The rigidity across an edge whose direction is the mean of what its triangles say. */
+/* The rigidity across an edge whose direction is the mean of its triangles' directions. */
 static double rigidity_of(const struct element_cloths *cloths, uint32_t cloth,
                           const uint32_t triangle[2], const uint32_t corner[4],
                           const struct model_material *material)
@@ -110,8 +110,8 @@ static double rigidity_of(const struct element_cloths *cloths, uint32_t cloth,
     return phys_bend_rigidity(material->rigidity[0], material->rigidity[1], direction);
 }
 
-/* What a hinge is, of one energy: across a seam the mean of both sides, each by its own material
- * and threads. */
+/* A hinge of one energy; across a seam, the mean of both sides, each by its own material and
+ * threads. */
 struct bend {
     struct phys_bend_rest rest;
     double stiffness, damping; /* N m, N m s */

@@ -122,7 +122,7 @@ static void walk_hinges(struct walk *walk)
     }
 }
 
-/* Whether an edge of a grid is a diagonal of a cell. */
+/* True if an edge of a grid is a diagonal of a cell. */
 static bool is_diagonal(const struct mesh *mesh, const struct mesh_edge *edge)
 {
     const uint32_t nx = mesh->grid_nx;
@@ -144,8 +144,8 @@ static void walk_edges(struct walk *walk)
     }
 }
 
-/* Across seams, both of whose cloths bend by the same model and have elements of the kind: that
- * they have is not enough, as hinges damp a quadratic energy, too. */
+/* Walks seams whose two cloths bend by the same model and have elements of the kind: the latter is
+ * not enough, as hinges damp a quadratic energy, too. */
 static void walk_seams(struct walk *walk)
 {
     const struct element_cloths *cloths = walk->cloths;

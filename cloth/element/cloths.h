@@ -3,12 +3,12 @@
 
 #include "cloth/element/kind.h"
 
-/* Elements of all cloths: one kind after the other (cloth/element/kind.h), of each cloth after
- * cloth, in the order of their meshes. Nothing of an element is stored but the edges of its mesh:
- * rest values are worked out when a list is made. */
+/* Elements of all cloths: kind after kind (cloth/element/kind.h), in each kind cloth after cloth,
+ * in the order of the meshes. Only the edges of meshes are stored: rest values are computed when a
+ * list is made. */
 
-/* An edge that welds make one of two edges at borders: what each side has there. A hinge across it
- * has the first side's ends, then the vertices opposite. */
+/* An edge that welds make of two border edges, with the corners of each side. A hinge across it has
+ * the first side's ends, then the vertices opposite. */
 struct element_side {
     uint32_t cloth, first; /* its number; its first vertex, of all cloths */
     uint32_t corner[3];    /* of the cloth's mesh: ends, in the order of both, and opposite */
@@ -37,22 +37,22 @@ struct element_cloths {
     struct mesh_edges *edges; /* a cloth; none where it has no elements */
     double (*axis)[2][3];     /* a cloth: directions of warp and weft where its mesh has no uv */
     uint32_t n_seams;
-    struct element_seam *seam; /* of cloths with hinges; added by who knows of welds */
+    struct element_seam *seam; /* of cloths with hinges; added when welds are known */
     uint32_t n_folds;
     struct element_fold *fold; /* edges of all cloths whose rest angle is given, by their ends */
 };
 
-/* Finds the edges, and what is wrong with rest shapes. Errors: CLOTH_E_INPUT for triangles without
- * area and what does not suit its material, with the place; CLOTH_E_MEMORY. Local. */
+/* Finds the edges and checks the rest shapes. Errors: CLOTH_E_INPUT for triangles without area and
+ * parts that do not suit their material, with the place; CLOTH_E_MEMORY. Local. */
 int element_cloths_make(struct element_cloths *cloths, const struct model *model,
                         struct cloth_error *error);
 void element_cloths_free(struct element_cloths *cloths);
-/* What is wrong with the rest shapes across seams, as of element_cloths_make. Local. */
+/* Checks the rest shapes across seams, as element_cloths_make does. Local. */
 int element_seams_check(const struct element_cloths *cloths, struct cloth_error *error);
 
 /* Finds the folds of all cloths, when edges are there. Errors: CLOTH_E_INPUT for cloths whose
  * bending knows no rest angle and an edge that is folded twice, with the place; CLOTH_E_MEMORY. The
- * other: CLOTH_E_INPUT for folds at borders that no seam has, when seams are there. Local. */
+ * check, when seams are there: CLOTH_E_INPUT for folds at borders without a seam. Local. */
 int element_folds_make(struct element_cloths *cloths, struct cloth_error *error);
 int element_folds_check(const struct element_cloths *cloths, struct cloth_error *error);
 
@@ -76,7 +76,7 @@ void element_alone(const struct element_cloths *cloths, const struct element *el
 /* The shape at rest of a cloth: vertices lie at mesh_place, m. */
 const struct mesh *element_rest(const struct element_cloths *cloths, uint32_t cloth);
 
-/* How long an edge is at rest, m. */
+/* The length of an edge at rest, m. */
 double element_rest_length(const struct element_cloths *cloths, const struct element *element);
 
 /* Coordinates along warp and weft (phys_triangle_local) of a triangle's corners, in any order,
@@ -84,14 +84,14 @@ double element_rest_length(const struct element_cloths *cloths, const struct ele
 void element_rest_local(const struct element_cloths *cloths, uint32_t cloth, uint32_t triangle,
                         const uint32_t corner[3], double local[6]);
 
-/* The material, by number, of an element: of what its first n corners have in common. */
+/* The material, by number, of an element: that which its first n corners share. */
 static inline uint32_t element_material(const struct element_cloths *cloths,
                                         const struct element *element, size_t n)
 {
     return model_material_of(cloths->model->cloths + element->cloth, n, element->corner);
 }
 
-/* Whether a fold says the rest angle of a hinge; *s: then its 2 sin(theta / 2). */
+/* True if a fold gives the rest angle of a hinge; *s: then its 2 sin(theta / 2). */
 bool element_fold_rest(const struct element_cloths *cloths, const struct element *element,
                        double *s);
 
@@ -100,10 +100,9 @@ bool element_fold_rest(const struct element_cloths *cloths, const struct element
 const struct model_material *element_bending_of(const struct model *model,
                                                 const struct model_cloth *cloth);
 
-/* Whether both cloths bend, by the same model. */
+/* True if both cloths bend, by the same model. */
 bool element_bend_alike(const struct model *model, uint32_t a, uint32_t b);
 
-/* Whether an edge is a hinge. */
 static inline bool element_is_hinge(const struct mesh_edge *edge)
 {
     return edge->opposite[1] != UINT32_MAX && edge->opposite[0] != edge->opposite[1];

@@ -1,5 +1,5 @@
-/* Folds: hinges whose rest angle the scene says. An edge stands once among all, so that the angle
- * of a hinge does not depend on the order of folds. */
+/* Folds: hinges whose rest angle the scene gives. An edge stands once in the list, so that the
+ * angle of a hinge does not depend on the order of folds. */
 #include "cloth/element/cloths.h"
 
 #include "cloth/base/memory.h"
@@ -33,9 +33,9 @@ static const struct element_fold *find(const struct element_cloths *cloths, uint
                : NULL;
 }
 
-/* The fold that a hinge has; across a seam that of either side. *s: its 2 sin(theta / 2) at rest,
- * from corner 0 of the hinge to corner 1, where both normals are those of its triangles (0, 1, 2)
- * and (1, 0, 3). */
+/* The fold of a hinge; across a seam, that of either side. *s: its 2 sin(theta / 2) at rest, from
+ * corner 0 of the hinge to corner 1. The normals are those of its triangles (0, 1, 2) and (1, 0,
+ * 3). */
 static const struct element_fold *fold_of(const struct element_cloths *cloths,
                                           const struct element *element, double *s)
 {
@@ -66,8 +66,8 @@ bool element_fold_rest(const struct element_cloths *cloths, const struct element
 
 /* ---- Making ---- */
 
-/* Every fold has its angle as it is in front of the triangle that goes from a to b. Where the first
- * triangle at its edge goes from b to a, the other sign is in front of that. */
+/* A fold's angle is seen from the front of the triangle that goes from a to b. If the first
+ * triangle at its edge goes from b to a, its front sees the other sign. */
 static void turn_folds(struct element_cloths *cloths, uint32_t c)
 {
     const struct mesh *mesh = &cloths->model->cloths[c].mesh;
@@ -157,9 +157,9 @@ int element_folds_make(struct element_cloths *cloths, struct cloth_error *error)
     return code;
 }
 
-/* ---- What has no hinge ---- */
+/* ---- Folds without a hinge ---- */
 
-/* Marks the folds that seams have. One that both sides say would be said twice. */
+/* Marks the folds of seams. A fold on both sides would be given twice. */
 static int mark_seams(const struct element_cloths *cloths, unsigned char *mark,
                       struct cloth_error *error)
 {

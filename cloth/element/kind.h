@@ -11,7 +11,7 @@
  * All other code walks the table of kinds and asks; none names a kind. To add a force: one file in
  * cloth/physics, one descriptor here, its name in ELEMENT_ALL, its keys in the scene. */
 
-/* What each element of a kind is made from, of a cloth's mesh. Corners in this order. */
+/* The part of a cloth's mesh that each element of a kind is made of. Corners in this order. */
 enum element_part {
     ELEMENT_TRIANGLES, /* of each triangle: its corners */
     ELEMENT_FACES,     /* the same, and the fourth corner of its cell where the cloth has cells */
@@ -33,16 +33,16 @@ struct element_list {
     uint32_t *at;          /* n x pairs: the entry of each, as solve_assemble_pairs wants it */
     phys_vec *vector;      /* n, or none */
     double *number[ELEMENT_NUMBERS]; /* n each; those of the kind come first */
-    void *material;                  /* a material: what elements have of it; or none */
+    void *material;                  /* the elements' data of a material; or none */
 };
 
-/* When and in what world forces act. The model has no cloths and no materials. */
+/* The time and the world of forces. The model has no cloths and no materials. */
 struct element_world {
     const struct model *model;
     double time; /* s */
 };
 
-/* A cloth, for what limits steps. */
+/* A cloth, to limit steps. */
 struct element_sheet {
     const struct model *model;
     const struct model_cloth *cloth;
@@ -53,9 +53,9 @@ struct element_sheet {
 struct element;
 struct element_cloths;
 
-/* A descriptor. Functions are local and pure, but for what they add to or write. Those on lists
+/* A descriptor. Functions are local and pure, except for their sums and outputs. Functions on lists
  * work on elements in order, and an element's numbers depend on its corners alone
- * (cloth/physics/element.h). A part that a kind has not is NULL or 0;
+ * (cloth/physics/element.h). A part that a kind lacks is NULL or 0;
  * tests/cloth/element/test_kinds.c says which go together. */
 struct element_kind {
     const char *name; /* in the plural, as sentences have it */
@@ -70,19 +70,19 @@ struct element_kind {
 
     /* ---- On rank 0, when a run is set up ---- */
 
-    /* Whether a cloth has such elements; then all its parts are elements. Asks for its materials
-     * and for the model, not for its mesh. */
+    /* True if a cloth has such elements; then all its parts are elements. Reads its materials and
+     * the model, not its mesh. */
     bool (*has)(const struct model *model, const struct model_cloth *cloth);
     /* Optional: CLOTH_E_INPUT, with the place, for parts of a cloth that can be no such elements.
      */
     int (*check)(const struct element_cloths *cloths, uint32_t cloth, struct cloth_error *error);
-    /* Of kinds with anything in their lists: writes vector and numbers of entry e of a list, whose
-     * corners are there; corners that it has not got are PHYS_NO_CORNER until it uses them. */
+    /* For kinds with vectors or numbers: writes those of entry e of a list, whose corners are
+     * there. Corners that it lacks are PHYS_NO_CORNER until it uses them. */
     void (*pack)(const struct element_cloths *cloths, const struct element *element,
                  const struct element_list *list, uint32_t e);
-    /* Of kinds with material_bytes: writes what elements have of a material of any kind. */
+    /* For kinds with material_bytes: writes the elements' data of a material of any kind. */
     void (*material)(const struct model_material *material, void *to);
-    /* Of kinds without pairs: writes why steps of the model are too long for their force on a
+    /* For kinds without pairs: writes why steps of the model are too long for their force on a
      * cloth, or the empty string. */
     void (*warn)(const struct element_sheet *sheet, char *text, size_t size);
 
@@ -101,10 +101,11 @@ struct element_kind {
     void (*system)(const struct element_list *list, size_t from, size_t to,
                    const struct phys_step *step, double push, const struct phys_sight *sight,
                    const uint32_t *at, phys_vec *b, struct phys_pair *pair);
-    /* Of kinds without system: y -= scale K v. */
+    /* For kinds without system: y -= scale K v. */
     void (*stiffness)(const struct element_list *list, int full, double scale,
                       const struct phys_sight *sight, phys_vec *y);
-    /* Energy (J) of the elements that count here: whose corner 0 is one of the block's rows. */
+    /* Energy (J) of the elements that count here: those whose corner 0 is one of the block's rows.
+     */
     double (*energy)(const struct element_list *list, const struct phys_sight *sight);
     /* Optional: adds the torques (N m) that the forces of elements that count here leave. */
     void (*torque)(const struct element_list *list, const struct phys_sight *sight,
@@ -129,8 +130,8 @@ ELEMENT_ALL(ELEMENT_DECLARE)
 
 extern const struct element_kind *const element_kinds[ELEMENT_KINDS];
 
-/* Which parts of a cloth are elements: bit 1 << part. The first kind of them that the matrix knows;
- * NULL: none, so that a matrix of springs can hold the cloth. */
+/* The parts of a cloth that are elements, as bits 1 << part. The first kind of them that the matrix
+ * knows; NULL: none, so that a matrix of springs can hold the cloth. */
 unsigned element_parts(const struct model *model, const struct model_cloth *cloth);
 const struct element_kind *element_in_matrix(const struct model *model,
                                              const struct model_cloth *cloth);

@@ -1,4 +1,4 @@
-/* The table of kinds, and what it says of a cloth. */
+/* The table of kinds, and questions to it about a cloth. */
 #include "cloth/element/kind.h"
 
 #define ELEMENT_ADDRESS(name) &element_##name,

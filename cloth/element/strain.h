@@ -4,10 +4,10 @@
 #include "cloth/model/model.h"
 #include "cloth/physics/triangle.h"
 
-/* How far every triangle of all cloths is from its shape at rest, whatever resists it: the cells of
- * scientific frames. Cells are the triangles, cloth after cloth in the order of their meshes, then
- * in the same order the edges that no triangle has. Vertices are numbered cloth after cloth, too.
- */
+/* The strain of every triangle of all cloths against its shape at rest, whatever resists it: the
+ * cells of scientific frames. Cells are the triangles, cloth after cloth in the order of their
+ * meshes, then in the same order the edges without triangles. Vertices are numbered cloth after
+ * cloth, too. */
 struct element_strains {
     uint32_t n_vertices, n_triangles, n_edges;
     uint32_t (*corner)[4]; /* n_triangles: vertices, then the number of the material */
@@ -20,8 +20,8 @@ struct element_strains {
     phys_vec *x;                    /* n_vertices: room */
 };
 
-/* While there are meshes. In any case element_strains_free follows. Error: CLOTH_E_MEMORY, and as
- * of element_cloths_make. Local. */
+/* Needs the meshes. In any case element_strains_free follows. Error: CLOTH_E_MEMORY, and as of
+ * element_cloths_make. Local. */
 int element_strains_make(struct element_strains *strains, const struct model *model,
                          struct cloth_error *error);
 void element_strains_free(struct element_strains *strains);

@@ -7,16 +7,15 @@
 #include <math.h>
 #include <string.h>
 
-/* What the bodies of kernels have in common. Local functions. */
+/* Functions that the bodies of kernels share. Local. */
 
 static inline struct flow *flow_of(const duite_call *call)
 {
     return call->context;
 }
 
-/* The block of a task, with which the arguments of any kernel begin. Functions that bodies share
- * are given what else they need, from `on->args`: what a kernel's arguments lack does not compile.
- */
+/* The block of a task: the arguments of every kernel begin with it. Bodies pass shared functions
+ * all else from `on->args`: an argument that the kernel lacks does not compile. */
 static inline uint32_t flow_block_of(const duite_call *call)
 {
     return *(const uint32_t *)call->args;
@@ -52,7 +51,8 @@ struct flow_view {
     const struct contact_row *contact_rows; /* of those ties that are contacts; NULL: none is asked
                                              * for, or the run has none */
 };
-/* That of a body whose kernel declares x, v, the neighbours' halos of both, ties and contacts. */
+/* The view of a body whose kernel declares x, v, the neighbours' halos of both, ties and contacts.
+ */
 #define FLOW_VIEW(on)                                                                              \
     {                                                                                              \
         (on)->x, (on)->v, (on)->halo_x, (on)->halo_v, (on)->tie_table, (on)->tied_tie_halo,        \
@@ -62,9 +62,9 @@ struct flow_view {
 /* Notes in the status that this rank is asked to stop, if it is. */
 void flow_note_stop(const duite_call *call, double *status);
 
-/* Fails if a row diverged, naming it by the input's number, or, where the step can be made again,
- * notes it in the status. Notes there, too, that a stop is asked for. what: "position"
- * or "velocity". */
+/* Fails if a row diverged, naming it by the input's number; if the step can be made again, notes it
+ * in the status instead. Notes there, too, that a stop is asked for. what: "position" or
+ * "velocity". */
 int flow_check(const duite_call *call, const struct flow_table *table,
                const struct flow_step_args *step, const phys_vec *y, const char *what,
                double *status);
@@ -93,20 +93,20 @@ static inline const phys_vec *flow_tie_values(const struct flow_table *t, const 
     return (const phys_vec *)values + flow_value_rows(t);
 }
 
-/* Behind those, what a solve reads of ties in every pass: the ones that add something, side by side
- * in their order, for most contacts of a pile do not press. Rows that they take: */
+/* Ties that add something, side by side in their order behind those values: a solve reads them in
+ * every pass, and most contacts of a pile do not press. The rows that they take: */
 static inline size_t flow_acting_rows(uint32_t room)
 {
     return room ? 1 + 2 * (size_t)room + (room + 1) / 2 : 0;
 }
 /* Writes them (solver/ties.c). value: of all ties; the rows follow. */
 void flow_ties_gather(const struct flow_ties *ties, phys_vec *value);
-/* They as a solve sees them. p_other: p of the ghosts of ties, in a pass. */
+/* The ties as a solve sees them. p_other: p of the ghosts of ties, in a pass. */
 struct solve_ties flow_ties_solved(const struct flow_ties *ties, const phys_vec *value,
                                    const phys_vec *p_other);
 
-/* A corner of a tie: a row of the block's own, or of what the blocks that it shares ties with show
- * it. shown: TIED of a field whose rows are those shown, once (part 0) or twice (0, 1). */
+/* A corner of a tie: a row of the block, or one that a block shows which shares ties with it.
+ * shown: TIED of a field whose rows are those shown, once (part 0) or twice (0, 1). */
 static inline const phys_vec *flow_tie_row(const struct flow_ties *ties, uint32_t corner,
                                            const phys_vec *own, const duite_param *shown, int part)
 {
@@ -136,25 +136,24 @@ void flow_ties_force(const struct flow *flow, const struct flow_view *view, phys
 void flow_ties_system(const struct flow *flow, const struct flow_view *view, double h, double push,
                       phys_vec *b, phys_vec *value);
 double flow_ties_energy(const struct flow *flow, const struct flow_view *view);
-/* Contacts of a block (contact/rows.c). Adds their forces where x is at the time of
- * the step, N. Their part of a system:
- * where h v leads if push is h; where x is, with - h^2 K v on the right side, if it is 0; the
- * matrix alone where b is NULL. */
+/* Contacts of a block (contact/rows.c). Adds their forces at the time of the step, N. Adds their
+ * part of a system: at x + h v if push is h; at x, with - h^2 K v on the right side, if it is 0.
+ * Only the matrix if b is NULL. */
 void flow_contact_force(const struct flow *flow, const struct flow_view *view,
                         const struct flow_step_args *step, phys_vec *f);
-/* Adds to f the forces that they had in the step that ended at x, N; value: of the solve's matrix,
- * obstacle: of each, from 1, or 0. What an obstacle puts on rows that are here is added to its
+/* Adds to f the forces that they had in the step that ended at x, N. value: of the solve's matrix,
+ * obstacle: of each, from 1, or 0. Adds the forces of an obstacle on rows of this block to its
  * vector, too. */
 void flow_contact_solved(const struct flow *flow, const struct flow_view *view,
                          const uint32_t *obstacle, const phys_vec *value, phys_vec *f,
                          phys_vec *by_obstacle);
 void flow_contact_system(const struct flow *flow, const struct flow_view *view, double h,
                          double push, phys_vec *b, phys_vec *value);
-/* Takes out of lost[3] what solve_lost cannot know: N dv of ties that lead to held ends. */
+/* Takes N dv of ties that lead to held ends out of lost[3]: solve_lost cannot know it. */
 void flow_ties_lost(const unsigned char *tie_table, const phys_vec *value, const phys_vec *dv,
                     double lost[3]);
 
-/* Elements of a block (elements.c). What they see of a view; one at a time on a worker, until its
+/* Elements of a block (elements.c). Their sight of a view; one at a time on a worker, until its
  * task ends. */
 bool flow_has_elements(const struct flow_table *t);
 struct phys_sight flow_elements_see(const duite_call *call, const struct flow_table *t,
@@ -167,12 +166,12 @@ void flow_elements_force_beside(const duite_call *call, const struct flow_table 
 /* y -= scale K v of the same. */
 void flow_elements_stiffness(const duite_call *call, const struct flow_table *t, double scale,
                              const struct phys_sight *sight, phys_vec *y);
-/* Adds their part of the matrix to the sums of its entries and, unless b is NULL, what the other
- * kinds add to the right side with it (system in cloth/element/kind.h). */
+/* Adds their part of the matrix to the sums of its entries. Unless b is NULL, adds the right side
+ * of the other kinds (system in cloth/element/kind.h). */
 void flow_elements_assemble(const duite_call *call, const struct flow_table *t, double h,
                             double push, const struct phys_sight *sight, phys_vec *b,
                             struct phys_pair *sums);
-/* Their energy, J, of those that count here, to whose uncorrected forces' torque, N m, it adds. */
+/* The energy, J, of the elements that count here. Adds the torque, N m, of uncorrected forces. */
 double flow_elements_energy(const duite_call *call, const struct flow_table *t,
                             const struct flow_view *view, double torque[3]);
 
@@ -196,8 +195,8 @@ static inline phys_vec *flow_force_room(const duite_call *call)
     return flow->forces + call->worker * flow->n_forces;
 }
 
-/* Copies the rows that neighbours need. halo: n_halo rows; one, which nobody reads, if there are
- * none. */
+/* Copies the rows that neighbours need. halo: n_halo rows; a single unread one if there are none.
+ */
 static inline void flow_write_halo(const struct flow_table *table, const phys_vec *y,
                                    phys_vec *halo)
 {
@@ -207,7 +206,7 @@ static inline void flow_write_halo(const struct flow_table *table, const phys_ve
         halo[0] = (phys_vec){0};
 }
 
-/* A halo of the solve: three numbers a row; one row, which nobody reads, if there are none. */
+/* A halo of the solve: three numbers a row; a single unread row if there are none. */
 static inline void flow_pack_halo(const struct flow_table *t, const phys_vec *y, double *halo)
 {
     solve_pack(t->n_halo, t->halo, y, halo);
@@ -215,14 +214,15 @@ static inline void flow_pack_halo(const struct flow_table *t, const phys_vec *y,
         halo[0] = halo[1] = halo[2] = 0;
 }
 
-/* What a solve left of a block. */
+/* The result of a solve for a block. */
 struct flow_solved {
     const void *value; /* of the matrix */
     const phys_vec *b, *dv, *r;
     const struct solve_scalars *scalars;
     const unsigned char *tie_table; /* NULL: the run has no ties */
 };
-/* Notes it in the status: what it took, its error, the momentum that it lost, whether it failed. */
+/* Notes the solve in the status: its iterations and restarts, its error, the momentum that it lost,
+ * its failure. */
 void flow_note_solve(const duite_call *call, const struct flow_table *table,
                      const struct flow_solved *solved, double *status);
 
@@ -235,15 +235,16 @@ static inline void flow_put_double(unsigned char *bytes, double value)
         bytes[i] = (unsigned char)(bits >> (8 * i));
 }
 
-/* How many of the dots a pass sums: without a preconditioner r.z is r.r, and the rest is for stops
- * by norms. */
+/* The number of dots that a pass sums: without a preconditioner r.z is r.r, and the rest is for
+ * stops by norms. */
 static inline size_t flow_dots(const struct flow *flow)
 {
     return flow_is_preconditioned(flow) || model_stops_by_norms(flow->model) ? SOLVE_DOTS
                                                                              : SOLVE_RZ;
 }
 
-/* In a body: what it did since it began, or since this was called, was this part of the step. */
+/* In a body: counts its seconds since it began, or since the last call, for this part of the step.
+ */
 static inline void flow_part_ends(const duite_call *call, enum flow_part part)
 {
     struct flow_clock *clock = flow_of(call)->clock + call->worker;

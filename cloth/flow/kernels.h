@@ -29,21 +29,21 @@
 enum { FLOW_KERNELS(FLOW_KERNEL_NUMBER) FLOW_KERNELS_OF_ALL };
 FLOW_KERNELS(FLOW_KERNEL_EXTERN)
 
-/* Kernels of objects that are no fields. */
+/* Kernels of objects that are not fields. */
 extern const duite_kernel flow_broadcast_head; /* w head: on rank 0 */
 extern const duite_kernel
     flow_broadcast_shared; /* w shared: obstacles, motions, shapes, neighbours; on rank 0 */
 extern const duite_kernel flow_ready; /* cw ready: fails if this rank cannot begin */
 extern const duite_kernel flow_pack;  /* r halo of s, w packed halo */
 
-/* Of groups in the coarse part of a preconditioner: solver/levels.h. */
+/* Groups in the coarse part of a preconditioner: solver/levels.h. */
 extern const duite_kernel flow_group_factor, flow_group_start, flow_group_solve;
 
-/* Of sides that meet: contact/contact.h. */
+/* Sides that meet: contact/contact.h. */
 extern const duite_kernel flow_meet, flow_meet_shape, flow_touch, flow_cut_ways, flow_count_ties,
     flow_tie_contacts;
 
-/* Of checkpoints: checkpoint/checkpoint.h. */
+/* Checkpoints: checkpoint/checkpoint.h. */
 extern const duite_kernel flow_save_block, flow_send_main, flow_load_block;
 
 enum { FLOW_KERNELS_LISTED = FLOW_KERNELS_OF_ALL + 16 }; /* by flow_kernels (run.h) */

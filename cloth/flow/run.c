@@ -1,5 +1,5 @@
-/* A flow is read-only for tasks but for what state/flow.h names. Every decision of the main program
- * follows from values that all ranks get alike. */
+/* Tasks only read a flow, except what state/flow.h names. The main program decides only by values
+ * that all ranks get alike. */
 #include "cloth/flow/run.h"
 
 #include "cloth/base/memory.h"
@@ -217,9 +217,9 @@ static void describe(const struct flow_state *state)
                                           .partition_hash = flow->partition_hash};
 }
 
-/* Objects, then tables, which go where the objects are. What bodies find by their context is made
- * before the tables are waited for: another rank may be ahead, and its balancer may send tasks here
- * that this rank's main program has not come to. */
+/* Makes objects, then tables, which go to the ranks of their objects. Everything that bodies find
+ * by their context is made before waiting for the tables. A rank that is ahead may send tasks here
+ * that this rank's main program has not reached. */
 static int make(struct flow_state *state)
 {
     flow_objects_make(state);
@@ -260,7 +260,7 @@ int flow_run_begin(struct flow_state *state)
     return code;
 }
 
-/* Where a run starts that does not go on from a checkpoint. */
+/* Starts a run that does not go on from a checkpoint. */
 static int start(struct flow_state *state)
 {
     int code = flow_initialise(state);
@@ -302,8 +302,7 @@ static int code_of_cloth(int code)
     return code > 0 ? CLOTH_E_RUN : CLOTH_E_LIBRARY;
 }
 
-/* The sentence that a body gave its failure, without what the runtime says of the task before it.
- */
+/* A body's own failure sentence, without the runtime's words about the task before it. */
 static const char *own_sentence(const char *message, int code)
 {
     char before[32];
@@ -312,8 +311,8 @@ static const char *own_sentence(const char *message, int code)
     return found ? found + strlen(before) : message;
 }
 
-/* Why the run failed. What rank 0 could not write it knows in full, the others as far as it
- * travels with a failure. */
+/* Why the run failed. Rank 0 knows a write error in full; the others know the part that travels
+ * with a failure. */
 static const char *reason(const struct flow_state *state, int code)
 {
     if (code == FLOW_NOT_WRITTEN && state->flow->trouble.code)

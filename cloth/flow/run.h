@@ -10,16 +10,16 @@
 
 /* Runs a model on a duite runtime. The same on every rank. */
 
-/* Energies, J. Those of weights and of constant forces are zero at the origin. By symplectic Euler,
- * whose v is that of half a step before x, `kinetic` is that of v half a step on. */
+/* Energies, J. Those of weights and of constant forces are zero at the origin. Symplectic Euler has
+ * v half a step before x; `kinetic` is of v half a step on. */
 struct flow_energy {
     double kinetic, elastic, gravity, loads;
-    double contact; /* what certified contacts hold (contact/row.h) */
+    double contact; /* held by certified contacts (contact/row.h) */
 };
 
-/* Why a step is begun again with half its length: its solve failed; a position, velocity or edge is
- * beyond all bounds or no number; an edge is stretched too far; it gained energy; contact cuts too
- * much of it. The first that holds. */
+/* The first reason why a step is begun again with half its length: its solve failed; a position,
+ * velocity or edge is out of bounds or no number; an edge is stretched too far; it gained energy;
+ * contact cuts too much of it. */
 enum flow_cause {
     FLOW_CAUSE_SOLVE,
     FLOW_CAUSE_BOUNDS,
@@ -29,8 +29,7 @@ enum flow_cause {
     FLOW_CAUSES
 };
 
-/* What was run and how long it took; filled on every rank, the same on all of them but for times.
- */
+/* The result of a run; filled on every rank, alike on all except for times. */
 struct flow_report {
     uint64_t vertices, triangles, blocks, grain, partition_hash;
     uint64_t steps;                            /* made, of any length */
@@ -49,7 +48,7 @@ struct flow_report {
     uint64_t contacts_now;           /* at the end of the last step accepted */
     uint64_t contact_pinches;        /* pairs that nothing kept apart, so that a step was halved; */
     char contact_pinch[240];         /* the first of them; on rank 0, else empty */
-    double contact_cut_momentum;     /* kg m/s: what cuts changed, summed over the steps made */
+    double contact_cut_momentum;     /* kg m/s: changed by cuts, summed over the steps made */
     uint64_t steps_retaken; /* how often one by BDF2 gained energy and was made again by implicit
                                Euler */
     uint64_t frames;        /* with those before the run */
@@ -94,7 +93,7 @@ struct flow_report {
     duite_counters counters;
 };
 
-/* What there is before a run that goes on where others ended. */
+/* The runs before one that continues them. */
 struct flow_before {
     bool goes_on;           /* it does; else all of this is zero */
     uint64_t frames, steps; /* of the runs before it, all together; frames keep their clock */
@@ -108,49 +107,48 @@ struct flow_checkpoint {
     size_t n;
 };
 
-/* What scientific frames have of n vertices beside positions and forces, in the numbering of the
- * input meshes. */
+/* Other fields of scientific frames, of n vertices in the numbering of the input meshes. */
 struct flow_beside {
     const double *velocity;      /* n x 3, m/s */
     const int32_t *block, *rank; /* n: the block, and the rank that has it; -1 of vertices that no
                                   * block has */
 };
 
-/* Where vertices and blocks are when a frame is shown. */
+/* The places of vertices and blocks when a frame is shown. */
 struct flow_places {
     const int32_t *block; /* of each vertex; -1 of those that no block has */
     uint32_t n_blocks;
     const int32_t *rank; /* n_blocks: that keeps each */
 };
 
-/* Where frames and systems go: handed over by the program. Called on rank 0 only, from one task at
- * a time. */
+/* The receivers of frames and systems, from the program. Called on rank 0 only, from one task at a
+ * time. */
 struct flow_output {
     void *context;
     struct flow_before before; /* numbers and times of frames and rows count from it; the same on
                                   all ranks */
-    /* On rank 0: room for 6 numbers a vertex, for where the run ends, as model_cloth.start has
-     * them. NULL: it is not wanted. */
+    /* On rank 0: room for 6 numbers a vertex, the end of the run, as model_cloth.start has them.
+     * NULL: it is not wanted. */
     double (*end)[6];
     /* Frames in their order; NULL: none are wanted. */
     /* position: vertices x 3 in the numbering of the input meshes, cloth after cloth. time in
      * seconds. Returns 0 or a code and fills error. */
     int (*frame)(void *context, uint64_t frame, double time, const double *position,
                  struct cloth_error *error);
-    /* How many there are for certain when one failed, which may be one before that. NULL: all that
-     * were handed over before. */
+    /* The number of frames that are written for certain after one failed, which may be one before
+     * that. NULL: all that were handed over before. */
     uint64_t (*written)(void *context);
-    /* Before it the places in it. The arrays are lent. NULL: they are not wanted. */
+    /* The places in a frame, before it. The arrays are lent. NULL: they are not wanted. */
     int (*places)(void *context, uint64_t frame, const struct flow_places *places,
                   struct cloth_error *error);
-    /* After it the force of contact on each vertex in the step that ended there, N, alike, of a run
-     * whose contact is certified; NULL: it is not wanted. */
+    /* The force of contact on each vertex in the step that ended at a frame, N, after the frame and
+     * arranged as its positions. Only with certified contact. NULL: it is not wanted. */
     int (*force)(void *context, uint64_t frame, const double *force, struct cloth_error *error);
     /* After a frame that model.hdf5 takes, its other fields, unless none is wanted. The arrays are
      * lent. */
     int (*beside)(void *context, const struct flow_beside *beside, struct cloth_error *error);
-    /* A row of the table of probes: n numbers, whose names are flow_header's, of the state after so
-     * many steps, from 0 on. Returns 0 or a code and fills error. NULL: it is not wanted. */
+    /* A row of the table of probes, of the state after so many steps, from 0 on: n numbers with the
+     * names of flow_header. Returns 0 or a code and fills error. NULL: it is not wanted. */
     int (*row)(void *context, uint64_t step, double time, size_t n, const double *values,
                struct cloth_error *error);
     /* The system of the last step and the state after it, once, of an implicit run that made a
@@ -162,8 +160,8 @@ struct flow_output {
     void (*save)(void *context, struct flow_checkpoint state);
 };
 
-/* What a run says while it goes on; `step` is called by the main thread of rank 0 after each step,
- * when the next one is under way. May be NULL. */
+/* Calls made during a run; the main thread of rank 0 calls `step` after each step, when the next
+ * one is under way. May be NULL. */
 struct flow_progress {
     void *context;
     /* The meshes of the model are not read any more: all blocks have their tables. Called once,
@@ -202,32 +200,31 @@ struct flow_rows {
 };
 struct flow_filter {
     void *context;
-    /* Called from tasks, of several blocks at once, on the rank that has the block; again where a
-     * step is made again. What it writes must come of the rows, and of what is alike on all ranks,
-     * alone: blocks are on any rank. + - * / and sqrt, for results that are the same everywhere. */
+    /* Called from tasks, of several blocks at once, on the rank that has the block; again if a step
+     * is made again. Blocks are on any rank: write only results of the rows and of values that all
+     * ranks have alike. Use + - * / and sqrt: they round alike everywhere. */
     void (*rows)(void *context, const struct flow_rows *rows);
 };
 
-/* Before flow_run, on every rank, for a model whose own_filter is set (on rank 0, before
- * flow_prepare); without, the function is not called. Local. */
+/* Sets the filter; before flow_run, on every rank, if the model's own_filter is set (on rank 0,
+ * before flow_prepare); else the function is not called. Local. */
 void flow_filter_by(struct flow *flow, struct flow_filter filter);
 
-/* On rank 0 of the run: cuts the model into blocks and makes ready what the tables are made from.
- * No runtime needed. Checks what a scene alone cannot: pins inside the mesh, masses, lengths of
- * springs, starts out of bounds, more ranks than blocks; errors begin with the place that the model
- * gives. The model must outlive the flow, its meshes until flow_progress.distributed is called.
- * Local. */
+/* On rank 0 of the run: cuts the model into blocks and prepares their tables. Needs no runtime.
+ * Checks pins inside the mesh, masses, lengths of springs, starts out of bounds, more ranks than
+ * blocks, which a scene alone cannot. Errors begin with the place that the model gives. The model
+ * must outlive the flow, its meshes until flow_progress.distributed is called. Local. */
 int flow_prepare(struct flow **flow, const struct model *model, int ranks,
                  struct cloth_error *error);
 
-/* On the other ranks, which know no model: what they need rank 0 sends them in flow_run. Error:
- * CLOTH_E_MEMORY. Local. */
+/* On the other ranks, which know no model: rank 0 sends it in flow_run. Error: CLOTH_E_MEMORY.
+ * Local. */
 int flow_join(struct flow **flow, struct cloth_error *error);
 
-/* On rank 0, before flow_run: the run goes on from a checkpoint of the same model, whose end may be
- * later. The bytes, which begin at a multiple of 8, must live until flow_run returns. *at says how
- * far it is. Errors: CLOTH_E_INPUT, it is not one of this model, or of another version: a sentence
- * about "the checkpoint". Local. */
+/* On rank 0, before flow_run: lets the run go on from a checkpoint of the same model, whose end may
+ * be later. The bytes begin at a multiple of 8 and must live until flow_run returns. *at says how
+ * far it is. Error: CLOTH_E_INPUT if it is of another model or version: a sentence about "the
+ * checkpoint". Local. */
 struct flow_resumed {
     uint64_t steps;  /* of the run that it is of: rows of its table of probes */
     uint64_t frames; /* that are to stay; of this run, and those before it */
@@ -255,19 +252,19 @@ int flow_run(struct flow *flow, duite *rt, const struct flow_output *output,
 /* Vertices of all cloths together; 0 where a flow only joined and has not run. Local. */
 uint64_t flow_vertices(const struct flow *flow);
 
-/* Where a run starts: 3 numbers a vertex, m, in the input's numbering. On rank 0, before the run.
+/* The start of a run: 3 numbers a vertex, m, in the input's numbering. On rank 0, before the run.
  * Local. */
 void flow_start(const struct flow *flow, double *position);
 
-/* The same before seams are welded, by vertex; NULL: none are. Lives until the run. */
+/* The start before seams are welded, by vertex; NULL: none are. Lives until the run. */
 const double (*flow_unwelded(const struct flow *flow))[3];
 
-/* The same with velocities, m/s: of each vertex 6 numbers, as model_cloth.start has them; and
- * whether a pin holds it or moves it, 1 or 0. On rank 0, before the run. Local. */
+/* The start with velocities, m/s: 6 numbers a vertex, as model_cloth.start has them. held: 1 if a
+ * pin holds or moves the vertex, else 0. On rank 0, before the run. Local. */
 void flow_starts(const struct flow *flow, double (*start)[6], unsigned char *held);
 
-/* Of each vertex, in the input's numbering: the obstacle, from 1, that its pin follows, or 0. NULL:
- * none does. On rank 0 when the flow is prepared. Lives as long as the flow. Local. */
+/* The obstacle, from 1, that the pin of each vertex follows, or 0; in the input's numbering. NULL:
+ * no pin follows one. On rank 0 when the flow is prepared. Lives as long as the flow. Local. */
 const uint32_t *flow_attached(const struct flow *flow);
 
 /* Names of the columns of the table of probes, with commas between: step, time, then those of its
@@ -275,8 +272,8 @@ const uint32_t *flow_attached(const struct flow *flow);
  * Lives as long as the flow. Local. */
 const char *flow_header(const struct flow *flow);
 
-/* What is unusual about the model but no error: sentence i, counted from 0, with its place; NULL:
- * there are no more. Lives as long as the flow. Local. */
+/* Warning i about the model, counted from 0, with its place; NULL: there are no more. Lives as long
+ * as the flow. Local. */
 const char *flow_warning(const struct flow *flow, size_t i);
 
 void flow_free(struct flow *flow);

@@ -10,37 +10,38 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* The parts of a model (model.h): materials, cloths and what picks, holds, moves, loads and joins
- * their vertices, or reports of them. SI units. What they point to belongs to the model. */
+/* The parts of a model (model.h): materials, cloths, and the picks, pins, motions, loads, joints
+ * and probes of their vertices. SI units. The model owns all that they point to. */
 
 struct model_material {
     char *name;
     double density; /* kg/m^2, > 0; 0: all its cloths have mass_per_vertex */
     enum { MODEL_SPRINGS, MODEL_TRIANGLES } model;
-    double stretch, weft_excess; /* membrane moduli, N/m, >= 0: along the warp, and what that along
-                                    the weft is more */
-    double shear, bend;          /* likewise; bend: of springs only */
-    double poisson;              /* triangles: nu12, nu12 nu21 < 1 */
-    bool uncorrected;            /* triangles: with the papers' forces (cloth/physics/triangle.h) */
+    double stretch,
+        weft_excess;    /* membrane moduli, N/m, >= 0: along the warp; the weft's less the warp's */
+    double shear, bend; /* likewise; bend: of springs only */
+    double poisson;     /* triangles: nu12, nu12 nu21 < 1 */
+    bool uncorrected;   /* triangles: with the papers' forces (cloth/physics/triangle.h) */
     enum { MODEL_NO_BENDING, MODEL_HINGES, MODEL_QUADRATIC } bending; /* besides bend springs */
     double rigidity[2];       /* N m, of warp and weft, >= 0 */
     double damping_viscous;   /* kg/s a vertex */
     double damping_mass;      /* 1/s: a force -damping_mass * m * v */
     double damping_stiffness; /* s: along each spring, times its k; of strains and angles too */
-    double damping_excess;    /* s: what it is of bending less that */
+    double damping_excess;    /* s: that of bending less damping_stiffness */
     double ea;                /* N, >= 0: force / strain of an edge without triangles */
     double limit_strain;      /* >= 0: edges stretched beyond it are pulled back, */
     double limit_stiffness;   /* by so many N/m, >= 0; 0: they are not */
     struct model_correction {
-        double at, tolerance; /* >= 0: edges that would be stretched beyond it have their velocities
-                               * corrected; > 0: what may be left, of the length at rest */
-        uint32_t rounds;      /* at most; 0: they are not */
+        double at,
+            tolerance;   /* >= 0: edges that would be stretched beyond it have their velocities
+                            corrected; > 0: the excess that may be left, of the length at rest */
+        uint32_t rounds; /* at most; 0: they are not */
     } correction;
     double friction;    /* coefficient, >= 0: of contact that is certified */
     int both_diagonals; /* grids: shear springs along both diagonals of a cell */
 };
 
-/* A word of scenes, and what it means: the value of an enum, mostly. */
+/* A word of scenes and its meaning: the value of an enum, mostly. */
 struct model_word {
     const char *word; /* NULL ends a list */
     int value;
@@ -68,7 +69,7 @@ struct model_pin {
     uint32_t slider; /* number of the model's slider, from 1; 0: it holds points */
 };
 
-/* Through each vertex that it has, where it starts: a line, or a plane. */
+/* A line or a plane through the start of each of its vertices. */
 struct model_slider {
     enum { MODEL_LINE, MODEL_PLANE } kind;
     uint32_t motion;     /* that it takes part in, from 1; 0: none */
@@ -79,19 +80,19 @@ struct model_slider {
 struct model_motion {
     uint32_t first, n; /* n > 0, */
     double about[3];
-    uint32_t follow; /* unless it is that of an obstacle, by number from 1, whose keys these are: it
-                      * takes along what is there at time 0 */
+    uint32_t follow; /* unless it follows an obstacle, by number from 1, whose keys these are: it
+                        takes along what is there at time 0 */
 };
 
-/* How a load varies: by keys first .. first + n - 1 of the model's; n 0: as a sine of the
+/* The variation of a load: by keys first .. first + n - 1 of the model's; n 0: as a sine of the
  * frequency (1/s) and phase (turns). */
 struct model_curve {
     uint32_t first, n;
     double frequency, phase;
 };
 
-/* A force: on each of the picked vertices, newton; or, if there are edges, along these,
- * newton a metre of the length at rest, half of an edge's on each end. */
+/* A force on each picked vertex, N; or along the edges, if there are any, N a metre of rest length,
+ * half of an edge's on each end. */
 struct model_load {
     struct model_pick pick; /* a vertex that stands twice gets it twice; edges: its place alone */
     uint32_t n_edges;
@@ -113,9 +114,8 @@ struct model_wave {
     double translate[3], velocity[3]; /* m, m/s */
 };
 
-/* How the picked vertices start, if not where the mesh has them: x -> about + rotate(scale * (x -
- * about)) + translate; then v, or what it was before, + spin x (x - about). The wave is added to
- * both. */
+/* Moves the picked vertices from the mesh: x -> about + rotate(scale * (x - about)) + translate.
+ * Then v, or the velocity before, gets + spin x (x - about). The wave is added to both. */
 struct model_start {
     struct model_pick pick;
     struct mesh_transform transform;
@@ -128,8 +128,8 @@ struct model_start {
 struct model_fold {
     uint32_t n;
     uint32_t *vertices; /* of the cloth's mesh */
-    bool sewn;          /* along a seam, where nothing folds unless it is welded, */
-    bool open;          /* and nothing pulls it */
+    bool sewn;          /* along a seam, which folds only if it is welded */
+    bool open;          /* and the seam is open */
     double angle; /* degrees, above -180 and below 180; above 0: a ridge on the side from which the
                      triangles are counterclockwise */
     char *place;
@@ -145,7 +145,7 @@ enum model_seams_state {
     MODEL_SEAMS_STATES
 };
 
-/* What is made of a seam. */
+/* How a seam is sewn. */
 struct model_sewing {
     enum model_seams_state state;
     double stiffness, damping; /* pulled: N/m, > 0, and kg/s, >= 0, of each joint */
@@ -168,16 +168,16 @@ struct model_seam {
     struct model_sewing sewing;
 };
 
-/* Seams that are sewn otherwise, by number or by their two panels; of its sewing what the scene
- * gives counts. */
+/* Seams that are sewn otherwise, by number or by their two panels; only the keys that the scene
+ * gives of its sewing count. */
 struct model_some_seams {
     uint32_t n;
     uint32_t *number; /* n */
     struct model_sewing sewing;
 };
 
-/* The seams of a cloth, and what is made of them: joints or welds of the model, whose pairs name
- * their seam. */
+/* The seams of a cloth and how they are sewn: joints or welds of the model, whose pairs name their
+ * seam. */
 struct model_seams {
     struct model_sewing sewing; /* of all that are not named in `some` */
     uint32_t n, n_reversed, n_some;
@@ -200,7 +200,7 @@ struct model_cloth {
     double (*grain)[2];   /* cosine and sine of the angle from u towards v; */
     uint64_t *grain_mask; /* by vertex, which of these have it: mesh_region; NULL: none */
     double weld;          /* m: vertices that lie so near are one, by a weld; 0: none are */
-    uint32_t n_unjoined;  /* vertices that lie on another's place, and nothing joins them */
+    uint32_t n_unjoined;  /* vertices at another's place that are not joined with it */
     double mass_per_vertex; /* kg, replaces density * area where > 0 */
     double velocity[3];     /* at the start, m/s */
     double *start;          /* n_vertices x 6: where they start (m) and how fast (m/s), the shape of
@@ -220,12 +220,12 @@ struct model_cloth {
 struct model_end {
     uint32_t cloth, n;
     uint32_t *vertices;   /* n; NULL: there are edges, */
-    uint32_t (*edges)[2]; /* n, between whose ends a and b is the point (1 - at) a + at b */
+    uint32_t (*edges)[2]; /* n, with ends a and b: the point is (1 - at) a + at b */
     double *at;           /* n, 0 to 1 */
 };
 
-/* Pairs of vertices, of two cloths or of one: vertex i of one end and vertex i of the other, of
- * which there are as many. The other end of a joint may have points on edges. */
+/* Pairs of vertices, of two cloths or of one: vertex i of one end and vertex i of the other. Both
+ * ends have as many. The other end of a joint may have points on edges. */
 struct model_pairs {
     struct model_end end[2];
     char *place;
@@ -242,13 +242,13 @@ struct model_joint {
     double begin, end;         /* s, >= 0; end 0: never */
 };
 
-/* Whether it comes or goes while the run is on. */
+/* True if it begins or ends during the run. */
 static inline bool model_is_timed(const struct model_joint *joint)
 {
     return joint->begin > 0 || joint->end > 0;
 }
 
-/* Whether it is a tie: it is timed, or ends on edges. */
+/* True if it is a tie: timed, or ending on edges. */
 static inline bool model_is_tied(const struct model_joint *joint)
 {
     return model_is_timed(joint) || joint->pairs.end[1].edges;
@@ -260,7 +260,7 @@ struct model_weld {
     double tolerance; /* m: they start at most so far from each other */
 };
 
-/* What is reported of vertices after each step. */
+/* Reports on vertices after each step. */
 struct model_probe {
     char *name;
     uint32_t cloth;

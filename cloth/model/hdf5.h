@@ -4,7 +4,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* What scientific frames have, beside the positions. */
+/* Fields of scientific frames beside the positions. */
 struct model_hdf5 {
     bool velocity, block, rank; /* of vertices, */
     bool contact_force;         /* as these; */

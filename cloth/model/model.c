@@ -218,7 +218,7 @@ void model_parts(const struct model *model, uint32_t material, bool *triangles, 
     }
 }
 
-/* Alike but for rounding, of cells that are at other places. */
+/* The common value of two that differ by rounding at most, of cells at other places; else NAN. */
 static double common(double a, double b)
 {
     return fabs(a - b) <= 1e-9 * fabs(a) ? a : NAN;
@@ -280,7 +280,7 @@ static bool key_differs(const struct phys_key *a, const struct phys_key *b)
     return differs;
 }
 
-/* Whether the model's n keys from `first` on move anything after a time. */
+/* True if the model's n keys from `first` on move anything after a time. */
 static bool keys_move(const struct model *model, uint32_t first, uint32_t n, double time)
 {
     bool moves = false;

@@ -17,9 +17,9 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* What is to be simulated, as a scene file or a program says it: SI units, right-handed, +y up.
- * Everything is owned by the model and freed by model_free. Rank 0 alone holds one. What cloths are
- * made of, and what acts on them, is in cloth.h. */
+/* A simulation as a scene file or a program gives it: SI units, right-handed, +y up. The model owns
+ * everything; model_free frees it. Only rank 0 holds one. cloth.h has the materials of cloths and
+ * what acts on them. */
 
 /* A run ends when no vertex was faster than `speed` for `hold` seconds. */
 struct model_rest {
@@ -44,19 +44,19 @@ enum model_integrator {
 enum { MODEL_INTEGRATORS = MODEL_BDF2 + 1 };
 enum model_contact_mode {
     MODEL_CONTACT_PROJECT,   /* vertices in an obstacle are put onto it after the step */
-    MODEL_CONTACT_REPULSION, /* springs push apart what is too near when a step begins */
+    MODEL_CONTACT_REPULSION, /* springs push apart near features when a step begins */
     MODEL_CONTACT_CERTIFIED  /* the solve knows of contacts; a step ends where all are certified */
 };
-/* The coefficient of two sides, in place of what theirs make. of: numbers of materials; those of
- * obstacles follow. */
+/* The coefficient of two sides, in place of theirs. of: numbers of materials; those of obstacles
+ * follow. */
 struct model_rub {
     uint32_t of[2];
     double friction;
 };
 struct model_contact {
     enum model_contact_mode mode;
-    bool assumed;     /* nobody chose the mode: it is the default of the scene */
-    bool idle;        /* there is nothing to touch: steps need not look for anything */
+    bool assumed;     /* it is the default of the scene */
+    bool idle;        /* there is nothing to touch: steps need not look */
     bool self;        /* a cloth touches itself, too */
     bool untangle;    /* a start that is not free is made so */
     bool force;       /* frames have the force of contact on each vertex */
@@ -65,7 +65,7 @@ struct model_contact {
                          sides a and b rub on each other by sqrt(a b), */
     uint32_t n_pairs; /* unless one of these is of them: the last counts */
     struct model_rub *pairs;
-    struct contact_apart apart; /* what does not meet */
+    struct contact_apart apart; /* sides that do not meet */
     double stiffness;           /* repulsion: N/m, > 0; 0: as flow_repulsion_of finds */
     double damping; /* repulsion: >= 0; part of the critical damping of a vertex of mean mass */
 };
@@ -128,10 +128,10 @@ struct model {
     double stretch_growth; /* so is one in which the largest length / rest length of stretch springs
                               grows by more, */
     double stretch_limit;  /* or that ends with a larger one; 0: no limit */
-    double energy_growth;  /* part of flow_source_release or the largest energy of motion and strain
-                              so far: where that is guarded, a step that ends so much above an
-                              earlier energy is made again, by BDF2 by implicit Euler, else shorter;
-                              0: by any */
+    double energy_growth;  /* part of the larger of flow_source_release and the largest energy of
+                              motion and strain so far; 0: energy is not guarded. A step that ends
+                              above an earlier energy by more is made again: of BDF2 by implicit
+                              Euler, others shorter */
     struct model_rest rest;
     double sewn; /* m: it ends when the partners of pulled seams are at most so far from each other;
                     0: it does not end so */
@@ -146,8 +146,8 @@ struct model {
 
     enum model_stop stop; /* relative: |r| <= tolerance |b|; absolute: |r| <= tolerance (kg m/s);
                              count: no test; mass_norm: the error of dv <= tolerance |dv|;
-                             normalised: (h / l) sqrt(r.D^-1 r / m) <= tolerance, of all free
-                             vertices, m their mass, l the mean length of edges at rest */
+                             normalised: (h / l) sqrt(r.D^-1 r / m) <= tolerance. There m is the
+                             mass of all free vertices, l the mean rest length of edges */
     double tolerance;
     uint32_t max_iterations; /* count: exactly so many */
     enum model_guess guess;  /* of dv */
@@ -167,25 +167,24 @@ struct model {
     uint32_t n_files;
     char **files; /* that were read, by the paths they were opened by; the first is the scene */
     uint32_t n_warnings;
-    char **warnings; /* what is unusual about the scene but no error, each with its place */
+    char **warnings; /* unusual things in the scene that are no errors, each with its place */
     char *settings;  /* a line `key: value` of each that the state depends on, sorted */
 };
 
-/* Whether its steps solve a linear system. */
 static inline int model_is_implicit(const struct model *model)
 {
     return model->integrator >= MODEL_IMPLICIT_EULER;
 }
 
-/* Whether its steps end where all contacts are certified: not where there can be none. */
+/* True if its steps end where all contacts are certified. False if nothing can touch. */
 static inline bool model_certifies(const struct model *model)
 {
     return model_is_implicit(model) && model->contact.mode == MODEL_CONTACT_CERTIFIED &&
            !model->contact.idle;
 }
 
-/* The end of a sentence that refuses what certified contact cannot do: how to do without it, where
- * nobody asked for it; else empty. */
+/* The end of a sentence that refuses something with certified contact: how to do without it; empty
+ * if the scene chose it. */
 static inline const char *model_contact_cure(const struct model *model)
 {
     return model->contact.assumed
@@ -194,7 +193,7 @@ static inline const char *model_contact_cure(const struct model *model)
                : "";
 }
 
-/* Likewise, of a start that certified contact cannot take: what helps. */
+/* Likewise for a start that certified contact cannot take: the remedy. */
 const char *model_start_cure(const struct model *model);
 
 /* The area of a cloth at rest, m^2; while it has its mesh. */
@@ -202,34 +201,32 @@ static inline double model_area(const struct model_cloth *cloth)
 {
     return mesh_surface(cloth->rest ? cloth->rest : &cloth->mesh);
 }
-/* That of the disc of a drape test, m^2. */
+/* The area of the disc of a drape test, m^2. */
 static inline double model_disc(const struct model_drape *drape)
 {
     return 3.14159265358979323846 * drape->radius * drape->radius;
 }
 
-/* Whether a probe reports the force of contact. On the rank that has the probes. */
+/* True if a probe reports the force of contact. On the rank that has the probes. */
 bool model_feels_contact(const struct model *model);
 
-/* Whether springs push apart what is too near. */
 static inline bool model_repels(const struct model *model)
 {
     return model->contact.mode == MODEL_CONTACT_REPULSION;
 }
 
-/* Whether features of cloth that are near each other, or near an obstacle, are found. */
+/* True if the run finds features of cloth that are near each other or near an obstacle. */
 static inline bool model_seeks(const struct model *model)
 {
     return model_certifies(model) || model_repels(model);
 }
 
-/* Whether its solves are filtered by more than points: by sliders or the program. */
+/* True if its solves are filtered by more than points: by sliders or the program. */
 static inline int model_is_filtered(const struct model *model)
 {
     return model_is_implicit(model) && (model->n_sliders || model->own_filter);
 }
 
-/* Whether pins follow obstacles. */
 static inline bool model_follows(const struct model *model)
 {
     bool follows = false;
@@ -238,36 +235,35 @@ static inline bool model_follows(const struct model *model)
     return follows;
 }
 
-/* Whether a cloth meets another side of contact.apart: an obstacle, another cloth, or itself. The
- * coefficient by which the two rub on each other. Of who has the cloths. */
+/* True if a cloth meets another side of contact.apart: an obstacle, another cloth, or itself. The
+ * coefficient by which the two rub on each other. On the rank that has the cloths. */
 bool model_meets(const struct model *model, uint32_t cloth, uint32_t other);
 double model_friction(const struct model *model, uint32_t cloth, uint32_t other);
 
-/* Whether an obstacle moves: two key frames of it differ. */
+/* True if an obstacle moves: two of its key frames differ. */
 bool model_obstacles_move(const struct model *model);
-/* Whether a pin or an obstacle moves after a time, s. */
+/* True if a pin or an obstacle moves after a time, s. */
 bool model_moves_after(const struct model *model, double time);
 
-/* Whether pins have a part in the velocities that a step begins with. */
+/* True if pins change the velocities that a step begins with. */
 static inline int model_is_driven(const struct model *model)
 {
     return model->n_motions || model->n_sliders;
 }
 
-/* Whether its steps are judged by the energy that they gain: implicit ones, where nothing does work
- * on the cloth. */
+/* True if its steps are judged by the energy that they gain: implicit ones, if nothing does work on
+ * the cloth. */
 bool model_is_guarded(const struct model *model);
 
-/* Whether the state before a step is copied: the step may be made again, or velocities are
- * corrected.
- */
+/* True if the state before a step is copied: the step may be made again, or velocities are
+ * corrected. */
 static inline bool model_keeps(const struct model *model)
 {
     return model->halving || model->correction_rounds || model_certifies(model) ||
            (model->integrator == MODEL_BDF2 && model_is_guarded(model));
 }
 
-/* Whether x and v stay as an explicit integrator ended a step: no contact, pin or correction
+/* True if x and v stay as an explicit integrator ended a step: no contact, pin or correction
  * changes them, and no force comes or goes with contact. */
 static inline bool model_leaves_ends(const struct model *model)
 {
@@ -275,15 +271,15 @@ static inline bool model_leaves_ends(const struct model *model)
            !model->correction_rounds;
 }
 
-/* Whether its solves stop by norms of the masses. */
+/* True if its solves stop by norms of the masses. */
 static inline int model_stops_by_norms(const struct model *model)
 {
     return model->stop == MODEL_STOP_MASS_NORM || model->stop == MODEL_STOP_NORMALISED;
 }
 
-/* Whether its solves have a coarse space, and how many patches a block has in it. Without a number
- * of the model's own these are four, or two where one factor then takes all of them: a task solves
- * with it after those of the blocks. */
+/* True if its solves have a coarse space; the number of its patches in a block. The default is
+ * four, or two if one factor can then take all patches: one task solves with it after those of the
+ * blocks. */
 bool model_is_coarse(const struct model *model);
 enum { MODEL_ONE_FACTOR = 256 }; /* more patches are solved by groups (cloth/solve/levels.h) */
 uint32_t model_patches(const struct model *model, uint32_t n_blocks);
@@ -311,7 +307,7 @@ static inline struct mesh_moduli model_moduli(const struct model_material *m)
                                 m->weft_excess, NULL,     m->ea};
 }
 
-/* The stiffness damping of what resists bending, s, >= 0. */
+/* The stiffness damping of bending, s, >= 0. */
 static inline double model_damping_bending(const struct model_material *material)
 {
     return material->damping_stiffness + material->damping_excess;
@@ -322,8 +318,8 @@ static inline int model_has_air(const struct model *model)
     return model->air.density > 0;
 }
 
-/* Whether a cloth is made of triangles; whether its mass and air are those of its grid's cells, not
- * of triangles: of springs, which know no triangles. */
+/* True if a cloth is made of triangles. True if its mass and air are those of its grid's cells:
+ * springs know no triangles. */
 static inline bool model_has_triangles(const struct model *model, const struct model_cloth *cloth)
 {
     return model->materials[cloth->material].model == MODEL_TRIANGLES;
@@ -333,8 +329,8 @@ static inline bool model_has_cells(const struct model *model, const struct model
     return cloth->mesh.grid_nx && !model_has_triangles(model, cloth);
 }
 
-/* The material, by number, of what n > 0 vertices of the cloth's mesh have in common: that of the
- * last region that has them all, else the cloth's. */
+/* The material, by number, that n > 0 vertices of the cloth's mesh share: that of the last region
+ * that has them all, else the cloth's. */
 static inline uint32_t model_material_of(const struct model_cloth *cloth, size_t n,
                                          const uint32_t *vertex)
 {
@@ -342,8 +338,8 @@ static inline uint32_t model_material_of(const struct model_cloth *cloth, size_t
     return region < 0 ? cloth->material : cloth->region[region];
 }
 
-/* Cosine and sine of the angle by which the warp is turned where n > 0 vertices of the cloth's mesh
- * are; NULL: it is not. */
+/* Cosine and sine of the angle that turns the warp at n > 0 vertices of the cloth's mesh; NULL: it
+ * is not turned. */
 static inline const double *model_grain(const struct model_cloth *cloth, size_t n,
                                         const uint32_t *vertex)
 {
@@ -358,16 +354,17 @@ model_material(const struct model *model, const struct model_cloth *cloth, uint3
     return model->materials + (i ? cloth->region[i - 1] : cloth->material);
 }
 
-/* The moduli that a material, by number, gives to the cloths that have it, for small strains.
- * Triangles have their own in any mesh; springs have them from the cells of grids. NaN: none is
- * known, since no cloth has the material, or a mesh that is no grid, or cloths whose cells make
- * different ones. Before the meshes are freed. */
+/* The moduli that a material, by number, gives its cloths, for small strains. Triangles have their
+ * own in any mesh; springs have them from the cells of grids. NaN: unknown, as no cloth has the
+ * material, its mesh is no grid, or cloths whose cells make different ones. Before the meshes are
+ * freed. */
 struct mesh_elastic model_elastic(const struct model *model, uint32_t material);
 
-/* Whether cloths that have the material, by number, have triangles, or edges without triangles. */
+/* Finds whether cloths that have the material, by number, have triangles, and edges without
+ * triangles. */
 void model_parts(const struct model *model, uint32_t material, bool *triangles, bool *edges);
 
-/* Whether a point is in the box between two corners, lower and upper, or on it. */
+/* True if a point is in or on the box between two corners, lower and upper. */
 static inline bool model_in_box(const double *x, const double box[2][3])
 {
     bool in = true;

@@ -21,7 +21,7 @@ static const size_t SHAPE = offsetof(struct flow_table, neighbour);
 
 /* ---- Broadcasts ---- */
 
-/* Frictions of all sides; bytes of what says which do not meet. */
+/* Frictions of all sides; bytes of the marks of sides that do not meet. */
 static size_t n_frictions(const struct model *model)
 {
     return (size_t)model->n_cloths * ((size_t)model->n_cloths + model->n_obstacles);
@@ -113,7 +113,7 @@ static char *put_ties(char *to, const struct flow_source *source)
     return to;
 }
 
-/* What is not of blocks. */
+/* Packs everything but blocks. */
 static char *put_model(char *to, const struct flow *flow)
 {
     const struct model *model = flow->model;
@@ -159,7 +159,7 @@ static int broadcast_shared(const duite_call *call)
 const duite_kernel flow_broadcast_shared = {
     .name = "broadcast_shared", .body = broadcast_shared, .access = {DUITE_W}};
 
-/* What a task on rank 0 writes into an object of so many bytes, to all ranks. */
+/* Gives all ranks an object of so many bytes, which a task on rank 0 writes. */
 static int broadcast_all(struct flow_state *state, const duite_kernel *kernel, size_t bytes,
                          void *received)
 {
@@ -216,7 +216,7 @@ int flow_share_head(struct flow_state *state)
     return DUITE_OK;
 }
 
-/* What is not of blocks. Returns where it ends. */
+/* Unpacks everything but blocks. Returns its end. */
 static const void *unpack_model(struct flow_state *state)
 {
     struct flow *flow = state->flow;
@@ -288,7 +288,7 @@ static int table_make_body(const duite_call *call, const struct table_make_field
     return 0;
 }
 
-/* Nothing is to be done but to have it: who writes an object last holds it. */
+/* Does nothing: the rank that writes an object last holds it. */
 FLOW_KERNEL(table_keep, FLOW_NO_PART, struct flow_block_args, (RW(table)))
 static int table_keep_body(const duite_call *call, const struct table_keep_fields *on)
 {
@@ -361,7 +361,7 @@ int flow_distribute(struct flow_state *state)
     int code = DUITE_OK;
     for (uint32_t from = 0; from < n && !code; from += group) {
         const uint32_t to = from + smaller(group, n - from);
-        if (makes) /* what fails here, the tasks say */
+        if (makes) /* tasks report its failures */
             flow_source_gather(&flow->source, from, to, &flow->trouble);
         for (uint32_t b = from; b < to && !code; b += TRAVEL)
             code = distribute(state, b, b + smaller(TRAVEL, to - b));

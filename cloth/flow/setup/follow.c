@@ -27,8 +27,7 @@ static void start_of(const struct flow_particles *p, const struct model *model, 
     *x = (phys_vec){at[0], at[1], at[2], 0};
 }
 
-/* Of all vertices that follow an obstacle; those that welds make one with them are attached, too.
- */
+/* Marks all vertices that follow an obstacle, and those welded to them. */
 static int mark(struct flow_particles *p, const struct model *model, struct cloth_error *error)
 {
     p->attached = cloth_alloc(p->n, sizeof *p->attached, error);
@@ -39,7 +38,7 @@ static int mark(struct flow_particles *p, const struct model *model, struct clot
     return CLOTH_OK;
 }
 
-/* Those of an obstacle, whose vertices are at `place`. */
+/* Adds the anchors of an obstacle, whose vertices are at `place`. */
 static void add_anchors(struct flow_particles *p, const struct model *model, uint32_t obstacle,
                         const phys_vec *place)
 {

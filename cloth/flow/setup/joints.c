@@ -1,6 +1,6 @@
-/* Joints are springs between vertices of any cloths, as the scene names them. Those that are there
- * in all steps come after the springs of all cloths, in the scene's order; those that come or go,
- * or end on edges, are ties (cloth/flow/state/ties.h). */
+/* Joints are springs between vertices of any cloths, as the scene names them. Joints that act in
+ * all steps come after the springs of all cloths, in the scene's order. Timed joints, and those
+ * that end on edges, are ties (cloth/flow/state/ties.h). */
 #include "cloth/flow/setup/source.h"
 #include "cloth/flow/step/grid.h"
 
@@ -9,8 +9,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Stored for a length of 0: at one place, too, the spring is then longer than at rest, and
- * stretches in all directions alike. To every other length it is as 0. */
+/* Stands for a length of 0: a spring whose ends are at one place is then longer than at rest, too,
+ * and stretches in all directions alike. Beside every other length it is as 0. */
 static const double NO_LENGTH = -1e-300;
 
 int flow_joints_use(const struct model *model, unsigned char *used, struct cloth_error *error)
@@ -30,8 +30,8 @@ int flow_joints_use(const struct model *model, unsigned char *used, struct cloth
     return code;
 }
 
-/* The vertices of a pair with their weights; the lower one of two comes first. In this order the
- * weights come to 0 without rounding. Returns how many. */
+/* Finds the vertices of a pair and their weights; the lower one of two comes first. In this order
+ * the weights sum to 0 without rounding. Returns how many. */
 static uint32_t weigh(const struct flow_pair *pair, uint32_t vertex[3], double weight[3])
 {
     const uint32_t a = pair->vertex[0], b = pair->vertex[1];

@@ -2,10 +2,10 @@
  * <= 2 |u.xa|^2 + 2 |u.xb|^2. So K is at most the sum over all vertices of twice the 3 x 3 blocks
  * that springs put on their diagonal (once, for a spring to a held end). The largest eigenvalue of
  * M^-1 K is at most the largest of these blocks over their masses. That is Gershgorin's bound by
- * blocks, but for 2 |Kaa| in place of |Kaa| + sum of |Kab|, which ignores the directions of
- * springs. A chain of equal springs and masses reaches it as it gets longer. Of an element with n
- * corners that are free, K is at most n times its blocks on the diagonal, likewise. Of a joint with
- * weights w, |sum of w u.x|^2 <= sum of |w| times sum of |w| |u.x|^2. */
+ * blocks, with 2 |Kaa| in place of |Kaa| + sum of |Kab|, which ignores the directions of springs. A
+ * chain of equal springs and masses reaches it as it gets longer. For an element with n free
+ * corners, K is likewise at most n times its blocks on the diagonal. For a joint with weights w,
+ * |sum of w u.x|^2 <= sum of |w| times sum of |w| |u.x|^2. */
 #include "cloth/flow/setup/source.h"
 
 #include "cloth/base/memory.h"
@@ -14,7 +14,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Of a vertex: twice its block, xx yy zz xy yz zx, N/m; and twice the damping of its springs. */
+/* Twice the block of a vertex, xx yy zz xy yz zx, N/m; and twice the damping of its springs. */
 struct block {
     double stiff[6], damping;
 };
@@ -44,7 +44,7 @@ static void add(struct block *block, double times, const struct flow_spring *s, 
     block->damping += times * s->damping;
 }
 
-/* A spring between the points that n vertices make by their weights, which come to 0. */
+/* Visits a spring between the points that n vertices make by their weights, whose sum is 0. */
 static void visit_weighted(struct visitor *visitor, const struct flow_spring *s, uint32_t n,
                            const uint32_t *vertex, const double *weight)
 {
@@ -129,7 +129,7 @@ static void visit_element(void *to, const struct element *element)
         }
 }
 
-/* The vertex whose block over its mass is largest. */
+/* Finds the vertex whose block over its mass is largest. */
 static void find(struct visitor *visitor, struct flow_limit *limit)
 {
     double best = 0;
@@ -154,7 +154,7 @@ static void find(struct visitor *visitor, struct flow_limit *limit)
     }
 }
 
-/* Whether there is memory for what elements have of materials; and that. */
+/* Makes the elements' data of materials. False: no memory. */
 static bool make_materials(struct visitor *visitor, struct cloth_error *error)
 {
     const struct model *model = visitor->source->model;

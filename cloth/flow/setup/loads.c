@@ -7,7 +7,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* A load and what it adds to a vertex. */
+/* A load and its addition to a vertex. */
 struct loader {
     struct flow_particles *particles;
     uint32_t first; /* vertex of the cloth */

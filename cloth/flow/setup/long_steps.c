@@ -1,4 +1,4 @@
-/* A run that is warned of is made all the same: what is estimated here is the start. */
+/* A warned run is made all the same: the estimate is of the start alone. */
 #include "cloth/flow/setup/long_steps.h"
 
 #include "cloth/base/memory.h"
@@ -9,8 +9,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* h w, w the fastest vibration, from which on the solves of implicit steps are expected to fail:
- * the matrix is its square times the masses, and rounding leaves of dv's error that times 1e-16. */
+/* The h w, w the fastest vibration, above which solves of implicit steps are expected to fail. The
+ * matrix is (h w)^2 times the masses, and rounding leaves 1e-16 times that of dv's error. */
 static const double MAX_TURN = 1e4;
 
 static const char *place_of(const struct model *model)
@@ -18,8 +18,8 @@ static const char *place_of(const struct model *model)
     return model->h_place ? model->h_place : "h";
 }
 
-/* What part a step adds to a vibration that nothing damps, of explicit Euler or the midpoint
- * method. turn: h w. */
+/* The part that a step of explicit Euler or the midpoint method adds to an undamped vibration.
+ * turn: h w. */
 static double growth_of(enum model_integrator integrator, double turn)
 {
     const double squared = turn * turn;

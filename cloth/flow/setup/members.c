@@ -1,5 +1,5 @@
-/* Every block that owns a corner of an element has it in its lists, in the order of all: so cut
- * entries of the matrix are summed up alike on both sides. */
+/* Every block that owns a corner of an element lists it, in the order of all elements. So both
+ * sides sum up cut entries of the matrix alike. */
 #include "cloth/flow/setup/source.h"
 
 #include "cloth/base/memory.h"
@@ -164,7 +164,7 @@ static uint32_t local_of(const struct flow_source *source, const struct flow_tab
     return t->n + flow_table_ghost(t, s, source->halo[place]);
 }
 
-/* The entry of two rows, one of which at least is here, as solve_assemble_pairs wants it. */
+/* The entry of two rows, at least one of them here, as solve_assemble_pairs wants it. */
 static uint32_t entry_of(const struct flow_table *t, const struct flow_layout *layout, uint32_t a,
                          uint32_t b)
 {

@@ -1,5 +1,5 @@
-/* What can fail on one rank alone is had before the first task of a run. A rank that lacks it does
- * not leave: it says so in a task, and all ranks leave together. */
+/* Everything that can fail on one rank alone is taken before the first task of a run. A rank that
+ * lacks it does not leave: it says so in a task, and all ranks leave together. */
 #include "cloth/flow/bodies.h"
 #include "cloth/flow/contact/certify.h"
 #include "cloth/flow/observe/observe.h"
@@ -22,7 +22,7 @@ static size_t smaller(size_t a, size_t b)
     return a < b ? a : b;
 }
 
-/* What rank 0 gathers in: a frame, and a part of the state to be hashed. */
+/* Takes room on rank 0 to gather a frame, and a part of the state to be hashed. */
 static void take_room(struct flow_state *state)
 {
     struct flow *flow = state->flow;

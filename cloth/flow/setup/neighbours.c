@@ -1,5 +1,5 @@
-/* A spring between two blocks makes each read the other's row: sorted by reader, block and row, and
- * each once, these are the ghosts; the blocks among them are the neighbours. */
+/* A spring between two blocks makes each read the other's row. These rows, sorted by reader, block
+ * and row, each once, are the ghosts; their blocks are the neighbours. */
 #include "cloth/flow/setup/source.h"
 
 #include "cloth/base/memory.h"
@@ -128,7 +128,8 @@ static int compare_needs(const void *va, const void *vb)
     return order ? order : compare_u32(a->place, b->place);
 }
 
-/* Of sorted needs: keeps each once, counts neighbours and ghosts. Returns how many are left. */
+/* Keeps each of the sorted needs once, and counts neighbours and ghosts. Returns how many are left.
+ */
 static size_t count(struct flow_source *source, struct need *need, size_t n)
 {
     size_t kept = 0;
@@ -147,7 +148,7 @@ static size_t count(struct flow_source *source, struct need *need, size_t n)
     return kept;
 }
 
-/* Which patches of a reader are joined with the one that a place is in. */
+/* The patches of a reader that are joined with the patch of a place. */
 static uint32_t joins_of(const struct flow_source *source, const struct need *need)
 {
     const uint32_t there = patch_of(source, need->other, need->place);

@@ -39,7 +39,7 @@ static int take_vertex(uint32_t *of_all, uint32_t vertex, const struct model *mo
     return CLOTH_OK;
 }
 
-/* On an end of the edge it is that vertex. */
+/* Takes a point on an edge. At an end of the edge it is that vertex. */
 static int take_edge(struct flow_pair *pair, const struct model *model, const char *what,
                      struct cloth_error *error)
 {

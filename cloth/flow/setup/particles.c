@@ -1,5 +1,5 @@
-/* Particles carry what a vertex is on its own: mass, drag, load, whether a pin holds it. Vertices
- * that no face, edge or joint uses stay where they are, at rest, and are never asked for a mass. */
+/* Particles carry the data of a vertex on its own: mass, drag, load, whether a pin holds it.
+ * Vertices that no face, edge or joint uses stay where they are, at rest, and need no mass. */
 #include "cloth/flow/setup/source.h"
 
 #include "cloth/base/memory.h"
@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* kg of a vertex: squares of momenta beyond these would be nothing, or infinite. */
+/* kg of a vertex: squares of momenta beyond these would vanish or be infinite. */
 static const double MIN_MASS = 1e-30, MAX_MASS = 1e30;
 
 PHYS_INLINE void to_vector(const double *x, phys_vec *y)
@@ -27,7 +27,7 @@ struct holder {
     uint32_t torn; /* a vertex that another pin moves in another way, or holds; UINT32_MAX: none */
 };
 
-/* Whether two sliders, by number, hold alike; both may be none. */
+/* True if two sliders, by number, hold alike; both may be none. */
 static bool alike(const struct model_slider *sliders, uint32_t a, uint32_t b)
 {
     if (a == b || !a || !b)
@@ -87,7 +87,7 @@ struct weigher {
     double mass;
 };
 
-/* To a vertex of all cloths: what a name has is its root's. */
+/* Adds a mass to a vertex of all cloths: a name's mass goes to its root. */
 static void weigh(struct flow_particles *p, uint32_t vertex, double mass)
 {
     p->mass[flow_root(&p->welds, vertex)] += mass;
@@ -118,7 +118,7 @@ static int more_masses(struct flow_particles *p, uint32_t first, const struct mo
     return code;
 }
 
-/* That none of its triangles, if it has any, gives a vertex a mass. */
+/* Fails: no triangle of the vertex, if it has any, gives it a mass. */
 static int no_mass(const struct model_cloth *cloth, uint32_t vertex, struct cloth_error *error)
 {
     for (uint32_t t = 0; t < cloth->mesh.n_triangles; t++) {
@@ -158,7 +158,7 @@ static int masses(struct flow_particles *p, uint32_t first, const struct model *
     return more_masses(p, first, cloth, error);
 }
 
-/* That all masses of a cloth are there and can be; and their weights. */
+/* Checks that all masses of a cloth are there and in bounds; sets their weights. */
 static int weights(struct flow_particles *p, uint32_t first, const struct model *model,
                    const struct model_cloth *cloth, struct cloth_error *error)
 {
@@ -218,7 +218,8 @@ static int cloth_particles(struct flow_particles *p, uint32_t first, const struc
     return code ? code : masses(p, first, model, cloth, error);
 }
 
-/* What acts on them, when the masses of all cloths are there: a welded vertex has several. */
+/* Sets weights, loads and pins, when the masses of all cloths are there: a welded vertex has
+ * several. */
 static int cloth_forces(struct flow_particles *p, uint32_t first, const struct model *model,
                         const struct model_cloth *cloth, struct cloth_error *error)
 {
@@ -230,7 +231,7 @@ static int cloth_forces(struct flow_particles *p, uint32_t first, const struct m
     return code;
 }
 
-/* The same for all cloths, one after the other. */
+/* Does it for all cloths, one after the other. */
 static int each_cloth(struct flow_particles *p, const struct model *model,
                       int (*make)(struct flow_particles *p, uint32_t first,
                                   const struct model *model, const struct model_cloth *cloth,
@@ -316,7 +317,7 @@ int flow_particles_make(struct flow_particles *particles, const struct model *mo
     return code;
 }
 
-/* What a slider leaves of a velocity. */
+/* Takes out of a velocity what a slider forbids. */
 static void constrain_velocity(const struct model_slider *slider, phys_vec *v)
 {
     phys_vec filter;
@@ -352,7 +353,7 @@ void flow_particle_of(const struct flow_particles *particles, const struct model
         particle->load = particles->load[vertex];
 }
 
-/* Of the vertices of one cloth, the first of which is `first`. */
+/* The release of the vertices of one cloth, the first of which is `first`. */
 static double release(const struct flow_particles *p, const struct model *model,
                       const struct model_cloth *cloth, uint32_t first)
 {

@@ -1,5 +1,5 @@
-/* Which vertices a part of the scene means: those that it lists, the one nearest to a point and all
- * within a radius of that point, all in a box. The last two mean used ones only. */
+/* The vertices that a part of the scene means: listed ones, the one nearest to a point and all
+ * within a radius of that point, or all in a box. The last two mean used ones only. */
 #include "cloth/flow/setup/source.h"
 
 int flow_no_vertex(const struct model_cloth *cloth, const char *what, uint32_t vertex,

@@ -1,5 +1,5 @@
-/* A piece is what springs and elements join, directly or through others. Pieces are numbered by
- * their lowest vertex, so that the numbers depend on the scene alone. */
+/* A piece has all vertices that springs and elements join, directly or through others. Pieces are
+ * numbered by their lowest vertex, so that the numbers depend on the scene alone. */
 #include "cloth/flow/setup/source.h"
 
 #include "cloth/base/memory.h"
@@ -13,8 +13,9 @@ static void join(void *to, const struct flow_spring *spring)
     cloth_sets_join(parent, spring->a, spring->b);
 }
 
-/* Where each vertex is in its piece: the lowest one gets the number, or 0 if a pin holds a vertex
- * of the piece; then all others theirs. Vertices come after the lowest one of their piece. */
+/* Numbers the vertices of pieces: the lowest vertex of a piece gets the number, or 0 if a pin holds
+ * a vertex of the piece; then all others get theirs. Vertices come after the lowest one of their
+ * piece. */
 static uint32_t number(struct flow_particles *p, uint32_t *parent, const unsigned char *held)
 {
     uint32_t n = 0;

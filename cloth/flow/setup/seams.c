@@ -1,5 +1,5 @@
-/* Where welds bring the borders of two cloths together, or two parts of the border of one, the edge
- * that both share is a hinge as inner edges are. */
+/* Welds may join the borders of two cloths, or two parts of the border of one. The edge that both
+ * share is then a hinge as inner edges are. */
 #include "cloth/flow/setup/source.h"
 
 #include "cloth/base/memory.h"
@@ -8,7 +8,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* An edge at the border of its mesh, both of whose ends are welded. */
+/* An edge at the border of its mesh with two welded ends. */
 struct border {
     uint32_t root[2]; /* ascending */
     uint32_t cloth, edge;
@@ -27,7 +27,7 @@ static int compare_borders(const void *va, const void *vb)
     return order ? order : cloth_compare_u32(a->edge, b->edge);
 }
 
-/* Whether a vertex has several names. */
+/* True if a root has several names. */
 static bool is_welded(const struct flow_welds *welds, uint32_t root)
 {
     uint32_t low = 0, high = welds->n;
@@ -41,7 +41,7 @@ static bool is_welded(const struct flow_welds *welds, uint32_t root)
     return low < welds->n && welds->name[low][0] == root;
 }
 
-/* Those of a cloth, the first vertex of which is `first`. */
+/* Finds the borders of a cloth, the first vertex of which is `first`. */
 static int find_borders(struct cloth_list *list, const struct element_cloths *elements,
                         const struct flow_welds *welds, uint32_t cloth, uint32_t first,
                         struct cloth_error *error)
@@ -72,13 +72,13 @@ static bool is_shared(const struct border *a, const struct border *b)
     return a->root[0] == b->root[0] && a->root[1] == b->root[1];
 }
 
-/* What welds say of a root. */
+/* The welds of a root. */
 struct welded {
     double tolerance; /* m: the largest */
     bool sewn;        /* a weld of it is a seam's */
 };
 
-/* By root. The caller frees it; NULL: no memory. */
+/* The welds of all roots, by root. The caller frees it; NULL: no memory. */
 static struct welded *find_welded(const struct model *model, const struct flow_welds *welds,
                                   struct cloth_error *error)
 {
@@ -134,7 +134,7 @@ static int list_stitches(struct cloth_list *list, const struct model *model,
     return CLOTH_OK;
 }
 
-/* Of the edge between two roots; < 0: as the materials. */
+/* The bending of the edge between two roots; < 0: as the materials. */
 static double bending_of(const struct cloth_list *stitches, const uint32_t root[2])
 {
     const struct stitch key = {{root[0], root[1]}, 0};

@@ -114,7 +114,7 @@ int flow_source_gather(struct flow_source *source, uint32_t from, uint32_t to,
     return code;
 }
 
-/* What belongs to a vertex, and the rows that other blocks need. */
+/* Fills the data of each vertex, and the rows that other blocks need. */
 static void fill_rows(const struct flow_source *source, const struct flow_table *t,
                       const struct flow_layout *layout)
 {
@@ -180,7 +180,7 @@ static void fill_varying(const struct flow_source *source, const struct flow_tab
     }
 }
 
-/* Whether side i is the first one of its entry. */
+/* True if side i is the first of its entry. */
 static bool opens(const struct flow_table *t, const struct flow_side *side, uint32_t i)
 {
     if (t->format == SOLVE_SPRINGS || i == 0)

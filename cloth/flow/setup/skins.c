@@ -47,7 +47,7 @@ static uint32_t lowest(const uint32_t place[3])
     return least < place[2] ? least : place[2];
 }
 
-/* ---- Whose they are ---- */
+/* ---- The triangles of each block ---- */
 
 static uint32_t count_triangles(const struct model *model)
 {
@@ -180,7 +180,7 @@ static int count_skins(struct flow_source *source, struct cloth_error *error)
     return CLOTH_OK;
 }
 
-/* Of each place one of those that pulled seams join it with: alike for all of them. */
+/* Finds for each place one of those that pulled seams join it with: the same for all of them. */
 static int find_joined(struct flow_source *source, struct cloth_error *error)
 {
     const uint32_t *place = source->blocks.place, n = source->particles.n;
@@ -230,7 +230,7 @@ void flow_skins_free(struct flow_skins *skins)
 
 /* ---- The skin of a block ---- */
 
-/* What a skin is made of, by point, in one piece of memory; place: first of all corners. */
+/* The parts of a skin, by point, in one piece of memory; place: first of all corners. */
 struct making {
     const struct flow_source *source;
     const struct flow_table *table;

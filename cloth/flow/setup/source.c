@@ -1,4 +1,4 @@
-/* What is kept of the springs is which blocks they join, and where. */
+/* Springs are not kept; only the blocks that they join, and where, are. */
 #include "cloth/flow/setup/source.h"
 
 #include "cloth/base/memory.h"
@@ -100,7 +100,7 @@ static void find_range(const struct flow_source *source, struct flow_table *shap
         widen(shape, names->name[i][1]);
 }
 
-/* How many vertices of each block are watched. */
+/* Counts the watched vertices of each block. */
 static void count_watched(struct flow_source *source)
 {
     uint32_t block = 0;
@@ -110,7 +110,7 @@ static void count_watched(struct flow_source *source)
     }
 }
 
-/* How many vertices of a block have a number: that of a motion, or of a slider. */
+/* Counts the vertices of a block that have a number: that of a motion, or of a slider. */
 static uint32_t count_numbered(const struct flow_source *source, const struct flow_table *shape,
                                const uint32_t *number)
 {

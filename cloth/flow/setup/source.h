@@ -12,10 +12,10 @@
 
 #include <stdbool.h>
 
-/* What rank 0 makes the tables from. It never has all of them, nor all springs, at once: springs
- * are gone through again for each group of blocks, and a table is made when it is wanted. */
+/* The data from which rank 0 makes the tables. It never has all tables, nor all springs, at once:
+ * each group of blocks goes through the springs again, and a table is made when it is wanted. */
 
-/* How many vertices are unusual, and the first of them: in the numbering of its cloth's mesh. */
+/* The number of unusual vertices, and the first of them: in the numbering of its cloth's mesh. */
 struct flow_unusual {
     uint32_t n, vertex;
     const struct model_cloth *cloth;
@@ -73,22 +73,23 @@ int flow_particles_make(struct flow_particles *particles, const struct model *mo
                         struct cloth_error *error);
 void flow_particles_free(struct flow_particles *particles);
 
-/* Where the vertices of a cloth, the first of which is `first`, start and how fast, as the part of
- * flow_particles_make that is about it; after `used`. Does nothing unless particles->start. Local.
- */
+/* Sets places and velocities at the start for the vertices of a cloth, the first of which is
+ * `first`; a part of flow_particles_make, after `used`. Does nothing unless particles->start.
+ * Local. */
 int flow_starts_make(struct flow_particles *particles, uint32_t first,
                      const struct model_cloth *cloth, struct cloth_error *error);
 
-/* The same of all vertices, as they have been made. Local. */
+/* Copies the starts of all vertices, as they have been made. Local. */
 void flow_starts_take(const struct flow_particles *particles, const struct model *model,
                       double (*start)[6]);
 
-/* Finds what follows obstacles, when starts and pins are there. Error: CLOTH_E_MEMORY. Local. */
+/* Finds the vertices that follow obstacles, when starts and pins are there. Error: CLOTH_E_MEMORY.
+ * Local. */
 int flow_follow_make(struct flow_particles *particles, const struct model *model,
                      struct cloth_error *error);
 
-/* The loads of a cloth, the first vertex of which is `first`, as the part of flow_particles_make
- * that is about them; after weights. Local. */
+/* Makes the loads of a cloth, the first vertex of which is `first`; a part of flow_particles_make,
+ * after weights. Local. */
 int flow_loads_make(struct flow_particles *particles, uint32_t first,
                     const struct model_cloth *cloth, struct cloth_error *error);
 
@@ -105,17 +106,17 @@ struct flow_pair {
  * outside their mesh and a vertex with itself; CLOTH_E_MEMORY. Local. */
 int flow_pairs_list(struct cloth_list *list, const struct model *model,
                     const struct model_pairs *pairs, const char *what, struct cloth_error *error);
-/* That no pair is in the list twice, which is then in another order. Error: CLOTH_E_INPUT. Local.
- */
+/* Checks that no pair is in the list twice; leaves the list in another order. Error: CLOTH_E_INPUT.
+ * Local. */
 int flow_pairs_once(struct cloth_list *list, const struct model *model, const char *what,
                     struct cloth_error *error);
-/* CLOTH_E_INPUT with a sentence: what is between the two, then `why`. */
+/* CLOTH_E_INPUT with a sentence: the thing between the two, then `why`. */
 int flow_pair_fail(const struct model *model, const struct flow_pair *pair, const char *what,
                    const char *why, struct cloth_error *error);
 
 /* Finds the vertices that are one. n, used: of all cloths. Errors: CLOTH_E_INPUT as of
- * flow_pairs_list, for pairs that stand twice, vertices that nothing uses, and welds that make two
- * corners of a triangle or two ends of an edge one; CLOTH_E_MEMORY. Local. */
+ * flow_pairs_list, for pairs that stand twice, unused vertices, and welds that make two corners of
+ * a triangle or two ends of an edge one; CLOTH_E_MEMORY. Local. */
 int flow_welds_make(struct flow_welds *welds, const struct model *model, uint32_t n,
                     const unsigned char *used, struct cloth_error *error);
 void flow_welds_free(struct flow_welds *welds);
@@ -123,7 +124,7 @@ void flow_welds_free(struct flow_welds *welds);
  * CLOTH_E_MEMORY. Local. */
 int flow_seams_make(struct element_cloths *elements, const struct flow_welds *welds,
                     struct cloth_error *error);
-/* That welds leave hinges their four corners. Error: CLOTH_E_INPUT. Local. */
+/* Checks that welds leave hinges their four corners. Error: CLOTH_E_INPUT. Local. */
 int flow_welds_check(const struct flow_welds *welds, const struct element_cloths *elements,
                      struct cloth_error *error);
 /* Gives roots their start and drag, when masses and starts are there. Errors: CLOTH_E_INPUT for
@@ -141,7 +142,7 @@ int flow_names_make(struct flow_names *names, const struct flow_welds *welds,
 /* The first of them at or after a place. */
 uint32_t flow_names_from(const struct flow_names *names, uint32_t place);
 
-/* A part of the scene that picks vertices, and what becomes of each. */
+/* A part of the scene that picks vertices, and the function that gets each. */
 struct flow_picking {
     const struct model_pick *pick;
     const struct model_cloth *cloth;
@@ -152,7 +153,7 @@ struct flow_picking {
 };
 /* Errors: CLOTH_E_INPUT for vertices outside the mesh and boxes without a vertex. Local. */
 int flow_pick(const struct flow_picking *picking, struct cloth_error *error);
-/* That of a vertex outside the mesh. */
+/* The error of a vertex outside the mesh. */
 int flow_no_vertex(const struct model_cloth *cloth, const char *what, uint32_t vertex,
                    const char *place, struct cloth_error *error);
 
@@ -175,16 +176,16 @@ struct flow_spring {
     uint32_t seam;                     /* of those that pull, from 1; 0: it is no joint of one */
     const struct model_correction *correction; /* of such a one; NULL: it has none */
 };
-/* A spring that welds make parallel to another, of the same length at rest, by its number among all
- * springs of the cloths: the first of them is all, the others are gone. */
+/* A spring, by its number among all springs of the cloths, that welds make parallel to others of
+ * the same rest length. The first of them stands for all; the others are gone. */
 struct flow_merged {
     uint64_t number;
     double stiffness, damping;
     bool gone;
 };
-/* A joint that comes or goes while the run is on, or that ends on an edge; it is a tie, and none of
- * the springs. Its spring is between the points that its vertices make by their weights, which come
- * to 0: from those above 0 to those below. a and b of the spring are not used. */
+/* A joint that begins or ends during the run, or that ends on an edge: a tie, and none of the
+ * springs. Its vertices make two points by their weights, whose sum is 0. Its spring goes from the
+ * point of the weights above 0 to that of those below. a and b of the spring are not used. */
 struct flow_timed {
     struct flow_spring spring;
     uint32_t n, vertex[SOLVE_TIE_CORNERS]; /* of all cloths */
@@ -204,7 +205,7 @@ struct flow_springs {
     size_t n_merged;
     struct flow_merged *merged; /* by number; NULL: none */
 };
-/* Welds, and elements, whose links come after the springs of their cloth, must outlive them.
+/* Welds and elements must outlive them; links of elements come after the springs of their cloth.
  * Errors: CLOTH_E_INPUT as of mesh_lattice_build, with the place; CLOTH_E_MEMORY. Local. */
 int flow_springs_make(struct flow_springs *springs, const struct model *model,
                       const struct flow_welds *welds, const struct element_cloths *elements,
@@ -223,7 +224,7 @@ struct flow_source;
  * CLOTH_E_MEMORY. Local. */
 int flow_joints_make(struct flow_springs *springs, const struct flow_particles *particles,
                      struct cloth_error *error);
-/* Whether a step of the model's h has a timed joint. Local. */
+/* True if a step of the model's h has a timed joint. Local. */
 bool flow_joints_act(const struct model *model, const struct flow_timed *timed);
 /* A timed joint as a tie between rows of blocks, when these are there. Local. */
 struct flow_tie flow_joints_tie(const struct flow_source *source, const struct flow_timed *timed);
@@ -231,7 +232,8 @@ struct flow_tie flow_joints_tie(const struct flow_source *source, const struct f
  * outside its mesh. Local. */
 int flow_joints_use(const struct model *model, unsigned char *used, struct cloth_error *error);
 
-/* Who reads what of whom: neighbours of all blocks, block after block, as every rank knows them. */
+/* The neighbours of all blocks, block after block, and the rows read of them, as every rank knows
+ * them. */
 struct flow_neighbours {
     uint32_t n_neighbours, n_ghosts;
     uint32_t *neighbour;   /* n_neighbours: blocks, ascending in a block, */
@@ -241,10 +243,10 @@ struct flow_neighbours {
     uint32_t *ghost;       /* n_ghosts: places in the halo of the neighbour's block, ascending */
 };
 
-/* The vertices that probes are at. A row of the table of probes has step and time, then n_columns
- * numbers: FLOW_RUN_COLUMNS of the run, then of each probe, of each of its vertices, position,
- * velocity and reaction as far as they are wanted, then the sum of reactions, if it is. Where there
- * are no probes, n_columns is 0. */
+/* The vertices of probes. A row of the table of probes has step and time, then n_columns numbers:
+ * FLOW_RUN_COLUMNS of the run, then those of each probe. A probe has position, velocity and
+ * reaction of each of its vertices, as far as they are wanted, then the sum of reactions, if it is.
+ * Without probes n_columns is 0. */
 enum {
     FLOW_COLUMN_ITERATIONS,
     FLOW_COLUMN_LONGEST,
@@ -302,7 +304,7 @@ struct flow_source {
 int flow_source_make(struct flow_source *source, const struct model *model, int ranks,
                      struct cloth_error *error);
 
-/* Counts the elements of each block, whose shapes they are added to. Local. */
+/* Counts the elements of each block, in its shape. Local. */
 void flow_source_count(struct flow_source *source);
 
 /* The part of flow_source_gather, and of flow_source_table, that is about elements. */
@@ -318,13 +320,13 @@ int flow_source_gather(struct flow_source *source, uint32_t from, uint32_t to,
 
 void flow_source_forget(struct flow_source *source);
 
-/* Makes the table of a block of the group: writes every byte of its memory. Of different blocks by
- * several threads at once. Local. */
+/* Makes the table of a block of the group: writes every byte of its memory. Several threads may
+ * make different blocks at once. Local. */
 void flow_source_table(const struct flow_source *source, uint32_t block, void *memory);
 
-/* Finds whose triangles are, and adds the sizes of skins to the shapes, when these are there; the
- * skin of a block, as the field `skin` has it: writes every byte of it. Errors: CLOTH_E_MEMORY.
- * Local. */
+/* Finds the block of each triangle, and adds the sizes of skins to the shapes, when these are
+ * there. The other makes the skin of a block, as the field `skin` has it: writes every byte of it.
+ * Errors: CLOTH_E_MEMORY. Local. */
 int flow_skins_make(struct flow_source *source, struct cloth_error *error);
 void flow_skins_free(struct flow_skins *skins);
 int flow_source_skin(const struct flow_source *source, uint32_t block, void *memory,
@@ -338,7 +340,7 @@ int flow_source_meet(struct flow_source *source, struct cloth_error *error);
  * or elements join. Error: CLOTH_E_MEMORY. Local. */
 int flow_pieces_make(struct flow_source *source, struct cloth_error *error);
 
-/* Finds what is watched, when blocks are there. Errors: as of flow_pick, and CLOTH_E_INPUT for
+/* Finds the watched vertices, when blocks are there. Errors: as of flow_pick, and CLOTH_E_INPUT for
  * vertices that no face or edge uses; CLOTH_E_MEMORY. Local. */
 int flow_watched_make(struct flow_watched *watched, const struct flow_source *source,
                       struct cloth_error *error);
@@ -361,12 +363,12 @@ int flow_limit_find(const struct flow_source *source, struct flow_limit *limit,
 /* The longest step, s, in which an integrator does not let it grow; infinite for implicit ones. */
 double flow_limit_of(const struct flow_limit *limit, enum model_integrator integrator);
 
-/* Of a model whose contact is certified: that no triangle has an edge that is shorter at rest than
+/* Checks a model with certified contact: no triangle may have an edge that is shorter at rest than
  * the thickness. Error: CLOTH_E_INPUT. Local. */
 int flow_thickness_check(const struct model *model, struct cloth_error *error);
 
-/* What measures residuals, kg m^2: the mass of all vertices that no pin holds times the square of
- * the mean length at rest of all edges that can be stretched; 0 where there are none. Local. */
+/* The scale of residuals, kg m^2: the mass of all vertices that no pin holds times the square of
+ * the mean rest length of stretchable edges; 0 without these. Local. */
 double flow_source_inertia(const struct flow_source *source);
 
 /* A scale of the energy, J: twice the sum of |force| times distance from the cloth's centre at the
@@ -374,8 +376,8 @@ double flow_source_inertia(const struct flow_source *source);
  * vertex moves to the centre and as far on. 0 without weights and loads. Local. */
 double flow_source_release(const struct flow_source *source);
 
-/* What contacts are measured by (stiffness.c): N/m, of a contact; kg, of a vertex, the mean. Local.
- */
+/* The scales of contacts (stiffness.c): the stiffness of a contact, N/m; the mean mass of a vertex,
+ * kg. Local. */
 double flow_source_stiffness(const struct flow_source *source);
 double flow_source_mass(const struct flow_source *source);
 

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Those of the regions of a cloth, for its lattice. */
+/* Finds the moduli of the regions of a cloth, for its lattice. */
 static int find_regions(struct flow_springs *springs, uint32_t c, struct mesh_regions *regions,
                         struct cloth_error *error)
 {
@@ -85,7 +85,7 @@ struct visitor {
     const struct model_cloth *cloth;
 };
 
-/* The material of what joins two vertices of the cloth's mesh. */
+/* The material of a link between two vertices of the cloth's mesh. */
 static const struct model_material *material_of(const struct visitor *visitor, uint32_t a,
                                                 uint32_t b)
 {
@@ -140,7 +140,7 @@ static void link_pair(const struct visitor *visitor, const struct mesh *mesh,
     visitor->visit(visitor->to, &spring);
 }
 
-/* Across the diagonals of cells, whose corners share the force of the air. */
+/* Links the diagonals of cells, whose corners share the force of the air. */
 static void link_cells(const struct visitor *visitor, const struct mesh *mesh)
 {
     const uint32_t nx = mesh->grid_nx;
@@ -154,8 +154,8 @@ static void link_cells(const struct visitor *visitor, const struct mesh *mesh)
         }
 }
 
-/* Whether a cloth of springs may lack those between corners of its triangles: springs of 0 N/m are
- * none. */
+/* True if a cloth of springs may lack springs between corners of its triangles: a spring of 0 N/m
+ * is none. */
 static bool lacks_springs(const struct model *model, const struct model_cloth *cloth)
 {
     bool lacks = false;
@@ -179,8 +179,8 @@ static void link_triangles(const struct visitor *visitor, const struct mesh *mes
     }
 }
 
-/* What the elements of a cloth join, and its edges without triangles, which are springs as in any
- * cloth. */
+/* Visits the links that a cloth's elements make, and its edges without triangles, which are springs
+ * in any cloth. */
 static void each_link(const struct flow_springs *springs, uint32_t c, const struct visitor *visitor)
 {
     const struct model *model = springs->model;
@@ -243,7 +243,7 @@ static void pass_merged(void *context, const struct flow_spring *s)
     merger->visit(merger->to, &sum);
 }
 
-/* What hinges across seams join. */
+/* Visits the links that hinges across seams make. */
 static void each_seam(const struct flow_springs *springs,
                       void (*visit)(void *to, const struct flow_spring *spring), void *to)
 {

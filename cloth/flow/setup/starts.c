@@ -1,5 +1,5 @@
-/* Where vertices start, and how fast, where the scene says more than the shape of the mesh and one
- * velocity. Rest shapes and masses do not see it. */
+/* Places and velocities at the start, if the scene says more than the shape of the mesh and one
+ * velocity. Rest shapes and masses do not change with them. */
 #include "cloth/flow/setup/source.h"
 
 #include "cloth/physics/curve.h"

@@ -1,8 +1,8 @@
-/* What contacts are measured by, of all vertices of a model: how stiff its cloths are, how heavy a
- * vertex is. */
+/* The scales of contacts, over all vertices of a model: the stiffness of its cloths, the mass of a
+ * vertex. */
 #include "cloth/flow/setup/source.h"
 
-/* Contacts are so much softer than the cloths: their multipliers carry what rests on them, so the
+/* Contacts are softer than the cloths by this factor: their multipliers carry the load, so the
  * matrix keeps its condition (docs/physics.md). */
 static const double SOFTER = 0.03;
 

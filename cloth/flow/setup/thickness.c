@@ -1,6 +1,5 @@
-/* Contact that is certified keeps triangles a thickness apart that share no corner: so no edge at
- * rest may be shorter, or a cloth would touch its own neighbours; but for those whose ends count as
- * one. */
+/* Certified contact keeps triangles that share no corner a thickness apart. No edge at rest may be
+ * shorter, or a cloth would touch its own neighbours; edges whose ends count as one are exempt. */
 #include "cloth/flow/setup/source.h"
 
 #include <math.h>

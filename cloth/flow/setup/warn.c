@@ -1,5 +1,4 @@
-/* What is unusual about a model but no error. Each kind of warning has its place in flow->warning,
- * and says at most one thing. */
+/* Warnings about a model. Each kind has its place in flow->warning, and says at most one thing. */
 #include "cloth/flow/setup/long_steps.h"
 #include "cloth/flow/setup/setup.h"
 #include "cloth/flow/state/state.h"
@@ -8,7 +7,7 @@
 #include <stdio.h>
 
 static const double LEAST_EXTENT = 0.01, MAX_EXTENT = 10; /* m: of a garment */
-static const double DEEP = 1e-6; /* m: what lies on a surface is less deep in it */
+static const double DEEP = 1e-6; /* m: a point on a surface is less deep in it */
 
 static void describe_unusual(char *text, size_t size, const char *what,
                              const struct flow_unusual *unusual, const char *effect)
@@ -32,8 +31,8 @@ static void warn(struct flow *flow, const struct flow_particles *particles)
                      "they move nothing");
 }
 
-/* What a material says that its cloth has nothing for; NULL: nothing. A chain beside a grid may
- * share a material that shears. */
+/* Names a key of a material that its cloth has no use for; NULL: there is none. A chain beside a
+ * grid may share a material that shears. */
 static const char *idle_key(const struct model *model, const struct model_material *material,
                             const struct model_cloth *cloth)
 {
@@ -64,7 +63,7 @@ static const char *idle_key(const struct model *model, const struct model_materi
                : NULL;
 }
 
-/* Diagonals that nothing but such triangles holds fold without a force. */
+/* Diagonals that only such triangles hold fold without a force. */
 static void warn_of_shear(struct flow *flow)
 {
     const struct model *model = flow->model;
@@ -170,7 +169,7 @@ static void warn_of_inside(struct flow *flow)
         }
 }
 
-/* Of the first cloth that has such. */
+/* Warns of the first cloth that has such edges. */
 static void warn_of_windings(struct flow *flow, const struct model_cloth *cloth,
                              const struct mesh_edges *edges)
 {
@@ -190,7 +189,7 @@ static void warn_of_windings(struct flow *flow, const struct model_cloth *cloth,
                  cloth->name ? cloth->name : "", n, first->a + 1, first->b + 1);
 }
 
-/* Where a vertex is that follows an obstacle, at a time, s; x: where it starts. */
+/* The place of a vertex that follows an obstacle, at a time, s; x: its start. */
 static void follow(const struct flow *flow, uint32_t motion, double time, phys_vec *x)
 {
     const struct model *model = flow->model;
@@ -202,7 +201,7 @@ static void follow(const struct flow *flow, uint32_t motion, double time, phys_v
     const struct model_motion *m = model->motions + motion - 1;
     struct phys_pose begin, pose;
     if (!m->n)
-        return; /* what it follows stands still */
+        return; /* the obstacle stands still */
     phys_pose_at(m->n, model->keys + m->first, m->about, 0, &begin);
     phys_pose_at(m->n, model->keys + m->first, m->about, time, &pose);
     phys_pose_back(&begin, x, x);
@@ -215,7 +214,7 @@ static double distance(const double *a, const double *b)
     return sqrt(phys_dot(&way, &way));
 }
 
-/* What two ends of an edge that follow obstacles are apart at a time, m. */
+/* The distance of two ends of an edge that follow obstacles at a time, m. */
 static double length_at(const struct flow *flow, uint32_t first, const struct model_cloth *cloth,
                         const struct mesh_edge *edge, double time)
 {
@@ -232,7 +231,7 @@ static double length_at(const struct flow *flow, uint32_t first, const struct mo
     return sqrt(phys_dot(&way, &way));
 }
 
-/* Of one cloth: how much an edge is longer at some time than it starts, or is at rest. */
+/* The most that an edge of one cloth gets longer than at the start, or at rest; and when. */
 struct stretched {
     double by, time;
     const struct mesh_edge *edge;
@@ -285,7 +284,7 @@ static void warn_of_edges(struct flow *flow)
         const struct model_cloth *cloth = model->cloths + c;
         const struct mesh_edges *edges = flow->source.elements.edges + c;
         struct mesh_edges found = {0};
-        struct cloth_error ignored = {0}; /* nothing is warned of then */
+        struct cloth_error ignored = {0}; /* without edges there are no warnings */
         if (!attached && cloth->mesh.grid_nx)
             continue;
         if (!edges->n && !mesh_edges_find(&found, &cloth->mesh, &ignored))

@@ -1,5 +1,5 @@
 /* A watched vertex stands once in the list of places, however many probes have it: a probe knows
- * where in the list. So blocks report each of their vertices once. */
+ * its index in the list. So blocks report each of their vertices once. */
 #include "cloth/flow/setup/source.h"
 
 #include "cloth/base/memory.h"
@@ -97,7 +97,7 @@ static int sort(struct flow_watched *watched, const struct flow_source *source, 
     return CLOTH_OK;
 }
 
-/* Marks entries whose vertex an earlier entry of their probe has by another name. */
+/* Marks entries whose vertex an earlier entry of their probe names otherwise. */
 static int find_again(struct flow_watched *watched, uint32_t n_probes, struct cloth_error *error)
 {
     uint32_t *last = cloth_alloc(watched->n, sizeof *last, error); /* probe, from 1 */

@@ -1,6 +1,6 @@
-/* A weld makes vertices one, of any cloths. They stay names of it: files, pins, loads and probes
- * name each of them, and what they have adds up. The lowest of them, the root, stands for all: it
- * alone has a row. */
+/* A weld makes vertices of any cloths one. They stay names of it: files, pins, loads and probes
+ * name each of them, and their masses and loads add up. The lowest of them, the root, stands for
+ * all: it alone has a row. */
 #include "cloth/flow/setup/source.h"
 
 #include "cloth/base/memory.h"
@@ -73,7 +73,8 @@ static const char *place_of(const struct model *model, uint32_t cloth, uint32_t 
     return NULL;
 }
 
-/* That n vertices of a cloth, which one thing joins, stay as many. root: by vertex of the cloth. */
+/* Checks that welds keep n vertices of a cloth, which one thing joins, apart. root: by vertex of
+ * the cloth. */
 static int check_apart(const struct model *model, uint32_t cloth, const uint32_t *root,
                        const uint32_t *vertex, uint32_t n, const char *what,
                        struct cloth_error *error)
@@ -148,7 +149,7 @@ void flow_welds_free(struct flow_welds *welds)
     *welds = (struct flow_welds){0};
 }
 
-/* ---- What a welded vertex is ---- */
+/* ---- Welded vertices ---- */
 
 static int check_distance(const struct flow_particles *p, const struct model *model,
                           const struct flow_pair *pair, double max, struct cloth_error *error)
@@ -189,9 +190,9 @@ static const struct model_material *material_of(const struct model *model, uint3
     return model->materials + model_material_of(model->cloths + at->cloth, 1, &own);
 }
 
-/* Of a root and n other names: drag by viscous damping, of which a vertex has one, the largest; by
- * mass damping, of which each part has its own. Where all have the same rate it is of the whole
- * mass: equal cloths have the bits of one. */
+/* The drag of a root with n other names. A vertex has one viscous damping, the largest; each part
+ * has its own mass damping. If all have the same rate it takes the whole mass: equal cloths have
+ * the bits of one. */
 static double drag_of(const struct flow_particles *p, const struct model *model, uint32_t root,
                       const uint32_t (*name)[2], uint32_t n)
 {
@@ -209,8 +210,8 @@ static double drag_of(const struct flow_particles *p, const struct model *model,
     return viscous + (alike ? first->damping_mass * p->mass[root] : sum);
 }
 
-/* All start at the mean of their places, with the mean of their velocities by mass. Of equal ones
- * it is the same bits. */
+/* All start at the mean of their places, with the mean of their velocities by mass. The mean of
+ * equal ones has the same bits. */
 static void meet(struct flow_particles *p, uint32_t root, const uint32_t (*name)[2], uint32_t n)
 {
     double *start = p->start[root], away[6] = {0};
@@ -226,7 +227,7 @@ static void meet(struct flow_particles *p, uint32_t root, const uint32_t (*name)
             p->start[name[i][1]][c] = start[c];
 }
 
-/* Where all vertices are before welds of seams move them. */
+/* Keeps the places of all vertices before welds of seams move them. */
 static int keep_unwelded(struct flow_particles *p, const struct model *model,
                          struct cloth_error *error)
 {
@@ -301,7 +302,7 @@ uint32_t flow_names_from(const struct flow_names *names, uint32_t place)
 
 /* ---- Springs ---- */
 
-/* A spring both of whose ends are welded, by its number among all. */
+/* A spring with two welded ends, by its number among all. */
 struct candidate {
     uint32_t a, b; /* roots, a < b */
     unsigned char stretch;

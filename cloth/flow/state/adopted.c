@@ -1,5 +1,5 @@
-/* What ties ask of the blocks: the same on every rank, as it follows from records that every rank
- * has. In reading order: memory, what records come to, what is made of that. */
+/* The room and links that ties need in the blocks: alike on every rank, as all ranks have the same
+ * records. In reading order: memory, evaluating records, applying the result. */
 #include "cloth/flow/bodies.h"
 #include "cloth/flow/solver/solve.h"
 
@@ -9,7 +9,7 @@
 
 /* ---- Memory ---- */
 
-/* Those of now, and of before, of three corners each. */
+/* Room for the others of now and of before, of three corners each. */
 size_t flow_tied_others(uint32_t n_blocks, uint32_t n_joints, bool seeks)
 {
     const size_t joints = 12 * (size_t)n_joints, all = (size_t)n_blocks * n_blocks;
@@ -70,7 +70,7 @@ void flow_ties_free(struct flow_state *state)
     *tied = (struct flow_tied){0};
 }
 
-/* ---- What records come to ---- */
+/* ---- Evaluating records ---- */
 
 /* Merges the others of each block: those that records name and, where `kept`, those of now. */
 static void find_others(const struct flow_tied *tied, uint32_t n_blocks, bool kept,
@@ -93,7 +93,7 @@ static void find_others(const struct flow_tied *tied, uint32_t n_blocks, bool ke
     to->first[n_blocks] = n;
 }
 
-/* Where block b stands among the others of a block, of which it is one. */
+/* The index of block b among the others of a block, which has it. */
 static uint32_t number_of(const struct flow_tied_blocks *blocks, uint32_t block, uint32_t b)
 {
     uint32_t low = blocks->first[block], high = blocks->first[block + 1];
@@ -119,8 +119,8 @@ static void find_places(const struct flow_tie_records *said, uint32_t n_blocks,
         }
 }
 
-/* So many, in whole classes. What was there before stays while about half of it is used, half a
- * class lies between growing and shrinking, and the last class stays while any block has ties. */
+/* Room for so many, in whole classes. Room stays while about half of it is used, so half a class
+ * lies between growing and shrinking. The last class stays while any block has ties. */
 static uint32_t room_for(uint32_t n, uint32_t class, uint32_t before, bool any)
 {
     const uint32_t least = (n + class - 1) / class * class;
@@ -145,7 +145,7 @@ static void find_rooms(const struct flow_tied *tied, uint32_t n_blocks, struct f
     }
 }
 
-/* Whether the recorded round serves the next ones, too. */
+/* True if the recorded round serves the next ones, too. */
 static bool is_recorded(const struct flow_tied *tied, uint32_t n_blocks)
 {
     const struct flow_tied_blocks *now = &tied->now, *next = &tied->next;
@@ -154,7 +154,8 @@ static bool is_recorded(const struct flow_tied *tied, uint32_t n_blocks)
            !memcmp(now->other, next->other, now->first[n_blocks] * sizeof *now->other);
 }
 
-/* Whether a block shares ties with the same others as before, which show them where they did. */
+/* True if a block shares ties with the same others as before, and each shows them at the same
+ * place. */
 static bool has_links(const struct flow_tied *tied, uint32_t b)
 {
     const struct flow_tied_blocks *now = &tied->now, *before = &tied->next;
@@ -180,9 +181,9 @@ static int set_links(struct flow_state *state, uint32_t b)
     return duite_set(state->rt, state->block[b].tie_links, to);
 }
 
-/* ---- What is made of that ---- */
+/* ---- Applying the result ---- */
 
-/* Makes the next ones those that count. */
+/* Makes the next rooms and links those of now. */
 static void fit(struct flow_state *state)
 {
     struct flow_tied *tied = &state->tied;

@@ -1,5 +1,5 @@
-/* The axes of a triangle are its first edge, what is across it in the plane, and the normal. They
- * turn with the triangle, so an offset in them does. */
+/* The axes of a triangle are its first edge, the direction across it in the plane, and the normal.
+ * They turn with the triangle, and so does an offset in them. */
 #include "cloth/flow/state/anchor.h"
 
 #include "cloth/contact/pair.h"
@@ -11,7 +11,7 @@ static const struct contact_body *body_of(const struct model *model, uint32_t ob
     return contact_bodies_at(&model->bodies, model->obstacles[obstacle].body);
 }
 
-/* By the frames, then by the motion of the obstacle. */
+/* Moves a vertex by the frames, then by the motion of the obstacle. */
 static void place_vertex(const struct model *model, uint32_t obstacle, uint32_t vertex, double time,
                          phys_vec *to)
 {
@@ -44,7 +44,7 @@ static void normalise(phys_vec *x, const phys_vec *other)
     *x = square > 0 ? *x / sqrt(square) : *other;
 }
 
-/* Of a triangle that has no area: any, which do not turn with it. */
+/* The axes of a triangle. Without area it gets any axes, which do not turn with it. */
 static void find_axes(const phys_vec x[3], phys_vec axis[3])
 {
     const phys_vec first = {1, 0, 0, 0}, last = {0, 0, 1, 0}, side = x[2] - x[0];

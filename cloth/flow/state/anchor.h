@@ -10,13 +10,14 @@ struct flow_anchor {
     double weight[3], offset[3];  /* sum 1; m */
 };
 
-/* Finds that of a vertex at x (m) when a run starts: the nearest point of the body, of equals that
- * of the first facet. place: of the body's vertices then, by flow_anchor_places. Local. */
+/* Finds the anchor of a vertex at x (m) when a run starts. It is the nearest point of the body, of
+ * equals that of the first facet. place: the body's vertices at the start, by flow_anchor_places.
+ * Local. */
 void flow_anchor_places(const struct model *model, uint32_t obstacle, phys_vec *place);
 void flow_anchor_find(const struct model *model, uint32_t obstacle, const phys_vec *place,
                       const phys_vec *x, struct flow_anchor *anchor);
 
-/* Where the vertex is at a time, s. Local. */
+/* The place of the vertex at a time, s. Local. */
 void flow_anchor_place(const struct model *model, const struct flow_anchor *anchor, double time,
                        phys_vec *to);
 

@@ -1,8 +1,6 @@
-/* The tick at which a step begins decides which timed joints it has. So every rank has the same
- * joints, and a repeated step has them again.
- *
- * In reading order: what blocks have of the joints of a step, the choice, the tables of the blocks,
- * what others see of them. */
+/* The tick at which a step begins decides its timed joints. So every rank has the same joints, and
+ * a repeated step has them again. In reading order: the joints of a step, the choice, the tables of
+ * the blocks, the rows shown to others. */
 #include "cloth/base/sets.h"
 #include "cloth/flow/bodies.h"
 #include "cloth/flow/solver/solve.h"
@@ -14,7 +12,7 @@ static struct flow_tie_list joints_at(const struct flow *flow, uint64_t tick)
     return (struct flow_tie_list){.n_joints = flow->n_ties, .joint = flow->tie, .tick = tick};
 }
 
-/* Marks the blocks that have any of those that act. */
+/* Marks the blocks that have joints that act. */
 static void mark_tied(const struct flow *flow, uint64_t tick, struct flow_tie_record *record)
 {
     memset(record, 0, flow->tables.n_blocks * sizeof *record);
@@ -23,7 +21,7 @@ static void mark_tied(const struct flow *flow, uint64_t tick, struct flow_tie_re
             record[tie->at.block[k]].n_ties = 1;
 }
 
-/* What blocks say of the joints that act. */
+/* Makes the records of blocks for the joints that act. */
 static void say_joints(const struct flow *flow, uint64_t tick, struct flow_tied *tied)
 {
     const struct flow_tie_list list = joints_at(flow, tick);
@@ -42,7 +40,7 @@ static void say_joints(const struct flow *flow, uint64_t tick, struct flow_tied 
 
 /* ---- The choice ---- */
 
-/* From which tick until which one the ties are those of this tick. */
+/* Finds the ticks between which the ties are those of this tick. */
 static void find_interval(const struct flow *flow, uint64_t tick, struct flow_tied *tied)
 {
     tied->from = 0;
@@ -58,9 +56,10 @@ static void find_interval(const struct flow *flow, uint64_t tick, struct flow_ti
     }
 }
 
-/* ---- What ties make of free pieces ---- */
+/* ---- Ties between free pieces ---- */
 
-/* Unites what ties join: piece k is number k of the parents, 0 is what a pin holds. */
+/* Unites the pieces that ties join: piece k is number k of the parents, 0 is everything that a pin
+ * holds. */
 static void unite(const struct flow *flow, uint64_t tick, uint32_t *parent)
 {
     for (const struct flow_tie *tie = flow->tie; tie < flow->tie + flow->n_ties; tie++)
@@ -68,7 +67,7 @@ static void unite(const struct flow *flow, uint64_t tick, uint32_t *parent)
             cloth_sets_join(parent, tie->piece[0], tie->piece[k]);
 }
 
-/* Whether blocks said that they have other ties than the joints that act. */
+/* True if blocks have other ties than the joints that act. */
 static bool has_contacts(const struct flow_state *state)
 {
     const struct flow *flow = state->flow;
@@ -131,10 +130,10 @@ static bool is_empty(const struct flow_tie_room *room)
     return !room->ties && !room->others;
 }
 
-/* Of all blocks at first, then of those that have ties or had some. */
+/* Forks those of all blocks at first, then those of blocks that have ties or had some. */
 static int fork_tables(struct flow_state *state, bool all)
 {
-    const struct flow_tied *tied = &state->tied; /* next: what was before */
+    const struct flow_tied *tied = &state->tied; /* next: the state before */
     struct tie_args args = {.tick = state->attempt.begin};
     int code = DUITE_OK;
     for (; args.block < state->flow->tables.n_blocks && !code; args.block++) {
@@ -190,7 +189,7 @@ bool flow_ties_will_change(const struct flow_state *state)
     return will;
 }
 
-/* ---- What others see of them ---- */
+/* ---- Rows shown to others ---- */
 
 FLOW_KERNEL(tie_show, FLOW_FORCE, struct flow_block_args, (R(tie_table), R(x), R(v), W(tie_halo)))
 static int tie_show_body(const duite_call *call, const struct tie_show_fields *on)

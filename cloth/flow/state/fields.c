@@ -114,7 +114,7 @@ static size_t map_bytes(const struct flow_state *state, uint32_t block)
     return flow_map_bytes(state->flow, block);
 }
 
-/* What a block says of its ties: there may be links to all blocks. */
+/* The record of a block's ties: it may have links to all blocks. */
 static size_t record_bytes(const struct flow_state *state, uint32_t block)
 {
     return sizeof(struct flow_tie_record) + blocks(state, block) * sizeof(struct flow_tie_link);

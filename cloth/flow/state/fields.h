@@ -12,20 +12,20 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* The fields of a run: every shared object that lives as long as the run, in one list. A row says
- * of a field what it holds: its name, how many objects it has, the type of its numbers in C,
- * numbers a row, how many rows (at least one is made). It also says when the field exists, and what
- * becomes of it between two steps (enum flow_life). The words in the last three columns are
- * functions of fields.c and life.c. Objects are made, freed and colocated by loops over the list
- * (objects.c), and kernels name them (kernel.h). The last column says what a checkpoint must have;
- * test_fields.c holds runs to it. A new field is one row.
+/* The fields of a run: every shared object that lives as long as the run, in one list. A row
+ * has a field's name, the number of its objects, the type of its numbers in C, numbers a row, and
+ * the number of rows (at least one is made). Then it says when the field exists, and its use
+ * between two steps (enum flow_life). The words in the last three columns are functions of fields.c
+ * and life.c. Loops over the list make, free and colocate objects (objects.c); kernels name them
+ * (kernel.h). A checkpoint must have the fields that the last column says; test_fields.c holds runs
+ * to it. A new field is one row.
  *
  * ONE: one object. SIZED: one that changes its size, up to this many rows. BY_STEP, BY_PASS: two
  * objects that take turns, name and name_next. By step, `name` is that of the step under way; by
  * pass, that of the pass under way (flow_state.pass). */
 
-/* Of each block; they live where its x lives. */
-/* Numbers of a row of a contact; of a frame; those that say how a node lies in its group. */
+/* Fields of each block; they live where its x lives. */
+/* Numbers of a row of a contact; of a frame; of the place of a node in its group. */
 enum {
     FLOW_ROW_NUMBERS = sizeof(struct contact_row) / sizeof(double),
     FLOW_FRAME = sizeof(struct solve_frame) / sizeof(double),
@@ -34,15 +34,15 @@ enum {
 
 /* clang-format off */
 #define FLOW_BLOCK_FIELDS(X)                                                                       \
-    /* the state, and what neighbours read of it */                                                \
+    /* the state, and its rows for neighbours */                                                   \
     X(x,            ONE,     phys_vec,      4, rows,          always,       is_state)              \
     X(v,            ONE,     phys_vec,      4, rows,          always,       is_state)              \
     X(f,            ONE,     phys_vec,      4, rows,          always,       is_state_of_verlet)    \
     X(halo_x,       ONE,     phys_vec,      4, halo,          always,       is_derived)            \
     X(halo_v,       ONE,     phys_vec,      4, halo,          always,       is_derived)            \
     X(table,        ONE,     unsigned char, 1, table_bytes,   always,       is_derived)            \
-    /* its ties (ties.h). tie_links: how many blocks it shares ties with, then each with the place  \
-     * of its ghosts there. x, then v of the rows shown, and what coarse motions are there */      \
+    /* its ties (ties.h). tie_links: the number of blocks that it shares ties with, then each with  \
+     * the place of its ghosts there. x, then v of the rows shown; the coarse motions there */     \
     X(tie_links,    ONE,     uint32_t,      2, tie_links,     may_be_tied,  is_derived)            \
     X(tie_table,    ONE,     unsigned char, 1, tie_bytes,     may_be_tied,  is_derived)            \
     X(tie_halo,     ONE,     phys_vec,      8, tie_rows,      may_be_tied,  is_work)               \
@@ -60,9 +60,9 @@ enum {
     X(cut_runs,     ONE,     uint32_t,      4, rows,          certified,    is_state)              \
     /* its strip of the maps of bodies (contact/maps.h) */                                         \
     X(maps,         ONE,     unsigned char, 1, map_bytes,     mapped,       is_derived)            \
-    /* velocity correction (step/correct.c): X with 1 / m in the fourth lane; what moved x since the
-     * step was solved; of each row that others need X and 1 / m, where the step began, S; x as it
-     * is; 1 if no inner edge needs a correction, and the largest excess of these */               \
+    /* velocity correction (step/correct.c). X with 1 / m in the fourth lane; moves of x since the \
+     * solve of the step. Rows that others need: X and 1 / m, x at the step's begin, S; x as it is. \
+     * 1 if no inner edge needs a correction, and the largest excess of these */                   \
     X(edge_base,    ONE,     phys_vec,      4, rows,          corrected,    is_work)               \
     X(edge_moved,   ONE,     phys_vec,      4, rows,          corrected,    is_work)               \
     X(edge_ends,    ONE,     phys_vec,      12, halo,         corrected,    is_work)               \
@@ -80,8 +80,8 @@ enum {
     X(base_v,       ONE,     phys_vec,      4, rows,          based,        is_work)               \
     X(last_x,       ONE,     phys_vec,      4, rows,          bdf2,         is_state)              \
     X(last_v,       ONE,     phys_vec,      4, rows,          bdf2,         is_state)              \
-    /* contact: the box around the skin of the block over the step (pairs.c). What it says \
-     * of its ties; what its contacts are in the step under way: struct contact_row (rows.c) */    \
+    /* contact: the box around the skin of the block over the step (pairs.c); the record of its    \
+     * ties; its contacts in the step under way: struct contact_row (rows.c) */                    \
     X(root,         ONE,     double,        FLOW_ROOT, one,       meets,        is_work)               \
     X(tie_record,   SIZED,   unsigned char, 1, record_bytes,  meets,        is_work)               \
     X(contact_rows, ONE,     struct contact_row, FLOW_ROW_NUMBERS, tie_count, meets,     is_work)  \
@@ -97,8 +97,8 @@ enum {
     X(r,            ONE,     phys_vec,      4, rows,          implicit_run, is_work)               \
     X(p,            ONE,     phys_vec,      4, rows,          implicit_run, is_work)               \
     X(q,            ONE,     phys_vec,      4, rows,          implicit_run, is_work)               \
-    /* r (with a preconditioner z) of the ghosts, then p, then both of the ghosts of ties;         \
-     * what neighbours read of q (of s), what others do that ties join */                          \
+    /* r (with a preconditioner z) of the ghosts, then p, then both of the ghosts of ties.         \
+     * Rows of q (of s) for neighbours; for others that ties join */                               \
     X(ghosts,       ONE,     phys_vec,      8, ghosts_tied,   implicit_run, is_work)               \
     X(halo_q,       BY_PASS, double,        3, halo,          implicit_run, is_work)               \
     X(tie_q,        BY_PASS, double,        3, tie_rows,      solves_tied,  is_work)               \
@@ -113,14 +113,14 @@ enum {
     X(basis_ghosts, ONE,     phys_vec,      4, ghosts,        coarse_run,   is_derived_once)       \
     X(coupling,     ONE,     double,        1, couplings,     coarse_run,   is_work)               \
     X(patch_frame,  ONE,     struct solve_frame, FLOW_FRAME, patches, by_levels, is_derived)       \
-    /* where probes are: the force on each row; what is reported of them */                        \
+    /* at probes: the force on each row; the values that they report */                            \
     X(probe_force,  ONE,     phys_vec,      4, rows,          probed,       is_work)               \
     X(probe_values, ONE,     double,        FLOW_PROBE_VALUES, watched,       probed,       is_work) \
     /* what travels to rank 0 on its own, empty in between; saved: of the system of a step */      \
     X(gathered,     SIZED,   unsigned char, FLOW_VERTEX_BYTES, rows,          always,       is_work) \
     X(saved,        ONE,     double,        1, saved,         saves,        is_work)
 
-/* Of the whole run; they live where the first block lives. */
+/* Fields of the whole run; they live where the first block lives. */
 #define FLOW_RUN_FIELDS(X)                                                                         \
     /* sums of a step; trial, slope: of a Newton step */                                           \
     X(status,       BY_STEP, double,        FLOW_STATUS, one,           always,       is_work)     \
@@ -142,11 +142,11 @@ enum {
     X(body_fans,    ONE,     uint32_t,      1, body_fans,    meets_bodies, is_derived)             \
     X(body_points,  ONE,     phys_vec,      4, body_points,  meets_bodies, is_derived_of_bodies)   \
     X(body_boxes,   ONE,     unsigned char, 1, body_boxes,   meets_bodies, is_derived_of_bodies)   \
-    /* its rounds, and what the last one found */                                                  \
+    /* its rounds, and the result of the last one */                                               \
     X(edge_rounds,  BY_PASS, struct solve_rounds, SOLVE_ROUNDS_NUMBERS, one, corrected, is_work)   \
     X(edge_excess,  BY_PASS, double,        2, one,           corrected,    is_work)               \
-    /* a solve; pieces: what it left of free pieces; coarse, motion: factor, and its part of s;    \
-     * lift: how patches lie in groups, and these in those of the level above */                   \
+    /* a solve. Coarse, motion: factor, and its part of s. Lift: places of patches in groups, and  \
+     * of these in those of the level above. Pieces: what it left of free pieces */                \
     X(sums,         BY_PASS, double,        1, dots,          plain_solve,  is_work)               \
     X(scalars,      BY_PASS, struct solve_scalars, SOLVE_SCALARS, one,           implicit_run, is_work) \
     X(coarse,       ONE,     double,        1, coarse_factor, coarse_run,   is_work)               \
@@ -156,7 +156,7 @@ enum {
     /* a piece: the lowest one that ties join it with, counted from 1; 0: they join it with what a  \
      * pin holds */                                                                                \
     X(groups,       ONE,     uint64_t,      1, pieces,        tied_pieces,  is_derived)            \
-    /* reports; who holds the token writes a frame or a row */                                     \
+    /* reports; the holder of the token writes a frame or a row */                                 \
     X(token,        ONE,     int64_t,       1, one,           always,       is_work)               \
     X(seconds,      ONE,     double,        FLOW_PARTS, one,           always,       is_work)      \
     X(energy,       ONE,     double,        FLOW_SUMS, one,           always,       is_work)       \
@@ -194,7 +194,7 @@ struct flow_objects {
     };
 };
 
-/* Those of the run; by number from FLOW_FIELDS_OF_BLOCK on. */
+/* The objects of the run; by number from FLOW_FIELDS_OF_BLOCK on. */
 struct flow_run_objects {
     union {
         duite_object of[FLOW_FIELDS_OF_RUN];
@@ -204,7 +204,7 @@ struct flow_run_objects {
     };
 };
 
-/* What a field is between two steps. */
+/* The use of a field between two steps. */
 enum flow_life {
     FLOW_STATE_FIELD, /* the next step reads it */
     FLOW_DERIVED, /* the next step reads it, and a restart can make it from the state and model */
@@ -227,20 +227,21 @@ struct flow_field {
     enum flow_life (*life)(const struct model *model);
 };
 
-/* By number; one that takes turns is there twice. */
+/* All fields by number; one that takes turns is there twice. */
 extern const struct flow_field flow_fields[FLOW_FIELDS_OF_ALL];
 
 /* Numbers of a field in a block; of one of the run in all, whatever the block. Local. */
 size_t flow_field_numbers(const struct flow_state *state, enum flow_field_id field, uint32_t block);
 
-/* The object of a field, of a block or of the run; of two that take turns, whose turn it is. */
+/* The object of a field, of a block or of the run; of two, the one whose turn it is. */
 duite_object flow_field_object(const struct flow_state *state, enum flow_field_id field,
                                uint32_t block);
 
-/* Where that is among the objects of its block, or, from FLOW_FIELDS_OF_BLOCK on, of the run. */
+/* The index of that among the objects of its block, or, from FLOW_FIELDS_OF_BLOCK on, of the run.
+ */
 size_t flow_field_place(const struct flow_state *state, enum flow_field_id field);
 
-/* In all blocks the names of two fields pass to each other's objects. Both exist, alike. */
+/* Swaps the objects of two fields in all blocks. Both exist, alike. */
 void flow_fields_swap(struct flow_state *state, enum flow_field_id a, enum flow_field_id b);
 
 /* All objects that exist. A failure is returned by the next get. */

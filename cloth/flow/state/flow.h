@@ -10,8 +10,8 @@
 #include "cloth/solve/levels.h"
 #include "cloth/solve/local.h"
 
-/* What the bodies of tasks share, the runtime's context. Bodies see objects, arguments and the
- * constant part of the flow; what else they touch is said here. */
+/* Data that the bodies of tasks share, the runtime's context. Bodies see objects, arguments and the
+ * constant part of the flow; everything else that they touch is named here. */
 
 /* Parts of a step whose seconds the report gives. */
 enum flow_part {
@@ -66,7 +66,7 @@ struct flow_unused {
 /* Levels of groups; nodes of a group: four patches of four blocks. */
 enum { FLOW_MAX_LEVELS = 8, FLOW_MAX_NODES = 16 };
 
-/* On rank 0 as flow_prepare left it; elsewhere what it received from rank 0. */
+/* On rank 0 as flow_prepare left it; elsewhere as received from rank 0. */
 struct flow {
     const struct model *model; /* rank 0: the program's; else &received */
     struct model received;     /* without names, materials, cloths */
@@ -76,8 +76,8 @@ struct flow {
     double contact_stiffness, vertex_mass; /* N/m, kg: flow_source_stiffness, flow_source_mass */
     bool feels_contact;                    /* a probe reports the force of contact */
     struct flow_tables tables;             /* shapes */
-    void *shared; /* bodies, obstacles, key frames, frictions, ties, neighbours and ghosts that what
-                     is here points to */
+    void *shared; /* memory of the bodies, obstacles, key frames, frictions, ties, neighbours and
+                     ghosts that members here point to */
     uint32_t n_cloths;
     const double *friction; /* n_cloths x (n_cloths + n_obstacles): the coefficient of a cloth and
                              * another side, cloths before obstacles; FLOW_APART: the two do not
@@ -89,8 +89,7 @@ struct flow {
 
     /* Rank 0 only. */
     char warning[12][600]; /* of all vertices, pinned ones, loaded ones, the solver, h, air, moduli,
-                             extents, shear, what starts inside, windings, what follows; empty: none
-                           */
+                              extents, shear, starts inside, windings, followers; empty: none */
     struct flow_source source; /* until the tables are distributed */
     uint32_t *vertex;          /* by place; from then on */
     uint32_t *cloth_first;     /* n_cloths of the model: the first vertex of each among all */
@@ -103,21 +102,22 @@ struct flow {
     struct flow_filter filter;   /* the program's; rows NULL: none */
     struct flow_checkpoint from; /* that the run goes on from; bytes NULL: none */
 
-    /* Of the run that is on. */
+    /* The run under way. */
     uint32_t made[FLOW_FIELDS_OF_ALL]; /* in which blocks a field exists: in none from there on */
-    const struct flow_progress *progress; /* tasks ask it whether to stop; NULL: nobody is asked */
+    const struct flow_progress *progress; /* tasks ask it whether to stop; NULL: they do not ask */
     unsigned n_clocks;
     struct flow_clock *clock; /* a worker */
     struct phys_pair *sums;   /* a worker, max_entries: room for a matrix while it is assembled in
                                * half storage; else NULL */
     size_t n_sums;            /* of a worker */
-    phys_vec *ghost_room; /* a worker, two for each of max_ghosts: what elements see of neighbours
-                           * while a task works on them; NULL: there are no elements */
-    size_t n_ghosts;      /* of a worker */
-    phys_vec *forces;     /* a worker, max_rows: those that an explicit step needs for itself alone;
-                           * NULL: the run is implicit */
-    size_t n_forces;      /* of a worker */
-    uint32_t *at; /* of each ghost of all blocks: its place in what a pass reads of the neighbour */
+    phys_vec *ghost_room;     /* a worker, two for each of max_ghosts: the neighbours' rows that
+                                 elements see while a task works on them; NULL: there are no elements */
+    size_t n_ghosts;          /* of a worker */
+    phys_vec *forces; /* a worker, max_rows: those that an explicit step needs for itself alone;
+                       * NULL: the run is implicit */
+    size_t n_forces;  /* of a worker */
+    uint32_t
+        *at; /* of each ghost of all blocks: its place in the neighbour's rows that a pass reads */
     struct flow_packed_halo *packed_halo; /* of halo.c */
     uint32_t *packed_row;
     enum model_preconditioner preconditioner;
@@ -136,17 +136,17 @@ struct flow {
      * runs. */
     const struct flow_output *output;
     double *room; /* n_vertices x 3: positions of a frame; NULL: there is no output */
-    int32_t *block_of, *rank_of; /* n_vertices: of a frame; NULL: nobody asks for them */
+    int32_t *block_of, *rank_of; /* n_vertices: of a frame; NULL: they are not asked for */
     int32_t *home; /* a block: its rank; changed by the main thread when no frame is under way */
     double *row;   /* of the table of probes; NULL: it is not written */
     double *probe_values; /* watched x FLOW_PROBE_VALUES */
     uint64_t frames;      /* written */
     uint64_t hash;
-    struct flow_checkpoint saving; /* what tasks have copied so far; bytes NULL: no memory */
+    struct flow_checkpoint saving; /* copied by tasks so far; bytes NULL: no memory */
     size_t saving_room;            /* bytes */
 };
 
-/* What a run's preconditioner is made of. An explicit run has none. */
+/* The parts of a run's preconditioner. An explicit run has none. */
 static inline bool flow_is_preconditioned(const struct flow *flow)
 {
     return flow->preconditioner != MODEL_PLAIN;

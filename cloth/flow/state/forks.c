@@ -2,7 +2,7 @@
  */
 #include "cloth/flow/bodies.h"
 
-/* Of what a kernel declares, what the fork gives. */
+/* The field that the fork gives for a declared one. */
 static enum flow_field_id given_for(const struct flow_as *as, enum flow_field_id declared)
 {
     for (; as && as->declared != FLOW_FIELDS_OF_ALL; as++)
@@ -11,7 +11,7 @@ static enum flow_field_id given_for(const struct flow_as *as, enum flow_field_id
     return declared;
 }
 
-/* Where the objects of a kernel's parameters are: the same in all blocks. */
+/* The places of a kernel's objects: the same in all blocks. */
 struct places {
     size_t n;
     struct {
@@ -49,7 +49,7 @@ static duite_object object_at(const struct flow_state *state, size_t at, uint32_
                                      : state->run.of[at - FLOW_FIELDS_OF_BLOCK];
 }
 
-/* Appends what others than the block have of a field to `refs`. Returns the end. */
+/* Appends a field's objects in blocks other than the task's to `refs`. Returns the end. */
 static duite_object *add_others(const struct flow_state *state, uint32_t block,
                                 enum flow_whose whose, enum flow_field_id field, size_t at,
                                 duite_object *refs)
@@ -106,7 +106,7 @@ int flow_fork_one(struct flow_state *state, const struct flow_kernel *kernel, co
     return flow_fork_one_as(state, kernel, args, NULL);
 }
 
-/* Whether a kernel reads x and v at the other ends of ties. */
+/* True if a kernel reads x and v at the other ends of ties. */
 static bool sees_ties(const struct flow_kernel *kernel)
 {
     const struct flow_parameter *p = kernel->parameter;
@@ -115,7 +115,7 @@ static bool sees_ties(const struct flow_kernel *kernel)
     return p->whose == FLOW_OF_TIED;
 }
 
-/* The names of a block's objects, and its neighbours, come into the cache. */
+/* Fetches the names of a block's objects, and its neighbours, into the cache. */
 static void fetch_names(const struct flow_state *state, const struct places *places, uint32_t block)
 {
     __builtin_prefetch(&state->flow->tables.block[block].neighbour);
@@ -124,8 +124,8 @@ static void fetch_names(const struct flow_state *state, const struct places *pla
             __builtin_prefetch(&state->block[block].of[places->of[i].at]);
 }
 
-/* What the runtime knows of the objects lies far apart where there are thousands of blocks: it is
- * fetched for some blocks ahead. The objects of those have a ring in state->refs. */
+/* With thousands of blocks the runtime's data of objects lie far apart: they are fetched some
+ * blocks ahead. The objects of these blocks have a ring in state->refs. */
 int flow_fork_range_as(struct flow_state *state, const struct flow_kernel *kernel, uint32_t first,
                        uint32_t end, void *args, const struct flow_as *as)
 {

@@ -15,35 +15,36 @@
  *         ...
  *     }
  *
- * The rest follows: the struct of pointers that the body is given, the parameters' modes, and the
- * objects at the fork, `flow_fork_each(state, &flow_kernel_velocity, &args)`. A pointer has the
- * type that the field's row says, const under R. A field that is not declared or misspelt does not
- * compile. A kernel stands once more in the list of kernels.h, or it does not compile. Its name in
- * traces is its name here.
+ * The rest follows: the body's struct of pointers, the parameters' modes, and the objects at the
+ * fork, `flow_fork_each(state, &flow_kernel_velocity, &args)`. A pointer has the type that the
+ * field's row says, const under R. A field that is undeclared or misspelt does not compile, nor
+ * does a kernel that is missing in the list of kernels.h. A kernel's name in traces is its name
+ * here.
  *
  *     R W RW     reads, overwrites, changes: a field of the task's block or of the run
  *     SUM MAX    contributes to it, added up, or the largest counts
  *     NEIGHBOURS reads this field of each neighbour, ascending by block
  *     ALL        reads this field of every block that has it; the last parameter of a kernel
- *     IF_MADE    reads it if it exists in the run, which it does in all blocks or in none; else the
- *                pointer is NULL
+ *     IF_MADE    reads it if it exists in the run, in all blocks or in none; else the pointer is
+ *                NULL
  *     TIED       reads this field of each block that ties (ties.h) join this one with, ascending,
  *                if it exists in the run; a member tied_field. IF_MADE(tie_table) comes before it
  *
- * NEIGHBOURS, IF_MADE and TIED come behind the others, in this order; ALL comes last. What a body
- * finds of NEIGHBOURS, ALL and TIED are parameters: flow_rows_of, flow_numbers_of.
+ * NEIGHBOURS, IF_MADE and TIED come behind the others, in this order; ALL comes last. A body gets
+ * NEIGHBOURS, ALL and TIED as parameters: flow_rows_of, flow_numbers_of.
  * FLOW_INDEX_OF(velocity, v) is the index of a parameter, for calls of the runtime that want one.
  *
  * The arguments are a struct whose first member is `uint32_t block`: that alone (struct
  * flow_block_args), those of a step (struct flow_step_args), or a kernel's own. `on->args` are
- * those of the task. A function that several bodies call is given what it needs of them; of `call`
- * it takes the block alone (flow_block_of). So a kernel that lacks it does not compile.
+ * those of the task. Bodies pass shared functions the arguments that these need; a shared function
+ * takes only the block from `call` (flow_block_of). So a kernel that lacks an argument does not
+ * compile.
  *
- * A part of the step (enum flow_part) has the task's seconds; FLOW_NO_PART: none has. */
+ * The task's seconds count for a part of the step (enum flow_part); FLOW_NO_PART: for none. */
 #define FLOW_KERNEL(name, part, arguments, fields)                                                 \
     FLOW_KERNEL_WITH(name, part, arguments, fields, .side_effects = 0)
 
-/* With more members of duite_kernel, such as .replicated = 1 or .side_effects = 1. */
+/* The same with more members of duite_kernel, such as .replicated = 1 or .side_effects = 1. */
 #define FLOW_KERNEL_WITH(name, part, arguments, fields, ...)                                       \
     FLOW_KERNEL_DECLARE(name, arguments, fields)                                                   \
     static int name##_task(const duite_call *call)                                                 \
@@ -56,7 +57,7 @@
 
 /* ---- For the macros above ---- */
 
-/* Whose object a parameter is. */
+/* The owner of a parameter's object. */
 enum flow_whose {
     FLOW_NOBODY,
     FLOW_OWN,
@@ -195,7 +196,7 @@ struct flow_kernel {
 #define FLOW_LAW_IF_MADE
 #define FLOW_LAW_TIED
 
-/* What the fork gives. */
+/* The parameters at the fork. */
 #define FLOW_GIVEN(k, word)               FLOW_SPREAD(FLOW_GIVEN_WORD, k, FLOW_WORD_##word)
 #define FLOW_GIVEN_WORD(k, mode, field)   {FLOW_WHOSE_##mode, FLOW_FIELD_##field},
 #define FLOW_WHOSE_R                      FLOW_OWN
@@ -239,7 +240,7 @@ struct flow_kernel {
                  __VA_ARGS__},                                                                     \
         .parameter = {FLOW_EACH(FLOW_GIVEN, k, fields)}};
 
-/* flow_type_of_name: what a field's object is in C. */
+/* flow_type_of_name: the C type of a field's object. */
 #define FLOW_FIELD_TYPE(name, many, type, ...) FLOW_FIELD_TYPE_##many(name, type)
 #define FLOW_FIELD_TYPE_ONE(name, type)        typedef type flow_type_of_##name;
 #define FLOW_FIELD_TYPE_SIZED(name, type)      typedef type flow_type_of_##name;
@@ -250,7 +251,7 @@ FLOW_FIELDS(FLOW_FIELD_TYPE)
 
 /* ---- Forks ---- */
 
-/* Where a kernel names `declared`, the fork gives `given`: a field of the same shape. */
+/* The fork gives the field `given` where a kernel declares `declared`, of the same shape. */
 struct flow_as {
     enum flow_field_id declared, given;
 };
@@ -265,9 +266,9 @@ struct flow_as {
 enum { FLOW_FORKS_AHEAD = 8 }; /* forks whose objects are found before the first of them */
 
 /* Fork a kernel with the objects that it declares: on the block that the arguments name, on each
- * block, on those from first to before end, or on a rank. On several blocks they write its number
- * into the arguments. On each: before a kernel that reads TIED(tie_halo) they fork what shows the
- * ties. as: NULL, or FLOW_AS. Collective. They return what the runtime does. */
+ * block, on the blocks from first to before end, or on a rank. On several blocks they write its
+ * number into the arguments. On each: they call flow_ties_show before a kernel that reads
+ * TIED(tie_halo). as: NULL, or FLOW_AS. Collective. They return what the runtime does. */
 int flow_fork_one(struct flow_state *state, const struct flow_kernel *kernel, const void *args);
 int flow_fork_one_as(struct flow_state *state, const struct flow_kernel *kernel, const void *args,
                      const struct flow_as *as);

@@ -1,4 +1,4 @@
-/* What fields are between two steps: the last column of their list, as functions. */
+/* The use of fields between two steps: the last column of their list, as functions. */
 #include "cloth/flow/state/life.h"
 
 #include "cloth/flow/contact/body.h"
@@ -21,8 +21,8 @@ enum flow_life flow_is_work(const struct model *model)
     return FLOW_WORK;
 }
 
-/* With sliders that move, or of a program, the filter, and so the basis, is another in each step.
- */
+/* The filter, and so the basis, changes in each step with sliders that move, or with a program's
+ * filter. */
 enum flow_life flow_is_derived_once(const struct model *model)
 {
     return model_is_filtered(model) ? FLOW_WORK : FLOW_DERIVED;

@@ -1,11 +1,12 @@
-/* Objects of fields are made, freed, found and swapped by loops over their table (fields.h). A
- * block's objects live where its positions live; the graph that mappings see is the one of the
- * blocks: a block weighs its vertices, and two blocks exchange what each has as ghosts. */
+/* Loops over the table of fields (fields.h) make, free, find and swap their objects. A block's
+ * objects live where its positions live. Mappings see the graph of the blocks: a block weighs its
+ * vertices, and two blocks exchange the ghosts of each. */
 #include "cloth/flow/bodies.h"
 
 #include <stddef.h>
 
-/* One that exists, beside x but for x itself. A failure is returned once more by the next get. */
+/* Makes a field's object if it exists, beside x (except x itself). The next get returns a failure
+ * again. */
 static void make_field(struct flow_state *state, enum flow_field_id field, uint32_t block,
                        duite_object *object)
 {
@@ -77,7 +78,7 @@ void flow_objects_fit(struct flow_state *state, uint32_t block, const struct flo
     }
 }
 
-/* Frees what was made; the others are the zero object. Returns the first failure. */
+/* Frees the objects that were made; the others are zero. Returns the first failure. */
 static int free_objects(duite *rt, size_t n, const duite_object *object)
 {
     int code = DUITE_OK;

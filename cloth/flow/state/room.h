@@ -7,7 +7,7 @@
  * travels between ranks as it is. */
 enum { FLOW_LINE = 64 };
 
-/* Where the next array goes: base NULL only counts. */
+/* The place of the next array: base NULL only counts. */
 struct flow_room {
     char *base;
     size_t used;

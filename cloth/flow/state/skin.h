@@ -4,10 +4,10 @@
 #include "cloth/contact/skin.h"
 #include "cloth/flow/state/tables.h"
 
-/* The skin of a block, the field `skin`: its contact_skin, with which the object begins, and where
- * the block finds its points. A triangle of the whole cloth belongs to the block of that of its
- * corners whose place is the lowest; ids are places. Points are in the order of their places, so
- * the block's own rows come first; others are in the halo of a neighbour. */
+/* The skin of a block, the field `skin`: its contact_skin, with which the object begins, and the
+ * places of its points. A triangle of the whole cloth belongs to the block of its corner with the
+ * lowest place; ids are places. Points are in the order of their places, so the block's own rows
+ * come first; others are in the halo of a neighbour. */
 struct flow_skin {
     struct contact_skin skin;
     const uint32_t
@@ -22,13 +22,13 @@ size_t flow_skin_bytes(const struct flow_table *table);
 /* memory: aligned to 64 bytes. */
 struct flow_skin flow_skin_open(const void *memory);
 
-/* What does not change in a run is written there. from, at: as above. */
+/* Arrays that do not change in a run, to be written. from, at: as above. */
 struct flow_skin_arrays {
     uint32_t *from, *at, *attached;
 };
 struct flow_skin_arrays flow_skin_places(const struct flow_table *table, void *memory);
 
-/* Of the shape of a block, its skin with its counts alone, to measure by. */
+/* A block's skin by its shape, with counts alone, to measure by. */
 struct contact_skin flow_skin_counts(const struct flow_table *table);
 
 #endif

@@ -8,8 +8,7 @@
 
 #include <xxhash.h>
 
-/* A run as its main program sees it: arguments of tasks, what their sums are, and the state
- * itself. */
+/* A run as its main program sees it: arguments of tasks, their sums, and the state itself. */
 
 /* Arguments of a kernel that needs its block alone. */
 struct flow_block_args {
@@ -26,8 +25,8 @@ struct flow_block_args {
  */
 struct flow_step_args {
     uint32_t block;
-    uint32_t last;   /* not zero: what goes wrong in this step is an error of its body; else it is
-                      * only counted, and the step is made again with half the length */
+    uint32_t last;   /* not zero: a failure in this step is an error of its body; else it is only
+                        counted, and the step is made again with half the length */
     double h, begin; /* s: length of the step; FLOW_TICKS: when it begins */
     double time;     /* s: at the end of the step */
     double now;      /* s: of what varies, where forces and energies are */
@@ -58,8 +57,8 @@ enum {
     FLOW_DUE,    /* a checkpoint is due */
     FLOW_STATUS
 };
-/* Indices into the peaks of a state that is watched, F64, each the largest of any block: square of
- * the speed, l / L of the springs that count for it, and minus that. */
+/* Indices into the peaks of a watched state, F64. Each is the largest of any block: square of the
+ * speed; l / L of the springs that count for it; minus that. */
 enum { FLOW_PEAK_SPEED, FLOW_PEAK_LONGEST, FLOW_PEAK_SHORTEST, FLOW_PEAKS };
 /* Numbers of a watched vertex: position, velocity, reaction, force of contact; sums of a free
  * piece. */
@@ -77,23 +76,23 @@ enum {
 };
 /* Numbers of a box: low and high corner. */
 enum { FLOW_ROOT = 6 };
-/* What is counted of ways that are cut: rows; those that lose more than half; what it changes of
- * their momentum, three numbers, kg m/s. */
+/* Counts of cuts: rows; rows that lose more than half; the change of their momentum, three numbers,
+ * kg m/s. */
 enum { FLOW_CUT_ROWS, FLOW_CUT_HALVED, FLOW_CUT_MOMENTUM, FLOW_CUT_COUNTS = FLOW_CUT_MOMENTUM + 3 };
-/* Energy that contacts hold, and of it what they were lent in the step. */
+/* Energy that contacts hold, and the part of it that they were lent in the step. */
 enum { FLOW_HELD_ALL, FLOW_HELD_LENT, FLOW_HELD };
-/* Indices into what rank 0 broadcasts, I64 x 2. */
+/* Indices into the broadcast of rank 0, I64 x 2. */
 enum { FLOW_BROADCAST_FRAMES, FLOW_BROADCAST_HASH, FLOW_BROADCAST };
 
 /* A position or velocity as it is hashed: little-endian doubles x y z. */
 enum { FLOW_VERTEX_BYTES = 24 };
 
-/* What rank 0 broadcasts before anything else. */
+/* Rank 0 broadcasts this before anything else. */
 struct flow_head {
     uint64_t n_steps, partition_hash;
     double inertia, release, contact_stiffness, vertex_mass;
     uint64_t shared_bytes;  /* of the next broadcast */
-    uint64_t resumed_bytes; /* what the main program knew of a checkpoint; 0: there is none */
+    uint64_t resumed_bytes; /* the main program's part of a checkpoint; 0: there is none */
     uint32_t n_vertices, n_triangles, n_blocks, n_neighbours, n_ghosts; /* of all blocks */
     uint32_t max_rows, max_neighbours, max_halo, max_entries;           /* of any block */
     uint32_t max_ghosts, n_pieces, n_ties, n_anchors, feels_contact;
@@ -101,7 +100,7 @@ struct flow_head {
     struct model model;  /* pointers mean nothing elsewhere */
 };
 
-/* What passes read of their neighbours' halos of s (halo.c). */
+/* The halos of s that passes read of their neighbours (halo.c). */
 struct flow_packed {
     duite_object *read[2]; /* a neighbour of each block, block after block: of even passes, odd */
     struct {
@@ -120,12 +119,12 @@ struct flow_groups {
     uint32_t n;
     struct flow_group {
         duite_object factor, coupling; /* of what it covers; as a node of the level above */
-        duite_object part, motion;     /* what a pass leaves of it; its part of s */
+        duite_object part, motion;     /* its result of a pass; its part of s */
     } * all;
     unsigned char *mark; /* n: room */
 };
 
-/* What ties ask of the blocks. Arrays are NULL where the run has no ties. */
+/* The room and links of ties in the blocks. Arrays are NULL if the run has no ties. */
 struct flow_tied_blocks {
     struct flow_tie_room *room; /* a block */
     uint32_t *first;            /* a block, and one more: which of `other` are its */
@@ -133,7 +132,7 @@ struct flow_tied_blocks {
     uint32_t *place;            /* and where each shows the first row for it (flow_ties) */
 };
 
-/* What the blocks say of their ties. */
+/* The records of the blocks' ties. */
 struct flow_tie_records {
     struct flow_tie_record *of; /* a block */
     uint32_t *first;            /* a block, and one more: which links are its */
@@ -145,12 +144,12 @@ struct flow_tie_records {
 struct flow_tied {
     uint64_t from, to; /* ticks: steps that begin there have these; to 0: none was chosen yet */
     struct flow_tied_blocks now,
-        next;                     /* next: what was before; while they are chosen, what will be */
+        next; /* next: the state before; while ties are chosen, the coming one */
     struct flow_tie_records said; /* for flow_ties_adopt */
     uint64_t *scratch;            /* to make the records of joints */
-    uint32_t (*links)[2];         /* what is set into the field `tie_links` of a block */
+    uint32_t (*links)[2];         /* values for the field `tie_links` of a block */
     uint32_t *parent;             /* a piece: room to unite them */
-    uint64_t *group;              /* a piece: what is set into the field `groups` */
+    uint64_t *group;              /* a piece: values for the field `groups` */
 };
 
 /* Two sides whose features may come near each other (cloth/flow/contact/contact.h). */
@@ -163,8 +162,8 @@ struct flow_meeting {
 struct flow_meetings {
     uint32_t n, room;
     struct flow_meeting *all;
-    duite_object counts; /* what their tasks count, and */
-    double *count;       /* what that was when it was looked at last */
+    duite_object counts; /* the counts of their tasks, and */
+    double *count;       /* their values at the last look */
 };
 
 /* The contacts of a block: lists of struct flow_contact, for so many. They take turns. */
@@ -198,7 +197,7 @@ struct flow_contact_state {
                       * step, low and high, m */
     uint32_t *found; /* a block: contacts that the last look found */
     unsigned char *mark; /* a block: room */
-    unsigned char *said; /* what all blocks said of their ties */
+    unsigned char *said; /* the records of all blocks' ties */
     duite_object *refs;  /* room for the objects of any task */
     uint64_t near;       /* how many contacts there are at the end of the step */
     uint64_t cut;        /* how often a way was cut in the step */
@@ -206,7 +205,7 @@ struct flow_contact_state {
     uint64_t cut_run;    /* most steps in a row that a row was cut in, of those cut in the step */
     uint32_t attempt, accepted; /* the step under way, of all that were begun, from 1 on; the last
                                  * one that was accepted; 0: none */
-    double cut_momentum;        /* kg m/s: what cuts in the step changed */
+    double cut_momentum;        /* kg m/s: changed by cuts in the step */
     bool failed; /* no cut ends the step: it is to be made again with half the length */
     double iterations, restarts; /* of the solves of this step but the last */
 };
@@ -223,18 +222,18 @@ struct flow_attempt {
 struct flow_newton {
     uint64_t steps;
     bool converged;
-    double status[FLOW_STATUS]; /* in place of what the solve of a linear step notes */
+    double status[FLOW_STATUS]; /* in place of the notes of a linear step's solve */
 };
 
-/* What the main program knows between two steps that the next ones go on from: checkpoints have it.
- * length: ticks of the last step accepted, length_before: of the one before it; 0: none yet.
- * guessed: ticks of the step that left dv, if the next solve may begin with it; else 0. smooth:
- * ticks of the step before, if contact had no part in it; else 0, and then the next step is by
- * implicit Euler where the others are by BDF2. settled_forces: f is that of x and v (velocity
- * Verlet). longest: largest stretch at grid.now, if steps are judged by it. shown: tick of the last
- * frame. certain: next_frame and shown without the frames that only the end of the run called for.
- * resting: it rests, and ends after the next frame; sewn: so it does where it waits for seams, and
- * all are closed; over: it ended so. moved: s, when it was last seen too fast for that. */
+/* The state of the main program between two steps, from which the next ones go on: checkpoints have
+ * it. length: ticks of the last step accepted, length_before: of the one before it; 0: none yet.
+ * guessed: ticks of the step that left dv if the next solve may begin with it; else 0. smooth:
+ * ticks of the step before if contact had no part in it; else 0, and the next step of BDF2 is by
+ * implicit Euler. settled_forces: f is that of x and v (velocity Verlet). longest: largest stretch
+ * at grid.now, if steps are judged by it. shown: tick of the last frame. certain: next_frame and
+ * shown without the frames that only the end of the run called for. resting: it rests, and ends
+ * after the next frame. sewn: likewise for a run that waits for seams, when all are closed. over:
+ * it ended so. moved: s, when it was last seen too fast to rest. */
 struct flow_frames_so_far {
     uint64_t next;
     double shown;
@@ -283,8 +282,8 @@ struct flow_state {
     size_t max_refs;       /* of so many each */
     double *rows;          /* room for the rows of any block, or a number for each neighbour */
     unsigned char *bytes;  /* rank 0: a part of the state, to be hashed, */
-    XXH64_state_t *hash;   /* and what was hashed so far */
-    duite_counters before; /* what was counted before the first step */
+    XXH64_state_t *hash;   /* and its hash so far */
+    duite_counters before; /* the counters before the first step */
     union {                /* by name, or all of it */
         struct flow_lasting lasting;
         struct {
@@ -307,19 +306,17 @@ static inline struct flow_before flow_before(const struct flow_state *state)
     return state->output ? state->output->before : (struct flow_before){0};
 }
 
-/* Whether frames are wanted. */
 static inline bool flow_shows(const struct flow_state *state)
 {
     return state->output && state->output->frame;
 }
 
-/* Whether rows of probes are wanted. */
 static inline bool flow_writes_probes(const struct flow_state *state)
 {
     return state->flow->model->n_probes && state->output && state->output->row;
 }
 
-/* Whether frames have the force of contact. Whether they or probes report it. */
+/* True if frames have the force of contact. True if frames or probes report it. */
 static inline bool flow_shows_contact(const struct flow_state *state)
 {
     const struct model *model = state->flow->model;
@@ -331,7 +328,7 @@ static inline bool flow_feels_contact(const struct flow_state *state)
     return flow_shows_contact(state) || (state->flow->feels_contact && flow_writes_probes(state));
 }
 
-/* Whether a frame has other fields than these. */
+/* True if a frame has other fields than these. */
 static inline bool flow_shows_beside(const struct flow_state *state, uint64_t frame)
 {
     const struct model_hdf5 *hdf5 = &state->flow->model->hdf5;
@@ -339,7 +336,7 @@ static inline bool flow_shows_beside(const struct flow_state *state, uint64_t fr
            (hdf5->velocity || hdf5->block || hdf5->rank);
 }
 
-/* Whether anybody asks where blocks are. */
+/* True if the places of blocks are asked for. */
 static inline bool flow_shows_places(const struct flow_state *state)
 {
     return flow_shows(state) && (state->output->places || flow_shows_beside(state, 0));
@@ -353,41 +350,41 @@ static inline double flow_time(const struct flow_state *state)
 
 /* ---- state.c: forks. Collective; they return what the runtime does ---- */
 
-/* Forks the start of all blocks; what copies x and v to what is kept, or to two others in its
- * place; what makes it the state again. */
+/* Fork the start of all blocks; the copy of x and v to kept_x and kept_v, or to two others; the way
+ * back. */
 int flow_initialise(struct flow_state *state);
 int flow_keep(struct flow_state *state);
 int flow_keep_as(struct flow_state *state, const struct flow_as *as);
 int flow_restore(struct flow_state *state);
 
-/* ---- ties (adopted.c, chosen.c). Collective, but for what is local; they return what the runtime
- * does ---- */
+/* ---- ties (adopted.c, chosen.c). Collective unless local; they return what the runtime does ----
+ */
 
-/* Memory for what is chosen, a part of flow_memory_take. Local. */
+/* Takes memory for the choice, a part of flow_memory_take. Local. */
 void flow_ties_take(struct flow_state *state);
 void flow_ties_free(struct flow_state *state);
-/* Takes the records of all blocks, state->tied.said, the same on every rank: finds rooms, who
- * shares ties with whom, and where each shows what. Makes objects again where their room changes,
- * sets the fields `tie_links`, and records the round of the solve again where that changed. What a
- * block had more of stays while about half of it is used, the last of it while any block has ties.
- * Then every block that has ties or had some makes its table (flow_ties_make), before anything
- * reads TIED. */
+/* Takes the records of all blocks, state->tied.said, the same on every rank: finds rooms, the
+ * blocks that share ties, and the places of the rows that each shows. Makes objects again if their
+ * room changes, and sets the fields `tie_links`. Records the round of the solve again if rooms or
+ * these blocks changed. Room stays while about half of it is used, the last of it while any block
+ * has ties. Then every block that has ties or had some makes its table (flow_ties_make), before
+ * anything reads TIED. */
 int flow_ties_adopt(struct flow_state *state);
-/* What a checkpoint has of tied.now becomes that, before the first step. */
+/* Sets tied.now from a checkpoint, before the first step. */
 int flow_ties_again(struct flow_state *state, const struct flow_tied_blocks *tied);
-/* How many pairs (block, other block) share ties at most, in a run with so many joints that come
- * and go; seeks: contacts are ties, too. Pure. */
+/* The most pairs (block, other block) that share ties, in a run with so many timed joints; seeks:
+ * contacts are ties, too. Pure. */
 size_t flow_tied_others(uint32_t n_blocks, uint32_t n_joints, bool seeks);
-/* Sets which free pieces of cloth are one for what a solve left of their momentum: those that the
- * joints of the step join; none is free where the records say that there are contacts. */
+/* Unites the free pieces of cloth that the joints of the step join, for the momentum that a solve
+ * left of them. No piece is free if the records have contacts. */
 int flow_ties_group(struct flow_state *state);
-/* Makes the joints of the step under way those that its blocks have. */
+/* Gives the blocks the joints of the step under way. */
 int flow_ties_choose(struct flow_state *state);
-/* Forks what shows x and v of their corners to the other blocks; what kernels with TIED(tie_halo)
- * that are forked next read. */
+/* Forks the tasks that show x and v of ties' corners to the other blocks: kernels with
+ * TIED(tie_halo) that are forked next read them. */
 int flow_ties_show(struct flow_state *state);
-/* Whether a tie came or went since the step before, or at most FLOW_TICKS ago. Whether a step that
- * begins at a tick has the ties of now. Whether a tie will come or go before the run ends. Local.
+/* True if a tie came or went since the step before, or at most FLOW_TICKS ago. True if a step that
+ * begins at a tick has the ties of now. True if a tie will come or go before the run ends. Local.
  */
 bool flow_ties_changed(const struct flow_state *state);
 bool flow_ties_stay(const struct flow_state *state, uint64_t tick);

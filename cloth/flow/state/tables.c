@@ -1,5 +1,5 @@
-/* A table is one piece of memory, so that it travels between ranks as it is: what its arrays are
- * and where they lie follows from the shape alone. */
+/* A table is one piece of memory, so that it travels between ranks as it is: its shape alone
+ * decides which arrays it has and where they lie. */
 #include "cloth/flow/state/tables.h"
 
 #include "cloth/flow/state/room.h"

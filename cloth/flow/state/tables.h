@@ -7,23 +7,24 @@
 #include "cloth/solve/correction.h"
 #include "cloth/solve/patches.h"
 
-/* What does not change during a run. Every rank knows the shapes of all blocks and who their
- * neighbours are; the rest of a block is its table, a shared object beside the block's others,
- * which tasks read where they run. All cloths of a model together: vertices are numbered cloth
- * after cloth in the input's order, places block after block (cloth/mesh/blocks.h). */
+/* Data that do not change during a run. Every rank knows the shapes and neighbours of all blocks.
+ * The rest of a block is its table, a shared object beside the block's others, which tasks read
+ * where they run. Numbers are of all cloths together: vertices cloth after cloth in the input's
+ * order, places block after block (cloth/mesh/blocks.h). */
 
-/* Positions and speeds of this size (m, m/s, along an axis) are no cloth's: a run does not start
- * with them, and a run that comes to them diverged. */
+/* A position or speed of this size (m, m/s, along an axis) is an error: a run does not start with
+ * it, and a run that reaches it diverged. */
 #define FLOW_BOUND 1e6
 
-/* How large the skin of a block is (skin.h); zero but where contact is certified. */
+/* A position or speed of this size (m, m/s, along an axis) is an error: a run does not start with
+ * it, and a run that reaches it diverged. */
 struct flow_skin_size {
     uint32_t n_points, n_triangles, n_edges, n_vertices;
     uint32_t cloth[2]; /* its points are of these cloths and some between them */
 };
 
-/* An edge whose velocities are corrected, cut by the border of a block: its ends are a row of the
- * halo here, and of that of a neighbour. */
+/* An edge whose velocities are corrected, cut by the border of a block: one end is a row of the
+ * halo here, the other of that of a neighbour. */
 struct flow_cut_edge {
     struct solve_edge edge;
     uint32_t row, neighbour; /* row here; which of the neighbours */
@@ -31,10 +32,10 @@ struct flow_cut_edge {
 };
 
 /* One block. Its springs: first the inner ones, sorted by (lower row, higher row), then those cut
- * by its border, neighbour after neighbour. A cut spring is known to both blocks. The entries of
- * its matrix (cloth/solve/format.h) are in that order, too: the springs themselves or, in half
- * storage, the pairs of rows that anything joins, each once. What elements join has a spring
- * without stiffness, a link. */
+ * by its border, neighbour after neighbour. Both blocks know a cut spring. The entries of its
+ * matrix (cloth/solve/format.h) have the same order: the springs themselves or, in half storage,
+ * the pairs of rows that anything joins, each once. Rows that elements join have a spring without
+ * stiffness, a link. */
 struct flow_table {
     /* Its shape, known to every rank: all before `neighbour` is broadcast as it stands. */
     uint32_t n, first;                               /* rows, place of row 0 */
@@ -97,7 +98,7 @@ struct flow_tables {
     const uint32_t *neighbour, *ghost; /* of all blocks, block after block; not owned */
 };
 
-/* The arrays of a table as they lie in its memory, one piece, for who makes it. */
+/* The arrays of a table as they lie in its memory, one piece, while it is made. */
 struct flow_layout {
     phys_vec *load, *position, *velocity; /* n */
     double *mass, *drag, *free;           /* n */
@@ -127,10 +128,10 @@ struct flow_layout {
 size_t flow_table_bytes(const struct flow_table *table);
 struct flow_layout flow_table_layout(const struct flow_table *table, void *memory);
 
-/* Lets the arrays of a table that has its shape point into its memory. */
+/* Points the arrays of a table that has its shape into its memory. */
 void flow_table_open(struct flow_table *table, const void *memory);
 
-/* Where a row of the halo of neighbour s is among the block's ghosts. */
+/* The index of a row of the halo of neighbour s among the block's ghosts. */
 uint32_t flow_table_ghost(const struct flow_table *table, uint32_t s, uint32_t row);
 
 /* The inner springs of a block; those into neighbour s. */

@@ -1,4 +1,4 @@
-/* A table of ties is one piece of memory: what it has room for, then arrays whose places follow
+/* A table of ties is one piece of memory: its head with its room, then arrays whose places follow
  * from that. Rows of other blocks, and rows shown to them, are keys that are sorted by block and
  * row: both sides of a pair of blocks sort the same rows.
  *
@@ -11,13 +11,13 @@
 
 /* ---- Memory ---- */
 
-/* What a table begins with. */
+/* The head of a table. */
 struct head {
     uint32_t n_inner, n, n_rows, n_ghosts, n_shown, n_others, n_halo;
     struct flow_tie_room room;
 };
 
-/* The arrays, for who makes them. */
+/* The arrays while they are made. */
 struct arrays {
     struct head *head;
     uint32_t *other, *start, *place, *shown_start;
@@ -67,7 +67,7 @@ size_t flow_ties_bytes(uint32_t n_rows, const struct flow_tie_room *room)
 
 /* ---- Keys ---- */
 
-/* Those of a block's ties, by their numbers in a list, with room for their keys. */
+/* A block's ties, by their numbers in a list, with room for their keys. */
 struct own {
     const struct flow_tie_list *list;
     uint32_t block, n;
@@ -75,7 +75,7 @@ struct own {
     uint64_t *key, *spare; /* SOLVE_TIE_CORNERS each */
 };
 
-/* At most as many as the room is for. */
+/* Has room for so many. */
 static struct own own_in(const struct flow_tie_list *list, uint32_t block, uint64_t *scratch,
                          size_t room)
 {
@@ -168,7 +168,7 @@ static uint32_t sort_once(struct own *own, size_t n)
     return kept;
 }
 
-/* Whether an earlier corner of the tie is in the same block as corner l. */
+/* True if an earlier corner of the tie is in the same block as corner l. */
 static bool is_again(const struct flow_tie_corners *tie, uint32_t l)
 {
     bool again = false;
@@ -233,7 +233,7 @@ bool flow_ties_count(const struct flow_tie_list *list, uint32_t block, uint64_t 
 
 /* ---- Making a table ---- */
 
-/* Where a block stands among the others; n_others: it is none. */
+/* The index of a block among the others; n_others: it is none of them. */
 static uint32_t number_of(const struct arrays *to, uint32_t block)
 {
     uint32_t low = 0, high = to->head->n_others;
@@ -247,7 +247,7 @@ static uint32_t number_of(const struct arrays *to, uint32_t block)
     return low < to->head->n_others && to->other[low] == block ? low : to->head->n_others;
 }
 
-/* Which ties come first: 0: inner ones; then by the lowest other block, from 1. */
+/* The group of a tie, in order: 0: inner ones; then by the lowest other block, from 1. */
 static uint32_t group_of(const struct arrays *to, const struct flow_tie_corners *tie, uint32_t own)
 {
     uint32_t lowest = UINT32_MAX;
@@ -260,7 +260,7 @@ static uint32_t group_of(const struct arrays *to, const struct flow_tie_corners 
 /* Sorts the ties by group. */
 static void put_order(const struct own *own, struct arrays *to)
 {
-    const uint32_t n_groups = to->head->n_others + 2; /* one for what is of no other */
+    const uint32_t n_groups = to->head->n_others + 2; /* one for blocks that are no others */
     uint32_t *at = to->count;
     for (uint32_t i = 0; i < own->n; i++)
         at[1 + group_of(to, corners_of(own->list, own->of[i]), own->block)]++;
@@ -293,8 +293,8 @@ static size_t put_corners(const struct own *own, struct arrays *to)
     return n;
 }
 
-/* Numbers the ghosts, of which there are n keys, and gives the corners there their numbers. Returns
- * false if there is no room, or no such other block. */
+/* Numbers the ghosts, by n keys, and gives the corners there their numbers. Returns false if there
+ * is no room, or no such other block. */
 static bool put_ghosts(struct own *own, size_t n, struct arrays *to)
 {
     struct head *head = to->head;

@@ -7,26 +7,25 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Ties: what joins rows for some steps only. They are in no table of a block, and so in no
- * partition, halo or matrix that the run began with. A tie has up to four corners, rows with
- * weights, in up to four blocks. Every block with a corner knows the whole tie, and computes its
- * own corners. Timed joints are ties of two corners with the weights 1 and -1, joints that end on
- * edges ties of three with the weights 1, w - 1 and -w. Every rank knows them all.
+/* Ties join rows for some steps only. They are in no table of a block, and so in no partition, halo
+ * or matrix that the run began with. A tie has up to four corners, rows with weights, in up to four
+ * blocks. Every block with a corner knows the whole tie, and computes its own corners. Timed joints
+ * are ties of two corners with the weights 1 and -1, joints that end on edges ties of three with
+ * the weights 1, w - 1 and -w. Every rank knows them all.
  *
- * Before a step begins, the main program has a small record of each block: how many ties it has,
- * and how many rows it shows to which other blocks. From the records of all blocks it finds what
- * room each block needs and where each finds what others show (flow_ties_adopt). Then each block
- * makes a table of its own ties.
+ * Before a step begins, the main program has a small record of each block: its number of ties, and
+ * the number of rows that it shows to each other block. From the records of all blocks it finds the
+ * room of each block and the places of the rows that others show it (flow_ties_adopt). Then each
+ * block makes a table of its own ties.
  *
  * A block has room for a multiple of FLOW_TIE_CLASS ties, and as many rows that it shows or that
  * others show it. Values lie behind those of its matrix, z and p of the ghosts behind those of its
- * other ghosts. Others read two objects: x and v of the rows shown, and s of the solve. Where the
- * room of a block changes, these objects are made again. Where it does, or where other blocks share
- * ties than before, the round of the solve is recorded again. Otherwise ties may change in every
- * step. */
+ * other ghosts. Others read two objects: x and v of the rows shown, and s of the solve. These are
+ * made again if the room of a block changes. The round of the solve is recorded again if a room
+ * changes, or other blocks share ties than before. Otherwise ties may change in every step. */
 enum { FLOW_TIE_CLASS = 128, FLOW_TIE_OTHERS = 8 };
 
-/* What a tie joins: its corners, each a row of a block. */
+/* The corners of a tie, each a row of a block. */
 struct flow_tie_corners {
     uint32_t n; /* 1 .. SOLVE_TIE_CORNERS; 0: there is no tie */
     uint32_t block[SOLVE_TIE_CORNERS], row[SOLVE_TIE_CORNERS];
@@ -37,7 +36,7 @@ struct flow_tie_corners {
 /* A joint that is no spring of the tables: one that comes or goes while the run is on, or that ends
  * on an edge. */
 struct flow_tie {
-    struct flow_tie_corners at;        /* whose weights come to 0 */
+    struct flow_tie_corners at;        /* weights sum to 0 */
     uint32_t piece[SOLVE_TIE_CORNERS]; /* of free pieces, from 1; 0: none (flow_particles) */
     double stiffness, damping, length; /* N/m, kg/s, m: those of a spring */
     uint64_t begin, end;               /* ticks: steps that begin from .. to - 1 have it */
@@ -48,8 +47,8 @@ static inline bool flow_tie_acts(const struct flow_tie *tie, uint64_t tick)
     return tie->begin <= tick && tick < tie->end;
 }
 
-/* A list of ties in which those of one block are: n_joints joints, of which those count that act at
- * the tick, then n others. A tie's number in the list is its place among all of them. */
+/* A list of ties, among them those of one block: n_joints joints, of which those that act at the
+ * tick count, then n others. A tie's number in the list is its place among all of them. */
 struct flow_tie_list {
     uint32_t n_joints, n;
     const struct flow_tie *joint; /* n_joints */
@@ -59,14 +58,14 @@ struct flow_tie_list {
 
 /* ---- Records ---- */
 
-/* What a block says of its ties: how many it has, how many rows of others they end at, how many
- * rows it shows, and how many links follow. */
+/* The record of a block's ties: its ties, the rows of others that they end at, the rows that it
+ * shows, the links that follow. */
 struct flow_tie_record {
     uint32_t n_ties, n_ghosts, n_shown, n_links;
 };
 
-/* How many rows the block shows to another one. Where a block has a link to another, that has one
- * to this; both may show none. */
+/* The number of rows that the block shows to another one. Links go both ways; both may show none.
+ */
 struct flow_tie_link {
     uint32_t block, rows;
 };
@@ -85,17 +84,15 @@ bool flow_ties_count(const struct flow_tie_list *list, uint32_t block, uint64_t 
 
 /* ---- The table of a block ---- */
 
-/* What it has room for. */
 struct flow_tie_room {
     uint32_t ties, rows, others; /* rows: of ghosts, and of rows shown */
 };
 
-/* The ties of one block: inner ones, whose corners are all in the block, then those that end in
- * other blocks, by the lowest of these; in all the order of the list. Corners are rows of the block
- * or, from n_rows on, ghosts: rows of other blocks, each once, by block and row. Corners that a tie
- * does not have are row 0 with the weight 0. To each other block the block shows the rows that are
- * corners of ties that both have, ascending: they are the ghosts there, in this order. Arrays lie
- * in the memory of the table. */
+/* The ties of one block: inner ones, whose corners are all in the block, then the others, by their
+ * lowest other block. Both are in the order of the list. Corners are rows of the block or, from
+ * n_rows on, ghosts: rows of other blocks, each once, by block and row. Missing corners are row 0
+ * with the weight 0. The block shows each other block the rows that are corners of ties of both,
+ * ascending: they are the ghosts there, in this order. Arrays lie in the memory of the table. */
 struct flow_ties {
     uint32_t n_inner, n, n_rows, n_ghosts, n_shown, n_others, n_halo;
     struct flow_tie_room room;
@@ -114,7 +111,7 @@ struct flow_ties {
     const uint32_t *at;          /* room.rows: 0, 1, .. */
 };
 
-/* What a table is made of. */
+/* The input of a table. */
 struct flow_ties_of {
     uint32_t block, n_rows, n_halo, n_others;
     const uint32_t *halo;        /* n_halo: that of the block, ascending */
@@ -139,7 +136,7 @@ static inline size_t flow_ties_rows(const struct flow_ties *ties)
 /* Finds the arrays of a table. NULL: there are no ties. */
 struct flow_ties flow_ties_open(const void *memory);
 
-/* How many blocks it shares ties with. */
+/* The number of blocks that it shares ties with. */
 uint32_t flow_ties_others(const void *memory);
 
 #endif

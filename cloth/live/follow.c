@@ -210,7 +210,7 @@ int live_follow(struct live_follower *follower, double seconds, enum live_news *
     for (*news = LIVE_NOTHING; !code && *news == LIVE_NOTHING;) {
         zmq_pollitem_t item[2] = {{.socket = follower->socket, .events = ZMQ_POLLIN},
                                   {.socket = follower->monitor, .events = ZMQ_POLLIN}};
-        code = take_messages(follower, news, error); /* what is here came before what is said */
+        code = take_messages(follower, news, error); /* messages received precede the events */
         take_events(follower);
         const double left = end - now();
         if (!code && may_ask(follower) && *news == LIVE_NOTHING)
@@ -224,7 +224,7 @@ int live_follow(struct live_follower *follower, double seconds, enum live_news *
     return code;
 }
 
-/* ---- What it came to ---- */
+/* ---- Results ---- */
 
 struct output_cache *live_follow_cache(struct live_follower *follower)
 {

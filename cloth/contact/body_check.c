@@ -1,13 +1,13 @@
-/* What a mesh has to be to be a body: closed, of triangles with an area that are wound alike and do
- * not lie on each other, and with room inside. */
+/* A body's mesh must be closed and hold room. Its triangles must have an area, be wound alike, and
+ * not lie on each other. */
 #include "cloth/base/sets.h"
 #include "cloth/contact/making.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-/* Below these parts of what it could be a triangle has no area, or a body no room. rad: below it
- * two triangles at an edge lie on each other. */
+/* FLAT, EMPTY: below these parts of the possible size, a triangle has no area, or a body no room.
+ * FOLDED, rad: below it, two triangles at an edge lie on each other. */
 static const double FLAT = 1e-9, EMPTY = 1e-9, FOLDED = 1e-10;
 enum { MAX_TRIANGLES = 1 << 28 };
 

@@ -29,7 +29,7 @@ double contact_angle(const phys_vec *a, const phys_vec *b)
     return 16 * tangent * sum;
 }
 
-/* Of all vertices; those that no triangle has keep zero. */
+/* Adds the normals of all vertices; those without a triangle keep zero. */
 static void add_normals(const struct contact_making *making, phys_vec *normal)
 {
     for (uint32_t t = 0; t < making->n; t++) {

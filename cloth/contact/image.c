@@ -6,8 +6,7 @@
 
 enum { AT_ONCE = 32 }; /* points, whose places are on the stack */
 
-/* What does not change from point to point. Along columns, rows, and the axis: where the maps
- * begin, m. */
+/* Values that all points share. low: where the maps begin along columns, rows and the axis, m. */
 struct looking {
     const struct contact_image *image;
     uint32_t u, v, axis, shift;

@@ -1,16 +1,15 @@
-/* Whether cloth is too flat to touch itself (Volino & Magnenat-Thalmann, Efficient self-collision
- * detection on smoothly discretized surfaces using geometrical shape regularity, 1994), over a
- * whole step and with a distance.
+/* Finds cloth that is too flat to touch itself, over a whole step and with a distance (Volino &
+ * Magnenat-Thalmann, Efficient self-collision detection on smoothly discretized surfaces using
+ * geometrical shape regularity, 1994).
  *
- * If all normals of a patch have a positive part along a direction, and its border, seen along it,
- * is one line that does not cross itself, no line along it meets the patch twice: the triangles lie
- * beside each other in the view. From a point of the view that is a vertex inside, the way to what
- * is of none of the vertex's triangles leads through one of these. So it is at least as long as
- * their least altitude in the view. From a vertex on the border it may also lead out of the patch
- * and in again, where the border is as far away as it keeps from itself. Both hold at all times of
- * a step if normals are those of the whole step, and if the border keeps its distance all the time:
- * it does not cross itself at the begin then, nor can it come to. In space distances are not
- * shorter.
+ * Let all normals of a patch have a positive part along a direction, and let its border, seen along
+ * it, be one line that does not cross itself. Then no line along it meets the patch twice: the
+ * triangles lie beside each other in the view. A way in the view from an inner vertex to another
+ * triangle leads through one of the vertex's own triangles. Its length is at least their least
+ * altitude in the view. From a vertex on the border it may also lead out of the patch and in again;
+ * then it is at least as long as the distance that the border keeps from itself. Both hold at all
+ * times of a step if normals are those of the whole step, and if the border keeps its distance all
+ * the time: then it never crosses itself. Distances in space are not shorter.
  *
  * A line between two points that move straight keeps a distance from another, all the time, if it
  * does at both ends of the step, measured along one direction. */
@@ -43,7 +42,8 @@ static float lesser(float a, float b)
 
 /* ---- The direction ---- */
 
-/* Of both patches; returns the least part of a normal along it; 0: there is none. */
+/* Finds a direction for both patches; returns the least part of a normal along it; 0: there is no
+ * direction. */
 static float find_direction(const struct contact_point_box *hull, double direction[3])
 {
     double square = 0, least = 0;
@@ -198,7 +198,8 @@ static float way_from(const struct border *border, uint32_t point, uint32_t edge
     return square;
 }
 
-/* Whether along a way of this square n points from `point` on keep the distance from an edge. */
+/* True if n points from `point` on keep the distance from an edge, measured along `way`, whose
+ * square is `square`. */
 static bool keeps_along(const struct border *border, uint32_t point, uint32_t n, uint32_t edge,
                         const float way[2], float square)
 {
@@ -296,7 +297,7 @@ static bool fours_keep(const struct border *border, uint32_t r, uint32_t q)
     return true;
 }
 
-/* Whether points and edges that do not share a point keep the reach, and edges do not cross. */
+/* True if points and edges that do not share a point keep the reach, and edges do not cross. */
 static bool border_keeps(struct border *border)
 {
     const float *const low[2] = {border->four_low[0], border->four_low[1]};

@@ -1,6 +1,6 @@
-/* Borders of parts, from the leaves up. Of the sides of a part's triangles, two that go between the
- * same points in opposite senses take each other away; what is left is the border. That of a node
- * comes of those of its children. */
+/* Borders of parts, from the leaves up. Sides of a part's triangles that go between the same points
+ * in opposite senses cancel; the remaining ones are the border. A node's border is made of those of
+ * its children. */
 #include "cloth/base/memory.h"
 #include "cloth/contact/skin_table.h"
 

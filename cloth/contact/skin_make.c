@@ -19,7 +19,7 @@ enum {
 
 /* ---- Sizes ---- */
 
-/* Of n nodes, with those that hold nothing: each node but the first is a child. */
+/* The leaves of n nodes, empty ones included: each node but the first is a child. */
 static uint32_t leaves_of(uint32_t n_nodes)
 {
     return 3 * n_nodes + 1;
@@ -73,7 +73,7 @@ size_t contact_skin_bytes(const struct contact_skin *skin)
     return head.bytes;
 }
 
-/* Of the features of a leaf, a group of each kind may not be full. */
+/* A leaf may have one group of features of each kind that is not full. */
 void contact_boxes_lay(const struct contact_skin *skin, struct contact_boxes_head *head)
 {
     const uint32_t n_nodes = count_nodes(skin->n_triangles);

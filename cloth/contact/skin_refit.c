@@ -2,10 +2,9 @@
  * frame that moves by `way` meanwhile. A point moves straight in it, too, so its box is that of its
  * two ends. Rounding to floats outwards takes more than the roundings of a query may take back.
  *
- * Of a triangle that moves so, twice the area as a vector is a polynomial of the time with three
+ * Twice the area vector of a triangle that moves so is a polynomial of the time with three
  * coefficients in Bernstein's form: at x, at y, and between. So its direction is always in the hull
- * of theirs, and it is at least as long along any direction as the shortest of them in the hull is.
- */
+ * of theirs, and along any direction it is at least as long as the shortest of them. */
 #include "cloth/contact/skin_table.h"
 
 #include <math.h>
@@ -146,7 +145,7 @@ PHYS_INLINE void put_features(uint32_t n, uint32_t points, const uint32_t *point
 
 /* ---- Slopes ---- */
 
-/* Of four triangles: from corner 0 to corner k + 1. */
+/* The edges of four triangles: from corner 0 to corner k + 1. */
 struct edges {
     contact_lanes e[2][3];
 };

@@ -56,7 +56,7 @@ void contact_solid_make(const struct contact_shape *shape, const struct contact_
 
 /* ---- The certificate ---- */
 
-/* What is not finite makes what is due so. */
+/* False for values that are not finite, as `due` is then not finite. */
 PHYS_INLINE bool is_divided(const struct contact_solid_divide *divide,
                             const struct contact_solid_triangle *triangle, const double due[3])
 {
@@ -212,7 +212,7 @@ static void box_way(const struct contact_solid *solid, enum contact_end end, con
         way[c] = solid->endless ? c == 0 : length > CONTACT_TINY ? way[c] / length : 0;
 }
 
-/* Whether two directions divide a box that stays from the shape, by so much. */
+/* True if two directions divide a box that stands still from the shape, by `reach`. */
 static bool box_divided(const struct contact_solid *solid, const double low[3],
                         const double high[3], const double early[3], const double late[3],
                         double reach)

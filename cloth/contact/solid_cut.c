@@ -1,5 +1,5 @@
-/* Cuts: along a pair of directions the three numbers of a corner are linear in the part of its way
- * that it goes, so the largest part that leaves what is due follows at once. */
+/* Cuts. Along a pair of directions, the three numbers of a corner are linear in the part of its way
+ * that it goes. So the largest part that leaves the numbers due follows at once. */
 #include "cloth/contact/solid_divide.h"
 
 /* The part of its way that a corner may go, at most t; below 0: none will do. Numbers of a corner

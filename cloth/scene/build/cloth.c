@@ -29,7 +29,7 @@ static int check_vertices(const struct model_pick *pick, const struct scene_tree
     return CLOTH_OK;
 }
 
-/* Of two opposite corners to the lower and the upper one. */
+/* Turns two opposite corners into the lower and the upper one. */
 static int build_box(double (*box)[3], const struct scene_tree *tree, int node,
                      const struct model_cloth *cloth, struct cloth_error *error)
 {

@@ -44,7 +44,7 @@ int scene_build_warn_crossed(struct model *model, const struct mesh *mesh, const
 
 static const double END = 0.02; /* of the way between partners: so near to them seams may touch */
 
-/* What the threads of a cloth's seams sweep: of each two neighbours two triangles. */
+/* The surface between threads of a cloth's seams: two triangles between each two neighbours. */
 struct threads {
     double (*x)[3];
     uint32_t (*corner)[3], *seam; /* of each triangle, and the seam it is of */

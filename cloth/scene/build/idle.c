@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What is looked at, and what the scene says of it. */
+/* The model that is checked, and its scene. */
 struct idle_scene {
     struct model *model;
     const struct scene_tree *tree;
@@ -294,7 +294,7 @@ static int warn_of_materials(const struct idle_scene *scene)
     return code;
 }
 
-/* What says of a body how its maps are, where it has none. */
+/* Warns of keys for the maps of a body without maps. */
 static int warn_of_view(const struct idle_scene *scene, int body)
 {
     static const char *const keys[] = {"resolution", "view"};
@@ -347,7 +347,7 @@ static int warn_of_joint(const struct idle_scene *scene, int joint)
     return CLOTH_OK;
 }
 
-/* Of each entry of the list `key` of a map. */
+/* Warns of each entry of the list `key` of a map. */
 static int warn_of_list(const struct idle_scene *scene, int map, const char *key,
                         int (*warn_of)(const struct idle_scene *scene, int item))
 {

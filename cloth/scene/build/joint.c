@@ -1,4 +1,4 @@
-/* What joins vertices of any cloths: keys at the top of a scene that name pairs of them. */
+/* Joints of vertices of any cloths: keys at the top of a scene that name pairs of vertices. */
 #include "cloth/scene/build/build.h"
 
 #include <stdlib.h>

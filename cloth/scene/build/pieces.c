@@ -50,7 +50,7 @@ int scene_build_mesh_welds(struct model *model, const struct scene_tree *tree,
     return code;
 }
 
-/* ---- What is not joined ---- */
+/* ---- Unjoined pieces ---- */
 
 static void join_pairs(uint32_t *set, uint32_t c, const struct model_pairs *pairs)
 {

@@ -352,7 +352,7 @@ static int find_seams(struct model *model, struct model_cloth *cloth, const stru
                            cloth->name);
 }
 
-/* ---- What meets as one ---- */
+/* ---- Vertices that meet as one ---- */
 
 static int find_joined(struct model *model, struct cloth_error *error)
 {

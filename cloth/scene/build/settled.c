@@ -1,6 +1,6 @@
-/* A cloth that starts where an earlier run left it: in a frame of its folder, which has the frames
- * of all its cloths in one file, and their names and numbers of vertices in cloth.obj. It starts at
- * rest there but for its own velocity; lengths at rest stay those of the mesh. */
+/* A cloth that starts where an earlier run left it: in a frame of its folder. One file there has
+ * the frames of all cloths; cloth.obj has their names and numbers of vertices. It starts at rest
+ * there but for its own velocity; lengths at rest stay those of the mesh. */
 #include "cloth/base/file.h"
 #include "cloth/scene/build/build.h"
 #include "cloth/scene/schema/check.h"

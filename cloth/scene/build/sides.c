@@ -76,7 +76,7 @@ static int build_pair(struct model *model, uint32_t i, const struct scene_tree *
                             i);
 }
 
-/* ---- What does not meet ---- */
+/* ---- Sides that do not meet ---- */
 
 /* The list of the groups of a side, cloths before obstacles. */
 static int groups_of(const struct model *model, const struct scene_tree *tree, uint32_t side)
@@ -88,7 +88,7 @@ static int groups_of(const struct model *model, const struct scene_tree *tree, u
     return scene_tree_get(tree, map, "groups");
 }
 
-/* Whether a name is that of a side or of one of its groups. */
+/* True if a name is that of a side or of one of its groups. */
 static bool is_side(const struct model *model, const struct scene_tree *tree, uint32_t side,
                     const char *name)
 {

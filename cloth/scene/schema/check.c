@@ -40,7 +40,7 @@ static size_t path_of(const struct place *at, char *text, size_t size)
     return used;
 }
 
-/* What a node says, short and on one line. */
+/* The text of a node, short and on one line. */
 static const char *found(const struct walk *walk, int node, char *text, size_t size)
 {
     bool list = scene_tree_is(walk->tree, node, YAML_SEQUENCE_NODE);

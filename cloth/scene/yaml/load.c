@@ -195,7 +195,7 @@ static int part_of(const yaml_node_t *node, size_t k)
     return pair < node->data.mapping.pairs.top ? (k % 2 ? pair->value : pair->key) : 0;
 }
 
-/* An alias names what ended before it, or what it is in. */
+/* An alias names a node that ended before it, or one that it is in. */
 int scene_tree_circle(const yaml_document_t *document, size_t *line)
 {
     const yaml_node_t *first = document->nodes.start;

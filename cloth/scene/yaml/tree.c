@@ -77,7 +77,7 @@ int scene_tree_phase(const struct scene_tree *tree, uint32_t phase)
     return scene_tree_is(tree, map, YAML_MAPPING_NODE) ? map : 0;
 }
 
-/* Of a key in the set of a phase. */
+/* The place of a key in the set of a phase. */
 static char *phase_place(const struct scene_tree *tree, const yaml_mark_t *mark)
 {
     char *place = NULL, *key = scene_tree_place(tree, (int)mark->line);

@@ -18,7 +18,7 @@ static const double FAR = 1e60;
 typedef float float_lanes __attribute__((vector_size(16)));
 typedef int64_t lane_mask __attribute__((vector_size(32)));
 
-/* Where the nearest point of a triangle lies: in it, on the edge after a corner, on a corner. */
+/* The place of a triangle's nearest point: in it, on the edge after a corner, on a corner. */
 enum feature { FACE, EDGE = 1, CORNER = EDGE + 3 };
 
 struct nearest {
@@ -146,7 +146,7 @@ PHYS_INLINE uint32_t push_parts(const struct contact_node *node, const phys_vec 
     return n;
 }
 
-/* The nearest point of a body, from what is nearest so far. */
+/* The nearest point of a body; *best is the nearest so far. */
 PHYS_INLINE void body_nearest(const struct contact_body *body, const phys_vec *x,
                               struct nearest *best)
 {

@@ -104,7 +104,7 @@ int contact_bodies_add(struct contact_bodies *bodies, const struct mesh *mesh, b
                        struct cloth_error *error);
 
 /* The same for a body with frames; the mesh says how triangles join, and is where the frames are at
- * time 0. CLOTH_E_INPUT also for a vertex of a frame that is not finite. */
+ * time 0. CLOTH_E_INPUT also for a vertex of a frame that is too far away. */
 int contact_bodies_add_frames(struct contact_bodies *bodies, const struct mesh *mesh,
                               const struct contact_frames *frames, bool *turned,
                               struct cloth_error *error);

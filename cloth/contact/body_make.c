@@ -199,7 +199,7 @@ static void free_room(struct contact_making *making)
     free(making->normal);
 }
 
-/* That all vertices of all frames are where those of a mesh may be. */
+/* Checks that all vertices of all frames are within the bound of a mesh. */
 static int check_frames(const struct contact_making *making)
 {
     const uint32_t n = making->mesh->n_vertices;

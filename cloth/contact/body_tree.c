@@ -90,7 +90,7 @@ static void put_box(const struct tree *tree, struct contact_node *node, int part
     }
 }
 
-/* Boxes around what a part of a node has: its facets, or the boxes of its node, which is already
+/* Fits the box of a part of a node to its facets, or to the boxes of its child, which are already
  * fit. */
 static void refit_part(const struct contact_facet *facet, const phys_vec *x,
                        struct contact_node *nodes, struct contact_node *node, int part)

@@ -116,7 +116,7 @@ PHYS_INLINE bool quick_small(const struct ends *ends)
 }
 
 /* The two directions that features may be closest in, of their corners p, which `at` are against
- * the first. Returns whether they are so near that those may be but rounding. */
+ * the first. Returns true if the features are so near that the directions may be only rounding. */
 PHYS_INLINE bool find_directions(enum contact_pair pair, const phys_vec p[4],
                                  const struct contact_lanes *at, phys_vec n[2])
 {
@@ -235,7 +235,7 @@ struct cut {
     unsigned held;
     phys_vec begin, end; /* m, by corner */
     double shared;       /* m */
-    double half, off;    /* m: the least distance that is left; what rounding of the ends is */
+    double half, off;    /* m: the least distance left; the rounding of the ends */
     double low, high;    /* of the plane, m */
 };
 
@@ -280,7 +280,7 @@ static void cut_share(struct cut *cut, double far)
         cut->end[k] -= cut->shared;
 }
 
-/* Where the plane may lie: each corner that is cut has room at x and each held one at y. */
+/* The range of the plane: each cut corner has room at x, and each held one at y. */
 static void cut_bounds(struct cut *cut)
 {
     cut->low = -INFINITY;

@@ -1,5 +1,5 @@
-/* A pixel shows a plane: through what its middle sees, across the normal there. So a point is told
- * its gap to second order in how far it is from the middle of the pixel. */
+/* A pixel shows a plane: through the surface at its middle, across the normal there. So the gap of
+ * a point is right to second order in its distance from the middle of the pixel. */
 #include "cloth/contact/image.h"
 
 #include <math.h>

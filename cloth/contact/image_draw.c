@@ -184,7 +184,7 @@ static bool is_near(const struct drawing *d, const struct contact_node *node, in
            (double)node->low[d->v][part] <= low + ((double)d->first + d->n + 1) * pitch;
 }
 
-/* In the order of the tree, whatever of it the strip leaves out. */
+/* Draws in the order of the tree, which does not depend on the strip. */
 static void draw_facets(const struct drawing *d)
 {
     uint32_t stack[STACK], n = 0;

@@ -36,7 +36,7 @@ static void best_try(struct best *best, const phys_vec *n)
     best->n = unit;
 }
 
-/* Takes out of a direction what it has along an edge: where the way is short, the rounding of its
+/* Tries a way without its part along an edge: if the way is short, that part is the rounding of its
  * ends. */
 static void best_try_across(struct best *best, const struct contact_ends *ends, int lane)
 {
@@ -99,7 +99,7 @@ static bool find_feet(enum contact_pair pair, const phys_vec x[4], double *u, do
     return is_inside(pair, *u, *v, 1) && !is_flat(&a, &b, &n);
 }
 
-/* The same from what is known of the ends. That loses digits where angles are small. */
+/* The same from the known ends. That loses digits where angles are small. */
 PHYS_INLINE bool find_feet_quickly(enum contact_pair pair, const phys_vec x[4],
                                    const struct contact_ends *ends, double *u, double *v)
 {

@@ -22,15 +22,15 @@
 struct contact_row {
     phys_vec normal; /* out of the second side, of length 1 */
     phys_vec origin; /* the point where the step began */
-    phys_vec slip;   /* across the normal where the step began, less what the second side carries
-                      * the point along in the step */
+    phys_vec slip;   /* across the normal where the step began, less the way that the second side
+                      * carries the point along in the step */
     double gap;      /* at the origin, to the second side where it ends the step */
     double load;
     double thickness, friction;
-    double stiffness; /* k */
-    double slid;  /* how far the spring was stretched at the end of the step before, uncut, and */
-    double grows; /* by what factor that grew in it; 0: as 1 */
-    double firm;  /* how many times as stiff as others it is; 1 or less: as stiff */
+    double stiffness;      /* k */
+    double slid;           /* the stretch of the spring at the end of the step before, uncut, and */
+    double grows;          /* the factor by which it grew in that step; 0: as 1 */
+    double firm;           /* how many times as stiff as others it is; 1 or less: as stiff */
     double energy, rested; /* where the step began: the work taken up so far, the load */
     double start, aim;     /* the gap there; the gap where the push is the load */
     double hold, span;     /* stiffness across the normal; length of the step, s: of the step before
@@ -83,7 +83,7 @@ PHYS_INLINE double contact_row_gap(const struct contact_row *row, const phys_vec
     return row->gap + phys_dot(&row->normal, &way);
 }
 
-/* How far the spring across the normal is stretched at a point. */
+/* The stretch of the spring across the normal at a point. */
 PHYS_INLINE void contact_row_stretch(const struct contact_row *row, const phys_vec *point,
                                      phys_vec *stretch)
 {
@@ -170,8 +170,8 @@ PHYS_INLINE void contact_row_stiffen(struct contact_row *row)
     row->firm = firm < 256 ? firm : 256;
 }
 
-/* How firm a row without a load is to be, which would end the step with this gap (m): what comes is
- * stopped within half the thickness or so. */
+/* The firmness of a row without a load that would end the step with this gap (m). It stops an
+ * approach within about half the thickness. */
 PHYS_INLINE double contact_row_firm_for(const struct contact_row *row, double gap)
 {
     const double firm = 2 * (1 - gap / row->thickness);

@@ -30,10 +30,10 @@ struct contact_shape {
 
 struct contact_image;
 
-/* Where a shape is at the begin and at the end of a step, and the body that it is. */
+/* The places of a shape at the begin and at the end of a step, and its body. */
 struct contact_pose {
     const struct contact_body *body; /* NULL: it is none */
-    bool moves; /* else the poses mean nothing: the shape is where its parameters say */
+    bool moves; /* else the poses are unused: the shape is where its parameters put it */
     struct phys_pose from, to;
     double begin, end;                 /* s: of the step */
     double rate;                       /* 1/s: 1 over the length of the step; 0: it has none */

@@ -62,8 +62,8 @@ struct contact_skin_source {
     const phys_vec *x;                   /* n_points */
 };
 
-/* Bytes of a table, and of what changes in a step; both follow of the four counts alone. The memory
- * is aligned to CONTACT_ALIGN. */
+/* Bytes of a table, and of the boxes of a step; both depend on the four counts alone. The memory is
+ * aligned to CONTACT_ALIGN. */
 size_t contact_skin_bytes(const struct contact_skin *skin);
 size_t contact_boxes_bytes(const struct contact_skin *skin);
 

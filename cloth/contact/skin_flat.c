@@ -105,9 +105,8 @@ static uint32_t id_on(const struct contact_patch *patch, uint32_t i)
     return skin->id[skin->along[patch->loop->first + i]];
 }
 
-/* Which points of the border of b are on that of a: *from_a, *from_b: where the line that they
- * share begins on a and ends on b. Returns how many points it has; 0: they share no line, or more.
- */
+/* Finds the line that the borders of a and b share. *from_a, *from_b: the points where it begins on
+ * a and ends on b. Returns how many points it has; 0: they share no line, or more. */
 static uint32_t shared_line(const struct contact_patch *a, const struct contact_patch *b,
                             uint32_t *from_a, uint32_t *from_b)
 {
@@ -116,7 +115,7 @@ static uint32_t shared_line(const struct contact_patch *a, const struct contact_
     uint32_t at_a = 0, at_b = 0;
     for (uint32_t i = 0; i < n_b; i++)
         id[i] = id_on(b, i);
-    for (uint32_t i = 0; i <= n_a; i++) { /* the last one again: what is before the first */
+    for (uint32_t i = 0; i <= n_a; i++) { /* the last one again, as it precedes the first */
         const uint32_t here = id_on(a, i < n_a ? i : 0);
         uint32_t k = 0;
         while (k < n_b && id[k] != here)
@@ -318,7 +317,7 @@ static bool border_keeps(struct border *border)
 
 /* ---- Patches ---- */
 
-/* m: what the reach becomes, so that floats of a border do not matter. */
+/* m: the reach, enlarged by the rounding of the border's floats. */
 static float reach_of(const struct border *border, double reach)
 {
     float most = 0;

@@ -10,7 +10,7 @@
 enum { FEW = 40 }; /* sides that are sorted one by one */
 #define NONE UINT32_MAX
 
-/* A side: its ends, the lower one above, and whether it goes from the higher one. */
+/* A side: its ends, the lower one above, and its direction: 1 from the higher one. */
 static uint64_t side_of(uint32_t a, uint32_t b)
 {
     return a < b ? (uint64_t)a << 32 | (uint64_t)b << 1 : (uint64_t)b << 32 | (uint64_t)a << 1 | 1;
@@ -74,7 +74,7 @@ static void reduce(struct making *making, size_t from)
     making->n = kept;
 }
 
-/* The line that n sides make is put behind the others. Returns whether it is one, and simple. */
+/* Appends the line that n sides make. Returns true if it is one simple line. */
 static bool walk(struct making *making, const uint64_t *side, size_t n)
 {
     uint32_t *along = making->along + making->n_along, at = n ? begin_of(side[0]) : 0;

@@ -1,6 +1,6 @@
 /* A skin has its triangles in the order of the tree, and features in the order of the triangles
- * that they are of. Sizes follow of the counts alone, as the shape of the tree does, so that who
- * has not seen the triangles knows how much room a skin takes. */
+ * that they are of. Sizes, like the shape of the tree, depend on the counts alone, so the room for
+ * a skin is known without its triangles. */
 #include "cloth/base/memory.h"
 #include "cloth/contact/skin_table.h"
 

@@ -18,7 +18,7 @@ struct query {
     const struct contact_skin *skin[2];
     double reach;
     const struct contact_boxes *node[2], *group[2];
-    contact_lanes below[3], above[3]; /* m: what boxes of the first are widened by */
+    contact_lanes below[3], above[3]; /* m: the widening of boxes of the first */
     bool self;
     struct contact_slab slab; /* of the first leaf that was met last */
     contact_visit *visit;

@@ -99,7 +99,7 @@ PHYS_INLINE void turn_each(const contact_lanes from[3], contact_lanes to[4])
     to[3] = SHUFFLE(xy23, z, 2, 3, 7, 7);
 }
 
-/* The box around four; its last lane means nothing. */
+/* The box around four; its last lane is unused. */
 PHYS_INLINE void lanes_whole(const struct contact_boxes *boxes, struct contact_point_box *whole)
 {
     contact_lanes low[4], high[4];
@@ -123,7 +123,7 @@ PHYS_INLINE void round_out(struct contact_point_box *box)
     box->high += (contact_lanes)((float_mask)box->high & size) * 0x1p-22f;
 }
 
-/* Groups of the boxes of n features, each of so many points; lanes behind them hold nothing. */
+/* Fills groups of the boxes of n features, each of `points` points; lanes behind them are empty. */
 PHYS_INLINE void put_features(uint32_t n, uint32_t points, const uint32_t *point,
                               const struct contact_point_box *of, struct contact_boxes *to)
 {
@@ -236,7 +236,7 @@ PHYS_INLINE void find_slopes(const uint32_t *const corner[4], const phys_vec *x,
     choose(&known, &altitude, &to->altitude);
 }
 
-/* Those of a leaf as the slopes of one part. */
+/* The slopes of a leaf, as one part of a node. */
 PHYS_INLINE void leaf_slopes(const struct contact_skin *skin, const struct contact_leaf *leaf,
                              const phys_vec *x, const phys_vec *y, struct contact_point_box *normal,
                              float *altitude)

@@ -100,7 +100,7 @@ PHYS_KERNEL_OF(bool, contact_slab_parts,
     return above > slab->most || below > slab->most;
 }
 
-/* Which features, of n points each, come near to where the other leaf ends. */
+/* The bits of features, of n points each, that come near to the end of the other leaf. */
 PHYS_INLINE uint32_t near_bits(const struct contact_slab *slab, const phys_vec *end, double sign,
                                const struct contact_side *side, uint32_t bits, uint32_t n,
                                const uint32_t *point)

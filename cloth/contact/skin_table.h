@@ -29,7 +29,7 @@ struct contact_loop {
     uint32_t first, n;
 };
 
-/* Where the loop of a child is; that of all triangles. */
+/* The index of the loop of a child; or of all triangles, for a node beyond the last. */
 PHYS_INLINE uint32_t contact_loop_at(const struct contact_skin *skin, uint32_t node, uint32_t lane)
 {
     return node < skin->n_nodes ? 4 * node + lane : 4 * skin->n_nodes;
@@ -108,7 +108,7 @@ struct contact_features {
     uint32_t vertices, triangles, edges;
 };
 
-/* Heights along a direction of what a leaf has, m, at the begin and at the end of a step. */
+/* Heights of a leaf's corners along a direction, m, at the begin and at the end of a step. */
 struct contact_heights {
     double low[2], high[2];
 };
@@ -119,7 +119,7 @@ struct contact_slab {
     bool is;             /* its normals have a middle, n */
     bool above;          /* the first leaf is above the second */
     phys_vec n;          /* of length 1 */
-    double most;         /* m: what is farther is out of reach */
+    double most;         /* m: features farther away are out of reach */
     struct contact_heights of[2];
 };
 /* The distance, m, beyond which features are surely out of a reach (m). */

@@ -159,7 +159,7 @@ PHYS_INLINE bool middle_numbers(const struct contact_solid *solid,
     return true;
 }
 
-/* However near the triangle began, what is enough far from there is enough. */
+/* The gap at the begin is taken as infinite: numbers that suffice then suffice for any gap. */
 PHYS_KERNEL_OF(enum contact_passing, contact_solid_pass,
                (const struct contact_solid *solid, const phys_vec x[3], const phys_vec y[3],
                 double thickness, double reach),

@@ -6,13 +6,14 @@
 /* Shared by solid.c and solid_cut.c: the three numbers of solid.h, of a triangle and a pair of
  * directions. */
 
-/* Operations on numbers of one size, with what they may lose together. */
+/* The relative rounding of all operations on numbers of one size together. */
 #define CONTACT_SOLID_ROUNDING (64 * 0x1p-53)
 
 /* A triangle in the core's axes: its begin and its end as each end of the step sees them. */
 struct contact_solid_triangle {
     struct contact_lanes from, to;
-    double rounding; /* m: what numbers of this triangle may be off; not finite where it is not */
+    double rounding; /* m: the error of this triangle's numbers; not finite if the triangle is
+                      * not */
 };
 
 PHYS_INLINE double contact_lanes_size(const struct contact_lanes *own)

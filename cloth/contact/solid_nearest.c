@@ -78,7 +78,7 @@ PHYS_INLINE void quadratic_of(const struct contact_solid *solid, const struct co
                             contact_inner(e[1], at->away),
                             at->weight[1],
                             at->weight[2]};
-    /* Where F is straight it goes on to the end of the triangle. */
+    /* If F is straight, the minimum lies at the end of the triangle. */
     const double flat = FLAT * (contact_inner(e[0], e[0]) + contact_inner(e[1], e[1]));
     q->a11 += flat;
     q->a22 += flat;
@@ -153,8 +153,8 @@ PHYS_INLINE void line_look(const struct contact_solid *solid, struct core_line *
     }
 }
 
-/* Where the line enters or leaves what the faces bound; between, F is smooth, of a box quadratic.
- */
+/* Finds the points where the line crosses the planes of the faces. F is smooth between them, and
+ * quadratic for a box. */
 PHYS_INLINE void line_faces(const struct contact_solid *solid, struct core_line *line)
 {
     const double *x = line->from, *way = line->way, *half = solid->half;

@@ -116,7 +116,7 @@ int scene_build_material(uint32_t *material, const struct model_cloth *cloth,
 int scene_build_parts(struct model_cloth *cloth, struct model *model, struct scene_tree *tree,
                       int node, struct cloth_error *error);
 
-/* That the materials of a cloth with its regions have the moduli that its mesh needs. */
+/* Checks that the materials of a cloth with its regions have the moduli that its mesh needs. */
 int scene_build_check_moduli(const struct model_cloth *cloth, const struct model *model,
                              const struct scene_tree *tree, int node, struct cloth_error *error);
 
@@ -124,7 +124,7 @@ int scene_build_check_moduli(const struct model_cloth *cloth, const struct model
 int scene_build_group(uint32_t *group, const struct model_cloth *cloth,
                       const struct scene_tree *tree, int node, struct cloth_error *error);
 
-/* That a map that picks vertices has no radius without nearest. */
+/* Checks that a map that picks vertices has no radius without nearest. */
 int scene_build_check_radius(const struct scene_tree *tree, int node, struct cloth_error *error);
 
 /* Checks a pick that a map with one of the keys vertices, nearest, box, group filled: there are
@@ -155,12 +155,12 @@ int scene_build_loads(struct model *model, struct model_cloth *cloth, const stru
 int scene_build_starts(struct model_cloth *cloth, const struct scene_tree *tree, int node,
                        struct cloth_error *error);
 
-/* Where a cloth starts that has its mesh, name and velocity, by its key from; files of the folder
- * are added to the model's. */
+/* The start of a cloth by its key from; the cloth has its mesh, name and velocity. Files of the
+ * folder are added to the model's. */
 int scene_build_settled(struct model *model, struct model_cloth *cloth, struct scene_tree *tree,
                         int node, struct cloth_error *error);
 
-/* That the key rotate of a map, which filled the transform, is a rotation. */
+/* Checks that the key rotate of a map, which filled the transform, is a rotation. */
 int scene_build_check_turn(const struct mesh_transform *transform, const struct scene_tree *tree,
                            int node, struct cloth_error *error);
 
@@ -196,8 +196,8 @@ int scene_build_mesh(struct model *model, struct model_cloth *cloth, struct scen
 int scene_build_pattern(struct model *model, struct model_cloth *cloth, struct scene_tree *tree,
                         int node, struct cloth_error *error, struct cloth_error *inner);
 
-/* That this machine may have room for a mesh of n vertices. node: the key that asks for so many;
- * what: "nx times ny is". */
+/* Checks that this machine may have room for a mesh of n vertices. node: the key that asks for so
+ * many; what: "nx times ny is". */
 int scene_build_check_memory(uint64_t n, const char *what, const struct scene_tree *tree, int node,
                              struct cloth_error *error);
 

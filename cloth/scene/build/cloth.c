@@ -174,7 +174,7 @@ static int no_material(const char *name, const struct model *model, const struct
     return code;
 }
 
-/* Where no density is needed, none need be given. */
+/* The density may be left out if it is not needed. */
 static int check_density(const struct model_cloth *cloth, const struct model_material *material,
                          const struct scene_tree *tree, int node, struct cloth_error *error)
 {

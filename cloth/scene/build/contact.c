@@ -58,7 +58,7 @@ void scene_build_contact(struct model *model, const struct scene_tree *tree)
         model->contact.mode = MODEL_CONTACT_CERTIFIED;
 }
 
-/* ---- Where it has nothing to do ---- */
+/* ---- Scenes without contact ---- */
 
 static bool meets_anything(const struct model *model, uint32_t cloth)
 {
@@ -112,7 +112,7 @@ static int check_thickness(const struct model *model, const struct scene_tree *t
                            model->contact.thickness, least, far, model_contact_cure(model));
 }
 
-/* That no body is met by maps. */
+/* Checks that no body is met by maps. */
 static int check_bodies(const struct model *model, const struct scene_tree *tree,
                         struct cloth_error *error)
 {

@@ -1,6 +1,6 @@
-/* Bodies whose surface goes through itself: nothing says there what is inside, and cloth that gets
- * between two of its parts is pinched. They are met all the same, with a warning. Seams that cross:
- * they pull panels through each other. */
+/* Bodies whose surface goes through itself: the inside is undefined there, and cloth between two of
+ * its parts is pinched. They are met all the same, with a warning. Seams that cross: they pull
+ * panels through each other. */
 #include "cloth/scene/build/build.h"
 #include "cloth/verify/verify.h"
 

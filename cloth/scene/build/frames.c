@@ -34,7 +34,7 @@ static int read_pc2(const struct reading *r, int node, uint32_t *n, double **pla
     return inner.code ? blame(r, node, &inner) : code;
 }
 
-/* That a frame's mesh has the vertices and faces of the body's. */
+/* Checks that a frame's mesh has the vertices and faces of the body's. */
 static int check_frame(const struct reading *r, int node, const struct mesh *frame)
 {
     const struct mesh *mesh = r->mesh;

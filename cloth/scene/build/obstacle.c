@@ -1,4 +1,4 @@
-/* Obstacles, and whether they leave the cloths any room. */
+/* Obstacles, and the check that they leave the cloths some room. */
 #include "cloth/scene/build/build.h"
 #include "cloth/scene/schema/check.h"
 #include "cloth/scene/yaml/scalar.h"
@@ -262,7 +262,7 @@ static bool is_still_plane(const struct contact_shape *shape)
     return contact_kinds[shape->kind] == &contact_plane && !shape->n;
 }
 
-/* How far a point is on the free side of a plane. */
+/* The height of a point above a plane, towards its free side. */
 static double height(const struct contact_shape *plane, const double x[3])
 {
     double sum = 0;

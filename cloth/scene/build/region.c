@@ -132,7 +132,7 @@ static int build_panel(struct model_cloth *cloth, const struct model *model, uns
     return code;
 }
 
-/* That no group stands twice. */
+/* Checks that no group stands twice. */
 static int check_once(const struct scene_tree *tree, int list, size_t i, struct cloth_error *error)
 {
     const int node = scene_tree_item(tree, list, i);

@@ -87,7 +87,7 @@ static int check_frame(const struct scene_settled *from, uint32_t n_frames,
                            from->frame, folder->path, n_frames - 1);
 }
 
-/* A number that files count frames by: what is none of them is none of a file's. */
+/* The number of a frame as files count; one that does not fit becomes a number that no file has. */
 static uint32_t frame_of(const struct scene_settled *from)
 {
     return from->frame == SCENE_LAST_FRAME ? MESH_LAST_FRAME

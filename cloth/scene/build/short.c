@@ -63,7 +63,7 @@ static void find_extent(struct shorts *shorts)
     }
 }
 
-/* In what meets. first: number of the cloth's first vertex. */
+/* Enters the sets into the model's `apart`. first: number of the cloth's first vertex. */
 static int join(struct model *model, const struct shorts *shorts, uint32_t first,
                 struct cloth_error *error)
 {

@@ -141,7 +141,7 @@ static int check_side(const struct model *model, const struct scene_tree *tree, 
     return code;
 }
 
-/* Marks a cloth and another side, both ways. Returns whether there are two to mark. */
+/* Marks a cloth and another side, both ways. Returns false if neither is a cloth. */
 static bool mark(struct contact_apart *all, uint32_t a, uint32_t b)
 {
     const size_t n_sides = (size_t)all->n_cloths + all->n_obstacles;

@@ -145,7 +145,8 @@ static int build_air(struct model *model, const struct scene_tree *tree, struct 
     return scene_build_curve(model, &model->wind_curve, tree, air, error);
 }
 
-/* The default of max_iterations comes after what the scene says, so after the count. */
+/* Sets the count again: the default of max_iterations, which has the same field, was filled in
+ * later. */
 static void build_count(struct model *model, const struct scene_tree *tree)
 {
     const int stop = scene_tree_get(tree, scene_tree_get(tree, 1, "solver"), "stop");

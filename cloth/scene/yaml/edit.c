@@ -249,7 +249,7 @@ static const char *key_of_phase(const char *text)
     return strncmp(at, "].set.", 6) ? NULL : at + 6;
 }
 
-/* Those of the tree's sets that change the phases themselves, or the others. */
+/* Applies the tree's sets that change the phases themselves, or the others. */
 static int edit_by_options(struct scene_tree *tree, bool phases, struct cloth_error *error)
 {
     for (size_t i = 0; i < tree->n_sets; i++) {
@@ -268,7 +268,7 @@ static int edit_by_options(struct scene_tree *tree, bool phases, struct cloth_er
     return CLOTH_OK;
 }
 
-/* The check tells what is wrong with a set that is no map, or with its keys. */
+/* The check reports a set that is no map, and faults of its keys. */
 static int edit_by_phase(struct scene_tree *tree, uint32_t phase, struct cloth_error *error)
 {
     const int map = scene_tree_phase(tree, phase), set = map ? scene_tree_get(tree, map, "set") : 0;

@@ -115,7 +115,7 @@ static int check_comments(const char *path, const struct scene_words *words, con
                               path, line, i - begin + 1);
         if (bytes[i] == '"')
             text = !text;
-        i += text && bytes[i] == '\\'; /* what follows is no end of the text */
+        i += text && bytes[i] == '\\'; /* the next character does not end the text */
     }
     return CLOTH_OK;
 }

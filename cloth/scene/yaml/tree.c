@@ -1,5 +1,5 @@
-/* A loaded tree holds one document whose root is a map. Nodes are never removed, and what a node is
- * never changes; only scene_edit adds nodes or changes the children of a map or list. */
+/* A loaded tree holds one document whose root is a map. Nodes are never removed, and never change
+ * their type or text. Only scene_edit adds nodes or changes the children of a map or list. */
 #include "cloth/scene/yaml/tree.h"
 #include "cloth/scene/yaml/scalar.h"
 
@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MAX_OF_SET = 200 }; /* bytes of a set that a message repeats: what is wrong must fit too */
+enum { MAX_OF_SET = 200 }; /* bytes of a set that a message repeats: the fault must fit too */
 
 yaml_node_t *scene_tree_node(const struct scene_tree *tree, int node)
 {

@@ -1,6 +1,6 @@
 /* A line from the point to somewhere beyond the surface crosses an odd number of its triangles if
- * the point is inside. Where the line touches an edge or a corner, or its end is in the plane of a
- * triangle, another line is taken. */
+ * the point is inside. If the line touches an edge or a corner, or its end is in the plane of a
+ * triangle, another line is tried. */
 #include "cloth/verify/orient.h"
 #include "cloth/verify/verify.h"
 

@@ -11,7 +11,7 @@
 /* Exact tests for intersections of surfaces. They share no code with contact: a second opinion
  * on states and frames. Local functions. */
 
-/* Triangles in space. Those that share a corner have its number. */
+/* Triangles in space. Triangles that share a corner have its number. */
 struct verify_soup {
     uint32_t n_points, n_triangles;
     uint32_t n_first; /* pairs are sought among the first, and between the first and the others */

@@ -15,7 +15,7 @@ struct untangle_push *untangle_add(struct untangle *all)
     return push;
 }
 
-/* Which corners move: those that are free and need not stay, else all that are free. */
+/* The corners that move: those that are free and need not stay, else all that are free. */
 static uint32_t find_movers(const struct untangle *all, const struct untangle_push *push)
 {
     uint32_t freed = 0;

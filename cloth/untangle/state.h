@@ -63,7 +63,7 @@ struct untangle {
     struct contact_facet *facet; /* of the tree of all cloths */
     struct contact_node *node;
     uint32_t n_nodes;
-    double open, room; /* m: no pair is nearer; where what is moved goes */
+    double open, room; /* m: no pair may be nearer; the distance to which pushes move */
 
     /* Used within a round. */
     struct cloth_list pairs, crossings, links, zoned, pushes;
@@ -74,8 +74,8 @@ struct untangle {
     uint32_t *zone, *votes[2];      /* by point: the root of its zone; of it, for either side */
     signed char *label;             /* by point: side of a cloth, 1 or -1; 0: none */
     uint32_t *stamp;                /* by triangle: a part that crosses it */
-    unsigned char *wrong, *tangled; /* by point: of a part that is on the wrong side; of what
-                                     * crosses something of its own layer */
+    unsigned char *wrong, *tangled; /* by point: of a part on the wrong side; of a crossing
+                                     * within its own layer */
     unsigned char *inside, *seen;   /* by point: too deep in an obstacle; already looked at */
     struct untangle_count count;
     uint32_t near[4]; /* as of untangle_result */
@@ -91,7 +91,7 @@ void untangle_close(struct untangle *all);
 /* Boxes, normals and the tree follow the points. */
 void untangle_refit(struct untangle *all);
 
-/* Each finds some of what is wrong in a round, counts it and adds pushes. */
+/* Each finds one kind of fault in a round, counts it and adds pushes. */
 int untangle_cross(struct untangle *all);     /* first: fills crossings */
 int untangle_parts(struct untangle *all);     /* after it: parts, and pushes of the wrong ones */
 int untangle_zones(struct untangle *all);     /* in it: of pairs of cloths that are not cut off */
@@ -125,8 +125,8 @@ int untangle_push_edge(struct untangle *all, const struct untangle_crossing *cro
 int untangle_push_triangle(struct untangle *all, const struct untangle_crossing *crossing,
                            double sign, bool still);
 
-/* Where a crossing is: weights of the edge's ends, then of the triangle's corners; each have the
- * sum 1. */
+/* The place of a crossing: weights of the edge's ends, then of the triangle's corners; each sum is
+ * 1. */
 void untangle_place(const struct untangle *all, const struct untangle_crossing *crossing,
                     double weight[UNTANGLE_CORNERS]);
 

@@ -37,7 +37,7 @@ struct untangle_count {
 };
 
 struct untangle_result {
-    uint32_t rounds; /* 0: nothing was to be done, and x is as it was */
+    uint32_t rounds; /* 0: there were no faults, and x is unchanged */
     uint64_t moved;  /* points */
     double largest;  /* m: the largest move of a point */
     struct untangle_count left;

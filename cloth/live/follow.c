@@ -47,8 +47,8 @@ static int fail_zmq(const char *what, struct cloth_error *error)
                       zmq_strerror(errno));
 }
 
-/* ZMQ_IMMEDIATE would drop what came before a connection ended, such as the last frame. By ZMQ_IPV6
- * `localhost' would be ::1 alone, where a run does not listen. */
+/* ZMQ_IMMEDIATE would drop messages received before a connection ended, such as the last frame. By
+ * ZMQ_IPV6 `localhost' would be ::1 alone, where a run does not listen. */
 static int set_options(void *socket, const char *host, struct cloth_error *error)
 {
     const int none = 0, yes = 1, again = 250, six = *host == '[';

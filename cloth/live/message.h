@@ -12,17 +12,17 @@
  * one that the viewer lacks. Numbers are little-endian:
  *
  *    0  "DUITELV\n"
- *    8  u32 version (LIVE_VERSION; whatever follows may differ in others)
+ *    8  u32 version (LIVE_VERSION; the rest may differ in others)
  *   12  u32 kind
  *   16  u64 bytes of the payload, which is the rest of the message
  *   24  u64 XXH64 of the payload, seed: the kind
  *   32  u64 run, a random number that is not 0; u64 scene, counted from 1 in a run; then
  *
- *   REQUEST  u64 next: the first frame that the viewer has not. Run and scene are what it has, or
- * 0. SCENE    u32 vertices V, edges E, triangles T, bodies B; V x 3 f32, the start (m); E x 2 and T
- * x 3 u32, vertices from 0; E are edges without triangles. Of each body u32 vertices, u32
- *            triangles, vertices x 3 f64 (m), triangles x 3 u32. Up to the end: scene.json of a
- *            folder of frames (output.h).
+ *   REQUEST  u64 next: the first frame that the viewer lacks. Run and scene are the viewer's, or 0.
+ *   SCENE    u32 vertices V, edges E, triangles T, bodies B; V x 3 f32, the start (m); E x 2 and
+ *            T x 3 u32, vertices from 0; E are edges without triangles. For each body u32
+ *            vertices, u32 triangles, vertices x 3 f64 (m), triangles x 3 u32. Up to the end:
+ *            scene.json of a folder of frames (output.h).
  *   FRAME    u64 number, f64 time (s), u32 V, u32 W; V x 3 and W x 3 f32 (m): of the cloth, and of
  *            those bodies, one after the other, that change their shapes (scene.json: "pc2").
  *   END      u64 frames of the run, which is over.

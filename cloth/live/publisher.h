@@ -59,7 +59,7 @@ struct live_publisher {
     /* the thread's; messages of no bytes: there is none */
     unsigned char *own; /* room for a frame */
     zmq_msg_t scene_message, frame_message;
-    uint64_t scene_number, frames; /* that it has; the newest one's number + 1 */
+    uint64_t scene_number, frames; /* the scene's number; the newest frame's number + 1 */
     struct live_viewer viewer[LIVE_VIEWERS];
     bool warned_version, warned_bytes;
     struct live_door door;

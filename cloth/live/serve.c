@@ -12,8 +12,8 @@
 
 static const double LATELY = 2; /* s: a viewer that asked or was answered within it is awake */
 static const double GRACE = 1;  /* s that viewers have at the end */
-enum { LINGER = 2000 };         /* ms that ZeroMQ has then to send what it took */
-enum { SHUT = 100 };            /* ms between two looks while nobody can connect */
+enum { LINGER = 2000 };         /* ms that ZeroMQ then has to send its messages */
+enum { SHUT = 100 };            /* ms between two looks while the door is shut */
 
 static double now(void)
 {
@@ -153,8 +153,8 @@ static void take_request(struct live_publisher *p, struct live_viewer *who, zmq_
 
 /* ---- Requests ---- */
 
-/* Receives one: who sent it, and its last part. false: there is none. *good: it has the parts of a
- * request. */
+/* Receives a message: its sender, and its last part. false: there is none. *good: it has the parts
+ * of a request. */
 static bool receive(struct live_publisher *p, struct live_viewer *who, zmq_msg_t *part, bool *good)
 {
     int parts = 0;

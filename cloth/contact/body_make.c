@@ -1,5 +1,5 @@
 /* Bodies are made whole in memory of their own and appended only then. The number of a body's bytes
- * follows of its vertices and triangles alone. */
+ * depends on its vertices and triangles alone. */
 #include "cloth/base/memory.h"
 #include "cloth/contact/making.h"
 
@@ -134,8 +134,8 @@ static int put_body(struct contact_making *making, struct contact_body *body)
     return CLOTH_OK;
 }
 
-/* Makes room for so many bytes, at least twice what there was: each body is moved a few times,
- * however many there are. */
+/* Makes room for so many bytes, at least twice what there was: so each body is moved only a few
+ * times. */
 static int make_room(struct contact_bodies *bodies, uint64_t bytes,
                      const struct contact_making *making)
 {

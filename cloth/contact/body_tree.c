@@ -1,5 +1,5 @@
 /* A node halves its triangles at the median and halves both halves again: four parts, each a leaf
- * once it is small. So the shape of the tree follows of the number of triangles alone. */
+ * once it is small. The shape of the tree depends on the number of triangles alone. */
 #include "cloth/base/memory.h"
 #include "cloth/contact/body.h"
 

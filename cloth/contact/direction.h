@@ -178,11 +178,11 @@ PHYS_INLINE double contact_between(enum contact_pair pair, const struct contact_
     return ends.square[lane];
 }
 
-/* Ways that are shorter than so much of the corners' size are taken to be but rounding. */
+/* Ways shorter than this part of the corners' size count as rounding. */
 #define CONTACT_NEAR 1e-6
 
-/* For features that are nearly parallel, degenerate, or so near that a direction between points is
- * only rounding: the candidate direction that separates the corners most. n has length 1, or 0 if
+/* The candidate direction that separates the corners most, for features that are nearly parallel,
+ * degenerate, or so near that a direction between points is only rounding. n has length 1, or 0 if
  * there is none. x: as in contact_nearest_of. */
 void contact_direction_best(enum contact_pair pair, const phys_vec x[4], phys_vec *n);
 

@@ -27,10 +27,9 @@ struct contact_pixel_velocity {
 size_t contact_strip_bytes(const struct contact_body *body, const struct contact_view *view,
                            uint32_t strip);
 
-/* Draws a strip of the body as it is now (contact_bodies_move). A pixel is that of its middle: a
- * triangle has it by the top-left rule, so that both maps have the same pixels and edges no holes.
- * Normals are interpolated from those of vertices, but are that of the triangle where the body
- * bends much. */
+/* Draws a strip of the body as it is now (contact_bodies_move). A triangle has a pixel if it has
+ * its middle, by the top-left rule: both maps have the same pixels, and edges no holes. Normals are
+ * interpolated from the vertices; where the body bends much, they are the triangle's. */
 void contact_strip_draw(const struct contact_body *body, const struct contact_view *view,
                         uint32_t strip, void *memory);
 

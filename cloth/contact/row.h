@@ -98,8 +98,8 @@ PHYS_INLINE double contact_row_push(const struct contact_row *row, const phys_ve
 }
 
 /* The stiffness across the normal at a stretch: softer where the spring would pull more than
- * friction allows it, the secant of Coulomb's law. It is that of the stretch as it will be, if that
- * grows as it did in the step before. */
+ * friction allows it, the secant of Coulomb's law. It is that of the expected stretch, if this
+ * grows as in the step before. */
 PHYS_INLINE double contact_row_across(const struct contact_row *row, const phys_vec *stretch)
 {
     const double most = row->friction * row->load;

@@ -102,7 +102,7 @@ typedef void contact_visit(void *to, uint32_t n, const struct contact_candidate 
 
 /* Visits all pairs of features that are nearer than reach (m) at any time of the step, and others
  * whose boxes are. Pairs that share a number `joined` are none. Each pair comes once. Their order
- * follows of tables, boxes and reach alone. A side with itself (a and b have the same skin): pairs
+ * depends on tables, boxes and reach alone. A side with itself (a and b have the same skin): pairs
  * within it, of the kinds CONTACT_VT and CONTACT_EE. */
 void contact_query(const struct contact_side *a, const struct contact_side *b, double reach,
                    contact_visit *visit, void *to);

@@ -6,10 +6,10 @@
  * it, be one line that does not cross itself. Then no line along it meets the patch twice: the
  * triangles lie beside each other in the view. A way in the view from an inner vertex to another
  * triangle leads through one of the vertex's own triangles. Its length is at least their least
- * altitude in the view. From a vertex on the border it may also lead out of the patch and in again;
- * then it is at least as long as the distance that the border keeps from itself. Both hold at all
- * times of a step if normals are those of the whole step, and if the border keeps its distance all
- * the time: then it never crosses itself. Distances in space are not shorter.
+ * altitude in the view. From a vertex on the border it may also lead out of the patch and in again.
+ * Then it is no shorter than the distance that the border keeps from itself. Both hold at all times
+ * of a step if normals are those of the whole step, and if the border keeps its distance all the
+ * time: then it never crosses itself. Distances in space are not shorter.
  *
  * A line between two points that move straight keeps a distance from another, all the time, if it
  * does at both ends of the step, measured along one direction. */

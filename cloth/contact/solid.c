@@ -1,6 +1,6 @@
 /* Certificates of triangles against convex shapes: three numbers for a pair of directions, as
- * solid.h derives them. All is told in the core's own axes at either end of the step, where neither
- * a common velocity nor the room's origin costs digits. */
+ * solid.h derives them. All numbers are in the core's own axes at either end of the step, so
+ * neither a common velocity nor the room's origin costs digits. */
 #include "cloth/contact/solid_divide.h"
 
 enum { APPROACHES = 4 };
@@ -133,8 +133,8 @@ static bool certify_near(const struct contact_solid *solid,
     return false;
 }
 
-/* The three numbers of the direction to the middle of the triangle at the begin, which does for
- * most; false: there is none. */
+/* The three numbers of the direction to the middle of the triangle at the begin, which is enough
+ * for most; false: there is none. */
 PHYS_INLINE bool middle_numbers(const struct contact_solid *solid,
                                 const struct contact_solid_triangle *triangle, double least[3])
 {

@@ -72,11 +72,11 @@ bool contact_solid_certify(const struct contact_solid *solid, const phys_vec x[3
 enum contact_passing contact_solid_pass(const struct contact_solid *solid, const phys_vec x[3],
                                         const phys_vec y[3], double thickness, double reach);
 
-/* Lowers t, the parts (0 to 1) of the corners' ways, so that the triangle from x to x + t (y - x)
- * is certified; t stays if it is already. A triangle that other pairs cut further must be certified
- * again: a direction that divided the longer ways mostly, but not always, divides the shorter ones.
- * held: bit k: corner k cannot be cut. Returns false, t unchanged, if it finds no such parts: the
- * shape goes where the triangle begins, or a corner that is held goes into it. */
+/* Lowers t, the parts (0 to 1) of the corners' ways, to certify the triangle from x to x + t (y -
+ * x). It leaves t if it is certified already. A triangle that other pairs cut further must be
+ * certified again: a direction that divided the longer ways mostly, but not always, divides the
+ * shorter ones. held: bit k: corner k cannot be cut. Returns false, t unchanged, if it finds no
+ * such parts: the shape goes where the triangle begins, or a corner that is held goes into it. */
 bool contact_solid_cut(const struct contact_solid *solid, const phys_vec x[3], const phys_vec y[3],
                        double thickness, unsigned held, double t[3]);
 

@@ -78,8 +78,8 @@ static void prepare_cut(const struct contact_solid *solid, const phys_vec end[3]
     contact_numbers_due(gap, cut->thickness, cut->goes.rounding, cut->due);
 }
 
-/* The first pair of directions, that of the begin, is taken if it holds below, for every later look
- * finds it again; else that pair which cuts least. */
+/* The first pair of directions, that of the begin, is taken if it holds below, as every later look
+ * finds it again. Else the pair that cuts least is taken. */
 static bool take_cut(const struct contact_solid *solid, const struct solid_cut *cut,
                      const double t[3], const double way[WAYS][3], double best[3])
 {

@@ -79,9 +79,10 @@ static void add_seam(struct threads *to, const double *position, const struct mo
     }
 }
 
-/* The first two seams of which a good part of the one's threads goes through the other. Seams that
- * begin at one corner may touch near it. Triangles are in the order of the seams, and so are pairs.
- * crossed, last: room, of each seam: triangles of the one that go through it; the last of these. */
+/* Finds the first two seams where a good part of the one's threads goes through the other. Seams
+ * that begin at one corner may touch near it. Triangles are in the order of the seams, and so are
+ * pairs. crossed, last: room, of each seam: triangles of the one that go through it; the last of
+ * these. */
 static bool find_crossed(const struct threads *threads, const struct cloth_list *pairs,
                          const struct model_seams *seams, uint32_t *crossed, uint32_t *last,
                          uint32_t found[2])

@@ -107,7 +107,7 @@ static int warn_of_turn(const struct unusual *of, int rotate)
                 length);
 }
 
-/* The key rotate of a map, and those of its motion. */
+/* Warns of the key rotate of a map and of its motion. */
 static int warn_of_turns(const struct unusual *of, int map)
 {
     const int motion = scene_tree_get(of->tree, map, "motion");

@@ -441,7 +441,7 @@ int scene_check(struct model *model, struct scene_tree *tree, struct cloth_error
 {
     struct walk walk = {tree, error};
     const struct place root = {0}, schema = {&root, "schema", 0};
-    /* A file of another schema is told so before its keys are called unknown. */
+    /* Another schema is reported before its keys are called unknown. */
     int node = scene_tree_get(tree, 1, "schema");
     int code =
         node ? check(&walk, &schema, rule_of(scene_root.inside, "schema"), node, NULL) : CLOTH_OK;

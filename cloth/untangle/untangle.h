@@ -52,7 +52,7 @@ struct untangle_listener {
 };
 
 /* Moves x (m, n_points) until all counts are 0, or the rounds are over. Then x is that of the round
- * with the fewest faults, and result->left counts them. CLOTH_E_RUN for coordinates that cannot be
+ * with the fewest faults; result->left counts these. CLOTH_E_RUN for coordinates that cannot be
  * checked, CLOTH_E_MEMORY.
  *
  * A round finds all faults, and makes of each one an inequality for a few points. It goes over all

@@ -121,7 +121,8 @@ static void take_events(struct live_follower *follower)
     zmq_msg_close(&part);
 }
 
-/* A run that has ended is asked no more, unless it is the one before that said so. */
+/* A run that has ended is not asked, unless the end is older than END_OLD: then it was that of an
+ * earlier run. */
 static bool may_ask(const struct live_follower *follower)
 {
     return follower->connected && !follower->asked &&

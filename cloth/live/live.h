@@ -31,11 +31,11 @@ bool live_is_host(const char *text);
  * be listened on, and why; CLOTH_E_LIBRARY, CLOTH_E_MEMORY. */
 int live_publish_open(struct live_publisher **publisher, const char *address,
                       void (*warn)(const char *text), struct cloth_error *error);
-/* ADDRESS:PORT as it is. */
+/* The actual ADDRESS:PORT. */
 const char *live_publish_address(const struct live_publisher *publisher);
 
 /* Replaces the scene. The bodies are at their time 0 when the time of frames, s, is `begin`, and
- * must outlive the frames; the rest of the setup is read only during the call. Call it before the
+ * must outlive the frames. The rest of the setup is read only during the call. Call it before the
  * first frame; later with the same meshes only. Error: CLOTH_E_MEMORY. */
 int live_publish_scene(struct live_publisher *publisher, const struct output_setup *setup,
                        double begin, struct cloth_error *error);

@@ -5,14 +5,14 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Which cloths and obstacles do not meet, since the scene leaves them out. Sides have numbers here:
+/* Cloths and obstacles that do not meet, since the scene leaves them out. Sides are numbered:
  * cloths, then obstacles. */
 struct contact_apart {
     uint32_t n_cloths, n_obstacles;
-    uint32_t *end;        /* n_cloths: one behind the last vertex of each, of all cloths */
-    unsigned char *apart; /* n_cloths x (n_cloths + n_obstacles): 1 where the two do not meet; NULL:
-                           * all meet. Of cloths it is symmetric. */
-    uint32_t n_vertices;  /* of all cloths */
+    uint32_t *end;            /* n_cloths: one behind the last vertex of each, of all cloths */
+    unsigned char *apart;     /* n_cloths x (n_cloths + n_obstacles): 1 where the two do not meet;
+                               * NULL: all meet. Symmetric for cloths. */
+    uint32_t n_vertices;      /* of all cloths */
     const uint32_t *attached; /* by vertex: the obstacle, from 1, that its pin follows, or 0, which
                                * no feature with a corner there meets; NULL: none does */
     uint32_t *joined; /* by vertex of all cloths: the lowest that pulled seams, and edges shorter

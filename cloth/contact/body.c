@@ -1,7 +1,7 @@
-/* A body: its gap is the distance to the nearest of its triangles, of equal ones the first of the
- * mesh; its sign follows of the pseudo-normal there (Baerentzen & Aanaes, Signed Distance
- * Computation Using the Angle Weighted Pseudonormal, 2005), which is also the normal of points on
- * an edge or a corner. No result depends on the order in which the tree is walked. */
+/* The gap of a body is the distance to its nearest triangle; of equally near ones, the first of the
+ * mesh. The pseudo-normal there gives the sign (Baerentzen & Aanaes, Signed Distance Computation
+ * Using the Angle Weighted Pseudonormal, 2005). It is also the normal of points on an edge or a
+ * corner. No result depends on the order in which the tree is walked. */
 #include "cloth/contact/body.h"
 #include "cloth/contact/shape.h"
 
@@ -9,8 +9,8 @@
 #include <string.h>
 
 enum { STACK = 64 }; /* nodes: three more for each of at most 15 levels */
-/* A box whose square of a distance is larger than the nearest one by so much of it holds nothing
- * nearer, however both were rounded or lost two bits. */
+/* A box holds nothing nearer if its squared distance exceeds the nearest one by this part: both may
+ * be rounded, or have lost two bits. */
 static const double MORE = 1 + 1e-12;
 /* m^2: from farther away a body is a point, and products of differences may be infinite. */
 static const double FAR = 1e60;
@@ -18,7 +18,7 @@ static const double FAR = 1e60;
 typedef float float_lanes __attribute__((vector_size(16)));
 typedef int64_t lane_mask __attribute__((vector_size(32)));
 
-/* Where the nearest point of a triangle lies: in it, on the edge after a corner, on a corner. */
+/* The place of a triangle's nearest point: in it, on the edge after a corner, on a corner. */
 enum feature { FACE, EDGE = 1, CORNER = EDGE + 3 };
 
 struct nearest {
@@ -38,7 +38,8 @@ const struct contact_body *contact_bodies_at(const struct contact_bodies *bodies
 
 /* ---- The nearest point ---- */
 
-/* Of a triangle, by the regions of its plane (Ericson, Real-Time Collision Detection, 5.1.5). */
+/* The nearest point of a triangle, by the regions of its plane (Ericson, Real-Time Collision
+ * Detection, 5.1.5). */
 PHYS_INLINE uint32_t facet_nearest(const phys_vec *a, const phys_vec *b, const phys_vec *c,
                                    const phys_vec *x, phys_vec *at)
 {
@@ -145,7 +146,7 @@ PHYS_INLINE uint32_t push_parts(const struct contact_node *node, const phys_vec 
     return n;
 }
 
-/* The nearest point of a body, from what is nearest so far. */
+/* The nearest point of a body; *best is the nearest so far. */
 PHYS_INLINE void body_nearest(const struct contact_body *body, const phys_vec *x,
                               struct nearest *best)
 {
@@ -186,7 +187,7 @@ PHYS_INLINE void feature_normal(const struct contact_body *body, const struct ne
     }
 }
 
-/* Of the nearest point of a body with frames: what its corners have, by its weights. */
+/* The velocity of the nearest point of a body with frames: those of the corners by its weights. */
 static void feature_velocity(const struct contact_body *body, const struct nearest *nearest,
                              phys_vec *velocity)
 {
@@ -259,7 +260,7 @@ static bool boxes_meet(const struct box *box, const struct contact_node *node, i
     return meet;
 }
 
-/* Whether no leaf of the tree meets a box. */
+/* True if no leaf of the tree meets a box. */
 static bool body_leaves(const struct contact_body *body, const struct box *box)
 {
     const struct contact_node *nodes = contact_body_nodes(body);

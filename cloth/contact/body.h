@@ -95,33 +95,33 @@ struct contact_bodies {
 };
 
 /* Appends a body of the triangles of a mesh, m; its other parts are not read. *turned: the mesh was
- * inside out, so that the body has its triangles the other way round. Errors: CLOTH_E_INPUT for
- * a mesh without triangles, with one that has no area or two that lie on each other, that is not
- * closed or not oriented, holds no room, or has a part that is inside out and no hole; they name
- * vertices and triangles from 1, as OBJ files do. CLOTH_E_MEMORY. After an error the bodies are as
- * they were. Local. */
+ * inside out, and the body has its triangles turned round. Errors: CLOTH_E_INPUT for a mesh without
+ * triangles, or with one without area, or two that lie on each other. Also if it is not closed, not
+ * oriented, holds no room, or has a part that is inside out and no hole. Errors name vertices and
+ * triangles from 1, as OBJ files do. CLOTH_E_MEMORY. An error leaves the bodies unchanged.
+ * Local. */
 int contact_bodies_add(struct contact_bodies *bodies, const struct mesh *mesh, bool *turned,
                        struct cloth_error *error);
 
-/* The same of a body with frames, of which the mesh says how its triangles join; it is where the
- * frames are at time 0. CLOTH_E_INPUT, too, for a vertex of a frame that is nowhere. */
+/* The same for a body with frames; the mesh says how triangles join, and is where the frames are at
+ * time 0. CLOTH_E_INPUT also for a vertex of a frame that is too far away. */
 int contact_bodies_add_frames(struct contact_bodies *bodies, const struct mesh *mesh,
                               const struct contact_frames *frames, bool *turned,
                               struct cloth_error *error);
 
-/* Before the tasks of a step between two times, s: those with frames are where the step ends, with
- * the velocities of its chords. Nobody may use the bodies meanwhile. */
+/* Moves bodies with frames to the end of a step between two times, s, with the velocities of its
+ * chords. Call it before the step's tasks; the bodies must not be in use. */
 void contact_bodies_move(const struct contact_bodies *bodies, double from, double to);
 
-/* The places, m, of the vertices, or of one vertex, of a body with frames at a time, s. Whether a
- * body, or NULL, has frames that are not over by then. */
+/* The places, m, of the vertices, or of one vertex, of a body with frames at a time, s. The last
+ * one is true if a body, or NULL, has frames that are not over by then. */
 void contact_body_places(const struct contact_body *body, double time, phys_vec *x);
 void contact_body_vertex_place(const struct contact_body *body, double time, uint32_t vertex,
                                phys_vec *x);
 bool contact_body_moves_after(const struct contact_body *body, double time);
 
-/* Puts the vertices of a body without frames, of a number from 1, where x says, m. For those who
- * see a run from outside. Nobody may use the body meanwhile. */
+/* Puts the vertices of a body without frames, of a number from 1, at x, m. For viewers of a run.
+ * The body must not be in use. */
 void contact_body_place(const struct contact_bodies *bodies, uint32_t number, const double (*x)[3]);
 
 /* That of a number, from 1; NULL for 0. */
@@ -132,9 +132,10 @@ const struct contact_body *contact_bodies_at(const struct contact_bodies *bodies
 int contact_body_mesh(const struct contact_body *body, struct mesh *mesh,
                       struct cloth_error *error);
 
-/* Builds the tree: puts `order`, the n numbers of triangles, in that of the tree, and makes as many
- * nodes as contact_tree_nodes says. low, high: the boxes of the triangles by number. Medians of the
- * middles of boxes along the longest axis, of equal ones the lower number first. */
+/* contact_tree_build sorts `order`, the n numbers of triangles, as the tree has them, and makes
+ * contact_tree_nodes nodes. low, high: the boxes of the triangles by number. Nodes are divided at
+ * medians of the boxes' middles along the longest axis; of equal ones, the lower number is
+ * first. */
 uint32_t contact_tree_nodes(uint32_t n_triangles);
 uint32_t contact_tree_part(uint32_t n_triangles, int i); /* where part i of a node begins; 4: n */
 int contact_tree_build(uint32_t n, uint32_t *order, const phys_vec *low, const phys_vec *high,

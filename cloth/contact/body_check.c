@@ -1,13 +1,13 @@
-/* What a mesh has to be to be a body: closed, of triangles with an area that are wound alike and do
- * not lie on each other, and with room inside. */
+/* A body's mesh must be closed and hold room. Its triangles must have an area, be wound alike, and
+ * not lie on each other. */
 #include "cloth/base/sets.h"
 #include "cloth/contact/making.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-/* Below these parts of what it could be a triangle has no area, or a body no room. rad: below it
- * two triangles at an edge lie on each other. */
+/* FLAT, EMPTY: below these parts of the possible size, a triangle has no area, or a body no room.
+ * FOLDED, rad: below it, two triangles at an edge lie on each other. */
 static const double FLAT = 1e-9, EMPTY = 1e-9, FOLDED = 1e-10;
 enum { MAX_TRIANGLES = 1 << 28 };
 
@@ -79,7 +79,7 @@ static void sort_sides(struct contact_making *making)
     qsort(making->side, 3 * (size_t)making->n, sizeof *making->side, by_ends);
 }
 
-/* How many sides have the edge of this one, which is the first of them. */
+/* The number of sides that have the edge of this one, the first of them. */
 static size_t count_sides(const struct contact_making *making, size_t first)
 {
     size_t n = 1;
@@ -159,7 +159,7 @@ static void see(const struct contact_making *making, uint32_t t, const phys_vec 
     }
 }
 
-/* Six times the volume, m^3, and what it could be: its magnitude were all parts of one sign. */
+/* Six times the volume, m^3, and its possible size: its magnitude if all parts had one sign. */
 static void find_volume(const struct contact_making *making, double *volume, double *most)
 {
     phys_vec origin;
@@ -203,7 +203,7 @@ static int orient(struct contact_making *making, bool *turned)
 
 /* ---- Parts ---- */
 
-/* The parts of a mesh are what edges join. By number of the triangle, until the tree takes its
+/* The parts of a mesh are joined by edges. By number of the triangle, until the tree takes its
  * room: `order` leads to the first triangle of the part, whose normal has its volume in lane 3. */
 static uint32_t part_of(const struct contact_making *making, uint32_t t)
 {
@@ -230,8 +230,9 @@ static void measure_parts(struct contact_making *making)
     }
 }
 
-/* How often the other parts go round a vertex of a part: sums of solid angles (van Oosterom &
- * Strackee 1983). It is rounded to a whole number, so that the bits of atan2 do not matter. */
+/* The winding number of the other parts around a vertex of a part: sums of solid angles (van
+ * Oosterom & Strackee 1983). It is rounded to a whole number, so that the bits of atan2 do not
+ * matter. */
 static double windings_of(const struct contact_making *making, uint32_t part)
 {
     phys_vec from;

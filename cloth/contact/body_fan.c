@@ -1,7 +1,7 @@
 /* The facets around a vertex, from one to the next across their edges. */
 #include "cloth/contact/body_skin.h"
 
-/* Of a distance: a surface that rises by less is flat. */
+/* Part of a distance: a surface that rises by less is flat. */
 static const double FLAT = 1e-3;
 /* Square of the sine of an angle: facets that meet at less are of one flat surface. It is small, as
  * a triangle of the cloth may lie over many edges. */
@@ -62,7 +62,7 @@ static void find_normal(const struct contact_facet *facet, const phys_vec *y, ph
                     0};
 }
 
-/* Whether two facets meet at an angle. */
+/* True if two facets meet at an angle. */
 static bool is_bent(const phys_vec *m, const phys_vec *n)
 {
     const double dot = phys_dot(m, n);

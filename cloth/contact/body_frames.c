@@ -1,6 +1,6 @@
 /* A body of frames changes its place in its own memory: vertices, normals and boxes are those of
- * the end of a step, velocities those of the step. They follow of the two times alone, whatever the
- * body was moved to before. */
+ * the end of a step, velocities those of the step. They depend on the two times alone, not on
+ * earlier moves. */
 #include "cloth/contact/making.h"
 #include "cloth/contact/shape.h"
 
@@ -52,8 +52,8 @@ bool contact_body_moves_after(const struct contact_body *body, double time)
     return moves && time < body->first + (body->n_frames - 1) / body->rate;
 }
 
-/* A triangle without area has neither a direction nor angles: it faces up, and says nothing of its
- * corners. */
+/* A triangle without area has neither a direction nor angles: it faces up, and does not count for
+ * its corners. */
 static void move_normals(const struct contact_body *body, const phys_vec *x, phys_vec *of_facet,
                          phys_vec *of_vertex)
 {

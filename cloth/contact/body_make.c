@@ -1,5 +1,5 @@
 /* Bodies are made whole in memory of their own and appended only then. The number of a body's bytes
- * follows of its vertices and triangles alone. */
+ * depends on its vertices and triangles alone. */
 #include "cloth/base/memory.h"
 #include "cloth/contact/making.h"
 
@@ -29,7 +29,7 @@ double contact_angle(const phys_vec *a, const phys_vec *b)
     return 16 * tangent * sum;
 }
 
-/* Of all vertices; those that no triangle has keep zero. */
+/* Adds the normals of all vertices; those without a triangle keep zero. */
 static void add_normals(const struct contact_making *making, phys_vec *normal)
 {
     for (uint32_t t = 0; t < making->n; t++) {
@@ -134,8 +134,8 @@ static int put_body(struct contact_making *making, struct contact_body *body)
     return CLOTH_OK;
 }
 
-/* Makes room for so many bytes, at least twice what there was: each body is moved a few times,
- * however many there are. */
+/* Makes room for so many bytes, at least twice what there was: so each body is moved only a few
+ * times. */
 static int make_room(struct contact_bodies *bodies, uint64_t bytes,
                      const struct contact_making *making)
 {
@@ -199,7 +199,7 @@ static void free_room(struct contact_making *making)
     free(making->normal);
 }
 
-/* That all vertices of all frames are where those of a mesh may be. */
+/* Checks that all vertices of all frames are within the bound of a mesh. */
 static int check_frames(const struct contact_making *making)
 {
     const uint32_t n = making->mesh->n_vertices;

@@ -4,11 +4,10 @@
 #include "cloth/contact/shape.h"
 #include "cloth/contact/skin.h"
 
-/* A body as blocks of cloth are met: a skin whose points are the body's vertices, with all of its
- * triangles, edges and vertices as features. Over a step each point moves straight from its place
- * by the pose at the begin to that by the pose at the end, or from where its frames have it to
- * where they have it then, so that a motion has no jump from step to step; none can be cut. The
- * certificates of cloth hold for it as they are. Local. */
+/* A body as a skin, as blocks of cloth are. Points are the body's vertices; features are all of its
+ * triangles, edges and vertices. Over a step each point moves straight between its places at both
+ * ends, by the pose or by the frames, so a motion has no jump from step to step. No way can be cut.
+ * The certificates of cloth hold for it as they are. Local. */
 
 /* Room for its table, and for boxes of a step, in bytes, aligned to CONTACT_ALIGN. */
 size_t contact_body_skin_bytes(const struct contact_body *body);
@@ -20,9 +19,9 @@ size_t contact_body_boxes_bytes(const struct contact_body *body);
 int contact_body_skin_make(const struct contact_body *body, uint32_t first_id, void *table,
                            struct cloth_error *error);
 
-/* Fills x and y (m), by vertex, at the begin and at the end of a step, and the way of its middle
- * from one to the other, in whose frame contact_refit makes small boxes. Of a body that stands
- * still they are the same in every step. */
+/* Fills x and y (m), by vertex, at the begin and at the end of a step. way: that of the body's
+ * middle; contact_refit makes small boxes in its frame. They are the same in every step for a body
+ * that stands still. */
 void contact_body_ends(const struct contact_body *body, const struct contact_pose *pose,
                        phys_vec *x, phys_vec *y, phys_vec *way);
 
@@ -33,16 +32,16 @@ void contact_body_vertex_ends(const struct contact_body *body, const struct cont
 /* Fills, by vertex, a facet that has it; UINT32_MAX: none has. */
 void contact_body_fans(const struct contact_body *body, uint32_t *fan);
 
-/* Whether points along a direction n of length 1, out of a point of the surface, have this as their
- * nearest point nearby: n is in the cone that the surface leaves open there. The point lies between
- * n_vertices vertices: on one, on an edge or in a facet. y: by vertex, m. Where a flat part of the
- * surface has edges, only its normal is; beside an edge that goes in, nothing is. So a contact
- * beside an edge does not hold up what moves across it. */
+/* True if the unit direction n is in the cone that the surface leaves open at a point: then points
+ * along n have it as their nearest point nearby. The point lies between n_vertices vertices: on
+ * one, on an edge or in a facet. y: by vertex, m. At edges within a flat part, only the normal is
+ * in the cone; at an edge that goes in, no direction is. So a contact beside an edge does not stop
+ * motion across it. */
 bool contact_body_opens(const struct contact_body *body, const uint32_t *fan, const phys_vec *y,
                         uint32_t n_vertices, const uint32_t *vertex, const phys_vec *point,
                         const phys_vec *n);
 
-/* Whether the surface bends at a vertex or an edge, by more than 0.1 degree. */
+/* True if the surface bends at a vertex or an edge, by more than 0.1 degree. */
 bool contact_body_bends(const struct contact_body *body, const uint32_t *fan, const phys_vec *y,
                         uint32_t n_vertices, const uint32_t *vertex);
 

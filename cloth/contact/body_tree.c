@@ -1,5 +1,5 @@
 /* A node halves its triangles at the median and halves both halves again: four parts, each a leaf
- * once it is small. So the shape of the tree follows of the number of triangles alone. */
+ * once it is small. The shape of the tree depends on the number of triangles alone. */
 #include "cloth/base/memory.h"
 #include "cloth/contact/body.h"
 
@@ -90,7 +90,7 @@ static void put_box(const struct tree *tree, struct contact_node *node, int part
     }
 }
 
-/* Boxes around what a part of a node has: its facets, or the boxes of its node, which is already
+/* Fits the box of a part of a node to its facets, or to the boxes of its child, which are already
  * fit. */
 static void refit_part(const struct contact_facet *facet, const phys_vec *x,
                        struct contact_node *nodes, struct contact_node *node, int part)

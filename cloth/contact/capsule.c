@@ -1,5 +1,5 @@
-/* A capsule: all points within a radius of a line between two points. Where both ends are one it is
- * a ball. */
+/* A capsule: all points within a radius of a line between two points. It is a ball if both ends are
+ * one. */
 #include "cloth/contact/shape.h"
 
 #include <math.h>

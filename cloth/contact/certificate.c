@@ -1,17 +1,17 @@
-/* Nothing is said to be certain but by contact_pass's two comparisons, each with its bound on
- * rounding. Which direction and which plane are taken decides how often, never whether truly. */
+/* Only contact_pass's two comparisons, each with its bound on rounding, make a pair certain. The
+ * choice of direction and plane changes how many pairs are certain, never correctness. */
 #include "cloth/contact/certificate.h"
 
 #include "cloth/contact/direction.h"
 
 #include <math.h>
 
-/* ---- What is certain ---- */
+/* ---- Certainty ---- */
 
-/* What rounding may take from f, see the header. */
+/* The loss of f by rounding, see the header. */
 #define ROUNDING 0x1p-50
 
-/* At the start, and at least: rounding of a direction must not lose a pair that a step before has
+/* The least f at the start: rounding of a direction must not lose a pair that the step before has
  * left at the margin. */
 #define LEAST (CONTACT_MARGIN / 2)
 
@@ -30,7 +30,7 @@ struct ends {
     struct contact_lanes x, y;
 };
 
-/* What f(1) must be at least, m. */
+/* The least f(1), m. */
 PHYS_INLINE double least_after(double before, double thickness)
 {
     const double half = 0.5 * before, part = 0.1 * thickness;
@@ -64,7 +64,7 @@ PHYS_INLINE double along_wider(const struct along *a, double gap)
     return own > gap ? own : gap;
 }
 
-/* The proof, and whether f(1) is enough after a gap, m. What is not a number fails. */
+/* True if the pair is proven, and f(1) is enough after a gap, m. NaN fails. */
 PHYS_INLINE bool along_enough(const struct along *a, double gap, double thickness, double off)
 {
     const double least = least_after(gap, thickness), margin = CONTACT_MARGIN + off;
@@ -73,7 +73,7 @@ PHYS_INLINE bool along_enough(const struct along *a, double gap, double thicknes
     return is_proof & (a->after >= a->length * (asked < gap ? asked : gap));
 }
 
-/* Whether both are more than so much, m. */
+/* True if both are above `far`, m. */
 PHYS_INLINE bool along_beyond(const struct along *a, double far)
 {
     const double least = a->before < a->after ? a->before : a->after;
@@ -103,8 +103,8 @@ PHYS_INLINE double quick_apart(bool is_edges, const phys_vec *along)
     return (a < of_first ? a : of_first) - (last > of_second ? last : of_second);
 }
 
-/* Whether no difference comes to 2 m, nor is one no number: the bits of all of them together are no
- * less than those of each. */
+/* True if all differences are numbers below 2 m. All bits or'ed together are no less than the bits
+ * of each. */
 PHYS_INLINE bool quick_small(const struct ends *ends)
 {
     contact_mask bits = {0};
@@ -116,7 +116,7 @@ PHYS_INLINE bool quick_small(const struct ends *ends)
 }
 
 /* The two directions that features may be closest in, of their corners p, which `at` are against
- * the first. Returns whether they are so near that those may be but rounding. */
+ * the first. Returns true if the features are so near that the directions may be only rounding. */
 PHYS_INLINE bool find_directions(enum contact_pair pair, const phys_vec p[4],
                                  const struct contact_lanes *at, phys_vec n[2])
 {
@@ -125,8 +125,8 @@ PHYS_INLINE bool find_directions(enum contact_pair pair, const phys_vec p[4],
     return !(square > CONTACT_NEAR * CONTACT_NEAR * contact_square(at));
 }
 
-/* What f is at both ends where features are surely farther apart than reach, m: nearest points,
- * found with other roundings, say so as well. */
+/* The f at both ends, m, that shows features to be farther apart than reach. Its margin covers the
+ * other roundings of nearest points. */
 PHYS_INLINE double far_of(double reach)
 {
     return reach * (1 + 1e-9) + 1e-9;
@@ -180,8 +180,8 @@ PHYS_KERNEL_OF(enum contact_passing, contact_pass_closely,
     return pass_closely(CONTACT_EE, x, y, thickness, reach);
 }
 
-/* Whether the sum of what lies across both features at the start and at the end proves the pair,
- * and f(1) is enough after any gap. Most calls do nothing else. */
+/* True if the sum of the directions across both features at the start and at the end proves the
+ * pair, and f(1) is enough after any gap. Most calls end here. */
 PHYS_INLINE enum contact_passing pass_quickly(bool is_edges, const phys_vec x[4],
                                               const phys_vec y[4], double thickness, double reach)
 {
@@ -228,15 +228,14 @@ bool contact_certify(enum contact_pair pair, const phys_vec x[4], const phys_vec
 
 /* ---- Cut ---- */
 
-/* Along a direction of length 1: heights above corner 0 at x, those at the end less what all
- * corners share; and for the plane that divides the features at the end, how near to it a corner
- * may come and where it may lie. */
+/* A cut along a unit direction. Heights are above corner 0 at x; those at the end lack the motion
+ * that all corners share. A plane divides the features at the end. */
 struct cut {
     enum contact_pair pair;
     unsigned held;
     phys_vec begin, end; /* m, by corner */
     double shared;       /* m */
-    double half, off;    /* m: the least distance that is left; what rounding of the ends is */
+    double half, off;    /* m: the least distance left; the rounding of the ends */
     double low, high;    /* of the plane, m */
 };
 
@@ -250,8 +249,9 @@ static bool is_held(const struct cut *cut, int corner)
     return cut->held >> corner & 1;
 }
 
-/* What a rounded x + t (y - x) is off by is less than 3 u of its coordinates, its height less than
- * 5 u of its differences; this is more than twice as much. What is not finite gives what is not. */
+/* A rounded x + t (y - x) is off by less than 3 u of its coordinates, its height by less than 5 u
+ * of its differences. This bound is more than twice as large; it is not finite if an input is
+ * not. */
 static double cut_rounding(const phys_vec x[4], const phys_vec y[4],
                            const struct contact_lanes *begin, const struct contact_lanes *end)
 {
@@ -280,7 +280,7 @@ static void cut_share(struct cut *cut, double far)
         cut->end[k] -= cut->shared;
 }
 
-/* Where the plane may lie: each corner that is cut has room at x and each held one at y. */
+/* The range of the plane: each cut corner has room at x, and each held one at y. */
 static void cut_bounds(struct cut *cut)
 {
     cut->low = -INFINITY;

@@ -1,6 +1,6 @@
-/* A cylinder with flat ends; a flat one is a disc. As a box it has sharp edges: outside, the
- * nearest point is the point itself, cut off at the ends and at the side; inside, it is on the
- * nearer of them, an end of equals. */
+/* A cylinder with flat ends; a flat one is a disc. It has sharp edges, as a box has. Outside, the
+ * nearest point is the point itself, clamped to the ends and the side. Inside, it is on the nearer
+ * of end and side; on an end if they are equal. */
 #include "cloth/contact/shape.h"
 
 #include <math.h>

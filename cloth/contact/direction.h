@@ -7,14 +7,14 @@
 
 #include <stdbool.h>
 
-/* What pair.c and certificate.c share: the directions that a pair may be closest in. Four corners
- * lie side by side, lane k is corner k, as differences against corner 0.
+/* Shared by pair.c and certificate.c: the directions that a pair may be closest in. Lane k is
+ * corner k of four, as its difference against corner 0.
  *
- * Two features are closest inside both (the foot of the vertex in the triangle, the feet of the
- * common perpendicular on both edges), and then across both; or else at a vertex of one and a point
- * of an edge of the other: of the three edges of a triangle, of the two ends of either edge. Those
- * are four lanes of the same computation. The closest direction of all is the one that parts the
- * corners most, so that what parts them less need not be told from what is not closest. */
+ * Two features may be closest inside both (the foot of the vertex in the triangle, the feet of the
+ * common perpendicular on both edges): the direction is then across both. Else they are closest at
+ * a vertex of one and a point of an edge of the other: a triangle has three edges, and two edges
+ * have four ends. Those are four lanes of the same computation. The direction that separates the
+ * corners most is the closest, so the others need no test. */
 
 struct contact_lanes {
     phys_vec c[3]; /* by coordinate */
@@ -178,16 +178,16 @@ PHYS_INLINE double contact_between(enum contact_pair pair, const struct contact_
     return ends.square[lane];
 }
 
-/* Ways that are shorter than so much of the corners' size are taken to be but rounding. */
+/* Ways shorter than this part of the corners' size count as rounding. */
 #define CONTACT_NEAR 1e-6
 
-/* For features that are nearly parallel, degenerate, or so near that a direction between points is
- * but rounding: of all directions that could be meant, that which parts the corners most; of length
- * 1, or 0 if there is none. x: as contact_nearest_of has it. */
+/* The candidate direction that separates the corners most, for features that are nearly parallel,
+ * degenerate, or so near that a direction between points is only rounding. n has length 1, or 0 if
+ * there is none. x: as in contact_nearest_of. */
 void contact_direction_best(enum contact_pair pair, const phys_vec x[4], phys_vec *n);
 
-/* contact_pass by the closest directions alone: a function of its own, so that what most calls need
- * is small. */
+/* contact_pass by the closest directions alone: a function of its own, so that the code of most
+ * calls is small. */
 enum contact_passing contact_pass_closely(enum contact_pair pair, const phys_vec x[4],
                                           const phys_vec y[4], double thickness, double reach);
 

@@ -1,13 +1,12 @@
-/* A pixel shows a plane: through what its middle sees, across the normal there. So a point is told
- * its gap to second order in how far it is from the middle of the pixel. */
+/* A pixel shows a plane: through the surface at its middle, across the normal there. So the gap of
+ * a point is right to second order in its distance from the middle of the pixel. */
 #include "cloth/contact/image.h"
 
 #include <math.h>
 
 enum { AT_ONCE = 32 }; /* points, whose places are on the stack */
 
-/* What does not change from point to point. Along columns, rows, and the axis: where the maps
- * begin, m. */
+/* Values that all points share. low: where the maps begin along columns, rows and the axis, m. */
 struct looking {
     const struct contact_image *image;
     uint32_t u, v, axis, shift;

@@ -1,5 +1,5 @@
-/* Corners are put on whole numbers, of which a pixel has FINE a side. So it is exact on which side
- * of an edge the middle of a pixel lies, and triangles that share the edge agree. A closed body
+/* Corners are rounded to whole numbers, FINE to a side of a pixel. So the side of an edge on which
+ * the middle of a pixel lies is exact, and triangles that share the edge agree. A closed body
  * covers each pixel as often from the front as from the back. */
 #include "cloth/contact/image.h"
 
@@ -9,7 +9,7 @@
 enum { FINE = 4096, STACK = 64 };
 /* Cosine between a triangle and the normal of its corner: beyond it there is an edge. */
 static const double ROUND = 0.8;
-/* Normals lean at least so much towards who looks: none of the surface seen leads away from him. */
+/* Normals lean at least so much towards the viewer: no surface seen leads away. */
 static const double LEAST_FACING = 0.05;
 
 /* A strip that is drawn. */
@@ -46,7 +46,7 @@ static int64_t edge_side(const int64_t a[2], const int64_t b[2], const int64_t x
     return (b[0] - a[0]) * (x[1] - a[1]) - (b[1] - a[1]) * (x[0] - a[0]);
 }
 
-/* Whether an edge has the points on it: of the two ways along it just one has. */
+/* True if an edge owns the points on it: exactly one of its two directions does. */
 static bool edge_owns(const int64_t a[2], const int64_t b[2])
 {
     return b[1] < a[1] || (b[1] == a[1] && b[0] < a[0]);
@@ -109,7 +109,7 @@ static void put_pixel(const struct drawing *d, const struct seen *seen, const do
         d->velocity[at].of[seen->side][c] = (float)blend(weight, seen->velocity, c);
 }
 
-/* Of equal depths the first triangle of the tree stays. */
+/* Draws a pixel. If depths are equal, the first triangle of the tree stays. */
 static void try_pixel(const struct drawing *d, const struct seen *seen, const int64_t inside[3],
                       size_t at)
 {
@@ -176,7 +176,7 @@ static void clear_strip(const struct drawing *d)
         d->velocity[i] = (struct contact_pixel_velocity){0};
 }
 
-/* Whether a part of a node may have pixels in the strip. */
+/* True if a part of a node may have pixels in the strip. */
 static bool is_near(const struct drawing *d, const struct contact_node *node, int part)
 {
     const double low = d->body->low[d->v], pitch = d->view->pitch;
@@ -184,7 +184,7 @@ static bool is_near(const struct drawing *d, const struct contact_node *node, in
            (double)node->low[d->v][part] <= low + ((double)d->first + d->n + 1) * pitch;
 }
 
-/* In the order of the tree, whatever of it the strip leaves out. */
+/* Draws in the order of the tree, which does not depend on the strip. */
 static void draw_facets(const struct drawing *d)
 {
     uint32_t stack[STACK], n = 0;

@@ -3,8 +3,8 @@
 
 #include "cloth/contact/body.h"
 
-/* What the two files that make a body share: body_check.c says whether a mesh can be one and which
- * way round it is; body_make.c makes it. */
+/* Shared by the two files that make a body: body_check.c checks and orients the mesh; body_make.c
+ * makes the body. */
 
 /* An edge of a triangle: from corner `edge` to the next one. */
 struct contact_making_side {
@@ -38,15 +38,15 @@ static inline void contact_cross(const phys_vec *a, const phys_vec *b, phys_vec 
                           u[0] * v[1] - u[1] * v[0], 0};
 }
 
-/* The angle between two vectors of any length, rad; 0 if one has none. Of + - * / and sqrt alone,
- * so that its bits are the same everywhere. */
+/* The angle between two vectors of any length, rad; 0 if one has none. It uses + - * / and sqrt
+ * alone, so that its bits are the same everywhere. */
 double contact_angle(const phys_vec *a, const phys_vec *b);
 
-/* Whether there are triangles, not too many, and no vertex is too far away; before there is room.
- */
+/* Checks that there are triangles, but not too many, and that no vertex is too far away; called
+ * before allocation. */
 int contact_body_check_vertices(const struct contact_making *making);
-/* Fills what the triangles are, and joins them; turns a body round that is inside out. Errors: as
- * of contact_bodies_add. Local. */
+/* Fills the values of the triangles and joins them; turns a body round that is inside out. Errors:
+ * as of contact_bodies_add. Local. */
 int contact_body_check(struct contact_making *making, bool *turned);
 
 #endif

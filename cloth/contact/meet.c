@@ -15,7 +15,7 @@ bool contact_leave(const struct contact_hit *hit, const phys_vec *way, phys_vec 
     return true;
 }
 
-/* Whether none of at most AT_ONCE points is on or in the shape, if that is known at little cost. */
+/* True if a cheap test shows that none of at most AT_ONCE points is on or in the shape. */
 static bool are_apart(const struct contact_shape *shape, const struct contact_pose *pose, size_t n,
                       const phys_vec *x)
 {

@@ -3,8 +3,8 @@
 
 #include "cloth/contact/shape.h"
 
-/* What becomes of a vertex that meets a shape: without friction, along the normal alone. Pure
- * functions; nothing is allocated. */
+/* The response of a vertex to a shape, along the normal alone, without friction. Pure functions
+ * without allocations. */
 
 /* After a step: puts the vertices that are on or in a shape onto its surface, and gives those that
  * go into it the normal velocity of the surface. Tangential velocities do not change. Returns how

@@ -36,7 +36,7 @@ static void best_try(struct best *best, const phys_vec *n)
     best->n = unit;
 }
 
-/* Takes out of a direction what it has along an edge: where the way is short, the rounding of its
+/* Tries a way without its part along an edge: if the way is short, that part is the rounding of its
  * ends. */
 static void best_try_across(struct best *best, const struct contact_ends *ends, int lane)
 {
@@ -68,7 +68,7 @@ void contact_direction_best(enum contact_pair pair, const phys_vec x[4], phys_ve
 
 /* ---- The closest points ---- */
 
-/* Whether the ways along the features are so nearly parallel that their product n means little. */
+/* True if the ways along the features are so nearly parallel that their product n means little. */
 PHYS_INLINE bool is_flat(const phys_vec *a, const phys_vec *b, const phys_vec *n)
 {
     static const double SINE = 1e-12; /* its square */
@@ -82,9 +82,9 @@ PHYS_INLINE bool is_inside(enum contact_pair pair, double u, double v, double wh
     return (u > 0) & (v > 0) & (most < whole);
 }
 
-/* Where they are: corner 0 of VT lies from corner 1 by u a + v b and something across both, of the
- * sides a and b; the begin of the second edge of EE lies so by u a - v b from that of the first.
- * Returns whether both feet lie inside. */
+/* Finds the feet, u and v. VT: corner 0 lies from corner 1 by u a + v b and a way across both sides
+ * a and b. EE: the begin of the second edge lies from that of the first by u a - v b and a way
+ * across. Returns true if both feet lie inside. */
 static bool find_feet(enum contact_pair pair, const phys_vec x[4], double *u, double *v)
 {
     phys_vec a, b, n, across_a, across_b;
@@ -99,7 +99,7 @@ static bool find_feet(enum contact_pair pair, const phys_vec x[4], double *u, do
     return is_inside(pair, *u, *v, 1) && !is_flat(&a, &b, &n);
 }
 
-/* The same from what is known of the ends. That loses digits where angles are small. */
+/* The same from the known ends. That loses digits where angles are small. */
 PHYS_INLINE bool find_feet_quickly(enum contact_pair pair, const phys_vec x[4],
                                    const struct contact_ends *ends, double *u, double *v)
 {
@@ -136,8 +136,8 @@ PHYS_INLINE void weigh_inside(enum contact_pair pair, double u, double v, double
     weight[3] = -v;
 }
 
-/* Of VT, lane k is the edge from corner 1 + k to the next; of EE it is vertex k, against the edge
- * that it is not of. */
+/* VT: lane k is the edge from corner 1 + k to the next. EE: lane k is vertex k, against the other
+ * edge. */
 PHYS_INLINE void weigh_end(enum contact_pair pair, double part, int lane, double weight[4])
 {
     static const unsigned char VERTEX[2][4] = {{0, 0, 0, 0}, {0, 1, 2, 3}};
@@ -172,8 +172,8 @@ static void find_normal(enum contact_pair pair, const phys_vec x[4], const phys_
         *n = axis;
 }
 
-/* Of features that are so near that the way between their points is but rounding: the normal is
- * what parts them most. */
+/* For features so near that the way between their points is only rounding: the normal is the
+ * direction that separates them most. */
 static void nearest_close(enum contact_pair pair, const phys_vec x[4],
                           const struct contact_lanes *lanes, const phys_vec *edge,
                           struct contact_nearest *to)

@@ -18,9 +18,9 @@ struct contact_nearest {
     double gap;       /* m, >= 0; sum weight x = normal gap */
 };
 
-/* Features may be degenerate or parallel: of closest points that are as near, one is taken. Where
- * the gap is 0, or but rounding, the normal is a direction across both. Errors: coordinates that
- * are not finite give a gap that is not. */
+/* Features may be degenerate or parallel: of closest points that are as near, one is taken. If the
+ * gap is 0, or only rounding, the normal is a direction across both. Errors: coordinates that are
+ * not finite give a gap that is not. */
 void contact_nearest_of(enum contact_pair pair, const phys_vec x[4], struct contact_nearest *to);
 
 #endif

@@ -4,20 +4,20 @@
 #include "cloth/contact/row.h"
 
 /* A contact as a spring that pushes apart, in the manner of Vassilev, Spanlang & Chrysanthou
- * (2001): nothing is kept from step to step, and nothing is promised. With the gap g at the point
- * of a row (row.h), the speed u of the point along the normal n and v across it, both against the
- * second side, the force on the first side is
+ * (2001). It has no state between steps, and no guarantee. Let g be the gap at the point of a row
+ * (row.h), u the speed of the point along the normal n, and v its velocity across, both against the
+ * second side. The force on the first side is
  *     push n - rub v,   rub = min(friction push / |v|, hold),
  *     push = max(0, k (thickness - g) - c u) where g < thickness, else 0.
- * It never pulls. Friction slows what slides by Coulomb's law, and what sticks creeps as through a
- * fluid. Along v it does not change with |v|, so its slope is 0 there. By that a step would turn
- * around what is slow. So the slope is what rub has beyond `spare`: with m / h or less no friction
- * turns around a mass m in a step of h.
+ * It never pulls. Sliding contacts slow by Coulomb's law; sticking ones creep as through a fluid.
+ * Along v friction does not change with |v|, so its slope is 0 there, and a step would reverse slow
+ * motion. So the slope is the part of rub beyond `spare`: with m / h or less, no friction reverses
+ * a mass m in a step of h.
  *
- * Where nothing pushes, the slope by the point is still k up to the thickness, and falls to 0 over
- * the band behind it. An implicit step pushes what is stiff out to where the force ends; a step
- * that did not know of it then would let it fall back in. So what is to rest would hop for ever. A
- * slope without a force leaves rest where it is. Pure functions; N, m, N/m, N s/m. */
+ * The slope by the point is still k up to the thickness without a push, and falls to 0 over the
+ * band behind it. An implicit step pushes a stiff contact out to where the force ends. Without the
+ * slope, the next step would let it fall back in, and it would hop for ever. A slope without a
+ * force leaves rest unchanged. Pure functions; N, m, N/m, N s/m. */
 struct contact_spring {
     double stiffness, damping; /* k, c */
     double hold;               /* the most that friction resists a velocity by, k h or less */
@@ -32,8 +32,8 @@ struct contact_repelled {
     double stiffness, damping, rub;
 };
 
-/* speed: of the point against the second side. Of a row normal, origin, gap, thickness and friction
- * count. */
+/* speed: of the point against the second side. The row's normal, origin, gap, thickness and
+ * friction count. */
 PHYS_INLINE void contact_repel(const struct contact_spring *spring, const struct contact_row *row,
                                const phys_vec *point, const phys_vec *speed,
                                struct contact_repelled *to)
@@ -55,8 +55,8 @@ PHYS_INLINE void contact_repel(const struct contact_spring *spring, const struct
     to->force = push * row->normal - rub * across;
 }
 
-/* alpha I + w w' as a spring's value has it (w, alpha) of what a force loses to a change of
- * velocity in a step of h, over h: hold is k h at most, so that w is real. */
+/* The loss of a force to a change of velocity in a step of h, over h. It is alpha I + w w' in the
+ * form of a spring's value: w, alpha. hold is k h at most, so w is real. */
 PHYS_INLINE void contact_repelled_value(const struct contact_repelled *of, const phys_vec *normal,
                                         double h, phys_vec *value)
 {

@@ -8,29 +8,29 @@
 
 /* A contact as the solves of a step see it: a force between a point of the first side and one of
  * the second. The difference of both is the sum of weight times place over the corners of the
- * contact, `point` below (m). Along the normal it is the force of an augmented Lagrangian,
- * max(0, load + k (aim - gap)): the multiplier `load` carries what rests on the contact, so k may
- * be soft. Across the normal it is a spring, cut to friction times the load (Coulomb's law): `slip`
- * is how far it is stretched. Steps are implicit, so the force is that of the end of the step.
+ * contact, `point` below (m). Along the normal the force is that of an augmented Lagrangian, max(0,
+ * load + k (aim - gap)). The multiplier `load` carries the resting weight, so k may be soft. Across
+ * the normal it is a spring, cut to friction times the load (Coulomb's law): `slip` is how far it
+ * is stretched. Steps are implicit, so the force is that of the end of the step.
  *
  * A contact gives back no more energy than it took up: `energy` is the work that its force along
  * the normal did on it so far. A spring of stiffness k that pushes with F holds F^2 / 2k. So a step
- * begins with a push of sqrt(2 k energy) at most. It goes on from the load of the step before and,
- * where the gap is below the thickness, rises towards it as far as the energy does. What rests too
- * deep is lifted slowly though it has none left. That energy is lent to it (contact_row_lent). Pure
+ * begins with a push of sqrt(2 k energy) at most. It starts from the load of the step before and,
+ * if the gap is below the thickness, lifts towards it as far as the energy allows. A contact that
+ * rests too deep without energy is lifted slowly, with lent energy (contact_row_lent). Pure
  * functions; N, m, N/m, J. */
 struct contact_row {
     phys_vec normal; /* out of the second side, of length 1 */
     phys_vec origin; /* the point where the step began */
-    phys_vec slip;   /* across the normal where the step began, less what the second side carries
-                      * the point along in the step */
+    phys_vec slip;   /* across the normal where the step began, less the way that the second side
+                      * carries the point along in the step */
     double gap;      /* at the origin, to the second side where it ends the step */
     double load;
     double thickness, friction;
-    double stiffness; /* k */
-    double slid;  /* how far the spring was stretched at the end of the step before, uncut, and */
-    double grows; /* by what factor that grew in it; 0: as 1 */
-    double firm;  /* how many times as stiff as others it is; 1 or less: as stiff */
+    double stiffness;      /* k */
+    double slid;           /* the stretch of the spring at the end of the step before, uncut, and */
+    double grows;          /* the factor by which it grew in that step; 0: as 1 */
+    double firm;           /* how many times as stiff as others it is; 1 or less: as stiff */
     double energy, rested; /* where the step began: the work taken up so far, the load */
     double start, aim;     /* the gap there; the gap where the push is the load */
     double hold, span;     /* stiffness across the normal; length of the step, s: of the step before
@@ -39,12 +39,13 @@ struct contact_row {
                     * none */
 };
 
-/* Of the thickness: a contact with a load that opens by less beyond it stays one in the step. */
+/* Part of the thickness: a contact with a load that opens by less beyond it stays active in the
+ * step. */
 #define CONTACT_ROW_OPENS 0.1
-/* Of what a gap lacks of the thickness: so much is made up for in a step. What is held up by a
- * contact swings on it if that is more than k h^2 / mass. */
+/* Part of the lack of a gap to the thickness that a step makes up for. A mass resting on a contact
+ * swings if this is more than k h^2 / mass. */
 #define CONTACT_ROW_RISES 0.125
-/* The same of one that was made stiffer, as its pair failed: it has to have room soon. */
+/* The same for a contact that was made stiffer, as its pair failed: it needs room soon. */
 #define CONTACT_ROW_YIELDS 0.5
 /* The same where a load rests, though the row has not taken up the energy for it. */
 #define CONTACT_ROW_LIFTS 0.02
@@ -82,7 +83,7 @@ PHYS_INLINE double contact_row_gap(const struct contact_row *row, const phys_vec
     return row->gap + phys_dot(&row->normal, &way);
 }
 
-/* How far the spring across the normal is stretched at a point. */
+/* The stretch of the spring across the normal at a point. */
 PHYS_INLINE void contact_row_stretch(const struct contact_row *row, const phys_vec *point,
                                      phys_vec *stretch)
 {
@@ -97,8 +98,8 @@ PHYS_INLINE double contact_row_push(const struct contact_row *row, const phys_ve
 }
 
 /* The stiffness across the normal at a stretch: softer where the spring would pull more than
- * friction allows it, the secant of Coulomb's law. It is that of the stretch as it will be, if that
- * grows as it did in the step before. */
+ * friction allows it, the secant of Coulomb's law. It is that of the expected stretch, if this
+ * grows as in the step before. */
 PHYS_INLINE double contact_row_across(const struct contact_row *row, const phys_vec *stretch)
 {
     const double most = row->friction * row->load;
@@ -106,8 +107,8 @@ PHYS_INLINE double contact_row_across(const struct contact_row *row, const phys_
     return most < row->hold * length ? most / length : (most > 0 ? row->hold : 0);
 }
 
-/* Whether it is in the matrix, if the step ends with this gap and push: it presses, or it has a
- * load and hardly opens. Where the step was solved before, that solve says it: an active set. */
+/* True if the contact is in the matrix when the step ends with this gap and push: it presses, or
+ * has a load and hardly opens. If the step was solved before, that solve decides: an active set. */
 PHYS_INLINE bool contact_row_acts(const struct contact_row *row, double gap, double push)
 {
     const bool stays =
@@ -115,10 +116,10 @@ PHYS_INLINE bool contact_row_acts(const struct contact_row *row, double gap, dou
     return row->pushed != 0 ? row->pushed > 0 : stays;
 }
 
-/* The force on the first side if the step ends at this point, and its negative derivative
- * alpha I + w w' as a spring's value has it: w, alpha. Both are zero where nothing presses. What
- * has a load and hardly opens stays for this step, and leaves in the next one if it was pulled: so
- * what rests does not bounce. A positive stiffness across takes energy away in a step of any
+/* The force on the first side if the step ends at this point, and its negative derivative alpha I +
+ * w w' as a spring's value has it: w, alpha. Both are zero if the contact is not active. A contact
+ * with a load that hardly opens stays for this step, and leaves in the next one if it was pulled:
+ * so resting contacts do not bounce. A positive stiffness across takes energy away in a step of any
  * length. */
 PHYS_INLINE void contact_row_linearise(const struct contact_row *row, const phys_vec *point,
                                        phys_vec *force, phys_vec *value)
@@ -169,8 +170,8 @@ PHYS_INLINE void contact_row_stiffen(struct contact_row *row)
     row->firm = firm < 256 ? firm : 256;
 }
 
-/* How firm a row without a load is to be, which would end the step with this gap (m): what comes is
- * stopped within half the thickness or so. */
+/* The firmness of a row without a load that would end the step with this gap (m). It stops an
+ * approach within about half the thickness. */
 PHYS_INLINE double contact_row_firm_for(const struct contact_row *row, double gap)
 {
     const double firm = 2 * (1 - gap / row->thickness);
@@ -188,9 +189,9 @@ PHYS_INLINE double contact_row_energy(const struct contact_row *row, const phys_
     return energy > 0 ? (energy < most ? energy : most) : 0;
 }
 
-/* What was lent to a contact in a step that ended at this point: what it has after the step and
- * what its push gave in it, beyond what it had before. Both are energies; after: 0 if it ended. A
- * push gives too much where the solve before raised the load of a step that opens in the end. */
+/* The energy lent to a contact in a step that ended at this point: its energy after the step, plus
+ * the work of its push, less its energy before. after: 0 if the contact ended. A push gives too
+ * much if the solve before raised the load of a step that opens in the end. */
 PHYS_INLINE double contact_row_lent(const struct contact_row *row, const phys_vec *point,
                                     double before, double after)
 {
@@ -199,14 +200,14 @@ PHYS_INLINE double contact_row_lent(const struct contact_row *row, const phys_ve
     return fmax(after + gave - before, 0);
 }
 
-/* What the row of a step to come holds: its energy, and that of the spring across. */
+/* The energy in the row of a coming step: its own, and that of the spring across. */
 PHYS_INLINE double contact_row_holds(const struct contact_row *row)
 {
     return row->energy + 0.5 * row->hold * phys_dot(&row->slip, &row->slip);
 }
 
-/* The step ended at this point: what the row of the next step has of it. What friction cannot hold
- * has slid. */
+/* Fills the next step's row after a step that ended at this point. Stretch beyond friction's hold
+ * becomes sliding. */
 PHYS_INLINE void contact_row_end(const struct contact_row *row, const phys_vec *point,
                                  struct contact_row *next)
 {

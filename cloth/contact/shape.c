@@ -1,5 +1,5 @@
-/* A kind sees points in the axes of its parameters; here they are brought there and back. What
- * stands still is not touched on the way, so that its bits are those of its kind alone. */
+/* A kind sees points in the axes of its parameters; they are brought there and back here. Points of
+ * shapes that stand still are left untouched, so that the bits are those of the kind alone. */
 #include "cloth/contact/shape.h"
 
 #include "cloth/contact/image.h"

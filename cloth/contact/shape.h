@@ -30,10 +30,10 @@ struct contact_shape {
 
 struct contact_image;
 
-/* Where a shape is at the begin and at the end of a step, and the body that it is. */
+/* The places of a shape at the begin and at the end of a step, and its body. */
 struct contact_pose {
     const struct contact_body *body; /* NULL: it is none */
-    bool moves; /* else the poses mean nothing: the shape is where its parameters say */
+    bool moves; /* else the poses are unused: the shape is where its parameters put it */
     struct phys_pose from, to;
     double begin, end;                 /* s: of the step */
     double rate;                       /* 1/s: 1 over the length of the step; 0: it has none */
@@ -47,7 +47,7 @@ struct contact_hit {
     double gap;        /* m: signed distance, below 0 inside */
 };
 
-/* What a parameter means, which also says how many numbers it has. */
+/* The meaning of a parameter, which also sets its count of numbers. */
 enum contact_role {
     CONTACT_POINT,     /* 3, m */
     CONTACT_DIRECTION, /* 3, of length 1 */
@@ -79,8 +79,8 @@ struct contact_kind {
      * frames the velocity, too. body: NULL but for bodies. */
     void (*closest)(const double *value, const struct contact_body *body, size_t n,
                     const phys_vec *x, struct contact_hit *hit);
-    /* Whether the gaps of n points are all above 0: most rows of a cloth touch nothing, and this
-     * says so at less cost. NULL: there is no cheaper way. */
+    /* True if the gaps of n points are all above 0: a cheap test, as most rows of a cloth touch no
+     * shape. NULL: there is no cheaper way. */
     bool (*apart)(const double *value, const struct contact_body *body, size_t n,
                   const phys_vec *x);
     /* A box around it: its own axes and middle, half its size (m); the shape is star-shaped as seen
@@ -107,8 +107,8 @@ void contact_pose_over(const struct contact_shape *shape, const struct phys_key 
                        const struct contact_bodies *bodies, double from, double to,
                        struct contact_pose *pose);
 
-/* Of n points (m) at the end of the step. Beside maps the gap is INFINITY, and the rest means
- * nothing. */
+/* Finds the hits of n points (m) at the end of the step. Beside maps the gap is INFINITY, and the
+ * rest is meaningless. */
 void contact_closest(const struct contact_shape *shape, const struct contact_pose *pose, size_t n,
                      const phys_vec *x, struct contact_hit *hit);
 

@@ -8,23 +8,23 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Skins: the triangles of a block of cloth, with a tree of boxes. What never changes is a table,
- * one block of memory without pointers, as a body is. What changes in every step is another: the
- * boxes, over the whole step, of all that moves straight from x to y.
+/* Skins: the triangles of a block of cloth, with a tree of boxes. The constant part is a table, one
+ * block of memory without pointers, as a body is. The boxes are another block, made in every step:
+ * they hold features over the whole step, moving straight from x to y.
  *
  * The whole cloth has one skin a block. Each triangle is in one of them. Each vertex and each edge
- * of the whole cloth is a *feature* of one skin that has a triangle with it, so that each pair of
- * a vertex and a triangle, and of two edges, is met in one pair of skins. Points are those that
- * corners of the skin's triangles are at; all positions are by point. The same vertex has the same
- * id in all skins. Vertices that are sewn to each other, but not yet at one place, have ids of
- * their own and one number `joined`: features that share it do not meet. All functions are local.
- */
+ * of the whole cloth is a *feature* of one skin that has a triangle with it. So one pair of skins
+ * finds each pair of a vertex and a triangle, or of two edges. Points are those that corners of the
+ * skin's triangles are at; all positions are by point. The same vertex has the same id in all
+ * skins. Vertices that are sewn to each other, but not yet at one place, have ids of their own and
+ * one number `joined`: features that share it do not meet. All functions are local. */
 
-/* Beside an edge: there is no triangle; there is one, of another skin. */
+/* Values of `beside`: there is no triangle; the triangle is of another skin. */
 #define CONTACT_NO_POINT  UINT32_MAX
 #define CONTACT_FAR_POINT (UINT32_MAX - 1)
 
-/* A table opened; it points into the table. Of one that is only measured, the first four. */
+/* A table opened; it points into the table. A skin that is only measured has the first four
+ * members. */
 struct contact_skin {
     uint32_t n_points, n_triangles;
     uint32_t n_edges, n_vertices; /* features */
@@ -46,10 +46,10 @@ struct contact_skin {
     const uint32_t *along;           /* points of loops */
 };
 
-/* What a skin is made of. x (m) says which triangles are near to each other, now and later: the
- * positions that the cloth begins with. stands: by triangle, bit k: this skin has the vertex at
- * corner k as a feature, by this triangle; bit 3 + k: the edge from corner k to the next one.
- * shared: bit k: if it has that edge, other triangles have it as well, here or in another skin. */
+/* The source of a skin. x (m), the cloth's first positions, groups triangles that are near each
+ * other, now and later. stands, by triangle: bit k: this skin has the vertex at corner k as a
+ * feature, by this triangle; bit 3 + k: the edge from corner k to the next one. shared: bit k:
+ * other triangles, here or in another skin, have that edge, too. */
 struct contact_skin_source {
     uint32_t n_points, n_triangles;
     const uint32_t (*corner)[3];         /* n_triangles */
@@ -62,8 +62,8 @@ struct contact_skin_source {
     const phys_vec *x;                   /* n_points */
 };
 
-/* Bytes of a table, and of what changes in a step; both follow of the four counts alone. The memory
- * is aligned to CONTACT_ALIGN. */
+/* Bytes of a table, and of the boxes of a step; both depend on the four counts alone. The memory is
+ * aligned to CONTACT_ALIGN. */
 size_t contact_skin_bytes(const struct contact_skin *skin);
 size_t contact_boxes_bytes(const struct contact_skin *skin);
 
@@ -73,9 +73,8 @@ int contact_skin_make(const struct contact_skin_source *from, void *table,
                       struct cloth_error *error);
 struct contact_skin contact_skin_open(const void *table);
 
-/* Makes the boxes of a step in which points move straight from x to y (m, finite, by point), in a
- * frame that itself moves by `way` (m): that of the skin's own mean is as good as any. Writes every
- * byte. */
+/* Makes the boxes of a step in which points move straight from x to y (m, finite, by point). They
+ * are in a frame that moves by `way` (m), such as the skin's mean motion. Writes every byte. */
 void contact_refit(const struct contact_skin *skin, const phys_vec *x, const phys_vec *y,
                    const phys_vec *way, void *boxes);
 
@@ -103,7 +102,7 @@ typedef void contact_visit(void *to, uint32_t n, const struct contact_candidate 
 
 /* Visits all pairs of features that are nearer than reach (m) at any time of the step, and others
  * whose boxes are. Pairs that share a number `joined` are none. Each pair comes once. Their order
- * follows of tables, boxes and reach alone. A side with itself (a and b have the same skin): pairs
+ * depends on tables, boxes and reach alone. A side with itself (a and b have the same skin): pairs
  * within it, of the kinds CONTACT_VT and CONTACT_EE. */
 void contact_query(const struct contact_side *a, const struct contact_side *b, double reach,
                    contact_visit *visit, void *to);

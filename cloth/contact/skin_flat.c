@@ -1,16 +1,15 @@
-/* Whether cloth is too flat to touch itself (Volino & Magnenat-Thalmann, Efficient self-collision
- * detection on smoothly discretized surfaces using geometrical shape regularity, 1994), over a
- * whole step and with a distance.
+/* Finds cloth that is too flat to touch itself, over a whole step and with a distance (Volino &
+ * Magnenat-Thalmann, Efficient self-collision detection on smoothly discretized surfaces using
+ * geometrical shape regularity, 1994).
  *
- * If all normals of a patch have a positive part along a direction, and its border, seen along it,
- * is one line that does not cross itself, no line along it meets the patch twice: the triangles lie
- * beside each other in the view. From a point of the view that is a vertex inside, the way to what
- * is of none of the vertex's triangles leads through one of these. So it is at least as long as
- * their least altitude in the view. From a vertex on the border it may also lead out of the patch
- * and in again, where the border is as far away as it keeps from itself. Both hold at all times of
- * a step if normals are those of the whole step, and if the border keeps its distance all the time:
- * it does not cross itself at the begin then, nor can it come to. In space distances are not
- * shorter.
+ * Let all normals of a patch have a positive part along a direction, and let its border, seen along
+ * it, be one line that does not cross itself. Then no line along it meets the patch twice: the
+ * triangles lie beside each other in the view. A way in the view from an inner vertex to another
+ * triangle leads through one of the vertex's own triangles. Its length is at least their least
+ * altitude in the view. From a vertex on the border it may also lead out of the patch and in again.
+ * Then it is no shorter than the distance that the border keeps from itself. Both hold at all times
+ * of a step if normals are those of the whole step, and if the border keeps its distance all the
+ * time: then it never crosses itself. Distances in space are not shorter.
  *
  * A line between two points that move straight keeps a distance from another, all the time, if it
  * does at both ends of the step, measured along one direction. */
@@ -43,7 +42,8 @@ static float lesser(float a, float b)
 
 /* ---- The direction ---- */
 
-/* Of both patches; returns the least part of a normal along it; 0: there is none. */
+/* Finds a direction for both patches; returns the least part of a normal along it; 0: there is no
+ * direction. */
 static float find_direction(const struct contact_point_box *hull, double direction[3])
 {
     double square = 0, least = 0;
@@ -105,9 +105,8 @@ static uint32_t id_on(const struct contact_patch *patch, uint32_t i)
     return skin->id[skin->along[patch->loop->first + i]];
 }
 
-/* Which points of the border of b are on that of a: *from_a, *from_b: where the line that they
- * share begins on a and ends on b. Returns how many points it has; 0: they share no line, or more.
- */
+/* Finds the line that the borders of a and b share. *from_a, *from_b: the points where it begins on
+ * a and ends on b. Returns how many points it has; 0: they share no line, or more. */
 static uint32_t shared_line(const struct contact_patch *a, const struct contact_patch *b,
                             uint32_t *from_a, uint32_t *from_b)
 {
@@ -116,7 +115,7 @@ static uint32_t shared_line(const struct contact_patch *a, const struct contact_
     uint32_t at_a = 0, at_b = 0;
     for (uint32_t i = 0; i < n_b; i++)
         id[i] = id_on(b, i);
-    for (uint32_t i = 0; i <= n_a; i++) { /* the last one again: what is before the first */
+    for (uint32_t i = 0; i <= n_a; i++) { /* the last one again, as it precedes the first */
         const uint32_t here = id_on(a, i < n_a ? i : 0);
         uint32_t k = 0;
         while (k < n_b && id[k] != here)
@@ -198,7 +197,8 @@ static float way_from(const struct border *border, uint32_t point, uint32_t edge
     return square;
 }
 
-/* Whether along a way of this square n points from `point` on keep the distance from an edge. */
+/* True if n points from `point` on keep the distance from an edge, measured along `way`, whose
+ * square is `square`. */
 static bool keeps_along(const struct border *border, uint32_t point, uint32_t n, uint32_t edge,
                         const float way[2], float square)
 {
@@ -296,7 +296,7 @@ static bool fours_keep(const struct border *border, uint32_t r, uint32_t q)
     return true;
 }
 
-/* Whether points and edges that do not share a point keep the reach, and edges do not cross. */
+/* True if points and edges that do not share a point keep the reach, and edges do not cross. */
 static bool border_keeps(struct border *border)
 {
     const float *const low[2] = {border->four_low[0], border->four_low[1]};
@@ -317,7 +317,7 @@ static bool border_keeps(struct border *border)
 
 /* ---- Patches ---- */
 
-/* m: what the reach becomes, so that floats of a border do not matter. */
+/* m: the reach, enlarged by the rounding of the border's floats. */
 static float reach_of(const struct border *border, double reach)
 {
     float most = 0;

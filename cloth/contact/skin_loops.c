@@ -1,6 +1,6 @@
-/* Borders of parts, from the leaves up. Of the sides of a part's triangles, two that go between the
- * same points in opposite senses take each other away; what is left is the border. That of a node
- * comes of those of its children. */
+/* Borders of parts, from the leaves up. Sides of a part's triangles that go between the same points
+ * in opposite senses cancel; the remaining ones are the border. A node's border is made of those of
+ * its children. */
 #include "cloth/base/memory.h"
 #include "cloth/contact/skin_table.h"
 
@@ -10,7 +10,7 @@
 enum { FEW = 40 }; /* sides that are sorted one by one */
 #define NONE UINT32_MAX
 
-/* A side: its ends, the lower one above, and whether it goes from the higher one. */
+/* A side: its ends, the lower one above, and its direction: 1 from the higher one. */
 static uint64_t side_of(uint32_t a, uint32_t b)
 {
     return a < b ? (uint64_t)a << 32 | (uint64_t)b << 1 : (uint64_t)b << 32 | (uint64_t)a << 1 | 1;
@@ -74,7 +74,7 @@ static void reduce(struct making *making, size_t from)
     making->n = kept;
 }
 
-/* The line that n sides make is put behind the others. Returns whether it is one, and simple. */
+/* Appends the line that n sides make. Returns true if it is one simple line. */
 static bool walk(struct making *making, const uint64_t *side, size_t n)
 {
     uint32_t *along = making->along + making->n_along, at = n ? begin_of(side[0]) : 0;

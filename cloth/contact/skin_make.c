@@ -1,6 +1,6 @@
 /* A skin has its triangles in the order of the tree, and features in the order of the triangles
- * that they are of. Sizes follow of the counts alone, as the shape of the tree does, so that who
- * has not seen the triangles knows how much room a skin takes. */
+ * that they are of. Sizes, like the shape of the tree, depend on the counts alone, so the room for
+ * a skin is known without its triangles. */
 #include "cloth/base/memory.h"
 #include "cloth/contact/skin_table.h"
 
@@ -19,7 +19,7 @@ enum {
 
 /* ---- Sizes ---- */
 
-/* Of n nodes, with those that hold nothing: each node but the first is a child. */
+/* The leaves of n nodes, empty ones included: each node but the first is a child. */
 static uint32_t leaves_of(uint32_t n_nodes)
 {
     return 3 * n_nodes + 1;
@@ -73,7 +73,7 @@ size_t contact_skin_bytes(const struct contact_skin *skin)
     return head.bytes;
 }
 
-/* Of the features of a leaf, a group of each kind may not be full. */
+/* A leaf may have one group of features of each kind that is not full. */
 void contact_boxes_lay(const struct contact_skin *skin, struct contact_boxes_head *head)
 {
     const uint32_t n_nodes = count_nodes(skin->n_triangles);

@@ -1,12 +1,12 @@
 /* A query walks two trees at once, or one with itself, and compares a box with four. Boxes of the
- * second skin stay as they are. Those of the first are widened by the reach, by what the first
- * frame moves more than the second, and by what rounding may take: x of a and b at a part s of the
- * step differ by what they do in their frames, and s (way of a - way of b). */
+ * second skin are used as they are. Those of the first are widened by the reach, the motion of the
+ * first frame against the second, and a bound on rounding. For at a part s of the step, x of a and
+ * b differ by their difference within the frames, and s (way of a - way of b). */
 #include "cloth/contact/skin_table.h"
 
 #include <math.h>
 
-/* m: what positions in a moving frame, m, may lose by rounding. */
+/* m: the most that positions in a moving frame lose by rounding. */
 static const double ROUNDING = 1e-9;
 /* The part of a length that sums of floats may lose. */
 static const double FLOATS = 1e-6;
@@ -18,7 +18,7 @@ struct query {
     const struct contact_skin *skin[2];
     double reach;
     const struct contact_boxes *node[2], *group[2];
-    contact_lanes below[3], above[3]; /* m: what boxes of the first are widened by */
+    contact_lanes below[3], above[3]; /* m: the widening of boxes of the first */
     bool self;
     struct contact_slab slab; /* of the first leaf that was met last */
     contact_visit *visit;
@@ -266,8 +266,8 @@ static const struct contact_leaf *leaf_of(const struct query *query, int k, stru
     return query->skin[k]->leaf + (child & ~CONTACT_IS_LEAF);
 }
 
-/* Whether two leaves are out of reach, as seen along the normals of the first. Those of one skin
- * that meet have most often a border in common: to try them costs more than it saves. */
+/* True if two leaves are out of reach, as seen along the normals of the first. Leaves of one skin
+ * that meet mostly share a border: testing them costs more than it saves. */
 static bool leaves_part(struct query *query, struct part a, const struct contact_leaf *other)
 {
     struct contact_slab *slab = &query->slab;
@@ -278,7 +278,7 @@ static bool leaves_part(struct query *query, struct part a, const struct contact
     return contact_slab_parts(query->side[1], other, slab);
 }
 
-/* What is near to the other leaf's box alone is looked at, and within reach along the normals. */
+/* Compares only features near the other leaf's box and within reach along the normals. */
 static void meet_leaves(struct query *query, struct part a, struct part b)
 {
     const struct contact_leaf *of = leaf_of(query, 0, a), *other = leaf_of(query, 1, b);

@@ -2,10 +2,9 @@
  * frame that moves by `way` meanwhile. A point moves straight in it, too, so its box is that of its
  * two ends. Rounding to floats outwards takes more than the roundings of a query may take back.
  *
- * Of a triangle that moves so, twice the area as a vector is a polynomial of the time with three
+ * Twice the area vector of a triangle that moves so is a polynomial of the time with three
  * coefficients in Bernstein's form: at x, at y, and between. So its direction is always in the hull
- * of theirs, and it is at least as long along any direction as the shortest of them in the hull is.
- */
+ * of theirs, and along any direction it is at least as long as the shortest of them. */
 #include "cloth/contact/skin_table.h"
 
 #include <math.h>
@@ -100,7 +99,7 @@ PHYS_INLINE void turn_each(const contact_lanes from[3], contact_lanes to[4])
     to[3] = SHUFFLE(xy23, z, 2, 3, 7, 7);
 }
 
-/* The box around four; its last lane means nothing. */
+/* The box around four; its last lane is unused. */
 PHYS_INLINE void lanes_whole(const struct contact_boxes *boxes, struct contact_point_box *whole)
 {
     contact_lanes low[4], high[4];
@@ -124,7 +123,7 @@ PHYS_INLINE void round_out(struct contact_point_box *box)
     box->high += (contact_lanes)((float_mask)box->high & size) * 0x1p-22f;
 }
 
-/* Groups of the boxes of n features, each of so many points; lanes behind them hold nothing. */
+/* Fills groups of the boxes of n features, each of `points` points; lanes behind them are empty. */
 PHYS_INLINE void put_features(uint32_t n, uint32_t points, const uint32_t *point,
                               const struct contact_point_box *of, struct contact_boxes *to)
 {
@@ -146,7 +145,7 @@ PHYS_INLINE void put_features(uint32_t n, uint32_t points, const uint32_t *point
 
 /* ---- Slopes ---- */
 
-/* Of four triangles: from corner 0 to corner k + 1. */
+/* The edges of four triangles: from corner 0 to corner k + 1. */
 struct edges {
     contact_lanes e[2][3];
 };
@@ -237,7 +236,7 @@ PHYS_INLINE void find_slopes(const uint32_t *const corner[4], const phys_vec *x,
     choose(&known, &altitude, &to->altitude);
 }
 
-/* Those of a leaf as the slopes of one part. */
+/* The slopes of a leaf, as one part of a node. */
 PHYS_INLINE void leaf_slopes(const struct contact_skin *skin, const struct contact_leaf *leaf,
                              const phys_vec *x, const phys_vec *y, struct contact_point_box *normal,
                              float *altitude)

@@ -1,20 +1,19 @@
-/* Two leaves whose boxes meet are most often apart, as seen along the normals of one of them: boxes
- * of what lies aslant are large. What a height says holds for the whole step, since heights along
- * one direction change evenly. All is of differences of heights at the same end of the step, so
- * that no frame is needed. */
+/* Most leaves whose boxes meet are apart as seen along the normals of one of them: boxes of slanted
+ * triangles are large. Heights along one direction change evenly, so both ends of a step bound the
+ * whole step. Only heights at the same end are compared, so no frame is needed. */
 #include "cloth/contact/direction.h"
 #include "cloth/contact/skin_table.h"
 
 #include <math.h>
 
-/* m; the part of the reach; the part of coordinates: what distances found otherwise, and roundings
- * of two heights, may take. Of three products and two sums each is off by less than 12 u of the
- * largest coordinate. */
+/* Margins: m; part of the reach; part of coordinates. They cover distances computed otherwise, and
+ * the rounding of two heights. Each height, of three products and two sums, is off by less than 12
+ * u of the largest coordinate. */
 static const double MARGIN = 1e-9, PART = 1e-6, ROUNDING = 0x1p-48;
 /* Squares of the sum of the least and the largest normal: beyond these there is no middle. */
 static const double LEAST = 0.04, MOST = 5;
 
-/* The middle of the normals of a leaf, of length 1. Whether they have one. */
+/* The middle of the normals of a leaf, of length 1; false: there is none. */
 PHYS_INLINE bool find_normal(const struct contact_boxes *normal, uint32_t lane, phys_vec *n)
 {
     for (int c = 0; c < 3; c++)
@@ -36,7 +35,7 @@ PHYS_INLINE void find_height(const struct contact_side *side, const phys_vec *n,
     *height = sum + CONTACT_PICK(sum, sum, 2, 3, 0, 1);
 }
 
-/* Of the corners of a leaf. */
+/* The heights of the corners of a leaf. */
 PHYS_INLINE void find_heights(const struct contact_side *side, const struct contact_leaf *leaf,
                               const phys_vec *n, struct contact_heights *to)
 {
@@ -101,7 +100,7 @@ PHYS_KERNEL_OF(bool, contact_slab_parts,
     return above > slab->most || below > slab->most;
 }
 
-/* Which features, of n points each, come near to where the other leaf ends. */
+/* The bits of features, of n points each, that come near to the end of the other leaf. */
 PHYS_INLINE uint32_t near_bits(const struct contact_slab *slab, const phys_vec *end, double sign,
                                const struct contact_side *side, uint32_t bits, uint32_t n,
                                const uint32_t *point)

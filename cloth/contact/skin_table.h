@@ -4,7 +4,7 @@
 #include "cloth/contact/body.h"
 #include "cloth/contact/skin.h"
 
-/* What the files of skins share: how tables and boxes lie in memory. Boxes are floats, rounded
+/* Shared by the files of skins: the layout of tables and boxes in memory. Boxes are floats, rounded
  * outwards, four at a time, one a lane. */
 
 typedef float contact_lanes __attribute__((vector_size(16)));
@@ -22,14 +22,14 @@ struct contact_leaf {
     uint32_t n_triangles, n_vertices, n_edges;
 };
 
-/* The border of the triangles of a part, where it is one closed line that comes to no point twice:
- * points, in the sense in which triangles have their corners. n 0: it is no such line, or there is
- * no room for it, or the part is a leaf. */
+/* The border of a part's triangles, if it is one closed line without repeated points. Points are in
+ * the sense of the triangles' corners. n 0: there is no such line, or no room for it, or the part
+ * is a leaf. */
 struct contact_loop {
     uint32_t first, n;
 };
 
-/* Where the loop of a child is; that of all triangles. */
+/* The index of the loop of a child; or of all triangles, for a node beyond the last. */
 PHYS_INLINE uint32_t contact_loop_at(const struct contact_skin *skin, uint32_t node, uint32_t lane)
 {
     return node < skin->n_nodes ? 4 * node + lane : 4 * skin->n_nodes;
@@ -61,7 +61,7 @@ struct contact_skin_head {
 /* Places of a skin of these counts. */
 void contact_skin_lay(const struct contact_skin *skin, struct contact_skin_head *head);
 
-/* What changes in a step begins with this. */
+/* The boxes of a step begin with this. */
 struct contact_boxes_head {
     double low[3], high[3]; /* m, in the room */
     double way[3];          /* m, of the frame */
@@ -69,19 +69,19 @@ struct contact_boxes_head {
 };
 void contact_boxes_lay(const struct contact_skin *skin, struct contact_boxes_head *head);
 
-/* Of the triangles of four parts, over the step: the hull of their normals of length 1, and the
- * least altitude (m), as three times of the step bound them (skin_refit.c); 0: it is not known. */
+/* Bounds of the triangles of four parts over the step: the hull of their unit normals, and the
+ * least altitude (m; 0: unknown). Three times of the step bound them (skin_refit.c). */
 struct contact_slopes {
     struct contact_boxes normal;
     contact_lanes altitude;
 };
 
-/* A box of one point, for who makes those of others. */
+/* A box of one point, from which other boxes are made. */
 struct contact_point_box {
     contact_lanes low, high;
 };
 
-/* Of the four children of each node; of features, by group. */
+/* Boxes and slopes of the four children of each node; boxes of features, by group. */
 PHYS_INLINE const struct contact_boxes *contact_boxes_nodes(const void *boxes)
 {
     const struct contact_boxes_head *head = boxes;
@@ -108,7 +108,7 @@ struct contact_features {
     uint32_t vertices, triangles, edges;
 };
 
-/* Heights along a direction of what a leaf has, m, at the begin and at the end of a step. */
+/* Heights of a leaf's corners along a direction, m, at the begin and at the end of a step. */
 struct contact_heights {
     double low[2], high[2];
 };
@@ -119,15 +119,15 @@ struct contact_slab {
     bool is;             /* its normals have a middle, n */
     bool above;          /* the first leaf is above the second */
     phys_vec n;          /* of length 1 */
-    double most;         /* m: what is farther is out of reach */
+    double most;         /* m: features farther away are out of reach */
     struct contact_heights of[2];
 };
-/* What is surely out of a reach (m) is farther than that, m. */
+/* The distance, m, beyond which features are surely out of a reach (m). */
 double contact_slab_most(const struct contact_side *a, const struct contact_side *b, double reach);
 /* Makes one of the first leaf, whose `most` stays. Other leaves are then tried one by one. */
 void contact_slab_begin(const struct contact_side *side, uint32_t node, uint32_t lane,
                         struct contact_slab *slab);
-/* Whether a second leaf is out of reach of the first in the whole step. */
+/* True if a second leaf is out of reach of the first in the whole step. */
 bool contact_slab_parts(const struct contact_side *side, const struct contact_leaf *leaf,
                         struct contact_slab *slab);
 /* Clears the bits of features of leaf k, 0 or 1, that are out of reach of all of the other one.
@@ -142,8 +142,8 @@ struct contact_patch {
     struct contact_point_box normal; /* hull of normals */
     float altitude;
 };
-/* Whether no two features of a patch, or of two (b may be NULL), that share no point are nearer
- * than reach (m) at any time of the step, proven by normals and border (skin_flat.c). */
+/* True if normals and border prove (skin_flat.c) that features without a common point never come
+ * nearer than reach (m) in the step. They are of one patch or of two; b may be NULL. */
 bool contact_patches_flat(const struct contact_patch *a, const struct contact_patch *b,
                           double reach);
 

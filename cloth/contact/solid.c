@@ -1,6 +1,6 @@
 /* Certificates of triangles against convex shapes: three numbers for a pair of directions, as
- * solid.h derives them. All is told in the core's own axes at either end of the step, where neither
- * a common velocity nor the room's origin costs digits. */
+ * solid.h derives them. All numbers are in the core's own axes at either end of the step, so
+ * neither a common velocity nor the room's origin costs digits. */
 #include "cloth/contact/solid_divide.h"
 
 enum { APPROACHES = 4 };
@@ -56,7 +56,7 @@ void contact_solid_make(const struct contact_shape *shape, const struct contact_
 
 /* ---- The certificate ---- */
 
-/* What is not finite makes what is due so. */
+/* False for values that are not finite, as `due` is then not finite. */
 PHYS_INLINE bool is_divided(const struct contact_solid_divide *divide,
                             const struct contact_solid_triangle *triangle, const double due[3])
 {
@@ -133,8 +133,8 @@ static bool certify_near(const struct contact_solid *solid,
     return false;
 }
 
-/* The three numbers of the direction to the middle of the triangle at the begin, which does for
- * most; false: there is none. */
+/* The three numbers of the direction to the middle of the triangle at the begin, which is enough
+ * for most; false: there is none. */
 PHYS_INLINE bool middle_numbers(const struct contact_solid *solid,
                                 const struct contact_solid_triangle *triangle, double least[3])
 {
@@ -159,7 +159,7 @@ PHYS_INLINE bool middle_numbers(const struct contact_solid *solid,
     return true;
 }
 
-/* However near the triangle began, what is enough far from there is enough. */
+/* The gap at the begin is taken as infinite: numbers that suffice then suffice for any gap. */
 PHYS_KERNEL_OF(enum contact_passing, contact_solid_pass,
                (const struct contact_solid *solid, const phys_vec x[3], const phys_vec y[3],
                 double thickness, double reach),
@@ -212,7 +212,7 @@ static void box_way(const struct contact_solid *solid, enum contact_end end, con
         way[c] = solid->endless ? c == 0 : length > CONTACT_TINY ? way[c] / length : 0;
 }
 
-/* Whether two directions divide a box that stays from the shape, by so much. */
+/* True if two directions divide a box that stands still from the shape, by `reach`. */
 static bool box_divided(const struct contact_solid *solid, const double low[3],
                         const double high[3], const double early[3], const double late[3],
                         double reach)

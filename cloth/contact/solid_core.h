@@ -6,7 +6,7 @@
 
 #include <math.h>
 
-/* What the files of this topic share: a triangle in the axes of a core, and the core itself. */
+/* Shared by the files of this topic: a triangle in the axes of a core, and the core itself. */
 
 PHYS_INLINE double contact_inner(const double a[3], const double b[3])
 {

@@ -1,5 +1,5 @@
-/* Cuts: along a pair of directions the three numbers of a corner are linear in the part of its way
- * that it goes, so the largest part that leaves what is due follows at once. */
+/* Cuts. Along a pair of directions, the three numbers of a corner are linear in the part of its way
+ * that it goes. So the largest part that leaves the numbers due follows at once. */
 #include "cloth/contact/solid_divide.h"
 
 /* The part of its way that a corner may go, at most t; below 0: none will do. Numbers of a corner
@@ -78,8 +78,8 @@ static void prepare_cut(const struct contact_solid *solid, const phys_vec end[3]
     contact_numbers_due(gap, cut->thickness, cut->goes.rounding, cut->due);
 }
 
-/* The first pair of directions, that of the begin, is taken if it holds below, for every later look
- * finds it again; else that pair which cuts least. */
+/* The first pair of directions, that of the begin, is taken if it holds below, as every later look
+ * finds it again. Else the pair that cuts least is taken. */
 static bool take_cut(const struct contact_solid *solid, const struct solid_cut *cut,
                      const double t[3], const double way[WAYS][3], double best[3])
 {

@@ -3,16 +3,17 @@
 
 #include "cloth/contact/solid_core.h"
 
-/* What solid.c and solid_cut.c share: the three numbers of solid.h, of a triangle and a pair of
+/* Shared by solid.c and solid_cut.c: the three numbers of solid.h, of a triangle and a pair of
  * directions. */
 
-/* Operations on numbers of one size, with what they may lose together. */
+/* The relative rounding of all operations on numbers of one size together. */
 #define CONTACT_SOLID_ROUNDING (64 * 0x1p-53)
 
 /* A triangle in the core's axes: its begin and its end as each end of the step sees them. */
 struct contact_solid_triangle {
     struct contact_lanes from, to;
-    double rounding; /* m: what numbers of this triangle may be off; not finite where it is not */
+    double rounding; /* m: the error of this triangle's numbers; not finite if the triangle is
+                      * not */
 };
 
 PHYS_INLINE double contact_lanes_size(const struct contact_lanes *own)
@@ -36,8 +37,7 @@ PHYS_INLINE void contact_triangle_of(const struct contact_solid *solid, const ph
 }
 
 /* Directions n0 of the begin (early) and n1 of the end (late), in the core's axes at the begin [0]
- * and at the end [1], and how far the shape reaches along them: the support functions of solid.h.
- */
+ * and at the end [1]. reach: the support functions of solid.h along them. */
 struct contact_solid_divide {
     double early[2][3], late[2][3];
     double reach[3];
@@ -54,7 +54,7 @@ PHYS_INLINE void contact_other_end(const struct contact_solid *solid, enum conta
         there[c] = solid->moves ? contact_inner(solid->place[!end].axis[c], out) : out[c];
 }
 
-/* Of a direction in the core's axes at the begin and one at the end. */
+/* Makes the pair of a direction in the core's axes at the begin and one at the end. */
 PHYS_INLINE void contact_divide_by(const struct contact_solid *solid, const double early[3],
                                    const double late[3], struct contact_solid_divide *divide)
 {
@@ -86,7 +86,7 @@ PHYS_INLINE void contact_numbers(const struct contact_solid_divide *divide,
     number[2] -= divide->reach[2];
 }
 
-/* What each of the numbers has to be: certificate.h has the rule. gap: that at the begin. */
+/* The least of each of the numbers: certificate.h has the rule. gap: that at the begin. */
 PHYS_INLINE void contact_numbers_due(double gap, double thickness, double rounding, double due[3])
 {
     const double least = CONTACT_MARGIN / 2 + rounding, margin = CONTACT_MARGIN + rounding;
@@ -96,10 +96,10 @@ PHYS_INLINE void contact_numbers_due(double gap, double thickness, double roundi
     due[2] = enough < opens ? enough : opens;
 }
 
-/* Pairs of directions that may divide, of the nearest ones at both ends, in the core's axes: either
- * of them, fixed in the room; the one, then the other; their mean, fixed in the room; either of
- * them, and their mean, as the shape carries it along. A plane has the third alone; for a shape
- * that stands still the last three are no others. */
+/* Pairs of directions that may divide, made of the nearest directions at both ends, in the core's
+ * axes: either one, fixed in the room; the one, then the other; their mean, fixed in the room;
+ * either one, or their mean, carried along by the shape. A plane has the third alone. The last
+ * three add none for a shape that stands still. */
 enum { CONTACT_DIVIDES = 7, CONTACT_DIVIDES_STILL = 4, CONTACT_DIVIDES_BOTH = 2 };
 
 PHYS_INLINE int contact_first_divide(const struct contact_solid *solid)

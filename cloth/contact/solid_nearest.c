@@ -1,15 +1,15 @@
 /* The point of a triangle that is nearest to a convex core, in the core's axes. Half the square of
- * the distance is a convex function F of the point; its gradient is the way r from the core, and
- * the core bends r by what the metric below says. So F is a quadratic function, about, whose least
- * on the triangle is the next point: Newton's method with a search along the line. For a ball the
- * first is the last, for a box a few are, for a cylinder some more. Rounds are bounded; what is
- * left then costs the best of a force alone, for certificates measure along whatever this finds. */
+ * the distance is a convex function F of the point. Its gradient is the way r from the core; the
+ * metric below is the derivative of r. So F is nearly quadratic, and its minimum on the triangle is
+ * the next point: Newton's method with a line search. A ball takes one round, a box a few, a
+ * cylinder some more. Rounds are bounded. An inexact point makes only a force less good:
+ * certificates hold along any direction. */
 #include "cloth/contact/solid_core.h"
 
 enum { ROUNDS = 24, SEARCHES = 6 };
 /* Parts of a squared distance, and of its size, by which another round has to shorten it. */
 static const double ENOUGH = 1e-13, NOISE = 32 * 0x1p-53;
-/* Of a metric: below it the triangle has a direction along which F is straight. */
+/* Part of a metric: below it, F is straight along a direction of the triangle. */
 static const double FLAT = 1e-10;
 
 /* A point of the triangle. */
@@ -31,7 +31,7 @@ PHYS_INLINE void point_of(const struct contact_solid *solid, const struct contac
 
 /* ---- The quadratic function ---- */
 
-/* What the way from the core becomes where the point goes along e. */
+/* The change of the way from the core if the point goes along e. */
 PHYS_INLINE void bend(const struct contact_solid *solid, const struct core_point *at,
                       const double e[3], double bent[3])
 {
@@ -78,7 +78,7 @@ PHYS_INLINE void quadratic_of(const struct contact_solid *solid, const struct co
                             contact_inner(e[1], at->away),
                             at->weight[1],
                             at->weight[2]};
-    /* Where F is straight it goes on to the end of the triangle. */
+    /* If F is straight, the minimum lies at the end of the triangle. */
     const double flat = FLAT * (contact_inner(e[0], e[0]) + contact_inner(e[1], e[1]));
     q->a11 += flat;
     q->a22 += flat;
@@ -153,8 +153,8 @@ PHYS_INLINE void line_look(const struct contact_solid *solid, struct core_line *
     }
 }
 
-/* Where the line enters or leaves what the faces bound; between, F is smooth, of a box quadratic.
- */
+/* Finds the points where the line crosses the planes of the faces. F is smooth between them, and
+ * quadratic for a box. */
 PHYS_INLINE void line_faces(const struct contact_solid *solid, struct core_line *line)
 {
     const double *x = line->from, *way = line->way, *half = solid->half;
@@ -370,7 +370,7 @@ PHYS_INLINE uint32_t feature_of(const double weight[3])
                     : CONTACT_ON_CORNER + last;
 }
 
-/* Of a point of the shape, in the core's axes: its way in the step. */
+/* The way in the step of a point of the shape, given in the core's axes. */
 PHYS_INLINE void shape_way(const struct contact_solid *solid, const double own[3], phys_vec *way)
 {
     const struct contact_place *begin = solid->place + CONTACT_BEGIN,

@@ -7,12 +7,13 @@
 
 enum { HALVINGS = 52 };
 static const uint32_t N = CONTACT_CELLS;
-/* A point on an edge of a box has no one normal: those of its sides keep so far inside, in parts of
- * its half size. */
+/* A point on an edge of a box has no single normal: points of the sides keep so far inside, in
+ * parts of its half size. */
 static const double INSIDE = 1e-6;
 static const double ROUND = 0.7; /* cosine between a body's triangle and the normal of its corner */
 
-/* Where the way from the middle of the shape to a point of the box around it leaves the shape. */
+/* The point where the way from the middle of the shape to a point of the box around it leaves the
+ * shape. */
 static void find_exit(const struct contact_shape *shape, const struct phys_pose *axes,
                       const phys_vec *corner, double vertex[6])
 {

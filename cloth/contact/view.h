@@ -3,9 +3,9 @@
 
 #include "cloth/contact/body.h"
 
-/* How a body is seen whose maps cloth meets (image.h): in parallel, along an axis. The front is
- * where the coordinate along the axis is larger. Columns lie along the next axis, rows along the
- * one after it (of z: x and y). Pure functions. */
+/* The parallel view, along an axis, of a body whose maps cloth meets (image.h). The front is where
+ * the coordinate along the axis is larger. Columns lie along the next axis, rows along the one
+ * after it (of z: x and y). Pure functions. */
 
 enum {
     CONTACT_STRIPS = 16, /* at most: parts of a map */

@@ -1,4 +1,4 @@
-/* The live view of a build without ZeroMQ: whoever asks for it hears why there is none. */
+/* The live view of a build without ZeroMQ: each function says why there is none. */
 #include "cloth/live/live.h"
 
 const char *live_lacks(void)
@@ -14,7 +14,7 @@ int live_publish_open(struct live_publisher **publisher, const char *address,
     *publisher = NULL;
     return cloth_fail(error, CLOTH_E_INPUT, "--live %s: %s", address, live_lacks());
 }
-/* No publisher is ever open: nothing of the rest is reached. */
+/* No publisher is ever open, so the rest is never reached. */
 const char *live_publish_address(const struct live_publisher *publisher)
 {
     (void)publisher;

@@ -1,6 +1,7 @@
-/* ZeroMQ accepts whoever comes, and would leave no descriptor for what the run writes. So it tells
- * of each connection, and where there are too many, all are closed with the door, which opens again
- * a moment later: viewers come back by themselves. A quarter of all descriptors is the crowd's. */
+/* ZeroMQ accepts every connection, and would leave no descriptor for the run's files. So a monitor
+ * reports each connection. If there are too many, the socket is closed with all of them, and opens
+ * again a moment later: viewers come back by themselves. Viewers get a quarter of all
+ * descriptors. */
 #include "cloth/live/publisher.h"
 
 #include <errno.h>
@@ -38,8 +39,7 @@ void live_connections_close(struct live_publisher *p)
         zmq_close(p->door.monitor);
 }
 
-/* An event's first part is its number and a value, the second one the address. false: there is
- * none. */
+/* An event's first part is its number and a value, the second one the address. false: no event. */
 static bool take_event(const struct live_door *door, uint16_t *event)
 {
     unsigned char bytes[LIVE_ADDRESS];

@@ -47,8 +47,8 @@ static int fail_zmq(const char *what, struct cloth_error *error)
                       zmq_strerror(errno));
 }
 
-/* ZMQ_IMMEDIATE would drop what came before a connection ended, such as the last frame. By ZMQ_IPV6
- * `localhost' would be ::1 alone, where a run does not listen. */
+/* ZMQ_IMMEDIATE would drop messages received before a connection ended, such as the last frame. By
+ * ZMQ_IPV6 `localhost' would be ::1 alone, where a run does not listen. */
 static int set_options(void *socket, const char *host, struct cloth_error *error)
 {
     const int none = 0, yes = 1, again = 250, six = *host == '[';
@@ -121,7 +121,8 @@ static void take_events(struct live_follower *follower)
     zmq_msg_close(&part);
 }
 
-/* A run that has ended is asked no more, unless it is the one before that said so. */
+/* A run that has ended is not asked, unless the end is older than END_OLD: then it was that of an
+ * earlier run. */
 static bool may_ask(const struct live_follower *follower)
 {
     return follower->connected && !follower->asked &&
@@ -210,7 +211,7 @@ int live_follow(struct live_follower *follower, double seconds, enum live_news *
     for (*news = LIVE_NOTHING; !code && *news == LIVE_NOTHING;) {
         zmq_pollitem_t item[2] = {{.socket = follower->socket, .events = ZMQ_POLLIN},
                                   {.socket = follower->monitor, .events = ZMQ_POLLIN}};
-        code = take_messages(follower, news, error); /* what is here came before what is said */
+        code = take_messages(follower, news, error); /* messages received precede the events */
         take_events(follower);
         const double left = end - now();
         if (!code && may_ask(follower) && *news == LIVE_NOTHING)
@@ -224,7 +225,7 @@ int live_follow(struct live_follower *follower, double seconds, enum live_news *
     return code;
 }
 
-/* ---- What it came to ---- */
+/* ---- Results ---- */
 
 struct output_cache *live_follow_cache(struct live_follower *follower)
 {

@@ -1,5 +1,5 @@
-/* Whatever bytes come, nothing beyond them is read: each count is compared with what is left before
- * anything behind it is looked at. */
+/* Reading never goes beyond the bytes received: each count is compared with the bytes left before
+ * they are read. */
 #include "cloth/live/message.h"
 
 #include <float.h>
@@ -105,7 +105,7 @@ static int read_header(const unsigned char *bytes, size_t n, struct live_message
     return 0;
 }
 
-/* Of the bodies of a scene, which begin at `at` of n bytes: whether they are all there. */
+/* True if all bodies of a scene, which begin at `at` of n bytes, are there. */
 static bool has_bodies(const unsigned char *bytes, uint64_t n, uint64_t at, uint32_t n_bodies)
 {
     for (uint32_t i = 0; i < n_bodies; i++) {

@@ -8,21 +8,21 @@
 #include <stdint.h>
 
 /* Messages of the live view, as bytes. A viewer sends requests; a run answers each with one
- * message: its scene, if the viewer has another one, else the newest frame, as soon as there is one
- * that the viewer has not. Numbers are little-endian:
+ * message. It sends its scene if the viewer has another one; else the newest frame, once there is
+ * one that the viewer lacks. Numbers are little-endian:
  *
  *    0  "DUITELV\n"
- *    8  u32 version (LIVE_VERSION; whatever follows may differ in others)
+ *    8  u32 version (LIVE_VERSION; the rest may differ in others)
  *   12  u32 kind
  *   16  u64 bytes of the payload, which is the rest of the message
  *   24  u64 XXH64 of the payload, seed: the kind
  *   32  u64 run, a random number that is not 0; u64 scene, counted from 1 in a run; then
  *
- *   REQUEST  u64 next: the first frame that the viewer has not. Run and scene are what it has, or
- * 0. SCENE    u32 vertices V, edges E, triangles T, bodies B; V x 3 f32, the start (m); E x 2 and T
- * x 3 u32, vertices from 0; E are edges without triangles. Of each body u32 vertices, u32
- *            triangles, vertices x 3 f64 (m), triangles x 3 u32. Up to the end: scene.json of a
- *            folder of frames (output.h).
+ *   REQUEST  u64 next: the first frame that the viewer lacks. Run and scene are the viewer's, or 0.
+ *   SCENE    u32 vertices V, edges E, triangles T, bodies B; V x 3 f32, the start (m); E x 2 and
+ *            T x 3 u32, vertices from 0; E are edges without triangles. For each body u32
+ *            vertices, u32 triangles, vertices x 3 f64 (m), triangles x 3 u32. Up to the end:
+ *            scene.json of a folder of frames (output.h).
  *   FRAME    u64 number, f64 time (s), u32 V, u32 W; V x 3 and W x 3 f32 (m): of the cloth, and of
  *            those bodies, one after the other, that change their shapes (scene.json: "pc2").
  *   END      u64 frames of the run, which is over.
@@ -34,7 +34,7 @@ enum live_kind { LIVE_REQUEST = 1, LIVE_SCENE, LIVE_FRAME, LIVE_END };
 /* No message has more bytes. */
 #define LIVE_MAX_BYTES (INT64_C(1) << 36)
 
-/* What a message says. */
+/* The contents of a message. */
 struct live_message {
     uint32_t version;
     enum live_kind kind;
@@ -47,10 +47,10 @@ struct live_message {
     size_t n_rest;
 };
 
-/* Reads a message: any bytes. All that it counts is there; numbers of a frame are finite. Corners
- * and the text of a scene are checked by live_scene_open. Errors: CLOTH_E_INPUT: it is none, or
- * damaged, or of another version, which message->version then has; else that is LIVE_VERSION or, of
- * what is no message, 0. */
+/* Reads a message from any bytes. On success, all that it counts is there, and numbers of a frame
+ * are finite; live_scene_open checks corners and the text of a scene. Errors: CLOTH_E_INPUT: it is
+ * no message, damaged, or of another version. message->version is that version; LIVE_VERSION if it
+ * is the same, 0 for no message. */
 int live_message_read(const void *bytes, size_t n, struct live_message *message,
                       struct cloth_error *error);
 
@@ -58,8 +58,9 @@ int live_message_read(const void *bytes, size_t n, struct live_message *message,
 size_t live_message_write(unsigned char bytes[LIVE_REQUEST_BYTES],
                           const struct live_message *message);
 
-/* Bytes of a frame's message; writes all but the header, whose place is left. false: a number is
- * not finite as float. position: n_vertices x 3, m; those of bodies follow by live_frame_put. */
+/* live_frame_bytes: the bytes of a frame's message. live_frame_write: writes all but the header,
+ * whose place is left. false: a number is not finite as float. position: n_vertices x 3, m; those
+ * of bodies follow by live_frame_put. */
 size_t live_frame_bytes(uint32_t n_vertices, uint32_t n_body_vertices);
 bool live_frame_write(unsigned char *bytes, const struct live_message *frame,
                       const double *position);

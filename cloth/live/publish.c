@@ -40,7 +40,7 @@ static int fail_bind(const char *address, struct cloth_error *error)
     return cloth_fail(error, CLOTH_E_INPUT, "--live %s: %s", address, why);
 }
 
-/* Messages to a viewer beyond four are dropped; what viewers send is short. */
+/* Messages to a viewer beyond four are dropped; viewers' messages are short. */
 static int set_options(void *socket, const char *address, struct cloth_error *error)
 {
     const int none = 0, yes = 1, few = 4, many = 16, six = *address == '[';

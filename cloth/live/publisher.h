@@ -6,7 +6,7 @@
 #include <pthread.h>
 #include <zmq.h>
 
-/* What publish.c, for the run, and serve.c, for the thread, share. */
+/* Shared by publish.c, for the run, and serve.c, for the thread. */
 
 enum { LIVE_VIEWERS = 64, LIVE_ID = 255, LIVE_ADDRESS = 300 };
 
@@ -18,7 +18,7 @@ struct live_bytes {
     bool fresh;      /* the thread has not taken them */
 };
 
-/* Who asked, and what it has. */
+/* A viewer that asked, and the scene and frames that it has. */
 struct live_viewer {
     unsigned char id[LIVE_ID]; /* ZeroMQ's name of the connection */
     size_t n_id;               /* 0: no viewer */
@@ -29,7 +29,7 @@ struct live_viewer {
     double seen;               /* s: when it asked last, or was answered */
 };
 
-/* How many are connected, as ZeroMQ tells it. */
+/* The number of connections, as ZeroMQ reports it. */
 struct live_door {
     void *monitor; /* a socket that events come from */
     int n, most;
@@ -39,7 +39,7 @@ struct live_door {
 
 struct live_publisher {
     void *zmq, *socket;
-    int wake; /* an eventfd, which the run writes to when there is something new; -1: none */
+    int wake; /* an eventfd; the run writes to it when there is something new; -1: none */
     char address[LIVE_ADDRESS];
     void (*warn)(const char *text);
     uint64_t run;
@@ -59,13 +59,13 @@ struct live_publisher {
     /* the thread's; messages of no bytes: there is none */
     unsigned char *own; /* room for a frame */
     zmq_msg_t scene_message, frame_message;
-    uint64_t scene_number, frames; /* that it has; the newest one's number + 1 */
+    uint64_t scene_number, frames; /* the scene's number; the newest frame's number + 1 */
     struct live_viewer viewer[LIVE_VIEWERS];
     bool warned_version, warned_bytes;
     struct live_door door;
 };
 
-/* Before the socket is bound; the thread looks whenever there are events, and while it is shut.
+/* Opened before the socket is bound; the thread looks at each event, and while the door is shut.
  * Returns 0, or -1 with errno set. */
 int live_connections_open(struct live_publisher *publisher);
 void live_connections_look(struct live_publisher *publisher, double now);

@@ -1,5 +1,5 @@
 /* A mesh goes out as triangles and edges without triangles, cloth after cloth; a body as the mesh
- * that it was made of. What comes in is checked as files are, by the same functions. */
+ * that it was made of. Scenes received are checked like files, by the same functions. */
 #include "cloth/live/scene.h"
 
 #include "cloth/base/memory.h"
@@ -11,7 +11,7 @@ enum { COUNTS = LIVE_HEADER + 16, ARRAYS = COUNTS + 16, BODY_COUNTS = 8 };
 
 /* ---- Writing ---- */
 
-/* What a run's message has of meshes and bodies. */
+/* The meshes and bodies of a run's message. */
 struct parts {
     uint32_t n_vertices, n_edges, n_triangles, n_bodies;
     size_t body_bytes;
@@ -222,7 +222,7 @@ static int take_parts(const struct live_message *scene, struct output_cache *cac
     return code;
 }
 
-/* Puts before an error where it comes from. */
+/* Says first where an error comes from. */
 static int name_error(int code, const struct cloth_error *inner, struct cloth_error *error)
 {
     return code
@@ -247,7 +247,7 @@ int live_scene_open(const struct live_message *scene, struct output_cache *cache
     return name_error(code, &inner, error);
 }
 
-/* Of the bodies that change their shape. */
+/* Counts vertices of the bodies that change their shape. */
 static uint64_t count_posed(const struct output_cache *cache)
 {
     uint64_t n = 0;

@@ -1,6 +1,6 @@
 /* The thread that has the socket. A viewer is answered when it asks and there is something that it
- * has not: nothing is ever sent unasked, but that the run is over. Messages are made once for all
- * viewers, when the first one wants them. */
+ * lacks; only the end of the run is sent unasked. Messages are made once for all viewers, when the
+ * first one asks. */
 #include "cloth/live/publisher.h"
 #include "cloth/live/scene.h"
 
@@ -10,10 +10,10 @@
 #include <time.h>
 #include <unistd.h>
 
-static const double LATELY = 2; /* s: who asked, or was answered, within it is awake */
+static const double LATELY = 2; /* s: a viewer that asked or was answered within it is awake */
 static const double GRACE = 1;  /* s that viewers have at the end */
-enum { LINGER = 2000 };         /* ms that ZeroMQ has then to send what it took */
-enum { SHUT = 100 };            /* ms between two looks while nobody can connect */
+enum { LINGER = 2000 };         /* ms that ZeroMQ then has to send its messages */
+enum { SHUT = 100 };            /* ms between two looks while the door is shut */
 
 static double now(void)
 {
@@ -22,9 +22,9 @@ static double now(void)
     return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
 }
 
-/* ---- What the run left ---- */
+/* ---- News of the run ---- */
 
-/* A message of a copy of the bytes; without memory it stays without any. */
+/* Fills a message with a copy of the bytes; it stays empty without memory. */
 static void fill(zmq_msg_t *message, const unsigned char *bytes, size_t n)
 {
     zmq_msg_close(message);
@@ -34,7 +34,7 @@ static void fill(zmq_msg_t *message, const unsigned char *bytes, size_t n)
         memcpy(zmq_msg_data(message), bytes, n);
 }
 
-/* The frame's bytes are the thread's then, to be sealed and sent when somebody asks. */
+/* Takes over the frame's bytes; they are sealed and sent when a viewer asks. */
 static void take_news(struct live_publisher *p)
 {
     uint64_t wakes;
@@ -69,7 +69,7 @@ static zmq_msg_t *frame_message(struct live_publisher *p)
 
 /* ---- Answers ---- */
 
-/* The socket drops what a viewer has no room for; no call waits. */
+/* The socket drops messages that a viewer has no room for; no call waits. */
 static void send_message(struct live_publisher *p, const struct live_viewer *to, zmq_msg_t *message)
 {
     zmq_msg_t copy;
@@ -93,7 +93,7 @@ static void send_end(struct live_publisher *p, const struct live_viewer *to)
     zmq_msg_close(&message);
 }
 
-/* If there is something that it has not. */
+/* Answers if there is something that the viewer lacks. */
 static void answer_viewer(struct live_publisher *p, struct live_viewer *viewer)
 {
     const bool lacks_scene = viewer->scene != p->scene_number;
@@ -106,7 +106,7 @@ static void answer_viewer(struct live_publisher *p, struct live_viewer *viewer)
         viewer->next = p->frames;
 }
 
-/* Who is known, or took part longest ago. */
+/* The viewer's entry, else the one that was active longest ago. */
 static struct live_viewer *find_viewer(struct live_publisher *p, const struct live_viewer *who)
 {
     struct live_viewer *oldest = p->viewer;
@@ -153,8 +153,8 @@ static void take_request(struct live_publisher *p, struct live_viewer *who, zmq_
 
 /* ---- Requests ---- */
 
-/* Receives one: who sent it, and its last part. false: there is none. *good: it has the parts of a
- * request. */
+/* Receives a message: its sender, and its last part. false: there is none. *good: it has the parts
+ * of a request. */
 static bool receive(struct live_publisher *p, struct live_viewer *who, zmq_msg_t *part, bool *good)
 {
     int parts = 0;
@@ -175,7 +175,7 @@ static bool receive(struct live_publisher *p, struct live_viewer *who, zmq_msg_t
     return true;
 }
 
-/* As many as there are, but not for ever: frames come, too. */
+/* Takes the waiting requests, up to a limit: frames must be served, too. */
 static void take_requests(struct live_publisher *p)
 {
     struct live_viewer who;
@@ -190,7 +190,7 @@ static void take_requests(struct live_publisher *p)
 
 /* ---- The end ---- */
 
-/* Whether a viewer that is awake has not asked for the last frame yet. */
+/* True if a viewer that is awake has not asked for the last frame yet. */
 static bool is_behind(const struct live_publisher *p, double at)
 {
     for (int i = 0; i < LIVE_VIEWERS; i++) {

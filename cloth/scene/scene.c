@@ -1,5 +1,5 @@
-/* Reading a scene: load the document, edit it, check it and fill the model, build what is no copy;
- * each step relies on the one before. */
+/* Reading a scene: load the document, edit it, check it and fill the model, build the parts that
+ * are no copy. Each step relies on the one before. */
 #include "cloth/scene/scene.h"
 #include "cloth/scene/build/build.h"
 #include "cloth/scene/schema/check.h"

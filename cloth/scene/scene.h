@@ -14,15 +14,15 @@ struct scene_set {
 
 /* Reads a scene file (YAML, schema 1, docs/scene.md) into a model, after applying the sets to the
  * document. Mesh files are looked up relative to the scene's folder. Unknown keys and impossible
- * values are CLOTH_E_INPUT errors "file:line:column: what is wrong; what is allowed"; where the
- * value came by a set the error names the option instead. The model belongs to the caller
- * (model_free), also after an error. Local. */
+ * values are CLOTH_E_INPUT errors "file:line:column: the fault; the allowed values"; the error
+ * names the option instead if a set gave the value. The model belongs to the caller (model_free),
+ * also after an error. Local. */
 int scene_read(struct model *model, const char *path, size_t n_sets, const struct scene_set *sets,
                struct cloth_error *error);
 
-/* The same of one of the phases of a scene, counted from 0: before the caller's sets those of the
- * phase change the document. scene_read has the first phase. Errors of a later one end with its
- * name. Local. */
+/* The same for one of the phases of a scene, counted from 0: the phase's sets change the document
+ * before the caller's. scene_read has the first phase. Errors of a later one end with its name.
+ * Local. */
 int scene_read_phase(struct model *model, const char *path, uint32_t phase, size_t n_sets,
                      const struct scene_set *sets, struct cloth_error *error);
 

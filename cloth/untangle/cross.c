@@ -1,5 +1,5 @@
-/* Which edges go through which triangles, from the exact pairs of triangles that intersect. An edge
- * of two triangles is found by both, and listed once. */
+/* Finds the edges that go through triangles, from the exact pairs of triangles that intersect. An
+ * edge of two triangles is found by both, and listed once. */
 #include "cloth/untangle/state.h"
 #include "cloth/verify/orient.h"
 
@@ -14,7 +14,7 @@ static bool shares(const uint32_t *corner, const uint32_t end[2])
     return shared;
 }
 
-/* Not so where all lies in one plane: then there is no way through. */
+/* False if edge and triangle lie in one plane: there is no way through. */
 static bool goes_through(const struct untangle *all, uint32_t edge, uint32_t triangle)
 {
     const uint32_t *corner = all->corner[triangle], *end = all->edge[edge].end;
@@ -68,8 +68,8 @@ static void keep_once(struct cloth_list *list)
     list->n = n;
 }
 
-/* Points of what crosses its own layer: features that are near there may be on their wrong sides.
- */
+/* Marks points of edges and triangles that cross their own layer: near features there may be on
+ * their wrong sides. */
 static void mark_tangled(struct untangle *all)
 {
     const struct untangle_crossing *crossing = all->crossings.items;

@@ -3,7 +3,7 @@
 
 enum { STACK = 64 }; /* nodes: three more for each of at most 15 levels */
 
-/* The square of the distance of a point from a part of a node; one that is empty is nowhere. */
+/* The square of the distance of a point from a part of a node; infinite if the part is empty. */
 static double part_square(const struct contact_node *node, int part, const phys_vec *x)
 {
     double square = 0;

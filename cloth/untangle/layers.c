@@ -1,6 +1,6 @@
-/* Which side of a cloth is out its triangles say: out is where they are seen counterclockwise from.
- * Of an outer cloth every vertex that has an inner cloth near it is to be there. Where the nearest
- * place of the inner cloth is its border, it has no side. The inner cloth stays where it is. */
+/* Triangles of a cloth are counterclockwise as seen from its outer side. Each vertex of an outer
+ * cloth that has an inner cloth near it must be on the inner cloth's outer side. It has no side if
+ * the nearest place of the inner cloth is its border. The inner cloth does not move. */
 #include "cloth/untangle/state.h"
 
 static bool is_of(const struct untangle *all, uint32_t triangle, const void *context)
@@ -45,9 +45,8 @@ int untangle_push_vertex(struct untangle *all, uint32_t point, const struct unta
 }
 
 /* Pushes an end of an edge and the triangle that the edge crosses apart along the normal, at the
- * place of the crossing. side: 1: the end goes along the normal, and it is the one that lies less
- * far along it; -1: the triangle goes along the normal, and the end is the one that lies farther
- * along it. */
+ * crossing. side 1: the end that lies less far along the normal goes along it. side -1: the
+ * triangle goes along it, away from the end that lies farther. */
 static int push_end(struct untangle *all, const struct untangle_crossing *crossing,
                     const phys_vec *normal, double side, uint32_t still)
 {
@@ -115,7 +114,7 @@ static int push_crossings(struct untangle *all)
     return code;
 }
 
-/* A point that cloths have in common is on no side of them. */
+/* A point shared by cloths is on no side of them. */
 int untangle_layers(struct untangle *all)
 {
     const uint32_t *layer = all->of->layer;

@@ -1,4 +1,4 @@
-/* Pushes and edges are gone over one after the other, each seeing what those before it moved. */
+/* Pushes and edges are applied one after the other; each sees the moves of those before it. */
 #include "cloth/untangle/state.h"
 
 #include <string.h>
@@ -15,7 +15,7 @@ struct untangle_push *untangle_add(struct untangle *all)
     return push;
 }
 
-/* Which corners move: those that are free and need not stay, else all that are free. */
+/* The corners that move: those that are free and need not stay, else all that are free. */
 static uint32_t find_movers(const struct untangle *all, const struct untangle_push *push)
 {
     uint32_t freed = 0;
@@ -43,7 +43,7 @@ static void apply(struct untangle *all, const struct untangle_push *push)
         }
 }
 
-/* An edge that nothing moved is as it was. */
+/* Limits the length of an edge; skips edges that were not moved. */
 static void keep_length(struct untangle *all, const struct untangle_edge *edge)
 {
     const uint32_t a = edge->end[0], b = edge->end[1];

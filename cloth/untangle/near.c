@@ -1,5 +1,5 @@
-/* Features that are too near to each other go apart, along the way between them. Where it is known
- * on which side of a surface the other has to be, of bodies and of inner cloths, they go there. */
+/* Features that are too near go apart, along the way between them. If one of them is of a body or
+ * an inner cloth, the other goes to the outer side of it. */
 #include "cloth/untangle/state.h"
 
 #include <string.h>
@@ -14,8 +14,8 @@ struct corners {
     uint32_t point[4], first; /* corners before `first` are of the first feature */
 };
 
-/* Whose normals say where the other is to be, by the feature that it is of: of the outer one the
- * inner, of cloth and a body the body, of what lies on each other the lower cloth. -1: nobody's. */
+/* The feature whose normals say where the other one must be: the inner one of two layers, the body
+ * if one is of a body, the cloth of lower number if the two touch. -1: neither. */
 static int base_of(const struct untangle *all, const struct corners *c, double gap)
 {
     const uint32_t n = all->of->n_cloths;

@@ -1,6 +1,5 @@
-/* Vertices that are in an obstacle, or nearly at it, go out the shortest way. A triangle may meet a
- * convex shape between its vertices: then it goes out as a whole. Of bodies that is seen by what
- * crosses. */
+/* Vertices in an obstacle, or nearly at it, go out the shortest way. A triangle that meets a convex
+ * shape between its vertices goes out as a whole. For bodies, crossings find such triangles. */
 #include "cloth/contact/solid.h"
 #include "cloth/untangle/state.h"
 
@@ -39,7 +38,7 @@ static int push_triangle(struct untangle *all, uint32_t triangle,
     return CLOTH_OK;
 }
 
-/* Whether it is deep in it; looks at each vertex once: seen says which were. */
+/* Pushes a vertex out that is too deep; true if it was. The caller looks at each vertex once. */
 static bool look_at_vertex(struct untangle *all, size_t obstacle, uint32_t point)
 {
     struct contact_hit hit;

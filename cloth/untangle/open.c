@@ -1,5 +1,5 @@
-/* Corners, edges, skins and the tree of the soup are made once; what follows the points is made
- * again in each round. */
+/* Corners, edges, skins and the tree of the soup are made once; boxes and normals are made again in
+ * each round. */
 #include "cloth/contact/body_skin.h"
 #include "cloth/mesh/detail/sort.h"
 #include "cloth/untangle/state.h"

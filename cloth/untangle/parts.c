@@ -1,6 +1,6 @@
-/* Edges that cross triangles of their own layer are cut, and the cloth falls into parts. The
- * largest part of each piece of cloth is where it should be; the others are on the wrong side of
- * what their edges cross, and go through its nearest place. */
+/* Edges that cross triangles of their own layer are cut, so that the cloth falls into parts. The
+ * largest part of each piece of cloth stays. The other parts are on the wrong side of the cloth
+ * that their edges cross, and go through its nearest place. */
 #include "cloth/untangle/state.h"
 
 #include "cloth/base/sets.h"
@@ -56,7 +56,7 @@ static void find_wrong(struct untangle *all, uint32_t *largest)
     }
 }
 
-/* ---- What they are on the wrong side of ---- */
+/* ---- Cloths that they are on the wrong side of ---- */
 
 static int by_part(const void *left, const void *right)
 {
@@ -100,7 +100,8 @@ struct seeker {
     uint32_t point, cloth;
 };
 
-/* Of another cloth all of it; of its own what the part crosses, and other parts that are wrong. */
+/* All triangles of another cloth; of the part's own cloth, the triangles that it crosses and other
+ * wrong parts. */
 static bool allows(const struct untangle *all, uint32_t triangle, const void *context)
 {
     const struct seeker *seeker = context;
@@ -113,7 +114,7 @@ static bool allows(const struct untangle *all, uint32_t triangle, const void *co
     return is && all->owner[triangle] == seeker->cloth;
 }
 
-/* A point that is on the surface goes along with its neighbours. */
+/* A point on the surface follows its neighbours. */
 static int push_through(struct untangle *all, uint32_t point, uint32_t cloth)
 {
     const struct seeker seeker = {point, cloth};

@@ -1,14 +1,14 @@
-/* An edge that crosses a triangle is a point of the contour of an intersection, which goes on along
- * the triangles that have the edge, in directions R. A way D of the edge against the triangle,
- * whose normal is N, takes the point along the edge E and so shortens the contour by
+/* The crossing of an edge and a triangle is a point of the contour of an intersection. The contour
+ * goes on along the triangles that have the edge, in directions R. Moving the edge by D against the
+ * triangle, whose normal is N, moves the point along the edge E. This shortens the contour by
  *
  *     D . sum over R of (R - (R.E) / (N.E) N)
  *
- * (Volino & Magnenat-Thalmann 2006, equation 5). D is chosen along that sum; its length is a step
- * that a long sum makes whole. */
+ * (Volino & Magnenat-Thalmann 2006, equation 5). D points along that sum. Its length is a step, a
+ * full one if the sum is long. */
 #include "cloth/untangle/state.h"
 
-/* The sum; false: it is none. */
+/* The sum; false: there is none. */
 static bool find_gradient(const struct untangle *all, const struct untangle_crossing *crossing,
                           phys_vec *gradient)
 {
@@ -58,7 +58,7 @@ static int push_edge(struct untangle *all, const struct untangle_crossing *cross
     return CLOTH_OK;
 }
 
-/* Whether something else pushes a point of it in the round. */
+/* True if another kind of push moves its points in the round. */
 static bool is_pushed(const struct untangle *all, const struct untangle_crossing *crossing)
 {
     const struct untangle_edge *edge = all->edge + crossing->edge;

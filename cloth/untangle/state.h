@@ -8,11 +8,11 @@
 
 #include <math.h>
 
-/* What the files of this folder share: one soup of all cloths, then of all bodies. Local. */
+/* Shared by the files of this folder: one soup of all cloths, then of all bodies. Local. */
 
 #define UNTANGLE_NONE UINT32_MAX
 
-/* Of all triangles, each once. */
+/* An edge of the triangles; each is listed once. */
 struct untangle_edge {
     uint32_t end[2];
     uint32_t opposite[2]; /* third corners of its triangles; UNTANGLE_NONE */
@@ -20,7 +20,7 @@ struct untangle_edge {
     double length;        /* m: as x had it */
 };
 
-/* normal . sum of weight x shall be at least `want`. */
+/* Demands that normal . sum of weight x is at least `want`. */
 enum { UNTANGLE_CORNERS = 5 };
 struct untangle_push {
     uint32_t n, point[UNTANGLE_CORNERS];
@@ -63,9 +63,9 @@ struct untangle {
     struct contact_facet *facet; /* of the tree of all cloths */
     struct contact_node *node;
     uint32_t n_nodes;
-    double open, room; /* m: no pair is nearer; where what is moved goes */
+    double open, room; /* m: no pair may be nearer; the distance to which pushes move */
 
-    /* Of a round. */
+    /* Used within a round. */
     struct cloth_list pairs, crossings, links, zoned, pushes;
     uint32_t *part;                 /* by point: the root of its part */
     uint32_t *piece, *size;         /* by point: the root of its piece; vertices of a part; */
@@ -74,8 +74,8 @@ struct untangle {
     uint32_t *zone, *votes[2];      /* by point: the root of its zone; of it, for either side */
     signed char *label;             /* by point: side of a cloth, 1 or -1; 0: none */
     uint32_t *stamp;                /* by triangle: a part that crosses it */
-    unsigned char *wrong, *tangled; /* by point: of a part that is on the wrong side; of what
-                                     * crosses something of its own layer */
+    unsigned char *wrong, *tangled; /* by point: of a part on the wrong side; of a crossing
+                                     * within its own layer */
     unsigned char *inside, *seen;   /* by point: too deep in an obstacle; already looked at */
     struct untangle_count count;
     uint32_t near[4]; /* as of untangle_result */
@@ -91,7 +91,7 @@ void untangle_close(struct untangle *all);
 /* Boxes, normals and the tree follow the points. */
 void untangle_refit(struct untangle *all);
 
-/* Each finds some of what is wrong in a round, counts it and adds pushes. */
+/* Each finds one kind of fault in a round, counts it and adds pushes. */
 int untangle_cross(struct untangle *all);     /* first: fills crossings */
 int untangle_parts(struct untangle *all);     /* after it: parts, and pushes of the wrong ones */
 int untangle_zones(struct untangle *all);     /* in it: of pairs of cloths that are not cut off */
@@ -109,15 +109,15 @@ typedef bool untangle_allows(const struct untangle *all, uint32_t triangle, cons
 bool untangle_find(const struct untangle *all, const phys_vec *x, double reach,
                    untangle_allows *allows, const void *context, struct untangle_nearest *found);
 
-/* The nearest point of a cloth to a point, nearer than the reach, and the normal there of length 1;
- * false: there is none, or it is at the border, where the point is on no side. */
-#define UNTANGLE_REACH 30 /* thicknesses: what is farther away is not beside that cloth */
+/* The nearest point of a cloth to a point, nearer than the reach, and the unit normal there. False:
+ * there is none, or it is at the border, where the point is on no side. */
+#define UNTANGLE_REACH 30 /* thicknesses: a point farther away is not beside that cloth */
 bool untangle_beside(const struct untangle *all, uint32_t point, uint32_t cloth,
                      struct untangle_nearest *at, phys_vec *normal);
 
-/* Push what is on the wrong side of a cloth, so that it comes to where `normal` points, or the
- * cloth's own one times `sign`: a vertex; of an edge that crosses the cloth the end that is not
- * there; a triangle that an edge of the cloth crosses. still: the cloth stays. */
+/* Each pushes something to the side of a cloth where `normal` points, or the cloth's own normal
+ * times `sign`: a vertex; the end of a crossing edge that is on the wrong side; a triangle that an
+ * edge of the cloth crosses. still: the cloth stays. */
 int untangle_push_vertex(struct untangle *all, uint32_t point, const struct untangle_nearest *at,
                          const phys_vec *normal, bool still);
 int untangle_push_edge(struct untangle *all, const struct untangle_crossing *crossing, double sign,
@@ -125,8 +125,8 @@ int untangle_push_edge(struct untangle *all, const struct untangle_crossing *cro
 int untangle_push_triangle(struct untangle *all, const struct untangle_crossing *crossing,
                            double sign, bool still);
 
-/* Where a crossing is: weights of the edge's ends, then of the triangle's corners; each have the
- * sum 1. */
+/* The place of a crossing: weights of the edge's ends, then of the triangle's corners; each sum is
+ * 1. */
 void untangle_place(const struct untangle *all, const struct untangle_crossing *crossing,
                     double weight[UNTANGLE_CORNERS]);
 
@@ -135,7 +135,7 @@ struct untangle_push *untangle_add(struct untangle *all);
 /* Moves x. */
 void untangle_move(struct untangle *all);
 
-/* Whether two surfaces, owners of triangles, meet. */
+/* True if two surfaces, owners of triangles, meet. */
 static inline bool untangle_meets(const struct untangle *all, uint32_t a, uint32_t b)
 {
     const uint32_t n = all->of->n_cloths, cloth = a < n ? a : b, other = a < n ? b : a;
@@ -143,8 +143,8 @@ static inline bool untangle_meets(const struct untangle *all, uint32_t a, uint32
            !(all->of->apart && contact_are_apart(all->of->apart, cloth, other));
 }
 
-/* Whether one of n points of a feature is of a pin that follows the obstacle, by its owner's
- * number. Points of bodies are not. */
+/* True if a pin that follows the obstacle `owner` holds one of the n points of a feature. Points of
+ * bodies are never pinned. */
 static inline bool untangle_attached(const struct untangle *all, uint32_t n, const uint32_t *point,
                                      uint32_t owner)
 {
@@ -156,14 +156,14 @@ static inline bool untangle_attached(const struct untangle *all, uint32_t n, con
     return is;
 }
 
-/* Whether two surfaces, owners of triangles, are told apart by layers. */
+/* True if two surfaces, owners of triangles, are cloths of different layers. */
 static inline bool untangle_layered(const struct untangle *all, uint32_t a, uint32_t b)
 {
     const uint32_t n = all->of->n_cloths;
     return a < n && b < n && all->of->layer[a] != all->of->layer[b];
 }
 
-/* Whether two cloths are a pair of those. */
+/* True if untangle_zones treats this pair of cloths. */
 bool untangle_zoned(const struct untangle *all, uint32_t a, uint32_t b);
 
 PHYS_INLINE void untangle_product(const phys_vec *a, const phys_vec *b, phys_vec *to)
@@ -172,7 +172,7 @@ PHYS_INLINE void untangle_product(const phys_vec *a, const phys_vec *b, phys_vec
                      (*a)[0] * (*b)[1] - (*a)[1] * (*b)[0], 0};
 }
 
-/* Gives it the length 1; false if it has none. */
+/* Scales it to length 1; false if it has no length. */
 PHYS_INLINE bool untangle_unit(phys_vec *a)
 {
     const double length = sqrt(phys_dot(a, a));
@@ -182,7 +182,7 @@ PHYS_INLINE bool untangle_unit(phys_vec *a)
     return true;
 }
 
-/* Of length 1, or 0 if the triangle has no area. */
+/* The unit normal of a triangle, or 0 if it has no area. */
 PHYS_INLINE void untangle_face(const struct untangle *all, uint32_t triangle, phys_vec *normal)
 {
     const uint32_t *c = all->corner[triangle];

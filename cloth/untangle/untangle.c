@@ -1,5 +1,5 @@
-/* Rounds go on until nothing is wrong. They end without success after so many, or where a few dozen
- * have not left less wrong than there was before. */
+/* Rounds go on until there are no faults. They fail after a limit, or if a few dozen have not
+ * reduced the faults. */
 #include "cloth/untangle/state.h"
 
 #include <string.h>

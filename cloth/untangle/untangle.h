@@ -8,18 +8,18 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Moves cloths that go through each other, through themselves or through obstacles apart, before a
- * run starts. Local, on one rank; the same input gives the same bits. */
+/* Moves cloths apart that go through each other, themselves or obstacles, before a run starts.
+ * Local, on one rank; the same input gives the same bits. */
 
-/* Points that a weld makes one have one number, which all corners give. */
+/* Points that a weld makes one have one number, which all corners use. */
 struct untangle_cloths {
     uint32_t n_points, n_triangles, n_cloths;
     const uint32_t (*corner)[3]; /* n_triangles; counterclockwise as seen from outside */
     const uint32_t *cloth;     /* n_triangles: each one's cloth; those of a cloth follow each other,
                                 * and cloths each other */
-    const uint32_t *layer;     /* n_cloths: of two the higher is outside; equal: neither is */
+    const uint32_t *layer;     /* n_cloths: the higher one of two is outside; equal: neither is */
     const unsigned char *held; /* n_points: 1: must not move */
-    const struct contact_apart *apart; /* what does not meet; NULL: all does, but that */
+    const struct contact_apart *apart; /* cloths that do not meet; NULL: all meet */
     bool self_off;                     /* no cloth meets itself */
     double thickness;                  /* m */
     size_t n_obstacles;
@@ -28,7 +28,7 @@ struct untangle_cloths {
     const struct contact_bodies *bodies;
 };
 
-/* What is wrong. All are 0 at the end. */
+/* Counts of faults; all are 0 after success. */
 struct untangle_count {
     uint64_t pairs;   /* of triangles that intersect, of cloths and with bodies */
     uint64_t entered; /* vertices and triangles in, or nearly at, obstacles */
@@ -37,7 +37,7 @@ struct untangle_count {
 };
 
 struct untangle_result {
-    uint32_t rounds; /* 0: nothing was to be done, and x is as it was */
+    uint32_t rounds; /* 0: there were no faults, and x is unchanged */
     uint64_t moved;  /* points */
     double largest;  /* m: the largest move of a point */
     struct untangle_count left;
@@ -51,26 +51,24 @@ struct untangle_listener {
     void (*round)(void *context, uint32_t round, const struct untangle_count *count);
 };
 
-/* Moves x (m, n_points) until nothing of what untangle_count has is left, or the rounds are over:
- * then x is that of the round with the least of it, and result->left says how much. CLOTH_E_RUN for
- * coordinates that cannot be checked, CLOTH_E_MEMORY.
+/* Moves x (m, n_points) until all counts are 0, or the rounds are over. Then x is that of the round
+ * with the fewest faults; result->left counts these. CLOTH_E_RUN for coordinates that cannot be
+ * checked, CLOTH_E_MEMORY.
  *
- * A round finds all that is wrong, makes of each thing one inequality on the way of a few points,
- * and goes over all inequalities a few times, each time moving the points as little as that one
- * asks. So it does with edges that became a fifth longer or shorter than x had them. The
- * inequalities:
+ * A round finds all faults, and makes of each one an inequality for a few points. It goes over all
+ * inequalities a few times, and moves the points as little as each one demands. Edges that became a
+ * fifth longer or shorter than in x are treated in the same way. The inequalities:
  *
- * - obstacles: vertices go out along the normal of the nearest point;
- * - layers: vertices of the outer cloth go to the side of the inner one that its triangles face;
- * - equal layers: edges that cross triangles cut the cloth into parts, and all but the largest are
- *   on the wrong side (global intersection analysis: Baraff, Witkin & Kass, Untangling cloth,
- *   2003). Their vertices go through the nearest place of what they crossed;
- * - where the contour of an intersection of two cloths that lie along each other ends at their
- *   borders, it cuts nothing off: the vertices of one that are beside the other go to the side
- * where most of them are that hang together;
- * - else edges go where the contour of the intersection becomes
- *   shorter (Volino & Magnenat-Thalmann, Resolving surface collisions through intersection contour
- *   minimization, 2006);
+ * - obstacles: vertices go out along the normal of the nearest point.
+ * - layers: vertices of the outer cloth go to the side that the inner cloth's triangles face.
+ * - equal layers: edges that cross triangles cut the cloth into parts. All parts but the largest
+ *   are on the wrong side (global intersection analysis: Baraff, Witkin & Kass, Untangling cloth,
+ *   2003). Their vertices go through the nearest place of the surface that they cross.
+ * - open contours: the contour of an intersection of two cloths that lie along each other may end
+ *   at their borders, and cuts nothing off. Each connected group of vertices of one cloth that are
+ *   beside the other goes to the side where most of the group are.
+ * - other contours: edges go where the contour becomes shorter (Volino & Magnenat-Thalmann,
+ *   Resolving surface collisions through intersection contour minimization, 2006).
  * - features that are too near go apart. */
 int untangle(const struct untangle_cloths *cloths, phys_vec *x,
              const struct untangle_listener *listener, struct untangle_result *result,

@@ -1,7 +1,7 @@
-/* Where the contour of an intersection of two cloths ends at their borders, it cuts nothing off.
- * Then each vertex of the first that is beside the second is on one of its sides, and those that
- * hang together are a zone. In a zone with crossings most vertices are on the right side, the
- * others go there. */
+/* A contour of an intersection of two cloths that ends at their borders cuts nothing off. Then each
+ * vertex of the first that is beside the second is on one of its sides, and a zone is a connected
+ * set of such vertices. In a zone with crossings, the side of most vertices is the right one, and
+ * the others go there. */
 #include "cloth/untangle/state.h"
 
 #include "cloth/base/sets.h"
@@ -36,7 +36,8 @@ bool untangle_zoned(const struct untangle *all, uint32_t a, uint32_t b)
            bsearch(&key, all->zoned.items, all->zoned.n, sizeof key, by_cloths) != NULL;
 }
 
-/* Whether a crossing of two cloths has no part that is on the wrong side. */
+/* True if a crossing is one of two cloths of equal layers, and none of its points is in a wrong
+ * part. */
 static bool is_open(const struct untangle *all, const struct untangle_crossing *crossing)
 {
     const struct untangle_edge *edge = all->edge + crossing->edge;
@@ -50,7 +51,7 @@ static bool is_open(const struct untangle *all, const struct untangle_crossing *
     return is;
 }
 
-/* Whether the surfaces of a crossing lie more along each other than across. */
+/* True if the surfaces of a crossing lie more along each other than across. */
 static bool is_along(const struct untangle *all, const struct untangle_crossing *crossing)
 {
     const uint32_t *end = all->edge[crossing->edge].end;
@@ -59,7 +60,7 @@ static bool is_along(const struct untangle *all, const struct untangle_crossing 
     return untangle_unit(&normal) && fabs(phys_dot(&normal, &face)) > 0.5;
 }
 
-/* Those that have more crossings along each other than across. */
+/* Keeps pairs with more crossings along each other than across. */
 static void keep_along(struct cloth_list *list)
 {
     struct zoned *zoned = list->items;
@@ -125,7 +126,7 @@ static void count_votes(struct untangle *all, const struct zoned *zoned)
             all->votes[all->label[p] > 0][cloth_sets_root(all->zone, p)]++;
 }
 
-/* Of the zone of a point: 1 or -1; 0: it is in none. */
+/* The right side of a point's zone: 1 or -1; 0: it is in no zone. */
 static int side_of(struct untangle *all, uint32_t point)
 {
     const uint32_t root = cloth_sets_root(all->zone, point);

@@ -1,8 +1,8 @@
-/* The gap of a convex shape is a convex function of the point. So at any point the gap there and
- * the normal make a plane that lies below it everywhere. Where the lowest point of all planes of a
- * triangle is not deep, nothing of the triangle is; else the gap there tells, or makes one plane
- * more (Kelley, The cutting-plane method for solving convex programs, 1960). A plane is given by
- * its heights at the three corners, a point by weights of these. */
+/* The gap of a convex shape is a convex function of the point. So the gap and the normal at any
+ * point make a plane that lies below it everywhere. If the lowest point of all planes of a
+ * triangle is not deep, the triangle is not deep. Else the gap at that point decides, or adds a
+ * plane (Kelley, The cutting-plane method for solving convex programs, 1960). A plane is given
+ * by its heights at the three corners, a point by weights of these. */
 #include "cloth/verify/verify.h"
 
 #include <math.h>
@@ -15,7 +15,7 @@ struct planes {
     double height[ROOM][3];
 };
 
-/* A point of a triangle, and how high the highest plane is there. */
+/* A point of a triangle, and the height of the highest plane there. */
 struct lowest {
     double weight[3], height;
 };
@@ -38,7 +38,7 @@ static void try_point(const struct planes *planes, const double weight[3], struc
     }
 }
 
-/* Where two planes are as high, on the edges. */
+/* Points of the edges where two planes are equally high. */
 static void try_two(const struct planes *planes, const double *a, const double *b,
                     struct lowest *lowest)
 {
@@ -54,7 +54,7 @@ static void try_two(const struct planes *planes, const double *a, const double *
     }
 }
 
-/* Where three planes are as high. */
+/* The point where three planes are equally high. */
 static void try_three(const struct planes *planes, const double *a, const double *b,
                       const double *c, struct lowest *lowest)
 {
@@ -73,8 +73,7 @@ static void try_three(const struct planes *planes, const double *a, const double
         try_point(planes, weight, lowest);
 }
 
-/* It is where as many planes are as high as there are weights above 0: all such points are tried.
- */
+/* Tries all points where as many planes are equally high as weights are above 0. */
 static void find_lowest(const struct planes *planes, struct lowest *lowest)
 {
     const double(*plane)[3] = planes->height;
@@ -103,7 +102,7 @@ static void plane_at(const phys_vec x[3], const phys_vec *at, const struct conta
     }
 }
 
-/* Adds a plane in place of the one that is lowest at that point, if there is no room. */
+/* Adds a plane; if there is no room, it replaces the lowest one at that point. */
 static void put_plane(struct planes *planes, const double plane[3], const double weight[3])
 {
     int to = 0;
@@ -115,7 +114,7 @@ static void put_plane(struct planes *planes, const double plane[3], const double
     memcpy(planes->height[to], plane, sizeof planes->height[to]);
 }
 
-/* Of a triangle with the hits of its corners, none of which is deep. */
+/* True if a triangle is deep somewhere. corner: the hits of its corners, none of them deep. */
 static bool is_deep(const struct contact_shape *shape, const struct contact_pose *pose,
                     const phys_vec x[3], const struct contact_hit corner[3], double depth)
 {
@@ -140,7 +139,7 @@ static bool is_deep(const struct contact_shape *shape, const struct contact_pose
     return true; /* not shown to be outside */
 }
 
-/* A plane that is not deep at any corner. */
+/* True if the plane of one corner is deep at no corner. */
 static bool is_clear(const phys_vec x[3], const struct contact_hit hit[3], double depth)
 {
     bool clear = false;

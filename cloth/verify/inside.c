@@ -1,6 +1,6 @@
 /* A line from the point to somewhere beyond the surface crosses an odd number of its triangles if
- * the point is inside. Where the line touches an edge or a corner, or its end is in the plane of a
- * triangle, another line is taken. */
+ * the point is inside. If the line touches an edge or a corner, or its end is in the plane of a
+ * triangle, another line is tried. */
 #include "cloth/verify/orient.h"
 #include "cloth/verify/verify.h"
 
@@ -22,7 +22,7 @@ static int crosses(const double from[3], const double to[3], const double *a, co
     return begin && end && ab && bc && ca ? 1 : -1;
 }
 
-/* How many triangles the line crosses; -1: it cannot be said. */
+/* The number of triangles that the line crosses; -1: undecided. */
 static int64_t count_crossed(const struct verify_soup *soup, uint32_t first, uint32_t end,
                              const double from[3], const double to[3])
 {

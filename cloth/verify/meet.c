@@ -1,12 +1,13 @@
-/* Two triangles that have a point in common have one on an edge of one of them. Of two that share a
- * corner, what is common is convex and has this corner: if it has more, it ends at the edge of one
- * that is opposite to the corner. Every decision follows from signs of verify/orient.h alone. */
+/* Two triangles with a common point have one on an edge of one of them. The common part of two
+ * triangles that share a corner is convex and has this corner. If it has more points, it ends at
+ * the edge opposite to the corner in one of them. Every decision follows from signs of
+ * verify/orient.h alone. */
 #include "cloth/verify/orient.h"
 #include "cloth/verify/verify.h"
 
 /* ---- In a plane ---- */
 
-/* Whether two lines between points meet as seen along an axis: i and j are the others. */
+/* True if two line segments meet as seen along an axis; i and j are the other axes. */
 static bool lines_meet_seen(const double *p, const double *q, const double *a, const double *b,
                             int i, int j)
 {
@@ -21,8 +22,8 @@ static bool spans_meet(double p, double q, double a, double b)
     return (a >= low || b >= low) && (a <= high || b <= high);
 }
 
-/* In a plane they meet if they seem to along all three axes, for along one of them the plane is
- * seen from its front. On one line the spans of coordinates tell. */
+/* In a plane, two segments meet if they seem to along all three axes: one of these shows the
+ * plane from its front. On one line, the spans of coordinates decide. */
 static bool lines_meet(const double *p, const double *q, const double *a, const double *b)
 {
     bool meet = true;
@@ -34,9 +35,9 @@ static bool lines_meet(const double *p, const double *q, const double *a, const 
     return meet;
 }
 
-/* Whether a line keeps an edge and a triangle apart that lie in one plane, as seen along an axis:
- * one of the triangle, which looks as if it had an area of that sign, or the edge's. No other needs
- * to be tried. */
+/* True if a line separates an edge from a triangle in the same plane, as seen along an axis. The
+ * line of the edge or of a side of the triangle is enough. side: the sign of the triangle's area
+ * in this view. */
 static bool are_apart(const double *p, const double *q, const double *const x[3], int side, int i,
                       int j)
 {
@@ -51,7 +52,7 @@ static bool are_apart(const double *p, const double *q, const double *const x[3]
            verify_orient_seen(p, q, x[2], i, j) == of_a;
 }
 
-/* The axis along which a triangle looks largest, or nearly so. */
+/* The axis along which a triangle looks largest, up to rounding. */
 static int find_front(const double *a, const double *b, const double *c)
 {
     double most = -1;
@@ -82,7 +83,7 @@ static bool edge_meets_flat(const double *p, const double *q, const double *cons
 
 /* ---- Edges and triangles ---- */
 
-/* Whether the edge p q meets the triangle; side: of p and q from its plane. */
+/* True if the edge p q meets the triangle. side: that of p and of q from its plane. */
 static bool edge_meets(const double *p, const double *q, const int side[2],
                        const double *const x[3])
 {
@@ -97,8 +98,7 @@ static bool edge_meets(const double *p, const double *q, const int side[2],
     return ab * ca >= 0 && bc * ca >= 0;
 }
 
-/* A pair of triangles: corners and the box of each, and which corner of it the other one has, or
- * -1. */
+/* One triangle of a pair: its corners, its box, and the corner that the other one shares, or -1. */
 struct side {
     const double *x[3];
     double low[3], high[3];
@@ -118,8 +118,8 @@ static void take_side(const double (*x)[3], const uint32_t corner[3], int shared
     }
 }
 
-/* Which edges may meet the other triangle: edge i begins at corner i. Those at a shared corner do
- * not count; boxes, whose comparison is exact, leave few of the others. */
+/* Marks the edges that may meet the other triangle; edge i begins at corner i. Edges at a shared
+ * corner do not count. Boxes, compared exactly, rule out most of the others. */
 static int find_edges(const struct side *of, const struct side *other, bool edge[3])
 {
     int n = 0;
@@ -158,7 +158,7 @@ static bool edges_meet(const struct side *of, const struct side *other, const bo
     return meet;
 }
 
-/* How many corners they share; of[]: the last of them in each. */
+/* The number of shared corners; of[]: the last one in each triangle. */
 static int count_shared(const uint32_t a[3], const uint32_t b[3], int of[2])
 {
     int n = 0;

@@ -1,9 +1,9 @@
-/* A determinant is first computed in doubles. Where its rounding may have changed the sign, it is
- * made again as an expansion: a sum of doubles that do not overlap, the largest last, without any
- * error (Shewchuk, Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric
- * Predicates, 1997; theorems 6, 7, 13, 18 and 19). Differences of coordinates are expansions of two
- * parts, so nothing is lost before the products. Every number here is a multiple of 2^-252 (of a
- * difference), of 2^-504 or of 2^-756 (of the determinants), and below 2^610. */
+/* A determinant is first computed in doubles. If rounding may have changed the sign, it is computed
+ * again as an expansion: an exact sum of doubles that do not overlap, the largest last (Shewchuk,
+ * Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates, 1997; theorems
+ * 6, 7, 13, 18 and 19). Differences of coordinates are expansions of two parts, so nothing is lost
+ * before the products. Every number here is a multiple of 2^-252 (of a difference), of 2^-504 or of
+ * 2^-756 (of the determinants), and below 2^610. */
 #include "cloth/verify/orient.h"
 
 #include <math.h>
@@ -124,7 +124,7 @@ static int minor_parts(const struct difference *a0, const struct difference *a1,
     return add_parts(n, left, m, right, to);
 }
 
-/* Of the rows a - d, b - d, c - d. */
+/* The rows are a - d, b - d, c - d. */
 static int sign_of_3(const double *const from[3], const double d[3])
 {
     struct difference row[3][3];

@@ -13,12 +13,12 @@ static inline double verify_coordinate(double x)
     return x > -VERIFY_LEAST && x < VERIFY_LEAST ? 0 : x;
 }
 
-/* The sign of det [a - d, b - d, c - d]: above 0 where a, b, c are clockwise as seen from d, 0
- * where the four points lie in a plane. -1, 0 or 1. */
+/* The sign of det [a - d, b - d, c - d]: 1 if a, b, c are clockwise as seen from d, 0 if the
+ * four points lie in a plane, else -1. */
 int verify_orient(const double a[3], const double b[3], const double c[3], const double d[3]);
 
-/* The sign of det [a - c, b - c] of the coordinates i and j: 0 where the three points lie on a line
- * as seen along the third axis. */
+/* The sign of det [a - c, b - c] in the coordinates i and j: 0 if the points lie on a line as
+ * seen along the third axis. */
 int verify_orient_seen(const double a[3], const double b[3], const double c[3], int i, int j);
 
 #endif

@@ -1,7 +1,7 @@
-/* Boxes of triangles are put in strips along one axis, in each that they meet, and every strip is
- * swept along another axis: boxes whose spans meet there are compared. A pair that is in several
- * strips counts in the first of them. Strips are as wide as boxes are on average, so that a box is
- * in three of them on average at most. */
+/* One axis is cut into strips; a box of a triangle is in each strip that it meets. Each strip is
+ * swept along another axis, and boxes whose spans meet there are compared. A pair that is in
+ * several strips counts in the first of them. Strips are as wide as the mean box, so a box is in
+ * three of them on average at most. */
 #include "cloth/verify/orient.h"
 #include "cloth/verify/verify.h"
 
@@ -62,7 +62,7 @@ static void take_boxes(struct sweep *sweep)
     }
 }
 
-/* What all boxes span along an axis, and their mean extent. */
+/* The span of all boxes along an axis, and their mean extent. */
 struct span {
     double low, size, mean;
 };
@@ -81,7 +81,7 @@ static void find_span(const struct sweep *sweep, int axis, struct span *span)
 
 /* ---- Strips ---- */
 
-/* Monotonous in x, which is all that matters. */
+/* Must only be monotonous in x. */
 static uint32_t strip_of(const struct sweep *sweep, const struct span *span, double x)
 {
     const double at = span->size > 0 ? (x - span->low) / span->size * sweep->n_strips : 0;
@@ -152,8 +152,8 @@ static int fill_strips(struct sweep *sweep, const struct span *across)
 
 /* ---- Pairs ---- */
 
-/* Whether two boxes meet along the axes that are not swept, in a strip that is the first with both,
- * and are of interest. */
+/* True if two boxes meet along the axes that are not swept, the strip is the first with both,
+ * and one of them is of the first triangles. */
 static bool boxes_meet(const struct sweep *sweep, uint32_t a, uint32_t b, uint32_t strip)
 {
     const struct box *p = sweep->box + a, *q = sweep->box + b;
@@ -163,8 +163,8 @@ static bool boxes_meet(const struct sweep *sweep, uint32_t a, uint32_t b, uint32
            (a < sweep->soup->n_first || b < sweep->soup->n_first);
 }
 
-/* Whether a corner of one triangle is sewn to one of another: not there yet, it may be on either
- * side of it. */
+/* True if a corner of one triangle is sewn to a corner of the other. Until the seam is closed,
+ * it may be on either side. */
 static bool are_sewn(const struct verify_soup *soup, const uint32_t a[3], const uint32_t b[3])
 {
     bool sewn = false;

@@ -4,9 +4,9 @@
 #include "cloth/model/model.h"
 #include "cloth/scene/yaml/tree.h"
 
-/* These functions complete a model that scene_check filled. They make what is no copy of a value
- * (meshes, motions, indices for names), and check what a table cannot: names, sizes, indices,
- * files. What they allocate belongs to the model, also after an error. */
+/* These functions complete a model that scene_check filled. They make the parts that are no copy of
+ * a value: meshes, motions, indices for names. They check what a table cannot: names, sizes,
+ * indices, files. Their allocations belong to the model, also after an error. */
 
 /* The names of the phases: no two are the same. */
 int scene_build_phases(const struct model *model, struct cloth_error *error);
@@ -23,7 +23,8 @@ int scene_build_check_obstacles(const struct model *model, const struct scene_tr
 /* The mode of contact where the scene does not say it; after the cloths. */
 void scene_build_contact(struct model *model, const struct scene_tree *tree);
 
-/* Whether there is anything to touch; after the probes, whose forces of contact are looked for. */
+/* Finds out if there is anything to touch; after the probes, which may ask for forces of
+ * contact. */
 void scene_build_contact_idle(struct model *model);
 
 /* contact.pairs and contact.ignore, whose names are of materials, cloths, obstacles and groups;
@@ -31,8 +32,8 @@ void scene_build_contact_idle(struct model *model);
 int scene_build_sides(struct model *model, const struct scene_tree *tree,
                       struct cloth_error *error);
 
-/* What can be had of contact: by the integrator, and how thin it may be where these cloths are.
- * After the cloths. */
+/* Checks that the integrator supports the contact, and that it is not too thin for the places of
+ * the cloths. After the cloths. */
 int scene_build_check_contact(const struct model *model, const struct scene_tree *tree,
                               struct cloth_error *error);
 
@@ -51,10 +52,10 @@ int scene_build_joints(struct model *model, const struct scene_tree *tree,
 int scene_build_welds(struct model *model, const struct scene_tree *tree,
                       struct cloth_error *error);
 
-/* What mesh.weld joins; after the welds. */
+/* The joins of mesh.weld; after the welds. */
 int scene_build_mesh_welds(struct model *model, const struct scene_tree *tree,
                            struct cloth_error *error);
-/* Warns of vertices on one place that nothing joins; after all joints and welds. */
+/* Warns of unjoined vertices at one place; after all joints and welds. */
 int scene_build_pieces(struct model *model, const struct scene_tree *tree,
                        struct cloth_error *error);
 /* Edges that are shorter than contact.thickness; after the seams. */
@@ -80,9 +81,8 @@ int scene_build_folds(struct model *model, const struct scene_tree *tree,
                       struct cloth_error *error);
 
 /* Reads the seams of an OBJ mesh (docs/garments.md), for a mesh that has as many vertices and
- * triangles. What is wrong with the file is in `inner`. They belong to `seams`, also after an
- * error.
- */
+ * triangles. Faults of the file are in `inner`. The seams belong to `seams`, also after an
+ * error. */
 int scene_read_seams(struct model_seams *seams, const struct mesh *mesh, const char *path,
                      struct cloth_error *inner);
 
@@ -116,7 +116,7 @@ int scene_build_material(uint32_t *material, const struct model_cloth *cloth,
 int scene_build_parts(struct model_cloth *cloth, struct model *model, struct scene_tree *tree,
                       int node, struct cloth_error *error);
 
-/* That the materials of a cloth with its regions have the moduli that its mesh needs. */
+/* Checks that the materials of a cloth with its regions have the moduli that its mesh needs. */
 int scene_build_check_moduli(const struct model_cloth *cloth, const struct model *model,
                              const struct scene_tree *tree, int node, struct cloth_error *error);
 
@@ -124,7 +124,7 @@ int scene_build_check_moduli(const struct model_cloth *cloth, const struct model
 int scene_build_group(uint32_t *group, const struct model_cloth *cloth,
                       const struct scene_tree *tree, int node, struct cloth_error *error);
 
-/* That a map that picks vertices has no radius without nearest. */
+/* Checks that a map that picks vertices has no radius without nearest. */
 int scene_build_check_radius(const struct scene_tree *tree, int node, struct cloth_error *error);
 
 /* Checks a pick that a map with one of the keys vertices, nearest, box, group filled: there are
@@ -134,11 +134,11 @@ int scene_build_pick(struct model_pick *pick, const struct scene_tree *tree, int
 
 /* Refuses a vertex that stands twice in the list of the pick that the map `node` makes. seen: for
  * each vertex of the mesh, the number of the last pick that named it. number: of this pick, from 1.
- * what: "one load", and what to do. */
+ * what: "one load", and the remedy. */
 int scene_build_once(const struct model_pick *pick, const struct scene_tree *tree, int node,
                      uint32_t *seen, uint32_t number, const char *what, struct cloth_error *error);
 
-/* That the mesh of the cloth has no vertex of this number. */
+/* The error that the mesh of the cloth has no vertex of this number. */
 int scene_build_no_vertex(uint32_t vertex, const struct model_cloth *cloth,
                           const struct scene_tree *tree, int node, struct cloth_error *error);
 
@@ -155,17 +155,16 @@ int scene_build_loads(struct model *model, struct model_cloth *cloth, const stru
 int scene_build_starts(struct model_cloth *cloth, const struct scene_tree *tree, int node,
                        struct cloth_error *error);
 
-/* Where a cloth starts that has its mesh, name and velocity, by its key from; files of the folder
- * are added to the model's. */
+/* The start of a cloth by its key from; the cloth has its mesh, name and velocity. Files of the
+ * folder are added to the model's. */
 int scene_build_settled(struct model *model, struct model_cloth *cloth, struct scene_tree *tree,
                         int node, struct cloth_error *error);
 
-/* That the key rotate of a map, which filled the transform, is a rotation. */
+/* Checks that the key rotate of a map, which filled the transform, is a rotation. */
 int scene_build_check_turn(const struct mesh_transform *transform, const struct scene_tree *tree,
                            int node, struct cloth_error *error);
 
-/* What a pin holds its vertices to, and how it moves: motions and sliders are added to the model's.
- */
+/* The constraint of a pin, and its motion: motions and sliders are added to the model's. */
 int scene_build_constraint(struct model *model, struct model_pin *pin,
                            const struct scene_tree *tree, int node, struct cloth_error *error);
 
@@ -181,7 +180,7 @@ int scene_build_rotation(double rotate[4], const char *what, const struct scene_
 int scene_build_direction(double direction[3], const char *what, const struct scene_tree *tree,
                           int node, struct cloth_error *error);
 
-/* That there is no `what` of this name, with those that there are. names: n strings. */
+/* The error that there is no `what` of this name; it lists the existing names. names: n strings. */
 int scene_build_no_such(const char *what, const char *name, const char *const *names, size_t n,
                         const struct scene_tree *tree, int node, struct cloth_error *error);
 
@@ -192,14 +191,13 @@ int scene_build_file(struct model *model, const char *path, struct cloth_error *
 int scene_build_mesh(struct model *model, struct model_cloth *cloth, struct scene_tree *tree,
                      int node, struct cloth_error *error);
 
-/* The mesh of the pattern that the map `node` names, a file that is added to the model's, or an own
- * garment. What is
- * wrong with the pattern is in `inner`, without the place in the scene. */
+/* The mesh of the pattern that the map `node` names: a file, which is added to the model's, or an
+ * own garment. Faults of the pattern are in `inner`, without the place in the scene. */
 int scene_build_pattern(struct model *model, struct model_cloth *cloth, struct scene_tree *tree,
                         int node, struct cloth_error *error, struct cloth_error *inner);
 
-/* That this machine may have room for a mesh of n vertices. node: the key that asks for so many;
- * what: "nx times ny is". */
+/* Checks that this machine may have room for a mesh of n vertices. node: the key that asks for so
+ * many; what: "nx times ny is". */
 int scene_build_check_memory(uint64_t n, const char *what, const struct scene_tree *tree, int node,
                              struct cloth_error *error);
 
@@ -208,15 +206,15 @@ int scene_build_check_memory(uint64_t n, const char *what, const struct scene_tr
 char *scene_build_path(struct model *model, const struct scene_tree *tree, int node,
                        struct cloth_error *error);
 
-/* The frames that the key of a body says; n 0: it has none. mesh: that of the body, transformed, as
- * frames are. *place: what they point to, to be freed in any case. */
+/* The frames of a body's key; n 0: it has none. mesh: that of the body, transformed, as frames are.
+ * *place: the memory of the frames, to be freed in any case. */
 int scene_build_frames(struct model *model, struct contact_frames *frames, double **place,
                        const struct mesh *mesh, const struct mesh_transform *transform,
                        const struct scene_tree *tree, int body, struct cloth_error *error);
 
-/* The mesh of a figure that the key mannequin of a body says, transformed, and its frames if it
- * walks or has poses; else frames are left as they are. *place: what they point to, to be freed in
- * any case. After the time. */
+/* The mesh of the figure of a body's key mannequin, transformed. Its frames if it walks or has
+ * poses; else frames are unchanged. *place: the memory of the frames, to be freed in any case.
+ * After the time. */
 int scene_build_mannequin(const struct model *model, struct mesh *mesh,
                           const struct mesh_transform *transform, struct contact_frames *frames,
                           double **place, struct scene_tree *tree, int body,
@@ -228,8 +226,8 @@ int scene_build_warn_crossed(struct model *model, const struct mesh *mesh, const
                              const struct scene_tree *tree, int file, struct cloth_error *error);
 
 /* The mesh of the OBJ file that a node names, relative to the scene's folder, by mesh_read_obj or
- * mesh_read_surface; the file is added to the model's. What is wrong with the file is in `inner`,
- * without the place in the scene. */
+ * mesh_read_surface; the file is added to the model's. Faults of the file are in `inner`, without
+ * the place in the scene. */
 typedef int scene_obj_reader(struct mesh *mesh, const char *path, struct cloth_error *error);
 int scene_build_obj(struct model *model, struct mesh *mesh, scene_obj_reader *reads,
                     const struct scene_tree *tree, int node, struct cloth_error *error,

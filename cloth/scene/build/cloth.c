@@ -29,7 +29,7 @@ static int check_vertices(const struct model_pick *pick, const struct scene_tree
     return CLOTH_OK;
 }
 
-/* Of two opposite corners to the lower and the upper one. */
+/* Turns two opposite corners into the lower and the upper one. */
 static int build_box(double (*box)[3], const struct scene_tree *tree, int node,
                      const struct model_cloth *cloth, struct cloth_error *error)
 {
@@ -174,7 +174,7 @@ static int no_material(const char *name, const struct model *model, const struct
     return code;
 }
 
-/* Where no density is needed, none need be given. */
+/* The density may be left out if it is not needed. */
 static int check_density(const struct model_cloth *cloth, const struct model_material *material,
                          const struct scene_tree *tree, int node, struct cloth_error *error)
 {

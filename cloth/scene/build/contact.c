@@ -1,16 +1,16 @@
-/* The mode of contact, where the scene does not say it; and what certified contact needs: a solve
- * that knows of it, and a thickness that the numbers of the scene resolve. */
+/* The default mode of contact, and the needs of certified contact: a solve that supports it, and a
+ * thickness that the numbers of the scene resolve. */
 #include "cloth/scene/build/build.h"
 
 #include <math.h>
 
 static const double MARGIN = 1e-9; /* m: of a certificate */
-static const double OPEN = 0.1;    /* of the thickness: so much of it steps leave open */
+static const double OPEN = 0.1;    /* part of the thickness that steps leave open */
 
 /* ---- Its default ---- */
 
-/* Whether a cloth meets more than planes: what is thin or has edges goes through a cloth whose
- * vertices alone are put out, and cloths go through each other. */
+/* True if a cloth meets more than planes. If only vertices are put out, thin or sharp obstacles go
+ * through a cloth, and cloths go through each other. */
 static bool meets_surfaces(const struct model *model, uint32_t cloth)
 {
     bool meets = false;
@@ -58,7 +58,7 @@ void scene_build_contact(struct model *model, const struct scene_tree *tree)
         model->contact.mode = MODEL_CONTACT_CERTIFIED;
 }
 
-/* ---- Where it has nothing to do ---- */
+/* ---- Scenes without contact ---- */
 
 static bool meets_anything(const struct model *model, uint32_t cloth)
 {
@@ -82,7 +82,7 @@ void scene_build_contact_idle(struct model *model)
     model->contact.idle = idle;
 }
 
-/* ---- What it needs ---- */
+/* ---- Its needs ---- */
 
 /* The largest coordinate of a vertex where it starts, m. */
 static double farthest(const struct model *model)
@@ -97,8 +97,8 @@ static double farthest(const struct model *model)
     return far;
 }
 
-/* Two points that steps leave apart stay so in frames, whose floats move each coordinate of a point
- * by up to 2^-24 of it: two points by up to 2 sqrt(3) of that towards each other. */
+/* Points that steps leave apart must stay apart in frames. Floats move each coordinate by up to
+ * 2^-24 of it, so two points approach by up to 2 sqrt(3) of that. */
 static int check_thickness(const struct model *model, const struct scene_tree *tree, int node,
                            struct cloth_error *error)
 {
@@ -112,7 +112,7 @@ static int check_thickness(const struct model *model, const struct scene_tree *t
                            model->contact.thickness, least, far, model_contact_cure(model));
 }
 
-/* That no body is met by maps. */
+/* Checks that no body is met by maps. */
 static int check_bodies(const struct model *model, const struct scene_tree *tree,
                         struct cloth_error *error)
 {

@@ -1,6 +1,6 @@
-/* Bodies whose surface goes through itself: nothing says there what is inside, and cloth that gets
- * between two of its parts is pinched. They are met all the same, with a warning. Seams that cross:
- * they pull panels through each other. */
+/* Bodies whose surface goes through itself: the inside is undefined there, and cloth between two of
+ * its parts is pinched. They are met all the same, with a warning. Seams that cross: they pull
+ * panels through each other. */
 #include "cloth/scene/build/build.h"
 #include "cloth/verify/verify.h"
 
@@ -44,7 +44,7 @@ int scene_build_warn_crossed(struct model *model, const struct mesh *mesh, const
 
 static const double END = 0.02; /* of the way between partners: so near to them seams may touch */
 
-/* What the threads of a cloth's seams sweep: of each two neighbours two triangles. */
+/* The surface between threads of a cloth's seams: two triangles between each two neighbours. */
 struct threads {
     double (*x)[3];
     uint32_t (*corner)[3], *seam; /* of each triangle, and the seam it is of */
@@ -79,9 +79,10 @@ static void add_seam(struct threads *to, const double *position, const struct mo
     }
 }
 
-/* The first two seams of which a good part of the one's threads goes through the other. Seams that
- * begin at one corner may touch near it. Triangles are in the order of the seams, and so are pairs.
- * crossed, last: room, of each seam: triangles of the one that go through it; the last of these. */
+/* Finds the first two seams where a good part of the one's threads goes through the other. Seams
+ * that begin at one corner may touch near it. Triangles are in the order of the seams, and so are
+ * pairs. crossed, last: room, of each seam: triangles of the one that go through it; the last of
+ * these. */
 static bool find_crossed(const struct threads *threads, const struct cloth_list *pairs,
                          const struct model_seams *seams, uint32_t *crossed, uint32_t *last,
                          uint32_t found[2])

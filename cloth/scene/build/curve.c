@@ -1,5 +1,5 @@
-/* How loads and the wind vary. Keys of all curves stand in one array of the model, in the order
- * in which the scene is built. */
+/* Curves by which loads and the wind vary. Keys of all curves stand in one array of the model, in
+ * the order in which the scene is built. */
 #include "cloth/scene/build/build.h"
 
 #include <stdlib.h>

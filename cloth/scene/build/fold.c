@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* That the mesh has an edge between each two that follow each other. */
+/* Checks that the mesh has an edge between each two consecutive vertices. */
 static int check_path(const struct model_cloth *cloth, const struct model_fold *fold,
                       const struct mesh_edges *edges, const struct scene_tree *tree, int node,
                       struct cloth_error *error)

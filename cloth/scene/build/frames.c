@@ -7,7 +7,7 @@
 
 static const double JUMP = 0.25; /* of the body's largest extent, from a frame to the next */
 
-/* What is read, and where the scene says it. */
+/* The reading of a body's frames, and its place in the scene. */
 struct reading {
     struct model *model;
     const struct scene_tree *tree;
@@ -16,7 +16,7 @@ struct reading {
     struct cloth_error *error;
 };
 
-/* What is wrong with a file, at the node that names it. */
+/* The error of a file, at the node that names it. */
 static int blame(const struct reading *r, int node, const struct cloth_error *inner)
 {
     if (inner->code == CLOTH_E_MEMORY)
@@ -34,7 +34,7 @@ static int read_pc2(const struct reading *r, int node, uint32_t *n, double **pla
     return inner.code ? blame(r, node, &inner) : code;
 }
 
-/* That a frame's mesh has the vertices and faces of the body's. */
+/* Checks that a frame's mesh has the vertices and faces of the body's. */
 static int check_frame(const struct reading *r, int node, const struct mesh *frame)
 {
     const struct mesh *mesh = r->mesh;
@@ -83,7 +83,7 @@ static int read_objs(const struct reading *r, int list, uint32_t *n, double **pl
     return *place ? code : r->error->code;
 }
 
-/* Of the first vertex that goes too far at once. */
+/* Warns of the first vertex that goes too far at once. */
 static int warn_of_jump(const struct reading *r, const struct contact_frames *frames)
 {
     const size_t n = r->mesh->n_vertices;

@@ -1,5 +1,5 @@
-/* The fields of scientific frames. What a scene cannot have is an error: nobody looks for a field
- * that a run leaves out. */
+/* The fields of scientific frames. A field that a scene cannot have is an error: users do not
+ * notice a field that a run leaves out. */
 #include "cloth/scene/build/build.h"
 #include "cloth/scene/schema/rules.h"
 

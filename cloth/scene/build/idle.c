@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What is looked at, and what the scene says of it. */
+/* The model that is checked, and its scene. */
 struct idle_scene {
     struct model *model;
     const struct scene_tree *tree;
@@ -77,7 +77,7 @@ static bool repels_nothing(const struct model *model)
     return !model_repels(model);
 }
 
-/* By project: what cloths do not meet of each other, they never do. */
+/* True under project if cloths meet all obstacles: there cloths never meet each other. */
 static bool leaves_out_nothing(const struct model *model)
 {
     bool leaves = model_seeks(model);
@@ -156,7 +156,7 @@ static bool has_no_wind(const struct model *model)
 #define IS_MET       "means nothing: it is of contact.mode certified and repulsion"
 #define IS_REPELLED  "means nothing: it is of contact.mode repulsion"
 
-/* A key of the scene, or of a map of it, and when it does nothing. */
+/* A key of the scene, or of a map of it, and the condition under which it does nothing. */
 static const struct {
     const char *map, *key; /* map NULL: the scene */
     bool (*idle)(const struct model *model);
@@ -196,7 +196,7 @@ static const struct {
     {"time", "rest", never_rests, "means nothing: a load or wind with a sine never ends"},
 };
 
-/* A bound of 0, or no contact, asks for nothing, so nothing of it is missed. */
+/* A bound of 0, or no contact, switches something off, so it needs no warning. */
 static bool is_off(const struct scene_tree *tree, int node, const char *key)
 {
     const char *text = scene_tree_scalar(tree, node);
@@ -261,7 +261,7 @@ static int warn_of_start(const struct idle_scene *scene, int start)
     return code;
 }
 
-/* That of a pin or an obstacle. */
+/* Warns of the motion of a pin or an obstacle. */
 static int warn_of_motion(const struct idle_scene *scene, int owner)
 {
     static const char *const moves[] = {"translate", "rotate", NULL};
@@ -276,7 +276,7 @@ static int warn_of_motion(const struct idle_scene *scene, int owner)
     return CLOTH_OK;
 }
 
-/* That of a material or an obstacle. */
+/* Warns of the friction of a material or an obstacle. */
 static int warn_of_friction(const struct idle_scene *scene, int owner)
 {
     const int node = scene_tree_get(scene->tree, owner, "friction");
@@ -294,7 +294,7 @@ static int warn_of_materials(const struct idle_scene *scene)
     return code;
 }
 
-/* What says of a body how its maps are, where it has none. */
+/* Warns of keys for the maps of a body without maps. */
 static int warn_of_view(const struct idle_scene *scene, int body)
 {
     static const char *const keys[] = {"resolution", "view"};
@@ -347,7 +347,7 @@ static int warn_of_joint(const struct idle_scene *scene, int joint)
     return CLOTH_OK;
 }
 
-/* Of each entry of the list `key` of a map. */
+/* Warns of each entry of the list `key` of a map. */
 static int warn_of_list(const struct idle_scene *scene, int map, const char *key,
                         int (*warn_of)(const struct idle_scene *scene, int item))
 {

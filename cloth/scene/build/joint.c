@@ -1,4 +1,4 @@
-/* What joins vertices of any cloths: keys at the top of a scene that name pairs of them. */
+/* Joints of vertices of any cloths: keys at the top of a scene that name pairs of vertices. */
 #include "cloth/scene/build/build.h"
 
 #include <stdlib.h>
@@ -54,7 +54,7 @@ static int take_edge(struct model_end *end, const struct scene_tree *tree, int n
     return CLOTH_OK;
 }
 
-/* That the mesh has the edges. all: of the cloth. */
+/* Checks that the mesh has the edges. all: those of the cloth. */
 static int check_edges(const struct model_end *end, const struct model *model,
                        const struct mesh_edges *all, const struct scene_tree *tree, int node,
                        struct cloth_error *error)
@@ -81,7 +81,7 @@ static int fail_at(const struct scene_tree *tree, int node, double at, struct cl
                            at);
 }
 
-/* Where on its edges it ends. */
+/* The places on its edges where a joint ends. */
 static int build_at(struct model_end *end, const struct scene_tree *tree, int node,
                     struct cloth_error *error)
 {

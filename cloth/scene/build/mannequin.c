@@ -7,7 +7,7 @@
 
 static const double MOST_BYTES = 4e9; /* of all frames */
 
-/* ---- What is asked for ---- */
+/* ---- The figure asked for ---- */
 
 static int check_angles(const struct mannequin_pose *pose, const struct scene_tree *tree, int node,
                         struct cloth_error *error)
@@ -64,7 +64,7 @@ static int check_figure(const struct scene_figure *figure, const struct scene_tr
 
 /* ---- Frames ---- */
 
-/* What is built, and where. */
+/* The figure that is built, and its place. */
 struct building {
     double end; /* s: of the run */
     struct scene_figure figure;

@@ -9,18 +9,18 @@
 #include <string.h>
 #include <unistd.h>
 
-/* What a vertex of a grid takes on rank 0 while it is cut, however many ranks there are: position,
- * graph, METIS. The system gives away more memory than it has, so asking for it is no test. */
+/* The bytes that a vertex of a grid takes on rank 0 while it is cut, for any number of ranks:
+ * position, graph, METIS. The system overcommits memory, so an allocation is no test. */
 static const double LEAST_BYTES = 150;
 
-/* Of this machine; infinite where it does not say. */
+/* The memory of this machine; infinite if unknown. */
 static double memory_bytes(void)
 {
     const long pages = sysconf(_SC_PHYS_PAGES), size = sysconf(_SC_PAGESIZE);
     return pages > 0 && size > 0 ? (double)pages * (double)size : INFINITY;
 }
 
-/* The height follows of the width where triangles are equilateral. */
+/* The height follows from the width if triangles are equilateral. */
 static int grid_height(struct scene_grid *grid, const struct scene_tree *tree, int node,
                        struct cloth_error *error)
 {
@@ -167,7 +167,7 @@ yaml_node_pair_t scene_build_mesh_kind(const struct scene_tree *tree, int node)
     return other ? scene_tree_pair(tree, mesh, 1) : first;
 }
 
-/* Whoever gave uv to a part means it to count. */
+/* Warns of partial uv: it does not count, though its author means it to. */
 static int warn_of_uv(struct model *model, const struct mesh *mesh, const struct scene_tree *tree,
                       int node, struct cloth_error *error)
 {

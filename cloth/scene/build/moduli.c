@@ -10,7 +10,7 @@ struct check {
     struct cloth_error *error;
 };
 
-/* Whether the scene gives the material, by number, a key. */
+/* True if the scene gives the material, by number, a key. */
 static bool has(const struct check *check, uint32_t material, const char *key)
 {
     const int materials = scene_tree_get(check->tree, 1, "materials");
@@ -25,7 +25,7 @@ static int lacks(const struct check *check, uint32_t material, const char *forma
                            check->model->materials[material].name);
 }
 
-/* Whether each material of the cloth has a key, so that nothing has to be looked at. */
+/* True if each material of the cloth has a key: then no triangle needs a check. */
 static bool all_have(const struct check *check, const char *key)
 {
     bool all = has(check, check->cloth->material, key);
@@ -34,7 +34,7 @@ static bool all_have(const struct check *check, const char *key)
     return all;
 }
 
-/* Of springs each side of a triangle has a material, else the triangle. */
+/* Springs: each side of a triangle has a material. Else each triangle has one. */
 static int check_triangles(const struct check *check)
 {
     const struct model_cloth *cloth = check->cloth;

@@ -79,7 +79,7 @@ static int check_turns(const struct phys_key *keys, const struct scene_tree *tre
     return CLOTH_OK;
 }
 
-/* What does not begin where the vertices are would tear them away in the first step. */
+/* A motion must begin where the vertices are: else it tears them away in the first step. */
 static int check_begin(const struct phys_key *keys, size_t n, const double about[3],
                        const struct scene_tree *tree, int node, struct cloth_error *error)
 {

@@ -1,4 +1,4 @@
-/* Obstacles, and whether they leave the cloths any room. */
+/* Obstacles, and the check that they leave the cloths some room. */
 #include "cloth/scene/build/build.h"
 #include "cloth/scene/schema/check.h"
 #include "cloth/scene/yaml/scalar.h"
@@ -12,8 +12,8 @@ static const double TOUCH = 1e-9; /* m: planes that overlap by less touch */
 static const double BOUND = 1e6;  /* m: beyond it there is no cloth either */
 static const double LEAST_EXTENT = 0.01, MAX_EXTENT = 10; /* m: of a figure, or furniture */
 
-/* Whether the numbers of a list, or a number, are those of a scene. what: "the radius of a sphere".
- */
+/* Refuses a number, or a list of numbers, beyond the bound of a scene. what: "the radius of a
+ * sphere". */
 static int check_bound(const double *value, size_t n, const char *what,
                        const struct scene_tree *tree, int node, struct cloth_error *error)
 {
@@ -247,7 +247,7 @@ int scene_build_obstacles(struct model *model, struct scene_tree *tree, struct c
     return code;
 }
 
-/* Of a plane: a point, and its normal. */
+/* A point of a plane, and its normal. */
 static const double *point_of(const struct contact_shape *plane)
 {
     return plane->value;
@@ -262,7 +262,7 @@ static bool is_still_plane(const struct contact_shape *shape)
     return contact_kinds[shape->kind] == &contact_plane && !shape->n;
 }
 
-/* How far a point is on the free side of a plane. */
+/* The height of a point above a plane, towards its free side. */
 static double height(const struct contact_shape *plane, const double x[3])
 {
     double sum = 0;
@@ -283,8 +283,8 @@ static double surround(const struct mesh *mesh, double middle[3])
     return sqrt(square);
 }
 
-/* Whether no point so near to the middle is on the free sides of both: there the sum of both
- * heights is below 0, since it grows with the sum of the normals only. */
+/* True if no point within `radius` of the middle is on the free sides of both planes: the sum of
+ * both heights is below 0 there. It grows only along the sum of the normals. */
 static bool exclude(const struct contact_shape *a, const struct contact_shape *b,
                     const double middle[3], double radius)
 {

@@ -1,5 +1,5 @@
 /* A cloth's mesh from a sewing pattern, or an own garment: its panels, meshed, where the pattern
- * places them. What is wrong with a pattern is in `inner`, without the place in the scene. */
+ * places them. Faults of a pattern are in `inner`, without the place in the scene. */
 #include "cloth/scene/build/build.h"
 
 #include "cloth/garment/garment.h"

@@ -1,12 +1,12 @@
-/* Meshes in pieces, of which vertices lie on each other's places: `mesh.weld` makes welds of these,
- * as many as join them all. Where nothing joins them, that draws a warning. */
+/* Meshes in pieces whose vertices lie on each other's places: `mesh.weld` makes as many welds as
+ * join them all. Unjoined pieces draw a warning. */
 #include "cloth/scene/build/build.h"
 
 #include "cloth/base/sets.h"
 
 #include <stdlib.h>
 
-/* m: what lies so near is meant to be at one place; the advice says it, too. */
+/* m: vertices so near are meant to be at one place; the advice gives this number, too. */
 static const double ONE_PLACE = 1e-5;
 
 static int weld_cloth(struct model *model, uint32_t c, const struct scene_tree *tree, int node,
@@ -50,7 +50,7 @@ int scene_build_mesh_welds(struct model *model, const struct scene_tree *tree,
     return code;
 }
 
-/* ---- What is not joined ---- */
+/* ---- Unjoined pieces ---- */
 
 static void join_pairs(uint32_t *set, uint32_t c, const struct model_pairs *pairs)
 {
@@ -59,7 +59,7 @@ static void join_pairs(uint32_t *set, uint32_t c, const struct model_pairs *pair
         cloth_sets_join(set, a->vertices[i], b->vertices[i]);
 }
 
-/* Which vertices of a cloth welds and joints bring together. */
+/* Joins the vertices of a cloth that welds and joints bring together. */
 static void join_all(uint32_t *set, const struct model *model, uint32_t c)
 {
     cloth_sets_start(set, model->cloths[c].mesh.n_vertices);

@@ -51,7 +51,7 @@ static int build_values(struct model_probe *probe, const struct scene_tree *tree
     return CLOTH_OK;
 }
 
-/* Where the force of contact is asked for. 0: nowhere. */
+/* The node that asks for the force of contact; 0: none does. */
 static int contact_at(const struct model_probe *probe, const struct scene_tree *tree, int node)
 {
     return probe->by_obstacle                       ? scene_tree_get(tree, node, "obstacle")

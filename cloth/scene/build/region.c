@@ -46,7 +46,7 @@ static int mark(struct model_cloth *cloth, struct scene_tree *tree, int node, ui
                            cloth->name);
 }
 
-/* What holds for a cloth as a whole is the same in all its parts. what: "region" */
+/* Keys that hold for a whole cloth must be the same in all its parts. what: "region" */
 static int check_alike(const struct model_material *base, const struct model_material *material,
                        const char *what, const struct scene_tree *tree, int node,
                        struct cloth_error *error)
@@ -132,7 +132,7 @@ static int build_panel(struct model_cloth *cloth, const struct model *model, uns
     return code;
 }
 
-/* That no group stands twice. */
+/* Checks that no group stands twice. */
 static int check_once(const struct scene_tree *tree, int list, size_t i, struct cloth_error *error)
 {
     const int node = scene_tree_item(tree, list, i);
@@ -163,10 +163,10 @@ static int build_panels(struct model_cloth *cloth, const struct model *model,
     return code;
 }
 
-/* ---- What does not do what it seems to ---- */
+/* ---- Warnings ---- */
 
-/* Where groups share vertices, a triangle of another group may have all its corners on the border
- * of this one. mask: the one of panels with a key; bit: the number of this panel there. */
+/* Counts triangles of other groups that have all their corners on the border of this one, as groups
+ * may share vertices. mask: that of the panels with a key; bit: the number of this panel there. */
 static uint32_t count_taken(const struct model_cloth *cloth, uint32_t group, const uint64_t *mask,
                             uint32_t bit, unsigned char *room)
 {
@@ -207,7 +207,7 @@ static int warn_of_taken(struct model *model, const struct model_cloth *cloth,
     return code;
 }
 
-/* Whether warp and weft differ in anything that the cloth has. */
+/* True if warp and weft differ in any value of the cloth. */
 static bool has_directions(const struct model_cloth *cloth, const struct model *model)
 {
     bool has = model_has_triangles(model, cloth);

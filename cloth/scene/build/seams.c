@@ -8,13 +8,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* s: partners that nothing else holds come together e-fold in this time, where no damping is
- * given. Their joint would else close within a step, however far they are. */
+/* s: partners that are otherwise free approach e-fold in this time, if no damping is given. Else
+ * their joint would close within a step from any distance. */
 static const double CLOSING = 0.1;
 
 enum { MOST_NAMED = 12 }; /* in a warning */
 
-/* ---- Which pairs a seam joins ---- */
+/* ---- Pairs that a seam joins ---- */
 
 struct pair {
     uint32_t low, high; /* vertices */
@@ -32,8 +32,8 @@ static int compare_pairs(const void *va, const void *vb)
     return 0;
 }
 
-/* joins: of each pair, seam after seam, 1 where it is the first of its two vertices among the seams
- * of a state. root: by vertex, what welds make it. */
+/* joins: for each pair, seam after seam, 1 if it is the first with its two vertices among the seams
+ * of a state. root: by vertex, the one that welds make it. */
 static int find_firsts(const struct model_seams *seams, enum model_seams_state state,
                        const uint32_t *root, size_t n, unsigned char *joins,
                        struct cloth_error *error)
@@ -163,7 +163,7 @@ static int sew_state(struct model *model, uint32_t cloth, enum model_seams_state
     return code;
 }
 
-/* Welds first: what they make one is not pulled. */
+/* Welds come first: vertices that they make one are not pulled. */
 static int sew(struct model *model, uint32_t cloth, const struct scene_tree *tree, int node,
                struct cloth_error *error)
 {
@@ -188,7 +188,7 @@ static void reverse(struct model_seam *seam)
     seam->unsure = false; /* the scene says so */
 }
 
-/* That a list of the scene names seams that are there. */
+/* Checks that a list of the scene names existing seams. */
 static int check_numbers(const struct model_cloth *cloth, const uint32_t *number, uint32_t n,
                          const struct scene_tree *tree, int list, struct cloth_error *error)
 {
@@ -220,7 +220,7 @@ static int reverse_some(struct model_cloth *cloth, const struct scene_tree *tree
 
 /* ---- Seams that are sewn otherwise than the cloth's ---- */
 
-/* The keys of a map in place of what was there. */
+/* Replaces values by those of the keys of a map. */
 static void lay_over(struct model_sewing *to, const struct model_sewing *from,
                      const struct scene_tree *tree, int node)
 {
@@ -352,7 +352,7 @@ static int find_seams(struct model *model, struct model_cloth *cloth, const stru
                            cloth->name);
 }
 
-/* ---- What meets as one ---- */
+/* ---- Vertices that meet as one ---- */
 
 static int find_joined(struct model *model, struct cloth_error *error)
 {

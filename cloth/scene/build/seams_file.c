@@ -1,5 +1,5 @@
-/* The seams of an OBJ mesh, from the file that duite-garment writes beside it. Of its panels only
- * the names of the sides are wanted. */
+/* The seams of an OBJ mesh, from the file that duite-garment writes beside it. Only the names of
+ * the sides are read from its panels. */
 #include "cloth/scene/build/build.h"
 #include "cloth/scene/pattern/reader.h"
 

@@ -1,4 +1,5 @@
-/* What a scene says, key by key: two runs of the same settings and files have the same state. */
+/* The settings of a scene, key by key: two runs of the same settings and files have the same
+ * state. */
 #include "cloth/scene/build/build.h"
 
 #include "cloth/scene/schema/check.h"

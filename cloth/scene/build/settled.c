@@ -1,6 +1,6 @@
-/* A cloth that starts where an earlier run left it: in a frame of its folder, which has the frames
- * of all its cloths in one file, and their names and numbers of vertices in cloth.obj. It starts at
- * rest there but for its own velocity; lengths at rest stay those of the mesh. */
+/* A cloth that starts where an earlier run left it: in a frame of its folder. One file there has
+ * the frames of all cloths; cloth.obj has their names and numbers of vertices. It starts at rest
+ * there but for its own velocity; lengths at rest stay those of the mesh. */
 #include "cloth/base/file.h"
 #include "cloth/scene/build/build.h"
 #include "cloth/scene/schema/check.h"
@@ -87,7 +87,7 @@ static int check_frame(const struct scene_settled *from, uint32_t n_frames,
                            from->frame, folder->path, n_frames - 1);
 }
 
-/* A number that files count frames by: what is none of them is none of a file's. */
+/* The number of a frame as files count; one that does not fit becomes a number that no file has. */
 static uint32_t frame_of(const struct scene_settled *from)
 {
     return from->frame == SCENE_LAST_FRAME ? MESH_LAST_FRAME

@@ -1,7 +1,7 @@
-/* Few edges of a mesh may be shorter than contact is thick: the ends of such an edge count as one
- * for contact, as the two sides of a pulled seam do. So nothing pushes its neighbours apart. That
- * is so where they are few, and what they join is small: what a longer chain joins would not meet
- * itself in places that are apart. Else the thickness is refused. */
+/* Edges of a mesh may be shorter than the thickness of contact if they are few and join small sets.
+ * The ends of such an edge count as one for contact, as the two sides of a pulled seam do, so their
+ * neighbours are not pushed apart. A set joined by a longer chain would not meet itself in places
+ * that are apart, so the thickness is refused. */
 #include "cloth/scene/build/build.h"
 
 #include "cloth/base/sets.h"
@@ -9,7 +9,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-static const double MOST_EXTENT = 4;  /* thicknesses: of what short edges join */
+static const double MOST_EXTENT = 4;  /* thicknesses: of a set that short edges join */
 static const double MOST_SHARE = 0.1; /* of all edges that may be short */
 
 /* The short edges of a cloth. */
@@ -63,7 +63,7 @@ static void find_extent(struct shorts *shorts)
     }
 }
 
-/* In what meets. first: number of the cloth's first vertex. */
+/* Enters the sets into the model's `apart`. first: number of the cloth's first vertex. */
 static int join(struct model *model, const struct shorts *shorts, uint32_t first,
                 struct cloth_error *error)
 {

@@ -76,7 +76,7 @@ static int build_pair(struct model *model, uint32_t i, const struct scene_tree *
                             i);
 }
 
-/* ---- What does not meet ---- */
+/* ---- Sides that do not meet ---- */
 
 /* The list of the groups of a side, cloths before obstacles. */
 static int groups_of(const struct model *model, const struct scene_tree *tree, uint32_t side)
@@ -88,7 +88,7 @@ static int groups_of(const struct model *model, const struct scene_tree *tree, u
     return scene_tree_get(tree, map, "groups");
 }
 
-/* Whether a name is that of a side or of one of its groups. */
+/* True if a name is that of a side or of one of its groups. */
 static bool is_side(const struct model *model, const struct scene_tree *tree, uint32_t side,
                     const char *name)
 {
@@ -141,7 +141,7 @@ static int check_side(const struct model *model, const struct scene_tree *tree, 
     return code;
 }
 
-/* Marks a cloth and another side, both ways. Returns whether there are two to mark. */
+/* Marks a cloth and another side, both ways. Returns false if neither is a cloth. */
 static bool mark(struct contact_apart *all, uint32_t a, uint32_t b)
 {
     const size_t n_sides = (size_t)all->n_cloths + all->n_obstacles;

@@ -1,4 +1,4 @@
-/* How vertices start where that is not the shape of the mesh, and what they weigh more. */
+/* Starts of vertices that differ from the shape of the mesh, and their additional masses. */
 #include "cloth/scene/build/build.h"
 
 #include <stdlib.h>

@@ -61,7 +61,7 @@ static int warn_of_rigidity(const struct unusual *of, const char *name, int mate
     return CLOTH_OK;
 }
 
-/* Of a material that triangles have. */
+/* Warns of the stretch of a material of triangles. */
 static int warn_of_stretch(const struct unusual *of, const char *name, int material)
 {
     static const char *const along[] = {" along the warp", " along the weft"};
@@ -107,7 +107,7 @@ static int warn_of_turn(const struct unusual *of, int rotate)
                 length);
 }
 
-/* The key rotate of a map, and those of its motion. */
+/* Warns of the key rotate of a map and of its motion. */
 static int warn_of_turns(const struct unusual *of, int map)
 {
     const int motion = scene_tree_get(of->tree, map, "motion");
@@ -118,7 +118,7 @@ static int warn_of_turns(const struct unusual *of, int map)
     return code;
 }
 
-/* Of a list of maps. */
+/* Warns of the turns of a list of maps. */
 static int warn_of_list(const struct unusual *of, int list)
 {
     int code = CLOTH_OK;

@@ -1,4 +1,4 @@
-/* What no rule of a key can say of materials, time, air and solver. */
+/* Checks of materials, time, air and solver beyond the rule of one key. */
 #include "cloth/scene/build/build.h"
 
 #include "cloth/physics/triangle.h"
@@ -56,7 +56,7 @@ static int build_name(struct model *model, const struct scene_tree *tree, struct
     return CLOTH_OK;
 }
 
-/* What a table of keys cannot check of triangles. */
+/* Checks a membrane's values together, which a table of keys cannot. */
 static int check_membrane(const struct model_material *material, const struct scene_tree *tree,
                           int node, struct cloth_error *error)
 {
@@ -79,7 +79,7 @@ static int check_membrane(const struct model_material *material, const struct sc
                            sqrt(warp / weft));
 }
 
-/* What the fields have as the scene says it becomes what the model means by them. */
+/* Turns fields as the scene gives them into those of the model. */
 static int build_material(struct model *model, struct model_material *material,
                           const struct scene_tree *tree, int node, struct cloth_error *error)
 {
@@ -145,7 +145,8 @@ static int build_air(struct model *model, const struct scene_tree *tree, struct 
     return scene_build_curve(model, &model->wind_curve, tree, air, error);
 }
 
-/* The default of max_iterations comes after what the scene says, so after the count. */
+/* Sets the count again: the default of max_iterations, which has the same field, was filled in
+ * later. */
 static void build_count(struct model *model, const struct scene_tree *tree)
 {
     const int stop = scene_tree_get(tree, scene_tree_get(tree, 1, "solver"), "stop");

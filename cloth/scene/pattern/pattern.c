@@ -1,5 +1,5 @@
-/* A file of patterns: its properties first, since they say how to read the rest. What says how a
- * pattern may be varied (parameters, constraints) is not looked at. */
+/* A file of patterns: its properties first, since they say how to read the rest. Keys for
+ * variations of a pattern (parameters, constraints) are ignored. */
 #include "cloth/scene/pattern.h"
 #include "cloth/scene/pattern/reader.h"
 

@@ -37,7 +37,7 @@ int pattern_list(const struct pattern_reader *reader, int node, const char *what
 int pattern_number(const struct pattern_reader *reader, int node, const char *what, double *value);
 int pattern_vector(const struct pattern_reader *reader, int node, const char *what, size_t n,
                    double *value);
-/* A whole number below `below`; things: of which there are so many. */
+/* A whole number below `below`; things: the noun of the things counted. */
 int pattern_index(const struct pattern_reader *reader, int node, const char *what, uint32_t below,
                   const char *things, uint32_t *value);
 /* true or false, 1 or 0. */

@@ -1,4 +1,4 @@
-/* What single nodes of a pattern may be. Every error passes through pattern_wrong, which says where
+/* Checks of single nodes of a pattern. Every error passes through pattern_wrong, which says where
  * it is in the pattern's own terms. */
 #include "cloth/base/memory.h"
 #include "cloth/scene/pattern/reader.h"
@@ -30,7 +30,7 @@ int pattern_wrong(const struct pattern_reader *reader, int node, const char *for
     return scene_tree_fail(reader->tree, node, reader->error, "%s%s%s", where, n ? ": " : "", text);
 }
 
-/* What a node says, short and on one line. */
+/* The text of a node, short and on one line. */
 static const char *found(const struct pattern_reader *reader, int node, char *text, size_t size)
 {
     const char *scalar = scene_tree_scalar(reader->tree, node);

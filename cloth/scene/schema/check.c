@@ -10,7 +10,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Where the walk is: a chain up to the root, for the names of keys in sentences. */
+/* The place of the walk: a chain up to the root, for the names of keys in sentences. */
 struct place {
     const struct place *up;
     const char *key; /* NULL: entry `index` of a list */
@@ -40,7 +40,7 @@ static size_t path_of(const struct place *at, char *text, size_t size)
     return used;
 }
 
-/* What a node says, short and on one line. */
+/* The text of a node, short and on one line. */
 static const char *found(const struct walk *walk, int node, char *text, size_t size)
 {
     bool list = scene_tree_is(walk->tree, node, YAML_SEQUENCE_NODE);
@@ -59,7 +59,7 @@ static const char *found(const struct walk *walk, int node, char *text, size_t s
     return text;
 }
 
-/* Values that were, and what is in their place. key: that had them. */
+/* Values that are gone, and their replacements. key: the key that had them. */
 static const struct {
     const char *key, *value, *now;
 } outdated[] = {
@@ -97,7 +97,7 @@ static const struct scene_rule *rule_of(const struct scene_rule *keys, const cha
 
 enum { MAX_KEYS = 32 }; /* of a map, in sentences */
 
-/* Keys that were, and what is in their place. map: the key of the map, or of the list of maps, that
+/* Keys that are gone, and their replacements. map: the key of the map, or of the list of maps, that
  * had them. */
 static const struct {
     const char *map, *key, *now;
@@ -199,7 +199,7 @@ static int check_values(struct walk *walk, const struct place *at, const struct 
     return CLOTH_OK;
 }
 
-/* A default is walked like what a file says, since a map among them has defaults of its own. */
+/* A default is walked like a value of the file, since a map may have defaults of its own. */
 static int add_default(struct walk *walk, const struct place *here, const struct scene_rule *rule,
                        int map, void *base)
 {
@@ -226,7 +226,7 @@ static int add_missing(struct walk *walk, const struct place *at, const struct s
     return CLOTH_OK;
 }
 
-/* Where some of a map's keys are choices, exactly one of them is there. */
+/* Exactly one of a map's keys that are choices must be there. */
 static int check_choice(struct walk *walk, const struct place *at, const struct scene_rule *keys,
                         int map)
 {
@@ -291,7 +291,7 @@ static int check_one_of(struct walk *walk, const struct place *at, const struct 
                            n, scene_rule_expected(rule, expected, sizeof expected));
 }
 
-/* Room for what a list or named map holds; NULL: nothing is filled, or an error. */
+/* Room for the entries of a list or named map; NULL: nothing is filled, or an error. */
 static char *items_of(struct walk *walk, const struct scene_rule *rule, int node, void *base,
                       size_t *step)
 {
@@ -330,7 +330,7 @@ static int check_list(struct walk *walk, const struct place *at, const struct sc
     char *items = items_of(walk, rule, node, base, &step);
     int code = walk->error->code;
     struct scene_rule inside = *rule->inside;
-    inside.unit = rule->unit; /* that of a list is of its numbers */
+    inside.unit = rule->unit; /* the unit of a list is that of its numbers */
     for (size_t i = 0; !code && i < n; i++)
         code = check(walk, &(struct place){at, NULL, i}, &inside,
                      scene_tree_item(walk->tree, node, i), items ? items + i * step : NULL);
@@ -441,7 +441,7 @@ int scene_check(struct model *model, struct scene_tree *tree, struct cloth_error
 {
     struct walk walk = {tree, error};
     const struct place root = {0}, schema = {&root, "schema", 0};
-    /* A file of another schema is told so before its keys are called unknown. */
+    /* Another schema is reported before its keys are called unknown. */
     int node = scene_tree_get(tree, 1, "schema");
     int code =
         node ? check(&walk, &schema, rule_of(scene_root.inside, "schema"), node, NULL) : CLOTH_OK;

@@ -5,8 +5,8 @@
 #include <limits.h>
 #include <string.h>
 
-/* The last set that gave a key or anything below it, from 1; 0: none did. Those of the caller come
- * after those of the phase, whose keys are nodes in their order. */
+/* The last set that gave a key or anything below it, from 1; 0: none did. The caller's sets come
+ * after the phase's, whose keys are nodes in their order. */
 static size_t set_of_pair(const struct scene_tree *tree, yaml_node_pair_t pair)
 {
     const yaml_mark_t mark = scene_tree_node(tree, pair.key)->start_mark;

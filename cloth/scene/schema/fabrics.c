@@ -1,5 +1,5 @@
 /* Values of a fabric are filled in as defaults are, and checked as if the scene had them. A tree of
- * another shape does no harm here: the check finds what is wrong with it. */
+ * another shape does no harm here: the check finds its faults. */
 #include "cloth/scene/schema/fabrics.h"
 
 #include "cloth/scene/schema/rules.h"
@@ -63,7 +63,7 @@ static int named_by(const struct scene_tree *tree, int map, const char *key)
     return node ? find(scene_tree_scalar(tree, node)) : -1;
 }
 
-/* Adds a material, if the scene has none of this name, with nothing but `like`. */
+/* Adds a material with only `like`, if the scene has none of this name. */
 static int add(struct scene_tree *tree, const char *name, struct cloth_error *error)
 {
     char like[40];
@@ -78,7 +78,7 @@ static int add(struct scene_tree *tree, const char *name, struct cloth_error *er
     return scene_edit_default(tree, materials, name, like, error);
 }
 
-/* Adds what the key material of a map names. */
+/* Adds the material that the key material of a map names. */
 static int add_named(struct scene_tree *tree, int map, struct cloth_error *error)
 {
     const int fabric = named_by(tree, map, "material");

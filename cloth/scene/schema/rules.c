@@ -100,7 +100,7 @@ static const struct scene_rule material = {.type = SCENE_MAP, .inside = material
 
 static const struct scene_rule text = {.type = SCENE_TEXT};
 
-/* What every obstacle may have. */
+/* Keys of every obstacle. */
 #define MOVES \
     {"name", SCENE_TEXT, .about = "unique, for contact.pairs, contact.ignore, pins that follow and probes"}, \
     {"groups", SCENE_LIST, .filled = true, .inside = &text, \

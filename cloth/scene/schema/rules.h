@@ -7,7 +7,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* What a scene may say, as a tree of constant rules: a map has the rules of its keys, a list the
+/* The schema of a scene, as a tree of constant rules: a map has the rules of its keys, a list the
  * rule of its items. A rule also says which field takes the value, so that the walk that checks a
  * scene (check.h) fills the model, too. */
 
@@ -57,9 +57,9 @@ struct scene_rule {
     const char *about; /* for the list of keys */
 
     /* The fields, all of the structure that the map of this key fills. A number takes a double, a
-     * whole one a uint32_t, a text a char * that the structure owns, a choice a bool, int or enum;
-     * a list of fixed length an array of these. Maps without a field fill the structure that they
-     * stand in. */
+     * whole one a uint32_t, a text a char * that the structure owns. A choice takes a bool, int or
+     * enum; a list of fixed length takes an array of these. Maps without a field fill the structure
+     * that they stand in. */
     struct scene_field field;
     struct scene_field count; /* lists of any length and named maps: a uint32_t; `field` is then a
                                  pointer, to calloc'ed entries */
@@ -126,14 +126,14 @@ extern const struct model_word scene_views[];        /* an axis, or CONTACT_THIN
 extern const struct model_word scene_hdf5_fields[];  /* offsets of flags in a struct model_hdf5 */
 extern const struct model_word scene_probe_values[]; /* offsets of flags in a struct model_probe */
 
-/* What a word among `words` means; *known: whether it is among them. */
+/* The value of a word among `words`; *known: true if it is among them. */
 int scene_word_value(const struct model_word *words, const char *word, bool *known);
 
-/* What is allowed, in words: "a finite number > 0 (s)". Returns text. */
+/* The allowed values in words: "a finite number > 0 (s)". Returns text. */
 char *scene_rule_expected(const struct scene_rule *rule, char *text, size_t size);
 
-/* The candidate nearest to a word, if it is near enough to be what was meant; else NULL.
- * Candidates: n strings. */
+/* The candidate nearest to a word, if it is near enough to be meant; else NULL. Candidates: n
+ * strings. */
 const char *scene_nearest_word(const char *word, const char *const *candidates, size_t n);
 
 /* "; did you mean 'x'? Allowed: x, y, z", cut to size. Returns text. */

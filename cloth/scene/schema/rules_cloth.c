@@ -1,4 +1,4 @@
-/* The rules of cloths, of what stands in them, and of probes, which pick vertices alike. */
+/* The rules of cloths and their keys, and of probes, which pick vertices in the same way. */
 #include "cloth/scene/schema/tables.h"
 
 /* clang-format off */
@@ -110,7 +110,7 @@ const struct scene_rule scene_motion_keys[] = {
      .about = "the point that is rotated about"},
     {0}};
 
-/* How vertices are chosen, one of these: into the struct model_pick `pick` of a type. */
+/* Ways to choose vertices, one of these: into the struct model_pick `pick` of a type. */
 #define PICK_VERTICES(type, pick) \
     {"vertices", SCENE_LIST, .choice = true, .filled = true, .inside = &vertex, \
      ARRAY(type, pick vertices, pick n_vertices), MEANS(type, pick kind, MODEL_PICK_VERTICES), \

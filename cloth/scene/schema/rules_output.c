@@ -1,4 +1,4 @@
-/* What scenes say of the files of a run. */
+/* Keys for the files of a run. */
 #include "cloth/scene/schema/tables.h"
 
 const struct model_word scene_hdf5_fields[] = {

@@ -3,10 +3,10 @@
 
 #include "cloth/scene/schema/rules.h"
 
-/* How tables of rules are written. INTO: where the value goes. ARRAY: where a list of any length
- * goes, and the number of its items. PLACE: where the place of the value goes (model.h). MEANS:
- * which field says, by a value, that this key was chosen, or given. WORDS: the words of a choice,
- * each with what it means. ITEM: the type of an item of a list. */
+/* Macros for tables of rules. INTO: where the value goes. ARRAY: where a list of any length goes,
+ * and the number of its items. PLACE: where the place of the value goes (model.h). MEANS: which
+ * field says, by a value, that this key was chosen, or given. WORDS: the words of a choice, each
+ * with its meaning. ITEM: the type of an item of a list. */
 /* clang-format off */
 #define FIELD(type, member) \
     {offsetof(type, member), sizeof(((type *)0)->member), #type, sizeof(type)}

@@ -1,5 +1,5 @@
-/* Words for people: what a rule allows, what a wrong word may have meant, and the list of all keys.
- */
+/* Words for people: the values that a rule allows, guesses for a wrong word, and the list of all
+ * keys. */
 #include "cloth/scene/scene.h"
 #include "cloth/scene/schema/rules.h"
 

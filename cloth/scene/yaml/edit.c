@@ -1,14 +1,14 @@
 /* Additions to a tree. New nodes carry their origin in their mark (tree.h). A node on the path of a
- * set is a copy that only its parent knows, but for the root, which has no parent; so writing
- * through it changes one place. Its key is new, so that the mark of a key names the last set that
- * changed anything below it. */
+ * set is a copy that only its parent knows; the root has no parent. So writing through it changes
+ * one place. Its key is new, so that the mark of a key names the last set that changed anything
+ * below it. */
 #include "cloth/scene/yaml/edit.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* What an edit is doing: the mark of new nodes, and what is left of the path. */
+/* The state of an edit: the mark of new nodes, and the rest of the path. */
 struct edit {
     struct scene_tree *tree;
     yaml_mark_t mark;
@@ -120,8 +120,8 @@ static int add_value(struct edit *edit, const char *text)
     return node;
 }
 
-/* A copy of a map or list that the caller may change; a new one of that type where there is nothing
- * yet; 0 with an error if the node is something else. */
+/* A copy of a map or list that the caller may change; a new one of that type if there is none yet.
+ * 0 with an error if the node is of another type. */
 static int own(struct edit *edit, int node, yaml_node_type_t type)
 {
     struct scene_tree *tree = edit->tree;
@@ -213,8 +213,7 @@ static int put_index(struct edit *edit, int node)
     return value ? list : 0;
 }
 
-/* What is to stand where `node` (0: nothing) stands, after the rest of the path was followed; 0
- * with an error. */
+/* The replacement of `node` (0: none) after following the rest of the path; 0 with an error. */
 static int put(struct edit *edit, int node)
 {
     if (edit->value && !*edit->at)
@@ -235,7 +234,7 @@ static bool starts_no_path(const char *text)
     return *text == '=' || *text == '[' || *text == '.';
 }
 
-/* Whether it changes the phases themselves. */
+/* True if a set changes the phases themselves. */
 static bool is_of_phases(const char *text)
 {
     const size_t n = strlen("phases");
@@ -250,7 +249,7 @@ static const char *key_of_phase(const char *text)
     return strncmp(at, "].set.", 6) ? NULL : at + 6;
 }
 
-/* Those of the tree's sets that change the phases themselves, or the others. */
+/* Applies the tree's sets that change the phases themselves, or the others. */
 static int edit_by_options(struct scene_tree *tree, bool phases, struct cloth_error *error)
 {
     for (size_t i = 0; i < tree->n_sets; i++) {
@@ -269,7 +268,7 @@ static int edit_by_options(struct scene_tree *tree, bool phases, struct cloth_er
     return CLOTH_OK;
 }
 
-/* The check tells what is wrong with a set that is no map, or with its keys. */
+/* The check reports a set that is no map, and faults of its keys. */
 static int edit_by_phase(struct scene_tree *tree, uint32_t phase, struct cloth_error *error)
 {
     const int map = scene_tree_phase(tree, phase), set = map ? scene_tree_get(tree, map, "set") : 0;

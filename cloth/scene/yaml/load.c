@@ -115,7 +115,7 @@ static int check_comments(const char *path, const struct scene_words *words, con
                               path, line, i - begin + 1);
         if (bytes[i] == '"')
             text = !text;
-        i += text && bytes[i] == '\\'; /* what follows is no end of the text */
+        i += text && bytes[i] == '\\'; /* the next character does not end the text */
     }
     return CLOTH_OK;
 }
@@ -195,7 +195,7 @@ static int part_of(const yaml_node_t *node, size_t k)
     return pair < node->data.mapping.pairs.top ? (k % 2 ? pair->value : pair->key) : 0;
 }
 
-/* An alias names what ended before it, or what it is in. */
+/* An alias names a node that ended before it, or one that it is in. */
 int scene_tree_circle(const yaml_document_t *document, size_t *line)
 {
     const yaml_node_t *first = document->nodes.start;

@@ -1,5 +1,5 @@
-/* A loaded tree holds one document whose root is a map. Nodes are never removed, and what a node is
- * never changes; only scene_edit adds nodes or changes the children of a map or list. */
+/* A loaded tree holds one document whose root is a map. Nodes are never removed, and never change
+ * their type or text. Only scene_edit adds nodes or changes the children of a map or list. */
 #include "cloth/scene/yaml/tree.h"
 #include "cloth/scene/yaml/scalar.h"
 
@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MAX_OF_SET = 200 }; /* bytes of a set that a message repeats: what is wrong must fit too */
+enum { MAX_OF_SET = 200 }; /* bytes of a set that a message repeats: the fault must fit too */
 
 yaml_node_t *scene_tree_node(const struct scene_tree *tree, int node)
 {
@@ -77,7 +77,7 @@ int scene_tree_phase(const struct scene_tree *tree, uint32_t phase)
     return scene_tree_is(tree, map, YAML_MAPPING_NODE) ? map : 0;
 }
 
-/* Of a key in the set of a phase. */
+/* The place of a key in the set of a phase. */
 static char *phase_place(const struct scene_tree *tree, const yaml_mark_t *mark)
 {
     char *place = NULL, *key = scene_tree_place(tree, (int)mark->line);

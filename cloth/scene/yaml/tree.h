@@ -18,17 +18,17 @@ struct scene_tree {
     const struct scene_set *sets; /* of the caller */
 };
 
-/* Where a node came from when not from the file. It is kept in its mark: index is one of these,
+/* The origin of a node that is not from the file. It is kept in its mark: index is one of these,
  * line the set's number; by a phase: line is the key in its set, column the phase's number. */
 #define SCENE_BY_SET     (SIZE_MAX)
 #define SCENE_BY_DEFAULT (SIZE_MAX - 1)
 #define SCENE_BY_PHASE   (SIZE_MAX - 2)
 
-/* How errors call a file. */
+/* The words by which errors name a file. */
 struct scene_words {
     const char *noun, *form; /* "scene", "YAML" */
     const char *start;       /* a sentence: how one starts */
-    const char *large;       /* what to do with too large a one; "" */
+    const char *large;       /* the advice for too large a file; "" */
 };
 extern const struct scene_words scene_words;
 
@@ -38,8 +38,8 @@ int scene_tree_load(struct scene_tree *tree, const char *path, const struct scen
                     struct cloth_error *error);
 void scene_tree_free(struct scene_tree *tree);
 
-/* The number of a node that an alias within it names, and a line of what has the alias, counted
- * from 0; 0: there is none. */
+/* The number of a node that an alias within it names; *line: a line of the alias's node, counted
+ * from 0. 0: there is none. */
 int scene_tree_circle(const yaml_document_t *document, size_t *line);
 #define SCENE_CIRCLE "an alias may stand only behind what its anchor is of"
 
@@ -61,8 +61,8 @@ int scene_tree_get(const struct scene_tree *tree, int map, const char *key); /* 
 /* The map of a phase, counted from 0; 0: there is none, or it is no map. */
 int scene_tree_phase(const struct scene_tree *tree, uint32_t phase);
 
-/* The place of a node, or of what has its mark, as scene_tree_fail names it; the caller frees it.
- * NULL: out of memory. */
+/* The place of a node, or of a mark, as scene_tree_fail names it; the caller frees it. NULL: out of
+ * memory. */
 char *scene_tree_place(const struct scene_tree *tree, int node);
 char *scene_tree_mark_place(const struct scene_tree *tree, const yaml_mark_t *mark);
 

@@ -31,7 +31,7 @@ static uint64_t frame_at(uint32_t n_points, uint64_t frame)
 
 /* ---- Writing ---- */
 
-/* Whether a file that is there is a cache of an earlier run. */
+/* True if an existing file is a cache of an earlier run. */
 static bool is_ours(const char *path)
 {
     unsigned char header[OUTPUT_PC2_HEADER];

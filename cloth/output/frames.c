@@ -1,9 +1,9 @@
-/* At any moment the folder holds whole frames. PC2's count says how many; it is rewritten only
- * after the floats and the line of the index that it counts are on the disk: by the settler, which
- * alone has `settled`. Bytes beyond the counted frames mean nothing; what fails is taken away
- * again. When a folder is opened, the cache of an earlier run is removed first and the new one is
- * made last. So cache and mesh always belong together. First of all scene.json is made: where there
- * is none, a cloth.obj is not ours. */
+/* At any moment the folder holds whole frames. PC2's count says how many. The settler, the only
+ * owner of `settled`, rewrites it once the floats and the index lines that it counts are on the
+ * disk. Bytes beyond the counted frames mean nothing; a frame that fails is removed. When a folder
+ * is opened, the cache of an earlier run is removed first and the new one is made last. So cache
+ * and mesh always belong together. scene.json is made first: a cloth.obj without one is not ours.
+ */
 #include "cloth/output/files/bodies.h"
 #include "cloth/output/files/cut.h"
 #include "cloth/output/files/files.h"
@@ -98,7 +98,7 @@ static uint32_t count_bodies(const struct output_setup *setup)
     return setup->bodies ? setup->bodies->n : 0;
 }
 
-/* ---- What may be replaced ---- */
+/* ---- Files that may be replaced ---- */
 
 /* A mesh of the user's must not be taken for one of an earlier run. */
 static int check_mesh(const struct output_frames *frames, const char *path,

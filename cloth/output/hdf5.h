@@ -67,7 +67,7 @@ double output_hdf5_bytes(const struct output_hdf5_setup *setup);
 int output_hdf5_open(struct output_hdf5 **frames, const struct output_hdf5_setup *setup,
                      struct cloth_error *error);
 
-/* Whether frame k of the run is to be written. */
+/* True if frame k of the run is to be written. */
 bool output_hdf5_takes(const struct output_hdf5 *frames, uint64_t frame);
 
 /* Room for the parts of a frame that is taken: begins it, after a wait if too many are in flight.

@@ -58,9 +58,9 @@ static void catch_ends(void)
     }
 }
 
-/* ---- Who holds a lock ---- */
+/* ---- Owner of a lock ---- */
 
-/* What the kernel says of a process, field by field: man 5 proc, of /proc/PID/stat. */
+/* Fields of /proc/PID/stat (man 5 proc). */
 struct process {
     char state;
     long threads;

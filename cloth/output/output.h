@@ -63,16 +63,16 @@ struct output_setup {
 int output_open(struct output_frames **frames, const struct output_setup *setup,
                 struct cloth_error *error);
 
-/* Writes scene.json again, as of a setup with other motions, when the run goes on in another way.
- * What of the setup is in other files is not read. Errors: as of output_open. */
+/* Writes scene.json again for a setup with other motions. Parts of the setup that other files hold
+ * are not read. Errors as of output_open. */
 int output_scene(const struct output_frames *frames, const struct output_setup *setup,
                  struct cloth_error *error);
 
 /* Writes what scene.json has of a setup. Failures are the file's. */
 void output_scene_text(FILE *file, const struct output_setup *setup);
 
-/* Bytes that files in a folder may have, which need not be there yet, with those of an earlier run
- * that would be replaced; infinite where the file system does not say. Local. */
+/* Bytes free for files in a folder, which need not exist yet, plus those of the earlier run's files
+ * that would be replaced. Infinite if the file system does not say. Local. */
 double output_room(const char *folder);
 
 /* From now on the bodies are these, of the same meshes, at their time 0 when the time of frames, s,
@@ -187,7 +187,7 @@ struct output_cache {
 };
 int output_cache_open(struct output_cache *cache, const char *folder, struct cloth_error *error);
 /* Reads the text of a scene.json, ended by '\0', into a cache that has its mesh; `name` begins its
- * errors. What is allocated is the cache's, also after an error: CLOTH_E_INPUT. */
+ * errors. The cache owns its memory, also after an error: CLOTH_E_INPUT. */
 int output_cache_scene(struct output_cache *cache, const char *text, const char *name,
                        struct cloth_error *error);
 /* Reads one frame: n_vertices x 3 doubles into position. */

@@ -156,7 +156,7 @@ static int own_output(const char *path)
     return -1;
 }
 
-/* Goes on where that output is: what was printed before stays, what is printed later follows. */
+/* Goes on where that output is: earlier text stays, later text follows. */
 static int write_own(const struct output_report *report, int file, const char *path,
                      struct cloth_error *error)
 {
@@ -175,7 +175,7 @@ static int write_own(const struct output_report *report, int file, const char *p
     return code;
 }
 
-/* Whether a folder (ended by '/') is `made` or one of its parents. */
+/* True if a folder (ended by '/') is `made` or one of its parents. */
 static bool within(const char *folder, const char *made)
 {
     size_t n = strlen(folder);

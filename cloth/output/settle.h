@@ -5,9 +5,8 @@
 
 #include <stdint.h>
 
-/* A thread that brings frames to the disk, so that no worker of a run waits for the disk: frames
- * are written by whoever has them, then synced and counted here. On rank 0 alone; local functions.
- */
+/* A thread that syncs frames to the disk, so that no worker of a run waits for it. Workers write
+ * the frames; the thread syncs and counts them. On rank 0 alone; local functions. */
 struct output_settler;
 
 /* Before the runtime binds its threads to cores. Errors: CLOTH_E_MEMORY; CLOTH_E_LIBRARY, no

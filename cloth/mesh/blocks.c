@@ -51,8 +51,8 @@ static int number_nodes(struct cutter *cutter, uint32_t n_vertices, const unsign
     return CLOTH_OK;
 }
 
-/* Brings the nodes of each part together, by rising number; start[] says where. Whether all parts
- * have one. */
+/* Brings the nodes of each part together, by rising number, from start[] on. True if every part has
+ * a node. */
 static bool group(struct cutter *cutter)
 {
     struct mesh_blocks *blocks = cutter->blocks;

@@ -68,7 +68,7 @@ static void put(struct cells *cells, uint32_t v)
     cells->head[chain] = v + 1;
 }
 
-/* Whether cells can be told apart where a vertex is. */
+/* True if cells can be told apart where the vertex is. */
 static bool is_within(const struct cells *cells, uint32_t v)
 {
     const double most = 4503599627370496.0; /* 2^52: a whole number and the next one differ */

@@ -8,9 +8,8 @@
 
 static const struct mesh_elastic NONE = {NAN, NAN, NAN, NAN};
 
-/* Of cells of a (m, along the warp) by b (m, along the weft), springs of N/m.
- *
- * With both diagonals the lattice is orthotropic: nothing couples shear to stretch. */
+/* Moduli of cells of a (m, along the warp) by b (m, along the weft), springs in N/m. A lattice with
+ * both diagonals is orthotropic: shear and stretch are not coupled. */
 static struct mesh_elastic of_both(double warp, double weft, double diagonal, double a, double b)
 {
     const double square = a * a + b * b;

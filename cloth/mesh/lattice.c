@@ -88,7 +88,7 @@ static const struct mesh_moduli *moduli_of(const struct builder *builder, uint32
 
 enum { NO_AREA = -1 };
 
-/* Of a spring of a grid. */
+/* Modulus of a grid's spring. */
 static double modulus_along(const struct mesh_moduli *moduli, enum mesh_spring_kind kind, int weft)
 {
     if (kind == MESH_STRETCH)

@@ -1,5 +1,5 @@
-/* Wavefront OBJ: lists grow while the file is read once from front to back; only when it has been
- * read are indices checked against the counts, since corners may name vertices that come later. */
+/* Wavefront OBJ: the file is read once, into growing lists. Indices are checked against the counts
+ * at the end, since corners may name later vertices. */
 #include "cloth/base/memory.h"
 #include "cloth/mesh/detail/finish.h"
 #include "cloth/mesh/detail/islands.h"

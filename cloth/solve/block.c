@@ -44,7 +44,7 @@ PHYS_INLINE void begin_rows(bool preconditioned, size_t from, size_t to, double 
     sum[SOLVE_RZ] = product;
 }
 
-/* What comes of row a and its entries, of which i is the first. */
+/* Prefetches rows beyond a, and entries beyond i, the first of row a. */
 PHYS_INLINE void fetch_row(enum solve_format format, const struct solve_values *values, size_t i,
                            size_t a, const struct solve_rows *rows)
 {

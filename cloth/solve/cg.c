@@ -63,13 +63,13 @@ static void remember(double term, struct solve_scalars *after)
         after->past[at] = after->energy;
 }
 
-/* What r.D^-1 r may be. */
+/* The largest r.D^-1 r that ends a solve. */
 static double normalised(const struct solve_stop *stop, const struct solve_scalars *now)
 {
     return stop->tolerance * stop->tolerance * now->unit;
 }
 
-/* Whether dv is good enough. */
+/* True if dv is good enough. */
 static bool reached(const struct solve_stop *stop, const struct solve_scalars *now)
 {
     if (stop->count)
@@ -115,7 +115,8 @@ static int fail(int code, struct solve_scalars *after)
 /* A restart that leaves more than this part of what the last check refused is the last one. */
 #define HELPS 0.25
 
-/* Whether the true residual is what it was taken for. */
+/* Checks the true residual: done if it is small enough, else another start, or failure if starts do
+ * not help. */
 static int judge(const struct solve_stop *stop, const double dots[SOLVE_DOTS],
                  struct solve_scalars *after)
 {
@@ -180,7 +181,7 @@ static bool ends(const struct solve_stop *stop, struct solve_scalars *after, int
     return true;
 }
 
-/* What follows a pass of SOLVE_ON. */
+/* Takes the factors of the next pass from one of SOLVE_ON. */
 static int iterate(const struct solve_stop *stop, const double dots[SOLVE_DOTS],
                    struct solve_scalars *after)
 {

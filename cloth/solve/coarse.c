@@ -223,8 +223,7 @@ PHYS_INLINE void square(struct dense *m)
         }
 }
 
-/* L of a column becomes the inverse of E and T. What is written of T lies before what is still to
- * be read. */
+/* L of a column becomes the inverse of E and T, in place: T is written behind the reads. */
 PHYS_INLINE void finish(const struct solve_pattern *pattern, uint32_t k, const struct parts *parts)
 {
     struct dense inverse;

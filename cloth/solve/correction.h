@@ -16,9 +16,9 @@
  *
  * S is what pins leave free (solve_filter); w is 0 where a pin holds. Where no k makes the edge
  * short enough, k = d.g / |g|^2 makes it as short as this line can. Momentum stays, since the two
- * impulses are opposite. The angular momentum of x and v changes by (X1 - X0) x p. So e = X1 - X0,
- * the edge as it lies where x - t v is, which keeps it. An edge that turns by more than 60 degrees
- * between X and x has e = d in its place: along the old line it hardly gets shorter.
+ * impulses are opposite. The angular momentum of x and v changes by (X1 - X0) x p. e = X1 - X0, the
+ * edge at x - t v, keeps it. An edge that turns by more than 60 degrees between X and x has e = d
+ * in its place: along the old line it hardly gets shorter.
  *
  * The velocities with |d| <= l are a convex set. With e = d the impulse is the projection onto it
  * in the norm of the masses. So each correction, and each mean of corrections, comes nearer to
@@ -31,8 +31,8 @@
  *
  *     l = l0 + max(0, b / (1 + h / 0.01 s) - tolerance L)
  *
- * Rounds leave at most tolerance L more than l. So the excess of an edge falls by this factor in
- * each step until it is below tolerance L, and stays there. Pure functions. */
+ * Rounds leave at most tolerance L more than l. The excess of an edge falls by this factor in each
+ * step until it is below tolerance L, and stays there. Pure functions. */
 
 /* An edge with a limit, m. */
 struct solve_edge {
@@ -40,7 +40,7 @@ struct solve_edge {
     double length, most, slack; /* L; l0; tolerance L > 0 */
 };
 
-/* What a round does with edges. */
+/* How a round corrects edges. */
 struct solve_correction {
     double h, t;   /* s: the step; t of x = X + t v */
     double part;   /* edges are corrected that are over l by more than this part of their slack */
@@ -53,14 +53,14 @@ struct solve_end {
     double w;                        /* 1/kg; 0: held */
 };
 
-/* What a round found, the largest of any edge: (|d| - l) / L before its correction, and 1 if an
- * edge was corrected or, by a round that looks only, would have been. Edges whose pins forbid that
- * they get shorter do not count. */
+/* The largest findings of a round over all edges: (|d| - l) / L before its correction; 1 if an edge
+ * was corrected, or would have been in a round that looks only. Edges that pins keep from getting
+ * shorter do not count. */
 struct solve_excess {
     double most, corrected;
 };
 
-/* Whether an edge is longer than its limit where it is now. */
+/* True if an edge is longer than its limit now. */
 PHYS_INLINE bool solve_is_over(const struct solve_edge *edge, const phys_vec *a, const phys_vec *b)
 {
     const phys_vec d = *b - *a;

@@ -5,8 +5,8 @@
 
 #include <stddef.h>
 
-/* Where rows lie at rest, as the coarse space sees them (cloth/solve/coarse.h): the functions 1 u v
- * of a patch, and those of a group of patches in terms of those of its patches. Pure functions. */
+/* Places of rows at rest for the coarse space (cloth/solve/coarse.h): the functions 1 u v of a
+ * patch, and those of a group in terms of its patches' functions. Pure functions. */
 
 /* The two axes in which a cloud of points is largest, each divided by its extent; zero if there is
  * none. moment: its second moment about its centre, m^2; the extents are roots of eigenvalues. */
@@ -19,8 +19,8 @@ struct solve_frame {
     double centre[3], extent[2][3];
 };
 
-/* Of n points; of n frames, of which each counts as often as it has points. Without points all is
- * zero. */
+/* The frame of n points, or of n frames, each weighted by its points. All is zero without points.
+ */
 struct solve_frame solve_frame_of(size_t n, const phys_vec *position);
 struct solve_frame solve_frame_of_group(size_t n, const struct solve_frame *frame);
 

@@ -24,7 +24,7 @@ struct look {
     bool says; /* what is found */
 };
 
-/* ---- What is found ---- */
+/* ---- Findings ---- */
 
 static void say(const struct look *look, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
@@ -98,7 +98,7 @@ static void say_inside(struct look *look, uint32_t point, size_t obstacle)
         all->cloth[i].name ? all->cloth[i].name : "", all->cloth[i].name ? "'" : "", obstacle);
 }
 
-/* ---- What does not meet ---- */
+/* ---- Pairs that do not meet ---- */
 
 /* A folder has all cloths in one mesh. */
 static uint32_t cloth_of(const struct intersections *all, uint32_t t)
@@ -111,7 +111,7 @@ static uint32_t cloth_of(const struct intersections *all, uint32_t t)
     return i;
 }
 
-/* Whether a triangle of cloth and an obstacle do not meet. */
+/* True if a triangle of cloth and an obstacle are not to meet. */
 static bool misses(const struct intersections *all, uint32_t t, size_t obstacle)
 {
     return contact_is_attached(all->apart, 3, all->corner[t], (uint32_t)obstacle) ||
@@ -204,7 +204,7 @@ static int look_at_shape(struct look *look, size_t obstacle, uint64_t *entered,
     return code;
 }
 
-/* Whether a vertex of cloth may be in an obstacle: *guess is a cloth near its own. */
+/* True if a vertex of cloth may be in an obstacle. *guess: a cloth near its own. */
 static bool may_be_in(const struct intersections *all, uint32_t point, size_t obstacle,
                       uint32_t *guess)
 {

@@ -31,7 +31,7 @@ struct intersections_setup {
     bool self_off;                     /* nor does any cloth meet itself */
 };
 
-/* Of all frames so far. */
+/* Results of all frames so far. */
 struct intersections_found {
     uint64_t frames;      /* that were checked */
     uint64_t bad;         /* frames with anything of what follows */
@@ -51,8 +51,8 @@ struct intersections_found {
 int intersections_open(struct intersections **intersections,
                        const struct intersections_setup *setup, struct cloth_error *error);
 
-/* Of each vertex of all cloths the lowest that welds make it one with; to be freed in any case.
- * CLOTH_E_MEMORY. */
+/* Gives each vertex of all cloths the lowest vertex that it is welded to. *same: to be freed in any
+ * case. Error: CLOTH_E_MEMORY. */
 struct model;
 int intersections_same(const struct model *model, uint32_t **same, struct cloth_error *error);
 

@@ -91,7 +91,7 @@ static int take_arrays(struct intersections *all, struct cloth_error *error)
     return CLOTH_OK;
 }
 
-/* What seams or welds join has one number. */
+/* Vertices that seams or welds join share one number. */
 static int take_sewn(struct intersections *all, const struct intersections_setup *setup,
                      struct cloth_error *error)
 {

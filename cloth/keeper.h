@@ -17,8 +17,8 @@ int keeper_open(struct keeper **keeper, const char *folder, double seconds, cons
                 struct output_settler *settler, struct output_hdf5 *hdf5,
                 struct cloth_error *error);
 
-/* Whether one is due: nonzero once, then not before keeper_take and the next time. From any thread.
- */
+/* Nonzero once when a checkpoint is due; then 0 until keeper_take and the next time. From any
+ * thread. */
 int keeper_due(struct keeper *keeper);
 
 /* Has one written: of the program and of the flow. Their memory is the keeper's from then on; NULL:

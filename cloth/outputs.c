@@ -1,5 +1,5 @@
-/* What a run writes and looks at, from the first frame to the last. The folders are locked before
- * anything is written into them, and stay so. */
+/* The outputs and checks of a run, from the first frame to the last. Folders are locked before the
+ * first write, and stay locked. */
 #include "cloth/outputs.h"
 
 #include "cloth/base/memory.h"
@@ -23,7 +23,7 @@ static int lock_folder(struct output_lock **lock, const char *folder, struct clo
     return code;
 }
 
-/* Of the live view's thread, too. */
+/* The live view's thread calls it, too. */
 static void warn(const char *text)
 {
     fprintf(stderr, "duite-cloth: warning: %s\n", text);
@@ -85,7 +85,7 @@ static int open_forces(struct outputs *to, const struct model *model, const stru
                : output_forces_forget(folder, error);
 }
 
-/* What stays of an earlier run, of all its phases: frames, rows. */
+/* Frames and rows of an earlier run that stay, over all its phases. */
 struct stays {
     uint64_t frames, rows;
 };
@@ -114,7 +114,7 @@ int outputs_lock(struct outputs *to, const struct simulate_options *options,
     return lock_folder(to->locks, options->output, error);
 }
 
-/* Of an earlier run that this one does not go on with nothing may be left. */
+/* Deletes an earlier run's checkpoints unless this run resumes it. */
 static int open_keeper(struct outputs *to, const struct phases *phases, bool resumed,
                        struct cloth_error *error)
 {
@@ -264,7 +264,7 @@ void outputs_free(struct outputs *of)
     output_lock_free(of->locks + 1);
 }
 
-/* ---- What the run gives ---- */
+/* ---- Calls from the run ---- */
 
 int outputs_system(void *context, const struct solve_system *system, struct cloth_error *error)
 {
@@ -272,7 +272,7 @@ int outputs_system(void *context, const struct solve_system *system, struct clot
     return output_system(of->options->save_system, system, error);
 }
 
-/* What is looked at as written is looked at once it is. */
+/* Checks the state, then, if frames are written, their floats. */
 static int check_frame(const struct outputs *of, uint64_t frame, double time,
                        const double *position, struct cloth_error *error)
 {

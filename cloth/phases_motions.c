@@ -10,7 +10,7 @@
 
 static const struct phys_key still = {.rotate = {1, 0, 0, 0}};
 
-/* Of the phase with the model at a time of its own, as cloth/physics/motion.h has it. */
+/* The key of a shape at a time of the model's phase, as cloth/physics/motion.h has it. */
 static struct phys_key key_at(const struct model *model, const struct contact_shape *shape,
                               double time)
 {

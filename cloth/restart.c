@@ -1,6 +1,5 @@
 /* The second part of a checkpoint is struct saved, a struct saved_phase of each phase, then
- * numbers: where the phase started, 6 a vertex; what the drape test saw, 3 a vertex of its cloth.
- */
+ * numbers: the start of the phase, 6 a vertex; the drape test's frame, 3 a vertex of its cloth. */
 #include "cloth/restart.h"
 
 #include "cloth/base/file.h"

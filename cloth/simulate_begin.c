@@ -106,7 +106,7 @@ static int read_and_cut(struct run *run, struct cloth_error *error)
     return code;
 }
 
-/* Whether any rank was asked to stop before the run begins. Collective; the same on all ranks. */
+/* True if any rank was asked to stop before the run begins. Collective; the same on all ranks. */
 static bool check_stop(struct run *run)
 {
     int wanted = simulate_stops(NULL);
@@ -117,7 +117,7 @@ static bool check_stop(struct run *run)
     return wanted;
 }
 
-/* Whether the model of the phase before warned of the same. */
+/* True if the model of the phase before gave the same warning. */
 static bool is_known(const struct run *run, const char *warning)
 {
     bool known = false;

@@ -8,7 +8,7 @@
 #include "cloth/simulate.h"
 #include "cloth/untangle/untangle.h"
 
-/* What simulate.c shares with simulate_begin.c: a run, from reading to reporting. */
+/* Shared by simulate.c and simulate_begin.c: a run, from reading to reporting. */
 
 struct run {
     const struct simulate_options *options;
@@ -36,7 +36,7 @@ struct run {
  */
 int simulate_agree(const struct run *run, const struct cloth_error *error);
 
-/* Whether SIGUSR1 or SIGTERM came; has the form of flow_progress.stop. */
+/* Nonzero if SIGUSR1 or SIGTERM came; has the form of flow_progress.stop. */
 int simulate_stops(void *context);
 /* From now on something may be written, and a stop waits for the step. */
 void simulate_stop_by_step(void);

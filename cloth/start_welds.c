@@ -30,7 +30,7 @@ struct motion {
     struct contact_skin skin;
     struct contact_side side;
     void *table, *boxes;
-    /* Of the obstacle that is looked at; NULL: cloth. */
+    /* The obstacle that is looked at; NULL: cloth. */
     const struct contact_side *body;
     uint32_t obstacle;
     bool fails;

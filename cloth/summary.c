@@ -139,7 +139,7 @@ static void add_halved(struct output_report *json, const struct flow_report *rep
     output_report_integer(json, "steps_halved_contact", by[FLOW_CAUSE_CONTACT]);
 }
 
-/* Of certified contact. */
+/* Adds the figures of certified contact. */
 static void add_contact(struct output_report *json, const struct summary *summary)
 {
     const struct flow_report *report = summary->report;

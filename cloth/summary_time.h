@@ -9,8 +9,8 @@
 /* A line for each kind of task that ran: the seconds in its tasks. */
 void summary_time_print(FILE *file, const struct flow_report *report);
 
-/* What limited the run, in one sentence with its reasons, by the rule of docs/tracing.md; nothing
- * for a run that made no step. */
+/* Prints what limited the run, in one sentence with reasons, by the rule of docs/tracing.md. A run
+ * without steps prints nothing. */
 void summary_limit_print(FILE *file, const struct summary *summary);
 
 /* limited_by: the name of the limit, as duite-trace has it; null for a run that made no step. */

@@ -1,4 +1,4 @@
-/* What is no plain file is told by ESPIPE, which no call that opens a file has. */
+/* ESPIPE stands for a file that is not plain: no call that opens a file sets it. */
 #include "cloth/base/file.h"
 
 #include <errno.h>

@@ -1,5 +1,4 @@
-/* What is wrong is found in the order in which one would look: ends, lengths, sizes, crossings,
- * stitches. */
+/* Checks run in the order in which one would look: ends, lengths, sizes, crossings, stitches. */
 #include "cloth/base/memory.h"
 #include "cloth/garment/detail/curve.h"
 #include "cloth/garment/detail/meet.h"

@@ -16,8 +16,8 @@ static const double CLOSE = 0.005; /* of the wanted number: near enough, */
 static const double FAIR = 0.008;  /* and after the early tries */
 static const uint32_t MOST = (uint32_t)1 << 27;
 
-/* A lattice of triangles with edges h has 1.155 / h^2 vertices an area; of a boundary of length P
- * about 0.365 P / h more are there, since those of the boundary are nearer to each other. */
+/* A lattice of triangles with edges h has 1.155 / h^2 vertices an area. A boundary of length P adds
+ * about 0.365 P / h, since its vertices are nearer to each other. */
 static const double INSIDE = 1.155, AROUND = 0.365;
 
 static double first_spacing(const struct meshing *meshing, double n)

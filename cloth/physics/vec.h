@@ -38,9 +38,9 @@ enum { PHYS_FETCH = 1024 }; /* bytes ahead of a loop: enough for memory to answe
  *
  *     void name(params)            and      type name(params)
  *
- * They are compiled several times and chosen by what the processor has (cloth/base/simd.h). args:
- * the names of the parameters, in order. The bits are the same, since fused multiply-adds stay off.
- * What they call is to be PHYS_INLINE, or it is compiled once. */
+ * They are compiled several times and chosen by the processor (cloth/base/simd.h). args: the names
+ * of the parameters, in order. The bits are the same, since fused multiply-adds stay off. Functions
+ * that they call must be PHYS_INLINE, or are compiled once only. */
 #if defined(__x86_64__) && !defined(__AVX512VL__)
 #define PHYS_AVX2   __attribute__((target("avx2")))
 #define PHYS_AVX512 __attribute__((target("avx512f,avx512vl,avx512dq")))

@@ -1,6 +1,6 @@
 /* A point p at (x, y, z) in the camera's axes is within the margins of an eye at e if |x - ex| <= t
- * (ez - z), and so in y. Each is two linear conditions on (ex, ez), so the largest of four sums
- * over the points decides where the nearest eye is: points may come in any number and order. */
+ * (ez - z), and so in y. Each is two linear conditions on (ex, ez), so the nearest eye follows from
+ * the largest of four sums over the points, in any number and order. */
 #include "cloth/view/view.h"
 
 #include <cglm/cam.h>

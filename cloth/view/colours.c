@@ -65,9 +65,9 @@ static int compare(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* The number that one in twenty of those above 0 is above, so that the few vertices at a pin do
- * not leave one colour for all others; of many vertices, from an even sample. Sorts `value`. NaN:
- * none is above 0. */
+/* The number that one in twenty of those above 0 exceeds, so that a few vertices at a pin do not
+ * leave one colour for all others. Many vertices are sampled evenly. Sorts `value`. NaN: none is
+ * above 0. */
 static double find_high(double *value, size_t n)
 {
     const size_t stride = n / SAMPLE + 1;

@@ -89,7 +89,7 @@ static int start(struct view_film *film, const char *size, const char *rate,
                    : 0;
 }
 
-/* What stops while it is written to is told by the write, not by a signal. */
+/* If ffmpeg stops early, the write fails and no signal ends the process. */
 static void ignore_pipe(struct view_film *film)
 {
     const struct sigaction ignore = {.sa_handler = SIG_IGN};
@@ -169,7 +169,7 @@ int view_film_close(struct view_film **film, bool whole, struct cloth_error *err
     *film = NULL;
     if (!gone)
         return 0;
-    /* Whoever wants no film has an error of its own, which stays. */
+    /* A caller that gives up the film keeps its own error. */
     struct cloth_error unheard = {0};
     int code = end_ffmpeg(gone, whole ? error : &unheard);
     code = whole ? code : 0;

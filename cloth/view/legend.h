@@ -4,8 +4,8 @@
 #include "cloth/view/colour.h"
 #include "cloth/view/view.h"
 
-/* What the colours of a picture mean, in its upper right corner: a scale with round numbers and
- * their unit, or the numbers of parts. It is as large as the picture lets it be. */
+/* The legend of a picture's colours, in its upper right corner: a scale with round numbers and
+ * their unit, or the numbers of parts. Its size follows the picture's. */
 
 struct view_legend {
     enum view_colour by; /* VIEW_COLOUR_CLOTH: there is nothing to say */

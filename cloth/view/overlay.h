@@ -3,10 +3,8 @@
 
 #include "cloth/view/legend.h"
 
-/* What a window shows on top of the cloth: what colours mean, a time line and lines of text. Cairo
- * draws it, OpenGL lays it over the framebuffer that is bound. The context is current in all
- * functions; one thread.
- */
+/* Overlay of a window: the legend, a time line and lines of text. Cairo draws it, OpenGL lays it
+ * over the bound framebuffer. The context is current in all functions; one thread. */
 
 struct view_overlay_text {
     double part;             /* of the time line that is behind, 0 .. 1; -1: there is no line */

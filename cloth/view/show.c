@@ -1,5 +1,5 @@
-/* A show has one frame at a time. What is read of it waits in plain arrays, so that files are read
- * before there is an OpenGL context; the scene gets it when it is drawn. */
+/* A show has one frame at a time. It waits in plain arrays, so that files can be read before there
+ * is an OpenGL context; drawing hands it to the scene. */
 #include "cloth/view/show.h"
 
 #include "cloth/contact/surface.h"
@@ -218,7 +218,7 @@ const struct view_legend *view_show_legend(const struct view_show *show)
     return view_colours_legend(show->colours);
 }
 
-/* What the folder does not say is left out; the cloth's own colours are always there. */
+/* Skips quantities that the folder lacks; the cloth's own colours are always there. */
 int view_show_next_colour(struct view_show *show, struct cloth_error *error)
 {
     enum view_colour by = view_colours_by(show->colours);

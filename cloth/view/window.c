@@ -260,7 +260,7 @@ static int save(struct window *w, struct cloth_error *error)
     return code;
 }
 
-/* Takes what has come of a run, and what is to be said of it. */
+/* Takes the news of a live run. */
 static int look(struct window *w, struct cloth_error *error)
 {
     if (!w->live)

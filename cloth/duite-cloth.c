@@ -412,8 +412,8 @@ static int agree(int code)
     return code;
 }
 
-/* Hosts may differ, in processors and environments: the first rank that cannot have what it was
- * asked for says so. */
+/* Hosts may differ in processors and environments: the first rank that cannot do what its
+ * environment asks says so. */
 static int check_host(int rank, const struct simulate_options *run)
 {
     struct cloth_error error = {0};

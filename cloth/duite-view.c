@@ -366,7 +366,7 @@ static int check_frames(struct output_cache *cache, int *exit_code, struct cloth
     return CLOTH_OK;
 }
 
-/* The exit code, after what failed. */
+/* Prints the error, returns the exit code. */
 static int say(int code, const struct cloth_error *error)
 {
     if (code)

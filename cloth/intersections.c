@@ -21,7 +21,7 @@ struct look {
     double time;       /* s, as it is printed, and */
     double placed;     /* of motions and bodies */
     bool written;
-    bool says; /* what is found */
+    bool says; /* it prints findings */
 };
 
 /* ---- Findings ---- */
@@ -59,7 +59,7 @@ static void name_triangle(const struct intersections *all, uint32_t t, char text
         snprintf(text + n, NAMED - (size_t)n, " of cloth '%.100s'", list[i].name);
 }
 
-/* Counts one more; whether it is to be said. */
+/* Counts one more; true if it is to be printed. */
 static bool is_said(struct look *look)
 {
     return look->n++ < SAID && look->says;
@@ -216,8 +216,8 @@ static bool may_be_in(const struct intersections *all, uint32_t point, size_t ob
     return contact_are_apart(all->apart, *guess, all->apart->n_cloths + (uint32_t)obstacle);
 }
 
-/* Where no triangles intersect a part of the cloth is inside or outside as a whole, but for what
- * may be inside. So the first vertex that may not be speaks for its part. */
+/* If no triangles intersect, a part of the cloth is inside or outside as a whole, apart from
+ * vertices that may be inside. So the first other vertex of a part decides. */
 static void look_inside(struct look *look, size_t obstacle, uint64_t *inside)
 {
     const struct intersections *all = look->all;

@@ -1,5 +1,5 @@
-/* A folder does not say what was welded. But welded vertices have the same floats in each frame,
- * and no others are likely to: they count as one. */
+/* A folder does not name its welds. But welded vertices have the same floats in each frame, and no
+ * others are likely to: they count as one. */
 #include "cloth/base/memory.h"
 #include "cloth/intersections.h"
 #include "cloth/output/output.h"

@@ -1,5 +1,5 @@
-/* The soup is complete before the first frame, but for the places of its vertices: its triangles
- * and what is joined do not change. */
+/* The soup is complete before the first frame, except the places of vertices: triangles and joins
+ * do not change. */
 #include "cloth/intersections_soup.h"
 
 #include "cloth/base/memory.h"

@@ -10,9 +10,9 @@
  * a time. One that fails is said once, and the run goes on. */
 struct keeper;
 
-/* seconds: between the begins of two. settings: what all of them begin with; settler: of the frames
- * of the folder; hdf5: those in HDF5, NULL: none. All outlive the keeper. Before the runtime binds
- * its threads to cores. Errors: of output_checkpoints_open; CLOTH_E_LIBRARY, no thread. */
+/* seconds: between the begins of two. settings: the first part of each; settler: of the frames of
+ * the folder; hdf5: those in HDF5, NULL: none. All outlive the keeper. Before the runtime binds its
+ * threads to cores. Errors: of output_checkpoints_open; CLOTH_E_LIBRARY, no thread. */
 int keeper_open(struct keeper **keeper, const char *folder, double seconds, const char *settings,
                 struct output_settler *settler, struct output_hdf5 *hdf5,
                 struct cloth_error *error);
@@ -25,7 +25,7 @@ int keeper_due(struct keeper *keeper);
  * there was none for it. Waits for one that is being written. From one thread at a time. */
 void keeper_take(struct keeper *keeper, struct output_part program, struct output_part flow);
 
-/* Waits until what was taken is on the disk; *keeper becomes NULL. */
+/* Waits until the taken parts are on the disk; *keeper becomes NULL. */
 void keeper_close(struct keeper **keeper);
 
 #endif

@@ -130,7 +130,7 @@ static int open_keeper(struct outputs *to, const struct phases *phases, bool res
                         : error->code;
 }
 
-/* Looks, before anything is written, whether the live view can listen. */
+/* Checks, before the first write, that the live view can listen. */
 static int open_live(struct outputs *to, struct cloth_error *error)
 {
     const char *address = to->options->live;
@@ -186,7 +186,7 @@ int outputs_open(struct outputs *to, const struct simulate_options *options,
     return code || !phases->now ? code : outputs_go_on(to, phases, apart, error);
 }
 
-/* Where obstacles are, and what is sewn, in the frames of all phases so far, and of this one. */
+/* Writes places of obstacles and seams for the frames of all phases up to this one. */
 static int write_scene(const struct outputs *of, const struct phases *phases,
                        const struct contact_apart *apart, struct cloth_error *error)
 {

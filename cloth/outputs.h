@@ -47,8 +47,7 @@ int outputs_open(struct outputs *to, const struct simulate_options *options,
 /* The same when a further phase begins: the frames go on. Returns a cloth_code. */
 int outputs_go_on(struct outputs *to, const struct phases *phases,
                   const struct contact_apart *apart, struct cloth_error *error);
-/* Intersections in all frames so far: of all phases; the first function ends that of the one that
- * is over. */
+/* Intersections in all frames so far, of all phases; outputs_count ends the count of a phase. */
 void outputs_count(struct outputs *of);
 struct intersections_found outputs_found(const struct outputs *of);
 /* The files are whole. */

@@ -29,17 +29,16 @@ struct phases {
     struct flow_report total; /* of those that are over, as phases_add says */
 };
 
-/* On rank 0: reads the models of all phases and compares what phases cannot change. Errors:
+/* On rank 0: reads the models of all phases and compares the parts that phases share. Errors:
  * CLOTH_E_INPUT with the place of the phase; CLOTH_E_MEMORY. Local. */
 int phases_read(struct phases *phases, const char *path, size_t n_sets,
                 const struct scene_set *sets, struct cloth_error *error);
 
-/* How many there are, which one is next, and what those before it came to, from rank 0 to all.
- * Error: CLOTH_E_MEMORY. Collective; it is not agreed on
- * errors yet. */
+/* Sends the number of phases, the next one, and the results of earlier ones from rank 0 to all.
+ * Error: CLOTH_E_MEMORY. Collective; it is not agreed on errors yet. */
 int phases_share(struct phases *phases, struct cloth_error *error);
 
-/* That of the phase that is next; NULL if the scene could not be read. */
+/* The model of the next phase; NULL if the scene could not be read. */
 static inline struct model *phases_model(const struct phases *phases)
 {
     return phases->models ? phases->models + phases->now : NULL;
@@ -60,8 +59,8 @@ int phases_next(struct phases *phases, struct cloth_error *error);
 size_t phases_numbers(const struct phases *phases);
 int phases_start(struct phases *phases, const double *numbers, struct cloth_error *error);
 
-/* Adds the report of the phase that is over. Counts and seconds are added up, of peaks the largest
- * counts; energies, the hash, and what else is of the end, are those of this phase. Local. */
+/* Adds the report of the phase that is over. Counts and seconds are added; peaks are the largest;
+ * energies, the hash and other final values are those of this phase. Local. */
 void phases_add(struct phases *phases, const struct flow_report *report);
 
 /* The obstacles of the phase that runs, with motions over all phases so far, for viewers of all

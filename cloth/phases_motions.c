@@ -1,6 +1,6 @@
 /* Keys of each obstacle in ascending order of time, a phase after the other: where it is at the
- * begin, its keys, and where it is at the end. Where it jumps between two phases, the key after the
- * jump is the next number after their common time, so that the frame there shows the end. */
+ * begin, its keys, and where it is at the end. If it jumps between two phases, the key after the
+ * jump is at the next number after their common time, so that the frame there shows the end. */
 #include "cloth/base/memory.h"
 #include "cloth/phases.h"
 

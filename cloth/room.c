@@ -13,7 +13,7 @@
 /* The most that a run of several phases takes. */
 struct extent {
     double frames, steps, seconds;
-    double colours; /* bytes: what a viewer colours by, which each phase writes */
+    double colours; /* bytes: colours, which each phase writes */
     bool may_rest;  /* and so take less */
 };
 

@@ -1,4 +1,4 @@
-/* Names of welded vertices are one point to what untangles, and move together. */
+/* Welded vertices are one point for untangling, and move together. */
 #include "cloth/start.h"
 
 #include "cloth/base/memory.h"

@@ -211,7 +211,7 @@ static void add_drape(struct output_report *json, const struct drape_found *foun
     output_report_number(json, "drape_shadow_m2", found ? found->shadow : NAN);
 }
 
-/* Those that began and did not fail. */
+/* Adds the phases that began and did not fail. */
 static void add_phases(struct output_report *json, const struct phases *phases)
 {
     if (!phases->named)

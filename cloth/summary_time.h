@@ -4,7 +4,7 @@
 #include "cloth/output/output.h"
 #include "cloth/summary.h"
 
-/* Where the time of a run went, and what limited it. Local; called on rank 0. */
+/* The time of a run by kinds of task, and its limit. Local; called on rank 0. */
 
 /* A line for each kind of task that ran: the seconds in its tasks. */
 void summary_time_print(FILE *file, const struct flow_report *report);

@@ -1,6 +1,6 @@
 /* A grid's numbering is a promise that hashes rest on: row-major, u fastest, two triangles a cell
- * in cell order, so that only its positions need to be stored. Which diagonal cuts a cell follows
- * from the cell's place. */
+ * in cell order, so that only its positions need to be stored. The place of a cell decides which
+ * diagonal cuts it. */
 #include "cloth/base/memory.h"
 #include "cloth/mesh/detail/equilateral.h"
 #include "cloth/mesh/detail/finish.h"

@@ -1,5 +1,5 @@
-/* Springs come sorted by (a, b); of those that join the same vertices, stretch comes before bend. A
- * grid's do so by themselves. */
+/* Springs come sorted by (a, b); between the same vertices stretch comes before bend. A grid's do
+ * so by themselves. */
 #include "cloth/mesh/lattice.h"
 
 #include "cloth/base/memory.h"
@@ -78,7 +78,7 @@ static int add(struct builder *builder, uint32_t a, uint32_t b, enum mesh_spring
     return builder->take(builder, &spring);
 }
 
-/* Those of what joins two vertices. */
+/* The moduli of a spring between two vertices. */
 static const struct mesh_moduli *moduli_of(const struct builder *builder, uint32_t a, uint32_t b)
 {
     const struct mesh_regions *regions = builder->moduli->regions;
@@ -143,7 +143,7 @@ static int add_grid(struct builder *builder)
     return code;
 }
 
-/* From along u and v to along warp and weft. */
+/* Turns components along u and v into those along warp and weft. */
 static void turn(const struct mesh_regions *regions, const struct mesh_edge *edge, double *u,
                  double *v)
 {
@@ -171,7 +171,7 @@ static double weft_share(const struct builder *builder, const struct mesh_edge *
     return u + v > 0 ? v / (u + v) : 0;
 }
 
-/* The modulus along an edge: the mean of what its triangles say. */
+/* The modulus along an edge: the mean over its triangles. */
 static int modulus_of(const struct builder *builder, const struct mesh_edge *edge, double *modulus)
 {
     const struct mesh_moduli *moduli = moduli_of(builder, edge->a, edge->b);

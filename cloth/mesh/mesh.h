@@ -7,12 +7,12 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Which diagonal cuts the cells of a grid in two triangles. SAME: that from vertex (i, j) to (i +
- * 1, j + 1) in all. ALTERNATE: this one and the other by turns, as on a chessboard. MIRRORED: this
- * one in the first quarter of the sheet; the other quarters are mirror images of the first at the
- * lines through the middle. Where the number of cells along an axis is odd, those in the middle
- * have no image: along this row or column of cells the diagonals go by turns. EQUILATERAL: not
- * cells but equilateral triangles, see mesh_grid. */
+/* The diagonals that cut the cells of a grid in two triangles. SAME: that from vertex (i, j) to (i
+ * + 1, j + 1) in all. ALTERNATE: this one and the other by turns, as on a chessboard. MIRRORED:
+ * this one in the first quarter of the sheet; the other quarters are mirror images of the first at
+ * the lines through the middle. If the number of cells along an axis is odd, those in the middle
+ * have no image: in this row or column of cells the diagonals go by turns. EQUILATERAL: not cells
+ * but equilateral triangles, see mesh_grid. */
 enum mesh_cells { MESH_SAME, MESH_ALTERNATE, MESH_MIRRORED, MESH_EQUILATERAL };
 
 /* A mesh as it was given: vertices, polygons in the input's order and numbering, their triangles,
@@ -49,7 +49,7 @@ struct mesh {
         uint32_t group, first, n; /* faces first .. first + n - 1 are in this group */
     } * group_run;                /* by their first faces */
     uint32_t n_materials, n_material_runs, n_libraries;
-    char **material; /* likewise, of what faces are drawn with: a face has one or none */
+    char **material; /* likewise, the materials of faces: a face has one or none */
     struct mesh_group_run *material_run;
     char **library; /* n_libraries: paths of the files that have the materials */
 
@@ -155,7 +155,7 @@ int mesh_uv(const struct mesh *mesh, uint32_t number, double uv[2]);
 /* The number of the uv that a vertex has in triangle t, of which it is a corner; t UINT32_MAX: in
  * its first. */
 uint32_t mesh_uv_number(const struct mesh *mesh, uint32_t t, uint32_t vertex);
-/* Where it lies there, m: a shape at rest from uv may have several places of a vertex. */
+/* Its place there, m: a shape at rest from uv may have several places of a vertex. */
 const double *mesh_place(const struct mesh *mesh, uint32_t t, uint32_t vertex);
 double mesh_triangle_area(const struct mesh *mesh, uint32_t t);
 
@@ -174,7 +174,7 @@ void mesh_group_triangles(const struct mesh *mesh, uint32_t group, unsigned char
  * above 0: u the longer one; of equal ones the earlier coordinate's. */
 void mesh_axes(const struct mesh *mesh, double u[3], double v[3]);
 
-/* Frees what the mesh owns and clears it; a zeroed mesh is fine. */
+/* Frees the arrays of a mesh and clears it; a zeroed mesh is fine. */
 /* The box around all vertices, m; from INFINITY to -INFINITY of none. Returns its longest side, 0
  * of none. */
 double mesh_box(const struct mesh *mesh, double low[3], double high[3]);
@@ -203,7 +203,7 @@ void mesh_edges_free(struct mesh_edges *edges);
 /* How long the edge from a to b is, m: the mean of both triangles, each of which may lack
  * (UINT32_MAX). */
 double mesh_length(const struct mesh *mesh, const uint32_t triangle[2], uint32_t a, uint32_t b);
-/* Where the corners of two triangles with a common edge lie, m: its ends, then opposite. Where the
+/* Places of the corners of two triangles with a common edge, m: its ends, then opposite. If the
  * triangles have other places for the ends, the second is laid flat beside the first. */
 void mesh_hinge(const struct mesh *mesh, const uint32_t triangle[2], const uint32_t corner[4],
                 double x[12]);
@@ -241,10 +241,9 @@ struct mesh_shape {
     const uint32_t (*corner)[3];
 };
 /* The area that the triangles shade in light along an axis of any length but 0, m^2: that of the
- * union of what is seen of them. It is cut by 2048 lines across the axis; along each of them it is
- * exact, across them it is summed by the midpoint rule. So a polygon's error is of second order in
- * the distance of two lines, a border along a line counts up to half a distance too far. Error:
- * CLOTH_E_MEMORY. */
+ * union of their projections. It is cut by 2048 lines across the axis: exact along each line,
+ * summed across them by the midpoint rule. So a polygon's error is of second order in the lines'
+ * distance; a border along a line counts up to half a distance too far. Error: CLOTH_E_MEMORY. */
 int mesh_shadow(const struct mesh_shape *shape, const double axis[3], double *area,
                 struct cloth_error *error);
 

@@ -34,7 +34,7 @@ static int full(struct obj *obj, const struct cloth_list *list, const char *what
     return list->n < MESH_MAX ? CLOTH_OK : FAIL(obj, "there are more than %u %s", MESH_MAX, what);
 }
 
-/* Up to `most` numbers, at least `least`; those left out are 0; what follows is not looked at. */
+/* Reads `min` to `max` numbers; missing ones are 0; the rest of the line is ignored. */
 static int read_numbers(struct obj *obj, const char *at, int min, int max, double *numbers)
 {
     for (int i = 0; i < max; i++) {

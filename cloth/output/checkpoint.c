@@ -84,7 +84,7 @@ static void insert(uint64_t *kept, size_t n, uint64_t number)
         }
 }
 
-/* Finds the n largest numbers there are. half, all: what is to be removed on the way. */
+/* Finds the n largest numbers. half, all: removes half checkpoints, or all, on the way. */
 static int scan(const char *folder, bool half, bool all, size_t n, uint64_t *kept)
 {
     DIR *handle = opendir(folder);

@@ -1,6 +1,6 @@
-/* The forces of frames lie in a PC2 cache of their own, so that what reads cloth.pc2 reads it as
- * before. As there the count is rewritten last, when the floats that it counts are on the disk; it
- * never counts a frame that cloth.pc2 does not. */
+/* Forces of frames have a PC2 cache of their own, so that cloth.pc2 keeps its format. The count is
+ * rewritten last, as there, when its floats are on the disk; it never counts a frame that cloth.pc2
+ * does not. */
 #include "cloth/base/file.h"
 #include "cloth/output/files/cut.h"
 #include "cloth/output/files/files.h"

@@ -113,7 +113,7 @@ static int check_mesh(const struct output_frames *frames, const char *path,
                       path);
 }
 
-/* A file of the folder, and what is written beside it first. */
+/* Checks a file of the folder, and its temporary file. */
 static int check_file(const struct output_frames *frames, const char *name, bool is_mesh,
                       const struct output_setup *setup, const struct output_input *inputs,
                       struct cloth_error *error)
@@ -202,8 +202,8 @@ static int open_part(const struct output_frames *frames, enum part part, int *fi
     return *file >= 0 ? 0 : output_fail(error, "write", frames->path[part]);
 }
 
-/* With the files of an earlier run. The cache is cut first: it never counts a frame that the index
- * has not. */
+/* Goes on with the files of an earlier run. The cache is cut first: it never counts a frame that
+ * the index lacks. */
 static int go_on(struct output_frames *frames, const struct output_setup *setup,
                  struct cloth_error *error)
 {
@@ -278,7 +278,7 @@ static void cut(const struct output_frames *frames, uint32_t n)
         fdatasync(frames->index);
 }
 
-/* The order is what keeps the folder whole: floats and index, both on the disk, then the count. */
+/* This order keeps the folder whole: floats and index, both on the disk, then the count. */
 static int count_frames(const struct output_frames *frames, uint32_t n, struct cloth_error *error)
 {
     const char *cache = frames->path[PART_CACHE], *index = frames->path[PART_INDEX];

@@ -1,7 +1,7 @@
 /* A lock is a file that its run alone made: O_EXCL holds on network file systems, too, where locks
- * of files often fail. Only one process at a time may judge a lock to be stale and replace it: the
- * one that made the file *.take. A lock that is not empty names its host and process, and, where
- * the system says it, when that began: a later process may have the same number. */
+ * of files often fail. Only the process that made the file *.take may judge a lock to be stale and
+ * replace it. A lock that is not empty names its host and process, and, where the system says it,
+ * when that began: a later process may have the same number. */
 #include "cloth/output/files/files.h"
 
 #include <errno.h>
@@ -254,7 +254,7 @@ static void free_lock(struct output_lock *lock)
     free(lock);
 }
 
-/* Where it is not noted a signal leaves the lock, as SIGKILL does. */
+/* A signal leaves a lock that is not noted, as SIGKILL does. */
 static void note_held(struct output_lock *lock)
 {
     for (lock->number = 0; lock->number < MAX && held[lock->number];)

@@ -17,10 +17,10 @@ int output_settler_open(struct output_settler **settler, struct cloth_error *err
  * to wait for. Errors: of the first frame that could not be; nothing is counted after it. */
 int output_settler_wait(struct output_settler *settler, struct cloth_error *error);
 
-/* Waits alike, before what was added to it is closed; *settler becomes NULL. */
+/* Waits alike, before its members are closed; *settler becomes NULL. */
 int output_settler_close(struct output_settler **settler, struct cloth_error *error);
 
-/* --- For those who write --- */
+/* --- For writers --- */
 
 /* A file, or files that belong together. Its frames are settled after those of members that were
  * added before. */

@@ -30,7 +30,7 @@
 /* The recurrence gives r, which drifts from the residual S (b - A dv) by rounding. A solve that
  * ends by r alone may be wrong without noticing it. So `confirm` adds two passes. The first shows
  * dv to the neighbours (SOLVE_SHOW). The second has q = S A dv, and with it the true residual,
- * which takes the place of r (SOLVE_CHECK). Where the true residual is too large, the solve goes on
+ * which takes the place of r (SOLVE_CHECK). If the true residual is too large, the solve goes on
  * from dv (SOLVE_AGAIN), at most SOLVE_RESTARTS times, and only while that helps. */
 
 /* A solve may begin with a guess g instead of dv = 0, for a pass and a half more. It makes q = S A
@@ -112,9 +112,9 @@ enum { SOLVE_SCALARS = sizeof(struct solve_scalars) / sizeof(double) };
 /* Before the first pass, which is SOLVE_ON, or with a guess SOLVE_OPEN; `last` is zero. */
 struct solve_scalars solve_scalars_start(double step, double phase);
 
-/* Finds from the dots of a pass what the next one does. Returns SOLVE_OK, or why there is no next
- * pass: p.Ap is not positive; so many iterations were not enough; or the true residual stays above
- * what was asked for. `after` has the numbers in any case, and keeps the outcome. */
+/* Finds the next pass from the dots of one. Returns SOLVE_OK, or why there is no next pass: p.Ap is
+ * not positive; the iterations were not enough; or the true residual stays above the tolerance.
+ * `after` has the numbers in any case, and keeps the outcome. */
 enum { SOLVE_OK, SOLVE_BREAKDOWN, SOLVE_NOT_CONVERGED, SOLVE_STALLED };
 int solve_scalars_next(const struct solve_stop *stop, const double dots[SOLVE_DOTS],
                        const struct solve_scalars *before, struct solve_scalars *after);
@@ -157,7 +157,7 @@ PHYS_INLINE void solve_advance(double alpha, double beta, const phys_vec *s, phy
 double solve_finish(size_t n, double alpha, const phys_vec *q, const phys_vec *p, phys_vec *dv,
                     phys_vec *r);
 
-/* r = S b - q, with q = S A dv. Writes r.r and the drift from what r was. */
+/* r = S b - q, with q = S A dv. Writes r.r and the drift from the old r. */
 void solve_renew(size_t n, const double *free, const double *diagonal, const phys_vec *b,
                  const phys_vec *q, phys_vec *r, double dots[SOLVE_DOTS]);
 

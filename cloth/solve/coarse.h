@@ -65,7 +65,7 @@ struct solve_pattern {
     uint32_t *row;   /* places, ascending in a column */
 };
 
-/* A neighbour that the pattern does not have: what couples a block with it is left out. */
+/* A neighbour that the pattern does not have: its couplings are left out. */
 #define SOLVE_LEFT_OUT UINT32_MAX
 
 /* From the neighbours of each block: those of block b are neighbour[first[b]] .. neighbour[first[b
@@ -86,7 +86,7 @@ void solve_coarse_fill(const struct solve_pattern *pattern, const uint32_t *firs
                        const uint32_t *neighbour, uint32_t b, const double *coupling,
                        double *factor);
 
-/* Factorises what was filled in. Returns how many columns were dropped. */
+/* Factorises the filled matrix. Returns how many columns were dropped. */
 uint32_t solve_coarse_factor(const struct solve_pattern *pattern, double *factor);
 
 /* A vector of the coarse space, aligned to 32 bytes: SOLVE_COARSE_STRIDE doubles a block, nine of

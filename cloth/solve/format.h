@@ -27,7 +27,7 @@ static inline size_t solve_format_doubles(enum solve_format format, size_t rows,
     if (format == SOLVE_SPRINGS)
         return 4 * entries;
     if (format == SOLVE_HALF)
-        return SOLVE_NINE * entries + 1; /* what is read as four numbers may end behind the last */
+        return SOLVE_NINE * entries + 1; /* a read of four numbers may end behind the last */
     return 4 * rows + (SOLVE_NINE * entries + 2) / 2;
 }
 

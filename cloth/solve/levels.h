@@ -28,9 +28,9 @@
 /* The nodes that a group covers. */
 struct solve_cover {
     uint32_t n;
-    uint32_t *node;              /* n: ascending */
-    uint32_t *first, *neighbour; /* n + 1: their graph, by places in `node`; what is not covered and
-                                  * comes later is SOLVE_LEFT_OUT, as solve_coarse_fill reads it */
+    uint32_t *node;               /* n: ascending */
+    uint32_t *first, *neighbour;  /* n + 1: their graph, by places in `node`; later nodes that are
+                                   * not covered are SOLVE_LEFT_OUT, for solve_coarse_fill */
     struct solve_pattern pattern; /* of their factor */
 };
 
@@ -41,17 +41,16 @@ struct solve_covering {
 
 struct solve_level {
     uint32_t n;                        /* nodes */
-    const uint32_t *first, *neighbour; /* n + 1: whom a node is joined with, ascending; of the
-                                        * caller */
+    const uint32_t *first, *neighbour; /* n + 1: neighbours of each node, ascending; of the caller
+                                        */
     double weight;                     /* w */
     uint32_t n_groups;
-    uint32_t *start;                 /* n_groups + 1: a group has the nodes from there on */
-    uint32_t *group;                 /* n: of each node */
-    struct solve_cover *cover;       /* of each group */
-    uint32_t *covering_first;        /* n + 1: which of `covering` are of a node; */
-    struct solve_covering *covering; /* ascending by group */
-    uint32_t *group_first,
-        *group_neighbour; /* n_groups + 1: whom a group is joined with, likewise */
+    uint32_t *start;                         /* n_groups + 1: a group has the nodes from there on */
+    uint32_t *group;                         /* n: of each node */
+    struct solve_cover *cover;               /* of each group */
+    uint32_t *covering_first;                /* n + 1: which of `covering` are of a node; */
+    struct solve_covering *covering;         /* ascending by group */
+    uint32_t *group_first, *group_neighbour; /* n_groups + 1: neighbours of each group, likewise */
 };
 
 /* Makes a level of n nodes in n_groups groups. start: their first nodes, then n, copied. lowest:

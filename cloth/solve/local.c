@@ -129,8 +129,7 @@ PHYS_INLINE void gather(const struct solve_block *block, const struct solve_cut 
             filter_diagonal(block->filter + a, sum + a);
 }
 
-/* A row's block may be singular in what rounding leaves of a stiff spring: then a larger diagonal
- * is taken, which is not. */
+/* Rounding of a stiff spring may leave a row's block singular: then its diagonal is made larger. */
 PHYS_INLINE void invert_surely(struct solve_symmetric *m)
 {
     const phys_vec whole = m->diagonal;

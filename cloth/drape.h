@@ -3,9 +3,9 @@
 
 #include "cloth/model/model.h"
 
-/* The drape coefficient of a cloth that hangs over a disc (ISO 9073-9, BS 5058): the area that its
- * border shades in light along the disc's axis, over the area of the flat border. 100 %: the border
- * stands out stiffly. 0 %: it hangs straight down. Local functions, on one rank. */
+/* The drape coefficient of a cloth that hangs over a disc (ISO 9073-9, BS 5058). It is the area
+ * that the border shades in light along the disc's axis, over the area of the flat border. 100 %:
+ * the border stands out stiffly. 0 %: it hangs straight down. Local functions, on one rank. */
 struct drape;
 
 struct drape_found {

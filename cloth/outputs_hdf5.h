@@ -13,7 +13,7 @@ struct outputs_hdf5 {
     struct output_state *state; /* the frame whose parts are coming; NULL: none */
     unsigned parts, have;       /* bits: that a frame has; that came */
     struct element_strains strains;
-    struct cloth_error unwritten; /* then, at the end: the first failure to write */
+    struct cloth_error unwritten; /* then, at the end: frames that were not written */
 };
 
 /* Size of a model's frames on the disk, bytes a frame; 0: it has none. */

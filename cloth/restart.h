@@ -5,8 +5,8 @@
 #include "cloth/outputs.h"
 #include "cloth/untangle/untangle.h"
 
-/* Parts of a checkpoint beside the state of the flow: the settings, which tell if it is of the same
- * scene; the phase; the results of earlier phases; the memory of the outputs. All on rank 0; local
+/* Parts of a checkpoint beside the state of the flow: settings, which tell if the scene is the
+ * same; the phase; results of earlier phases; memory of the outputs. All on rank 0; local
  * functions. */
 
 /* The point that a run resumes from. */

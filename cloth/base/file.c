@@ -7,7 +7,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* Without waiting: for a pipe's other end the system would. */
+/* O_NONBLOCK: the system would wait for the other end of a pipe. */
 FILE *cloth_file_open(const char *path)
 {
     struct stat status;

@@ -1,5 +1,5 @@
 /* The spacing that gives a wanted number of vertices is found by meshing: each try corrects it by
- * what the last one had too much. */
+ * the last one's excess. */
 #include "cloth/garment/garment.h"
 #include "cloth/base/memory.h"
 #include "cloth/garment/detail/flat.h"
@@ -32,7 +32,7 @@ static double first_spacing(const struct meshing *meshing, double n)
     return (b + sqrt(b * b + 4 * a * n)) / (2 * n);
 }
 
-/* Where to search on: between what gave too few and too many, else by the last error. */
+/* The next spacing to try: between those that gave too few and too many, else by the last error. */
 static double next_spacing(double spacing, double n, double wanted, double fine, double coarse)
 {
     const double next = spacing * sqrt(n / wanted);

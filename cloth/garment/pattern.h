@@ -37,7 +37,8 @@ struct garment_side { /* an edge of a panel */
 
 struct garment_stitch {
     struct garment_side side[2];
-    bool right_wrong; /* both edges begin at the same end of the seam, whatever is nearer */
+    bool right_wrong; /* both edges begin at the same end of the seam, even if the other end is
+                       * nearer */
 };
 
 /* A zeroed one is empty. All arrays belong to it. */

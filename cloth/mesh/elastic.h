@@ -17,8 +17,8 @@ struct mesh_elastic {
  * Huang 1954). Without bend springs a sheet of any size with free edges has these moduli. With
  * MESH_ALTERNATE cells it has them except in a layer about a cell wide at its edges.
  * docs/physics.md has the closed forms. All are NaN without a grid, and for mirrored cells with one
- * diagonal spring each: the quarters of such a sheet shear against each other when pulled, so the
- * sheet is not uniform. Pure. */
+ * diagonal spring each. The quarters of such a sheet shear against each other when pulled, so it is
+ * not uniform. Pure. */
 struct mesh_elastic mesh_elastic_of(const struct mesh *mesh, const struct mesh_moduli *moduli);
 
 #endif

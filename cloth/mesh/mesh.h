@@ -88,17 +88,17 @@ double mesh_row_distance(double width, uint32_t nx);
 /* True if cell (i, j) of a grid is cut along the diagonal from (i + 1, j) to (i, j + 1). */
 bool mesh_cell_turned(const struct mesh *mesh, uint32_t i, uint32_t j);
 
-/* Reads a Wavefront OBJ file: v (x y z, anything after them ignored), vt, f (any polygon; v, v/vt,
- * v//vn, v/vt/vn; negative indices), l (lone edges), g and o (groups), usemtl and mtllib
- * (materials); all else is skipped. A face is in each group that the last g names, and in that of
- * the last o, whose name is the whole line; without a name it is in none. A repeated name continues
- * its group. Groups without faces are dropped. A library found beside the file has an absolute
- * path, another one its name. Errors name file and line. They are: no vertices, numbers that are
- * malformed or not finite, indices out of range, faces with fewer than 3 or repeated corners. A
- * polygon of more than 3 corners must have area, and not cross or touch itself. More errors are: an
- * edge of more than two triangles (non-manifold, at the third face), a repeated lone edge, more
- * than 2^31 vertices or corners. A line that ends with `\` continues in the next and counts as the
- * first. Codes: CLOTH_E_INPUT, CLOTH_E_IO (cannot be read), CLOTH_E_MEMORY. */
+/* Reads a Wavefront OBJ file: v (x y z, the rest is ignored), vt, f (any polygon; v, v/vt, v//vn,
+ * v/vt/vn; negative indices), l (lone edges), g and o (groups), usemtl and mtllib (materials). All
+ * else is skipped. A face is in each group that the last g names, and in that of the last o, whose
+ * name is the whole line; without a name it is in none. A repeated name continues its group. Groups
+ * without faces are dropped. A library found beside the file has an absolute path, another one its
+ * name. Errors name file and line. They are: no vertices, numbers that are malformed or not finite,
+ * indices out of range, faces with fewer than 3 or repeated corners. A polygon of more than 3
+ * corners must have area, and not cross or touch itself. More errors are: an edge of more than two
+ * triangles (non-manifold, at the third face), a repeated lone edge, more than 2^31 vertices or
+ * corners. A line that ends with `\` continues in the next and counts as the first. Codes:
+ * CLOTH_E_INPUT, CLOTH_E_IO (cannot be read), CLOTH_E_MEMORY. */
 int mesh_read_obj(struct mesh *mesh, const char *path, struct cloth_error *error);
 
 /* The same for a surface that is neither folded nor cut: polygons that cross or touch themselves
@@ -226,7 +226,7 @@ struct mesh_share {
 };
 void mesh_share_of(const struct mesh *mesh, uint32_t triangle, double density, bool by_cell,
                    struct mesh_share *share);
-/* Adds the mass of one triangle; in a grid a quarter of it to each corner of its cell, so that the
+/* Adds the mass of one triangle. In a grid each corner of its cell gets a quarter, so that the
  * masses of a sheet do not depend on its diagonals. */
 void mesh_add_cell_mass_of(const struct mesh *mesh, uint32_t triangle, double density,
                            double *mass);

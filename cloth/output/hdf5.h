@@ -7,12 +7,13 @@
 #include <stdint.h>
 
 /* Scientific frames: in a folder of frames (output.h)
- *   hdf5/frame-NNNNNN.vtkhdf   a frame each, HDF5 in the VTKHDF layout, with all that shows it: an
- *                              unstructured grid of triangles, and of edges that have none
- *   cloth.vtkhdf.series        JSON: {"file-series-version": "1.0", "files": [{"name", "time"},
- * ..]} cloth.xmf                  XDMF: the same frames, for what does not read VTKHDF A thread of
- * its own writes them, on rank 0: a frame is copied, and the caller goes on. At most
- * OUTPUT_HDF5_FLIGHT of them are in memory; then the caller waits. A frame has its name when it is
+ *   hdf5/frame-NNNNNN.vtkhdf   one frame, HDF5 in the VTKHDF layout: an unstructured grid of
+ *                              triangles, and of edges that have none
+ *   cloth.vtkhdf.series        JSON: {"file-series-version": "1.0", "files": [{"name", "time"}]}
+ *   cloth.xmf                  XDMF: the same frames, for programs that do not read VTKHDF
+ *
+ * A thread of its own writes them, on rank 0: a frame is copied, and the caller goes on. At most
+ * OUTPUT_HDF5_FLIGHT of them are in memory; then the caller waits. A frame gets its name when it is
  * whole and on the disk; then both indexes name it. Local functions, called from one thread at a
  * time. */
 struct output_hdf5;
@@ -85,8 +86,8 @@ void output_hdf5_wait(struct output_hdf5 *frames);
  * and the reason. */
 int output_hdf5_close(struct output_hdf5 **frames, struct cloth_error *error);
 
-/* Removes the frames of an earlier run from a folder whose run has none, but for those of the first
- * n_frames if it goes on with that run; NULL: it does not. Errors: of output_hdf5_open. */
+/* Removes the frames of an earlier run from a folder whose run has none. n_frames: the first
+ * *n_frames of a resumed run stay; NULL: the run is new. Errors: of output_hdf5_open. */
 int output_hdf5_forget(const char *folder, const uint64_t *n_frames, struct cloth_error *error);
 
 #endif

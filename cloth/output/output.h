@@ -17,22 +17,23 @@
  *   cloth.obj      the start, with the input's polygons, one `o` per cloth
  *   cloth.pc2      PC2 point cache: header, then one float x y z a vertex and frame
  *   frames.csv     frame,time: the true time of each frame
- *   contact.pc2    where it is asked for: the force of contact on each vertex (output_forces)
- *   colours.bin    what a viewer colours by: blocks, ranks, shapes at rest (colours.h)
+ *   contact.pc2    if asked for: the force of contact on each vertex (output_forces)
+ *   colours.bin    data to colour by: blocks, ranks, shapes at rest (colours.h)
  *   body-K.obj     the bodies among the obstacles, K from 0, without their motion
- *   body-K.pc2     of those that change their shape: a PC2 point cache of these vertices, frame by
- *                  frame as cloth.pc2 is
- *   scene.json     what a viewer needs: {"fps", "obstacles": [{KIND: {its parameters}}]}, of a
- *                  body {"obj": its file}, with "pc2": that of its shapes, if it changes them;
- * one that moves also has "about" and "keys": [{"time", "translate",
- * "rotate"}]. Of several cloths, or where the scene keeps some from meeting, "apart": {"cloths":
- * [vertices of each], "pairs": [[cloth, other], ...]} follows: numbers of cloths; those of
- * obstacles follow. Where pins
- * follow obstacles, "attached": [[obstacle, vertex, ...], ...]: vertices whose triangles do not
- * meet it. Where seams are pulled, "sewn": [[a, b], ...]: vertices whose triangles do not meet
+ *   body-K.pc2     the shapes of bodies that change them: a PC2 point cache, frame by frame
+ *   scene.json     {"fps", "obstacles": [{KIND: {its parameters}}]}
  *
- * PC2's count of frames is rewritten when their bytes are on the disk, and synced, so that a run
- * that is killed leaves whole files up to the last finished frame. */
+ * A body in scene.json is {"obj": its file}, with "pc2" if it changes its shape. An obstacle that
+ * moves has "about" and "keys": [{"time", "translate", "rotate"}]. Further keys:
+ *   "apart"        of several cloths, or where the scene keeps some from meeting: {"cloths":
+ *                  [vertices of each], "pairs": [[cloth, other], ...]}; numbers of obstacles
+ *                  follow those of cloths
+ *   "attached"     where pins follow obstacles: [[obstacle, vertex, ...], ...]: vertices whose
+ *                  triangles do not meet it
+ *   "sewn"         where seams are pulled: [[a, b], ...]: vertices whose triangles do not meet
+ *
+ * PC2's count of frames is rewritten and synced once their bytes are on the disk, so a killed run
+ * leaves whole files up to the last finished frame. */
 struct output_frames;
 
 struct output_setup {

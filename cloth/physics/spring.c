@@ -86,7 +86,7 @@ PHYS_INLINE void add_rows(const struct phys_springs *s, const struct phys_four *
     }
 }
 
-/* Where the ends of springs are: end 1 in arrays of another block, or in the same. */
+/* The ends of springs: end 1 is in arrays of another block, or in the same. */
 struct where {
     const phys_vec *x, *v, *x_other, *v_other;
     int cut;

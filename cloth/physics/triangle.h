@@ -15,8 +15,8 @@
  * torque -c (tr S) area about the normal is left (phys_triangles_torque).
  *
  * S needs square roots alone: F'F = S^2, det S = |F_u x F_v|, tr S = sqrt(tr F'F + 2 det S), S =
- * (F'F + det S) / tr S. A triangle without area has no normal: only forces along what is left of it
- * remain. A triangle that is a point has no forces.
+ * (F'F + det S) / tr S. A triangle without area has no normal: only forces along its line remain. A
+ * triangle that is a point has no forces.
  *
  * K of a step is R k R' with k the stiffness at rest, and those parts of the stress that resist a
  * rotation. They are, times the area, (S^-1 (T - c J))+ against moves along the normal and max(T :

@@ -97,7 +97,7 @@ PHYS_INLINE void slope_of(const struct phys_frame *f, const struct slope *slope,
 
 /* ---- Right side ---- */
 
-/* T - c J of strain and damping: what phys_triangles_force pushes with. */
+/* T - c J of strain and damping, which phys_triangles_force pushes with. */
 PHYS_INLINE void force_of(const struct phys_frame *f, const struct slope *slope,
                           const struct phys_plane2 *d, struct phys_plane2 *q)
 {
@@ -196,7 +196,7 @@ PHYS_INLINE void block_full(const struct phys_frame *f, const struct slope *slop
                              dv = {{0}, {0}, f->gu[j], f->gv[j]};
     const phys_vec gu = -f->area * f->gu[i], gv = -f->area * f->gv[i];
     struct phys_plane2 qu, qv;
-    block_reduced(f, stiff, i, j, block); /* what is along the normal stays */
+    block_reduced(f, stiff, i, j, block); /* the part along the normal stays */
     slope_full(f, slope, h * h, h, &du, &qu);
     slope_full(f, slope, h * h, h, &dv, &qv);
     const phys_vec uv = qv.uu * gu + qv.uv * gv, vu = qu.vu * gu + qu.vv * gv;

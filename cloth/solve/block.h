@@ -84,9 +84,9 @@ static inline struct solve_rows solve_rows_plain(phys_vec *dv, phys_vec *r, phys
     return (struct solve_rows){dv, r, p, q, .z = r, .s = q};
 }
 
-/* A pass over a block (cloth/solve/cg.h), without the factors. With a preconditioner it leaves s
- * and q.s to the function that applies it to the new q. values: of the entries, in the block's
- * format. p_other: p of the ghosts after the first half of this pass. */
+/* A pass over a block (cloth/solve/cg.h), without the factors. With a preconditioner, its function
+ * makes s and q.s from the new q afterwards. values: of the entries, in the block's format.
+ * p_other: p of the ghosts after the first half of this pass. */
 void solve_pass(const struct solve_block *block, const struct solve_cut *cut, const void *values,
                 const phys_vec *p_other, double alpha, double beta, const struct solve_rows *rows,
                 double dots[SOLVE_DOTS]);

@@ -33,8 +33,8 @@
  * which takes the place of r (SOLVE_CHECK). If the true residual is too large, the solve goes on
  * from dv (SOLVE_AGAIN), at most SOLVE_RESTARTS times, and only while that helps. */
 
-/* A solve may begin with a guess g instead of dv = 0, for a pass and a half more. It makes q = S A
- * g first (SOLVE_OPEN), then begins again (SOLVE_AGAIN) from dv = alpha g with alpha = g.b / g.q.
+/* A solve may begin with a guess g instead of dv = 0; this costs a pass and a half. It makes q = S
+ * A g first (SOLVE_OPEN), then begins again (SOLVE_AGAIN) from dv = alpha g with alpha = g.b / g.q.
  * This is the multiple of g that is nearest to the solution in the norm of A. It is never farther
  * from the solution than dv = 0 (Fischer 1998, for one vector). */
 

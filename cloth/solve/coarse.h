@@ -68,9 +68,9 @@ struct solve_pattern {
 /* A neighbour that the pattern does not have: its couplings are left out. */
 #define SOLVE_LEFT_OUT UINT32_MAX
 
-/* From the neighbours of each block: those of block b are neighbour[first[b]] .. neighbour[first[b
- * + 1] - 1]. Time grows as n^3: many blocks are solved by parts (cloth/solve/levels.h). Error:
- * CLOTH_E_MEMORY. Local. */
+/* Makes the pattern from the neighbours of each block: those of block b are neighbour[first[b]] ..
+ * neighbour[first[b + 1] - 1]. Time grows as n^3: many blocks are solved by parts
+ * (cloth/solve/levels.h). Error: CLOTH_E_MEMORY. Local. */
 int solve_pattern_make(struct solve_pattern *pattern, uint32_t n, const uint32_t *first,
                        const uint32_t *neighbour, struct cloth_error *error);
 void solve_pattern_free(struct solve_pattern *pattern);
@@ -79,7 +79,7 @@ void solve_pattern_free(struct solve_pattern *pattern);
 size_t solve_coarse_doubles(const struct solve_pattern *pattern);
 
 /* Puts the coupling of block b into the factor: its diagonal block, then one for each neighbour
- * with a higher number, ascending (first and neighbour as above). solve_coarse_clear comes once,
+ * with a higher number, ascending. first and neighbour as above. solve_coarse_clear comes once,
  * before all blocks. */
 void solve_coarse_clear(const struct solve_pattern *pattern, double *factor);
 void solve_coarse_fill(const struct solve_pattern *pattern, const uint32_t *first,

@@ -53,9 +53,9 @@ struct solve_end {
     double w;                        /* 1/kg; 0: held */
 };
 
-/* The largest findings of a round over all edges: (|d| - l) / L before its correction; 1 if an edge
- * was corrected, or would have been in a round that looks only. Edges that pins keep from getting
- * shorter do not count. */
+/* The largest findings of a round over all edges. most: (|d| - l) / L before its correction.
+ * corrected: 1 if an edge was corrected, or would have been in a round that looks only. Edges that
+ * pins keep from getting shorter do not count. */
 struct solve_excess {
     double most, corrected;
 };

@@ -17,10 +17,10 @@
  * nodes. This is additive Schwarz of two levels (Dryja & Widlund 1987). Q tears smooth motions at
  * the borders of groups, so Q' C Q is too stiff for them, and o is 2 (Braess 1995 found 1.8). Q' C
  * Q is like C, so one more level may solve it in the same way, with w = 3/2 for its groups; o then
- * applies to the topmost level alone. With these weights 160,000 vertices in steps of 8 ms take 56
- * iterations, with w = 1/4 and o = 1 67. Each term is symmetric and semidefinite, so their sum with
- * another preconditioner remains positive definite. One group that covers all solves C itself. The
- * order of sums follows from the numbers of nodes and groups.
+ * applies to the topmost level alone. These weights take 56 iterations for 160,000 vertices in
+ * steps of 8 ms; w = 1/4 and o = 1 take 67. Each term is symmetric and semidefinite, so their sum
+ * with another preconditioner remains positive definite. One group that covers all solves C itself.
+ * The order of sums follows from the numbers of nodes and groups.
  *
  * Blocks of C and of Q' C Q lie alike: a node has its diagonal block, then one for each neighbour
  * with a higher number, ascending. That is the coupling of the node. */
@@ -63,8 +63,8 @@ void solve_level_free(struct solve_level *level);
 /* How many 9 x 9 blocks the coupling of a group has. */
 uint32_t solve_level_couplings(const struct solve_level *level, uint32_t group);
 
-/* Adds the part of one of a group's own nodes in Q' C Q to the coupling of the group, `to`. lift:
- * of each node of the level, solve_lift (cloth/solve/frame.h) to its group. */
+/* Adds the part of a group's node in Q' C Q to the coupling of the group, `to`. lift: of each node
+ * of the level, solve_lift (cloth/solve/frame.h) to its group. */
 void solve_level_couple(const struct solve_level *level, uint32_t node, const double *coupling,
                         const double (*lift)[9], double *to);
 

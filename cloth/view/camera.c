@@ -193,8 +193,8 @@ void view_orbit_camera(const struct view_orbit *orbit, double aspect, struct vie
     camera->reach = (float)orbit->size;
 }
 
-/* How near and far things are is known of the direction that was fitted. From another one a sphere
- * around them must do. */
+/* How near and far things are is known of the direction that was fitted. Another direction uses a
+ * sphere around them. */
 static void lose_depths(struct view_orbit *orbit)
 {
     orbit->front = fmax(orbit->front, orbit->radius);

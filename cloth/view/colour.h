@@ -18,7 +18,7 @@ enum view_colour {
 };
 
 struct view_scale {
-    double min, max; /* min < max: what has the first and the last colour of the map */
+    double min, max; /* min < max: the numbers of the map's first and last colour */
 };
 
 struct view_colouring {
@@ -41,18 +41,18 @@ static inline bool view_colour_has_scale(enum view_colour by)
 {
     return by >= VIEW_COLOUR_STRAIN;
 }
-/* WORD, or with a scale WORD,MAX (from 0) or WORD,MIN:MAX. NULL, or what is wrong with it. */
+/* WORD, or with a scale WORD,MAX (from 0) or WORD,MIN:MAX. NULL, or its fault. */
 const char *view_colouring_parse(const char *text, struct view_colouring *colouring);
 
 /* --- Numbers: viridis, by S. van der Walt and N. Smith (2015, matplotlib, CC0): its lightness
- * grows evenly, also for those who see no red, no green or no blue. These are ten of its colours,
- * evenly spread, as sRGB, 0 .. 1; between them it is linear. --- */
+ * grows evenly, also without red, green or blue. These are ten of its colours, evenly spread, as
+ * sRGB, 0 .. 1; between them it is linear. --- */
 
 enum { VIEW_MAP = 10 };
 extern const float view_map[VIEW_MAP][3];
-/* At part 0 .. 1; what lies outside has the colour of the end. */
+/* At part 0 .. 1; parts outside have the colour of the end. */
 void view_map_at(double part, float colour[3]);
-/* Where a number is on a scale, 0 .. 1 and, outside, the end. */
+/* The part of a number on a scale, 0 .. 1 and, outside, the end. */
 double view_scale_part(const struct view_scale *scale, double value);
 /* From 0 to the next round number: 1, 2 or 5 with zeros; to 1 where nothing is above 0. */
 struct view_scale view_scale_up_to(double max);

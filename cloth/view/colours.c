@@ -1,4 +1,4 @@
-/* The numbers are those of the frame that was found last, by what colours it now. */
+/* The numbers are of the frame found last, in the quantity that colours it now. */
 #include "cloth/view/colours.h"
 
 #include "cloth/base/memory.h"

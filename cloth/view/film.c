@@ -18,7 +18,7 @@ extern char **environ;
 struct view_film {
     const char *path;
     char *part, *target; /* the name while it is written; the same as ffmpeg takes it */
-    FILE *said;          /* what ffmpeg wrote on standard error */
+    FILE *said;          /* ffmpeg's standard error */
     int pipe;            /* -1: closed */
     pid_t ffmpeg;
     bool started, ended;     /* ffmpeg; where it ended, it has been waited for */
@@ -26,7 +26,7 @@ struct view_film {
     struct sigaction before; /* and was handled so before */
 };
 
-/* With the last thing that ffmpeg said, in one line. */
+/* Adds the last line that ffmpeg printed. */
 static int fail_as_said(struct view_film *film, struct cloth_error *error)
 {
     char line[300], last[300] = "";

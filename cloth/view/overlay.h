@@ -18,8 +18,8 @@ struct view_overlay;
 int view_overlay_new(struct view_overlay **overlay, struct cloth_error *error);
 int view_overlay_draw(struct view_overlay *overlay, const struct view_overlay_text *text, int width,
                       int height, struct cloth_error *error);
-/* Where x and y (pixels from the top left corner) are on the time line of a window: its part, 0 ..
- * 1; -1: beside it. Pure. */
+/* The part of a window's time line at x and y (pixels from the top left corner), 0 .. 1; -1: beside
+ * it. Pure. */
 double view_overlay_part(double x, double y, int width, int height);
 void view_overlay_free(struct view_overlay *overlay);
 

@@ -8,8 +8,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Frames of a folder, ready to be drawn: whoever shows one, in a picture, a film or a window, does
- * it by these functions. Local; one thread. */
+/* Frames of a folder, ready to be drawn. Pictures, films and windows show frames by these
+ * functions. Local; one thread. */
 
 struct view_wish {
     const char *folder;
@@ -55,7 +55,7 @@ const struct view_legend *view_show_legend(const struct view_show *show);
 void view_show_shadows(struct view_show *show, bool shadows);
 /* The same on standard output. */
 void view_show_say(const struct view_show *show);
-/* Frees what drawing made, while its context is current. */
+/* Frees the objects of drawing, while its context is current. */
 void view_show_undraw(struct view_show *show);
 void view_show_close(struct view_show *show);
 

@@ -37,7 +37,7 @@ void view_obstacles_free(struct view_obstacles *obstacles);
 struct view_camera {
     mat4 clip;    /* from the world to clip coordinates */
     float eye[3]; /* m */
-    float reach;  /* largest extent of what was fitted, m; > 0 */
+    float reach;  /* largest extent of the fitted points, m; > 0 */
 };
 
 /* Gathers points that the picture must show, seen from one direction. */
@@ -58,7 +58,7 @@ void view_fit_start(struct view_fit *fit, double azimuth, double elevation, doub
                     double zoom);
 /* position: n x 3 */
 void view_fit_add(struct view_fit *fit, size_t n, const double *position);
-/* Adds what lies under the points on the planes (point, normal) that they are near to. */
+/* Adds the feet of the points on the planes (point, normal) that they are near to. */
 void view_fit_planes(struct view_fit *fit, size_t n, const double (*planes)[6]);
 /* Adds the points of an obstacle, of n, that are within half the points' extent of their box. A
  * body with a point there adds all, unless it is more than four times as large. */
@@ -71,7 +71,7 @@ struct view_orbit {
     double azimuth, elevation, zoom; /* as view_fit_start has them */
     double target[3], distance;      /* m; of the eye */
     double front,
-        behind; /* m: how far what was fitted reaches from the target, to and from the eye */
+        behind; /* m: how far the fitted points reach from the target, to and from the eye */
     double radius, size; /* m: of a sphere around it; its largest extent */
 };
 /* The one that view_fit_camera has. */
@@ -79,7 +79,7 @@ void view_fit_orbit(const struct view_fit *fit, struct view_orbit *orbit);
 void view_orbit_camera(const struct view_orbit *orbit, double aspect, struct view_camera *camera);
 /* By degrees; the elevation stays within +-89. */
 void view_orbit_turn(struct view_orbit *orbit, double azimuth, double elevation);
-/* Moves what is at the target by parts of the picture's height. */
+/* Moves the target's image by parts of the picture's height. */
 void view_orbit_pan(struct view_orbit *orbit, double right, double up);
 /* The zoom stays within 0.2 and 1000. */
 void view_orbit_zoom(struct view_orbit *orbit, double factor);
@@ -92,7 +92,7 @@ struct view_context;
 int view_context_open(struct view_context **context, struct cloth_error *error);
 void view_context_close(struct view_context *context);
 
-/* --- scene.c: what is drawn --- */
+/* --- scene.c: the scene drawn --- */
 
 struct view_shape {
     uint32_t n_vertices, n_triangles, n_lines;
@@ -126,7 +126,7 @@ void view_scene_paint(struct view_scene *scene, enum view_paint paint, int n, co
 void view_scene_wire(struct view_scene *scene, bool wire);
 /* Turns shadows on or off from the next move on; a new scene has them. */
 void view_scene_shadows(struct view_scene *scene, bool shadows);
-/* Into whatever framebuffer is bound, with four samples a pixel. */
+/* Draws into the bound framebuffer, with four samples a pixel. */
 int view_scene_draw(struct view_scene *scene, const struct view_camera *camera, int width,
                     int height, struct cloth_error *error);
 void view_scene_free(struct view_scene *scene);

@@ -55,7 +55,7 @@ static int open_system(struct outputs *to, const struct model *model, struct clo
     return lock_folder(to->locks + 1, to->options->save_system, error);
 }
 
-/* In the folder of frames, which is there. */
+/* Opens the probes in the folder of frames, which exists. */
 static int open_probes(struct outputs *to, const struct flow *flow, const uint64_t *n_rows,
                        struct cloth_error *error)
 {
@@ -302,7 +302,7 @@ int outputs_frame(void *context, uint64_t frame, double time, const double *posi
     return code;
 }
 
-/* Those before a frame that failed may be on their way to the disk still. */
+/* Waits first: frames before one that failed may still be on their way to the disk. */
 uint64_t outputs_written(void *context)
 {
     const struct outputs *of = context;

@@ -129,7 +129,7 @@ int phases_joined(const struct phases *phases, uint32_t n, uint32_t **joined,
 
 /* ---- The report of all phases ---- */
 
-/* Not a number where neither is one. */
+/* The sum of the numbers; NaN if neither is one. */
 static double sum(double a, double b)
 {
     return isnan(a) ? b : isnan(b) ? a : a + b;

@@ -80,7 +80,7 @@ static void add_phase(struct course *to, const struct model *model, uint32_t obs
         add(to, key_at(model, shape, seconds), begin + seconds);
 }
 
-/* As the runs count the times of their frames. */
+/* Begins are added up as the runs count the times of their frames. */
 static void add_phases(struct course *to, const struct phases *phases, uint32_t obstacle)
 {
     double begin = 0;

@@ -123,7 +123,7 @@ static int differs(const char *path, const char *now, const char *was, struct cl
                       here ? "in this one" : "in that one", only);
 }
 
-/* By the first line that is another one. */
+/* Fails with the first line that differs. */
 static int compare_settings(const char *path, const char *now, struct output_part part,
                             struct cloth_error *error)
 {

@@ -124,7 +124,7 @@ static void say_stopped(const struct run *run)
     fputc('\n', stderr);
 }
 
-/* On rank 0, of the phase that ran. */
+/* Warns, on rank 0, of motion left at the end of the phase that ran. */
 static void warn_of_motion(const struct run *run)
 {
     const struct model_rest *rest = &run->model->rest;

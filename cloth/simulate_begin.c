@@ -125,7 +125,7 @@ static bool is_known(const struct run *run, const char *warning)
     return known;
 }
 
-/* On rank 0, of the phase that begins. */
+/* Prints, on rank 0, the warnings of the phase that begins. */
 static void warn(const struct run *run)
 {
     const char *warning, *name = run->phases.done[run->phases.now].name;

@@ -173,7 +173,7 @@ int garment_pattern_check(const struct garment_pattern *pattern, struct cloth_er
     return code;
 }
 
-/* By its corners. */
+/* Size of a panel, by its corners. */
 static double size_of(const struct garment_panel *panel)
 {
     double size = 0;

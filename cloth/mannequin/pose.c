@@ -24,7 +24,7 @@ static void rest(double angle[MANNEQUIN_ANGLES])
         angle[i] = mannequin_limits[i < MANNEQUIN_SIDE ? i : i - MANNEQUIN_SIDE + 2].rest;
 }
 
-/* From 0 at u <= 0 to 1 at u >= 1. */
+/* Rises from 0 at u <= 0 to 1 at u >= 1. */
 static double smooth(double u)
 {
     u = u < 0 ? 0 : u > 1 ? 1 : u;

@@ -191,7 +191,7 @@ static int modulus_of(const struct builder *builder, const struct mesh_edge *edg
     return CLOTH_OK;
 }
 
-/* Of triangles. */
+/* Adds the spring of a triangle's side. */
 static int add_side(struct builder *builder, const struct mesh_edge *edge)
 {
     double modulus;
@@ -210,7 +210,7 @@ static int add_lone_edge(struct builder *builder, const struct mesh_edge *edge)
                length);
 }
 
-/* Between the vertices opposite. */
+/* Adds the spring between the opposite vertices. */
 static int add_bend(struct builder *builder, const struct mesh_edge *edge, double modulus)
 {
     const uint32_t corner[4] = {edge->a, edge->b, edge->opposite[0], edge->opposite[1]};

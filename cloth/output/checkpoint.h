@@ -40,7 +40,7 @@ void output_checkpoints_close(struct output_checkpoints **checkpoints);
 /* Removes those of an earlier run from a folder of frames. Error: CLOTH_E_INPUT, CLOTH_E_IO. */
 int output_checkpoints_forget(const char *folder, struct cloth_error *error);
 
-/* One that was read: parts begin at multiples of 8 bytes. */
+/* A checkpoint that was read: parts begin at multiples of 8 bytes. */
 struct output_checkpoint {
     char *path;
     unsigned char *bytes;

@@ -50,10 +50,10 @@ struct output_colours;
  * output_open. */
 int output_colours_open(struct output_colours **colours, const char *folder, uint32_t n_vertices,
                         const uint64_t *n_frames, struct cloth_error *error);
-/* From this frame on. Error: CLOTH_E_IO, also of the other one. */
+/* Shapes at rest from this frame on. Error: CLOTH_E_IO, also of output_colours_places. */
 int output_colours_rest(struct output_colours *colours, uint64_t frame,
                         const struct output_rest *rest, struct cloth_error *error);
-/* Blocks of vertices (n_vertices) and ranks of blocks; written where they are not as they were. */
+/* Blocks of vertices (n_vertices) and ranks of blocks; written if they changed. */
 int output_colours_places(struct output_colours *colours, uint64_t frame, const int32_t *block,
                           uint32_t n_blocks, const int32_t *rank, struct cloth_error *error);
 /* Closes; *colours becomes NULL. */

@@ -268,7 +268,7 @@ static void free_frames(struct output_frames *frames)
 
 /* ---- Bringing frames to the disk ---- */
 
-/* To the first n frames. A shorter file needs no room. */
+/* Cuts cache and index to the first n frames. A shorter file needs no room. */
 static void cut(const struct output_frames *frames, uint32_t n)
 {
     const uint64_t whole = OUTPUT_PC2_HEADER + (uint64_t)12 * frames->n_points * n;

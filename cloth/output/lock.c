@@ -119,7 +119,7 @@ static bool is_same(const struct holder *a, const struct holder *b)
     return a->process == b->process && !strcmp(a->host, b->host);
 }
 
-/* Not of an earlier process with the same number. */
+/* False for an earlier process with the same number. */
 static bool is_ours(const struct holder *holder)
 {
     const struct holder self = this_process();
@@ -129,7 +129,7 @@ static bool is_ours(const struct holder *holder)
     return holds && is_same(holder, &self);
 }
 
-/* One that ended, and that its parent did not wait for, still has its number. */
+/* A process that ended keeps its number until its parent waits for it. */
 static bool runs(const struct holder *holder)
 {
     struct process process;

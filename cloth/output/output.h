@@ -223,7 +223,8 @@ void output_report_null(struct output_report *report, const char *key);
 void output_report_list(struct output_report *report, const char *key);
 void output_report_item(struct output_report *report);
 void output_report_list_end(struct output_report *report);
-/* To the file that the path names, or leads to through links. Errors as of output_open. */
+/* Writes the report to the file that the path names, or leads to through links. Errors as of
+ * output_open. */
 int output_report_write(struct output_report *report, const char *path, struct cloth_error *error);
 void output_report_free(struct output_report *report);
 

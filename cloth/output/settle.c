@@ -104,7 +104,7 @@ int output_settler_open(struct output_settler **settler, struct cloth_error *err
     return CLOTH_OK;
 }
 
-/* With the lock. */
+/* Call with the lock. */
 static int tell(const struct output_settler *settler, struct cloth_error *error)
 {
     const struct cloth_error *trouble = &settler->trouble;

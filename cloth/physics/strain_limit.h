@@ -20,7 +20,7 @@ struct phys_strain_limits {
     const double *length;        /* n: l0, m, > 0 */
 };
 
-/* As of triangles (triangle.h); one pair of each. */
+/* Like the functions of triangles (triangle.h), with one pair each. */
 void phys_strain_limits_force(const struct phys_strain_limits *limits,
                               const struct phys_sight *sight, phys_vec *f);
 void phys_strain_limits_stiffness(const struct phys_strain_limits *limits, double scale,

@@ -79,7 +79,7 @@ static double find_high(double *value, size_t n)
     return found ? value[found - 1 - found / 20] : (double)NAN;
 }
 
-/* Over the frames that have numbers. */
+/* Finds the scale over the frames that have numbers. */
 static int find_scale(struct view_colours *colours, enum view_colour by, struct cloth_error *error)
 {
     const size_t n = colours->cache->mesh.n_vertices;

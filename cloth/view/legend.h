@@ -19,7 +19,7 @@ struct view_legend {
 int view_legend_lay(const struct view_legend *legend, struct view_picture *picture,
                     struct cloth_error *error);
 
-/* By cairo, on a surface of a picture's size; `cairo`: its cairo_t. */
+/* Paints with cairo, on a surface of a picture's size; `cairo`: its cairo_t. */
 void view_legend_paint(const struct view_legend *legend, void *cairo, int width, int height);
 
 #endif

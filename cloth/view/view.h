@@ -77,7 +77,7 @@ struct view_orbit {
 /* The one that view_fit_camera has. */
 void view_fit_orbit(const struct view_fit *fit, struct view_orbit *orbit);
 void view_orbit_camera(const struct view_orbit *orbit, double aspect, struct view_camera *camera);
-/* By degrees; the elevation stays within +-89. */
+/* Turns by degrees; the elevation stays within +-89. */
 void view_orbit_turn(struct view_orbit *orbit, double azimuth, double elevation);
 /* Moves the target's image by parts of the picture's height. */
 void view_orbit_pan(struct view_orbit *orbit, double right, double up);

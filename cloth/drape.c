@@ -11,7 +11,7 @@ struct drape {
     uint32_t (*corner)[3];
     double *position;  /* of the cloth's vertices */
     uint32_t first;    /* of them, among those of all cloths */
-    double flat, disc; /* m^2: the cloth at rest, what carries it */
+    double flat, disc; /* m^2: the cloth at rest, the disc that carries it */
     double axis[3];
 };
 

@@ -1,5 +1,5 @@
-/* The command line of duite-cloth. It is read after MPI has started, on every rank alike, and only
- * rank 0 prints, so that a mistake is said once and every rank ends with the same code. */
+/* The command line of duite-cloth. Every rank reads it, after MPI has started, and only rank 0
+ * prints: a mistake is said once, and all ranks end with the same code. */
 #include "cloth/base/simd.h"
 #include "cloth/environment.h"
 #include "cloth/shipped.h"
@@ -121,7 +121,7 @@ static int whole_number(struct argp_state *state, const char *option, const char
     return EINVAL;
 }
 
-/* Whether there is the policy that an option names. */
+/* Refuses an option that names an unknown policy. */
 static int chosen(struct argp_state *state, const char *option, const char *name,
                   const void *policy)
 {
@@ -396,7 +396,7 @@ static void free_command(struct command *command)
     free(command->run.sets);
 }
 
-/* What standard output could not take is a failure like any other. */
+/* Fails if standard output did not take everything. */
 static int finish_output(int code)
 {
     if (!fflush(stdout) && !ferror(stdout))
@@ -412,8 +412,8 @@ static int agree(int code)
     return code;
 }
 
-/* Hosts may differ, in processors and environments: the first rank that cannot have what it was
- * asked for says so. */
+/* Hosts may differ in processors and environments: the first rank that cannot do what its
+ * environment asks says so. */
 static int check_host(int rank, const struct simulate_options *run)
 {
     struct cloth_error error = {0};

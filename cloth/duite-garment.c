@@ -1,5 +1,5 @@
-/* The command line of the mesher of sewing patterns: reads what is asked for, hands it on, says
- * what came of it. */
+/* The command line of the mesher of sewing patterns: reads the options, runs the mesher, prints the
+ * result. */
 #include "config.h"
 
 #include "cloth/garment/garment.h"

@@ -1,4 +1,4 @@
-/* The command line of the figure: reads what is asked for, hands it on, says what came of it. */
+/* The command line of the figure: reads the options, makes the figure, prints the result. */
 #include "config.h"
 
 #include "cloth/mannequin/pose.h"

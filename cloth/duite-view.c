@@ -1,4 +1,4 @@
-/* The command line of the viewer: reads what is asked for, hands it on, says what failed. */
+/* The command line of the viewer: reads the options, runs the view, prints errors. */
 #include "config.h"
 
 #include "cloth/intersections.h"
@@ -31,8 +31,7 @@ struct options {
     struct view_live_wish live; /* of a run that goes on, instead of a folder */
     const char *trace, *svg;
     struct chart_options chart; /* of the trace */
-    /* What was given: --size, --window, an option of frames, one of those of a folder, one of
-     * films. */
+    /* Options given: --size, --window, one of frames, one of folders, one of films. */
     bool sized, windowed, framed, numbered, filmed;
 };
 
@@ -146,7 +145,7 @@ static void check_live(const struct options *options, struct argp_state *state)
                    "frame, film, colour or check goes with it");
 }
 
-/* What belongs together. */
+/* Refuses options that lack their partner. */
 static void check_together(const struct options *options, struct argp_state *state)
 {
     if (!options->trace && (options->svg || options->windowed))
@@ -367,7 +366,7 @@ static int check_frames(struct output_cache *cache, int *exit_code, struct cloth
     return CLOTH_OK;
 }
 
-/* The exit code, after what failed. */
+/* Prints the error, returns the exit code. */
 static int say(int code, const struct cloth_error *error)
 {
     if (code)

@@ -4,14 +4,14 @@
 #include "cloth/base/error.h"
 #include "cloth/simulate.h"
 
-/* What counts where no option is given: the environment, else what is built in. What the
- * environment has wrong is found once the options are read, which may replace it. Local. */
+/* Sets the defaults of options: the environment, else the built-in values. environment_check looks
+ * for errors after the options, which may replace a value. Local. */
 void environment_begin(struct simulate_options *run);
 
 /* Error: CLOTH_E_INPUT, which names the variable. Local. */
 int environment_check(const struct simulate_options *run, struct cloth_error *error);
 
-/* Of argp's form help_filter: SCHEDULERS, MAPPINGS and BALANCERS in a text become the names of the
+/* A help_filter of argp: replaces SCHEDULERS, MAPPINGS and BALANCERS in a text by the names of the
  * policies. Local. */
 char *environment_help(int key, const char *text, void *input);
 

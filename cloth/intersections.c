@@ -21,10 +21,10 @@ struct look {
     double time;       /* s, as it is printed, and */
     double placed;     /* of motions and bodies */
     bool written;
-    bool says; /* what is found */
+    bool says; /* it prints findings */
 };
 
-/* ---- What is found ---- */
+/* ---- Findings ---- */
 
 static void say(const struct look *look, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
@@ -59,7 +59,7 @@ static void name_triangle(const struct intersections *all, uint32_t t, char text
         snprintf(text + n, NAMED - (size_t)n, " of cloth '%.100s'", list[i].name);
 }
 
-/* Counts one more; whether it is to be said. */
+/* Counts one more; true if it is to be printed. */
 static bool is_said(struct look *look)
 {
     return look->n++ < SAID && look->says;
@@ -98,7 +98,7 @@ static void say_inside(struct look *look, uint32_t point, size_t obstacle)
         all->cloth[i].name ? all->cloth[i].name : "", all->cloth[i].name ? "'" : "", obstacle);
 }
 
-/* ---- What does not meet ---- */
+/* ---- Pairs that do not meet ---- */
 
 /* A folder has all cloths in one mesh. */
 static uint32_t cloth_of(const struct intersections *all, uint32_t t)
@@ -111,7 +111,7 @@ static uint32_t cloth_of(const struct intersections *all, uint32_t t)
     return i;
 }
 
-/* Whether a triangle of cloth and an obstacle do not meet. */
+/* True if a triangle of cloth and an obstacle are not to meet. */
 static bool misses(const struct intersections *all, uint32_t t, size_t obstacle)
 {
     return contact_is_attached(all->apart, 3, all->corner[t], (uint32_t)obstacle) ||
@@ -204,7 +204,7 @@ static int look_at_shape(struct look *look, size_t obstacle, uint64_t *entered,
     return code;
 }
 
-/* Whether a vertex of cloth may be in an obstacle: *guess is a cloth near its own. */
+/* True if a vertex of cloth may be in an obstacle. *guess: a cloth near its own. */
 static bool may_be_in(const struct intersections *all, uint32_t point, size_t obstacle,
                       uint32_t *guess)
 {
@@ -216,8 +216,8 @@ static bool may_be_in(const struct intersections *all, uint32_t point, size_t ob
     return contact_are_apart(all->apart, *guess, all->apart->n_cloths + (uint32_t)obstacle);
 }
 
-/* Where no triangles intersect a part of the cloth is inside or outside as a whole, but for what
- * may be inside. So the first vertex that may not be speaks for its part. */
+/* If no triangles intersect, a part of the cloth is inside or outside as a whole, apart from
+ * vertices that may be inside. So the first other vertex of a part decides. */
 static void look_inside(struct look *look, size_t obstacle, uint64_t *inside)
 {
     const struct intersections *all = look->all;

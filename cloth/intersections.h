@@ -26,20 +26,20 @@ struct intersections_setup {
     const struct contact_shape *obstacles;
     const struct phys_key *keys; /* of their motions */
     const struct contact_bodies *bodies;
-    const struct contact_apart *apart; /* what does not meet, triangles of vertices that are joined
-                                        * among it; it outlives it all */
+    const struct contact_apart *apart; /* pairs that do not meet, also triangles of joined vertices;
+                                        * it outlives this all */
     bool self_off;                     /* nor does any cloth meet itself */
 };
 
-/* Of all frames so far. */
+/* Results of all frames so far. */
 struct intersections_found {
     uint64_t frames;      /* that were checked */
-    uint64_t bad;         /* frames with anything of what follows */
+    uint64_t bad;         /* frames with any of the following */
     uint64_t first;       /* the number of the first of these, if there is one */
     uint64_t pairs;       /* most in a frame: pairs of triangles of cloth that intersect */
-    uint64_t with_shapes; /* most in a frame: triangles of cloth in a convex shape, by each of
-                             these; their pairs with triangles of bodies that intersect; and parts
-                             of cloth that are inside of a body */
+    uint64_t with_shapes; /* most in a frame, the sum of: triangles of cloth in each convex shape;
+                           * their intersecting pairs with triangles of bodies; parts of cloth
+                           * inside a body */
 };
 
 /* Triangles count that are deeper than this in a convex shape, m: of the state, whose positions
@@ -51,23 +51,23 @@ struct intersections_found {
 int intersections_open(struct intersections **intersections,
                        const struct intersections_setup *setup, struct cloth_error *error);
 
-/* Of each vertex of all cloths the lowest that welds make it one with; to be freed in any case.
- * CLOTH_E_MEMORY. */
+/* Gives each vertex of all cloths the lowest vertex that it is welded to. *same: to be freed in any
+ * case. Error: CLOTH_E_MEMORY. */
 struct model;
 int intersections_same(const struct model *model, uint32_t **same, struct cloth_error *error);
 
-/* The same for a model, while it has its meshes, and what of it does not meet; both outlive it all.
- * program, self_off: as above. */
+/* The same for a model, while it has its meshes. apart: pairs that do not meet. Both outlive it
+ * all. program, self_off: as above. */
 int intersections_of(struct intersections **intersections, const struct model *model,
                      const struct contact_apart *apart, const char *program, bool self_off,
                      struct cloth_error *error);
 
-/* From now on motions and bodies are at time 0 when the time of frames, s, is `begin`. */
+/* Puts time 0 of motions and bodies at the frames' time `begin`, s, from now on. */
 void intersections_begin(struct intersections *intersections, double begin);
 
 /* Checks a frame: position as of flow_output.frame; written: as floats, else as doubles. A frame
- * may be checked both ways, one after the other. Prints the first few of what is found first, on
- * standard error, unless `program` was NULL. Errors: as of verify_pairs. */
+ * may be checked both ways, one after the other. Prints the first few findings on standard error,
+ * unless `program` was NULL. Errors: as of verify_pairs. */
 int intersections_frame(struct intersections *intersections, uint64_t frame, double time,
                         const double *position, bool written, struct cloth_error *error);
 
@@ -79,7 +79,7 @@ struct output_cache;
 int intersections_of_folder(struct output_cache *cache, const char *program,
                             struct intersections_found *found, struct cloth_error *error);
 
-/* A sentence about what was found, on standard error, if anything was. */
+/* Prints a sentence about the findings on standard error, if there are any. */
 void intersections_say(const struct intersections_found *found, const char *program);
 
 /* *intersections becomes NULL; nothing is done if it is. */

@@ -1,5 +1,5 @@
-/* A folder does not say what was welded. But welded vertices have the same floats in each frame,
- * and no others are likely to: they count as one. */
+/* A folder does not name its welds. But welded vertices have the same floats in each frame, and no
+ * others are likely to: they count as one. */
 #include "cloth/base/memory.h"
 #include "cloth/intersections.h"
 #include "cloth/output/output.h"
@@ -27,7 +27,7 @@ static bool is_at(const double *x, uint32_t a, uint32_t b)
     return compare_places(x + 3 * (size_t)a, x + 3 * (size_t)b) == 0;
 }
 
-/* Of each vertex the lowest one with its place. */
+/* Finds the lowest vertex at the place of each vertex. */
 static void join_places(uint32_t n, double *position, uint32_t *order, uint32_t *same)
 {
     for (uint32_t v = 0; v < n; v++)

@@ -1,5 +1,5 @@
-/* The soup is complete before the first frame, but for the places of its vertices: its triangles
- * and what is joined do not change. */
+/* The soup is complete before the first frame, except the places of vertices: triangles and joins
+ * do not change. */
 #include "cloth/intersections_soup.h"
 
 #include "cloth/base/memory.h"
@@ -91,7 +91,7 @@ static int take_arrays(struct intersections *all, struct cloth_error *error)
     return CLOTH_OK;
 }
 
-/* What seams or welds join has one number. */
+/* Vertices that seams or welds join share one number. */
 static int take_sewn(struct intersections *all, const struct intersections_setup *setup,
                      struct cloth_error *error)
 {

@@ -4,7 +4,7 @@
 #include "cloth/intersections.h"
 #include "cloth/verify/verify.h"
 
-/* What intersections.c and intersections_soup.c share. One soup has the triangles of all cloths,
+/* Shared by intersections.c and intersections_soup.c. One soup has the triangles of all cloths,
  * then those of all obstacles that are bodies, whose vertices follow those of the cloths. */
 
 /* The first triangle and the first vertex of a cloth or of a body in the soup. */
@@ -13,7 +13,7 @@ struct surface {
     char *name; /* of a cloth; NULL: it is not known */
 };
 
-/* Of cloth and obstacle the last item is their end. */
+/* cloth and obstacle have one more item, their end. */
 struct intersections {
     const char *program;
     const struct contact_shape *obstacles;

@@ -1,5 +1,5 @@
-/* The thread sleeps until there is something to write. Under the lock is who has the parts: `busy`
- * says that the thread has them. */
+/* The thread sleeps until there is something to write. `busy`, under the lock, says that the thread
+ * has the parts. */
 #include "cloth/keeper.h"
 
 #include "cloth/output/output.h"
@@ -52,7 +52,7 @@ static void warn(struct keeper *keeper, const char *why)
 static void write_one(struct keeper *keeper)
 {
     struct cloth_error error = {0};
-    if (keeper->hdf5) /* what is in flight; one that cannot be written is not waited for */
+    if (keeper->hdf5) /* frames in flight; one that cannot be written is not waited for */
         output_hdf5_wait(keeper->hdf5);
     if (!keeper->part[1].bytes || !keeper->part[2].bytes)
         cloth_fail(&error, CLOTH_E_MEMORY, "no memory for a checkpoint");

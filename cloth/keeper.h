@@ -10,22 +10,22 @@
  * a time. One that fails is said once, and the run goes on. */
 struct keeper;
 
-/* seconds: between the begins of two. settings: what all of them begin with; settler: of the frames
- * of the folder; hdf5: those in HDF5, NULL: none. All outlive the keeper. Before the runtime binds
- * its threads to cores. Errors: of output_checkpoints_open; CLOTH_E_LIBRARY, no thread. */
+/* seconds: between the begins of two. settings: the first part of each; settler: of the frames of
+ * the folder; hdf5: those in HDF5, NULL: none. All outlive the keeper. Before the runtime binds its
+ * threads to cores. Errors: of output_checkpoints_open; CLOTH_E_LIBRARY, no thread. */
 int keeper_open(struct keeper **keeper, const char *folder, double seconds, const char *settings,
                 struct output_settler *settler, struct output_hdf5 *hdf5,
                 struct cloth_error *error);
 
-/* Whether one is due: nonzero once, then not before keeper_take and the next time. From any thread.
- */
+/* Nonzero once when a checkpoint is due; then 0 until keeper_take and the next time. From any
+ * thread. */
 int keeper_due(struct keeper *keeper);
 
 /* Has one written: of the program and of the flow. Their memory is the keeper's from then on; NULL:
  * there was none for it. Waits for one that is being written. From one thread at a time. */
 void keeper_take(struct keeper *keeper, struct output_part program, struct output_part flow);
 
-/* Waits until what was taken is on the disk; *keeper becomes NULL. */
+/* Waits until the taken parts are on the disk; *keeper becomes NULL. */
 void keeper_close(struct keeper **keeper);
 
 #endif

@@ -1,5 +1,5 @@
-/* What a run writes and looks at, from the first frame to the last. The folders are locked before
- * anything is written into them, and stay so. */
+/* The outputs and checks of a run, from the first frame to the last. Folders are locked before the
+ * first write, and stay locked. */
 #include "cloth/outputs.h"
 
 #include "cloth/base/memory.h"
@@ -23,7 +23,7 @@ static int lock_folder(struct output_lock **lock, const char *folder, struct clo
     return code;
 }
 
-/* Of the live view's thread, too. */
+/* The live view's thread calls it, too. */
 static void warn(const char *text)
 {
     fprintf(stderr, "duite-cloth: warning: %s\n", text);
@@ -55,7 +55,7 @@ static int open_system(struct outputs *to, const struct model *model, struct clo
     return lock_folder(to->locks + 1, to->options->save_system, error);
 }
 
-/* In the folder of frames, which is there. */
+/* Opens the probes in the folder of frames, which exists. */
 static int open_probes(struct outputs *to, const struct flow *flow, const uint64_t *n_rows,
                        struct cloth_error *error)
 {
@@ -85,7 +85,7 @@ static int open_forces(struct outputs *to, const struct model *model, const stru
                : output_forces_forget(folder, error);
 }
 
-/* What stays of an earlier run, of all its phases: frames, rows. */
+/* Frames and rows of an earlier run that stay, over all its phases. */
 struct stays {
     uint64_t frames, rows;
 };
@@ -114,7 +114,7 @@ int outputs_lock(struct outputs *to, const struct simulate_options *options,
     return lock_folder(to->locks, options->output, error);
 }
 
-/* Of an earlier run that this one does not go on with nothing may be left. */
+/* Deletes an earlier run's checkpoints unless this run resumes it. */
 static int open_keeper(struct outputs *to, const struct phases *phases, bool resumed,
                        struct cloth_error *error)
 {
@@ -130,7 +130,7 @@ static int open_keeper(struct outputs *to, const struct phases *phases, bool res
                         : error->code;
 }
 
-/* Looks, before anything is written, whether the live view can listen. */
+/* Checks, before the first write, that the live view can listen. */
 static int open_live(struct outputs *to, struct cloth_error *error)
 {
     const char *address = to->options->live;
@@ -186,7 +186,7 @@ int outputs_open(struct outputs *to, const struct simulate_options *options,
     return code || !phases->now ? code : outputs_go_on(to, phases, apart, error);
 }
 
-/* Where obstacles are, and what is sewn, in the frames of all phases so far, and of this one. */
+/* Writes places of obstacles and seams for the frames of all phases up to this one. */
 static int write_scene(const struct outputs *of, const struct phases *phases,
                        const struct contact_apart *apart, struct cloth_error *error)
 {
@@ -264,7 +264,7 @@ void outputs_free(struct outputs *of)
     output_lock_free(of->locks + 1);
 }
 
-/* ---- What the run gives ---- */
+/* ---- Calls from the run ---- */
 
 int outputs_system(void *context, const struct solve_system *system, struct cloth_error *error)
 {
@@ -272,7 +272,7 @@ int outputs_system(void *context, const struct solve_system *system, struct clot
     return output_system(of->options->save_system, system, error);
 }
 
-/* What is looked at as written is looked at once it is. */
+/* Checks the state, then, if frames are written, their floats. */
 static int check_frame(const struct outputs *of, uint64_t frame, double time,
                        const double *position, struct cloth_error *error)
 {
@@ -302,7 +302,7 @@ int outputs_frame(void *context, uint64_t frame, double time, const double *posi
     return code;
 }
 
-/* Those before a frame that failed may be on their way to the disk still. */
+/* Waits first: frames before one that failed may still be on their way to the disk. */
 uint64_t outputs_written(void *context)
 {
     const struct outputs *of = context;

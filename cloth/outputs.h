@@ -10,8 +10,8 @@
 #include "cloth/phases.h"
 #include "cloth/simulate.h"
 
-/* What a run writes and looks at: frames, probes, forces, systems, intersections, the drape test.
- * Rank 0 alone has any of it; it begins as zero. All functions are local. */
+/* The outputs and checks of a run: frames, probes, forces, systems, intersections, the drape test.
+ * They are on rank 0 alone, and begin as zero. All functions are local. */
 struct untangle_result;
 struct outputs {
     const struct simulate_options *options;
@@ -37,9 +37,9 @@ struct outputs {
 /* The folder of frames is this run's, before anything else of it is looked at. */
 int outputs_lock(struct outputs *to, const struct simulate_options *options,
                  struct cloth_error *error);
-/* Finds what can be wrong with it and opens what the options and the model ask for. resumed: of a
- * run that goes on with the files of an earlier one; else NULL. What is opened is freed by
- * outputs_close and outputs_free, also after an error. Returns a cloth_code. */
+/* Checks and opens the outputs that options and model ask for. resumed: of a run that goes on with
+ * an earlier run's files; else NULL. outputs_close and outputs_free follow, also after an error.
+ * Returns a cloth_code. */
 int outputs_open(struct outputs *to, const struct simulate_options *options,
                  const struct phases *phases, const struct flow *flow,
                  const struct contact_apart *apart, const struct flow_resumed *resumed,
@@ -47,8 +47,7 @@ int outputs_open(struct outputs *to, const struct simulate_options *options,
 /* The same when a further phase begins: the frames go on. Returns a cloth_code. */
 int outputs_go_on(struct outputs *to, const struct phases *phases,
                   const struct contact_apart *apart, struct cloth_error *error);
-/* Intersections in all frames so far: of all phases; the first function ends that of the one that
- * is over. */
+/* Intersections in all frames so far, of all phases; outputs_count ends the count of a phase. */
 void outputs_count(struct outputs *of);
 struct intersections_found outputs_found(const struct outputs *of);
 /* The files are whole. */

@@ -1,5 +1,5 @@
-/* The folder has what the strain of any frame follows from, not the strain: it is written once, and
- * a run need not know what its pictures will show. */
+/* The folder has the shapes and moduli that give the strain of any frame, not the strain: they are
+ * written once, and a run need not know what its pictures will show. */
 #include "cloth/outputs_colours.h"
 
 #include "cloth/element/strain.h"

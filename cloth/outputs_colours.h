@@ -4,11 +4,10 @@
 #include "cloth/flow/run.h"
 #include "cloth/output/colours.h"
 
-/* What viewers colour the cloth of a run by, on rank 0. A disk that takes no more of it does not
- * end the run: a warning says so, once, and *colours becomes NULL; of NULL nothing is written.
- * Local functions. */
+/* Data that viewers colour the cloth of a run by, on rank 0. A full disk does not end the run: one
+ * warning says so, *colours becomes NULL, and nothing more is written. Local functions. */
 
-/* What it takes on the disk of a run of this model alone, bytes, about. While there are meshes. */
+/* Its size on the disk for a run of this model alone, bytes, about. While there are meshes. */
 double outputs_colours_bytes(const struct model *model, uint64_t n_vertices);
 
 /* Shapes at rest of the cloths of a model, from a frame on. While there are meshes. Errors:

@@ -13,15 +13,15 @@ struct outputs_hdf5 {
     struct output_state *state; /* the frame whose parts are coming; NULL: none */
     unsigned parts, have;       /* bits: that a frame has; that came */
     struct element_strains strains;
-    struct cloth_error unwritten; /* then, at the end: what could not be written */
+    struct cloth_error unwritten; /* then, at the end: frames that were not written */
 };
 
-/* What a model's frames need on the disk, bytes a frame; 0: it has none. */
+/* Size of a model's frames on the disk, bytes a frame; 0: it has none. */
 double outputs_hdf5_bytes(const struct model *model);
 
-/* Begins them in a folder of frames, while there are meshes, or removes those of an earlier run. Of
- * an earlier run that this one goes on with those of the first *n_frames stay; NULL: it is new.
- * Returns a cloth_code. */
+/* Begins them in a folder of frames, while there are meshes, or removes those of an earlier run.
+ * n_frames: the first *n_frames of the earlier run stay, which this one resumes; NULL: the run is
+ * new. Returns a cloth_code. */
 int outputs_hdf5_open(struct outputs_hdf5 *to, const struct model *model, const char *folder,
                       const uint64_t *n_frames, struct cloth_error *error);
 /* Goes on with another model of the same cloths, while there are meshes. Returns a cloth_code. */
@@ -30,7 +30,7 @@ int outputs_hdf5_go_on(struct outputs_hdf5 *to, const struct model *model,
 /* The files are whole; fills `unwritten`. */
 void outputs_hdf5_close(struct outputs_hdf5 *of);
 
-/* The parts, of n vertices. Nothing happens for frames that are not taken. */
+/* The parts of a frame, by vertex. Frames that are not taken are ignored. */
 void outputs_hdf5_position(struct outputs_hdf5 *of, uint64_t frame, double time,
                            const double *position);
 void outputs_hdf5_beside(struct outputs_hdf5 *of, const struct flow_beside *beside);

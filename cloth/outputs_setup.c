@@ -1,11 +1,11 @@
-/* It lends what models have, and owns what is put together of several phases. */
+/* The setup borrows from the models, and owns what it combines from several phases. */
 #include "cloth/outputs_setup.h"
 
 #include "cloth/base/memory.h"
 
 #include <stdlib.h>
 
-/* Of each body whether it changes its shape in any phase; to be freed. NULL: no memory. */
+/* Marks the bodies that change their shape in any phase; to be freed. NULL: no memory. */
 static bool *find_posed(const struct phases *phases, struct cloth_error *error)
 {
     const uint32_t n = phases->models->bodies.n;
@@ -30,7 +30,7 @@ static int find_cloths(struct outputs_setup *made, const struct model *model,
     return CLOTH_OK;
 }
 
-/* What phases before this one add to it. */
+/* Adds motions and seams of earlier phases. */
 static int add_phases(struct outputs_setup *made, const struct phases *phases,
                       struct cloth_error *error)
 {

@@ -5,8 +5,8 @@
 #include "cloth/phases.h"
 #include "cloth/simulate.h"
 
-/* What viewers of the frames of a run need beside them: cloths, bodies, and where obstacles are and
- * what is sewn in all phases so far, and in this one. On rank 0. Local. */
+/* Data that viewers need beside the frames of a run: cloths, bodies, the places of obstacles and
+ * the seams of all phases up to this one. On rank 0. Local. */
 struct outputs_setup {
     struct output_setup setup; /* its pointers are into the model, or to: */
     const struct mesh **meshes;

@@ -1,5 +1,5 @@
-/* What one phase leaves to the next is the state at its end alone, so that a phase is a run of its
- * own in everything else. */
+/* A phase leaves only its final state to the next one; in everything else it is a run of its own.
+ */
 #include "cloth/phases.h"
 
 #include "cloth/base/memory.h"
@@ -127,9 +127,9 @@ int phases_joined(const struct phases *phases, uint32_t n, uint32_t **joined,
     return CLOTH_OK;
 }
 
-/* ---- What is reported of all ---- */
+/* ---- The report of all phases ---- */
 
-/* Not a number where neither is one. */
+/* The sum of the numbers; NaN if neither is one. */
 static double sum(double a, double b)
 {
     return isnan(a) ? b : isnan(b) ? a : a + b;

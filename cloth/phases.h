@@ -8,7 +8,7 @@
  * one before ended. A scene without phases is one of them. All begins as zero; on other ranks than
  * 0 the models stay so. */
 
-/* What became of a phase. */
+/* The results of a phase. */
 struct phase_done {
     const char *name; /* the model's; NULL on other ranks */
     uint64_t steps;
@@ -29,17 +29,16 @@ struct phases {
     struct flow_report total; /* of those that are over, as phases_add says */
 };
 
-/* On rank 0: reads the models of all phases and compares what phases cannot change. Errors:
+/* On rank 0: reads the models of all phases and compares the parts that phases share. Errors:
  * CLOTH_E_INPUT with the place of the phase; CLOTH_E_MEMORY. Local. */
 int phases_read(struct phases *phases, const char *path, size_t n_sets,
                 const struct scene_set *sets, struct cloth_error *error);
 
-/* How many there are, which one is next, and what those before it came to, from rank 0 to all.
- * Error: CLOTH_E_MEMORY. Collective; it is not agreed on
- * errors yet. */
+/* Sends the number of phases, the next one, and the results of earlier ones from rank 0 to all.
+ * Error: CLOTH_E_MEMORY. Collective; it is not agreed on errors yet. */
 int phases_share(struct phases *phases, struct cloth_error *error);
 
-/* That of the phase that is next; NULL if the scene could not be read. */
+/* The model of the next phase; NULL if the scene could not be read. */
 static inline struct model *phases_model(const struct phases *phases)
 {
     return phases->models ? phases->models + phases->now : NULL;
@@ -48,7 +47,7 @@ static inline bool phases_is_last(const struct phases *phases)
 {
     return phases->now + 1 == phases->n;
 }
-/* What the phase that is next goes on from. The same on all ranks. */
+/* The state that the next phase starts from. The same on all ranks. */
 struct flow_before phases_before(const struct phases *phases);
 
 /* Goes on to the next phase, whose cloths start where the last one ended, on rank 0. Error:
@@ -60,12 +59,12 @@ int phases_next(struct phases *phases, struct cloth_error *error);
 size_t phases_numbers(const struct phases *phases);
 int phases_start(struct phases *phases, const double *numbers, struct cloth_error *error);
 
-/* Adds the report of the phase that is over. Counts and seconds are added up, of peaks the largest
- * counts; energies, the hash, and what else is of the end, are those of this phase. Local. */
+/* Adds the report of the phase that is over. Counts and seconds are added; peaks are the largest;
+ * energies, the hash and other final values are those of this phase. Local. */
 void phases_add(struct phases *phases, const struct flow_report *report);
 
-/* The obstacles of the phase that runs, with motions over the time of all phases so far, for those
- * who see the frames of all. */
+/* The obstacles of the phase that runs, with motions over all phases so far, for viewers of all
+ * frames. */
 struct phases_motions {
     struct contact_shape *obstacles;
     struct phys_key *keys;
@@ -75,8 +74,8 @@ int phases_motions(const struct phases *phases, struct phases_motions *motions,
                    struct cloth_error *error);
 void phases_motions_free(struct phases_motions *motions);
 
-/* What seams pulled in any phase so far, of n vertices, as contact_apart.joined has it; NULL: none
- * did. *joined: to be freed in any case. Error: CLOTH_E_MEMORY. On rank 0. Local. */
+/* Joins n vertices that seams pulled in any phase so far, as contact_apart.joined has it; NULL:
+ * none did. *joined: to be freed in any case. Error: CLOTH_E_MEMORY. On rank 0. Local. */
 int phases_joined(const struct phases *phases, uint32_t n, uint32_t **joined,
                   struct cloth_error *error);
 

@@ -1,4 +1,4 @@
-/* One comparison of each thing, which says by itself what is wrong. */
+/* Each comparison names its own fault. */
 #include "cloth/phases_check.h"
 
 #include "cloth/contact/body.h"

@@ -1,6 +1,6 @@
 /* Keys of each obstacle in ascending order of time, a phase after the other: where it is at the
- * begin, its keys, and where it is at the end. Where it jumps between two phases, the key after the
- * jump is the next number after their common time, so that the frame there shows the end. */
+ * begin, its keys, and where it is at the end. If it jumps between two phases, the key after the
+ * jump is at the next number after their common time, so that the frame there shows the end. */
 #include "cloth/base/memory.h"
 #include "cloth/phases.h"
 
@@ -10,7 +10,7 @@
 
 static const struct phys_key still = {.rotate = {1, 0, 0, 0}};
 
-/* Of the phase with the model at a time of its own, as cloth/physics/motion.h has it. */
+/* The key of a shape at a time of the model's phase, as cloth/physics/motion.h has it. */
 static struct phys_key key_at(const struct model *model, const struct contact_shape *shape,
                               double time)
 {
@@ -80,7 +80,7 @@ static void add_phase(struct course *to, const struct model *model, uint32_t obs
         add(to, key_at(model, shape, seconds), begin + seconds);
 }
 
-/* As the runs count the times of their frames. */
+/* Begins are added up as the runs count the times of their frames. */
 static void add_phases(struct course *to, const struct phases *phases, uint32_t obstacle)
 {
     double begin = 0;

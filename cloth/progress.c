@@ -1,6 +1,5 @@
-/* The line is written at most ten times a second on a terminal, and once in ten seconds elsewhere,
- * whatever the steps take. On a terminal it never reaches the last column: a line that wraps cannot
- * be rewritten. */
+/* The line is written at most ten times a second on a terminal, once in ten seconds elsewhere. On a
+ * terminal it never reaches the last column: a line that wraps cannot be rewritten. */
 #include "cloth/progress.h"
 
 #include <inttypes.h>

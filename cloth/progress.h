@@ -15,9 +15,9 @@ struct progress {
 };
 
 void progress_begin(struct progress *progress, const char *phase);
-/* After step number `step`, from 1, of `steps`: frames written so far, what the step's solves took,
- * how many contacts there are, and how many pulled seams are open, by how much at most (m). What is
- * 0 is not mentioned, but for iterations. */
+/* Counts after step number `step`, from 1, of `steps`: frames so far, iterations of the step's
+ * solves, contacts, open pulled seams and the largest gap (m). A line leaves out zeros, except
+ * iterations. */
 struct progress_counts {
     uint64_t frames, cg_iterations, contacts, seams_open;
     double seam_distance;
@@ -27,7 +27,7 @@ void progress_step(struct progress *progress, uint64_t step, uint64_t steps,
 void progress_end(struct progress *progress);
 
 /* The line itself, without its end: at most `columns` characters, and size - 1 bytes, of UTF-8.
- * What matters most stands first: phase, step, time left (s). Returns its length in bytes. */
+ * Phase, step and time left (s) stand first. Returns its length in bytes. */
 size_t progress_line(char *line, size_t size, size_t columns, const char *phase, uint64_t step,
                      uint64_t steps, double left, const struct progress_counts *counts);
 

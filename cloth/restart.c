@@ -1,6 +1,5 @@
 /* The second part of a checkpoint is struct saved, a struct saved_phase of each phase, then
- * numbers: where the phase started, 6 a vertex; what the drape test saw, 3 a vertex of its cloth.
- */
+ * numbers: the start of the phase, 6 a vertex; the drape test's frame, 3 a vertex of its cloth. */
 #include "cloth/restart.h"
 
 #include "cloth/base/file.h"
@@ -124,7 +123,7 @@ static int differs(const char *path, const char *now, const char *was, struct cl
                       here ? "in this one" : "in that one", only);
 }
 
-/* By the first line that is another one. */
+/* Fails with the first line that differs. */
 static int compare_settings(const char *path, const char *now, struct output_part part,
                             struct cloth_error *error)
 {

@@ -5,11 +5,11 @@
 #include "cloth/outputs.h"
 #include "cloth/untangle/untangle.h"
 
-/* What a checkpoint of a run has beside the state of its flow: its settings, by which it is found
- * to be one of the same scene; in which phase it is, what the phases before it came to, and what
- * its outputs saw. All on rank 0; local functions. */
+/* Parts of a checkpoint beside the state of the flow: settings, which tell if the scene is the
+ * same; the phase; results of earlier phases; memory of the outputs. All on rank 0; local
+ * functions. */
 
-/* What a run goes on from. */
+/* The point that a run resumes from. */
 struct restart {
     struct output_checkpoint checkpoint; /* bytes NULL: it starts anew */
     struct flow_resumed at;              /* when the flow is prepared */
@@ -30,7 +30,7 @@ int restart_read(struct restart *restart, const char *folder, struct phases *pha
  */
 int restart_resume(struct restart *restart, struct flow *flow, struct cloth_error *error);
 
-/* What outputs saw before; when they are open. Error: CLOTH_E_INPUT. */
+/* Gives open outputs their memory back. Error: CLOTH_E_INPUT. */
 int restart_outputs(const struct restart *restart, struct outputs *to, struct cloth_error *error);
 
 /* Hands a checkpoint to the keeper of the outputs; has the form of flow_output.save, context = the

@@ -1,5 +1,5 @@
-/* An estimate: steps that are halved add rows of probes, blocks that move to other ranks add to
- * what viewers colour by, and a run that comes to rest ends early. */
+/* An estimate: halved steps add rows of probes, blocks that move to other ranks add to the colours,
+ * and a run that comes to rest ends early. */
 #include "cloth/room.h"
 
 #include "cloth/flow/run.h"
@@ -10,10 +10,10 @@
 #include <math.h>
 #include <stdio.h>
 
-/* What a run of several phases takes at most. */
+/* The most that a run of several phases takes. */
 struct extent {
     double frames, steps, seconds;
-    double colours; /* bytes: what a viewer colours by, which each phase writes */
+    double colours; /* bytes: colours, which each phase writes */
     bool may_rest;  /* and so take less */
 };
 
@@ -30,7 +30,7 @@ static struct extent extent_of(uint32_t n, const struct model *phases, const str
     return all;
 }
 
-/* What frames, their colours and rows of probes take on the disk, bytes. */
+/* Size of frames, their colours and rows of probes on the disk, bytes. */
 static double output_bytes(const struct extent *all, const struct model *model,
                            const struct flow *flow)
 {

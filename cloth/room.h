@@ -8,9 +8,9 @@
 struct flow;
 struct model;
 
-/* Before anything is written: whether the frames and probes of a run in n phases fit into the file
- * system of the folder, and whether so many are meant, of which warnings on standard error doubt.
- * On rank 0. Error: CLOTH_E_INPUT, they do not fit. Local. */
+/* Checks, before the first write, that frames and probes of a run in n phases fit into the folder's
+ * file system. Warns on standard error if there are unusually many. On rank 0. Error:
+ * CLOTH_E_INPUT, they do not fit. Local. */
 int room_check(uint32_t n, const struct model *phases, const struct flow *flow, const char *folder,
                struct cloth_error *error);
 

@@ -1,5 +1,5 @@
-/* The folder beside the program comes first, so that an installed tree may be moved; the one that
- * configure was told comes second. */
+/* The folder beside the program comes first, so that an installed tree may be moved; configure's
+ * folder comes second. */
 #include "cloth/shipped.h"
 
 #include "cloth/base/file.h"

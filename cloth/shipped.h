@@ -9,7 +9,7 @@
  * of this name is here, or no shipped scene has it. */
 char *shipped_scene(const char *name);
 
-/* A line for each: its file name and what its first line says. Returns how many there are. */
+/* Prints a line for each: its file name and its first line's text. Returns how many there are. */
 size_t shipped_print(FILE *file);
 
 #endif

@@ -1,5 +1,5 @@
-/* Between duite_start and duite_stop MPI belongs to the runtime; before and after, the ranks agree
- * here about errors, so that all of them leave by the same way and one of them prints. */
+/* MPI belongs to the runtime between duite_start and duite_stop. Before and after, the ranks agree
+ * here about errors, so that all take the same way out and one of them prints. */
 #include "cloth/simulate_run.h"
 
 #include "cloth/keeper.h"
@@ -56,7 +56,7 @@ static int runtime_fails(struct cloth_error *error, int code)
     return code ? cloth_fail(error, ours, "%s", duite_message()) : CLOTH_OK;
 }
 
-/* Nobody is there to agree with on who prints. */
+/* Each rank prints for itself: the ranks can no longer agree. */
 static int say_lost(const struct run *run, const struct cloth_error *error)
 {
     fprintf(stderr, "duite-cloth: rank %d ends: %s\n", run->rank, error->text);
@@ -124,7 +124,7 @@ static void say_stopped(const struct run *run)
     fputc('\n', stderr);
 }
 
-/* On rank 0, of the phase that ran. */
+/* Warns, on rank 0, of motion left at the end of the phase that ran. */
 static void warn_of_motion(const struct run *run)
 {
     const struct model_rest *rest = &run->model->rest;

@@ -6,7 +6,7 @@
 #include <duite.h>
 #include <stdbool.h>
 
-/* What duite-cloth does once its command line is read: the whole run of one scene. */
+/* The whole run of one scene, after the command line of duite-cloth. */
 
 struct simulate_options {
     const char *scene; /* path of the scene file, or the name of a shipped one */
@@ -44,9 +44,9 @@ enum {
  * becomes an error of the write, instead of ending the process. Local. */
 void simulate_block_signals(void);
 
-/* From now on SIGUSR1 and SIGTERM, on any rank, end a run: it finishes its step, writes a
- * checkpoint if they are asked for and a frame of the state after the step, and stops. While files
- * are read and the scene is built the process ends at once. Returns 0, or -1: no thread. Local. */
+/* Lets SIGUSR1 and SIGTERM, on any rank, end a run from now on. It finishes its step, writes a
+ * checkpoint if asked for and a frame of the state after the step, and stops. While files are read
+ * and the scene is built the process ends at once. Returns 0, or -1: no thread. Local. */
 int simulate_catch_signals(void);
 
 /* Reads, runs, reports. It finds every input error before it writes anything, and one rank prints

@@ -1,5 +1,5 @@
-/* Before a phase runs: what can be wrong is found before anything of it is written. Rank 0 alone
- * has models; the others are told what they need. */
+/* The begin of a phase: errors are found before it writes anything. Only rank 0 has models; it
+ * tells the others the parts they need. */
 #include "cloth/simulate_run.h"
 
 #include "cloth/base/memory.h"
@@ -16,7 +16,7 @@
 #include <sys/stat.h>
 #include <xxhash.h>
 
-/* Found before the run, so that what is written after it, or as it runs, is not lost. */
+/* Checks a file before the run, so that later output is not lost. */
 static int check_file(const struct run *run, const char *option, const char *path,
                       struct cloth_error *error)
 {
@@ -31,7 +31,7 @@ static int check_file(const struct run *run, const char *option, const char *pat
     return code ? cloth_fail(error, code, "%s %s: %s", option, path, inner.text) : code;
 }
 
-/* Rank 0 alone reads the scene, so it is compared what the ranks were asked to read. Collective;
+/* Checks that all ranks were asked to read the same, as only rank 0 reads the scene. Collective;
  * the same on all ranks. */
 static int check_same(const struct run *run, struct cloth_error *error)
 {
@@ -82,8 +82,7 @@ static int cut(struct run *run, struct cloth_error *error)
     return code ? code : find_elastic(run, error);
 }
 
-/* Rank 0 reads the scene of each phase and cuts the one that is next, unless it is asked to stop.
- */
+/* Rank 0 reads the scene of each phase and cuts the next one, unless it is asked to stop. */
 static int read_and_cut(struct run *run, struct cloth_error *error)
 {
     const struct simulate_options *options = run->options;
@@ -106,7 +105,7 @@ static int read_and_cut(struct run *run, struct cloth_error *error)
     return code;
 }
 
-/* Whether any rank was asked to stop before the run begins. Collective; the same on all ranks. */
+/* True if any rank was asked to stop before the run begins. Collective; the same on all ranks. */
 static bool check_stop(struct run *run)
 {
     int wanted = simulate_stops(NULL);
@@ -117,7 +116,7 @@ static bool check_stop(struct run *run)
     return wanted;
 }
 
-/* Whether the model of the phase before warned of the same. */
+/* True if the model of the phase before gave the same warning. */
 static bool is_known(const struct run *run, const char *warning)
 {
     bool known = false;
@@ -126,7 +125,7 @@ static bool is_known(const struct run *run, const char *warning)
     return known;
 }
 
-/* On rank 0, of the phase that begins. */
+/* Prints, on rank 0, the warnings of the phase that begins. */
 static void warn(const struct run *run)
 {
     const char *warning, *name = run->phases.done[run->phases.now].name;
@@ -140,7 +139,7 @@ static void warn(const struct run *run)
         fprintf(stderr, "duite-cloth: warning: %s%s\n", phase, warning);
 }
 
-/* Only rank 0 knows whether the scene asks for frames. Collective. */
+/* Only rank 0 knows if the scene asks for frames. Collective. */
 static void agree_on_frames(struct run *run)
 {
     const struct simulate_options *options = run->options;

@@ -8,7 +8,7 @@
 #include "cloth/simulate.h"
 #include "cloth/untangle/untangle.h"
 
-/* What simulate.c shares with simulate_begin.c: a run, from reading to reporting. */
+/* Shared by simulate.c and simulate_begin.c: a run, from reading to reporting. */
 
 struct run {
     const struct simulate_options *options;
@@ -19,9 +19,9 @@ struct run {
     struct phases phases;
     struct model *model;        /* of the phase that runs */
     struct flow *flow;          /* as that */
-    struct contact_apart apart; /* rank 0: of the model, with what the flow attached */
+    struct contact_apart apart; /* rank 0: of the model, with the flow's attachments */
     struct outputs outputs;     /* rank 0 */
-    struct restart restart;     /* rank 0: what the run goes on from */
+    struct restart restart;     /* rank 0: the point the run resumes from */
     bool wants_frames;          /* the same on all ranks */
     struct progress progress;
     struct flow_report report;
@@ -36,16 +36,16 @@ struct run {
  */
 int simulate_agree(const struct run *run, const struct cloth_error *error);
 
-/* Whether SIGUSR1 or SIGTERM came; has the form of flow_progress.stop. */
+/* Nonzero if SIGUSR1 or SIGTERM came; has the form of flow_progress.stop. */
 int simulate_stops(void *context);
-/* From now on something may be written, and a stop waits for the step. */
+/* Makes a stop wait for the step from now on, as something may be written. */
 void simulate_stop_by_step(void);
-/* That it was asked to stop before. */
+/* Says that the run was asked to stop before it began. */
 void simulate_say_unbegun(void);
 
-/* All that can be wrong with the input, as far as it is known before the first phase has run; then
- * the folder of frames. Or it is asked to stop: stopped_before. Collective; returns a cloth_code,
- * the same on all ranks. */
+/* Finds every input error that is known before the first phase has run; then takes the folder of
+ * frames. If it is asked to stop: stopped_before. Collective; returns a cloth_code, the same on all
+ * ranks. */
 int simulate_prepare(struct run *run);
 
 /* Goes on to the next phase, unless that is asked to stop: stopped_before. Collective; as above. */

@@ -1,4 +1,4 @@
-/* Names of welded vertices are one point to what untangles, and move together. */
+/* Welded vertices are one point for untangling, and move together. */
 #include "cloth/start.h"
 
 #include "cloth/base/memory.h"
@@ -98,7 +98,7 @@ static void say_result(const struct untangle_result *result)
             terminal ? "\r\033[K" : "", result->rounds, result->moved, result->largest);
 }
 
-/* ---- What becomes of it ---- */
+/* ---- Results ---- */
 
 /* New starts for all cloths that have a vertex that moved. */
 static int put_starts(struct model *model, struct tangle *of, struct cloth_error *error)

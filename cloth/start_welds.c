@@ -16,7 +16,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-static const double REACH = 10 * CONTACT_MARGIN; /* m: what is farther all the way does not touch */
+static const double REACH = 10 * CONTACT_MARGIN; /* m: pairs farther apart all the way do not touch
+                                                  */
 enum { MOST_PARTS = 16 };                        /* of a way, certified one after the other */
 enum { ALL_FEATURES = 63 };
 
@@ -30,7 +31,7 @@ struct motion {
     struct contact_skin skin;
     struct contact_side side;
     void *table, *boxes;
-    /* Of the obstacle that is looked at; NULL: cloth. */
+    /* The obstacle that is looked at; NULL: cloth. */
     const struct contact_side *body;
     uint32_t obstacle;
     bool fails;
@@ -208,7 +209,7 @@ static int make_room(struct motion *motion, struct cloth_error *error)
     return error->code ? error->code : intersections_same(model, &motion->joined, error);
 }
 
-/* Returns whether anything moves. */
+/* Returns true if anything moves. */
 static bool take_places(struct motion *motion, const double (*before)[3], const double *after)
 {
     bool any = false;

@@ -3,12 +3,12 @@
 
 #include "cloth/flow/run.h"
 
-/* Of a run whose contact is certified and whose seams are welded: that partners, on their straight
- * way from where they come from to where they are welded, go through nothing. Without it a weld
- * could pull seams through what lies between them, though the state before and the one after are
- * both free. Runs that untangle their start move cloth anyway and are not asked. apart: what does
- * not meet. Errors: CLOTH_E_INPUT with the first vertices where it is not proven; CLOTH_E_MEMORY.
- * Local, on rank 0 when the flow is prepared. */
+/* Proves, for a run with certified contact and welded seams, that partners go through nothing on
+ * the straight way to their weld. Otherwise a weld could pull seams through cloth or obstacles
+ * between them, though the states before and after are both free. Runs that untangle their start
+ * move cloth anyway and are not checked. apart: pairs that do not meet. Errors: CLOTH_E_INPUT with
+ * the first vertices where it is not proven; CLOTH_E_MEMORY. Local, on rank 0 when the flow is
+ * prepared. */
 int start_welds(const struct model *model, const struct flow *flow,
                 const struct contact_apart *apart, const char *scene, struct cloth_error *error);
 

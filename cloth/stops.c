@@ -1,6 +1,6 @@
-/* No thread is ever interrupted by a signal that asks for a stop: all have them blocked, and one
- * waits for them. So METIS, which puts a handler of its own in the place of ours while it works,
- * cannot take one for an error, and a program that waits for a file hears it, too. */
+/* Signals that ask for a stop interrupt no thread: all block them, and one waits for them. So
+ * METIS, which installs its own handler while it works, cannot take one for an error, and a program
+ * that waits for a file gets it, too. */
 #include "cloth/output/output.h"
 #include "cloth/simulate_run.h"
 

@@ -139,7 +139,7 @@ static void add_halved(struct output_report *json, const struct flow_report *rep
     output_report_integer(json, "steps_halved_contact", by[FLOW_CAUSE_CONTACT]);
 }
 
-/* Of certified contact. */
+/* Adds the figures of certified contact. */
 static void add_contact(struct output_report *json, const struct summary *summary)
 {
     const struct flow_report *report = summary->report;
@@ -211,7 +211,7 @@ static void add_drape(struct output_report *json, const struct drape_found *foun
     output_report_number(json, "drape_shadow_m2", found ? found->shadow : NAN);
 }
 
-/* Those that began and did not fail. */
+/* Adds the phases that began and did not fail. */
 static void add_phases(struct output_report *json, const struct phases *phases)
 {
     if (!phases->named)

@@ -10,7 +10,7 @@
 
 #include <stdio.h>
 
-/* What a finished run says about itself. Local; called on rank 0. */
+/* The summary of a finished run. Local; called on rank 0. */
 struct summary {
     const struct simulate_options *options;
     const struct model *model;        /* of the last phase, as what follows, */

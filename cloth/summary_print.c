@@ -35,7 +35,7 @@ static void print_correction(FILE *file, const struct flow_report *r)
             r->correction_rounds, r->correction_excess);
 }
 
-/* With every cause that there was. */
+/* Names each cause that occurred. */
 static void print_halved(FILE *file, const struct summary *summary)
 {
     static const char *const causes[FLOW_CAUSES] = {

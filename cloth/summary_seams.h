@@ -6,10 +6,8 @@
 
 #include <stdio.h>
 
-/* What the summary and the report of a run say of seams: which way round each is sewn, and how far
- * those that are pulled are open. Nothing where there are no seams; the report has null then.
- * Local.
- */
+/* Seams in a run's summary and report: the direction of each, and how far pulled seams are open.
+ * The summary leaves them out if there are none; the report has null then. Local. */
 void summary_seams_print(FILE *file, const struct model *model, const struct flow_report *report);
 void summary_seams_add(struct output_report *json, const struct model *model,
                        const struct flow_report *report);

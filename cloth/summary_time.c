@@ -98,7 +98,7 @@ static void say_kind(char *text, size_t size, const struct flow_report *report)
                  kinds[most].name);
 }
 
-/* What was made again, where it is a quarter of all or more. */
+/* Names repeated steps or solves if they are a quarter of all or more. */
 static void say_repeats(char *text, size_t size, const struct flow_report *report)
 {
     const double given_up = (double)(report->steps_halved + report->steps_retaken);

@@ -4,13 +4,13 @@
 #include "cloth/output/output.h"
 #include "cloth/summary.h"
 
-/* Where the time of a run went, and what limited it. Local; called on rank 0. */
+/* The time of a run by kinds of task, and its limit. Local; called on rank 0. */
 
 /* A line for each kind of task that ran: the seconds in its tasks. */
 void summary_time_print(FILE *file, const struct flow_report *report);
 
-/* What limited the run, in one sentence with its reasons, by the rule of docs/tracing.md; nothing
- * for a run that made no step. */
+/* Prints what limited the run, in one sentence with reasons, by the rule of docs/tracing.md. A run
+ * without steps prints nothing. */
 void summary_limit_print(FILE *file, const struct summary *summary);
 
 /* limited_by: the name of the limit, as duite-trace has it; null for a run that made no step. */

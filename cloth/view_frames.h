@@ -3,7 +3,7 @@
 
 #include "cloth/view/show.h"
 
-/* Which frames of a folder a film has, and how. Local. */
+/* The frames of a folder in a film, and their form. Local. */
 struct view_frames {
     const char *path;
     int width, height;

@@ -1,5 +1,5 @@
-/* A run's newest frame is a folder of one frame to those who draw. When another scene comes, the
- * show of the one before ends first: it points into what the follower is about to free. */
+/* Drawing sees a run's newest frame as a folder of one frame. When another scene comes, the old
+ * show ends first: it points into memory that the follower is about to free. */
 #include "config.h"
 
 #include "cloth/view_live.h"

@@ -12,7 +12,8 @@ struct view_live_wish {
     bool waits;       /* they were given */
 };
 
-/* Reads an option. false: it is none of these. *wrong: what it takes, if it is not that. */
+/* Reads an option. false: it is none of these. *wrong: the values it takes, if it has another one.
+ */
 enum { VIEW_LIVE_CONNECT = 'l', VIEW_LIVE_WAIT = 'a' };
 bool view_live_parse(int key, const char *text, struct view_live_wish *wish, const char **wrong);
 
@@ -22,7 +23,7 @@ int view_live_picture(const struct view_wish *wish, const char *png, double seco
                       struct cloth_error *error);
 
 /* Shows them in a window, which opens when the first one comes, until it is closed: the end of a
- * run and the start of the next are waited for. Says on standard error what it waits for before.
+ * run and the start of the next are waited for. Standard error says first what it waits for.
  * Errors: as above, but for the first; CLOTH_E_LIBRARY, this build opens no windows. */
 int view_live_window(const struct view_wish *wish, struct cloth_error *error);
 

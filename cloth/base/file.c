@@ -1,4 +1,4 @@
-/* What is no plain file is told by ESPIPE, which no call that opens a file has. */
+/* ESPIPE stands for a file that is not plain: no call that opens a file sets it. */
 #include "cloth/base/file.h"
 
 #include <errno.h>
@@ -7,7 +7,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* Without waiting: for a pipe's other end the system would. */
+/* O_NONBLOCK: the system would wait for the other end of a pipe. */
 FILE *cloth_file_open(const char *path)
 {
     struct stat status;

@@ -4,7 +4,7 @@
 #include <stdio.h>
 
 /* Opens a plain file to read it. NULL with errno set: it cannot be opened, or is a folder, or a
- * pipe, a device or the like, which could keep whoever reads it waiting for ever. Local. */
+ * pipe, a device or the like, which could keep a reader waiting for ever. Local. */
 FILE *cloth_file_open(const char *path);
 
 /* Why, by errno, as the end of a sentence. Local. */

@@ -23,7 +23,7 @@ static enum cloth_simd widest(void)
     return CLOTH_SIMD_NONE;
 }
 
-/* What DUITE_SIMD asks for; N_NAMES: nothing that is known. */
+/* The value that DUITE_SIMD asks for; N_NAMES: an unknown one. */
 static int wanted(void)
 {
     const char *name = getenv("DUITE_SIMD");

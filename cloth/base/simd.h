@@ -3,18 +3,18 @@
 
 #include "cloth/base/error.h"
 
-/* Which instructions of the processor the kernels use (cloth/physics/vec.h). The widest that it has
- * are chosen once, before main; results are the same with any. The variable DUITE_SIMD of the
- * environment forces one of those that the processor has: none, avx2 or avx512. */
+/* Vector instructions that the kernels use (cloth/physics/vec.h). The widest that it has are chosen
+ * once, before main; results are the same with any. The variable DUITE_SIMD of the environment
+ * forces one of those that the processor has: none, avx2 or avx512. */
 enum cloth_simd { CLOTH_SIMD_NONE, CLOTH_SIMD_AVX2, CLOTH_SIMD_AVX512 };
 
 /* Never changes after the start. */
 extern enum cloth_simd cloth_simd;
 
-/* "avx512", "avx2", or "none" (beyond what every processor has that the build was made for). */
+/* "avx512", "avx2", or "none" (beyond those of every processor that the build was made for). */
 const char *cloth_simd_name(void);
 
-/* CLOTH_E_INPUT if DUITE_SIMD asks for what is not known or not there. Local. */
+/* CLOTH_E_INPUT if DUITE_SIMD asks for an unknown or missing one. Local. */
 int cloth_simd_check(struct cloth_error *error);
 
 #endif

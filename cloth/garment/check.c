@@ -1,5 +1,4 @@
-/* What is wrong is found in the order in which one would look: ends, lengths, sizes, crossings,
- * stitches. */
+/* Checks run in the order in which one would look: ends, lengths, sizes, crossings, stitches. */
 #include "cloth/base/memory.h"
 #include "cloth/garment/detail/curve.h"
 #include "cloth/garment/detail/meet.h"
@@ -174,7 +173,7 @@ int garment_pattern_check(const struct garment_pattern *pattern, struct cloth_er
     return code;
 }
 
-/* By its corners. */
+/* Size of a panel, by its corners. */
 static double size_of(const struct garment_panel *panel)
 {
     double size = 0;

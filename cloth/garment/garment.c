@@ -1,5 +1,5 @@
 /* The spacing that gives a wanted number of vertices is found by meshing: each try corrects it by
- * what the last one had too much. */
+ * the last one's excess. */
 #include "cloth/garment/garment.h"
 #include "cloth/base/memory.h"
 #include "cloth/garment/detail/flat.h"
@@ -16,8 +16,8 @@ static const double CLOSE = 0.005; /* of the wanted number: near enough, */
 static const double FAIR = 0.008;  /* and after the early tries */
 static const uint32_t MOST = (uint32_t)1 << 27;
 
-/* A lattice of triangles with edges h has 1.155 / h^2 vertices an area; of a boundary of length P
- * about 0.365 P / h more are there, since those of the boundary are nearer to each other. */
+/* A lattice of triangles with edges h has 1.155 / h^2 vertices an area. A boundary of length P adds
+ * about 0.365 P / h, since its vertices are nearer to each other. */
 static const double INSIDE = 1.155, AROUND = 0.365;
 
 static double first_spacing(const struct meshing *meshing, double n)
@@ -32,7 +32,7 @@ static double first_spacing(const struct meshing *meshing, double n)
     return (b + sqrt(b * b + 4 * a * n)) / (2 * n);
 }
 
-/* Where to search on: between what gave too few and too many, else by the last error. */
+/* The next spacing to try: between those that gave too few and too many, else by the last error. */
 static double next_spacing(double spacing, double n, double wanted, double fine, double coarse)
 {
     const double next = spacing * sqrt(n / wanted);

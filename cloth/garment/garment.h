@@ -6,9 +6,8 @@
 /* The mesh of all panels of a pattern, not sewn yet: no vertex belongs to two panels. Every bit is
  * the same with any compiler and processor: all is made of + - * / and sqrt. */
 
-/* One panel of it. Its vertices of the boundary come first, in the order of the pattern's edges:
- * those of edge e are first + start[e] .. first + start[e + 1], where the last one of the last edge
- * is `first` again. */
+/* One panel of it. Its boundary vertices come first, in the order of the pattern's edges: edge e
+ * has first + start[e] .. first + start[e + 1]; the last edge ends with `first` again. */
 struct garment_piece {
     uint32_t first, n_vertices;
     uint32_t first_triangle, n_triangles;

@@ -112,7 +112,7 @@ static int sew(struct slice *slice, const struct seams *seams, struct cloth_erro
     return code;
 }
 
-/* ---- Loops and what they surround ---- */
+/* ---- Loops and the bodies inside ---- */
 
 struct loop {
     double girth;
@@ -157,7 +157,7 @@ static void measure(const struct slice *body, const struct loop *loop, double (*
     }
 }
 
-/* The girth of what a loop surrounds; 0: nothing, or it cannot be told. */
+/* The girth of the body inside a loop; 0: none, or it cannot be told. */
 static int body_girth(double *girth, const struct slice *body, const struct loop *loop,
                       struct cloth_error *error)
 {

@@ -6,7 +6,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Whether a garment is wide enough for a body, before it is sewn. */
+/* Checks that a garment is wide enough for a body, before it is sewn. */
 
 struct girth_mesh {
     uint32_t n_triangles;
@@ -25,17 +25,17 @@ struct girth_worst {
     double y, garment, body; /* m: the height, and both girths there */
 };
 
-/* Compares the girths of a garment, whose panels stand around a body, with the body's, and says
- * where the garment is narrowest by its ratio to the body. Panels are cut by horizontal planes;
- * cuts that meet at seams are joined, and those that close are girths. The body's is the length
- * around the convex hull of what the garment's loop surrounds, the least within 4 cm of the height,
+/* Compares the girths of a garment, whose panels stand around a body, with the body's, and finds
+ * the height where their ratio is least. Panels are cut by horizontal planes; cuts that meet at
+ * seams are joined, and those that close are girths. The body's girth is the length around the
+ * convex hull of its parts inside the garment's loop. The least within 4 cm of the height counts,
  * since panels are not yet where they will be worn. Heights where a part of the body is only partly
  * surrounded are left out. Error: CLOTH_E_MEMORY. Local. */
 int girth_compare(struct girth_worst *worst, const struct girth_mesh *garment, uint32_t n_seams,
                   const struct girth_seam *seam, const struct girth_mesh *body,
                   struct cloth_error *error);
 
-/* Whether a comparison says that the garment is too small: by more than 2 %, which cloth gives. */
+/* True if the garment is too small by more than 2 %, which cloth gives. */
 static inline bool girth_too_small(const struct girth_worst *worst)
 {
     return worst->found && worst->body > 1.02 * worst->garment;

@@ -1,4 +1,4 @@
-/* What a pattern owns. */
+/* Frees patterns. */
 #include "cloth/garment/pattern.h"
 
 #include <stdlib.h>

@@ -37,7 +37,8 @@ struct garment_side { /* an edge of a panel */
 
 struct garment_stitch {
     struct garment_side side[2];
-    bool right_wrong; /* both edges begin at the same end of the seam, whatever is nearer */
+    bool right_wrong; /* both edges begin at the same end of the seam, even if the other end is
+                       * nearer */
 };
 
 /* A zeroed one is empty. All arrays belong to it. */
@@ -49,16 +50,15 @@ struct garment_pattern {
 
 void garment_pattern_free(struct garment_pattern *pattern);
 
-/* Whether it can be sewn from flat cloth: the edges of each panel are a closed loop in their order,
- * through every corner once; none has no length, or is an arc of too small a radius; none meets
- * another, or itself; no panel is smaller than 1 mm or larger than 100 m; no edge is stitched
- * twice, or to itself. The messages of CLOTH_E_INPUT name panel and edge, counted from 0. Other
- * error: CLOTH_E_MEMORY. Numbers of corners, panels and edges must be in range, and coordinates
- * finite. Local. */
+/* Checks that it can be sewn from flat cloth. The edges of each panel, in order, are a closed loop
+ * through every corner once. Each has a length, and no arc has too small a radius. No edge meets
+ * another or itself, and none is stitched twice or to itself. Panels are 1 mm to 100 m large. The
+ * messages of CLOTH_E_INPUT name panel and edge, counted from 0. Other error: CLOTH_E_MEMORY.
+ * Numbers of corners, panels and edges must be in range, and coordinates finite. Local. */
 int garment_pattern_check(const struct garment_pattern *pattern, struct cloth_error *error);
 
-/* Whether its largest panel is one that is hardly ever meant, less than 5 cm or more than 4 m; the
- * text is a sentence about it then. Local. */
+/* True if the size of its largest panel is hardly meant, less than 5 cm or more than 4 m; text then
+ * is a sentence about it. Local. */
 bool garment_pattern_unusual(const struct garment_pattern *pattern, char *text, size_t size);
 
 /* The length of an edge, m. Local. */

@@ -1,4 +1,4 @@
-/* Rounds of remeshing and measuring: what a girth lacks goes into the factor on its widths, until
+/* Rounds of remeshing and measuring: the error of a girth goes into the factor on its widths, until
  * the mesh itself has the girths. */
 #include "cloth/mannequin/mannequin.h"
 #include "cloth/base/memory.h"
@@ -33,7 +33,7 @@ static int remesh(struct making *making)
     return code ? code : surface_smooth(surface, &making->figure, making->error);
 }
 
-/* Measures, and corrects the factors. *worst: the measure that is furthest from what is asked for;
+/* Measures, and corrects the factors. *worst: the measure that is furthest from its wanted value;
  * MANNEQUIN_GIRTHS: all are close. */
 static int fit(struct making *making, uint32_t *worst)
 {
@@ -75,7 +75,7 @@ static int make(struct making *making, uint32_t *worst)
 
 /* ---- Both halves ---- */
 
-/* Heights in the half, and what lengths are multiplied by: heights, others. */
+/* Heights in the half, and the factors on lengths: heights, others. */
 struct fitting {
     double low, high, scale[2];
 };

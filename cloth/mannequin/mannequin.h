@@ -45,7 +45,7 @@ extern const struct mannequin_measure mannequin_measures[MANNEQUIN_GIRTHS];
 #define MANNEQUIN_LEAST_EDGE   0.008
 #define MANNEQUIN_MOST_EDGE    0.025
 
-/* What a figure is to be. 0: MANNEQUIN_HEIGHT, MANNEQUIN_EDGE, the measure's own girth. */
+/* The measures of a figure. 0: MANNEQUIN_HEIGHT, MANNEQUIN_EDGE, the measure's own girth. */
 struct mannequin {
     double height;                  /* m */
     double edge;                    /* m: of its triangles; thin parts have shorter ones, to half */
@@ -53,8 +53,8 @@ struct mannequin {
 };
 
 /* Makes the mesh: one closed manifold surface of the genus 0, triangles counterclockwise as seen
- * from outside. It has the height exactly, and each girth within 0.5 %. girth, unless NULL: what
- * the mesh has, m. Errors: CLOTH_E_INPUT for values out of range, and for girths that do not go
+ * from outside. It has the height exactly, and each girth within 0.5 %. girth, unless NULL: those
+ * of the mesh, m. Errors: CLOTH_E_INPUT for values out of range, and for girths that do not go
  * together; they name the measure. CLOTH_E_MEMORY. After an error the mesh is empty. */
 int mannequin_make(struct mesh *mesh, const struct mannequin *mannequin,
                    double girth[MANNEQUIN_GIRTHS], struct cloth_error *error);

@@ -1,4 +1,4 @@
-/* What can be asked of a figure, and what is refused by name. */
+/* The measures of figures, and the errors that name them. */
 #include "cloth/mannequin/measures.h"
 
 #include <string.h>

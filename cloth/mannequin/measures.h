@@ -3,7 +3,7 @@
 
 #include "cloth/mannequin/mannequin.h"
 
-/* Puts in what is 0, and checks ranges and what goes together. Errors: CLOTH_E_INPUT, with the
+/* Replaces 0 by defaults; checks ranges and ratios of measures. Errors: CLOTH_E_INPUT, with the
  * measure's name. */
 int mannequin_complete(struct mannequin *mannequin, struct cloth_error *error);
 

@@ -24,7 +24,7 @@ static void rest(double angle[MANNEQUIN_ANGLES])
         angle[i] = mannequin_limits[i < MANNEQUIN_SIDE ? i : i - MANNEQUIN_SIDE + 2].rest;
 }
 
-/* From 0 at u <= 0 to 1 at u >= 1. */
+/* Rises from 0 at u <= 0 to 1 at u >= 1. */
 static double smooth(double u)
 {
     u = u < 0 ? 0 : u > 1 ? 1 : u;
@@ -109,7 +109,7 @@ static void hang(struct motion *on, double turn[3][3], const double joint[3], st
                            on->turn[i][2] * local[2] + on->shift[i];
 }
 
-/* First about z, outwards, then about x, forwards: what hangs down swings to +z. */
+/* First about z, outwards, then about x, forwards: hanging limbs swing to +z. */
 static void swing(double aside, double forwards, bool right, double turn[3][3])
 {
     static const double across[3] = {1, 0, 0}, along[3] = {0, 0, 1};

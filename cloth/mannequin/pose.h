@@ -28,7 +28,7 @@ static inline uint32_t mannequin_on_side(uint32_t angle, uint32_t side)
     return angle + side * (MANNEQUIN_SIDE - MANNEQUIN_ARM_ASIDE);
 }
 
-/* What each angle may be; at rest the figure stands as it was made. */
+/* The range of each angle; at rest the figure stands as it was made. */
 struct mannequin_limit {
     const char *name; /* "elbow_bend" */
     double least, most, rest;
@@ -40,8 +40,8 @@ struct mannequin_pose {
     double angle[MANNEQUIN_ANGLES];
 };
 
-/* Fills the angles at a time, by n > 0 poses of ascending times: between two of them they go by
- * 3 u^2 - 2 u^3, so that nothing jerks; before the first and after the last one they rest. */
+/* Fills the angles at a time from n > 0 poses of ascending times. Between two poses they go by 3
+ * u^2 - 2 u^3, so that nothing jerks; before the first and after the last one they rest. */
 void mannequin_pose_at(const struct mannequin_pose *pose, uint32_t n, double time,
                        double angle[MANNEQUIN_ANGLES]);
 

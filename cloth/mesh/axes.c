@@ -1,5 +1,5 @@
-/* Principal axes of a mesh: those of its second moments. What the moments have beside the diagonal
- * below 1e-15 of their size is rounding. */
+/* Principal axes of a mesh: those of its second moments. Off-diagonal moments below 1e-15 of the
+ * trace are rounding. */
 #include "cloth/base/axes.h"
 #include "cloth/mesh/mesh.h"
 

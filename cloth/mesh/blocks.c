@@ -19,8 +19,8 @@ struct cutter {
     uint32_t *nodes; /* part after part: those of part p are nodes[start[p] ..] */
 };
 
-/* Where there are many, two or four workers are to have as many each: one block more than that is
- * what all others wait for. */
+/* Many blocks are a multiple of four, so that two or four workers have as many each: the others
+ * would wait for one block more. */
 static uint32_t count_blocks(uint32_t n, uint32_t grain)
 {
     const uint32_t blocks = n / grain + (n % grain ? 1 : 0);
@@ -51,8 +51,8 @@ static int number_nodes(struct cutter *cutter, uint32_t n_vertices, const unsign
     return CLOTH_OK;
 }
 
-/* Brings the nodes of each part together, by rising number; start[] says where. Whether all parts
- * have one. */
+/* Brings the nodes of each part together, by rising number, from start[] on. True if every part has
+ * a node. */
 static bool group(struct cutter *cutter)
 {
     struct mesh_blocks *blocks = cutter->blocks;

@@ -26,9 +26,9 @@ struct mesh_blocks {
     uint64_t hash;    /* XXH64 of n_blocks, start and vertex as little-endian 32-bit numbers */
 };
 
-/* Which vertices springs or elements join, pair by pair: `each` calls visit(to, a, b) for every
- * pair, the same pairs in the same order each time (any order, repeats allowed). So nobody has to
- * store them. */
+/* Pairs of vertices that springs or elements join: `each` calls visit(to, a, b) for every pair, the
+ * same pairs in the same order each time (any order, repeats allowed). So they need not be stored.
+ */
 struct mesh_pairs {
     const void *context;
     void (*each)(const void *context, void (*visit)(void *to, uint32_t a, uint32_t b), void *to);
@@ -36,7 +36,7 @@ struct mesh_pairs {
 
 /* Cuts the used vertices into blocks. used: one byte a vertex; grain >= 1. The number of blocks is
  * ceil(used vertices / grain). From MESH_MANY_BLOCKS on it is the nearest multiple of four (the
- * larger of two), as long as there are so many vertices. No block is empty: where METIS leaves some
+ * larger of two), as long as there are so many vertices. No block is empty: if METIS leaves some
  * empty, the largest others are split along their inner order. Without any pairs, blocks are runs
  * of vertices by number. Errors: CLOTH_E_INPUT (grain 0, a pair with a vertex that is not used),
  * CLOTH_E_LIBRARY (METIS failed), CLOTH_E_MEMORY. Local, the same result everywhere. Not by two

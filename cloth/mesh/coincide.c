@@ -1,12 +1,12 @@
 /* Vertices that stand for others are farther than the distance from each other, so a cell has a
- * bounded number of them, and whatever the mesh the work is linear. */
+ * bounded number of them, and the work is linear for any mesh. */
 #include "cloth/base/memory.h"
 #include "cloth/mesh/mesh.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-enum { CELL = 4 }; /* distances a side: what is near is in one cell, mostly */
+enum { CELL = 4 }; /* distances a side: near vertices are mostly in one cell */
 
 /* Chains of the vertices that stand for others, by a hash of their cells. */
 struct cells {
@@ -68,7 +68,7 @@ static void put(struct cells *cells, uint32_t v)
     cells->head[chain] = v + 1;
 }
 
-/* Whether cells can be told apart where a vertex is. */
+/* True if cells can be told apart where the vertex is. */
 static bool is_within(const struct cells *cells, uint32_t v)
 {
     const double most = 4503599627370496.0; /* 2^52: a whole number and the next one differ */

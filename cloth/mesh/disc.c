@@ -27,7 +27,7 @@ static void turn(double a, double *cosine, double *sine)
     *sine = a * s;
 }
 
-/* Where the j-th vertex of a ring is on a circle of radius 1; 2 j <= 3 ring: in the first quarter,
+/* Place of the j-th vertex of a ring on a circle of radius 1; 2 j <= 3 ring: in the first quarter,
  * from x to z. */
 static void place_quarter(uint32_t ring, uint32_t j, double *x, double *z)
 {

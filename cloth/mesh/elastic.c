@@ -8,9 +8,8 @@
 
 static const struct mesh_elastic NONE = {NAN, NAN, NAN, NAN};
 
-/* Of cells of a (m, along the warp) by b (m, along the weft), springs of N/m.
- *
- * With both diagonals the lattice is orthotropic: nothing couples shear to stretch. */
+/* Moduli of cells of a (m, along the warp) by b (m, along the weft), springs in N/m. A lattice with
+ * both diagonals is orthotropic: shear and stretch are not coupled. */
 static struct mesh_elastic of_both(double warp, double weft, double diagonal, double a, double b)
 {
     const double square = a * a + b * b;
@@ -23,8 +22,8 @@ static struct mesh_elastic of_both(double warp, double weft, double diagonal, do
                                  .poisson = c11 > 0 && c22 > 0 ? c12 / c22 : NAN};
 }
 
-/* With one, a sheet that is pulled shears until its diagonals have no strain, and one that is
- * sheared is pushed along its threads. */
+/* With one diagonal, pulling shears a sheet until its diagonals have no strain, and shearing pushes
+ * it along its threads. */
 static struct mesh_elastic of_one(double warp, double weft, double diagonal, double a, double b)
 {
     const int stiff = warp > 0 && weft > 0 && diagonal > 0;

@@ -17,7 +17,7 @@ static uint32_t start_of(uint32_t j, uint32_t nx)
     return j * nx - j / 2;
 }
 
-/* Of the i-th of n points on a line, `step` metres from each other and centred on 0: x(n - 1 - i) =
+/* Place of the i-th of n points on a line, `step` metres apart and centred on 0: x(n - 1 - i) =
  * -x(i) to the last bit. */
 static double centred(double step, uint32_t i, uint32_t n)
 {

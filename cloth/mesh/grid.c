@@ -1,6 +1,6 @@
 /* A grid's numbering is a promise that hashes rest on: row-major, u fastest, two triangles a cell
- * in cell order, so that only its positions need to be stored. Which diagonal cuts a cell follows
- * from the cell's place. */
+ * in cell order, so that only its positions need to be stored. The place of a cell decides which
+ * diagonal cuts it. */
 #include "cloth/base/memory.h"
 #include "cloth/mesh/detail/equilateral.h"
 #include "cloth/mesh/detail/finish.h"
@@ -37,8 +37,8 @@ static int make(struct mesh *mesh, uint32_t nx, uint32_t ny, struct cloth_error 
     return mesh->position ? CLOTH_OK : CLOTH_E_MEMORY;
 }
 
-/* Of the i-th of n points that divide a length centred on 0: x(n - 1 - i) = -x(i) to the last bit.
- */
+/* Place of the i-th of n points that divide a length centred on 0: x(n - 1 - i) = -x(i) to the last
+ * bit. */
 static double centred(double length, uint32_t i, uint32_t n)
 {
     return length * (2.0 * i - (n - 1.0)) / (2.0 * (n - 1.0));
@@ -83,8 +83,7 @@ static uint32_t depth(uint32_t i, uint32_t n)
     return i < n - 1 - i ? i : n - 1 - i;
 }
 
-/* Whether the cell lies in the second half of a row of n. A cell in the middle does by turns, as
- * its place across the row says. */
+/* True if the cell lies in the second half of a row of n. Middle cells do in every other row. */
 static bool second_half(uint32_t i, uint32_t n, uint32_t across)
 {
     const uint32_t mirrored = n - 1 - i;

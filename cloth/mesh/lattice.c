@@ -1,5 +1,5 @@
-/* Springs come sorted by (a, b); of those that join the same vertices, stretch comes before bend. A
- * grid's do so by themselves. */
+/* Springs come sorted by (a, b); between the same vertices stretch comes before bend. A grid's do
+ * so by themselves. */
 #include "cloth/mesh/lattice.h"
 
 #include "cloth/base/memory.h"
@@ -78,7 +78,7 @@ static int add(struct builder *builder, uint32_t a, uint32_t b, enum mesh_spring
     return builder->take(builder, &spring);
 }
 
-/* Those of what joins two vertices. */
+/* The moduli of a spring between two vertices. */
 static const struct mesh_moduli *moduli_of(const struct builder *builder, uint32_t a, uint32_t b)
 {
     const struct mesh_regions *regions = builder->moduli->regions;
@@ -88,7 +88,7 @@ static const struct mesh_moduli *moduli_of(const struct builder *builder, uint32
 
 enum { NO_AREA = -1 };
 
-/* Of a spring of a grid. */
+/* Modulus of a grid's spring. */
 static double modulus_along(const struct mesh_moduli *moduli, enum mesh_spring_kind kind, int weft)
 {
     if (kind == MESH_STRETCH)
@@ -143,7 +143,7 @@ static int add_grid(struct builder *builder)
     return code;
 }
 
-/* From along u and v to along warp and weft. */
+/* Turns components along u and v into those along warp and weft. */
 static void turn(const struct mesh_regions *regions, const struct mesh_edge *edge, double *u,
                  double *v)
 {
@@ -171,7 +171,7 @@ static double weft_share(const struct builder *builder, const struct mesh_edge *
     return u + v > 0 ? v / (u + v) : 0;
 }
 
-/* The modulus along an edge: the mean of what its triangles say. */
+/* The modulus along an edge: the mean over its triangles. */
 static int modulus_of(const struct builder *builder, const struct mesh_edge *edge, double *modulus)
 {
     const struct mesh_moduli *moduli = moduli_of(builder, edge->a, edge->b);
@@ -191,7 +191,7 @@ static int modulus_of(const struct builder *builder, const struct mesh_edge *edg
     return CLOTH_OK;
 }
 
-/* Of triangles. */
+/* Adds the spring of a triangle's side. */
 static int add_side(struct builder *builder, const struct mesh_edge *edge)
 {
     double modulus;
@@ -210,7 +210,7 @@ static int add_lone_edge(struct builder *builder, const struct mesh_edge *edge)
                length);
 }
 
-/* Between the vertices opposite. */
+/* Adds the spring between the opposite vertices. */
 static int add_bend(struct builder *builder, const struct mesh_edge *edge, double modulus)
 {
     const uint32_t corner[4] = {edge->a, edge->b, edge->opposite[0], edge->opposite[1]};

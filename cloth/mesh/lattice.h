@@ -5,9 +5,9 @@
 
 /* The springs of a mesh, after the design's rules (docs/design.md). The modulus is in N/m.
  *
- * Grids: k is the modulus. Stretch springs lie along rows and columns, shear springs along both
- * diagonals of each cell or along the one that cuts it, bend springs over two vertices along rows
- * and columns. Stretch and bend springs along the border have half of k.
+ * Grids: k is the modulus. Stretch springs lie along rows and columns. Shear springs lie along both
+ * diagonals of each cell, or along the one that cuts it. Bend springs skip a vertex along rows and
+ * columns. Stretch and bend springs along the border have half of k.
  *
  * Other meshes: every edge of a triangle is a stretch spring with k = modulus * area of its
  * triangles / length^2. A bend spring joins the vertices opposite an inner edge, with k = modulus *
@@ -37,8 +37,8 @@ struct mesh_moduli {
 };
 
 /* A spring whose ends are in a region has the moduli of that region. The moduli of the mesh say
- * which diagonals there are. Of meshes that are no grid, the warp is turned for springs whose ends
- * are in a grain. */
+ * which diagonals there are. Except in grids, a grain turns the warp of springs whose ends are in
+ * it. */
 struct mesh_regions {
     const uint64_t *mask;             /* as mesh_region wants it; NULL: none */
     const struct mesh_moduli *moduli; /* by region */

@@ -1,5 +1,5 @@
-/* What every mesh can do, wherever it came from. Sums run in triangle order, so that they are the
- * same everywhere. */
+/* Functions of every mesh, whatever its source. Sums run in triangle order, so they are the same
+ * everywhere. */
 #include "cloth/mesh/mesh.h"
 
 #include "cloth/mesh/detail/vector.h"

@@ -7,18 +7,18 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Which diagonal cuts the cells of a grid in two triangles. SAME: that from vertex (i, j) to (i +
- * 1, j + 1) in all. ALTERNATE: this one and the other by turns, as on a chessboard. MIRRORED: this
- * one in the first quarter of the sheet; the other quarters are mirror images of the first at the
- * lines through the middle. Where the number of cells along an axis is odd, those in the middle
- * have no image: along this row or column of cells the diagonals go by turns. EQUILATERAL: not
- * cells but equilateral triangles, see mesh_grid. */
+/* The diagonals that cut the cells of a grid in two triangles. SAME: that from vertex (i, j) to (i
+ * + 1, j + 1) in all. ALTERNATE: this one and the other by turns, as on a chessboard. MIRRORED:
+ * this one in the first quarter of the sheet; the other quarters are mirror images of the first at
+ * the lines through the middle. If the number of cells along an axis is odd, those in the middle
+ * have no image: in this row or column of cells the diagonals go by turns. EQUILATERAL: not cells
+ * but equilateral triangles, see mesh_grid. */
 enum mesh_cells { MESH_SAME, MESH_ALTERNATE, MESH_MIRRORED, MESH_EQUILATERAL };
 
 /* A mesh as it was given: vertices, polygons in the input's order and numbering, their triangles,
- * and edges that were given without triangles (chains). All arrays belong to the mesh. Of a grid
- * only the positions are stored: mesh_face, mesh_corners and mesh_uv give faces, triangles and uv
- * of any mesh. Local functions. */
+ * and edges that were given without triangles (chains). All arrays belong to the mesh. A grid
+ * stores only positions: mesh_face, mesh_corners and mesh_uv give faces, triangles and uv of any
+ * mesh. Local functions. */
 struct mesh {
     uint32_t n_vertices;
     double *position; /* n_vertices x 3, metres */
@@ -49,7 +49,7 @@ struct mesh {
         uint32_t group, first, n; /* faces first .. first + n - 1 are in this group */
     } * group_run;                /* by their first faces */
     uint32_t n_materials, n_material_runs, n_libraries;
-    char **material; /* likewise, of what faces are drawn with: a face has one or none */
+    char **material; /* likewise, the materials of faces: a face has one or none */
     struct mesh_group_run *material_run;
     char **library; /* n_libraries: paths of the files that have the materials */
 
@@ -60,64 +60,60 @@ struct mesh {
 
 /* Makes a flat sheet in the x-z plane (y = 0, +y its normal's side), centred on the origin. width
  * is along x (u), height along z (v), both in metres. nx, ny >= 2 vertices are row-major, u
- * fastest: vertex j * nx + i. A cell has two triangles, cut along the diagonal that `cells` says;
- * faces are these triangles, wound so that normals are +y. uv is in metres from vertex 0.
+ * fastest: vertex j * nx + i. The faces are triangles, two a cell, cut along the diagonal that
+ * `cells` says and wound so that normals are +y. uv is in metres from vertex 0.
  *
- * MESH_EQUILATERAL: rows have nx and nx - 1 vertices by turns, so that all triangles are
- * equilateral and both sides are ragged. Row j begins at vertex j * nx - j / 2. The height follows
- * from the width; `height` is not read. For all other functions such a mesh is no grid: its arrays
- * are stored.
+ * MESH_EQUILATERAL: rows have nx and nx - 1 vertices by turns, so all triangles are equilateral and
+ * both sides ragged. Row j begins at vertex j * nx - j / 2. The height follows from the width;
+ * `height` is not read. Such a mesh stores its arrays: other functions do not see it as a grid.
  *
  * Errors: CLOTH_E_INPUT for sizes that are not positive and finite, fewer than 2 vertices a side,
- * more than 2^31 corners; CLOTH_E_MEMORY. After an error the mesh is empty, as it is after one of
+ * more than 2^31 corners; CLOTH_E_MEMORY. After an error the mesh is empty; likewise in
  * mesh_read_obj and mesh_inline. */
 int mesh_grid(struct mesh *mesh, double width, double height, uint32_t nx, uint32_t ny,
               enum mesh_cells cells, struct cloth_error *error);
 
-/* Makes a flat disc in the x-z plane, centred on the origin, +y its normal's side: a vertex in the
- * middle, then `rings` rings, of which the k-th has 6 k vertices and the radius radius k / rings
- * (m). Ring k begins with vertex 1 + 3 k (k - 1), on +x, and goes on towards +z. Edges are 1
- * to 1.45 times radius / rings long; no triangle has less than 3/4 of the area of another. uv is in
- * metres. Such a mesh is no grid: its arrays are
- * stored. Errors: CLOTH_E_INPUT for a radius that is not positive and finite, and for less than one
- * ring or more than MESH_DISC_RINGS; CLOTH_E_MEMORY. */
+/* Makes a flat disc in the x-z plane, centred on the origin, +y its normal's side. A vertex is in
+ * the middle, then come `rings` rings; the k-th has 6 k vertices and the radius radius k / rings
+ * (m). Ring k begins with vertex 1 + 3 k (k - 1), on +x, and goes on towards +z. Edges are 1 to
+ * 1.45 times radius / rings long; no triangle has less than 3/4 of the area of another. uv is in
+ * metres. The mesh is no grid: it stores its arrays. Errors: CLOTH_E_INPUT for a radius that is not
+ * positive and finite, and for less than one ring or more than MESH_DISC_RINGS; CLOTH_E_MEMORY. */
 enum { MESH_DISC_RINGS = 10000 };
 int mesh_disc(struct mesh *mesh, double radius, uint32_t rings, struct cloth_error *error);
 
 /* How far the rows of a sheet of equilateral triangles are from each other, m. */
 double mesh_row_distance(double width, uint32_t nx);
 
-/* Whether cell (i, j) of a grid is cut along the diagonal from (i + 1, j) to (i, j + 1). */
+/* True if cell (i, j) of a grid is cut along the diagonal from (i + 1, j) to (i, j + 1). */
 bool mesh_cell_turned(const struct mesh *mesh, uint32_t i, uint32_t j);
 
-/* Reads v (x y z, anything after them ignored), vt, f (any polygon; v, v/vt, v//vn, v/vt/vn;
- * negative indices), l (lone edges), g and o (groups), usemtl and mtllib (materials) of a Wavefront
- * OBJ file; all else is skipped. Faces are in each of the groups that the last g before them names,
- * and in that of the last o, whose name is the whole line; without a name they are in none. A name
- * that comes again goes on. Groups without faces are none. A library that is found beside the file
- * has an absolute path, another one its name. Errors name file and line. They are: no vertices,
- * numbers that are none or not finite, indices out of range, faces with fewer than 3 or repeated
- * corners. A polygon of more than 3 corners may not be without area, nor cross or touch itself.
- * More errors are: an edge shared by more than two triangles (non-manifold, at the third face), a
- * lone edge that stands twice, files beyond 2^31 vertices or corners. A line ended by `\` goes on
- * in the next and counts as the first. Codes: CLOTH_E_INPUT, CLOTH_E_IO (cannot be read),
- * CLOTH_E_MEMORY. */
+/* Reads a Wavefront OBJ file: v (x y z, the rest is ignored), vt, f (any polygon; v, v/vt, v//vn,
+ * v/vt/vn; negative indices), l (lone edges), g and o (groups), usemtl and mtllib (materials). All
+ * else is skipped. A face is in each group that the last g names, and in that of the last o, whose
+ * name is the whole line; without a name it is in none. A repeated name continues its group. Groups
+ * without faces are dropped. A library found beside the file has an absolute path, another one its
+ * name. Errors name file and line. They are: no vertices, numbers that are malformed or not finite,
+ * indices out of range, faces with fewer than 3 or repeated corners. A polygon of more than 3
+ * corners must have area, and not cross or touch itself. More errors are: an edge of more than two
+ * triangles (non-manifold, at the third face), a repeated lone edge, more than 2^31 vertices or
+ * corners. A line that ends with `\` continues in the next and counts as the first. Codes:
+ * CLOTH_E_INPUT, CLOTH_E_IO (cannot be read), CLOTH_E_MEMORY. */
 int mesh_read_obj(struct mesh *mesh, const char *path, struct cloth_error *error);
 
-/* The same of a surface that nothing is folded or cut along: polygons that cross or touch
- * themselves are fanned from their first corner, since modellers leave twisted ones in bodies. */
+/* The same for a surface that is neither folded nor cut: polygons that cross or touch themselves
+ * are fanned from their first corner, since modellers leave twisted ones in bodies. */
 int mesh_read_surface(struct mesh *mesh, const char *path, struct cloth_error *error);
 
 /* Reads the frames of a PC2 file of version 1, which have n_vertices each. *place: n_frames x
- * n_vertices x 3 (as they are in the file, also those that are not finite), to be freed; NULL after
- * an error. Codes: CLOTH_E_INPUT for another file, for frames of another size, for a file without
- * frames or one that ends early; CLOTH_E_IO, CLOTH_E_MEMORY. */
+ * n_vertices x 3 as in the file, finite or not, to be freed; NULL after an error. Codes:
+ * CLOTH_E_INPUT for another format, frames of another size, no frames, or an early end; CLOTH_E_IO,
+ * CLOTH_E_MEMORY. */
 int mesh_read_pc2(const char *path, uint32_t n_vertices, uint32_t *n_frames, double **place,
                   struct cloth_error *error);
 
-/* The same of one frame; of MESH_LAST_FRAME the last: *place is n_vertices x 3, and no other frame
- * is read. *n_frames: of the file. *place is NULL, too, where it has no such frame, which is no
- * error. */
+/* The same for one frame alone, MESH_LAST_FRAME the last: *place is n_vertices x 3. *n_frames: of
+ * the file. A missing frame is no error: *place is NULL then. */
 #define MESH_LAST_FRAME UINT32_MAX
 int mesh_read_pc2_frame(const char *path, uint32_t n_vertices, uint32_t frame, uint32_t *n_frames,
                         double **place, struct cloth_error *error);
@@ -138,10 +134,9 @@ struct mesh_transform {
 extern const struct mesh_transform mesh_identity;
 void mesh_apply(struct mesh *mesh, const struct mesh_transform *transform);
 
-/* Of each vertex that a face or a lone edge uses, the lowest one within a distance (m, > 0), of
- * those that have no such themselves; of others, and where there is none, the vertex. What is 2^52
- * distances from the origin has none. same:
- * n_vertices of the caller. Error: CLOTH_E_MEMORY. */
+/* Finds vertices that coincide. same[v] is the lowest vertex u within the distance (m, > 0) of v
+ * that has same[u] = u, else v. Vertices that no face or lone edge uses, or 2^52 distances from the
+ * origin, stand for themselves. same: n_vertices of the caller. Error: CLOTH_E_MEMORY. */
 int mesh_coincide(const struct mesh *mesh, double distance, uint32_t *same,
                   struct cloth_error *error);
 
@@ -160,14 +155,14 @@ int mesh_uv(const struct mesh *mesh, uint32_t number, double uv[2]);
 /* The number of the uv that a vertex has in triangle t, of which it is a corner; t UINT32_MAX: in
  * its first. */
 uint32_t mesh_uv_number(const struct mesh *mesh, uint32_t t, uint32_t vertex);
-/* Where it lies there, m: a shape at rest from uv may have several places of a vertex. */
+/* Its place there, m: a shape at rest from uv may have several places of a vertex. */
 const double *mesh_place(const struct mesh *mesh, uint32_t t, uint32_t vertex);
 double mesh_triangle_area(const struct mesh *mesh, uint32_t t);
 
 /* The group of that name; UINT32_MAX: there is none. */
 uint32_t mesh_group_of(const struct mesh *mesh, const char *name);
-/* Adds a group of that name, which the mesh has not yet: n faces from `first` on. Of a mesh that is
- * no grid. Error: CLOTH_E_MEMORY. */
+/* Adds a group with a new name: n faces from `first` on. The mesh is no grid. Error:
+ * CLOTH_E_MEMORY. */
 int mesh_group_add(struct mesh *mesh, const char *name, uint32_t first, uint32_t n,
                    struct cloth_error *error);
 /* Writes 1 to the bytes of all vertices, or triangles, that a group's faces have. mark: n_vertices,
@@ -179,7 +174,7 @@ void mesh_group_triangles(const struct mesh *mesh, uint32_t group, unsigned char
  * above 0: u the longer one; of equal ones the earlier coordinate's. */
 void mesh_axes(const struct mesh *mesh, double u[3], double v[3]);
 
-/* Frees what the mesh owns and clears it; a zeroed mesh is fine. */
+/* Frees the arrays of a mesh and clears it; a zeroed mesh is fine. */
 /* The box around all vertices, m; from INFINITY to -INFINITY of none. Returns its longest side, 0
  * of none. */
 double mesh_box(const struct mesh *mesh, double low[3], double high[3]);
@@ -208,7 +203,7 @@ void mesh_edges_free(struct mesh_edges *edges);
 /* How long the edge from a to b is, m: the mean of both triangles, each of which may lack
  * (UINT32_MAX). */
 double mesh_length(const struct mesh *mesh, const uint32_t triangle[2], uint32_t a, uint32_t b);
-/* Where the corners of two triangles with a common edge lie, m: its ends, then opposite. Where the
+/* Places of the corners of two triangles with a common edge, m: its ends, then opposite. If the
  * triangles have other places for the ends, the second is laid flat beside the first. */
 void mesh_hinge(const struct mesh *mesh, const uint32_t triangle[2], const uint32_t corner[4],
                 double x[12]);
@@ -223,16 +218,16 @@ void mesh_add_mass(const struct mesh *mesh, double density, double *mass);
 void mesh_add_mass_of(const struct mesh *mesh, uint32_t triangle, double density, double *mass);
 /* The corner that triangle t lacks of the cell of a grid that it is in; UINT32_MAX: no grid. */
 uint32_t mesh_fourth(const struct mesh *mesh, uint32_t t);
-/* What a triangle gives to each of n vertices, kg: by_cell, as mesh_add_cell_mass_of adds it, else
- * as mesh_add_mass_of does. */
+/* Mass of a triangle on each of n vertices, kg: by_cell as mesh_add_cell_mass_of adds it, else as
+ * mesh_add_mass_of does. */
 struct mesh_share {
     uint32_t n, vertex[4];
     double mass;
 };
 void mesh_share_of(const struct mesh *mesh, uint32_t triangle, double density, bool by_cell,
                    struct mesh_share *share);
-/* The mass of one triangle, but of a grid a quarter of it on each corner of its cell: so the masses
- * of a sheet do not depend on its diagonals. */
+/* Adds the mass of one triangle. In a grid each corner of its cell gets a quarter, so that the
+ * masses of a sheet do not depend on its diagonals. */
 void mesh_add_cell_mass_of(const struct mesh *mesh, uint32_t triangle, double density,
                            double *mass);
 
@@ -246,10 +241,9 @@ struct mesh_shape {
     const uint32_t (*corner)[3];
 };
 /* The area that the triangles shade in light along an axis of any length but 0, m^2: that of the
- * union of what is seen of them. It is cut by 2048 lines across the axis; along each of them it is
- * exact, across them it is summed by the midpoint rule. So a polygon's error is of second order in
- * the distance of two lines, a border along a line counts up to half a distance too far. Error:
- * CLOTH_E_MEMORY. */
+ * union of their projections. It is cut by 2048 lines across the axis: exact along each line,
+ * summed across them by the midpoint rule. So a polygon's error is of second order in the lines'
+ * distance; a border along a line counts up to half a distance too far. Error: CLOTH_E_MEMORY. */
 int mesh_shadow(const struct mesh_shape *shape, const double axis[3], double *area,
                 struct cloth_error *error);
 

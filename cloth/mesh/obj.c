@@ -1,5 +1,5 @@
-/* Wavefront OBJ: lists grow while the file is read once from front to back; only when it has been
- * read are indices checked against the counts, since corners may name vertices that come later. */
+/* Wavefront OBJ: the file is read once, into growing lists. Indices are checked against the counts
+ * at the end, since corners may name later vertices. */
 #include "cloth/base/memory.h"
 #include "cloth/mesh/detail/finish.h"
 #include "cloth/mesh/detail/islands.h"
@@ -34,7 +34,7 @@ static int full(struct obj *obj, const struct cloth_list *list, const char *what
     return list->n < MESH_MAX ? CLOTH_OK : FAIL(obj, "there are more than %u %s", MESH_MAX, what);
 }
 
-/* Up to `most` numbers, at least `least`; those left out are 0; what follows is not looked at. */
+/* Reads `min` to `max` numbers; missing ones are 0; the rest of the line is ignored. */
 static int read_numbers(struct obj *obj, const char *at, int min, int max, double *numbers)
 {
     for (int i = 0; i < max; i++) {

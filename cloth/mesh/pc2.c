@@ -1,5 +1,5 @@
-/* PC2 point caches: a header of 32 bytes, then x y z of each vertex in each frame, all of it
- * little-endian floats and whole numbers, whatever the machine. */
+/* PC2 point caches: a header of 32 bytes, then x y z of each vertex in each frame; floats and whole
+ * numbers are little-endian on any machine. */
 #include "cloth/base/file.h"
 #include "cloth/base/memory.h"
 #include "cloth/mesh/mesh.h"
@@ -68,7 +68,7 @@ static int read_frame(FILE *file, const char *path, uint32_t n_vertices, uint32_
     return CLOTH_OK;
 }
 
-/* How many whole frames the file has, whatever its header says. */
+/* The number of whole frames in the file, whatever its header says. */
 static uint64_t count_whole(FILE *file, uint32_t n_vertices)
 {
     struct stat status;

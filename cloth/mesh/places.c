@@ -1,5 +1,5 @@
-/* A vertex may have another uv in each of its triangles, and so a shape at rest that is made of uv
- * another place: all that depends on places at rest asks for those of a triangle. */
+/* A vertex may have another uv in each of its triangles, and then another place at rest if the rest
+ * shape comes from uv. So places at rest are asked for by triangle. */
 #include "cloth/mesh/detail/vector.h"
 #include "cloth/mesh/mesh.h"
 

@@ -1,5 +1,5 @@
-/* A shadow is cut by lines that are equally far from each other. Along each line the intervals of
- * all triangles are joined, so what lies above one another counts once. */
+/* A shadow is cut by evenly spaced lines. The intervals of all triangles along a line are joined,
+ * so overlapping triangles count once. */
 #include "cloth/base/memory.h"
 #include "cloth/mesh/detail/vector.h"
 #include "cloth/mesh/mesh.h"
@@ -79,7 +79,7 @@ static void list_triangles(struct shadow *shadow)
     }
 }
 
-/* Where a line cuts a triangle; from > to: nowhere. */
+/* The interval of a line in a triangle; from > to: none. */
 static struct interval cut_triangle(const struct shadow *shadow, uint32_t t, double line)
 {
     struct interval cut = {INFINITY, -INFINITY};

@@ -11,7 +11,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-/* Our own scene.json and index are small; what is larger is not ours. */
+/* Our own scene.json and index are small; a larger file is not ours. */
 enum { MAX_TEXT = 1 << 30 };
 
 static int open_fail(struct cloth_error *error, const char *path)
@@ -68,7 +68,7 @@ static void parse_scene(struct output_cache *cache, struct output_json *json)
     output_json_expect(json, '\0');
 }
 
-/* That cloths that do not meet others have the vertices of the mesh. */
+/* Checks that the cloths of "apart" have the vertices of the mesh. */
 static int check_apart(const struct output_cache *cache, const char *name,
                        struct cloth_error *error)
 {
@@ -223,7 +223,7 @@ static int open_poses(struct output_cache *cache, const char *folder, uint32_t n
     return code;
 }
 
-/* Those that scene.json names. */
+/* Reads the bodies that scene.json names. */
 static int read_bodies(struct output_cache *cache, const char *folder, struct cloth_error *error)
 {
     int code = 0;

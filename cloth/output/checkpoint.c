@@ -1,7 +1,6 @@
-/* What a name ends with .checkpoint is whole, or the disk lost some of it: then its hash tells. The
- * oldest one gives its room to the next one: it is renamed, and written over. So a checkpoint takes
- * no new blocks of the disk, and its bytes get there without a word in the file system's journal.
- */
+/* A file named *.checkpoint is whole, unless the disk lost some of it, which its hash shows. The
+ * next checkpoint renames the oldest file and writes over it: it takes no new blocks of the disk,
+ * and its bytes get there without an entry in the file system's journal. */
 #include "cloth/output/checkpoint.h"
 
 #include "cloth/base/file.h"
@@ -85,7 +84,7 @@ static void insert(uint64_t *kept, size_t n, uint64_t number)
         }
 }
 
-/* Finds the n largest numbers there are. half, all: what is to be removed on the way. */
+/* Finds the n largest numbers. half, all: removes half checkpoints, or all, on the way. */
 static int scan(const char *folder, bool half, bool all, size_t n, uint64_t *kept)
 {
     DIR *handle = opendir(folder);
@@ -133,7 +132,7 @@ int output_checkpoints_open(struct output_checkpoints **checkpoints, const char 
     return code;
 }
 
-/* What goes to the file: its bytes, and their hash so far. */
+/* The bytes that go to the file, and their hash so far. */
 struct writing {
     int file;
     uint64_t at;
@@ -193,8 +192,8 @@ static int write_file(const char *path, const struct output_part part[OUTPUT_CHE
     return bad ? -1 : 0;
 }
 
-/* The room of a checkpoint is the next one's, unless somebody else has a name for it. What cannot
- * be removed stays. */
+/* The next checkpoint takes the room of this one, unless the file has another name, too. A file
+ * that cannot be removed stays. */
 static void pass_on(const struct output_checkpoints *checkpoints, uint64_t number)
 {
     struct stat status;

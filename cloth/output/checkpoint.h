@@ -40,7 +40,7 @@ void output_checkpoints_close(struct output_checkpoints **checkpoints);
 /* Removes those of an earlier run from a folder of frames. Error: CLOTH_E_INPUT, CLOTH_E_IO. */
 int output_checkpoints_forget(const char *folder, struct cloth_error *error);
 
-/* One that was read: parts begin at multiples of 8 bytes. */
+/* A checkpoint that was read: parts begin at multiples of 8 bytes. */
 struct output_checkpoint {
     char *path;
     unsigned char *bytes;
@@ -51,8 +51,8 @@ struct output_checkpoint {
  * it is one of another version; CLOTH_E_MEMORY. */
 int output_checkpoint_read(struct output_checkpoint *checkpoint, const char *path,
                            struct cloth_error *error);
-/* Reads the newest that is whole of a folder of frames; note: what is wrong with newer ones.
- * Errors: CLOTH_E_INPUT, there is none; as above. */
+/* Reads the newest whole checkpoint of a folder of frames; note: the faults of newer ones. Errors:
+ * CLOTH_E_INPUT, there is none; as above. */
 int output_checkpoint_newest(struct output_checkpoint *checkpoint, const char *folder,
                              struct cloth_error *note, struct cloth_error *error);
 void output_checkpoint_free(struct output_checkpoint *checkpoint);

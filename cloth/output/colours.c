@@ -133,7 +133,7 @@ static int add(struct output_colours *colours, enum output_record_kind kind, uin
         output_write_at(colours->file, bytes, OUTPUT_RECORD_HEADER + size, colours->size) != 0) {
         code = output_fail(error, "write", colours->path);
         if (ftruncate(colours->file, (off_t)colours->size) != 0)
-            return code; /* what is left is not whole, and readers stop before it */
+            return code; /* the rest is incomplete, and readers stop before it */
     }
     if (!code)
         colours->size += OUTPUT_RECORD_HEADER + size;
@@ -153,7 +153,7 @@ int output_colours_rest(struct output_colours *colours, uint64_t frame,
     return code;
 }
 
-/* Writes n numbers unless they are those that were written last. */
+/* Writes n numbers unless they equal the last ones. */
 static int add_numbers(struct output_colours *colours, enum output_record_kind kind, uint64_t frame,
                        uint32_t n, const int32_t *number, bool known, unsigned char **last,
                        struct cloth_error *error)

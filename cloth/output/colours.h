@@ -7,10 +7,10 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* What a viewer colours cloth by, beside the positions: DIR/colours.bin, in a folder of frames
- * (output.h). It says which block has each vertex, which rank keeps each block, and what strain and
- * stress follow from. Records are written once, and again when what they say changes: each counts
- * from a frame on, until the next of its kind. Little-endian whatever the machine:
+/* Data beside the positions that viewers colour cloth by: DIR/colours.bin, in a folder of frames
+ * (output.h). It has the block of each vertex, the rank of each block, and the shapes and moduli
+ * that give strain and stress. A record is written again when its content changes: it holds from
+ * its frame until the next record of its kind. Little-endian whatever the machine:
  *   header  16 bytes "DUITE COLOURS 1\n"
  *   record  u32 kind, u32 frame, u64 bytes that follow; then of kind
  *     0     i32 a vertex: its block, -1 of one that no block has
@@ -20,9 +20,9 @@
  *           its shape at rest; of each edge that no triangle has u32 two vertices, float its length
  *           at rest (m); of each material float the moduli C11 C12 C22 C33 (N/m; C33 of the shear
  *           angle), u32 whether stress follows from them
- * A last record that is not whole was never finished. Local functions. */
+ * An incomplete last record was never finished. Local functions. */
 
-/* Shapes at rest; how strain and stress follow is said in cloth/element/strain.h. */
+/* Shapes at rest; cloth/element/strain.h computes strain and stress from them. */
 struct output_rest {
     uint32_t n_triangles, n_edges, n_materials;
     uint32_t (*corner)[4]; /* n_triangles: vertices, material */
@@ -50,10 +50,10 @@ struct output_colours;
  * output_open. */
 int output_colours_open(struct output_colours **colours, const char *folder, uint32_t n_vertices,
                         const uint64_t *n_frames, struct cloth_error *error);
-/* From this frame on. Error: CLOTH_E_IO, also of the other one. */
+/* Shapes at rest from this frame on. Error: CLOTH_E_IO, also of output_colours_places. */
 int output_colours_rest(struct output_colours *colours, uint64_t frame,
                         const struct output_rest *rest, struct cloth_error *error);
-/* Blocks of vertices (n_vertices) and ranks of blocks; written where they are not as they were. */
+/* Blocks of vertices (n_vertices) and ranks of blocks; written if they changed. */
 int output_colours_places(struct output_colours *colours, uint64_t frame, const int32_t *block,
                           uint32_t n_blocks, const int32_t *rank, struct cloth_error *error);
 /* Closes; *colours becomes NULL. */
@@ -63,8 +63,8 @@ int output_colours_close(struct output_colours **colours, struct cloth_error *er
 
 struct output_colours_read;
 
-/* Of a mesh of so many vertices. *colours: to be closed in any case. Errors: CLOTH_E_INPUT, there
- * is no such file, or it is of another mesh; CLOTH_E_MEMORY. */
+/* Reads the colours of a mesh with n_vertices. *colours: to be closed in any case. Errors:
+ * CLOTH_E_INPUT, there is no such file, or it is of another mesh; CLOTH_E_MEMORY. */
 int output_colours_load(struct output_colours_read **colours, const char *folder,
                         uint32_t n_vertices, struct cloth_error *error);
 /* In a frame: n_vertices blocks, or ranks; -1 of vertices that no block has. Error: CLOTH_E_INPUT.

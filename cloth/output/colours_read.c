@@ -1,5 +1,5 @@
-/* What is read is the whole file as it was when it was opened, cut into records that are whole and
- * as large as their kind, and the mesh, say. Nothing beyond them is looked at. */
+/* The file is read as it was when it was opened, up to its first incomplete record. A whole record
+ * of another size than its kind and the mesh give is an error. */
 #include "cloth/base/file.h"
 #include "cloth/base/memory.h"
 #include "cloth/output/files/files.h"
@@ -48,7 +48,7 @@ static struct output_rest counts_of(const unsigned char *bytes)
                                 .n_materials = output_get_u32(bytes + 8)};
 }
 
-/* Whether a record is as large as it must be. bytes: what is behind its header. */
+/* True if a record has the size it must have. bytes: after its header. */
 static bool is_sound(const struct output_colours_read *colours, const struct output_record *record,
                      const unsigned char *bytes)
 {

@@ -1,6 +1,6 @@
-/* The forces of frames lie in a PC2 cache of their own, so that what reads cloth.pc2 reads it as
- * before. As there the count is rewritten last, when the floats that it counts are on the disk; it
- * never counts a frame that cloth.pc2 does not. */
+/* Forces of frames have a PC2 cache of their own, so that cloth.pc2 keeps its format. The count is
+ * rewritten last, as there, when its floats are on the disk; it never counts a frame that cloth.pc2
+ * does not. */
 #include "cloth/base/file.h"
 #include "cloth/output/files/cut.h"
 #include "cloth/output/files/files.h"
@@ -31,7 +31,7 @@ static uint64_t frame_at(uint32_t n_points, uint64_t frame)
 
 /* ---- Writing ---- */
 
-/* Whether a file that is there is a cache of an earlier run. */
+/* True if an existing file is a cache of an earlier run. */
 static bool is_ours(const char *path)
 {
     unsigned char header[OUTPUT_PC2_HEADER];

@@ -1,9 +1,9 @@
-/* At any moment the folder holds whole frames. PC2's count says how many; it is rewritten only
- * after the floats and the line of the index that it counts are on the disk: by the settler, which
- * alone has `settled`. Bytes beyond the counted frames mean nothing; what fails is taken away
- * again. When a folder is opened, the cache of an earlier run is removed first and the new one is
- * made last. So cache and mesh always belong together. First of all scene.json is made: where there
- * is none, a cloth.obj is not ours. */
+/* At any moment the folder holds whole frames. PC2's count says how many. The settler, the only
+ * owner of `settled`, rewrites it once the floats and the index lines that it counts are on the
+ * disk. Bytes beyond the counted frames mean nothing; a frame that fails is removed. When a folder
+ * is opened, the cache of an earlier run is removed first and the new one is made last. So cache
+ * and mesh always belong together. scene.json is made first: a cloth.obj without one is not ours.
+ */
 #include "cloth/output/files/bodies.h"
 #include "cloth/output/files/cut.h"
 #include "cloth/output/files/files.h"
@@ -98,7 +98,7 @@ static uint32_t count_bodies(const struct output_setup *setup)
     return setup->bodies ? setup->bodies->n : 0;
 }
 
-/* ---- What may be replaced ---- */
+/* ---- Files that may be replaced ---- */
 
 /* A mesh of the user's must not be taken for one of an earlier run. */
 static int check_mesh(const struct output_frames *frames, const char *path,
@@ -113,7 +113,7 @@ static int check_mesh(const struct output_frames *frames, const char *path,
                       path);
 }
 
-/* A file of the folder, and what is written beside it first. */
+/* Checks a file of the folder, and its temporary file. */
 static int check_file(const struct output_frames *frames, const char *name, bool is_mesh,
                       const struct output_setup *setup, const struct output_input *inputs,
                       struct cloth_error *error)
@@ -202,8 +202,8 @@ static int open_part(const struct output_frames *frames, enum part part, int *fi
     return *file >= 0 ? 0 : output_fail(error, "write", frames->path[part]);
 }
 
-/* With the files of an earlier run. The cache is cut first: it never counts a frame that the index
- * has not. */
+/* Goes on with the files of an earlier run. The cache is cut first: it never counts a frame that
+ * the index lacks. */
 static int go_on(struct output_frames *frames, const struct output_setup *setup,
                  struct cloth_error *error)
 {
@@ -268,7 +268,7 @@ static void free_frames(struct output_frames *frames)
 
 /* ---- Bringing frames to the disk ---- */
 
-/* To the first n frames. A shorter file needs no room. */
+/* Cuts cache and index to the first n frames. A shorter file needs no room. */
 static void cut(const struct output_frames *frames, uint32_t n)
 {
     const uint64_t whole = OUTPUT_PC2_HEADER + (uint64_t)12 * frames->n_points * n;
@@ -278,7 +278,7 @@ static void cut(const struct output_frames *frames, uint32_t n)
         fdatasync(frames->index);
 }
 
-/* The order is what keeps the folder whole: floats and index, both on the disk, then the count. */
+/* This order keeps the folder whole: floats and index, both on the disk, then the count. */
 static int count_frames(const struct output_frames *frames, uint32_t n, struct cloth_error *error)
 {
     const char *cache = frames->path[PART_CACHE], *index = frames->path[PART_INDEX];

@@ -14,8 +14,8 @@ int output_garment_obj(const char *path, const struct garment *garment,
 int output_garment_seams(const char *path, const struct garment *garment,
                          const struct garment_pattern *pattern, struct cloth_error *error);
 
-/* Writes a pattern in the format of docs/garments.md, in metres: what scene_read_pattern makes of
- * it has the same bits. Errors as above. Local. */
+/* Writes a pattern in the format of docs/garments.md, in metres; scene_read_pattern reads back the
+ * same bits. Errors as above. Local. */
 int output_pattern(const char *path, const struct garment_pattern *pattern,
                    struct cloth_error *error);
 

@@ -7,12 +7,13 @@
 #include <stdint.h>
 
 /* Scientific frames: in a folder of frames (output.h)
- *   hdf5/frame-NNNNNN.vtkhdf   a frame each, HDF5 in the VTKHDF layout, with all that shows it: an
- *                              unstructured grid of triangles, and of edges that have none
- *   cloth.vtkhdf.series        JSON: {"file-series-version": "1.0", "files": [{"name", "time"},
- * ..]} cloth.xmf                  XDMF: the same frames, for what does not read VTKHDF A thread of
- * its own writes them, on rank 0: a frame is copied, and the caller goes on. At most
- * OUTPUT_HDF5_FLIGHT of them are in memory; then the caller waits. A frame has its name when it is
+ *   hdf5/frame-NNNNNN.vtkhdf   one frame, HDF5 in the VTKHDF layout: an unstructured grid of
+ *                              triangles, and of edges that have none
+ *   cloth.vtkhdf.series        JSON: {"file-series-version": "1.0", "files": [{"name", "time"}]}
+ *   cloth.xmf                  XDMF: the same frames, for programs that do not read VTKHDF
+ *
+ * A thread of its own writes them, on rank 0: a frame is copied, and the caller goes on. At most
+ * OUTPUT_HDF5_FLIGHT of them are in memory; then the caller waits. A frame gets its name when it is
  * whole and on the disk; then both indexes name it. Local functions, called from one thread at a
  * time. */
 struct output_hdf5;
@@ -61,32 +62,32 @@ const char *output_hdf5_lacks(uint32_t level);
 /* Bytes that a frame takes on the disk, at most about. */
 double output_hdf5_bytes(const struct output_hdf5_setup *setup);
 
-/* Begins. Frames and indexes of an earlier run are removed, or those beyond the ones that stay;
- * what of these names is not of a run is not: CLOTH_E_INPUT. Further errors: CLOTH_E_INPUT where it
- * cannot be written, lacks what is to stay, or the build has no HDF5; CLOTH_E_MEMORY. */
+/* Begins. Removes frames and indexes of an earlier run, or those beyond the ones that stay. Errors:
+ * CLOTH_E_INPUT if a file of such a name is not of a run, files cannot be written, frames to stay
+ * are missing, or the build has no HDF5; CLOTH_E_MEMORY. */
 int output_hdf5_open(struct output_hdf5 **frames, const struct output_hdf5_setup *setup,
                      struct cloth_error *error);
 
-/* Whether frame k of the run is to be written. */
+/* True if frame k of the run is to be written. */
 bool output_hdf5_takes(const struct output_hdf5 *frames, uint64_t frame);
 
 /* Room for the parts of a frame that is taken: begins it, after a wait if too many are in flight.
- * The caller fills position, and what is wanted of the fields of points. */
+ * The caller fills position and the wanted fields of points. */
 struct output_state *output_hdf5_begin(struct output_hdf5 *frames, uint64_t frame, double time);
 
 /* The frame that was begun is whole and goes to the thread. */
 void output_hdf5_end(struct output_hdf5 *frames);
 
-/* Until no frame is in flight. From any thread. */
+/* Waits until no frame is in flight. From any thread. */
 void output_hdf5_wait(struct output_hdf5 *frames);
 
-/* Writes what is in flight and closes; a frame that was begun and has not ended is left out.
- * *frames becomes NULL. CLOTH_E_IO: some frames were not written; how many, which was the first,
- * and why. */
+/* Writes the frames in flight and closes; a frame that was begun and has not ended is left out.
+ * *frames becomes NULL. CLOTH_E_IO: some frames were not written; it names their number, the first
+ * and the reason. */
 int output_hdf5_close(struct output_hdf5 **frames, struct cloth_error *error);
 
-/* Removes the frames of an earlier run from a folder whose run has none, but for those of the first
- * n_frames if it goes on with that run; NULL: it does not. Errors: of output_hdf5_open. */
+/* Removes the frames of an earlier run from a folder whose run has none. n_frames: the first
+ * *n_frames of a resumed run stay; NULL: the run is new. Errors: of output_hdf5_open. */
 int output_hdf5_forget(const char *folder, const uint64_t *n_frames, struct cloth_error *error);
 
 #endif

@@ -1,7 +1,7 @@
 /* A lock is a file that its run alone made: O_EXCL holds on network file systems, too, where locks
- * of files often fail. Only one process at a time may judge a lock to be stale and replace it: the
- * one that made the file *.take. A lock that is not empty names its host and process, and, where
- * the system says it, when that began: a later process may have the same number. */
+ * of files often fail. Only the process that made the file *.take may judge a lock to be stale and
+ * replace it. A lock that is not empty names its host and process, and, where the system says it,
+ * when that began: a later process may have the same number. */
 #include "cloth/output/files/files.h"
 
 #include <errno.h>
@@ -58,9 +58,9 @@ static void catch_ends(void)
     }
 }
 
-/* ---- Who holds a lock ---- */
+/* ---- Owner of a lock ---- */
 
-/* What the kernel says of a process, field by field: man 5 proc, of /proc/PID/stat. */
+/* Fields of /proc/PID/stat (man 5 proc). */
 struct process {
     char state;
     long threads;
@@ -119,7 +119,7 @@ static bool is_same(const struct holder *a, const struct holder *b)
     return a->process == b->process && !strcmp(a->host, b->host);
 }
 
-/* Not of an earlier process with the same number. */
+/* False for an earlier process with the same number. */
 static bool is_ours(const struct holder *holder)
 {
     const struct holder self = this_process();
@@ -129,7 +129,7 @@ static bool is_ours(const struct holder *holder)
     return holds && is_same(holder, &self);
 }
 
-/* One that ended, and that its parent did not wait for, still has its number. */
+/* A process that ended keeps its number until its parent waits for it. */
 static bool runs(const struct holder *holder)
 {
     struct process process;
@@ -254,7 +254,7 @@ static void free_lock(struct output_lock *lock)
     free(lock);
 }
 
-/* Where it is not noted a signal leaves the lock, as SIGKILL does. */
+/* A signal leaves a lock that is not noted, as SIGKILL does. */
 static void note_held(struct output_lock *lock)
 {
     for (lock->number = 0; lock->number < MAX && held[lock->number];)

@@ -17,22 +17,23 @@
  *   cloth.obj      the start, with the input's polygons, one `o` per cloth
  *   cloth.pc2      PC2 point cache: header, then one float x y z a vertex and frame
  *   frames.csv     frame,time: the true time of each frame
- *   contact.pc2    where it is asked for: the force of contact on each vertex (output_forces)
- *   colours.bin    what a viewer colours by: blocks, ranks, shapes at rest (colours.h)
+ *   contact.pc2    if asked for: the force of contact on each vertex (output_forces)
+ *   colours.bin    data to colour by: blocks, ranks, shapes at rest (colours.h)
  *   body-K.obj     the bodies among the obstacles, K from 0, without their motion
- *   body-K.pc2     of those that change their shape: a PC2 point cache of these vertices, frame by
- *                  frame as cloth.pc2 is
- *   scene.json     what a viewer needs: {"fps", "obstacles": [{KIND: {its parameters}}]}, of a
- *                  body {"obj": its file}, with "pc2": that of its shapes, if it changes them;
- * one that moves also has "about" and "keys": [{"time", "translate",
- * "rotate"}]. Of several cloths, or where the scene keeps some from meeting, "apart": {"cloths":
- * [vertices of each], "pairs": [[cloth, other], ...]} follows: numbers of cloths; those of
- * obstacles follow. Where pins
- * follow obstacles, "attached": [[obstacle, vertex, ...], ...]: vertices whose triangles do not
- * meet it. Where seams are pulled, "sewn": [[a, b], ...]: vertices whose triangles do not meet
+ *   body-K.pc2     the shapes of bodies that change them: a PC2 point cache, frame by frame
+ *   scene.json     {"fps", "obstacles": [{KIND: {its parameters}}]}
  *
- * PC2's count of frames is rewritten when their bytes are on the disk, and synced, so that a run
- * that is killed leaves whole files up to the last finished frame. */
+ * A body in scene.json is {"obj": its file}, with "pc2" if it changes its shape. An obstacle that
+ * moves has "about" and "keys": [{"time", "translate", "rotate"}]. Further keys:
+ *   "apart"        of several cloths, or where the scene keeps some from meeting: {"cloths":
+ *                  [vertices of each], "pairs": [[cloth, other], ...]}; numbers of obstacles
+ *                  follow those of cloths
+ *   "attached"     where pins follow obstacles: [[obstacle, vertex, ...], ...]: vertices whose
+ *                  triangles do not meet it
+ *   "sewn"         where seams are pulled: [[a, b], ...]: vertices whose triangles do not meet
+ *
+ * PC2's count of frames is rewritten and synced once their bytes are on the disk, so a killed run
+ * leaves whole files up to the last finished frame. */
 struct output_frames;
 
 struct output_setup {
@@ -46,14 +47,14 @@ struct output_setup {
     const struct contact_shape *obstacles;
     const struct phys_key *keys;         /* of their motions */
     const struct contact_bodies *bodies; /* that they name; NULL: none */
-    const bool *posed;                   /* of each of them, whether it changes its shape in any
-                                          * frame; NULL: none does */
-    const struct contact_apart *apart;   /* what does not meet; NULL: all meets */
+    const bool *posed;                   /* of each of them: it changes its shape in some frame;
+                                          * NULL: none does */
+    const struct contact_apart *apart;   /* pairs that do not meet; NULL: all meet */
     size_t n_inputs;
-    const char *const *inputs; /* paths of what the run reads, which is not replaced */
+    const char *const *inputs; /* paths that the run reads, which are not replaced */
     const uint64_t *n_frames; /* how many of an earlier run stay, whose files go on; NULL: none, and
                                * the files are new */
-    struct output_settler *settler; /* brings frames to the disk; NULL: who writes them does */
+    struct output_settler *settler; /* brings frames to the disk; NULL: the writer does */
 };
 
 /* Opens a folder for frames. Files of an earlier run in it are replaced. A cloth.obj or body-K.obj
@@ -63,30 +64,30 @@ struct output_setup {
 int output_open(struct output_frames **frames, const struct output_setup *setup,
                 struct cloth_error *error);
 
-/* Writes scene.json again, as of a setup with other motions, when the run goes on in another way.
- * What of the setup is in other files is not read. Errors: as of output_open. */
+/* Writes scene.json again for a setup with other motions. Parts of the setup that other files hold
+ * are not read. Errors as of output_open. */
 int output_scene(const struct output_frames *frames, const struct output_setup *setup,
                  struct cloth_error *error);
 
-/* Writes what scene.json has of a setup. Failures are the file's. */
+/* Writes the text of scene.json for a setup. Failures are the file's. */
 void output_scene_text(FILE *file, const struct output_setup *setup);
 
-/* Bytes that files in a folder may have, which need not be there yet, with those of an earlier run
- * that would be replaced; infinite where the file system does not say. Local. */
+/* Bytes free for files in a folder, which need not exist yet, plus those of the earlier run's files
+ * that would be replaced. Infinite if the file system does not say. Local. */
 double output_room(const char *folder);
 
-/* From now on the bodies are these, of the same meshes, at their time 0 when the time of frames, s,
- * is `begin`. */
+/* Takes these bodies, of the same meshes, from now on; their time 0 is the frames' time `begin`, s.
+ */
 void output_bodies_go_on(const struct output_frames *frames, const struct contact_bodies *bodies,
                          double begin);
 
 /* Appends a frame: position is (all vertices) x 3, metres. Has the form of flow_output.frame,
- * context = frames. A frame that fails leaves the ones before it whole. Where a settler brings them
- * to the disk, the failure may be that of a frame before. */
+ * context = frames. A frame that fails leaves the ones before it whole. With a settler the failure
+ * may be that of an earlier frame. */
 int output_frame(void *context, uint64_t frame, double time, const double *position,
                  struct cloth_error *error);
 
-/* How many are counted, on the disk. From any thread. */
+/* Number of frames counted, on the disk. From any thread. */
 uint64_t output_frames_settled(const struct output_frames *frames);
 
 /* Closes, when the settler is closed; *frames becomes NULL. */
@@ -129,8 +130,8 @@ struct output_lock;
 
 /* Takes the lock before anything else in the folder changes; the folder is made if missing. A lock
  * of a process of this host that runs no more is replaced; then `note` says so (CLOTH_E_IO). One
- * process may take a folder twice. From the first lock on SIGTERM, SIGINT and SIGHUP remove the
- * locks before they end the process. Errors: CLOTH_E_INPUT where another run has the folder, which
+ * process may take a folder twice. SIGTERM, SIGINT and SIGHUP remove the locks, from the first one
+ * on, before they end the process. Errors: CLOTH_E_INPUT where another run has the folder, which
  * the lock and the message name; else as of output_open. */
 int output_lock_take(struct output_lock **lock, const char *folder, struct cloth_error *note,
                      struct cloth_error *error);
@@ -151,13 +152,13 @@ struct output_probes;
 int output_probes_open(struct output_probes **probes, const char *folder, const char *header,
                        const uint64_t *n_rows, struct cloth_error *error);
 
-/* Appends a row. Has the form of flow_output.row, context = probes. Numbers have 17 digits, those
+/* Appends a row. Has the form of flow_output.row, context = probes. Numbers have 17 digits; numbers
  * that are not finite are left out. A row that fails leaves the ones before it whole. */
 int output_probes_row(void *context, uint64_t step, double time, size_t n, const double *values,
                       struct cloth_error *error);
 
-/* Brings the table of a folder, if there is one, to the disk, whoever writes it. Error: CLOTH_E_IO.
- */
+/* Syncs the table of a folder to the disk, if there is one, whichever process writes it. Error:
+ * CLOTH_E_IO. */
 int output_probes_sync(const char *folder, struct cloth_error *error);
 
 /* Closes, with all rows on the disk; *probes becomes NULL. */
@@ -179,7 +180,7 @@ struct output_cache {
     struct contact_bodies bodies; /* n_bodies */
     bool *posed;                  /* n_bodies: those that change their shape; NULL: none is there */
     FILE **poses;                 /* n_bodies: of these, their shapes */
-    struct contact_apart apart;   /* what does not meet */
+    struct contact_apart apart;   /* pairs that do not meet */
     uint32_t *attached;           /* n_vertices; as apart.attached, which it is */
     FILE *pc2;
     double *held; /* n_vertices x 3: the only frame of a cache in memory, which has no files; NULL:
@@ -187,7 +188,7 @@ struct output_cache {
 };
 int output_cache_open(struct output_cache *cache, const char *folder, struct cloth_error *error);
 /* Reads the text of a scene.json, ended by '\0', into a cache that has its mesh; `name` begins its
- * errors. What is allocated is the cache's, also after an error: CLOTH_E_INPUT. */
+ * errors. The cache owns its memory, also after an error: CLOTH_E_INPUT. */
 int output_cache_scene(struct output_cache *cache, const char *text, const char *name,
                        struct cloth_error *error);
 /* Reads one frame: n_vertices x 3 doubles into position. */
@@ -198,8 +199,8 @@ int output_cache_pose(struct output_cache *cache, uint64_t frame, struct cloth_e
 void output_cache_close(struct output_cache *cache);
 
 /* Writes a system for other solvers, in Matrix Market form (Boisvert, Pozo & Remington 1996), into
- * a folder that is there (output_lock_take). matrix.mtx is S A S + I - S: symmetric, its lower
- * triangle, one entry a place, column by column. The others are arrays: rhs.mtx (S b), solution.mtx
+ * an existing folder (output_lock_take). matrix.mtx is S A S + I - S: symmetric, its lower
+ * triangle, column by column, one entry a place. The others are arrays: rhs.mtx (S b), solution.mtx
  * (dv), mass.mtx (of each unknown; 0 where held), position.mtx (after the step). Unknown 3 i + c is
  * component c of vertex i, both from 0. Files of these names are replaced. Errors as of
  * output_open. Local. */
@@ -209,8 +210,8 @@ int output_system(const char *folder, const struct solve_system *system, struct 
  * order they are added; NaN and infinities become null. It is flat but for lists of flat objects.
  */
 struct output_report;
-/* Checks, without writing, whether a report can be written to the path. made: a folder that will be
- * there by then, or NULL. CLOTH_E_INPUT with what is wrong, not the path. */
+/* Checks, without writing, that a report can be written to the path. made: a folder that will be
+ * there by then, or NULL. CLOTH_E_INPUT names the fault, not the path. */
 int output_report_check(const char *path, const char *made, struct cloth_error *error);
 int output_report_new(struct output_report **report, struct cloth_error *error);
 void output_report_text(struct output_report *report, const char *key, const char *value);
@@ -222,7 +223,8 @@ void output_report_null(struct output_report *report, const char *key);
 void output_report_list(struct output_report *report, const char *key);
 void output_report_item(struct output_report *report);
 void output_report_list_end(struct output_report *report);
-/* To the file that the path names, or leads to through links. Errors as of output_open. */
+/* Writes the report to the file that the path names, or leads to through links. Errors as of
+ * output_open. */
 int output_report_write(struct output_report *report, const char *path, struct cloth_error *error);
 void output_report_free(struct output_report *report);
 

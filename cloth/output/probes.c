@@ -24,7 +24,7 @@ struct output_probes {
 
 enum { NUMBER = 26 }; /* bytes of a number, at most, with its comma */
 
-/* Whether a file that is there begins like ours. */
+/* True if an existing file begins like ours. */
 static bool is_ours(const char *path)
 {
     char start[sizeof OURS] = "";
@@ -123,7 +123,7 @@ int output_probes_open(struct output_probes **probes, const char *folder, const 
     return 0;
 }
 
-/* What is not finite has no place in a table: the field is empty. */
+/* A number that is not finite leaves its field empty. */
 static char *put_number(char *to, double value)
 {
     *to++ = ',';

@@ -14,7 +14,7 @@ struct output_report {
     FILE *stream;
     char *text; /* owned by the stream until it is closed, then by us */
     size_t size, n_keys;
-    size_t n_outside; /* keys, within a list: of what it is in */
+    size_t n_outside; /* within a list: keys of the object around it */
     size_t n_items;   /* then: of the list */
 };
 
@@ -106,11 +106,11 @@ static int write_renamed(const struct output_report *report, const char *path,
     return code;
 }
 
-/* ---- Where it goes ---- */
+/* ---- Destination ---- */
 
 enum { MAX_LINKS = 40 }; /* as the kernel follows */
 
-/* The path with its last part replaced by what a link there holds. */
+/* The path with its last part replaced by the text of a link there. */
 static char *beside(const char *path, const char *link)
 {
     char *joined = NULL;
@@ -119,7 +119,8 @@ static char *beside(const char *path, const char *link)
     return asprintf(&joined, "%.*s%s", folder, path, link) < 0 ? NULL : joined;
 }
 
-/* Where links lead, also to what is not there yet. The caller frees it. NULL: errno says why. */
+/* The path that links lead to, even if it does not exist yet. The caller frees it. NULL: errno says
+ * why. */
 static char *follow(const char *path)
 {
     char *now = strdup(path), link[PATH_MAX];
@@ -144,7 +145,7 @@ static bool written_in_place(const char *path)
     return stat(path, &status) == 0 && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode);
 }
 
-/* Which of our own two outputs the path leads to, as /dev/stdout does; -1: neither. */
+/* The one of our own two outputs that the path leads to, as /dev/stdout does; -1: neither. */
 static int own_output(const char *path)
 {
     struct stat there, here;
@@ -156,7 +157,7 @@ static int own_output(const char *path)
     return -1;
 }
 
-/* Goes on where that output is: what was printed before stays, what is printed later follows. */
+/* Goes on where that output is: earlier text stays, later text follows. */
 static int write_own(const struct output_report *report, int file, const char *path,
                      struct cloth_error *error)
 {
@@ -175,7 +176,7 @@ static int write_own(const struct output_report *report, int file, const char *p
     return code;
 }
 
-/* Whether a folder (ended by '/') is `made` or one of its parents. */
+/* True if a folder (ended by '/') is `made` or one of its parents. */
 static bool within(const char *folder, const char *made)
 {
     size_t n = strlen(folder);

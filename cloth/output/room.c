@@ -25,7 +25,7 @@ static double replaced(const char *folder)
     return bytes;
 }
 
-/* Of the folder, or of the nearest one above it that is there. */
+/* Describes the disk of the folder, or of the nearest parent that exists. */
 static int disk_of(char *path, struct statvfs *disk)
 {
     while (statvfs(path, disk) != 0) {

@@ -32,8 +32,8 @@ static bool is_settled(const struct output_settler *settler, const uint32_t *goa
 
 /* ---- The thread ---- */
 
-/* With the lock, which is free meanwhile. What counts is what was written before it began, so no
- * member gets ahead of one before it. */
+/* Call with the lock, which it frees meanwhile. It counts only frames written before it began, so
+ * no member gets ahead of one before it. */
 static void settle_all(struct output_settler *settler)
 {
     uint32_t goal[OUTPUT_MEMBERS];
@@ -104,7 +104,7 @@ int output_settler_open(struct output_settler **settler, struct cloth_error *err
     return CLOTH_OK;
 }
 
-/* With the lock. */
+/* Call with the lock. */
 static int tell(const struct output_settler *settler, struct cloth_error *error)
 {
     const struct cloth_error *trouble = &settler->trouble;

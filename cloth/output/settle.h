@@ -5,9 +5,8 @@
 
 #include <stdint.h>
 
-/* A thread that brings frames to the disk, so that no worker of a run waits for the disk: frames
- * are written by whoever has them, then synced and counted here. On rank 0 alone; local functions.
- */
+/* A thread that syncs frames to the disk, so that no worker of a run waits for it. Workers write
+ * the frames; the thread syncs and counts them. On rank 0 alone; local functions. */
 struct output_settler;
 
 /* Before the runtime binds its threads to cores. Errors: CLOTH_E_MEMORY; CLOTH_E_LIBRARY, no
@@ -18,10 +17,10 @@ int output_settler_open(struct output_settler **settler, struct cloth_error *err
  * to wait for. Errors: of the first frame that could not be; nothing is counted after it. */
 int output_settler_wait(struct output_settler *settler, struct cloth_error *error);
 
-/* Waits alike, before what was added to it is closed; *settler becomes NULL. */
+/* Waits alike, before its members are closed; *settler becomes NULL. */
 int output_settler_close(struct output_settler **settler, struct cloth_error *error);
 
-/* --- For those who write --- */
+/* --- For writers --- */
 
 /* A file, or files that belong together. Its frames are settled after those of members that were
  * added before. */

@@ -9,8 +9,8 @@
  *     F = density / 2  A  (normal |u_n| u_n + tangent |u_t| u_t),   u_n = (u . n) n,  u_t = u - u_n
  *
  * A third of it acts on each corner, or, where a fourth corner is named, a quarter on each. This is
- * dynamic pressure by area and two coefficients: that of a plate across the stream (measured: 1.17
- * to 1.28, Hoerner 1965) and that of friction along it. Both sides of a triangle are alike. Pure
+ * dynamic pressure times area, with two coefficients: of a plate across the stream (measured: 1.17
+ * to 1.28, Hoerner 1965) and of friction along it. Both sides of a triangle are alike. Pure
  * functions; nothing is allocated. */
 struct phys_air {
     double density;         /* kg/m^3; 0: no air */

@@ -48,8 +48,8 @@ struct phys_bend_rest {
 /* 0, or -1 if a triangle has no area or numbers are not finite. */
 int phys_bend_rest(const double x[12], struct phys_bend_rest *rest);
 
-/* Rigidity (N m) across an edge of that direction (along warp, along weft; any length): that of the
- * warp for an edge along the weft, and in between by the square of the cosine. */
+/* Rigidity (N m) across an edge of that direction (along warp, along weft; any length). An edge
+ * along the weft has that of the warp; others are between by the square of the cosine. */
 double phys_bend_rigidity(double warp, double weft, const double direction[2]);
 
 /* As of triangles (triangle.h); pairs of each element: (0, 1), (0, 2), (1, 2), (0, 3), (1, 3), (2,

@@ -9,7 +9,8 @@ struct phys_curve_key {
     double time, factor; /* s, ascending; 1 */
 };
 
-/* By n > 0 key frames: linear between two, constant before the first and after the last. */
+/* The value by n > 0 key frames: linear between two, constant before the first and after the last.
+ */
 double phys_curve_at(size_t n, const struct phys_curve_key *curve_key, double time);
 
 /* sin(2 pi turns), to 2e-16. turns: less than 2^51. */

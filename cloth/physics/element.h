@@ -6,11 +6,10 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* What triangles and hinges have in common. An element joins three or four vertices of a block and
- * of its neighbours: corners 0 .. n - 1 are the block's own rows, corner n + i is row i of its
- * ghosts. Every block that owns a corner works on the element and writes its own
- * rows only; all find the same bits, since an element's numbers depend on its corners alone, in
- * their order. */
+/* Shared by triangles and hinges. An element joins three or four vertices of a block and of its
+ * neighbours: corners 0 .. n - 1 are the block's own rows, corner n + i is row i of its ghosts.
+ * Every block that owns a corner works on the element and writes its own rows only. All find the
+ * same bits: an element's numbers depend only on its corners in their order. */
 struct phys_sight {
     uint32_t n;                        /* rows of the block */
     const phys_vec *x, *v;             /* n: m, m/s */
@@ -20,12 +19,12 @@ struct phys_sight {
 /* A corner that an element has not got. */
 static const uint32_t PHYS_NO_CORNER = UINT32_MAX;
 
-/* What matrix an element gives. An implicit step of h seconds has M + h C + h^2 K, where C and K
- * are the slopes of the forces against velocities and positions, taken with a minus. */
+/* The matrix of an element. An implicit step of h seconds has M + h C + h^2 K, where C and K are
+ * the slopes of the forces against velocities and positions, taken with a minus. */
 struct phys_step {
     double h; /* s */
-    int full; /* K is the exact slope; else what can make it indefinite is left out, as each model
-                 says. The slope of damping forces against positions is left out in both. */
+    int full; /* K is the exact slope; else parts that can make it indefinite are left out, as each
+               * model says. The slope of damping forces against positions is left out in both. */
 };
 
 /* The block of a matrix that belongs to two corners i < j of an element, with a minus: N = -A_ij,

@@ -34,8 +34,8 @@ PHYS_KERNEL(phys_hinges_force,
     }
 }
 
-/* Of d W / d x: a k times its slope, b times that of the damping: on theta's slopes, and on what
- * they change. */
+/* Factors for a times the slope of d W / d x plus b times that of the damping: of theta's slopes,
+ * and of their change. */
 struct factors {
     phys_vec slope, change;
 };
@@ -98,7 +98,7 @@ PHYS_KERNEL(phys_hinges_stiffness,
         stiffness(hinges, 0, scale, sight, y);
 }
 
-/* What moves of corner j along each axis change of theta's slopes. */
+/* Changes of theta's slopes by moves of corner j along each axis. */
 PHYS_INLINE void changes(const struct phys_hinge *h, int j, struct phys_wide change[3][4])
 {
     for (int c = 0; c < 3; c++) {

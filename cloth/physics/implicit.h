@@ -10,7 +10,7 @@
  *     M (v - base_v) = t f(base_x + t v, v)
  *
  * by implicit Euler t = h and the bases are x and v before the step; by BDF2 (Gear 1971) t = 2 h /
- * 3 and they are the ones below. Arrays have n rows and the units of cloth/physics/particle.h; each
+ * 3 and they are the ones below. Arrays have n rows and the units of cloth/physics/particle.h. Each
  * row is computed from itself alone. Pure functions; nothing is allocated. */
 
 /* The bases of BDF2 from x, v now and x, v a step before, base = (4 now - before) / 3, then the

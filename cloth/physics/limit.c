@@ -1,4 +1,4 @@
-/* Nothing here has a part in the motion: only in what a run reports about its step. */
+/* Limits of the step, for reports only: the motion does not use them. */
 #include "cloth/physics/limit.h"
 
 #include <complex.h>
@@ -28,9 +28,9 @@ double phys_limit_verlet(double omega, double a)
     return 2 / (a + sqrt(a * a + omega * omega)); /* 4 - 4 h a - h^2 omega^2 >= 0 */
 }
 
-/* A root r of the mode becomes z = h r, and a step multiplies by 1 + z + z^2 / 2. Of real z the
- * fastest counts, z >= -2. Of a pair the square of the size is 1 + h times (omega^4 h^3 / 4 - a
- * omega^2 h^2 / 2 + a^2 h / 2 - a), which rises from -a: its one root, by Cardano, of h omega. */
+/* A root r of the mode becomes z = h r, and a step multiplies by 1 + z + z^2 / 2. If z is real, the
+ * fastest root counts, z >= -2. A pair has the squared size 1 + h (omega^4 h^3 / 4 - a omega^2 h^2
+ * / 2 + a^2 h / 2 - a). The bracket rises from -a; Cardano gives its one root, in h omega. */
 double phys_limit_midpoint(double omega, double a)
 {
     const double over = a * a - 4 * omega * omega;
@@ -43,7 +43,7 @@ double phys_limit_midpoint(double omega, double a)
     return (2. / 3 * b + part - 2. / 9 * b * b / part) / omega;
 }
 
-/* Of the faster root of the mode, on whose ray from zero the region of stability ends once. */
+/* Bisects along the ray of the mode's faster root, where the region of stability ends once. */
 double phys_limit_rk4(double omega, double a)
 {
     const double complex root = csqrt(a * a / 4 - omega * omega), fast = -a / 2 - root;

@@ -22,7 +22,7 @@ struct phys_pose {
 void phys_pose_at(size_t n, const struct phys_key *keys, const double about[3], double time,
                   struct phys_pose *pose);
 
-/* Where a point that begins at x0 is then; what becomes of a direction. to may be from. */
+/* The place of a point that begins at x0; a direction, turned. to may be from. */
 void phys_pose_point(const struct phys_pose *pose, const phys_vec *from, phys_vec *to);
 void phys_pose_direction(const struct phys_pose *pose, const phys_vec *from, phys_vec *to);
 /* Back from there. */

@@ -4,7 +4,7 @@
 
 #include "cloth/physics/detail/lanes.h"
 
-/* The sum of w_i y_i of element e: differences, so that what moves all alike gives nothing. */
+/* The sum of w_i y_i of element e: differences, so that a uniform motion gives zero. */
 PHYS_INLINE void bent(const struct phys_quadratic *quadratic, size_t e, uint32_t n,
                       const phys_vec *own, const phys_vec *ghost, phys_vec *sum)
 {

@@ -86,14 +86,14 @@ PHYS_INLINE void add_rows(const struct phys_springs *s, const struct phys_four *
     }
 }
 
-/* Where the ends of springs are: end 1 in arrays of another block, or in the same. */
+/* The ends of springs: end 1 is in arrays of another block, or in the same. */
 struct where {
     const phys_vec *x, *v, *x_other, *v_other;
     int cut;
 };
 
-/* What is known of the springs some way behind i, and rows of x that they end at: springs inside a
- * block go through its rows in order. */
+/* Prefetches springs beyond i, and the rows of x at their ends; springs inside a block go through
+ * its rows in order. */
 PHYS_INLINE void fetch(const struct phys_springs *s, size_t i, const struct where *at)
 {
     if (!at->cut)
@@ -152,7 +152,7 @@ PHYS_KERNEL(phys_springs_force_cut,
 
 /* ---- Matrix and right side ---- */
 
-/* What the matrix is made of: h^2 k t; h^2 k (1 - t). */
+/* Parts of the matrix: h^2 k t; h^2 k (1 - t). */
 struct stiff {
     phys_vec across, along;
 };

@@ -18,10 +18,10 @@
  * an L just below 0 (for 0) t = 1 there, too, but not with PHYS_FULL.
  *
  * Functions come in pairs. The plain one has both ends in the same arrays and writes both rows. The
- * one called `_cut` has end 1 in arrays of another block, and writes the rows of end 0 only; the
- * other block does the same for its end. Both sides compute with the same bits and opposite signs,
- * so that momentum is kept to roundoff of the sums. Springs are worked on in order. Pure functions;
- * nothing is allocated. */
+ * `_cut` one has end 1 in arrays of another block, and writes the rows of end 0 only; the other
+ * block does the same for its end. Both compute the same bits with opposite signs, so momentum is
+ * kept to roundoff of the sums. Springs are worked on in order. Pure functions; nothing is
+ * allocated. */
 enum phys_slope { PHYS_DEFINITE, PHYS_FULL, PHYS_ABSOLUTE };
 struct phys_springs {
     size_t n;

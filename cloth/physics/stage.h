@@ -9,9 +9,9 @@
  * cloth/physics/particle.h. Each row is computed from itself alone. Pure functions; nothing is
  * allocated. */
 
-/* A step of h seconds by explicit Euler, x += h v, v += h a with a = free f / mass, or, ahead, by
- * symplectic Euler, where x moves by the new v. f: N. What it makes goes to x_next and v_next,
- * which may be x and v. 0 if a row diverged (phys_diverged). */
+/* A step of h seconds by explicit Euler, x += h v, v += h a with a = free f / mass; ahead: by
+ * symplectic Euler, where x moves by the new v. f: N. The results go to x_next and v_next, which
+ * may be x and v. 0 if a row diverged (phys_diverged). */
 int phys_euler(size_t n, double h, int ahead, double bound, const double *mass, const double *free,
                const phys_vec *f, const phys_vec *x, const phys_vec *v, phys_vec *x_next,
                phys_vec *v_next);
@@ -20,10 +20,9 @@ int phys_euler(size_t n, double h, int ahead, double bound, const double *mass, 
  *
  *     w = v + t free (f - drag v) / (mass + ahead t drag)
  *
- * f: N, without the drag, which is linear in the velocity of its own vertex and so can be solved
- * for there: ahead = 1 is implicit in it (v the velocity before), ahead = 0 explicit. The two
- * halves of a step, one of each kind, are second order together and damp at any t drag / mass.
- * w may be v. */
+ * f: N, without the drag. Drag is linear in its own vertex's velocity, so it can be solved for
+ * there: ahead = 1 is implicit in it (v the velocity before), ahead = 0 explicit. The two halves of
+ * a step, one of each kind, are second order together and damp at any t drag / mass. w may be v. */
 void phys_kick(size_t n, double t, double ahead, const double *mass, const double *drag,
                const double *free, const phys_vec *f, const phys_vec *v, phys_vec *w);
 

@@ -3,9 +3,9 @@
 
 #include "cloth/physics/element.h"
 
-/* Springs that act one way: an edge is pulled back where it is longer than a limit, and is free
- * where it is shorter. Let l = |x1 - x0|, u = (x1 - x0) / l and the limit l0 = (1 + a) L, with a
- * the strain from which on it acts and L the length at rest. Then
+/* Springs that act one way: an edge longer than a limit is pulled back, a shorter one is free. Let
+ * l = |x1 - x0|, u = (x1 - x0) / l and the limit l0 = (1 + a) L, with a the strain from which on it
+ * acts and L the length at rest. Then
  *     energy  W = k / 2 (l - l0)^2  where l > l0, else 0                                     (J)
  *     force   k (l - l0) u on corner 0, the opposite on corner 1                             (N)
  *     K = k (u u' + t (I - u u')),  t = 1 - l0 / l,  where l > l0, else 0                    (N/m)
@@ -20,7 +20,7 @@ struct phys_strain_limits {
     const double *length;        /* n: l0, m, > 0 */
 };
 
-/* As of triangles (triangle.h); one pair of each. */
+/* Like the functions of triangles (triangle.h), with one pair each. */
 void phys_strain_limits_force(const struct phys_strain_limits *limits,
                               const struct phys_sight *sight, phys_vec *f);
 void phys_strain_limits_stiffness(const struct phys_strain_limits *limits, double scale,

@@ -4,11 +4,10 @@
 #include <stdint.h>
 
 /* Numbers too small for a full mantissa (subnormal: below 2.2e-308) cost processors a hundred times
- * the work of others. A solve is full of them far from where anything moves, since what a pass
- * hands from row to row fades by a factor each. Between phys_tiny_off and phys_tiny_back the
- * calling thread takes them for zero and makes none, in scalars and vectors of any width alike.
- * What is between should be a call: compilers move arithmetic over the switch. Where the processor
- * has no such switch nothing changes. */
+ * the work of others. A solve is full of them far from any motion, since values fade by a factor
+ * from row to row. Between phys_tiny_off and phys_tiny_back the calling thread takes them for zero
+ * and makes none, in scalars and vectors of any width alike. Put a call between the two: compilers
+ * move arithmetic across the switch. Processors without the switch change nothing. */
 typedef uint64_t phys_tiny;
 
 #if defined(__x86_64__)

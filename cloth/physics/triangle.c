@@ -123,7 +123,7 @@ PHYS_KERNEL(phys_triangles_force,
     }
 }
 
-/* ---- What a state says of itself ---- */
+/* ---- Energy and strain of a state ---- */
 
 PHYS_KERNEL_OF(double, phys_triangles_energy,
                (const struct phys_triangles *t, const struct phys_sight *sight), (t, sight))

@@ -3,9 +3,9 @@
 
 #include "cloth/physics/element.h"
 
-/* Triangles of an orthotropic membrane with corotated linear strain (Etzmuss, Keckeisen, Strasser
- * 2003) in plane stress. The rest shape is in material coordinates u (warp) and v (weft). F = dx /
- * d(u, v) is 3 x 2, and F = R S is its polar decomposition (R with orthonormal columns, S
+/* Triangles of an orthotropic membrane in plane stress, with corotated linear strain (Etzmuss,
+ * Keckeisen, Strasser 2003). The rest shape is in material coordinates u (warp) and v (weft). F =
+ * dx / d(u, v) is 3 x 2, and F = R S is its polar decomposition (R with orthonormal columns, S
  * symmetric, not negative). J is the quarter turn and C are the moduli.
  *     energy  W = area / 2 (S - I) : C : (S - I)                                          (J)
  *     stress  T = C : (S - I + damping dS/dt)                                             (N/m)
@@ -15,8 +15,8 @@
  * torque -c (tr S) area about the normal is left (phys_triangles_torque).
  *
  * S needs square roots alone: F'F = S^2, det S = |F_u x F_v|, tr S = sqrt(tr F'F + 2 det S), S =
- * (F'F + det S) / tr S. A triangle without area has no normal: only forces along what is left of it
- * remain. A triangle that is a point has no forces.
+ * (F'F + det S) / tr S. A triangle without area has no normal: only forces along its line remain. A
+ * triangle that is a point has no forces.
  *
  * K of a step is R k R' with k the stiffness at rest, and those parts of the stress that resist a
  * rotation. They are, times the area, (S^-1 (T - c J))+ against moves along the normal and max(T :
@@ -31,8 +31,8 @@ struct phys_membrane {
     int uncorrected;  /* forces as the papers have them */
 };
 
-/* Makes a membrane of moduli (N/m) along warp and weft and of shear, and the Poisson ratio nu12:
- * how much a pull along the warp narrows the weft; nu21 = nu12 weft / warp. Returns 0, or -1 unless
+/* Makes a membrane from moduli (N/m) along warp and weft and of shear, and the Poisson ratio nu12,
+ * by which a pull along the warp narrows the weft; nu21 = nu12 weft / warp. Returns 0, or -1 unless
  * moduli are finite and not negative and nu12 nu21 < 1. */
 int phys_membrane_make(double warp, double weft, double shear, double poisson, double damping,
                        struct phys_membrane *membrane);
@@ -75,9 +75,9 @@ void phys_triangles_system(const struct phys_triangles *triangles, size_t from, 
 double phys_triangles_energy(const struct phys_triangles *triangles,
                              const struct phys_sight *sight);
 
-/* What a state says of each triangle, all n: its largest principal strain, the larger eigenvalue of
- * S - I; and, unless NULL, the elastic stress C : (S - I) along warp, along weft, and of shear
- * (N/m). */
+/* Finds the largest principal strain of each of the n triangles, the larger eigenvalue of S - I.
+ * stress, unless NULL: the elastic stress C : (S - I) along warp, along weft, and of shear (N/m).
+ */
 void phys_triangles_strain(const struct phys_triangles *triangles, const struct phys_sight *sight,
                            double *largest, double (*stress)[3]);
 

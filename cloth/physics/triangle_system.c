@@ -1,12 +1,12 @@
-/* What an implicit step needs of triangles: its matrix, and the right side with it, from one frame
- * of each. Triangles are worked on in order, four at a time (detail/lanes.h). */
+/* Triangles in implicit steps: the matrix, and the right side with it, from one frame of each.
+ * Triangles are worked on in order, four at a time (detail/lanes.h). */
 #include "cloth/physics/triangle.h"
 
 #include "cloth/physics/detail/membrane.h"
 
 /* ---- Slopes ---- */
 
-/* What the slope of the forces is made of besides the frame. */
+/* Parts of the slope of the forces besides the frame. */
 struct slope {
     struct phys_plane2 t, q, n; /* T; T - c J of the strain; S^-1 q, of which reduced the positive
                                    part */
@@ -53,8 +53,7 @@ PHYS_INLINE void slope_make(const struct phys_frame *f, int full, struct slope *
     keep_positive(&slope->n);
 }
 
-/* What the change D = R' dF makes of q: a times that of the stiffness, b times that of the damping.
- */
+/* The change of q by D = R' dF: a times that of the stiffness, b times that of the damping. */
 PHYS_INLINE void slope_reduced(const struct phys_frame *f, const struct slope *slope, double a,
                                double b, const struct phys_plane2 *d, struct phys_plane2 *dq)
 {
@@ -98,7 +97,7 @@ PHYS_INLINE void slope_of(const struct phys_frame *f, const struct slope *slope,
 
 /* ---- Right side ---- */
 
-/* T - c J of strain and damping: what phys_triangles_force pushes with. */
+/* T - c J of strain and damping, which phys_triangles_force pushes with. */
 PHYS_INLINE void force_of(const struct phys_frame *f, const struct slope *slope,
                           const struct phys_plane2 *d, struct phys_plane2 *q)
 {
@@ -153,10 +152,10 @@ struct block {
     phys_vec uu, vv, symmetric, antisymmetric, along;
 };
 
-/* -area times what q changes of D, a h^2 of the stiffness with h of the damping: as
+/* -area times the change of q by D, h^2 times that of the stiffness plus h times that of the
+ * damping:
  *
- *     du: q = (c11 gu, p gv, m gv, c12 gu),   dv: q = (c12 gv, m gu, p gu, c22 gv)
- */
+ *     du: q = (c11 gu, p gv, m gv, c12 gu),   dv: q = (c12 gv, m gu, p gu, c22 gv) */
 struct stiff {
     phys_vec c11, c12, c22, p, m, nuu, nuv, nvv;
 };
@@ -197,7 +196,7 @@ PHYS_INLINE void block_full(const struct phys_frame *f, const struct slope *slop
                              dv = {{0}, {0}, f->gu[j], f->gv[j]};
     const phys_vec gu = -f->area * f->gu[i], gv = -f->area * f->gv[i];
     struct phys_plane2 qu, qv;
-    block_reduced(f, stiff, i, j, block); /* what is along the normal stays */
+    block_reduced(f, stiff, i, j, block); /* the part along the normal stays */
     slope_full(f, slope, h * h, h, &du, &qu);
     slope_full(f, slope, h * h, h, &dv, &qv);
     const phys_vec uv = qv.uu * gu + qv.uv * gv, vu = qu.vu * gu + qu.vv * gv;
@@ -207,9 +206,9 @@ PHYS_INLINE void block_full(const struct phys_frame *f, const struct slope *slop
     block->antisymmetric = 0.5 * (uv - vu);
 }
 
-/* What rotates blocks into the world: components 00 11 22, 01 12 20 of ru ru', rv rv', ru rv' + rv
- * ru'. The matrix n n' is the unit matrix minus the first two; without a normal nothing is along
- * it. The matrix ru rv' - rv ru' has the normal's components. */
+/* Rotates blocks into the world: components 00 11 22, 01 12 20 of ru ru', rv rv', ru rv' + rv ru'.
+ * The matrix n n' is the unit matrix minus the first two; without a normal nothing is along it. The
+ * matrix ru rv' - rv ru' has the normal's components. */
 struct world {
     phys_vec uu[6], vv[6], uv[6];
 };
@@ -273,7 +272,7 @@ PHYS_INLINE void write_blocks(const struct phys_four *four, const struct phys_fr
 
 /* ---- Both ---- */
 
-/* What is wanted: b may be NULL. */
+/* The results wanted: b may be NULL. */
 struct wanted {
     double h, push;
     int full;

@@ -8,22 +8,21 @@
 
 /* Vectors of the state are rows of four doubles, x y z 0, aligned to 32 bytes: one AVX register,
  * two of SSE2 or NEON. The fourth lane of every vector of the state is zero. The compiler lowers
- * the type to what the processor has; lanes are independent, so the bits are the same everywhere.
+ * the type to the processor's vectors; lanes are independent, so the bits are the same everywhere.
  * Helpers are always inlined: no vector is passed by value. */
 typedef double phys_vec __attribute__((vector_size(32)));
 
 #define PHYS_INLINE static inline __attribute__((always_inline, unused))
 
-/* Before a loop over lanes, components or corners, so that what it works on stays in registers: GCC
- * at -O2 leaves it a loop. */
+/* Before a loop over lanes, components or corners, so that its values stay in registers: GCC at -O2
+ * leaves it a loop. */
 #if defined(__clang__)
 #define PHYS_UNROLL
 #else
 #define PHYS_UNROLL _Pragma("GCC unroll 8")
 #endif
 
-/* Asks memory for what lies so many bytes further on: an address alone, which may be behind the
- * end. */
+/* Prefetches an address so many bytes further on, which may be behind the end. */
 PHYS_INLINE void phys_fetch(const void *from, size_t bytes, int to_write)
 {
     const uintptr_t address = (uintptr_t)from + bytes;
@@ -38,9 +37,9 @@ enum { PHYS_FETCH = 1024 }; /* bytes ahead of a loop: enough for memory to answe
  *
  *     void name(params)            and      type name(params)
  *
- * They are compiled several times and chosen by what the processor has (cloth/base/simd.h). args:
- * the names of the parameters, in order. The bits are the same, since fused multiply-adds stay off.
- * What they call is to be PHYS_INLINE, or it is compiled once. */
+ * They are compiled several times and chosen by the processor (cloth/base/simd.h). args: the names
+ * of the parameters, in order. The bits are the same, since fused multiply-adds stay off. Functions
+ * that they call must be PHYS_INLINE, or are compiled once only. */
 #if defined(__x86_64__) && !defined(__AVX512VL__)
 #define PHYS_AVX2   __attribute__((target("avx2")))
 #define PHYS_AVX512 __attribute__((target("avx512f,avx512vl,avx512dq")))

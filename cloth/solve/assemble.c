@@ -1,5 +1,4 @@
-/* Entries are rounded one by one; turns are summed over what they were rounded to, in the order of
- * entries. */
+/* Entries are rounded one by one; turns are summed over the rounded entries, in their order. */
 #include "cloth/solve/assemble.h"
 
 #include "cloth/solve/format.h"

@@ -44,7 +44,7 @@ PHYS_INLINE void begin_rows(bool preconditioned, size_t from, size_t to, double 
     sum[SOLVE_RZ] = product;
 }
 
-/* What comes of row a and its entries, of which i is the first. */
+/* Prefetches rows beyond a, and entries beyond i, the first of row a. */
 PHYS_INLINE void fetch_row(enum solve_format format, const struct solve_values *values, size_t i,
                            size_t a, const struct solve_rows *rows)
 {
@@ -58,7 +58,7 @@ PHYS_INLINE void fetch_row(enum solve_format format, const struct solve_values *
         phys_fetch((const char *)values->entry + bytes[format] * i, BYTES_AHEAD + line, 0);
 }
 
-/* How many rows have begun when those that the entries of rows from .. to - 1 end at have. */
+/* Number of rows begun once all rows at the far ends of entries of rows from .. to - 1 have. */
 PHYS_INLINE size_t reach(const struct solve_block *block, size_t from, size_t to, size_t begun)
 {
     size_t last = begun > to ? begun : to;
@@ -137,7 +137,8 @@ PHYS_INLINE void multiply(const struct solve_block *block, enum solve_format for
     }
 }
 
-/* Adds what ties make of p to q. It reads without a branch, which no processor would foresee. */
+/* Adds the products of ties with p to q. It reads without a branch, which no processor would
+ * predict. */
 PHYS_INLINE void add_ties(size_t n_rows, const struct solve_ties *ties, const phys_vec *restrict p,
                           phys_vec *restrict q)
 {
@@ -182,8 +183,8 @@ PHYS_INLINE void end_halo(const struct solve_block *block, enum solve_format for
     }
 }
 
-/* The format and whether there is a preconditioner are constants where this is inlined: six passes
- * are made of it, none with a look at either in a loop. */
+/* Inlining makes format and preconditioned constants: six passes are made, none of which tests them
+ * in a loop. */
 PHYS_INLINE void pass(const struct solve_block *block, enum solve_format format,
                       bool preconditioned, const struct solve_cut *cut, const void *memory,
                       const phys_vec *p_other, double alpha, double beta,

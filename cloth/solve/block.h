@@ -9,10 +9,10 @@
 #include <stdint.h>
 
 /* One block of rows of the matrix of an implicit step, A = diagonal + entries, in any format
- * (cloth/solve/format.h). Entries with both ends in the block are stored once, in rows by their
- * lower end; an entry whose other end is in another block is known to both, each for its own row.
- * In half storage two rows have one entry at most; of springs, each is one. The system is S A S dv
- * = S b (Baraff & Witkin 1998), S = free times the filter of each row. */
+ * (cloth/solve/format.h). Entries with both ends in the block are stored once, in the row of their
+ * lower end. Entries between two blocks are stored in both, each for its own row. In half storage
+ * two rows share one entry at most; each spring is an entry of its own. The system is S A S dv = S
+ * b (Baraff & Witkin 1998), S = free times the filter of each row. */
 struct solve_block {
     size_t n;               /* rows */
     const double *diagonal; /* n: mass + h (drag), kg, > 0 */
@@ -48,10 +48,10 @@ PHYS_INLINE void solve_constrain(const phys_vec *normal, phys_vec *filter)
         *filter = (phys_vec){0};
 }
 
-/* What joins rows for some solves only, in a block of any format. A tie has up to four corners with
+/* Ties join rows for some solves only, in a block of any format. A tie has up to four corners with
  * weights w_k. It adds w_i w_k N to row i and column k, N a value of SOLVE_SPRINGS: with u the sum
  * of w_k p_k it adds w_i N u to row i. Every block with a corner knows the whole tie. Ties that add
- * nothing need not be among them. */
+ * nothing may be left out. */
 enum { SOLVE_TIE_CORNERS = 4 };
 struct solve_ties {
     size_t n;
@@ -84,9 +84,9 @@ static inline struct solve_rows solve_rows_plain(phys_vec *dv, phys_vec *r, phys
     return (struct solve_rows){dv, r, p, q, .z = r, .s = q};
 }
 
-/* A pass over a block (cloth/solve/cg.h), without the factors. With a preconditioner it leaves s
- * and q.s to the function that applies it to the new q. values: of the entries, as the block's
- * format has them. p_other: p of the ghosts, as it is after the first half of this pass. */
+/* A pass over a block (cloth/solve/cg.h), without the factors. With a preconditioner, its function
+ * makes s and q.s from the new q afterwards. values: of the entries, in the block's format.
+ * p_other: p of the ghosts after the first half of this pass. */
 void solve_pass(const struct solve_block *block, const struct solve_cut *cut, const void *values,
                 const phys_vec *p_other, double alpha, double beta, const struct solve_rows *rows,
                 double dots[SOLVE_DOTS]);

@@ -63,13 +63,13 @@ static void remember(double term, struct solve_scalars *after)
         after->past[at] = after->energy;
 }
 
-/* What r.D^-1 r may be. */
+/* The largest r.D^-1 r that ends a solve. */
 static double normalised(const struct solve_stop *stop, const struct solve_scalars *now)
 {
     return stop->tolerance * stop->tolerance * now->unit;
 }
 
-/* Whether dv is good enough. */
+/* True if dv is good enough. */
 static bool reached(const struct solve_stop *stop, const struct solve_scalars *now)
 {
     if (stop->count)
@@ -82,7 +82,7 @@ static bool reached(const struct solve_stop *stop, const struct solve_scalars *n
            solve_scalars_error(now, now->bound) <= stop->tolerance * stop->tolerance * now->size;
 }
 
-/* alpha and beta of the next pass. Where r is nothing, nothing is left to do. */
+/* alpha and beta of the next pass. Both are 0 if r is zero. */
 static int next_factors(const double dots[SOLVE_DOTS], struct solve_scalars *after)
 {
     const double product = dots[SOLVE_RZ];
@@ -96,7 +96,7 @@ static int next_factors(const double dots[SOLVE_DOTS], struct solve_scalars *aft
     }
     after->alpha = alpha;
     const double next = product - 2 * alpha * dots[SOLVE_RQ] + alpha * alpha * dots[SOLVE_QQ];
-    after->beta = next > 0 ? next / product : 0; /* what rounding leaves of nothing may be < 0 */
+    after->beta = next > 0 ? next / product : 0; /* rounding may make a zero negative */
     return SOLVE_OK;
 }
 
@@ -112,10 +112,11 @@ static int fail(int code, struct solve_scalars *after)
 /* A residual may be so much larger than its recurrence, squares. */
 #define ALIKE 4
 
-/* A restart that leaves more than this part of what the last check refused is the last one. */
+/* A restart is the last one if it leaves more than this part of the residual refused before. */
 #define HELPS 0.25
 
-/* Whether the true residual is what it was taken for. */
+/* Checks the true residual: done if it is small enough, else another start, or failure if starts do
+ * not help. */
 static int judge(const struct solve_stop *stop, const double dots[SOLVE_DOTS],
                  struct solve_scalars *after)
 {
@@ -163,7 +164,7 @@ static int arrive(const struct solve_stop *stop, struct solve_scalars *after)
     return SOLVE_OK;
 }
 
-/* Looks at the residual. Returns whether that ends the solve, or its iterations: *code says how. */
+/* Looks at the residual. Returns true if that ends the solve, or its iterations: *code says how. */
 static bool ends(const struct solve_stop *stop, struct solve_scalars *after, int *code)
 {
     if (after->iterations == 0)
@@ -180,7 +181,7 @@ static bool ends(const struct solve_stop *stop, struct solve_scalars *after, int
     return true;
 }
 
-/* What follows a pass of SOLVE_ON. */
+/* Takes the factors of the next pass from one of SOLVE_ON. */
 static int iterate(const struct solve_stop *stop, const double dots[SOLVE_DOTS],
                    struct solve_scalars *after)
 {

@@ -15,8 +15,8 @@
  * From the dots come alpha = r.r / p.q and beta. The next r is not there yet, so beta takes its
  * square as |r - alpha q|^2 = r.r - 2 alpha r.q + alpha^2 q.q. A recurrence that goes on from this
  * number is unstable (Saad 1985). Here the number serves one iteration, and the next pass has the
- * true r.r (Meurant 1987). So the residual is as good as that of the form with two reductions. What
- * other ranks need of a pass, rows of q and dots, is known at one time. */
+ * true r.r (Meurant 1987). So the residual is as good as with two reductions. Rows of q and dots,
+ * which other ranks need, are ready at the same time. */
 
 /* With a preconditioner M, symmetric and positive definite, the vectors z = M^-1 r and s = M^-1 q
  * are kept beside r and q:
@@ -24,23 +24,23 @@
  *     dv += alpha p,  r -= alpha q,  z -= alpha s,  p = z + beta p,  q = S A p,  s = M^-1 q
  *
  * with alpha = r.z / p.q and beta = (r.z - 2 alpha z.q + alpha^2 q.s) / r.z. This is one reduction
- * again, which may carry what a coarse part of M^-1 needs of q. Without a preconditioner M is the
- * identity: z is r and s is q, the same vectors. */
+ * again, which may also carry the parts of q that a coarse part of M^-1 needs. Without a
+ * preconditioner M is the identity: z is r and s is q, the same vectors. */
 
 /* The recurrence gives r, which drifts from the residual S (b - A dv) by rounding. A solve that
  * ends by r alone may be wrong without noticing it. So `confirm` adds two passes. The first shows
  * dv to the neighbours (SOLVE_SHOW). The second has q = S A dv, and with it the true residual,
- * which takes the place of r (SOLVE_CHECK). Where the true residual is too large, the solve goes on
+ * which takes the place of r (SOLVE_CHECK). If the true residual is too large, the solve goes on
  * from dv (SOLVE_AGAIN), at most SOLVE_RESTARTS times, and only while that helps. */
 
-/* A solve may begin with a guess g instead of dv = 0, for a pass and a half more. It makes q = S A
- * g first (SOLVE_OPEN), then begins again (SOLVE_AGAIN) from dv = alpha g with alpha = g.b / g.q.
- * This is the multiple of g that is nearest to the solution in the norm of A. So it is never
- * farther from the solution than dv = 0 is (Fischer 1998, of one vector). */
+/* A solve may begin with a guess g instead of dv = 0; this costs a pass and a half. It makes q = S
+ * A g first (SOLVE_OPEN), then begins again (SOLVE_AGAIN) from dv = alpha g with alpha = g.b / g.q.
+ * This is the multiple of g that is nearest to the solution in the norm of A. It is never farther
+ * from the solution than dv = 0 (Fischer 1998, for one vector). */
 
-/* What a pass sums. RQ is z.q, QQ is q.s; SIZE and BOUND are those of solve_norms, which only
- * stops by norms need (mass_norm, normalised). DRIFT, in SOLVE_CHECK, is d.D^-1 d of the difference
- * d of the true residual and r. */
+/* The sums of a pass. RQ is z.q, QQ is q.s; SIZE and BOUND are those of solve_norms, for stops by
+ * norms only (mass_norm, normalised). DRIFT, in SOLVE_CHECK, is d.D^-1 d of the difference d of the
+ * true residual and r. */
 enum { SOLVE_RR, SOLVE_PQ, SOLVE_RQ, SOLVE_QQ, SOLVE_RZ, SOLVE_SIZE, SOLVE_BOUND, SOLVE_DOTS };
 enum { SOLVE_DRIFT = SOLVE_PQ };
 
@@ -76,7 +76,7 @@ struct solve_stop {
  * iterations, at least 5: where conjugate gradients stagnate, a fixed delay (Strakos & Tichy 2002)
  * fails. The estimate is of the error m iterations ago; that of dv is smaller. */
 
-/* What the next pass does. Numbers are doubles: the structure is a shared object. */
+/* Kinds of the next pass. Numbers are doubles: the structure is a shared object. */
 enum {
     SOLVE_DONE,
     SOLVE_LAST,  /* dv and r only */
@@ -112,9 +112,9 @@ enum { SOLVE_SCALARS = sizeof(struct solve_scalars) / sizeof(double) };
 /* Before the first pass, which is SOLVE_ON, or with a guess SOLVE_OPEN; `last` is zero. */
 struct solve_scalars solve_scalars_start(double step, double phase);
 
-/* Finds from the dots of a pass what the next one does. Returns SOLVE_OK, or why there is no next
- * pass: p.Ap is not positive; so many iterations were not enough; or the true residual stays above
- * what was asked for. `after` has the numbers in any case, and keeps the outcome. */
+/* Finds the next pass from the dots of one. Returns SOLVE_OK, or why there is no next pass: p.Ap is
+ * not positive; the iterations were not enough; or the true residual stays above the tolerance.
+ * `after` has the numbers in any case, and keeps the outcome. */
 enum { SOLVE_OK, SOLVE_BREAKDOWN, SOLVE_NOT_CONVERGED, SOLVE_STALLED };
 int solve_scalars_next(const struct solve_stop *stop, const double dots[SOLVE_DOTS],
                        const struct solve_scalars *before, struct solve_scalars *after);
@@ -157,12 +157,12 @@ PHYS_INLINE void solve_advance(double alpha, double beta, const phys_vec *s, phy
 double solve_finish(size_t n, double alpha, const phys_vec *q, const phys_vec *p, phys_vec *dv,
                     phys_vec *r);
 
-/* r = S b - q, with q = S A dv. Writes r.r and the drift from what r was. */
+/* r = S b - q, with q = S A dv. Writes r.r and the drift from the old r. */
 void solve_renew(size_t n, const double *free, const double *diagonal, const phys_vec *b,
                  const phys_vec *q, phys_vec *r, double dots[SOLVE_DOTS]);
 
-/* Before the first pass with a guess, which is in dv: it becomes S times its multiple by `part`; r
- * = S b, p = q = 0. filter: that of the matrix (cloth/solve/block.h), or NULL. */
+/* Starts a solve with a guess in dv: multiplies dv by `part` S, sets r = S b, p = q = 0. filter:
+ * that of the matrix (cloth/solve/block.h), or NULL. */
 void solve_start_guess(size_t n, const double *free, const phys_vec *filter, const phys_vec *b,
                        double part, phys_vec *dv, phys_vec *r, phys_vec *p, phys_vec *q);
 

@@ -16,7 +16,7 @@
 /* A pivot below this part of its entry in C is rounding. */
 #define LEAST 1e-10
 
-/* With a pivot below this part, as in long steps of cloth that nothing holds, T is not rounded. */
+/* T is not rounded if a pivot is below this part, as in long steps of cloth that nothing holds. */
 #define LEAST_OF_ROUNDED 1e-5
 
 enum { N = SOLVE_COARSE, WIDTH = 3 };
@@ -30,8 +30,8 @@ struct rounded {
 };
 
 /* The parts of a factor: the diagonal of C, a stride a column of blocks; the diagonal blocks of all
- * columns; the entries, which are rounded where they lie. Number N of the first stride says whether
- * there is T in place of L. */
+ * columns; the entries, which are rounded where they lie. Number N of the first stride says if T is
+ * in place of L. */
 struct parts {
     double *whole;
     struct dense *diagonal, *entry;
@@ -99,7 +99,7 @@ void solve_coarse_fill(const struct solve_pattern *pattern, const uint32_t *firs
         if (neighbour[i] == SOLVE_LEFT_OUT)
             continue;
         const uint32_t there = pattern->place[neighbour[i]];
-        if (there < here) /* rows of what comes later, columns of what comes first */
+        if (there < here) /* rows of the later block, columns of the first */
             fill(coupling, false, entry_of(pattern, parts.entry, there, here));
         else
             fill(coupling, true, entry_of(pattern, parts.entry, here, there));
@@ -223,8 +223,7 @@ PHYS_INLINE void square(struct dense *m)
         }
 }
 
-/* L of a column becomes the inverse of E and T. What is written of T lies before what is still to
- * be read. */
+/* L of a column becomes the inverse of E and T, in place: T is written behind the reads. */
 PHYS_INLINE void finish(const struct solve_pattern *pattern, uint32_t k, const struct parts *parts)
 {
     struct dense inverse;

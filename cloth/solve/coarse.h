@@ -21,8 +21,8 @@ void solve_basis(size_t n, const double *free, const phys_vec *position, phys_ve
  */
 void solve_basis_filter(size_t n, const phys_vec *filter, phys_vec *basis);
 
-/* Makes the diagonal block of rows from .. to - 1 and of the entries among them, row by row, own[3
- * k + c][3 l + d]: function k along axis c. */
+/* Makes the diagonal block of rows from .. to - 1 and the entries among them, row by row, own[3 k +
+ * c][3 l + d]: function k along axis c. */
 void solve_couple(const struct solve_block *block, size_t from, size_t to, const void *values,
                   const phys_vec *basis, double own[SOLVE_COUPLING]);
 
@@ -34,7 +34,7 @@ void solve_couple_cut(const struct solve_block *block, const void *values, size_
                       const phys_vec *other_basis, double own[SOLVE_COUPLING],
                       double off_diagonal[SOLVE_COUPLING]);
 
-/* P' of one row with a weight: of function k along axis c, [3 k + c]. Of some rows it is the sum.
+/* P' of one row with a weight, or the sum over several rows: [3 k + c] of function k along axis c.
  */
 struct solve_lifted {
     double c[SOLVE_COARSE];
@@ -65,12 +65,12 @@ struct solve_pattern {
     uint32_t *row;   /* places, ascending in a column */
 };
 
-/* A neighbour that the pattern does not have: what couples a block with it is left out. */
+/* A neighbour that the pattern does not have: its couplings are left out. */
 #define SOLVE_LEFT_OUT UINT32_MAX
 
-/* From the neighbours of each block: those of block b are neighbour[first[b]] .. neighbour[first[b
- * + 1] - 1]. Time grows as n^3: many blocks are solved by parts (cloth/solve/levels.h). Error:
- * CLOTH_E_MEMORY. Local. */
+/* Makes the pattern from the neighbours of each block: those of block b are neighbour[first[b]] ..
+ * neighbour[first[b + 1] - 1]. Time grows as n^3: many blocks are solved by parts
+ * (cloth/solve/levels.h). Error: CLOTH_E_MEMORY. Local. */
 int solve_pattern_make(struct solve_pattern *pattern, uint32_t n, const uint32_t *first,
                        const uint32_t *neighbour, struct cloth_error *error);
 void solve_pattern_free(struct solve_pattern *pattern);
@@ -78,15 +78,15 @@ void solve_pattern_free(struct solve_pattern *pattern);
 /* Doubles of a factor, aligned to 32 bytes. */
 size_t solve_coarse_doubles(const struct solve_pattern *pattern);
 
-/* Puts into the factor what block b adds: its diagonal block, then one for each neighbour with a
- * higher number, ascending (first and neighbour as above). solve_coarse_clear comes once, before
- * all blocks. */
+/* Puts the coupling of block b into the factor: its diagonal block, then one for each neighbour
+ * with a higher number, ascending. first and neighbour as above. solve_coarse_clear comes once,
+ * before all blocks. */
 void solve_coarse_clear(const struct solve_pattern *pattern, double *factor);
 void solve_coarse_fill(const struct solve_pattern *pattern, const uint32_t *first,
                        const uint32_t *neighbour, uint32_t b, const double *coupling,
                        double *factor);
 
-/* Factorises what was filled in. Returns how many columns were dropped. */
+/* Factorises the filled matrix. Returns how many columns were dropped. */
 uint32_t solve_coarse_factor(const struct solve_pattern *pattern, double *factor);
 
 /* A vector of the coarse space, aligned to 32 bytes: SOLVE_COARSE_STRIDE doubles a block, nine of

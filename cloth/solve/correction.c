@@ -19,7 +19,7 @@ static double target_of(const struct solve_correction *c, const struct solve_edg
     return edge->most + (after > 0 ? after : 0);
 }
 
-/* Whether the edge turned by more than 60 degrees, or had no length. */
+/* True if the edge turned by more than 60 degrees, or had no length. */
 static bool is_turned(const phys_vec *base, const phys_vec *d, double square)
 {
     const double along = phys_dot(base, d);

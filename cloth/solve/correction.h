@@ -14,11 +14,11 @@
  *     d = x1 - x0,   g = w0 S0 e + w1 S1 e,   x0 += k w0 S0 e,   x1 -= k w1 S1 e,   v += dx / t
  *     |d - k g| = l,   k = (|d|^2 - l^2) / (d.g + sqrt((d.g)^2 - |g|^2 (|d|^2 - l^2)))
  *
- * S is what pins leave free (solve_filter); w is 0 where a pin holds. Where no k makes the edge
- * short enough, k = d.g / |g|^2 makes it as short as this line can. Momentum stays, since the two
- * impulses are opposite. The angular momentum of x and v changes by (X1 - X0) x p. So e = X1 - X0,
- * the edge as it lies where x - t v is, which keeps it. An edge that turns by more than 60 degrees
- * between X and x has e = d in its place: along the old line it hardly gets shorter.
+ * S keeps the directions that pins leave free (solve_filter); w is 0 where a pin holds. If no k
+ * makes the edge short enough, k = d.g / |g|^2 makes it as short as this line can. Momentum stays,
+ * since the two impulses are opposite. The angular momentum of x and v changes by (X1 - X0) x p. e
+ * = X1 - X0, the edge at x - t v, keeps it. An edge that turns by more than 60 degrees between X
+ * and x has e = d in its place: along the old line it hardly gets shorter.
  *
  * The velocities with |d| <= l are a convex set. With e = d the impulse is the projection onto it
  * in the norm of the masses. So each correction, and each mean of corrections, comes nearer to
@@ -31,8 +31,8 @@
  *
  *     l = l0 + max(0, b / (1 + h / 0.01 s) - tolerance L)
  *
- * Rounds leave at most tolerance L more than l. So the excess of an edge falls by this factor in
- * each step until it is below tolerance L, and stays there. Pure functions. */
+ * Rounds leave at most tolerance L more than l. The excess of an edge falls by this factor in each
+ * step until it is below tolerance L, and stays there. Pure functions. */
 
 /* An edge with a limit, m. */
 struct solve_edge {
@@ -40,7 +40,7 @@ struct solve_edge {
     double length, most, slack; /* L; l0; tolerance L > 0 */
 };
 
-/* What a round does with edges. */
+/* How a round corrects edges. */
 struct solve_correction {
     double h, t;   /* s: the step; t of x = X + t v */
     double part;   /* edges are corrected that are over l by more than this part of their slack */
@@ -53,21 +53,21 @@ struct solve_end {
     double w;                        /* 1/kg; 0: held */
 };
 
-/* What a round found, the largest of any edge: (|d| - l) / L before its correction, and 1 if an
- * edge was corrected or, by a round that looks only, would have been. Edges whose pins forbid that
- * they get shorter do not count. */
+/* The largest findings of a round over all edges. most: (|d| - l) / L before its correction.
+ * corrected: 1 if an edge was corrected, or would have been in a round that looks only. Edges that
+ * pins keep from getting shorter do not count. */
 struct solve_excess {
     double most, corrected;
 };
 
-/* Whether an edge is longer than its limit where it is now. */
+/* True if an edge is longer than its limit now. */
 PHYS_INLINE bool solve_is_over(const struct solve_edge *edge, const phys_vec *a, const phys_vec *b)
 {
     const phys_vec d = *b - *a;
     return phys_dot(&d, &d) > edge->most * edge->most;
 }
 
-/* Corrects an edge that is over its limit: writes what moves each end, m, times share. Returns
+/* Corrects an edge that is over its limit: writes the move of each end, m, times share. Returns
  * false if nothing moves. */
 bool solve_correct(const struct solve_correction *correction, const struct solve_edge *edge,
                    const struct solve_end end[2], double share, phys_vec move[2],
@@ -90,9 +90,9 @@ struct solve_rounds {
 enum { SOLVE_ROUNDS_NUMBERS = sizeof(struct solve_rounds) / sizeof(double) };
 
 struct solve_rounds solve_rounds_start(double h, double t, double time);
-/* The first round corrects all that is over, later ones what is over by more than its slack. So a
- * round that corrects nothing changes nothing, and is the last. After `max` that corrected, one
- * looks. */
+/* The first round corrects all edges over their limit, later ones those over by more than their
+ * slack. So a round that corrects nothing changes nothing, and is the last. After `max` rounds that
+ * corrected, one looks only. */
 struct solve_correction solve_rounds_correction(const struct solve_rounds *now);
 struct solve_rounds solve_rounds_next(const struct solve_rounds *before,
                                       const struct solve_excess *found, double max);

@@ -1,4 +1,4 @@
-/* What one block adds to the coarse matrix. Let an entry between a and b be N = K + [w]x with K
+/* The part of one block in the coarse matrix. Let an entry between a and b be N = K + [w]x with K
  * symmetric, and phi the rows of P. It adds (phi_a - phi_b)(phi_a - phi_b)' times K, and (phi_b
  * phi_a' - phi_a phi_b') times [w]x, since the [w]x of a row sum to zero. The sums go over
  * symmetric 3 x 3 blocks, six for one block, nine for two, and over vectors w, three and nine. */
@@ -60,7 +60,7 @@ PHYS_INLINE void add(struct solve_symmetric *to, double factor, const struct sol
     to->off_diagonal += factor * m->off_diagonal;
 }
 
-/* Whether axis c of a row is in the space. */
+/* 1 if axis c of a row is in the space. */
 PHYS_INLINE double has(const phys_vec *basis, int c)
 {
     return ((int)(*basis)[3] >> c & 1) == 0;
@@ -101,7 +101,7 @@ static void put_filtered(const struct filtered *sum, double *matrix)
                     matrix[SOLVE_COARSE * (3 * k + c) + 3 * l + d] += sum->c[k][d][l][c];
 }
 
-/* What an entry adds between rows a and b of which axes are missing. */
+/* Adds an entry between rows a and b that lack some axes. */
 PHYS_INLINE void couple_filtered(enum solve_format format, const phys_vec *a, const phys_vec *b,
                                  const struct solve_symmetric *m, const phys_vec *turn,
                                  struct filtered *sum)

@@ -7,10 +7,9 @@
 #include <stdint.h>
 
 /* How the off-diagonal part of a matrix is kept. An entry joins two rows, a and b: with N = -A_ab
- * it adds N d, d = p_a - p_b, to row a and takes N' d from row b. So the diagonal is not kept.
- * Block a of it is what the row has besides entries (its mass, h times its drag, kg) plus the sum
- * of N over the row's entries as they are rounded. On a uniform motion the sum has no effect, in
- * every format. */
+ * it adds N d, d = p_a - p_b, to row a and takes N' d from row b. So the diagonal is not kept. Its
+ * block a is the row's own part (mass, h times drag, kg) plus the sum of N over the row's entries
+ * as rounded. The sum has no effect on a uniform motion, in every format. */
 enum solve_format {
     SOLVE_SPRINGS,   /* N = alpha I + w w', four doubles an entry: w0 w1 w2 alpha */
     SOLVE_HALF,      /* any N, nine doubles an entry: n00 n11 n22, n01 n12 n20, n02 n10 n21 */
@@ -28,7 +27,7 @@ static inline size_t solve_format_doubles(enum solve_format format, size_t rows,
     if (format == SOLVE_SPRINGS)
         return 4 * entries;
     if (format == SOLVE_HALF)
-        return SOLVE_NINE * entries + 1; /* what is read as four numbers may end behind the last */
+        return SOLVE_NINE * entries + 1; /* a read of four numbers may end behind the last */
     return 4 * rows + (SOLVE_NINE * entries + 2) / 2;
 }
 
@@ -79,7 +78,7 @@ PHYS_INLINE void solve_nine_of(enum solve_format format, const void *entry, size
     }
 }
 
-/* Whether a spring's value adds nothing. */
+/* True if a spring's value adds nothing. */
 PHYS_INLINE bool solve_is_nothing(const phys_vec *value)
 {
     return (*value)[0] == 0 && (*value)[1] == 0 && (*value)[2] == 0 && (*value)[3] == 0;

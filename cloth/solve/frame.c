@@ -1,5 +1,5 @@
-/* A frame has what follows of the first and second moments of its points, and nothing else: so the
- * frame of a group follows of those of its parts. */
+/* A frame depends only on the first and second moments of its points, so the frame of a group
+ * follows from those of its parts. */
 #include "cloth/solve/frame.h"
 
 #include "cloth/base/axes.h"

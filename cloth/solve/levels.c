@@ -1,5 +1,5 @@
-/* Levels are made once a run, of the graph of patches alone: the same everywhere. What a step does
- * with them is at the end. */
+/* Levels are made once a run from the graph of patches alone, so they are the same everywhere. The
+ * end of the file has the functions of a step. */
 #include "cloth/solve/levels.h"
 
 #include "cloth/base/memory.h"
@@ -7,9 +7,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* ---- What groups cover ---- */
+/* ---- Covers of groups ---- */
 
-/* Marks what group g covers. Returns how many nodes that are. */
+/* Marks the nodes that group g covers. Returns their number. */
 static uint32_t mark_cover(const struct solve_level *level, uint32_t g, unsigned char *mark)
 {
     uint32_t n = 0;

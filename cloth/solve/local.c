@@ -1,9 +1,9 @@
 /* A factor has for each row the inverse of a 3 x 3 block (struct solve_symmetric). Behind them
- * IC(0) has for each inner entry its block of T, transposed. A row gives to later rows multiples of
- * columns of T', by its own three numbers. What it takes from them is summed over its entries
- * first, over lanes at the end. The same T stands on both sides of E, so M is exactly symmetric and
- * as definite as E. T is made in double and kept in float, in the first half of its memory. A solve
- * reads T far more often than it is made, and half the bytes take less time. */
+ * IC(0) has for each inner entry its block of T, transposed. A row gives multiples of columns of
+ * T', by its own three numbers, to later rows. Its sum from them runs over its entries first, over
+ * lanes at the end. The same T stands on both sides of E, so M is exactly symmetric and as definite
+ * as E. T is made in double and kept in float, in the first half of its memory. A solve reads T far
+ * more often than it is made, and half the bytes take less time. */
 #include "cloth/solve/local.h"
 #include "cloth/solve/matrix3.h"
 
@@ -129,8 +129,7 @@ PHYS_INLINE void gather(const struct solve_block *block, const struct solve_cut 
             filter_diagonal(block->filter + a, sum + a);
 }
 
-/* A row's block may be singular in what rounding leaves of a stiff spring: then a larger diagonal
- * is taken, which is not. */
+/* Rounding of a stiff spring may leave a row's block singular: then its diagonal is made larger. */
 PHYS_INLINE void invert_surely(struct solve_symmetric *m)
 {
     const phys_vec whole = m->diagonal;
@@ -254,7 +253,7 @@ PHYS_INLINE void over_relax(const struct solve_block *block, const struct solve_
     }
 }
 
-/* What is written lies before what is still to be read. */
+/* Works in place: each write is behind the reads. */
 PHYS_INLINE void round_off(const struct solve_block *block, struct factor *f)
 {
     for (size_t i = 0; i < block->row[block->n]; i++) {

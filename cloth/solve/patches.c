@@ -20,7 +20,7 @@ struct gathering {
     bool inside; /* both ends are of this block */
 };
 
-/* The far end's own share, of an inner entry: what lies beside it then was added from here. */
+/* Adds the far end's own share of an inner entry; the coupling was added from the near end. */
 static void add_far(const struct gathering *all, const struct gathered *gathered, double *own)
 {
     double off_diagonal[SOLVE_COUPLING] = {0};

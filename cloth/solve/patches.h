@@ -4,8 +4,8 @@
 #include "cloth/solve/coarse.h"
 
 /* The rows of a block may have several sets of columns of P (cloth/solve/coarse.h), one for each
- * patch. A patch is a run of rows, which the order of rows keeps together. There, what is said of
- * blocks holds for patches. Pure functions. */
+ * patch. A patch is a run of rows, which the order of rows keeps together. Patches take the place
+ * of blocks there. Pure functions. */
 enum { SOLVE_MAX_PATCHES = 4 };
 
 /* Patch k has rows start[k] .. start[k + 1] - 1; behind the last one start is `rows`. */
@@ -32,7 +32,7 @@ static inline uint32_t solve_patch_of(const struct solve_patches *patches, uint3
     return patch;
 }
 
-/* Which patches anything joins, as bits: of patch k here with patch l there. */
+/* The bit for a coupling of patch k here with patch l there. */
 static inline uint32_t solve_patch_bit(uint32_t k, uint32_t l)
 {
     return UINT32_C(1) << (SOLVE_MAX_PATCHES * k + l);

@@ -5,8 +5,8 @@
 
 #include <stdlib.h>
 
-/* The graph that elimination leaves, as bits: row b of `words` words has those that b still meets.
- */
+/* The graph left by elimination, as bits: row b of `words` words has the neighbours that b still
+ * has. */
 struct graph {
     uint32_t n, words;
     uint64_t *bits;
@@ -61,7 +61,7 @@ static void eliminate(struct graph *graph, uint32_t b)
     graph->degree[b] = UINT32_MAX;
 }
 
-/* Fills block, place and first; leaves in the rows of bits what each block met when it went. */
+/* Fills block, place and first; the rows of bits keep the neighbours of each block when it went. */
 static void order(struct graph *graph, struct solve_pattern *pattern)
 {
     pattern->first[0] = 0;

@@ -69,7 +69,7 @@ static int compare(const void *va, const void *vb)
     return (a->at > b->at) - (a->at < b->at);
 }
 
-/* Moves what belongs to the pairs, `bytes` each, to where they are now. room: as large. */
+/* Moves the data of pairs, `bytes` each, to their new places. room: as large. */
 static void move(const struct entry *entry, size_t n, size_t bytes, void *array, void *room)
 {
     char *to = array, *from = room;

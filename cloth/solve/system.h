@@ -6,8 +6,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* The system of one implicit step in plain arrays, in the numbering of the input, to look at, keep
- * or solve in another way: S A S dv = S b with S = diag(free) and
+/* The system of one implicit step in plain arrays and the input's numbering, for other uses: S A S
+ * dv = S b with S = diag(free) and
  *
  *     A = diagonal + the sum over the pairs of their N (cloth/solve/format.h),
  *

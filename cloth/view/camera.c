@@ -1,6 +1,6 @@
 /* A point p at (x, y, z) in the camera's axes is within the margins of an eye at e if |x - ex| <= t
- * (ez - z), and so in y. Each is two linear conditions on (ex, ez), so the largest of four sums
- * over the points decides where the nearest eye is: points may come in any number and order. */
+ * (ez - z), and so in y. Each is two linear conditions on (ex, ez), so the nearest eye follows from
+ * the largest of four sums over the points, in any number and order. */
 #include "cloth/view/view.h"
 
 #include <cglm/cam.h>
@@ -193,8 +193,8 @@ void view_orbit_camera(const struct view_orbit *orbit, double aspect, struct vie
     camera->reach = (float)orbit->size;
 }
 
-/* How near and far things are is known of the direction that was fitted. From another one a sphere
- * around them must do. */
+/* How near and far things are is known of the direction that was fitted. Another direction uses a
+ * sphere around them. */
 static void lose_depths(struct view_orbit *orbit)
 {
     orbit->front = fmax(orbit->front, orbit->radius);

@@ -92,8 +92,8 @@ double view_scale_part(const struct view_scale *scale, double value)
     return fmin(fmax((value - scale->min) / (scale->max - scale->min), 0), 1);
 }
 
-/* The next number of 1, 2, 5 with zeros that is not below a positive one, but for what floats lose.
- */
+/* The next number of 1, 2, 5 with zeros that is not below a positive one, but for rounding of
+ * floats. */
 static double round_up(double value)
 {
     const double near = 1e-4, unit = pow(10, floor(log10(value * (1 - near))));
@@ -139,7 +139,7 @@ const float view_hue[VIEW_HUES][3] = {
     RGB(0xe6, 0x9f, 0x00), RGB(0x56, 0xb4, 0xe9), RGB(0x00, 0x9e, 0x73), RGB(0xf0, 0xe4, 0x42),
     RGB(0x00, 0x72, 0xb2), RGB(0xd5, 0x5e, 0x00), RGB(0xcc, 0x79, 0xa7), RGB(0xbb, 0xbb, 0xbb)};
 
-/* Which colours the neighbours before each part have, as bits. */
+/* The colours of the earlier neighbours of each part, as bits. */
 static void find_near(uint32_t n_triangles, const uint32_t *triangle, const int32_t *part,
                       uint32_t n_parts, const unsigned char *hue, unsigned *near)
 {

@@ -5,7 +5,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* What cloth is coloured by, and how numbers become colours. Pure functions. */
+/* Quantities that colour cloth, and the colours of numbers. Pure functions. */
 
 enum view_colour {
     VIEW_COLOUR_CLOTH,   /* each cloth its own, as light falls on it */
@@ -18,7 +18,7 @@ enum view_colour {
 };
 
 struct view_scale {
-    double min, max; /* min < max: what has the first and the last colour of the map */
+    double min, max; /* min < max: the numbers of the map's first and last colour */
 };
 
 struct view_colouring {
@@ -29,10 +29,10 @@ struct view_colouring {
 
 /* block, rank, ...; NULL behind the last. */
 const char *view_colour_word(enum view_colour by);
-/* What a picture says above a scale, with the unit. */
+/* The title above a scale, with the unit. */
 const char *view_colour_title(enum view_colour by);
-/* Whether it is one of parts, which have no order; else, but for the cloth, it is one of numbers on
- * a scale. */
+/* True for colours of parts, which have no order; all others but the cloth's are of numbers on a
+ * scale. */
 static inline bool view_colour_is_of_parts(enum view_colour by)
 {
     return by == VIEW_COLOUR_BLOCK || by == VIEW_COLOUR_RANK;
@@ -41,18 +41,18 @@ static inline bool view_colour_has_scale(enum view_colour by)
 {
     return by >= VIEW_COLOUR_STRAIN;
 }
-/* WORD, or with a scale WORD,MAX (from 0) or WORD,MIN:MAX. NULL, or what is wrong with it. */
+/* WORD, or with a scale WORD,MAX (from 0) or WORD,MIN:MAX. NULL, or its fault. */
 const char *view_colouring_parse(const char *text, struct view_colouring *colouring);
 
 /* --- Numbers: viridis, by S. van der Walt and N. Smith (2015, matplotlib, CC0): its lightness
- * grows evenly, also for those who see no red, no green or no blue. These are ten of its colours,
- * evenly spread, as sRGB, 0 .. 1; between them it is linear. --- */
+ * grows evenly, also without red, green or blue. These are ten of its colours, evenly spread, as
+ * sRGB, 0 .. 1; between them it is linear. --- */
 
 enum { VIEW_MAP = 10 };
 extern const float view_map[VIEW_MAP][3];
-/* At part 0 .. 1; what lies outside has the colour of the end. */
+/* At part 0 .. 1; parts outside have the colour of the end. */
 void view_map_at(double part, float colour[3]);
-/* Where a number is on a scale, 0 .. 1 and, outside, the end. */
+/* The part of a number on a scale, 0 .. 1 and, outside, the end. */
 double view_scale_part(const struct view_scale *scale, double value);
 /* From 0 to the next round number: 1, 2 or 5 with zeros; to 1 where nothing is above 0. */
 struct view_scale view_scale_up_to(double max);
@@ -72,10 +72,10 @@ void view_scale_ticks(const struct view_scale *scale, struct view_ticks *ticks);
 
 enum { VIEW_HUES = 8 };
 extern const float view_hue[VIEW_HUES][3];
-/* Gives each of n_parts parts a colour, below VIEW_HUES. The first VIEW_HUES parts keep the one of
- * their number if there are no more; else a part takes the first one from its number on that no
- * neighbour before it has. Parts are neighbours if a triangle has vertices of both; a vertex of
- * part -1 is of none. part: of each vertex; near: room for n_parts numbers. */
+/* Gives each of n_parts parts a colour, below VIEW_HUES. If there are at most VIEW_HUES parts, each
+ * has the colour of its number. Otherwise a part takes the first one from its number on that no
+ * earlier neighbour has. Parts are neighbours if a triangle has vertices of both; a vertex of part
+ * -1 is of none. part: of each vertex; near: room for n_parts numbers. */
 void view_hues_spread(uint32_t n_triangles, const uint32_t *triangle, const int32_t *part,
                       uint32_t n_parts, unsigned char *hue, unsigned *near);
 

@@ -1,4 +1,4 @@
-/* The numbers are those of the frame that was found last, by what colours it now. */
+/* The numbers are of the frame found last, in the quantity that colours it now. */
 #include "cloth/view/colours.h"
 
 #include "cloth/base/memory.h"
@@ -65,9 +65,9 @@ static int compare(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* The number that one in twenty of those above 0 is above, so that the few vertices at a pin do
- * not leave one colour for all others; of many vertices, from an even sample. Sorts `value`. NaN:
- * none is above 0. */
+/* The number that one in twenty of those above 0 exceeds, so that a few vertices at a pin do not
+ * leave one colour for all others. Many vertices are sampled evenly. Sorts `value`. NaN: none is
+ * above 0. */
 static double find_high(double *value, size_t n)
 {
     const size_t stride = n / SAMPLE + 1;
@@ -79,7 +79,7 @@ static double find_high(double *value, size_t n)
     return found ? value[found - 1 - found / 20] : (double)NAN;
 }
 
-/* Over the frames that have numbers. */
+/* Finds the scale over the frames that have numbers. */
 static int find_scale(struct view_colours *colours, enum view_colour by, struct cloth_error *error)
 {
     const size_t n = colours->cache->mesh.n_vertices;

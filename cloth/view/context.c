@@ -114,5 +114,5 @@ void view_context_close(struct view_context *context)
         eglDestroyContext(context->display, context->context);
     }
     eglReleaseThread();
-    free(context); /* the display is the process's: EGL gives the same one to all who ask */
+    free(context); /* the display is the process's: EGL gives the same one to all callers */
 }

@@ -18,7 +18,7 @@ extern char **environ;
 struct view_film {
     const char *path;
     char *part, *target; /* the name while it is written; the same as ffmpeg takes it */
-    FILE *said;          /* what ffmpeg wrote on standard error */
+    FILE *said;          /* ffmpeg's standard error */
     int pipe;            /* -1: closed */
     pid_t ffmpeg;
     bool started, ended;     /* ffmpeg; where it ended, it has been waited for */
@@ -26,7 +26,7 @@ struct view_film {
     struct sigaction before; /* and was handled so before */
 };
 
-/* With the last thing that ffmpeg said, in one line. */
+/* Adds the last line that ffmpeg printed. */
 static int fail_as_said(struct view_film *film, struct cloth_error *error)
 {
     char line[300], last[300] = "";
@@ -89,7 +89,7 @@ static int start(struct view_film *film, const char *size, const char *rate,
                    : 0;
 }
 
-/* What stops while it is written to is told by the write, not by a signal. */
+/* If ffmpeg stops early, the write fails and no signal ends the process. */
 static void ignore_pipe(struct view_film *film)
 {
     const struct sigaction ignore = {.sa_handler = SIG_IGN};
@@ -169,7 +169,7 @@ int view_film_close(struct view_film **film, bool whole, struct cloth_error *err
     *film = NULL;
     if (!gone)
         return 0;
-    /* Whoever wants no film has an error of its own, which stays. */
+    /* A caller that gives up the film keeps its own error. */
     struct cloth_error unheard = {0};
     int code = end_ffmpeg(gone, whole ? error : &unheard);
     code = whole ? code : 0;

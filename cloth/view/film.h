@@ -16,7 +16,7 @@ struct view_film;
  * no ffmpeg; CLOTH_E_IO, CLOTH_E_MEMORY. */
 int view_film_open(struct view_film **film, const char *path, int width, int height, double fps,
                    struct cloth_error *error);
-/* Errors: CLOTH_E_IO, ffmpeg has stopped: what it said. */
+/* Errors: CLOTH_E_IO, ffmpeg has stopped: its message. */
 int view_film_add(struct view_film *film, const struct view_picture *picture,
                   struct cloth_error *error);
 /* Waits until the file is whole; *film becomes NULL. Unless `whole` is asked for, nothing is left

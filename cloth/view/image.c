@@ -16,7 +16,7 @@ static int fail(struct cloth_error *error, const char *path, const char *reason)
     return cloth_fail(error, CLOTH_E_IO, "cannot write %s: %s", path, reason);
 }
 
-/* name: the file that is opened; path: what it is to be, in sentences. */
+/* name: the file that is opened; path: its final name, for sentences. */
 static int write_file(const struct view_picture *picture, const char *name, const char *path,
                       struct cloth_error *error)
 {

@@ -4,8 +4,8 @@
 #include "cloth/view/colour.h"
 #include "cloth/view/view.h"
 
-/* What the colours of a picture mean, in its upper right corner: a scale with round numbers and
- * their unit, or the numbers of parts. It is as large as the picture lets it be. */
+/* The legend of a picture's colours, in its upper right corner: a scale with round numbers and
+ * their unit, or the numbers of parts. Its size follows the picture's. */
 
 struct view_legend {
     enum view_colour by; /* VIEW_COLOUR_CLOTH: there is nothing to say */
@@ -19,7 +19,7 @@ struct view_legend {
 int view_legend_lay(const struct view_legend *legend, struct view_picture *picture,
                     struct cloth_error *error);
 
-/* By cairo, on a surface of a picture's size; `cairo`: its cairo_t. */
+/* Paints with cairo, on a surface of a picture's size; `cairo`: its cairo_t. */
 void view_legend_paint(const struct view_legend *legend, void *cairo, int width, int height);
 
 #endif

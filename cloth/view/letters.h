@@ -7,7 +7,7 @@
 
 /* Letters of a size, pixels. */
 void view_letters(cairo_t *cairo, double size);
-/* From x on, or up to it; y: the base line. */
+/* Writes from x on, or up to it; y: the base line. */
 void view_letters_from(cairo_t *cairo, double x, double y, const char *text);
 void view_letters_to(cairo_t *cairo, double x, double y, const char *text);
 /* Pixels that a text is wide. */

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Of the surface of obstacle i; none: it is a plane. */
+/* Counts vertices and triangles of obstacle i's surface; 0: it is a plane. */
 static void count_surface(const struct view_obstacles *obstacles, size_t i, uint32_t *n_vertices,
                           uint32_t *n_triangles)
 {
@@ -38,7 +38,7 @@ static int take_room(struct view_obstacles *obstacles, struct cloth_error *error
     return 0;
 }
 
-/* Of all, or of bodies alone. */
+/* Makes the surfaces of all obstacles, or of bodies alone. */
 static void make_surfaces(struct view_obstacles *obstacles, bool bodies_alone)
 {
     uint32_t first = 0, vertices, triangles;

@@ -3,10 +3,8 @@
 
 #include "cloth/view/legend.h"
 
-/* What a window shows on top of the cloth: what colours mean, a time line and lines of text. Cairo
- * draws it, OpenGL lays it over the framebuffer that is bound. The context is current in all
- * functions; one thread.
- */
+/* Overlay of a window: the legend, a time line and lines of text. Cairo draws it, OpenGL lays it
+ * over the bound framebuffer. The context is current in all functions; one thread. */
 
 struct view_overlay_text {
     double part;             /* of the time line that is behind, 0 .. 1; -1: there is no line */
@@ -20,8 +18,8 @@ struct view_overlay;
 int view_overlay_new(struct view_overlay **overlay, struct cloth_error *error);
 int view_overlay_draw(struct view_overlay *overlay, const struct view_overlay_text *text, int width,
                       int height, struct cloth_error *error);
-/* Where x and y (pixels from the top left corner) are on the time line of a window: its part, 0 ..
- * 1; -1: beside it. Pure. */
+/* The part of a window's time line at x and y (pixels from the top left corner), 0 .. 1; -1: beside
+ * it. Pure. */
 double view_overlay_part(double x, double y, int width, int height);
 void view_overlay_free(struct view_overlay *overlay);
 

@@ -4,7 +4,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Which frame of a run is seen at what time of day. Pure functions; now: s, any clock that goes on.
+/* The frame of a run that is seen at a time of day. Pure functions; now: s, any clock that goes on.
  */
 
 struct view_player {

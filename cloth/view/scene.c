@@ -25,7 +25,7 @@ static int make_programs(struct view_scene *scene, struct cloth_error *error)
     return 0;
 }
 
-/* What of n runs of `corners` vertices belongs to a cloth, from `first` on. */
+/* Counts the runs of `corners` vertices that belong to a cloth, from `first` on, of n in all. */
 static uint32_t count_of(const uint32_t *vertex, uint32_t corners, uint32_t first, uint32_t n,
                          uint32_t end)
 {
@@ -121,7 +121,7 @@ static void cast(const void *context, bool coarse)
         draw(&scene->shapes);
 }
 
-/* Of a sphere around the cloth and what is near to it: shadows beyond are not worth their loss of
+/* Radius of a sphere around the cloth and shapes near it: shadows beyond are not worth the loss of
  * sharpness. */
 static float lit_radius(const struct view_scene *scene)
 {

@@ -4,7 +4,7 @@
 #include "cloth/view/draw/draw.h"
 #include "cloth/view/view.h"
 
-/* What a scene is made of: scene.c makes, moves and lights it, scene_draw.c draws it. */
+/* The parts of a scene: scene.c makes, moves and lights it, scene_draw.c draws it. */
 
 enum view_program {
     VIEW_CAST,

@@ -1,4 +1,4 @@
-/* A picture of a scene: all surfaces first, then the light on what is seen of them. */
+/* A picture of a scene: all surfaces first, then the light on their visible parts. */
 #include "cloth/view/scene.h"
 
 #include <cglm/mat4.h>
@@ -6,7 +6,7 @@
 #include <string.h>
 
 /* Colours of fronts and backs, linear, of cloths and of obstacles. Those of cloths go round. They
- * differ in lightness, too, for those who see no red or no green. */
+ * differ in lightness, too, for eyes that see no red or no green. */
 enum { N_COLOURS = 6, STONE = DRAW_PAINT_FIRST + 2 * N_COLOURS };
 static const float PAINT[2 * (N_COLOURS + 1)][3] = {
     {0.40f, 0.030f, 0.028f}, {0.46f, 0.120f, 0.050f}, {0.035f, 0.085f, 0.24f},
@@ -15,7 +15,7 @@ static const float PAINT[2 * (N_COLOURS + 1)][3] = {
     {0.45f, 0.43f, 0.40f},   {0.17f, 0.04f, 0.20f},   {0.24f, 0.10f, 0.26f},
     {0.22f, 0.25f, 0.28f},   {0.22f, 0.25f, 0.28f}};
 
-/* From sRGB, so much of the way from one colour to another. */
+/* Mixes two sRGB colours, so much of the way from one to the other, into a linear one. */
 static void decode(float linear[3], const float from[3], const float to[3], float way)
 {
     for (int k = 0; k < 3; k++) {
@@ -65,7 +65,7 @@ static double depth_of(const struct view_camera *camera, const double x[3])
     return 0.5 * clip[2] / clip[3];
 }
 
-/* Vertices of cloth lie on an obstacle, so that its triangles cut through what is round. Obstacles
+/* Vertices of cloth lie on an obstacle, so that its triangles cut through round shapes. Obstacles
  * are drawn as if they were a part of an edge of the cloth farther away, in units of the depth. */
 static float behind(const struct view_scene *scene, const struct view_camera *camera)
 {

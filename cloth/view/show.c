@@ -1,5 +1,5 @@
-/* A show has one frame at a time. What is read of it waits in plain arrays, so that files are read
- * before there is an OpenGL context; the scene gets it when it is drawn. */
+/* A show has one frame at a time. It waits in plain arrays, so that files can be read before there
+ * is an OpenGL context; drawing hands it to the scene. */
 #include "cloth/view/show.h"
 
 #include "cloth/contact/surface.h"
@@ -18,7 +18,7 @@ struct view_show {
     bool wire, plain;         /* plain: without shadows */
     struct view_scene *scene; /* NULL until the first drawing */
     bool moved;               /* the scene has another frame than was read last */
-    unsigned char *used;      /* a vertex: whether a face or an edge uses it */
+    unsigned char *used;      /* a vertex: true if a face or an edge uses it */
     uint64_t frame;           /* read last */
     double *position;         /* of it */
     struct view_colours *colours;
@@ -44,7 +44,7 @@ void view_show_say(const struct view_show *show)
     view_colours_say(show->colours);
 }
 
-/* Where they are in a frame. */
+/* Puts them where they are in a frame. */
 static int place_obstacles(struct view_show *show, uint64_t frame, struct cloth_error *error)
 {
     const int code = output_cache_pose(show->cache, frame, error);
@@ -155,7 +155,7 @@ static int make_scene(struct view_show *show, struct cloth_error *error)
     return view_scene_new(&show->scene, &shape, error);
 }
 
-/* Hands the scene what was read last. */
+/* Hands the scene the frame read last. */
 static int move_scene(struct view_show *show, struct cloth_error *error)
 {
     int code = show->scene ? 0 : make_scene(show, error);
@@ -218,7 +218,7 @@ const struct view_legend *view_show_legend(const struct view_show *show)
     return view_colours_legend(show->colours);
 }
 
-/* What the folder does not say is left out; the cloth's own colours are always there. */
+/* Skips quantities that the folder lacks; the cloth's own colours are always there. */
 int view_show_next_colour(struct view_show *show, struct cloth_error *error)
 {
     enum view_colour by = view_colours_by(show->colours);

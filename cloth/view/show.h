@@ -8,8 +8,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Frames of a folder, ready to be drawn: whoever shows one, in a picture, a film or a window, does
- * it by these functions. Local; one thread. */
+/* Frames of a folder, ready to be drawn. Pictures, films and windows show frames by these
+ * functions. Local; one thread. */
 
 struct view_wish {
     const char *folder;
@@ -22,8 +22,8 @@ struct view_wish {
 struct view_show;
 
 /* Fits the camera to all frames, or to a hundred spread evenly over a long run, so that pictures of
- * a folder go together. cache and wish stay the caller's, and outlive the show. *show: to be
- * closed in any case. Errors: CLOTH_E_INPUT, CLOTH_E_IO, CLOTH_E_MEMORY. */
+ * a folder go together. The caller owns cache and wish, which outlive the show. *show: to be closed
+ * in any case. Errors: CLOTH_E_INPUT, CLOTH_E_IO, CLOTH_E_MEMORY. */
 int view_show_open(struct view_show **show, struct output_cache *cache,
                    const struct view_wish *wish, struct cloth_error *error);
 /* Reads a frame, which is the one to be drawn from now on. */
@@ -44,18 +44,18 @@ struct view_sight {
     struct view_orbit orbit, fitted; /* as it is; as the fit has it */
 };
 struct view_sight *view_show_sight(struct view_show *show);
-/* Draws the frame into a window of that size, without what its colours mean. */
+/* Draws the frame into a window of that size, without the legend. */
 int view_show_window(struct view_show *show, int width, int height, struct cloth_error *error);
 void view_show_wire(struct view_show *show, bool wire);
-/* Colours by what is next in the order of enum view_colour, and can be shown of the folder. */
+/* Colours by the next quantity of enum view_colour that the folder has. */
 int view_show_next_colour(struct view_show *show, struct cloth_error *error);
-/* What colours mean in the frame. */
+/* The legend of the frame. */
 const struct view_legend *view_show_legend(const struct view_show *show);
-/* Whether there are shadows in the frames read from now on; at first there are. */
+/* Turns shadows on or off for the frames read from now on; they are on at first. */
 void view_show_shadows(struct view_show *show, bool shadows);
 /* The same on standard output. */
 void view_show_say(const struct view_show *show);
-/* Frees what drawing made, while its context is current. */
+/* Frees the objects of drawing, while its context is current. */
 void view_show_undraw(struct view_show *show);
 void view_show_close(struct view_show *show);
 

@@ -121,7 +121,7 @@ static void copy_strains(struct element_strains *strains, const struct output_re
     }
 }
 
-/* Those of the frame. */
+/* Takes the shapes at rest of the frame. */
 static int make_strains(struct view_values *values, uint64_t frame, struct cloth_error *error)
 {
     struct output_rest rest = {0};
@@ -165,7 +165,7 @@ static void add(struct view_values *values, double *value, const uint32_t *corne
     }
 }
 
-/* From cells to vertices. Edges count where no triangle does. */
+/* Averages cells to vertices. Edges count for vertices without triangles. */
 static void gather(struct view_values *values, double *value)
 {
     const struct element_strains *strains = &values->strains;

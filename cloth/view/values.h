@@ -4,7 +4,7 @@
 #include "cloth/output/output.h"
 #include "cloth/view/colour.h"
 
-/* What each vertex of a folder's frames is coloured by. Local; one thread. */
+/* Numbers that colour the vertices of a folder's frames. Local; one thread. */
 
 struct view_values;
 
@@ -12,12 +12,12 @@ struct view_values;
  * *values: to be closed in any case. Error: CLOTH_E_MEMORY. */
 int view_values_open(struct view_values **values, struct output_cache *cache, const char *folder,
                      struct cloth_error *error);
-/* Of each vertex of a frame the number of its part, or its number on a scale; NaN: there is none.
- * position: n_vertices x 3 of the frame, m.
- * Strain of a vertex: the mean of that of its triangles (cloth/element/strain.h), by their area at
- * rest; of one without triangles that of its edges, by length. So is stress, of each triangle the
- * larger eigenvalue of its elastic stress; vertices of springs have none.
- * Errors: CLOTH_E_INPUT, the folder does not say; CLOTH_E_MEMORY. */
+/* Gives each vertex of a frame the number of its part, or its number on a scale; NaN: there is
+ * none. position: n_vertices x 3 of the frame, m. Strain of a vertex: the mean of that of its
+ * triangles (cloth/element/strain.h), by their area at rest; without triangles, that of its edges,
+ * by length. Stress is averaged likewise, from the larger eigenvalue of each triangle's elastic
+ * stress; vertices of springs have none. Errors: CLOTH_E_INPUT, the folder does not say;
+ * CLOTH_E_MEMORY. */
 int view_values_at(struct view_values *values, enum view_colour by, uint64_t frame,
                    const double *position, double *value, struct cloth_error *error);
 /* How many frames have these numbers. Errors as before. */

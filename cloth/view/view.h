@@ -24,9 +24,8 @@ struct view_obstacles {
     double (*own)[6], (*vertex)[6]; /* n_vertices: point, normal; without motion, and at the time */
     uint32_t (*triangle)[3];
 };
-/* What is drawn of n obstacles, at time 0 (s); bodies have the shapes that they have then. shape,
- * keys, bodies: stay the caller's, and outlive it. To be freed in any case. Error: CLOTH_E_MEMORY.
- */
+/* Makes the surfaces of n obstacles, with places and body shapes at time 0 (s). The caller owns
+ * shape, keys and bodies, which outlive it. To be freed in any case. Error: CLOTH_E_MEMORY. */
 int view_obstacles_make(struct view_obstacles *obstacles, size_t n,
                         const struct contact_shape *shape, const struct phys_key *keys,
                         const struct contact_bodies *bodies, struct cloth_error *error);
@@ -38,7 +37,7 @@ void view_obstacles_free(struct view_obstacles *obstacles);
 struct view_camera {
     mat4 clip;    /* from the world to clip coordinates */
     float eye[3]; /* m */
-    float reach;  /* largest extent of what was fitted, m; > 0 */
+    float reach;  /* largest extent of the fitted points, m; > 0 */
 };
 
 /* Gathers points that the picture must show, seen from one direction. */
@@ -59,10 +58,10 @@ void view_fit_start(struct view_fit *fit, double azimuth, double elevation, doub
                     double zoom);
 /* position: n x 3 */
 void view_fit_add(struct view_fit *fit, size_t n, const double *position);
-/* Adds what lies under the points on the planes (point, normal) that they are near to. */
+/* Adds the feet of the points on the planes (point, normal) that they are near to. */
 void view_fit_planes(struct view_fit *fit, size_t n, const double (*planes)[6]);
-/* Adds those of the n points of an obstacle that are within half the points' extent of their box;
- * of a body that has one there all, unless it is more than four times as large. */
+/* Adds the points of an obstacle, of n, that are within half the points' extent of their box. A
+ * body with a point there adds all, unless it is more than four times as large. */
 void view_fit_near(struct view_fit *fit, size_t n, const double (*vertex)[6], bool body);
 /* The nearest camera of that direction that has all points within its margins. */
 void view_fit_camera(const struct view_fit *fit, struct view_camera *camera);
@@ -72,15 +71,15 @@ struct view_orbit {
     double azimuth, elevation, zoom; /* as view_fit_start has them */
     double target[3], distance;      /* m; of the eye */
     double front,
-        behind; /* m: how far what was fitted reaches from the target, to and from the eye */
+        behind; /* m: how far the fitted points reach from the target, to and from the eye */
     double radius, size; /* m: of a sphere around it; its largest extent */
 };
 /* The one that view_fit_camera has. */
 void view_fit_orbit(const struct view_fit *fit, struct view_orbit *orbit);
 void view_orbit_camera(const struct view_orbit *orbit, double aspect, struct view_camera *camera);
-/* By degrees; the elevation stays within +-89. */
+/* Turns by degrees; the elevation stays within +-89. */
 void view_orbit_turn(struct view_orbit *orbit, double azimuth, double elevation);
-/* Moves what is at the target by parts of the picture's height. */
+/* Moves the target's image by parts of the picture's height. */
 void view_orbit_pan(struct view_orbit *orbit, double right, double up);
 /* The zoom stays within 0.2 and 1000. */
 void view_orbit_zoom(struct view_orbit *orbit, double factor);
@@ -93,7 +92,7 @@ struct view_context;
 int view_context_open(struct view_context **context, struct cloth_error *error);
 void view_context_close(struct view_context *context);
 
-/* --- scene.c: what is drawn --- */
+/* --- scene.c: the scene drawn --- */
 
 struct view_shape {
     uint32_t n_vertices, n_triangles, n_lines;
@@ -111,8 +110,7 @@ int view_scene_new(struct view_scene **scene, const struct view_shape *shape,
                    struct cloth_error *error);
 /* position: n_vertices x 3 of the frame to be drawn; obstacles are drawn where they are now. */
 int view_scene_move(struct view_scene *scene, const double *position, struct cloth_error *error);
-/* What the cloth is coloured by. A colour that is mapped gets lighter and darker by light and
- * shadow, but is the same otherwise. */
+/* How the cloth is coloured. Light and shadow change only the lightness of a mapped colour. */
 enum view_paint {
     VIEW_PAINT_CLOTH, /* each cloth has a colour of its own */
     VIEW_PAINT_SCALE, /* a vertex has the colour of a map that is as far along it as its number, 0
@@ -124,11 +122,11 @@ enum { VIEW_MAP_MAX = 16 };
  * negative: there is none, which is grey. Neither is read of VIEW_PAINT_CLOTH. */
 void view_scene_paint(struct view_scene *scene, enum view_paint paint, int n, const float (*map)[3],
                       const float *value);
-/* Whether the edges of the cloth's triangles are drawn, too. */
+/* Draws the edges of the cloth's triangles, too, or not. */
 void view_scene_wire(struct view_scene *scene, bool wire);
-/* Whether there are shadows, from the next move on; a new scene has them. */
+/* Turns shadows on or off from the next move on; a new scene has them. */
 void view_scene_shadows(struct view_scene *scene, bool shadows);
-/* Into whatever framebuffer is bound, with four samples a pixel. */
+/* Draws into the bound framebuffer, with four samples a pixel. */
 int view_scene_draw(struct view_scene *scene, const struct view_camera *camera, int width,
                     int height, struct cloth_error *error);
 void view_scene_free(struct view_scene *scene);

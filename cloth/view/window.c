@@ -1,5 +1,5 @@
-/* A window draws when something has changed, and sleeps otherwise. Callbacks only note what is
- * wished; the loop does it, so that each failure has one way out. */
+/* A window draws when something has changed, and sleeps otherwise. Callbacks only note wishes; the
+ * loop carries them out, so that each failure has one way out. */
 #include "cloth/view/window.h"
 
 #include "cloth/view/overlay.h"
@@ -260,7 +260,7 @@ static int save(struct window *w, struct cloth_error *error)
     return code;
 }
 
-/* Takes what has come of a run, and what is to be said of it. */
+/* Takes the news of a live run. */
 static int look(struct window *w, struct cloth_error *error)
 {
     if (!w->live)

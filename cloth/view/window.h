@@ -11,7 +11,7 @@ struct view_live {
     bool waits;             /* nothing is to come for now */
     const char *line;       /* how it stands, as a sentence */
     uint64_t frame;         /* of the run */
-    /* Takes what has come, without waiting. The context of OpenGL is current. */
+    /* Takes the newest frame, without waiting. The context of OpenGL is current. */
     int (*look)(struct view_live *live, struct cloth_error *error);
     void *context;
 };
@@ -19,8 +19,8 @@ struct view_live {
 /* Shows the frames of a folder in a window until it is closed: mouse and keys as its help (key h)
  * says. It begins at `frame`, in wish's size; the cache's rate is that of playing. Pictures that
  * key s asks for go to duite-view-FRAME.png in the current folder, and are named on standard
- * output. Local; on the main thread. Errors: CLOTH_E_LIBRARY where there is no display or no OpenGL
- * 3.3: what to do instead; those of view_show_frame. */
+ * output. Local; on the main thread. Errors: CLOTH_E_LIBRARY, no display or no OpenGL 3.3, with a
+ * way out; those of view_show_frame. */
 int view_window(struct view_show *show, const struct output_cache *cache,
                 const struct view_wish *wish, uint64_t frame, struct cloth_error *error);
 /* The same of frames that come: the camera follows them until somebody moves it. */

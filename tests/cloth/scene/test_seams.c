@@ -317,8 +317,8 @@ START_TEST(hinges_of_seams)
     static const char *const keys[4] = {"{state: welded, tolerance: 0.031}",
                                         "{state: welded, tolerance: 0.031, bending: 2.0e-5}",
                                         "{state: welded, tolerance: 0.031, bending: 6.0e-5}",
-                                        "{state: welded, tolerance: 0.031, bending: 2.0e-5, some: "
-                                        "[{numbers: [1], bending: 6e-5}]}"};
+                                        ("{state: welded, tolerance: 0.031, bending: 2.0e-5, some: "
+                                         "[{numbers: [1], bending: 6e-5}]}")};
     for (int i = 0; i < 4; i++) {
         struct model model = read_scene(SIDES_OF, keys[i]);
         struct cloth_error error = {0};

@@ -11,10 +11,11 @@
  * its name there (names.h). It has an offload_message, an offload_param for each parameter, the
  * arguments, and the values that the body reads.
  *
- * The way back is a DATA_RESULT (key.number: that name). If the body did not fail, it has an
+ * The way back is a DATA_RESULT (key.number: that name). MESSAGE_RAN, the body ran: it has an
  * offload_left for each parameter, then the values that the body wrote, then those that its
- * children left. MESSAGE_FAILED_BELOW: the first failure among its descendants follows.
- * MESSAGE_FAILED, the body failed: it has the body's failure, then that first one. */
+ * children left. MESSAGE_FAILED_BELOW: the first failure among the task and its descendants
+ * follows. MESSAGE_FAILED: the body's own failure is the last; if the body did not run, it is all
+ * there is. */
 struct offload_message {
     uint64_t number; /* of the main program's task that it is or descends from */
     uint64_t index;  /* in its scope */
@@ -39,7 +40,7 @@ struct offload_left {
     uint64_t what;
 };
 
-enum { MESSAGE_FAILED = 1, MESSAGE_FAILED_BELOW = 2 }; /* packet->pieces */
+enum { MESSAGE_FAILED = 1, MESSAGE_FAILED_BELOW = 2, MESSAGE_RAN = 4 }; /* packet->pieces */
 
 static inline size_t message_lines(size_t bytes)
 {
@@ -89,6 +90,7 @@ struct offload_task {
     struct task *task;
     struct task_scope *inner; /* of its children, or NULL; gone once they are over */
     const struct data_failure *failure;
+    bool ran; /* its body was called */
     struct task_send send;
 };
 

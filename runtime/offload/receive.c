@@ -133,7 +133,7 @@ static bool params_lay_out(struct task *task, duite_param *param, const void **a
 {
     struct offload_task *own = task->offloaded;
     uint32_t stamp = task->n ? task_new_stamp() : 0;
-    size_t bytes = message_values_at(task->n) + sizeof(struct data_failure);
+    size_t bytes = message_values_at(task->n) + 2 * message_lines(sizeof(struct data_failure));
     for (size_t i = 0; i < task->n; i++)
         bytes += message_lines(result_room(task, i));
     own->result = data_packet_new(bytes, false);
@@ -167,7 +167,7 @@ static bool params_lay_out(struct task *task, duite_param *param, const void **a
 }
 
 /* The values move together: those of objects that change their size may be smaller than their room.
- * The children's values follow later. */
+ * The children's values follow later. A body that failed left none. */
 static void result_close_up(const struct task *task, const duite_param *param)
 {
     struct data_packet *result = task->offloaded->result;
@@ -177,7 +177,7 @@ static void result_close_up(const struct task *task, const duite_param *param)
     for (uint32_t i = 0; i < task->n; i++) {
         const duite_mode mode = (duite_mode)task->access[i].waiter.mode;
         answer[i].what = LEFT_NOTHING;
-        if (mode == DUITE_R || task_postponed(mode))
+        if (mode == DUITE_R || task_postponed(mode) || task->offloaded->failure)
             continue;
         const size_t bytes = param[i].count * data_type_size(param[i].type);
         answer[i] = (struct offload_left){.bytes = bytes, .what = LEFT_VALUE};
@@ -201,10 +201,10 @@ static bool offloaded_run_body(struct task_graph *graph, struct worker *worker, 
     duite_call template = *call;
     template.round = ((const struct offload_message *)data_payload(own->message))->round;
     own->failure = task_call_body(graph, worker, task, args, param, &own->inner, &template);
-    if (!own->failure)
-        result_close_up(task, param);
-    else if (own->inner)
+    result_close_up(task, param);
+    if (own->failure && own->inner)
         task_scope_fail(own->inner, own->failure);
+    own->ran = true;
     return true;
 }
 
@@ -236,18 +236,15 @@ void offload_body_over(struct worker *worker, struct task *task)
         offload_over(&own->above, worker);
 }
 
-/* NULL without memory. */
-static struct data_packet *result_failures(const struct offload_task *own,
-                                           const struct data_failure *below)
+/* The body did not run: its failure is all there is. `told`: the scopes at home are to know it,
+ * too. NULL without memory. */
+static struct data_packet *result_failure(const struct data_failure *failure, bool told)
 {
-    struct data_packet *packet = data_packet_new(2 * sizeof *below, true);
+    struct data_packet *packet = data_packet_new(sizeof *failure, true);
     if (!packet)
         return NULL;
-    struct data_failure *both = data_payload(packet);
-    both[0] = *own->failure;
-    if (below)
-        both[1] = *below;
-    packet->pieces = MESSAGE_FAILED | (below ? MESSAGE_FAILED_BELOW : 0);
+    *(struct data_failure *)data_payload(packet) = *failure;
+    packet->pieces = MESSAGE_FAILED | (told ? MESSAGE_FAILED_BELOW : 0);
     return packet;
 }
 
@@ -291,14 +288,17 @@ void offload_over(struct task_scope *above, struct worker *worker)
     struct task_graph *graph = above->graph;
     struct task *task = own->task;
     const struct data_failure *below = task_first_failure(above);
-    if (own->failure) {
-        data_packet_free(own->result);
-        own->result = result_failures(own, below);
-    } else {
+    if (own->ran) {
         result_append_lent(task, own->result);
         if (below)
             result_append(own->result, below, sizeof *below);
-        own->result->pieces = below ? MESSAGE_FAILED_BELOW : 0;
+        if (own->failure)
+            result_append(own->result, own->failure, sizeof *own->failure);
+        own->result->pieces =
+            MESSAGE_RAN | (below ? MESSAGE_FAILED_BELOW : 0) | (own->failure ? MESSAGE_FAILED : 0);
+    } else {
+        data_packet_free(own->result);
+        own->result = result_failure(own->failure, below != NULL);
     }
     lent_drop(task);
     struct data_packet *result = own->result;

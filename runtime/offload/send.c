@@ -197,14 +197,17 @@ bool offload_send(struct task_graph *graph, struct worker *worker, struct task *
 /* ---- Coming home ---- */
 
 /* The body failed: as if it had failed here. */
-static const struct data_failure *result_unpack_failures(const struct task *task,
-                                                         struct data_packet *packet)
+static const struct data_failure *result_unpack_failure(const struct task *task,
+                                                        struct data_packet *packet)
 {
     struct task_graph *graph = task->scope->graph;
-    const struct data_failure *both = data_payload(packet);
-    if (packet->pieces & MESSAGE_FAILED_BELOW)
-        task_fail_below(graph, &both[1], task->scope);
-    return task_fail(graph, &both[0], false);
+    const size_t bytes = message_lines(sizeof(struct data_failure));
+    const bool ran = packet->pieces & MESSAGE_RAN;
+    const char *last = (const char *)data_payload(packet) + (ran ? packet->bytes - bytes : 0);
+    const struct data_failure *failure = task_fail(graph, (const void *)last, false);
+    if (!ran && packet->pieces & MESSAGE_FAILED_BELOW)
+        task_fail_below(graph, failure, task->scope);
+    return failure;
 }
 
 /* Gives the parameters the values that the body left. Returns its failure, if it failed. */
@@ -214,7 +217,7 @@ static const struct data_failure *result_unpack(const struct task *task, duite_p
     const struct offload_left *answer = data_payload(packet);
     const char *from = (const char *)answer + message_values_at(task->n);
     if (packet->pieces & MESSAGE_FAILED)
-        return result_unpack_failures(task, packet);
+        return result_unpack_failure(task, packet);
     for (uint32_t i = 0; i < task->n; i++) {
         const uint64_t bytes = answer[i].bytes;
         if (access_lent(task, i))
@@ -238,8 +241,8 @@ static struct task_left_value left_unpack(struct task_graph *graph, const struct
     return (struct task_left_value){.values = from, .bytes = left->bytes};
 }
 
-/* Takes the values that the descendants left, and their first failure; the body did not fail. The
- * task's own scope is there again. */
+/* Takes the values that the descendants left, and the first failure. The task's own scope is there
+ * again. */
 static void result_unpack_below(struct task *task, struct worker *worker,
                                 struct data_packet *packet)
 {
@@ -279,7 +282,7 @@ static void pending_one_less(struct task_graph *graph, struct worker *worker,
     task->inner = pending->inner;
     base_pool_give(pending, sizeof *pending);
     task_run_result(graph, task, result_take, result);
-    if (result && !(result->pieces & MESSAGE_FAILED))
+    if (result && result->pieces & MESSAGE_RAN)
         result_unpack_below(task, worker, result);
     data_packet_free(result);
     task_finish(graph, worker, task);

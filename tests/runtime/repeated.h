@@ -23,9 +23,9 @@ struct repeated {
 };
 
 /* Kernels: MIX and its TWIN mix their argument and what they read into a number; PUT overwrites
- * one; HOLD changes a number, and LOOK reads one, and nothing comes of it; ASK holds a number by rp,
- * waits for it in its body, and copies it. MIX fails with its argument's code, or if it is told of a
- * round. */
+ * one; HOLD changes a number, and LOOK reads one, and nothing comes of it; ASK holds a number by
+ * rp, waits for it in its body, and copies it. MIX fails with its argument's code, or if it is told
+ * of a round. */
 extern const duite_kernel MIX, TWIN, PUT, HOLD, LOOK, ASK;
 
 extern atomic_int repeated_over;    /* bodies of MIX and TWIN, since the start */

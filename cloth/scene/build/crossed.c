@@ -89,8 +89,8 @@ static bool find_crossed(const struct threads *threads, const struct cloth_list 
 {
     const double PART = 0.25;
     uint32_t now = UINT32_MAX;
-    for (const struct verify_pair *pair = pairs->items, *end = pair + pairs->n; pair < end;
-         pair++) {
+    for (size_t i = 0; i < pairs->n; i++) {
+        const struct verify_pair *pair = (const struct verify_pair *)pairs->items + i;
         const uint32_t one = threads->seam[pair->triangle[0]];
         const uint32_t other = threads->seam[pair->triangle[1]];
         if (one != now)

@@ -44,28 +44,17 @@ static int bend_rest(const struct element_cloths *cloths, uint32_t cloth,
     return code;
 }
 
-/* y = b - a; returns y.z. */
-static double difference(const double *a, const double *b, const double *z, double y[3])
-{
-    double sum = 0;
-    for (int c = 0; c < 3; c++) {
-        y[c] = b[c] - a[c];
-        sum += y[c] * (z ? z[c] : y[c]);
-    }
-    return sum;
-}
-
 /* True if both sides of a seam, ends of the edge first, have the edge at one place. Then moves the
  * second side onto the first, by nothing if they are equal. */
 static bool seam_meets(const struct element_seam *seam, const double a[9], double b[9])
 {
     const double rounding = 1e-6, most = 1e-2; /* of the length of the edge */
     double edge[3], apart[2][3];
-    const double square = difference(a, a + 3, NULL, edge), tolerance = seam->tolerance;
+    const double square = mesh_difference(a, a + 3, NULL, edge), tolerance = seam->tolerance;
     const double limit =
         fmax(rounding * rounding * square, fmin(tolerance * tolerance, most * most * square));
     for (int i = 0; i < 2; i++)
-        if (!(difference(b + 3 * i, a + 3 * i, NULL, apart[i]) <= limit))
+        if (!(mesh_difference(b + 3 * i, a + 3 * i, NULL, apart[i]) <= limit))
             return false;
     for (int c = 0; c < 3; c++)
         b[6 + c] += (apart[0][c] + apart[1][c]) / 2;

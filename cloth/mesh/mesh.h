@@ -207,6 +207,8 @@ double mesh_length(const struct mesh *mesh, const uint32_t triangle[2], uint32_t
  * triangles have other places for the ends, the second is laid flat beside the first. */
 void mesh_hinge(const struct mesh *mesh, const uint32_t triangle[2], const uint32_t corner[4],
                 double x[12]);
+/* y = b - a; returns y.z, or y.y if z is NULL. */
+double mesh_difference(const double *a, const double *b, const double *z, double y[3]);
 /* Lays the triangle b beside the triangle a (ends of the edge, then opposite), flat: where its
  * opposite vertex comes to lie. */
 void mesh_lay_beside(const double a[9], const double b[9], double x[3]);

@@ -46,8 +46,7 @@ double mesh_length(const struct mesh *mesh, const uint32_t triangle[2], uint32_t
     return triangle[1] == UINT32_MAX ? length[0] : (length[0] + length[1]) / 2;
 }
 
-/* y = b - a; returns y.z. */
-static double difference(const double *a, const double *b, const double *z, double y[3])
+double mesh_difference(const double *a, const double *b, const double *z, double y[3])
 {
     double sum = 0;
     for (int c = 0; c < 3; c++) {
@@ -60,10 +59,10 @@ static double difference(const double *a, const double *b, const double *z, doub
 void mesh_lay_beside(const double a[9], const double b[9], double x[3])
 {
     double edge[3], arm[3], other[3], packed[3], in = 0, out = 0;
-    const double square = difference(a, a + 3, NULL, edge);
-    const double foot = difference(a, a + 6, edge, arm) / square;
-    const double other_square = difference(b, b + 3, NULL, other);
-    const double other_foot = difference(b, b + 6, other, packed) / other_square;
+    const double square = mesh_difference(a, a + 3, NULL, edge);
+    const double foot = mesh_difference(a, a + 6, edge, arm) / square;
+    const double other_square = mesh_difference(b, b + 3, NULL, other);
+    const double other_foot = mesh_difference(b, b + 6, other, packed) / other_square;
     for (int c = 0; c < 3; c++) {
         arm[c] -= foot * edge[c];
         packed[c] -= other_foot * other[c];

@@ -18,29 +18,22 @@ else
 fi
 
 # A body that does not return leaves a task that can never end, and the process ends with a sentence in place of a hang.
-aborts() { # SENTENCE COMMAND...
-    sentence=$1
-    shift
+ends_with() { # STATUS SENTENCE COMMAND...
+    expected=$1 sentence=$2
+    shift 2
     status=0
     "$@" 2> "$scratch/said" || status=$?
     cat "$scratch/said"
     echo "exit status $status"
-    test $status = 134 && grep -q "^duite: $sentence" "$scratch/said"
+    test $status = "$expected" && grep -q "^duite: $sentence" "$scratch/said"
 }
+aborts() { ends_with 134 "$@"; }
 left="the body of kernel step was left by a C++ exception or the end of its thread (rank [01], worker [01])"
 ok "a body ends its thread" aborts "$left" limited tests/runtime/ranks_exit 0 --thread
 ok "a body ends its thread on 2 ranks" aborts "$left" ranks 2 tests/runtime/ranks_exit 0 --thread
 
 # A policy must not end the program: its exit becomes a failure that names the policy.
-leaves() { # SENTENCE COMMAND...
-    sentence=$1
-    shift
-    status=0
-    "$@" 2> "$scratch/said" || status=$?
-    cat "$scratch/said"
-    echo "exit status $status"
-    test $status = 1 && grep -q "^duite: $sentence" "$scratch/said"
-}
+leaves() { ends_with 1 "$@"; }
 ok "exit in a scheduler" leaves "scheduler leaving: its place called exit (rank 0, worker [0-9]*); this process ends with status 1" \
     limited tests/runtime/ranks_exit 0 --place
 ok "exit in a scheduler on 2 ranks" leaves "scheduler leaving: its place called exit (rank [01], worker" \

@@ -4,7 +4,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* What can be measured: which file it is, how it is best set up, and what its absence is due to. */
+/* A program that can be measured: its file, its best settings, and why it may be missing. */
 struct program {
     const char *kind;
     const char *file;    /* beside duite-bench; NULL: duite-bench itself */

@@ -1,5 +1,6 @@
-/* What a rank sends: in an iteration of the default solver, by the counters of a run of so many
- * iterations more; and in a wait, by what the network of its host counts. */
+/* Messages of a rank. Those of an iteration of the default solver are the difference of the
+ * counters of two runs, one of which makes more iterations; those of a wait are counted by the
+ * network of its host. */
 #include "bench/scale/scale.h"
 #include "bench/temporary.h"
 

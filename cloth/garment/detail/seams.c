@@ -10,8 +10,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Of the longer of the two distances: a seam whose distances differ by less says nothing, since
- * short edges of panels that are far from each other are as near either way round. */
+/* A seam tells its direction if its two distances differ by at least this part of the longer one.
+ * Short edges of panels that are far from each other are as near either way round. */
 static const double CLEAR = 0.05;
 
 /* Vertex k along an edge, from its begin. */

@@ -1,7 +1,7 @@
-/* Whoever opens an index finds a whole text, also after a run that was killed: the kernel stops a
- * write between two pages, so nothing writes to the file that is shown. Two files take turns. The
- * hidden one gets the entries that it lacks and the end of the text, then the two change names. So
- * an entry costs no copy of those before it. */
+/* The index that readers see is a whole text at any moment, also after a run was killed. The kernel
+ * may stop a write between two pages, so the visible file is never written. Two files take turns:
+ * the hidden one gets the entries that it lacks and the end of the text, then the two change names.
+ * So an entry costs no copy of those before it. */
 #include "cloth/output/hdf5/hdf5.h"
 
 #include "cloth/base/file.h"

@@ -261,16 +261,16 @@ static size_t channel_isend(struct comm *comm, struct task *node, struct channel
     MPI_Request *request = &side->request[side->turn % 2];
     void *buffer = side->buffer[side->turn % 2];
     const bool checked = side->turn++ % CHECKED_TURN == CHECKED_TURN - 1;
-    size_t bytes = side->at;
+    const bool large = side->at;
+    const size_t bytes = large ? side->at : plan_channel_pack(node, buffer);
     int mpi;
     side->at = 0;
-    if (bytes) {
+    comm_note(comm, true, channel->peer, bytes);
+    if (large)
         mpi = comm_pieces_send(comm, buffer, channel->bytes, channel->peer, channel->tag, request);
-    } else {
-        bytes = plan_channel_pack(node, buffer);
+    else
         mpi = (checked ? MPI_Issend : MPI_Isend)(buffer, (int)bytes, MPI_BYTE, channel->peer,
                                                  channel->tag, comm->mpi, request);
-    }
     return comm_mpi_ok(comm, mpi, "MPI_Isend") ? bytes : 0;
 }
 
@@ -301,7 +301,6 @@ static void channel_send(struct comm *comm, struct task *node, struct channel_si
     if (bytes) {
         atomic_fetch_add_explicit(&comm->messages, 1, memory_order_relaxed);
         atomic_fetch_add_explicit(&comm->bytes, bytes, memory_order_relaxed);
-        comm_note(comm, true, side->channel->peer, bytes);
     }
     node_push(&found->nodes, node);
 }

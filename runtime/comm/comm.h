@@ -119,7 +119,8 @@ double comm_transfer(const struct comm *comm, size_t bytes);
 
 /* Requests tasks of a rank, for so many idle workers; the request stands for so many seconds.
  * False: not now. */
-bool comm_request(struct comm *comm, int rank, unsigned idle, double seconds);
+bool comm_request(struct comm *comm, struct worker *worker, int rank, unsigned idle,
+                  double seconds);
 
 /* A request that stands here. */
 struct comm_requester {

@@ -190,7 +190,7 @@ bool comm_is_quiet(struct comm *comm)
 
 /* ---- Requests for tasks ---- */
 
-bool comm_request(struct comm *comm, int rank, unsigned idle, double seconds)
+bool comm_request(struct comm *comm, struct worker *worker, int rank, unsigned idle, double seconds)
 {
     struct data_packet *packet = comm_is_broken(comm) ? NULL : data_packet_new(0, true);
     bool sent = false;
@@ -204,6 +204,8 @@ bool comm_request(struct comm *comm, int rank, unsigned idle, double seconds)
         packet->kind = COMM_REQUEST;
         packet->pieces = idle;
         packet->key.number = (uint64_t)(1e9 * seconds);
+        comm->worker = worker;
+        comm_note(comm, true, rank, sizeof *packet);
         sent = comm_control_send(comm, rank, packet);
     }
     comm_unlock(comm); /* the caller's next poll sends the posts made meanwhile */

@@ -247,7 +247,8 @@ void comm_catch_up(struct comm *comm);
 /* True for MPI_SUCCESS; else communication is broken. */
 bool comm_mpi_ok(struct comm *comm, int mpi, const char *what);
 
-/* Reports a message that is sent or came, if there is a report. Under the lock. */
+/* Reports a message, if there is a report: before it is sent, so that it never comes before it was
+ * sent, and after it came. Under the lock. */
 static inline void comm_note(const struct comm *comm, bool sends, int peer, size_t bytes)
 {
     if (comm->report)

@@ -65,12 +65,12 @@ static bool message_send(struct comm *comm, struct task *task)
         return false;
     }
     size_t lines = data_packet_lines(packet->bytes);
+    comm_note(comm, true, task->send->to, lines * sizeof *packet);
     if (!comm_mpi_ok(comm, packet_isend(comm, packet, task->send->to, request), "MPI_Isend"))
         return false;
     comm_requests_started(&comm->sends, task);
     atomic_fetch_add_explicit(&comm->messages, 1, memory_order_relaxed);
     atomic_fetch_add_explicit(&comm->bytes, lines * sizeof *packet, memory_order_relaxed);
-    comm_note(comm, true, task->send->to, lines * sizeof *packet);
     return true;
 }
 

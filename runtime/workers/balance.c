@@ -310,10 +310,8 @@ static void request_send(struct worker *worker)
     seconds = fmin(fmax(seconds, 0), LONGEST_REQUEST_SECONDS); /* whatever it says */
     unsigned idle = 1 + (unsigned)atomic_load_explicit(&pool->parked, memory_order_relaxed);
     bool other = rank >= 0 && rank < pool->setup.graph->n_ranks && rank != pool->setup.graph->rank;
-    if (other && !comm_request(pool->setup.comm, rank, idle, seconds))
+    if (other && !comm_request(pool->setup.comm, worker, rank, idle, seconds))
         return;
-    if (other)
-        work_note_message(worker, true, rank, sizeof(struct data_packet));
     atomic_store_explicit(&balance->next, now + (uint64_t)(seconds / balance->tick),
                           memory_order_relaxed);
     atomic_store_explicit(&balance->attempt, attempt + 1, memory_order_relaxed);

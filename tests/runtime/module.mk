@@ -135,6 +135,7 @@ TESTS += $(RUNTIME_TESTS)
 PREDICTED_FILES = tests/runtime/predicted.c tests/runtime/predicted.h tests/support/trace_file.c tests/support/trace_file.h
 tests_runtime_test_predict_SOURCES = tests/runtime/test_predict.c $(PREDICTED_FILES)
 tests_runtime_test_predict_LDADD = tests/support/libunit.a $(PREDICT_LIBS) $(CHECK_LIBS)
+EXTRA_tests_runtime_test_predict_DEPENDENCIES = duite-predict$(EXEEXT) # whose warning it reads
 tests_runtime_test_predict_costs_SOURCES = tests/runtime/test_predict_costs.c $(PREDICTED_FILES)
 tests_runtime_test_predict_costs_LDADD = tests/support/libunit.a $(PREDICT_LIBS) $(CHECK_LIBS)
 tests_runtime_test_predict_refused_SOURCES = tests/runtime/test_predict_refused.c $(PREDICTED_FILES)

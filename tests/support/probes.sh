@@ -3,13 +3,22 @@
 #     last COLUMN...                   of the table's last row; columns are named without their unit
 #     rows PROGRAM [-v NAME=VALUE]...  awk over the rows, where c(COLUMN) is a number of the row
 #     near WHAT FOUND EXPECTED MOST    says the relative error, fails beyond MOST
-#     below WHAT FOUND MOST            says what was found, fails beyond MOST
+#     below WHAT FOUND MOST            says what was found, fails where it is more than MOST
 #     less A B                         their difference
+#     says SENTENCE SCENE...           a hundredth of a second of the scene, which says the sentence
 # near and below print to the test's own output, as TAP comments, also when a case passes.
 
 skip_unless "$DUITE_CLOTH"
 cd "$scratch" || exit 99
 exec 3>&1
+
+says() {
+    sentence=$1
+    shift
+    limited "$DUITE_CLOTH" "$@" --end 0.01 > said 2>&1 || { cat said && return 1; }
+    cat said
+    grep -qF "$sentence" said
+}
 
 run() { limited "$DUITE_CLOTH" "$@" --threads 1 --quiet --output out; }
 

@@ -154,13 +154,6 @@ ok "the weft's" flap 90 40
 ok "the mean at 45 degrees" flap 45 25
 
 # Without directions a grain does nothing; triangles of others that lie on the border are said.
-says() { # SENTENCE SCENE...
-    sentence=$1
-    shift
-    limited "$DUITE_CLOTH" "$@" --end 0.01 > said 2>&1 || { cat said && return 1; }
-    cat said
-    grep -qF "$sentence" said
-}
 ok "a grain of springs" says "grain means nothing in cloth 'cloth1'" flap.yaml --set 'materials.sheet.bending.rigidity=10'
 sed 's/^f 2.*/g tip\n&/' flap.obj > ear.obj
 printf 'v 0 1 0.5\ng tip\nf 3 2 5\nf 1 3 5\n' >> ear.obj

@@ -82,13 +82,6 @@ two() { # a second cloth has no groups and no material of the first one
 }
 ok "groups and materials end with their cloth" two
 
-says() { # SENTENCE SCENE...
-    sentence=$1
-    shift
-    limited "$DUITE_CLOTH" "$@" --end 0.01 > said 2>&1 || { cat said && return 1; }
-    cat said
-    grep -qF "$sentence" said
-}
 ok "uv that some faces lack is said" says "40 of 80 faces have corners without vt" strip.yaml --set 'cloths[0].mesh.file=half.obj'
 silent() { says "Limited by" "$@" && ! grep -q vt said; }
 ok "nothing is said of a mesh without uv" silent strip.yaml --set 'cloths[0].mesh.file=bare.obj'

@@ -177,16 +177,21 @@ git_sees_sources_only() { # nothing that make leaves in its folders is untracked
     test ! -s "$scratch/programs"
 }
 
-# Each function that a guided tour of docs/design.md stops at is defined in the file that the tour names.
+# Each function that a guided tour of docs/design/ stops at is defined in the file that the tour names, and each file that the page names
+# is there.
 tours() { # DOCUMENT
     sed -n 's/^| `\([a-z_/]*\.c\)` | `\([a-z_`, ]*\)` |.*/\1 \2/p' "$1" | tr -d '`,' > "$scratch/stops"
-    test "$(wc -l < "$scratch/stops")" -ge 30 || { echo "the tours have few stops" && return 1; }
+    test "$(wc -l < "$scratch/stops")" -ge 40 || { echo "the tours have few stops" && return 1; }
     while read -r file names; do
         test -e "$srcdir/$file" || file=runtime/$file
         for name in $names; do
             grep -q "^[a-z].*[ *]$name(" "$srcdir/$file" || { echo "$file has no $name" && return 1; }
         done
     done < "$scratch/stops"
+    grep -o '`[a-z_/]*/[a-z_]*\.[ch]`' "$1" | tr -d '`' | sort -u > "$scratch/files"
+    while read -r file; do
+        test -e "$srcdir/$file" || test -e "$srcdir/runtime/$file" || { echo "there is no $file" && return 1; }
+    done < "$scratch/files"
 }
 
 stages() { # the stages of a step stand in the document's table in their order
@@ -221,8 +226,10 @@ else
     skip "a fault of a page is seen" "no groff"
 fi
 ok "every public function has a comment before it" commented
-ok "guided tours stop at functions that are there" tours "$srcdir/docs/design.md"
-ok "docs/design.md lists the stages of a step" stages "$srcdir/docs/design.md"
+for part in runtime cloth; do
+    ok "guided tours of the $part stop at functions that are there" tours "$srcdir/docs/design/$part.md"
+done
+ok "docs/design/cloth.md lists the stages of a step" stages "$srcdir/docs/design/cloth.md"
 for program in duite-cloth duite-garment duite-mannequin duite-view duite-trace duite-predict duite-compare duite-graph bench/duite-bench; do
     if test -x $program; then
         ok "every option in --help of $program says what it is by itself" stands_alone ./$program

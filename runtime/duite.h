@@ -211,15 +211,15 @@ typedef int duite_body(const duite_call *call);
  * Errors of calls that return at once are remembered for the body's next get or wait; without one,
  * the task fails with the first error. */
 
-/* Gives the failure of a body its message (printf form, at most 200 bytes are kept).
- * Returns: `code`. */
+/* Gives the failure of a body its message (printf form, at most 200 bytes are kept). In a body;
+ * local. Returns: `code`. */
 int duite_fail(const duite_call *call, int code, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
 /* Gives parameter i, w or rw of an object made by duite_new_sized, so many elements; added ones are
  * zero. It begins with its present size (rw) or its maximum (w); readers find the size that the
  * body leaves. More than the maximum, or another parameter, is DUITE_E_SIZE: the task then fails
- * with it even if its body returns 0. Errors: DUITE_E_SIZE. */
+ * with it even if its body returns 0. In a body; local. Errors: DUITE_E_SIZE. */
 int duite_resize(const duite_call *call, size_t i, size_t count);
 
 /* Makes a contribution of the body itself to parameter i, held by cwp. It has as many elements, and
@@ -227,8 +227,8 @@ int duite_resize(const duite_call *call, size_t i, size_t count);
  * may change them until it ends. Their final values count as those of a child forked with cw at the
  * time of the call, in the same place of the tree. This child neither runs nor has a number. Each
  * call is another contribution. NULL: no memory, or another mode (DUITE_E_RIGHT): the task then
- * fails with it even if its body returns 0. Checking mode misses writes beyond the elements.
- * Returns: the elements, or NULL. Errors: DUITE_E_RIGHT, DUITE_E_MEMORY. */
+ * fails with it even if its body returns 0. Checking mode misses writes beyond the elements. In a
+ * body; local. Returns: the elements, or NULL. Errors: DUITE_E_RIGHT, DUITE_E_MEMORY. */
 void *duite_contribute(const duite_call *call, size_t i);
 
 enum { DUITE_MAX_ACCESS = 64 }; /* max. modes that a kernel lists */
@@ -568,8 +568,8 @@ int duite_fork(duite *rt, const duite_kernel *kernel, const void *args, size_t n
                const duite_object *objects);
 
 /* duite_fork on a rank of the caller's choice: for kernels with side effects, such as files.
- * Errors: as of duite_fork; DUITE_E_ARGUMENT also if there is no such rank, DUITE_E_STATE in a
- * body. */
+ * Collective. Errors: as of duite_fork; DUITE_E_ARGUMENT also if there is no such rank,
+ * DUITE_E_STATE in a body. */
 int duite_fork_at(duite *rt, int rank, const duite_kernel *kernel, const void *args, size_t n,
                   const duite_object *objects);
 

@@ -234,7 +234,7 @@ extern const duite_mapping duite_own_mapping;
 extern const duite_balancer duite_own_balancer;
 
 /* A random number and the next state, by SplitMix64 (Steele, Lea, Flood 2014). Any state is a good
- * seed. Returns: the number. */
+ * seed. Local. Returns: the number. */
 static inline uint64_t duite_random(uint64_t *state)
 {
     uint64_t z = (*state += 0x9e3779b97f4a7c15u);

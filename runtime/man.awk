@@ -2,8 +2,8 @@
 #
 # A paragraph of a header is a comment and the declarations up to the next blank line; each function, macro and type of it has a page with
 # that comment. A comment alone belongs to the page before it, the text of a section (---- NAME ----) to each page of the section. At the
-# end of a comment stand "Returns:" and "Errors:"; a function that returns something and has neither is an error. Members of structures
-# have their comment above them or behind them.
+# end of a comment stand "Returns:" and "Errors:". A function that returns something and has neither is an error, and so is one that does
+# not say whether it is collective or local. Members of structures have their comment above them or behind them.
 
 # ---- From text to roff ----
 
@@ -111,15 +111,18 @@ function errors(text,    said, code, rest) { # the sentence, then its codes
     return said ".PP\nFurther ones, of any call:\n.BR duite_code (3).\n"
 }
 
+function refuse(list, lack) {
+    print "man.awk: the comment of " list " says " lack > "/dev/stderr"
+    failed = 1
+}
+
 function finish(    i, text, gives, fails, list, page) { # the pages of a paragraph, once its notes are there
     fails = cut(about, "Errors") == about ? "" : after
     text = cut(cut(about, "Errors"), "Returns")
     gives = after
     for (i = 1; i <= n; i++) list = list (i > 1 ? ", " : "") name[i]
-    if (n && returns && gives == "" && fails == "") {
-        print "man.awk: " list ": the comment says neither what it returns nor its errors" > "/dev/stderr"
-        failed = 1
-    }
+    if (returns && gives == "" && fails == "") refuse(list, "neither what it returns nor its errors")
+    if (called && about !~ /[Cc]ollective|[Ll]ocal/) refuse(list, "neither that it is collective nor that it is local")
     if (gives == "" && fails != "") gives = "DUITE_OK, or a code: negative ones of the library, positive ones of a body. duite_message has the message."
     if (section_text != "") notes = notes (notes == "" ? "" : "\n\n") section_text
     page = section("NAME", list " \\- " quoted(summary(text)) "\n") section("SYNOPSIS", ".B #include <" header ">\n" synopsis)
@@ -129,15 +132,15 @@ function finish(    i, text, gives, fails, list, page) { # the pages of a paragr
         pages[name[i]] = page
         named[name[i]] = about notes list body
     }
-    n = returns = 0
+    n = returns = called = 0
     about = notes = synopsis = body = ""
 }
 
-function declare(line,    called) { # a function, macro or type of this paragraph
-    called = line
-    if (match(line, /(duite|DUITE)_[A-Za-z0-9_]*\(/)) called = substr(line, RSTART, RLENGTH - 1)
-    else if (match(line, /duite_[a-z_]*/)) called = substr(line, RSTART, RLENGTH)
-    name[++n] = called
+function declare(line,    own) { # a function, macro or type of this paragraph
+    if (match(line, /(duite|DUITE)_[A-Za-z0-9_]*\(/)) own = substr(line, RSTART, RLENGTH - 1)
+    else if (match(line, /duite_[a-z_]*/)) own = substr(line, RSTART, RLENGTH)
+    name[++n] = own
+    if (line !~ /^(typedef |enum |#)/) called = 1
     if (line !~ /^(void |typedef |enum |#)/) returns = 1
     gsub(/\n +/, " ", line)
     synopsis = synopsis ".HP 8\n.B \"" quoted(line) "\"\n"

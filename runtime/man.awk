@@ -120,26 +120,26 @@ function finish(    i, text, gives, fails, list, page) { # the pages of a paragr
     fails = cut(about, "Errors") == about ? "" : after
     text = cut(cut(about, "Errors"), "Returns")
     gives = after
-    for (i = 1; i <= n; i++) list = list (i > 1 ? ", " : "") name[i]
+    for (i = 1; i <= n_names; i++) list = list (i > 1 ? ", " : "") name[i]
     if (returns && gives == "" && fails == "") refuse(list, "neither what it returns nor its errors")
     if (called && about !~ /[Cc]ollective|[Ll]ocal/) refuse(list, "neither that it is collective nor that it is local")
     if (gives == "" && fails != "") gives = "DUITE_OK, or a code: negative ones of the library, positive ones of a body. duite_message has the message."
     if (section_text != "") notes = notes (notes == "" ? "" : "\n\n") section_text
     page = section("NAME", list " \\- " quoted(summary(text)) "\n") section("SYNOPSIS", ".B #include <" header ">\n" synopsis)
-    page = page section("DESCRIPTION", filled(text)) section("MEMBERS", members(body, synopsis ~ /enum/ ? "," : ";")) section("NOTES", notes == "" ? "" : filled(notes))
+    page = page section("DESCRIPTION", filled(text)) section("MEMBERS", members(inside, synopsis ~ /enum/ ? "," : ";")) section("NOTES", notes == "" ? "" : filled(notes))
     page = page section("RETURN VALUE", gives == "" ? "" : filled(gives)) section("ERRORS", fails == "" ? "" : errors(fails))
-    for (i = 1; i <= n; i++) {
+    for (i = 1; i <= n_names; i++) {
         pages[name[i]] = page
-        named[name[i]] = about notes list body
+        named[name[i]] = about notes list inside
     }
-    n = returns = called = 0
-    about = notes = synopsis = body = ""
+    n_names = returns = called = 0
+    about = notes = synopsis = inside = ""
 }
 
 function declare(line,    own) { # a function, macro or type of this paragraph
     if (match(line, /(duite|DUITE)_[A-Za-z0-9_]*\(/)) own = substr(line, RSTART, RLENGTH - 1)
     else if (match(line, /duite_[a-z_]*/)) own = substr(line, RSTART, RLENGTH)
-    name[++n] = own
+    name[++n_names] = own
     if (line !~ /^(typedef |enum |#)/) called = 1
     if (line !~ /^(void |typedef |enum |#)/) returns = 1
     gsub(/\n +/, " ", line)
@@ -153,8 +153,8 @@ function declarations(text,    line, m, i, whole) {
     for (i = 1; i <= m; i++) {
         whole = line[i]
         if (whole ~ /^(typedef (struct|enum)|enum) duite_[a-z_]+ \{$/) {
-            while (line[++i] !~ /^}/) body = body line[i] "\n"
-            if (whole ~ /^enum/) codes(body)
+            while (line[++i] !~ /^}/) inside = inside line[i] "\n"
+            if (whole ~ /^enum/) codes(inside)
             sub(/ \{$/, "", whole)
             declare(whole (whole ~ /^typedef/ ? substr(whole, index(whole, " duite_")) : "") ";")
         } else if (whole ~ /^#define/) {
@@ -202,12 +202,12 @@ cplusplus { if (/^#(else|endif)/) cplusplus = 0; next }
 
 END {
     finish()
-    for (page in pages) {
-        file = out "/" page ".3"
-        printf ".TH %s 3 \"\" duite \"Library functions\"\n.ad l\n.nh\n%s.SH SEE ALSO\n.BR duite (3)", page, pages[page] > file
-        seen = " " page " "
-        for (rest = named[page]; match(rest, /(duite|DUITE)_[A-Za-z0-9_]*[A-Za-z0-9]/); rest = substr(rest, RSTART + RLENGTH)) {
-            other = substr(rest, RSTART, RLENGTH)
+    for (each in pages) {
+        file = out "/" each ".3"
+        printf ".TH %s 3 \"\" duite \"Library functions\"\n.ad l\n.nh\n%s.SH SEE ALSO\n.BR duite (3)", each, pages[each] > file
+        seen = " " each " "
+        for (mentioned = named[each]; match(mentioned, /(duite|DUITE)_[A-Za-z0-9_]*[A-Za-z0-9]/); mentioned = substr(mentioned, RSTART + RLENGTH)) {
+            other = substr(mentioned, RSTART, RLENGTH)
             if (!(other in pages) || index(seen, " " other " ")) continue
             seen = seen other " "
             printf ",\n.BR %s (3)", other > file

@@ -127,25 +127,13 @@ static bool message_find_phases(struct plan_messages *m)
 
 /* ---- Pieces of sums ---- */
 
-static bool pieces_join(const struct plan_piece *l, const struct plan_piece *r)
+/* Returns whether the rank alone runs the sum. */
+static bool pieces_stay(const struct plan_assignment *a, size_t n, int rank)
 {
-    return l->rank == r->rank && plan_leaves_are_halves(&l->leaves, &r->leaves);
-}
-
-/* Returns whether one rank contributes alone; *alone: and reads alone. */
-static bool pieces_of_one(const struct plan_messages *m, size_t n, bool *alone)
-{
-    const struct plan_assignment *a = m->assignment;
-    const struct plan_round_node *node = &a->round->node[n];
-    const struct plan_node_use *use = &a->round->use[node->first_use];
-    int rank = a->at[message_leaf(m, &use[1])];
-    bool one = true;
-    for (size_t i = 1; i < node->n_uses; i++)
-        one &= a->at[message_leaf(m, &use[i])] == rank;
-    *alone = one;
+    bool stay = true;
     for (int other = 0; other < a->n_ranks; other++)
-        *alone &= (other == rank) == plan_runs(a, n, other);
-    return one;
+        stay &= (other == rank) == plan_runs(a, n, other);
+    return stay;
 }
 
 /* A rank's pieces move once its last leaf is there. `latest` is by rank. */
@@ -165,23 +153,42 @@ static void pieces_set_phases(const struct plan_messages *m, size_t n, size_t fi
         m->piece[i].phase = latest[m->piece[i].rank];
 }
 
+static void piece_add(struct plan_messages *m, size_t n, int rank, struct data_subtree tree)
+{
+    m->piece[m->n_pieces++] = (struct plan_piece){.node = (uint32_t)n, .tree = tree, .rank = rank};
+}
+
+/* A rank has the leaves first .. end - 1. If it has all, they become one piece, or stay as they are
+ * if it alone runs the sum. */
+static void pieces_of_row(struct plan_messages *m, size_t n, int rank, uint32_t first, uint32_t end)
+{
+    const uint32_t all = m->assignment->round->node[n].n_uses - 1;
+    struct data_subtree row[DATA_SUBTREES_IN_ROW];
+    struct data_subtrees list = {.at = row};
+    if (end - first < all) {
+        data_subtrees_row(&list, first, end - first);
+        for (size_t i = 0; i < list.n; i++)
+            piece_add(m, n, rank, row[i]);
+    } else if (!pieces_stay(m->assignment, n, rank)) {
+        piece_add(m, n, rank, data_subtree_whole(all));
+    } else {
+        for (uint32_t i = first; i < end; i++)
+            piece_add(m, n, rank, (struct data_subtree){.first = i});
+    }
+}
+
 static void pieces_of_sum(struct plan_messages *m, size_t n, uint32_t *latest)
 {
     const struct plan_assignment *a = m->assignment;
     const struct plan_round_node *node = &a->round->node[n];
     const struct plan_node_use *use = &a->round->use[node->first_use + 1];
-    bool alone, one = pieces_of_one(m, n, &alone);
-    size_t first = m->n_pieces;
-    for (uint32_t i = 0; i + 1 < node->n_uses; i++) {
-        struct plan_piece *row = &m->piece[m->n_pieces++];
-        *row = (struct plan_piece){.node = (uint32_t)n,
-                                   .leaves = {.tree.first = i, .n = 1},
-                                   .rank = a->at[message_leaf(m, &use[i])]};
-        for (; !alone && m->n_pieces - first > 1 && (one || pieces_join(row - 1, row)); row--) {
-            row[-1].leaves.tree.level++;
-            row[-1].leaves.n += row->leaves.n;
-            m->n_pieces--;
-        }
+    const size_t first = m->n_pieces;
+    for (uint32_t i = 0, end; i + 1 < node->n_uses; i = end) {
+        const int rank = a->at[message_leaf(m, &use[i])];
+        for (end = i + 1; end + 1 < node->n_uses; end++)
+            if (a->at[message_leaf(m, &use[end])] != rank)
+                break;
+        pieces_of_row(m, n, rank, i, end);
     }
     pieces_set_phases(m, n, first, latest);
 }
@@ -307,12 +314,12 @@ static void message_hop(void *context, const struct plan_hop *hop)
     struct finding *f = context;
     const struct plan_round *round = f->m->assignment->round;
     const struct plan_round_node *node = &round->node[hop->node];
-    for (size_t i = 0; i < hop->n; i++)
+    for (size_t i = 0; i < hop->trees.n; i++)
         message_add(f, hop->from, hop->to, f->leaves + hop->round,
                     (struct plan_item){.object = round->use[node->first_use].place,
                                        .version = PLAN_NONE,
                                        .piece = PLAN_NONE,
-                                       .leaves = hop->leaves[i],
+                                       .tree = hop->trees.at[i],
                                        .made = plan_moment_sum(hop->node, hop->round)});
 }
 

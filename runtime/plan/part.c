@@ -25,11 +25,9 @@ struct parting {
     plan_moment next;    /* when it is made, or the next message goes */
     uint32_t *order;     /* messages to send, by the moment they are ready */
     size_t n_sends, next_send;
-    struct data_subtree *row; /* scratch, for one sum */
-    /* This rank's leaves of the present sum; where: their place. */
-    struct plan_leaves *state, *joined, *came;
-    uint32_t *param; /* by entry of `state`: in the present PARTIAL, or PLAN_NONE */
-    size_t n_state;
+    struct data_subtrees row;                 /* of a node; where: the parameter */
+    struct data_subtrees state, joined, came; /* this rank's of the present sum; where: the place */
+    uint32_t *param; /* by place: its parameter in the PARTIAL that joins, or PLAN_NONE */
 };
 
 static bool part_sends(const struct parting *p, uint32_t message)
@@ -59,7 +57,7 @@ static uint32_t part_version(const struct parting *p, uint32_t version)
 static uint32_t part_piece(struct parting *p, const struct plan_piece *piece)
 {
     const struct plan_round_node *sum = &p->round->node[piece->node];
-    return part_leaf(p, p->round->use[sum->first_use + 1 + piece->leaves.tree.first].place);
+    return part_leaf(p, p->round->use[sum->first_use + 1 + piece->tree.first].place);
 }
 
 static void part_find_spoilt(struct parting *p, uint32_t *own)
@@ -137,13 +135,13 @@ static void part_message(struct parting *p, uint32_t message, size_t fork)
         plan_round_use(p->part, node, p->place[i - 1], sends, !sends);
 }
 
-/* The place of leaves that a sum's relay passes on, valid until the next round joins them. */
-static uint32_t part_passed(const struct parting *p, const struct plan_leaves *leaves)
+/* The place of a subtree that a sum's relay passes on, valid until the next round joins it. */
+static uint32_t part_passed(const struct parting *p, const struct data_subtree *tree)
 {
     size_t i = 0;
-    while (p->state[i].tree.first != leaves->tree.first)
+    while (p->state.at[i].first != tree->first)
         i++;
-    return p->state[i].tree.where;
+    return p->state.at[i].where;
 }
 
 /* Finds the place of an item just made; copies it aside if it is overwritten too soon. */
@@ -155,7 +153,7 @@ static void part_made(struct parting *p, size_t i, size_t fork)
         p->place[i] = part_version(p, item->version); /* a received one if this rank passes it on */
         spoilt = p->place[i] == item->object ? p->spoilt[item->version] : NEVER;
     } else if (item->piece == PLAN_NONE) {
-        p->place[i] = part_passed(p, &item->leaves);
+        p->place[i] = part_passed(p, &item->tree);
         spoilt = item->made + 1;
     } else {
         const struct plan_piece *piece = &p->m->piece[item->piece];
@@ -208,111 +206,120 @@ static void part_bring_home(struct parting *p, size_t n)
     }
 }
 
+static struct plan_round_node *part_add(struct parting *p, enum plan_kind kind, size_t n)
+{
+    const struct plan_round_node *node = &p->round->node[n];
+    struct plan_round_node *made = plan_round_add(p->part, kind, node->fork);
+    made->law = node->law;
+    return made;
+}
+
+/* Combines this rank's contributions to a piece. */
+static void part_combine_leaves(struct parting *p, struct plan_round_node *made,
+                                const struct plan_piece *piece)
+{
+    const struct plan_round_node *node = &p->round->node[piece->node];
+    const struct plan_node_use *leaf = &p->round->use[node->first_use + 1];
+    const uint64_t end = data_subtree_end(&piece->tree, node->n_uses - 1);
+    p->row.n = 0;
+    for (uint64_t first = piece->tree.first; first < end; first++) {
+        const uint32_t param = made->n_uses;
+        plan_round_use(p->part, made, part_leaf(p, leaf[first].place), true, true);
+        plan_reduce_push(p->part, &p->row, (struct data_subtree){.first = first, .where = param});
+    }
+    plan_reduce_fold(p->part, &p->row);
+}
+
 /* Combines the contributions of this rank to pieces of more than one leaf. */
 static void part_partial(struct parting *p, size_t n)
 {
-    const struct plan_round_node *node = &p->round->node[n];
-    const struct plan_node_use *leaf = &p->round->use[node->first_use + 1];
     struct plan_round_node *made = NULL;
     for (size_t i = p->m->first_piece[n]; i < p->m->first_piece[n + 1]; i++) {
         const struct plan_piece *piece = &p->m->piece[i];
-        if (piece->rank != p->m->rank || piece->leaves.n == 1)
+        if (piece->rank != p->m->rank || !piece->tree.level)
             continue;
         if (!made)
-            made = plan_round_add(p->part, PLAN_PARTIAL, node->fork);
-        made->law = node->law;
-        size_t rows = 0;
-        for (uint32_t k = 0; k < piece->leaves.n; k++) {
-            uint64_t first = piece->leaves.tree.first + k;
-            p->row[rows] = (struct data_subtree){.first = first, .where = (uint32_t)made->n_uses};
-            plan_round_use(p->part, made, part_leaf(p, leaf[first].place), true, true);
-            rows = plan_reduce_push(p->part, made, p->row, rows);
-        }
-        plan_reduce_fold(p->part, made, p->row, rows);
+            made = part_add(p, PLAN_PARTIAL, n);
+        part_combine_leaves(p, made, piece);
     }
 }
 
 /* A relayed sum begins with this rank's own pieces, any other sum with all pieces. */
 static void part_begin_sum(struct parting *p, size_t n)
 {
-    p->n_state = 0;
+    p->state.n = 0;
     for (size_t i = p->m->first_piece[n]; i < p->m->first_piece[n + 1]; i++) {
         const struct plan_piece *piece = &p->m->piece[i];
         const bool own = piece->rank == p->m->rank;
         if (!own && (p->m->rounds[n] || !plan_runs(p->a, n, p->m->rank)))
             continue;
-        struct plan_leaves *entry = &p->state[p->n_state++];
-        *entry = piece->leaves;
-        entry->tree.where = own ? part_piece(p, piece) : p->arrival[i];
+        struct data_subtree *entry = &p->state.at[p->state.n++];
+        *entry = piece->tree;
+        entry->where = own ? part_piece(p, piece) : p->arrival[i];
     }
 }
 
-/* The parameter of the PARTIAL for an entry's place. */
-static uint32_t part_param(struct parting *p, struct plan_round_node *made, size_t entry)
+/* A PARTIAL that joins the lists of a sum; made once two subtrees combine. */
+struct part_joining {
+    struct parting *p;
+    size_t n; /* the sum */
+    struct plan_round_node *made;
+};
+
+static uint32_t part_param(struct part_joining *j, uint32_t place)
 {
-    if (p->param[entry] == PLAN_NONE) {
-        p->param[entry] = (uint32_t)made->n_uses;
-        plan_round_use(p->part, made, p->state[entry].tree.where, true, true);
+    uint32_t *param = &j->p->param[place];
+    if (*param == PLAN_NONE) {
+        *param = j->made->n_uses;
+        plan_round_use(j->p->part, j->made, place, true, true);
     }
-    return p->param[entry];
+    return *param;
 }
 
-/* Combines the last two entries, which are halves. */
-static void part_combine(struct parting *p, struct plan_round_node *made, size_t entries)
+static void part_combine_places(void *context, uint32_t left, uint32_t right)
 {
-    struct plan_leaves *left = &p->state[entries - 2], *right = left + 1;
-    const struct data_subtree halves[2] = {{.where = part_param(p, made, entries - 2)},
-                                           {.where = part_param(p, made, entries - 1)}};
-    plan_reduce_fold(p->part, made, halves, 2);
-    left->tree.level++;
-    left->n += right->n;
+    struct part_joining *j = context;
+    if (!j->made)
+        j->made = part_add(j->p, PLAN_PARTIAL, j->n);
+    const uint32_t into = part_param(j, left);
+    plan_reduce_merge(j->p->part, into, part_param(j, right));
 }
 
-/* Joins the leaves received in this round, in items from `first` on, with those present. */
+/* Joins the subtrees received in this round, in items from `first` on, with those present. */
 static void part_join(struct parting *p, size_t n, size_t first)
 {
-    const struct plan_round_node *node = &p->round->node[n];
-    struct plan_round_node *made = NULL;
-    size_t came = 0, entries = 0;
+    struct part_joining joining = {.p = p, .n = n};
+    const struct data_subtrees state = p->state;
+    p->came.n = 0;
     for (size_t i = first; i < p->next_item; i++) {
-        const struct plan_item *item = &p->m->item[i];
-        if (part_sends(p, item->message))
+        if (part_sends(p, p->m->item[i].message))
             continue;
-        p->came[came] = item->leaves;
-        p->came[came++].tree.where = p->place[i];
+        struct data_subtree *came = &p->came.at[p->came.n++];
+        *came = p->m->item[i].tree;
+        came->where = p->place[i];
     }
-    const size_t joined = plan_leaves_join(p->state, p->n_state, p->came, came, p->joined);
-    for (size_t i = 0; i < joined; i++) {
-        p->param[entries] = PLAN_NONE;
-        p->state[entries++] = p->joined[i];
-        for (;
-             entries > 1 && plan_leaves_are_halves(&p->state[entries - 2], &p->state[entries - 1]);
-             entries--) {
-            if (!made)
-                made = plan_round_add(p->part, PLAN_PARTIAL, node->fork);
-            made->law = node->law;
-            part_combine(p, made, entries);
-        }
-    }
-    p->n_state = entries;
+    data_subtrees_join(&p->joined, &state, &p->came, part_combine_places, &joining);
+    p->state = p->joined;
+    p->joined = state;
+    for (size_t i = 0; joining.made && i < joining.made->n_uses; i++)
+        p->param[p->part->use[joining.made->first_use + i].place] = PLAN_NONE;
 }
 
 /* Adds all leaves of the sum to the object. */
 static void part_sum(struct parting *p, size_t n)
 {
     const struct plan_round_node *node = &p->round->node[n];
-    struct plan_round_node *made = plan_round_add(p->part, PLAN_SUM, node->fork);
-    size_t rows = 0;
+    struct plan_round_node *made = part_add(p, PLAN_SUM, n);
     made->owner = node->owner;
-    made->law = node->law;
     plan_round_use(p->part, made, p->round->use[node->first_use].place, true, true);
-    for (size_t i = 0; i < p->n_state; i++) {
-        p->row[rows] = p->state[i].tree;
-        p->row[rows].where = (uint32_t)made->n_uses;
-        plan_round_use(p->part, made, p->state[i].tree.where, true, true);
-        rows = plan_reduce_push(p->part, made, p->row, rows);
+    p->row.n = 0;
+    for (size_t i = 0; i < p->state.n; i++) {
+        struct data_subtree subtree = p->state.at[i];
+        subtree.where = made->n_uses;
+        plan_round_use(p->part, made, p->state.at[i].where, true, true);
+        plan_reduce_push(p->part, &p->row, subtree);
     }
-    plan_reduce_fold(p->part, made, p->row, rows);
+    plan_reduce_fold(p->part, &p->row);
 }
 
 /* A task, a set or the flag. */
@@ -371,6 +378,11 @@ static void part_nodes(struct parting *p)
 
 /* ---- The pass ---- */
 
+static size_t part_places(const struct parting *p)
+{
+    return p->round->n_places + 2 * p->m->n_items;
+}
+
 /* Memory: for each node that this rank runs, and copies of what it modifies; for each sum's
  * contributions and pieces; for a copy and a join of each item. */
 static bool part_round_room(struct parting *p)
@@ -388,8 +400,8 @@ static bool part_round_room(struct parting *p)
             copies += p->round->use[i].reads && p->round->use[i].writes;
     }
     return plan_round_room(p->part, nodes + copies + 2 * m->n_items + m->n_messages,
-                           plain + 2 * copies + 8 * sums + 6 * m->n_items,
-                           p->round->n_places + 2 * m->n_items, 2 * sums + m->n_items + 1);
+                           plain + 2 * copies + 8 * sums + 6 * m->n_items, part_places(p),
+                           2 * sums + m->n_items + 1);
 }
 
 static bool part_room(struct parting *p)
@@ -403,14 +415,17 @@ static bool part_room(struct parting *p)
     p->leaf = base_alloc_zero(leaves * sizeof *p->leaf);
     p->spoilt = base_alloc(p->a->n_versions * sizeof *p->spoilt + 1);
     p->order = base_alloc((m->n_messages + 1) * sizeof *p->order);
-    p->row = base_alloc(leaves * sizeof *p->row);
-    p->state = base_alloc((leaves + items) * sizeof *p->state);
-    p->joined = base_alloc((leaves + items) * sizeof *p->joined);
-    p->came = base_alloc((items + 1) * sizeof *p->came);
-    p->param = base_alloc((leaves + items) * sizeof *p->param);
+    p->row.at = base_alloc(leaves * sizeof *p->row.at);
+    p->state.at = base_alloc((leaves + items) * sizeof *p->state.at);
+    p->joined.at = base_alloc((leaves + items) * sizeof *p->joined.at);
+    p->came.at = base_alloc((items + 1) * sizeof *p->came.at);
+    p->param = base_alloc(part_places(p) * sizeof *p->param + 1);
     p->part->channel = base_alloc((m->n_messages + 1) * sizeof *p->part->channel);
-    return p->replica && p->arrival && p->place && p->leaf && p->spoilt && p->order && p->row &&
-           p->state && p->joined && p->came && p->param && p->part->channel && part_round_room(p);
+    for (size_t i = 0; i < part_places(p) && p->param; i++)
+        p->param[i] = PLAN_NONE;
+    return p->replica && p->arrival && p->place && p->leaf && p->spoilt && p->order && p->row.at &&
+           p->state.at && p->joined.at && p->came.at && p->param && p->part->channel &&
+           part_round_room(p);
 }
 
 bool plan_part(struct plan_round *part, const struct plan_messages *messages)
@@ -432,10 +447,10 @@ bool plan_part(struct plan_round *part, const struct plan_messages *messages)
     base_free(p.leaf);
     base_free(p.spoilt);
     base_free(p.order);
-    base_free(p.row);
-    base_free(p.state);
-    base_free(p.joined);
-    base_free(p.came);
+    base_free(p.row.at);
+    base_free(p.state.at);
+    base_free(p.joined.at);
+    base_free(p.came.at);
     base_free(p.param);
     return fine;
 }

@@ -8,12 +8,10 @@
 
 #include <string.h>
 
-/* A piece in a message: its place in the tree. The values follow all places, each filled up to a
- * multiple of 16 bytes. */
-struct piece_place {
-    uint64_t first;
-    uint32_t level, absent; /* absent: without a value, though there is room for one */
-};
+/* A message has a list of subtrees, and then a value for each, filled up to a multiple of 16 bytes.
+ */
+enum { VALUE_BYTES = 16 };
+enum value_where { VALUE_FOLLOWS, VALUE_IS_ABSENT /* though there is room for one */ };
 
 static const struct data_failure sum_no_memory = {
     .code = DUITE_E_MEMORY, .kernel = UINT32_MAX, .text = "there was no memory for contributions"};
@@ -259,19 +257,19 @@ static struct data_packet *pieces_pack(const struct task_sum *sum, const struct 
 {
     const size_t n = pieces->n;
     size_t bytes = data_sum_bytes(sum->sum);
-    size_t stride = (bytes + 15) / 16 * 16;
-    struct data_packet *packet = data_packet_new(n * (sizeof(struct piece_place) + stride), false);
+    size_t stride = (bytes + VALUE_BYTES - 1) / VALUE_BYTES * VALUE_BYTES;
+    struct data_packet *packet = data_packet_new(n * (sizeof(struct data_subtree) + stride), false);
     if (!packet)
         return NULL;
     packet->key = sum->send.key;
     packet->kind = DATA_PIECES;
     packet->pieces = (uint32_t)n;
-    struct piece_place *places = data_payload(packet);
-    char *values = (char *)(places + n);
+    struct data_subtree *trees = data_payload(packet);
+    char *values = (char *)(trees + n);
     for (size_t i = 0; i < n; i++) {
         size_t present = pieces->piece[i]->value ? bytes : 0;
-        places[i] =
-            (struct piece_place){pieces->piece[i]->first, pieces->piece[i]->level, !present};
+        trees[i] = pieces->piece[i]->tree;
+        trees[i].where = present ? VALUE_FOLLOWS : VALUE_IS_ABSENT;
         if (present)
             memcpy(values + i * stride, pieces->piece[i]->value, bytes);
         memset(values + i * stride + present, 0, stride - present);
@@ -319,15 +317,15 @@ static bool piece_add(struct task_graph *graph, struct data_sum *sum, struct dat
 static void pieces_add(struct task_graph *graph, struct data_sum *sum, struct data_packet *packet)
 {
     uint32_t n = packet->pieces;
-    struct piece_place *places = data_payload(packet);
-    char *values = (char *)(places + n);
-    size_t stride = packet->bytes / n - sizeof *places;
+    struct data_subtree *trees = data_payload(packet);
+    char *values = (char *)(trees + n);
+    size_t stride = packet->bytes / n - sizeof *trees;
     for (uint32_t i = 0; i < n; i++)
         if (!piece_add(graph, sum,
-                       (struct data_piece){.first = places[i].first,
-                                           .level = places[i].level,
-                                           .packet = i ? NULL : packet,
-                                           .value = places[i].absent ? NULL : values + i * stride}))
+                       (struct data_piece){
+                           .tree = trees[i],
+                           .packet = i ? NULL : packet,
+                           .value = trees[i].where == VALUE_FOLLOWS ? values + i * stride : NULL}))
             return;
 }
 

@@ -8,6 +8,7 @@
 #include "runtime/base/memory.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 #define NEVER UINT64_MAX
 
@@ -35,10 +36,10 @@ uint32_t plan_part_piece(struct plan_parting *p, const struct plan_piece *piece)
     return plan_part_leaf(p, p->round->use[sum->first_use + 1 + piece->tree.first].place);
 }
 
-static void part_find_spoilt(struct plan_parting *p, uint32_t *own)
+static void part_find_spoilt(struct plan_parting *p)
 {
     for (uint32_t i = 0; i < p->round->n_objects; i++)
-        own[i] = i;
+        p->own[i] = i;
     for (size_t i = 0; i < p->a->n_versions; i++)
         p->spoilt[i] = NEVER;
     for (size_t n = 0; n < p->round->n_nodes; n++) {
@@ -48,8 +49,8 @@ static void part_find_spoilt(struct plan_parting *p, uint32_t *own)
         for (size_t i = node->first_use; i < node->first_use + node->n_uses; i++) {
             if (p->a->makes[i] == PLAN_NONE)
                 continue;
-            p->spoilt[own[p->round->use[i].place]] = plan_moment_over(n);
-            own[p->round->use[i].place] = p->a->makes[i];
+            p->spoilt[p->own[p->round->use[i].place]] = plan_moment_over(n);
+            p->own[p->round->use[i].place] = p->a->makes[i];
         }
     }
 }
@@ -247,28 +248,33 @@ static bool part_round_room(struct plan_parting *p)
                            2 * sums + m->n_items + 1);
 }
 
-static bool part_room(struct plan_parting *p)
+/* The arrays of the pass in one block, which the caller frees; NULL without memory. */
+static void *part_room(struct plan_parting *p)
 {
     const struct plan_messages *m = p->m;
-    size_t items = m->n_items;
-    size_t leaves = p->round->n_places - p->round->n_objects + 1;
-    p->replica = base_alloc(p->a->n_versions * sizeof *p->replica + 1);
-    p->arrival = base_alloc(m->n_pieces * sizeof *p->arrival + 1);
-    p->place = base_alloc(items * sizeof *p->place + 1);
-    p->leaf = base_alloc_zero(leaves * sizeof *p->leaf);
-    p->spoilt = base_alloc(p->a->n_versions * sizeof *p->spoilt + 1);
-    p->order = base_alloc((m->n_messages + 1) * sizeof *p->order);
-    p->row.at = base_alloc(leaves * sizeof *p->row.at);
-    p->state.at = base_alloc((leaves + items) * sizeof *p->state.at);
-    p->joined.at = base_alloc((leaves + items) * sizeof *p->joined.at);
-    p->came.at = base_alloc((items + 1) * sizeof *p->came.at);
-    p->param = base_alloc(part_places(p) * sizeof *p->param + 1);
-    p->part->channel = base_alloc((m->n_messages + 1) * sizeof *p->part->channel);
-    for (size_t i = 0; i < part_places(p) && p->param; i++)
+    const size_t items = m->n_items, versions = p->a->n_versions;
+    const size_t leaves = p->round->n_places - p->round->n_objects + 1;
+    struct base_cut cut = {0};
+    for (int cuts = 0; cuts < 2; cuts++) {
+        if (cuts && !base_cut_begin(&cut))
+            return NULL;
+        p->replica = base_cut(&cut, versions, sizeof *p->replica);
+        p->arrival = base_cut(&cut, m->n_pieces, sizeof *p->arrival);
+        p->place = base_cut(&cut, items, sizeof *p->place);
+        p->leaf = base_cut(&cut, leaves, sizeof *p->leaf);
+        p->spoilt = base_cut(&cut, versions, sizeof *p->spoilt);
+        p->own = base_cut(&cut, p->round->n_objects, sizeof *p->own);
+        p->order = base_cut(&cut, m->n_messages, sizeof *p->order);
+        p->row.at = base_cut(&cut, leaves, sizeof *p->row.at);
+        p->state.at = base_cut(&cut, leaves + items, sizeof *p->state.at);
+        p->joined.at = base_cut(&cut, leaves + items, sizeof *p->joined.at);
+        p->came.at = base_cut(&cut, items, sizeof *p->came.at);
+        p->param = base_cut(&cut, part_places(p), sizeof *p->param);
+    }
+    memset(p->leaf, 0, leaves * sizeof *p->leaf);
+    for (size_t i = 0; i < part_places(p); i++)
         p->param[i] = PLAN_NONE;
-    return p->replica && p->arrival && p->place && p->leaf && p->spoilt && p->order && p->row.at &&
-           p->state.at && p->joined.at && p->came.at && p->param && p->part->channel &&
-           part_round_room(p);
+    return cut.block;
 }
 
 bool plan_part(struct plan_round *part, const struct plan_messages *messages)
@@ -276,24 +282,14 @@ bool plan_part(struct plan_round *part, const struct plan_messages *messages)
     const struct plan_assignment *a = messages->assignment;
     struct plan_parting p = {.m = messages, .a = a, .round = a->round, .part = part};
     part->source = a->round->source;
-    uint32_t *own = base_alloc((a->round->n_objects + 1) * sizeof *own);
-    bool fine = own && part_room(&p);
+    part->channel = base_alloc((messages->n_messages + 1) * sizeof *part->channel);
+    void *memory = part_room(&p);
+    const bool fine = memory && part->channel && part_round_room(&p);
     if (fine) {
-        part_find_spoilt(&p, own);
+        part_find_spoilt(&p);
         part_channels(&p);
         part_nodes(&p);
     }
-    base_free(own);
-    base_free(p.replica);
-    base_free(p.arrival);
-    base_free(p.place);
-    base_free(p.leaf);
-    base_free(p.spoilt);
-    base_free(p.order);
-    base_free(p.row.at);
-    base_free(p.state.at);
-    base_free(p.joined.at);
-    base_free(p.came.at);
-    base_free(p.param);
+    base_free(memory);
     return fine;
 }

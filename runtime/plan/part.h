@@ -5,6 +5,7 @@
 
 /* The pass that makes the part of a rank, between its two files (part.c, part_sums.c). */
 
+/* The arrays are one block of part.c. */
 struct plan_parting {
     const struct plan_messages *m;
     const struct plan_assignment *a;
@@ -15,6 +16,7 @@ struct plan_parting {
     uint32_t *place;     /* by item: its place when its message goes, or comes */
     uint32_t *leaf;      /* by buffer of the round, less n_objects: its place here, plus 1; or 0 */
     plan_moment *spoilt; /* by version: when the rank overwrites it */
+    uint32_t *own;       /* by object: the version in its own place, while `spoilt` is found */
     size_t next_item;    /* the first that is not made yet */
     plan_moment next;    /* when it is made, or the next message goes */
     uint32_t *order;     /* messages to send, by the moment they are ready */

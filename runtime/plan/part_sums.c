@@ -22,9 +22,10 @@ static void part_combine_leaves(struct plan_parting *p, struct plan_round_node *
     for (uint64_t first = piece->tree.first; first < end; first++) {
         const uint32_t param = made->n_uses;
         plan_round_use(p->part, made, plan_part_leaf(p, leaf[first].place), true, true);
-        plan_reduce_push(p->part, &p->row, (struct data_subtree){.first = first, .where = param});
+        data_subtrees_push(&p->row, (struct data_subtree){.first = first, .where = param},
+                           plan_merge, p->part);
     }
-    plan_reduce_fold(p->part, &p->row);
+    data_subtrees_fold(&p->row, plan_merge, p->part);
 }
 
 /* Combines the contributions of this rank to pieces of more than one leaf. */
@@ -79,7 +80,7 @@ static void part_combine_places(void *context, uint32_t left, uint32_t right)
     if (!j->made)
         j->made = part_add(j->p, PLAN_PARTIAL, j->n);
     const uint32_t into = part_param(j, left);
-    plan_reduce_merge(j->p->part, into, part_param(j, right));
+    plan_merge(j->p->part, into, part_param(j, right));
 }
 
 /* Joins the subtrees received in this round, in items from `first` on, with those present. */
@@ -113,9 +114,9 @@ void plan_part_sum(struct plan_parting *p, size_t n)
         struct data_subtree subtree = p->state.at[i];
         subtree.where = made->n_uses;
         plan_round_use(p->part, made, p->state.at[i].where, true, true);
-        plan_reduce_push(p->part, &p->row, subtree);
+        data_subtrees_push(&p->row, subtree, plan_merge, p->part);
     }
-    plan_reduce_fold(p->part, &p->row);
+    data_subtrees_fold(&p->row, plan_merge, p->part);
 }
 
 void plan_part_before_sum(struct plan_parting *p, size_t n)

@@ -174,12 +174,9 @@ static inline void plan_round_use(struct plan_round *round, struct plan_round_no
 }
 uint32_t plan_round_buffer(struct plan_round *round, uint32_t object, const duite_law *law);
 
-/* The reduction of data/subtrees.h as merges of the last node; `where` is the parameter with the
- * subtree's value. */
-void plan_reduce_push(struct plan_round *round, struct data_subtrees *list,
-                      struct data_subtree subtree);
-void plan_reduce_fold(struct plan_round *round, const struct data_subtrees *list);
-void plan_reduce_merge(struct plan_round *round, uint32_t left, uint32_t right);
+/* The reduction of data/subtrees.h as merges of the round's last node (a data_combine): `where` of
+ * a subtree is the parameter with its value. */
+void plan_merge(void *round, uint32_t left, uint32_t right);
 
 /* ---- Assign: the ranks that run each node ---- */
 

@@ -5,9 +5,8 @@
  * it. No third worker can run the node meanwhile. So the wait is no longer than a node that leaves
  * no affinity may take, and it ends when a queue has a task or other programs use the core. After a
  * vain wait the worker passes over twice as many waits as the last time. */
-#include "runtime/workers/await.h"
-
 #include "runtime/base/clock.h"
+#include "runtime/workers/internal.h"
 
 /* The node did not come: the worker passes over twice as many waits as the last time, and one. At
  * most 255. */

@@ -4,7 +4,7 @@
 #include "runtime/base/monitor.h"
 #include "runtime/base/thread.h"
 #include "runtime/data/packet.h"
-#include "runtime/plan/plan.h"
+#include "runtime/plan/node.h"
 #include "runtime/task/body.h"
 #include "runtime/workers/queue.h"
 #include "runtime/workers/topology.h"
@@ -241,6 +241,14 @@ struct work_batch {
 /* Reads the clock. */
 void work_batch_end(struct worker *worker, struct work_batch *batch);
 
+/* ---- await.c: the end of a node on a worker, which may wait for a successor ---- */
+
+/* As plan_node_count_down. If none of the successors is the next node, the worker awaits one. */
+void work_count_down_awaiting(struct worker *worker, struct task *task, struct work_batch *batch);
+
+/* No node is left for the worker: it may await one after the next. */
+void work_may_await(struct worker *worker);
+
 /* ---- idle.c ---- */
 
 bool work_park_start(struct work_park *park);
@@ -348,6 +356,16 @@ static inline bool work_keeps(const struct worker *worker, const struct task *ta
 {
     const uint32_t affinity = plan_task_affinity(task);
     return !affinity || affinity == worker->index + 1;
+}
+
+/* The first node that becomes ready is the next one, if the scheduler need not be asked. */
+static inline void work_node_ready(struct task_graph *graph, struct worker *worker,
+                                   struct task *task)
+{
+    if (task->type == TASK_NODE && worker->may_chain && !worker->next && work_keeps(worker, task))
+        worker->next = task;
+    else
+        plan_node_ready(graph, worker, task);
 }
 
 /* Notes the affinity that a task leaves, which took so many ticks. */

@@ -5,7 +5,7 @@
 #include "runtime/base/clock.h"
 #include "runtime/base/report.h"
 #include "runtime/task/call.h"
-#include "runtime/workers/await.h"
+#include "runtime/workers/internal.h"
 
 #include <stdio.h>
 #include <stdlib.h>

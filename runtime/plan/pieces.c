@@ -31,7 +31,7 @@ static void pieces_set_phases(const struct plan_messages *m, size_t n, size_t fi
         m->piece[i].phase = latest[m->piece[i].rank];
 }
 
-static void piece_add(struct plan_messages *m, size_t n, int rank, struct data_subtree tree)
+static void piece_append(struct plan_messages *m, size_t n, int rank, struct data_subtree tree)
 {
     m->piece[m->n_pieces++] = (struct plan_piece){.node = (uint32_t)n, .tree = tree, .rank = rank};
 }
@@ -46,12 +46,12 @@ static void pieces_of_row(struct plan_messages *m, size_t n, int rank, uint32_t 
     if (end - first < all) {
         data_subtrees_row(&list, first, end - first);
         for (size_t i = 0; i < list.n; i++)
-            piece_add(m, n, rank, row[i]);
+            piece_append(m, n, rank, row[i]);
     } else if (!pieces_stay(m->assignment, n, rank)) {
-        piece_add(m, n, rank, data_subtree_whole(all));
+        piece_append(m, n, rank, data_subtree_whole(all));
     } else {
         for (uint32_t i = first; i < end; i++)
-            piece_add(m, n, rank, (struct data_subtree){.first = i});
+            piece_append(m, n, rank, (struct data_subtree){.first = i});
     }
 }
 

@@ -134,7 +134,7 @@ static inline bool run_fits(const struct worker *worker, const struct task *task
 }
 
 /* The next one of the worker's own queue, if it would take that. NULL: let it look around. */
-static inline struct task *next_of_queue(struct worker *worker, unsigned in_turn)
+static inline struct task *run_next_queued(struct worker *worker, unsigned in_turn)
 {
     struct work_queue *queue = &worker->queue;
     if (in_turn > IN_TURN || worker->brief_bodies < BODIES || worker->waits ||
@@ -144,7 +144,7 @@ static inline struct task *next_of_queue(struct worker *worker, unsigned in_turn
 }
 
 /* The newest of the worker's own queue, if the body that waits forked it. */
-static inline struct task *next_child(struct worker *worker)
+static inline struct task *run_next_child(struct worker *worker)
 {
     struct work_queue *queue = &worker->queue;
     struct task *task = work_queue_ranks(queue) ? NULL : work_queue_take(queue, DUITE_NEWEST);
@@ -222,9 +222,9 @@ STEP struct task *run_next(struct worker *worker, unsigned *length, unsigned *in
     if (task || form == RUN_ANY || form == RUN_NODE)
         return task;
     if (form == RUN_BODY)
-        task = next_of_queue(worker, (*in_turn)++);
+        task = run_next_queued(worker, (*in_turn)++);
     else if (!until->done(until->context))
-        task = next_child(worker);
+        task = run_next_child(worker);
     if (task)
         *length = 0;
     return task;
@@ -331,7 +331,7 @@ void work_run(struct worker *worker, struct task *task)
 void work_run_children(struct worker *worker, bool (*done)(void *context), void *context)
 {
     const struct run_until until = {done, context};
-    struct task *task = next_child(worker);
+    struct task *task = run_next_child(worker);
     unsigned length = 1;
     if (task && run_fits(worker, task, RUN_CHILD))
         task = run_in_turn(worker, task, &length, &until, RUN_CHILD);

@@ -76,9 +76,11 @@ struct data_version *task_value_version(const struct data_object *object, const 
                                         size_t bytes);
 
 /* Contributions. task_contribute adds a leaf for access i of the fork, and first closes a sum of
- * another law. task_reduce closes the sum: its contributions are combined. */
+ * another law. task_reduce closes the sum: its contributions are combined. The failure says that
+ * some were lost. */
 int task_contribute(const struct task_fork_call *call, struct data_object *object, size_t i);
 int task_reduce(struct task_scope *scope, struct worker *worker, struct data_object *object);
+extern const struct data_failure task_sum_no_memory;
 void task_run_combine(struct task *task);
 void task_run_pieces(struct task *task);
 /* Combines the contributions of a task's children into `leaf`, which is the task's. */

@@ -5,7 +5,6 @@
 
 #include "runtime/base/error.h"
 #include "runtime/map/map.h"
-#include "runtime/task/prune.h"
 
 #include <stdio.h>
 
@@ -142,27 +141,31 @@ __attribute__((noinline)) static int fork_other(duite *rt, const duite_kernel *k
                                                 const duite_object *objects)
 {
     int code = api_enter_any(rt, "duite_fork");
-    return code ? code
-                : fork_task(rt, &(struct task_options){.at = TASK_ANYWHERE}, kernel, args, n,
-                            objects);
+    return code ? code : fork_task(rt, &task_no_options, kernel, args, n, objects);
 }
 
-/* task_prune or task_prune_more do a usual fork that needs nothing of this rank. After every so
- * many of them messages are polled, and broken communication is noticed. */
+/* A usual fork on several ranks. After every so many of those that make no task here messages are
+ * polled, and broken communication is noticed. */
 __attribute__((noinline)) static int fork_ranks(duite *rt, const duite_kernel *kernel,
                                                 const void *args, size_t n,
                                                 const duite_object *objects)
 {
     enum { FORKS_A_TICK = 32 };
-    if (!task_prune(&rt->graph, kernel, args, n, objects) &&
-        !task_prune_more(&rt->graph, kernel, args, n, objects))
+    const uint64_t tasks = rt->graph.tasks;
+    if (task_has_given_up(&rt->graph))
         return fork_other(rt, kernel, args, n, objects);
+    const int code = task_fork_ranks(&rt->graph, rt->worker, kernel, args, n, objects);
+    if (code)
+        return api_remember(rt, code);
     if (rt->trace)
-        trace_fork(rt->trace, kernel, &(struct task_options){.at = TASK_ANYWHERE}, n, objects);
-    if (rt->graph.root.forks % FORKS_A_TICK)
+        trace_fork(rt->trace, kernel, &task_no_options, n, objects);
+    if (rt->graph.tasks == tasks && rt->graph.root.forks % FORKS_A_TICK)
         return DUITE_OK;
     work_tick(rt->pool);
-    return comm_broken(rt->comm) ? api_enter_any(rt, "duite_fork") : DUITE_OK;
+    if (comm_broken(rt->comm))
+        return api_enter_any(rt, "duite_fork");
+    api_throttle(rt);
+    return DUITE_OK;
 }
 
 static inline int fork_direct(duite *rt, const duite_kernel *kernel, const void *args, size_t n,

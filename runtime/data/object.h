@@ -10,8 +10,8 @@
  * knowledge of other ranks follows from the forks, which are the same everywhere: no rank is ever
  * asked. */
 struct data_object {
-    /* One cache line holds all that a replay, or a fork of another rank's task (task/prune.h),
-     * reads and writes. */
+    /* One cache line holds all that a replay, or a fork of another rank's task, reads and
+     * writes. */
     uint32_t generation; /* even: the slot is free */
     int home;            /* -1: not decided yet */
     int holder;          /* the rank that has the current version for certain */
@@ -106,14 +106,14 @@ static inline struct data_object *data_object_here(struct data_table *table, dui
         name.slot < table->n_slots && object->generation == name.generation && name.generation % 2;
     return here ? object : NULL;
 }
-/* The same, but only if it has no contributions. */
-static inline struct data_object *data_object_usual(struct data_object *first, uint32_t n_slots,
-                                                    duite_object name)
+/* The same in a table of n_slots; `closed`: only if it has no contributions. */
+static inline struct data_object *data_object_used(struct data_object *first, uint32_t n_slots,
+                                                   duite_object name, bool closed)
 {
     struct data_object *object = &first[name.slot];
-    const bool usual =
-        name.slot < n_slots && object->generation == name.generation && !object->leaves;
-    return usual ? object : NULL;
+    const bool used = name.slot < n_slots && object->generation == name.generation &&
+                      (closed ? !object->leaves : name.generation % 2);
+    return used ? object : NULL;
 }
 static inline struct data_object *data_object_find(struct data_table *table, duite_object name)
 {

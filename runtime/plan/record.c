@@ -183,19 +183,21 @@ int plan_record_fork(struct plan_record *record, const struct task_options *opti
 {
     struct task_graph *graph = record->graph;
     struct task_fork_call call;
-    int code = task_check_fork(&call, &graph->root, options->at, kernel, args, n, objects);
+    task_fork_call_init(&call, &graph->root, NULL, kernel, n, objects);
+    int code = task_fork_check(&call, options->at, args);
     if (code)
         return code;
-    struct plan_recorded_fork *fork =
-        record_append(record, call.index, options, n, kernel->args_size);
+    task_fork_unmark(&call, n);
+    const uint32_t index = call.fixed->index, owner = task_fork_owner(&call);
+    struct plan_recorded_fork *fork = record_append(record, index, options, n, kernel->args_size);
     if (!fork)
         return DUITE_E_MEMORY;
     record_use_all(record, &call);
-    if (call.owner != TASK_NOBODY)
-        fork->owner = record->access[fork->first + call.owner].object;
+    if (owner != TASK_NOBODY)
+        fork->owner = record->access[fork->first + owner].object;
     if (graph->n_ranks > 1)
-        task_mix_fork(graph, task_fork_hash_all(call.index, options->at, n, objects), TASK_RECORDED,
-                      call.index);
+        task_mix_fork(graph, task_fork_hash_all(index, options->at, n, objects), TASK_RECORDED,
+                      index);
     if (kernel->args_size)
         memcpy(record->args + fork->args, args, kernel->args_size);
     if (kernel->fixed)

@@ -28,32 +28,27 @@ static bool sum_open(const struct task_graph *graph, struct data_object *object)
     return object->sum;
 }
 
-static int leaf_add(const struct task_fork_call *call, struct data_object *object, size_t i)
+int task_contribute(struct task_graph *graph, struct task *task, size_t i,
+                    struct data_object *object, const duite_law *law, int at)
 {
-    struct task_graph *graph = call->scope->graph;
     bool adder = object->holder == graph->rank;
-    if ((adder || call->task) && !sum_open(graph, object)) {
+    object->law = law;
+    if ((adder || task) && !sum_open(graph, object)) {
         base_no_memory("contributions");
         return task_break(graph);
     }
     uint64_t first = object->leaves++;
-    if (adder && !call->task)
-        data_sum_sender(object->sum, call->at);
-    if (!call->task)
+    if (adder && !task)
+        data_sum_sender(object->sum, at);
+    if (!task)
         return DUITE_OK;
-    struct task_access *access = &call->task->access[i];
+    struct task_access *access = &task->access[i];
     access->leaf = data_sum_leaf(object->sum, first);
     if (access->leaf)
         return DUITE_OK;
     atomic_store_explicit(&object->sum->lost, &sum_no_memory, memory_order_relaxed);
     base_no_memory("a contribution");
     return task_break(graph);
-}
-
-int task_contribute(const struct task_fork_call *call, struct data_object *object, size_t i)
-{
-    object->law = data_law_of(call->kernel, i);
-    return leaf_add(call, object, i);
 }
 
 /* ---- Contributing without a child: in a body that holds cwp ---- */
@@ -139,7 +134,7 @@ static int sum_combine_here(struct task_scope *scope, struct worker *worker,
         return DUITE_E_MEMORY;
     uint32_t done = 0;
     task->access[0].waiter.mode = DUITE_RW;
-    int code = task_overwrite(graph, task, 0, object, version, &done);
+    int code = task_wait(scope, task, 0, object, &done);
     if (code) { /* the contributions are dropped once they are all there */
         task->n = 0;
         done = 1;

@@ -95,20 +95,13 @@ bool plan_memo_look(struct plan_memo *memo, uint32_t hash, const duite_kernel *k
 /* A round was forked: makes room for the arguments of the next one, or closes the replay. */
 void plan_memo_next_round(struct plan_memo *memo);
 
-/* Sums of products: no multiplication waits for another one. */
 static inline uint32_t plan_memo_hash(const struct plan_memo *memo, const duite_kernel *kernel,
                                       size_t n, const duite_object *objects)
 {
-    uint64_t odd = 0x9e3779b97f4a7c15u, sum = (uint64_t)(uintptr_t)kernel * odd;
-    if (n > MEMO_HASHED || (n && !objects))
-        return (uint32_t)(memo->pos * odd >> 32);
-    for (size_t i = 0; i < n; i++) {
-        uint64_t name;
-        memcpy(&name, &objects[i], sizeof name);
-        odd += UINT64_C(0x3c6ef372fe94f82a);
-        sum += name * odd;
-    }
-    return (uint32_t)(sum >> 32);
+    const bool hashed = n <= MEMO_HASHED && (objects || !n);
+    return (uint32_t)((hashed ? task_fork_hash_all((uintptr_t)kernel, n, objects)
+                              : task_fork_hash(memo->pos)) >>
+                      32);
 }
 
 static inline bool plan_memo_is_step(const struct plan_memo_step *step, const duite_kernel *kernel,

@@ -196,8 +196,8 @@ int plan_record_fork(struct plan_record *record, const struct task_options *opti
     if (owner != TASK_NOBODY)
         fork->owner = record->access[fork->first + owner].object;
     if (graph->n_ranks > 1)
-        task_mix_fork(graph, task_fork_hash_all(index, options->at, n, objects), TASK_RECORDED,
-                      index);
+        task_mix_fork(graph, task_fork_hash_all(task_fork_what(index, options->at), n, objects),
+                      TASK_RECORDED, index);
     if (kernel->args_size)
         memcpy(record->args + fork->args, args, kernel->args_size);
     if (kernel->fixed)
@@ -222,7 +222,7 @@ int plan_record_set(struct plan_record *record, duite_object name, const void *v
     if (!fork)
         return DUITE_E_MEMORY;
     fork->owner = record_use(record, name, DUITE_W, NULL);
-    task_mix(record->graph, task_fork_hash_all(PLAN_SETS, TASK_ANYWHERE, 1, &name));
+    task_mix(record->graph, task_fork_hash_all(task_fork_what(PLAN_SETS, TASK_ANYWHERE), 1, &name));
     task_mix(record->graph, count);
     task_mixed(record->graph, TASK_CALLED, TASK_CALLED_SET);
     fork->zeros = !values;

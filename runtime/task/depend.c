@@ -3,6 +3,7 @@
  * sum, or a lent object. On other ranks the same call forgets stale versions, and sends or awaits
  * copies. Values that are not there yet wake the task later: ready.h. */
 #include "runtime/task/access.h"
+#include "runtime/task/ready.h"
 
 #include "runtime/data/law.h"
 
@@ -184,4 +185,40 @@ static int depend_elsewhere(struct task_fork_call *call)
 int task_depend(struct task_fork_call *call)
 {
     return call->task ? depend_here(call) : depend_elsewhere(call);
+}
+
+/* ---- ready.h, for those to whom a call more does not matter ---- */
+
+void task_settled(struct task_graph *graph, struct worker *worker, struct task *task, uint32_t done)
+{
+    ready_take(graph, worker, task, done + 1);
+}
+
+void task_wake(struct task_graph *graph, struct worker *worker, struct data_waiter *waiter)
+{
+    ready_wake(graph, worker, waiter);
+}
+
+/* The heir of the version that the value is passed on to may again be no task. */
+void task_wake_heir(struct task_graph *graph, struct worker *worker, struct data_waiter *heir)
+{
+    while (heir && !heir->back)
+        heir = task_pass(worker, heir);
+    ready_wake_heir(graph, worker, heir);
+}
+
+void task_release(struct task_graph *graph, struct worker *worker, struct data_version *version)
+{
+    ready_release(graph, worker, version);
+}
+
+struct data_waiter *task_produced(struct task_graph *graph, struct worker *worker,
+                                  struct data_version *version)
+{
+    return ready_produced(graph, worker, version);
+}
+
+void task_publish(struct task_graph *graph, struct worker *worker, struct data_version *version)
+{
+    ready_publish(graph, worker, version);
 }

@@ -320,8 +320,10 @@ int task_fork_any(struct task_scope *scope, struct worker *worker,
         return code;
     scope->forks++;
     if (!scope->depth && scope->graph->n_ranks > 1)
-        task_mix_fork(scope->graph, task_fork_hash_all(call.fixed->index, options->at, n, objects),
-                      TASK_FORKED, call.fixed->index);
+        task_mix_fork(
+            scope->graph,
+            task_fork_hash_all(task_fork_what(call.fixed->index, options->at), n, objects),
+            TASK_FORKED, call.fixed->index);
     return fork_checked(&call, options, args);
 }
 
@@ -337,7 +339,7 @@ ACCESS_INLINE bool elsewhere_take(struct task_scope *scope, const struct task_fi
     for (size_t i = 0; i < n; i++) {
         object[i] = plain ? access_find(&look, name[i], DUITE_NONE)
                           : access_find_any(&look, fixed, i, name[i]);
-        *hash = task_fork_hash_on(*hash, name[i]);
+        *hash = task_fork_hash_on(*hash, i, name[i]);
         if (object[i])
             continue;
         while (i > 0)
@@ -363,7 +365,7 @@ ACCESS_INLINE int elsewhere_try(struct task_graph *graph, struct worker *worker,
     const struct data_object *owner =
         own == TASK_NOBODY ? NULL : data_object_here(&graph->table, objects[own]);
     const int at = task_owner_rank(TASK_ANYWHERE, false, owner ? owner->home : -1);
-    uint64_t hash = task_fork_hash(fixed->index, TASK_ANYWHERE);
+    uint64_t hash = task_fork_hash(task_fork_what(fixed->index, TASK_ANYWHERE));
     if (at == graph->rank || !elsewhere_take(scope, fixed, n, objects, object, &hash, plain))
         return ELSEWHERE_NOT;
     scope->forks++;

@@ -14,7 +14,6 @@ static void given(const void *memory);
 #include "runtime/data/version.c"
 #define work_ready ready
 #include "runtime/task/depend.c"
-#include "runtime/task/finish.c"
 
 enum { READERS = 2, WRITER = READERS, TASKS = READERS + 1 };
 

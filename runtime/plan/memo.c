@@ -82,7 +82,7 @@ static void memo_break(struct task_taker *taker)
 }
 
 /* A round was forked: makes room for the arguments of the next one, or closes the replay. */
-static void memo_next_round(struct plan_memo *memo)
+__attribute__((noinline)) static void memo_next_round(struct plan_memo *memo)
 {
     struct plan *plan = memo->plan;
     memo->at = 0;
@@ -277,20 +277,14 @@ static inline uint32_t memo_hash(const struct plan_memo *memo, const duite_kerne
                       32);
 }
 
-/* A fork without options by the main program, outside builds and with homes settled. True: the fork
- * is made. False: the caller makes it. */
-static bool memo_fork(struct task_taker *taker, const duite_kernel *kernel, const void *args,
-                      size_t n, const duite_object *objects)
+/* A fork that is not the expected one. True: it is made. Not inline: the usual way of a replay
+ * needs few registers. */
+__attribute__((noinline)) static bool memo_other_fork(struct plan_memo *memo,
+                                                      const duite_kernel *kernel, const void *args,
+                                                      size_t n, const duite_object *objects)
 {
-    struct plan_memo *memo = (struct plan_memo *)taker;
-    const struct plan_memo_step *step = memo->step;
-    if (step) {
-        if (memo_is_step(step, kernel, args, n, objects)) {
-            memo_take(memo, step, args);
-            return true;
-        }
-        memo_break(taker);
-    }
+    if (memo->step)
+        memo_break(&memo->taker);
     if (memo->skip) {
         memo->skip--;
         return false;
@@ -300,6 +294,18 @@ static bool memo_fork(struct task_taker *taker, const duite_kernel *kernel, cons
     if (hash != memo->anchor && memo->pos <= memo->due)
         return false;
     return memo_look(memo, hash, kernel, args, n, objects);
+}
+
+/* A fork without options by the main program, outside builds and with homes settled. */
+static bool memo_fork(struct task_taker *taker, const duite_kernel *kernel, const void *args,
+                      size_t n, const duite_object *objects)
+{
+    struct plan_memo *memo = (struct plan_memo *)taker;
+    const struct plan_memo_step *step = memo->step;
+    if (!step || !memo_is_step(step, kernel, args, n, objects))
+        return memo_other_fork(memo, kernel, args, n, objects);
+    memo_take(memo, step, args);
+    return true;
 }
 
 /* ---- Start and stop ---- */

@@ -1,6 +1,6 @@
 /* The checks of a fork, one after the other: the second look at a fork that fork.c does not take at
- * once. Each has the sentence of its error. Nothing is changed but marks, and on an error those are
- * taken away again. */
+ * once. Each has the sentence of its error. Only marks are changed, and an error takes them away
+ * again. */
 #include "runtime/task/scope.h"
 
 #include "runtime/base/error.h"

@@ -4,9 +4,10 @@
  * rules in its own scope, whose objects are here and nowhere else. Errors are refused before
  * anything is changed (check.c); afterwards only memory can be missing.
  *
- * The short way is for plain kernels (task_fixed.plain) where no other rank has part: one pass over
- * the objects finds them, and one makes the accesses wait. The general way has the second pass in
- * depend.c. Both take the steps of access.h. */
+ * One pass over the objects finds them, and one makes the accesses wait. There are three ways, of
+ * the same steps (access.h): a short one for plain kernels (task_fixed.plain) on one rank, a short
+ * one for tasks that other ranks run, and the general one, whose second pass is in depend.c. The
+ * short ways leave to it what they do not know, before anything is changed. */
 #include "runtime/task/access.h"
 #include "runtime/task/ready.h"
 
@@ -91,7 +92,7 @@ uint64_t task_later_round(const struct task *task)
     return round;
 }
 
-/* ---- The short way. Compiled once for the main program and once for bodies ---- */
+/* ---- The short way on one rank. Compiled once for the main program and once for bodies ---- */
 
 /* A fork under way. */
 struct plain_fork {
@@ -327,10 +328,10 @@ int task_fork_any(struct task_scope *scope, struct worker *worker,
     return fork_checked(&call, options, args);
 }
 
-/* ---- The short way of tasks that other ranks run. Compiled once for plain kernels ---- */
-
-/* Finds the objects. False: one of them needs a second look; nothing was done. *hash: the fork's.
+/* ---- The short way of tasks that other ranks run. Compiled for plain kernels and for others ----
  */
+
+/* Finds the objects, and hashes their names. False: one needs a second look; nothing was done. */
 ACCESS_INLINE bool elsewhere_take(struct task_scope *scope, const struct task_fixed *fixed,
                                   size_t n, const duite_object *name, struct data_object **object,
                                   uint64_t *hash, bool plain)
@@ -349,7 +350,8 @@ ACCESS_INLINE bool elsewhere_take(struct task_scope *scope, const struct task_fi
     return true;
 }
 
-enum { ELSEWHERE_NOT = -1 }; /* instead of a code: the fork is not of this kind, nothing was done */
+/* Instead of a code: the fork is not of this kind, and nothing was done. */
+enum { ELSEWHERE_NOT = -1 };
 
 ACCESS_INLINE int elsewhere_try(struct task_graph *graph, struct worker *worker,
                                 const struct task_fixed *fixed, const void *args, size_t n,

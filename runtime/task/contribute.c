@@ -14,36 +14,27 @@ static bool sum_open(const struct task_graph *graph, struct data_object *object)
     return object->sum;
 }
 
-static int leaf_add(const struct task_fork_call *call, struct data_object *object, size_t i)
+int task_contribute(struct task_graph *graph, struct task *task, size_t i,
+                    struct data_object *object, const duite_law *law, int at)
 {
-    struct task_graph *graph = call->scope->graph;
     bool adder = object->holder == graph->rank;
-    if ((adder || call->task) && !sum_open(graph, object)) {
+    object->law = law;
+    if ((adder || task) && !sum_open(graph, object)) {
         base_no_memory("contributions");
         return task_break(graph);
     }
     uint64_t first = object->leaves++;
-    if (adder && !call->task)
-        data_sum_sender(object->sum, call->at);
-    if (!call->task)
+    if (adder && !task)
+        data_sum_sender(object->sum, at);
+    if (!task)
         return DUITE_OK;
-    struct task_access *access = &call->task->access[i];
+    struct task_access *access = &task->access[i];
     access->leaf = data_sum_leaf(object->sum, first);
     if (access->leaf)
         return DUITE_OK;
     atomic_store_explicit(&object->sum->lost, &task_sum_no_memory, memory_order_relaxed);
     base_no_memory("a contribution");
     return task_break(graph);
-}
-
-int task_contribute(const struct task_fork_call *call, struct data_object *object, size_t i)
-{
-    const duite_law *law = data_law_of(call->kernel, i);
-    int code = DUITE_OK;
-    if (object->leaves && object->law != law)
-        code = task_reduce(call->scope, call->worker, object);
-    object->law = law;
-    return code ? code : leaf_add(call, object, i);
 }
 
 /* ---- Contributing without a child: in a body that holds cwp ---- */

@@ -61,7 +61,7 @@ static int sum_combine_here(struct task_scope *scope, struct worker *worker,
         return DUITE_E_MEMORY;
     uint32_t done = 0;
     task->access[0].waiter.mode = DUITE_RW;
-    int code = task_overwrite(graph, task, 0, object, version, &done);
+    int code = task_wait(scope, task, 0, object, &done);
     if (code) { /* the contributions are dropped once they are all there */
         task->n = 0;
         done = 1;

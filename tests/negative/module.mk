@@ -1,4 +1,7 @@
 MISUSE = tests/negative/misuse.c tests/negative/misuse.h
+LEAK_SH += tests/negative/test_ranks.sh
+ASAN_SH += tests/negative/test_lost.sh tests/negative/test_environment.sh
+LONG_SH += tests/negative/test_lost_long.sh tests/negative/test_memory_long.sh
 check_PROGRAMS += tests/negative/ranks_failures tests/negative/ranks_different tests/negative/ranks_groups \
                   tests/negative/ranks_memory tests/negative/ranks_memory_graphs tests/negative/ranks_system tests/negative/ranks_blocking
 tests_negative_ranks_failures_SOURCES = tests/negative/ranks_failures.c $(MISUSE)
@@ -26,17 +29,10 @@ tests_negative_ranks_lost_LDADD = $(CORE_LIBS)
 check_PROGRAMS += tests/negative/ranks_large
 tests_negative_ranks_large_SOURCES = tests/negative/ranks_large.c $(MISUSE)
 tests_negative_ranks_large_LDADD = $(CORE_LIBS)
-dist_check_SCRIPTS += tests/negative/test_ranks.sh tests/negative/test_lost.sh tests/negative/test_environment.sh
-TESTS += tests/negative/test_ranks.sh tests/negative/test_lost.sh tests/negative/test_environment.sh
-dist_check_SCRIPTS += tests/negative/test_lost_long.sh tests/negative/test_memory_long.sh
-LONG_TESTS += tests/negative/test_lost_long.sh tests/negative/test_memory_long.sh
 
 if HAVE_CHECK
-NEGATIVE_TESTS = tests/negative/test_arguments tests/negative/test_accesses tests/negative/test_start \
-                 tests/negative/test_state tests/negative/test_failures tests/negative/test_laws \
-                 tests/negative/test_sizes tests/negative/test_nested
-check_PROGRAMS += $(NEGATIVE_TESTS)
-TESTS += $(NEGATIVE_TESTS)
+LEAK_TESTS += tests/negative/test_arguments tests/negative/test_accesses tests/negative/test_start tests/negative/test_state \
+    tests/negative/test_failures tests/negative/test_laws tests/negative/test_sizes tests/negative/test_nested
 tests_negative_test_arguments_SOURCES = tests/negative/test_arguments.c $(MISUSE)
 tests_negative_test_arguments_LDADD = $(DUITE_TEST_LIBS)
 tests_negative_test_accesses_SOURCES = tests/negative/test_accesses.c $(MISUSE)

@@ -2,8 +2,9 @@ if HAVE_CHECK
 check_LIBRARIES += tests/cloth/output/libsample.a
 tests_cloth_output_libsample_a_SOURCES = tests/cloth/output/sample.c tests/cloth/output/sample.h
 
-check_PROGRAMS += tests/cloth/output/test_frames tests/cloth/output/test_report tests/cloth/output/test_replace tests/cloth/output/test_crash \
-	tests/cloth/output/test_market tests/cloth/output/test_checkpoint tests/cloth/output/test_colours tests/cloth/output/test_settle
+ASAN_TESTS += tests/cloth/output/test_frames tests/cloth/output/test_report tests/cloth/output/test_replace \
+    tests/cloth/output/test_crash tests/cloth/output/test_market tests/cloth/output/test_checkpoint tests/cloth/output/test_colours \
+    tests/cloth/output/test_settle
 tests_cloth_output_test_checkpoint_SOURCES = tests/cloth/output/test_checkpoint.c
 tests_cloth_output_test_checkpoint_LDADD = tests/cloth/output/libsample.a $(CLOTH_TEST_LIBS)
 tests_cloth_output_test_colours_SOURCES = tests/cloth/output/test_colours.c
@@ -21,11 +22,8 @@ tests_cloth_output_test_settle_LDADD = $(CLOTH_TEST_LIBS)
 tests_cloth_output_test_crash_SOURCES = tests/cloth/output/test_crash.c
 tests_cloth_output_test_crash_LDADD = tests/cloth/output/libsample.a $(CLOTH_TEST_LIBS)
 if HAVE_HDF5
-check_PROGRAMS += tests/cloth/output/test_hdf5
+ASAN_TESTS += tests/cloth/output/test_hdf5
 tests_cloth_output_test_hdf5_SOURCES = tests/cloth/output/test_hdf5.c
 tests_cloth_output_test_hdf5_LDADD = tests/cloth/output/libsample.a $(CLOTH_TEST_LIBS) $(HDF5_LIBS)
-TESTS += tests/cloth/output/test_hdf5
 endif
-TESTS += tests/cloth/output/test_frames tests/cloth/output/test_report tests/cloth/output/test_replace tests/cloth/output/test_crash \
-	tests/cloth/output/test_market tests/cloth/output/test_checkpoint tests/cloth/output/test_colours tests/cloth/output/test_settle
 endif

@@ -106,7 +106,7 @@ after() {
 
 plan_later
 ok "different scenes on two ranks" different
-ok "a body fails on one rank" limited "${MPIRUN:-mpirun}" -n 2 tests/negative/ranks_failures
+ok "a body fails on one rank" limited "${MPIRUN:-mpirun}" -n 2 tests/negative/ranks failures
 if test "${DUITE_LONG:-}" = 1; then
     export OMPI_MCA_odls_base_sigkill_timeout=1 # as users have it
     ok "a rank is stopped for good" comatose
@@ -114,7 +114,7 @@ if test "${DUITE_LONG:-}" = 1; then
     ok "a rank is killed" killed
     after
     # shellcheck disable=SC2086 # a list of options
-    ok "memory runs out on one rank" limited "${MPIRUN:-mpirun}" -n 2 tests/negative/ranks_memory
+    ok "memory runs out on one rank" limited "${MPIRUN:-mpirun}" -n 2 tests/negative/starved memory
     ok "a daemon is killed" bereft
     after
     ok "a host is cut off" cut_off $keep

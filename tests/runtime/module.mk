@@ -1,10 +1,8 @@
 LEAK_TESTS += tests/runtime/random_programs
 TSAN_TESTS += tests/runtime/test_containers tests/runtime/test_place tests/runtime/test_reduce
-LEAK_SH += tests/runtime/test_policy_tasks.sh tests/runtime/test_sizes.sh tests/runtime/test_homes.sh tests/runtime/test_mappings.sh \
-    tests/runtime/test_wide.sh
-ASAN_SH += tests/runtime/test_mpi.sh tests/runtime/test_control.sh tests/runtime/test_plans.sh tests/runtime/test_random.sh \
-    tests/runtime/test_nested.sh tests/runtime/test_memcheck.sh tests/runtime/test_stuck.sh tests/runtime/test_loaded.sh \
-    tests/runtime/test_exit.sh tests/runtime/test_prune.sh tests/runtime/test_migrate.sh
+LEAK_SH += tests/runtime/test_ranks.sh
+ASAN_SH += tests/runtime/test_random.sh tests/runtime/test_nested.sh tests/runtime/test_memcheck.sh tests/runtime/test_stuck.sh \
+    tests/runtime/test_exit.sh tests/runtime/test_steals.sh tests/runtime/test_migrate.sh
 PLAIN_SH += tests/runtime/test_delegate.sh
 LONG_SH += tests/runtime/test_random_long.sh tests/runtime/test_memcheck_long.sh tests/runtime/test_threads_long.sh \
     tests/runtime/test_migrate_long.sh
@@ -14,75 +12,28 @@ tests_runtime_random_programs_SOURCES = tests/runtime/random_programs.c tests/ru
     tests/runtime/random_bodies.c tests/runtime/random_interpret.c tests/runtime/random_run.c tests/runtime/random_run.h \
     tests/runtime/random_places.c tests/runtime/random_rounds.c
 tests_runtime_random_programs_LDADD = $(CORE_LIBS)
-check_PROGRAMS += tests/runtime/ranks_sizes
-tests_runtime_ranks_sizes_SOURCES = tests/runtime/ranks_sizes.c tests/negative/misuse.c tests/negative/misuse.h
-tests_runtime_ranks_sizes_LDADD = $(CORE_LIBS)
-check_PROGRAMS += tests/runtime/ranks_tasks tests/runtime/steals
-tests_runtime_ranks_tasks_SOURCES = tests/runtime/ranks_tasks.c tests/negative/misuse.c tests/negative/misuse.h
-tests_runtime_ranks_tasks_LDADD = $(CORE_LIBS)
+check_PROGRAMS += tests/runtime/steals
 tests_runtime_steals_SOURCES = tests/runtime/steals.c
 tests_runtime_steals_LDADD = $(CORE_LIBS)
-check_PROGRAMS += tests/runtime/ranks_homes
-tests_runtime_ranks_homes_SOURCES = tests/runtime/ranks_homes.c tests/negative/misuse.c tests/negative/misuse.h
-tests_runtime_ranks_homes_LDADD = $(CORE_LIBS)
-check_PROGRAMS += tests/runtime/ranks_replicated
-tests_runtime_ranks_replicated_SOURCES = tests/runtime/ranks_replicated.c tests/negative/misuse.c tests/negative/misuse.h
-tests_runtime_ranks_replicated_LDADD = $(CORE_LIBS)
-check_PROGRAMS += tests/runtime/ranks_plans
-tests_runtime_ranks_plans_SOURCES = tests/runtime/ranks_plans.c tests/negative/misuse.c tests/negative/misuse.h
-tests_runtime_ranks_plans_LDADD = $(CORE_LIBS)
-check_PROGRAMS += tests/runtime/ranks_mpi
-tests_runtime_ranks_mpi_SOURCES = tests/runtime/ranks_mpi.c tests/negative/misuse.c tests/negative/misuse.h
-tests_runtime_ranks_mpi_LDADD = $(CORE_LIBS)
-check_PROGRAMS += tests/runtime/ranks_control
-tests_runtime_ranks_control_SOURCES = tests/runtime/ranks_control.c tests/negative/misuse.c tests/negative/misuse.h
-tests_runtime_ranks_control_LDADD = $(CORE_LIBS)
 check_PROGRAMS += tests/runtime/nested_programs
 tests_runtime_nested_programs_SOURCES = tests/runtime/nested_programs.c tests/runtime/nested_program.h \
     tests/runtime/nested_make.c tests/runtime/nested_interpret.c tests/runtime/nested_values.c
 tests_runtime_nested_programs_LDADD = $(CORE_LIBS)
-SAID_FILES = tests/support/said.c tests/support/said.h
-check_PROGRAMS += tests/runtime/ranks_stuck_policies
-tests_runtime_ranks_stuck_policies_SOURCES = tests/runtime/ranks_stuck_policies.c tests/negative/misuse.c tests/negative/misuse.h $(SAID_FILES)
-tests_runtime_ranks_stuck_policies_LDADD = $(CORE_LIBS)
-check_PROGRAMS += tests/runtime/ranks_mappings
-tests_runtime_ranks_mappings_SOURCES = tests/runtime/ranks_mappings.c tests/negative/misuse.c tests/negative/misuse.h
-tests_runtime_ranks_mappings_LDADD = $(CORE_LIBS)
+# The tests of several ranks, in one program: test_ranks.sh says on how many.
+RANKS = tests/support/ranks.c tests/support/ranks.h tests/negative/misuse.c tests/negative/misuse.h
+check_PROGRAMS += tests/runtime/ranks
+tests_runtime_ranks_SOURCES = $(RANKS) tests/runtime/delegation.c tests/runtime/delegation.h tests/runtime/moving.c tests/runtime/moving.h \
+    tests/runtime/ranks_control.c tests/runtime/ranks_delegate.c tests/runtime/ranks_exit.c tests/runtime/ranks_homes.c \
+    tests/runtime/ranks_loaded.c tests/runtime/ranks_mappings.c tests/runtime/ranks_migrate.c tests/runtime/ranks_migrate_values.c \
+    tests/runtime/ranks_mpi.c tests/runtime/ranks_plans.c tests/runtime/ranks_prune.c tests/runtime/ranks_replicated.c \
+    tests/runtime/ranks_sizes.c tests/runtime/ranks_stuck.c tests/runtime/ranks_stuck_policies.c tests/runtime/ranks_subtrees.c \
+    tests/runtime/ranks_tags.c tests/runtime/ranks_tasks.c tests/runtime/ranks_wide.c \
+    tests/support/said.c tests/support/said.h
+tests_runtime_ranks_LDADD = $(CORE_LIBS)
 check_PROGRAMS += tests/runtime/overrun
 tests_runtime_overrun_SOURCES = tests/runtime/overrun.c
 tests_runtime_overrun_LDADD = $(CORE_LIBS)
-check_PROGRAMS += tests/runtime/ranks_stuck
-tests_runtime_ranks_stuck_SOURCES = tests/runtime/ranks_stuck.c
-tests_runtime_ranks_stuck_LDADD = $(CORE_LIBS)
-check_PROGRAMS += tests/runtime/ranks_loaded
-tests_runtime_ranks_loaded_SOURCES = tests/runtime/ranks_loaded.c
-tests_runtime_ranks_loaded_LDADD = $(CORE_LIBS)
-check_PROGRAMS += tests/runtime/ranks_exit
-tests_runtime_ranks_exit_SOURCES = tests/runtime/ranks_exit.c
-tests_runtime_ranks_exit_LDADD = $(CORE_LIBS)
 
-check_PROGRAMS += tests/runtime/ranks_tags
-tests_runtime_ranks_tags_SOURCES = tests/runtime/ranks_tags.c tests/negative/misuse.c tests/negative/misuse.h
-tests_runtime_ranks_tags_LDADD = $(CORE_LIBS)
-check_PROGRAMS += tests/runtime/ranks_wide
-tests_runtime_ranks_wide_SOURCES = tests/runtime/ranks_wide.c tests/negative/misuse.c tests/negative/misuse.h
-tests_runtime_ranks_wide_LDADD = $(CORE_LIBS)
-check_PROGRAMS += tests/runtime/ranks_prune
-tests_runtime_ranks_prune_SOURCES = tests/runtime/ranks_prune.c tests/negative/misuse.c tests/negative/misuse.h
-tests_runtime_ranks_prune_LDADD = $(CORE_LIBS)
-DELEGATION_FILES = tests/runtime/delegation.c tests/runtime/delegation.h tests/negative/misuse.c tests/negative/misuse.h
-check_PROGRAMS += tests/runtime/ranks_delegate
-tests_runtime_ranks_delegate_SOURCES = tests/runtime/ranks_delegate.c $(DELEGATION_FILES)
-tests_runtime_ranks_delegate_LDADD = $(CORE_LIBS)
-check_PROGRAMS += tests/runtime/ranks_subtrees
-tests_runtime_ranks_subtrees_SOURCES = tests/runtime/ranks_subtrees.c $(DELEGATION_FILES)
-tests_runtime_ranks_subtrees_LDADD = $(CORE_LIBS)
-MOVING = tests/runtime/moving.c tests/runtime/moving.h tests/negative/misuse.c tests/negative/misuse.h
-check_PROGRAMS += tests/runtime/ranks_migrate tests/runtime/ranks_migrate_values
-tests_runtime_ranks_migrate_SOURCES = tests/runtime/ranks_migrate.c $(MOVING)
-tests_runtime_ranks_migrate_LDADD = $(CORE_LIBS)
-tests_runtime_ranks_migrate_values_SOURCES = tests/runtime/ranks_migrate_values.c $(MOVING)
-tests_runtime_ranks_migrate_values_LDADD = $(CORE_LIBS)
 
 if HAVE_CHECK
 LEAK_TESTS += tests/runtime/test_window tests/runtime/test_memo tests/runtime/test_memo_ahead tests/runtime/test_late \

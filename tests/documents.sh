@@ -81,9 +81,9 @@ page_is_whole() { names | mentions "$page"; }
 
 page_invents_nothing() { # what it calls duite_... or DUITE_... is in the headers
     # shellcheck disable=SC2086
-    cat $headers "$srcdir/runtime/duite.c" | tr -c 'A-Za-z0-9_' '\n' | sort -u > "$scratch/known"
-    grep -o '\<\(duite\|DUITE\)_[A-Za-z0-9_]*\>' "$page" "$document" | sed 's/.*://' | sort -u > "$scratch/said"
-    test -s "$scratch/said" && comm -23 "$scratch/said" "$scratch/known" > "$scratch/invented"
+    cat $headers | tr -c 'A-Za-z0-9_' '\n' | sort -u > "$scratch/known" &&
+        grep -o '\<\(duite\|DUITE\)_[A-Za-z0-9_]*\>' "$page" "$document" | sed 's/.*://' | sort -u > "$scratch/said" &&
+        test -s "$scratch/said" && comm -23 "$scratch/said" "$scratch/known" > "$scratch/invented"
     cat "$scratch/invented"
     test ! -s "$scratch/invented"
 }

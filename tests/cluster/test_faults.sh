@@ -12,7 +12,7 @@ out=$scratch/frames
 # A cable that was pulled just now has hosts believe for a while that there is nobody at its other end.
 forget_faults() {
     for wait in $(seq 50); do
-        on h2 ip -o link show e0 | grep -q LOWER_UP && break
+        on h2 ip -o link show e0 | grep -c LOWER_UP && break
         sleep 0.1
     done
     on h1 ip neigh flush dev e0 && on h2 ip neigh flush dev e0

@@ -212,9 +212,9 @@ busy() {
     kill $loops && wait $loops 2> /dev/null
     cat "$scratch/said"
     grep '^duite-compare: warning: in round 1 other programs took [0-9.]* of [0-9]* cores' "$scratch/said" > "$scratch/warned" && test $status = 0 &&
-        sed 's/^duite-compare: warning: \(.*\)$/**Warning:** \1./' "$scratch/warned" | grep -Fxqf - "$scratch/b/compare.md" || return 1
+        sed 's/^duite-compare: warning: \(.*\)$/**Warning:** \1./' "$scratch/warned" | grep -Fxcf - "$scratch/b/compare.md" || return 1
     (cd "$scratch" && limited "$bin/duite-compare" tree --threads 1 --tasks 40 --cost 0.01 --steps 1 --rounds 1 --output b) &&
-        sed 's/^duite-compare: warning: \(.*\)$/**Warning:** \1./' "$scratch/warned" | grep -Fxqf - "$scratch/b/compare.md"
+        sed 's/^duite-compare: warning: \(.*\)$/**Warning:** \1./' "$scratch/warned" | grep -Fxcf - "$scratch/b/compare.md"
 }
 ok "a member that fails is named with its reason, and has no figures" failed
 ok "... also if all fail" all_failed

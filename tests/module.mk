@@ -77,7 +77,6 @@ if HAVE_CHECK
 check_LIBRARIES += tests/support/libunit.a
 tests_support_libunit_a_SOURCES = tests/support/unit.c tests/support/unit.h
 TSAN_TESTS += tests/support/test_unit
-tests_support_test_unit_SOURCES = tests/support/test_unit.c
 tests_support_test_unit_LDADD = $(DUITE_TEST_LIBS)
 endif
 
@@ -88,6 +87,8 @@ include tests/model/module.mk
 include tests/examples/module.mk
 if CLOTH
 CLOTH_TEST_LIBS = tests/support/libunit.a $(CLOTH_LIBS) $(CHECK_LIBS)
+# What a program links that says nothing else. The source of one that names none is the file of its name.
+LDADD = $(CLOTH_TEST_LIBS)
 include tests/cloth/module.mk
 include tests/cloth/base/module.mk
 include tests/cloth/mesh/module.mk

@@ -9,6 +9,7 @@ ASAN_SH += tests/fuzz/test_corpus.sh
 LONG_SH += tests/fuzz/test_programs_long.sh
 check_PROGRAMS += $(FUZZ_HARNESSES) tests/fuzz/mutate
 tests_fuzz_mutate_SOURCES = tests/fuzz/mutate.c tests/support/random.h
+tests_fuzz_mutate_LDADD =
 tests_fuzz_fuzz_checkpoint_SOURCES = tests/fuzz/fuzz_checkpoint.c $(FUZZ_FILES)
 tests_fuzz_fuzz_checkpoint_LDADD = $(FUZZ_LIBS)
 tests_fuzz_fuzz_colours_SOURCES = tests/fuzz/fuzz_colours.c $(FUZZ_FILES)

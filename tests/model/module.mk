@@ -7,6 +7,7 @@ ASAN_TESTS += tests/model/test_explorer tests/model/test_deque tests/model/test_
 PLAIN_TESTS += tests/model/test_sleep tests/model/test_sleep_queues
 LONG_SH += tests/model/test_long.sh
 tests_model_test_explorer_SOURCES = tests/model/test_explorer.c $(MODEL_EXPLORER)
+tests_model_test_explorer_LDADD =
 tests_model_test_deque_SOURCES = tests/model/test_deque.c $(MODEL_RUNTIME)
 tests_model_test_queue_SOURCES = tests/model/test_queue.c $(MODEL_RUNTIME)
 tests_model_test_sleep_SOURCES = tests/model/test_sleep.c tests/model/plain_queue.h tests/model/silent_comm.h $(MODEL_RUNTIME)

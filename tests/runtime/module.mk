@@ -13,7 +13,6 @@ tests_runtime_random_programs_SOURCES = tests/runtime/random_programs.c tests/ru
     tests/runtime/random_places.c tests/runtime/random_rounds.c
 tests_runtime_random_programs_LDADD = $(CORE_LIBS)
 check_PROGRAMS += tests/runtime/steals
-tests_runtime_steals_SOURCES = tests/runtime/steals.c
 tests_runtime_steals_LDADD = $(CORE_LIBS)
 check_PROGRAMS += tests/runtime/nested_programs
 tests_runtime_nested_programs_SOURCES = tests/runtime/nested_programs.c tests/runtime/nested_program.h \
@@ -31,7 +30,6 @@ tests_runtime_ranks_SOURCES = $(RANKS) tests/runtime/delegation.c tests/runtime/
     tests/support/said.c tests/support/said.h
 tests_runtime_ranks_LDADD = $(CORE_LIBS)
 check_PROGRAMS += tests/runtime/overrun
-tests_runtime_overrun_SOURCES = tests/runtime/overrun.c
 tests_runtime_overrun_LDADD = $(CORE_LIBS)
 
 
@@ -54,26 +52,17 @@ tests_runtime_test_window_SOURCES = tests/runtime/test_window.c tests/negative/m
 tests_runtime_test_window_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_environment_SOURCES = tests/runtime/test_environment.c tests/negative/misuse.c tests/negative/misuse.h
 tests_runtime_test_environment_LDADD = $(DUITE_TEST_LIBS)
-tests_runtime_test_check_SOURCES = tests/runtime/test_check.c
 tests_runtime_test_check_LDADD = $(DUITE_TEST_LIBS)
-tests_runtime_test_nested_tasks_SOURCES = tests/runtime/test_nested_tasks.c
 tests_runtime_test_nested_tasks_LDADD = $(DUITE_TEST_LIBS)
-tests_runtime_test_stack_SOURCES = tests/runtime/test_stack.c
 tests_runtime_test_stack_LDADD = $(DUITE_TEST_LIBS)
-tests_runtime_test_offload_names_SOURCES = tests/runtime/test_offload_names.c
 tests_runtime_test_offload_names_LDADD = $(DUITE_TEST_LIBS)
-tests_runtime_test_owner_SOURCES = tests/runtime/test_owner.c
 tests_runtime_test_owner_LDADD = $(DUITE_TEST_LIBS)
-tests_runtime_test_late_SOURCES = tests/runtime/test_late.c
 tests_runtime_test_late_LDADD = tests/support/libunit.a $(CHECK_LIBS)
 EXTRA_tests_runtime_test_late_DEPENDENCIES = libduite.la
-tests_runtime_test_pool_SOURCES = tests/runtime/test_pool.c
 tests_runtime_test_pool_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_laws_SOURCES = tests/runtime/test_laws.c tests/negative/misuse.c tests/negative/misuse.h
 tests_runtime_test_laws_LDADD = $(DUITE_TEST_LIBS)
-tests_runtime_test_settle_SOURCES = tests/runtime/test_settle.c
 tests_runtime_test_settle_LDADD = $(DUITE_TEST_LIBS)
-tests_runtime_test_balance_SOURCES = tests/runtime/test_balance.c
 tests_runtime_test_balance_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_sched_SOURCES = tests/runtime/test_sched.c tests/negative/misuse.c tests/negative/misuse.h
 tests_runtime_test_sched_LDADD = $(DUITE_TEST_LIBS)
@@ -83,9 +72,7 @@ tests_runtime_test_sched_knowing_SOURCES = tests/runtime/test_sched_knowing.c te
 tests_runtime_test_sched_knowing_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_makespan_SOURCES = tests/runtime/test_makespan.c tests/negative/misuse.c tests/negative/misuse.h
 tests_runtime_test_makespan_LDADD = $(DUITE_TEST_LIBS)
-tests_runtime_test_monitor_SOURCES = tests/runtime/test_monitor.c
 tests_runtime_test_monitor_LDADD = $(DUITE_TEST_LIBS)
-tests_runtime_test_graphs_SOURCES = tests/runtime/test_graphs.c
 tests_runtime_test_graphs_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_graphs_change_SOURCES = tests/runtime/test_graphs_change.c \
     tests/runtime/graphs_fixture.c tests/runtime/graphs_fixture.h
@@ -98,17 +85,11 @@ tests_runtime_test_passes_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_passes_random_SOURCES = tests/runtime/test_passes_random.c tests/runtime/rounds.c tests/runtime/rounds.h \
     tests/runtime/rounds_run.c tests/runtime/rounds_run.h
 tests_runtime_test_passes_random_LDADD = $(DUITE_TEST_LIBS)
-tests_runtime_test_emit_SOURCES = tests/runtime/test_emit.c
 tests_runtime_test_emit_LDADD = $(DUITE_TEST_LIBS)
-tests_runtime_test_graph_sums_SOURCES = tests/runtime/test_graph_sums.c
 tests_runtime_test_graph_sums_LDADD = $(DUITE_TEST_LIBS)
-tests_runtime_test_lines_SOURCES = tests/runtime/test_lines.c
 tests_runtime_test_lines_LDADD = $(DUITE_TEST_LIBS)
 endif
 
-tests_runtime_test_containers_SOURCES = tests/runtime/test_containers.c
 tests_runtime_test_containers_LDADD = $(DUITE_TEST_LIBS)
-tests_runtime_test_place_SOURCES = tests/runtime/test_place.c
 tests_runtime_test_place_LDADD = $(DUITE_TEST_LIBS)
-tests_runtime_test_reduce_SOURCES = tests/runtime/test_reduce.c
 tests_runtime_test_reduce_LDADD = $(DUITE_TEST_LIBS)

@@ -16,7 +16,6 @@ tests_tools_test_predict_refused_SOURCES = tests/tools/test_predict_refused.c $(
 tests_tools_test_predict_refused_LDADD = $(TOOLS_TEST_LIBS)
 tests_tools_test_predict_replays_SOURCES = tests/tools/test_predict_replays.c tests/runtime/passive.h $(PREDICTED_FILES)
 tests_tools_test_predict_replays_LDADD = $(TOOLS_TEST_LIBS)
-tests_tools_test_shares_SOURCES = tests/tools/test_shares.c
 tests_tools_test_shares_LDADD = tests/support/libunit.a $(CHART_LIBS) $(TOOLS_LIBS) $(CHECK_LIBS)
 tests_tools_test_bounds_SOURCES = tests/tools/test_bounds.c $(PREDICTED_FILES)
 tests_tools_test_bounds_LDADD = $(TOOLS_TEST_LIBS)
@@ -24,6 +23,5 @@ tests_tools_test_traced_SOURCES = tests/tools/test_traced.c tests/negative/misus
 tests_tools_test_traced_LDADD = $(TOOLS_TEST_LIBS)
 tests_tools_test_predict_rounds_SOURCES = tests/tools/test_predict_rounds.c tests/negative/misuse.c tests/negative/misuse.h
 tests_tools_test_predict_rounds_LDADD = $(TOOLS_TEST_LIBS)
-tests_tools_test_load_SOURCES = tests/tools/test_load.c
 tests_tools_test_load_LDADD = $(TOOLS_TEST_LIBS)
 endif

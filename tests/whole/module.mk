@@ -20,18 +20,15 @@ LONG_SH += tests/whole/test_same_hash_long.sh tests/whole/test_levels_long.sh te
     tests/whole/test_checkpoint_long.sh tests/whole/test_dressing_long.sh tests/whole/test_paraview_long.sh \
     tests/whole/test_blender_long.sh
 check_PROGRAMS += tests/whole/same_hash
-tests_whole_same_hash_SOURCES = tests/whole/same_hash.c
 tests_whole_same_hash_LDADD = $(CLOTH_LIBS)
 if HAVE_ZMQ
 check_PROGRAMS += tests/whole/spoil
 tests_whole_spoil_SOURCES = tests/whole/spoil.c tests/fuzz/fit.h
 tests_whole_spoil_LDADD = $(CLOTH_LIBS) $(XXHASH_LIBS)
 check_PROGRAMS += tests/whole/live_peer
-tests_whole_live_peer_SOURCES = tests/whole/live_peer.c
 tests_whole_live_peer_LDADD = $(CLOTH_LIBS) $(ZMQ_LIBS) $(XXHASH_LIBS)
 endif
 check_PROGRAMS += tests/whole/metis_cuts
-tests_whole_metis_cuts_SOURCES = tests/whole/metis_cuts.c
 tests_whole_metis_cuts_LDADD = $(METIS_LIBS)
 EXTRA_DIST += tests/whole/golden.txt tests/whole/balance.awk tests/whole/spin.awk \
 	tests/whole/joints.sh

@@ -6,33 +6,19 @@ ASAN_TESTS += tests/cloth/contact/test_body tests/cloth/contact/test_body_refuse
     tests/cloth/contact/test_body_frames
 LONG_SH += tests/cloth/contact/test_certificate_long.sh
 tests_cloth_contact_test_body_SOURCES = tests/cloth/contact/test_body.c tests/cloth/contact/bodies.h tests/support/random.h
-tests_cloth_contact_test_body_LDADD = $(CLOTH_TEST_LIBS)
 tests_cloth_contact_test_body_refused_SOURCES = tests/cloth/contact/test_body_refused.c tests/cloth/contact/bodies.h
-tests_cloth_contact_test_body_refused_LDADD = $(CLOTH_TEST_LIBS)
 tests_cloth_contact_test_body_skin_SOURCES = tests/cloth/contact/test_body_skin.c tests/cloth/contact/bodies.h tests/support/random.h
-tests_cloth_contact_test_body_skin_LDADD = $(CLOTH_TEST_LIBS)
 tests_cloth_contact_test_certificate_SOURCES = tests/cloth/contact/test_certificate.c tests/cloth/contact/pairs.h tests/support/random.h
-tests_cloth_contact_test_certificate_LDADD = $(CLOTH_TEST_LIBS)
 tests_cloth_contact_test_image_SOURCES = tests/cloth/contact/test_image.c tests/cloth/contact/images.h tests/cloth/contact/bodies.h
-tests_cloth_contact_test_image_LDADD = $(CLOTH_TEST_LIBS)
-tests_cloth_contact_test_meet_SOURCES = tests/cloth/contact/test_meet.c
-tests_cloth_contact_test_meet_LDADD = $(CLOTH_TEST_LIBS)
 tests_cloth_contact_test_pair_SOURCES = tests/cloth/contact/test_pair.c tests/cloth/contact/pairs.h tests/support/random.h
-tests_cloth_contact_test_pair_LDADD = $(CLOTH_TEST_LIBS)
-tests_cloth_contact_test_row_SOURCES = tests/cloth/contact/test_row.c
-tests_cloth_contact_test_row_LDADD = $(CLOTH_TEST_LIBS)
 tests_cloth_contact_test_shape_SOURCES = tests/cloth/contact/test_shape.c $(CONTACT_TEST_RANDOM)
-tests_cloth_contact_test_shape_LDADD = $(CLOTH_TEST_LIBS)
 tests_cloth_contact_test_skin_SOURCES = tests/cloth/contact/test_skin.c tests/cloth/contact/skin_sheet.h tests/cloth/contact/distances.h \
 	tests/support/random.h
-tests_cloth_contact_test_skin_LDADD = $(CLOTH_TEST_LIBS)
 tests_cloth_contact_test_solid_SOURCES = tests/cloth/contact/test_solid.c tests/cloth/contact/solids.h $(CONTACT_TEST_RANDOM)
-tests_cloth_contact_test_solid_LDADD = $(CLOTH_TEST_LIBS)
 if HAVE_GMP
 ASAN_TESTS += tests/cloth/contact/test_certificate_exact
 tests_cloth_contact_test_certificate_exact_SOURCES = tests/cloth/contact/test_certificate_exact.c tests/cloth/contact/pairs.h tests/support/random.h
 tests_cloth_contact_test_certificate_exact_LDADD = $(CLOTH_TEST_LIBS) $(GMP_LIBS)
 endif
 tests_cloth_contact_test_body_frames_SOURCES = tests/cloth/contact/test_body_frames.c tests/cloth/contact/bodies.h
-tests_cloth_contact_test_body_frames_LDADD = $(CLOTH_TEST_LIBS)
 endif

@@ -14,6 +14,5 @@ tests_cloth_garment_test_girth_SOURCES = tests/cloth/garment/test_girth.c tests/
 tests_cloth_garment_test_girth_LDADD = $(CLOTH_TEST_LIBS) -lm
 tests_cloth_garment_test_own_SOURCES = tests/cloth/garment/test_own.c tests/cloth/garment/tools.h
 tests_cloth_garment_test_own_LDADD = $(CLOTH_TEST_LIBS) -lm
-tests_cloth_garment_test_delaunay_SOURCES = tests/cloth/garment/test_delaunay.c
 tests_cloth_garment_test_delaunay_LDADD = $(CLOTH_TEST_LIBS) -lm
 endif

@@ -22,13 +22,14 @@
 #     install_duite PREFIX             make install there, whatever configure was told; `locations PREFIX` are its settings
 # $scratch is a folder of the test's own, removed at its end. $DUITE_CLOTH and $DUITE_VIEW are the programs.
 #
-# A pipeline fails when one of its commands does: a test whose sh cannot do that goes on in bash. So what reads a pipe reads it to its end:
+# A pipeline fails when one of its commands does: a test whose sh cannot do that goes on in bash (by POSIX, or
+# `ulimit -f` counts other blocks). So what reads a pipe reads it to its end:
 # grep -c in place of grep -q, which would end its writer by a signal.
 
 if (set -o pipefail) 2> /dev/null; then
     set -o pipefail
 elif command -v bash > /dev/null; then
-    exec bash -o pipefail "$0" "$@"
+    exec bash --posix -o pipefail "$0" "$@"
 fi
 srcdir=$(cd "${srcdir:-.}" && pwd) || exit 99
 export srcdir

@@ -119,9 +119,9 @@ speechless() { # a function whose comment says neither what it returns nor its e
 
 page_invents_nothing() { # what it calls duite_... or DUITE_... is in the headers
     # shellcheck disable=SC2086
-    cat $headers | tr -c 'A-Za-z0-9_' '\n' | sort -u > "$scratch/known"
-    grep -o '\<\(duite\|DUITE\)_[A-Za-z0-9_]*\>' "$page" "$document" $pages/*.3 | sed 's/.*://' | sort -u > "$scratch/said"
-    test -s "$scratch/said" && comm -23 "$scratch/said" "$scratch/known" > "$scratch/invented"
+    cat $headers | tr -c 'A-Za-z0-9_' '\n' | sort -u > "$scratch/known" &&
+        grep -o '\<\(duite\|DUITE\)_[A-Za-z0-9_]*\>' "$page" "$document" $pages/*.3 | sed 's/.*://' | sort -u > "$scratch/said" &&
+        test -s "$scratch/said" && comm -23 "$scratch/said" "$scratch/known" > "$scratch/invented"
     cat "$scratch/invented"
     test ! -s "$scratch/invented"
 }

@@ -1,16 +1,31 @@
 # How tests run: every program and script prints TAP; tests/support/unit.h and tests/support/tap.sh say what they see.
-TESTS =
-LONG_TESTS =
-check_PROGRAMS =
+# A test stands in one list, by the builds that run it; programs in _TESTS, scripts in _SH:
+#     LEAK_TESTS, LEAK_SH      make check; AddressSanitizer looks for leaks beside MPI, too; ThreadSanitizer watches the programs
+#     TSAN_TESTS               make check, which also ThreadSanitizer and AddressSanitizer watch
+#     ASAN_TESTS, ASAN_SH      make check, which also AddressSanitizer watches
+#     PLAIN_TESTS, PLAIN_SH    make check alone: a shorter test shows sanitizers the same code, or what is tested is built without them
+#     LONG_SH                  make check-long alone: hours, benches, and the commands of documents
+LEAK_TESTS =
+LEAK_SH =
+TSAN_TESTS =
+ASAN_TESTS =
+ASAN_SH =
+PLAIN_TESTS =
+PLAIN_SH =
+LONG_SH =
+TSAN_ALL = $(LEAK_TESTS) $(TSAN_TESTS)
+ASAN_ALL = $(TSAN_ALL) $(ASAN_TESTS) $(LEAK_SH) $(ASAN_SH)
+TESTS = $(ASAN_ALL) $(PLAIN_TESTS) $(PLAIN_SH)
+check_PROGRAMS = $(TSAN_ALL) $(ASAN_TESTS) $(PLAIN_TESTS)
+dist_check_SCRIPTS = $(LEAK_SH) $(ASAN_SH) $(PLAIN_SH) $(LONG_SH)
 check_LIBRARIES =
 check_DATA =
-dist_check_SCRIPTS =
 DUITE_TEST_LIBS = tests/support/libunit.a $(CORE_LIBS) $(CHECK_LIBS)
 
 # Comments, which have the errors against closed forms, are shown as tests go.
 LOG_DRIVER = env AM_TAP_AWK='$(AWK)' $(SHELL) $(top_srcdir)/build-aux/tap-driver.sh --comments
 LOG_COMPILER = $(SHELL) $(srcdir)/tests/support/run.sh
-# An extension, so that the scripts of LONG_TESTS have a rule, too.
+# An extension, so that LONG_SH have a rule, too.
 TEST_EXTENSIONS = .sh
 SH_LOG_DRIVER = $(LOG_DRIVER)
 SH_LOG_COMPILER = $(LOG_COMPILER)
@@ -18,7 +33,7 @@ SH_LOG_COMPILER = $(LOG_COMPILER)
 AM_TESTS_ENVIRONMENT = \
     CC='$(CC)'; CXX='$(CXX)'; CFLAGS='$(CFLAGS) $(SANITIZE_FLAGS)'; PKG_CONFIG='$(PKG_CONFIG)'; MAKE='$(MAKE)'; \
     MPIRUN='$(MPIRUN)'; MPI_CFLAGS='$(MPI_CFLAGS)'; MPI_LIBS='$(MPI_LIBS)'; \
-    SANITIZER='$(SANITIZE_FLAGS)'; export SANITIZER CC CXX CFLAGS PKG_CONFIG MAKE MPIRUN MPI_CFLAGS MPI_LIBS; \
+    SANITIZER='$(SANITIZE_FLAGS)'; LEAK_TESTS='$(LEAK_TESTS) $(LEAK_SH)'; export SANITIZER LEAK_TESTS CC CXX CFLAGS PKG_CONFIG MAKE MPIRUN MPI_CFLAGS MPI_LIBS; \
     DUITE_QUICK=$${DUITE_QUICK-$(DUITE_QUICK)}; export DUITE_QUICK; \
     support=`cd '$(srcdir)/tests/support' && pwd`; \
     ASAN_OPTIONS=fast_unwind_on_malloc=0:intercept_tls_get_addr=0:$$ASAN_OPTIONS; export ASAN_OPTIONS; \
@@ -38,13 +53,12 @@ check-TESTS: $(check_PROGRAMS)
 # The whole of each test, not its quick form; then the long tests, which fill the machine, one by one.
 check-long:
 	@status=0; $(MAKE) $(AM_MAKEFLAGS) check DUITE_QUICK=0 || status=$$?; \
-	  $(MAKE) $(AM_MAKEFLAGS) check DUITE_QUICK=0 TEST_JOBS=1 TESTS='$(LONG_TESTS)' TEST_SUITE_LOG=test-suite-long.log || \
+	  $(MAKE) $(AM_MAKEFLAGS) check DUITE_QUICK=0 TEST_JOBS=1 TESTS='$(LONG_SH)' TEST_SUITE_LOG=test-suite-long.log || \
 	  status=$$?; exit $$status
 
-# For ThreadSanitizer: the test programs of what has threads, without the scripts that start ranks.
+# In a build with ThreadSanitizer; only the programs that run are built.
 check-threads:
-	$(MAKE) $(AM_MAKEFLAGS) check TESTS="`for test in $(TESTS); do case $$test in *.sh) ;; \
-	  tests/runtime/* | tests/tools/* | tests/negative/* | tests/cloth/flow/* | tests/support/*) echo $$test;; esac; done | tr '\n' ' '`"
+	$(MAKE) $(AM_MAKEFLAGS) check-TESTS TESTS='$(TSAN_ALL)' check_PROGRAMS='$(TSAN_ALL)'
 # The random programs a hundred times each; takes about half an hour.
 check-threads-long:
 	$(MAKE) $(AM_MAKEFLAGS) check DUITE_QUICK=0 TESTS=tests/runtime/test_threads_long.sh TEST_SUITE_LOG=test-suite-long.log
@@ -55,19 +69,15 @@ EXTRA_DIST += tests/arrows.txt tests/support/policies.h tests/support/tap.sh tes
 	tests/support/bodies.sh tests/support/probes.sh tests/support/dress.awk tests/support/mpi.sh tests/support/rank.h tests/support/run.sh tests/support/screen.sh \
 	tests/support/count.sh \
     tests/support/lsan.supp tests/support/tsan.supp tests/support/valgrind.supp
-dist_check_SCRIPTS += tests/support/test_tap.sh tests/arrows.sh tests/documents.sh tests/install.sh tests/readme.sh tests/readme_long.sh \
-	tests/pages.sh tests/pages_long.sh tests/completion.sh tests/bare.sh tests/bare_long.sh tests/bootstrap.sh tests/two_mpis.sh
-TESTS += tests/support/test_tap.sh tests/arrows.sh tests/documents.sh tests/install.sh tests/readme.sh tests/pages.sh tests/completion.sh tests/bare.sh \
-	tests/bootstrap.sh tests/two_mpis.sh
-LONG_TESTS += tests/readme_long.sh tests/pages_long.sh tests/bare_long.sh
+ASAN_SH += tests/support/test_tap.sh tests/arrows.sh tests/documents.sh tests/completion.sh tests/bootstrap.sh
+PLAIN_SH += tests/install.sh tests/bare.sh tests/two_mpis.sh
+LONG_SH += tests/readme.sh tests/pages.sh tests/bare_long.sh
 
 if HAVE_CHECK
 check_LIBRARIES += tests/support/libunit.a
 tests_support_libunit_a_SOURCES = tests/support/unit.c tests/support/unit.h
-check_PROGRAMS += tests/support/test_unit
-tests_support_test_unit_SOURCES = tests/support/test_unit.c
+TSAN_TESTS += tests/support/test_unit
 tests_support_test_unit_LDADD = $(DUITE_TEST_LIBS)
-TESTS += tests/support/test_unit
 endif
 
 include tests/runtime/module.mk
@@ -77,6 +87,8 @@ include tests/model/module.mk
 include tests/examples/module.mk
 if CLOTH
 CLOTH_TEST_LIBS = tests/support/libunit.a $(CLOTH_LIBS) $(CHECK_LIBS)
+# What a program links that says nothing else. The source of one that names none is the file of its name.
+LDADD = $(CLOTH_TEST_LIBS)
 include tests/cloth/module.mk
 include tests/cloth/base/module.mk
 include tests/cloth/mesh/module.mk

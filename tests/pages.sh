@@ -1,6 +1,6 @@
 #!/bin/sh
 # The pages of docs/ tell the truth: every command in their sh blocks runs as it is written, with the programs and scenes of an installed
-# tree, in a folder of the page's own that also has the sources. CLASS=every: those of "sh long" blocks, too.
+# tree, in a folder of the page's own that also has the sources.
 . "${srcdir:-.}/tests/support/tap.sh"
 skip_unless "$DUITE_CLOTH"
 test -z "${SANITIZER:-}" || skip_all "the pages do not speak of a build with sanitizers"
@@ -21,5 +21,5 @@ for page in "$srcdir"/docs/*.md; do
     case " $elsewhere " in *" $name "*) continue ;; esac
     home=$scratch/pages/${name%.md}
     home "$home" && cp "$srcdir/tests/examples/dot.c" "$home" && files "$page" "$home"
-    run_commands "$page" "${CLASS:-}" "$name"
+    run_commands "$page" "$name"
 done

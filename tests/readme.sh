@@ -1,7 +1,7 @@
 #!/bin/sh
 # README.md tells the truth: its first program compiles, runs and prints what the block after it says, and every command in its sh
-# blocks runs as it is written, in a folder that has the tree's sources, the build's programs and an installed duite. With LONG=1
-# those of "sh long" blocks, and all of them from the installed tree alone: without ./ and cloth/scenes/, as README says.
+# blocks runs as it is written, in a folder that has the tree's sources, the build's programs and an installed duite; and once more from
+# the installed tree alone: without ./ and cloth/scenes/, as README says.
 . "${srcdir:-.}/tests/support/tap.sh"
 skip_unless "$DUITE_CLOTH"
 test -z "${SANITIZER:-}" || skip_all "README does not speak of a build with sanitizers"
@@ -33,17 +33,13 @@ ok "duite installs into the scratch folder" prepare
 ok "the build folder" home "$home"
 files "$readme" "$home"
 ok "there is a first program" test -s "$home/first.c"
-if test "${LONG:-}" = 1; then
-    run_commands "$readme" long README
-    home=$scratch/installed
-    mkdir "$home" && cp "$scratch/home/first.c" "$home"
-    sed 's|\./duite-|duite-|g; s|cloth/scenes/||g; /^make check$/d; /^\.ci\/run$/d' "$readme" > "$scratch/installed.md"
-    run_commands "$scratch/installed.md" every installed
-    exit
-fi
 ok "the first program compiles against the library as built" compile
 ok "the first program prints what README says" prints_what_it_says
 commands "$readme" > "$scratch/all"
 ok "README has the demo's command" grep -qxF './bootstrap && make demo' "$scratch/all"
 ok "README has the tests' command" grep -qxF './bootstrap && make check' "$scratch/all"
-run_commands "$readme" "" README
+run_commands "$readme" README
+home=$scratch/installed
+mkdir "$home" && cp "$scratch/home/first.c" "$home"
+sed 's|\./duite-|duite-|g; s|cloth/scenes/||g; /^make check$/d; /^\.ci\/run$/d' "$readme" > "$scratch/installed.md"
+run_commands "$scratch/installed.md" installed

@@ -22,7 +22,7 @@ explicit_step_vs_triad >= 0.6
 END
 }
 
-formula_printed() { physics --list | grep -q '^explicit: .*5 x 24 + 3 x 8 a vertex .* and 4 x 8 a spring'; }
+formula_printed() { physics --list | grep -c '^explicit: .*5 x 24 + 3 x 8 a vertex .* and 4 x 8 a spring'; }
 
 lied_to() { # the loop that the triad is part of is the liar
     liars_bench bench && mkdir -p "$scratch/bench/cg" && cp tests/bench/liar "$scratch/bench/cg/twin" || return 99

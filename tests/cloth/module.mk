@@ -1,8 +1,5 @@
 if HAVE_CHECK
-check_PROGRAMS += tests/cloth/test_progress tests/cloth/test_summary_time
+ASAN_TESTS += tests/cloth/test_progress tests/cloth/test_summary_time
 tests_cloth_test_progress_SOURCES = tests/cloth/test_progress.c cloth/progress.c cloth/progress.h
-tests_cloth_test_progress_LDADD = $(CLOTH_TEST_LIBS)
 tests_cloth_test_summary_time_SOURCES = tests/cloth/test_summary_time.c cloth/summary_time.c cloth/summary_time.h
-tests_cloth_test_summary_time_LDADD = $(CLOTH_TEST_LIBS)
-TESTS += tests/cloth/test_progress tests/cloth/test_summary_time
 endif

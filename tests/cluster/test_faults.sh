@@ -12,7 +12,7 @@ out=$scratch/frames
 # A cable that was pulled just now has hosts believe for a while that there is nobody at its other end.
 forget_faults() {
     for wait in $(seq 50); do
-        on h2 ip -o link show e0 | grep -q LOWER_UP && break
+        on h2 ip -o link show e0 | grep -c LOWER_UP && break
         sleep 0.1
     done
     on h1 ip neigh flush dev e0 && on h2 ip neigh flush dev e0
@@ -106,7 +106,7 @@ after() {
 
 plan_later
 ok "different scenes on two ranks" different
-ok "a body fails on one rank" limited "${MPIRUN:-mpirun}" -n 2 tests/negative/ranks_failures
+ok "a body fails on one rank" limited "${MPIRUN:-mpirun}" -n 2 tests/negative/ranks failures
 if test "${DUITE_LONG:-}" = 1; then
     export OMPI_MCA_odls_base_sigkill_timeout=1 # as users have it
     ok "a rank is stopped for good" comatose
@@ -114,7 +114,7 @@ if test "${DUITE_LONG:-}" = 1; then
     ok "a rank is killed" killed
     after
     # shellcheck disable=SC2086 # a list of options
-    ok "memory runs out on one rank" limited "${MPIRUN:-mpirun}" -n 2 tests/negative/ranks_memory
+    ok "memory runs out on one rank" limited "${MPIRUN:-mpirun}" -n 2 tests/negative/starved memory
     ok "a daemon is killed" bereft
     after
     ok "a host is cut off" cut_off $keep

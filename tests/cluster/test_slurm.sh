@@ -38,7 +38,7 @@ END
     munged --force --key-file="$slurm/key" --socket="$slurm/munge/socket" --pid-file="$slurm/munge/pid" \
         --log-file="$slurm/munge/log" --seed-file="$slurm/munge/seed" && slurmctld -c && sleep 1 && slurmd -N h1 && on h2 slurmd -N h2 || return
     for wait in $(seq 100); do
-        sinfo -h -o %T%D | grep -qx idle2 && return 0
+        sinfo -h -o %T%D | grep -cx idle2 && return 0
         sleep 0.1
     done
     sinfo
@@ -73,7 +73,7 @@ requeued() {
         sleep 0.1
     done
     scontrol show job "$job" | grep -E 'JobState|Restarts' && cat requeue.log
-    test "$(job_state "$job")" = COMPLETED && scontrol show job "$job" | grep -q ' Restarts=1 ' &&
+    test "$(job_state "$job")" = COMPLETED && scontrol show job "$job" | grep -c ' Restarts=1 ' &&
         test "$(cd frames/checkpoints && echo *)" = "000001.checkpoint 000002.checkpoint"
 }
 same_state() {

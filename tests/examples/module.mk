@@ -1,24 +1,17 @@
 # The programs that docs/runtime.md explains, each built and run as a user would. -no-install: no script of libtool starts them.
+ASAN_SH += tests/examples/test_examples.sh tests/examples/test_cpp.sh
 check_PROGRAMS += tests/examples/dot tests/examples/stencil tests/examples/cholesky tests/examples/cg \
 	tests/examples/fib tests/examples/quicksort
-tests_examples_dot_SOURCES = tests/examples/dot.c
 tests_examples_dot_LDFLAGS = $(AM_LDFLAGS) -no-install
 tests_examples_dot_LDADD = libduite.la
-tests_examples_stencil_SOURCES = tests/examples/stencil.c
 tests_examples_stencil_LDFLAGS = $(AM_LDFLAGS) -no-install
 tests_examples_stencil_LDADD = libduite.la
-tests_examples_cholesky_SOURCES = tests/examples/cholesky.c
 tests_examples_cholesky_LDFLAGS = $(AM_LDFLAGS) -no-install
 tests_examples_cholesky_LDADD = libduite.la -lm
-tests_examples_cg_SOURCES = tests/examples/cg.c
 tests_examples_cg_LDFLAGS = $(AM_LDFLAGS) -no-install
 tests_examples_cg_LDADD = libduite.la -lm
-tests_examples_fib_SOURCES = tests/examples/fib.c
 tests_examples_fib_LDFLAGS = $(AM_LDFLAGS) -no-install
 tests_examples_fib_LDADD = libduite.la
-tests_examples_quicksort_SOURCES = tests/examples/quicksort.c
 tests_examples_quicksort_LDFLAGS = $(AM_LDFLAGS) -no-install
 tests_examples_quicksort_LDADD = libduite.la
-dist_check_SCRIPTS += tests/examples/test_examples.sh tests/examples/test_cpp.sh
 EXTRA_DIST += tests/examples/dot.cpp
-TESTS += tests/examples/test_examples.sh tests/examples/test_cpp.sh

@@ -5,8 +5,11 @@ FUZZ_LIBS = $(CHART_LIBS) libduite_tools.a $(CLOTH_LIBS)
 FUZZ_HARNESSES = tests/fuzz/fuzz_checkpoint tests/fuzz/fuzz_colours tests/fuzz/fuzz_live tests/fuzz/fuzz_obj tests/fuzz/fuzz_output \
 	tests/fuzz/fuzz_pattern tests/fuzz/fuzz_pc2 tests/fuzz/fuzz_resume tests/fuzz/fuzz_scene tests/fuzz/fuzz_seams \
 	tests/fuzz/fuzz_trace
+ASAN_SH += tests/fuzz/test_corpus.sh
+LONG_SH += tests/fuzz/test_programs_long.sh
 check_PROGRAMS += $(FUZZ_HARNESSES) tests/fuzz/mutate
 tests_fuzz_mutate_SOURCES = tests/fuzz/mutate.c tests/support/random.h
+tests_fuzz_mutate_LDADD =
 tests_fuzz_fuzz_checkpoint_SOURCES = tests/fuzz/fuzz_checkpoint.c $(FUZZ_FILES)
 tests_fuzz_fuzz_checkpoint_LDADD = $(FUZZ_LIBS)
 tests_fuzz_fuzz_colours_SOURCES = tests/fuzz/fuzz_colours.c $(FUZZ_FILES)
@@ -29,10 +32,8 @@ tests_fuzz_fuzz_seams_SOURCES = tests/fuzz/fuzz_seams.c $(FUZZ_FILES)
 tests_fuzz_fuzz_seams_LDADD = $(FUZZ_LIBS)
 tests_fuzz_fuzz_trace_SOURCES = tests/fuzz/fuzz_trace.c $(FUZZ_FILES)
 tests_fuzz_fuzz_trace_LDADD = $(FUZZ_LIBS)
-dist_check_SCRIPTS += tests/fuzz/run.sh tests/fuzz/test_corpus.sh tests/fuzz/test_programs_long.sh
+dist_check_SCRIPTS += tests/fuzz/run.sh
 EXTRA_DIST += tests/fuzz/corpus
-TESTS += tests/fuzz/test_corpus.sh
-LONG_TESTS += tests/fuzz/test_programs_long.sh
 
 FUZZ_SECONDS = 600
 fuzz:

@@ -4,7 +4,7 @@
 . "${srcdir:-.}/tests/support/tap.sh"
 plan_later
 
-options=${ASAN_OPTIONS:-}
+options=${ASAN_OPTIONS:-}:detect_leaks=1 # no reader begins MPI
 for folder in "$srcdir"/tests/fuzz/corpus/*; do
     name=${folder##*/}
     case $name in

@@ -3,6 +3,7 @@
 
 #include "runtime/comm/internal.h"
 #include "tests/negative/misuse.h"
+#include "tests/support/ranks.h"
 
 #include <stdint.h>
 #include <stdio.h>
@@ -155,7 +156,7 @@ static void many(int differs)
     tap_case(code == (differs ? DUITE_E_DIFFERENT : DUITE_OK), "and stop");
 }
 
-int main(void)
+RANKS_CASE(blocking)
 {
     static const char *const NAMES[] = {"get",       "get_at",       "get_count", "wait",
                                         "count_all", "replay_while", "stop"};

@@ -1,6 +1,7 @@
 /* Ranks that run different programs are told so, all of them; nothing hangs. */
 
 #include "tests/negative/misuse.h"
+#include "tests/support/ranks.h"
 
 #include <stdint.h>
 #include <stdio.h>
@@ -283,7 +284,7 @@ static void long_ago(int calls, const char *text, const char *name)
     tap_case(misuse_all_told(text) && code == DUITE_E_DIFFERENT, name);
 }
 
-int main(void)
+RANKS_CASE(different)
 {
     misuse_mpi();
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);

@@ -2,6 +2,7 @@
  * travels. */
 
 #include "tests/negative/misuse.h"
+#include "tests/support/ranks.h"
 
 #include <stdint.h>
 #include <stdio.h>
@@ -98,7 +99,7 @@ static void failing_contribution(duite *rt)
     duite_set(rt, a[1], NULL);
 }
 
-int main(void)
+RANKS_CASE(failures)
 {
     misuse_mpi();
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);

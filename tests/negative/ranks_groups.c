@@ -1,6 +1,7 @@
 /* Runtimes on communicators of every kind, by different ranks at the same time. */
 
 #include "tests/negative/misuse.h"
+#include "tests/support/ranks.h"
 
 #include <stdint.h>
 #include <stdio.h>
@@ -69,7 +70,7 @@ static void two_groups(MPI_Comm half)
     MPI_Comm_free(&between);
 }
 
-int main(void)
+RANKS_CASE(groups)
 {
     MPI_Comm half, reversed;
     int right = 1;

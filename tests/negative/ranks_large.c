@@ -2,6 +2,7 @@
  * in a recorded graph. Run under mpirun on 2 ranks. Without an argument MPI is slow here, and the
  * message short; with the argument N it has N doubles, and MPI is as fast as it is. */
 #include "tests/negative/misuse.h"
+#include "tests/support/ranks.h"
 
 #include <stdint.h>
 #include <stdlib.h>
@@ -101,7 +102,7 @@ static int recorded(duite *rt, duite_object *object)
     return !duite_graph_free(rt, graph) && right;
 }
 
-int main(int argc, char **argv)
+RANKS_CASE(large)
 {
     static const duite_kernel *const LIST[] = {&FILL, &CHECK, NULL};
     const size_t n = argc > 1 ? strtoull(argv[1], NULL, 10) : SHORT;

@@ -3,6 +3,7 @@
  * stopped one. Also ranks that are not lost: all workers of one are inside bodies for long, and one
  * rank is stopped for a while. */
 #include "tests/negative/misuse.h"
+#include "tests/support/ranks.h"
 
 #include <signal.h>
 #include <stdio.h>
@@ -212,7 +213,7 @@ static int none_lost(duite *rt, const char *how, const duite_object *object, con
 
 /* ranks_lost get|send|later|subtree|wait|replay|count|stop|window|body|bodies|stopped, on 3 ranks
  */
-int main(int argc, char **argv)
+RANKS_CASE(lost)
 {
     const char *how = argc > 1 ? argv[1] : "";
     int process[3], own = getpid();

@@ -5,6 +5,7 @@
 #include "runtime/comm/internal.h"
 #include "tests/negative/misuse.h"
 #include "tests/negative/starve.h"
+#include "tests/support/ranks.h"
 
 #include <stdint.h>
 
@@ -139,9 +140,8 @@ static int run(void)
     return fine && rt == NULL && (!code || stopped || code == DUITE_E_MEMORY);
 }
 
-int main(int argc, char **argv)
+RANKS_CASE(memory)
 {
-    (void)argv;
     misuse_mpi();
     MPI_Comm_size(MPI_COMM_WORLD, &ranks);
     if (argc > 1)

@@ -3,6 +3,7 @@
 
 #include "tests/negative/misuse.h"
 #include "tests/negative/starve.h"
+#include "tests/support/ranks.h"
 
 #include <stdint.h>
 #include <stdio.h>
@@ -161,7 +162,7 @@ static int run(void)
 }
 
 /* ranks_memory_graphs [BALANCER] */
-int main(int argc, char **argv)
+RANKS_CASE(memory_graphs)
 {
     if (argc > 1)
         balance = argv[1];

@@ -3,6 +3,7 @@
  * that of the C library (module.mk). */
 
 #include "tests/negative/misuse.h"
+#include "tests/support/ranks.h"
 
 #include <duite_policy.h>
 #include <errno.h>
@@ -110,7 +111,7 @@ static void wrong_mapping(int wrong, int code, const char *name)
     tap_case(duite_stop(&rt) == code && !rt, "stops, and says it once more");
 }
 
-int main(void)
+RANKS_CASE(system)
 {
     misuse_mpi();
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);

@@ -5,7 +5,9 @@ plan_later
 DUITE_LONG=1
 export DUITE_LONG
 
-ok "out of memory" ranks 3 tests/negative/ranks_memory
-ok "out of memory with graphs" ranks 3 tests/negative/ranks_memory_graphs
-ok "out of memory while objects move" ranks 3 tests/negative/ranks_memory_graphs wander
-ok "out of memory with graphs on 5 ranks, whose sums go from rank to rank" ranks 5 tests/negative/ranks_memory_graphs
+cases tests/negative/starved << 'END'
+memory               | 3 | out of memory
+memory_graphs        | 3 | out of memory with graphs
+memory_graphs wander | 3 | out of memory while objects move
+memory_graphs        | 5 | out of memory with graphs whose sums go from rank to rank
+END

@@ -3,6 +3,7 @@
 
 #include "tests/negative/misuse.h"
 #include "tests/runtime/delegation.h"
+#include "tests/support/ranks.h"
 
 #include <stdatomic.h>
 #include <stdio.h>
@@ -300,7 +301,7 @@ static void different(void)
     tap_case((duite_stop(&rt) != DUITE_OK) && !rt, "and stop ends");
 }
 
-int main(void)
+RANKS_CASE(delegate)
 {
     misuse_mpi();
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);

@@ -2,6 +2,8 @@
  * ranks with --all; or in a function of a policy, --map or --place; or a body ends its thread,
  * --thread. Messages are on their
  * way meanwhile, and workers poll. */
+#include "tests/support/ranks.h"
+
 #include <duite.h>
 #include <duite_policy.h>
 
@@ -60,7 +62,7 @@ static void choose(duite_options *options, const char *function)
         options->scheduler = &scheduler;
 }
 
-int main(int argc, char **argv)
+RANKS_CASE(exit)
 {
     duite *rt;
     duite_object chain[CHAINS];

@@ -2,6 +2,7 @@
  * to the ranks one after the other; one that could still follow another would go elsewhere. */
 
 #include "tests/negative/misuse.h"
+#include "tests/support/ranks.h"
 
 #include <stdint.h>
 
@@ -92,7 +93,7 @@ static void case_of(void (*settles)(void), const char *name)
     tap_case(home_after(settles) == expected, name);
 }
 
-int main(void)
+RANKS_CASE(homes)
 {
     duite_options options = misuse_options(MPI_COMM_WORLD);
 

@@ -1,6 +1,7 @@
 /* Mappings that fail, or give no rank, on one rank or on all, and mappings that are not the same on
  * all ranks: every rank's next or present blocking call says so, and the program ends. */
 #include "tests/negative/misuse.h"
+#include "tests/support/ranks.h"
 
 #include <duite_policy.h>
 #include <stdio.h>
@@ -79,7 +80,7 @@ static void check(int (*work)(duite *, duite_object *), int code, const char *se
     tap_case(right && !rt, name);
 }
 
-int main(void)
+RANKS_CASE(mappings)
 {
     static const char *const other = "the mapping gave objects other homes on rank ";
 

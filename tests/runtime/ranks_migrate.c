@@ -2,6 +2,7 @@
  */
 
 #include "tests/runtime/moving.h"
+#include "tests/support/ranks.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -243,7 +244,7 @@ static void balanced(void)
     moving_end(rt, graph[0], "stops");
 }
 
-int main(void)
+RANKS_CASE(migrate)
 {
     misuse_mpi();
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);

@@ -2,6 +2,7 @@
  * have if they stayed. */
 
 #include "tests/runtime/moving.h"
+#include "tests/support/ranks.h"
 
 #include <string.h>
 
@@ -78,7 +79,7 @@ static void flags(void)
     moving_end(rt, graph, "stops");
 }
 
-int main(void)
+RANKS_CASE(migrate_values)
 {
     misuse_mpi();
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);

@@ -2,6 +2,7 @@
  * of life call MPI at no other time, and tasks go on afterwards. */
 
 #include "tests/negative/misuse.h"
+#include "tests/support/ranks.h"
 
 #include <stdint.h>
 
@@ -72,7 +73,7 @@ static int fork_refused(void)
     return !duite_stop(&rt) && right;
 }
 
-int main(void)
+RANKS_CASE(mpi)
 {
     misuse_mpi_at(MPI_THREAD_SERIALIZED);
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);

@@ -2,6 +2,7 @@
  * it carries, and nothing else is sent. Run under mpirun. */
 
 #include "tests/negative/misuse.h"
+#include "tests/support/ranks.h"
 
 #include <stdint.h>
 
@@ -215,7 +216,7 @@ static int agrees(duite *rt, struct rod *rod, duite_graph graph)
     return same && sums[0][0] == sums[1][0] && sums[0][1] == sums[1][1] && sums[0][1] > 0;
 }
 
-int main(void)
+RANKS_CASE(plans)
 {
     const duite_kernel *const list[] = {&START, &MEAN, &JUDGE, &SCALE, NULL};
     struct rod rod;

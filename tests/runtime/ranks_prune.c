@@ -2,6 +2,7 @@
  * copies until they are overwritten; and who says so (duite_is_local). */
 
 #include "tests/negative/misuse.h"
+#include "tests/support/ranks.h"
 
 enum { OBJECTS = 20, LARGE = 1 << 18, FORKS = 100000 };
 
@@ -148,7 +149,7 @@ static void different(duite *rt, const duite_object *small, int home)
              "forks that differ are found");
 }
 
-int main(void)
+RANKS_CASE(prune)
 {
     const duite_kernel *const list[] = {&SET, &MANY, &TOUCH, &CONTRIBUTE, &SAME, &COPY, NULL};
     duite_object large[OBJECTS], small[6];

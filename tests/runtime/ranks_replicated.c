@@ -2,6 +2,7 @@
  * a message, and a failing one fails everywhere. */
 
 #include "tests/negative/misuse.h"
+#include "tests/support/ranks.h"
 
 #include <stdatomic.h>
 
@@ -63,7 +64,7 @@ static void without_messages(duite *rt, int n_ranks)
     duite_free(rt, c);
 }
 
-int main(void)
+RANKS_CASE(replicated)
 {
     const duite_kernel *const list[] = {&NEXT, &READ, &SET, NULL};
     duite *rt;

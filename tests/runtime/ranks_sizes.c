@@ -2,6 +2,7 @@
  * with, and messages carry the elements there are, not those there could be. */
 
 #include "tests/negative/misuse.h"
+#include "tests/support/ranks.h"
 
 #include <stdint.h>
 #include <stdio.h>
@@ -89,7 +90,7 @@ static int go_round(duite *rt, duite_object list, duite_object numbers)
     return right;
 }
 
-int main(void)
+RANKS_CASE(sizes)
 {
     static const duite_kernel *const KERNELS[] = {&CHANGE, &LOOK, NULL};
     duite_options options = misuse_options(MPI_COMM_WORLD);

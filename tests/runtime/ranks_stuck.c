@@ -1,6 +1,8 @@
 /* Programs that stand still for a while, on any number of ranks: the task that all wait for sleeps,
  * or what comes from other ranks is held up on the last one. What is told goes to standard error.
  */
+#include "tests/support/ranks.h"
+
 #include <duite.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -105,7 +107,7 @@ static int run(duite *rt, double length, const char *wait)
 
 /* ranks_stuck THREADS WINDOW NAP HELD get|wait|stop|replay: seconds that the first task naps, and
  * that messages are held up. */
-int main(int argc, char **argv)
+RANKS_CASE(stuck)
 {
     static const duite_kernel *const KERNELS[] = {&NAP, &TAKE, &OVER, NULL};
     duite_options options = duite_options_default();

@@ -1,6 +1,7 @@
 /* Policies of which a function does not return on one rank until that rank's standstill report has
  * named it: then it goes on, and all ranks end with the right values. */
 #include "tests/negative/misuse.h"
+#include "tests/support/ranks.h"
 #include "tests/support/said.h"
 
 #include <duite_policy.h>
@@ -284,7 +285,7 @@ static void one_hangs(const char *what, const char *function, int where,
     tap_case(right, name);
 }
 
-int main(void)
+RANKS_CASE(stuck_policies)
 {
     misuse_mpi();
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);

@@ -2,6 +2,7 @@
  * them, also of failures, of nothing and of other sizes. All objects of a case live on one rank. */
 #include "tests/negative/misuse.h"
 #include "tests/runtime/delegation.h"
+#include "tests/support/ranks.h"
 
 #include <stdatomic.h>
 #include <stdio.h>
@@ -302,7 +303,7 @@ static void memory(void)
     tap_case(duite_stop(&rt) == DUITE_OK, "stop after that");
 }
 
-int main(void)
+RANKS_CASE(subtrees)
 {
     misuse_mpi();
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);

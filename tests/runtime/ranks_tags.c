@@ -3,18 +3,19 @@
 
 #include "runtime/comm/internal.h"
 #include "tests/negative/misuse.h"
+#include "tests/support/ranks.h"
 
 #include <stdint.h>
 #include <unistd.h>
 
 enum { FEW_TAGS = COMM_CHANNELS + 8 };
 
-static int rank, ranks, tags;
+static int rank, ranks, tags; /* 0: MPI's own */
 
 int MPI_Comm_get_attr(MPI_Comm comm, int key, void *value, int *known)
 {
     const int code = PMPI_Comm_get_attr(comm, key, value, known);
-    if (key == MPI_TAG_UB)
+    if (tags && key == MPI_TAG_UB)
         *(int **)value = &tags;
     return code;
 }
@@ -113,7 +114,7 @@ static int too_many(void)
     return !code && some && !stop(rt, &pair, 1);
 }
 
-int main(void)
+RANKS_CASE(tags)
 {
     misuse_mpi();
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);

@@ -1,6 +1,7 @@
 /* Mappings that see the tasks of recorded graphs: what they are shown and when, what is not
  * allowed, and what `taskgraph` and `list` make of graphs that were made for them. */
 #include "tests/negative/misuse.h"
+#include "tests/support/ranks.h"
 
 #include <duite_policy.h>
 #include <stdio.h>
@@ -216,7 +217,7 @@ static void chains(void)
     tap_case(by_list < 1.1, "list is even");
 }
 
-int main(void)
+RANKS_CASE(tasks)
 {
     misuse_mpi();
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);

@@ -1,6 +1,7 @@
 /* Kernels that list many parameters: forked, pruned, replayed and traced; the last listed ones
  * count as the first do. Run under mpirun. An argument is the file of a trace. */
 #include "tests/negative/misuse.h"
+#include "tests/support/ranks.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -183,7 +184,7 @@ static void full_run(duite *rt)
         duite_free(rt, object[i]);
 }
 
-int main(int argc, char **argv)
+RANKS_CASE(wide)
 {
     const duite_kernel *const list[] = {&WIDE, &PLAIN, &FULL, &LAST, &CLEAR, &ADD_ONE, NULL};
     duite *rt;

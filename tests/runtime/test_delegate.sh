@@ -1,19 +1,10 @@
 #!/bin/sh
-# Tasks that run on other ranks than their own: which may, what comes home, failures, who asks how often; whole subtrees; random programs
-# and trees of tasks that run anywhere. One that goes wrong is printed with the options that run it again.
+# Random programs and trees of tasks that run anywhere. One that goes wrong is printed with the options that run it again.
 . "${srcdir:-.}/tests/support/tap.sh"
 plan_later
 
 programs=120
 if quick; then programs=40; fi
-for n in 1 2 3; do
-    ok "delegation on $n ranks" ranks $n tests/runtime/ranks_delegate
-done
-ok "the same in checking mode" eval 'DUITE_CHECK=accesses ranks 2 tests/runtime/ranks_delegate'
-for n in 1 2 3; do
-    ok "whole subtrees on $n ranks" ranks $n tests/runtime/ranks_subtrees
-done
-ok "whole subtrees in checking mode" eval 'DUITE_CHECK=accesses ranks 2 tests/runtime/ranks_subtrees'
 ok "random programs" ranks 4 tests/runtime/random_programs --base 500000 --programs $programs --balance scatter
 ok "random trees of tasks on 2 ranks" ranks 2 tests/runtime/nested_programs --seed 500000 --programs $programs --balance scatter
 ok "random trees of tasks on 3 ranks" ranks 3 tests/runtime/nested_programs --seed 500000 --programs $((programs / 2)) --balance scatter

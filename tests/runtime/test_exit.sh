@@ -6,13 +6,13 @@ plan_later
 times=2
 if quick; then times=1; fi
 for round in $(seq $times); do
-    exits 3 "one process" limited tests/runtime/ranks_exit 3
-    exits 0 "one process, without a failure" limited tests/runtime/ranks_exit 0
-    exits 4 "one rank of two" ranks 2 tests/runtime/ranks_exit 4
-    exits 5 "both ranks" ranks 2 tests/runtime/ranks_exit 5 --all
+    exits 3 "one process" limited tests/runtime/ranks exit 3
+    exits 0 "one process, without a failure" limited tests/runtime/ranks exit 0
+    exits 4 "one rank of two" ranks 2 tests/runtime/ranks exit 4
+    exits 5 "both ranks" ranks 2 tests/runtime/ranks exit 5 --all
 done
 if is_openmpi; then
-    not_ok_expected "both ranks without a failure: mpirun tells" ranks 2 tests/runtime/ranks_exit 0 --all
+    not_ok_expected "both ranks without a failure: mpirun tells" ranks 2 tests/runtime/ranks exit 0 --all
 else
     skip "both ranks without a failure: mpirun tells" "not Open MPI's, which alone does"
 fi
@@ -29,15 +29,15 @@ ends_with() { # STATUS SENTENCE COMMAND...
 }
 aborts() { ends_with 134 "$@"; }
 left="the body of kernel step was left by a C++ exception or the end of its thread (rank [01], worker [01])"
-ok "a body ends its thread" aborts "$left" limited tests/runtime/ranks_exit 0 --thread
-ok "a body ends its thread on 2 ranks" aborts "$left" ranks 2 tests/runtime/ranks_exit 0 --thread
+ok "a body ends its thread" aborts "$left" limited tests/runtime/ranks exit 0 --thread
+ok "a body ends its thread on 2 ranks" aborts "$left" ranks 2 tests/runtime/ranks exit 0 --thread
 
 # A policy must not end the program: its exit becomes a failure that names the policy.
 leaves() { ends_with 1 "$@"; }
 ok "exit in a scheduler" leaves "scheduler leaving: its place called exit (rank 0, worker [0-9]*); this process ends with status 1" \
-    limited tests/runtime/ranks_exit 0 --place
+    limited tests/runtime/ranks exit 0 --place
 ok "exit in a scheduler on 2 ranks" leaves "scheduler leaving: its place called exit (rank [01], worker" \
-    ranks 2 tests/runtime/ranks_exit 0 --place
+    ranks 2 tests/runtime/ranks exit 0 --place
 ok "exit in a mapping on 2 ranks" leaves "mapping leaving: its map called exit (rank [01], worker 0)" \
-    ranks 2 tests/runtime/ranks_exit 0 --map
-ok "exit in a scheduler with a status" leaves "scheduler leaving: its place called exit" limited tests/runtime/ranks_exit 3 --place
+    ranks 2 tests/runtime/ranks exit 0 --map
+ok "exit in a scheduler with a status" leaves "scheduler leaving: its place called exit" limited tests/runtime/ranks exit 3 --place

@@ -1,16 +1,11 @@
 #!/bin/sh
-# Objects that move between replays: which, what moves with them, what stays; and random programs whose objects and leaves move
-# anywhere at any replay, or by what was measured. One that goes wrong is printed with the options that run it again.
+# Random programs whose objects and leaves move anywhere at any replay, or by what was measured. One that goes wrong is printed with the
+# options that run it again.
 . "${srcdir:-.}/tests/support/tap.sh"
 plan_later
 
 programs=60
 if quick; then programs=30; fi
-for n in 1 2 3; do
-    ok "what moves on $n ranks" ranks $n tests/runtime/ranks_migrate
-    ok "what it takes along" ranks $n tests/runtime/ranks_migrate_values
-done
-ok "the same in checking mode" eval 'DUITE_CHECK=accesses ranks 2 tests/runtime/ranks_migrate_values'
 for n in 2 3 4; do
     ok "random programs on up to $n ranks" ranks $n tests/runtime/random_programs --base 90${n}000 --programs $programs --balance wander
 done

@@ -3,7 +3,7 @@
 . "${srcdir:-.}/tests/support/tap.sh"
 plan_later
 
-stuck=tests/runtime/ranks_stuck # THREADS WINDOW NAP HELD get|wait|stop|replay
+stuck="tests/runtime/ranks stuck" # THREADS WINDOW NAP HELD get|wait|stop|replay
 nothing="and for [0-9.]* s no task of this rank began or ended and no message came"
 DUITE_STUCK_SECONDS=0.2
 export DUITE_STUCK_SECONDS
@@ -48,7 +48,7 @@ case_of "a body that naps in a replay" ranks 2 $stuck 2 0 2 0 replay
 tells "0: worker [01].* runs task [0-9]* (kernel nap)"
 tells "1: kernel take of a recorded graph waits for a message that has not come from rank 0"
 
-ok "a policy's function that does not return on one of 2 ranks is named there" ranks 2 tests/runtime/ranks_stuck_policies
+ok "a policy's function that does not return on one of 2 ranks is named there" ranks 2 tests/runtime/ranks stuck_policies
 
 # What a body overwrote beyond its object was a task's: nobody knows any more what that waits for.
 overrun() {

@@ -1,16 +1,15 @@
 # shellcheck shell=sh
 # The commands of documents, which tests run as they are written. Sourced after tests/support/tap.sh.
 #
-#     commands FILE [CLASS]   the commands of its blocks "```sh", or "```sh CLASS", or of both (CLASS every: "sh" and "sh long"), one a
-#                             line: continued lines joined, comments left out
+#     commands FILE           the commands of its blocks "```sh", one a line: continued lines joined, comments left out
 #     files FILE FOLDER       writes the blocks that stand after a line <!-- NAME --> there, under this name; NAME has no slash
 #     prepare                 installs duite into $usr, and puts it into PATH and PKG_CONFIG_PATH, with a make that installs there and
 #                             only looks up other targets, and a sudo that does nothing
 #     home FOLDER             makes it a folder like the build folder: the tree's sources and the build's programs
-#     run_commands FILE CLASS NAME   a test of each command of a document, in the folder $home
+#     run_commands FILE NAME  a test of each command of a document, in the folder $home
 #
-# Blocks "sh" run in make check, blocks "sh long" in make check-long, blocks "sh remote" nowhere: they need other computers. Of what the tests set up for Open MPI commands get the permission
-# to run as root, nothing that makes up for an option. Benches run with --quick.
+# Blocks "sh remote" run nowhere: they need other computers. Of what the tests set up for Open MPI commands get the permission to run as root,
+# nothing that makes up for an option. Benches run with --quick.
 build=$PWD
 make=$(command -v "${MAKE:-make}") # a path, since a make of our own comes before it
 usr=$scratch/usr
@@ -18,8 +17,8 @@ MAKE=$make
 unset MAKEFLAGS MFLAGS MAKELEVEL # the makes in here are nobody's children
 
 commands() {
-    awk -v class="${2:-}" '
-        /^```sh( [a-z]*)?$/ { is = substr($0, 7); inside = is == class || (class == "every" && (is == "" || is == "long")); next }
+    awk '
+        /^```sh$/ { inside = 1; next }
         /^```/ { inside = 0; next }
         inside { sub(/^\$ /, ""); sub(/(^|[[:space:]]+)#([[:space:]].*)?$/, "")
                  if (sub(/\\$/, "")) { held = held $0; next }
@@ -97,8 +96,8 @@ run_command() { # COMMAND NAME
 }
 
 run_commands() {
-    commands "$1" "$2" > "$scratch/commands"
+    commands "$1" > "$scratch/commands"
     while IFS= read -r command; do
-        run_command "$command" "$3: $command"
+        run_command "$command" "$2: $command"
     done < "$scratch/commands"
 }

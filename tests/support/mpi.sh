@@ -13,7 +13,7 @@ export OMPI_MCA_mpi_yield_when_idle=1
 export OMPI_MCA_pml="${OMPI_MCA_pml:-ob1}" OMPI_MCA_btl="${OMPI_MCA_btl:-^ofi,openib}" OMPI_MCA_ess_singleton_isolated=1
 # mpirun ends a job of which a rank failed at once, not after a second.
 export OMPI_MCA_odls_base_sigkill_timeout="${OMPI_MCA_odls_base_sigkill_timeout:-0}"
-is_openmpi() { "${MPIRUN:-mpirun}" --version 2> /dev/null | grep 'Open MPI\|OpenRTE' > /dev/null; }
+is_openmpi() { case $("${MPIRUN:-mpirun}" --version 2> /dev/null) in *"Open MPI"* | *OpenRTE*) ;; *) false ;; esac; }
 # What a user chose for programs of duite in general is not what is tested or measured.
 unset DUITE_SCHEDULER DUITE_MAPPING DUITE_BALANCE DUITE_THREADS DUITE_SEED DUITE_TRACE
 # hwloc: silent about caches that a virtual machine reports wrongly, and no look for graphics cards on ten X displays, which

@@ -4,24 +4,14 @@
 # folder of the test's own, those of Open MPI too: programs of several tests that start at the same moment trip over each other
 # in the one that all runs of a user share.
 . "${0%/*}/mpi.sh"
-case $1 in
-    # AddressSanitizer's slow unwinder, which sees through Open MPI, waits for itself in the loader of llvmpipe's code. Without it leaks of
-    # ours are not told from those of Open MPI and fontconfig.
-    *tests/cloth/view/*.sh) export ASAN_OPTIONS=detect_leaks=0 ;;
-    *tests/cloth/view/*) unset ASAN_OPTIONS ;;
-    # fontconfig, which cairo draws text with, keeps what it found.
-    *tests/tools/test_chart.sh) export ASAN_OPTIONS="$ASAN_OPTIONS:detect_leaks=0" ;;
-    # Without Open MPI the fast unwinder sees enough, and takes a tenth of the time.
-    *tests/fuzz/* | *tests/cloth/base/* | *tests/cloth/mesh/* | *tests/cloth/garment/* | *tests/cloth/contact/* | *tests/cloth/verify/* | *tests/cloth/physics/* | *tests/cloth/solve/* | *tests/model/*)
-        export ASAN_OPTIONS="$ASAN_OPTIONS:fast_unwind_on_malloc=1" ;;
-    # With the slow unwinder a rank takes six times as long to start, and a run, which takes memory millions of times, up to ten times as
-    # long. Only the slow one can tell leaks from those of Open MPI. These look for them: what runs, what it reads and writes, how it
-    # fails; the tests of the runtime, of scenes and output, which stand below, likewise. The others do not.
-    *tests/cloth/flow/test_run | *tests/cloth/flow/test_failures | *tests/cloth/flow/test_memory | *tests/cloth/flow/test_ranks*.sh) ;;
-    *tests/whole/test_input.sh | *tests/whole/test_lock.sh | *tests/whole/test_signals.sh) ;;
-    *tests/cloth/flow/* | *tests/whole/* | *tests/examples/* | *tests/negative/test_environment.sh | *tests/negative/test_lost*.sh | \
-        *tests/runtime/test_exit.sh | *tests/runtime/test_stuck.sh | *tests/runtime/test_loaded.sh)
-        export ASAN_OPTIONS="$ASAN_OPTIONS:fast_unwind_on_malloc=1:detect_leaks=0" ;;
+# Leaks beside MPI are told from those of MPI by AddressSanitizer's slow unwinder alone. With it a rank takes six times as long to start, and a
+# run, which takes memory millions of times, up to ten times as long: so $LEAK_TESTS look for them, and the other tests that begin MPI do not.
+# A program without MPI looks for them by the fast one.
+case "${SANITIZER:-} $LEAK_TESTS " in
+    *address*" tests/${1##*/tests/} "*) ;;
+    *address*)
+        ASAN_OPTIONS="$ASAN_OPTIONS:fast_unwind_on_malloc=1"
+        case $1 in *.sh) false ;; *) ! grep -q MPI_Init "$1" ;; esac || ASAN_OPTIONS="$ASAN_OPTIONS:detect_leaks=0" ;;
 esac
 folder=$(mktemp -d "${TMPDIR:-/tmp}/duite.XXXXXX") || exit 99
 trap 'rm -rf "$folder"' EXIT

@@ -11,6 +11,9 @@
 #     ranks N COMMAND...               COMMAND under mpirun on N ranks, at most $DUITE_TIMEOUT seconds (default 1800): an
 #                                      end for what hangs, far above what any command takes on a busy machine. Leaks are
 #                                      looked for on at most two ranks
+#     cases PROGRAM < TABLE            a case for each line "ARGUMENT... | RANKS... | NAME | SETTING..." and each of its numbers of ranks;
+#                                      those with a + only where all is wanted. PROGRAM's status 77 skips. A build with sanitizers takes
+#                                      the first number: the others are the same code
 #     limited COMMAND...               COMMAND with the same time limit
 #     awaits PID COMMAND...            waits until COMMAND passes, as long as the process lives: no time limit of its own
 #     quick                            whether only the quick subset is wanted (DUITE_QUICK=1)
@@ -18,7 +21,16 @@
 #     value KEY [FILE]                 what a report has of a key; FILE: report.json
 #     install_duite PREFIX             make install there, whatever configure was told; `locations PREFIX` are its settings
 # $scratch is a folder of the test's own, removed at its end. $DUITE_CLOTH and $DUITE_VIEW are the programs.
+#
+# A pipeline fails when one of its commands does: a test whose sh cannot do that goes on in bash (by POSIX, or
+# `ulimit -f` counts other blocks). So what reads a pipe reads it to its end:
+# grep -c in place of grep -q, which would end its writer by a signal.
 
+if (set -o pipefail) 2> /dev/null; then
+    set -o pipefail
+elif command -v bash > /dev/null; then
+    exec bash --posix -o pipefail "$0" "$@"
+fi
 srcdir=$(cd "${srcdir:-.}" && pwd) || exit 99
 export srcdir
 DUITE_CLOTH=${DUITE_CLOTH:-$PWD/duite-cloth}
@@ -124,6 +136,24 @@ ranks() {
         *address*) set -- env ASAN_OPTIONS="${ASAN_OPTIONS:-}:fast_unwind_on_malloc=1:detect_leaks=0" "$@" ;; # as in run.sh
     esac
     limited "${MPIRUN:-mpirun}" -n "$tap_n" "$@"
+}
+
+# shellcheck disable=SC2086 # lists of words
+cases() {
+    while IFS='|' read -r tap_arguments tap_ranks tap_title tap_settings; do
+        tap_title=$(echo $tap_title)
+        for tap_number in $tap_ranks; do
+            case $tap_number in *+) quick && continue ;; esac
+            tap_number=${tap_number%+}
+            tap_name="$tap_title, $tap_number rank$(test "$tap_number" = 1 || echo s)"
+            tap_run ranks "$tap_number" env $tap_settings "$1" $tap_arguments
+            case $tap_got in
+                77) skip "$tap_name" "$(head -n 1 "$scratch/output")" ;;
+                *) tap_result $tap_got "$tap_name" ;;
+            esac
+            test -z "${SANITIZER:-}" || break
+        done
+    done
 }
 
 locations() {

@@ -59,6 +59,11 @@ status 0'
 ok "a script that stops early fails" gives 'plan_later; ok good true; exit 5' 'ok 1 - good
 1..1
 status 5'
+ok "a pipeline fails when its first command does" gives 'plan_later; ok piped eval "cat no-such-file | sort"' 'not ok 1 - piped
+# cat: no-such-file: No such file or directory
+# (exit status 1)
+1..1
+status 1'
 ok "ranks start as many processes as asked for" gives 'plan_later
 three() { test "$(ranks 3 sh -c "echo one" | grep -c one)" = 3; }; ok three three' 'ok 1 - three
 1..1

@@ -63,7 +63,7 @@ half() {
 }
 ok "a window of half of the run" half
 ok "... or of all behind a third" ./duite-trace "$scratch/ranks" --window 33.3%: --svg "$scratch/part.svg"
-sized() { ./duite-trace "$scratch/ranks" --size 800x300 --svg - | grep -q 'width="800" height="300"'; }
+sized() { ./duite-trace "$scratch/ranks" --size 800x300 --svg - | grep -c 'width="800" height="300"'; }
 ok "a size" sized
 
 refused() { # TEXT OPTION...

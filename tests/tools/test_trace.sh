@@ -198,6 +198,14 @@ exits 2 "tasks that go elsewhere" ./duite-predict "$scratch/two" --hosts 2 --bal
 exits 2 "blocks that move without a mapping" ./duite-predict "$scratch/ranks" --balance migrate
 exits 1 "a predicted run that cannot be written" ./duite-predict "$scratch/two" --paje "$scratch/nowhere/paje"
 
+# ---- Kernels with many listed parameters ----
+
+ok "40 listed parameters, traced" ranks 2 tests/runtime/ranks wide "$scratch/wide"
+ok "... is whole" ./duite-trace --check "$scratch/wide"
+wide_and_plain() { ./duite-trace "$scratch/wide" > "$scratch/table" && cat "$scratch/table" && grep -q wide "$scratch/table" && grep -q plain "$scratch/table"; }
+ok "... and names both kernels" wide_and_plain
+ok "... and is predicted for other hosts" ./duite-predict "$scratch/wide" --hosts 3
+
 # ---- What is no trace ----
 
 refused() { # FILE WORDS: refused with a sentence that has these words

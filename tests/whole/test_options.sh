@@ -88,7 +88,7 @@ ok "the summary names scene, hash and folder" sh -c 'grep -q "^handkerchief$" pr
 ok "the report says what was run" eval 'is scene handkerchief && is vertices 64 && is triangles 98 && is grain 20 &&
     is blocks 4 && is ranks 1 && is scheduler steal && is mapping metis && is steps 80 && is balance none &&
     is delegated_tasks 0'
-ok "hashes have 16 digits" eval 'echo "$hash $(value partition_hash)" | grep -qxE "[0-9a-f]{16} [0-9a-f]{16}"'
+ok "hashes have 16 digits" eval 'echo "$hash $(value partition_hash)" | grep -cxE "[0-9a-f]{16} [0-9a-f]{16}"'
 
 all_keys() { # exactly the keys of the manual page, in its order
     sed -n '/^\.SH REPORT/,/^\.SH SIGNALS/s/^\.B //p' "$top/cloth/duite-cloth.1" | tr -d ' ' | tr ',' '\n' > documented

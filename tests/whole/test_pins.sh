@@ -48,7 +48,7 @@ across() { # INTEGRATOR: how fast it is across the line
     run bead.yaml --output out --set integrator="$1" 2> /dev/null && last 'p.0.vx [m/s]' 'p.0.vy [m/s]' |
         awk '{ v = 0.8 * $1 + 0.6 * $2; print v; exit !(v < 1e-12 && v > -1e-12 && $1 > 2) }'
 }
-for integrator in explicit_euler symplectic_euler verlet midpoint rk4 implicit_euler bdf2; do
+for integrator in explicit_euler symplectic_euler verlet rk4 implicit_euler bdf2; do
     ok "a line leaves no velocity across it, $integrator" across $integrator
 done
 
@@ -67,7 +67,7 @@ turns() { # INTEGRATOR ARGUMENT...
             wrong = push - 0.4 * (e - 1 / e); if (wrong < 0) wrong = -wrong; pull = $3 * c + $5 * s; if (pull < 0) pull = -pull
             exit !(away < 16 * h && askew < 1e-14 && wrong < 25 * h && pull < 1e-13 && $4 == 0) }'
 }
-for integrator in explicit_euler symplectic_euler verlet midpoint rk4 implicit_euler bdf2; do
+for integrator in explicit_euler symplectic_euler verlet rk4 implicit_euler bdf2; do
     ok "a line that turns, $integrator" turns $integrator
 done
 finer() { h=0.00025 && turns implicit_euler --set time.h=0.00025; }
@@ -119,7 +119,7 @@ probes:
   - {name: pulled, nearest: [-0.5, 1, -0.5], radius: 0.1, values: [velocity]}
 END
 by_radius() { # 5 vertices are pinned in the middle and lifted, carry 5 of the 9 masses and 5 of the loads; 1 at the corner
-    run round.yaml --output out && tr ',' '\n' < out/probes.csv | grep -c '^held.*[xyz] ' | grep -qx 18 &&
+    run round.yaml --output out && tr ',' '\n' < out/probes.csv | grep -c '^held.*[xyz] ' | grep -cx 18 &&
         near 1e-12 1.5 1.5 1.5 1.5 1.5 -10 "$(awk 'BEGIN { printf "%.17g", 9.81 * 5 * (0.5 + 0.002) }')" "$(awk 'BEGIN { printf "%.17g", 9.81 * 0.0005 }')" 0 0 \
             $(last 'held.49.y [m]' 'held.59.y [m]' 'held.60.y [m]' 'held.61.y [m]' 'held.71.y [m]' 'held.total.rz [N]' 'held.total.ry [N]' 'corner.120.ry [N]' \
                 'pulled.1.vx [m/s]' 'pulled.11.vx [m/s]')

@@ -62,7 +62,7 @@ unseen() { # INTEGRATOR: whether there are probes or not makes no difference
         run sheet.yaml --report told.json --output told --set integrator=$1 --set time.h=0.001 --end 0.01 &&
         grep '"state_hash"' report.json > hash && grep '"state_hash"' told.json | cmp - hash
 }
-for integrator in implicit_euler symplectic_euler verlet midpoint rk4; do
+for integrator in implicit_euler symplectic_euler verlet rk4; do
     ok "probes change nothing, $integrator" unseen $integrator
 done
 explicit() {

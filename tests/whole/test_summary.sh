@@ -23,7 +23,7 @@ same_names() {
 documented() { names "$sums" | tr -d '{"' | while read -r name; do grep -qF "| $name |" "$page" || { echo "$name" && return 1; }; done; }
 
 alone() { # one worker is busy all the time, whatever else the machine does
-    run --trace run.trace && cat said && tail -n 1 said | grep -qx 'Limited by work: the workers were busy for [0-9]* % of the time, [0-9]* % of that in CG\.' &&
+    run --trace run.trace && cat said && tail -n 1 said | grep -cx 'Limited by work: the workers were busy for [0-9]* % of the time, [0-9]* % of that in CG\.' &&
         test "$(value limited_by)" = work
 }
 trace_agrees() { "$trace" run.trace > table && grep 'limited by' table && grep -qx "  limited by    $(value limited_by)" table; }

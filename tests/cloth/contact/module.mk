@@ -1,52 +1,24 @@
 if HAVE_CHECK
 CONTACT_TEST_RANDOM = tests/cloth/contact/shapes.h tests/support/random.h
-tests_cloth_contact = \
-    tests/cloth/contact/test_body \
-    tests/cloth/contact/test_body_refused \
-    tests/cloth/contact/test_body_skin \
-    tests/cloth/contact/test_certificate \
-    tests/cloth/contact/test_image \
-    tests/cloth/contact/test_meet \
-    tests/cloth/contact/test_pair \
-    tests/cloth/contact/test_row \
-    tests/cloth/contact/test_shape \
-    tests/cloth/contact/test_skin \
-    tests/cloth/contact/test_solid
-check_PROGRAMS += $(tests_cloth_contact)
-TESTS += $(tests_cloth_contact)
+ASAN_TESTS += tests/cloth/contact/test_body tests/cloth/contact/test_body_refused tests/cloth/contact/test_body_skin \
+    tests/cloth/contact/test_certificate tests/cloth/contact/test_image tests/cloth/contact/test_meet tests/cloth/contact/test_pair \
+    tests/cloth/contact/test_row tests/cloth/contact/test_shape tests/cloth/contact/test_skin tests/cloth/contact/test_solid \
+    tests/cloth/contact/test_body_frames
+LONG_SH += tests/cloth/contact/test_certificate_long.sh
 tests_cloth_contact_test_body_SOURCES = tests/cloth/contact/test_body.c tests/cloth/contact/bodies.h tests/support/random.h
-tests_cloth_contact_test_body_LDADD = $(CLOTH_TEST_LIBS)
 tests_cloth_contact_test_body_refused_SOURCES = tests/cloth/contact/test_body_refused.c tests/cloth/contact/bodies.h
-tests_cloth_contact_test_body_refused_LDADD = $(CLOTH_TEST_LIBS)
 tests_cloth_contact_test_body_skin_SOURCES = tests/cloth/contact/test_body_skin.c tests/cloth/contact/bodies.h tests/support/random.h
-tests_cloth_contact_test_body_skin_LDADD = $(CLOTH_TEST_LIBS)
 tests_cloth_contact_test_certificate_SOURCES = tests/cloth/contact/test_certificate.c tests/cloth/contact/pairs.h tests/support/random.h
-tests_cloth_contact_test_certificate_LDADD = $(CLOTH_TEST_LIBS)
 tests_cloth_contact_test_image_SOURCES = tests/cloth/contact/test_image.c tests/cloth/contact/images.h tests/cloth/contact/bodies.h
-tests_cloth_contact_test_image_LDADD = $(CLOTH_TEST_LIBS)
-tests_cloth_contact_test_meet_SOURCES = tests/cloth/contact/test_meet.c
-tests_cloth_contact_test_meet_LDADD = $(CLOTH_TEST_LIBS)
 tests_cloth_contact_test_pair_SOURCES = tests/cloth/contact/test_pair.c tests/cloth/contact/pairs.h tests/support/random.h
-tests_cloth_contact_test_pair_LDADD = $(CLOTH_TEST_LIBS)
-tests_cloth_contact_test_row_SOURCES = tests/cloth/contact/test_row.c
-tests_cloth_contact_test_row_LDADD = $(CLOTH_TEST_LIBS)
 tests_cloth_contact_test_shape_SOURCES = tests/cloth/contact/test_shape.c $(CONTACT_TEST_RANDOM)
-tests_cloth_contact_test_shape_LDADD = $(CLOTH_TEST_LIBS)
 tests_cloth_contact_test_skin_SOURCES = tests/cloth/contact/test_skin.c tests/cloth/contact/skin_sheet.h tests/cloth/contact/distances.h \
 	tests/support/random.h
-tests_cloth_contact_test_skin_LDADD = $(CLOTH_TEST_LIBS)
 tests_cloth_contact_test_solid_SOURCES = tests/cloth/contact/test_solid.c tests/cloth/contact/solids.h $(CONTACT_TEST_RANDOM)
-tests_cloth_contact_test_solid_LDADD = $(CLOTH_TEST_LIBS)
 if HAVE_GMP
-check_PROGRAMS += tests/cloth/contact/test_certificate_exact
+ASAN_TESTS += tests/cloth/contact/test_certificate_exact
 tests_cloth_contact_test_certificate_exact_SOURCES = tests/cloth/contact/test_certificate_exact.c tests/cloth/contact/pairs.h tests/support/random.h
 tests_cloth_contact_test_certificate_exact_LDADD = $(CLOTH_TEST_LIBS) $(GMP_LIBS)
-TESTS += tests/cloth/contact/test_certificate_exact
 endif
-dist_check_SCRIPTS += tests/cloth/contact/test_certificate_long.sh
-LONG_TESTS += tests/cloth/contact/test_certificate_long.sh
-check_PROGRAMS += tests/cloth/contact/test_body_frames
 tests_cloth_contact_test_body_frames_SOURCES = tests/cloth/contact/test_body_frames.c tests/cloth/contact/bodies.h
-tests_cloth_contact_test_body_frames_LDADD = $(CLOTH_TEST_LIBS)
-TESTS += tests/cloth/contact/test_body_frames
 endif

@@ -1,7 +1,5 @@
 if HAVE_CHECK
-check_PROGRAMS += tests/cloth/element/test_kinds
+ASAN_TESTS += tests/cloth/element/test_kinds
 tests_cloth_element_test_kinds_SOURCES = tests/cloth/element/test_kinds.c tests/cloth/element/samples.h tests/cloth/physics/elements.c \
 	tests/cloth/physics/elements.h
-tests_cloth_element_test_kinds_LDADD = $(CLOTH_TEST_LIBS)
-TESTS += tests/cloth/element/test_kinds
 endif

@@ -1,107 +1,44 @@
 if HAVE_CHECK
 FLOW_TEST_MODELS = tests/cloth/flow/models.c tests/cloth/flow/models.h
-check_PROGRAMS += tests/cloth/flow/test_failures tests/cloth/flow/test_motion tests/cloth/flow/test_run
+LEAK_TESTS += tests/cloth/flow/test_failures tests/cloth/flow/test_run tests/cloth/flow/test_memory
+TSAN_TESTS += tests/cloth/flow/test_grid tests/cloth/flow/test_filter tests/cloth/flow/test_cut_run tests/cloth/flow/test_skins \
+    tests/cloth/flow/test_sliders tests/cloth/flow/test_contact_index tests/cloth/flow/test_warnings tests/cloth/flow/test_ties \
+    tests/cloth/flow/test_ties_runs tests/cloth/flow/test_levels
+ASAN_TESTS += tests/cloth/flow/test_motion tests/cloth/flow/test_halving tests/cloth/flow/test_limits tests/cloth/flow/test_strain_limit \
+    tests/cloth/flow/test_checked tests/cloth/flow/test_fields
+PLAIN_TESTS += tests/cloth/flow/test_solvers tests/cloth/flow/test_obstacles tests/cloth/flow/test_singular \
+    tests/cloth/flow/test_integrators tests/cloth/flow/test_chain tests/cloth/flow/test_newton
 tests_cloth_flow_test_failures_SOURCES = tests/cloth/flow/test_failures.c $(FLOW_TEST_MODELS)
-tests_cloth_flow_test_failures_LDADD = $(CLOTH_TEST_LIBS)
-check_PROGRAMS += tests/cloth/flow/test_memory
 tests_cloth_flow_test_memory_SOURCES = tests/cloth/flow/test_memory.c $(FLOW_TEST_MODELS)
-tests_cloth_flow_test_memory_LDADD = $(CLOTH_TEST_LIBS)
 tests_cloth_flow_test_memory_LDFLAGS = $(AM_LDFLAGS) -Wl,--wrap=malloc -Wl,--wrap=calloc \
 	-Wl,--wrap=realloc -Wl,--wrap=aligned_alloc -Wl,--wrap=flow_memory_take -Wl,--wrap=flow_source_gather
-TESTS += tests/cloth/flow/test_memory
 check_PROGRAMS += tests/cloth/flow/test_late
 tests_cloth_flow_test_late_SOURCES = tests/cloth/flow/test_late.c $(FLOW_TEST_MODELS)
-tests_cloth_flow_test_late_LDADD = $(CLOTH_TEST_LIBS)
 tests_cloth_flow_test_late_LDFLAGS = $(AM_LDFLAGS) -Wl,--wrap=flow_halo_make
 tests_cloth_flow_test_motion_SOURCES = tests/cloth/flow/test_motion.c $(FLOW_TEST_MODELS)
-tests_cloth_flow_test_motion_LDADD = $(CLOTH_TEST_LIBS)
 tests_cloth_flow_test_run_SOURCES = tests/cloth/flow/test_run.c $(FLOW_TEST_MODELS)
-tests_cloth_flow_test_run_LDADD = $(CLOTH_TEST_LIBS)
-check_PROGRAMS += tests/cloth/flow/test_solvers
 tests_cloth_flow_test_solvers_SOURCES = tests/cloth/flow/test_solvers.c $(FLOW_TEST_MODELS)
-tests_cloth_flow_test_solvers_LDADD = $(CLOTH_TEST_LIBS)
-TESTS += tests/cloth/flow/test_solvers
-check_PROGRAMS += tests/cloth/flow/test_grid tests/cloth/flow/test_halving
-tests_cloth_flow_test_grid_SOURCES = tests/cloth/flow/test_grid.c
-tests_cloth_flow_test_grid_LDADD = $(CLOTH_TEST_LIBS)
 tests_cloth_flow_test_halving_SOURCES = tests/cloth/flow/test_halving.c $(FLOW_TEST_MODELS)
-tests_cloth_flow_test_halving_LDADD = $(CLOTH_TEST_LIBS)
-TESTS += tests/cloth/flow/test_grid tests/cloth/flow/test_halving
-check_PROGRAMS += tests/cloth/flow/test_filter tests/cloth/flow/test_obstacles
 tests_cloth_flow_test_obstacles_SOURCES = tests/cloth/contact/bodies.h tests/cloth/flow/test_obstacles.c $(FLOW_TEST_MODELS)
-tests_cloth_flow_test_obstacles_LDADD = $(CLOTH_TEST_LIBS)
 tests_cloth_flow_test_filter_SOURCES = tests/cloth/flow/test_filter.c $(FLOW_TEST_MODELS)
-tests_cloth_flow_test_filter_LDADD = $(CLOTH_TEST_LIBS)
-TESTS += tests/cloth/flow/test_filter tests/cloth/flow/test_obstacles
-check_PROGRAMS += tests/cloth/flow/test_cut_run
-tests_cloth_flow_test_cut_run_SOURCES = tests/cloth/flow/test_cut_run.c
-tests_cloth_flow_test_cut_run_LDADD = $(CLOTH_TEST_LIBS)
-TESTS += tests/cloth/flow/test_cut_run
-check_PROGRAMS += tests/cloth/flow/test_skins
 tests_cloth_flow_test_skins_SOURCES = tests/cloth/flow/test_skins.c $(FLOW_TEST_MODELS)
-tests_cloth_flow_test_skins_LDADD = $(CLOTH_TEST_LIBS)
-TESTS += tests/cloth/flow/test_skins
-check_PROGRAMS += tests/cloth/flow/test_sliders
 tests_cloth_flow_test_sliders_SOURCES = tests/cloth/flow/test_sliders.c $(FLOW_TEST_MODELS)
-tests_cloth_flow_test_sliders_LDADD = $(CLOTH_TEST_LIBS)
-TESTS += tests/cloth/flow/test_sliders
-check_PROGRAMS += tests/cloth/flow/test_singular
 tests_cloth_flow_test_singular_SOURCES = tests/cloth/flow/test_singular.c $(FLOW_TEST_MODELS)
-tests_cloth_flow_test_singular_LDADD = $(CLOTH_TEST_LIBS)
-TESTS += tests/cloth/flow/test_singular
-TESTS += tests/cloth/flow/test_failures tests/cloth/flow/test_motion tests/cloth/flow/test_run
-check_PROGRAMS += tests/cloth/flow/test_integrators
 tests_cloth_flow_test_integrators_SOURCES = tests/cloth/flow/test_integrators.c $(FLOW_TEST_MODELS)
-tests_cloth_flow_test_integrators_LDADD = $(CLOTH_TEST_LIBS)
-TESTS += tests/cloth/flow/test_integrators
-check_PROGRAMS += tests/cloth/flow/test_limits
 tests_cloth_flow_test_limits_SOURCES = tests/cloth/flow/test_limits.c $(FLOW_TEST_MODELS)
-tests_cloth_flow_test_limits_LDADD = $(CLOTH_TEST_LIBS)
-TESTS += tests/cloth/flow/test_limits
-check_PROGRAMS += tests/cloth/flow/test_strain_limit
 tests_cloth_flow_test_strain_limit_SOURCES = tests/cloth/flow/test_strain_limit.c $(FLOW_TEST_MODELS)
-tests_cloth_flow_test_strain_limit_LDADD = $(CLOTH_TEST_LIBS)
-TESTS += tests/cloth/flow/test_strain_limit
-check_PROGRAMS += tests/cloth/flow/test_contact_index
-tests_cloth_flow_test_contact_index_LDADD = $(CLOTH_TEST_LIBS)
-TESTS += tests/cloth/flow/test_contact_index
-check_PROGRAMS += tests/cloth/flow/test_chain
 tests_cloth_flow_test_chain_SOURCES = tests/cloth/flow/test_chain.c $(FLOW_TEST_MODELS)
-tests_cloth_flow_test_chain_LDADD = $(CLOTH_TEST_LIBS)
-TESTS += tests/cloth/flow/test_chain
-check_PROGRAMS += tests/cloth/flow/test_newton
 tests_cloth_flow_test_newton_SOURCES = tests/cloth/flow/test_newton.c $(FLOW_TEST_MODELS)
-tests_cloth_flow_test_newton_LDADD = $(CLOTH_TEST_LIBS)
-TESTS += tests/cloth/flow/test_newton
-check_PROGRAMS += tests/cloth/flow/test_checked
 tests_cloth_flow_test_checked_SOURCES = tests/cloth/flow/test_checked.c tests/cloth/flow/checked_runs.h $(FLOW_TEST_MODELS) \
 	tests/cloth/scene/scene_file.c tests/cloth/scene/scene_file.h
-tests_cloth_flow_test_checked_LDADD = $(CLOTH_TEST_LIBS)
 tests_cloth_flow_test_checked_LDFLAGS = $(AM_LDFLAGS) -Wl,--wrap=check_call
-TESTS += tests/cloth/flow/test_checked
-check_PROGRAMS += tests/cloth/flow/test_warnings
 tests_cloth_flow_test_warnings_SOURCES = tests/cloth/flow/test_warnings.c $(FLOW_TEST_MODELS)
-tests_cloth_flow_test_warnings_LDADD = $(CLOTH_TEST_LIBS)
-TESTS += tests/cloth/flow/test_warnings
 FLOW_TEST_SESSION = tests/cloth/flow/session.c tests/cloth/flow/session.h $(FLOW_TEST_MODELS)
-check_PROGRAMS += tests/cloth/flow/test_fields tests/cloth/flow/test_ties tests/cloth/flow/test_ties_runs
 tests_cloth_flow_test_ties_SOURCES = tests/cloth/flow/test_ties.c tests/cloth/flow/random_ties.h $(FLOW_TEST_MODELS)
-tests_cloth_flow_test_ties_LDADD = $(CLOTH_TEST_LIBS)
-check_PROGRAMS += tests/cloth/flow/test_levels
 tests_cloth_flow_test_levels_SOURCES = tests/cloth/flow/test_levels.c $(FLOW_TEST_SESSION)
-tests_cloth_flow_test_levels_LDADD = $(CLOTH_TEST_LIBS)
-TESTS += tests/cloth/flow/test_levels
 tests_cloth_flow_test_ties_runs_SOURCES = tests/cloth/flow/test_ties_runs.c $(FLOW_TEST_SESSION)
-tests_cloth_flow_test_ties_runs_LDADD = $(CLOTH_TEST_LIBS)
 tests_cloth_flow_test_fields_SOURCES = tests/cloth/flow/test_fields.c tests/cloth/flow/kinds.c tests/cloth/flow/kinds.h $(FLOW_TEST_SESSION)
-tests_cloth_flow_test_fields_LDADD = $(CLOTH_TEST_LIBS)
-TESTS += tests/cloth/flow/test_fields tests/cloth/flow/test_ties tests/cloth/flow/test_ties_runs
 endif
-dist_check_SCRIPTS += tests/cloth/flow/test_kernels.sh
-TESTS += tests/cloth/flow/test_kernels.sh
+ASAN_SH += tests/cloth/flow/test_kernels.sh tests/cloth/flow/test_ranks.sh
+LONG_SH += tests/cloth/flow/test_ranks_long.sh tests/cloth/flow/test_checked_long.sh
 EXTRA_DIST += tests/cloth/flow/kernels_wrong.c
-dist_check_SCRIPTS += tests/cloth/flow/test_ranks.sh tests/cloth/flow/test_ranks_long.sh
-TESTS += tests/cloth/flow/test_ranks.sh
-LONG_TESTS += tests/cloth/flow/test_ranks_long.sh
-dist_check_SCRIPTS += tests/cloth/flow/test_checked_long.sh
-LONG_TESTS += tests/cloth/flow/test_checked_long.sh

@@ -16,7 +16,7 @@ wrong() {
         return 1
     fi
     cat "$scratch/errors"
-    grep -E 'error:' "$scratch/errors" | grep -qE "$2"
+    grep -E 'error:' "$scratch/errors" | grep -cE "$2"
 }
 
 ok "a right declaration compiles" compiles 0

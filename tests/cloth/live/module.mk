@@ -1,14 +1,9 @@
 if HAVE_CHECK
-check_PROGRAMS += tests/cloth/live/test_message tests/cloth/live/test_scene
-tests_cloth_live_test_message_SOURCES = tests/cloth/live/test_message.c
-tests_cloth_live_test_message_LDADD = $(CLOTH_TEST_LIBS)
+ASAN_TESTS += tests/cloth/live/test_message tests/cloth/live/test_scene
 tests_cloth_live_test_scene_SOURCES = tests/cloth/live/test_scene.c tests/cloth/contact/bodies.h
 tests_cloth_live_test_scene_LDADD = tests/cloth/output/libsample.a $(CLOTH_TEST_LIBS)
-TESTS += tests/cloth/live/test_message tests/cloth/live/test_scene
 if HAVE_ZMQ
-check_PROGRAMS += tests/cloth/live/test_publish
-tests_cloth_live_test_publish_SOURCES = tests/cloth/live/test_publish.c
+ASAN_TESTS += tests/cloth/live/test_publish
 tests_cloth_live_test_publish_LDADD = tests/cloth/output/libsample.a $(CLOTH_TEST_LIBS) $(ZMQ_LIBS)
-TESTS += tests/cloth/live/test_publish
 endif
 endif

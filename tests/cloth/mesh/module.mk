@@ -1,55 +1,22 @@
 if HAVE_CHECK
-check_PROGRAMS += tests/cloth/mesh/test_grid
+ASAN_TESTS += tests/cloth/mesh/test_grid tests/cloth/mesh/test_disc tests/cloth/mesh/test_obj tests/cloth/mesh/test_obj_errors \
+    tests/cloth/mesh/test_polygons tests/cloth/mesh/test_inline tests/cloth/mesh/test_edges tests/cloth/mesh/test_lattice \
+    tests/cloth/mesh/test_elastic tests/cloth/mesh/test_blocks tests/cloth/mesh/test_shadow tests/cloth/mesh/test_real \
+    tests/cloth/mesh/test_memory
 tests_cloth_mesh_test_grid_SOURCES = tests/cloth/mesh/test_grid.c tests/cloth/mesh/tools.h
-tests_cloth_mesh_test_grid_LDADD = $(CLOTH_TEST_LIBS)
-TESTS += tests/cloth/mesh/test_grid
-check_PROGRAMS += tests/cloth/mesh/test_disc
 tests_cloth_mesh_test_disc_SOURCES = tests/cloth/mesh/test_disc.c tests/cloth/mesh/tools.h
 tests_cloth_mesh_test_disc_LDADD = $(CLOTH_TEST_LIBS) -lm
-TESTS += tests/cloth/mesh/test_disc
-check_PROGRAMS += tests/cloth/mesh/test_obj
 tests_cloth_mesh_test_obj_SOURCES = tests/cloth/mesh/test_obj.c tests/cloth/mesh/tools.h
-tests_cloth_mesh_test_obj_LDADD = $(CLOTH_TEST_LIBS)
-TESTS += tests/cloth/mesh/test_obj
-check_PROGRAMS += tests/cloth/mesh/test_obj_errors
 tests_cloth_mesh_test_obj_errors_SOURCES = tests/cloth/mesh/test_obj_errors.c tests/cloth/mesh/tools.h
-tests_cloth_mesh_test_obj_errors_LDADD = $(CLOTH_TEST_LIBS)
-TESTS += tests/cloth/mesh/test_obj_errors
-check_PROGRAMS += tests/cloth/mesh/test_polygons
 tests_cloth_mesh_test_polygons_SOURCES = tests/cloth/mesh/test_polygons.c tests/cloth/mesh/tools.h
-tests_cloth_mesh_test_polygons_LDADD = $(CLOTH_TEST_LIBS)
-TESTS += tests/cloth/mesh/test_polygons
-check_PROGRAMS += tests/cloth/mesh/test_inline
 tests_cloth_mesh_test_inline_SOURCES = tests/cloth/mesh/test_inline.c tests/cloth/mesh/tools.h
-tests_cloth_mesh_test_inline_LDADD = $(CLOTH_TEST_LIBS)
-TESTS += tests/cloth/mesh/test_inline
-check_PROGRAMS += tests/cloth/mesh/test_edges
 tests_cloth_mesh_test_edges_SOURCES = tests/cloth/mesh/test_edges.c tests/cloth/mesh/tools.h
-tests_cloth_mesh_test_edges_LDADD = $(CLOTH_TEST_LIBS)
-TESTS += tests/cloth/mesh/test_edges
-check_PROGRAMS += tests/cloth/mesh/test_lattice
 tests_cloth_mesh_test_lattice_SOURCES = tests/cloth/mesh/test_lattice.c tests/cloth/mesh/tools.h
-tests_cloth_mesh_test_lattice_LDADD = $(CLOTH_TEST_LIBS)
-TESTS += tests/cloth/mesh/test_lattice
-check_PROGRAMS += tests/cloth/mesh/test_elastic
 tests_cloth_mesh_test_elastic_SOURCES = tests/cloth/mesh/test_elastic.c tests/cloth/mesh/tools.h
-tests_cloth_mesh_test_elastic_LDADD = $(CLOTH_TEST_LIBS)
-TESTS += tests/cloth/mesh/test_elastic
-check_PROGRAMS += tests/cloth/mesh/test_blocks
 tests_cloth_mesh_test_blocks_SOURCES = tests/cloth/mesh/test_blocks.c tests/cloth/mesh/tools.h
-tests_cloth_mesh_test_blocks_LDADD = $(CLOTH_TEST_LIBS)
-TESTS += tests/cloth/mesh/test_blocks
-check_PROGRAMS += tests/cloth/mesh/test_shadow
 tests_cloth_mesh_test_shadow_SOURCES = tests/cloth/mesh/test_shadow.c tests/cloth/mesh/tools.h
 tests_cloth_mesh_test_shadow_LDADD = $(CLOTH_TEST_LIBS) -lm
-TESTS += tests/cloth/mesh/test_shadow
-check_PROGRAMS += tests/cloth/mesh/test_real
 tests_cloth_mesh_test_real_SOURCES = tests/cloth/mesh/test_real.c tests/cloth/mesh/tools.h
-tests_cloth_mesh_test_real_LDADD = $(CLOTH_TEST_LIBS)
-TESTS += tests/cloth/mesh/test_real
-check_PROGRAMS += tests/cloth/mesh/test_memory
 tests_cloth_mesh_test_memory_SOURCES = tests/cloth/mesh/test_memory.c tests/cloth/mesh/tools.h
-tests_cloth_mesh_test_memory_LDADD = $(CLOTH_TEST_LIBS)
 tests_cloth_mesh_test_memory_LDFLAGS = $(AM_LDFLAGS) -Wl,--wrap=malloc -Wl,--wrap=calloc -Wl,--wrap=realloc
-TESTS += tests/cloth/mesh/test_memory
 endif

@@ -1,30 +1,21 @@
-dist_check_SCRIPTS += tests/cloth/view/test_view.sh tests/cloth/view/test_window.sh tests/cloth/view/test_window_live.sh
-TESTS += tests/cloth/view/test_view.sh tests/cloth/view/test_window.sh tests/cloth/view/test_window_live.sh
+ASAN_SH += tests/cloth/view/test_view.sh tests/cloth/view/test_window_live.sh
+PLAIN_SH += tests/cloth/view/test_window.sh
 
 if HAVE_VIEW
 check_PROGRAMS += tests/cloth/view/alike tests/cloth/view/hues
-tests_cloth_view_hues_SOURCES = tests/cloth/view/hues.c
 tests_cloth_view_hues_CPPFLAGS = $(AM_CPPFLAGS) $(PNG_CFLAGS)
 tests_cloth_view_hues_LDADD = $(VIEW_LIBS) $(PNG_LIBS)
-tests_cloth_view_alike_SOURCES = tests/cloth/view/alike.c
 tests_cloth_view_alike_CPPFLAGS = $(AM_CPPFLAGS) $(PNG_CFLAGS)
 tests_cloth_view_alike_LDADD = $(PNG_LIBS)
 if HAVE_CHECK
-check_PROGRAMS += tests/cloth/view/test_coarse tests/cloth/view/test_colour tests/cloth/view/test_player tests/cloth/view/test_camera \
-	tests/cloth/view/test_picture
-tests_cloth_view_test_colour_SOURCES = tests/cloth/view/test_colour.c
+ASAN_TESTS += tests/cloth/view/test_coarse tests/cloth/view/test_colour tests/cloth/view/test_player tests/cloth/view/test_camera \
+    tests/cloth/view/test_picture
 tests_cloth_view_test_colour_LDADD = tests/support/libunit.a $(VIEW_LIBS) $(CHECK_LIBS)
-tests_cloth_view_test_camera_SOURCES = tests/cloth/view/test_camera.c
 tests_cloth_view_test_camera_LDADD = tests/support/libunit.a $(VIEW_LIBS) $(CHECK_LIBS)
-tests_cloth_view_test_coarse_SOURCES = tests/cloth/view/test_coarse.c
 tests_cloth_view_test_coarse_CPPFLAGS = $(AM_CPPFLAGS) $(EPOXY_CFLAGS)
 tests_cloth_view_test_coarse_LDADD = tests/support/libunit.a $(VIEW_LIBS) $(CHECK_LIBS)
-tests_cloth_view_test_picture_SOURCES = tests/cloth/view/test_picture.c
 tests_cloth_view_test_picture_CPPFLAGS = $(AM_CPPFLAGS) $(PNG_CFLAGS)
 tests_cloth_view_test_picture_LDADD = tests/support/libunit.a $(VIEW_LIBS) $(CHECK_LIBS) $(PNG_LIBS)
-tests_cloth_view_test_player_SOURCES = tests/cloth/view/test_player.c
 tests_cloth_view_test_player_LDADD = tests/support/libunit.a $(VIEW_LIBS) $(CHECK_LIBS)
-TESTS += tests/cloth/view/test_coarse tests/cloth/view/test_colour tests/cloth/view/test_player tests/cloth/view/test_camera \
-	tests/cloth/view/test_picture
 endif
 endif

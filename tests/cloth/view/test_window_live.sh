@@ -53,7 +53,7 @@ ok "it outlives one that is killed" comes_to_differ "$scratch/live.png"
 simulate
 ok "and shows the next one" shows "$scratch/live.png"
 if command -v xdotool > /dev/null; then
-    named() { DISPLAY=$display xdotool search --name "$1" | grep -q .; }
+    named() { DISPLAY=$display xdotool search --name "$1" | grep -c .; }
     ok "its title names the frame" awaits $viewer named "frame [0-9]*, [0-9.]* s, live from 127.0.0.1:$port"
     DISPLAY=$display xdotool mousemove 300 150 sleep 0.3 mousedown 1 sleep 0.3 mousemove 180 130 sleep 0.3 mouseup 1
     ok "a drag turns it" comes_to_differ "$scratch/live.png"

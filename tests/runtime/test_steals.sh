@@ -1,12 +1,7 @@
 #!/bin/sh
-# Policies that know more: mappings that see recorded tasks; and on a machine with two packages of eight cores, as hwloc is
-# told, `locality` steals less from the other package than `steal`.
+# On a machine with two packages of eight cores, as hwloc is told, `locality` steals less from the other package than `steal`.
 . "${srcdir:-.}/tests/support/tap.sh"
 plan_later
-
-for n in 1 2 3; do
-    ok "mappings see tasks on $n ranks" ranks $n tests/runtime/ranks_tasks
-done
 
 far() { # SCHEDULER: the share of far steals, in percent
     (unset HWLOC_COMPONENTS && HWLOC_SYNTHETIC='pack:2 l3:1 core:8 pu:1' tests/runtime/steals "$1" 16) > "$scratch/$1" || return 1

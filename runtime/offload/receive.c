@@ -302,8 +302,8 @@ void offload_over(struct task_scope *above, struct worker *worker)
     }
     lent_drop(task);
     struct data_packet *result = own->result;
-    own->send =
-        (struct task_send){.key = own->message->key, .to = offload_home(task), .packet = result};
+    own->send = (struct comm_letter){
+        .key = own->message->key, .sender = task, .to = offload_home(task), .packet = result};
     if (result) {
         result->kind = DATA_RESULT;
         result->key = own->send.key;

@@ -1,16 +1,12 @@
 #ifndef DUITE_TASK_ABOVE_H
 #define DUITE_TASK_ABOVE_H
 
-#include "runtime/data/sum.h"
-#include "runtime/data/version.h"
-
 #include <duite.h>
 
 #pragma GCC visibility push(hidden) /* called directly: no other library can replace them */
 
-/* Functions of the workers and of the communication that task/, plan/ and offload/ call. They know
+/* Functions of the workers that task/, plan/ and offload/ call. They know
  * only the names: workers/ defines the functions. `worker` is the caller. */
-struct plan_channels;
 struct task;
 struct task_graph;
 struct task_scope;
@@ -20,13 +16,6 @@ struct worker;
 /* A task may run. A SEND may be posted, and ends with work_finish when its bytes are gone; so do
  * NODE_SEND and NODE_RECEIVE when their message is written or read. */
 void work_ready(struct work_pool *pool, struct worker *worker, struct task *task);
-
-/* Runs a ready task, by its type; returns whether a body ran. Then work_finish is due. */
-bool work_run_task(struct task_graph *graph, struct worker *worker, struct task *task,
-                   const duite_call *call);
-
-/* A task that ran, was sent or received is over: ends it, by its type. */
-void work_finish(struct task_graph *graph, struct worker *worker, struct task *task);
 
 /* The task of another rank with this top scope is over, with all its descendants. */
 void work_offloaded_over(struct task_scope *top, struct worker *worker);
@@ -45,17 +34,6 @@ void work_notify(struct work_pool *pool);
 /* Checking mode: calls the body of the task with that number, and returns its code. */
 int work_check_body(struct work_pool *pool, const duite_kernel *kernel, uint64_t number,
                     duite_call *call);
-
-/* Expects the version or the pieces of that key from that rank, or from several (-1). Each packet
- * goes to task_arrived or task_pieces_arrived. Returns 0 or DUITE_E_MEMORY. */
-int work_expect(struct work_pool *pool, struct worker *worker, struct data_key key, int from,
-                struct data_version *version, struct data_sum *sum, uint32_t packets);
-
-/* Opens channels. Main thread, collective. Errors: memory, DUITE_E_MPI. */
-int work_open(struct work_pool *pool, struct plan_channels *channels);
-
-/* Memory ran out for something that other ranks wait for: the work of all ends. */
-void work_starved(struct work_pool *pool, const char *what);
 
 #pragma GCC visibility pop
 

@@ -349,6 +349,6 @@ int task_fork_any(struct task_scope *scope, struct worker *worker,
     scope->forks++;
     if (!scope->depth && scope->graph->n_ranks > 1)
         task_mix_fork(scope->graph, task_fork_hash_all(call.index, options->at, n, objects),
-                      TASK_FORKED, call.index);
+                      COMM_FORKED, call.index);
     return fork_checked(&call, options, args);
 }

@@ -74,7 +74,7 @@ __attribute__((always_inline)) static inline bool task_prune(struct task_graph *
     for (uint64_t writes = fixed->writes; writes; writes &= writes - 1)
         task_note_version(found[__builtin_ctzll(writes)], at);
     graph->root.forks++;
-    task_mix_fork(graph, hash, TASK_FORKED, fixed->index);
+    task_mix_fork(graph, hash, COMM_FORKED, fixed->index);
     return true;
 }
 

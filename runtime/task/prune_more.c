@@ -73,6 +73,6 @@ bool task_prune_more(struct task_graph *graph, const duite_kernel *kernel, const
     for (size_t i = 0; i < n; i++)
         more_note(graph, task_immediate(data_mode_of(kernel, i)), at, found[i]);
     graph->root.forks++;
-    task_mix_fork(graph, hash, TASK_FORKED, fixed->index);
+    task_mix_fork(graph, hash, COMM_FORKED, fixed->index);
     return true;
 }

@@ -1,7 +1,9 @@
 #ifndef DUITE_TASK_TASK_H
 #define DUITE_TASK_TASK_H
 
+#include "runtime/comm/comm.h"
 #include "runtime/data/object.h"
+#include "runtime/data/sum.h"
 #include "runtime/task/above.h"
 #include "runtime/task/fingerprint.h"
 #include "runtime/task/owner.h"
@@ -81,7 +83,7 @@ struct task {
     union {
         struct task_scope *inner;       /* BODY: its children's scope, or NULL */
         struct task_sum *sum;           /* COMBINE, PIECES, GATHER */
-        struct task_send *send;         /* SEND; as long as it is DELEGATED or LEAVES */
+        struct comm_letter *send;       /* SEND; as long as it is DELEGATED or LEAVES */
         struct offload_task *offloaded; /* OFFLOADED */
         struct task_copy *copy;         /* COPY */
         struct plan_replay *replay;     /* REPLAY */
@@ -149,18 +151,11 @@ static inline float task_path(const struct task *task)
     return task_is_node(task) ? task->path : 0;
 }
 
-/* SEND: a version and where it goes. */
-struct task_send {
-    struct data_key key;
-    int to;
-    struct data_packet *packet; /* NULL: the version that the task reads, as it lies */
-};
-
 /* COMBINE, PIECES and GATHER: the contributions to close. */
 struct task_sum {
     struct data_waiter waiter; /* waits for them all */
     struct data_sum *sum;
-    struct task_send send; /* the version they make; PIECES: to the rank that adds */
+    struct comm_letter send; /* the version they make; PIECES: to the rank that adds */
 };
 
 /* COPY: where a value goes. `done` is set last. */
@@ -218,11 +213,12 @@ struct task_graph {
     _Atomic int given_up;   /* bodies do not run any more */
     bool checks;            /* bodies are called by work_check_body */
     struct work_pool *pool; /* runs the tasks; NULL: not yet, or no more */
+    struct comm *comm;      /* NULL: there is one rank */
     /* The main thread's, written with every fork: on cache lines of its own. */
     _Alignas(
         64) struct task_scope root; /* the main program; its `forks` are the same on all ranks */
     uint64_t fingerprint;           /* of the main program's calls */
-    struct task_history *history;   /* of them; NULL on one rank */
+    struct comm_history *history;   /* of them; NULL on one rank */
     uint64_t tasks;                 /* of this rank that it forked, or that serve it */
     struct data_table table;
     /* Seldom used. */
@@ -236,7 +232,7 @@ struct task_graph {
 };
 
 /* Checks `kernels`, which NULL ends, and copies the list; checks `laws`, likewise or NULL, and does
- * not keep it. The runner of the tasks sets `pool` and `checks`. Errors: DUITE_E_KERNEL,
+ * not keep it. The runner of the tasks sets `pool`, `comm` and `checks`. Errors: DUITE_E_KERNEL,
  * DUITE_E_LAW, memory; task_graph_stop is due all the same. */
 int task_graph_start(struct task_graph *graph, int rank, int n_ranks,
                      const duite_kernel *const *kernels, const duite_law *const *laws);
@@ -255,20 +251,20 @@ static inline void task_mix(struct task_graph *graph, uint64_t value)
     uint64_t state = graph->fingerprint ^ value;
     graph->fingerprint = duite_random(&state);
 }
-static inline void task_mixed(struct task_graph *graph, enum task_call_kind kind, uint32_t which)
+static inline void task_mixed(struct task_graph *graph, enum comm_call_kind kind, uint32_t which)
 {
     if (graph->n_ranks == 1)
         return;
-    task_history_add(graph->history, graph->fingerprint,
-                     task_call_bits(kind, which, graph->root.forks));
+    comm_history_add(graph->history, graph->fingerprint,
+                     comm_call_bits(kind, which, graph->root.forks));
 }
 /* Does both for a fork on several ranks; `kind` tells whether it is recorded. */
-static inline void task_mix_fork(struct task_graph *graph, uint64_t hash, enum task_call_kind kind,
+static inline void task_mix_fork(struct task_graph *graph, uint64_t hash, enum comm_call_kind kind,
                                  uint32_t kernel)
 {
     uint64_t state = graph->fingerprint ^ hash;
     const uint64_t fingerprint = graph->fingerprint = duite_random(&state);
-    task_history_add(graph->history, fingerprint, task_call_bits(kind, kernel, graph->root.forks));
+    comm_history_add(graph->history, fingerprint, comm_call_bits(kind, kernel, graph->root.forks));
 }
 
 /* ---- Main thread with the graph's root as scope: collective, the homes of all objects are
@@ -375,19 +371,13 @@ static inline bool task_has_body(const struct task *task)
     return task->state == TASK_LOCAL && TASK_IS(task, TASK_TYPES_WITH_BODY);
 }
 
-/* A packet came for an expected version or sum; the callee owns it. */
-void task_arrived(struct task_graph *graph, struct worker *worker, struct data_version *version,
-                  struct data_packet *packet);
-void task_pieces_arrived(struct task_graph *graph, struct worker *worker, struct data_sum *sum,
-                         struct data_packet *packet);
+/* A packet came for an expected version, or for an expected sum: pieces of it. NULL: it will not
+ * come, and poison takes its place. The context of comm is the graph. */
+comm_arrived task_arrived, task_pieces_arrived;
 
-/* An expected version, or pieces, will not come: puts poison in their place. */
-void task_lost(struct task_graph *graph, struct worker *worker, struct data_version *version);
-void task_pieces_lost(struct task_graph *graph, struct worker *worker, struct data_sum *sum);
-
-/* The bytes of a ready SEND, under its key: the version itself, or send->packet, which the caller
- * frees once it is sent. NULL without memory. */
-struct data_packet *task_send_packet(struct task *send);
+/* The bytes that a ready task sends, under their key: letter->packet, or the version that a SEND
+ * reads, as it lies. NULL without memory. */
+struct data_packet *task_send_packet(struct comm_letter *letter);
 
 /* Gives the object another home. The value that the forks so far leave goes there if the old home
  * holds it; the old home then frees it, since no other rank would. If the object has contributions,

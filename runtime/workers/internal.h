@@ -204,6 +204,15 @@ struct work_ran {
     bool body, inlined;
 };
 
+/* ---- dispatch.c ---- */
+
+/* Runs a ready task, by its type; returns whether a body ran. Then work_finish is due. */
+bool work_run_task(struct task_graph *graph, struct worker *worker, struct task *task,
+                   const duite_call *call);
+
+/* A task that ran, was sent or received is over: ends it, by its type. */
+void work_finish(struct task_graph *graph, struct worker *worker, struct task *task);
+
 /* ---- worker.c ---- */
 
 /* A thread of ours; the worker. Works until the pool stops. */
@@ -319,11 +328,9 @@ void work_note_task(struct worker *worker, const struct task *task, const struct
 bool work_note_relieve(struct worker *worker);
 /* The worker idled for so many ticks since idle_since. */
 void work_note_idle(struct worker *worker, uint64_t idle, uint64_t exposed);
-/* Called around the work of a busy worker on messages: looking for them, sending, taking them. A
- * begin within another one does not count. Times below a microsecond are not noted. */
-bool work_note_messages_begin(struct worker *worker);
-void work_note_messages_end(struct worker *worker, bool begun);
-void work_note_message(struct worker *worker, bool sends, int peer, size_t bytes);
+/* Messages, and the work of a busy worker on them: looking for them, sending, taking them. A begin
+ * within another one does not count. Times below a microsecond are not noted. */
+extern const struct comm_report work_note_messages;
 
 /* ---- balance.c: the workers' part of a balancer. They measure bodies, request tasks of other
  * ranks when they have none, and grant tasks that are requested. A pool has none (NULL) without a

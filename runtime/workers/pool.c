@@ -1,6 +1,5 @@
-/* Starts and stops the workers of a rank, and passes its graph's calls on to checking mode and
- * communication, which the graph does not know. A pool that failed half-way stops by the same path
- * as a whole one. */
+/* Starts and stops the workers of a rank, and passes its graph's calls on to checking mode, which
+ * the graph does not know. A pool that failed half-way stops by the same path as a whole one. */
 #include "runtime/base/clock.h"
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
@@ -111,9 +110,10 @@ int work_start(struct work_pool **out, const struct work_setup *setup)
     if (fine)
         fine = !work_balance_start(&pool->balance, pool);
     setup->graph->pool = pool;
+    setup->graph->comm = setup->comm;
     setup->graph->checks = setup->check != NULL;
     if (setup->trace && setup->comm)
-        comm_set_report(setup->comm, work_note_message);
+        comm_set_report(setup->comm, &work_note_messages);
     int code = fine ? pool_start_threads(pool) : base_no_memory("the workers");
     return code ? code : watched;
 }
@@ -157,23 +157,6 @@ int work_check_body(struct work_pool *pool, const duite_kernel *kernel, uint64_t
                     duite_call *call)
 {
     return check_call(pool->setup.check, &(struct check_task){kernel, number}, call);
-}
-
-int work_expect(struct work_pool *pool, struct worker *worker, struct data_key key, int from,
-                struct data_version *version, struct data_sum *sum, uint32_t packets)
-{
-    const struct comm_target target = {version, sum, from};
-    return comm_expect(pool->setup.comm, worker, key, target, packets);
-}
-
-int work_open(struct work_pool *pool, struct plan_channels *channels)
-{
-    return comm_channels_open(pool->setup.comm, channels);
-}
-
-void work_starved(struct work_pool *pool, const char *what)
-{
-    comm_broke_memory(pool->setup.comm, what);
 }
 
 /* ---- Counts ---- */
@@ -256,15 +239,15 @@ void work_note_idle(struct worker *worker, uint64_t idle, uint64_t exposed)
                                                   .kind = TRACE_IDLE});
 }
 
-bool work_note_messages_begin(struct worker *worker)
+static bool note_messages_begin(struct worker *worker)
 {
-    if (!worker->ring || worker->idle_since || worker->messaging)
+    if (!worker || !worker->ring || worker->idle_since || worker->messaging)
         return false;
     worker->messaging = base_ticks();
     return true;
 }
 
-void work_note_messages_end(struct worker *worker, bool begun)
+static void note_messages_end(struct worker *worker, bool begun)
 {
     const double least = 1e-6; /* s: to note each look would cost as much as the look */
     if (!begun)
@@ -279,11 +262,14 @@ void work_note_messages_end(struct worker *worker, bool begun)
     worker->messaging = 0;
 }
 
-void work_note_message(struct worker *worker, bool sends, int peer, size_t bytes)
+static void note_message(struct worker *worker, bool sends, int peer, size_t bytes)
 {
     if (worker)
         trace_mark(worker->ring, sends ? TRACE_SEND : TRACE_RECEIVE, (uint32_t)peer, bytes);
 }
+
+const struct comm_report work_note_messages = {
+    .message = note_message, .begins = note_messages_begin, .ends = note_messages_end};
 
 void work_note(struct work_pool *pool, const struct trace_event *event)
 {

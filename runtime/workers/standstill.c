@@ -212,26 +212,29 @@ static void report_awaited(void *context, const struct data_key *key,
 {
     struct report *report = context;
     unsigned long long number = key->number;
-    if (target->sum) {
+    if (target->arrived == task_pieces_arrived) {
         report_line(report,
                     "contributions of %u ranks to object %u.%u, version %llu, have not come",
                     packets, key->slot, key->generation, number);
         return;
     }
-    const struct data_waiter *waiter = data_version_waiters(target->version);
+    const struct data_waiter *waiter = data_version_waiters(target->what);
     report_line(report, "%s waits for object %u.%u, version %llu, which has not come from rank %d",
                 waiter ? report_crowd(report, waiter).text : "nobody", key->slot, key->generation,
                 number, target->from);
 }
 
-static void report_sending(void *context, const struct task_send *send)
+static void report_sending(void *context, const struct comm_letter *send)
 {
+    const struct task *task = send->sender;
+    if (task->type != TASK_SEND && task->type != TASK_PIECES)
+        return; /* report_away names tasks that another rank runs */
     report_line(
         context, "object %u.%u, version %llu, is on its way to rank %d, which has not taken it",
         send->key.slot, send->key.generation, (unsigned long long)send->key.number, send->to);
 }
 
-static void report_channel(void *context, const struct plan_channel *channel)
+static void report_channel(void *context, const struct comm_channel *channel)
 {
     struct report *report = context;
     const struct task_graph *graph = report->pool->setup.graph;
@@ -243,7 +246,7 @@ static void report_channel(void *context, const struct plan_channel *channel)
         return;
     }
     unsigned more;
-    const struct task *task = plan_channel_waits(channel->node, &more);
+    const struct task *task = plan_channel_waits(channel, &more);
     struct words words = {"a task of duite"};
     if (task)
         snprintf(words.text, sizeof words.text, "kernel %.60s", graph->kernels[task->kernel]->name);

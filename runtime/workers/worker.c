@@ -109,13 +109,11 @@ __attribute__((noinline)) static void ready_any(struct work_pool *pool, struct w
                                                 struct task *task)
 {
     if (task_to_send(task)) {
-        comm_send(pool->setup.comm, task);
+        comm_send(pool->setup.comm, task->send);
         return;
     }
     if (task_is_channel(task)) {
-        const bool noted = work_note_messages_begin(worker);
-        comm_channel_ready(pool->setup.comm, worker, task);
-        work_note_messages_end(worker, noted);
+        comm_channel_ready(pool->setup.comm, worker, task->node->channel);
         return;
     }
     if (pool->balance && ready_goes_away(worker, task))
@@ -199,11 +197,7 @@ static struct task *worker_find(struct worker *worker)
 bool work_poll(struct worker *worker)
 {
     struct comm *comm = worker->pool->setup.comm;
-    if (!comm)
-        return false;
-    const bool noted = work_note_messages_begin(worker), came = comm_poll(comm, worker);
-    work_note_messages_end(worker, noted);
-    return came;
+    return comm && comm_poll(comm, worker);
 }
 
 bool work_has_no_other(const struct worker *worker)
@@ -253,7 +247,7 @@ static void run_finish(struct worker *worker, struct task *task, unsigned length
     worker->finishing = true;
     worker->may_chain = work_goes_on(worker, length);
     if (task_to_send(task))
-        comm_send(pool->setup.comm, task);
+        comm_send(pool->setup.comm, task->send);
     else
         work_finish(pool->setup.graph, worker, task);
     worker->finishing = false;

@@ -5,7 +5,7 @@
 #include "tests/model/runtime.h"
 #include "tests/model/silent_comm.h"
 
-#include "runtime/workers/workers.h"
+#include "runtime/workers/internal.h"
 
 #include "runtime/base/clock.h"
 #include "runtime/sched/sched.h"
@@ -110,7 +110,6 @@ bool comm_poll(struct comm *comm, struct worker *worker)
 #endif
 
 /* Nobody watches for a standstill here, nothing moves between ranks, and no replay runs. */
-#include "runtime/workers/internal.h"
 #define work_balance_start(balance, pool)        nothing()
 #define work_balance_stop(pool)                  nothing()
 #define work_offloaded_came(balance, guest)      ((void)(guest))

@@ -5,7 +5,7 @@ BENCH_RIVALS =
 BENCH_STATE = bench/cg/state.c bench/cg/state.h
 BENCH_SHARED = bench/problem.c bench/problem.h bench/serve.c bench/serve.h
 check_LIBRARIES += bench/libbench.a
-bench_libbench_a_SOURCES = bench/bench.h bench/environment.h bench/instructions.c bench/instructions.h bench/load.c bench/load.h \
+bench_libbench_a_SOURCES = bench/bench.h bench/instructions.c bench/instructions.h \
 	bench/loops.c bench/loops.h bench/measure.c bench/measure.h bench/temporary.c bench/temporary.h \
 	bench/program.c bench/program.h bench/report.c bench/report.h bench/subject.c bench/subject.h \
 	bench/tasks/tasks.c bench/tasks/tasks.h bench/tasks/bytes.c bench/tasks/chain.c bench/tasks/fib.c bench/tasks/fib.h \
@@ -24,7 +24,6 @@ bench_libbench_a_SOURCES = bench/bench.h bench/environment.h bench/instructions.
 	bench/physics/bench.c bench/physics/ours.c bench/physics/physics.h \
 	bench/predict/bench.c bench/predict/errors.c bench/predict/many.c bench/predict/order.c bench/predict/predict.h \
 	bench/predict/sheet.c bench/scale/coarse.c bench/scale/messages.c bench/scale/predicted.c bench/scale/runs.c bench/scale/scale.c bench/scale/scale.h \
-	bench/sweep/median.c bench/sweep/compare.h \
 	tests/support/trace_file.c tests/support/trace_file.h \
 	$(BENCH_STATE) $(BENCH_SHARED)
 bench_libbench_a_CPPFLAGS = $(AM_CPPFLAGS) -DBENCH_MPIRUN='"$(MPIRUN)"' -DBENCH_CFLAGS='"$(CFLAGS)"' \
@@ -51,7 +50,7 @@ $(TILES_OBJECT): bench/tiles.c bench/tiles.h
 	$(AM_V_CC)$(MKDIR_P) bench/rivals && $(CC) -std=gnu17 -O2 -fPIE $(WARN_CFLAGS) -I$(srcdir) -c -o $@ $(srcdir)/bench/tiles.c
 CLEANFILES += $(TILES_OBJECT)
 # What a program links that uses libbench.
-BENCH_LIBRARY = bench/libbench.a $(TILES_OBJECT) libduite_predict.a $(CLOTH_LIBS)
+BENCH_LIBRARY = bench/libbench.a $(TILES_OBJECT) libduite_tools.a $(CLOTH_LIBS)
 
 OPENMP_FILES = bench/rivals/openmp.c bench/problem.c bench/serve.c
 OPENMP_NEEDS = $(OPENMP_FILES) bench/problem.h bench/serve.h bench/tiles.h $(TILES_OBJECT)
@@ -82,7 +81,7 @@ bench_rivals_starpu_LDFLAGS =
 bench_rivals_starpu_LDADD = $(STARPU_LIBS)
 check_PROGRAMS += bench/rivals/starpu-graph
 BENCH_RIVALS += bench/rivals/starpu-graph$(EXEEXT)
-bench_rivals_starpu_graph_SOURCES = bench/rivals/starpu_graph.c bench/sweep/graph.c bench/sweep/graph.h
+bench_rivals_starpu_graph_SOURCES = bench/rivals/starpu_graph.c tools/compare/graph.c tools/compare/graph.h
 bench_rivals_starpu_graph_CPPFLAGS = $(AM_CPPFLAGS) $(STARPU_CFLAGS)
 bench_rivals_starpu_graph_CFLAGS = $(RIVAL_CFLAGS)
 bench_rivals_starpu_graph_LDFLAGS =
@@ -136,15 +135,6 @@ bench_output_draw_SOURCES = bench/output/draw.c bench/output/folder.h bench/serv
 bench_output_draw_LDADD = $(VIEW_LIBS)
 endif
 
-# Comparisons of policies: graph-run schedules graphs without an application, compare runs products of everything.
-check_PROGRAMS += bench/graph-run bench/compare
-bench_graph_run_SOURCES = bench/sweep/run.c bench/sweep/graph.c bench/sweep/graph.h
-bench_graph_run_LDADD = $(CORE_LIBS)
-bench_compare_SOURCES = bench/environment.h bench/load.c bench/load.h bench/sweep/compare.c bench/sweep/compare.h bench/sweep/graph.c \
-	bench/sweep/graph.h bench/sweep/journal.c bench/sweep/median.c bench/sweep/page.c bench/sweep/start.c bench/sweep/statistics.c
-bench_compare_CPPFLAGS = $(AM_CPPFLAGS) -DBENCH_MPIRUN='"$(MPIRUN)"' -DBENCH_CFLAGS='"$(CFLAGS)"' -DBENCH_SOURCE='"$(top_srcdir)"'
-bench_compare_LDADD = $(CORE_LIBS)
-
 # What `duite-bench tasks` counts the instructions of: with the library of users, not with libduite_core.
 check_PROGRAMS += bench/tasks/counted
 bench_tasks_counted_SOURCES = bench/tasks/counted.c bench/problem.c bench/problem.h bench/tasks/fib.h
@@ -166,6 +156,5 @@ bench_vassilev_vassilev_LDADD = $(CLOTH_LIBS)
 bench: all
 	@$(MAKE) $(AM_MAKEFLAGS) bench-programs
 bench-programs: bench/tasks/counted$(EXEEXT) bench/vassilev/vassilev$(EXEEXT) bench/contact-partition$(EXEEXT) bench/duite-bench$(EXEEXT) \
-	bench/graph-run$(EXEEXT) bench/compare$(EXEEXT) $(BENCH_RIVALS)
+	$(BENCH_RIVALS)
 check_DATA += $(BENCH_RIVALS)
-.PHONY: bench bench-programs

@@ -1,7 +1,7 @@
 /* The table of programs is constant; configure says what is missing. */
 #include "bench/program.h"
 
-#include "bench/environment.h"
+#include "tools/compare/environment.h"
 #include "bench/subject.h"
 
 #include <config.h>

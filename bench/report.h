@@ -1,7 +1,7 @@
 #ifndef BENCH_REPORT_H
 #define BENCH_REPORT_H
 
-#include "bench/load.h"
+#include "tools/compare/load.h"
 #include "bench/measure.h"
 
 #include <stdio.h>

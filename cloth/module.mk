@@ -35,7 +35,7 @@ duite_cloth_SOURCES = \
 	cloth/summary.h cloth/summary.c cloth/summary_numbers.h cloth/summary_numbers.c cloth/summary_print.c cloth/summary_seams.h \
 	cloth/summary_seams.c cloth/summary_time.h cloth/summary_time.c
 duite_cloth_CPPFLAGS = $(AM_CPPFLAGS) -DSHIPPED_SCENES='"$(scenesdir)"'
-duite_cloth_LDADD = libduite_predict.a $(CLOTH_LIBS)
+duite_cloth_LDADD = libduite_tools.a $(CLOTH_LIBS)
 
 bin_PROGRAMS += duite-garment
 dist_man_MANS += cloth/duite-garment.1
@@ -54,4 +54,3 @@ EXTRA_DIST += cloth/demo.sh
 
 demo: all
 	@srcdir='$(srcdir)' MPIRUN='$(MPIRUN)' VIEW_MISSING='$(VIEW_MISSING)' $(SHELL) $(srcdir)/cloth/demo.sh
-.PHONY: demo

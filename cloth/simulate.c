@@ -5,7 +5,7 @@
 #include "cloth/keeper.h"
 #include "cloth/shipped.h"
 #include "cloth/summary.h"
-#include "runtime/predict/predict.h"
+#include "tools/predict/predict.h"
 
 #include <math.h>
 #include <mpi.h>

@@ -1,5 +1,5 @@
 /* All of it follows from the counters of the run; nothing is measured. The names of limits are
- * those of duite-trace (runtime/trace/sums.c), so that a run and its trace speak of the same
+ * those of duite-trace (tools/trace/sums.c), so that a run and its trace speak of the same
  * things. */
 #include "cloth/summary_time.h"
 

@@ -3,7 +3,7 @@
 
 #include "cloth/view_trace.h"
 
-#include "runtime/trace/read.h"
+#include "tools/trace/read.h"
 
 #include <duite.h>
 #include <errno.h>

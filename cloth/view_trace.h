@@ -2,7 +2,7 @@
 #define CLOTH_VIEW_TRACE_H
 
 #include "cloth/base/error.h"
-#include "runtime/chart/chart.h"
+#include "tools/chart/chart.h"
 
 /* Draws the Gantt chart of the trace of a run into files, each of which is NULL or written whole or
  * not at all. Errors: CLOTH_E_INPUT for a trace, window or size that cannot be used, CLOTH_E_IO,

@@ -95,4 +95,4 @@ _duite() {
     fi
 }
 
-complete -F _duite duite-cloth duite-garment duite-mannequin duite-predict duite-trace duite-view
+complete -F _duite duite-cloth duite-compare duite-garment duite-graph duite-mannequin duite-predict duite-trace duite-view

@@ -1,7 +1,7 @@
 # bash loads the file of the program's name, so that all names lead to one file; zsh reads the names in its file.
 bashcompletiondir = $(datadir)/bash-completion/completions
 zshcompletiondir = $(datadir)/zsh/site-functions
-COMPLETED_TOO = duite-garment duite-mannequin duite-predict duite-trace duite-view
+COMPLETED_TOO = duite-compare duite-garment duite-graph duite-mannequin duite-predict duite-trace duite-view
 EXTRA_DIST += completion/duite.bash
 dist_zshcompletion_DATA = completion/_duite
 

@@ -27,5 +27,3 @@ include runtime/check/module.mk
 include runtime/trace/module.mk
 include runtime/workers/module.mk
 include runtime/api/module.mk
-include runtime/chart/module.mk
-include runtime/predict/module.mk

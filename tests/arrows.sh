@@ -4,7 +4,7 @@
 
 # arrows TREE: prints each include that is not allowed, fails if there is one.
 arrows() {
-    (cd "$1" && find runtime cloth -name '*.[ch]' -exec grep -HE '^[[:space:]]*#[[:space:]]*include' {} +) |
+    (cd "$1" && find runtime tools cloth -name '*.[ch]' -exec grep -HE '^[[:space:]]*#[[:space:]]*include' {} +) |
         awk -F: -v rules="$srcdir/tests/arrows.txt" '
         # The layer of a file or header: its two first folders, or what a program or a header for users is.
         function layer(path,    part, n) {
@@ -29,7 +29,7 @@ arrows() {
             sub(/^[^"<]*["<]/, "", header)
             sub(/[">].*/, "", header)
             if (header ~ /^duite(_policy)?\.h$/) header = "runtime/" header
-            if (header !~ /^(runtime|cloth)\//) {
+            if (header !~ /^(runtime|tools|cloth)\//) {
                 if (index($0, "\"") == 0 || header == "config.h") next
                 print file ": \"" header "\" is not written from the top of the tree"
                 bad = 1
@@ -50,7 +50,7 @@ arrows() {
 # plant FILE HEADER: whether the check finds that include, alone in a tree.
 plant() {
     rm -rf "$scratch/tree"
-    mkdir -p "$scratch/tree/runtime" "$scratch/tree/cloth" "$scratch/tree/$(dirname "$1")"
+    mkdir -p "$scratch/tree/runtime" "$scratch/tree/tools" "$scratch/tree/cloth" "$scratch/tree/$(dirname "$1")"
     printf '#include %s\n' "$2" >> "$scratch/tree/$1"
     if arrows "$scratch/tree" > "$scratch/found"; then
         echo "not found: $1 including $2"
@@ -65,6 +65,8 @@ ok "finds runtime including cloth" plant runtime/base/planted.c '"cloth/base/err
 ok "finds an upward include in the runtime" plant runtime/base/planted.h '"runtime/task/task.h"'
 ok "finds a folder beside it" plant runtime/sched/planted.c '"runtime/map/planted.h"'
 ok "finds a header for users that includes ours" plant runtime/duite.h '"runtime/base/error.h"'
+ok "finds the runtime including its tools" plant runtime/trace/planted.c '"tools/trace/read.h"'
+ok "finds the predictor including the chart" plant tools/predict/planted.c '"tools/chart/chart.h"'
 ok "finds duite.h below flow" plant cloth/solve/planted.c '<duite.h>'
 ok "finds duite.h below flow, quoted" plant cloth/mesh/planted.c '"runtime/duite.h"'
 ok "finds physics including mesh" plant cloth/physics/planted.c '"cloth/mesh/mesh.h"'

@@ -5,6 +5,7 @@
 skip_unless "$DUITE_CLOTH"
 test -z "${SANITIZER:-}" || skip_all "what is installed is the same in a build with sanitizers"
 usr=$scratch/usr
+programs="duite-compare duite-garment duite-graph duite-mannequin duite-predict duite-trace duite-view"
 unset MAKEFLAGS MFLAGS MAKELEVEL
 
 plan_later
@@ -44,10 +45,10 @@ policies() { # KIND OPTION: the names that an error lists, but those for tests
     sed 's/.*known are //; s/, for tests.*//; s/, and shared.*//; s/,//g' said | tr ' ' '\n' | sort > wanted
     asks duite-cloth "--$1" = '' && cat offered && test "$(wc -l < wanted)" -ge 3 && diff wanted offered
 }
-linked() { for program in duite-garment duite-mannequin duite-predict duite-trace duite-view; do test -s "$usr/share/bash-completion/completions/$program" || return 1; done; }
+linked() { for program in $programs; do test -s "$usr/share/bash-completion/completions/$program" || return 1; done; }
 
 ok "each program has its file" linked
-for program in duite-cloth duite-garment duite-mannequin duite-predict duite-trace duite-view; do
+for program in duite-cloth $programs; do
     if test -x "$usr/bin/$program"; then ok "every option of $program" every_option $program; else skip "options of $program" "not built"; fi
 done
 ok "an option that takes a value ends with =" offers "--scenes --scheduler=" duite-cloth --sc

@@ -120,7 +120,7 @@ stands_alone() { # PROGRAM
 }
 
 git_sees_sources_only() { # nothing that make leaves in its folders is untracked
-    git -C "$srcdir" status --porcelain -- tests bench runtime cloth > "$scratch/status" || return
+    git -C "$srcdir" status --porcelain -- tests bench runtime tools cloth > "$scratch/status" || return
     sed -n 's/^?? //p' "$scratch/status" | while read -r file; do
         case $(head -c 4 "$srcdir/$file" 2> /dev/null | tail -c 3) in ELF) echo "$file" ;; esac
     done > "$scratch/programs"
@@ -168,7 +168,7 @@ fi
 ok "every public function has a comment before it" commented
 ok "guided tours stop at functions that are there" tours "$srcdir/docs/design.md"
 ok "docs/design.md lists the stages of a step" stages "$srcdir/docs/design.md"
-for program in duite-cloth duite-garment duite-mannequin duite-view duite-trace duite-predict bench/duite-bench bench/compare bench/graph-run; do
+for program in duite-cloth duite-garment duite-mannequin duite-view duite-trace duite-predict duite-compare duite-graph bench/duite-bench; do
     if test -x $program; then
         ok "every option in --help of $program says what it is by itself" stands_alone ./$program
     else

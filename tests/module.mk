@@ -6,7 +6,6 @@ check_LIBRARIES =
 check_DATA =
 dist_check_SCRIPTS =
 DUITE_TEST_LIBS = tests/support/libunit.a $(CORE_LIBS) $(CHECK_LIBS)
-CLOTH_TEST_LIBS = tests/support/libunit.a $(CLOTH_LIBS) $(CHECK_LIBS)
 
 # Comments, which have the errors against closed forms, are shown as tests go.
 LOG_DRIVER = env AM_TAP_AWK='$(AWK)' $(SHELL) $(top_srcdir)/build-aux/tap-driver.sh --comments
@@ -45,7 +44,7 @@ check-long:
 # For ThreadSanitizer: the test programs of what has threads, without the scripts that start ranks.
 check-threads:
 	$(MAKE) $(AM_MAKEFLAGS) check TESTS="`for test in $(TESTS); do case $$test in *.sh) ;; \
-	  tests/runtime/* | tests/negative/* | tests/cloth/flow/* | tests/support/*) echo $$test;; esac; done | tr '\n' ' '`"
+	  tests/runtime/* | tests/tools/* | tests/negative/* | tests/cloth/flow/* | tests/support/*) echo $$test;; esac; done | tr '\n' ' '`"
 # The random programs a hundred times each; takes about half an hour.
 check-threads-long:
 	$(MAKE) $(AM_MAKEFLAGS) check DUITE_QUICK=0 TESTS=tests/runtime/test_threads_long.sh TEST_SUITE_LOG=test-suite-long.log
@@ -71,6 +70,13 @@ tests_support_test_unit_LDADD = $(DUITE_TEST_LIBS)
 TESTS += tests/support/test_unit
 endif
 
+include tests/runtime/module.mk
+include tests/tools/module.mk
+include tests/negative/module.mk
+include tests/model/module.mk
+include tests/examples/module.mk
+if CLOTH
+CLOTH_TEST_LIBS = tests/support/libunit.a $(CLOTH_LIBS) $(CHECK_LIBS)
 include tests/cloth/module.mk
 include tests/cloth/base/module.mk
 include tests/cloth/mesh/module.mk
@@ -88,10 +94,7 @@ include tests/cloth/live/module.mk
 include tests/cloth/scene/module.mk
 include tests/cloth/view/module.mk
 include tests/whole/module.mk
-include tests/runtime/module.mk
-include tests/negative/module.mk
-include tests/model/module.mk
-include tests/examples/module.mk
 include tests/bench/module.mk
 include tests/cluster/module.mk
 include tests/fuzz/module.mk
+endif

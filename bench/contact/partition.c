@@ -10,7 +10,7 @@
 #include "cloth/flow/solver/solve.h"
 #include "cloth/flow/step/step.h"
 #include "cloth/scene/scene.h"
-#include "runtime/predict/predict.h"
+#include "tools/predict/predict.h"
 
 #include <duite_policy.h>
 #include <inttypes.h>

@@ -4,9 +4,9 @@
 #include "bench/predict/predict.h"
 
 #include "runtime/map/map.h"
-#include "runtime/predict/predict.h"
 #include "runtime/sched/sched.h"
 #include "tests/support/trace_file.h"
+#include "tools/predict/predict.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -2,7 +2,7 @@
  * for each pair of which runs say so. Among them bad mappings, and balancers that mend one. */
 #include "bench/predict/predict.h"
 
-#include "bench/sweep/compare.h"
+#include "tools/compare/compare.h"
 
 #include <math.h>
 #include <string.h>

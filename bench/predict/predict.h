@@ -3,7 +3,7 @@
 
 #include "bench/bench.h"
 #include "bench/ranks/sheet.h"
-#include "runtime/predict/predict.h"
+#include "tools/predict/predict.h"
 
 /* Shared by the cases of the bench "compare". Each case is a file. */
 

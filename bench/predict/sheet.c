@@ -3,7 +3,7 @@
  * between it and another one: latency and bandwidth are those of messages there. */
 #include "bench/predict/predict.h"
 
-#include "runtime/trace/sums.h"
+#include "tools/trace/sums.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,8 +1,8 @@
-/* starpu-graph: the twin of graph-run (bench/sweep/run.c): the same tasks on the same graph,
+/* starpu-graph: the twin of duite-graph (tools/duite-graph.c): the same tasks on the same graph,
  * submitted to one of StarPU's schedulers in each round, and the same report. One process. Options
- * that only graph-run knows are not taken. A scheduler that StarPU does not know is refused: StarPU
- * would warn and take another one, whose figures would have the wrong name. */
-#include "bench/sweep/graph.h"
+ * that only duite-graph knows are not taken. A scheduler that StarPU does not know is refused:
+ * StarPU would warn and take another one, whose figures would have the wrong name. */
+#include "tools/compare/graph.h"
 
 #include <inttypes.h>
 #include <starpu.h>
@@ -25,7 +25,7 @@ struct command {
     uint32_t bytes;
     uint64_t rounds;
     int threads;
-    struct sweep_graph graph;
+    struct compare_graph graph;
     struct work *work;
     uint64_t **values;
     starpu_data_handle_t *handle;
@@ -60,7 +60,7 @@ static struct starpu_codelet codelet = {
 
 static int submit(const struct command *command, size_t i)
 {
-    const struct sweep_graph *graph = &command->graph;
+    const struct compare_graph *graph = &command->graph;
     struct starpu_data_descr *data = command->data;
     int n = 1;
     data[0] = (struct starpu_data_descr){command->handle[i], STARPU_W};
@@ -83,11 +83,11 @@ static int run_rounds(const struct command *command, uint64_t rounds)
 
 static bool prepare(struct command *command)
 {
-    const struct sweep_graph *graph = &command->graph;
+    const struct compare_graph *graph = &command->graph;
     command->work = calloc(graph->n, sizeof *command->work);
     command->values = calloc(graph->n, sizeof *command->values);
     command->handle = calloc(graph->n, sizeof(starpu_data_handle_t));
-    command->data = calloc(sweep_graph_most_reads(graph) + 1, sizeof *command->data);
+    command->data = calloc(compare_graph_most_reads(graph) + 1, sizeof *command->data);
     for (size_t i = 0; i < graph->n; i++) {
         size_t count = graph->bytes[i] < 8 ? 1 : graph->bytes[i] / 8;
         if (!command->work || !command->values || !command->handle || !command->data ||
@@ -101,10 +101,10 @@ static bool prepare(struct command *command)
     return true;
 }
 
-/* As graph-run finds it. */
+/* As duite-graph finds it. */
 static uint64_t find_hash(const struct command *command)
 {
-    const struct sweep_graph *graph = &command->graph;
+    const struct compare_graph *graph = &command->graph;
     uint64_t hash = 0;
     bool *read = calloc(graph->n, sizeof *read);
     for (size_t k = 0; read && k < graph->n_reads; k++)
@@ -234,11 +234,11 @@ int main(int argc, char **argv)
     }
     command.what = argv[1];
     bool file = strchr(command.what, '.') || strchr(command.what, '/');
-    int failed = file ? sweep_graph_read(&command.graph, command.what)
-                      : sweep_graph_make(&command.graph, command.what, command.tasks, command.cost,
-                                         command.bytes, 1);
+    int failed = file ? compare_graph_read(&command.graph, command.what)
+                      : compare_graph_make(&command.graph, command.what, command.tasks,
+                                           command.cost, command.bytes, 1);
     if (!failed && (failed = run(&command)))
         fprintf(stderr, "starpu-graph: StarPU failed\n");
-    sweep_graph_free(&command.graph);
+    compare_graph_free(&command.graph);
     return failed;
 }

@@ -4,7 +4,7 @@
 #include "bench/scale/scale.h"
 #include "bench/temporary.h"
 
-#include "runtime/predict/predict.h"
+#include "tools/predict/predict.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -4,8 +4,8 @@
 #include "bench/scale/scale.h"
 #include "bench/temporary.h"
 
-#include "runtime/predict/predict.h"
-#include "runtime/trace/sums.h"
+#include "tools/predict/predict.h"
+#include "tools/trace/sums.h"
 
 #include <math.h>
 #include <stdio.h>

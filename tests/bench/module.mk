@@ -10,16 +10,13 @@ tests_bench_test_sheet_LDADD = tests/support/libunit.a $(BENCH_LIBRARY) $(CHECK_
 check_PROGRAMS += tests/bench/test_states
 tests_bench_test_states_SOURCES = tests/bench/test_states.c
 tests_bench_test_states_LDADD = tests/support/libunit.a $(BENCH_LIBRARY) $(CHECK_LIBS)
-check_PROGRAMS += tests/bench/test_load
-tests_bench_test_load_SOURCES = tests/bench/test_load.c bench/load.c bench/load.h
-tests_bench_test_load_LDADD = tests/support/libunit.a $(CHECK_LIBS)
-TESTS += tests/bench/test_load tests/bench/test_problem tests/bench/test_sheet tests/bench/test_states
+TESTS += tests/bench/test_problem tests/bench/test_sheet tests/bench/test_states
 endif
 EXTRA_DIST += tests/bench/bench.sh
-dist_check_SCRIPTS += tests/bench/test_output.sh tests/bench/test_bench.sh tests/bench/test_cg.sh tests/bench/test_compare.sh \
+dist_check_SCRIPTS += tests/bench/test_output.sh tests/bench/test_bench.sh tests/bench/test_cg.sh \
 	tests/bench/test_contact.sh tests/bench/test_experiments.sh tests/bench/test_garments.sh tests/bench/test_physics.sh \
 	tests/bench/test_ranks.sh tests/bench/test_scale.sh
-TESTS += tests/bench/test_compare.sh tests/bench/test_bench.sh tests/bench/test_cg.sh tests/bench/test_contact.sh \
+TESTS += tests/bench/test_bench.sh tests/bench/test_cg.sh tests/bench/test_contact.sh \
 	tests/bench/test_experiments.sh tests/bench/test_garments.sh tests/bench/test_output.sh tests/bench/test_physics.sh \
 	tests/bench/test_ranks.sh tests/bench/test_scale.sh
 dist_check_SCRIPTS += tests/bench/test_experiments_long.sh

@@ -7,8 +7,8 @@ export DUITE_SCHEDULER=nobody DUITE_MAPPING=nowhere DUITE_BALANCE=never DUITE_TH
 
 experiments=$(cd "$srcdir" && pwd)/bench/experiments
 mkdir -p "$scratch/bench/vassilev" # what it leaves lies there
-ln -s "$PWD/duite-cloth" "$PWD/duite-predict" "$scratch"
-ln -s "$PWD/bench/compare" "$PWD/bench/contact-partition" "$scratch/bench"
+ln -s "$PWD/duite-cloth" "$PWD/duite-predict" "$PWD/duite-compare" "$scratch"
+ln -s "$PWD/bench/contact-partition" "$scratch/bench"
 ln -s "$PWD/bench/vassilev/vassilev" "$scratch/bench/vassilev"
 # What ran stands above the table and below it: sizes and lengths are those of --quick, not of what is measured without it.
 revision=$(git -C "$srcdir" describe --always --dirty --abbrev=12 2> /dev/null || echo unknown)

@@ -1,9 +1,9 @@
 /* Traces of up to three ranks: read, summed up, written in each form, drawn, and predicted. */
-#include "runtime/chart/chart.h"
-#include "runtime/predict/predict.h"
-#include "runtime/trace/export.h"
-#include "runtime/trace/sums.h"
 #include "tests/fuzz/fuzz.h"
+#include "tools/chart/chart.h"
+#include "tools/predict/predict.h"
+#include "tools/trace/export.h"
+#include "tools/trace/sums.h"
 
 #include <math.h>
 #include <stdio.h>

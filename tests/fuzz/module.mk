@@ -1,7 +1,7 @@
 # Harnesses of what reads files (fuzz.h). `make check` runs them over the committed corpus. `make fuzz` builds them by clang with
 # libFuzzer, and lets each look for FUZZ_SECONDS; FUZZ='obj trace' names some of them.
 FUZZ_FILES = tests/fuzz/fit.h tests/fuzz/fuzz.h tests/fuzz/fuzz.c tests/fuzz/drive.c
-FUZZ_LIBS = $(CHART_LIBS) libduite_predict.a $(CLOTH_LIBS)
+FUZZ_LIBS = $(CHART_LIBS) libduite_tools.a $(CLOTH_LIBS)
 FUZZ_HARNESSES = tests/fuzz/fuzz_checkpoint tests/fuzz/fuzz_colours tests/fuzz/fuzz_live tests/fuzz/fuzz_obj tests/fuzz/fuzz_output \
 	tests/fuzz/fuzz_pattern tests/fuzz/fuzz_pc2 tests/fuzz/fuzz_resume tests/fuzz/fuzz_scene tests/fuzz/fuzz_seams \
 	tests/fuzz/fuzz_trace
@@ -40,4 +40,3 @@ fuzz:
 	MAKE='$(MAKE)' $(SHELL) $(srcdir)/tests/fuzz/run.sh $(FUZZ_SECONDS) $(FUZZ)
 fuzz-clean:
 	rm -rf fuzz-source fuzz-build
-.PHONY: fuzz

@@ -105,12 +105,6 @@ tests_runtime_ranks_migrate_values_LDADD = $(CORE_LIBS)
 dist_check_SCRIPTS += tests/runtime/test_migrate.sh tests/runtime/test_migrate_long.sh
 TESTS += tests/runtime/test_migrate.sh
 LONG_TESTS += tests/runtime/test_migrate_long.sh
-dist_check_SCRIPTS += tests/runtime/test_trace.sh
-dist_check_SCRIPTS += tests/runtime/test_vite.sh
-TESTS += tests/runtime/test_trace.sh
-dist_check_SCRIPTS += tests/runtime/test_chart.sh
-TESTS += tests/runtime/test_chart.sh
-TESTS += tests/runtime/test_vite.sh
 
 if HAVE_CHECK
 AHEAD_TESTS = tests/runtime/test_window tests/runtime/test_memo tests/runtime/test_memo_ahead
@@ -123,31 +117,14 @@ tests_runtime_test_memo_SOURCES = tests/runtime/test_memo.c $(MEMO_FILES)
 tests_runtime_test_memo_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_window_SOURCES = tests/runtime/test_window.c tests/negative/misuse.c tests/negative/misuse.h
 tests_runtime_test_window_LDADD = $(DUITE_TEST_LIBS)
-RUNTIME_TESTS = tests/runtime/test_late tests/runtime/test_predict tests/runtime/test_predict_replays tests/runtime/test_predict_costs \
-	tests/runtime/test_predict_refused tests/runtime/test_pool tests/runtime/test_owner tests/runtime/test_offload_names \
+RUNTIME_TESTS = tests/runtime/test_late tests/runtime/test_pool tests/runtime/test_owner tests/runtime/test_offload_names \
 	tests/runtime/test_laws tests/runtime/test_settle tests/runtime/test_balance tests/runtime/test_sched \
 	tests/runtime/test_sched_knowing tests/runtime/test_sched_told tests/runtime/test_makespan tests/runtime/test_monitor \
-	tests/runtime/test_traced tests/runtime/test_check tests/runtime/test_environment \
+	tests/runtime/test_check tests/runtime/test_environment \
     tests/runtime/test_nested_tasks tests/runtime/test_stack tests/runtime/test_graphs tests/runtime/test_graphs_change \
     tests/runtime/test_graphs_refused
 check_PROGRAMS += $(RUNTIME_TESTS)
 TESTS += $(RUNTIME_TESTS)
-PREDICTED_FILES = tests/runtime/predicted.c tests/runtime/predicted.h tests/support/trace_file.c tests/support/trace_file.h
-tests_runtime_test_predict_SOURCES = tests/runtime/test_predict.c $(PREDICTED_FILES)
-tests_runtime_test_predict_LDADD = tests/support/libunit.a $(PREDICT_LIBS) $(CHECK_LIBS)
-EXTRA_tests_runtime_test_predict_DEPENDENCIES = duite-predict$(EXEEXT) # whose warning it reads
-tests_runtime_test_predict_costs_SOURCES = tests/runtime/test_predict_costs.c $(PREDICTED_FILES)
-tests_runtime_test_predict_costs_LDADD = tests/support/libunit.a $(PREDICT_LIBS) $(CHECK_LIBS)
-tests_runtime_test_predict_refused_SOURCES = tests/runtime/test_predict_refused.c $(PREDICTED_FILES)
-tests_runtime_test_predict_refused_LDADD = tests/support/libunit.a $(PREDICT_LIBS) $(CHECK_LIBS)
-tests_runtime_test_predict_replays_SOURCES = tests/runtime/test_predict_replays.c tests/runtime/passive.h $(PREDICTED_FILES)
-tests_runtime_test_predict_replays_LDADD = tests/support/libunit.a $(PREDICT_LIBS) $(CHECK_LIBS)
-RUNTIME_TESTS += tests/runtime/test_shares
-tests_runtime_test_shares_SOURCES = tests/runtime/test_shares.c
-tests_runtime_test_shares_LDADD = $(CHART_LIBS) $(DUITE_TEST_LIBS)
-RUNTIME_TESTS += tests/runtime/test_bounds
-tests_runtime_test_bounds_SOURCES = tests/runtime/test_bounds.c $(PREDICTED_FILES)
-tests_runtime_test_bounds_LDADD = tests/support/libunit.a $(PREDICT_LIBS) $(CHECK_LIBS)
 tests_runtime_test_environment_SOURCES = tests/runtime/test_environment.c tests/negative/misuse.c tests/negative/misuse.h
 tests_runtime_test_environment_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_check_SOURCES = tests/runtime/test_check.c
@@ -179,8 +156,6 @@ tests_runtime_test_sched_knowing_SOURCES = tests/runtime/test_sched_knowing.c te
 tests_runtime_test_sched_knowing_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_makespan_SOURCES = tests/runtime/test_makespan.c tests/negative/misuse.c tests/negative/misuse.h
 tests_runtime_test_makespan_LDADD = $(DUITE_TEST_LIBS)
-tests_runtime_test_traced_SOURCES = tests/runtime/test_traced.c tests/negative/misuse.c tests/negative/misuse.h
-tests_runtime_test_traced_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_monitor_SOURCES = tests/runtime/test_monitor.c
 tests_runtime_test_monitor_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_graphs_SOURCES = tests/runtime/test_graphs.c
@@ -190,9 +165,6 @@ tests_runtime_test_graphs_change_SOURCES = tests/runtime/test_graphs_change.c \
 tests_runtime_test_graphs_refused_SOURCES = tests/runtime/test_graphs_refused.c \
     tests/runtime/graphs_fixture.c tests/runtime/graphs_fixture.h
 tests_runtime_test_graphs_refused_LDADD = $(DUITE_TEST_LIBS)
-RUNTIME_TESTS += tests/runtime/test_predict_rounds
-tests_runtime_test_predict_rounds_SOURCES = tests/runtime/test_predict_rounds.c tests/negative/misuse.c tests/negative/misuse.h
-tests_runtime_test_predict_rounds_LDADD = tests/support/libunit.a $(PREDICT_LIBS) $(CHECK_LIBS)
 tests_runtime_test_graphs_change_LDADD = $(DUITE_TEST_LIBS)
 PASSES_TESTS = tests/runtime/test_passes tests/runtime/test_passes_random tests/runtime/test_emit tests/runtime/test_graph_sums \
     tests/runtime/test_lines

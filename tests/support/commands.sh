@@ -39,7 +39,7 @@ files() {
 home() {
     mkdir -p "$1/bench" && ln -s "$srcdir/cloth" "$srcdir/tests" "$srcdir/docs" "$srcdir/bootstrap" "$1" &&
         ln -s "$srcdir"/bench/* "$1/bench" && ln -sfn "$build"/bench/* "$1/bench" || return
-    for program in duite-cloth duite-garment duite-mannequin duite-view duite-trace duite-predict; do
+    for program in duite-cloth duite-garment duite-mannequin duite-view duite-trace duite-predict duite-compare duite-graph; do
         test ! -x "$build/$program" || ln -s "$build/$program" "$1"
     done
 }
@@ -72,7 +72,7 @@ here() {
 has() { # PROGRAM, or hdf5: it was built
     case $1 in
         hdf5) grep -q '^#define HAVE_HDF5 1' "$build/config.h" ;;
-        *compare | *graph-run | *duite-bench) test -x "$build/bench/${1##*/}" ;;
+        *duite-bench) test -x "$build/bench/${1##*/}" ;;
         *) test -x "$build/${1##*/}" ;;
     esac
 }

@@ -10,7 +10,7 @@ case $1 in
     *tests/cloth/view/*.sh) export ASAN_OPTIONS=detect_leaks=0 ;;
     *tests/cloth/view/*) unset ASAN_OPTIONS ;;
     # fontconfig, which cairo draws text with, keeps what it found.
-    *tests/runtime/test_chart.sh) export ASAN_OPTIONS="$ASAN_OPTIONS:detect_leaks=0" ;;
+    *tests/tools/test_chart.sh) export ASAN_OPTIONS="$ASAN_OPTIONS:detect_leaks=0" ;;
     # Without Open MPI the fast unwinder sees enough, and takes a tenth of the time.
     *tests/fuzz/* | *tests/cloth/base/* | *tests/cloth/mesh/* | *tests/cloth/garment/* | *tests/cloth/contact/* | *tests/cloth/verify/* | *tests/cloth/physics/* | *tests/cloth/solve/* | *tests/model/*)
         export ASAN_OPTIONS="$ASAN_OPTIONS:fast_unwind_on_malloc=1" ;;

@@ -3,7 +3,7 @@
 # the run, in the words of duite-trace.
 . "${srcdir:-.}/tests/support/tap.sh"
 skip_unless "$DUITE_CLOTH"
-sums=$srcdir/runtime/trace/sums.c
+sums=$srcdir/tools/trace/sums.c
 trace=$PWD/duite-trace
 page=$srcdir/docs/tracing.md
 sheet=$srcdir/cloth/scenes/sheet.yaml

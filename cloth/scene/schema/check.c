@@ -105,7 +105,7 @@ static const struct {
             {"loads", "course", "its name is curve"},
             {"air", "course", "its name is curve"},
             {"cloths", "cost",
-             "uneven work to try balancers on is of duite-bench ranks (migrate) and bench/compare "
+             "uneven work to try balancers on is of duite-bench ranks (migrate) and duite-compare "
              "(irregular)"}};
 
 /* NULL: the key never was. */

@@ -158,7 +158,7 @@ START_TEST(names_and_indices)
                   "load or a larger force"},
         {"material: cotton", "material: cotton\n    cost: {factor: 3, box: [[9, 9, 9], [8, 8, 8]]}",
          .error = ":7:5: cost is no longer a key of cloths[0]: uneven work to try balancers on is "
-                  "of duite-bench ranks (migrate) and bench/compare (irregular)"},
+                  "of duite-bench ranks (migrate) and duite-compare (irregular)"},
         {"{vertices: [0, 3]}", "{box: [[9, 9, 9], [8, 8, 8]]}",
          .error = ":7:18: the box holds no vertex of cloth 'sheet'; it is meant for positions "
                   "after the transform"});

@@ -1,0 +1,229 @@
+#!/bin/sh
+# duite-compare on tiny graphs and a tiny scene: all files are there, an interrupted comparison goes on, what cannot be is told.
+. "${srcdir:-.}/tests/support/tap.sh"
+plan_later
+
+bin=$PWD
+# What a user chose for programs of duite in general, even if it makes no sense, is not what is compared.
+tiny() {
+    (export DUITE_SCHEDULER=nobody DUITE_MAPPING=nowhere DUITE_BALANCE=never DUITE_THREADS=none DUITE_SEED=no DUITE_TRACE=/no/such/folder/trace
+     cd "$scratch" && PATH=${tools:-$PATH} limited "$bin/duite-compare" "$@" --tasks 40 --cost 1e-6 --steps 2 --seed 3)
+}
+of_scenes() { if test -x "$DUITE_CLOTH"; then ok "$@"; else skip "$1" "configure --disable-cloth"; fi; }
+product="stencil irregular --scheduler steal,priority --mapping block,list --ranks 1,2 --threads 1"
+
+first() { # shellcheck disable=SC2086 # a list of options
+    tiny $product --rounds 1 --output c > "$scratch/said" || { cat "$scratch/said" && return 1; }
+    test "$(grep -c ',fine$' "$scratch/c/runs.csv")" = 16 && test "$(wc -l < "$scratch/c/summary.csv")" -gt 16 &&
+        grep -q "^# build: duite" "$scratch/c/runs.csv" && grep -q "seed 3" "$scratch/said" &&
+        grep -q "^## irregular" "$scratch/c/compare.md"
+}
+# The last line is cut off in the middle, and another round asked for.
+again() { # shellcheck disable=SC2086
+    kept=$(head -n 20 "$scratch/c/runs.csv")
+    printf '%s\n0,stencil,0' "$kept" > "$scratch/c/runs.csv"
+    before=$(grep -c ',fine$' "$scratch/c/runs.csv")
+    tiny $product --rounds 2 --output c > "$scratch/said" || { cat "$scratch/said" && return 1; }
+    grep -qx "$before runs are there already" "$scratch/said" && test "$(grep -c ',fine$' "$scratch/c/runs.csv")" = 32
+}
+# Another scheduler: what ran is kept, and the page says that its runs were not in turns with the others'.
+grown() { # shellcheck disable=SC2086
+    tiny $product --scheduler priority,locality,steal --rounds 2 --output c > "$scratch/said" 2>&1 || { cat "$scratch/said" && return 1; }
+    cat "$scratch/said"
+    grep -qx "32 runs are there already" "$scratch/said" && test "$(grep -c ',fine$' "$scratch/c/runs.csv")" = 48 &&
+        grep '^[*][*]Warning:[*][*] .*, scheduler locality and 7 others joined later' "$scratch/c/compare.md" &&
+        tiny $product --scheduler priority,locality,steal --rounds 2 --output c > "$scratch/said" 2>&1 &&
+        grep -qx "48 runs are there already" "$scratch/said" && test "$(grep -c 'joined later' "$scratch/c/compare.md")" = 1
+}
+# Two rounds tell nothing, whatever their ratios are. A second one has runs, and the page whose they are.
+told() {
+    cat "$scratch/c/compare.md"
+    ! grep -q '| within the noise |\|| slower  *|' "$scratch/c/compare.md" && test "$(grep -c '| too few rounds  *|' "$scratch/c/compare.md")" = 22 &&
+        grep -qx -- "- revision: $(git -C "$top" describe --always --dirty --abbrev=12 2> /dev/null || echo unknown)" "$scratch/c/compare.md" &&
+        grep -qx -- "- processor: ..*" "$scratch/c/compare.md" && grep -qx -- "- cores: [1-9][0-9]*" "$scratch/c/compare.md" &&
+        grep -qx -- "- mpi: .*[0-9].*" "$scratch/c/compare.md"
+}
+# With rounds enough: what is three times as long is slower, and what is as long is not.
+judged() {
+    refused 0 "6 rounds" tree --threads 1 --mapping block,cyclic --grain 1 --rounds 6 --output j || return 1
+    cp "$scratch/j/runs.csv" "$scratch/six"
+    sed 's/^\([0-5],tree,1,1,1,none,\)\(block\|cyclic\),steal,[^,]*,/\1\2,steal,1e-3,/; s/,cyclic,steal,1e-3,/,cyclic,steal,3e-3,/' "$scratch/six" > "$scratch/j/runs.csv"
+    refused 0 "12 runs are there already" tree --threads 1 --mapping block,cyclic --grain 1 --rounds 6 --output j &&
+        grep '^| cyclic .* 3.000 .* slower ' "$scratch/j/compare.md" || return 1
+    sed -i 's/^0\(,.*,cyclic,steal,\)3e-3,/0\10.9e-3,/' "$scratch/j/runs.csv"
+    refused 0 "12 runs are there already" tree --threads 1 --mapping block,cyclic --grain 1 --rounds 6 --output j &&
+        grep '^| cyclic .* 3.000 .* within the noise ' "$scratch/j/compare.md"
+}
+# The runs of another build stay, with a warning that names it.
+other_build() { # shellcheck disable=SC2086
+    sed -i 's/^# revision: .*/# revision: 0123456789ab/' "$scratch/j/runs.csv"
+    refused 0 "warning: runs that were there already are of another build: revision: 0123456789ab" tree --threads 1 --mapping block,cyclic \
+        --grain 1 --rounds 6 --output j && grep -q "another build: revision: 0123456789ab" "$scratch/j/compare.md"
+}
+refused() { # STATUS SENTENCE OPTIONS...
+    wanted=$1 sentence=$2
+    shift 2
+    status=0
+    tiny "$@" > "$scratch/said" 2>&1 || status=$?
+    cat "$scratch/said"
+    test $status = "$wanted" && grep -q "$sentence" "$scratch/said"
+}
+wrong() { # shellcheck disable=SC2086
+    sed -i '$s/,[0-9a-f]\{16\},/,0123456789abcdef,/' "$scratch/c/runs.csv"
+    refused 1 "WRONG: .* hash" $product --scheduler priority,locality,steal --rounds 3 --output c
+}
+full() {
+    mkdir "$scratch/full" && ln -s /dev/full "$scratch/full/runs.csv" && refused 1 "No space left" tree --output full
+}
+without_plots() {
+    mkdir "$scratch/bin"
+    for tool in timeout sed head cut sh; do ln -s "$(command -v $tool)" "$scratch/bin/"; done
+    tools=$scratch/bin refused 0 "no plots: gnuplot is missing" tree --rounds 1 --output p &&
+        grep -q "There are no plots" "$scratch/p/compare.md"
+}
+hash_of() { (cd "$scratch" && "$bin/duite-graph" "$@" --tasks 40 --cost 1e-6 --rounds 1 --threads 1) | sed -n 's/.*hash": "\(.*\)"/\1/p'; }
+graph_file() {
+    hash_of irregular --save g.graph
+    test -n "$(hash_of g.graph)" && test "$(hash_of g.graph)" = "$(hash_of irregular)"
+}
+of_a_trace() { # its blocks stay together, so that two ranks send what blocks show each other
+    "$DUITE_CLOTH" "$top/cloth/scenes/sheet.yaml" --set 'cloths[0].mesh.grid.nx=12' --set 'cloths[0].mesh.grid.ny=12' --grain 40 \
+        --end 0.002 --threads 1 --quiet --trace "$scratch/t" && ./duite-trace "$scratch/t" --graph "$scratch/t.graph" &&
+        (cd "$scratch" && "$bin/duite-graph" t.graph --rounds 1 --threads 1 && ranks 2 "$bin/duite-graph" t.graph --rounds 1 --threads 1) > "$scratch/said"
+    cat "$scratch/said"
+    test "$(sed -n 's/.*hash": "\(.*\)"/\1/p' "$scratch/said" | sort -u | wc -l)" = 1 && grep -q '"messages": [1-9]' "$scratch/said"
+}
+bad_file() {
+    printf 'duite-graph 1\n1e-6 8 0\n1e-6 8 1 1\n' > "$scratch/bad.graph"
+    ! hash_of bad.graph 2> "$scratch/said" || test -z "$(hash_of bad.graph 2> "$scratch/said")"
+    grep -q "bad.graph:3: .* tasks before it" "$scratch/said"
+}
+scene() {
+    refused 0 "sheet.yaml" "$top/cloth/scenes/sheet.yaml" --set 'cloths[0].mesh.grid.nx=12' --set 'cloths[0].mesh.grid.ny=12' \
+        --set time.end=0.002 --grain 40,70 --rounds 1 --output s && test "$(grep -c ',fine$' "$scratch/s/runs.csv")" = 2
+}
+
+top=$(cd "$srcdir" && pwd)
+ok "a product of graphs" first
+ok "it goes on where it was interrupted" again
+ok "a list grows" grown
+ok "two rounds are too few, and the page says where they ran" told
+ok "six rounds are not" judged
+ok "runs of another build" other_build
+ok "a folder of another comparison" refused 1 "another comparison" stencil --output c
+ok "... or of other scenes" eval 'refused 1 "another comparison" $product --scheduler priority,locality,steal --set a=1 --output c'
+ok "a wrong result is told" wrong
+of_scenes "a scene over grains" scene
+ok "a graph from a file is the same" graph_file
+of_scenes "... and so is that of a trace, on any number of ranks" of_a_trace
+ok "a damaged one names its line" bad_file
+ok "a full disk" full
+ok "without gnuplot" without_plots
+ok "an unknown scheduler lists the known ones" refused 2 "known are steal, locality" tree --scheduler best
+starpu_graph() { refused_by "$bin/bench/rivals/starpu-graph" "known are .* lws.*" irregular --scheduler nope; }
+refused_by() { # PROGRAM SENTENCE OPTIONS...: before anything runs: with nothing on standard output
+    program=$1 sentence=$2 status=0
+    shift 2
+    limited "$program" "$@" > "$scratch/out" 2> "$scratch/said" || status=$?
+    cat "$scratch/said" "$scratch/out"
+    test $status = 2 && test ! -s "$scratch/out" && grep -q "$sentence" "$scratch/said"
+}
+starpu_runs() {
+    STARPU_SCHED=nope refused 0 "1 rounds" irregular --scheduler starpu:eager --rounds 1 --output e &&
+        test "$(grep -c '^0,irregular,.*,starpu:eager,.*,fine$' "$scratch/e/runs.csv")" = 1 && ! grep nope "$scratch/e/run.log"
+}
+if test -x "$bin/bench/rivals/starpu-graph"; then
+    ok "a scheduler that StarPU does not have lists those that it has" refused 2 \
+        "starpu:nope: StarPU has no scheduler of this name; known are .*lws" irregular --scheduler steal,starpu:nope --output n
+    ok "... and nothing runs" test ! -e "$scratch/n"
+    ok "... likewise of its twin alone" starpu_graph
+    ok "one that it has runs, also if the environment names another" starpu_runs
+fi
+mkdir "$scratch/alone" && cp "$bin/duite-compare" "$scratch/alone" # no rivals beside it
+ok "StarPU's twin is not there" refused_by "$scratch/alone/duite-compare" "alone/bench/rivals/starpu-graph is not there" \
+    irregular --scheduler starpu:lws --output "$scratch/n"
+ok "duite-graph has none of StarPU's schedulers" refused_by "$bin/duite-graph" "bench/rivals/starpu-graph --schedulers lists them" \
+    irregular --scheduler starpu:lws
+# A member that fails beside one that does not: the page names it and says why; no table and no file has a figure of it.
+failed() {
+    refused 1 "duite-compare: 2 runs failed: f/compare.md says which, and why" tree --threads 1,5000 --rounds 2 --output f || return 1
+    cat "$scratch/f/compare.md" "$scratch/f/summary.csv" "$scratch/f/runs.csv"
+    grep -q ": 5000: failed; exit status 1: duite-graph: .*5000 threads are more than 4096" "$scratch/said" &&
+        grep -q "^- tree, threads 5000: 2 of 2 runs; the first: exit status 1: duite-graph: .*5000 threads" "$scratch/f/compare.md" &&
+        grep -q "^| 5000  *|  *|  *|  *|  *| failed  *|$" "$scratch/f/compare.md" &&
+        grep -qx "tree,0,1,5000,none,metis,steal,0,,,,,,,,,failed" "$scratch/f/summary.csv" &&
+        test "$(grep -cx "[01],tree,0,1,5000,none,metis,steal,,,,,,,failed" "$scratch/f/runs.csv")" = 2 &&
+        grep -q "5000 threads" "$scratch/f/failed.log" && ! grep -i nan "$scratch/said" "$scratch/f/"*.csv "$scratch/f/compare.md"
+}
+all_failed() {
+    refused 1 "duite-compare: 1 run failed: u/compare.md" "$top/cloth/scenes/sheet.yaml" --set grain=0 --rounds 1 --output u &&
+        grep -q "^- .*sheet.yaml: 1 of 1 runs; exit status [1-9][0-9]*: duite-cloth: .*grain" "$scratch/u/compare.md" &&
+        ! grep "bars0.png" "$scratch/u/compare.md"
+}
+timed_out() {
+    (cd "$scratch" && limited "$bin/duite-compare" tree --tasks 4000 --cost 1 --timeout 1 --rounds 1 --output late > said 2>&1) && return 1
+    cat "$scratch/said"
+    grep -q "failed; stopped after 1 s (--timeout)" "$scratch/said"
+}
+# A member whose policy never returns beside one that does: stopped, named, not tried again; the other has all its figures.
+hangs() {
+    cat > "$scratch/hangs.c" << 'EOF'
+#include <duite_policy.h>
+#include <unistd.h>
+static unsigned place(void *state, const duite_ready *task)
+{
+    (void)task;
+    while (++*(int *)state > 20)
+        sleep(1);
+    return DUITE_SHARED_QUEUE;
+}
+static duite_end serve(void *state) { (void)state; return DUITE_OLDEST; }
+static unsigned victim(void *state, unsigned attempt) { (void)state, (void)attempt; return DUITE_NO_QUEUE; }
+static int chain(void *state, const duite_ready *task) { (void)state, (void)task; return 0; }
+const duite_scheduler duite_own_scheduler = {
+    .name = "hangs", .summary = "", .state_size = sizeof(int), .place = place, .serve = serve, .victim = victim, .chain = chain};
+EOF
+    ${CC:-cc} -Wall -Wextra -Werror -shared -fPIC -I"$top/runtime" -o "$scratch/hangs.so" "$scratch/hangs.c"
+}
+stopped() {
+    refused 1 "duite-compare: 6 runs failed: h/compare.md" tree --scheduler steal,./hangs.so --ranks 1,2 --timeout 10 --rounds 3 --output h || return 1
+    cat "$scratch/h/compare.md"
+    for n in 1 2; do
+        grep -q "^- tree, ranks $n, scheduler ./hangs.so: 3 of 3 runs; the first: stopped after 10 s (--timeout): \
+duite: rank [01]: worker [01].* is in the place of scheduler hangs, which has not returned" "$scratch/h/compare.md" || return 1
+    done
+    test "$(grep -c ": failed; not tried again" "$scratch/said")" = 4 && test "$(grep -c ',steal,.*,fine$' "$scratch/h/runs.csv")" = 6
+}
+stopped_alone() {
+    status=0
+    limited "$bin/duite-graph" tree --scheduler "$scratch/hangs.so" --timeout 1 > "$scratch/said" 2>&1 || status=$?
+    cat "$scratch/said"
+    test $status = 1 && grep -qx "duite-graph: stopped after 1 s (--timeout)" "$scratch/said"
+}
+# Loops on all cores. The page of a comparison that is taken up again has the warning, too.
+busy() {
+    loops=
+    for _ in $(seq "$(nproc)"); do
+        sh -c 'while :; do :; done' &
+        loops="$loops $!"
+    done
+    (cd "$scratch" && limited "$bin/duite-compare" tree --threads 1 --tasks 40 --cost 0.01 --steps 1 --rounds 1 --output b > said 2>&1)
+    status=$?
+    # shellcheck disable=SC2086
+    kill $loops && wait $loops 2> /dev/null
+    cat "$scratch/said"
+    grep '^duite-compare: warning: in round 1 other programs took [0-9.]* of [0-9]* cores' "$scratch/said" > "$scratch/warned" && test $status = 0 &&
+        sed 's/^duite-compare: warning: \(.*\)$/**Warning:** \1./' "$scratch/warned" | grep -Fxqf - "$scratch/b/compare.md" || return 1
+    (cd "$scratch" && limited "$bin/duite-compare" tree --threads 1 --tasks 40 --cost 0.01 --steps 1 --rounds 1 --output b) &&
+        sed 's/^duite-compare: warning: \(.*\)$/**Warning:** \1./' "$scratch/warned" | grep -Fxqf - "$scratch/b/compare.md"
+}
+ok "a member that fails is named with its reason, and has no figures" failed
+of_scenes "... also if all fail" all_failed
+ok "... or one takes too long" timed_out
+ok "a scheduler that never returns" hangs
+ok "... is stopped at the limit and named, and the others go on" stopped
+ok "... and by duite-graph at its own" stopped_alone
+ok "a machine that is busy draws a warning" busy
+ok "an unknown kind of graph" refused 2 "there is no kind of graph ring; known are stencil, .* chain, and files" ring --output u
+ok "a scene that is not there" refused 2 "none.yaml: No such file or directory" tree none.yaml --output u
+ok "a set without a value" refused 2 "set grain: KEY=VALUE is expected" tree --set grain --output u

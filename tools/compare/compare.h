@@ -1,0 +1,110 @@
+#ifndef DUITE_TOOLS_COMPARE_COMPARE_H
+#define DUITE_TOOLS_COMPARE_COMPARE_H
+
+#include "tools/compare/load.h"
+
+#include <limits.h>
+#include <stdbool.h>
+#include <stdint.h>
+#include <stdio.h>
+
+/* A comparison: the product of some lists, each member run once a round, the members of a round in
+ * an order drawn at random. What was run is in a journal (runs.csv), line by line, so that it can
+ * be taken up where it was interrupted. Strings are the command line's. */
+
+enum { COMPARE_MOST = 24, COMPARE_CONFIGS = 2000, COMPARE_ROUNDS = 1000 };
+/* Rounds from which on order statistics have an interval of 95 %. */
+enum { COMPARE_ENOUGH = 6 };
+
+struct compare_list {
+    const char *item[COMPARE_MOST];
+    size_t n;
+};
+
+/* One run. Times are seconds of a step, or of a round of a graph. */
+struct compare_run {
+    double seconds, bodies; /* bodies: in bodies of tasks, a worker; the rest is outside of them */
+    double stolen, messages, bytes;
+    char hash[20];
+    char *why;                /* it failed: how it ended, and its last error */
+    bool done, fine, stopped; /* stopped: by the limit, --timeout */
+};
+
+/* Dimensions of the product, in the order in which the last one changes first. */
+enum { SUBJECT, GRAIN, RANKS, THREADS, BALANCE, MAPPING, SCHEDULER, COMPARE_DIMENSIONS };
+extern const char *const compare_dimension[COMPARE_DIMENSIONS];
+
+struct compare_config {
+    const char *value[COMPARE_DIMENSIONS];
+    struct compare_run *run; /* rounds of them */
+    /* From those that are fine: */
+    size_t n;
+    double median, low, high; /* low .. high: 95 % for the median if runs are enough, else all */
+    double bodies, outside;   /* medians */
+    double ratio, ratio_low, ratio_high; /* to the fastest of its subject, within rounds */
+    bool fastest, few, noise; /* few: too few rounds to tell; noise: the difference to it is none */
+    bool known;               /* the journal had a run of it when it was opened */
+};
+
+struct compare {
+    struct compare_list list[COMPARE_DIMENSIONS];
+    struct compare_list sets; /* of scenes */
+    const char *folder, *tasks, *cost, *bytes, *steps;
+    uint64_t seed;
+    size_t rounds;
+    unsigned timeout; /* s: a run that takes longer is stopped */
+    struct compare_config *config;
+    size_t n;
+    FILE *journal;
+    struct load load;    /* from the first run on, then from that of a round on */
+    char warnings[2000]; /* about the load, a line each */
+    bool wrong;          /* two runs that should agree have not the same hash */
+    size_t failed;       /* runs that did */
+};
+
+/* Opens the journal and takes over what is there, or begins it with the host and the build. Lists
+ * may have grown meanwhile. 1, said on stderr, if it is another comparison's or cannot be written.
+ */
+int compare_journal_open(struct compare *compare);
+/* Appends a run and sees to it that it is on the disk. 1, said on stderr: nothing more can be kept.
+ */
+int compare_journal_add(struct compare *compare, const struct compare_config *config, size_t round);
+/* Adds a warning: to the journal, so that a comparison that is taken up again keeps it, to
+ * compare->warnings, and on stderr. NULL is none. */
+void compare_journal_warn(struct compare *compare, const char *warning);
+void compare_journal_close(struct compare *compare);
+/* The host and the build, a line each after `before`. */
+void compare_describe(FILE *out, const char *before);
+
+/* The path of a program that lies beside this one, or in a folder there. */
+enum { COMPARE_PROGRAM = PATH_MAX + 100 };
+const char *compare_find_program(const char *name, char path[COMPARE_PROGRAM]);
+
+/* Why StarPU's scheduler of this name cannot be run, in words written to text: NULL if it can. */
+const char *compare_starpu_wrong(const char *name, char *text, size_t size);
+
+/* Starts a run and reads its report; run->done is set in any case. The log of one that failed
+ * becomes failed.log. */
+void compare_start(const struct compare *compare, const struct compare_config *config,
+                   struct compare_run *run);
+
+/* Fills in medians, intervals and verdicts. */
+void compare_judge(struct compare *compare);
+/* The median of n values and the interval of its 95 %, of order statistics: the k-th from both ends
+ * with the largest k for which fewer than k of n tosses come out heads with a probability of at
+ * most 2.5 %; of fewer than 6 values all of them. Sorts the values. */
+double compare_median(double *values, size_t n, double *low, double *high);
+
+/* The values of what varies. */
+void compare_print_member(const struct compare *compare, const struct compare_config *config,
+                          FILE *out);
+
+/* How many runs of it failed; *first, if any, is the first one. */
+size_t compare_failures(const struct compare *compare, const struct compare_config *config,
+                        const struct compare_run **first);
+
+/* Tables on the terminal; summary.csv, plots (where gnuplot is installed; else a sentence) and
+ * compare.md in the folder. 1, said on stderr, if a file cannot be written. */
+int compare_page(const struct compare *compare);
+
+#endif

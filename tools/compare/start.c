@@ -1,0 +1,289 @@
+/* A run is a program of its own: duite-cloth for scenes, duite-graph for graphs, StarPU's twin of
+ * it for schedulers named starpu:NAME. Its report is a file in the folder, which the next run
+ * overwrites; what it prints goes to run.log there, and of a run that failed to failed.log. */
+#include "tools/compare/compare.h"
+#include "tools/compare/environment.h"
+
+#include <libgen.h>
+#include <limits.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#define STARPU_GRAPH "bench/rivals/starpu-graph"
+
+enum { WORDS = 120 };
+
+struct line {
+    char *word[WORDS];
+    int n;
+};
+
+static void append(struct line *line, const char *word)
+{
+    if (line->n + 1 < WORDS && word)
+        line->word[line->n++] = strdup(word);
+    line->word[line->n] = NULL;
+}
+
+static void append_pair(struct line *line, const char *option, const char *value)
+{
+    append(line, option);
+    append(line, value);
+}
+
+const char *compare_find_program(const char *name, char path[COMPARE_PROGRAM])
+{
+    char self[PATH_MAX] = "";
+    if (readlink("/proc/self/exe", self, sizeof self - 1) < 0)
+        self[0] = 0;
+    snprintf(path, COMPARE_PROGRAM, "%s/%s", dirname(self), name);
+    return path;
+}
+
+static void append_program(struct line *line, const char *name)
+{
+    char path[COMPARE_PROGRAM];
+    append(line, compare_find_program(name, path));
+}
+
+const char *compare_starpu_wrong(const char *name, char *text, size_t size)
+{
+    char path[COMPARE_PROGRAM], command[COMPARE_PROGRAM + 40], known[2000] = "", word[100];
+    bool found = false;
+    if (access(compare_find_program(STARPU_GRAPH, path), X_OK)) {
+        snprintf(text, size,
+                 "%s is not there: make bench builds it in the build folder, if configure finds "
+                 "libstarpu-dev",
+                 path);
+        return text;
+    }
+    snprintf(command, sizeof command, "'%s' --schedulers", path);
+    FILE *in = popen(command, "r");
+    for (size_t used = 0; in && used < sizeof known && fscanf(in, "%99s", word) == 1;) {
+        found = found || !strcmp(word, name);
+        used += (size_t)snprintf(known + used, sizeof known - used, "%s%s", used ? ", " : "", word);
+    }
+    if (!in || pclose(in) || !*known)
+        snprintf(text, size, "%s --schedulers does not list StarPU's schedulers", path);
+    else if (!found)
+        snprintf(text, size, "StarPU has no scheduler of this name; known are %s", known);
+    else
+        return NULL;
+    return text;
+}
+
+static bool is_scene(const char *subject)
+{
+    const char *end = strrchr(subject, '.');
+    return end && (!strcmp(end, ".yaml") || !strcmp(end, ".yml"));
+}
+
+static void append_scene(const struct compare *compare, const struct compare_config *config,
+                         struct line *line)
+{
+    append_program(line, "duite-cloth");
+    append(line, config->value[SUBJECT]);
+    append(line, "--quiet");
+    if (strcmp(config->value[GRAIN], "0") != 0)
+        append_pair(line, "--grain", config->value[GRAIN]);
+    for (size_t i = 0; i < compare->sets.n; i++)
+        append_pair(line, "--set", compare->sets.item[i]);
+}
+
+/* The grain of a graph is a factor of its tasks' cost; their number falls as it grows. */
+static void append_graph(const struct compare *compare, const struct compare_config *config,
+                         struct line *line)
+{
+    char cost[40], tasks[40];
+    double grain = strtod(config->value[GRAIN], NULL);
+    grain = grain > 0 ? grain : 1;
+    snprintf(cost, sizeof cost, "%.9g", strtod(compare->cost, NULL) * grain);
+    snprintf(tasks, sizeof tasks, "%.0f", strtod(compare->tasks, NULL) / grain);
+    append(line, config->value[SUBJECT]);
+    append_pair(line, "--cost", cost);
+    append_pair(line, "--tasks", tasks);
+    append_pair(line, "--bytes", compare->bytes);
+    append_pair(line, "--rounds", compare->steps);
+}
+
+static void make_line(const struct compare *compare, const struct compare_config *config,
+                      const char *report, struct line *line)
+{
+    const char *subject = config->value[SUBJECT];
+    char seconds[20];
+    bool starpu = !strncmp(config->value[SCHEDULER], "starpu:", 7);
+    snprintf(seconds, sizeof seconds, "%u", compare->timeout);
+    append_pair(line, "timeout", "-k");
+    append_pair(line, "5", seconds);
+    if (strcmp(config->value[RANKS], "1") != 0) {
+        append(line, COMPARE_MPIRUN);
+        append_pair(line, "-n", config->value[RANKS]);
+    }
+    if (is_scene(subject)) {
+        append_scene(compare, config, line);
+    } else {
+        append_program(line, starpu ? STARPU_GRAPH : "duite-graph");
+        append_graph(compare, config, line);
+    }
+    append_pair(line, "--scheduler", config->value[SCHEDULER] + (starpu ? 7 : 0));
+    append_pair(line, "--threads", config->value[THREADS]);
+    append_pair(line, "--report", report);
+    if (starpu)
+        return;
+    append_pair(line, "--mapping", config->value[MAPPING]);
+    append_pair(line, "--balance", config->value[BALANCE]);
+}
+
+/* A policy that does not return is named by the report of a standstill, well before its run is
+ * stopped, so that the page can say it. The user's own setting counts. */
+static void report_standstills_by(unsigned timeout)
+{
+    const double usual = 60, soon = timeout / 4.0;
+    char seconds[30];
+    snprintf(seconds, sizeof seconds, "%g", soon < usual ? soon : usual);
+    setenv("DUITE_STUCK_SECONDS", seconds, 0);
+}
+
+static int execute(const struct compare *compare, struct line *line)
+{
+    char log[PATH_MAX];
+    int status = 1;
+    snprintf(log, sizeof log, "%s/run.log", compare->folder);
+    fflush(NULL);
+    unlink(log); /* the last run's: one that cannot be started says nothing */
+    pid_t child = fork();
+    if (!child) {
+        environment_forget();
+        report_standstills_by(compare->timeout);
+        if (freopen(log, "w", stdout))
+            dup2(STDOUT_FILENO, STDERR_FILENO);
+        execvp(line->word[0], line->word);
+        _exit(127);
+    }
+    return child < 0 || waitpid(child, &status, 0) < 0 ? 1 << 8 : status;
+}
+
+/* The value behind "key": in a flat object; NULL: it is not there. */
+static const char *value_of(const char *text, const char *key)
+{
+    char quoted[60];
+    snprintf(quoted, sizeof quoted, "\"%s\":", key);
+    const char *found = strstr(text, quoted);
+    return found ? found + strlen(quoted) : NULL;
+}
+
+static double number_of(const char *text, const char *key)
+{
+    const char *value = value_of(text, key);
+    return value ? strtod(value, NULL) : 0;
+}
+
+static void read_report(const char *file, struct compare_run *run)
+{
+    char text[20000] = "";
+    FILE *in = fopen(file, "r");
+    size_t n = in ? fread(text, 1, sizeof text - 1, in) : 0;
+    if (in)
+        fclose(in);
+    text[n] = 0;
+    run->seconds = number_of(text, "seconds_per_step");
+    run->bodies = run->seconds * number_of(text, "busy_fraction");
+    run->stolen = number_of(text, "tasks_stolen");
+    run->messages = number_of(text, "messages");
+    run->bytes = number_of(text, "bytes_moved");
+    const char *hash = value_of(text, "state_hash");
+    if (hash)
+        sscanf(hash, " \"%17[0-9a-f]", run->hash);
+    run->fine = run->seconds > 0 && hash;
+}
+
+/* ---- Failures ---- */
+
+static bool is_error(const char *line)
+{
+    static const char *const programs[] = {
+        "duite-cloth: ", "duite-graph: ", "starpu-graph: ", "duite: ", "timeout: "};
+    for (size_t i = 0; i < sizeof programs / sizeof *programs; i++)
+        if (!strncmp(line, programs[i], strlen(programs[i])))
+            return true;
+    return false;
+}
+
+/* A report of a standstill has many lines, and each rank writes one: the line that names a policy
+ * counts more than what these say after it. */
+static bool is_said_after(const char *line, const char *last)
+{
+    return strstr(last, ", which has not returned;") && !strncmp(line, "duite: rank ", 12) &&
+           !strstr(line, ", which has not returned;");
+}
+
+/* The last line of the log that a program of ours has said, else the last line. mpirun and argp add
+ * theirs behind it. */
+static void find_last_error(const char *log, char *last, size_t size)
+{
+    char line[1000];
+    bool found = false;
+    FILE *in = fopen(log, "r");
+    while (in && fgets(line, sizeof line, in)) {
+        line[strcspn(line, "\n")] = 0;
+        if (!*line || (found && (!is_error(line) || is_said_after(line, last))))
+            continue;
+        found = is_error(line);
+        snprintf(last, size, "%s", line);
+    }
+    if (in)
+        fclose(in);
+}
+
+/* status: of waitpid. `timeout` ends with 124 where it had to stop what it started. */
+static void note_failure(const struct compare *compare, int status, struct compare_run *run)
+{
+    enum { TIMED_OUT = 124 };
+    char log[PATH_MAX], kept[PATH_MAX], last[1000] = "it said nothing", how[60];
+    snprintf(log, sizeof log, "%s/run.log", compare->folder);
+    snprintf(kept, sizeof kept, "%s/failed.log", compare->folder);
+    find_last_error(log, last, sizeof last);
+    rename(log, kept);
+    if (WIFSIGNALED(status))
+        snprintf(how, sizeof how, "signal %d", WTERMSIG(status));
+    else if ((run->stopped = WEXITSTATUS(status) == TIMED_OUT))
+        snprintf(how, sizeof how, "stopped after %u s (--timeout)", compare->timeout);
+    else if (!status)
+        snprintf(how, sizeof how, "exit status 0, but no figures in its report");
+    else
+        snprintf(how, sizeof how, "exit status %d", WEXITSTATUS(status));
+    if (asprintf(&run->why, "%s: %s", how, last) < 0)
+        run->why = NULL;
+}
+
+size_t compare_failures(const struct compare *compare, const struct compare_config *config,
+                        const struct compare_run **first)
+{
+    size_t n = 0;
+    for (size_t r = 0; r < compare->rounds; r++) {
+        const struct compare_run *run = &config->run[r];
+        if (run->done && !run->fine && !n++)
+            *first = run;
+    }
+    return n;
+}
+
+void compare_start(const struct compare *compare, const struct compare_config *config,
+                   struct compare_run *run)
+{
+    struct line line = {0};
+    char report[PATH_MAX];
+    snprintf(report, sizeof report, "%s/run.json", compare->folder);
+    unlink(report);
+    *run = (struct compare_run){.done = true};
+    make_line(compare, config, report, &line);
+    const int status = execute(compare, &line);
+    if (!status)
+        read_report(report, run);
+    if (!run->fine)
+        note_failure(compare, status, run);
+    for (int i = 0; i < line.n; i++)
+        free(line.word[i]);
+}

@@ -1,0 +1,411 @@
+/* duite-compare: runs a product of policies and shapes on scenes and graphs, and says which
+ * differences are more than noise. */
+#include "tools/compare/compare.h"
+#include "tools/compare/graph.h"
+
+#include <config.h>
+
+#include <argp.h>
+#include <duite.h>
+#include <duite_policy.h>
+#include <errno.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+const char *const compare_dimension[COMPARE_DIMENSIONS] = {
+    "subject", "grain", "ranks", "threads", "balance", "mapping", "scheduler"};
+
+enum { ROUNDS = 256, SEED, OUTPUT, TIMEOUT, TASKS, COST, BYTES, STEPS, SET, LIST };
+
+static const struct argp_option OPTIONS[] = {
+    {"scheduler", LIST + SCHEDULER, "LIST", 0,
+     "schedulers, with commas between them; all: every one but shuffle, which is for tests; "
+     "starpu:NAME: that of StarPU, on graphs (default: steal)",
+     1},
+    {"mapping", LIST + MAPPING, "LIST", 0,
+     "mappings, with commas between them; all: every one (default: metis)", 1},
+    {"balance", LIST + BALANCE, "LIST", 0,
+     "balancers, with commas between them; all: every one but scatter and wander, which are for "
+     "tests (default: none)",
+     1},
+    {"ranks", LIST + RANKS, "LIST", 0, "numbers of ranks, with commas between them (default: 1)",
+     1},
+    {"threads", LIST + THREADS, "LIST", 0,
+     "numbers of threads of each rank, with commas between them (default: 2)", 1},
+    {"grain", LIST + GRAIN, "LIST", 0,
+     "of scenes: vertices a block; of synthetic graphs: how many times the cost of a task, of "
+     "which there are as many times fewer; 0: the default (default: 0)",
+     1},
+    {"set", SET, "KEY=VALUE", 0, "change a value of the scenes; may be given several times", 2},
+    {"tasks", TASKS, "N", 0, "tasks of a synthetic graph (default: 1000)", 3},
+    {"cost", COST, "SECONDS", 0, "what a task of a synthetic graph takes (default: 1e-5)", 3},
+    {"bytes", BYTES, "N", 0, "what a task of a synthetic graph writes (default: 4096)", 3},
+    {"steps", STEPS, "N", 0, "rounds of a graph in a run (default: 10)", 3},
+    {"rounds", ROUNDS, "N", 0, "runs of each product (default: 10)", 4},
+    {"seed", SEED, "N", 0, "of the order of runs (default: 1)", 4},
+    {"timeout", TIMEOUT, "SECONDS", 0, "most that a run may take (default: 600)", 4},
+    {"output", OUTPUT, "DIR", 0, "the folder of all files (default: comparison)", 4},
+    {0}};
+
+/* ---- The command line ---- */
+
+static void add(struct argp_state *state, struct compare_list *list, const char *item)
+{
+    if (list->n == COMPARE_MOST)
+        argp_error(state, "more than %d of a kind, at %s", COMPARE_MOST, item);
+    list->item[list->n++] = item;
+}
+
+static const char *const *names_of(int dimension)
+{
+    switch (dimension) {
+    case SCHEDULER:
+        return duite_scheduler_names();
+    case MAPPING:
+        return duite_mapping_names();
+    case BALANCE:
+        return duite_balancer_names();
+    }
+    return NULL;
+}
+
+static void check_item(struct argp_state *state, int dimension, const char *item)
+{
+    const void *found = state;
+    char *end = NULL, wrong[2500];
+    const bool starpu = dimension == SCHEDULER && !strncmp(item, "starpu:", 7);
+    if (starpu && compare_starpu_wrong(item + 7, wrong, sizeof wrong))
+        argp_error(state, "--scheduler %s: %s", item, wrong);
+    if (dimension == SCHEDULER && !starpu)
+        found = duite_scheduler_find(item);
+    else if (dimension == MAPPING)
+        found = duite_mapping_find(item);
+    else if (dimension == BALANCE)
+        found = duite_balancer_find(item);
+    if (!found)
+        argp_error(state, "--%s %s: %s", compare_dimension[dimension], item, duite_message());
+    if (dimension == GRAIN || dimension == RANKS || dimension == THREADS) {
+        double value = strtod(item, &end);
+        if (end == item || *end || value < (dimension != GRAIN) || value > 1e9)
+            argp_error(state, "--%s %s: a number is expected", compare_dimension[dimension], item);
+    }
+}
+
+static void take_list(struct argp_state *state, struct compare *compare, int dimension, char *text)
+{
+    struct compare_list *list = &compare->list[dimension];
+    const char *const *names = names_of(dimension);
+    list->n = 0;
+    if (names && !strcmp(text, "all")) {
+        for (; *names; names++)
+            add(state, list, *names);
+        return;
+    }
+    for (char *item = strtok(text, ","); item; item = strtok(NULL, ",")) {
+        check_item(state, dimension, item);
+        add(state, list, item);
+    }
+    if (!list->n)
+        argp_error(state, "--%s: a list is expected", compare_dimension[dimension]);
+}
+
+static uint64_t number(struct argp_state *state, const char *text, uint64_t least, uint64_t most)
+{
+    char *end;
+    uint64_t value = strtoull(text, &end, 10);
+    if (*text < '0' || *text > '9' || *end || value < least || value > most)
+        argp_error(state, "%s: a number from %" PRIu64 " to %" PRIu64 " is expected", text, least,
+                   most);
+    return value;
+}
+
+static error_t parse(int key, char *text, struct argp_state *state)
+{
+    char wrong[500];
+    struct compare *compare = state->input;
+    if (key >= LIST && key < LIST + COMPARE_DIMENSIONS) {
+        take_list(state, compare, key - LIST, text);
+        return 0;
+    }
+    switch (key) {
+    case SET:
+        if (!strchr(text, '='))
+            argp_error(state, "--set %s: KEY=VALUE is expected", text);
+        add(state, &compare->sets, text);
+        return 0;
+    case TASKS:
+        compare->tasks = text;
+        return 0;
+    case COST:
+        compare->cost = text;
+        return 0;
+    case BYTES:
+        compare->bytes = text;
+        return 0;
+    case STEPS:
+        compare->steps = text;
+        return 0;
+    case ROUNDS:
+        compare->rounds = number(state, text, 1, COMPARE_ROUNDS);
+        return 0;
+    case SEED:
+        compare->seed = number(state, text, 0, UINT64_MAX);
+        return 0;
+    case TIMEOUT:
+        compare->timeout = (unsigned)number(state, text, 1, 1000000);
+        return 0;
+    case OUTPUT:
+        compare->folder = text;
+        return 0;
+    case ARGP_KEY_ARG:
+        if (compare_graph_wrong(text, wrong, sizeof wrong))
+            argp_error(state, "%s", wrong);
+        add(state, &compare->list[SUBJECT], text);
+        return 0;
+    case ARGP_KEY_NO_ARGS:
+        argp_error(state, "what is to be run? A scene, a graph file, or one of stencil, tree, "
+                          "cholesky, random, irregular, chain");
+    }
+    return ARGP_ERR_UNKNOWN;
+}
+
+/* ---- The product ---- */
+
+/* StarPU has no ranks, mappings and balancers here. */
+static bool makes_sense(const struct compare *compare, const struct compare_config *config)
+{
+    if (strncmp(config->value[SCHEDULER], "starpu:", 7) != 0)
+        return true;
+    const char *end = strrchr(config->value[SUBJECT], '.');
+    return !strcmp(config->value[RANKS], "1") && !(end && !strcmp(end, ".yaml")) &&
+           config->value[MAPPING] == compare->list[MAPPING].item[0] &&
+           config->value[BALANCE] == compare->list[BALANCE].item[0];
+}
+
+static int multiply(struct compare *compare)
+{
+    size_t all = 1;
+    for (int d = 0; d < COMPARE_DIMENSIONS; d++)
+        all *= compare->list[d].n;
+    if (all > COMPARE_CONFIGS) {
+        fprintf(stderr, "duite-compare: %zu configurations; at most %d\n", all, COMPARE_CONFIGS);
+        return 1;
+    }
+    compare->config = calloc(all, sizeof *compare->config);
+    for (size_t i = 0; i < all && compare->config; i++) {
+        struct compare_config *config = &compare->config[compare->n];
+        size_t rest = i;
+        for (int d = COMPARE_DIMENSIONS - 1; d >= 0; d--) {
+            config->value[d] = compare->list[d].item[rest % compare->list[d].n];
+            rest /= compare->list[d].n;
+        }
+        if (!makes_sense(compare, config))
+            continue;
+        config->run = calloc(compare->rounds, sizeof *config->run);
+        if (!config->run)
+            break;
+        compare->n++;
+    }
+    if (!compare->n)
+        fprintf(stderr, "duite-compare: nothing to run\n");
+    return !compare->n;
+}
+
+/* ---- The runs ---- */
+
+/* Of one subject and grain all states are the same, whatever scheduled them. */
+static void check_hash(struct compare *compare, const struct compare_config *config, size_t round)
+{
+    const struct compare_run *run = &config->run[round];
+    for (size_t i = 0; i < compare->n && run->fine; i++) {
+        const struct compare_config *other = &compare->config[i];
+        if (other->value[SUBJECT] != config->value[SUBJECT] ||
+            other->value[GRAIN] != config->value[GRAIN])
+            continue;
+        for (size_t r = 0; r < compare->rounds; r++)
+            if (other->run[r].fine && strcmp(other->run[r].hash, run->hash) != 0) {
+                fprintf(stderr,
+                        "duite-compare: WRONG: %s with %s, %s ranks, %s threads: hash %s, not %s\n",
+                        config->value[SUBJECT], config->value[SCHEDULER], config->value[RANKS],
+                        config->value[THREADS], run->hash, other->run[r].hash);
+                compare->wrong = true;
+                return;
+            }
+    }
+}
+
+/* A member that was stopped once is not run again: the others would wait as long in each round. */
+static bool was_stopped(const struct compare_config *config, size_t rounds)
+{
+    for (size_t r = 0; r < rounds; r++)
+        if (config->run[r].stopped)
+            return true;
+    return false;
+}
+
+static int run_one(struct compare *compare, struct compare_config *config, size_t round)
+{
+    struct compare_run *run = &config->run[round];
+    if (run->done)
+        return 0;
+    if (was_stopped(config, round))
+        *run = (struct compare_run){.done = true, .why = strdup("not tried again")};
+    else
+        compare_start(compare, config, run);
+    printf("round %zu:", round + 1);
+    for (int d = 0; d < COMPARE_DIMENSIONS; d++)
+        if (compare->list[d].n > 1)
+            printf(" %s", config->value[d]);
+    if (run->fine)
+        printf(": %.4g ms\n", 1e3 * run->seconds);
+    else
+        printf(": failed; %s\n", run->why ? run->why : "out of memory");
+    fflush(stdout);
+    compare->failed += !run->fine;
+    check_hash(compare, config, round);
+    return compare_journal_add(compare, config, round);
+}
+
+/* The order of a round depends on the seed and its number only, so that a run that is taken up
+ * again goes on in the same one. */
+static int run_round(struct compare *compare, size_t *order, size_t round)
+{
+    uint64_t random = compare->seed * 1000003 + round;
+    int failed = 0;
+    for (size_t i = 0; i < compare->n; i++)
+        order[i] = i;
+    for (size_t i = compare->n; i > 1; i--) {
+        size_t other = duite_random(&random) % i, kept = order[other];
+        order[other] = order[i - 1];
+        order[i - 1] = kept;
+    }
+    for (size_t i = 0; i < compare->n && !failed; i++)
+        failed = run_one(compare, &compare->config[order[i]], round);
+    return failed;
+}
+
+/* Others on the machine are looked for once a round, if it took long enough to tell. *most: of all
+ * rounds; the first one in which there are too many draws a warning at once. */
+static void look_for_others(struct compare *compare, size_t round, double *most)
+{
+    char text[200], warning[250];
+    const double others = load_others(&compare->load), cores = compare->load.cores;
+    if (!isfinite(others))
+        return;
+    load_begin(&compare->load);
+    const bool warned = load_warn_others(*most, cores, text, sizeof text);
+    *most = fmax(*most, others);
+    if (warned || !load_warn_others(others, cores, text, sizeof text))
+        return;
+    snprintf(warning, sizeof warning, "in round %zu %s", round + 1, text);
+    compare_journal_warn(compare, warning);
+}
+
+/* Whether there is anything left to run. */
+static bool is_left(const struct compare *compare)
+{
+    for (size_t i = 0; i < compare->n; i++)
+        for (size_t round = 0; round < compare->rounds; round++)
+            if (!compare->config[i].run[round].done)
+                return true;
+    return false;
+}
+
+static int run_all(struct compare *compare)
+{
+    char text[200];
+    double others = 0;
+    size_t *order = calloc(compare->n, sizeof *order);
+    int failed = !order;
+    load_begin(&compare->load);
+    if (is_left(compare))
+        compare_journal_warn(compare, load_warn_average(compare->load.average, compare->load.cores,
+                                                        text, sizeof text));
+    printf("%zu configurations, %zu rounds, order from seed %" PRIu64 "\n", compare->n,
+           compare->rounds, compare->seed);
+    for (size_t round = 0; round < compare->rounds && !failed; round++) {
+        failed = run_round(compare, order, round);
+        look_for_others(compare, round, &others);
+    }
+    free(order);
+    return failed;
+}
+
+static int work(struct compare *compare)
+{
+    if (mkdir(compare->folder, 0777) && errno != EEXIST) {
+        fprintf(stderr, "duite-compare: %s: %s\n", compare->folder, strerror(errno));
+        return 1;
+    }
+    int failed = multiply(compare) || compare_journal_open(compare);
+    if (!failed) {
+        failed = run_all(compare);
+        compare_judge(compare);
+        failed = compare_page(compare) || failed;
+    }
+    compare_journal_close(compare);
+    if (compare->failed)
+        fprintf(stderr, "duite-compare: %zu %s failed: %s/compare.md says which, and why\n",
+                compare->failed, compare->failed > 1 ? "runs" : "run", compare->folder);
+    return failed || compare->wrong || compare->failed;
+}
+
+static void end(struct compare *compare)
+{
+    for (size_t i = 0; i < compare->n; i++) {
+        for (size_t r = 0; r < compare->rounds; r++)
+            free(compare->config[i].run[r].why);
+        free(compare->config[i].run);
+    }
+    free(compare->config);
+}
+
+const char *argp_program_version = "duite-compare (" PACKAGE_STRING ")";
+
+int main(int argc, char **argv)
+{
+    static struct compare compare = {.list = {[GRAIN] = {{"0"}, 1},
+                                              [RANKS] = {{"1"}, 1},
+                                              [THREADS] = {{"2"}, 1},
+                                              [BALANCE] = {{"none"}, 1},
+                                              [MAPPING] = {{"metis"}, 1},
+                                              [SCHEDULER] = {{"steal"}, 1}},
+                                     .folder = "comparison",
+                                     .tasks = "1000",
+                                     .cost = "1e-5",
+                                     .bytes = "4096",
+                                     .steps = "10",
+                                     .seed = 1,
+                                     .rounds = 10,
+                                     .timeout = 600};
+    const struct argp argp = {
+        OPTIONS,
+        parse,
+        "SCENE.yaml|GRAPH...",
+        "Compares schedulers, mappings, balancers, grains, ranks and threads: every product of the "
+        "lists, in rounds of random order.\vA comparison that was interrupted goes on where it "
+        "stopped when the same command is given again; longer lists and more --rounds are added to "
+        "it. Results are in the folder: compare.md has all, runs.csv every run, summary.csv the "
+        "medians. The "
+        "status is 1 if a run failed, a result was "
+        "wrong, or something could not be written.",
+        NULL,
+        NULL,
+        NULL};
+    argp_err_exit_status = 2;
+    if (argp_parse(&argp, argc, argv, 0, NULL, &compare))
+        return 2;
+    setenv("OMPI_MCA_rmaps_base_oversubscribe", "1", 0);
+    setenv("OMPI_MCA_hwloc_base_binding_policy", "none", 0);
+    if (!geteuid()) { /* Open MPI asks for it */
+        setenv("OMPI_ALLOW_RUN_AS_ROOT", "1", 0);
+        setenv("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1", 0);
+    }
+    int failed = work(&compare);
+    end(&compare);
+    return failed;
+}

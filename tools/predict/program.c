@@ -1,0 +1,429 @@
+/* The main program once more: the predictor reads its words in order, and the code that gives homes
+ * in a run gives them here. A slot of the trace stands for the last object that was made in it. */
+#include "tools/predict/program.h"
+
+#include "runtime/base/error.h"
+#include "runtime/base/memory.h"
+#include "runtime/base/rank_set.h"
+#include "runtime/task/owner.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* s: of a message, and of a look at most, if not measured: in a host's memory. */
+#define SOME_MESSAGE 5e-7
+/* The cost of a fork on a rank that has no part in it, over that on a rank that runs it: 47 to 53
+ * ms a step against 119 for cloth in 16,000 blocks, whose neighbours are partly on other ranks.
+ * There, data about an object are never in the cache; where they always are, the ratio is a tenth.
+ */
+#define FOREIGN_FORK 0.40
+
+/* ---- Tasks ---- */
+
+uint32_t predict_owner(const struct predict_graph *graph, const struct predict_fork *fork,
+                       const uint32_t *objects)
+{
+    const struct trace_kernel *kernel = &graph->run->kernel[fork->kernel];
+    duite_mode access[DUITE_MAX_ACCESS];
+    for (size_t i = 0; i < kernel->n_modes; i++)
+        access[i] = trace_mode(kernel, i);
+    if (kernel->n_modes < DUITE_MAX_ACCESS)
+        access[kernel->n_modes] = DUITE_NONE;
+    const uint32_t own = task_owner(access, trace_mode(kernel, SIZE_MAX), fork->n);
+    return own == TASK_NOBODY ? PREDICT_NONE : objects[own];
+}
+
+static int fork_host(const struct predict_graph *graph, const struct predict_fork *fork,
+                     uint32_t own)
+{
+    const int at = fork->at < 0 ? TASK_ANYWHERE : fork->at % (int)graph->cluster->hosts;
+    const int rank = task_owner_rank(at, graph->run->kernel[fork->kernel].replicated,
+                                     own == PREDICT_NONE ? -1 : graph->object[own].home);
+    return rank == TASK_EVERYWHERE ? PREDICT_ALL : rank;
+}
+
+static void fork_fix_owner(struct predict_program *p, uint32_t own)
+{
+    uint32_t slot = own == PREDICT_NONE ? 0 : p->name[own].slot;
+    if (slot)
+        p->table.object[slot].fixed = true;
+}
+
+/* A task that takes so long; `prepared` is by object. */
+static void fork_add(struct predict_program *p, const struct predict_fork *fork,
+                     const struct predict_where *where, double seconds)
+{
+    struct predict_graph *graph = p->graph;
+    const struct trace_kernel *kernel = &graph->run->kernel[fork->kernel];
+    const bool all = where->host == PREDICT_ALL, owned = where->own != PREDICT_NONE;
+    uint32_t node = predict_add(
+        graph, &(struct predict_node){
+                   .number = fork->number,
+                   .kernel = fork->kernel,
+                   .host = all ? 0 : (uint32_t)where->host,
+                   .block = owned ? graph->object[where->own].block : (uint32_t)fork->number,
+                   .priority = fork->priority,
+                   .cost = fork->cost,
+                   .path = where->path,
+                   .seconds = (float)seconds,
+                   .placed = graph->replays && owned ? where->own + 1 : 0,
+                   .kind = all && graph->cluster->hosts > 1 ? PREDICT_EVERYWHERE : PREDICT_TASK});
+    if (graph->failed)
+        return;
+    graph->linked = false;
+    for (size_t i = 0; i < fork->n; i++)
+        predict_use(graph, node, fork->object[i], trace_mode(kernel, i), p->prepared[i]);
+    predict_hold(graph, node);
+}
+
+void predict_task(struct predict_program *p, const struct predict_fork *fork,
+                  const struct predict_where *where)
+{
+    struct predict_graph *graph = p->graph;
+    const struct trace_kernel *kernel = &graph->run->kernel[fork->kernel];
+    const bool follows =
+        task_owner_decides(fork->at < 0 ? TASK_ANYWHERE : fork->at, kernel->replicated);
+    double seconds;
+    if (!predict_times_find(p->times, fork->number, &seconds) || graph->cluster->steady)
+        seconds = predict_times_kernel(p->times, fork->kernel);
+    if (graph->cluster->bodies > 0 &&
+        (!graph->cluster->grows || graph->cluster->grows(graph->run->kernel_name[fork->kernel])))
+        seconds *= graph->cluster->bodies;
+    seconds /= graph->cluster->core_speed;
+    for (size_t i = 0; i < fork->n; i++)
+        p->prepared[i] = where->round ? predict_round_fetch(p, fork, where, i)
+                                      : predict_prepare(graph, fork->object[i],
+                                                        trace_mode(kernel, i), where->host);
+    fork_add(p, fork, where, seconds);
+    if (graph->failed)
+        return;
+    if (kernel->fixed && follows)
+        fork_fix_owner(p, where->own);
+    predict_spend(p, follows ? where->own : PREDICT_NONE, where->host, seconds);
+    p->tasks++;
+}
+
+duite_mode predict_fork_mode(const struct predict_program *p, const struct predict_fork *fork,
+                             size_t k)
+{
+    return fork->kernel == PREDICT_NONE ? DUITE_W
+                                        : trace_mode(&p->graph->run->kernel[fork->kernel], k);
+}
+
+void predict_fork(struct predict_program *p, const struct predict_fork *fork)
+{
+    const uint32_t own = predict_owner(p->graph, fork, fork->object);
+    predict_task(p, fork,
+                 &(struct predict_where){.own = own, .host = fork_host(p->graph, fork, own)});
+}
+
+bool predict_room(struct predict_program *p, size_t n)
+{
+    uint32_t *prepared = base_grow(p->prepared, &p->prepared_capacity, n + 1, sizeof *p->prepared);
+    uint32_t *objects = base_grow(p->objects, &p->objects_capacity, n + 1, sizeof *p->objects);
+    if (prepared)
+        p->prepared = prepared;
+    if (objects)
+        p->objects = objects;
+    p->graph->failed |= !prepared || !objects;
+    return prepared && objects;
+}
+
+static void entry_fork(struct predict_program *p, size_t n, bool has_options)
+{
+    struct predict_fork fork = {.kernel = trace_words_next(&p->words), .n = n, .at = -1};
+    if (has_options) {
+        fork.at = (int32_t)trace_words_next(&p->words);
+        fork.priority = (int32_t)trace_words_next(&p->words);
+        fork.cost = trace_words_float(&p->words);
+    }
+    p->damaged |= fork.kernel >= p->graph->run->n_kernels;
+    if (!predict_room(p, n) || p->damaged)
+        return;
+    for (size_t i = 0; i < n; i++)
+        p->objects[i] = predict_object_at(p, trace_words_next(&p->words));
+    fork.object = p->objects;
+    fork.number = ++p->forks;
+    if (!p->damaged && !p->words.short_of)
+        predict_fork(p, &fork);
+}
+
+/* ---- The main program ---- */
+
+/* An op for all nodes since the last one. */
+static struct predict_op *op_add(struct predict_program *p, bool forked)
+{
+    struct predict_graph *graph = p->graph;
+    void *moved = base_grow(graph->op, &graph->ops_capacity, graph->n_ops + 1, sizeof *graph->op);
+    graph->failed |= !moved;
+    if (!moved)
+        return NULL;
+    graph->op = moved;
+    size_t begin = graph->n_ops ? graph->op[graph->n_ops - 1].end : 0;
+    struct predict_op *op = &graph->op[graph->n_ops++];
+    *op = (struct predict_op){.end = (uint32_t)graph->n_nodes, .node = PREDICT_NONE};
+    op->each = forked ? 1 : 0;
+    p->forked += forked ? graph->n_nodes - begin : 0;
+    return op;
+}
+
+void predict_op_replays(struct predict_program *p, bool begins)
+{
+    op_add(p, begins);
+}
+
+void predict_op_wait(struct predict_program *p)
+{
+    struct predict_op *last = op_add(p, true);
+    if (last)
+        last->waits = true;
+}
+
+/* The mean time of n forks, so many of them a rank's own, over that of one of its own. */
+static double op_share(double own, double n)
+{
+    return n > 0 ? (own + FOREIGN_FORK * (n - own)) / n : 1;
+}
+
+/* Each host forks its own nodes and passes over others'. Returns the busiest one's time for each
+ * node of an op, over that of a fork of its own. */
+static double op_busiest(struct predict_graph *graph, size_t op)
+{
+    const uint32_t begin = op ? graph->op[op - 1].end : 0, end = graph->op[op].end;
+    uint32_t all = 0, most = 0;
+    for (uint32_t i = begin; i < end; i++) {
+        const struct predict_node *node = &graph->node[i];
+        const bool everywhere =
+            node->kind == PREDICT_EVERYWHERE || (node->kind == PREDICT_EXCHANGE && node->block);
+        const uint32_t n = everywhere ? 0 : ++graph->count[node->host];
+        all += everywhere;
+        most = n > most ? n : most;
+    }
+    if (end - begin < graph->cluster->hosts)
+        for (uint32_t i = begin; i < end; i++)
+            graph->count[graph->node[i].host] = 0;
+    else
+        memset(graph->count, 0, graph->cluster->hosts * sizeof *graph->count);
+    return op_share(all + most, end - begin);
+}
+
+/* The main program forked until `from`, and waits until `to`: each fork takes its share of the
+ * time, in which the traced rank passed over those of others, too. */
+static void op_end(struct predict_program *p, uint64_t from, uint64_t to, uint32_t node, bool waits)
+{
+    struct predict_graph *graph = p->graph;
+    struct predict_op *last = op_add(p, true);
+    if (!last)
+        return;
+    last->node = node;
+    last->waits = waits;
+    double tick = graph->run->rank[0].header->tick / graph->cluster->core_speed;
+    double seconds = from > p->since ? tick * (double)(from - p->since) : 0;
+    const double own = p->forked ? seconds / (double)p->forked : 0;
+    for (size_t i = p->first_op; i < graph->n_ops; i++)
+        if (graph->op[i].each > 0)
+            graph->op[i].each = own / op_share(1, graph->run->n_ranks) * op_busiest(graph, i);
+    p->first_op = graph->n_ops;
+    p->forked = 0;
+    p->since = to;
+}
+
+static void entry_get(struct predict_program *p)
+{
+    uint32_t own = predict_object_at(p, trace_words_next(&p->words));
+    int rank = (int32_t)trace_words_next(&p->words);
+    uint64_t from = trace_words_next2(&p->words), to = trace_words_next2(&p->words);
+    if (p->damaged || p->words.short_of)
+        return;
+    int host = rank < 0 ? PREDICT_ALL : rank % (int)p->graph->cluster->hosts;
+    uint32_t node = predict_prepare(p->graph, own, DUITE_R, host);
+    op_end(p, from, to, node, host <= 0 && node != PREDICT_NONE);
+}
+
+static void entry_wait(struct predict_program *p)
+{
+    uint64_t from = trace_words_next2(&p->words), to = trace_words_next2(&p->words);
+    op_end(p, from, to, PREDICT_NONE, true);
+}
+
+/* Finds the values that last: their readers have them since before the trace. One walk over the
+ * whole trace finds them, on one host, where nothing travels. */
+static void lasting_find(struct predict_program *p)
+{
+    struct predict_graph *graph = p->graph;
+    struct predict_cluster one = *graph->cluster;
+    one.hosts = 1;
+    struct predict_graph whole = {.run = graph->run, .cluster = &one};
+    p->code = predict_build(&whole);
+    for (size_t i = 0; i < graph->n_objects && !p->code; i++)
+        graph->object[i].lasts = !whole.object[i].written && whole.object[i].leaves == PREDICT_NONE;
+    predict_graph_free(&whole);
+}
+
+/* The first part of a run that is traced may begin behind others. */
+static void entry_switch(struct predict_program *p, bool on)
+{
+    const bool first = !p->forks && !p->tasks;
+    p->forks = trace_words_next2(&p->words);
+    trace_words_next2(&p->words);
+    uint64_t now = trace_words_next2(&p->words);
+    if (!on)
+        op_end(p, now, now, PREDICT_NONE, true);
+    else if (first && p->forks && p->graph->cluster->hosts > 1)
+        lasting_find(p);
+    p->since = now;
+}
+
+static void entry_read(struct predict_program *p)
+{
+    uint32_t first = trace_words_next(&p->words);
+    size_t n = first >> 8; /* of things that have a word at least */
+    if (n > trace_words_left(&p->words)) {
+        p->damaged = true;
+        return;
+    }
+    switch (first & 0xff) {
+    case TRACE_OBJECT:
+        predict_make(p);
+        break;
+    case TRACE_FREE:
+        predict_drop(p);
+        break;
+    case TRACE_HINT:
+        predict_hint(p, n);
+        break;
+    case TRACE_COLOCATE:
+        predict_follow(p);
+        break;
+    case TRACE_HOMES:
+        predict_homes(p, n);
+        break;
+    case TRACE_ON:
+    case TRACE_OFF:
+        entry_switch(p, (first & 0xff) == TRACE_ON);
+        break;
+    case TRACE_FORK:
+    case TRACE_FORKED:
+        entry_fork(p, n, (first & 0xff) == TRACE_FORKED);
+        break;
+    case TRACE_SET: {
+        uint32_t own = predict_object_at(p, trace_words_next(&p->words));
+        if (!p->damaged)
+            predict_set(p->graph, own, p->graph->object[own].home);
+        break;
+    }
+    case TRACE_GET:
+        entry_get(p);
+        break;
+    case TRACE_WAIT:
+        entry_wait(p);
+        break;
+    case TRACE_GRAPH:
+        predict_take_graph(p, n);
+        break;
+    case TRACE_REPLAY:
+        predict_replay(p, n);
+        break;
+    default:
+        p->damaged = true;
+    }
+}
+
+/* ---- All of it ---- */
+
+static int program_walk(struct predict_program *p)
+{
+    struct predict_graph *graph = p->graph;
+    while (trace_words_left(&p->words) && !p->damaged && !graph->failed && !p->code)
+        entry_read(p);
+    if (graph->failed)
+        return base_no_memory("the graph of a trace");
+    if (p->code)
+        return p->code;
+    if (p->damaged || p->words.short_of)
+        return base_error(DUITE_E_ARGUMENT,
+                          "the trace is damaged: word %zu of its program is invalid", p->words.at);
+    if (!p->tasks)
+        return base_error(DUITE_E_ARGUMENT, "the trace has no tasks of the main program");
+    op_end(p, p->since, p->since, PREDICT_NONE, true);
+    return graph->failed ? base_no_memory("the graph of a trace") : DUITE_OK;
+}
+
+/* Each task that ran left an event. In rounds that count at least one task in 16 ran; the others
+ * were poisoned. The constant is for rounds without tasks. */
+static uint64_t program_max_replayed(const struct trace_run *run)
+{
+    uint64_t n = 0;
+    for (uint32_t r = 0; r < run->n_ranks; r++)
+        n += run->rank[r].n_events;
+    return 16 * n + 1000;
+}
+
+/* The cores' time for messages: as the cluster says, else as in the trace. */
+static void program_messages(struct predict_graph *graph, const struct predict_times *times)
+{
+    const struct predict_cluster *cluster = graph->cluster;
+    double message, look;
+    const bool seen = predict_times_messages(times, &message, &look);
+    graph->message = seen ? message / cluster->core_speed : SOME_MESSAGE;
+    if (cluster->message >= 0)
+        graph->message = cluster->message;
+    graph->look = seen ? look / cluster->core_speed : fmin(graph->message, SOME_MESSAGE);
+    if (cluster->look >= 0)
+        graph->look = cluster->look;
+    if (cluster->hosts == 1)
+        graph->look = 0;
+}
+
+static bool program_prepare(struct predict_program *p)
+{
+    struct predict_graph *graph = p->graph;
+    const uint32_t hosts = graph->cluster->hosts;
+    p->times = predict_times_new(graph->run, graph->cluster->steady);
+    graph->piece = base_alloc(hosts * sizeof *graph->piece);
+    graph->began = base_alloc(hosts * sizeof *graph->began);
+    graph->count = base_alloc_zero(hosts * sizeof *graph->count);
+    graph->phase = base_alloc_zero(hosts * sizeof *graph->phase);
+    graph->ring = base_alloc(hosts * sizeof *graph->ring);
+    graph->among = base_alloc(base_ranks_words((int)hosts) * sizeof *graph->among);
+    graph->round = PREDICT_NONE;
+    graph->flag = PREDICT_NONE;
+    if (!p->times || !graph->piece || !graph->began || !graph->count || !graph->phase ||
+        !graph->among || !graph->ring ||
+        !(p->blocks_on = base_alloc_zero(hosts * sizeof *p->blocks_on)) ||
+        data_table_start(&p->table, graph->cluster->mapping ? (int)hosts : 1) ||
+        !predict_moves_start(p))
+        return false;
+    for (uint32_t kind = 0; kind < sizeof graph->own / sizeof graph->own[0]; kind++)
+        graph->own[kind] = predict_times_own(p->times, kind) / graph->cluster->core_speed;
+    graph->overhead = graph->cluster->overhead < 0
+                          ? predict_times_gap(p->times) / graph->cluster->core_speed
+                          : graph->cluster->overhead;
+    program_messages(graph, p->times);
+    predict_times_spread(p->times, &graph->bodies, &graph->medians);
+    return true;
+}
+
+int predict_build(struct predict_graph *graph)
+{
+    struct predict_program p = {.graph = graph,
+                                .words = trace_words_of(graph->run),
+                                .max_replayed = program_max_replayed(graph->run)};
+    int code = program_prepare(&p) ? program_walk(&p) : base_no_memory("the graph of a trace");
+    graph->n_tasks = p.tasks;
+    if (!code && graph->merges > 0)
+        predict_sums_take(graph,
+                          predict_times_sums(p.times) / graph->merges / graph->cluster->core_speed);
+    predict_moves_stop(&p);
+    data_table_stop(&p.table);
+    base_free(p.blocks_on);
+    free(p.block);
+    predict_times_free(p.times);
+    predict_graphs_free(&p);
+    free(p.slot);
+    free(p.name);
+    free(p.prepared);
+    free(p.objects);
+    return code;
+}

@@ -2,40 +2,15 @@
 #define DUITE_COMM_COMM_H
 
 #include "runtime/base/monitor.h"
-#include "runtime/comm/channel.h"
 #include "runtime/comm/history.h"
+#include "runtime/comm/message.h"
 #include "runtime/data/object.h"
-#include "runtime/data/packet.h"
 
 #include <mpi.h>
 
-/* Messages between ranks. A message is a packet, named by its key. It is sent as soon as its bytes
- * are there and may arrive before its receiver expects it. A poll does all it can and never waits.
- *
- * Only the holder of `lock` calls MPI; packets are delivered after the lock is let go. */
-struct comm;
-struct worker; /* the caller, for those who are called back; NULL: no worker */
-
-/* A packet on its way to a rank, from comm_send until it is sent. The sender keeps it. */
-struct comm_letter {
-    struct comm_letter *next; /* the comm's */
-    struct data_key key;
-    struct data_packet *packet; /* freed once it is sent; NULL: the sender's, see comm_owner */
-    void *sender;
-    int to;
-};
-
-/* Called when a packet came for `what`, which expected it; the callee owns the packet. NULL: it
- * will not come. `context`: of the comm. */
-typedef void comm_arrived(void *context, struct worker *worker, void *what,
-                          struct data_packet *packet);
-
-/* Who expects a packet, and the rank it comes from (-1: several). */
-struct comm_target {
-    comm_arrived *arrived;
-    void *what;
-    int from;
-};
+/* All of the communication but message.h: its start and end, collective calls, idle ranks. A poll
+ * does all it can and never waits. Only the holder of `lock` calls MPI; packets are delivered after
+ * the lock is let go. */
 
 /* What the layers above do with messages; `context` is theirs. Any thread. All but `packet` and
  * `broke` are called without the lock. */
@@ -99,29 +74,13 @@ void comm_open(struct comm *comm, bool requests);
  * so. False if MPI may still use its communicator, which then must not be freed. */
 bool comm_stop(struct comm *comm);
 
-/* Posts a letter, which the next poll sends. comm_posted: whether there is something to send. Any
- * thread. */
-void comm_send(struct comm *comm, struct comm_letter *letter);
-bool comm_posted(struct comm *comm);
-
-/* Opens channels. Main thread, all ranks alike. Errors: DUITE_E_MPI, memory; or COMM_NEEDS_TAGS on
- * all ranks: then the ranks meet, settle, meet again, call comm_channels_met, and try once more.
- * Settling (comm_channels_settle) waits until the channels that the program dropped on this rank
- * are closed. */
-int comm_channels_open(struct comm *comm, struct comm_channel_set *set);
+/* After COMM_NEEDS_TAGS: settling waits until the channels that the program dropped on this rank
+ * are closed; met: all ranks have settled. Main thread. */
 int comm_channels_settle(struct comm *comm);
 void comm_channels_met(struct comm *comm);
 
-/* A channel is ready for its next message: sends it right now, or awaits it. Any thread. */
-void comm_channel_ready(struct comm *comm, struct worker *worker, struct comm_channel *channel);
-
 /* True while messages of channels are awaited. Any thread. */
 bool comm_awaits(struct comm *comm);
-
-/* Sets the target of the packets of that key; those that came already are delivered. Main thread.
- */
-int comm_expect(struct comm *comm, struct worker *worker, struct data_key key,
-                struct comm_target target, uint32_t packets);
 
 /* Sends, receives, delivers and finishes what can be. Returns whether anything happened. Any
  * thread. */
@@ -233,11 +192,6 @@ int comm_sum(struct comm *comm, double *numbers, int n, void (*between)(void *co
  * A rank that lost a message, or cannot go on for another reason, breaks. From then on it sends
  * only an abort message with the reason to all others, which break in turn. Blocking calls return
  * the code; the main thread gives up everything still expected; only stop is left. */
-
-/* Breaks; the first reason counts. Any thread. */
-void comm_broke(struct comm *comm, int code, const char *message);
-/* The same, for want of memory for `what`. */
-void comm_broke_memory(struct comm *comm, const char *what);
 
 /* The code with the message set once communication is broken, else 0. */
 int comm_broken(struct comm *comm);

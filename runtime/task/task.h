@@ -1,7 +1,8 @@
 #ifndef DUITE_TASK_TASK_H
 #define DUITE_TASK_TASK_H
 
-#include "runtime/comm/comm.h"
+#include "runtime/comm/history.h"
+#include "runtime/comm/message.h"
 #include "runtime/data/object.h"
 #include "runtime/data/sum.h"
 #include "runtime/task/above.h"

@@ -69,7 +69,7 @@ bool offload_arrived(struct task_graph *graph, struct worker *worker, struct dat
             task->access[i].sized = param_of(own)[i].sized;
     }
     atomic_fetch_add_explicit(&graph->offloaded, 1, memory_order_relaxed);
-    work_ready(graph->pool, worker, task);
+    task_ready(graph, worker, task);
     return true;
 }
 
@@ -311,7 +311,7 @@ void offload_over(struct task_scope *above, struct worker *worker)
     task->state = TASK_LEAVES;
     task->n = 0; /* no value that it read is sent */
     task->send = &own->send;
-    work_ready(graph->pool, worker, task);
+    task_ready(graph, worker, task);
 }
 
 void offload_answered(struct task_graph *graph, struct task *task)

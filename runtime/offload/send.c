@@ -192,7 +192,7 @@ bool offload_send(struct task_graph *graph, struct worker *worker, struct task *
     pending->send.key = packet->key;
     task->state = TASK_DELEGATED;
     task->send = &pending->send;
-    work_ready(graph->pool, worker, task);
+    task_ready(graph, worker, task);
     return true;
 }
 

@@ -5,7 +5,7 @@
 #include "runtime/comm/message.h"
 #include "runtime/data/object.h"
 #include "runtime/data/sum.h"
-#include "runtime/task/above.h"
+#include "runtime/queue/pool.h"
 #include "runtime/task/fingerprint.h"
 #include "runtime/task/owner.h"
 
@@ -80,7 +80,7 @@ _Static_assert(sizeof(struct task_access) == 16, "tasks that wait take little me
 struct task {
     _Atomic uint32_t pending; /* accesses that wait, and 1 while it is being forked */
     uint32_t n;
-    struct task *next; /* a link for whoever holds the task: queues, lists */
+    struct queue_link link; /* for whoever holds the task: queues, lists */
     union {
         struct task_scope *inner;       /* BODY: its children's scope, or NULL */
         struct task_sum *sum;           /* COMBINE, PIECES, GATHER */
@@ -107,6 +107,7 @@ struct task {
     unsigned later : 1; /* a BODY of a later round than the first of a replay: see task_round_at */
     struct task_access access[];
 };
+_Static_assert(offsetof(struct task, link) == QUEUE_LINK_AT, "queues know where the link is");
 
 enum { TASK_GRAIN = 16, TASK_MAX_OBJECTS = 1 << 26 /* of a task */ };
 
@@ -179,7 +180,7 @@ struct task_scope {
                                     task's */
     _Atomic uint64_t unfinished; /* tasks forked here, each with its descendants; values to be
                                     passed to the scope above; 1 while the body runs. The main
-                                    program's: see work_over */
+                                    program's: see queue_over */
     uint64_t forks;              /* so far; inside a task waits count, too */
     const struct data_failure *failure; /* first in reference order since the last wait; `lock` */
     uint64_t number;                    /* of its task; as are: */
@@ -191,6 +192,13 @@ struct task_scope {
     const struct data_failure *place; /* of an offloaded task's top: where it stands
                                          at home */
 };
+
+/* Checking mode: calls the body of the task with that number, and returns its code. */
+typedef int task_check_body(struct queue_pool *pool, const duite_kernel *kernel, uint64_t number,
+                            duite_call *call);
+
+/* The task of another rank with this top scope is over, with all its descendants. */
+typedef void task_top_over(struct task_scope *top, struct worker *worker);
 
 struct task_graph {
     /* Read by all workers, with every task. */
@@ -211,10 +219,10 @@ struct task_graph {
     struct task_fixed **kernel_place; /* by address, open addressing */
     uint32_t kernel_mask;
     bool paths; /* plans are to know the paths of their tasks; set before the first of them */
-    _Atomic int given_up;   /* bodies do not run any more */
-    bool checks;            /* bodies are called by work_check_body */
-    struct work_pool *pool; /* runs the tasks; NULL: not yet, or no more */
-    struct comm *comm;      /* NULL: there is one rank */
+    _Atomic int given_up;    /* bodies do not run any more */
+    task_check_body *check;  /* checking mode: calls bodies; NULL: they are called directly */
+    struct queue_pool *pool; /* runs the tasks; NULL: not yet, or no more */
+    struct comm *comm;       /* NULL: there is one rank */
     /* The main thread's, written with every fork: on cache lines of its own. */
     _Alignas(
         64) struct task_scope root; /* the main program; its `forks` are the same on all ranks */
@@ -225,7 +233,8 @@ struct task_graph {
     /* Seldom used. */
     _Alignas(64) _Atomic int broken; /* memory ran out in a fork: the code of every later call */
     _Atomic uint64_t offloaded;      /* tasks of other ranks that are here */
-    pthread_mutex_t lock;            /* of the rest, and of the failures of scopes */
+    task_top_over *offloaded_over;
+    pthread_mutex_t lock; /* of the rest, and of the failures of scopes */
     struct task_failure *failures;
     struct offload_names *offload_names; /* tasks on other ranks, or NULL */
     bool offload_closed;                 /* no more of them */
@@ -233,7 +242,8 @@ struct task_graph {
 };
 
 /* Checks `kernels`, which NULL ends, and copies the list; checks `laws`, likewise or NULL, and does
- * not keep it. The runner of the tasks sets `pool`, `comm` and `checks`. Errors: DUITE_E_KERNEL,
+ * not keep it. The runner of the tasks sets `pool`, `comm`, `check` and
+ * `offloaded_over`. Errors: DUITE_E_KERNEL,
  * DUITE_E_LAW, memory; task_graph_stop is due all the same. */
 int task_graph_start(struct task_graph *graph, int rank, int n_ranks,
                      const duite_kernel *const *kernels, const duite_law *const *laws);
@@ -301,8 +311,16 @@ void task_release(struct task_graph *graph, struct worker *worker, struct data_v
 
 /* ---- Any worker ---- */
 
-/* Runs a ready task of one of this folder's types, which task_finish then ends; work_run_task runs
- * tasks of all types. `call` has context, rt, rank and worker set. Returns whether a body ran. */
+/* A task may run: goes to a worker, or is sent. task_place: the same for one that others than tasks
+ * of this folder made ready, with its affinity (see duite_ready). */
+void task_ready(struct task_graph *graph, struct worker *worker, struct task *task);
+void task_place(struct task_graph *graph, struct worker *worker, struct task *task,
+                uint32_t affinity);
+/* For queues. */
+queue_ranks_by task_rank;
+
+/* Runs a ready task of one of this folder's types, which task_finish then ends; the workers know
+ * who runs other types. `call` has context, rt, rank and worker set. Returns whether a body ran. */
 bool task_run(struct task_graph *graph, struct worker *worker, struct task *task,
               const duite_call *call);
 /* Ends a task: publishes its outputs, releases its inputs, makes its successors ready, frees it. */

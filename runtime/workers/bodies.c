@@ -17,7 +17,7 @@ uint64_t work_batch_ends(struct worker *worker, struct work_batch *batch)
     const uint64_t outside = worker->within + (batch->tasks - 1) * worker->gap;
     *batch->brief = took < batch->limit * batch->tasks ? *batch->brief + batch->tasks : 0;
     worker->within = 0;
-    work_bump(&worker->counts.busy, took > outside ? took - outside : 0);
+    queue_bump(&worker->counts.busy, took > outside ? took - outside : 0);
     batch->start = end;
     batch->tasks = 0;
     return took;
@@ -32,7 +32,7 @@ bodies_run(struct worker *worker, struct task_frame *frame, struct task *task,
     const struct task *below = work_enters(worker, task);
     const bool body = task_run_body(frame, task);
     work_leaves(worker, below);
-    work_bump(&worker->counts.tasks, body);
+    queue_bump(&worker->counts.tasks, body);
     if (batch && (++batch->tasks == BATCH || worker->brief_bodies < BATCH))
         work_batch_ends(worker, batch);
     worker->finishing = true;
@@ -46,11 +46,11 @@ bodies_run(struct worker *worker, struct task_frame *frame, struct task *task,
  * it look around. */
 static inline struct task *bodies_take(struct worker *worker, unsigned in_turn)
 {
-    struct work_queue *queue = &worker->queue;
+    struct queue *queue = &worker->queue;
     if (in_turn > IN_TURN || worker->brief_bodies < BATCH || worker->waits ||
-        !worker->pool->by_affinity || work_queue_ranks(queue))
+        !worker->pool->queues.by_affinity || queue_ranks(queue))
         return NULL;
-    return work_queue_take(queue, DUITE_NEWEST);
+    return queue_take(queue, DUITE_NEWEST);
 }
 
 struct task *work_run_bodies(struct worker *worker, struct task *task, unsigned *length)
@@ -80,12 +80,12 @@ struct task *work_run_bodies(struct worker *worker, struct task *task, unsigned 
 /* The newest of the worker's own queue, if the body that waits forked it. */
 static inline struct task *bodies_take_child(struct worker *worker)
 {
-    struct work_queue *queue = &worker->queue;
-    struct task *task = work_queue_ranks(queue) ? NULL : work_queue_take(queue, DUITE_NEWEST);
+    struct queue *queue = &worker->queue;
+    struct task *task = queue_ranks(queue) ? NULL : queue_take(queue, DUITE_NEWEST);
     if (!task || task->scope == worker->waits)
         return task;
-    work_queue_push(queue, task);
-    work_wake_one(worker->pool, DUITE_NO_QUEUE); /* it could not be found meanwhile */
+    queue_push(queue, task);
+    queue_wake_one(&worker->pool->queues, DUITE_NO_QUEUE); /* it could not be found meanwhile */
     return NULL;
 }
 

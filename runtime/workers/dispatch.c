@@ -80,7 +80,7 @@ static void messages_lost(void *graph, struct worker *worker)
 
 static void messages_broke(void *graph)
 {
-    work_notify(((const struct task_graph *)graph)->pool);
+    queue_notify(((const struct task_graph *)graph)->pool);
 }
 
 static void message_through(void *graph, struct worker *worker, struct comm_channel *channel)
@@ -97,8 +97,3 @@ const struct comm_owner work_messages = {.packet = task_send_packet,
                                          .unpack = plan_channel_unpack,
                                          .lose = plan_channel_lost,
                                          .through = message_through};
-
-void work_offloaded_over(struct task_scope *top, struct worker *worker)
-{
-    offload_over(top, worker);
-}

@@ -58,9 +58,9 @@ static inline bool nodes_await(struct worker *worker, struct task *task)
 /* True if any queue has tasks. */
 static bool nodes_elsewhere(const struct work_pool *pool)
 {
-    bool some = !work_queue_is_empty(&pool->shared);
+    bool some = !queue_is_empty(&pool->queues.shared);
     for (unsigned i = 0; i < pool->setup.threads && !some; i++)
-        some = !work_queue_is_empty(&pool->worker[i].queue);
+        some = !queue_is_empty(&pool->queues.worker[i].queue);
     return some;
 }
 
@@ -81,7 +81,7 @@ static bool awaits_node(struct worker *worker, struct task *task, struct work_ba
         now = base_ticks();
         crowded = work_is_crowded(worker, now);
     }
-    work_bump(&worker->counts.idle, now - since);
+    queue_bump(&worker->counts.idle, now - since);
     batch->start = now;
     return came;
 }
@@ -118,7 +118,7 @@ static inline void nodes_run(struct worker *worker, struct task_frame *frame, st
     const bool affine = plan_is_affine(task->node->plan);
     const bool body = plan_node_run_body(frame, task);
     work_leaves(worker, below);
-    work_bump(&worker->counts.tasks, body);
+    queue_bump(&worker->counts.tasks, body);
     if (++batch->tasks == BATCH || worker->brief_nodes < BATCH || affine) {
         const bool alone = batch->tasks == 1;
         const uint64_t took = work_batch_ends(worker, batch);
@@ -127,7 +127,7 @@ static inline void nodes_run(struct worker *worker, struct task_frame *frame, st
     }
     worker->finishing = true;
     worker->may_chain = work_goes_on(worker, length);
-    if (worker->awaits.on && worker->may_chain && work_queue_is_empty(&worker->queue))
+    if (worker->awaits.on && worker->may_chain && queue_is_empty(&worker->queue))
         nodes_count_down_awaiting(worker, task, batch);
     else
         plan_node_count_down(frame->body.graph, worker, task, nodes_ready, NULL);

@@ -34,7 +34,7 @@ void work_waits(struct work_pool *pool, const struct work_why *why)
     if (why)
         atomic_store_explicit(&waits->what, why->what, memory_order_relaxed);
     atomic_store_explicit(&waits->tasks, pool->setup.graph->tasks, memory_order_relaxed);
-    work_bump(&waits->turn, 1);
+    queue_bump(&waits->turn, 1);
     atomic_store_explicit(&waits->call, why ? why->call : NULL, memory_order_release);
 }
 
@@ -46,8 +46,8 @@ static uint64_t pool_movement(struct work_pool *pool)
     sum =
         sum * odd + atomic_load_explicit(&pool->setup.graph->root.unfinished, memory_order_relaxed);
     for (unsigned i = 0; i < pool->setup.threads; i++) {
-        const struct worker *worker = &pool->worker[i];
-        const struct work_counts *counts = &worker->counts;
+        const struct worker *worker = &pool->queues.worker[i];
+        const struct queue_counts *counts = &worker->counts;
         sum = sum * odd + (uintptr_t)atomic_load_explicit(&worker->runs, memory_order_relaxed);
         sum = sum * odd + atomic_load_explicit(&counts->over, memory_order_relaxed);
         sum = sum * odd + atomic_load_explicit(&counts->tasks, memory_order_relaxed);
@@ -60,7 +60,7 @@ static uint64_t pool_movement(struct work_pool *pool)
 static bool pool_runs_a_body(struct work_pool *pool)
 {
     for (unsigned i = 0; i < pool->setup.threads; i++)
-        if (atomic_load_explicit(&pool->worker[i].runs, memory_order_relaxed))
+        if (atomic_load_explicit(&pool->queues.worker[i].runs, memory_order_relaxed))
             return true;
     return false;
 }
@@ -71,7 +71,7 @@ bool work_stands_still(struct work_pool *pool, struct work_stillness *still)
     const uint64_t now = base_ticks(), movement = pool_movement(pool);
     if (!still->since || still->movement != movement || pool_runs_a_body(pool))
         *still = (struct work_stillness){movement, now};
-    return (double)(now - still->since) * pool->tick > seconds;
+    return (double)(now - still->since) * pool->queues.tick > seconds;
 }
 
 /* ---- The report ---- */
@@ -169,7 +169,8 @@ static unsigned report_bodies(struct report *report, bool held)
     struct work_pool *pool = report->pool;
     unsigned n = 0;
     for (unsigned i = 0; i < pool->setup.threads; i++) {
-        const struct task *task = atomic_load_explicit(&pool->worker[i].runs, memory_order_acquire);
+        const struct task *task =
+            atomic_load_explicit(&pool->queues.worker[i].runs, memory_order_acquire);
         if (!task)
             continue;
         if (n++ >= MAX_BODIES)
@@ -179,7 +180,8 @@ static unsigned report_bodies(struct report *report, bool held)
                         held ? report_words(report, task).text : "a task");
     }
     for (unsigned i = 0; i < pool->setup.threads && held; i++) {
-        const struct task *task = atomic_load_explicit(&pool->worker[i].runs, memory_order_acquire);
+        const struct task *task =
+            atomic_load_explicit(&pool->queues.worker[i].runs, memory_order_acquire);
         for (uint32_t k = 0; task && task->type == TASK_BODY && k < task->n; k++)
             report_waiters(report, task, k);
     }
@@ -301,8 +303,8 @@ static uint64_t report_unfinished(const struct work_pool *pool)
 {
     uint64_t left = atomic_load_explicit(&pool->standstill.waits.tasks, memory_order_relaxed);
     for (unsigned i = 0; i < pool->setup.threads; i++)
-        left -= atomic_load_explicit(&pool->worker[i].counts.over, memory_order_relaxed) -
-                atomic_load_explicit(&pool->worker[i].counts.more, memory_order_relaxed);
+        left -= atomic_load_explicit(&pool->queues.worker[i].counts.over, memory_order_relaxed) -
+                atomic_load_explicit(&pool->queues.worker[i].counts.more, memory_order_relaxed);
     return left;
 }
 

@@ -354,7 +354,8 @@ static const struct {
     {CASE("start, stop", start_stop), {"idle_sleep", "&pool->stop", EXPLORE_DROP}},
 #ifndef REAL_QUEUES /* there it takes too long */
     {SERVED("one task for another", leave_one), {"queue_put", "the put", EXPLORE_RELAX}},
-    {SERVED("one task waited for", wait_one), {"queue_main_has_enough", "&pool->awaited", EXPLORE_DROP}},
+    {SERVED("one task waited for", wait_one),
+     {"queue_main_has_enough", "&pool->awaited", EXPLORE_DROP}},
     {SERVED("main polled, and leaves", idle_then_leave),
      {"work_idle_over", "&worker->pool->poller", EXPLORE_RELAX}},
     {SERVED("main polled, and leaves", idle_then_leave),

@@ -46,13 +46,14 @@ CORE_LIBS = libduite_core.a $(libduite_la_LIBADD)
 
 include runtime/base/module.mk
 include runtime/data/module.mk
+include runtime/queue/module.mk
+include runtime/comm/module.mk
 include runtime/task/module.mk
 include runtime/plan/module.mk
 include runtime/offload/module.mk
 include runtime/sched/module.mk
 include runtime/map/module.mk
 include runtime/balance/module.mk
-include runtime/comm/module.mk
 include runtime/check/module.mk
 include runtime/trace/module.mk
 include runtime/workers/module.mk

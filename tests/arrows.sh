@@ -1,26 +1,29 @@
 #!/bin/sh
-# The include arrows of docs/design/: every #include of a header of ours, and of duite.h, is one that is allowed.
+# The arrows of docs/design/, by includes and by symbols: every #include of a header of ours, and of duite.h, and every name that
+# an object uses of another one, is allowed.
 . "${srcdir:-.}/tests/support/tap.sh"
 
-# arrows TREE: prints each include that is not allowed, fails if there is one.
-arrows() {
+# The rules, and the layer of a file, header or object: its two first folders, or what a program or a header for users is.
+rules='
+    function layer(path,    part, n) {
+        n = split(path, part, "/")
+        if (path ~ /^runtime\/(duite|duite_policy)\.h$/) return "users"
+        if (n > 2) return part[1] "/" part[2]
+        return part[1] "/programs"
+    }
+    BEGIN {
+        while ((getline line < rules) > 0) {
+            if (line ~ /^(#|[[:space:]]*$)/) continue
+            n = split(line, word, /[[:space:]]+/)
+            known[word[1]] = 1
+            for (i = 3; i <= n; i++) allowed[word[1] " " word[i]] = 1
+        }
+    }'
+
+# includes TREE: prints each include that is not allowed, fails if there is one.
+includes() {
     (cd "$1" && find runtime tools cloth -name '*.[ch]' -exec grep -HE '^[[:space:]]*#[[:space:]]*include' {} +) |
-        awk -F: -v rules="$srcdir/tests/arrows.txt" '
-        # The layer of a file or header: its two first folders, or what a program or a header for users is.
-        function layer(path,    part, n) {
-            n = split(path, part, "/")
-            if (path ~ /^runtime\/(duite|duite_policy)\.h$/) return "users"
-            if (n > 2) return part[1] "/" part[2]
-            return part[1] "/programs"
-        }
-        BEGIN {
-            while ((getline line < rules) > 0) {
-                if (line ~ /^(#|[[:space:]]*$)/) continue
-                n = split(line, word, /[[:space:]]+/)
-                known[word[1]] = 1
-                for (i = 3; i <= n; i++) allowed[word[1] " " word[i]] = 1
-            }
-        }
+        awk -F: -v rules="$srcdir/tests/arrows.txt" "$rules"'
         {
             file = $1
             from = layer(file)
@@ -47,20 +50,90 @@ arrows() {
         END { exit bad }'
 }
 
+# objects TREE: the objects there that have a source here. Others are left over from files that were moved.
+objects() {
+    (cd "$1" && find runtime tools cloth -name '*.o') | while read -r object; do
+        folder=$(dirname "$object")
+        name=$(basename "$object" .o)
+        while [ ! -f "$srcdir/${folder%/.libs}/$name.c" ] && [ "${name#*-}" != "$name" ]; do
+            name=${name#*-} # automake writes PROGRAM-FILE.o where a program has flags of its own
+        done
+        [ ! -f "$srcdir/${folder%/.libs}/$name.c" ] || echo "$object"
+    done
+}
+
+# symbols TREE [OBJECT]: prints each call, by an object there, of a function or datum of a folder that is not allowed; fails if
+# there is one. OBJECT belongs to runtime/base. Names of duite.h are for users; inside the runtime they belong to their folders.
+# A rule that allows one header allows the names in it.
+symbols() {
+    (cd "$1" && nm -A -P -g $(objects .) $2) |
+        awk -v rules="$srcdir/tests/arrows.txt" -v top="$srcdir" -v planted="$2" "$rules"'
+        function names(header, symbol,    line) {
+            if (!(header in text)) {
+                text[header] = " "
+                while ((getline line < (top "/" header)) > 0) {
+                    gsub(/[^A-Za-z0-9_]+/, " ", line)
+                    text[header] = text[header] line " "
+                }
+            }
+            return index(text[header], " " symbol " ")
+        }
+        function may(from, to, symbol,    rule, word) {
+            if (from == to || ((from " " to) in allowed)) return 1
+            if (symbol ~ /^duite_/ && from !~ /^runtime\// && ((from " users") in allowed)) return 1
+            for (rule in allowed) {
+                split(rule, word, " ")
+                if (word[1] == from && word[2] ~ /\.h$/ && layer(word[2]) == to && names(word[2], symbol)) return 1
+            }
+            return 0
+        }
+        {
+            object = substr($1, 1, length($1) - 1)
+            if (object == planted) object = "runtime/base/planted.o"
+            sub(/^\.\//, "", object)
+            if ($3 == "U") uses[object " " $2] = 1
+            else if ($3 ~ /^[TDBRVWC]$/) homes[$2] = homes[$2] " " layer(object)
+        }
+        END {
+            for (use in uses) {
+                split(use, part, " ")
+                from = layer(part[1])
+                n = split(homes[part[2]], to, " ")
+                fine = !n
+                for (i = 1; i <= n && !fine; i++) fine = may(from, to[i], part[2])
+                if (fine) continue
+                print part[1] ": may not use " part[2] " of" homes[part[2]]
+                bad = 1
+            }
+            exit bad
+        }'
+}
+
 # plant FILE HEADER: whether the check finds that include, alone in a tree.
 plant() {
     rm -rf "$scratch/tree"
     mkdir -p "$scratch/tree/runtime" "$scratch/tree/tools" "$scratch/tree/cloth" "$scratch/tree/$(dirname "$1")"
     printf '#include %s\n' "$2" >> "$scratch/tree/$1"
-    if arrows "$scratch/tree" > "$scratch/found"; then
+    if includes "$scratch/tree" > "$scratch/found"; then
         echo "not found: $1 including $2"
         return 1
     fi
     grep -F "$1: " "$scratch/found"
 }
 
+# plant_call FUNCTION: whether the check finds a call of it by runtime/base, which declares it by hand.
+plant_call() {
+    printf 'void %s(void);\nvoid planted(void);\nvoid planted(void) { %s(); }\n' "$1" "$1" > "$scratch/planted.c"
+    $CC -c -o "$scratch/planted.o" "$scratch/planted.c" || return 1
+    if symbols . "$scratch/planted.o" > "$scratch/found"; then
+        echo "not found: a call of $1"
+        return 1
+    fi
+    grep -F "runtime/base/planted.o: may not use $1 of" "$scratch/found"
+}
+
 plan_later
-ok "every include points downwards" arrows "$srcdir"
+ok "every include points downwards" includes "$srcdir"
 ok "finds runtime including cloth" plant runtime/base/planted.c '"cloth/base/error.h"'
 ok "finds an upward include in the runtime" plant runtime/base/planted.h '"runtime/task/task.h"'
 ok "finds a folder beside it" plant runtime/sched/planted.c '"runtime/map/planted.h"'
@@ -73,3 +146,6 @@ ok "finds physics including mesh" plant cloth/physics/planted.c '"cloth/mesh/mes
 ok "finds an upward include in the cloth" plant cloth/flow/planted.c '"cloth/scene/scene.h"'
 ok "finds a program's use of the runtime's inside" plant cloth/planted.c '"runtime/base/error.h"'
 ok "finds an include relative to its folder" plant cloth/mesh/planted.c '"mesh.h"'
+ok "every call points downwards" symbols .
+ok "finds an upward call that no header declares" plant_call task_ready
+ok "finds the library's use of its own interface" plant_call duite_fork

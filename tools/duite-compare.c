@@ -16,9 +16,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-const char *const compare_dimension[COMPARE_DIMENSIONS] = {
-    "subject", "grain", "ranks", "threads", "balance", "mapping", "scheduler"};
-
 enum { ROUNDS = 256, SEED, OUTPUT, TIMEOUT, TASKS, COST, BYTES, STEPS, SET, LIST };
 
 static const struct argp_option OPTIONS[] = {

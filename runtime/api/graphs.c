@@ -148,7 +148,7 @@ int duite_graph_free(duite *rt, duite_graph graph)
     if (code)
         return code;
     task_mix(&rt->graph, graph.slot);
-    task_mixed(&rt->graph, TASK_CALLED, TASK_CALLED_GRAPH_FREE);
+    task_mixed(&rt->graph, COMM_CALLED, COMM_CALLED_GRAPH_FREE);
     graph_free_slot(rt, found);
     return DUITE_OK;
 }
@@ -241,11 +241,11 @@ static int replay_by_plan(duite *rt, struct plan_record *record, const duite_obj
                           uint64_t rounds)
 {
     int code = plan_replay_plan(record, work_main(rt->pool), flag, rounds);
-    if (code == PLAN_NEEDS_TAGS) {
+    if (code == COMM_NEEDS_TAGS) {
         code = replay_make_tags(rt);
         if (!code)
             code = plan_replay_plan(record, work_main(rt->pool), flag, rounds);
-        if (code == PLAN_NEEDS_TAGS)
+        if (code == COMM_NEEDS_TAGS)
             code = base_error(DUITE_E_MPI, "MPI has too few tags for the messages of all recorded "
                                            "graphs: free some, or fork their tasks");
     }
@@ -275,7 +275,7 @@ int duite_replay(duite *rt, duite_graph graph, uint64_t rounds)
         return code;
     task_mix(&rt->graph, graph.slot);
     task_mix(&rt->graph, rounds);
-    task_mixed(&rt->graph, TASK_CALLED, TASK_CALLED_REPLAY);
+    task_mixed(&rt->graph, COMM_CALLED, COMM_CALLED_REPLAY);
     code = graph_prepare(rt, found, rounds);
     if (!code)
         trace_replay(rt->trace, graph.slot - 1, found->record, NULL, rounds);
@@ -328,7 +328,7 @@ int duite_replay_while(duite *rt, duite_graph graph, duite_object flag, uint64_t
     task_mix(&rt->graph, graph.slot);
     task_mix(&rt->graph, max);
     task_mix(&rt->graph, task_name_bits(flag));
-    task_mixed(&rt->graph, TASK_CALLED, TASK_CALLED_REPLAY_WHILE);
+    task_mixed(&rt->graph, COMM_CALLED, COMM_CALLED_REPLAY_WHILE);
     code = graph_prepare(rt, found, max);
     if (!code && !max)
         code = base_error(DUITE_E_ARGUMENT, "duite_replay_while: at most 0 rounds");

@@ -21,7 +21,7 @@ __attribute__((noinline)) static int main_new(duite *rt, duite_type type, size_t
                             base_error(DUITE_E_ARGUMENT, "duite_new: nowhere to put the object"));
     task_mix(&rt->graph, count);
     task_mix(&rt->graph, (uint64_t)type);
-    task_mixed(&rt->graph, TASK_CALLED, TASK_CALLED_NEW);
+    task_mixed(&rt->graph, COMM_CALLED, COMM_CALLED_NEW);
     code = data_object_new(&rt->graph.table, type, count, object);
     if (!code)
         trace_object(rt->trace, &rt->graph.table, *object);
@@ -53,7 +53,7 @@ int duite_new_sized(duite *rt, duite_type type, size_t count, size_t max, duite_
     task_mix(&rt->graph, count);
     task_mix(&rt->graph, max);
     task_mix(&rt->graph, (uint64_t)type);
-    task_mixed(&rt->graph, TASK_CALLED, TASK_CALLED_NEW_SIZED);
+    task_mixed(&rt->graph, COMM_CALLED, COMM_CALLED_NEW_SIZED);
     code = data_object_new_sized(&rt->graph.table, type, count, max, object);
     if (!code)
         trace_object(rt->trace, &rt->graph.table, *object);
@@ -91,7 +91,7 @@ int duite_hint(duite *rt, duite_object object, double weight, size_t n,
     if (code)
         return code;
     object_mix_hint(rt, object, weight, n, neighbours, edge_weights);
-    task_mixed(&rt->graph, TASK_CALLED, TASK_CALLED_HINT);
+    task_mixed(&rt->graph, COMM_CALLED, COMM_CALLED_HINT);
     code = map_hint(&rt->graph.table, object, weight, n, neighbours, edge_weights);
     if (!code)
         trace_hint(rt->trace, object, weight, n, neighbours, edge_weights);
@@ -105,7 +105,7 @@ int duite_colocate(duite *rt, duite_object object, duite_object leader)
         return code;
     object_mix_name(rt, object);
     object_mix_name(rt, leader);
-    task_mixed(&rt->graph, TASK_CALLED, TASK_CALLED_COLOCATE);
+    task_mixed(&rt->graph, COMM_CALLED, COMM_CALLED_COLOCATE);
     code = map_colocate(&rt->graph.table, object, leader);
     if (!code)
         trace_colocate(rt->trace, object, leader);

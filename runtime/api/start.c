@@ -92,7 +92,14 @@ static int instance_start_graph(duite *rt, const duite_options *options)
     if (!code && options->check)
         code = check_start(&rt->check);
     if (!code && n > 1)
-        code = comm_start(&rt->comm, rt->mpi, &rt->graph, &rt->monitor);
+        code = comm_start(&rt->comm, rt->mpi,
+                          &(struct comm_setup){.owner = &work_messages,
+                                               .context = &rt->graph,
+                                               .history = rt->graph.history,
+                                               .table = &rt->graph.table,
+                                               .kernels = rt->graph.kernels,
+                                               .n_kernels = rt->graph.n_kernels,
+                                               .monitor = &rt->monitor});
     return code;
 }
 

@@ -85,7 +85,7 @@ static int wait_enter(duite *rt, const char *kind, const char *call)
         return DUITE_OK;
     for (const char *c = kind; *c; c++)
         task_mix(&rt->graph, (unsigned char)*c);
-    task_mixed(&rt->graph, TASK_CALLED, task_called_find(call));
+    task_mixed(&rt->graph, COMM_CALLED, comm_function_find(call));
     const struct work_why why = {call, "the other ranks to come to it", NULL};
     return comm_call(rt->comm, call, rt->graph.fingerprint) ? api_agree(rt, &why, &own) : DUITE_OK;
 }

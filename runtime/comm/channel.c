@@ -1,6 +1,6 @@
 /* A channel's turn counts its messages since the opening, over all replays; the turn's parity
  * selects the buffer. A large message is written and read without the lock and comes in pieces; its
- * receive is posted when its node is ready, not a round early. A sender does not learn that its
+ * receive is posted when the channel is ready, not a round early. A sender does not learn that its
  * message was read: in most graphs it cannot get far without an answer. To bound how many rounds a
  * rank can be ahead, every sixteenth message of a channel, and every large one, is sent
  * synchronously: MPI tells when it was received. */
@@ -14,7 +14,7 @@
 enum { CHECKED_TURN = 16 };
 
 struct channel_side {
-    const struct plan_channel *channel;
+    struct comm_channel *channel;
     struct comm_group *group;
     unsigned char *buffer[2];
     MPI_Request request[2];
@@ -109,30 +109,30 @@ static bool side_is_large(const struct channel_side *side)
 
 static bool channel_post_receive(struct comm *comm, struct channel_side *side, size_t turn)
 {
-    const struct plan_channel *channel = side->channel;
+    const struct comm_channel *channel = side->channel;
     int mpi = comm_piece_receive(comm, side->buffer[turn % 2], channel->bytes, side->at,
                                  channel->peer, channel->tag, &side->request[turn % 2]);
     return comm_mpi_ok(comm, mpi, "MPI_Irecv");
 }
 
-static struct comm_group *group_new(struct comm *comm, struct plan_channels *channels)
+static struct comm_group *group_new(struct comm *comm, struct comm_channel_set *set)
 {
-    struct comm_group *group = base_alloc_zero(sizeof *group + channels->n * sizeof group->side[0]);
+    struct comm_group *group = base_alloc_zero(sizeof *group + set->n * sizeof group->side[0]);
     if (!group)
         return NULL;
     group->comm = comm;
-    group->n = channels->n;
+    group->n = set->n;
     bool fine = true;
-    for (size_t i = 0; i < channels->n; i++) {
+    for (size_t i = 0; i < set->n; i++) {
         struct channel_side *side = &group->side[i];
-        side->channel = &channels->channel[i];
+        side->channel = &set->channel[i];
         side->group = group;
         for (int k = 0; k < 2; k++) {
             side->request[k] = MPI_REQUEST_NULL;
             side->buffer[k] = base_alloc(side->channel->bytes);
             fine &= side->buffer[k] != NULL;
         }
-        channels->channel[i].own = side;
+        set->channel[i].own = side;
     }
     if (fine)
         return group;
@@ -141,9 +141,9 @@ static struct comm_group *group_new(struct comm *comm, struct plan_channels *cha
 }
 
 /* A plan is freed: no message comes for the receives that were posted for another round. */
-static void group_close(struct plan_channels *channels)
+static void group_close(struct comm_channel_set *set)
 {
-    struct comm_group *group = channels->own, **link, *quiet = NULL;
+    struct comm_group *group = set->own, **link, *quiet = NULL;
     struct comm *comm = group->comm;
     comm_hold(comm);
     for (link = &comm->channels.open; *link != group; link = &(*link)->next)
@@ -163,26 +163,26 @@ static void group_close(struct plan_channels *channels)
     groups_free(quiet);
 }
 
-static void group_drop(struct plan_channels *channels)
+static void group_drop(struct comm_channel_set *set)
 {
-    const struct comm_group *group = channels->own;
+    const struct comm_group *group = set->own;
     comm_tags_drop(&group->comm->channels.tags, group->first_tag);
 }
 
 /* Under the lock. */
-static int group_open(struct comm *comm, struct comm_group *group, struct plan_channels *channels)
+static int group_open(struct comm *comm, struct comm_group *group, struct comm_channel_set *set)
 {
-    int code = comm_tags_take(&comm->channels.tags, channels->phases + 1, &group->first_tag);
+    int code = comm_tags_take(&comm->channels.tags, set->phases + 1, &group->first_tag);
     if (code)
         return code;
     group->next = comm->channels.open;
     comm->channels.open = group;
-    channels->own = group;
-    channels->close = group_close;
-    channels->drop = group_drop;
-    for (size_t i = 0; i < channels->n; i++) {
-        channels->channel[i].tag += group->first_tag;
-        if (channels->channel[i].sends)
+    set->own = group;
+    set->close = group_close;
+    set->drop = group_drop;
+    for (size_t i = 0; i < set->n; i++) {
+        set->channel[i].tag += group->first_tag;
+        if (set->channel[i].sends)
             continue;
         comm->channels.room += 2;
         if (side_is_large(&group->side[i]))
@@ -196,17 +196,17 @@ static int group_open(struct comm *comm, struct comm_group *group, struct plan_c
                : base_no_memory("messages to come");
 }
 
-int comm_channels_open(struct comm *comm, struct plan_channels *channels)
+int comm_channels_open(struct comm *comm, struct comm_channel_set *set)
 {
-    struct comm_group *group = group_new(comm, channels);
+    struct comm_group *group = group_new(comm, set);
     if (!group)
         return base_no_memory("the messages of a recorded graph");
     comm_hold(comm);
     struct comm_group *quiet = channels_sweep(comm);
-    int code = group_open(comm, group, channels);
+    int code = group_open(comm, group, set);
     comm_unlock(comm);
     groups_free(quiet);
-    if (!channels->close)
+    if (!set->close)
         group_free(group);
     return code;
 }
@@ -242,27 +242,27 @@ void comm_channels_met(struct comm *comm)
 
 /* ---- Messages ---- */
 
-void comm_channel_post(struct comm *comm, struct task *node)
+void comm_channel_post(struct comm *comm, struct comm_channel *channel)
 {
-    BASE_STACK_PUSH(&comm->channels.ready, node, memory_order_release);
+    BASE_STACK_PUSH(&comm->channels.ready, channel, memory_order_release);
     atomic_thread_fence(memory_order_seq_cst); /* as in comm_send */
 }
 
-static void node_push(struct task **list, struct task *node)
+static void channel_push(struct comm_channel **list, struct comm_channel *channel)
 {
-    node->next = *list;
-    *list = node;
+    channel->next = *list;
+    *list = channel;
 }
 
 /* Sends the message; a large one is already written. Returns its bytes. */
-static size_t channel_isend(struct comm *comm, struct task *node, struct channel_side *side)
+static size_t channel_isend(struct comm *comm, struct channel_side *side)
 {
-    const struct plan_channel *channel = side->channel;
+    struct comm_channel *channel = side->channel;
     MPI_Request *request = &side->request[side->turn % 2];
     void *buffer = side->buffer[side->turn % 2];
     const bool checked = side->turn++ % CHECKED_TURN == CHECKED_TURN - 1;
     const bool large = side->at;
-    const size_t bytes = large ? side->at : plan_channel_pack(node, buffer);
+    const size_t bytes = large ? side->at : comm->setup.owner->pack(side->channel, buffer);
     int mpi;
     side->at = 0;
     comm_note(comm, true, channel->peer, bytes);
@@ -275,8 +275,7 @@ static size_t channel_isend(struct comm *comm, struct task *node, struct channel
 }
 
 /* Once communication is broken, a message ends as if it had been sent. */
-static void channel_send(struct comm *comm, struct task *node, struct channel_side *side,
-                         struct comm_found *found)
+static void channel_send(struct comm *comm, struct channel_side *side, struct comm_found *found)
 {
     MPI_Request *request = &side->request[side->turn % 2];
     int free = 1;
@@ -284,25 +283,25 @@ static void channel_send(struct comm *comm, struct task *node, struct channel_si
         !comm_mpi_ok(comm, MPI_Test(request, &free, MPI_STATUS_IGNORE), "MPI_Test"))
         free = 1;
     if (!free) {
-        node_push(&comm->channels.stalled, node);
+        channel_push(&comm->channels.stalled, side->channel);
         return;
     }
     if (comm_is_broken(comm)) {
         if (!side->at)
-            plan_channel_lost(node);
-        node_push(&found->nodes, node);
+            comm->setup.owner->lose(side->channel);
+        channel_push(&found->through, side->channel);
         return;
     }
     if (side_is_large(side) && !side->at) {
-        node_push(&found->copies, node);
+        channel_push(&found->copies, side->channel);
         return;
     }
-    const size_t bytes = channel_isend(comm, node, side);
+    const size_t bytes = channel_isend(comm, side);
     if (bytes) {
         atomic_fetch_add_explicit(&comm->messages, 1, memory_order_relaxed);
         atomic_fetch_add_explicit(&comm->bytes, bytes, memory_order_relaxed);
     }
-    node_push(&found->nodes, node);
+    channel_push(&found->through, side->channel);
 }
 
 /* Moves the posted receive to the requests that are tested. */
@@ -314,12 +313,11 @@ static void channel_listen(struct comm *comm, struct channel_side *side)
     *request = MPI_REQUEST_NULL;
 }
 
-static void channel_await(struct comm *comm, struct task *node, struct channel_side *side,
-                          struct comm_found *found)
+static void channel_await(struct comm *comm, struct channel_side *side, struct comm_found *found)
 {
     if (comm->channels.lost) {
-        plan_channel_lost(node);
-        node_push(&found->nodes, node);
+        comm->setup.owner->lose(side->channel);
+        channel_push(&found->through, side->channel);
         return;
     }
     if (side_is_large(side))
@@ -327,16 +325,15 @@ static void channel_await(struct comm *comm, struct task *node, struct channel_s
     channel_listen(comm, side);
 }
 
-static void nodes_start(struct comm *comm, struct task *nodes, struct comm_found *found)
+static void channels_begin(struct comm *comm, struct comm_channel *ready, struct comm_found *found)
 {
-    while (nodes) {
-        struct task *node = nodes;
-        struct channel_side *side = plan_channel_of(node)->own;
-        nodes = node->next;
-        if (side->channel->sends)
-            channel_send(comm, node, side, found);
+    while (ready) {
+        struct comm_channel *channel = ready;
+        ready = channel->next;
+        if (channel->sends)
+            channel_send(comm, channel->own, found);
         else
-            channel_await(comm, node, side, found);
+            channel_await(comm, channel->own, found);
     }
 }
 
@@ -372,18 +369,17 @@ static void channels_receive(struct comm *comm, struct comm_found *found)
         return;
     for (int i = 0, n = awaited->n; i < done; i++) { /* next pieces take the places before i */
         struct channel_side *side = awaited->what[n + i];
-        struct task *node = side->channel->node;
         atomic_fetch_add_explicit(&comm->came, 1, memory_order_relaxed);
         if (side_is_large(side) && !channel_is_through(comm, found, side))
             continue;
         comm_note(comm, false, side->channel->peer, side->channel->bytes);
         if (side_is_large(side)) {
-            node_push(&found->copies, node);
+            channel_push(&found->copies, side->channel);
             continue;
         }
-        plan_channel_unpack(node, side->buffer[side->turn % 2]);
+        comm->setup.owner->unpack(side->channel, side->buffer[side->turn % 2]);
         channel_post_receive(comm, side, side->turn++);
-        node_push(&found->nodes, node);
+        channel_push(&found->through, side->channel);
     }
 }
 
@@ -392,11 +388,11 @@ void comm_channels_pass(struct comm *comm, struct comm_found *found)
     struct comm_channels *channels = &comm->channels;
     int before = channels->awaited.n;
     if (!BASE_STACK_IS_EMPTY(&channels->ready))
-        nodes_start(comm, BASE_STACK_TAKE(&channels->ready), found);
+        channels_begin(comm, BASE_STACK_TAKE(&channels->ready), found);
     if (channels->stalled) {
-        struct task *nodes = channels->stalled;
+        struct comm_channel *stalled = channels->stalled;
         channels->stalled = NULL;
-        nodes_start(comm, nodes, found);
+        channels_begin(comm, stalled, found);
     }
     if (channels->awaited.n)
         channels_receive(comm, found);
@@ -404,16 +400,16 @@ void comm_channels_pass(struct comm *comm, struct comm_found *found)
     atomic_store_explicit(&channels->awaits, channels->awaited.n > 0, memory_order_relaxed);
 }
 
-bool comm_channel_copy(struct comm *comm, struct task *node)
+bool comm_channel_copy(struct comm *comm, struct comm_channel *channel)
 {
-    struct channel_side *side = plan_channel_of(node)->own;
+    struct channel_side *side = channel->own;
     void *buffer = side->buffer[side->turn % 2];
     if (side->channel->sends) {
-        side->at = plan_channel_pack(node, buffer);
-        comm_channel_post(comm, node);
+        side->at = comm->setup.owner->pack(side->channel, buffer);
+        comm_channel_post(comm, channel);
         return false;
     }
-    plan_channel_unpack(node, buffer);
+    comm->setup.owner->unpack(side->channel, buffer);
     side->at = 0;
     side->turn++;
     return true;
@@ -426,8 +422,8 @@ void comm_channels_look(struct comm *comm, const struct comm_looker *looker)
         const struct channel_side *side = awaited->what[i];
         looker->channel(looker->context, side->channel);
     }
-    for (const struct task *node = comm->channels.stalled; node; node = node->next)
-        looker->channel(looker->context, plan_channel_of(node));
+    for (const struct comm_channel *one = comm->channels.stalled; one; one = one->next)
+        looker->channel(looker->context, one);
 }
 
 void comm_channels_give_up(struct comm *comm)
@@ -438,6 +434,6 @@ void comm_channels_give_up(struct comm *comm)
     while (awaited->n) {
         struct channel_side *side = awaited->what[--awaited->n];
         side->request[side->turn % 2] = awaited->request[awaited->n];
-        comm_channel_post(comm, side->channel->node);
+        comm_channel_post(comm, side->channel);
     }
 }

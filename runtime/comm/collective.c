@@ -162,7 +162,7 @@ static void reduced_settle(struct comm *comm)
 int comm_agree(struct comm *comm, struct comm_word *own, void (*between)(void *context),
                void *context)
 {
-    const uint64_t homes = comm->graph->table.homes;
+    const uint64_t homes = comm->setup.table->homes;
     if (!collective_lock(comm, between, context))
         return comm_broken(comm);
     comm->own = (struct comm_reduced){.fingerprint = own->fingerprint,

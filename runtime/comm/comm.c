@@ -1,5 +1,5 @@
-/* Start, stop and progress. Tasks to be sent wait in a lock-free stack, linked by the tasks
- * themselves, until a thread polls. The holder of the lock calls MPI; a poll delivers its findings
+/* Start, stop and progress. Letters wait in a lock-free stack, linked by themselves, until a thread
+ * polls. The holder of the lock calls MPI; a poll delivers its findings
  * after it has let go of the lock. */
 #include "runtime/comm/comm.h"
 
@@ -14,7 +14,7 @@
 
 /* ---- Start and stop ---- */
 
-static int comm_prepare(struct comm *comm, struct base_monitor *monitor)
+static int comm_prepare(struct comm *comm)
 {
     if (MPI_Comm_rank(comm->mpi, &comm->rank) || MPI_Comm_size(comm->mpi, &comm->n_ranks))
         return base_error(DUITE_E_MPI, "MPI_Comm_size failed");
@@ -27,16 +27,15 @@ static int comm_prepare(struct comm *comm, struct base_monitor *monitor)
         return base_error(DUITE_E_MPI, "MPI_Type_contiguous failed");
     if (!comm_channels_start(comm) || !comm_collective_start(comm))
         return base_error(DUITE_E_MPI, "MPI_Comm_get_attr or MPI_Op_create failed");
-    return comm_heartbeat_start(comm, monitor);
+    return comm_heartbeat_start(comm, comm->setup.monitor);
 }
 
-int comm_start(struct comm **out, MPI_Comm mpi, struct task_graph *graph,
-               struct base_monitor *monitor)
+int comm_start(struct comm **out, MPI_Comm mpi, const struct comm_setup *setup)
 {
     struct comm *comm = *out = base_alloc_zero(sizeof *comm);
     if (!comm)
         return base_no_memory("communication");
-    comm->graph = graph;
+    comm->setup = *setup;
     comm->mpi = mpi;
     comm->line = comm->word = MPI_DATATYPE_NULL;
     comm->first = MPI_OP_NULL;
@@ -44,7 +43,7 @@ int comm_start(struct comm **out, MPI_Comm mpi, struct task_graph *graph,
     atomic_flag_test_and_set(&comm->lock); /* until comm_open */
     atomic_init(&comm->posts, NULL);
     comm_arrivals_start(&comm->arrivals);
-    return comm_prepare(comm, monitor);
+    return comm_prepare(comm);
 }
 
 void comm_ring(struct comm *comm, double seconds, const char *host)
@@ -53,7 +52,7 @@ void comm_ring(struct comm *comm, double seconds, const char *host)
         comm_heartbeat_open(comm, seconds, host);
 }
 
-void comm_set_report(struct comm *comm, comm_report *report)
+void comm_set_report(struct comm *comm, const struct comm_report *report)
 {
     comm->report = report;
 }
@@ -107,11 +106,11 @@ bool comm_stop(struct comm *comm)
 
 /* ---- Posts and the lock ---- */
 
-void comm_send(struct comm *comm, struct task *task)
+void comm_send(struct comm *comm, struct comm_letter *letter)
 {
-    BASE_STACK_PUSH(&comm->posts, task, memory_order_release);
+    BASE_STACK_PUSH(&comm->posts, letter, memory_order_release);
     /* Pairs with comm_left_to_us: either the next try for the lock succeeds, or its holder sees
-     * this task. */
+     * this letter. */
     atomic_thread_fence(memory_order_seq_cst);
 }
 
@@ -135,14 +134,14 @@ void comm_workers_end(struct comm *comm)
 {
     if (comm->open)
         comm_hold(comm); /* the monitor wakes a worker under it */
-    comm->graph->pool = NULL;
+    comm->silent = true;
     if (comm->open)
         comm_let_go(comm);
 }
 
 /* ---- Progress ---- */
 
-/* Finished nodes make others ready; the pass that finished them takes those. */
+/* What is through makes other channels ready; the pass that found it takes those. */
 static _Thread_local bool passing __attribute__((tls_model("initial-exec")));
 
 /* Other messages are looked for less often while a recorded graph waits for its own. */
@@ -159,7 +158,8 @@ static void comm_receive_seldom(struct comm *comm, struct comm_found *found)
 
 static inline bool comm_pass(struct comm *comm, struct worker *worker, bool looks)
 {
-    bool any = false, more, outer = passing;
+    const bool outer = passing, noted = comm->report && comm->report->begins(worker);
+    bool any = false, more;
     passing = true;
     do {
         struct comm_found found = {0};
@@ -175,12 +175,14 @@ static inline bool comm_pass(struct comm *comm, struct worker *worker, bool look
         comm_unlock(comm);
         any |= found.any;
         more = found.more;
-        if (found.packets || found.sent || found.nodes || found.copies) {
+        if (found.packets || found.sent || found.through || found.copies) {
             any = true;
             comm_transport_deliver(comm, worker, &found);
         }
     } while (more || comm_left_to_us(comm));
     passing = outer;
+    if (noted)
+        comm->report->ends(worker, noted);
     return any;
 }
 
@@ -194,9 +196,9 @@ bool comm_awaits(struct comm *comm)
     return atomic_load_explicit(&comm->channels.awaits, memory_order_relaxed);
 }
 
-void comm_channel_ready(struct comm *comm, struct worker *worker, struct task *node)
+void comm_channel_ready(struct comm *comm, struct worker *worker, struct comm_channel *channel)
 {
-    comm_channel_post(comm, node);
+    comm_channel_post(comm, channel);
     if (!passing)
         comm_pass(comm, worker, false);
 }
@@ -249,9 +251,8 @@ bool comm_look(struct comm *comm, const struct comm_looker *looker)
     if (!comm_lock_soon(comm))
         return false;
     for (int i = 0; i < comm->sends.n; i++) {
-        const struct task *task = comm->sends.what[i];
-        if (task->type == TASK_SEND || task->type == TASK_PIECES)
-            looker->sending(looker->context, task->send);
+        const struct comm_letter *letter = comm->sends.what[i];
+        looker->sending(looker->context, letter);
     }
     comm_channels_look(comm, looker);
     comm_unlock(comm); /* the next poll sends the posts made meanwhile */

@@ -2,39 +2,67 @@
 #define DUITE_COMM_COMM_H
 
 #include "runtime/base/monitor.h"
-#include "runtime/data/sum.h"
-#include "runtime/plan/channel.h"
-#include "runtime/task/task.h"
+#include "runtime/comm/history.h"
+#include "runtime/comm/message.h"
+#include "runtime/data/object.h"
 
 #include <mpi.h>
 
-/* Messages between ranks. A message is a packet, named by its key. It is sent as soon as its bytes
- * are there and may arrive before its receiver has forked the task that wants it. A poll does all
- * it can and never waits.
- *
- * Only the holder of `lock` calls MPI; packets are delivered after the lock is let go. */
-struct comm;
+/* All of the communication but message.h: its start and end, collective calls, idle ranks. A poll
+ * does all it can and never waits. Only the holder of `lock` calls MPI; packets are delivered after
+ * the lock is let go. */
 
-/* A packet's target, one of the two, and the rank it comes from (-1: several). */
-struct comm_target {
-    struct data_version *version;
-    struct data_sum *sum;
-    int from;
+/* What the layers above do with messages; `context` is theirs. Any thread. All but `packet` and
+ * `broke` are called without the lock. */
+struct comm_owner {
+    /* The packet of a letter that is about to be sent, under its key. NULL without memory. */
+    struct data_packet *(*packet)(struct comm_letter *letter);
+    /* A letter is sent, or never will be. */
+    void (*sent)(void *context, struct worker *worker, struct comm_letter *letter);
+    /* A packet came that nobody expects by its key, as its kind says. False without memory: then it
+     * stays the caller's. */
+    bool (*came)(void *context, struct worker *worker, struct data_packet *packet);
+    /* Nothing comes any more (comm_give_up). */
+    void (*lost)(void *context, struct worker *worker);
+    /* Communication broke: whoever waits for messages is to look. */
+    void (*broke)(void *context);
+    /* A channel writes its message and returns the bytes; reads its message; or none will come.
+     * Then it is `through`. */
+    size_t (*pack)(struct comm_channel *channel, void *message);
+    void (*unpack)(struct comm_channel *channel, const void *message);
+    void (*lose)(struct comm_channel *channel);
+    void (*through)(void *context, struct worker *worker, struct comm_channel *channel);
 };
 
-/* Starts on mpi, which stays the caller's and is for these messages only; the monitor gives
- * heartbeats. Local. Errors: DUITE_E_MPI, memory; comm_stop is due even then. */
-int comm_start(struct comm **comm, MPI_Comm mpi, struct task_graph *graph,
-               struct base_monitor *monitor);
+/* What a comm knows of its program. The ranks compare history and homes; a sentence about a
+ * difference names kernels. */
+struct comm_setup {
+    const struct comm_owner *owner;
+    void *context;
+    struct comm_history *history;
+    const struct data_table *table;
+    const duite_kernel *const *kernels;
+    uint32_t n_kernels;
+    struct base_monitor *monitor; /* gives heartbeats */
+};
+
+/* Starts on mpi, which stays the caller's and is for these messages only. Local. Errors:
+ * DUITE_E_MPI, memory; comm_stop is due even then. */
+int comm_start(struct comm **comm, MPI_Comm mpi, const struct comm_setup *setup);
 
 /* Before comm_open, on all ranks alike. A rank that sends no heartbeat for so many seconds is lost
  * (0: never). `host`: of the rank before this one in the ring. NULL is fine. */
 void comm_ring(struct comm *comm, double seconds, const char *host);
 
-/* Before comm_open: `report` is called for each message that a worker sends or receives, with its
- * bytes. */
-typedef void comm_report(struct worker *worker, bool sends, int peer, size_t bytes);
-void comm_set_report(struct comm *comm, comm_report *report);
+/* Before comm_open: a trace. `message` is called for each message that is sent or received, with
+ * its bytes; `begins` and `ends` around the work on messages, in which tasks may run that a message
+ * made ready. `ends` gets what `begins` returned. */
+struct comm_report {
+    void (*message)(struct worker *worker, bool sends, int peer, size_t bytes);
+    bool (*begins)(struct worker *worker);
+    void (*ends)(struct worker *worker, bool begun);
+};
+void comm_set_report(struct comm *comm, const struct comm_report *report);
 
 /* Messages are sent and received from now on. `requests`, the same on all ranks: ranks may request
  * tasks of others. Until then the lock keeps workers out of MPI, so that the main thread may call
@@ -46,46 +74,28 @@ void comm_open(struct comm *comm, bool requests);
  * so. False if MPI may still use its communicator, which then must not be freed. */
 bool comm_stop(struct comm *comm);
 
-/* Posts a ready SEND. The next poll sends it, and work_finish ends it once it is sent. comm_posted:
- * whether there is something to send. Any thread. */
-void comm_send(struct comm *comm, struct task *task);
-bool comm_posted(struct comm *comm);
-
-/* Opens the channels of a recorded graph (work_open). Main thread, all ranks alike. Errors:
- * DUITE_E_MPI, memory; or PLAN_NEEDS_TAGS on all ranks: then the ranks meet, settle, meet again,
- * call comm_channels_met, and try once more. Settling (comm_channels_settle) waits until the
- * channels that the program dropped on this rank are closed. */
-int comm_channels_open(struct comm *comm, struct plan_channels *channels);
+/* After COMM_NEEDS_TAGS: settling waits until the channels that the program dropped on this rank
+ * are closed; met: all ranks have settled. Main thread. */
 int comm_channels_settle(struct comm *comm);
 void comm_channels_met(struct comm *comm);
 
-/* A node of a channel is ready: sends its message right now, or awaits it. The node finishes when
- * the message is through. Any thread. */
-void comm_channel_ready(struct comm *comm, struct worker *worker, struct task *node);
-
-/* True while messages of recorded graphs are awaited. Any thread. */
+/* True while messages of channels are awaited. Any thread. */
 bool comm_awaits(struct comm *comm);
-
-/* Sets the target of the packets of that key; those that came already are delivered. Main thread.
- */
-int comm_expect(struct comm *comm, struct worker *worker, struct data_key key,
-                struct comm_target target, uint32_t packets);
 
 /* Sends, receives, delivers and finishes what can be. Returns whether anything happened. Any
  * thread. */
 bool comm_poll(struct comm *comm, struct worker *worker);
 
 /* Calls back with everything awaited (see comm_arrivals_look) and, if the lock can be had, with
- * everything being sent. Returns whether it could be had. A task that waits for something awaited
- * stays as it is during the call. Any thread. */
+ * everything being sent. Returns whether it could be had. Who waits for something awaited stays as
+ * it is during the call. Any thread. */
 struct comm_looker {
     void *context;
     void (*awaited)(void *context, const struct data_key *key, const struct comm_target *target,
                     uint32_t packets);
-    void (*sending)(void *context, const struct task_send *send);
-    /* A channel of a recorded graph: its message has not come or, if it sends, waits for its
-     * buffer. */
-    void (*channel)(void *context, const struct plan_channel *channel);
+    void (*sending)(void *context, const struct comm_letter *letter);
+    /* A channel whose message has not come or, if it sends, waits for its buffer. */
+    void (*channel)(void *context, const struct comm_channel *channel);
 };
 bool comm_look(struct comm *comm, const struct comm_looker *looker);
 
@@ -182,11 +192,6 @@ int comm_sum(struct comm *comm, double *numbers, int n, void (*between)(void *co
  * A rank that lost a message, or cannot go on for another reason, breaks. From then on it sends
  * only an abort message with the reason to all others, which break in turn. Blocking calls return
  * the code; the main thread gives up everything still expected; only stop is left. */
-
-/* Breaks; the first reason counts. Any thread. */
-void comm_broke(struct comm *comm, int code, const char *message);
-/* The same, for want of memory for `what`. */
-void comm_broke_memory(struct comm *comm, const char *what);
 
 /* The code with the message set once communication is broken, else 0. */
 int comm_broken(struct comm *comm);

@@ -93,7 +93,8 @@ void comm_broke(struct comm *comm, int code, const char *message)
     comm->reason.code = code;
     snprintf(comm->reason.message, sizeof comm->reason.message, "%s", message);
     atomic_store(&comm->broken, code);
-    work_notify(comm->graph->pool);
+    if (!comm->silent)
+        comm->setup.owner->broke(comm->setup.context);
 }
 
 void comm_broke_memory(struct comm *comm, const char *what)

@@ -27,7 +27,7 @@ struct difference_found {
 struct difference_answer {
     uint64_t homes;     /* at the blocking call that is asked about */
     uint64_t has_homes; /* not if this rank has not come to it */
-    struct task_history_copy history;
+    struct comm_history_copy history;
 };
 
 /* Breaks with the best sentence there is. */
@@ -50,19 +50,19 @@ static void difference_wait(struct comm *comm)
 /* ---- Answers, on rank 0 ---- */
 
 /* Appends the rank's calls beyond the end of the reference. */
-static void reference_extend(struct task_history_copy *reference,
-                             const struct task_history_copy *history)
+static void reference_extend(struct comm_history_copy *reference,
+                             const struct comm_history_copy *history)
 {
     while (reference->last < history->last) {
-        const uint64_t n = ++reference->last % TASK_HISTORY_CALLS;
+        const uint64_t n = ++reference->last % COMM_HISTORY_CALLS;
         reference->entry[n] = history->entry[n];
     }
-    if (reference->last - reference->first >= TASK_HISTORY_CALLS)
-        reference->first = reference->last - TASK_HISTORY_CALLS + 1;
+    if (reference->last - reference->first >= COMM_HISTORY_CALLS)
+        reference->first = reference->last - COMM_HISTORY_CALLS + 1;
 }
 
-static void reference_compare(struct task_history_copy *reference, struct difference_rank *rank,
-                              const struct task_history_copy *history)
+static void reference_compare(struct comm_history_copy *reference, struct difference_rank *rank,
+                              const struct comm_history_copy *history)
 {
     const uint64_t first = history->first > reference->first ? history->first : reference->first;
     const uint64_t last = history->last < reference->last ? history->last : reference->last;
@@ -70,7 +70,7 @@ static void reference_compare(struct task_history_copy *reference, struct differ
     rank->last = history->last;
     rank->compared = first <= last || both_new;
     for (uint64_t n = first; n <= last; n++) {
-        const size_t i = n % TASK_HISTORY_CALLS;
+        const size_t i = n % COMM_HISTORY_CALLS;
         if (history->entry[i].fingerprint == reference->entry[i].fingerprint)
             continue;
         rank->at = n;
@@ -105,7 +105,7 @@ static void difference_answer(struct comm *comm, uint64_t number, struct differe
     const struct comm_called *call = comm_calls_logged(&comm->calls, number);
     answer->has_homes = call != NULL;
     answer->homes = call ? call->homes : 0;
-    task_history_read(comm->graph->history, &answer->history);
+    comm_history_read(comm->setup.history, &answer->history);
 }
 
 /* ---- Messages; under the lock ---- */

@@ -46,7 +46,7 @@ bool comm_call(struct comm *comm, const char *name, uint64_t fingerprint)
     struct comm_called *call = call_logged(calls, number);
     *call = (struct comm_called){.number = number,
                                  .fingerprint = fingerprint,
-                                 .homes = comm->graph->table.homes,
+                                 .homes = comm->setup.table->homes,
                                  .rank = comm->rank};
     snprintf(call->name, sizeof call->name, "%s", name);
     atomic_store_explicit(&calls->made, number, memory_order_release);

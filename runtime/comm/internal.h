@@ -20,14 +20,14 @@ enum { COMM_PACKETS, COMM_HEARTBEATS, COMM_PIECES, COMM_CHANNELS = COMM_PIECES +
 /* The findings of one poll, delivered after the lock is let go. */
 struct comm_found {
     struct data_packet *packets;
-    struct task *sent;
-    struct task *nodes;  /* of channels whose message is through */
-    struct task *copies; /* of channels whose message is large: see comm_channel_copy */
+    struct comm_letter *sent;
+    struct comm_channel *through; /* their message is */
+    struct comm_channel *copies;  /* their message is large: see comm_channel_copy */
     bool any;
     bool more; /* so much came that the lock is let go before the rest is received */
 };
 
-/* Under the lock: sends posted tasks; receives messages. */
+/* Under the lock: sends posted letters; receives messages. */
 void comm_transport_send(struct comm *comm, struct comm_found *found);
 void comm_transport_receive(struct comm *comm, struct comm_found *found);
 
@@ -84,7 +84,7 @@ struct comm_tags {
 void comm_tags_start(struct comm_tags *tags, int last);
 void comm_tags_stop(struct comm_tags *tags);
 
-/* n tags for a plan, the same on all ranks. PLAN_NEEDS_TAGS: there are none before the ranks meet.
+/* n tags for a plan, the same on all ranks. COMM_NEEDS_TAGS: there are none before the ranks meet.
  * Errors: memory. */
 int comm_tags_take(struct comm_tags *tags, int n, int *first);
 
@@ -99,18 +99,17 @@ size_t comm_tags_held(const struct comm_tags *tags);
 
 /* ---- Channels (channel.c) ---- */
 
-/* Channels: the messages of recorded graphs (plan_channel). Each has two buffers and, if it
- * receives, a receive posted for each of them, so that a message finds its place when it comes a
- * round early. Their tags are theirs alone. */
+/* A channel has two buffers and, if it receives, a receive posted for each of them, so that a
+ * message finds its place when it comes a round early. Its tag is its alone. */
 
-struct comm_group; /* the channels of one plan */
+struct comm_group; /* the channels of one set */
 
 struct comm_channels {
-    _Atomic(struct task *) ready;     /* nodes to be run, linked by next */
-    struct comm_requests awaited;     /* under the lock: receives whose nodes are ready */
-    struct task *stalled;             /* under the lock: nodes whose buffers are still sent */
-    struct comm_group *open, *closed; /* under the lock; closed: some messages are still sent */
-    size_t room;                      /* of `awaited`: receives of the open ones */
+    _Atomic(struct comm_channel *) ready; /* linked by next */
+    struct comm_requests awaited;         /* under the lock: receives of channels that were ready */
+    struct comm_channel *stalled;         /* under the lock: their buffers are still sent */
+    struct comm_group *open, *closed;     /* under the lock; closed: some messages are still sent */
+    size_t room;                          /* of `awaited`: receives of the open ones */
     unsigned looks;
     struct comm_tags tags;
     _Atomic bool awaits; /* there are some */
@@ -123,15 +122,16 @@ bool comm_channels_start(struct comm *comm);
 /* Under the lock, at the end: false if MPI may still read or write memory, which then stays. */
 bool comm_channels_stop(struct comm *comm);
 
-/* Posts a node that is ready; the caller makes sure that a worker polls afterwards. Any thread. */
-void comm_channel_post(struct comm *comm, struct task *node);
+/* Posts a channel that is ready; the caller makes sure that a worker polls afterwards. Any
+ * thread. */
+void comm_channel_post(struct comm *comm, struct comm_channel *channel);
 
-/* Under the lock: sends and receives what can be, and finds nodes. */
+/* Under the lock: sends and receives what can be, and finds channels. */
 void comm_channels_pass(struct comm *comm, struct comm_found *found);
 
-/* Without the lock, for a node of `copies`: writes its message, which is posted then, or reads the
- * one that came. True: the node is through. */
-bool comm_channel_copy(struct comm *comm, struct task *node);
+/* Without the lock, for one of `copies`: writes its message, which is posted then, or reads the one
+ * that came. True: it is through. */
+bool comm_channel_copy(struct comm *comm, struct comm_channel *channel);
 
 /* Under the lock: communication is broken, and nothing is awaited any more. */
 void comm_channels_give_up(struct comm *comm);
@@ -208,12 +208,12 @@ struct comm {
     MPI_Datatype line; /* 64 bytes: see data_packet_lines */
     MPI_Datatype word; /* struct comm_word */
     MPI_Op first;      /* of two words: see comm_first */
-    struct task_graph *graph;
+    struct comm_setup setup;
     int rank, n_ranks;
     atomic_flag lock;
-    _Atomic(struct task *) posts;
+    _Atomic(struct comm_letter *) posts;
     struct comm_requests sends, receives; /* touched by the holder of `lock` only, like: */
-    struct task *stalled; /* large messages that wait for others, in the order of their posts */
+    struct comm_letter *stalled; /* large ones that wait for others, in the order of their posts */
     struct comm_arrivals arrivals;
     struct comm_channels channels;
     _Atomic int broken;
@@ -224,9 +224,10 @@ struct comm {
     struct comm_heartbeat heartbeat;
     struct comm_calls calls;
     struct comm_difference difference;
-    comm_report *report;                           /* NULL: nobody */
+    const struct comm_report *report;              /* NULL: nobody */
     struct worker *worker;                         /* under the lock: the one that passes */
     bool open, may_request;                        /* comm_open was called; with requests */
+    bool silent;                                   /* the owner is not told that it broke */
     double latency, per_byte;                      /* seconds: of the slowest link measured */
     uint64_t entered;                              /* collective calls */
     enum comm_collective kind;                     /* of the last of them */
@@ -252,7 +253,7 @@ bool comm_mpi_ok(struct comm *comm, int mpi, const char *what);
 static inline void comm_note(const struct comm *comm, bool sends, int peer, size_t bytes)
 {
     if (comm->report)
-        comm->report(comm->worker, sends, peer, bytes);
+        comm->report->message(comm->worker, sends, peer, bytes);
 }
 
 static inline bool comm_is_broken(struct comm *comm)
@@ -276,13 +277,13 @@ static inline void comm_unlock(struct comm *comm)
     atomic_flag_clear_explicit(&comm->lock, memory_order_release);
 }
 
-/* True if a posted task is not sent yet. Any thread. */
+/* True if something posted is not sent yet. Any thread. */
 static inline bool comm_has_posts(struct comm *comm)
 {
     return !BASE_STACK_IS_EMPTY(&comm->posts) || !BASE_STACK_IS_EMPTY(&comm->channels.ready);
 }
 
-/* Ask after comm_unlock: tasks posted meanwhile, by threads that did not get the lock, must not
+/* Ask after comm_unlock: letters posted meanwhile, by threads that did not get the lock, must not
  * wait for the next poll. Pairs with comm_send: it tries the lock after this look, or this look
  * sees its post. */
 static inline bool comm_left_to_us(struct comm *comm)

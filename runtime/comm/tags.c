@@ -31,7 +31,7 @@ int comm_tags_take(struct comm_tags *tags, int n, int *first)
     while (*first <= tags->last - n && (taken = range_over(tags, *first, n)))
         *first = taken->first + taken->n;
     if (*first > tags->last - n)
-        return PLAN_NEEDS_TAGS;
+        return COMM_NEEDS_TAGS;
     void *moved = base_grow(tags->range, &tags->capacity, tags->n + 1, sizeof *tags->range);
     if (!moved)
         return base_no_memory("the tags of a recorded graph");

@@ -1,6 +1,6 @@
-/* Packets between ranks: a SEND becomes a message, and a message that comes goes to the version,
- * sum or task that expects it. Once communication is broken, posted tasks are not sent but end as
- * if they had been.
+/* Packets between ranks: a letter becomes a message, and a message that comes goes to whoever
+ * expects it. Once communication is broken, posted letters are not sent but end as if they had
+ * been.
  *
  * A large packet's header is a message of its own; the payload follows in pieces, by a tag that the
  * key gives. A second one to the same rank by the same tag waits until the first is through, so the
@@ -9,7 +9,6 @@
 #include "runtime/base/memory.h"
 #include "runtime/base/stack.h"
 #include "runtime/comm/internal.h"
-#include "runtime/offload/offload.h"
 
 /* ---- Sending ---- */
 
@@ -24,16 +23,21 @@ static int pieces_tag(const struct data_packet *packet)
     return COMM_PIECES + (int)((packet->key.slot + packet->key.number) % COMM_PIECE_TAGS);
 }
 
-/* True if a large message must wait for another one. */
-static bool message_stalls(struct comm *comm, struct task *task)
+static struct data_packet *letter_packet(const struct comm *comm, struct comm_letter *letter)
 {
-    const struct data_packet *packet = comm_is_broken(comm) ? NULL : task_send_packet(task);
+    return comm->setup.owner->packet(letter);
+}
+
+/* True if a large message must wait for another one. */
+static bool message_stalls(struct comm *comm, struct comm_letter *letter)
+{
+    const struct data_packet *packet = comm_is_broken(comm) ? NULL : letter_packet(comm, letter);
     if (!packet || !packet_is_large(packet))
         return false;
     for (int i = 0; i < comm->sends.n; i++) {
-        struct task *other = comm->sends.what[i];
-        const struct data_packet *sent = task_send_packet(other);
-        if (other->send->to == task->send->to && packet_is_large(sent) &&
+        struct comm_letter *other = comm->sends.what[i];
+        const struct data_packet *sent = letter_packet(comm, other);
+        if (other->to == letter->to && packet_is_large(sent) &&
             pieces_tag(sent) == pieces_tag(packet))
             return true;
     }
@@ -54,52 +58,52 @@ static int packet_isend(struct comm *comm, struct data_packet *packet, int to, M
 }
 
 /* False: it was not sent, and never will be. */
-static bool message_send(struct comm *comm, struct task *task)
+static bool message_send(struct comm *comm, struct comm_letter *letter)
 {
     if (comm_is_broken(comm))
         return false;
-    struct data_packet *packet = task_send_packet(task);
+    struct data_packet *packet = letter_packet(comm, letter);
     MPI_Request *request = packet ? comm_requests_place(&comm->sends) : NULL;
     if (!request) {
         comm_broke_memory(comm, "a message");
         return false;
     }
     size_t lines = data_packet_lines(packet->bytes);
-    comm_note(comm, true, task->send->to, lines * sizeof *packet);
-    if (!comm_mpi_ok(comm, packet_isend(comm, packet, task->send->to, request), "MPI_Isend"))
+    comm_note(comm, true, letter->to, lines * sizeof *packet);
+    if (!comm_mpi_ok(comm, packet_isend(comm, packet, letter->to, request), "MPI_Isend"))
         return false;
-    comm_requests_started(&comm->sends, task);
+    comm_requests_started(&comm->sends, letter);
     atomic_fetch_add_explicit(&comm->messages, 1, memory_order_relaxed);
     atomic_fetch_add_explicit(&comm->bytes, lines * sizeof *packet, memory_order_relaxed);
     return true;
 }
 
-static void message_push_sent(struct comm_found *found, struct task *task)
+static void message_push_sent(struct comm_found *found, struct comm_letter *letter)
 {
-    task->next = found->sent;
-    found->sent = task;
+    letter->next = found->sent;
+    found->sent = letter;
 }
 
 void comm_transport_send(struct comm *comm, struct comm_found *found)
 {
-    struct task *posts = BASE_STACK_TAKE(&comm->posts), *in_order = comm->stalled;
-    struct task **end = &in_order;
+    struct comm_letter *posts = BASE_STACK_TAKE(&comm->posts), *in_order = comm->stalled;
+    struct comm_letter **end = &in_order;
     BASE_LIST_REVERSE(posts);
     while (*end)
         end = &(*end)->next;
     *end = posts;
     end = &comm->stalled;
     while (in_order) {
-        struct task *task = in_order;
-        in_order = task->next;
-        if (message_stalls(comm, task)) {
-            *end = task;
-            end = &task->next;
+        struct comm_letter *letter = in_order;
+        in_order = letter->next;
+        if (message_stalls(comm, letter)) {
+            *end = letter;
+            end = &letter->next;
             continue;
         }
         found->any = true;
-        if (!message_send(comm, task))
-            message_push_sent(found, task);
+        if (!message_send(comm, letter))
+            message_push_sent(found, letter);
     }
     *end = NULL;
     int done;
@@ -254,17 +258,16 @@ void comm_transport_receive(struct comm *comm, struct comm_found *found)
 static void message_deliver_to(struct comm *comm, struct worker *worker, struct comm_target target,
                                struct data_packet *packet)
 {
-    if (target.version)
-        task_arrived(comm->graph, worker, target.version, packet);
-    else
-        task_pieces_arrived(comm->graph, worker, target.sum, packet);
+    target.arrived(comm->setup.context, worker, target.what, packet);
 }
 
-/* A task of another rank came. Once communication is broken no rank waits for it. */
-static void message_deliver_offloaded(struct comm *comm, struct worker *worker,
-                                      struct data_packet *packet)
+/* A packet that has no key to expect it by. Once communication is broken no rank waits for what a
+ * task of another rank makes. */
+static void message_deliver_unexpected(struct comm *comm, struct worker *worker,
+                                       struct data_packet *packet)
 {
-    if (!comm_is_broken(comm) && offload_arrived(comm->graph, worker, packet))
+    const bool dropped = packet->kind == DATA_OFFLOADED && comm_is_broken(comm);
+    if (!dropped && comm->setup.owner->came(comm->setup.context, worker, packet))
         return;
     data_packet_free(packet);
     comm_broke_memory(comm, "a task of another rank");
@@ -288,32 +291,31 @@ static void message_deliver_value(struct comm *comm, struct worker *worker,
 
 void comm_transport_deliver(struct comm *comm, struct worker *worker, struct comm_found *found)
 {
+    const struct comm_owner *owner = comm->setup.owner;
     while (found->packets) {
         struct data_packet *packet = found->packets;
         found->packets = packet->next;
-        if (packet->kind == DATA_OFFLOADED)
-            message_deliver_offloaded(comm, worker, packet);
-        else if (packet->kind == DATA_RESULT)
-            offload_result_arrived(comm->graph, worker, packet);
+        if (packet->kind == DATA_OFFLOADED || packet->kind == DATA_RESULT)
+            message_deliver_unexpected(comm, worker, packet);
         else
             message_deliver_value(comm, worker, packet);
     }
     while (found->copies) {
-        struct task *node = found->copies;
-        found->copies = node->next;
-        if (comm_channel_copy(comm, node))
-            work_finish(comm->graph, worker, node);
+        struct comm_channel *channel = found->copies;
+        found->copies = channel->next;
+        if (comm_channel_copy(comm, channel))
+            owner->through(comm->setup.context, worker, channel);
     }
-    while (found->nodes) {
-        struct task *node = found->nodes;
-        found->nodes = node->next;
-        work_finish(comm->graph, worker, node);
+    while (found->through) {
+        struct comm_channel *channel = found->through;
+        found->through = channel->next;
+        owner->through(comm->setup.context, worker, channel);
     }
     while (found->sent) {
-        struct task *task = found->sent;
-        found->sent = task->next;
-        data_packet_free(task->send->packet);
-        work_finish(comm->graph, worker, task);
+        struct comm_letter *letter = found->sent;
+        found->sent = letter->next;
+        data_packet_free(letter->packet);
+        owner->sent(comm->setup.context, worker, letter);
     }
 }
 
@@ -337,11 +339,7 @@ void comm_give_up(struct comm *comm, struct worker *worker)
     comm_hold(comm);
     comm_channels_give_up(comm);
     comm_unlock(comm);
-    while (comm_arrivals_close(&comm->arrivals, &target)) {
-        if (target.version)
-            task_lost(comm->graph, worker, target.version);
-        else
-            task_pieces_lost(comm->graph, worker, target.sum);
-    }
-    offload_lost(comm->graph, worker);
+    while (comm_arrivals_close(&comm->arrivals, &target))
+        message_deliver_to(comm, worker, target, NULL);
+    comm->setup.owner->lost(comm->setup.context, worker);
 }

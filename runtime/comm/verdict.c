@@ -54,16 +54,16 @@ static void text_add_ranks(struct comm_verdict *text, const int *group, int n_ra
         text_add(text, " and %d more", left);
 }
 
-static void text_add_call(struct comm_verdict *text, const struct task_graph *graph, uint64_t call,
+static void text_add_call(struct comm_verdict *text, const struct comm_setup *setup, uint64_t call,
                           bool again)
 {
-    const uint32_t which = task_call_which(call);
-    const bool forked = task_call_kind(call) != TASK_CALLED;
+    const uint32_t which = comm_call_which(call);
+    const bool forked = comm_call_kind(call) != COMM_CALLED;
     if (forked)
-        text_add(text, " %s \"%.60s\"", task_call_kind(call) == TASK_FORKED ? "forked" : "recorded",
-                 which < graph->n_kernels ? graph->kernels[which]->name : "another kernel");
+        text_add(text, " %s \"%.60s\"", comm_call_kind(call) == COMM_FORKED ? "forked" : "recorded",
+                 which < setup->n_kernels ? setup->kernels[which]->name : "another kernel");
     else
-        text_add(text, " called %s", task_called_name(which));
+        text_add(text, " called %s", comm_function_name(which));
     if (again)
         text_add(text, forked ? " with other objects or on another rank" : " with other arguments");
 }
@@ -138,7 +138,7 @@ static void difference_say_groups(const struct comm *comm, const struct differen
             again |= groups->call[k] == groups->call[i];
         text_add(text, i ? ", " : " ");
         text_add_ranks(text, groups->of, comm->n_ranks, i);
-        text_add_call(text, comm->graph, groups->call[i], again);
+        text_add_call(text, &comm->setup, groups->call[i], again);
     }
 }
 
@@ -149,8 +149,8 @@ static void difference_say(const struct comm *comm, const struct difference_rank
     uint64_t forks = 0, forked = 0;
     difference_group(comm, first, groups);
     for (int i = 0; i < groups->n; i++) {
-        forks = task_call_forks(groups->call[i]);
-        if (task_call_kind(groups->call[i]) == TASK_FORKED)
+        forks = comm_call_forks(groups->call[i]);
+        if (comm_call_kind(groups->call[i]) == COMM_FORKED)
             forked = forks;
     }
     if (first->older) {

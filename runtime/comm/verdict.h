@@ -1,7 +1,7 @@
 #ifndef DUITE_COMM_VERDICT_H
 #define DUITE_COMM_VERDICT_H
 
-#include "runtime/task/fingerprint.h"
+#include "runtime/comm/history.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -23,7 +23,7 @@ struct difference_rank {
 };
 
 struct difference_inquiry {
-    struct task_history_copy reference;
+    struct comm_history_copy reference;
     int answers;
     struct difference_rank rank[];
 };

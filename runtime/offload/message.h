@@ -73,7 +73,7 @@ size_t offload_message_put(struct data_packet *packet, size_t at, const void *fr
 
 /* At home: a delegated task, until its result came. */
 struct offload_pending {
-    struct task_send send; /* first: the task's */
+    struct comm_letter send; /* first: the task's */
     struct task *task;
     struct task_scope *inner;   /* the task's, while `send` has its place */
     _Atomic int left;           /* it is sent; it came back */
@@ -91,7 +91,7 @@ struct offload_task {
     struct task_scope *inner; /* of its children, or NULL; gone once they are over */
     const struct data_failure *failure;
     bool ran; /* its body was called */
-    struct task_send send;
+    struct comm_letter send;
 };
 
 #endif

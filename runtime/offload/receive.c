@@ -69,7 +69,7 @@ bool offload_arrived(struct task_graph *graph, struct worker *worker, struct dat
             task->access[i].sized = param_of(own)[i].sized;
     }
     atomic_fetch_add_explicit(&graph->offloaded, 1, memory_order_relaxed);
-    work_ready(graph->pool, worker, task);
+    task_ready(graph, worker, task);
     return true;
 }
 
@@ -302,8 +302,8 @@ void offload_over(struct task_scope *above, struct worker *worker)
     }
     lent_drop(task);
     struct data_packet *result = own->result;
-    own->send =
-        (struct task_send){.key = own->message->key, .to = offload_home(task), .packet = result};
+    own->send = (struct comm_letter){
+        .key = own->message->key, .sender = task, .to = offload_home(task), .packet = result};
     if (result) {
         result->kind = DATA_RESULT;
         result->key = own->send.key;
@@ -311,7 +311,7 @@ void offload_over(struct task_scope *above, struct worker *worker)
     task->state = TASK_LEAVES;
     task->n = 0; /* no value that it read is sent */
     task->send = &own->send;
-    work_ready(graph->pool, worker, task);
+    task_ready(graph, worker, task);
 }
 
 void offload_answered(struct task_graph *graph, struct task *task)

@@ -177,8 +177,10 @@ bool offload_send(struct task_graph *graph, struct worker *worker, struct task *
         data_packet_free(packet);
         return false;
     }
-    *pending = (struct offload_pending){
-        .send = {.to = to, .packet = packet}, .task = task, .inner = task->inner, .left = 2};
+    *pending = (struct offload_pending){.send = {.sender = task, .to = to, .packet = packet},
+                                        .task = task,
+                                        .inner = task->inner,
+                                        .left = 2};
     uint64_t name = pending_enter(graph, pending);
     if (!name) {
         data_packet_free(packet);
@@ -190,7 +192,7 @@ bool offload_send(struct task_graph *graph, struct worker *worker, struct task *
     pending->send.key = packet->key;
     task->state = TASK_DELEGATED;
     task->send = &pending->send;
-    work_ready(graph->pool, worker, task);
+    task_ready(graph, worker, task);
     return true;
 }
 

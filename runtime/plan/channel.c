@@ -40,14 +40,9 @@ size_t plan_channel_room(const struct plan *plan, const struct task *task)
            task->n * sizeof(struct message_failure);
 }
 
-struct plan_channel *plan_channel_of(const struct task *task)
+const struct task *plan_channel_waits(const struct comm_channel *channel, unsigned *more)
 {
-    return task->node->channel;
-}
-
-const struct task *plan_channel_waits(const struct task *task, unsigned *more)
-{
-    const struct plan_node *node = task->node;
+    const struct plan_node *node = ((const struct task *)channel->node)->node;
     const struct task *one = NULL;
     *more = 0;
     for (uint32_t i = node->n_cyclic; i < node->n_next; i++) {
@@ -81,8 +76,9 @@ static size_t channel_pack_failures(const struct plan *plan, const struct task *
     return message->failures * sizeof(struct message_failure);
 }
 
-size_t plan_channel_pack(struct task *task, void *bytes)
+size_t plan_channel_pack(struct comm_channel *channel, void *bytes)
 {
+    struct task *task = channel->node;
     const struct plan *plan = channel_begin(task);
     const struct plan_node_use *use = plan->use + task->node->first_use;
     struct message *message = bytes;
@@ -117,8 +113,9 @@ static void channel_unpack_failures(struct plan *plan, const struct task *task,
         atomic_store_explicit(&plan->tainted, PLAN_POISONED, memory_order_relaxed);
 }
 
-void plan_channel_unpack(struct task *task, const void *bytes)
+void plan_channel_unpack(struct comm_channel *channel, const void *bytes)
 {
+    struct task *task = channel->node;
     struct plan *plan = channel_begin(task);
     const struct plan_node_use *use = plan->use + task->node->first_use;
     const struct message *message = bytes;
@@ -132,8 +129,9 @@ void plan_channel_unpack(struct task *task, const void *bytes)
         channel_unpack_failures(plan, task, message, at);
 }
 
-void plan_channel_lost(struct task *task)
+void plan_channel_lost(struct comm_channel *channel)
 {
+    struct task *task = channel->node;
     struct plan *plan = channel_begin(task);
     const struct plan_node_use *use = plan->use + task->node->first_use;
     atomic_store_explicit(&plan->tainted, PLAN_POISONED, memory_order_relaxed);

@@ -141,7 +141,7 @@ static bool memo_pays(struct plan_memo *memo)
 {
     uint64_t bodies;
     double seconds;
-    work_bodies(memo->graph->pool, &bodies, &seconds);
+    queue_bodies(memo->graph->pool, &bodies, &seconds);
     if (bodies - memo->bodies >= MEMO_BODIES) {
         memo->mean = (seconds - memo->seconds) / (double)(bodies - memo->bodies);
         memo->bodies = bodies;

@@ -165,7 +165,7 @@ plan_node_count_down(struct task_graph *graph, struct worker *worker, struct tas
     if (decides && last) /* each sink, this one included, has taken one a round until now */
         counts = PLAN_UNKNOWN - (int64_t)((round + 1) * plan->n_sinks - 1);
     if (plan->gate && task->number < atomic_load_explicit(&plan->unforked, memory_order_relaxed))
-        work_over(graph->pool, worker, 1); /* a task that was forked */
+        queue_over(graph->pool, worker, 1); /* a task that was forked */
     atomic_store_explicit(&node->round, round + 1, memory_order_release);
     task->number += plan->n_calls;
     for (next += last ? node->n_cyclic : 0; next < stop; next++) {

@@ -45,7 +45,7 @@ void plan_unpark(struct plan *plan, struct worker *worker, uint32_t i, uint64_t 
                                                  memory_order_acq_rel, memory_order_relaxed))
         return;
     plan_node_renumber(plan, task);
-    work_ready(plan->graph->pool, worker, task);
+    plan_node_ready(plan->graph, worker, task);
 }
 
 void plan_gate_close(struct plan *plan, struct plan_gate *gate, uint64_t first)

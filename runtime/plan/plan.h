@@ -1,7 +1,7 @@
 #ifndef DUITE_PLAN_PLAN_H
 #define DUITE_PLAN_PLAN_H
 
-#include "runtime/plan/channel.h"
+#include "runtime/comm/channel.h"
 #include "runtime/plan/record.h"
 
 /* A plan: a record compiled to flat arrays; with several ranks, this rank's part of it. Workers and
@@ -19,7 +19,7 @@ struct plan_node {
     struct plan *plan;
     union {
         void *args;                   /* or the values of a set; NULL: zeros */
-        struct plan_channel *channel; /* NODE_SEND, NODE_RECEIVE */
+        struct comm_channel *channel; /* NODE_SEND, NODE_RECEIVE */
         const struct plan_tree *tree; /* NODE_SUM, NODE_PARTIAL */
     };
     duite_param *param; /* task->n */
@@ -87,7 +87,7 @@ struct plan {
     struct plan_tree *tree;
     size_t n_trees;
     /* With several ranks. */
-    struct plan_channels channels;
+    struct comm_channel_set channels;
     size_t words;          /* of a set of ranks; 0: there is one rank */
     uint64_t *enter, *end; /* by object: ranks that have it before a round; after */
     int *home;             /* by object: when the plan was made */
@@ -173,7 +173,7 @@ static inline uint32_t plan_task_affinity(const struct task *task)
 
 /* Compiles a record for a fixed number of rounds, or with a flag: an object of the record that is
  * bound to it, or one more if there is none. Time and memory are linear in the record. With *plan
- * NULL: PLAN_NEEDS_TAGS, or an error: memory, MPI. */
+ * NULL: COMM_NEEDS_TAGS, or an error: memory, MPI. */
 int plan_new(struct plan **plan, const struct plan_record *record, const duite_object *flag);
 /* Returns whether plan_new could have made this plan. */
 bool plan_fits(struct plan *plan, const struct plan_record *record, const duite_object *flag);
@@ -191,6 +191,14 @@ int plan_fetch(const struct plan *plan, struct worker *worker, size_t i,
 bool plan_moves(const struct plan *plan, size_t i, struct data_object *object);
 /* Bytes of a node's message with all its failures. */
 size_t plan_channel_room(const struct plan *plan, const struct task *task);
+/* A NODE_SEND writes its message and returns its bytes. A NODE_RECEIVE reads its message, or (lost)
+ * poisons its places. Afterwards the caller finishes the node. Any worker. */
+size_t plan_channel_pack(struct comm_channel *channel, void *message);
+void plan_channel_unpack(struct comm_channel *channel, const void *message);
+void plan_channel_lost(struct comm_channel *channel);
+/* One of the program's tasks that wait in this round for a NODE_RECEIVE, or NULL; more: the number
+ * of others. The replay must not go on meanwhile. */
+const struct task *plan_channel_waits(const struct comm_channel *channel, unsigned *more);
 /* Returns whether the homes are still those that the plan was made for. */
 bool plan_at_home(struct plan *plan, const struct plan_record *record);
 

@@ -74,7 +74,7 @@ bool plan_of_ranks(struct plan *plan, const struct plan_round *round, struct pla
 
 int plan_open(struct plan *plan, const struct plan_round *part)
 {
-    struct plan_channels *channels = &plan->channels;
+    struct comm_channel_set *channels = &plan->channels;
     channels->channel = base_alloc((part->n_channels + 1) * sizeof *channels->channel);
     if (!channels->channel)
         return base_no_memory("the messages of a recorded graph");
@@ -84,15 +84,15 @@ int plan_open(struct plan *plan, const struct plan_round *part)
         if (!task_is_channel(task))
             continue;
         const struct plan_round_channel *from = &part->channel[part->node[i].channel];
-        struct plan_channel *channel = &channels->channel[part->node[i].channel];
-        *channel = (struct plan_channel){.node = task,
+        struct comm_channel *channel = &channels->channel[part->node[i].channel];
+        *channel = (struct comm_channel){.node = task,
                                          .peer = from->peer,
                                          .tag = (int)from->phase,
                                          .sends = from->sends,
                                          .bytes = plan_channel_room(plan, task)};
         task->node->channel = channel;
     }
-    return work_open(plan->graph->pool, channels);
+    return comm_channels_open(plan->graph->comm, channels);
 }
 
 bool plan_at_home(struct plan *plan, const struct plan_record *record)

@@ -197,7 +197,7 @@ int plan_record_fork(struct plan_record *record, const struct task_options *opti
         fork->owner = record->access[fork->first + owner].object;
     if (graph->n_ranks > 1)
         task_mix_fork(graph, task_fork_hash_all(task_fork_what(index, options->at), n, objects),
-                      TASK_RECORDED, index);
+                      COMM_RECORDED, index);
     if (kernel->args_size)
         memcpy(record->args + fork->args, args, kernel->args_size);
     if (kernel->fixed)
@@ -224,7 +224,7 @@ int plan_record_set(struct plan_record *record, duite_object name, const void *v
     fork->owner = record_use(record, name, DUITE_W, NULL);
     task_mix(record->graph, task_fork_hash_all(task_fork_what(PLAN_SETS, TASK_ANYWHERE), 1, &name));
     task_mix(record->graph, count);
-    task_mixed(record->graph, TASK_CALLED, TASK_CALLED_SET);
+    task_mixed(record->graph, COMM_CALLED, COMM_CALLED_SET);
     fork->zeros = !values;
     fork->count = count;
     if (bytes)
@@ -295,7 +295,7 @@ int plan_record_bind(struct plan_record *record, duite_object recorded, duite_ob
             other->sized ? "at most " : "", other->max, data_type_name(other->type));
     task_mix(record->graph, task_name_bits(recorded));
     task_mix(record->graph, task_name_bits(name));
-    task_mixed(record->graph, TASK_CALLED, TASK_CALLED_GRAPH_BIND);
+    task_mixed(record->graph, COMM_CALLED, COMM_CALLED_GRAPH_BIND);
     object->bound = name;
     record->graph->table.object[name.slot].fixed |= object->fixed;
     record->rebound = true;

@@ -146,7 +146,7 @@ void plan_replay_split(const struct plan_record *record, const duite_object *fla
 int plan_replay_fork(struct plan_record *record, struct worker *worker, uint64_t round);
 
 /* Replays the plan for so many rounds, or at most so many while the first element of the flag is
- * not zero. PLAN_NEEDS_TAGS: nothing was done. */
+ * not zero. COMM_NEEDS_TAGS: nothing was done. */
 int plan_replay_plan(struct plan_record *record, struct worker *worker, const duite_object *flag,
                      uint64_t rounds);
 

@@ -100,7 +100,7 @@ static void run_starve(struct plan *plan, struct task *task)
     if (plan->gate)
         plan_taint(plan, PLAN_STARVED);
     if (plan->words)
-        work_starved(plan->graph->pool, "a replay");
+        comm_broke_memory(plan->graph->comm, "a replay");
 }
 
 void plan_replay_run(struct task *task)
@@ -136,19 +136,21 @@ void plan_replay_end(struct task_graph *graph, struct worker *worker, struct pla
     }
     atomic_store_explicit(&plan->rounds, rounds, memory_order_relaxed);
     atomic_fetch_add_explicit(&plan->over, 1, memory_order_release);
-    work_notify(graph->pool);
+    queue_notify(graph->pool);
     task_finish(graph, worker, task); /* the next replay may begin */
     plan_release(plan);
 }
 
 void plan_node_ready(struct task_graph *graph, struct worker *worker, struct task *task)
 {
-    if (!task->node->runs_inline) {
-        work_ready(graph->pool, worker, task);
-        return;
+    if (task->node->runs_inline) {
+        plan_node_run(graph, worker, task, NULL);
+        plan_node_finish(graph, worker, task);
+    } else if (task_is_channel(task)) {
+        comm_channel_ready(graph->comm, worker, task->node->channel);
+    } else {
+        task_place(graph, worker, task, plan_task_affinity(task));
     }
-    plan_node_run(graph, worker, task, NULL);
-    plan_node_finish(graph, worker, task);
 }
 
 void plan_replay_start(struct task_graph *graph, struct worker *worker, struct task *task)

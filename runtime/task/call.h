@@ -66,8 +66,9 @@ task_frame_call(struct task_frame *frame, struct task *task, const void *args,
     frame->call.param = param;
     frame->call.n_params = task->n;
     task_body_begins(body);
-    int code = graph->checks ? work_check_body(graph->pool, kernel, task->number, &frame->call)
-                             : kernel->body(&frame->call);
+    int code = __builtin_expect(graph->check != NULL, 0)
+                   ? graph->check(graph->pool, kernel, task->number, &frame->call)
+                   : kernel->body(&frame->call);
     task_body_ends(body);
     *scope = body->scope;
     if (!(code | body->refused | body->remembered))

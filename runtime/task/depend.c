@@ -43,7 +43,7 @@ static int copy_send(struct task_graph *graph, struct worker *worker, struct dat
     struct task *task = version ? task_new(&graph->root, TASK_SEND, 1, sizeof *task->send) : NULL;
     if (!task)
         return DUITE_E_MEMORY;
-    *task->send = (struct task_send){.key = task_key(graph, object), .to = to};
+    *task->send = (struct comm_letter){.key = task_key(graph, object), .sender = task, .to = to};
     task->access[0].waiter.mode = DUITE_R;
     task_settled(graph, worker, task, data_version_read(version, &task->access[0].waiter));
     return DUITE_OK;
@@ -57,8 +57,9 @@ static int copy_await(struct task_graph *graph, struct worker *worker, struct da
         return task_break(graph);
     }
     object->current = version;
-    if (!work_expect(graph->pool, worker, task_key(graph, object), object->holder, version, NULL,
-                     1))
+    const struct comm_target target = {
+        .arrived = task_arrived, .what = version, .from = object->holder};
+    if (!comm_expect(graph->comm, worker, task_key(graph, object), target, 1))
         return DUITE_OK;
     object->current = NULL;
     data_version_free(version);

@@ -42,9 +42,9 @@ void task_finish(struct task_graph *graph, struct worker *worker, struct task *t
 static const struct data_failure communication_lost = {
     .code = DUITE_E_MPI, .kernel = UINT32_MAX, .text = "communication between the ranks broke"};
 
-struct data_packet *task_send_packet(struct task *task)
+struct data_packet *task_send_packet(struct comm_letter *send)
 {
-    struct task_send *send = task->send;
+    const struct task *task = send->sender;
     if (send->packet || !task->n)
         return send->packet;
     const struct data_version *version = task->access[0].waiter.version;
@@ -62,10 +62,12 @@ struct data_packet *task_send_packet(struct task *task)
     return packet;
 }
 
-void task_arrived(struct task_graph *graph, struct worker *worker, struct data_version *version,
-                  struct data_packet *packet)
+void task_arrived(void *graph, struct worker *worker, void *what, struct data_packet *packet)
 {
-    if (packet->kind == DATA_POISON) {
+    struct data_version *version = what;
+    if (!packet) {
+        data_version_poison(version, &communication_lost);
+    } else if (packet->kind == DATA_POISON) {
         data_version_poison(version, task_fail(graph, data_payload(packet), false));
         data_packet_free(packet);
     } else {
@@ -77,16 +79,4 @@ void task_arrived(struct task_graph *graph, struct worker *worker, struct data_v
 const struct data_failure *task_lost_failure(void)
 {
     return &communication_lost;
-}
-
-void task_lost(struct task_graph *graph, struct worker *worker, struct data_version *version)
-{
-    data_version_poison(version, &communication_lost);
-    task_publish(graph, worker, version);
-}
-
-void task_pieces_lost(struct task_graph *graph, struct worker *worker, struct data_sum *sum)
-{
-    atomic_store_explicit(&sum->lost, &communication_lost, memory_order_relaxed);
-    task_wake(graph, worker, data_sum_release(sum));
 }

@@ -324,7 +324,7 @@ int task_fork_any(struct task_scope *scope, struct worker *worker,
         task_mix_fork(
             scope->graph,
             task_fork_hash_all(task_fork_what(call.fixed->index, options->at), n, objects),
-            TASK_FORKED, call.fixed->index);
+            COMM_FORKED, call.fixed->index);
     return fork_checked(&call, options, args);
 }
 
@@ -371,7 +371,7 @@ ACCESS_INLINE int elsewhere_try(struct task_graph *graph, struct worker *worker,
     if (at == graph->rank || !elsewhere_take(scope, fixed, n, objects, object, &hash, plain))
         return ELSEWHERE_NOT;
     scope->forks++;
-    task_mix_fork(graph, hash, TASK_FORKED, fixed->index);
+    task_mix_fork(graph, hash, COMM_FORKED, fixed->index);
     int code = DUITE_OK;
     for (size_t i = 0; i < n && !code; i++)
         code = access_elsewhere(scope, worker, kernel, i, object[i],

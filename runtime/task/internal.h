@@ -160,7 +160,7 @@ static inline void task_left(struct task_graph *graph, struct task_scope *scope,
 {
     /* No look into the root: the main thread writes its line with every fork. */
     if (scope == &graph->root)
-        work_over_one(graph->pool, worker);
+        queue_over_one(graph->pool, worker);
     else if (!scope->parent ||
              atomic_fetch_sub_explicit(&scope->unfinished, 1, memory_order_acq_rel) == 1)
         task_left_last(graph, scope, worker);

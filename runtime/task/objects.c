@@ -17,7 +17,7 @@ int task_free_object(struct task_scope *scope, struct worker *worker, duite_obje
         return DUITE_E_OBJECT;
     if (!scope->depth) {
         task_mix(graph, task_name_bits(name));
-        task_mixed(graph, TASK_CALLED, TASK_CALLED_FREE);
+        task_mixed(graph, COMM_CALLED, COMM_CALLED_FREE);
     }
     int code = object->leaves ? task_reduce(scope, worker, object) : DUITE_OK;
     task_forget(graph, worker, object);
@@ -129,7 +129,7 @@ int task_set_object(struct task_scope *scope, struct worker *worker, duite_objec
         task_mix(graph, task_name_bits(name));
         task_mix(graph, OVERWRITTEN);
         task_mix(graph, count);
-        task_mixed(graph, TASK_CALLED, TASK_CALLED_SET);
+        task_mixed(graph, COMM_CALLED, COMM_CALLED_SET);
     }
     struct data_version *version = NULL;
     const size_t bytes = count * data_type_size(object->type);

@@ -20,7 +20,7 @@ ready_take(struct task_graph *graph, struct worker *worker, struct task *task, u
 {
     if (atomic_load_explicit(&task->pending, memory_order_acquire) == taken ||
         atomic_fetch_sub_explicit(&task->pending, taken, memory_order_acq_rel) == taken)
-        work_ready(graph->pool, worker, task);
+        task_ready(graph, worker, task);
 }
 
 static inline struct task *ready_waiter_task(struct data_waiter *waiter)

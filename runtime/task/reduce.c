@@ -29,7 +29,7 @@ static struct task *sum_reducer(struct task_scope *scope, struct data_object *ob
     *task->sum =
         (struct task_sum){.waiter.back = (uint32_t)((char *)&task->sum->waiter - (char *)task),
                           .sum = object->sum,
-                          .send.to = object->holder};
+                          .send = {.sender = task, .to = object->holder}};
     if (!scope->depth)
         task->sum->send.key = task_key(scope->graph, object);
     task->block = object->block;
@@ -43,7 +43,8 @@ static int pieces_expect(struct task_graph *graph, struct worker *worker, struct
 {
     struct data_sum *sum = closing->sum;
     atomic_fetch_add_explicit(&sum->pending, sum->senders, memory_order_relaxed);
-    if (!work_expect(graph->pool, worker, closing->send.key, -1, NULL, sum, sum->senders))
+    const struct comm_target target = {.arrived = task_pieces_arrived, .what = sum, .from = -1};
+    if (!comm_expect(graph->comm, worker, closing->send.key, target, sum->senders))
         return DUITE_OK;
     atomic_store_explicit(&sum->lost, &task_sum_no_memory, memory_order_relaxed);
     atomic_fetch_sub_explicit(&sum->pending, sum->senders, memory_order_relaxed);
@@ -249,10 +250,12 @@ static void pieces_add(struct task_graph *graph, struct data_sum *sum, struct da
             return;
 }
 
-void task_pieces_arrived(struct task_graph *graph, struct worker *worker, struct data_sum *sum,
-                         struct data_packet *packet)
+void task_pieces_arrived(void *graph, struct worker *worker, void *what, struct data_packet *packet)
 {
-    if (packet->kind == DATA_POISON) {
+    struct data_sum *sum = what;
+    if (!packet) {
+        atomic_store_explicit(&sum->lost, task_lost_failure(), memory_order_relaxed);
+    } else if (packet->kind == DATA_POISON) {
         const struct data_failure *failure = task_fail(graph, data_payload(packet), false);
         piece_add(graph, sum, (struct data_piece){.failure = failure});
         data_packet_free(packet);

@@ -243,7 +243,7 @@ static void copy_run(struct task_graph *graph, struct task *task)
     if (!copy->failure && copy->values)
         memcpy(copy->values, data_payload(version->packet), copy->bytes);
     atomic_store_explicit(&copy->done, 1, memory_order_release);
-    work_notify(graph->pool);
+    queue_notify(graph->pool);
 }
 
 static const struct data_failure fork_no_memory = {

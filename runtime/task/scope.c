@@ -116,7 +116,7 @@ struct task_scope *task_scope_begin(struct duite_call_private *body)
     }
     task_nest_of(body->scope)->body = body;
     if (task->type == TASK_NODE) /* the main program waits for what it forks, too */
-        work_over(body->graph->pool, body->worker, -1);
+        queue_over(body->graph->pool, body->worker, -1);
     return body->scope;
 }
 

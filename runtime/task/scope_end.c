@@ -22,14 +22,14 @@ void task_left_last(struct task_graph *graph, struct task_scope *scope, struct w
         base_pool_give(nest, nest->size);
         scope = parent;
         if (scope == &graph->root) {
-            work_over(graph->pool, worker, 1);
+            queue_over(graph->pool, worker, 1);
             return;
         }
         if (scope->parent &&
             atomic_fetch_sub_explicit(&scope->unfinished, 1, memory_order_acq_rel) != 1)
             return;
     }
-    work_offloaded_over(scope, worker);
+    graph->offloaded_over(scope, worker);
 }
 
 static const struct data_failure scope_no_memory = {

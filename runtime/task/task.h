@@ -1,8 +1,11 @@
 #ifndef DUITE_TASK_TASK_H
 #define DUITE_TASK_TASK_H
 
+#include "runtime/comm/history.h"
+#include "runtime/comm/message.h"
 #include "runtime/data/object.h"
-#include "runtime/task/above.h"
+#include "runtime/data/sum.h"
+#include "runtime/queue/pool.h"
 #include "runtime/task/fingerprint.h"
 #include "runtime/task/owner.h"
 
@@ -77,11 +80,11 @@ _Static_assert(sizeof(struct task_access) == 16, "tasks that wait take little me
 struct task {
     _Atomic uint32_t pending; /* accesses that wait, and 1 while it is being forked */
     uint32_t n;
-    struct task *next; /* a link for whoever holds the task: queues, lists */
+    struct queue_link link; /* for whoever holds the task: queues, lists */
     union {
         struct task_scope *inner;       /* BODY: its children's scope, or NULL */
         struct task_sum *sum;           /* COMBINE, PIECES, GATHER */
-        struct task_send *send;         /* SEND; as long as it is DELEGATED or LEAVES */
+        struct comm_letter *send;       /* SEND; as long as it is DELEGATED or LEAVES */
         struct offload_task *offloaded; /* OFFLOADED */
         struct task_copy *copy;         /* COPY */
         struct plan_replay *replay;     /* REPLAY */
@@ -104,6 +107,7 @@ struct task {
     unsigned later : 1; /* a BODY of a later round than the first of a replay: see task_round_at */
     struct task_access access[];
 };
+_Static_assert(offsetof(struct task, link) == QUEUE_LINK_AT, "queues know where the link is");
 
 enum { TASK_GRAIN = 16, TASK_MAX_OBJECTS = 1 << 26 /* of a task */ };
 
@@ -149,18 +153,11 @@ static inline float task_path(const struct task *task)
     return task_is_node(task) ? task->path : 0;
 }
 
-/* SEND: a version and where it goes. */
-struct task_send {
-    struct data_key key;
-    int to;
-    struct data_packet *packet; /* NULL: the version that the task reads, as it lies */
-};
-
 /* COMBINE, PIECES and GATHER: the contributions to close. */
 struct task_sum {
     struct data_waiter waiter; /* waits for them all */
     struct data_sum *sum;
-    struct task_send send; /* the version they make; PIECES: to the rank that adds */
+    struct comm_letter send; /* the version they make; PIECES: to the rank that adds */
 };
 
 /* COPY: where a value goes. `done` is set last. */
@@ -183,7 +180,7 @@ struct task_scope {
                                     task's */
     _Atomic uint64_t unfinished; /* tasks forked here, each with its descendants; values to be
                                     passed to the scope above; 1 while the body runs. The main
-                                    program's: see work_over */
+                                    program's: see queue_over */
     uint64_t forks;              /* so far; inside a task waits count, too */
     const struct data_failure *failure; /* first in reference order since the last wait; `lock` */
     uint64_t number;                    /* of its task; as are: */
@@ -195,6 +192,13 @@ struct task_scope {
     const struct data_failure *place; /* of an offloaded task's top: where it stands
                                          at home */
 };
+
+/* Checking mode: calls the body of the task with that number, and returns its code. */
+typedef int task_check_body(struct queue_pool *pool, const duite_kernel *kernel, uint64_t number,
+                            duite_call *call);
+
+/* The task of another rank with this top scope is over, with all its descendants. */
+typedef void task_top_over(struct task_scope *top, struct worker *worker);
 
 struct task_graph {
     /* Read by all workers, with every task. */
@@ -213,20 +217,22 @@ struct task_graph {
     struct task_fixed **kernel_place; /* by address, open addressing */
     uint32_t kernel_mask;
     bool paths; /* plans are to know the paths of their tasks; set before the first of them */
-    _Atomic int given_up;   /* bodies do not run any more */
-    bool checks;            /* bodies are called by work_check_body */
-    struct work_pool *pool; /* runs the tasks; NULL: not yet, or no more */
+    _Atomic int given_up;    /* bodies do not run any more */
+    task_check_body *check;  /* checking mode: calls bodies; NULL: they are called directly */
+    struct queue_pool *pool; /* runs the tasks; NULL: not yet, or no more */
+    struct comm *comm;       /* NULL: there is one rank */
     /* The main thread's, written with every fork: on cache lines of its own. */
     _Alignas(
         64) struct task_scope root; /* the main program; its `forks` are the same on all ranks */
     uint64_t fingerprint;           /* of the main program's calls */
-    struct task_history *history;   /* of them; NULL on one rank */
+    struct comm_history *history;   /* of them; NULL on one rank */
     uint64_t tasks;                 /* of this rank that it forked, or that serve it */
     struct data_table table;
     /* Seldom used. */
     _Alignas(64) _Atomic int broken; /* memory ran out in a fork: the code of every later call */
     _Atomic uint64_t offloaded;      /* tasks of other ranks that are here */
-    pthread_mutex_t lock;            /* of the rest, and of the failures of scopes */
+    task_top_over *offloaded_over;
+    pthread_mutex_t lock; /* of the rest, and of the failures of scopes */
     struct task_failure *failures;
     struct offload_names *offload_names; /* tasks on other ranks, or NULL */
     bool offload_closed;                 /* no more of them */
@@ -234,7 +240,8 @@ struct task_graph {
 };
 
 /* Checks `kernels`, which NULL ends, and copies the list; checks `laws`, likewise or NULL, and does
- * not keep it. The runner of the tasks sets `pool` and `checks`. Errors: DUITE_E_KERNEL,
+ * not keep it. The runner of the tasks sets `pool`, `comm`, `check` and
+ * `offloaded_over`. Errors: DUITE_E_KERNEL,
  * DUITE_E_LAW, memory; task_graph_stop is due all the same. */
 int task_graph_start(struct task_graph *graph, int rank, int n_ranks,
                      const duite_kernel *const *kernels, const duite_law *const *laws);
@@ -253,20 +260,20 @@ static inline void task_mix(struct task_graph *graph, uint64_t value)
     uint64_t state = graph->fingerprint ^ value;
     graph->fingerprint = duite_random(&state);
 }
-static inline void task_mixed(struct task_graph *graph, enum task_call_kind kind, uint32_t which)
+static inline void task_mixed(struct task_graph *graph, enum comm_call_kind kind, uint32_t which)
 {
     if (graph->n_ranks == 1)
         return;
-    task_history_add(graph->history, graph->fingerprint,
-                     task_call_bits(kind, which, graph->root.forks));
+    comm_history_add(graph->history, graph->fingerprint,
+                     comm_call_bits(kind, which, graph->root.forks));
 }
 /* Does both for a fork on several ranks; `kind` tells whether it is recorded. */
-static inline void task_mix_fork(struct task_graph *graph, uint64_t hash, enum task_call_kind kind,
+static inline void task_mix_fork(struct task_graph *graph, uint64_t hash, enum comm_call_kind kind,
                                  uint32_t kernel)
 {
     uint64_t state = graph->fingerprint ^ hash;
     const uint64_t fingerprint = graph->fingerprint = duite_random(&state);
-    task_history_add(graph->history, fingerprint, task_call_bits(kind, kernel, graph->root.forks));
+    comm_history_add(graph->history, fingerprint, comm_call_bits(kind, kernel, graph->root.forks));
 }
 
 /* ---- Main thread with the graph's root as scope: collective, the homes of all objects are
@@ -321,8 +328,16 @@ void task_release(struct task_graph *graph, struct worker *worker, struct data_v
 
 /* ---- Any worker ---- */
 
-/* Runs a ready task of one of this folder's types, which task_finish then ends; work_run_task runs
- * tasks of all types. `call` has context, rt, rank and worker set. Returns whether a body ran. */
+/* A task may run: goes to a worker, or is sent. task_place: the same for one that others than tasks
+ * of this folder made ready, with its affinity (see duite_ready). */
+void task_ready(struct task_graph *graph, struct worker *worker, struct task *task);
+void task_place(struct task_graph *graph, struct worker *worker, struct task *task,
+                uint32_t affinity);
+/* For queues. */
+queue_ranks_by task_rank;
+
+/* Runs a ready task of one of this folder's types, which task_finish then ends; the workers know
+ * who runs other types. `call` has context, rt, rank and worker set. Returns whether a body ran. */
 bool task_run(struct task_graph *graph, struct worker *worker, struct task *task,
               const duite_call *call);
 /* Ends a task: publishes its outputs, releases its inputs, makes its successors ready, frees it. */
@@ -392,19 +407,13 @@ static inline bool task_has_body(const struct task *task)
     return task->state == TASK_LOCAL && TASK_IS(task, TASK_TYPES_WITH_BODY);
 }
 
-/* A packet came for an expected version or sum; the callee owns it. */
-void task_arrived(struct task_graph *graph, struct worker *worker, struct data_version *version,
-                  struct data_packet *packet);
-void task_pieces_arrived(struct task_graph *graph, struct worker *worker, struct data_sum *sum,
-                         struct data_packet *packet);
+/* A packet came for an expected version, or for an expected sum: pieces of it. NULL: it will not
+ * come, and poison takes its place. The context of comm is the graph. */
+comm_arrived task_arrived, task_pieces_arrived;
 
-/* An expected version, or pieces, will not come: puts poison in their place. */
-void task_lost(struct task_graph *graph, struct worker *worker, struct data_version *version);
-void task_pieces_lost(struct task_graph *graph, struct worker *worker, struct data_sum *sum);
-
-/* The bytes of a ready SEND, under its key: the version itself, or send->packet, which the caller
- * frees once it is sent. NULL without memory. */
-struct data_packet *task_send_packet(struct task *send);
+/* The bytes that a ready task sends, under their key: letter->packet, or the version that a SEND
+ * reads, as it lies. NULL without memory. */
+struct data_packet *task_send_packet(struct comm_letter *letter);
 
 /* Gives the object another home. The value that the forks so far leave goes there if the old home
  * holds it; the old home then frees it, since no other rank would. If the object has contributions,

@@ -38,9 +38,9 @@ static inline bool awaits_take(struct worker *worker, struct task *task)
 /* True if any queue has tasks. */
 static bool awaits_see_others(const struct work_pool *pool)
 {
-    bool some = !work_queue_is_empty(&pool->shared);
+    bool some = !queue_is_empty(&pool->queues.shared);
     for (unsigned i = 0; i < pool->setup.threads && !some; i++)
-        some = !work_queue_is_empty(&pool->worker[i].queue);
+        some = !queue_is_empty(&pool->queues.worker[i].queue);
     return some;
 }
 
@@ -61,7 +61,7 @@ static bool awaits_node(struct worker *worker, struct task *task, struct work_ba
         now = base_ticks();
         crowded = work_is_crowded(worker, now);
     }
-    work_bump(&worker->counts.idle, now - since);
+    queue_bump(&worker->counts.idle, now - since);
     batch->start = now;
     return came;
 }

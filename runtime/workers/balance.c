@@ -31,6 +31,8 @@ struct work_balance {
     _Atomic int giver;
 };
 
+static bool balance_goes_away(struct worker *worker, struct task *task);
+
 int work_balance_start(struct work_balance **out, struct work_pool *pool)
 {
     const duite_balancer *balancer = pool->setup.balancer;
@@ -44,9 +46,11 @@ int work_balance_start(struct work_balance **out, struct work_pool *pool)
     if (!balance)
         return base_no_memory("the balancer");
     balance->balancer = balancer;
-    balance->tick = pool->tick;
-    balance->first_request = (uint64_t)(FIRST_REQUEST_SECONDS / pool->tick);
-    balance->grant_ticks = (uint64_t)(GRANT_SECONDS / pool->tick);
+    pool->queues.goes_away = balance_goes_away;
+    pool->queues.straight = false;
+    balance->tick = pool->queues.tick;
+    balance->first_request = (uint64_t)(FIRST_REQUEST_SECONDS / pool->queues.tick);
+    balance->grant_ticks = (uint64_t)(GRANT_SECONDS / pool->queues.tick);
     balance->giver = DUITE_NO_RANK;
     balance->stride = (balancer->state_size / BASE_LINE + 2) * BASE_LINE;
     balance->states = base_alloc_zero(n * balance->stride);
@@ -116,7 +120,7 @@ static int balancer_place(const struct worker *worker, const duite_leaf *leaf)
 uint64_t work_migrate(struct work_pool *pool, const duite_blocks *blocks, int *home)
 {
     const struct work_balance *balance = pool->balance;
-    struct base_mark *own = balance_mark(&pool->worker[0]);
+    struct base_mark *own = balance_mark(&pool->queues.worker[0]);
     struct base_mark *mark = own ? own : base_mark_of(pool->setup.marks, BASE_MAPPING, 0);
     base_mark_begin(mark, own ? BASE_BALANCER_MIGRATE : BASE_MAPPING_MAP);
     const uint64_t next = balance->balancer->migrate(balance->states, blocks, home);
@@ -131,12 +135,12 @@ void work_learn(struct worker *worker, const struct task *task, uint64_t ticks)
 
 double work_block_seconds(struct work_pool *pool, uint32_t block)
 {
-    return pool->tick * (double)work_cost_take_block(&pool->balance->cost, block);
+    return pool->queues.tick * (double)work_cost_take_block(&pool->balance->cost, block);
 }
 
 double work_other_seconds(struct work_pool *pool)
 {
-    return pool->tick * (double)work_cost_take_other(&pool->balance->cost);
+    return pool->queues.tick * (double)work_cost_take_other(&pool->balance->cost);
 }
 
 /* ---- Tasks that may go ---- */
@@ -147,7 +151,7 @@ static double task_cost(const struct work_pool *pool, const struct task *task)
 {
     if (task->cost > 0)
         return task->cost;
-    return task->inner ? 0 : pool->tick * work_cost_mean(&pool->balance->cost, task->kernel);
+    return task->inner ? 0 : pool->queues.tick * work_cost_mean(&pool->balance->cost, task->kernel);
 }
 
 /* False: it may not go. */
@@ -178,7 +182,7 @@ static bool leaf_send(struct worker *worker, struct task *task, int to)
     const uint64_t number = task_main_number(task, &nested);
     if (!offload_send(worker->pool->setup.graph, worker, task, to))
         return false;
-    work_bump(&worker->counts.delegated, 1);
+    queue_bump(&worker->counts.delegated, 1);
     trace_mark(worker->ring, TRACE_DELEGATE, (uint32_t)to, number);
     return true;
 }
@@ -189,7 +193,7 @@ static bool leaf_send(struct worker *worker, struct task *task, int to)
 static bool leaf_grant_at_once(struct worker *worker, struct task *task, const duite_leaf *leaf)
 {
     const struct work_pool *pool = worker->pool;
-    size_t others = work_queue_size(&worker->queue) + work_queue_size(&pool->shared);
+    size_t others = queue_size(&worker->queue) + queue_size(&pool->queues.shared);
     struct comm_requester requester;
     if (!comm_take_request(pool->setup.comm, &requester))
         return false;
@@ -201,10 +205,21 @@ static bool leaf_grant_at_once(struct worker *worker, struct task *task, const d
     return given;
 }
 
-bool work_placed_away(struct worker *worker, struct task *task)
+/* A task of another rank came: that rank may have more. */
+static void offloaded_came(struct work_balance *balance, const struct task *task)
+{
+    atomic_store_explicit(&balance->giver, offload_home(task), memory_order_relaxed);
+    atomic_store_explicit(&balance->attempt, 0, memory_order_relaxed);
+    atomic_store_explicit(&balance->next, 0, memory_order_relaxed);
+}
+
+/* For queue_pool.goes_away. */
+static bool balance_goes_away(struct worker *worker, struct task *task)
 {
     const struct work_pool *pool = worker->pool;
     const duite_balancer *balancer = pool->balance->balancer;
+    if (task->type == TASK_OFFLOADED)
+        offloaded_came(pool->balance, task);
     int own = pool->setup.graph->rank, to = own;
     duite_leaf leaf;
     bool asked = balancer->grant && comm_has_requests(pool->setup.comm);
@@ -226,11 +241,12 @@ struct grant {
 
 /* Grants oldest first: the owner works on the newest. The other tasks go back in their old
  * order. */
-static void grant_or_keep(struct grant *grant, struct work_queue *queue, struct task *task)
+static void grant_or_keep(struct grant *grant, struct queue *queue, struct queue_link *taken)
 {
     const struct work_pool *pool = grant->worker->pool;
-    while (task) {
-        struct task *next = task->next;
+    while (taken) {
+        struct task *task = queue_task(taken);
+        taken = taken->next;
         duite_leaf leaf;
         if (leaf_describe(pool, task, &leaf) &&
             balancer_grants(grant->worker, &grant->asked, &leaf) &&
@@ -238,18 +254,18 @@ static void grant_or_keep(struct grant *grant, struct work_queue *queue, struct 
             grant->asked.granted++;
             grant->asked.unknown += leaf_is_unknown(&leaf);
         } else {
-            work_queue_push(queue, task);
+            queue_push(queue, task);
         }
-        task = next;
     }
 }
 
-static void grant_from(struct grant *grant, struct work_queue *queue)
+static void grant_from(struct grant *grant, struct queue *queue)
 {
-    struct task *taken = NULL, *task;
-    for (unsigned i = 0; i < DEPTH && (task = work_queue_take(queue, DUITE_NEWEST)); i++) {
-        task->next = taken;
-        taken = task;
+    struct queue_link *taken = NULL;
+    struct task *task;
+    for (unsigned i = 0; i < DEPTH && (task = queue_take(queue, DUITE_NEWEST)); i++) {
+        task->link.next = taken;
+        taken = &task->link;
         grant->asked.ready++;
     }
     grant_or_keep(grant, queue, taken);
@@ -262,14 +278,14 @@ static void grant_queues(struct worker *worker, const struct comm_requester *req
     struct grant grant = {.worker = worker,
                           .asked = {.rank = requester->rank, .idle = requester->idle}};
     grant_from(&grant, &worker->queue);
-    if (!atomic_flag_test_and_set_explicit(&pool->shared.token, memory_order_acquire)) {
-        grant_from(&grant, &pool->shared);
-        atomic_flag_clear_explicit(&pool->shared.token, memory_order_seq_cst);
+    if (!atomic_flag_test_and_set_explicit(&pool->queues.shared.token, memory_order_acquire)) {
+        grant_from(&grant, &pool->queues.shared);
+        atomic_flag_clear_explicit(&pool->queues.shared.token, memory_order_seq_cst);
     }
     /* The tasks could not be found meanwhile: a worker looks again. */
     atomic_thread_fence(memory_order_seq_cst);
     if (grant.asked.ready > grant.asked.granted)
-        work_wake_one(pool, DUITE_NO_QUEUE);
+        queue_wake_one(&pool->queues, DUITE_NO_QUEUE);
     *given = grant.asked.granted;
 }
 
@@ -308,7 +324,7 @@ static void request_send(struct worker *worker)
     int giver = atomic_load_explicit(&balance->giver, memory_order_relaxed);
     int rank = balancer_victim(worker, attempt, giver, &seconds);
     seconds = fmin(fmax(seconds, 0), LONGEST_REQUEST_SECONDS); /* whatever it says */
-    unsigned idle = 1 + (unsigned)atomic_load_explicit(&pool->parked, memory_order_relaxed);
+    unsigned idle = 1 + (unsigned)atomic_load_explicit(&pool->queues.parked, memory_order_relaxed);
     bool other = rank >= 0 && rank < pool->setup.graph->n_ranks && rank != pool->setup.graph->rank;
     if (other && !comm_request(pool->setup.comm, worker, rank, idle, seconds))
         return;
@@ -326,20 +342,13 @@ void work_request(struct worker *worker, uint64_t idle)
         request_send(worker);
 }
 
-void work_offloaded_came(struct work_balance *balance, const struct task *task)
-{
-    atomic_store_explicit(&balance->giver, offload_home(task), memory_order_relaxed);
-    atomic_store_explicit(&balance->attempt, 0, memory_order_relaxed);
-    atomic_store_explicit(&balance->next, 0, memory_order_relaxed);
-}
-
 bool work_begins(struct worker *worker, const struct task *task)
 {
     const struct work_pool *pool = worker->pool;
     if (task->type != TASK_OFFLOADED)
         return false;
     uint64_t offloaded = offload_count(pool->setup.graph);
-    size_t ready = work_queue_size(&worker->queue) + work_queue_size(&pool->shared);
+    size_t ready = queue_size(&worker->queue) + queue_size(&pool->queues.shared);
     bool last = offloaded <= STOCK * pool->setup.threads && ready < offloaded;
     if (last)
         request_send(worker);

@@ -58,7 +58,42 @@ void work_finish(struct task_graph *graph, struct worker *worker, struct task *t
         task_finish(graph, worker, task);
 }
 
-void work_offloaded_over(struct task_scope *top, struct worker *worker)
+/* ---- Messages ---- */
+
+static void message_sent(void *graph, struct worker *worker, struct comm_letter *letter)
 {
-    offload_over(top, worker);
+    work_finish(graph, worker, letter->sender);
 }
+
+static bool message_came(void *graph, struct worker *worker, struct data_packet *packet)
+{
+    if (packet->kind == DATA_OFFLOADED)
+        return offload_arrived(graph, worker, packet);
+    offload_result_arrived(graph, worker, packet);
+    return true;
+}
+
+static void messages_lost(void *graph, struct worker *worker)
+{
+    offload_lost(graph, worker);
+}
+
+static void messages_broke(void *graph)
+{
+    queue_notify(((const struct task_graph *)graph)->pool);
+}
+
+static void message_through(void *graph, struct worker *worker, struct comm_channel *channel)
+{
+    plan_node_finish(graph, worker, channel->node);
+}
+
+const struct comm_owner work_messages = {.packet = task_send_packet,
+                                         .sent = message_sent,
+                                         .came = message_came,
+                                         .lost = messages_lost,
+                                         .broke = messages_broke,
+                                         .pack = plan_channel_pack,
+                                         .unpack = plan_channel_unpack,
+                                         .lose = plan_channel_lost,
+                                         .through = message_through};

@@ -14,7 +14,6 @@
 #include "runtime/base/clock.h"
 #include "runtime/workers/internal.h"
 
-#include <errno.h>
 #include <sys/resource.h>
 #include <time.h>
 
@@ -27,97 +26,6 @@ enum { LOST_FACTOR = 100 };
  * message comes within it if the neighbour has a core, too. */
 #define LOST_SECONDS    2e-4
 #define CROWDED_SECONDS 5e-4
-
-/* ---- A place to sleep: the worker sets `asleep` to 1; a waker or the worker itself, whichever is
- * first, sets it back to 0 ---- */
-
-bool work_park_start(struct work_park *park)
-{
-    pthread_condattr_t monotonic;
-    atomic_init(&park->asleep, 0);
-    pthread_mutex_init(&park->lock, NULL);
-    if (pthread_condattr_init(&monotonic))
-        return false;
-    bool fine = !pthread_condattr_setclock(&monotonic, CLOCK_MONOTONIC) &&
-                !pthread_cond_init(&park->wake, &monotonic);
-    pthread_condattr_destroy(&monotonic);
-    return fine;
-}
-
-void work_park_stop(struct work_park *park)
-{
-    pthread_cond_destroy(&park->wake);
-    pthread_mutex_destroy(&park->lock);
-}
-
-void work_park_announce(struct work_park *park)
-{
-    atomic_store_explicit(&park->asleep, 1, memory_order_seq_cst);
-    atomic_thread_fence(memory_order_seq_cst);
-}
-
-void work_park_cancel(struct work_park *park)
-{
-    atomic_store_explicit(&park->asleep, 0, memory_order_relaxed);
-}
-
-static struct timespec park_until(double seconds)
-{
-    struct timespec until;
-    clock_gettime(CLOCK_MONOTONIC, &until);
-    long nanoseconds = until.tv_nsec + (long)(1e9 * seconds);
-    until.tv_sec += nanoseconds / 1000000000;
-    until.tv_nsec = nanoseconds % 1000000000;
-    return until;
-}
-
-void work_park_sleep(struct work_park *park, double seconds)
-{
-    struct timespec until = park_until(seconds);
-    int code = 0;
-    pthread_mutex_lock(&park->lock);
-    while (code != ETIMEDOUT && atomic_load_explicit(&park->asleep, memory_order_acquire)) {
-        if (seconds > 0)
-            code = pthread_cond_timedwait(&park->wake, &park->lock, &until);
-        else
-            code = pthread_cond_wait(&park->wake, &park->lock);
-    }
-    pthread_mutex_unlock(&park->lock);
-    work_park_cancel(park);
-}
-
-bool work_park_wake(struct work_park *park)
-{
-    int asleep = 1;
-    if (!atomic_load_explicit(&park->asleep, memory_order_relaxed) ||
-        !atomic_compare_exchange_strong_explicit(&park->asleep, &asleep, 0, memory_order_acq_rel,
-                                                 memory_order_relaxed))
-        return false;
-    pthread_mutex_lock(&park->lock);
-    pthread_cond_signal(&park->wake);
-    pthread_mutex_unlock(&park->lock);
-    return true;
-}
-
-/* ---- Waking ---- */
-
-void work_wake_one(struct work_pool *pool, unsigned queue)
-{
-    if (!atomic_load_explicit(&pool->parked, memory_order_seq_cst))
-        return;
-    unsigned n = pool->setup.threads, first = queue < n ? queue : 0;
-    for (unsigned i = 0; i < n; i++)
-        if (work_park_wake(&pool->worker[(first + i) % n].park))
-            return;
-}
-
-void work_notify(struct work_pool *pool)
-{
-    if (!pool)
-        return;
-    atomic_thread_fence(memory_order_seq_cst);
-    work_park_wake(&pool->worker[0].park);
-}
 
 /* ---- The poller ---- */
 
@@ -138,7 +46,7 @@ void work_idle_over(struct worker *worker)
         return;
     worker->polls = false;
     atomic_exchange_explicit(&worker->pool->poller, 0, memory_order_seq_cst);
-    work_wake_one(worker->pool, DUITE_NO_QUEUE);
+    queue_wake_one(&worker->pool->queues, DUITE_NO_QUEUE);
 }
 
 /* ---- Idle time ---- */
@@ -156,8 +64,8 @@ void work_stir(struct worker *worker)
     if (worker->idle_since) {
         const uint64_t now = base_ticks(), idle = now - worker->idle_since;
         uint64_t exposed = comm ? comm_awaited_ticks(comm) - worker->awaited_then : 0;
-        work_bump(&worker->counts.idle, idle);
-        work_bump(&worker->counts.exposed, exposed);
+        queue_bump(&worker->counts.idle, idle);
+        queue_bump(&worker->counts.exposed, exposed);
         worker->within += idle;
         work_note_idle(worker, idle, exposed);
         work_is_crowded(worker, now); /* the core may have been away until what it idled for came */
@@ -184,7 +92,7 @@ bool work_is_crowded(struct worker *worker, uint64_t now)
 {
     const uint64_t gap = now - worker->looked;
     worker->looked = now;
-    if ((double)gap * worker->pool->tick > LOST_SECONDS && core_was_taken(worker))
+    if ((double)gap * worker->pool->queues.tick > LOST_SECONDS && core_was_taken(worker))
         worker->crowded_until = now + LOST_FACTOR * gap;
     return now < worker->crowded_until;
 }
@@ -218,7 +126,7 @@ static bool idle_spin(struct worker *worker)
     const uint64_t ticks = poller_yield_ticks(worker);
     if (crowded) {
         work_pause_core();
-        return pool->spin_ticks && ticks && (double)since * pool->tick < CROWDED_SECONDS;
+        return pool->spin_ticks && ticks && (double)since * pool->queues.tick < CROWDED_SECONDS;
     }
     if (since < ticks)
         sched_yield();
@@ -233,16 +141,16 @@ static struct task *idle_sleep(struct worker *worker, double seconds, const stru
 {
     struct work_pool *pool = worker->pool;
     bool polled = worker->polls;
-    atomic_fetch_add(&pool->parked, 1);
-    work_park_announce(&worker->park);
+    atomic_fetch_add(&pool->queues.parked, 1);
+    queue_park_announce(&worker->park);
     struct task *task = work_find(worker);
     if (task || atomic_load(&pool->stop) || (wish->done && wish->done(wish->context)) ||
         (!polled && poller_take(worker)))
-        work_park_cancel(&worker->park);
+        queue_park_cancel(&worker->park);
     else
-        work_park_sleep(&worker->park, seconds);
+        queue_park_sleep(&worker->park, seconds);
     worker->looked = base_ticks();
-    atomic_fetch_sub(&pool->parked, 1);
+    atomic_fetch_sub(&pool->queues.parked, 1);
     return task;
 }
 

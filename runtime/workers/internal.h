@@ -5,8 +5,8 @@
 #include "runtime/base/thread.h"
 #include "runtime/data/packet.h"
 #include "runtime/plan/node.h"
+#include "runtime/queue/pool.h"
 #include "runtime/task/body.h"
-#include "runtime/workers/queue.h"
 #include "runtime/workers/topology.h"
 #include "runtime/workers/workers.h"
 
@@ -23,16 +23,6 @@
 
 /* A worker that sleeps for short pauses begins with this one; each is twice as long as the last. */
 #define WORK_FIRST_PAUSE_SECONDS 2e-5
-
-/* The place where one worker sleeps. A worker announces its sleep, looks once more for what it
- * waits for, and then sleeps or cancels. A thread that makes something available reads `asleep`
- * afterwards. Both sides are sequentially consistent, so at least one sees the other: no wake-up is
- * missed. */
-struct work_park {
-    _Atomic int asleep;
-    pthread_mutex_t lock;
-    pthread_cond_t wake;
-};
 
 /* The main program's reason to wait. Atomic, so that the monitor can look without stopping it. */
 struct work_waits {
@@ -55,88 +45,25 @@ struct work_standstill {
     struct work_waits waits;
 };
 
-struct work_counts {
-    _Atomic uint64_t over, more; /* tasks that are over, of all kinds; to come, beside the forked */
-    _Atomic uint64_t tasks, placed, stolen, chained, delegated;
-    _Atomic uint64_t far;                 /* of those stolen: not from the nearest */
-    _Atomic uint64_t busy, idle, exposed; /* ticks; the last: idle while messages were awaited */
-};
-
-/* The node that a worker awaits, see await.c. */
-struct work_awaits {
-    struct task *node; /* NULL: none */
-    bool on;           /* it may await one */
-    uint8_t pass;      /* it runs out of nodes so often before it may again */
-    uint8_t vain;      /* `pass` after the last wait; 0: the node came */
-};
-
-struct worker {
-    struct work_queue queue;
-    struct work_park park;
-    struct work_pool *pool;
-    struct trace_ring *ring; /* of the trace; NULL: there is none */
-    void *state;             /* of the scheduler */
-    struct base_mark *mark;  /* set around the scheduler's calls; NULL: it is built in */
-    unsigned index;
-    bool finishing; /* a task of this worker makes others ready right now */
-    bool may_chain; /* ... and may run one of them inline, as its next */
-    bool polls;     /* is the poller */
-    bool left_some; /* the heap from which it took a task has more: another worker is to be woken */
-    const struct task_scope *waits; /* of the body that waits on top; NULL: none does */
-    unsigned nested;                /* bodies that wait on its stack */
-    struct base_stack stack;
-    uint64_t within;                    /* ticks of tasks, messages and idling inside the body that
-                                           runs */
-    uint64_t gap;                       /* ticks between inline tasks, when last looked at */
-    unsigned brief_bodies, brief_nodes; /* in turn, see work_batch */
-    struct task *next;                  /* inline: to run directly after this one */
-    uint64_t polled, idle_since;        /* when, in ticks; 0: busy */
-    uint64_t messaging;                 /* when it began with messages, in ticks; 0: it does not */
-    uint64_t looked, crowded_until;     /* in ticks, see idle.c */
-    long switches;         /* involuntary context switches of its thread; -1: not counted yet */
-    uint64_t awaited_then; /* comm_awaited_ticks when it began to idle */
-    double pause;
-    struct work_awaits awaits; /* what it awaits, if no task is next */
-    duite_call call;
-    struct work_counts counts;
-    _Atomic(const struct task *) runs; /* whose body runs, for the monitor */
-    pthread_t thread;
-    int unit;          /* to be bound to, or -1 */
-    cpu_set_t binding; /* of worker 0 before start */
-};
-
 struct work_pool {
+    struct queue_pool queues; /* the part that tasks see; first */
     struct work_setup setup;
-    struct worker *worker; /* setup.threads of them */
     unsigned char *states;
-    double tick; /* seconds */
     uint64_t poll_ticks, spin_ticks, yield_ticks, await_ticks, brief_ticks;
     uint64_t affinity_ticks; /* of a task that leaves one; never on one worker by_affinity */
-    bool by_affinity; /* the scheduler's `place` and `chain` are those of sched.h by affinity */
-    bool plain;       /* there is neither another rank nor a trace: see run.c */
-    bool plain_nodes; /* both: see run.c */
-    unsigned started; /* threads, worker 0 among them */
+    bool plain;              /* there is neither another rank nor a trace: see run.c */
+    bool plain_nodes;        /* both: see run.c */
+    unsigned started;        /* threads, worker 0 among them */
     pthread_t main;
     struct work_near near;
-    struct work_queue shared;
     struct work_standstill standstill;
     struct work_balance *balance; /* NULL: nothing moves between ranks */
     _Alignas(64) _Atomic int stop;
     _Atomic int endless;             /* the scheduler named victims without an end */
     _Atomic int watched;             /* the running tasks are being read: they must not go on */
-    _Alignas(64) _Atomic int parked; /* workers that sleep or are about to */
     _Alignas(64) _Atomic int poller; /* 1: an idle worker polls */
-    /* The throttled main thread, see wait.c. */
-    uint64_t look;                        /* how many tasks it forks before it counts again */
-    _Alignas(64) _Atomic uint64_t wanted; /* fewer unfinished tasks than that, or 0 */
-    _Atomic uint64_t awaited;             /* by the main thread that waits: all these, or 0 */
+    uint64_t look; /* how many tasks the main thread forks before it counts again, see wait.c */
 };
-
-static inline void work_bump(_Atomic uint64_t *count, uint64_t by)
-{
-    uint64_t now = atomic_load_explicit(count, memory_order_relaxed);
-    atomic_store_explicit(count, now + by, memory_order_relaxed);
-}
 
 /* A worker whose task is over waits here for the end of a report. */
 void work_standstill_passes(struct work_pool *pool);
@@ -150,12 +77,6 @@ static inline const struct task *work_enters(struct worker *worker, const struct
     return below;
 }
 
-/* True if a body runs on the worker's thread. */
-static inline bool work_in_body(const struct worker *worker)
-{
-    return atomic_load_explicit(&worker->runs, memory_order_relaxed) != NULL;
-}
-
 /* The worker's task is over, but not yet published or freed. */
 static inline void work_leaves(struct worker *worker, const struct task *below)
 {
@@ -165,20 +86,12 @@ static inline void work_leaves(struct worker *worker, const struct task *below)
         work_standstill_passes(worker->pool);
 }
 
-/* True if so few bodies wait on the worker's stack that its depth does not matter. Then tasks that
- * may run on top run in the order of the queues, which is faster. */
-enum { WORK_NESTED_FREELY = 64 };
-static inline bool work_nests_freely(const struct worker *worker)
-{
-    return worker->nested <= WORK_NESTED_FREELY;
-}
-
 /* The task that the last one made ready, to run next on this worker; NULL: none. */
 static inline struct task *work_take_next(struct worker *worker)
 {
     struct task *task = worker->next;
     worker->next = NULL;
-    work_bump(&worker->counts.chained, task != NULL);
+    queue_bump(&worker->counts.chained, task != NULL);
     return task;
 }
 
@@ -203,6 +116,15 @@ struct work_ran {
     uint64_t start, took, within;
     bool body, inlined;
 };
+
+/* ---- dispatch.c ---- */
+
+/* Runs a ready task, by its type; returns whether a body ran. Then work_finish is due. */
+bool work_run_task(struct task_graph *graph, struct worker *worker, struct task *task,
+                   const duite_call *call);
+
+/* A task that ran, was sent or received is over: ends it, by its type. */
+void work_finish(struct task_graph *graph, struct worker *worker, struct task *task);
 
 /* ---- worker.c ---- */
 
@@ -251,21 +173,6 @@ void work_may_await(struct worker *worker);
 
 /* ---- idle.c ---- */
 
-bool work_park_start(struct work_park *park);
-void work_park_stop(struct work_park *park);
-
-void work_park_announce(struct work_park *park);
-void work_park_cancel(struct work_park *park);
-/* Sleeps until woken, or for so many seconds if they are > 0. */
-void work_park_sleep(struct work_park *park, double seconds);
-
-/* Wakes the worker if it sleeps or is about to. Returns whether it did. */
-bool work_park_wake(struct work_park *park);
-
-/* Wakes a worker for a task in `queue`: its owner if that one sleeps, else any worker, which may
- * steal the task. Before the call the task was published by a sequentially consistent
- * read-modify-write, or before a fence: a worker that announces its sleep then sees it. */
-void work_wake_one(struct work_pool *pool, unsigned queue);
 /* Idles for one moment. */
 void work_idle(struct worker *worker, const struct work_wish *wish);
 /* Idling begins, now in ticks. */
@@ -297,11 +204,9 @@ void work_note_task(struct worker *worker, const struct task *task, const struct
 bool work_note_relieve(struct worker *worker);
 /* The worker idled for so many ticks since idle_since. */
 void work_note_idle(struct worker *worker, uint64_t idle, uint64_t exposed);
-/* Called around the work of a busy worker on messages: looking for them, sending, taking them. A
- * begin within another one does not count. Times below a microsecond are not noted. */
-bool work_note_messages_begin(struct worker *worker);
-void work_note_messages_end(struct worker *worker, bool begun);
-void work_note_message(struct worker *worker, bool sends, int peer, size_t bytes);
+/* Messages, and the work of a busy worker on them: looking for them, sending, taking them. A begin
+ * within another one does not count. Times below a microsecond are not noted. */
+extern const struct comm_report work_note_messages;
 
 /* ---- balance.c: the workers' part of a balancer. They measure bodies, request tasks of other
  * ranks when they have none, and grant tasks that are requested. A pool has none (NULL) without a
@@ -310,12 +215,6 @@ void work_note_message(struct worker *worker, bool sends, int peer, size_t bytes
 /* The pool has its setup and its workers. *balance NULL: nothing moves. Errors: memory. */
 int work_balance_start(struct work_balance **balance, struct work_pool *pool);
 void work_balance_stop(struct work_pool *pool); /* it may have none */
-
-/* A task became ready: true if it was sent to another rank. */
-bool work_placed_away(struct worker *worker, struct task *task);
-
-/* A task of another rank came. */
-void work_offloaded_came(struct work_balance *balance, const struct task *task);
 
 /* A task is about to run. Requests more if it is one of the last of other ranks' and nothing else
  * is here. Returns whether that took time. */
@@ -354,8 +253,7 @@ static inline unsigned work_victim(struct worker *worker, unsigned attempt)
 /* True if a scheduler by affinity keeps the task with the worker that made it ready. */
 static inline bool work_keeps(const struct worker *worker, const struct task *task)
 {
-    const uint32_t affinity = plan_task_affinity(task);
-    return !affinity || affinity == worker->index + 1;
+    return queue_keeps(worker, plan_task_affinity(task));
 }
 
 /* The first node that becomes ready is the next one, if the scheduler need not be asked. */

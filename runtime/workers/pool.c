@@ -1,10 +1,10 @@
-/* Starts and stops the workers of a rank, and passes its graph's calls on to checking mode and
- * communication, which the graph does not know. A pool that failed half-way stops by the same path
- * as a whole one. */
+/* Starts and stops the workers of a rank, and passes its graph's calls on to checking mode, which
+ * the graph does not know. A pool that failed half-way stops by the same path as a whole one. */
 #include "runtime/base/clock.h"
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
 #include "runtime/base/thread.h"
+#include "runtime/offload/offload.h"
 #include "runtime/sched/sched.h"
 #include "runtime/workers/internal.h"
 
@@ -22,6 +22,13 @@
 #define BRIEF_SECONDS 1e-5
 
 /* ---- Start ---- */
+
+static int pool_check_body(struct queue_pool *queues, const duite_kernel *kernel, uint64_t number,
+                           duite_call *call)
+{
+    const struct work_pool *pool = (const struct work_pool *)(const void *)queues;
+    return check_call(pool->setup.check, &(struct check_task){kernel, number}, call);
+}
 
 static void worker_start_scheduler(struct worker *worker)
 {
@@ -41,9 +48,10 @@ static void worker_start_scheduler(struct worker *worker)
 static bool worker_prepare(struct work_pool *pool, unsigned index, int unit)
 {
     const struct work_setup *setup = &pool->setup;
-    struct worker *worker = &pool->worker[index];
+    struct worker *worker = &pool->queues.worker[index];
     size_t lines = (setup->scheduler->state_size + BASE_LINE - 1) / BASE_LINE + 1;
     worker->pool = pool;
+    worker->queues = &pool->queues;
     worker->index = index;
     worker->unit = unit;
     worker->state = pool->states + index * lines * BASE_LINE;
@@ -53,36 +61,37 @@ static bool worker_prepare(struct work_pool *pool, unsigned index, int unit)
     worker->call = (duite_call){
         .context = setup->context, .rt = setup->rt, .rank = setup->graph->rank, .worker = index};
     worker_start_scheduler(worker);
-    bool queue = work_queue_start(&worker->queue);
-    return work_park_start(&worker->park) && queue;
+    bool queue = queue_start(&worker->queue, task_rank);
+    return queue_park_start(&worker->park) && queue;
 }
 
 static int pool_start_threads(struct work_pool *pool)
 {
-    sched_getaffinity(0, sizeof pool->worker[0].binding, &pool->worker[0].binding);
+    sched_getaffinity(0, sizeof pool->queues.worker[0].binding, &pool->queues.worker[0].binding);
     for (pool->started = 1; pool->started < pool->setup.threads; pool->started++) {
-        struct worker *worker = &pool->worker[pool->started];
+        struct worker *worker = &pool->queues.worker[pool->started];
         char what[64];
         snprintf(what, sizeof what, "worker thread %u of %u", pool->started, pool->setup.threads);
         const int code = base_thread_start(&worker->thread, what, work_thread, worker);
         if (code)
             return code;
     }
-    work_cores_bind(pool->worker[0].unit);
-    pool->worker[0].stack = base_stack_here();
+    work_cores_bind(pool->queues.worker[0].unit);
+    pool->queues.worker[0].stack = base_stack_here();
     return DUITE_OK;
 }
 
 static void pool_set_ticks(struct work_pool *pool)
 {
-    pool->tick = base_tick_seconds();
-    pool->poll_ticks = (uint64_t)(POLL_SECONDS / pool->tick);
-    pool->spin_ticks = (uint64_t)(pool->setup.spin_seconds / pool->tick);
-    pool->yield_ticks = (uint64_t)(YIELD_SECONDS / pool->tick);
-    pool->await_ticks = (uint64_t)(AWAIT_SECONDS / pool->tick);
-    pool->brief_ticks = (uint64_t)(BRIEF_SECONDS / pool->tick);
-    const uint64_t affinity = (uint64_t)(PLAN_AFFINITY_SECONDS / pool->tick);
-    pool->affinity_ticks = pool->by_affinity && pool->setup.threads == 1 ? UINT64_MAX : affinity;
+    pool->queues.tick = base_tick_seconds();
+    pool->poll_ticks = (uint64_t)(POLL_SECONDS / pool->queues.tick);
+    pool->spin_ticks = (uint64_t)(pool->setup.spin_seconds / pool->queues.tick);
+    pool->yield_ticks = (uint64_t)(YIELD_SECONDS / pool->queues.tick);
+    pool->await_ticks = (uint64_t)(AWAIT_SECONDS / pool->queues.tick);
+    pool->brief_ticks = (uint64_t)(BRIEF_SECONDS / pool->queues.tick);
+    const uint64_t affinity = (uint64_t)(PLAN_AFFINITY_SECONDS / pool->queues.tick);
+    pool->affinity_ticks =
+        pool->queues.by_affinity && pool->setup.threads == 1 ? UINT64_MAX : affinity;
 }
 
 int work_start(struct work_pool **out, const struct work_setup *setup)
@@ -95,25 +104,31 @@ int work_start(struct work_pool **out, const struct work_setup *setup)
     pool->setup = *setup;
     pool->setup.cores = NULL; /* the caller's: copied to the workers */
     pool->main = pthread_self();
-    pool->by_affinity = setup->scheduler->chain == sched_chain_affinity &&
-                        setup->scheduler->place == sched_place_affinity;
+    pool->queues.n = n;
+    pool->queues.scheduler = setup->scheduler;
+    pool->queues.by_affinity = setup->scheduler->chain == sched_chain_affinity &&
+                               setup->scheduler->place == sched_place_affinity;
+    pool->queues.straight = pool->queues.by_affinity;
     pool->plain = !setup->comm && !setup->trace;
-    pool->plain_nodes = pool->by_affinity && pool->plain;
+    pool->plain_nodes = pool->queues.by_affinity && pool->plain;
     pool_set_ticks(pool);
-    pool->worker = base_alloc_zero(n * sizeof pool->worker[0]);
+    pool->queues.worker = base_alloc_zero(n * sizeof pool->queues.worker[0]);
     pool->states = base_alloc_zero(n * lines * BASE_LINE);
     setup->graph->paths = setup->scheduler->paths;
-    bool fine = pool->worker && pool->states && work_near_start(&pool->near, n, setup->cores) &&
-                work_queue_start(&pool->shared);
+    bool fine = pool->queues.worker && pool->states &&
+                work_near_start(&pool->near, n, setup->cores) &&
+                queue_start(&pool->queues.shared, task_rank);
     const int watched = work_standstill_start(pool, fine ? setup->stuck_seconds : 0);
     for (unsigned i = 0; i < n && fine; i++)
         fine = worker_prepare(pool, i, setup->cores ? setup->cores[i] : -1);
     if (fine)
         fine = !work_balance_start(&pool->balance, pool);
-    setup->graph->pool = pool;
-    setup->graph->checks = setup->check != NULL;
+    setup->graph->pool = &pool->queues;
+    setup->graph->comm = setup->comm;
+    setup->graph->check = setup->check ? pool_check_body : NULL;
+    setup->graph->offloaded_over = offload_over;
     if (setup->trace && setup->comm)
-        comm_set_report(setup->comm, work_note_message);
+        comm_set_report(setup->comm, &work_note_messages);
     int code = fine ? pool_start_threads(pool) : base_no_memory("the workers");
     return code ? code : watched;
 }
@@ -132,48 +147,24 @@ void work_stop(struct work_pool *pool)
     work_waits(pool, &end);
     for (unsigned i = 1; i < pool->started; i++) {
         atomic_thread_fence(memory_order_seq_cst);
-        work_park_wake(&pool->worker[i].park);
-        pthread_join(pool->worker[i].thread, NULL);
+        queue_park_wake(&pool->queues.worker[i].park);
+        pthread_join(pool->queues.worker[i].thread, NULL);
     }
     work_standstill_stop(pool);
-    if (pool->started && pool->worker[0].unit >= 0)
-        sched_setaffinity(0, sizeof pool->worker[0].binding, &pool->worker[0].binding);
-    for (unsigned i = 0; pool->worker && i < pool->setup.threads; i++) {
-        work_queue_stop(&pool->worker[i].queue);
-        if (pool->worker[i].pool)
-            work_park_stop(&pool->worker[i].park);
+    if (pool->started && pool->queues.worker[0].unit >= 0)
+        sched_setaffinity(0, sizeof pool->queues.worker[0].binding,
+                          &pool->queues.worker[0].binding);
+    for (unsigned i = 0; pool->queues.worker && i < pool->setup.threads; i++) {
+        queue_stop(&pool->queues.worker[i].queue);
+        if (pool->queues.worker[i].pool)
+            queue_park_stop(&pool->queues.worker[i].park);
     }
-    work_queue_stop(&pool->shared);
+    queue_stop(&pool->queues.shared);
     work_balance_stop(pool);
     work_near_stop(&pool->near);
-    base_free(pool->worker);
+    base_free(pool->queues.worker);
     base_free(pool->states);
     base_free(pool);
-}
-
-/* ---- Calls of the graph: task/above.h ---- */
-
-int work_check_body(struct work_pool *pool, const duite_kernel *kernel, uint64_t number,
-                    duite_call *call)
-{
-    return check_call(pool->setup.check, &(struct check_task){kernel, number}, call);
-}
-
-int work_expect(struct work_pool *pool, struct worker *worker, struct data_key key, int from,
-                struct data_version *version, struct data_sum *sum, uint32_t packets)
-{
-    const struct comm_target target = {version, sum, from};
-    return comm_expect(pool->setup.comm, worker, key, target, packets);
-}
-
-int work_open(struct work_pool *pool, struct plan_channels *channels)
-{
-    return comm_channels_open(pool->setup.comm, channels);
-}
-
-void work_starved(struct work_pool *pool, const char *what)
-{
-    comm_broke_memory(pool->setup.comm, what);
 }
 
 /* ---- Counts ---- */
@@ -181,7 +172,7 @@ void work_starved(struct work_pool *pool, const char *what)
 void work_count(struct work_pool *pool, duite_counters *counters)
 {
     for (unsigned i = 0; i < pool->setup.threads; i++) {
-        struct work_counts *counts = &pool->worker[i].counts;
+        struct queue_counts *counts = &pool->queues.worker[i].counts;
         counters->tasks += atomic_load_explicit(&counts->tasks, memory_order_relaxed);
         counters->placed += atomic_load_explicit(&counts->placed, memory_order_relaxed);
         counters->stolen += atomic_load_explicit(&counts->stolen, memory_order_relaxed);
@@ -189,27 +180,15 @@ void work_count(struct work_pool *pool, duite_counters *counters)
         counters->chained += atomic_load_explicit(&counts->chained, memory_order_relaxed);
         counters->delegated += atomic_load_explicit(&counts->delegated, memory_order_relaxed);
         counters->busy +=
-            pool->tick * (double)atomic_load_explicit(&counts->busy, memory_order_relaxed);
+            pool->queues.tick * (double)atomic_load_explicit(&counts->busy, memory_order_relaxed);
         counters->idle +=
-            pool->tick * (double)atomic_load_explicit(&counts->idle, memory_order_relaxed);
-        counters->exposed +=
-            pool->tick * (double)atomic_load_explicit(&counts->exposed, memory_order_relaxed);
+            pool->queues.tick * (double)atomic_load_explicit(&counts->idle, memory_order_relaxed);
+        counters->exposed += pool->queues.tick *
+                             (double)atomic_load_explicit(&counts->exposed, memory_order_relaxed);
     }
     if (pool->setup.comm)
         counters->awaited =
-            pool->setup.threads * pool->tick * (double)comm_awaited_ticks(pool->setup.comm);
-}
-
-void work_bodies(struct work_pool *pool, uint64_t *bodies, double *seconds)
-{
-    uint64_t ticks = 0;
-    *bodies = 0;
-    for (unsigned i = 0; i < pool->setup.threads; i++) {
-        const struct work_counts *counts = &pool->worker[i].counts;
-        *bodies += atomic_load_explicit(&counts->tasks, memory_order_relaxed);
-        ticks += atomic_load_explicit(&counts->busy, memory_order_relaxed);
-    }
-    *seconds = pool->tick * (double)ticks;
+            pool->setup.threads * pool->queues.tick * (double)comm_awaited_ticks(pool->setup.comm);
 }
 
 const char *work_endless(const struct work_pool *pool)
@@ -256,21 +235,21 @@ void work_note_idle(struct worker *worker, uint64_t idle, uint64_t exposed)
                                                   .kind = TRACE_IDLE});
 }
 
-bool work_note_messages_begin(struct worker *worker)
+static bool note_messages_begin(struct worker *worker)
 {
-    if (!worker->ring || worker->idle_since || worker->messaging)
+    if (!worker || !worker->ring || worker->idle_since || worker->messaging)
         return false;
     worker->messaging = base_ticks();
     return true;
 }
 
-void work_note_messages_end(struct worker *worker, bool begun)
+static void note_messages_end(struct worker *worker, bool begun)
 {
     const double least = 1e-6; /* s: to note each look would cost as much as the look */
     if (!begun)
         return;
     const uint64_t took = base_ticks() - worker->messaging;
-    if (worker->pool->tick * (double)took >= least) {
+    if (worker->pool->queues.tick * (double)took >= least) {
         worker->within += took;
         trace_put(worker->ring, &(struct trace_event){.begin = worker->messaging,
                                                       .took = took,
@@ -279,21 +258,24 @@ void work_note_messages_end(struct worker *worker, bool begun)
     worker->messaging = 0;
 }
 
-void work_note_message(struct worker *worker, bool sends, int peer, size_t bytes)
+static void note_message(struct worker *worker, bool sends, int peer, size_t bytes)
 {
     if (worker)
         trace_mark(worker->ring, sends ? TRACE_SEND : TRACE_RECEIVE, (uint32_t)peer, bytes);
 }
 
+const struct comm_report work_note_messages = {
+    .message = note_message, .begins = note_messages_begin, .ends = note_messages_end};
+
 void work_note(struct work_pool *pool, const struct trace_event *event)
 {
-    trace_put(pool->worker[0].ring, event);
+    trace_put(pool->queues.worker[0].ring, event);
 }
 
 void work_note_counters(struct work_pool *pool, struct trace_counters *counters)
 {
     for (unsigned i = 0; i < pool->setup.threads; i++) {
-        struct work_counts *from = &pool->worker[i].counts;
+        struct queue_counts *from = &pool->queues.worker[i].counts;
         counters[i] = (struct trace_counters){
             .tasks = atomic_load_explicit(&from->tasks, memory_order_relaxed),
             .stolen = atomic_load_explicit(&from->stolen, memory_order_relaxed),

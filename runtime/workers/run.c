@@ -57,7 +57,7 @@ void work_batch_end(struct worker *worker, struct work_batch *batch)
     if (batch->brief) {
         *batch->brief =
             batch->took < batch->limit * batch->tasks ? *batch->brief + batch->tasks : 0;
-        work_bump(&worker->counts.busy, batch->own);
+        queue_bump(&worker->counts.busy, batch->own);
     }
     worker->within = batch->outer + batch->took;
     batch->start = end;
@@ -90,7 +90,7 @@ static void any_clock(struct worker *worker, const struct task *task, struct wor
         work_note_task(worker, task, &ran);
     if (!body)
         return;
-    work_bump(&worker->counts.busy, batch->own);
+    queue_bump(&worker->counts.busy, batch->own);
     if (worker->pool->balance)
         work_learn(worker, task, batch->own);
 }
@@ -99,7 +99,7 @@ static void any_finish(struct worker *worker, struct task *task)
 {
     const struct work_setup *setup = &worker->pool->setup;
     if (task_to_send(task))
-        comm_send(setup->comm, task);
+        comm_send(setup->comm, task->send);
     else
         work_finish(setup->graph, worker, task);
 }
@@ -136,22 +136,22 @@ static inline bool run_fits(const struct worker *worker, const struct task *task
 /* The next one of the worker's own queue, if it would take that. NULL: let it look around. */
 static inline struct task *run_next_queued(struct worker *worker, unsigned in_turn)
 {
-    struct work_queue *queue = &worker->queue;
+    struct queue *queue = &worker->queue;
     if (in_turn > IN_TURN || worker->brief_bodies < BODIES || worker->waits ||
-        !worker->pool->by_affinity || work_queue_ranks(queue))
+        !worker->pool->queues.by_affinity || queue_ranks(queue))
         return NULL;
-    return work_queue_take(queue, DUITE_NEWEST);
+    return queue_take(queue, DUITE_NEWEST);
 }
 
 /* The newest of the worker's own queue, if the body that waits forked it. */
 static inline struct task *run_next_child(struct worker *worker)
 {
-    struct work_queue *queue = &worker->queue;
-    struct task *task = work_queue_ranks(queue) ? NULL : work_queue_take(queue, DUITE_NEWEST);
+    struct queue *queue = &worker->queue;
+    struct task *task = queue_ranks(queue) ? NULL : queue_take(queue, DUITE_NEWEST);
     if (!task || task->scope == worker->waits)
         return task;
-    work_queue_push(queue, task);
-    work_wake_one(worker->pool, DUITE_NO_QUEUE); /* it could not be found meanwhile */
+    queue_push(queue, task);
+    queue_wake_one(&worker->pool->queues, DUITE_NO_QUEUE); /* it could not be found meanwhile */
     return NULL;
 }
 
@@ -160,8 +160,8 @@ static inline struct task *run_next_child(struct worker *worker)
 static inline bool run_goes_on(const struct worker *worker, unsigned length)
 {
     return length % LONGEST_INLINE ||
-           (worker->index && !worker->waits && work_queue_is_empty(&worker->queue) &&
-            work_queue_is_empty(&worker->pool->shared));
+           (worker->index && !worker->waits && queue_is_empty(&worker->queue) &&
+            queue_is_empty(&worker->pool->queues.shared));
 }
 
 /* ---- The steps ---- */
@@ -178,7 +178,7 @@ STEP bool run_call(struct task_graph *graph, struct worker *worker, struct task_
                       : form == RUN_NODE ? plan_node_run_body(frame, task)
                                          : task_run_body(frame, task);
     work_leaves(worker, below);
-    work_bump(&worker->counts.tasks, body);
+    queue_bump(&worker->counts.tasks, body);
     return body;
 }
 
@@ -207,7 +207,7 @@ STEP void run_finish(struct task_graph *graph, struct worker *worker, struct tas
         any_finish(worker, task);
     else if (form != RUN_NODE)
         task_finish(graph, worker, task);
-    else if (worker->awaits.on && worker->may_chain && work_queue_is_empty(&worker->queue))
+    else if (worker->awaits.on && worker->may_chain && queue_is_empty(&worker->queue))
         work_count_down_awaiting(worker, task, batch);
     else
         plan_node_count_down(graph, worker, task, work_node_ready, NULL);
@@ -314,7 +314,7 @@ void work_run(struct worker *worker, struct task *task)
     __attribute__((cleanup(run_is_left))) struct worker *running = worker;
     if (worker->left_some) {
         atomic_thread_fence(memory_order_seq_cst);
-        work_wake_one(worker->pool, DUITE_NO_QUEUE);
+        queue_wake_one(&worker->pool->queues, DUITE_NO_QUEUE);
     }
     worker->left_some = false;
     for (unsigned length = 1; task; length++) {

@@ -34,7 +34,7 @@ void work_waits(struct work_pool *pool, const struct work_why *why)
     if (why)
         atomic_store_explicit(&waits->what, why->what, memory_order_relaxed);
     atomic_store_explicit(&waits->tasks, pool->setup.graph->tasks, memory_order_relaxed);
-    work_bump(&waits->turn, 1);
+    queue_bump(&waits->turn, 1);
     atomic_store_explicit(&waits->call, why ? why->call : NULL, memory_order_release);
 }
 
@@ -46,8 +46,8 @@ static uint64_t pool_movement(struct work_pool *pool)
     sum =
         sum * odd + atomic_load_explicit(&pool->setup.graph->root.unfinished, memory_order_relaxed);
     for (unsigned i = 0; i < pool->setup.threads; i++) {
-        const struct worker *worker = &pool->worker[i];
-        const struct work_counts *counts = &worker->counts;
+        const struct worker *worker = &pool->queues.worker[i];
+        const struct queue_counts *counts = &worker->counts;
         sum = sum * odd + (uintptr_t)atomic_load_explicit(&worker->runs, memory_order_relaxed);
         sum = sum * odd + atomic_load_explicit(&counts->over, memory_order_relaxed);
         sum = sum * odd + atomic_load_explicit(&counts->tasks, memory_order_relaxed);
@@ -60,7 +60,7 @@ static uint64_t pool_movement(struct work_pool *pool)
 static bool pool_runs_a_body(struct work_pool *pool)
 {
     for (unsigned i = 0; i < pool->setup.threads; i++)
-        if (atomic_load_explicit(&pool->worker[i].runs, memory_order_relaxed))
+        if (atomic_load_explicit(&pool->queues.worker[i].runs, memory_order_relaxed))
             return true;
     return false;
 }
@@ -71,7 +71,7 @@ bool work_stands_still(struct work_pool *pool, struct work_stillness *still)
     const uint64_t now = base_ticks(), movement = pool_movement(pool);
     if (!still->since || still->movement != movement || pool_runs_a_body(pool))
         *still = (struct work_stillness){movement, now};
-    return (double)(now - still->since) * pool->tick > seconds;
+    return (double)(now - still->since) * pool->queues.tick > seconds;
 }
 
 /* ---- The report ---- */
@@ -169,7 +169,8 @@ static unsigned report_bodies(struct report *report, bool held)
     struct work_pool *pool = report->pool;
     unsigned n = 0;
     for (unsigned i = 0; i < pool->setup.threads; i++) {
-        const struct task *task = atomic_load_explicit(&pool->worker[i].runs, memory_order_acquire);
+        const struct task *task =
+            atomic_load_explicit(&pool->queues.worker[i].runs, memory_order_acquire);
         if (!task)
             continue;
         if (n++ >= MAX_BODIES)
@@ -179,7 +180,8 @@ static unsigned report_bodies(struct report *report, bool held)
                         held ? report_words(report, task).text : "a task");
     }
     for (unsigned i = 0; i < pool->setup.threads && held; i++) {
-        const struct task *task = atomic_load_explicit(&pool->worker[i].runs, memory_order_acquire);
+        const struct task *task =
+            atomic_load_explicit(&pool->queues.worker[i].runs, memory_order_acquire);
         for (uint32_t k = 0; task && task->type == TASK_BODY && k < task->n; k++)
             report_waiters(report, task, k);
     }
@@ -212,26 +214,29 @@ static void report_awaited(void *context, const struct data_key *key,
 {
     struct report *report = context;
     unsigned long long number = key->number;
-    if (target->sum) {
+    if (target->arrived == task_pieces_arrived) {
         report_line(report,
                     "contributions of %u ranks to object %u.%u, version %llu, have not come",
                     packets, key->slot, key->generation, number);
         return;
     }
-    const struct data_waiter *waiter = data_version_waiters(target->version);
+    const struct data_waiter *waiter = data_version_waiters(target->what);
     report_line(report, "%s waits for object %u.%u, version %llu, which has not come from rank %d",
                 waiter ? report_crowd(report, waiter).text : "nobody", key->slot, key->generation,
                 number, target->from);
 }
 
-static void report_sending(void *context, const struct task_send *send)
+static void report_sending(void *context, const struct comm_letter *send)
 {
+    const struct task *task = send->sender;
+    if (task->type != TASK_SEND && task->type != TASK_PIECES)
+        return; /* report_away names tasks that another rank runs */
     report_line(
         context, "object %u.%u, version %llu, is on its way to rank %d, which has not taken it",
         send->key.slot, send->key.generation, (unsigned long long)send->key.number, send->to);
 }
 
-static void report_channel(void *context, const struct plan_channel *channel)
+static void report_channel(void *context, const struct comm_channel *channel)
 {
     struct report *report = context;
     const struct task_graph *graph = report->pool->setup.graph;
@@ -243,7 +248,7 @@ static void report_channel(void *context, const struct plan_channel *channel)
         return;
     }
     unsigned more;
-    const struct task *task = plan_channel_waits(channel->node, &more);
+    const struct task *task = plan_channel_waits(channel, &more);
     struct words words = {"a task of duite"};
     if (task)
         snprintf(words.text, sizeof words.text, "kernel %.60s", graph->kernels[task->kernel]->name);
@@ -298,8 +303,8 @@ static uint64_t report_unfinished(const struct work_pool *pool)
 {
     uint64_t left = atomic_load_explicit(&pool->standstill.waits.tasks, memory_order_relaxed);
     for (unsigned i = 0; i < pool->setup.threads; i++)
-        left -= atomic_load_explicit(&pool->worker[i].counts.over, memory_order_relaxed) -
-                atomic_load_explicit(&pool->worker[i].counts.more, memory_order_relaxed);
+        left -= atomic_load_explicit(&pool->queues.worker[i].counts.over, memory_order_relaxed) -
+                atomic_load_explicit(&pool->queues.worker[i].counts.more, memory_order_relaxed);
     return left;
 }
 

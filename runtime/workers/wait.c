@@ -18,53 +18,15 @@
 
 /* ---- Tasks that are over ---- */
 
-/* Never counts too many: things awaited beside forked tasks count in `more` before they can be
- * over, and here `over` is read first. */
-static uint64_t tasks_over(const struct work_pool *pool)
-{
-    uint64_t sum = 0;
-    for (unsigned i = 0; i < pool->setup.threads; i++)
-        sum += atomic_load_explicit(&pool->worker[i].counts.over, memory_order_acquire);
-    for (unsigned i = 0; i < pool->setup.threads; i++)
-        sum -= atomic_load_explicit(&pool->worker[i].counts.more, memory_order_acquire);
-    return sum;
-}
-
 uint64_t work_unfinished(const struct work_pool *pool)
 {
-    return pool->setup.graph->tasks - tasks_over(pool);
+    return pool->setup.graph->tasks - queue_all_over(&pool->queues);
 }
 
 bool work_is_drained(struct work_pool *pool)
 {
     /* A task in its own queue is not over: no need to read the others' counters. */
-    return work_queue_is_empty(&pool->worker[0].queue) && !work_unfinished(pool);
-}
-
-/* True if the main thread waits and enough tasks are over. */
-static bool main_has_enough(const struct work_pool *pool)
-{
-    uint64_t awaited = atomic_load_explicit(&pool->awaited, memory_order_relaxed);
-    uint64_t wanted = atomic_load_explicit(&pool->wanted, memory_order_relaxed);
-    return awaited && awaited - tasks_over(pool) < (wanted ? wanted : 1);
-}
-
-static inline void count_over(struct work_pool *pool, _Atomic uint64_t *count, uint64_t tasks)
-{
-    const uint64_t before = atomic_load_explicit(count, memory_order_relaxed);
-    atomic_store_explicit(count, before + tasks, memory_order_release);
-    if (atomic_load_explicit(&pool->wanted, memory_order_relaxed) && main_has_enough(pool))
-        work_notify(pool);
-}
-
-void work_over(struct work_pool *pool, struct worker *worker, int tasks)
-{
-    count_over(pool, tasks < 0 ? &worker->counts.more : &worker->counts.over, (uint64_t)abs(tasks));
-}
-
-void work_over_one(struct work_pool *pool, struct worker *worker)
-{
-    count_over(pool, &worker->counts.over, 1);
+    return queue_is_empty(&pool->queues.worker[0].queue) && !work_unfinished(pool);
 }
 
 void work_ran_out(struct worker *worker)
@@ -74,19 +36,19 @@ void work_ran_out(struct worker *worker)
         return;
     /* Pairs with the main thread, which says what it waits for and then adds up. */
     atomic_thread_fence(memory_order_seq_cst);
-    if (main_has_enough(pool) || task_has_given_up(pool->setup.graph))
-        work_notify(pool);
+    if (queue_main_has_enough(&pool->queues) || task_has_given_up(pool->setup.graph))
+        queue_notify(&pool->queues);
 }
 
 /* ---- Waiting ---- */
 
 static void main_drain(struct work_pool *pool, const struct work_wish *wish)
 {
-    atomic_store(&pool->awaited, pool->setup.graph->tasks);
+    atomic_store(&pool->queues.awaited, pool->setup.graph->tasks);
     while (!wish->done(wish->context))
-        work_look(&pool->worker[0], wish);
-    atomic_store_explicit(&pool->awaited, 0, memory_order_relaxed);
-    work_busy_again(&pool->worker[0]);
+        work_look(&pool->queues.worker[0], wish);
+    atomic_store_explicit(&pool->queues.awaited, 0, memory_order_relaxed);
+    work_busy_again(&pool->queues.worker[0]);
 }
 
 void work_drain(struct work_pool *pool, bool (*done)(void *), void *context)
@@ -111,7 +73,7 @@ void work_until(struct work_pool *pool, const struct work_why *why, bool (*done)
 {
     struct main_until until = {done, context, pool->setup.comm};
     if (until.comm && comm_posted(until.comm))
-        work_poll(&pool->worker[0]);
+        work_poll(&pool->queues.worker[0]);
     work_waits(pool, why);
     main_drain(pool, &(struct work_wish){.done = main_is_done, .context = &until});
     work_waits(pool, NULL);
@@ -120,7 +82,7 @@ void work_until(struct work_pool *pool, const struct work_why *why, bool (*done)
 static bool window_has_room(void *context)
 {
     const struct work_pool *pool = context;
-    return work_unfinished(pool) < atomic_load_explicit(&pool->wanted, memory_order_relaxed);
+    return work_unfinished(pool) < atomic_load_explicit(&pool->queues.wanted, memory_order_relaxed);
 }
 
 void work_throttle(struct work_pool *pool, uint64_t max)
@@ -130,10 +92,10 @@ void work_throttle(struct work_pool *pool, uint64_t max)
         return;
     uint64_t left = work_unfinished(pool);
     if (left > max) {
-        atomic_store(&pool->wanted, max - max / 4 + 1);
+        atomic_store(&pool->queues.wanted, max - max / 4 + 1);
         work_until(pool, &(struct work_why){"duite_fork", "room in its window", NULL},
                    window_has_room, pool);
-        atomic_store(&pool->wanted, 0);
+        atomic_store(&pool->queues.wanted, 0);
         left = work_unfinished(pool);
     }
     /* More than `max` are possible only after so many more forks. */
@@ -144,17 +106,17 @@ void work_throttle(struct work_pool *pool, uint64_t max)
 
 void work_once(struct work_pool *pool)
 {
-    work_look(&pool->worker[0], &(struct work_wish){.unheard = true});
+    work_look(&pool->queues.worker[0], &(struct work_wish){.unheard = true});
 }
 
 void work_idle_ends(struct work_pool *pool)
 {
-    work_busy_again(&pool->worker[0]);
+    work_busy_again(&pool->queues.worker[0]);
 }
 
 void work_tick(struct work_pool *pool)
 {
-    struct worker *worker = &pool->worker[0];
+    struct worker *worker = &pool->queues.worker[0];
     struct comm *comm = pool->setup.comm;
     if (!comm)
         return;
@@ -169,7 +131,7 @@ void work_tick(struct work_pool *pool)
 
 struct worker *work_main(struct work_pool *pool)
 {
-    return &pool->worker[0];
+    return &pool->queues.worker[0];
 }
 
 bool work_may_fork(struct work_pool *pool)
@@ -204,9 +166,9 @@ enum {
 
 /* A body on top may wait, too, and have further ones on top of it. To keep these few, children come
  * first, then the earliest other task at hand, which has most of its inputs. If more than
- * WORK_NESTED_FREELY bodies wait on a stack, it is the earliest of the whole own and shared queues.
- * That adds one level, and no more until a new task becomes ready. Children that wait for children
- * nest until the stack is full: the wait then is an error. */
+ * QUEUE_NESTED_FREELY bodies wait on a stack, it is the earliest of the whole own and shared
+ * queues. That adds one level, and no more until a new task becomes ready. Children that wait for
+ * children nest until the stack is full: the wait then is an error. */
 
 /* The state of a waiting worker. */
 struct inside_wait {
@@ -220,7 +182,8 @@ struct inside_wait {
 /* The result of a look through a queue: the task to run, and those that go back, newest last. */
 struct inside_look {
     const struct task_scope *scope;
-    struct task *best, *aside;
+    struct task *best;
+    struct queue_link *aside;
     bool child; /* it is a descendant of the body */
 };
 
@@ -238,34 +201,34 @@ static void inside_look_at(struct inside_look *look, struct task *task)
         look->best = task;
     }
     if (other) {
-        other->next = look->aside;
-        look->aside = other;
+        other->link.next = look->aside;
+        look->aside = &other->link;
     }
 }
 
 /* Looks from the new end at up to `most` tasks, at only wait->look if one of these may run; then at
  * the oldest. The others go back, and a worker is woken, since they could not be found
  * meanwhile. */
-static struct task *inside_dig(struct work_pool *pool, struct work_queue *queue,
+static struct task *inside_dig(struct work_pool *pool, struct queue *queue,
                                const struct inside_wait *wait, unsigned most)
 {
     struct inside_look look = {.scope = wait->scope};
     struct task *task = NULL;
     for (unsigned i = 0; i < most && !look.child && !(look.best && i >= wait->look); i++) {
-        if (!(task = work_queue_take(queue, DUITE_NEWEST)))
+        if (!(task = queue_take(queue, DUITE_NEWEST)))
             break;
         inside_look_at(&look, task);
     }
-    if (!look.child && (task = work_queue_take(queue, DUITE_OLDEST)))
+    if (!look.child && (task = queue_take(queue, DUITE_OLDEST)))
         inside_look_at(&look, task);
     const bool hidden = look.aside;
     while (look.aside) {
-        struct task *next = look.aside->next;
-        work_queue_push(queue, look.aside);
+        struct queue_link *next = look.aside->next;
+        queue_push(queue, queue_task(look.aside));
         look.aside = next;
     }
     if (hidden)
-        work_wake_one(pool, DUITE_NO_QUEUE);
+        queue_wake_one(&pool->queues, DUITE_NO_QUEUE);
     return look.best;
 }
 
@@ -273,7 +236,7 @@ static struct task *inside_dig(struct work_pool *pool, struct work_queue *queue,
  * the new one, so that all come by. */
 static struct task *inside_dig_shared(struct work_pool *pool, const struct inside_wait *wait)
 {
-    struct work_queue *queue = &pool->shared;
+    struct queue *queue = &pool->queues.shared;
     if (atomic_flag_test_and_set_explicit(&queue->token, memory_order_acquire))
         return NULL;
     struct task *task = inside_dig(pool, queue, wait, wait->look);
@@ -288,16 +251,16 @@ static struct task *inside_steal_from(struct worker *worker, unsigned victim,
     struct work_pool *pool = worker->pool;
     if (victim == worker->index)
         return NULL;
-    struct task *task = work_queue_steal(&pool->worker[victim].queue, &worker->queue);
+    struct task *task = queue_steal(&pool->queues.worker[victim].queue, &worker->queue);
     if (!task)
         return NULL;
-    work_bump(&worker->counts.stolen, 1);
+    queue_bump(&worker->counts.stolen, 1);
     trace_mark(worker->ring, TRACE_STEAL, victim, 0);
     if (task_may_run(wait->scope, task))
         return task;
     wait->refused++;
-    work_queue_put(&pool->shared, task);
-    work_wake_one(pool, DUITE_NO_QUEUE);
+    queue_put(&pool->queues.shared, task);
+    queue_wake_one(&pool->queues, DUITE_NO_QUEUE);
     return NULL;
 }
 
@@ -347,16 +310,15 @@ static struct task *inside_find(struct worker *worker, struct inside_wait *wait)
 {
     struct work_pool *pool = worker->pool;
     struct task *task = NULL;
-    if (wait->barren < 0 || wait->barren != work_queue_mark(&worker->queue)) {
+    if (wait->barren < 0 || wait->barren != queue_mark(&worker->queue)) {
         task = inside_dig(pool, &worker->queue, wait, UINT32_MAX);
-        wait->barren = task ? NOT_BARREN : work_queue_mark(&worker->queue);
+        wait->barren = task ? NOT_BARREN : queue_mark(&worker->queue);
     }
     if (!task)
         task = inside_dig_shared(pool, wait);
     if (!task)
         task = inside_steal(worker, wait);
-    worker->left_some =
-        task && (work_queue_ranks(&worker->queue) || work_queue_ranks(&pool->shared));
+    worker->left_some = task && (queue_ranks(&worker->queue) || queue_ranks(&pool->queues.shared));
     return task;
 }
 
@@ -368,7 +330,7 @@ __attribute__((noinline)) static void inside_wait(struct worker *worker,
     struct comm *comm = worker->pool->setup.comm;
     const struct inside_wait begin = {.scope = scope,
                                       .barren = NOT_BARREN,
-                                      .look = work_nests_freely(worker) ? LOOKED_AT : UINT32_MAX};
+                                      .look = queue_nests_freely(worker) ? LOOKED_AT : UINT32_MAX};
     struct inside_wait wait = begin;
     while (!done(context) && !(comm && comm_broken(comm))) {
         struct task *task = inside_find(worker, &wait);
@@ -403,7 +365,7 @@ int work_inside(struct worker *worker, const struct task_scope *scope, bool (*do
         return inside_is_full(worker);
     worker->waits = scope;
     worker->nested++;
-    if (worker->pool->plain && worker->pool->by_affinity)
+    if (worker->pool->plain && worker->pool->queues.by_affinity)
         work_run_children(worker, done, context);
     if (!done(context))
         inside_wait(worker, scope, done, context);

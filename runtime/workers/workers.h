@@ -38,6 +38,9 @@ struct work_setup {
                          binding */
 };
 
+/* For comm_start, whose context is the task graph. */
+extern const struct comm_owner work_messages;
+
 /* Errors: memory, DUITE_E_SYSTEM. The calling thread becomes worker 0. */
 int work_start(struct work_pool **pool, const struct work_setup *setup);
 /* All tasks are over. Frees the pool; the calling thread gets its old binding back. */

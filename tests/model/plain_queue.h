@@ -4,7 +4,7 @@
 /* In place of queue.c, where sleep and waking are explored: queues that have what matters for them,
  * in a few steps. A task is a bit, by its number. What is pushed and put is seen
  * at once; a task is there until its bit is in `taken`. */
-#include "runtime/workers/queue.h"
+#include "runtime/queue/queue.h"
 
 #include "tests/model/atomics.h"
 
@@ -14,33 +14,34 @@ struct plain {
 
 static struct task *plain_task(uint64_t bit);
 
-static struct plain *plain(struct work_queue *queue)
+static struct plain *plain(struct queue *queue)
 {
     return (struct plain *)(void *)queue->deque.ring;
 }
 
-bool work_queue_start(struct work_queue *queue)
+bool queue_start(struct queue *queue, queue_ranks_by *rank)
 {
+    (void)rank;
     queue->deque.ring = explore_alloc(sizeof(struct plain));
     return true;
 }
 
-void work_queue_stop(struct work_queue *queue)
+void queue_stop(struct queue *queue)
 {
     (void)queue;
 }
 
-void work_queue_put(struct work_queue *queue, struct task *task)
+void queue_put(struct queue *queue, struct task *task)
 {
     struct plain *all = plain(queue);
     uint64_t bit = (uint64_t)1 << task->number;
-    if (explore_planted("work_queue_put", "the put")) /* seen late; one thread puts */
+    if (explore_planted("queue_put", "the put")) /* seen late; one thread puts */
         atomic_store_explicit(&all->put, all->put | bit, memory_order_release);
     else
         atomic_fetch_add(&all->put, bit);
 }
 
-void work_queue_push(struct work_queue *queue, struct task *task)
+void queue_push(struct queue *queue, struct task *task)
 {
     struct plain *all = plain(queue);
     uint64_t before = atomic_load_explicit(&all->pushed, memory_order_relaxed);
@@ -48,7 +49,7 @@ void work_queue_push(struct work_queue *queue, struct task *task)
                              memory_order_seq_cst);
 }
 
-static struct task *plain_take(struct work_queue *queue)
+static struct task *plain_take(struct queue *queue)
 {
     struct plain *all = plain(queue);
     for (;;) {
@@ -65,24 +66,24 @@ static struct task *plain_take(struct work_queue *queue)
     }
 }
 
-struct task *work_queue_take(struct work_queue *queue, duite_end end)
+struct task *queue_take(struct queue *queue, duite_end end)
 {
     (void)end;
     return plain_take(queue);
 }
 
-int64_t work_queue_mark(struct work_queue *queue)
+int64_t queue_mark(struct queue *queue)
 {
     return (int64_t)(uintptr_t)queue;
 }
 
-struct task *work_queue_take_shared(struct work_queue *queue, duite_end end)
+struct task *queue_take_shared(struct queue *queue, duite_end end)
 {
     (void)end;
     return plain_take(queue);
 }
 
-struct task *work_queue_steal(struct work_queue *victim, struct work_queue *own)
+struct task *queue_steal(struct queue *victim, struct queue *own)
 {
     (void)own;
     return plain_take(victim);

@@ -22,20 +22,20 @@ void comm_workers_end(struct comm *comm)
     (void)comm;
 }
 
-void comm_send(struct comm *comm, struct task *task)
+void comm_send(struct comm *comm, struct comm_letter *letter)
 {
     (void)comm;
-    (void)task;
+    (void)letter;
 }
 
-void comm_channel_ready(struct comm *comm, struct worker *worker, struct task *node)
+void comm_channel_ready(struct comm *comm, struct worker *worker, struct comm_channel *channel)
 {
     (void)comm;
     (void)worker;
-    (void)node;
+    (void)channel;
 }
 
-int comm_channels_open(struct comm *comm, struct plan_channels *channels)
+int comm_channels_open(struct comm *comm, struct comm_channel_set *channels)
 {
     (void)comm;
     (void)channels;
@@ -54,19 +54,12 @@ void comm_broke_memory(struct comm *comm, const char *what)
     (void)what;
 }
 
-void comm_send_packet(struct comm *comm, struct data_packet *packet, int to)
-{
-    (void)comm;
-    (void)packet;
-    (void)to;
-}
-
 void comm_count(struct comm *comm, uint64_t *messages, uint64_t *bytes)
 {
     *messages = *bytes = comm != NULL;
 }
 
-void comm_set_report(struct comm *comm, comm_report *report)
+void comm_set_report(struct comm *comm, const struct comm_report *report)
 {
     (void)comm, (void)report;
 }

@@ -1,4 +1,4 @@
-/* The deque (runtime/workers/queue.c): whatever its owner and thieves do at the same time, each
+/* The deque (runtime/queue/queue.c): whatever its owner and thieves do at the same time, each
  * task that was pushed is taken exactly once. Rings of one or two slots: slots are used again and
  * rings outgrown at once. */
 #include "tests/model/runtime.h"
@@ -7,7 +7,8 @@ static unsigned allocations; /* that still succeed */
 
 #define base_alloc(size) (allocations-- ? explore_alloc(size) : NULL)
 
-#include "runtime/workers/queue.c"
+#include "runtime/queue/queue.c"
+#include "runtime/task/task.h"
 
 enum { TASKS = 12 };
 
@@ -23,7 +24,7 @@ struct play {
 
 static const struct play *play;
 static struct {
-    struct work_deque deque;
+    struct queue_deque deque;
     struct task *task[TASKS];
     int taken[TASKS], pushed;
 } its;
@@ -40,11 +41,11 @@ static void run(void)
     bool again;
     for (const char *letter = play->script[explore_self()]; *letter; letter++) {
         if (*letter == 'P')
-            its.pushed += work_deque_push(&its.deque, its.task[its.pushed]);
+            its.pushed += queue_deque_push(&its.deque, its.task[its.pushed]);
         else if (*letter == 'T')
-            got(work_deque_take_newest(&its.deque));
+            got(queue_deque_take_newest(&its.deque));
         else
-            got(work_deque_take_oldest(&its.deque, &again));
+            got(queue_deque_take_oldest(&its.deque, &again));
     }
 }
 
@@ -54,20 +55,20 @@ static void start(void)
     allocations = play->rings ? play->rings : TASKS;
     for (int i = 0; i < TASKS; i++)
         its.task[i] = explore_alloc(sizeof *its.task[i]);
-    work_deque_start(&its.deque, play->slots);
+    queue_deque_start(&its.deque, play->slots);
     for (int i = 0; i < play->there; i++)
-        work_deque_push(&its.deque, its.task[its.pushed++]);
+        queue_deque_push(&its.deque, its.task[its.pushed++]);
 }
 
 /* What nobody took is still there, and nothing else. */
 static void end(void)
 {
     struct task *task;
-    while ((task = work_deque_take_newest(&its.deque)))
+    while ((task = queue_deque_take_newest(&its.deque)))
         got(task);
     for (int i = 0; i < TASKS; i++)
         explore_check(its.taken[i] == (i < its.pushed));
-    work_deque_stop(&its.deque);
+    queue_deque_stop(&its.deque);
 }
 
 static struct explore_case small(const struct play *of)
@@ -112,7 +113,7 @@ static const struct {
      {"the claim is seen late", 2, 2, {"TT", "OO"}, 0}},
     {{"deque_take_newest", "&deque->oldest", EXPLORE_RELAX},
      {"the last one is not contended for", 2, 1, {"T", "O"}, 0}},
-    {{"work_deque_take_oldest", "&deque->oldest", EXPLORE_RELAX},
+    {{"queue_deque_take_oldest", "&deque->oldest", EXPLORE_RELAX},
      {"thieves do not look at one another", 2, 1, {"", "O", "O"}, 0}},
     {{"deque_show", "&deque->newest", EXPLORE_RELAX},
      {"a task is announced before it is there", 2, 0, {"P", "O"}, 0}},

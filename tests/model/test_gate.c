@@ -8,7 +8,7 @@
  * node that the main thread finds there runs at once, on the main thread. */
 #include "tests/model/runtime.h"
 
-#define work_ready made_ready
+#define plan_node_ready made_ready
 #include "runtime/plan/node.h"
 
 #include "runtime/plan/open.c"
@@ -52,9 +52,9 @@ static void go_on(uint32_t node, struct task *task)
     }
 }
 
-void made_ready(struct work_pool *pool, struct worker *worker, struct task *task)
+void made_ready(struct task_graph *graph, struct worker *worker, struct task *task)
 {
-    (void)pool;
+    (void)graph;
     (void)worker;
     go_on(gate_index(&its.plan, task), task);
 }

@@ -10,11 +10,9 @@
 enum { POSTS = 4 };
 
 static struct {
-    struct task_graph graph;
     struct comm *comm;
-    struct task *task[POSTS];
     struct data_packet packet[POSTS];
-    struct task_send send[POSTS];
+    struct comm_letter letter[POSTS];
     int sent[POSTS], finished[POSTS];
     int turns;        /* of the wait for a collective call */
     _Atomic int over; /* the other thread has polled */
@@ -23,10 +21,18 @@ static struct {
 
 /* ---- What comm calls ---- */
 
-static void finished(const struct task *task)
+static struct data_packet *packet_of(struct comm_letter *letter)
 {
-    its.finished[task->number]++;
+    return letter->packet;
 }
+
+static void finished(void *context, struct worker *worker, struct comm_letter *letter)
+{
+    (void)context, (void)worker;
+    its.finished[letter - its.letter]++;
+}
+
+static const struct comm_owner sender = {.packet = packet_of, .sent = finished};
 
 static int isend(const struct data_packet *packet, MPI_Request *request)
 {
@@ -76,10 +82,10 @@ bool comm_channels_stop(struct comm *comm)
     return true;
 }
 
-void comm_channel_post(struct comm *comm, struct task *node)
+void comm_channel_post(struct comm *comm, struct comm_channel *channel)
 {
     (void)comm;
-    (void)node;
+    (void)channel;
 }
 
 void comm_channels_pass(struct comm *comm, struct comm_found *found)
@@ -87,9 +93,9 @@ void comm_channels_pass(struct comm *comm, struct comm_found *found)
     (void)comm, (void)found;
 }
 
-bool comm_channel_copy(struct comm *comm, struct task *node)
+bool comm_channel_copy(struct comm *comm, struct comm_channel *channel)
 {
-    (void)comm, (void)node;
+    (void)comm, (void)channel;
     return true;
 }
 
@@ -130,58 +136,6 @@ void comm_channels_look(struct comm *comm, const struct comm_looker *looker)
     (void)comm, (void)looker;
 }
 
-/* Nobody waits for tasks here: nothing of the workers is linked. */
-void work_ready(struct work_pool *pool, struct worker *worker, struct task *task)
-{
-    (void)pool, (void)worker, (void)task;
-}
-
-void work_over(struct work_pool *pool, struct worker *worker, int tasks)
-{
-    (void)pool, (void)worker, (void)tasks;
-}
-
-void work_over_one(struct work_pool *pool, struct worker *worker)
-{
-    (void)pool, (void)worker;
-}
-
-void work_notify(struct work_pool *pool)
-{
-    (void)pool;
-}
-
-int work_check_body(struct work_pool *pool, const duite_kernel *kernel, uint64_t number,
-                    duite_call *call)
-{
-    (void)pool, (void)kernel, (void)number, (void)call;
-    return DUITE_OK;
-}
-
-int work_expect(struct work_pool *pool, struct worker *worker, struct data_key key, int from,
-                struct data_version *version, struct data_sum *sum, uint32_t packets)
-{
-    (void)pool, (void)worker, (void)key, (void)from, (void)version, (void)sum, (void)packets;
-    return DUITE_OK;
-}
-
-int work_open(struct work_pool *pool, struct plan_channels *channels)
-{
-    (void)pool, (void)channels;
-    return DUITE_OK;
-}
-
-void work_starved(struct work_pool *pool, const char *what)
-{
-    (void)pool, (void)what;
-}
-
-#define task_send_packet(task)                                 ((task)->send->packet)
-#define work_finish(graph, worker, task)                       ((void)(worker), finished(task))
-#define task_arrived(...)                                      success(0, __VA_ARGS__)
-#define task_pieces_arrived(...)                               success(0, __VA_ARGS__)
-#define task_lost(...)                                         success(0, __VA_ARGS__)
-#define task_pieces_lost(...)                                  success(0, __VA_ARGS__)
 #define data_packet_free(packet)                               ((void)(packet))
 #define MPI_Comm_rank(comm, rank)                              one_rank(rank)
 #define MPI_Comm_size(comm, size)                              one_rank(size)
@@ -211,19 +165,15 @@ void work_starved(struct work_pool *pool, const char *what)
 static void start(void)
 {
     memset(&its, 0, sizeof its);
-    for (size_t i = 0; i < POSTS; i++) {
-        its.task[i] = explore_alloc(sizeof *its.task[i]);
-        its.task[i]->number = i;
-        its.task[i]->send = &its.send[i];
-        its.send[i].packet = &its.packet[i];
-    }
-    explore_check(!comm_start(&its.comm, MPI_COMM_NULL, &its.graph, NULL));
+    for (size_t i = 0; i < POSTS; i++)
+        its.letter[i].packet = &its.packet[i];
+    explore_check(!comm_start(&its.comm, MPI_COMM_NULL, &(struct comm_setup){.owner = &sender}));
     comm_open(its.comm, false);
 }
 
 static void post(int i)
 {
-    comm_send(its.comm, its.task[i]);
+    comm_send(its.comm, &its.letter[i]);
 }
 
 static void poll(void)

@@ -1,4 +1,4 @@
-/* The queue of ready tasks (runtime/workers/queue.c, over the real deque): whatever its owner,
+/* The queue of ready tasks (runtime/queue/queue.c, over the real deque): whatever its owner,
  * those who put tasks into its inbox and thieves do at the same time, each task is taken exactly
  * once; of the shared queue likewise, whoever holds its token. */
 #include "tests/model/runtime.h"
@@ -9,7 +9,8 @@ static unsigned allocations; /* that still succeed */
 
 #define base_alloc(size) (allocations-- ? explore_alloc(size) : NULL)
 
-#include "runtime/workers/queue.c"
+#include "runtime/queue/queue.c"
+#include "runtime/task/task.h"
 
 enum { THREADS = 3, EACH = 3, TASKS = THREADS * EACH }; /* EACH: tasks that a thread makes */
 
@@ -24,7 +25,7 @@ struct play {
 
 static const struct play *play;
 static struct {
-    struct work_queue queue, own[THREADS]; /* own: the thieves' */
+    struct queue queue, own[THREADS]; /* own: the thieves' */
     struct task *task[TASKS];
     int taken[TASKS], made[THREADS];
 } its;
@@ -44,20 +45,20 @@ static bool got(const struct task *task)
 
 static void act(char letter, unsigned self)
 {
-    struct work_queue *queue = &its.queue;
+    struct queue *queue = &its.queue;
     static const char ends[] = {[DUITE_NEWEST] = 't', [DUITE_OLDEST] = 'o', [DUITE_HIGHEST] = 'h'};
     const char *taking = memchr(ends, tolower(letter), sizeof ends);
     duite_end end = taking ? (duite_end)(taking - ends) : DUITE_NEWEST;
     if (letter == 'P')
-        work_queue_push(queue, make(self));
+        queue_push(queue, make(self));
     else if (letter == 'p')
-        work_queue_put(queue, make(self));
+        queue_put(queue, make(self));
     else if (taking && isupper(letter))
-        got(work_queue_take(queue, end));
+        got(queue_take(queue, end));
     else if (taking)
-        got(work_queue_take_shared(queue, end));
+        got(queue_take_shared(queue, end));
     else
-        got(work_queue_steal(queue, &its.own[self]));
+        got(queue_steal(queue, &its.own[self]));
 }
 
 static void run(void)
@@ -67,11 +68,11 @@ static void run(void)
         act(*letter, self);
 }
 
-static void start_queue(struct work_queue *queue)
+static void start_queue(struct queue *queue)
 {
-    work_queue_start(queue);
+    queue_start(queue, task_rank);
     if (play->no_memory)
-        work_deque_start(&queue->deque, 1);
+        queue_deque_start(&queue->deque, 1);
 }
 
 static void start(void)
@@ -89,10 +90,10 @@ static void start(void)
 /* What nobody took is still there, and nothing else. */
 static void end(void)
 {
-    while (got(work_queue_take(&its.queue, DUITE_NEWEST)))
+    while (got(queue_take(&its.queue, DUITE_NEWEST)))
         continue;
     for (int i = 0; i < THREADS; i++)
-        while (got(work_queue_take(&its.own[i], DUITE_OLDEST)))
+        while (got(queue_take(&its.own[i], DUITE_OLDEST)))
             continue;
     for (int i = 0; i < TASKS; i++)
         explore_check(its.taken[i] == (i % EACH < its.made[i / EACH]));
@@ -134,17 +135,17 @@ static const struct {
     struct explore_plant plant;
     struct play play;
 } plants[] = {
-    {{"work_queue_put", "&queue->inbox", EXPLORE_RELAX},
+    {{"queue_put", "&queue->inbox", EXPLORE_RELAX},
      {"those who put do not look at one another", {"", "p", "p"}, false}},
     {{"inbox_take_all", "&queue->inbox", EXPLORE_DROP},
      {"the inbox is not looked at", {"T", "pp"}, false}},
-    {{"work_queue_take_shared", "&queue->token", EXPLORE_DROP},
+    {{"queue_take_shared", "&queue->token", EXPLORE_DROP},
      {"all hold the token", {"pt", "", "pt"}, false}},
-    {{"work_queue_take_shared", "&queue->token", EXPLORE_RELAX},
+    {{"queue_take_shared", "&queue->token", EXPLORE_RELAX},
      {"the token is taken late", {"pt", "", "pt"}, false}},
-    {{"work_heap_enter", "&heap->busy", EXPLORE_DROP},
+    {{"queue_heap_enter", "&heap->busy", EXPLORE_DROP},
      {"all enter the heap", {"PPHH", "S"}, false}},
-    {{"work_heap_leave", "&heap->busy", EXPLORE_RELAX},
+    {{"queue_heap_leave", "&heap->busy", EXPLORE_RELAX},
      {"the heap is left early", {"PPHH", "S"}, false}},
 };
 

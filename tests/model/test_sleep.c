@@ -5,7 +5,7 @@
 #include "tests/model/runtime.h"
 #include "tests/model/silent_comm.h"
 
-#include "runtime/workers/workers.h"
+#include "runtime/workers/internal.h"
 
 #include "runtime/base/clock.h"
 #include "runtime/sched/sched.h"
@@ -62,7 +62,7 @@ static bool run_task(const struct task *task)
     its.ran[task->number]++;
     if (its.copies) {
         atomic_store_explicit(&its.copied, 1, memory_order_release);
-        work_notify(its.graph.pool);
+        queue_notify(its.graph.pool);
     }
     if (its.long_body && task->number == 0) {
         receive(1);
@@ -76,7 +76,7 @@ static void finish_task(struct worker *worker, const struct task *task)
     atomic_store(&its.over[task->number], 1);
     if (atomic_fetch_add(&its.n_over, 1) + 1 == (int)its.graph.tasks)
         atomic_store(&its.done, 1);
-    work_over(its.graph.pool, worker, 1);
+    queue_over(its.graph.pool, worker, 1);
 }
 
 #define TASK_IN(...)                                                                               \
@@ -92,7 +92,7 @@ bool comm_poll(struct comm *comm, struct worker *worker)
         !atomic_compare_exchange_strong_explicit(&its.received, &next, next + 1,
                                                  memory_order_acq_rel, memory_order_relaxed))
         return false;
-    work_ready(its.graph.pool, worker, its.task[next]);
+    task_ready(&its.graph, worker, its.task[next]);
     return true;
 }
 
@@ -104,26 +104,24 @@ bool comm_poll(struct comm *comm, struct worker *worker)
 #define work_cores_bind(unit)                 nothing()
 
 #ifdef REAL_QUEUES
-#include "runtime/workers/queue.c"
+#include "runtime/queue/queue.c"
 #else
 #include "tests/model/plain_queue.h"
 #endif
 
 /* Nobody watches for a standstill here, nothing moves between ranks, and no replay runs. */
 #include "runtime/workers/internal.h"
-#define work_balance_start(balance, pool)    nothing()
-#define work_balance_stop(pool)              nothing()
-#define work_offloaded_came(balance, guest)  ((void)(guest))
-#define work_placed_away(worker, task)       ((void)(worker), false)
-#define work_begins(worker, task)            ((void)(task), false)
-#define work_learn(worker, task, ticks)      ((void)(task))
-#define work_grant(worker)                   ((void)(worker))
-#define work_request(worker, idle)           ((void)(idle))
-#define work_standstill_start(pool, seconds) nothing()
-#define work_standstill_stop(pool)           nothing()
-#define work_waits(pool, why)                ((void)(why))
-#define work_enters(worker, task)            NULL
-#define work_leaves(worker, below)           ((void)(below))
+#define work_balance_start(balance, pool)        nothing()
+#define work_balance_stop(pool)                  nothing()
+#define work_begins(worker, task)                ((void)(task), false)
+#define work_learn(worker, task, ticks)          ((void)(task))
+#define work_grant(worker)                       ((void)(worker))
+#define work_request(worker, idle)               ((void)(idle))
+#define work_standstill_start(pool, seconds)     nothing()
+#define work_standstill_stop(pool)               nothing()
+#define work_waits(pool, why)                    ((void)(why))
+#define work_enters(worker, task)                NULL
+#define work_leaves(worker, below)               ((void)(below))
 
 /* No other program runs on these cores. */
 #include <sys/resource.h>
@@ -138,15 +136,18 @@ static struct task *look_last(struct worker *worker)
 {
     if (!explore_planted("idle_sleep", "the announcement"))
         return work_find(worker);
-    work_park_cancel(&worker->park);
+    queue_park_cancel(&worker->park);
     struct task *task = work_find(worker);
-    work_park_announce(&worker->park);
+    queue_park_announce(&worker->park);
     return task;
 }
 
 #define work_find look_last
 #include "runtime/workers/idle.c"
 #undef work_find
+#include "runtime/queue/count.c"
+#include "runtime/queue/park.c"
+#include "runtime/task/place.c"
 #include "runtime/workers/pool.c"
 #include "runtime/workers/run.c"
 #include "runtime/workers/wait.c"
@@ -190,7 +191,7 @@ static void start_workers(unsigned threads, const duite_scheduler *scheduler, bo
 
 static void ready(int task)
 {
-    work_ready(its.graph.pool, work_main(its.pool), its.task[task]);
+    task_ready(&its.graph, work_main(its.pool), its.task[task]);
 }
 
 static void stop(int tasks)
@@ -347,12 +348,13 @@ static const struct {
     struct explore_plant plant;
 } plants[] = {
     {SERVED("one task for another", leave_one), {"idle_sleep", "the announcement", EXPLORE_DROP}},
-    {SERVED("one task for another", leave_one), {"work_park_wake", "lock", EXPLORE_DROP}},
-    {SERVED("one task for another", leave_one), {"work_park_wake", "condition", EXPLORE_DROP}},
+    {SERVED("one task for another", leave_one), {"queue_park_wake", "lock", EXPLORE_DROP}},
+    {SERVED("one task for another", leave_one), {"queue_park_wake", "condition", EXPLORE_DROP}},
     {CASE("start, stop", start_stop), {"idle_sleep", "&pool->stop", EXPLORE_DROP}},
 #ifndef REAL_QUEUES /* there it takes too long */
-    {SERVED("one task for another", leave_one), {"work_queue_put", "the put", EXPLORE_RELAX}},
-    {SERVED("one task waited for", wait_one), {"main_has_enough", "&pool->awaited", EXPLORE_DROP}},
+    {SERVED("one task for another", leave_one), {"queue_put", "the put", EXPLORE_RELAX}},
+    {SERVED("one task waited for", wait_one),
+     {"queue_main_has_enough", "&pool->awaited", EXPLORE_DROP}},
     {SERVED("main polled, and leaves", idle_then_leave),
      {"work_idle_over", "&worker->pool->poller", EXPLORE_RELAX}},
     {SERVED("main polled, and leaves", idle_then_leave),

@@ -12,7 +12,7 @@ static void given(const void *memory);
 #define base_pool_give(memory, size) ((void)(size), given(memory))
 
 #include "runtime/data/version.c"
-#define work_ready ready
+#define task_ready ready
 #include "runtime/task/depend.c"
 
 enum { READERS = 2, WRITER = READERS, TASKS = READERS + 1 };
@@ -47,9 +47,9 @@ static void read_version(int i)
     task_release(&its.graph, NULL, its.version);
 }
 
-void ready(struct work_pool *pool, struct worker *worker, struct task *task)
+void ready(struct task_graph *graph, struct worker *worker, struct task *task)
 {
-    (void)pool;
+    (void)graph;
     (void)worker;
     if (task->number < WRITER) {
         explore_check(task->access[0].waiter.version == its.version);

@@ -9,6 +9,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+const char *const compare_dimension[COMPARE_DIMENSIONS] = {
+    "subject", "grain", "ranks", "threads", "balance", "mapping", "scheduler"};
+
 static FILE *open_file(const struct compare *compare, const char *name)
 {
     char path[PATH_MAX];

@@ -4,7 +4,7 @@
  * Deque: oldest <= newest, but for the moment in which the owner takes from an empty deque. A task
  * leaves the deque to the owner, or to the thread that moves `oldest` past it. Heap: a worker that
  * entered has it alone; others only read `n`. */
-#include "runtime/workers/queue.h"
+#include "runtime/queue/queue.h"
 
 #include "runtime/base/heap.h"
 #include "runtime/base/memory.h"
@@ -16,9 +16,9 @@ enum { FIRST_SLOTS = 256 }; /* of a deque */
 
 /* ---- Deque ---- */
 
-static struct work_ring *ring_new(uint64_t slots, struct work_ring *older)
+static struct queue_ring *ring_new(uint64_t slots, struct queue_ring *older)
 {
-    struct work_ring *ring = base_alloc(sizeof *ring + slots * sizeof ring->slot[0]);
+    struct queue_ring *ring = base_alloc(sizeof *ring + slots * sizeof ring->slot[0]);
     if (!ring)
         return NULL;
     ring->mask = slots - 1;
@@ -28,9 +28,9 @@ static struct work_ring *ring_new(uint64_t slots, struct work_ring *older)
     return ring;
 }
 
-bool work_deque_start(struct work_deque *deque, uint64_t slots)
+bool queue_deque_start(struct queue_deque *deque, uint64_t slots)
 {
-    struct work_ring *ring = ring_new(slots, NULL);
+    struct queue_ring *ring = ring_new(slots, NULL);
     atomic_init(&deque->oldest, 0);
     atomic_init(&deque->newest, 0);
     deque->seen = 0;
@@ -38,20 +38,20 @@ bool work_deque_start(struct work_deque *deque, uint64_t slots)
     return ring != NULL;
 }
 
-void work_deque_stop(struct work_deque *deque)
+void queue_deque_stop(struct queue_deque *deque)
 {
-    struct work_ring *ring = atomic_load(&deque->ring);
+    struct queue_ring *ring = atomic_load(&deque->ring);
     while (ring) {
-        struct work_ring *older = ring->older;
+        struct queue_ring *older = ring->older;
         base_free(ring);
         ring = older;
     }
 }
 
-static struct work_ring *ring_grow(struct work_deque *deque, struct work_ring *ring, int64_t oldest,
-                                   int64_t newest)
+static struct queue_ring *ring_grow(struct queue_deque *deque, struct queue_ring *ring,
+                                    int64_t oldest, int64_t newest)
 {
-    struct work_ring *larger = ring_new(2 * (ring->mask + 1), ring);
+    struct queue_ring *larger = ring_new(2 * (ring->mask + 1), ring);
     if (!larger)
         return NULL;
     for (int64_t i = oldest; i < newest; i++) {
@@ -65,16 +65,16 @@ static struct work_ring *ring_grow(struct work_deque *deque, struct work_ring *r
 }
 
 /* Where the next task goes. */
-static inline int64_t deque_end(const struct work_deque *deque)
+static inline int64_t deque_end(const struct queue_deque *deque)
 {
     return atomic_load_explicit(&deque->newest, memory_order_relaxed);
 }
 
 /* Fills the slot `newest`, at the end or beyond; deque_show shows all filled slots at once. False
  * without memory. */
-static inline bool deque_fill(struct work_deque *deque, int64_t newest, struct task *task)
+static inline bool deque_fill(struct queue_deque *deque, int64_t newest, struct task *task)
 {
-    struct work_ring *ring = atomic_load_explicit(&deque->ring, memory_order_relaxed);
+    struct queue_ring *ring = atomic_load_explicit(&deque->ring, memory_order_relaxed);
     if (newest - deque->seen > (int64_t)ring->mask) {
         deque->seen = atomic_load_explicit(&deque->oldest, memory_order_acquire);
         if (newest - deque->seen > (int64_t)ring->mask &&
@@ -85,13 +85,13 @@ static inline bool deque_fill(struct work_deque *deque, int64_t newest, struct t
     return true;
 }
 
-static inline void deque_show(struct work_deque *deque, int64_t newest)
+static inline void deque_show(struct queue_deque *deque, int64_t newest)
 {
     /* Sequentially consistent: a look for sleepers follows. */
     atomic_exchange_explicit(&deque->newest, newest, memory_order_seq_cst);
 }
 
-static inline bool deque_push(struct work_deque *deque, struct task *task)
+static inline bool deque_push(struct queue_deque *deque, struct task *task)
 {
     int64_t newest = deque_end(deque);
     if (!deque_fill(deque, newest, task))
@@ -100,15 +100,15 @@ static inline bool deque_push(struct work_deque *deque, struct task *task)
     return true;
 }
 
-bool work_deque_push(struct work_deque *deque, struct task *task)
+bool queue_deque_push(struct queue_deque *deque, struct task *task)
 {
     return deque_push(deque, task);
 }
 
-static inline struct task *deque_take_newest(struct work_deque *deque)
+static inline struct task *deque_take_newest(struct queue_deque *deque)
 {
     int64_t newest = atomic_load_explicit(&deque->newest, memory_order_relaxed) - 1;
-    struct work_ring *ring = atomic_load_explicit(&deque->ring, memory_order_relaxed);
+    struct queue_ring *ring = atomic_load_explicit(&deque->ring, memory_order_relaxed);
     /* The claim on the last task must be seen before `oldest` is read: sequentially consistent on
      * both sides. */
     atomic_exchange_explicit(&deque->newest, newest, memory_order_seq_cst);
@@ -128,19 +128,19 @@ static inline struct task *deque_take_newest(struct work_deque *deque)
     return task;
 }
 
-struct task *work_deque_take_newest(struct work_deque *deque)
+struct task *queue_deque_take_newest(struct queue_deque *deque)
 {
     return deque_take_newest(deque);
 }
 
-struct task *work_deque_take_oldest(struct work_deque *deque, bool *again)
+struct task *queue_deque_take_oldest(struct queue_deque *deque, bool *again)
 {
     int64_t oldest = atomic_load_explicit(&deque->oldest, memory_order_seq_cst);
     int64_t newest = atomic_load_explicit(&deque->newest, memory_order_seq_cst);
     *again = false;
     if (oldest >= newest)
         return NULL;
-    struct work_ring *ring = atomic_load_explicit(&deque->ring, memory_order_acquire);
+    struct queue_ring *ring = atomic_load_explicit(&deque->ring, memory_order_acquire);
     struct task *task =
         atomic_load_explicit(&ring->slot[(uint64_t)oldest & ring->mask], memory_order_relaxed);
     if (atomic_compare_exchange_strong_explicit(&deque->oldest, &oldest, oldest + 1,
@@ -152,15 +152,15 @@ struct task *work_deque_take_oldest(struct work_deque *deque, bool *again)
 
 /* ---- Heap ---- */
 
-struct work_ranked {
+struct queue_ranked {
     struct task *task;
     uint64_t came;
-    int32_t priority;
-    float path;
+    struct queue_rank rank;
 };
 
-void work_heap_start(struct work_heap *heap)
+void queue_heap_start(struct queue_heap *heap, queue_ranks_by *rank)
 {
+    heap->rank = rank;
     heap->entry = NULL;
     heap->capacity = 0;
     heap->came = 0;
@@ -168,47 +168,47 @@ void work_heap_start(struct work_heap *heap)
     atomic_flag_clear(&heap->busy);
 }
 
-void work_heap_stop(struct work_heap *heap)
+void queue_heap_stop(struct queue_heap *heap)
 {
     free(heap->entry);
 }
 
-bool work_heap_enter(struct work_heap *heap)
+bool queue_heap_enter(struct queue_heap *heap)
 {
     return !atomic_flag_test_and_set_explicit(&heap->busy, memory_order_acquire);
 }
 
-void work_heap_leave(struct work_heap *heap)
+void queue_heap_leave(struct queue_heap *heap)
 {
     atomic_flag_clear_explicit(&heap->busy, memory_order_release);
 }
 
 static bool heap_before(const void *left, const void *right, const void *unused)
 {
-    const struct work_ranked *a = left, *b = right;
+    const struct queue_ranked *a = left, *b = right;
     (void)unused;
-    if (a->priority != b->priority)
-        return a->priority > b->priority;
-    return a->path != b->path ? a->path > b->path : a->came < b->came;
+    if (a->rank.priority != b->rank.priority)
+        return a->rank.priority > b->rank.priority;
+    return a->rank.path != b->rank.path ? a->rank.path > b->rank.path : a->came < b->came;
 }
 
-bool work_heap_push(struct work_heap *heap, struct task *task)
+bool queue_heap_push(struct queue_heap *heap, struct task *task)
 {
     size_t n = atomic_load_explicit(&heap->n, memory_order_relaxed);
     void *moved = base_grow(heap->entry, &heap->capacity, n + 1, sizeof *heap->entry);
     if (!moved)
         return false;
     heap->entry = moved;
-    struct work_ranked new = {task, heap->came++, task->priority, task_path(task)};
+    struct queue_ranked new = {task, heap->came++, heap->rank(task)};
     atomic_store_explicit(&heap->n, n + 1, memory_order_relaxed);
     base_heap_push(heap->entry, n, &new, sizeof new, heap_before, NULL);
     return true;
 }
 
-struct task *work_heap_pop(struct work_heap *heap)
+struct task *queue_heap_pop(struct queue_heap *heap)
 {
     size_t n = atomic_load_explicit(&heap->n, memory_order_relaxed);
-    struct work_ranked first;
+    struct queue_ranked first;
     if (!n)
         return NULL;
     atomic_store_explicit(&heap->n, n - 1, memory_order_relaxed);
@@ -218,95 +218,96 @@ struct task *work_heap_pop(struct work_heap *heap)
 
 /* ---- Queue ---- */
 
-bool work_queue_start(struct work_queue *queue)
+bool queue_start(struct queue *queue, queue_ranks_by *rank)
 {
     atomic_init(&queue->inbox, NULL);
     atomic_flag_clear(&queue->token);
-    work_heap_start(&queue->heap);
-    return work_deque_start(&queue->deque, FIRST_SLOTS);
+    queue_heap_start(&queue->heap, rank);
+    return queue_deque_start(&queue->deque, FIRST_SLOTS);
 }
 
-void work_queue_stop(struct work_queue *queue)
+void queue_stop(struct queue *queue)
 {
-    work_deque_stop(&queue->deque);
-    work_heap_stop(&queue->heap);
+    queue_deque_stop(&queue->deque);
+    queue_heap_stop(&queue->heap);
 }
 
-void work_queue_put(struct work_queue *queue, struct task *task)
+void queue_put(struct queue *queue, struct task *task)
 {
-    BASE_STACK_PUSH(&queue->inbox, task, memory_order_seq_cst);
+    struct queue_link *link = queue_link(task);
+    BASE_STACK_PUSH(&queue->inbox, link, memory_order_seq_cst);
 }
 
-void work_queue_push(struct work_queue *queue, struct task *task)
+void queue_push(struct queue *queue, struct task *task)
 {
     if (!deque_push(&queue->deque, task))
-        work_queue_put(queue, task); /* no memory for a larger ring: the inbox has no bound */
+        queue_put(queue, task); /* no memory for a larger ring: the inbox has no bound */
 }
 
 /* The inbox, oldest first. */
-static struct task *inbox_take_all(struct work_queue *queue)
+static struct queue_link *inbox_take_all(struct queue *queue)
 {
     if (BASE_STACK_IS_EMPTY(&queue->inbox))
         return NULL;
-    struct task *task = BASE_STACK_TAKE(&queue->inbox);
-    BASE_LIST_REVERSE(task);
-    return task;
+    struct queue_link *list = BASE_STACK_TAKE(&queue->inbox);
+    BASE_LIST_REVERSE(list);
+    return list;
 }
 
 /* A list, oldest first. Without memory for a larger ring the rest goes to the inbox, which has no
  * bound. */
-static void queue_push_all(struct work_queue *queue, struct task *task)
+static void queue_push_all(struct queue *queue, struct queue_link *list)
 {
     int64_t newest = deque_end(&queue->deque);
-    for (; task && deque_fill(&queue->deque, newest, task); newest++)
-        task = task->next;
+    for (; list && deque_fill(&queue->deque, newest, queue_task(list)); newest++)
+        list = list->next;
     if (newest != deque_end(&queue->deque))
         deque_show(&queue->deque, newest);
-    while (task) {
-        struct task *next = task->next;
-        work_queue_put(queue, task);
-        task = next;
+    while (list) {
+        struct queue_link *next = list->next;
+        queue_put(queue, queue_task(list));
+        list = next;
     }
 }
 
-static struct task *deque_take_oldest(struct work_deque *deque)
+static struct task *deque_take_oldest(struct queue_deque *deque)
 {
     bool again = true;
     struct task *task = NULL;
     while (again)
-        task = work_deque_take_oldest(deque, &again);
+        task = queue_deque_take_oldest(deque, &again);
     return task;
 }
 
 /* NULL: the heap is empty, or another worker is in it. */
-static struct task *heap_take(struct work_heap *heap)
+static struct task *heap_take(struct queue_heap *heap)
 {
-    if (!atomic_load_explicit(&heap->n, memory_order_relaxed) || !work_heap_enter(heap))
+    if (!atomic_load_explicit(&heap->n, memory_order_relaxed) || !queue_heap_enter(heap))
         return NULL;
-    struct task *task = work_heap_pop(heap);
-    work_heap_leave(heap);
+    struct task *task = queue_heap_pop(heap);
+    queue_heap_leave(heap);
     return task;
 }
 
-static struct task *queue_take_highest(struct work_queue *queue)
+static struct task *queue_take_highest(struct queue *queue)
 {
     struct task *task = deque_take_oldest(&queue->deque);
-    if (!work_heap_enter(&queue->heap))
+    if (!queue_heap_enter(&queue->heap))
         return task;
-    while (task && work_heap_push(&queue->heap, task))
+    while (task && queue_heap_push(&queue->heap, task))
         task = deque_take_oldest(&queue->deque);
     if (!task) /* else there was no memory: it runs at once */
-        task = work_heap_pop(&queue->heap);
-    work_heap_leave(&queue->heap);
+        task = queue_heap_pop(&queue->heap);
+    queue_heap_leave(&queue->heap);
     return task;
 }
 
 /* A scheduler may serve by priority now and otherwise later, so every way of taking also looks into
  * the heap. A worker that takes at the old end and pushes at the new one thus comes by all
  * tasks. */
-static struct task *queue_take(struct work_queue *queue, duite_end end)
+static struct task *queue_take_end(struct queue *queue, duite_end end)
 {
-    struct task *came = inbox_take_all(queue);
+    struct queue_link *came = inbox_take_all(queue);
     if (came)
         queue_push_all(queue, came);
     if (end == DUITE_HIGHEST)
@@ -319,33 +320,35 @@ static struct task *queue_take(struct work_queue *queue, duite_end end)
     return task ? task : deque_take_oldest(&queue->deque);
 }
 
-struct task *work_queue_take(struct work_queue *queue, duite_end end)
+struct task *queue_take(struct queue *queue, duite_end end)
 {
-    if (work_queue_is_empty(queue)) /* an idle worker asks all the time */
+    if (queue_is_empty(queue)) /* an idle worker asks all the time */
         return NULL;
-    struct task *task = queue_take(queue, end);
+    struct task *task = queue_take_end(queue, end);
     /* A ring that could not grow leaves tasks in the inbox: run them from there. */
-    if (!task && (task = inbox_take_all(queue)))
-        queue_push_all(queue, task->next);
-    return task;
+    struct queue_link *list = task ? NULL : inbox_take_all(queue);
+    if (!list)
+        return task;
+    queue_push_all(queue, list->next);
+    return queue_task(list);
 }
 
-int64_t work_queue_mark(struct work_queue *queue)
+int64_t queue_mark(struct queue *queue)
 {
     if (atomic_load_explicit(&queue->inbox, memory_order_relaxed))
         return -1;
     return atomic_load_explicit(&queue->deque.newest, memory_order_relaxed);
 }
 
-struct task *work_queue_take_shared(struct work_queue *queue, duite_end end)
+struct task *queue_take_shared(struct queue *queue, duite_end end)
 {
     struct task *task;
-    if (work_queue_is_empty(queue))
+    if (queue_is_empty(queue))
         return NULL;
     do {
         if (atomic_flag_test_and_set_explicit(&queue->token, memory_order_seq_cst))
             return deque_take_oldest(&queue->deque);
-        task = work_queue_take(queue, end);
+        task = queue_take(queue, end);
         /* Workers that did not get the token may have been woken for a task that came after this
          * look. If it stayed in the inbox, none of them would come back. */
         atomic_flag_clear_explicit(&queue->token,
@@ -354,13 +357,14 @@ struct task *work_queue_take_shared(struct work_queue *queue, duite_end end)
     return task;
 }
 
-struct task *work_queue_steal(struct work_queue *victim, struct work_queue *own)
+struct task *queue_steal(struct queue *victim, struct queue *own)
 {
     struct task *task = heap_take(&victim->heap);
     if (!task)
         task = deque_take_oldest(&victim->deque);
-    if (task || !(task = inbox_take_all(victim)))
+    struct queue_link *list = task ? NULL : inbox_take_all(victim);
+    if (!list)
         return task;
-    queue_push_all(own, task->next);
-    return task;
+    queue_push_all(own, list->next);
+    return queue_task(list);
 }

@@ -1,0 +1,61 @@
+#ifndef DUITE_COMM_MESSAGE_H
+#define DUITE_COMM_MESSAGE_H
+
+#include "runtime/comm/channel.h"
+#include "runtime/data/packet.h"
+
+#pragma GCC visibility push(hidden) /* called directly: no other library can replace them */
+
+/* Messages between ranks, for those who send and expect them. A message is a packet: bytes and a
+ * key. It is sent as soon as its bytes are there and may arrive before its receiver expects it.
+ * Whoever sends or expects one is called when it is sent or came. comm.h has the rest. */
+struct comm;
+struct worker; /* the caller, for those who are called back; NULL: no worker */
+
+/* A packet on its way to a rank, from comm_send until it is sent. The sender keeps it. */
+struct comm_letter {
+    struct comm_letter *next; /* the comm's */
+    struct data_key key;
+    struct data_packet *packet; /* freed once it is sent; NULL: the sender's, see comm_owner */
+    void *sender;
+    int to;
+};
+
+/* Called when a packet came for `what`, which expected it; the callee owns the packet. NULL: it
+ * will not come. `context`: of the comm. */
+typedef void comm_arrived(void *context, struct worker *worker, void *what,
+                          struct data_packet *packet);
+
+/* Who expects a packet, and the rank it comes from (-1: several). */
+struct comm_target {
+    comm_arrived *arrived;
+    void *what;
+    int from;
+};
+
+/* Posts a letter, which the next poll sends. comm_posted: whether there is something to send. Any
+ * thread. */
+void comm_send(struct comm *comm, struct comm_letter *letter);
+bool comm_posted(struct comm *comm);
+
+/* Sets the target of the packets of that key; those that came already are delivered. Main thread.
+ */
+int comm_expect(struct comm *comm, struct worker *worker, struct data_key key,
+                struct comm_target target, uint32_t packets);
+
+/* Opens channels. Main thread, all ranks alike. Errors: DUITE_E_MPI, memory; or COMM_NEEDS_TAGS on
+ * all ranks: then the ranks meet, call comm_channels_settle, meet again, call comm_channels_met,
+ * and try once more. */
+int comm_channels_open(struct comm *comm, struct comm_channel_set *set);
+
+/* A channel is ready for its next message: sends it right now, or awaits it. Any thread. */
+void comm_channel_ready(struct comm *comm, struct worker *worker, struct comm_channel *channel);
+
+/* Breaks; the first reason counts. Any thread. */
+void comm_broke(struct comm *comm, int code, const char *message);
+/* The same, for want of memory for `what`. */
+void comm_broke_memory(struct comm *comm, const char *what);
+
+#pragma GCC visibility pop
+
+#endif

@@ -15,19 +15,21 @@
 
 struct settings {
     uint64_t seed; /* of one program, or the first of many */
-    int one, ranks, threads, window, verbose;
+    int one, ranks, threads, window, memo, check, verbose;
+    unsigned with, without; /* features, a bit each, ... */
+    char forced[200];       /* ... and as options */
     unsigned long programs, repeat;
     const char *scheduler, *mapping, *balance;
 };
 
-static char running[256]; /* the program that runs, for the handler */
+static char running[512]; /* the program that runs, for the handler */
 static volatile size_t where;
 static unsigned long recognised; /* tasks, of all programs of this process */
 
 /* Says what was running when the job hangs. */
 static void last_words(int number)
 {
-    char line[320] = "# hangs: ", digits[24], *d = digits + sizeof digits - 1;
+    char line[600] = "# hangs: ", digits[24], *d = digits + sizeof digits - 1;
     size_t at = where;
 
     (void)number;
@@ -52,6 +54,7 @@ static struct prog_setup draw_setup(const struct settings *settings, uint64_t se
 {
     static const double SPINS[] = {0, 1e-6, 100e-6};
     static const size_t WINDOWS[] = {0, 0, 1, 1, 2, 7, 30};
+    static const int MEMOS[] = {0, 1, 2, 2, 2};
     struct prog_setup setup = {.comm = comm, .verbose = settings->verbose};
     uint64_t random = ~seed;
 
@@ -62,10 +65,16 @@ static struct prog_setup draw_setup(const struct settings *settings, uint64_t se
     setup.scheduler = draw_policy(&random, duite_scheduler_names(), sched_test_names());
     setup.mapping = draw_policy(&random, duite_mapping_names(), (const char *[]){NULL});
     setup.balance = draw_policy(&random, duite_balancer_names(), balance_test_names());
+    setup.memo = MEMOS[duite_random(&random) % (sizeof MEMOS / sizeof *MEMOS)];
+    setup.check = duite_random(&random) % 20 == 0;
     if (settings->balance)
         setup.balance = settings->balance;
     if (settings->window >= 0)
         setup.window = (size_t)settings->window;
+    if (settings->memo >= 0)
+        setup.memo = settings->memo;
+    if (settings->check >= 0)
+        setup.check = settings->check;
     if (settings->threads > 0)
         setup.threads = (unsigned)settings->threads;
     if (settings->scheduler)
@@ -99,9 +108,7 @@ static int try_program(const struct prog *prog, const struct prog_setup *setup,
 
     for (unsigned long i = 0; i < repeat && !wrong; i++) {
         alarm(120);
-        *report = (struct prog_report){.text = "out of memory"};
-        if (answers)
-            prog_run(prog, answers, setup, report, &where);
+        prog_run(prog, answers, setup, report, &where);
         recognised += report->recognised;
         wrong = finder(setup, report) >= 0;
     }
@@ -109,16 +116,16 @@ static int try_program(const struct prog *prog, const struct prog_setup *setup,
     return wrong;
 }
 
-/* Tries without n operations from `at` on; keeps them if the program is then right. */
+/* Tries without n operations of a list; keeps them if the program is then right. */
 static void leave_out(struct prog *prog, const struct prog_setup *setup, unsigned long repeat,
-                      size_t at, size_t n)
+                      struct prog_op *ops, size_t n)
 {
-    enum prog_kind *kept = calloc(n, sizeof *kept);
+    enum prog_kind *kept = prog_memory(n, sizeof *kept);
     struct prog_report report;
     int changed = 0;
 
-    for (size_t i = 0; kept && i < n; i++) {
-        enum prog_kind *kind = &prog->ops[at + i].kind;
+    for (size_t i = 0; i < n; i++) {
+        enum prog_kind *kind = &ops[i].kind;
 
         kept[i] = *kind;
         if (*kind == PROG_NEW || *kind == PROG_FREE || *kind == PROG_SKIP)
@@ -128,20 +135,27 @@ static void leave_out(struct prog *prog, const struct prog_setup *setup, unsigne
     }
     if (changed && !try_program(prog, setup, repeat, &report))
         for (size_t i = 0; i < n; i++)
-            prog->ops[at + i].kind = kept[i];
+            ops[i].kind = kept[i];
     free(kept);
 }
 
-/* Leaves out of a failing program whatever can go while it still fails, and prints the rest. */
+static void shrink_list(struct prog *prog, const struct prog_setup *setup, unsigned long repeat,
+                        struct prog_op *ops, size_t n_ops)
+{
+    for (size_t n = n_ops; n > 0; n /= 2)
+        for (size_t at = 0; at < n_ops; at += n)
+            leave_out(prog, setup, repeat, &ops[at], n_ops - at < n ? n_ops - at : n);
+}
+
+/* Leaves out of a failing program what can go while it still fails, and prints the rest. */
 static void shrink(struct prog *prog, struct prog_setup setup, unsigned long repeat)
 {
     int rank;
 
     MPI_Comm_rank(setup.comm, &rank);
     setup.verbose = 0;
-    for (size_t n = prog->n_ops; n > 0; n /= 2)
-        for (size_t at = 0; at < prog->n_ops; at += n)
-            leave_out(prog, &setup, repeat, at, prog->n_ops - at < n ? prog->n_ops - at : n);
+    shrink_list(prog, &setup, repeat, prog->ops, prog->n_ops);
+    shrink_list(prog, &setup, repeat, prog->inner, prog->n_inner);
     if (rank == 0)
         printf("# still wrong with these operations only:\n");
     for (size_t i = 0; rank == 0 && i < prog->n_ops; i++)
@@ -175,12 +189,10 @@ static int run_seed(const struct settings *settings, uint64_t seed, MPI_Comm com
     MPI_Comm_size(comm, &ranks);
     snprintf(running, sizeof running,
              "--seed %llu --ranks %d --threads %u --scheduler %s --mapping %s --balance %s "
-             "--window %zu",
+             "--window %zu --memo %d --check %d%s",
              (unsigned long long)seed, ranks, setup.threads, setup.scheduler, setup.mapping,
-             setup.balance, setup.window);
-    prog = prog_make(seed, ranks);
-    if (!prog)
-        MPI_Abort(MPI_COMM_WORLD, 99);
+             setup.balance, setup.window, setup.memo, setup.check, settings->forced);
+    prog = prog_make(seed, ranks, settings->with, settings->without);
     wrong = try_program(prog, &setup, settings->repeat, &report);
     if (wrong)
         tell(prog, &setup, &report);
@@ -236,29 +248,56 @@ static void run_many(const struct settings *settings, int rank, int size, unsign
     }
 }
 
+/* --with or --without FEATURE; returns whether there is none of that name. */
+static int force(struct settings *settings, const char *option, const char *name)
+{
+    const size_t n = strlen(settings->forced);
+
+    for (unsigned f = 0; f < PROG_N_FEATURES; f++)
+        if (!strcmp(prog_features[f], name)) {
+            *(option[4] ? &settings->without : &settings->with) |= 1u << f;
+            snprintf(settings->forced + n, sizeof settings->forced - n, " --%s %s", option, name);
+            return 0;
+        }
+    return 1;
+}
+
+static int read_number(struct settings *settings, int option, const char *text)
+{
+    if (option == 's' || option == 'b')
+        settings->seed = strtoull(text, NULL, 10);
+    else if (option == 'r')
+        settings->ranks = atoi(text);
+    else if (option == 't')
+        settings->threads = atoi(text);
+    else if (option == 'w')
+        settings->window = atoi(text);
+    else if (option == 'n')
+        settings->repeat = strtoul(text, NULL, 10);
+    else if (option == 'p')
+        settings->programs = strtoul(text, NULL, 10);
+    else if (option == 'o')
+        settings->memo = atoi(text);
+    else if (option == 'c')
+        settings->check = atoi(text);
+    else
+        return 1;
+    settings->one |= option == 's';
+    return 0;
+}
+
 static int read_options(int argc, char **argv, struct settings *settings)
 {
     static const struct option OPTIONS[] = {
         {"seed", 1, NULL, 's'},    {"base", 1, NULL, 'b'},    {"ranks", 1, NULL, 'r'},
         {"threads", 1, NULL, 't'}, {"repeat", 1, NULL, 'n'},  {"programs", 1, NULL, 'p'},
         {"mapping", 1, NULL, 'm'}, {"verbose", 0, NULL, 'v'}, {"scheduler", 1, NULL, 'q'},
-        {"balance", 1, NULL, 'a'}, {"window", 1, NULL, 'w'},  {NULL, 0, NULL, 0}};
+        {"balance", 1, NULL, 'a'}, {"window", 1, NULL, 'w'},  {"with", 1, NULL, '+'},
+        {"without", 1, NULL, '-'}, {"memo", 1, NULL, 'o'},    {"check", 1, NULL, 'c'},
+        {NULL, 0, NULL, 0}};
 
     for (int c; (c = getopt_long(argc, argv, "", OPTIONS, NULL)) != -1;) {
-        settings->one |= c == 's';
-        if (c == 's' || c == 'b')
-            settings->seed = strtoull(optarg, NULL, 10);
-        else if (c == 'r')
-            settings->ranks = atoi(optarg);
-        else if (c == 't')
-            settings->threads = atoi(optarg);
-        else if (c == 'w')
-            settings->window = atoi(optarg);
-        else if (c == 'n')
-            settings->repeat = strtoul(optarg, NULL, 10);
-        else if (c == 'p')
-            settings->programs = strtoul(optarg, NULL, 10);
-        else if (c == 'm')
+        if (c == 'm')
             settings->mapping = optarg;
         else if (c == 'a')
             settings->balance = optarg;
@@ -266,10 +305,11 @@ static int read_options(int argc, char **argv, struct settings *settings)
             settings->scheduler = optarg;
         else if (c == 'v')
             settings->verbose = 1;
-        else
+        else if (c == '+' || c == '-' ? force(settings, c == '+' ? "with" : "without", optarg)
+                                      : read_number(settings, c, optarg))
             return 1;
     }
-    return (settings->scheduler && !duite_scheduler_find(settings->scheduler)) ||
+    return optind < argc || (settings->scheduler && !duite_scheduler_find(settings->scheduler)) ||
            (settings->balance && !duite_balancer_find(settings->balance)) ||
            (settings->mapping && !duite_mapping_find(settings->mapping));
 }
@@ -289,7 +329,8 @@ static int run_one(const struct settings *settings, int rank)
 
 int main(int argc, char **argv)
 {
-    struct settings settings = {.seed = 1, .ranks = 1, .window = -1, .programs = 500, .repeat = 1};
+    struct settings settings = {
+        .seed = 1, .ranks = 1, .window = -1, .memo = -1, .check = -1, .programs = 500, .repeat = 1};
     unsigned long mine[3] = {0, 0, 0}, sum[3];
     int rank, size, given;
 
@@ -304,8 +345,8 @@ int main(int argc, char **argv)
         fprintf(
             stderr,
             "%s: --base SEED --programs N, on 1 to 16 ranks; or --seed SEED --ranks R [--threads "
-            "T] [--scheduler S] [--mapping M] [--balance B] [--window W] [--repeat N] [--verbose], "
-            "on R ranks or more\n",
+            "T] [--scheduler S] [--mapping M] [--balance B] [--window W] [--memo M] [--check C] "
+            "[--repeat N] [--verbose], on R ranks or more. Both: --with or --without FEATURE\n",
             argv[0]);
         MPI_Abort(MPI_COMM_WORLD, 2);
     }

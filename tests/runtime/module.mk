@@ -37,15 +37,9 @@ dist_check_SCRIPTS += tests/runtime/test_control.sh
 TESTS += tests/runtime/test_control.sh
 dist_check_SCRIPTS += tests/runtime/test_plans.sh
 TESTS += tests/runtime/test_plans.sh
-check_PROGRAMS += tests/runtime/nested_programs
-tests_runtime_nested_programs_SOURCES = tests/runtime/nested_programs.c tests/runtime/nested_program.h \
-    tests/runtime/nested_make.c tests/runtime/nested_interpret.c tests/runtime/nested_values.c
-tests_runtime_nested_programs_LDADD = $(CORE_LIBS)
 dist_check_SCRIPTS += tests/runtime/test_random.sh tests/runtime/test_random_long.sh tests/runtime/test_sizes.sh tests/runtime/test_homes.sh \
-    tests/runtime/test_nested.sh tests/runtime/test_memcheck.sh tests/runtime/test_memcheck_long.sh tests/runtime/test_threads_long.sh
-TESTS += tests/runtime/random_programs tests/runtime/test_random.sh tests/runtime/test_sizes.sh tests/runtime/test_homes.sh \
-	tests/runtime/test_nested.sh \
-    tests/runtime/test_memcheck.sh
+    tests/runtime/test_memcheck.sh tests/runtime/test_memcheck_long.sh tests/runtime/test_threads_long.sh
+TESTS += tests/runtime/test_random.sh tests/runtime/test_sizes.sh tests/runtime/test_homes.sh tests/runtime/test_memcheck.sh
 LONG_TESTS += tests/runtime/test_random_long.sh tests/runtime/test_memcheck_long.sh tests/runtime/test_threads_long.sh
 SAID_FILES = tests/support/said.c tests/support/said.h
 check_PROGRAMS += tests/runtime/ranks_stuck_policies

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Tasks that run on other ranks than their own: which may, what comes home, failures, who asks how often; whole subtrees; random programs
-# and trees of tasks that run anywhere. One that goes wrong is printed with the options that run it again.
+# whose tasks run anywhere. One that goes wrong is printed with the options that run it again.
 . "${srcdir:-.}/tests/support/tap.sh"
 plan_later
 
@@ -15,8 +15,8 @@ for n in 1 2 3; do
 done
 ok "whole subtrees in checking mode" eval 'DUITE_CHECK=accesses ranks 2 tests/runtime/ranks_subtrees'
 ok "random programs" ranks 4 tests/runtime/random_programs --base 500000 --programs $programs --balance scatter
-ok "random trees of tasks on 2 ranks" ranks 2 tests/runtime/nested_programs --seed 500000 --programs $programs --balance scatter
-ok "random trees of tasks on 3 ranks" ranks 3 tests/runtime/nested_programs --seed 500000 --programs $((programs / 2)) --balance scatter
-ok "random trees of tasks on 4 ranks" ranks 4 tests/runtime/nested_programs --seed 600000 --programs $((programs / 4)) --balance scatter
-ok "random trees of tasks in checking mode" eval 'DUITE_CHECK=accesses ranks 2 tests/runtime/nested_programs --seed 700000 \
-    --programs $((programs / 4)) --balance scatter'
+ok "programs that nest on 2 ranks" ranks 2 tests/runtime/random_programs --with nests --base 500000 --programs $programs --balance scatter
+ok "programs that nest on 3 ranks" ranks 3 tests/runtime/random_programs --with nests --base 500000 --programs $((programs / 2)) --balance scatter
+ok "programs that nest on 4 ranks" ranks 4 tests/runtime/random_programs --with nests --base 600000 --programs $((programs / 4)) --balance scatter
+ok "programs that nest in checking mode" ranks 2 tests/runtime/random_programs --with nests --base 700000 \
+    --programs $((programs / 4)) --balance scatter --check 1

@@ -4,7 +4,8 @@ tests_runtime_random_programs_SOURCES = tests/runtime/random_programs.c tests/ru
     tests/runtime/random_rounds.c tests/runtime/random_laws.c tests/runtime/random_bodies.c tests/runtime/random_print.c \
     tests/runtime/random_cells.c tests/runtime/random_cells.h tests/runtime/random_interpret.c tests/runtime/random_interpret.h \
     tests/runtime/random_replay.c tests/runtime/random_run.c tests/runtime/random_run.h tests/runtime/random_calls.c \
-    tests/runtime/random_recording.c tests/runtime/random_places.c
+    tests/runtime/random_recording.c tests/runtime/random_places.c tests/runtime/random_options.c \
+    tests/runtime/random_options.h
 tests_runtime_random_programs_LDADD = $(CORE_LIBS)
 check_PROGRAMS += tests/runtime/ranks_sizes
 tests_runtime_ranks_sizes_SOURCES = tests/runtime/ranks_sizes.c tests/negative/misuse.c tests/negative/misuse.h

@@ -118,7 +118,7 @@ static int is_neutral(const struct prog_args *args, const duite_param *param, si
     return same;
 }
 
-/* Whether a parameter has the size it should have: its own; if it changes, its maximum under w and
+/* Returns whether a parameter has its own size; or, if that changes, its maximum under w and
  * postponed. */
 static int has_size(const struct prog_args *args, const duite_param *param, size_t i)
 {
@@ -165,11 +165,12 @@ static int broken(const duite_call *call, const struct prog_args *args,
     return 0;
 }
 
-void prog_body_wrong(struct prog_context *context, int line)
+void prog_body_wrong(struct prog_context *context, int line, int code)
 {
     int none = 0;
 
-    atomic_compare_exchange_strong(&context->wrong, &none, line);
+    if (atomic_compare_exchange_strong(&context->wrong, &none, line))
+        atomic_store(&context->code, code);
 }
 
 static void watch(const duite_call *call, const struct prog_args *args,
@@ -178,7 +179,7 @@ static void watch(const duite_call *call, const struct prog_args *args,
     const int line = broken(call, args, context);
 
     if (line)
-        prog_body_wrong(context, line);
+        prog_body_wrong(context, line, 0);
     atomic_fetch_add(&context->ran[args->number], 1);
     waste(args->pause);
 }
@@ -191,7 +192,7 @@ static void resize(const duite_call *call, size_t i, size_t count)
 
     if (call->context) {
         if (duite_resize(call, i, count) || duite_count(call, i) != count)
-            prog_body_wrong(call->context, __LINE__);
+            prog_body_wrong(call->context, __LINE__, 0);
         return;
     }
     if (count > param->count)
@@ -224,7 +225,7 @@ static int exceed(const duite_call *call, const struct prog_args *args)
     if (!call->context)
         return DUITE_E_SIZE;
     if (duite_resize(call, i, call->param[i].max + 1) != DUITE_E_SIZE)
-        prog_body_wrong(call->context, __LINE__);
+        prog_body_wrong(call->context, __LINE__, 0);
     return args->seed % 2 ? DUITE_E_SIZE : DUITE_OK;
 }
 

@@ -1,4 +1,5 @@
-/* Calls that a body makes like the main program: alone of what bodies learn, their hash tells. */
+/* Calls that bodies make, most of them like the main program. A body mixes what its gets and waits
+ * return into its hash, and so into its results. */
 
 #include "tests/runtime/random_run.h"
 
@@ -130,7 +131,7 @@ static uint64_t make_call(struct run_scope *scope, const struct prog_op *op, uin
     else if (op->kind == PROG_WAIT)
         hash = prog_body_told(hash, duite_wait(scope->rt), NULL, 0);
     if (code)
-        prog_body_wrong(scope->call->context, 10000 * (int)op->kind - code);
+        prog_body_wrong(scope->call->context, (int)op->kind, code);
     return hash;
 }
 

@@ -1,6 +1,6 @@
-/* What a program means, in the reference order: a body, then its children one after the other with
- * all their descendants, then the next task. A get or wait of a body closes a segment: what the
- * body does afterwards comes after the children forked so far. */
+/* The meaning of a program, in the reference order: a body, then its children one after the other
+ * with all their descendants, then the next task. A get or wait of a body closes a segment: what
+ * the body does afterwards comes after the children forked so far. */
 
 #include "tests/runtime/random_interpret.h"
 
@@ -92,7 +92,7 @@ static void make_object(struct prog_frame *frame, const struct prog_op *op)
     prog_cell_start(frame->object[place], &frame->shape[place]);
 }
 
-/* What a body learns from a get. */
+/* A body learns from a get. */
 static uint64_t get_in_body(struct prog_frame *frame, const struct prog_op *op, uint64_t hash)
 {
     const struct prog_cell *cell = prog_cell_settle(frame->object[op->object]);
@@ -126,8 +126,8 @@ static uint64_t act(struct prog_machine *m, struct prog_frame *frame, size_t n, 
     return hash;
 }
 
-/* What the task is given: its own copies of what it uses itself, the very objects of what its
- * children use, a tree of its own for their contributions. Returns the poison that it reads. */
+/* The task gets its own copies of the objects that it uses itself, the very objects that its
+ * children use, and a tree of its own for their contributions. Returns the poison that it reads. */
 static struct prog_failure enter(struct prog_frame *frame, const struct prog_op *op,
                                  const struct prog_args *args, duite_param *param)
 {
@@ -173,7 +173,7 @@ static void leave_written(struct prog_cell *cell, duite_mode mode, unsigned befo
     cell->poison = prog_first_failure(cell->poison, failure);
 }
 
-/* What the task did to an object of the one above it. */
+/* The object of the task above gets what the task did to it. */
 static void leave(struct prog_frame *frame, unsigned i, duite_mode mode, struct prog_cell *cell,
                   size_t count, struct prog_failure failure)
 {

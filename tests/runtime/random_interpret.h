@@ -19,8 +19,8 @@ struct prog_frame {
     int refused;                      /* the first refused call since the last get or wait */
 };
 
-/* A graph: what it recorded, with the seeds and failures of now, and what stands for each object.
- */
+/* A graph: its recorded operations, with the seeds and failures of now, and the object that stands
+ * for each one. */
 struct prog_graph {
     int alive, whole;
     size_t first, again; /* operations: what it recorded, and what it would record now */

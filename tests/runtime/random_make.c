@@ -352,7 +352,7 @@ static void draw_character(struct maker *m, unsigned with, unsigned without)
     m->sized = make_has(m, PROG_SIZES) ? 4 : 0;
 }
 
-/* What the program does before its first task, while homes are open. */
+/* The program does this before its first task, while homes are open. */
 static void make_beginning(struct maker *m)
 {
     for (unsigned i = 0; i < m->most_live / 2; i++)

@@ -26,7 +26,7 @@ static int owner(const struct run *run, const struct prog_op *op)
     return 0;
 }
 
-/* Whether a task ran so often; in checking mode a body that forks nothing runs twice. */
+/* Returns whether a task ran so often; in checking mode a body that forks nothing runs twice. */
 static int is_times(const struct run *run, int ran, int runs)
 {
     return ran == runs || (run->check && ran >= runs && ran <= 2 * runs) ||
@@ -66,7 +66,7 @@ static unsigned char *count_runs(const struct run *run, const struct prog_contex
     return all;
 }
 
-/* Whether two objects that live together have other homes, as far as that is known. */
+/* Returns whether two objects that live together have other homes, as far as that is known. */
 static int are_apart(const struct run *run, const struct prog_op *op)
 {
     const int home = run->home[op->object], other = run->home[op->objects[0]];

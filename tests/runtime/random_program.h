@@ -5,9 +5,8 @@
  * contract alone, run on the runtime, compared bit for bit. The interpreter shares with the runtime
  * nothing but the arithmetic of the bodies.
  *
- * The main program and each body are a list of operations on a table of objects: those of the main
- * program by the order in which it makes them, those of a body its parameters and then what it
- * makes. */
+ * The main program and each body are lists of operations on a table of objects. That of the main
+ * program has its objects as they are made, that of a body its parameters and then its own. */
 
 #include <duite.h>
 #include <duite_policy.h>
@@ -89,7 +88,7 @@ struct prog_op {
     double weight;    /* hint */
 };
 
-/* What a body is told: it cannot ask the program, which it must not see. */
+/* A body is told this, and asks the program only for its calls. */
 struct prog_args {
     uint64_t seed;
     size_t body, n_inner;
@@ -118,7 +117,7 @@ struct prog {
     struct prog_object objects[PROG_MAX_TABLE];
 };
 
-/* What an operation must give. */
+/* The right answer of an operation. */
 struct prog_expect {
     int code;
     unsigned char *bytes; /* get, get_at: the object; NULL if it is poisoned */
@@ -133,13 +132,14 @@ struct prog_answers {
     int stop;
 };
 
-/* What bodies share on one rank. */
+/* Bodies share this on one rank. */
 struct prog_context {
     int rank, n_ranks;
     unsigned threads;
     struct run *run;   /* random_run.h */
     atomic_uchar *ran; /* n_forks: how often a body ran on this rank */
-    atomic_int wrong;  /* the first thing a body found wrong: a line of random_bodies.c */
+    atomic_int wrong;  /* the first thing a body found wrong: a line of random_bodies.c, ... */
+    atomic_int code;   /* ... or the code of its wrong call, which is that operation's kind */
 };
 
 struct prog_setup {
@@ -153,7 +153,7 @@ struct prog_setup {
     int verbose;
 };
 
-/* What a run found: an empty text if all is as it should be. */
+/* The first wrong thing that a run found: an empty text if all is as it should be. */
 struct prog_report {
     size_t op;
     uint64_t recognised; /* tasks, on this rank */
@@ -189,8 +189,9 @@ int prog_body(const duite_call *call);
 uint64_t prog_body_begin(const duite_call *call);
 int prog_body_end(const duite_call *call, uint64_t hash);
 uint64_t prog_body_told(uint64_t hash, int code, const void *bytes, size_t n);
-/* Keeps a wrong thing that a body found. */
-void prog_body_wrong(struct prog_context *context, int line);
+/* Keeps a wrong thing that a body found; code 0: at that line of random_bodies.c, else it is what
+ * a call of that kind returned. */
+void prog_body_wrong(struct prog_context *context, int line, int code);
 
 size_t prog_size(duite_type type);
 /* The values of a set. */

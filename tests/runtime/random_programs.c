@@ -1,26 +1,15 @@
-/* Runs random programs on groups of the ranks of one job, each group on its own. A
- * program is its seed and the number of ranks; threads, scheduler, mapping and balancer follow from
- * the seed too unless they are given. */
+/* Runs random programs on groups of the ranks of one job, each group on its own. A program is its
+ * seed, the number of ranks and the features that are forced; how it runs follows from the seed,
+ * too, except for given options. */
 
-#include "runtime/balance/balance.h"
-#include "runtime/sched/sched.h"
-#include "tests/runtime/random_program.h"
-#include "tests/support/policies.h"
+#include "tests/runtime/random_options.h"
 
-#include <getopt.h>
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-struct settings {
-    uint64_t seed; /* of one program, or the first of many */
-    int one, ranks, threads, window, memo, check, verbose;
-    unsigned with, without; /* features, a bit each, ... */
-    char forced[200];       /* ... and as options */
-    unsigned long programs, repeat;
-    const char *scheduler, *mapping, *balance;
-};
+enum { MOST_SECONDS = 120, MOST_WRONG = 20, SHRINK_REPEATS = 20 };
 
 static char running[512]; /* the program that runs, for the handler */
 static volatile size_t where;
@@ -41,47 +30,6 @@ static void last_words(int number)
     if (write(STDERR_FILENO, line, strlen(line)) < 0)
         _exit(4);
     _exit(3);
-}
-
-static const char *draw_policy(uint64_t *random, const char *const *names,
-                               const char *const *adversaries)
-{
-    const size_t n = policies_count(names, adversaries);
-    return policies_at(names, adversaries, duite_random(random) % n);
-}
-
-static struct prog_setup draw_setup(const struct settings *settings, uint64_t seed, MPI_Comm comm)
-{
-    static const double SPINS[] = {0, 1e-6, 100e-6};
-    static const size_t WINDOWS[] = {0, 0, 1, 1, 2, 7, 30};
-    static const int MEMOS[] = {0, 1, 2, 2, 2};
-    struct prog_setup setup = {.comm = comm, .verbose = settings->verbose};
-    uint64_t random = ~seed;
-
-    setup.seed = duite_random(&random);
-    setup.threads = 1 + (unsigned)(duite_random(&random) % 4);
-    setup.spin = SPINS[duite_random(&random) % 3];
-    setup.window = WINDOWS[duite_random(&random) % (sizeof WINDOWS / sizeof *WINDOWS)];
-    setup.scheduler = draw_policy(&random, duite_scheduler_names(), sched_test_names());
-    setup.mapping = draw_policy(&random, duite_mapping_names(), (const char *[]){NULL});
-    setup.balance = draw_policy(&random, duite_balancer_names(), balance_test_names());
-    setup.memo = MEMOS[duite_random(&random) % (sizeof MEMOS / sizeof *MEMOS)];
-    setup.check = duite_random(&random) % 20 == 0;
-    if (settings->balance)
-        setup.balance = settings->balance;
-    if (settings->window >= 0)
-        setup.window = (size_t)settings->window;
-    if (settings->memo >= 0)
-        setup.memo = settings->memo;
-    if (settings->check >= 0)
-        setup.check = settings->check;
-    if (settings->threads > 0)
-        setup.threads = (unsigned)settings->threads;
-    if (settings->scheduler)
-        setup.scheduler = settings->scheduler;
-    if (settings->mapping)
-        setup.mapping = settings->mapping;
-    return setup;
 }
 
 /* The rank of the group that found something first; -1 if none did. */
@@ -107,7 +55,7 @@ static int try_program(const struct prog *prog, const struct prog_setup *setup,
     int wrong = 0;
 
     for (unsigned long i = 0; i < repeat && !wrong; i++) {
-        alarm(120);
+        alarm(MOST_SECONDS);
         prog_run(prog, answers, setup, report, &where);
         recognised += report->recognised;
         wrong = finder(setup, report) >= 0;
@@ -179,9 +127,10 @@ static void tell(const struct prog *prog, const struct prog_setup *setup,
 }
 
 /* Returns whether the program went wrong, the same on the whole group. */
-static int run_seed(const struct settings *settings, uint64_t seed, MPI_Comm comm)
+static int run_seed(const struct options *options, uint64_t seed, MPI_Comm comm)
 {
-    const struct prog_setup setup = draw_setup(settings, seed, comm);
+    const struct prog_setup setup = options_setup(options, seed, comm);
+    const unsigned long repeat = (unsigned long)options->number[OPTION_REPEAT];
     struct prog_report report;
     struct prog *prog;
     int ranks, wrong;
@@ -191,13 +140,13 @@ static int run_seed(const struct settings *settings, uint64_t seed, MPI_Comm com
              "--seed %llu --ranks %d --threads %u --scheduler %s --mapping %s --balance %s "
              "--window %zu --memo %d --check %d%s",
              (unsigned long long)seed, ranks, setup.threads, setup.scheduler, setup.mapping,
-             setup.balance, setup.window, setup.memo, setup.check, settings->forced);
-    prog = prog_make(seed, ranks, settings->with, settings->without);
-    wrong = try_program(prog, &setup, settings->repeat, &report);
+             setup.balance, setup.window, setup.memo, setup.check, options->forced);
+    prog = prog_make(seed, ranks, options->with, options->without);
+    wrong = try_program(prog, &setup, repeat, &report);
     if (wrong)
         tell(prog, &setup, &report);
-    if (wrong && settings->one)
-        shrink(prog, setup, settings->repeat < 20 ? 20 : settings->repeat);
+    if (wrong && options->number[OPTION_SEED] >= 0)
+        shrink(prog, setup, repeat < SHRINK_REPEATS ? SHRINK_REPEATS : repeat);
     prog_free(prog);
     alarm(0);
     return wrong;
@@ -216,25 +165,28 @@ static const struct way {
 enum { SHARES = 4 * 12 + 3 * 8 + 2 * 10 + 2 * 5 + 5 };
 
 /* Adds to done[0] the programs that a group ran, to done[1] the wrong ones, on its first rank. */
-static void run_group(const struct settings *settings, unsigned group, unsigned long n,
-                      MPI_Comm comm, unsigned long *done)
+static void run_group(const struct options *options, unsigned group, unsigned long n, MPI_Comm comm,
+                      unsigned long *done)
 {
+    const uint64_t base = (uint64_t)options->number[OPTION_BASE];
     unsigned long wrong = 0;
     int member;
 
     MPI_Comm_rank(comm, &member);
-    for (unsigned long i = 0; i < n && wrong < 20; i++) {
-        wrong += (unsigned)run_seed(settings, settings->seed + group * 1000000ull + i, comm);
+    for (unsigned long i = 0; i < n && wrong < MOST_WRONG; i++) {
+        wrong += (unsigned)run_seed(options, base + group * 1000000ull + i, comm);
         done[0] += member == 0;
     }
     done[1] += member == 0 ? wrong : 0;
 }
 
 /* Four ranks are cut into groups; fewer or more are one group. */
-static void run_many(const struct settings *settings, int rank, int size, unsigned long *done)
+static void run_many(const struct options *options, int rank, int size, unsigned long *done)
 {
+    const unsigned long programs = (unsigned long)options->number[OPTION_PROGRAMS];
+
     if (size != 4) {
-        run_group(settings, 0, settings->programs, MPI_COMM_WORLD, done);
+        run_group(options, 0, programs, MPI_COMM_WORLD, done);
         return;
     }
     for (unsigned w = 0; w < sizeof WAYS / sizeof *WAYS; w++) {
@@ -242,95 +194,28 @@ static void run_many(const struct settings *settings, int rank, int size, unsign
         MPI_Comm comm;
 
         MPI_Comm_split(MPI_COMM_WORLD, (int)group, 0, &comm);
-        run_group(settings, w * 4 + group, settings->programs * WAYS[w].share / SHARES + 1, comm,
-                  done);
+        run_group(options, w * 4 + group, programs * WAYS[w].share / SHARES + 1, comm, done);
         MPI_Comm_free(&comm);
     }
 }
 
-/* --with or --without FEATURE; returns whether there is none of that name. */
-static int force(struct settings *settings, const char *option, const char *name)
-{
-    const size_t n = strlen(settings->forced);
-
-    for (unsigned f = 0; f < PROG_N_FEATURES; f++)
-        if (!strcmp(prog_features[f], name)) {
-            *(option[4] ? &settings->without : &settings->with) |= 1u << f;
-            snprintf(settings->forced + n, sizeof settings->forced - n, " --%s %s", option, name);
-            return 0;
-        }
-    return 1;
-}
-
-static int read_number(struct settings *settings, int option, const char *text)
-{
-    if (option == 's' || option == 'b')
-        settings->seed = strtoull(text, NULL, 10);
-    else if (option == 'r')
-        settings->ranks = atoi(text);
-    else if (option == 't')
-        settings->threads = atoi(text);
-    else if (option == 'w')
-        settings->window = atoi(text);
-    else if (option == 'n')
-        settings->repeat = strtoul(text, NULL, 10);
-    else if (option == 'p')
-        settings->programs = strtoul(text, NULL, 10);
-    else if (option == 'o')
-        settings->memo = atoi(text);
-    else if (option == 'c')
-        settings->check = atoi(text);
-    else
-        return 1;
-    settings->one |= option == 's';
-    return 0;
-}
-
-static int read_options(int argc, char **argv, struct settings *settings)
-{
-    static const struct option OPTIONS[] = {
-        {"seed", 1, NULL, 's'},    {"base", 1, NULL, 'b'},    {"ranks", 1, NULL, 'r'},
-        {"threads", 1, NULL, 't'}, {"repeat", 1, NULL, 'n'},  {"programs", 1, NULL, 'p'},
-        {"mapping", 1, NULL, 'm'}, {"verbose", 0, NULL, 'v'}, {"scheduler", 1, NULL, 'q'},
-        {"balance", 1, NULL, 'a'}, {"window", 1, NULL, 'w'},  {"with", 1, NULL, '+'},
-        {"without", 1, NULL, '-'}, {"memo", 1, NULL, 'o'},    {"check", 1, NULL, 'c'},
-        {NULL, 0, NULL, 0}};
-
-    for (int c; (c = getopt_long(argc, argv, "", OPTIONS, NULL)) != -1;) {
-        if (c == 'm')
-            settings->mapping = optarg;
-        else if (c == 'a')
-            settings->balance = optarg;
-        else if (c == 'q')
-            settings->scheduler = optarg;
-        else if (c == 'v')
-            settings->verbose = 1;
-        else if (c == '+' || c == '-' ? force(settings, c == '+' ? "with" : "without", optarg)
-                                      : read_number(settings, c, optarg))
-            return 1;
-    }
-    return optind < argc || (settings->scheduler && !duite_scheduler_find(settings->scheduler)) ||
-           (settings->balance && !duite_balancer_find(settings->balance)) ||
-           (settings->mapping && !duite_mapping_find(settings->mapping));
-}
-
-static int run_one(const struct settings *settings, int rank)
+static int run_one(const struct options *options, int rank)
 {
     MPI_Comm comm;
     int wrong;
 
-    MPI_Comm_split(MPI_COMM_WORLD, rank < settings->ranks ? 0 : MPI_UNDEFINED, 0, &comm);
+    MPI_Comm_split(MPI_COMM_WORLD, rank < options->number[OPTION_RANKS] ? 0 : MPI_UNDEFINED, 0,
+                   &comm);
     if (comm == MPI_COMM_NULL)
         return 0;
-    wrong = run_seed(settings, settings->seed, comm);
+    wrong = run_seed(options, (uint64_t)options->number[OPTION_SEED], comm);
     MPI_Comm_free(&comm);
     return rank == 0 && wrong;
 }
 
 int main(int argc, char **argv)
 {
-    struct settings settings = {
-        .seed = 1, .ranks = 1, .window = -1, .memo = -1, .check = -1, .programs = 500, .repeat = 1};
+    struct options options;
     unsigned long mine[3] = {0, 0, 0}, sum[3];
     int rank, size, given;
 
@@ -340,8 +225,7 @@ int main(int argc, char **argv)
     MPI_Init_thread(&argc, &argv, MPI_THREAD_SERIALIZED, &given);
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
     MPI_Comm_size(MPI_COMM_WORLD, &size);
-    if (read_options(argc, argv, &settings) || settings.ranks > size || settings.ranks < 1 ||
-        (!settings.one && size > 16)) {
+    if (!options_read(&options, argc, argv, size)) {
         fprintf(
             stderr,
             "%s: --base SEED --programs N, on 1 to 16 ranks; or --seed SEED --ranks R [--threads "
@@ -350,11 +234,11 @@ int main(int argc, char **argv)
             argv[0]);
         MPI_Abort(MPI_COMM_WORLD, 2);
     }
-    if (settings.one) {
+    if (options.number[OPTION_SEED] >= 0) {
         mine[0] = rank == 0;
-        mine[1] = (unsigned)run_one(&settings, rank);
+        mine[1] = (unsigned)run_one(&options, rank);
     } else {
-        run_many(&settings, rank, size, mine);
+        run_many(&options, rank, size, mine);
     }
     mine[2] = recognised;
     MPI_Allreduce(mine, sum, 3, MPI_UNSIGNED_LONG, MPI_SUM, MPI_COMM_WORLD);

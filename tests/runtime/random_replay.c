@@ -1,4 +1,4 @@
-/* What graphs of a random program mean: their operations are done one after the other, round after
+/* The meaning of graphs: their operations are done one after the other, round after
  * round, on what is bound to their objects. */
 
 #include "tests/runtime/random_interpret.h"

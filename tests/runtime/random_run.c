@@ -1,4 +1,4 @@
-/* Runs a program on duite and compares. Nothing is decided by what the runtime answers, so that
+/* Runs a program on duite and compares. No answer of the runtime decides anything, so that
  * every rank goes through the same calls whatever it finds; the first thing found is kept. */
 
 #include "tests/runtime/random_run.h"
@@ -273,7 +273,9 @@ void prog_run(const struct prog *prog, const struct prog_answers *answers,
     run.graph = prog_memory(prog->n_graphs, sizeof *run.graph);
     context.ran = prog_memory(prog->n_forks, sizeof *context.ran);
     run_operations(&run, setup, &context, where);
-    if (context.wrong)
+    if (context.code)
+        prog_found(&run, "a call in a body (kind %d) returned %d", context.wrong, context.code);
+    else if (context.wrong)
         prog_found(&run, "a body was called wrongly: random_bodies.c:%d", context.wrong);
     free(main->bytes);
     free(run.graph);

@@ -11,7 +11,7 @@
 
 enum { MOST_SECONDS = 120, MOST_WRONG = 20, SHRINK_REPEATS = 20 };
 
-static char running[512]; /* the program that runs, for the handler */
+static char running[512]; /* the command that repeats the program that runs, for the handler */
 static volatile size_t where;
 static unsigned long recognised; /* tasks, of all programs of this process */
 
@@ -137,9 +137,10 @@ static int run_seed(const struct options *options, uint64_t seed, MPI_Comm comm)
 
     MPI_Comm_size(comm, &ranks);
     snprintf(running, sizeof running,
-             "--seed %llu --ranks %d --threads %u --scheduler %s --mapping %s --balance %s "
+             "mpirun -n %d tests/runtime/random_programs --seed %llu --ranks %d --threads %u "
+             "--scheduler %s --mapping %s --balance %s "
              "--window %zu --memo %d --check %d%s",
-             (unsigned long long)seed, ranks, setup.threads, setup.scheduler, setup.mapping,
+             ranks, (unsigned long long)seed, ranks, setup.threads, setup.scheduler, setup.mapping,
              setup.balance, setup.window, setup.memo, setup.check, options->forced);
     prog = prog_make(seed, ranks, options->with, options->without);
     wrong = try_program(prog, &setup, repeat, &report);

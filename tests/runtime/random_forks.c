@@ -1,12 +1,88 @@
-/* Chooses kernels and objects of forks, by the main program and in bodies. A fork keeps to the
- * rights that its scope holds. */
+/* Kernels, and forks by the main program and in bodies. A fork keeps to the rights that its scope
+ * holds. */
 
 #include "tests/runtime/random_make.h"
 
 #include <string.h>
 
+/* ---- Kernels ---- */
+
+static unsigned n_listed(const duite_kernel *kernel)
+{
+    unsigned n = 0;
+
+    while (n < DUITE_MAX_ACCESS && kernel->access[n] != DUITE_NONE)
+        n++;
+    return n;
+}
+
+static duite_mode draw_mode(struct maker *m)
+{
+    static const duite_mode MODES[] = {DUITE_R,  DUITE_R,  DUITE_R, DUITE_W,
+                                       DUITE_RW, DUITE_CW, DUITE_CW};
+
+    if (make_has(m, PROG_NESTS) && make_one_in(m, 6))
+        return (duite_mode)(DUITE_RP + make_below(m, 4));
+    return MODES[make_below(m, sizeof MODES / sizeof *MODES)];
+}
+
+/* The law of a parameter with cw or cwp; a sum is what no law says. */
+static const duite_law *draw_any_law(struct maker *m, duite_mode mode)
+{
+    const unsigned law = make_below(m, PROG_N_LAWS + 4);
+    const int accumulates = mode == DUITE_CW || mode == DUITE_CWP;
+
+    return !accumulates || law >= PROG_N_LAWS ? NULL : prog_law_given((enum prog_law)law);
+}
+
+static int may_replicate(const duite_kernel *kernel)
+{
+    int may = kernel->variadic <= DUITE_RW;
+
+    for (unsigned i = 0; i < n_listed(kernel); i++)
+        may &= kernel->access[i] <= DUITE_RW;
+    return may;
+}
+
+static duite_kernel *make_kernel(struct maker *m)
+{
+    struct prog *prog = m->prog;
+    const size_t k = prog->n_kernels;
+    duite_kernel *kernel = &prog->kernel[k];
+
+    if (k == PROG_MAX_KERNELS)
+        return NULL;
+    snprintf(prog->name[k], sizeof prog->name[k], "kernel %zu", k);
+    kernel->name = prog->name[k];
+    kernel->body = prog_body;
+    kernel->args_size = sizeof(struct prog_args) - make_below(m, PROG_ARGS_PADDING);
+    prog->list[prog->n_kernels++] = kernel;
+    return kernel;
+}
+
+/* The first two kernels accumulate and update one object: these find most. */
+void make_kernels(struct maker *m)
+{
+    m->n_drawn = 2 + make_below(m, 7);
+    for (size_t k = 0; k < m->n_drawn; k++) {
+        duite_kernel *kernel = make_kernel(m);
+        const unsigned n = k < 2 ? 1 : make_below(m, 7);
+
+        for (unsigned i = 0; i < n; i++) {
+            kernel->access[i] = k == 0 ? DUITE_CW : k == 1 ? DUITE_RW : draw_mode(m);
+            kernel->law[i] = draw_any_law(m, kernel->access[i]);
+        }
+        if (k >= 2 && make_one_in(m, 3))
+            kernel->variadic = draw_mode(m);
+        kernel->variadic_law = draw_any_law(m, kernel->variadic);
+        kernel->replicated = may_replicate(kernel) && make_one_in(m, 3);
+    }
+}
+
+/* ---- Forks ---- */
+
 /* The modes that a right gives, written down from the contract: a bit each. */
-static unsigned allowed(duite_mode right)
+unsigned make_allowed(duite_mode right)
 {
     switch (right) {
     case DUITE_R:
@@ -40,7 +116,7 @@ static int fits(const struct make_scope *scope, unsigned place, duite_mode mode,
 {
     const struct prog_object *object = &scope->object[place];
 
-    if (!(allowed(scope->right[place]) >> mode & 1))
+    if (!(make_allowed(scope->right[place]) >> mode & 1))
         return 0;
     if (!accumulates(mode))
         return 1;
@@ -66,7 +142,7 @@ int make_parameter(struct maker *m, const struct prog_op *draft)
 /* Contributions are the most likely to go wrong, and come more often. */
 static duite_mode draw_allowed(struct maker *m, unsigned place)
 {
-    const unsigned modes = allowed(m->scope->right[place]);
+    const unsigned modes = make_allowed(m->scope->right[place]);
     const int sized = m->scope->object[place].max != 0;
 
     for (;;) {
@@ -124,9 +200,9 @@ int make_fitting(struct maker *m, struct prog_op *draft, duite_mode first, int o
     for (unsigned tries = 0; scope->n_live && draft->n < n && tries < 12; tries++) {
         const unsigned place = object >= 0 ? (unsigned)object : make_draw_object(m);
 
-        if (is_named(draft, place) || !allowed(scope->right[place]))
+        if (is_named(draft, place) || !make_allowed(scope->right[place]))
             continue;
-        if (first && !(allowed(scope->right[place]) >> first & 1))
+        if (first && !(make_allowed(scope->right[place]) >> first & 1))
             continue;
         const duite_mode mode = first ? first : draw_allowed(m, place);
 
@@ -140,7 +216,7 @@ int make_fitting(struct maker *m, struct prog_op *draft, duite_mode first, int o
     return kernel >= 0;
 }
 
-static int postpones(const duite_kernel *kernel, unsigned n)
+int make_postpones(const duite_kernel *kernel, unsigned n)
 {
     for (unsigned i = 0; i < n; i++)
         if (prog_is_postponed(prog_mode(kernel, i)))
@@ -156,7 +232,7 @@ int make_draft(struct maker *m, struct prog_op *draft)
         return make_fitting(m, draft, DUITE_NONE, -1);
     draft->kernel = make_below(m, make_one_in(m, 3) ? 2 : m->n_drawn);
     const duite_kernel *kernel = &prog->kernel[draft->kernel];
-    const unsigned listed = make_listed(kernel);
+    const unsigned listed = n_listed(kernel);
     const unsigned more = kernel->variadic ? make_below(m, make_one_in(m, 4) ? 16 : 4) : 0;
 
     while (m->scope->n_live && draft->n < listed + more) {
@@ -166,7 +242,7 @@ int make_draft(struct maker *m, struct prog_op *draft)
             break;
         draft->objects[draft->n++] = (unsigned)object;
     }
-    return draft->n >= listed && !(m->plain && postpones(kernel, draft->n));
+    return draft->n >= listed && !(m->plain && make_postpones(kernel, draft->n));
 }
 
 struct prog_op *make_push_fork(struct maker *m, const struct prog_op *draft)
@@ -205,122 +281,4 @@ void make_fork(struct maker *m)
         return;
     make_body(m, &draft, 1, 0);
     make_push_fork(m, &draft);
-}
-
-/* ---- Bodies that make calls ---- */
-
-/* A fork of the second kernel, which updates: an object without the right to that, or none. */
-static void make_wrong_call(struct maker *m)
-{
-    struct prog_op *op = make_push(m, PROG_WRONG, PROG_MAX_TABLE);
-
-    op->fails = DUITE_E_OBJECT;
-    for (unsigned i = 0; i < m->scope->n && !m->scope->made[i]; i++)
-        if (!(allowed(m->scope->right[i]) >> DUITE_RW & 1)) {
-            op->object = i;
-            op->fails = DUITE_E_RIGHT;
-        }
-}
-
-/* A call on one object, if its right allows it. */
-static void make_call(struct maker *m)
-{
-    struct make_scope *scope = m->scope;
-    const unsigned place = make_below(m, scope->n_live), object = scope->live[place];
-    const unsigned choice = make_below(m, 13), modes = allowed(scope->right[object]);
-
-    if (choice < 8 && scope->right[object] == DUITE_CWP)
-        make_push(m, PROG_CONTRIBUTE, object);
-    else if (choice < 4 && modes >> DUITE_R & 1)
-        make_push(m, make_one_in(m, 4) ? PROG_COUNT : PROG_GET, object);
-    else if (choice < 8 && modes >> DUITE_W & 1)
-        make_set(m, PROG_SET, object, make_one_in(m, 4));
-    else if (choice < 10 && scope->made[object])
-        make_free(m, place);
-    else if (choice < 11 && make_has(m, PROG_REFUSALS))
-        make_wrong_call(m);
-    else if (make_one_in(m, 2))
-        make_push(m, PROG_WAIT, 0);
-}
-
-/* Room is kept for the forks that overwrite. */
-static void make_calls(struct maker *m)
-{
-    const size_t max = 1 + make_below(m, MOST_ACTIONS - 7);
-    const struct make_scope *scope = m->scope;
-
-    while (*m->n_ops < max) {
-        const unsigned choice = make_below(m, 10);
-
-        if (choice < 2 && scope->n < PROG_MAX_PARAMS + 9)
-            make_new(m);
-        else if (choice < 8 && scope->n_live && scope->depth < MAX_DEPTH)
-            make_fork(m);
-        else if (scope->n_live)
-            make_call(m);
-        else if (make_one_in(m, 2))
-            return;
-    }
-}
-
-/* A body that holds wp and overwrites nothing leaves zeros, which is rare. */
-static void make_overwriting(struct maker *m, unsigned n)
-{
-    for (unsigned i = 0; i < n && *m->n_ops < MOST_ACTIONS; i++) {
-        struct prog_op draft = {.kind = PROG_FORK};
-
-        if (m->scope->right[i] != DUITE_WP || m->scope->written[i] || make_one_in(m, 3))
-            continue;
-        if (!make_fitting(m, &draft, make_one_in(m, 2) ? DUITE_W : DUITE_WP, (int)i))
-            continue;
-        if (m->scope->depth < MAX_DEPTH)
-            make_body(m, &draft, 1, 0);
-        make_push_fork(m, &draft);
-    }
-}
-
-static void enter(struct make_scope *scope, const struct make_scope *above,
-                  const duite_kernel *kernel, const struct prog_op *draft)
-{
-    for (unsigned i = 0; i < draft->n; i++) {
-        scope->object[i] = above->object[draft->objects[i]];
-        scope->right[i] = prog_mode(kernel, i);
-        scope->law[i] = prog_law(kernel, i);
-        if (allowed(scope->right[i]) && scope->n_live < MAX_LIVE)
-            scope->live[scope->n_live++] = i;
-    }
-    scope->n = draft->n;
-}
-
-void make_body(struct maker *m, struct prog_op *draft, unsigned depth, int asks)
-{
-    struct prog *prog = m->prog;
-    const duite_kernel *kernel = &prog->kernel[draft->kernel];
-    struct maker inner = *m;
-    struct make_scope scope = {.depth = m->scope->depth + 1};
-    struct prog_op ops[MOST_ACTIONS];
-    size_t n = 0;
-    const int likely = asks || m->scope->depth > 0 || postpones(kernel, draft->n);
-
-    if (!make_has(m, PROG_NESTS) || kernel->replicated || m->bodies >= MAX_BODIES ||
-        (!likely && !make_one_in(m, 3)))
-        return;
-    if (scope.depth < depth)
-        scope.depth = depth;
-    enter(&scope, m->scope, kernel, draft);
-    inner.bodies++;
-    inner.scope = &scope;
-    inner.ops = ops;
-    inner.n_ops = &n;
-    inner.plain = 0;
-    if (asks)
-        make_push(&inner, PROG_GET, 0);
-    make_calls(&inner);
-    make_overwriting(&inner, draft->n);
-    m->random = inner.random;
-    m->bodies = inner.bodies;
-    memcpy(&prog->inner[prog->n_inner], ops, n * sizeof *ops);
-    draft->body = prog->n_inner;
-    draft->n_inner = n;
-    prog->n_inner += n;
 }

@@ -49,10 +49,12 @@ void make_new(struct maker *m);
 /* The object at a place of the list of those alive is gone. */
 void make_free(struct maker *m, unsigned place);
 
-/* Adds a kernel without parameters to the program; NULL if it has as many as it may. */
-duite_kernel *make_kernel(struct maker *m);
-unsigned make_listed(const duite_kernel *kernel);
-const duite_law *make_law(struct maker *m, duite_mode mode);
+/* Kernels that any fork may have; others are made for one fork. */
+void make_kernels(struct maker *m);
+/* The modes that a right gives: a bit each. */
+unsigned make_allowed(duite_mode right);
+/* Returns whether one of n parameters is postponed. */
+int make_postpones(const duite_kernel *kernel, unsigned n);
 
 /* Chooses kernel and objects of a fork; returns whether there were enough. */
 int make_draft(struct maker *m, struct prog_op *draft);

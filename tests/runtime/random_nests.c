@@ -11,7 +11,7 @@ static void make_wrong_call(struct maker *m)
 
     op->fails = DUITE_E_OBJECT;
     for (unsigned i = 0; i < m->scope->n && !m->scope->made[i]; i++)
-        if (!(make_allowed(m->scope->right[i]) >> DUITE_RW & 1)) {
+        if (!(make_allowed(m->scope->right[i]) >> DUITE_RW & 1) && make_one_in(m, 2)) {
             op->object = i;
             op->fails = DUITE_E_RIGHT;
         }
@@ -32,7 +32,7 @@ static void make_call(struct maker *m)
         make_set(m, PROG_SET, object, make_one_in(m, 4));
     else if (choice < 10 && scope->made[object])
         make_free(m, place);
-    else if (choice < 11 && make_has(m, PROG_REFUSALS))
+    else if (choice < 12 && make_has(m, PROG_REFUSALS))
         make_wrong_call(m);
     else if (make_one_in(m, 2))
         make_push(m, PROG_WAIT, 0);

@@ -1,11 +1,10 @@
 /* Leaves, and pieces of other ranks, come in any order; they combine by their places in the tree of
- * reduce.h once all are there. */
+ * subtrees.h once all are there. */
 #include "runtime/data/sum.h"
 
 #include "runtime/base/memory.h"
 #include "runtime/base/rank_set.h"
 #include "runtime/base/stack.h"
-#include "runtime/data/reduce.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -90,17 +89,17 @@ void data_sum_sender(struct data_sum *sum, int rank)
     base_ranks_add(sum->contributors, rank);
 }
 
-struct data_piece *data_sum_leaf(struct data_sum *sum, uint64_t first)
+struct data_piece *data_sum_leaf(struct data_sum *sum, uint64_t leaf)
 {
-    struct data_piece *leaf = data_piece_new();
-    if (!leaf)
+    struct data_piece *piece = data_piece_new();
+    if (!piece)
         return NULL;
-    leaf->sum = sum;
-    leaf->first = first;
-    leaf->next = sum->pieces;
-    sum->pieces = leaf;
+    piece->sum = sum;
+    piece->tree.first = leaf;
+    piece->next = sum->pieces;
+    sum->pieces = piece;
     atomic_fetch_add_explicit(&sum->pending, 1, memory_order_relaxed);
-    return leaf;
+    return piece;
 }
 
 bool data_sum_open(const struct data_sum *sum, struct data_piece *leaf)
@@ -131,7 +130,7 @@ static int piece_compare_first(const void *a, const void *b)
 {
     const struct data_piece *l = *(struct data_piece *const *)a;
     const struct data_piece *r = *(struct data_piece *const *)b;
-    return (l->first > r->first) - (l->first < r->first);
+    return (l->tree.first > r->tree.first) - (l->tree.first < r->tree.first);
 }
 
 static size_t pieces_count(const struct data_piece *piece)
@@ -142,8 +141,8 @@ static size_t pieces_count(const struct data_piece *piece)
     return n;
 }
 
-/* All pieces, local and arrived, in one array by `first`; false without memory. Leaves were put at
- * the front of their list, so filling their part from its end puts them in order. */
+/* All pieces, local and arrived, in one array by their leaves; false without memory. Leaves were
+ * put at the front of their list, so filling their part from its end puts them in order. */
 static bool pieces_collect(struct data_sum *sum, struct data_pieces *pieces)
 {
     struct data_piece *arrived = atomic_load_explicit(&sum->arrived, memory_order_acquire);
@@ -168,25 +167,25 @@ void data_pieces_free(struct data_pieces *pieces)
     base_pool_give(pieces->piece, pieces->room);
 }
 
-/* Reduces all pieces; `fold`: also folds the remaining ones into the first. `row` has room for
- * all. */
+/* Reduces all pieces; `fold`: also folds the remaining ones into the first. `row` has room for all.
+ */
 static void pieces_reduce(struct data_sum *sum, bool fold, struct data_pieces *pieces,
                           struct data_subtree *row)
 {
     struct data_piece **all = pieces->piece;
     struct reduced reduced = {sum, all};
-    size_t left = 0;
+    struct data_subtrees list = {.at = row};
     for (uint32_t i = 0; i < pieces->n; i++) {
-        row[left] = (struct data_subtree){all[i]->first, all[i]->level, i};
-        left = data_reduce_push(row, left, pieces_combine_numbered, &reduced);
+        all[i]->tree.where = i;
+        data_subtrees_push(&list, all[i]->tree, pieces_combine_numbered, &reduced);
     }
     if (fold)
-        data_reduce_fold(row, left, pieces_combine_numbered, &reduced);
-    for (size_t i = 0; i < left; i++) { /* from where it stands, or behind that */
+        data_subtrees_fold(&list, pieces_combine_numbered, &reduced);
+    for (size_t i = 0; i < list.n; i++) { /* from where it stands, or behind that */
         all[i] = all[row[i].where];
-        all[i]->level = row[i].level;
+        all[i]->tree = row[i];
     }
-    pieces->n = left;
+    pieces->n = list.n;
 }
 
 static const struct data_failure *sum_reduce(struct data_sum *sum, bool fold,

@@ -2,19 +2,19 @@
 #define DUITE_DATA_SUM_H
 
 #include "runtime/data/law.h"
+#include "runtime/data/subtrees.h"
 #include "runtime/data/version.h"
 
 #pragma GCC visibility push(hidden) /* called directly: no other library can replace them */
 
 /* Contributions (cw) to an object between two other accesses, the leaves of a reduction tree in
- * fork order (reduce.h). A piece is the value of a complete subtree: leaves first .. first +
- * 2^level - 1. A rank combines what it has into the largest complete subtrees and sends only these.
+ * fork order (subtrees.h). A piece is the value of a complete subtree. A rank combines what it has
+ * into the largest complete subtrees and sends only these.
  */
 struct data_piece {
     struct data_piece *next;
     struct data_sum *sum; /* of a leaf of this rank; else NULL */
-    uint64_t first;
-    uint32_t level;
+    struct data_subtree tree;
     struct data_packet *packet; /* owns the bytes of value, unless it is shared with other pieces */
     void *value; /* NULL: its task did not run yet; it is poisoned; or it is absent, and skipped */
     const struct data_failure *failure; /* poison, or NULL */
@@ -51,8 +51,8 @@ static inline size_t data_sum_bytes(const struct data_sum *sum)
     return sum->count * data_type_size(sum->type);
 }
 
-/* Adds leaf `first`, to be run on this rank: its task fills value. NULL without memory. */
-struct data_piece *data_sum_leaf(struct data_sum *sum, uint64_t first);
+/* Adds a leaf, to be run on this rank: its task fills value. NULL without memory. */
+struct data_piece *data_sum_leaf(struct data_sum *sum, uint64_t leaf);
 
 /* The leaf's task is about to run: the leaf gets a value, the law's neutral element. False without
  * memory. */
@@ -67,7 +67,7 @@ void data_sum_arrive(struct data_sum *sum, struct data_piece *piece);
 /* Takes one from `pending`. Returns the reducer if that was the last one. */
 struct data_waiter *data_sum_release(struct data_sum *sum);
 
-/* Pieces in order of `first`. The array is the holder's, the pieces are the sum's. */
+/* Pieces in the order of their leaves. The array is the holder's, the pieces are the sum's. */
 struct data_pieces {
     struct data_piece **piece;
     size_t n, room;

@@ -5,6 +5,7 @@
 #include "runtime/plan/passes.h"
 
 #include "runtime/base/memory.h"
+#include "runtime/data/order.h"
 
 /* The open contributions of an object. */
 struct lower_object {
@@ -53,30 +54,11 @@ void plan_round_free(struct plan_round *round)
     *round = (struct plan_round){0};
 }
 
-/* ---- The reduction tree ---- */
-
-struct reduce_merging {
-    struct plan_round *round;
-    struct plan_round_node *node;
-};
-
-static void reduce_merge(void *context, uint32_t left, uint32_t right)
+void plan_merge(void *to, uint32_t left, uint32_t right)
 {
-    const struct reduce_merging *to = context;
-    to->round->merge[to->round->n_merges++] = (struct plan_merge){left, right};
-    to->node->n_merges++;
-}
-
-size_t plan_reduce_push(struct plan_round *round, struct plan_round_node *node,
-                        struct data_subtree *row, size_t n)
-{
-    return data_reduce_push(row, n, reduce_merge, &(struct reduce_merging){round, node});
-}
-
-void plan_reduce_fold(struct plan_round *round, struct plan_round_node *node,
-                      const struct data_subtree *row, size_t n)
-{
-    data_reduce_fold(row, n, reduce_merge, &(struct reduce_merging){round, node});
+    struct plan_round *round = to;
+    round->merge[round->n_merges++] = (struct plan_merge){left, right};
+    round->node[round->n_nodes - 1].n_merges++;
 }
 
 /* ---- Contributions ---- */
@@ -103,19 +85,19 @@ static void lower_sum(struct lowering *l, uint32_t name, size_t fork)
     if (!object->n_open)
         return;
     struct plan_round_node *node = plan_round_add(round, PLAN_SUM, fork);
-    struct data_subtree row[64] = {0}; /* a counter's bits */
-    size_t n = 0;
+    struct data_subtree row[64]; /* a counter's bits, and one more for a moment: leaves are fewer */
+    struct data_subtrees list = {.at = row};
     node->owner = name;
     node->law = object->law;
     plan_round_use(round, node, name, true, true);
     uint32_t leaf = object->first;
     for (uint32_t i = 0; i < object->n_open; i++) {
         plan_round_use(round, node, leaf, true, false);
-        row[n] = (struct data_subtree){.first = i, .where = i + 1};
-        n = plan_reduce_push(round, node, row, n);
+        data_subtrees_push(&list, (struct data_subtree){.first = i, .where = i + 1}, plan_merge,
+                           round);
         leaf = l->next[leaf - round->n_objects];
     }
-    plan_reduce_fold(round, node, row, n);
+    data_subtrees_fold(&list, plan_merge, round);
     object->n_open = 0;
 }
 
@@ -127,7 +109,7 @@ static void lower_ends(struct lowering *l, size_t i)
     const struct plan_source_fork *fork = &l->round->source->fork[i];
     const struct plan_access *access = l->round->source->access + fork->first;
     for (uint32_t k = 0; k < fork->n; k++)
-        if (access[k].mode != DUITE_CW || access[k].law != l->object[access[k].object].law)
+        if (!data_order_joins(access[k].mode, access[k].law, l->object[access[k].object].law))
             lower_sum(l, access[k].object, i);
 }
 
@@ -145,7 +127,8 @@ static void lower_fork(struct lowering *l, size_t i)
         if (mode == DUITE_CW)
             plan_round_use(round, node, lower_contribution(l, &access[k]), false, true);
         else
-            plan_round_use(round, node, access[k].object, mode != DUITE_W, mode != DUITE_R);
+            plan_round_use(round, node, access[k].object, data_order_reads(mode),
+                           data_order_writes(mode));
     }
 }
 

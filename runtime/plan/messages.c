@@ -22,12 +22,6 @@ static uint32_t phase_later(uint32_t a, uint32_t b)
     return a > b ? a : b;
 }
 
-/* The task that fills a buffer of a sum. */
-static uint32_t message_leaf(const struct plan_messages *m, const struct plan_node_use *use)
-{
-    return m->leaf[use->place - m->assignment->round->n_objects];
-}
-
 /* Returns whether `set` has ranks that `has` lacks. Mostly the two are equal. */
 static inline bool message_is_outside(const struct plan_assignment *a, uint32_t set, uint32_t has)
 {
@@ -60,7 +54,7 @@ static uint32_t phase_of_leaves(const struct plan_messages *m, size_t n,
     const struct plan_assignment *a = m->assignment;
     uint32_t phase = 0;
     for (size_t i = node->first_use + 1; i < node->first_use + node->n_uses; i++) {
-        uint32_t leaf = message_leaf(m, &a->round->use[i]);
+        uint32_t leaf = plan_message_leaf(m, &a->round->use[i]);
         bool crosses = !m->rounds[n] && message_is_outside(a, a->set[n], a->set[leaf]);
         phase = phase_later(phase, m->phase[leaf] + crosses);
     }
@@ -123,81 +117,6 @@ static bool message_find_phases(struct plan_messages *m)
     }
     base_free(pasts);
     return true;
-}
-
-/* ---- Pieces of sums ---- */
-
-static bool pieces_join(const struct plan_piece *l, const struct plan_piece *r)
-{
-    return l->rank == r->rank && plan_leaves_are_halves(&l->leaves, &r->leaves);
-}
-
-/* Returns whether one rank contributes alone; *alone: and reads alone. */
-static bool pieces_of_one(const struct plan_messages *m, size_t n, bool *alone)
-{
-    const struct plan_assignment *a = m->assignment;
-    const struct plan_round_node *node = &a->round->node[n];
-    const struct plan_node_use *use = &a->round->use[node->first_use];
-    int rank = a->at[message_leaf(m, &use[1])];
-    bool one = true;
-    for (size_t i = 1; i < node->n_uses; i++)
-        one &= a->at[message_leaf(m, &use[i])] == rank;
-    *alone = one;
-    for (int other = 0; other < a->n_ranks; other++)
-        *alone &= (other == rank) == plan_runs(a, n, other);
-    return one;
-}
-
-/* A rank's pieces move once its last leaf is there. `latest` is by rank. */
-static void pieces_set_phases(const struct plan_messages *m, size_t n, size_t first,
-                              uint32_t *latest)
-{
-    const struct plan_assignment *a = m->assignment;
-    const struct plan_round_node *node = &a->round->node[n];
-    const struct plan_node_use *use = &a->round->use[node->first_use];
-    for (size_t i = 1; i < node->n_uses; i++)
-        latest[a->at[message_leaf(m, &use[i])]] = 0;
-    for (size_t i = 1; i < node->n_uses; i++) {
-        uint32_t leaf = message_leaf(m, &use[i]);
-        latest[a->at[leaf]] = phase_later(latest[a->at[leaf]], m->phase[leaf]);
-    }
-    for (size_t i = first; i < m->n_pieces; i++)
-        m->piece[i].phase = latest[m->piece[i].rank];
-}
-
-static void pieces_of_sum(struct plan_messages *m, size_t n, uint32_t *latest)
-{
-    const struct plan_assignment *a = m->assignment;
-    const struct plan_round_node *node = &a->round->node[n];
-    const struct plan_node_use *use = &a->round->use[node->first_use + 1];
-    bool alone, one = pieces_of_one(m, n, &alone);
-    size_t first = m->n_pieces;
-    for (uint32_t i = 0; i + 1 < node->n_uses; i++) {
-        struct plan_piece *row = &m->piece[m->n_pieces++];
-        *row = (struct plan_piece){.node = (uint32_t)n,
-                                   .leaves = {.tree.first = i, .n = 1},
-                                   .rank = a->at[message_leaf(m, &use[i])]};
-        for (; !alone && m->n_pieces - first > 1 && (one || pieces_join(row - 1, row)); row--) {
-            row[-1].leaves.tree.level++;
-            row[-1].leaves.n += row->leaves.n;
-            m->n_pieces--;
-        }
-    }
-    pieces_set_phases(m, n, first, latest);
-}
-
-static bool message_find_pieces(struct plan_messages *m)
-{
-    const struct plan_assignment *a = m->assignment;
-    uint32_t *latest = base_alloc((size_t)a->n_ranks * sizeof *latest);
-    for (size_t n = 0; n < a->round->n_nodes && latest; n++) {
-        m->first_piece[n] = m->n_pieces;
-        if (a->round->node[n].kind == PLAN_SUM && !plan_is_dead(a, n))
-            pieces_of_sum(m, n, latest);
-        m->first_piece[n + 1] = m->n_pieces;
-    }
-    base_free(latest);
-    return latest != NULL;
 }
 
 /* ---- Messages ---- */
@@ -307,12 +226,12 @@ static void message_hop(void *context, const struct plan_hop *hop)
     struct finding *f = context;
     const struct plan_round *round = f->m->assignment->round;
     const struct plan_round_node *node = &round->node[hop->node];
-    for (size_t i = 0; i < hop->n; i++)
+    for (size_t i = 0; i < hop->trees.n; i++)
         message_add(f, hop->from, hop->to, f->leaves + hop->round,
                     (struct plan_item){.object = round->use[node->first_use].place,
                                        .version = PLAN_NONE,
                                        .piece = PLAN_NONE,
-                                       .leaves = hop->leaves[i],
+                                       .tree = hop->trees.at[i],
                                        .made = plan_moment_sum(hop->node, hop->round)});
 }
 
@@ -399,7 +318,7 @@ bool plan_messages_find(struct plan_messages *m, const struct plan_assignment *a
     bool fine = f.heads && f.ring && message_room(m);
     if (fine) {
         message_find_leaves(m);
-        fine = plan_relay_find(m) && message_find_phases(m) && message_find_pieces(m);
+        fine = plan_relay_find(m) && message_find_phases(m) && plan_pieces_find(m);
     }
     if (fine && rank != PLAN_NO_RANK)
         message_find_all(&f);

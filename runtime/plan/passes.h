@@ -8,8 +8,10 @@
  *   lower    lower.c    plan_source                 -> plan_round: nodes and their uses
  *   assign   assign.c   plan_round, homes           -> plan_assignment: ranks by node and version
  *   messages messages.c plan_assignment             -> plan_messages: phases and their messages
+ *            pieces.c   plan_messages               -> the pieces of sums
  *            relay.c    plan_messages               -> the rounds of relayed sums
  *   part     part.c     plan_messages of a rank     -> plan_round: the nodes of that rank
+ *            part_sums.c                               with those of sums
  *   edges    edges.c    plan_round                  -> its edges, within a round and to the next
  *   emit     emit.c     plan_round                  -> plan: flat arrays (plan.h)
  *   run      run.c      plan                        -> replays, as replay_call.c asks for them
@@ -27,7 +29,7 @@
  * owns it and keeps it as long as its round. */
 
 #include "runtime/base/rank_set.h"
-#include "runtime/data/reduce.h"
+#include "runtime/data/subtrees.h"
 
 #include <duite.h>
 #include <stdbool.h>
@@ -143,7 +145,7 @@ struct plan_round {
  *   contributions to an object, else at the end of the round. The FLAG, if any, comes last.
  * - The uses of a TASK are its accesses in order; a cw uses a buffer of its own. The uses of a SUM
  *   are the object and the buffers of its contributions in fork order.
- * - The merges of a SUM make the reduction tree of data/reduce.h and leave the result in its
+ * - The merges of a SUM make the reduction tree of data/subtrees.h and leave the result in its
  *   parameter 1.
  * False without memory; plan_round_free is due all the same. *round is zero before. */
 bool plan_lower(struct plan_round *round, const struct plan_source *source);
@@ -172,12 +174,9 @@ static inline void plan_round_use(struct plan_round *round, struct plan_round_no
 }
 uint32_t plan_round_buffer(struct plan_round *round, uint32_t object, const duite_law *law);
 
-/* The reduction of data/reduce.h as merges of the last node; `where` is the parameter with the
- * subtree's value. */
-size_t plan_reduce_push(struct plan_round *round, struct plan_round_node *node,
-                        struct data_subtree *row, size_t n);
-void plan_reduce_fold(struct plan_round *round, struct plan_round_node *node,
-                      const struct data_subtree *row, size_t n);
+/* The reduction of data/subtrees.h as merges of the round's last node (a data_combine): `where` of
+ * a subtree is the parameter with its value. */
+void plan_merge(void *round, uint32_t left, uint32_t right);
 
 /* ---- Assign: the ranks that run each node ---- */
 
@@ -287,26 +286,19 @@ static inline plan_moment plan_moment_over(size_t n)
     return 64 * (plan_moment)n + 64;
 }
 
-/* Some leaves of a sum in a row, combined: a complete subtree, or all leaves. */
-struct plan_leaves {
-    struct data_subtree tree; /* where: free for the caller */
-    uint32_t n;               /* leaves, from tree.first on */
-};
-
 /* Contributions of one rank to one sum. */
 struct plan_piece {
-    uint32_t node; /* the sum */
-    struct plan_leaves leaves;
-    int rank;       /* has all of them */
-    uint32_t phase; /* in which it moves if sent directly */
+    uint32_t node;            /* the sum */
+    struct data_subtree tree; /* complete, or that of all leaves */
+    int rank;                 /* has all its leaves */
+    uint32_t phase;           /* in which it moves if sent directly */
 };
 
 /* Pieces that one rank sends another in a round of a sum's relay. */
 struct plan_hop {
     uint32_t node, round; /* of the sum */
     int from, to;
-    const struct plan_leaves *leaves; /* n > 0, in order */
-    size_t n;
+    struct data_subtrees trees; /* at least one */
 };
 typedef void plan_relay_visit(void *context, const struct plan_hop *hop);
 
@@ -319,11 +311,11 @@ struct plan_message {
     uint32_t next;      /* the next one between the two ranks, plus 1 */
 };
 
-/* One item in one message: a version, a piece, or leaves of a sum's relay. */
+/* One item in one message: a version, a piece, or a subtree of a sum's relay. */
 struct plan_item {
     uint32_t message, object;
-    uint32_t version, piece;   /* ids, or PLAN_NONE */
-    struct plan_leaves leaves; /* if both are none: of the sum at the moment `made` */
+    uint32_t version, piece;  /* ids, or PLAN_NONE */
+    struct data_subtree tree; /* if both are none: of the sum at the moment `made` */
     plan_moment made;
     size_t next; /* of the same message, plus 1 */
 };
@@ -360,9 +352,17 @@ bool plan_messages_find(struct plan_messages *messages, const struct plan_assign
                         int rank);
 void plan_messages_free(struct plan_messages *messages);
 
-/* Parts of plan_messages_find for relayed sums. The first finds messages->rounds once leaves are
- * known. The second visits the hops of one sum, round by round, once pieces are known. Both are
- * false without memory. */
+/* The node that fills a buffer of a sum, once leaves are known. */
+static inline uint32_t plan_message_leaf(const struct plan_messages *m,
+                                         const struct plan_node_use *use)
+{
+    return m->leaf[use->place - m->assignment->round->n_objects];
+}
+
+/* Parts of plan_messages_find, false without memory. Pieces of all sums, once phases are known. The
+ * rounds of relayed sums, once leaves are known. The hops of one such sum, round by round, once
+ * pieces are known. */
+bool plan_pieces_find(struct plan_messages *messages);
 bool plan_relay_find(struct plan_messages *messages);
 bool plan_relay_walk(const struct plan_messages *messages, size_t node, plan_relay_visit *visit,
                      void *context);
@@ -372,13 +372,6 @@ bool plan_relay_walk(const struct plan_messages *messages, size_t node, plan_rel
 uint32_t plan_relay_ring(const uint64_t *set, int n_ranks, int from, int *ring, size_t *n);
 uint32_t plan_relay_version(const struct plan_assignment *assignment, uint32_t version, int *ring,
                             size_t *n);
-/* Lists of leaves in order, no leaf twice. Missing: entries of `from` that `has` lacks. Join: both
- * lists in one, without entries inside larger ones. `out` has room for all. Return how many. */
-size_t plan_leaves_missing(const struct plan_leaves *has, size_t n_has,
-                           const struct plan_leaves *from, size_t n_from, struct plan_leaves *out);
-size_t plan_leaves_join(const struct plan_leaves *a, size_t n_a, const struct plan_leaves *b,
-                        size_t n_b, struct plan_leaves *out);
-bool plan_leaves_are_halves(const struct plan_leaves *left, const struct plan_leaves *right);
 
 /* ---- Part: the nodes of one rank ---- */
 

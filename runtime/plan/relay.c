@@ -1,90 +1,21 @@
 /* Relayed sums. The ranks that contribute to a sum or add it up form a ring in rank order. In round
  * s each sends its list to the rank 2^s places before it, and takes the list of the rank 2^s places
- * behind it. So all n ranks have everything after log2(n) rounds, rounded up. A list has complete
- * subtrees in the order of their leaves. Halves combine once both are there; a subtree inside a
- * larger one is dropped. So the result has the bits of the tree (data/reduce.h) for any ranks and
- * any relay. Every rank follows all lists, so all know the items of each message. */
+ * behind it. So all n ranks have everything after log2(n) rounds, rounded up. Lists, and how two
+ * become one, are those of data/subtrees.h: so the result has the bits of the tree for any ranks
+ * and any relay. Every rank follows all lists, so all know the items of each message. */
 #include "runtime/plan/passes.h"
 
 #include "runtime/base/memory.h"
 
 enum { DIRECT_RANKS = 4 }; /* up to so many ranks: sent directly, in one hop */
 
-struct relay_list {
-    struct plan_leaves *at; /* owned */
-    size_t n;
-};
-
 struct relay {
     const struct plan_messages *m;
     size_t n;    /* the sum */
     int *member; /* the ring */
     size_t n_members;
-    struct relay_list *list, *next; /* by member: now; after this round */
+    struct data_subtrees *list, *next; /* by member: now; after this round; `at` is owned */
 };
-
-/* ---- Lists ---- */
-
-static uint64_t leaves_end(const struct plan_leaves *leaves)
-{
-    return leaves->tree.first + leaves->n;
-}
-
-static bool leaves_within(const struct plan_leaves *some, const struct plan_leaves *all)
-{
-    return some->tree.first >= all->tree.first && leaves_end(some) <= leaves_end(all);
-}
-
-size_t plan_leaves_missing(const struct plan_leaves *has, size_t n_has,
-                           const struct plan_leaves *from, size_t n_from, struct plan_leaves *out)
-{
-    size_t n = 0, k = 0;
-    for (size_t i = 0; i < n_from; i++) {
-        while (k < n_has && leaves_end(&has[k]) <= from[i].tree.first)
-            k++;
-        if (k == n_has || !leaves_within(&from[i], &has[k]))
-            out[n++] = from[i];
-    }
-    return n;
-}
-
-/* Returns whether `a` is before `b` in the order of leaves; of equal beginnings the larger is
- * first. */
-static bool leaves_before(const struct plan_leaves *a, const struct plan_leaves *b)
-{
-    return a->tree.first != b->tree.first ? a->tree.first < b->tree.first : a->n >= b->n;
-}
-
-size_t plan_leaves_join(const struct plan_leaves *a, size_t n_a, const struct plan_leaves *b,
-                        size_t n_b, struct plan_leaves *out)
-{
-    size_t n = 0, i = 0, k = 0;
-    while (i < n_a || k < n_b) {
-        const bool first = k == n_b || (i < n_a && leaves_before(&a[i], &b[k]));
-        const struct plan_leaves *next = first ? &a[i++] : &b[k++];
-        if (!n || !leaves_within(next, &out[n - 1]))
-            out[n++] = *next;
-    }
-    return n;
-}
-
-bool plan_leaves_are_halves(const struct plan_leaves *left, const struct plan_leaves *right)
-{
-    return data_subtree_are_halves(&left->tree, &right->tree);
-}
-
-static size_t leaves_combine(struct plan_leaves *list, size_t n)
-{
-    size_t left = 0;
-    for (size_t i = 0; i < n; i++) {
-        list[left++] = list[i];
-        for (; left > 1 && plan_leaves_are_halves(&list[left - 2], &list[left - 1]); left--) {
-            list[left - 2].tree.level++;
-            list[left - 2].n += list[left - 1].n;
-        }
-    }
-    return left;
-}
 
 /* ---- Rings ---- */
 
@@ -96,7 +27,7 @@ static void relay_ring(const struct plan_messages *m, size_t n, uint64_t *set)
     base_ranks_clear(set, a->words);
     base_ranks_join(set, plan_runs_set(a, n), a->words);
     for (size_t i = node->first_use + 1; i < node->first_use + node->n_uses; i++)
-        base_ranks_add(set, a->at[m->leaf[a->round->use[i].place - a->round->n_objects]]);
+        base_ranks_add(set, a->at[plan_message_leaf(m, &a->round->use[i])]);
 }
 
 static uint8_t relay_rounds(size_t ranks)
@@ -162,13 +93,13 @@ static void relay_free(struct relay *r)
 }
 
 /* A rank begins with the pieces that it can make alone. */
-static bool relay_begin_list(const struct relay *r, int rank, struct relay_list *list)
+static bool relay_begin_list(const struct relay *r, int rank, struct data_subtrees *list)
 {
     const size_t first = r->m->first_piece[r->n], end = r->m->first_piece[r->n + 1];
     list->at = base_alloc((end - first + 1) * sizeof *list->at);
     for (size_t i = first; i < end && list->at; i++)
         if (r->m->piece[i].rank == rank)
-            list->at[list->n++] = r->m->piece[i].leaves;
+            list->at[list->n++] = r->m->piece[i].tree;
     return list->at;
 }
 
@@ -198,25 +129,22 @@ static bool relay_begin(struct relay *r)
 static bool relay_hop(struct relay *r, struct plan_hop *hop, size_t from, size_t to,
                       plan_relay_visit *visit, void *context)
 {
-    const struct relay_list *has = &r->list[to], *sent = &r->list[from];
-    struct relay_list *next = &r->next[to];
-    struct plan_leaves *came = base_alloc((sent->n + 1) * sizeof *came);
+    const struct data_subtrees *has = &r->list[to], *sent = &r->list[from];
+    struct data_subtrees *next = &r->next[to], *came = &hop->trees;
+    *came = (struct data_subtrees){.at = base_alloc((sent->n + 1) * sizeof *came->at)};
     next->at = base_alloc((has->n + sent->n + 1) * sizeof *next->at);
-    const bool fine = came && next->at;
+    const bool fine = came->at && next->at;
     if (fine) {
         const bool last = hop->round + 1 == r->m->rounds[r->n];
         hop->from = r->member[from];
         hop->to = r->member[to];
-        hop->n = last && !plan_runs(r->m->assignment, r->n, hop->to)
-                     ? 0
-                     : plan_leaves_missing(has->at, has->n, sent->at, sent->n, came);
-        hop->leaves = came;
-        if (hop->n)
+        if (!last || plan_runs(r->m->assignment, r->n, hop->to))
+            data_subtrees_missing(came, has, sent);
+        if (came->n)
             visit(context, hop);
-        next->n = plan_leaves_join(has->at, has->n, came, hop->n, next->at);
-        next->n = leaves_combine(next->at, next->n);
+        data_subtrees_join(next, has, came, NULL, NULL);
     }
-    base_free(came);
+    base_free(came->at);
     return fine;
 }
 
@@ -230,7 +158,7 @@ static bool relay_round(struct relay *r, uint32_t round, plan_relay_visit *visit
     for (size_t i = 0; i < n; i++) {
         base_free(r->list[i].at);
         r->list[i] = r->next[i];
-        r->next[i] = (struct relay_list){0};
+        r->next[i] = (struct data_subtrees){0};
     }
     return fine;
 }

@@ -209,7 +209,7 @@ const char *rounds_messages(const struct plan_messages *m)
             if (version || item->piece != PLAN_NONE)
                 put(&text, " %c%u", version ? 'v' : 'p', version ? item->version : item->piece);
             else
-                put(&text, " %u+%u", (unsigned)item->leaves.tree.first, item->leaves.n);
+                put(&text, " %u+%u", (unsigned)item->tree.first, 1u << item->tree.level);
         }
     }
     return text.bytes;

@@ -1,7 +1,7 @@
-/* The reduction tree (runtime/data/reduce.h): its shape, written as an expression, is the one of
+/* The reduction tree (runtime/data/subtrees.h): its shape, written as an expression, is the one of
  * its definition for each number of leaves, however the leaves are dealt to ranks that reduce their
  * own ones first. */
-#include "runtime/data/reduce.h"
+#include "runtime/data/subtrees.h"
 #include "tests/support/unit.h"
 
 #include <duite_policy.h>
@@ -48,17 +48,16 @@ static void leaf(struct values *values, unsigned first)
 START_TEST(one_rank)
 {
     static struct values values;
-    struct data_subtree tree[LEAVES + 1] = {0};
+    struct data_subtree tree[LEAVES + 1];
+    struct data_subtrees list = {.at = tree};
     char expected[TEXT];
-    size_t left = 0;
     unsigned n = (unsigned)_i;
     for (unsigned i = 0; i < n; i++) {
         leaf(&values, i);
-        tree[left] = (struct data_subtree){.first = i, .where = i};
-        left = data_reduce_push(tree, left, combine, &values);
-        ck_assert_int_eq((int)left, __builtin_popcount(i + 1));
+        data_subtrees_push(&list, (struct data_subtree){.first = i, .where = i}, combine, &values);
+        ck_assert_int_eq((int)list.n, __builtin_popcount(i + 1));
     }
-    data_reduce_fold(tree, left, combine, &values);
+    data_subtrees_fold(&list, combine, &values);
     expect(expected, 0, n);
     ck_assert_str_eq(values.text[0], expected);
     if (n == 7)
@@ -69,31 +68,109 @@ END_TEST
 START_TEST(several_ranks)
 {
     static struct values values;
-    static struct data_subtree part[RANKS][LEAVES], tree[LEAVES];
-    size_t n_part[RANKS] = {0}, at[RANKS] = {0}, left = 0;
+    static struct data_subtree part[RANKS][LEAVES], all[2][LEAVES];
+    struct data_subtrees of[RANKS], tree = {.at = all[0]}, joined = {.at = all[1]};
     uint64_t state = (uint64_t)_i;
     char expected[TEXT];
     unsigned n = (unsigned)_i;
+    for (unsigned rank = 0; rank < RANKS; rank++)
+        of[rank] = (struct data_subtrees){.at = part[rank]};
     for (unsigned i = 0; i < n; i++) { /* in runs and alone */
         unsigned rank = n % 2 ? i * RANKS / n : (unsigned)(duite_random(&state) % RANKS);
         leaf(&values, i);
-        part[rank][n_part[rank]] = (struct data_subtree){.first = i, .where = i};
-        n_part[rank] = data_reduce_push(part[rank], n_part[rank], combine, &values);
+        data_subtrees_push(&of[rank], (struct data_subtree){.first = i, .where = i}, combine,
+                           &values);
     }
-    for (;;) { /* the next piece in order */
-        int next = -1;
-        for (int r = 0; r < RANKS; r++)
-            if (at[r] < n_part[r] &&
-                (next < 0 || part[r][at[r]].first < part[next][at[next]].first))
-                next = r;
-        if (next < 0)
-            break;
-        tree[left] = part[next][at[next]++];
-        left = data_reduce_push(tree, left, combine, &values);
+    for (unsigned rank = 0; rank < RANKS; rank++) {
+        const struct data_subtrees before = tree;
+        data_subtrees_join(&joined, &before, &of[rank], combine, &values);
+        tree = joined;
+        joined = before;
     }
-    data_reduce_fold(tree, left, combine, &values);
+    data_subtrees_fold(&tree, combine, &values);
     expect(expected, 0, n);
     ck_assert_str_eq(values.text[0], expected);
+}
+END_TEST
+
+/* ---- Lists that ranks pass on ---- */
+
+enum { MEMBERS = 7, ROUNDS = 3 };
+
+/* A rank's list, each entry with its own copy of the value, as ranks have it. */
+struct member {
+    struct values values;
+    struct data_subtree at[LEAVES];
+    struct data_subtrees list;
+};
+
+static void member_take(struct member *to, struct member *from)
+{
+    static struct values came;
+    struct data_subtree next_at[2 * LEAVES], missing_at[LEAVES];
+    struct data_subtrees next = {.at = next_at}, missing = {.at = missing_at};
+    data_subtrees_missing(&missing, &to->list, &from->list);
+    came = to->values;
+    for (size_t i = 0; i < missing.n; i++)
+        memcpy(came.text[missing.at[i].first], from->values.text[missing.at[i].first], TEXT);
+    data_subtrees_join(&next, &to->list, &missing, combine, &came);
+    to->values = came;
+    to->list.n = next.n;
+    memcpy(to->at, next.at, next.n * sizeof *next.at);
+    to->list.at = to->at;
+}
+
+/* Each rank takes the list of the one 2^round places behind: each has everything in the end, some
+ * of it several times and in larger subtrees on the way. */
+START_TEST(passed_on)
+{
+    static struct member member[MEMBERS], before[MEMBERS];
+    const unsigned n = (unsigned)_i;
+    uint64_t state = 1000 + (uint64_t)_i;
+    char expected[TEXT];
+    for (unsigned rank = 0; rank < MEMBERS; rank++)
+        member[rank].list = (struct data_subtrees){.at = member[rank].at};
+    for (unsigned i = 0; i < n; i++) {
+        struct member *of = &member[duite_random(&state) % MEMBERS];
+        leaf(&of->values, i);
+        data_subtrees_push(&of->list, (struct data_subtree){.first = i, .where = i}, combine,
+                           &of->values);
+    }
+    for (unsigned round = 0; round < ROUNDS; round++) {
+        memcpy(before, member, sizeof member);
+        for (unsigned rank = 0; rank < MEMBERS; rank++) {
+            struct member *from = &before[(rank + (1u << round)) % MEMBERS];
+            from->list.at = from->at;
+            member_take(&member[rank], from);
+        }
+    }
+    expect(expected, 0, n);
+    for (unsigned rank = 0; rank < MEMBERS; rank++) {
+        ck_assert_int_eq((int)member[rank].list.n, __builtin_popcount(n));
+        data_subtrees_fold(&member[rank].list, combine, &member[rank].values);
+        ck_assert_str_eq(member[rank].values.text[0], expected);
+    }
+}
+END_TEST
+
+/* The list of leaves in a row is what comes of putting them in one by one; a whole tree ends with
+ * the last leaf. */
+START_TEST(in_a_row)
+{
+    struct data_subtree at[DATA_SUBTREES_IN_ROW];
+    struct data_subtrees list = {.at = at};
+    data_subtrees_row(&list, 3, (uint64_t)_i);
+    uint64_t next = 3;
+    for (size_t i = 0; i < list.n; i++) {
+        ck_assert_uint_eq(at[i].first, next);
+        ck_assert_uint_eq(next % (UINT64_C(1) << at[i].level), 0);
+        next = data_subtree_end(&at[i], UINT64_MAX);
+    }
+    ck_assert_uint_eq(next, 3 + (uint64_t)_i);
+    const struct data_subtree whole = data_subtree_whole((uint64_t)_i);
+    ck_assert_uint_eq(whole.first, 0);
+    ck_assert_uint_eq(data_subtree_end(&whole, (uint64_t)_i), (uint64_t)_i);
+    ck_assert(_i < 2 || (UINT64_C(1) << (whole.level - 1)) < (uint64_t)_i);
 }
 END_TEST
 
@@ -103,6 +180,8 @@ int main(void)
     TCase *test = tcase_create("reduce");
     tcase_add_loop_test(test, one_rank, 1, LEAVES + 1);
     tcase_add_loop_test(test, several_ranks, 1, LEAVES + 1);
+    tcase_add_loop_test(test, passed_on, 1, LEAVES + 1);
+    tcase_add_loop_test(test, in_a_row, 1, LEAVES + 1);
     suite_add_tcase(suite, test);
     return unit_run(suite);
 }

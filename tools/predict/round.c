@@ -165,7 +165,7 @@ static void hops_note(void *context, const struct plan_hop *hop)
         return;
     round->hop = moved;
     round->hop[round->n_hops++] =
-        (struct predict_hop){hop->round, (uint32_t)hop->from, (uint32_t)hop->to, (uint32_t)hop->n};
+        (struct predict_hop){hop->round, (uint32_t)hop->from, (uint32_t)hop->to, (uint32_t)hop->trees.n};
 }
 
 /* The ways of sums that go from host to host. */

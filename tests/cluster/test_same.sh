@@ -33,5 +33,5 @@ ok "random programs" limited "${MPIRUN:-mpirun}" -n 4 tests/runtime/random_progr
 ok "random programs whose objects move" limited "${MPIRUN:-mpirun}" -n 4 tests/runtime/random_programs --base 400000 --programs $programs \
     --balance wander
 if test "${DUITE_LONG:-}" = 1; then
-    ok "random programs, nested" limited "${MPIRUN:-mpirun}" -n 4 tests/runtime/nested_programs --seed 300000 --programs $programs
+    ok "random programs, nested" limited "${MPIRUN:-mpirun}" -n 4 tests/runtime/random_programs --base 500000 --programs $programs --with nests
 fi

@@ -1,23 +1,21 @@
 LEAK_TESTS += tests/runtime/random_programs
 TSAN_TESTS += tests/runtime/test_containers tests/runtime/test_place tests/runtime/test_reduce
 LEAK_SH += tests/runtime/test_ranks.sh
-ASAN_SH += tests/runtime/test_random.sh tests/runtime/test_nested.sh tests/runtime/test_memcheck.sh tests/runtime/test_stuck.sh \
+ASAN_SH += tests/runtime/test_random.sh tests/runtime/test_memcheck.sh tests/runtime/test_stuck.sh \
     tests/runtime/test_exit.sh tests/runtime/test_steals.sh tests/runtime/test_migrate.sh
 PLAIN_SH += tests/runtime/test_delegate.sh
 LONG_SH += tests/runtime/test_random_long.sh tests/runtime/test_memcheck_long.sh tests/runtime/test_threads_long.sh \
     tests/runtime/test_migrate_long.sh
 tests_runtime_random_programs_SOURCES = tests/runtime/random_programs.c tests/runtime/random_program.h \
-    tests/runtime/random_make.c tests/runtime/random_make.h tests/runtime/random_graphs.c tests/runtime/random_cells.c \
-    tests/runtime/random_cells.h tests/runtime/random_print.c tests/runtime/random_laws.c \
-    tests/runtime/random_bodies.c tests/runtime/random_interpret.c tests/runtime/random_run.c tests/runtime/random_run.h \
-    tests/runtime/random_places.c tests/runtime/random_rounds.c
+    tests/runtime/random_make.c tests/runtime/random_make.h tests/runtime/random_forks.c tests/runtime/random_nests.c tests/runtime/random_graphs.c \
+    tests/runtime/random_rounds.c tests/runtime/random_laws.c tests/runtime/random_bodies.c tests/runtime/random_print.c \
+    tests/runtime/random_cells.c tests/runtime/random_cells.h tests/runtime/random_interpret.c tests/runtime/random_interpret.h \
+    tests/runtime/random_replay.c tests/runtime/random_run.c tests/runtime/random_run.h tests/runtime/random_calls.c \
+    tests/runtime/random_recording.c tests/runtime/random_places.c tests/runtime/random_options.c \
+    tests/runtime/random_options.h
 tests_runtime_random_programs_LDADD = $(CORE_LIBS)
 check_PROGRAMS += tests/runtime/steals
 tests_runtime_steals_LDADD = $(CORE_LIBS)
-check_PROGRAMS += tests/runtime/nested_programs
-tests_runtime_nested_programs_SOURCES = tests/runtime/nested_programs.c tests/runtime/nested_program.h \
-    tests/runtime/nested_make.c tests/runtime/nested_interpret.c tests/runtime/nested_values.c
-tests_runtime_nested_programs_LDADD = $(CORE_LIBS)
 # The tests of several ranks, in one program: test_ranks.sh says on how many.
 RANKS = tests/support/ranks.c tests/support/ranks.h tests/negative/misuse.c tests/negative/misuse.h
 check_PROGRAMS += tests/runtime/ranks

@@ -1,5 +1,5 @@
-/* The body of every random kernel. What it writes depends on every byte it reads, on their order
- * and on its seed and round; floating-point values differ in magnitude so much that another
+/* The arithmetic of every random body. What it writes depends on every byte it reads, on their
+ * order and on its seed and round; floating-point values differ in magnitude so much that another
  * summation tree leaves other bits, and stay far from infinity, since the bits of a NaN are
  * nobody's promise. */
 
@@ -118,17 +118,38 @@ static int is_neutral(const struct prog_args *args, const duite_param *param, si
     return same;
 }
 
-/* Whether a parameter has the size it should have: its own; if it changes, its maximum under w. */
+/* Returns whether a parameter has its own size; or, if that changes, its maximum under w and
+ * postponed. */
 static int has_size(const struct prog_args *args, const duite_param *param, size_t i)
 {
     const size_t max = args->max[i] ? args->max[i] : args->count[i];
+    const duite_mode mode = (duite_mode)args->mode[i];
 
-    if (param->max != max || param->count > max)
+    if (param->count > max || (!prog_is_postponed(mode) && param->max != max))
         return 0;
-    return args->max[i] ? args->mode[i] != DUITE_W || param->count == max : param->count == max;
+    return param->count == max || (args->max[i] && mode != DUITE_W && !prog_is_postponed(mode));
 }
 
-/* The line of the first of the call's promises that is broken; 0 if none is. */
+/* The line of the first promise that is broken about a parameter; 0 if none is. */
+static int broken_parameter(const duite_call *call, const struct prog_args *args, size_t i)
+{
+    const duite_param *param = &call->param[i];
+
+    if (prog_is_postponed((duite_mode)args->mode[i]) != !param->data)
+        return __LINE__;
+    if ((uintptr_t)param->data % 64 != 0)
+        return __LINE__;
+    if (!has_size(args, param, i) || param->type != args->type[i])
+        return __LINE__;
+    for (size_t j = 0; param->data && j < i; j++)
+        if (param->data == call->param[j].data)
+            return __LINE__;
+    if (args->mode[i] == DUITE_CW && !is_neutral(args, param, i))
+        return __LINE__;
+    return 0;
+}
+
+/* The same of the call. */
 static int broken(const duite_call *call, const struct prog_args *args,
                   const struct prog_context *context)
 {
@@ -138,29 +159,27 @@ static int broken(const duite_call *call, const struct prog_args *args,
         return __LINE__;
     if (call->worker >= context->threads)
         return __LINE__;
-    for (size_t i = 0; i < call->n_params; i++) {
-        if ((uintptr_t)call->param[i].data % 64 != 0 || !call->param[i].data)
-            return __LINE__;
-        if (!has_size(args, &call->param[i], i) || call->param[i].type != args->type[i])
-            return __LINE__;
-        for (size_t j = 0; j < i; j++)
-            if (call->param[i].data == call->param[j].data)
-                return __LINE__;
-    }
     for (size_t i = 0; i < call->n_params; i++)
-        if (args->mode[i] == DUITE_CW && !is_neutral(args, &call->param[i], i))
-            return __LINE__;
+        if (broken_parameter(call, args, i))
+            return broken_parameter(call, args, i);
     return 0;
+}
+
+void prog_body_wrong(struct prog_context *context, int line, int code)
+{
+    int none = 0;
+
+    if (atomic_compare_exchange_strong(&context->wrong, &none, line))
+        atomic_store(&context->code, code);
 }
 
 static void watch(const duite_call *call, const struct prog_args *args,
                   struct prog_context *context)
 {
     const int line = broken(call, args, context);
-    int none = 0;
 
     if (line)
-        atomic_compare_exchange_strong(&context->wrong, &none, line);
+        prog_body_wrong(context, line, 0);
     atomic_fetch_add(&context->ran[args->number], 1);
     waste(args->pause);
 }
@@ -170,12 +189,10 @@ static void resize(const duite_call *call, size_t i, size_t count)
 {
     const size_t size = prog_size(call->param[i].type);
     duite_param *param = (duite_param *)&call->param[i];
-    struct prog_context *context = call->context;
-    int none = 0;
 
-    if (context) {
+    if (call->context) {
         if (duite_resize(call, i, count) || duite_count(call, i) != count)
-            atomic_compare_exchange_strong(&context->wrong, &none, __LINE__);
+            prog_body_wrong(call->context, __LINE__, 0);
         return;
     }
     if (count > param->count)
@@ -204,17 +221,15 @@ static size_t change_size(const duite_call *call, size_t i, size_t max, uint64_t
 static int exceed(const duite_call *call, const struct prog_args *args)
 {
     const size_t i = args->exceeds - 1;
-    struct prog_context *context = call->context;
-    int none = 0;
 
-    if (!context)
+    if (!call->context)
         return DUITE_E_SIZE;
     if (duite_resize(call, i, call->param[i].max + 1) != DUITE_E_SIZE)
-        atomic_compare_exchange_strong(&context->wrong, &none, __LINE__);
+        prog_body_wrong(call->context, __LINE__, 0);
     return args->seed % 2 ? DUITE_E_SIZE : DUITE_OK;
 }
 
-int prog_body(const duite_call *call)
+uint64_t prog_body_begin(const duite_call *call)
 {
     const struct prog_args *args = call->args;
     uint64_t hash = args->seed + call->round;
@@ -225,22 +240,38 @@ int prog_body(const duite_call *call)
         if (args->mode[i] == DUITE_R || args->mode[i] == DUITE_RW)
             hash =
                 digest(hash, call->param[i].data, duite_count(call, i) * prog_size(args->type[i]));
-    for (size_t i = 0; i < args->n; i++) {
-        const size_t stride = args->mode[i] == DUITE_CW && hash % 4 == 0 ? 3 : 1;
-        const int extreme = args->law[i] == PROG_MIN || args->law[i] == PROG_MAX;
-        const duite_mode mode = extreme ? DUITE_W : (duite_mode)args->mode[i];
-        uint64_t state = hash + i;
+    return hash;
+}
 
-        if (args->mode[i] == DUITE_R)
-            continue;
-        const size_t count =
-            args->max[i] ? change_size(call, i, args->max[i], state / 3) : duite_count(call, i);
+uint64_t prog_body_told(uint64_t hash, int code, const void *bytes, size_t n)
+{
+    return digest(digest(hash, &code, sizeof code), bytes, n);
+}
 
-        for (size_t e = 0; e < count; e += stride)
-            put(args->type[i], mode, call->param[i].data, e, duite_random(&state));
-        if (args->ends && args->mode[i] != DUITE_CW && hash % 3 == 0)
-            memset(call->param[i].data, 0, prog_size(args->type[i]));
-    }
+/* Writes parameter i. */
+static void write_parameter(const duite_call *call, size_t i, uint64_t hash)
+{
+    const struct prog_args *args = call->args;
+    const size_t stride = args->mode[i] == DUITE_CW && hash % 4 == 0 ? 3 : 1;
+    const int extreme = args->law[i] == PROG_MIN || args->law[i] == PROG_MAX;
+    const duite_mode mode = extreme ? DUITE_W : (duite_mode)args->mode[i];
+    uint64_t state = hash + i;
+    const size_t count =
+        args->max[i] ? change_size(call, i, args->max[i], state / 3) : duite_count(call, i);
+
+    for (size_t e = 0; e < count; e += stride)
+        put(args->type[i], mode, call->param[i].data, e, duite_random(&state));
+    if (args->ends && args->mode[i] != DUITE_CW && hash % 3 == 0)
+        memset(call->param[i].data, 0, prog_size(args->type[i]));
+}
+
+int prog_body_end(const duite_call *call, uint64_t hash)
+{
+    const struct prog_args *args = call->args;
+
+    for (size_t i = 0; i < args->n; i++)
+        if (args->mode[i] != DUITE_R && !prog_is_postponed((duite_mode)args->mode[i]))
+            write_parameter(call, i, hash);
     if (args->exceeds)
         return exceed(call, args);
     if (args->sometimes && hash % 4 != 1)
@@ -250,10 +281,13 @@ int prog_body(const duite_call *call)
     return args->fails;
 }
 
-void prog_args_fill(const struct prog *prog, const struct prog_op *op, struct prog_args *args)
+void prog_args_fill(const struct prog *prog, const struct prog_op *op,
+                    const struct prog_object *shape, struct prog_args *args)
 {
     memset(args, 0, sizeof *args);
     args->seed = op->seed;
+    args->body = op->body;
+    args->n_inner = op->n_inner;
     args->fails = op->fails;
     args->exceeds = op->exceeds;
     args->sometimes = op->sometimes != 0;
@@ -263,10 +297,17 @@ void prog_args_fill(const struct prog *prog, const struct prog_op *op, struct pr
     args->number = op->number;
     args->n = op->n;
     for (unsigned i = 0; i < op->n; i++) {
-        args->count[i] = (uint32_t)prog->objects[op->objects[i]].count;
-        args->max[i] = (uint32_t)prog->objects[op->objects[i]].max;
-        args->type[i] = (uint8_t)prog->objects[op->objects[i]].type;
+        args->count[i] = (uint32_t)shape[op->objects[i]].count;
+        args->max[i] = (uint32_t)shape[op->objects[i]].max;
+        args->type[i] = (uint8_t)shape[op->objects[i]].type;
         args->mode[i] = (uint8_t)prog_mode(&prog->kernel[op->kernel], i);
         args->law[i] = (uint8_t)prog_law(&prog->kernel[op->kernel], i);
     }
+}
+
+void prog_shapes(const struct prog_args *args, struct prog_object *shape)
+{
+    for (unsigned i = 0; i < args->n; i++)
+        shape[i] =
+            (struct prog_object){(duite_type)args->type[i], args->count[i], args->max[i], -1};
 }

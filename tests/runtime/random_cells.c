@@ -17,41 +17,57 @@ size_t prog_cell_bytes(const struct prog_cell *cell)
     return cell->count * prog_size(cell->type);
 }
 
-static void combine(const struct prog_cell *cell, void *left, const void *right)
+void prog_cell_start(struct prog_cell *cell, const struct prog_object *shape)
 {
-    prog_combine(cell->law, cell->type, cell->count, left, right);
+    *cell = (struct prog_cell){.type = shape->type,
+                               .count = shape->count,
+                               .max = shape->max ? shape->max : shape->count,
+                               .poison = PROG_NO_FAILURE,
+                               .pending = PROG_NO_FAILURE};
+    cell->value = prog_memory(cell->max, prog_size(cell->type));
 }
 
-void prog_cell_contribute(struct prog_cell *cell, unsigned char *leaf)
+void prog_cell_end(struct prog_cell *cell)
+{
+    free(prog_cell_fold(cell));
+    free(cell->value);
+    cell->value = NULL;
+}
+
+/* left and right, the one that is there if the other is absent. */
+static unsigned char *join(const struct prog_cell *cell, unsigned char *left, unsigned char *right)
+{
+    if (left && right) {
+        prog_combine(cell->law, cell->type, cell->count, left, right);
+        free(right);
+    }
+    return left ? left : right;
+}
+
+void prog_cell_contribute(struct prog_cell *cell, enum prog_law law, unsigned char *leaf)
 {
     unsigned level = 0;
 
-    while (cell->n_subtrees && cell->level[cell->n_subtrees - 1] == level) {
-        unsigned char *left = cell->subtree[--cell->n_subtrees];
-
-        combine(cell, left, leaf);
-        free(leaf);
-        leaf = left;
-        level++;
-    }
+    if (cell->law != law)
+        prog_cell_settle(cell)->law = law;
+    for (; cell->n_subtrees && cell->level[cell->n_subtrees - 1] == level; level++)
+        leaf = join(cell, cell->subtree[--cell->n_subtrees], leaf);
     cell->level[cell->n_subtrees] = level;
     cell->subtree[cell->n_subtrees++] = leaf;
 }
 
+unsigned char *prog_cell_fold(struct prog_cell *cell)
+{
+    unsigned char *tree = NULL;
+
+    while (cell->n_subtrees)
+        tree = join(cell, cell->subtree[--cell->n_subtrees], tree);
+    return tree;
+}
+
 struct prog_cell *prog_cell_settle(struct prog_cell *cell)
 {
-    if (cell->n_subtrees) {
-        unsigned char *tree = cell->subtree[cell->n_subtrees - 1];
-
-        for (unsigned i = cell->n_subtrees - 1; i-- > 0;) {
-            combine(cell, cell->subtree[i], tree);
-            free(tree);
-            tree = cell->subtree[i];
-        }
-        combine(cell, cell->value, tree);
-        free(tree);
-        cell->n_subtrees = 0;
-    }
+    cell->value = join(cell, cell->value, prog_cell_fold(cell));
     cell->poison = prog_first_failure(cell->poison, cell->pending);
     cell->pending = PROG_NO_FAILURE;
     return cell;

@@ -40,25 +40,28 @@ static void record(struct maker *m, enum prog_kind kind, unsigned graph)
     const size_t first = m->prog->n_ops;
     const unsigned max = make_one_in(m, 10) ? 0 : 1 + make_below(m, MOST_RECORDED - 2);
 
+    m->plain = !make_one_in(m, 3); /* else there is no plan */
     make_push(m, kind, 0)->graph = graph;
     while (m->prog->n_ops < first + 1 + max) {
         struct prog_op draft = {.kind = PROG_GRAPH_FORK};
 
         if (make_one_in(m, 8)) {
-            make_set(m, PROG_GRAPH_SET, make_one_in(m, 2));
+            make_set(m, PROG_GRAPH_SET, make_draw_object(m), make_one_in(m, 2));
             continue;
         }
         if (!make_draft(m, &draft))
             continue;
+        make_body(m, &draft, MAX_DEPTH - 2, 0);
         struct prog_op *op = make_push_fork(m, &draft);
 
         op->ends = make_one_in(m, 2);
         op->sometimes = make_one_in(m, 2);
         op->pause = make_one_in(m, 3) ? op->pause : 0;
     }
+    m->plain = 0;
     m->prog->ops[first].n = (unsigned)(m->prog->n_ops - first - 1);
     m->graph[graph] = first;
-    m->unsettled = (unsigned)m->prog->n_objects;
+    m->unsettled = m->scope->n;
 }
 
 /* An object that a fork of the graph writes and may end, if chance finds one. */
@@ -71,8 +74,8 @@ static unsigned draw_flag(struct maker *m, size_t first)
             &prog->ops[first + 1 + make_below(m, (unsigned)prog->ops[first].n)];
 
         for (unsigned i = 0; op->kind == PROG_GRAPH_FORK && op->ends && i < op->n; i++)
-            for (unsigned k = 0; k < m->n_live; k++)
-                if (m->live[k] == op->objects[i] &&
+            for (unsigned k = 0; k < m->scope->n_live; k++)
+                if (m->scope->live[k] == op->objects[i] &&
                     prog_mode(&prog->kernel[op->kernel], i) != DUITE_R)
                     return op->objects[i];
     }
@@ -88,7 +91,7 @@ static void replay(struct maker *m, unsigned graph)
     op->graph = graph;
     op->count = (counted ? 0 : 1) + make_below(m, make_one_in(m, 6) ? 40 : 6);
     m->refused = 1; /* it may be */
-    m->unsettled = (unsigned)m->prog->n_objects;
+    m->unsettled = m->scope->n;
     if (make_one_in(m, 3))
         make_push(m, PROG_ROUNDS, 0)->graph = graph;
 }
@@ -112,7 +115,7 @@ static void change_args(struct maker *m, unsigned graph)
  * or the replay is refused. */
 static void bind(struct maker *m, unsigned graph)
 {
-    const struct prog_object *objects = m->prog->objects;
+    const struct prog_object *objects = m->scope->object;
     const unsigned from = make_draw_object(m), to = make_draw_object(m);
     const int both = !make_one_in(m, 4);
 
@@ -140,7 +143,7 @@ void make_graph_operation(struct maker *m)
     const int graph = draw_graph(m);
     const unsigned choice = make_below(m, 20);
 
-    if (m->n_live < 2)
+    if (m->scope->n_live < 2)
         return;
     if (graph < 0 || (choice < 2 && m->prog->n_graphs < MAX_GRAPHS)) {
         if (m->prog->n_graphs < MAX_GRAPHS)

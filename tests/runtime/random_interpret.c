@@ -1,410 +1,344 @@
-/* What a program means, one task after the other. */
+/* The meaning of a program, in the reference order: a body, then its children one after the other
+ * with all their descendants, then the next task. A get or wait of a body closes a segment: what
+ * the body does afterwards comes after the children forked so far. */
 
-#include "tests/runtime/random_cells.h"
+#include "tests/runtime/random_interpret.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-/* A graph: what it recorded, with the seeds and failures of now, and what stands for each object.
- */
-struct graph {
-    int alive, whole;
-    size_t first, again; /* operations: what it recorded, and what it would record now */
-    size_t n;
-    struct prog_op *op;
-    unsigned *bound; /* n_objects */
-    uint64_t rounds; /* of the last replay */
-};
-
-struct machine {
-    const struct prog *prog;
-    struct prog_answers *answers;
-    struct prog_cell *cells;
-    struct graph *graphs;
-    uint64_t round;             /* of the replay that runs, or 0 */
-    unsigned forks;             /* that came before: failures are compared by these */
-    struct prog_failure failed; /* since the last wait */
-    int refused;                /* the first refused call since the last get or wait */
-};
-
-/* Ends a task: its outputs are what the body left, or poisoned. */
-static void deliver(struct prog_cell *cell, duite_mode mode, const duite_param *param,
-                    struct prog_failure failure)
+static int is_immediate(duite_mode mode)
 {
-    unsigned char *data = param->data;
-    const int failed = failure.number != PROG_NO_FAILURE.number;
-
-    if (mode == DUITE_CW) {
-        if (failed)
-            cell->pending = prog_first_failure(cell->pending, failure);
-        else
-            prog_cell_contribute(cell, data);
-        if (failed)
-            free(data);
-        return;
-    }
-    if (mode != DUITE_R) {
-        cell->poison = failure;
-        cell->count = param->count;
-        memcpy(cell->value, data, prog_cell_bytes(cell));
-    }
-    free(data);
+    return !prog_is_postponed(mode);
 }
 
-static void run_body(struct machine *m, const struct prog_op *op, duite_param *param,
-                     struct prog_failure *failure)
+static int writes(duite_mode mode)
 {
-    struct prog_args args;
-    duite_call call = {.args = &args, .param = param, .n_params = op->n, .round = m->round};
-
-    prog_args_fill(m->prog, op, &args);
-    m->answers->runs[op->number]++;
-    m->answers->n_runs++;
-    const int code = prog_body(&call);
-
-    if (code) {
-        *failure = (struct prog_failure){m->forks, code};
-        m->failed = prog_first_failure(m->failed, *failure);
-    }
+    return mode == DUITE_W || mode == DUITE_RW;
 }
 
-static int fork_task(struct machine *m, const struct prog_op *op)
+static int is_failure(struct prog_failure failure)
 {
-    const duite_kernel *kernel = &m->prog->kernel[op->kernel];
-    duite_param param[PROG_MAX_PARAMS];
-    struct prog_failure failure = PROG_NO_FAILURE;
-
-    m->forks++;
-    for (unsigned i = 0; i < op->n; i++) {
-        const duite_mode mode = prog_mode(kernel, i);
-        struct prog_cell *cell = &m->cells[op->objects[i]];
-
-        param[i] = (duite_param){.data = calloc(cell->max, prog_size(cell->type)),
-                                 .count = mode == DUITE_W ? cell->max : cell->count,
-                                 .type = cell->type};
-        if (!param[i].data)
-            return -1;
-        if (mode == DUITE_CW) {
-            if (cell->law != prog_law(kernel, i))
-                prog_cell_settle(cell)->law = prog_law(kernel, i);
-            prog_neutral(cell->law, cell->type, cell->count, param[i].data);
-            continue;
-        }
-        prog_cell_settle(cell);
-        if (mode == DUITE_W)
-            continue;
-        memcpy(param[i].data, cell->value, prog_cell_bytes(cell));
-        failure = prog_first_failure(failure, cell->poison);
-    }
-    if (failure.number == PROG_NO_FAILURE.number)
-        run_body(m, op, param, &failure);
-    for (unsigned i = 0; i < op->n; i++)
-        deliver(&m->cells[op->objects[i]], prog_mode(kernel, i), &param[i], failure);
-    return 0;
+    return failure.number != PROG_NO_FAILURE.number;
 }
 
-static int get(struct machine *m, struct prog_cell *cell, struct prog_expect *expect)
+int prog_interpret_refuse(struct prog_frame *frame, int code)
 {
-    prog_cell_settle(cell);
-    expect->code = m->refused ? m->refused : cell->poison.code;
-    expect->count = cell->count;
-    if (cell->poison.number == PROG_NO_FAILURE.number) {
-        expect->bytes = malloc(prog_cell_bytes(cell) + 1);
-        if (!expect->bytes)
-            return -1;
-        memcpy(expect->bytes, cell->value, prog_cell_bytes(cell));
-    }
-    m->refused = DUITE_OK;
-    return 0;
-}
-
-static int wait_all(struct machine *m)
-{
-    int code = m->refused;
-
-    if (!code) {
-        code = m->failed.code;
-        m->failed = PROG_NO_FAILURE;
-    }
-    m->refused = DUITE_OK;
+    frame->refused = frame->refused ? frame->refused : code;
     return code;
 }
 
-static void set(struct prog_cell *cell, const struct prog_op *op)
+/* Takes what the next get or wait returns before all else. */
+static int take_refused(struct prog_frame *frame)
+{
+    const int code = frame->refused;
+
+    frame->refused = DUITE_OK;
+    return code;
+}
+
+void prog_interpret_set(struct prog_cell *cell, const struct prog_op *op)
 {
     prog_cell_settle(cell)->poison = PROG_NO_FAILURE;
+    cell->writes++;
     cell->count = op->count;
     memset(cell->value, 0, prog_cell_bytes(cell));
     if (op->seed)
         prog_values(cell->type, cell->count, op->seed, cell->value);
 }
 
-/* ---- Graphs ---- */
-
-static int refuse(struct machine *m, int code)
+static void contribute(struct prog_frame *frame, const struct prog_op *op)
 {
-    m->refused = m->refused ? m->refused : code;
+    struct prog_cell *cell = frame->object[op->object];
+    unsigned char *leaf = prog_memory(cell->count, prog_size(cell->type));
+
+    prog_values(cell->type, cell->count, op->seed, leaf);
+    prog_cell_contribute(cell, frame->law[op->object], leaf);
+}
+
+/* The children forked so far come now. */
+static void end_segment(struct prog_machine *m, struct prog_frame *frame)
+{
+    for (size_t i = frame->first_pending; i < frame->n_done; i++) {
+        const struct prog_op *op = &frame->ops[i];
+
+        if (op->kind == PROG_FORK)
+            prog_interpret_fork(m, frame, op, 0);
+        else if (op->kind == PROG_SET)
+            prog_interpret_set(frame->object[op->object], op);
+        else if (op->kind == PROG_CONTRIBUTE)
+            contribute(frame, op);
+    }
+    frame->first_pending = frame->n_done;
+}
+
+static int wait_all(struct prog_frame *frame)
+{
+    int code = take_refused(frame);
+
+    if (!code) {
+        code = frame->failed.code;
+        frame->failed = PROG_NO_FAILURE;
+    }
     return code;
 }
 
-/* Records; DUITE_E_OBJECT if it names something that is gone. */
-static int build(struct machine *m, struct graph *graph)
+static void make_object(struct prog_frame *frame, const struct prog_op *op)
 {
-    const struct prog_op *from = &m->prog->ops[graph->again];
+    const unsigned place = op->object;
 
-    m->answers->n_recorded++;
-    graph->first = graph->again;
-    graph->whole = 0;
-    graph->rounds = 0;
-    graph->n = 0;
-    for (size_t i = 0; i < m->prog->n_objects; i++)
-        graph->bound[i] = (unsigned)i;
-    for (size_t i = 1; i <= from->n; i++) {
-        const struct prog_op *op = &from[i];
-
-        if (!prog_is_recorded(m->prog, graph->first + i))
-            continue;
-        if (op->kind == PROG_GRAPH_SET && !m->cells[op->object].value)
-            return DUITE_E_OBJECT;
-        for (unsigned k = 0; op->kind == PROG_GRAPH_FORK && k < op->n; k++)
-            if (!m->cells[op->objects[k]].value)
-                return DUITE_E_OBJECT;
-        graph->op[graph->n++] = *op;
-    }
-    graph->whole = 1;
-    return DUITE_OK;
+    frame->shape[place] = (struct prog_object){op->type, op->count, op->max, -1};
+    frame->object[place] = &frame->cells[place];
+    prog_cell_start(frame->object[place], &frame->shape[place]);
 }
 
-static int fits(const struct machine *m, const struct graph *graph)
+/* A body learns from a get. */
+static uint64_t get_in_body(struct prog_frame *frame, const struct prog_op *op, uint64_t hash)
 {
-    for (unsigned i = 0; i < m->prog->n_objects; i++)
-        if (prog_records(m->prog, graph->first, i) && !m->cells[graph->bound[i]].value)
-            return 0;
-    return graph->whole;
+    const struct prog_cell *cell = prog_cell_settle(frame->object[op->object]);
+    const int refused = take_refused(frame), code = refused ? refused : cell->poison.code;
+    const uint64_t count = cell->count;
+
+    if (op->kind == PROG_COUNT)
+        return prog_body_told(hash, code, &count, code ? 0 : sizeof count);
+    return prog_body_told(hash, code, cell->value, code ? 0 : prog_cell_bytes(cell));
 }
 
-static int is_distinct(const struct machine *m, const struct graph *graph)
+/* Does what a body does; returns its hash in the end. */
+static uint64_t act(struct prog_machine *m, struct prog_frame *frame, size_t n, uint64_t hash)
 {
-    for (unsigned i = 0; i < m->prog->n_objects; i++)
-        for (unsigned k = 0; k < i; k++)
-            if (graph->bound[i] == graph->bound[k] && prog_records(m->prog, graph->first, i) &&
-                prog_records(m->prog, graph->first, k))
-                return 0;
-    return 1;
-}
+    for (size_t i = 0; i < n; i++) {
+        const struct prog_op *op = &frame->ops[i];
 
-static int run_round(struct machine *m, const struct graph *graph)
-{
-    for (size_t i = 0; i < graph->n; i++) {
-        struct prog_op op = graph->op[i];
-
-        if (op.kind == PROG_GRAPH_SET) {
-            set(&m->cells[graph->bound[op.object]], &op);
-            continue;
+        frame->n_done = i + 1;
+        if (op->kind == PROG_NEW) {
+            make_object(frame, op);
+        } else if (op->kind == PROG_WRONG) {
+            prog_interpret_refuse(frame, op->fails);
+        } else if (op->kind == PROG_GET || op->kind == PROG_COUNT) {
+            end_segment(m, frame);
+            hash = get_in_body(frame, op, hash);
+        } else if (op->kind == PROG_WAIT) {
+            end_segment(m, frame);
+            hash = prog_body_told(hash, wait_all(frame), NULL, 0);
         }
-        for (unsigned k = 0; k < op.n; k++)
-            op.objects[k] = graph->bound[op.objects[k]];
-        if (fork_task(m, &op))
-            return -1;
     }
-    return 0;
+    return hash;
 }
 
-static int holds(struct prog_cell *flag)
+/* The task gets its own copies of the objects that it uses itself, the very objects that its
+ * children use, and a tree of its own for their contributions. Returns the poison that it reads. */
+static struct prog_failure enter(struct prog_frame *frame, const struct prog_op *op,
+                                 const struct prog_args *args, duite_param *param)
 {
-    static const unsigned char zero[8];
-    const unsigned char *value = prog_cell_settle(flag)->value;
+    struct prog_failure failure = PROG_NO_FAILURE;
 
-    if (flag->poison.number != PROG_NO_FAILURE.number || !flag->count)
-        return 0;
-    if (flag->type == DUITE_F64)
-        return *(const double *)(const void *)value != 0;
-    if (flag->type == DUITE_F32)
-        return *(const float *)(const void *)value != 0;
-    return memcmp(value, zero, prog_size(flag->type)) != 0;
+    for (unsigned i = 0; i < op->n; i++) {
+        const duite_mode mode = (duite_mode)args->mode[i];
+        struct prog_cell *cell = frame->above->object[op->objects[i]], *own = &frame->cells[i];
+
+        frame->writes[i] = cell->writes;
+        frame->law[i] = (enum prog_law)args->law[i];
+        if (mode != DUITE_CW && mode != DUITE_CWP)
+            prog_cell_settle(cell);
+        frame->object[i] = is_immediate(mode) || mode == DUITE_CWP ? own : cell;
+        if (frame->object[i] == own)
+            prog_cell_start(own, &frame->shape[i]);
+        own->law = frame->law[i];
+        own->count = mode == DUITE_W ? cell->max : cell->count;
+        param[i] = (duite_param){.count = own->count, .type = cell->type};
+        if (is_immediate(mode))
+            param[i].data = own->value;
+        if (mode == DUITE_CW)
+            prog_neutral(own->law, own->type, own->count, own->value);
+        if (mode == DUITE_R || mode == DUITE_RW) {
+            memcpy(own->value, cell->value, prog_cell_bytes(cell));
+            failure = prog_first_failure(failure, cell->poison);
+        }
+    }
+    return failure;
 }
 
-static int replay(struct machine *m, struct graph *graph, const struct prog_op *op)
+/* A parameter that the children wrote, or nobody. */
+static void leave_written(struct prog_cell *cell, duite_mode mode, unsigned before,
+                          struct prog_failure failure)
 {
-    int code = fits(m, graph) ? DUITE_OK : build(m, graph), going = 1;
+    prog_cell_settle(cell);
+    if (mode == DUITE_WP && cell->writes == before) { /* what was there does not count */
+        cell->count = cell->max;
+        memset(cell->value, 0, prog_cell_bytes(cell));
+        cell->poison = PROG_NO_FAILURE;
+    }
+    cell->writes++;
+    cell->poison = prog_first_failure(cell->poison, failure);
+}
 
-    if (!code && !is_distinct(m, graph))
-        code = DUITE_E_BINDING;
+/* The object of the task above gets what the task did to it. */
+static void leave(struct prog_frame *frame, unsigned i, duite_mode mode, struct prog_cell *cell,
+                  size_t count, struct prog_failure failure)
+{
+    struct prog_cell *own = &frame->cells[i];
+
+    if (writes(mode)) {
+        unsigned char *before = cell->value;
+
+        cell->value = own->value;
+        own->value = before;
+        cell->count = count;
+        cell->poison = failure;
+        cell->writes++;
+    } else if (mode == DUITE_WP || mode == DUITE_RWP) {
+        leave_written(cell, mode, frame->writes[i], failure);
+    } else if (mode == DUITE_CW) {
+        prog_cell_contribute(cell, own->law, own->value);
+        own->value = NULL;
+        cell->pending = prog_first_failure(cell->pending, failure);
+    } else if (mode == DUITE_CWP) {
+        prog_cell_contribute(cell, own->law, prog_cell_fold(own));
+        failure = prog_first_failure(failure, own->pending);
+        cell->pending = prog_first_failure(cell->pending, failure);
+    }
+}
+
+static struct prog_failure fail(struct prog_machine *m, struct prog_frame *above, int code)
+{
+    const struct prog_failure failure = {m->place++, code};
+
+    for (; above; above = above->above)
+        above->failed = prog_first_failure(above->failed, failure);
+    return failure;
+}
+
+/* The body and its children. */
+static struct prog_failure run_task(struct prog_machine *m, struct prog_frame *frame,
+                                    const struct prog_op *op, const duite_call *call)
+{
+    struct prog_failure failure = PROG_NO_FAILURE;
+
+    m->answers->runs[op->number]++;
+    const uint64_t hash = act(m, frame, op->n_inner, prog_body_begin(call));
+    const int returned = prog_body_end(call, hash), code = returned ? returned : frame->refused;
+
     if (code)
-        return refuse(m, code);
-    graph->rounds = 0;
-    while (going && graph->rounds < op->count) {
-        m->round = graph->rounds;
-        if (run_round(m, graph))
-            return DUITE_E_MEMORY;
-        graph->rounds++;
-        if (op->kind == PROG_REPLAY_WHILE)
-            going = holds(&m->cells[op->object]);
-    }
-    m->round = 0;
-    return DUITE_OK;
+        failure = fail(m, frame->above, code);
+    end_segment(m, frame);
+    return failure;
 }
 
-static int change_args(struct machine *m, struct graph *graph, const struct prog_op *op)
+void prog_interpret_fork(struct prog_machine *m, struct prog_frame *above, const struct prog_op *op,
+                         uint64_t round)
 {
-    const struct prog_op *target = &m->prog->ops[op->count];
+    const size_t n_cells = op->n_inner ? PROG_MAX_TABLE : op->n;
+    struct prog_frame *frame = prog_memory(1, sizeof *frame);
+    duite_param param[PROG_MAX_PARAMS];
+    struct prog_args args;
+    const duite_call call = {.args = &args, .param = param, .n_params = op->n, .round = round};
 
-    if (target->kind != PROG_GRAPH_FORK || op->count <= graph->first ||
-        op->count > graph->first + m->prog->ops[graph->first].n)
-        return DUITE_OK;
-    for (size_t i = 0; i < graph->n; i++)
-        if (graph->op[i].kind == PROG_GRAPH_FORK && graph->op[i].number == target->number) {
-            graph->op[i].seed = op->seed;
-            graph->op[i].fails = op->fails;
-        }
-    return graph->whole ? DUITE_OK : refuse(m, DUITE_E_ARGUMENT);
+    prog_args_fill(m->prog, op, above->shape, &args);
+    frame->above = above;
+    frame->ops = &m->prog->inner[op->body];
+    frame->cells = prog_memory(n_cells, sizeof *frame->cells);
+    frame->failed = PROG_NO_FAILURE;
+    prog_shapes(&args, frame->shape);
+    struct prog_failure failure = enter(frame, op, &args, param);
+
+    if (!is_failure(failure))
+        failure = run_task(m, frame, op, &call);
+    for (unsigned i = 0; i < op->n; i++)
+        leave(frame, i, (duite_mode)args.mode[i], above->object[op->objects[i]], param[i].count,
+              failure);
+    for (size_t i = 0; i < n_cells; i++)
+        prog_cell_end(&frame->cells[i]);
+    free(frame->cells);
+    free(frame);
 }
 
-static int bind(struct machine *m, struct graph *graph, const struct prog_op *op)
+/* ---- The main program ---- */
+
+static void get(struct prog_frame *frame, struct prog_cell *cell, struct prog_expect *expect)
 {
-    if (!m->cells[op->objects[0]].value)
-        return refuse(m, DUITE_E_OBJECT);
-    if (!graph->whole || !prog_records(m->prog, graph->first, op->object))
-        return refuse(m, DUITE_E_BINDING);
-    graph->bound[op->object] = op->objects[0];
-    return DUITE_OK;
+    const int refused = take_refused(frame);
+
+    prog_cell_settle(cell);
+    expect->code = refused ? refused : cell->poison.code;
+    expect->count = cell->count;
+    if (is_failure(cell->poison))
+        return;
+    expect->bytes = prog_memory(prog_cell_bytes(cell), 1);
+    memcpy(expect->bytes, cell->value, prog_cell_bytes(cell));
 }
 
-static int make_graph(struct machine *m, struct graph *graph, const struct prog_op *op)
+static void operation(struct prog_machine *m, const struct prog_op *op, struct prog_expect *expect)
 {
-    graph->alive = 1;
-    graph->again = (size_t)(op - m->prog->ops);
-    graph->op = calloc(m->prog->n_ops + 1, sizeof *graph->op);
-    graph->bound = calloc(m->prog->n_objects + 1, sizeof *graph->bound);
-    return graph->op && graph->bound ? build(m, graph) : DUITE_E_MEMORY;
-}
-
-static void free_graph(struct graph *graph)
-{
-    free(graph->op);
-    free(graph->bound);
-    *graph = (struct graph){0};
-}
-
-/* A graph that was left out of the program is left alone. */
-static int graph_operation(struct machine *m, const struct prog_op *op, struct prog_expect *expect)
-{
-    struct graph *graph = &m->graphs[op->graph];
-
-    if (op->kind == PROG_GRAPH)
-        expect->code = make_graph(m, graph, op);
-    else if (!graph->alive)
-        return 0;
-    else if (op->kind == PROG_GRAPH_AGAIN)
-        graph->again = (size_t)(op - m->prog->ops);
-    else if (op->kind == PROG_REPLAY || op->kind == PROG_REPLAY_WHILE)
-        expect->code = replay(m, graph, op);
-    else if (op->kind == PROG_ROUNDS)
-        expect->rounds = graph->rounds;
-    else if (op->kind == PROG_GRAPH_BIND)
-        expect->code = bind(m, graph, op);
-    else if (op->kind == PROG_GRAPH_ARGS)
-        expect->code = change_args(m, graph, op);
-    else if (op->kind == PROG_GRAPH_FREE)
-        free_graph(graph);
-    return expect->code == DUITE_E_MEMORY ? -1 : 0;
-}
-
-static int make_object(struct machine *m, const struct prog_op *op)
-{
-    const struct prog_object *object = &m->prog->objects[op->object];
-    struct prog_cell *cell = &m->cells[op->object];
-
-    cell->type = object->type;
-    cell->count = op->count;
-    cell->max = object->max ? object->max : op->count;
-    cell->poison = cell->pending = PROG_NO_FAILURE;
-    cell->value = calloc(cell->max, prog_size(cell->type));
-    return cell->value ? 0 : -1;
-}
-
-static void free_object(struct prog_cell *cell)
-{
-    free(prog_cell_settle(cell)->value);
-    cell->value = NULL;
-}
-
-static int operation(struct machine *m, const struct prog_op *op, struct prog_expect *expect)
-{
-    struct prog_cell *cell = &m->cells[op->object];
+    struct prog_frame *main = m->main;
+    struct prog_cell *cell = &main->cells[op->object];
 
     switch (op->kind) {
     case PROG_NEW:
-        return make_object(m, op);
+        make_object(main, op);
+        break;
     case PROG_FREE:
-        free_object(cell);
-        return 0;
+        prog_cell_end(cell);
+        break;
     case PROG_SET:
-        set(cell, op);
-        return 0;
+        prog_interpret_set(cell, op);
+        break;
     case PROG_FORK:
-        return fork_task(m, op);
+        prog_interpret_fork(m, main, op, 0);
+        break;
     case PROG_GET:
     case PROG_GET_AT:
     case PROG_COUNT:
-        return get(m, cell, expect);
+        get(main, cell, expect);
+        break;
     case PROG_WAIT:
-        expect->code = wait_all(m);
-        return 0;
+        expect->code = wait_all(main);
+        break;
     case PROG_WRONG:
-        expect->code = refuse(m, DUITE_E_ACCESS);
-        return 0;
+        expect->code = prog_interpret_refuse(main, op->fails);
+        break;
     default:
-        return op->kind >= PROG_GRAPH && !prog_is_recorded(m->prog, (size_t)(op - m->prog->ops))
-                   ? graph_operation(m, op, expect)
-                   : 0;
+        if (op->kind >= PROG_GRAPH && !prog_is_recorded(m->prog, (size_t)(op - m->prog->ops)))
+            prog_interpret_graph(m, op, expect);
     }
 }
 
 struct prog_answers *prog_interpret(const struct prog *prog)
 {
-    struct prog_answers *answers = calloc(1, sizeof *answers);
-    struct prog_cell *cells = calloc(prog->n_objects + 1, sizeof *cells);
-    struct graph *graphs = calloc(prog->n_graphs + 1, sizeof *graphs);
-    struct machine m = {.prog = prog,
-                        .answers = answers,
-                        .cells = cells,
-                        .graphs = graphs,
-                        .failed = PROG_NO_FAILURE};
-    int left = 0, failed = !answers || !cells || !graphs;
+    struct prog_answers *answers = prog_memory(1, sizeof *answers);
+    struct prog_frame *main = prog_memory(1, sizeof *main);
+    struct prog_graph *graphs = prog_memory(prog->n_graphs, sizeof *graphs);
+    struct prog_machine m = {.prog = prog, .answers = answers, .main = main, .graphs = graphs};
+    int left = 0;
 
-    if (!failed) {
-        answers->op = calloc(prog->n_ops + 1, sizeof *answers->op);
-        answers->runs = calloc(prog->n_forks + 1, 1);
-        failed = !answers->op || !answers->runs;
+    answers->op = prog_memory(prog->n_ops, sizeof *answers->op);
+    answers->runs = prog_memory(prog->n_forks, 1);
+    main->cells = prog_memory(PROG_MAX_TABLE, sizeof *main->cells);
+    main->failed = PROG_NO_FAILURE;
+    for (size_t i = 0; i < PROG_MAX_TABLE; i++)
+        main->object[i] = &main->cells[i];
+    for (size_t i = 0; i < prog->n_ops; i++)
+        operation(&m, &prog->ops[i], &answers->op[i]);
+    for (size_t i = 0; i < PROG_MAX_TABLE; i++) {
+        left |= main->cells[i].value != NULL;
+        prog_cell_end(&main->cells[i]);
     }
-    for (size_t i = 0; !failed && i < prog->n_ops; i++)
-        failed = operation(&m, &prog->ops[i], &answers->op[i]);
-    for (size_t i = 0; cells && i < prog->n_objects; i++) {
-        left |= cells[i].value != NULL;
-        free_object(&cells[i]);
-    }
-    for (size_t i = 0; graphs && i < prog->n_graphs; i++) {
+    for (size_t i = 0; i < prog->n_graphs; i++) {
         left |= graphs[i].alive;
-        free_graph(&graphs[i]);
+        prog_graph_end(&graphs[i]);
     }
-    free(cells);
-    free(graphs);
-    if (failed) {
-        prog_answers_free(prog, answers);
-        return NULL;
-    }
-    answers->stop = wait_all(&m);
+    answers->stop = wait_all(main);
     if (!answers->stop && left)
         answers->stop = DUITE_E_NOT_FREED;
+    free(main->cells);
+    free(main);
+    free(graphs);
     return answers;
 }
 
 void prog_answers_free(const struct prog *prog, struct prog_answers *answers)
 {
-    if (!answers)
-        return;
-    for (size_t i = 0; answers->op && i < prog->n_ops; i++)
+    for (size_t i = 0; i < prog->n_ops; i++)
         free(answers->op[i].bytes);
     free(answers->op);
     free(answers->runs);

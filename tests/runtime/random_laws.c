@@ -7,88 +7,65 @@
 #include <limits.h>
 #include <math.h>
 
-static int32_t i32_of(enum prog_law law, int32_t l, int32_t r)
-{
-    switch (law) {
-    case PROG_MIN:
-        return l > r ? r : l;
-    case PROG_MAX:
-        return l < r ? r : l;
-    case PROG_MIX:
-        return (int32_t)((uint32_t)l * 5u + ((uint32_t)r ^ 0x2au));
-    default:
-        return (int32_t)((uint32_t)l + (uint32_t)r);
+/* Of a type, by its mix of two values. */
+#define LAW_OF(name, type, mix, sum)                                                               \
+    static type name(enum prog_law law, type l, type r)                                            \
+    {                                                                                              \
+        switch (law) {                                                                             \
+        case PROG_MIN:                                                                             \
+            return l > r ? r : l;                                                                  \
+        case PROG_MAX:                                                                             \
+            return l < r ? r : l;                                                                  \
+        case PROG_MIX:                                                                             \
+            return mix;                                                                            \
+        default:                                                                                   \
+            return sum;                                                                            \
+        }                                                                                          \
     }
+
+LAW_OF(i32_of, int32_t, (int32_t)((uint32_t)l * 5u + ((uint32_t)r ^ 0x2au)),
+       (int32_t)((uint32_t)l + (uint32_t)r))
+LAW_OF(i64_of, int64_t, (int64_t)((uint64_t)l * 5u + ((uint64_t)r ^ 0x2au)),
+       (int64_t)((uint64_t)l + (uint64_t)r))
+LAW_OF(f32_of, float, l * 0.375f + r * 0.5f, l + r)
+LAW_OF(f64_of, double, l * 0.375 + r * 0.5, l + r)
+
+static uint8_t byte_of(size_t i, uint8_t l, uint8_t r)
+{
+    return (uint8_t)(l * 3 + (r ^ i));
 }
 
-static int64_t i64_of(enum prog_law law, int64_t l, int64_t r)
-{
-    switch (law) {
-    case PROG_MIN:
-        return l > r ? r : l;
-    case PROG_MAX:
-        return l < r ? r : l;
-    case PROG_MIX:
-        return (int64_t)((uint64_t)l * 5u + ((uint64_t)r ^ 0x2au));
-    default:
-        return (int64_t)((uint64_t)l + (uint64_t)r);
-    }
-}
-
-static float f32_of(enum prog_law law, float l, float r)
-{
-    switch (law) {
-    case PROG_MIN:
-        return l > r ? r : l;
-    case PROG_MAX:
-        return l < r ? r : l;
-    case PROG_MIX:
-        return l * 0.375f + r * 0.5f;
-    default:
-        return l + r;
-    }
-}
-
-static double f64_of(enum prog_law law, double l, double r)
-{
-    switch (law) {
-    case PROG_MIN:
-        return l > r ? r : l;
-    case PROG_MAX:
-        return l < r ? r : l;
-    case PROG_MIX:
-        return l * 0.375 + r * 0.5;
-    default:
-        return l + r;
-    }
-}
+#define COMBINE(type, of, by)                                                                      \
+    ((type *)left)[i] = of(by, ((type *)left)[i], ((const type *)right)[i])
 
 void prog_combine(enum prog_law law, duite_type type, size_t count, void *left, const void *right)
 {
     for (size_t i = 0; i < count; i++)
         switch (type) {
         case DUITE_BYTE:
-            ((uint8_t *)left)[i] =
-                (uint8_t)(((uint8_t *)left)[i] * 3 + (((const uint8_t *)right)[i] ^ i));
+            COMBINE(uint8_t, byte_of, i);
             break;
         case DUITE_I32:
-            ((int32_t *)left)[i] = i32_of(law, ((int32_t *)left)[i], ((const int32_t *)right)[i]);
+            COMBINE(int32_t, i32_of, law);
             break;
         case DUITE_I64:
-            ((int64_t *)left)[i] = i64_of(law, ((int64_t *)left)[i], ((const int64_t *)right)[i]);
+            COMBINE(int64_t, i64_of, law);
             break;
         case DUITE_F32:
-            ((float *)left)[i] = f32_of(law, ((float *)left)[i], ((const float *)right)[i]);
+            COMBINE(float, f32_of, law);
             break;
         case DUITE_F64:
-            ((double *)left)[i] = f64_of(law, ((double *)left)[i], ((const double *)right)[i]);
+            COMBINE(double, f64_of, law);
             break;
         }
 }
 
+#define NEUTRAL(type, most, least)                                                                 \
+    ((type *)values)[i] = law == PROG_MIN ? (most) : law == PROG_MAX ? (least) : own
+
 void prog_neutral(enum prog_law law, duite_type type, size_t count, void *values)
 {
-    const int own = law == PROG_MIX ? 3 : 0;
+    const int8_t own = law == PROG_MIX ? 3 : 0;
 
     for (size_t i = 0; i < count; i++)
         switch (type) {
@@ -96,24 +73,16 @@ void prog_neutral(enum prog_law law, duite_type type, size_t count, void *values
             ((uint8_t *)values)[i] = (uint8_t)(41 + i);
             break;
         case DUITE_I32:
-            ((int32_t *)values)[i] = law == PROG_MIN   ? INT32_MAX
-                                     : law == PROG_MAX ? INT32_MIN
-                                                       : own;
+            NEUTRAL(int32_t, INT32_MAX, INT32_MIN);
             break;
         case DUITE_I64:
-            ((int64_t *)values)[i] = law == PROG_MIN   ? INT64_MAX
-                                     : law == PROG_MAX ? INT64_MIN
-                                                       : own;
+            NEUTRAL(int64_t, INT64_MAX, INT64_MIN);
             break;
         case DUITE_F32:
-            ((float *)values)[i] = law == PROG_MIN   ? INFINITY
-                                   : law == PROG_MAX ? -INFINITY
-                                                     : (float)own;
+            NEUTRAL(float, INFINITY, -INFINITY);
             break;
         case DUITE_F64:
-            ((double *)values)[i] = law == PROG_MIN   ? (double)INFINITY
-                                    : law == PROG_MAX ? -(double)INFINITY
-                                                      : own;
+            NEUTRAL(double, (double)INFINITY, -(double)INFINITY);
             break;
         }
 }

@@ -1,4 +1,5 @@
-/* Programs as they are told to whoever looks for what went wrong: one line an operation. */
+/* Programs in readable form, to find what went wrong: one line an operation, with the calls of its
+ * body. */
 
 #include "tests/runtime/random_program.h"
 
@@ -35,45 +36,70 @@ static void print_graph(FILE *file, const struct prog_op *op)
         fprintf(file, ", %zu", op->count);
 }
 
-void prog_print(FILE *file, const struct prog *prog, size_t index)
+static void print_fork(FILE *file, const struct prog *prog, const struct prog_op *op)
 {
-    static const char *const KINDS[] = {
-        "skip",         "new",    "free",       "set",        "fork",        "get",
-        "get_at",       "count",  "wait",       "hint",       "follow",      "home",
-        "wrong",        "graph",  "  fork",     "  set",      "graph again", "replay",
-        "replay while", "rounds", "graph args", "graph bind", "graph free"};
-    static const char *const TYPES[] = {"", "byte", "i32", "i64", "f32", "f64"};
-    static const char *const MODES[] = {"", "r", "w", "rw", "cw"};
+    static const char *const MODES[] = {"", "r", "w", "rw", "cw", "rp", "wp", "rwp", "cwp"};
     static const char *const LAWS[] = {"", ",min:", ",max:", ",mix:", ",weave:"};
-    const struct prog_op *op = &prog->ops[index];
-    const int forks = op->kind == PROG_FORK || op->kind == PROG_GRAPH_FORK;
-    const int sets = op->kind == PROG_SET || op->kind == PROG_GRAPH_SET;
+    const duite_kernel *kernel = &prog->kernel[op->kernel];
 
-    fprintf(file, "#   %3zu %s", index, KINDS[op->kind]);
-    if (forks)
-        fprintf(file, " task %u %s", op->number, prog->name[op->kernel]);
-    else if (op->kind >= PROG_GRAPH && !sets)
-        print_graph(file, op);
-    else if (op->kind != PROG_WAIT)
-        fprintf(file, " object %u", op->object);
-    if (op->kind == PROG_NEW)
-        fprintf(file, " %s x %zu", TYPES[op->type], op->count);
-    if (op->max)
-        fprintf(file, " of %zu", op->max);
-    if (sets)
-        fprintf(file, " x %zu", op->count);
-    for (unsigned i = 0; (forks || op->kind < PROG_GRAPH) && i < op->n; i++)
-        fprintf(file, " %s%s%u", forks ? MODES[prog_mode(&prog->kernel[op->kernel], i)] : "",
-                forks ? LAWS[prog_law(&prog->kernel[op->kernel], i)] : "", op->objects[i]);
-    if (op->kind == PROG_FOLLOW)
-        fprintf(file, " leader %u", op->objects[0]);
+    fprintf(file, " task %u %s", op->number, kernel->name);
+    for (unsigned i = 0; i < op->n; i++)
+        fprintf(file, " %s%s%u", MODES[prog_mode(kernel, i)], LAWS[prog_law(kernel, i)],
+                op->objects[i]);
     if (op->rank >= 0)
         fprintf(file, " at rank %d", op->rank);
-    if (forks && op->cost >= 0)
+    if (op->cost >= 0)
         fprintf(file, " priority %d cost %g", (int)op->priority, op->cost);
     if (op->fails)
         fprintf(file, " fails with %d%s", op->fails, op->sometimes ? " sometimes" : "");
     if (op->exceeds)
         fprintf(file, " gives parameter %u too much", op->exceeds - 1);
+}
+
+static void print_object(FILE *file, const struct prog_op *op)
+{
+    static const char *const TYPES[] = {"", "byte", "i32", "i64", "f32", "f64"};
+
+    fprintf(file, " object %u", op->object);
+    if (op->kind == PROG_NEW)
+        fprintf(file, " %s", TYPES[op->type]);
+    if (op->kind == PROG_NEW || op->kind == PROG_SET || op->kind == PROG_GRAPH_SET)
+        fprintf(file, " x %zu", op->count);
+    if (op->max)
+        fprintf(file, " of %zu", op->max);
+    for (unsigned i = 0; i < op->n; i++)
+        fprintf(file, " %u", op->objects[i]);
+    if (op->kind == PROG_FOLLOW)
+        fprintf(file, " leader %u", op->objects[0]);
+    if (op->rank >= 0)
+        fprintf(file, " at rank %d", op->rank);
+}
+
+static void print_operation(FILE *file, const struct prog *prog, const struct prog_op *op,
+                            int indent)
+{
+    static const char *const KINDS[] = {
+        "skip",   "new",          "free",   "set",        "fork",       "get",
+        "get_at", "count",        "wait",   "contribute", "hint",       "follow",
+        "home",   "wrong",        "graph",  "  fork",     "  set",      "graph again",
+        "replay", "replay while", "rounds", "graph args", "graph bind", "graph free"};
+
+    fprintf(file, "%*s%s", indent, "", KINDS[op->kind]);
+    if (prog_is_fork(op))
+        print_fork(file, prog, op);
+    else if (op->kind >= PROG_GRAPH && op->kind != PROG_GRAPH_SET)
+        print_graph(file, op);
+    else if (op->kind != PROG_WAIT)
+        print_object(file, op);
     fputc('\n', file);
+    for (size_t i = 0; prog_is_fork(op) && i < op->n_inner; i++) {
+        fprintf(file, "#       ");
+        print_operation(file, prog, &prog->inner[op->body + i], indent + 4);
+    }
+}
+
+void prog_print(FILE *file, const struct prog *prog, size_t index)
+{
+    fprintf(file, "#   %3zu ", index);
+    print_operation(file, prog, &prog->ops[index], 0);
 }

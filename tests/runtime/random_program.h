@@ -3,7 +3,10 @@
 
 /* Random programs against duite.h: made from a seed, interpreted one task after the other from the
  * contract alone, run on the runtime, compared bit for bit. The interpreter shares with the runtime
- * nothing but the bodies. */
+ * nothing but the arithmetic of the bodies.
+ *
+ * The main program and each body are lists of operations on a table of objects. That of the main
+ * program has its objects as they are made, that of a body its parameters and then its own. */
 
 #include <duite.h>
 #include <duite_policy.h>
@@ -12,7 +15,21 @@
 #include <stdint.h>
 #include <stdio.h>
 
-enum { PROG_MAX_PARAMS = 32, PROG_MAX_KERNELS = 8, PROG_ARGS_PADDING = 64 };
+enum { PROG_MAX_PARAMS = 32, PROG_MAX_KERNELS = 40, PROG_ARGS_PADDING = 64 };
+enum { PROG_MAX_TABLE = 48 }; /* objects of the main program, or of a body */
+
+/* Most features come by chance; all may be forced to be there or not. */
+enum prog_feature {
+    PROG_NESTS,    /* bodies fork, set, get, wait, make objects; postponed modes */
+    PROG_GRAPHS,   /* records and replays graphs */
+    PROG_REPEATS,  /* forks the same tasks again and again; on one rank only */
+    PROG_SIZES,    /* objects that change their size */
+    PROG_FAILURES, /* bodies fail */
+    PROG_REFUSALS, /* forks that are refused */
+    PROG_LARGE,    /* large objects */
+    PROG_N_FEATURES
+};
+extern const char *const prog_features[PROG_N_FEATURES];
 
 enum prog_kind {
     PROG_SKIP, /* left out by shrinking */
@@ -24,10 +41,12 @@ enum prog_kind {
     PROG_GET_AT,
     PROG_COUNT, /* get_count */
     PROG_WAIT,
+    PROG_CONTRIBUTE, /* in a body: its own contribution to a parameter under cwp */
     PROG_HINT,
     PROG_FOLLOW,
     PROG_HOME,
-    PROG_WRONG, /* a fork that must be refused; the next get or wait returns its error once more */
+    PROG_WRONG, /* a fork that must be refused; the next get or wait returns its error once more.
+                   Without one a body fails with it */
     PROG_GRAPH, /* records what follows it: `n` operations of the next two kinds */
     PROG_GRAPH_FORK,
     PROG_GRAPH_SET,
@@ -43,21 +62,22 @@ enum prog_kind {
 /* Two of the laws are the program's own: one for numbers, one for bytes. */
 enum prog_law { PROG_SUM, PROG_MIN, PROG_MAX, PROG_MIX, PROG_WEAVE, PROG_N_LAWS };
 
-/* Objects are named by the order in which the program makes them; no number is used twice. */
+/* Objects by their place in the table; no place is used twice. */
 struct prog_op {
     enum prog_kind kind;
     unsigned object;
     unsigned n,
         objects[PROG_MAX_PARAMS]; /* fork: parameters; hint: neighbours; follow: the leader */
     unsigned kernel;
-    unsigned number; /* forks: place in fork order */
-    int rank;        /* fork, get_at; -1: none named */
-    duite_type type; /* new */
-    size_t count;    /* new: elements; set: of an object whose size changes; graphs: see there */
-    size_t max;      /* new: elements at most, 0: the size is fixed */
-    uint64_t seed;   /* set: of the values, 0: zeros; fork: of the body */
-    unsigned pause;  /* fork: how the body wastes time */
-    int fails;       /* fork: the code the body returns */
+    size_t body, n_inner; /* fork: what the body does: n_inner operations of prog->inner */
+    unsigned number;      /* forks: no other fork has it */
+    int rank;             /* fork, get_at; -1: none named */
+    duite_type type;      /* new */
+    size_t count;   /* new: elements; set: of an object whose size changes; graphs: see there */
+    size_t max;     /* new: elements at most, 0: the size is fixed */
+    uint64_t seed;  /* set: of the values, 0: zeros; fork: of the body */
+    unsigned pause; /* fork: how the body wastes time */
+    int fails;      /* fork: the code the body returns */
     unsigned
         exceeds;   /* fork: parameter + 1 that the body gives more elements than it may; 0: none */
     int sometimes; /* fork: it fails, or ends flags, depending on what it reads */
@@ -68,9 +88,10 @@ struct prog_op {
     double weight;    /* hint */
 };
 
-/* What a body is told: it cannot ask the program, which it must not see. */
+/* A body is told this, and asks the program only for its calls. */
 struct prog_args {
     uint64_t seed;
+    size_t body, n_inner;
     int fails, rank;
     uint8_t sometimes, ends;
     unsigned pause, number, n, exceeds;
@@ -88,15 +109,15 @@ struct prog_object {
 struct prog {
     uint64_t seed;
     int n_ranks;
-    size_t n_kernels, n_ops, n_objects, n_forks, n_graphs;
+    size_t n_kernels, n_ops, n_inner, n_objects, n_forks, n_graphs;
     char name[PROG_MAX_KERNELS][16];
     duite_kernel kernel[PROG_MAX_KERNELS];
     const duite_kernel *list[PROG_MAX_KERNELS + 1];
-    struct prog_op *ops;
-    struct prog_object *objects;
+    struct prog_op *ops, *inner; /* of the main program; of all bodies */
+    struct prog_object objects[PROG_MAX_TABLE];
 };
 
-/* What an operation must give. */
+/* The right answer of an operation. */
 struct prog_expect {
     int code;
     unsigned char *bytes; /* get, get_at: the object; NULL if it is poisoned */
@@ -111,12 +132,14 @@ struct prog_answers {
     int stop;
 };
 
-/* What bodies share on one rank. */
+/* Bodies share this on one rank. */
 struct prog_context {
     int rank, n_ranks;
     unsigned threads;
+    struct run *run;   /* random_run.h */
     atomic_uchar *ran; /* n_forks: how often a body ran on this rank */
-    atomic_int wrong;  /* the first thing a body found wrong: a line of random_bodies.c */
+    atomic_int wrong;  /* the first thing a body found wrong: a line of random_bodies.c, ... */
+    atomic_int code;   /* ... or the code of its wrong call, which is that operation's kind */
 };
 
 struct prog_setup {
@@ -126,30 +149,57 @@ struct prog_setup {
     uint64_t seed;
     double spin;
     size_t window;
+    int memo, check;
     int verbose;
 };
 
-/* What a run found: an empty text if all is as it should be. */
+/* The first wrong thing that a run found: an empty text if all is as it should be. */
 struct prog_report {
     size_t op;
     uint64_t recognised; /* tasks, on this rank */
     char text[600];
 };
 
-/* A program for n_ranks ranks; NULL without memory. The same on every rank. */
-struct prog *prog_make(uint64_t seed, int n_ranks);
+/* Zeroed memory; without any, the job ends. */
+void *prog_memory(size_t n, size_t size);
+
+/* A program for n_ranks ranks, with and without such features (a bit each). The same on every rank.
+ */
+struct prog *prog_make(uint64_t seed, int n_ranks, unsigned with, unsigned without);
 void prog_free(struct prog *prog);
+/* An operation of the main program with the bodies of its tasks. */
 void prog_print(FILE *file, const struct prog *prog, size_t op);
 void prog_print_element(duite_type type, const void *data, size_t i, char *text, size_t size);
 /* The mode of parameter i of a kernel. */
 duite_mode prog_mode(const duite_kernel *kernel, size_t i);
 
-/* The body of every kernel; with a NULL context nothing is checked, counted or wasted. */
+static inline int prog_is_fork(const struct prog_op *op)
+{
+    return op->kind == PROG_FORK || op->kind == PROG_GRAPH_FORK;
+}
+static inline int prog_is_postponed(duite_mode mode)
+{
+    return mode >= DUITE_RP;
+}
+
+/* The body of every kernel: reads, then makes its calls (random_calls.c), then writes. */
 int prog_body(const duite_call *call);
+/* Its two ends, and what it learns from a call: all goes into a hash. With a NULL context nothing
+ * is checked, counted or wasted, and the sizes of parameters are changed by hand. */
+uint64_t prog_body_begin(const duite_call *call);
+int prog_body_end(const duite_call *call, uint64_t hash);
+uint64_t prog_body_told(uint64_t hash, int code, const void *bytes, size_t n);
+/* Keeps a wrong thing that a body found; code 0: at that line of random_bodies.c, else it is what
+ * a call of that kind returned. */
+void prog_body_wrong(struct prog_context *context, int line, int code);
+
 size_t prog_size(duite_type type);
 /* The values of a set. */
 void prog_values(duite_type type, size_t count, uint64_t seed, void *values);
-void prog_args_fill(const struct prog *prog, const struct prog_op *op, struct prog_args *args);
+/* The arguments of a fork of objects of such shapes; the shapes of what a body is given. */
+void prog_args_fill(const struct prog *prog, const struct prog_op *op,
+                    const struct prog_object *shape, struct prog_args *args);
+void prog_shapes(const struct prog_args *args, struct prog_object *shape);
 
 /* Laws: their meaning; what a kernel's parameter i has; what the runtime is told. */
 void prog_combine(enum prog_law law, duite_type type, size_t count, void *left, const void *right);
@@ -163,7 +213,7 @@ int prog_is_recorded(const struct prog *prog, size_t index);
 /* Does a recorded operation name the object? `first` is its graph's operation. */
 int prog_records(const struct prog *prog, size_t first, unsigned object);
 
-/* Interprets a program; NULL without memory. */
+/* Interprets a program. */
 struct prog_answers *prog_interpret(const struct prog *prog);
 void prog_answers_free(const struct prog *prog, struct prog_answers *answers);
 

@@ -1,33 +1,24 @@
-/* Runs random programs on groups of the ranks of one job, each group on its own. A
- * program is its seed and the number of ranks; threads, scheduler, mapping and balancer follow from
- * the seed too unless they are given. */
+/* Runs random programs on groups of the ranks of one job, each group on its own. A program is its
+ * seed, the number of ranks and the features that are forced; how it runs follows from the seed,
+ * too, except for given options. */
 
-#include "runtime/balance/balance.h"
-#include "runtime/sched/sched.h"
-#include "tests/runtime/random_program.h"
-#include "tests/support/policies.h"
+#include "tests/runtime/random_options.h"
 
-#include <getopt.h>
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-struct settings {
-    uint64_t seed; /* of one program, or the first of many */
-    int one, ranks, threads, window, verbose;
-    unsigned long programs, repeat;
-    const char *scheduler, *mapping, *balance;
-};
+enum { MOST_SECONDS = 120, MOST_WRONG = 20, SHRINK_REPEATS = 20 };
 
-static char running[256]; /* the program that runs, for the handler */
+static char running[512]; /* the command that repeats the program that runs, for the handler */
 static volatile size_t where;
 static unsigned long recognised; /* tasks, of all programs of this process */
 
 /* Says what was running when the job hangs. */
 static void last_words(int number)
 {
-    char line[320] = "# hangs: ", digits[24], *d = digits + sizeof digits - 1;
+    char line[600] = "# hangs: ", digits[24], *d = digits + sizeof digits - 1;
     size_t at = where;
 
     (void)number;
@@ -39,40 +30,6 @@ static void last_words(int number)
     if (write(STDERR_FILENO, line, strlen(line)) < 0)
         _exit(4);
     _exit(3);
-}
-
-static const char *draw_policy(uint64_t *random, const char *const *names,
-                               const char *const *adversaries)
-{
-    const size_t n = policies_count(names, adversaries);
-    return policies_at(names, adversaries, duite_random(random) % n);
-}
-
-static struct prog_setup draw_setup(const struct settings *settings, uint64_t seed, MPI_Comm comm)
-{
-    static const double SPINS[] = {0, 1e-6, 100e-6};
-    static const size_t WINDOWS[] = {0, 0, 1, 1, 2, 7, 30};
-    struct prog_setup setup = {.comm = comm, .verbose = settings->verbose};
-    uint64_t random = ~seed;
-
-    setup.seed = duite_random(&random);
-    setup.threads = 1 + (unsigned)(duite_random(&random) % 4);
-    setup.spin = SPINS[duite_random(&random) % 3];
-    setup.window = WINDOWS[duite_random(&random) % (sizeof WINDOWS / sizeof *WINDOWS)];
-    setup.scheduler = draw_policy(&random, duite_scheduler_names(), sched_test_names());
-    setup.mapping = draw_policy(&random, duite_mapping_names(), (const char *[]){NULL});
-    setup.balance = draw_policy(&random, duite_balancer_names(), balance_test_names());
-    if (settings->balance)
-        setup.balance = settings->balance;
-    if (settings->window >= 0)
-        setup.window = (size_t)settings->window;
-    if (settings->threads > 0)
-        setup.threads = (unsigned)settings->threads;
-    if (settings->scheduler)
-        setup.scheduler = settings->scheduler;
-    if (settings->mapping)
-        setup.mapping = settings->mapping;
-    return setup;
 }
 
 /* The rank of the group that found something first; -1 if none did. */
@@ -98,10 +55,8 @@ static int try_program(const struct prog *prog, const struct prog_setup *setup,
     int wrong = 0;
 
     for (unsigned long i = 0; i < repeat && !wrong; i++) {
-        alarm(120);
-        *report = (struct prog_report){.text = "out of memory"};
-        if (answers)
-            prog_run(prog, answers, setup, report, &where);
+        alarm(MOST_SECONDS);
+        prog_run(prog, answers, setup, report, &where);
         recognised += report->recognised;
         wrong = finder(setup, report) >= 0;
     }
@@ -109,16 +64,16 @@ static int try_program(const struct prog *prog, const struct prog_setup *setup,
     return wrong;
 }
 
-/* Tries without n operations from `at` on; keeps them if the program is then right. */
+/* Tries without n operations of a list; keeps them if the program is then right. */
 static void leave_out(struct prog *prog, const struct prog_setup *setup, unsigned long repeat,
-                      size_t at, size_t n)
+                      struct prog_op *ops, size_t n)
 {
-    enum prog_kind *kept = calloc(n, sizeof *kept);
+    enum prog_kind *kept = prog_memory(n, sizeof *kept);
     struct prog_report report;
     int changed = 0;
 
-    for (size_t i = 0; kept && i < n; i++) {
-        enum prog_kind *kind = &prog->ops[at + i].kind;
+    for (size_t i = 0; i < n; i++) {
+        enum prog_kind *kind = &ops[i].kind;
 
         kept[i] = *kind;
         if (*kind == PROG_NEW || *kind == PROG_FREE || *kind == PROG_SKIP)
@@ -128,20 +83,27 @@ static void leave_out(struct prog *prog, const struct prog_setup *setup, unsigne
     }
     if (changed && !try_program(prog, setup, repeat, &report))
         for (size_t i = 0; i < n; i++)
-            prog->ops[at + i].kind = kept[i];
+            ops[i].kind = kept[i];
     free(kept);
 }
 
-/* Leaves out of a failing program whatever can go while it still fails, and prints the rest. */
+static void shrink_list(struct prog *prog, const struct prog_setup *setup, unsigned long repeat,
+                        struct prog_op *ops, size_t n_ops)
+{
+    for (size_t n = n_ops; n > 0; n /= 2)
+        for (size_t at = 0; at < n_ops; at += n)
+            leave_out(prog, setup, repeat, &ops[at], n_ops - at < n ? n_ops - at : n);
+}
+
+/* Leaves out of a failing program what can go while it still fails, and prints the rest. */
 static void shrink(struct prog *prog, struct prog_setup setup, unsigned long repeat)
 {
     int rank;
 
     MPI_Comm_rank(setup.comm, &rank);
     setup.verbose = 0;
-    for (size_t n = prog->n_ops; n > 0; n /= 2)
-        for (size_t at = 0; at < prog->n_ops; at += n)
-            leave_out(prog, &setup, repeat, at, prog->n_ops - at < n ? prog->n_ops - at : n);
+    shrink_list(prog, &setup, repeat, prog->ops, prog->n_ops);
+    shrink_list(prog, &setup, repeat, prog->inner, prog->n_inner);
     if (rank == 0)
         printf("# still wrong with these operations only:\n");
     for (size_t i = 0; rank == 0 && i < prog->n_ops; i++)
@@ -165,27 +127,27 @@ static void tell(const struct prog *prog, const struct prog_setup *setup,
 }
 
 /* Returns whether the program went wrong, the same on the whole group. */
-static int run_seed(const struct settings *settings, uint64_t seed, MPI_Comm comm)
+static int run_seed(const struct options *options, uint64_t seed, MPI_Comm comm)
 {
-    const struct prog_setup setup = draw_setup(settings, seed, comm);
+    const struct prog_setup setup = options_setup(options, seed, comm);
+    const unsigned long repeat = (unsigned long)options->number[OPTION_REPEAT];
     struct prog_report report;
     struct prog *prog;
     int ranks, wrong;
 
     MPI_Comm_size(comm, &ranks);
     snprintf(running, sizeof running,
-             "--seed %llu --ranks %d --threads %u --scheduler %s --mapping %s --balance %s "
-             "--window %zu",
-             (unsigned long long)seed, ranks, setup.threads, setup.scheduler, setup.mapping,
-             setup.balance, setup.window);
-    prog = prog_make(seed, ranks);
-    if (!prog)
-        MPI_Abort(MPI_COMM_WORLD, 99);
-    wrong = try_program(prog, &setup, settings->repeat, &report);
+             "mpirun -n %d tests/runtime/random_programs --seed %llu --ranks %d --threads %u "
+             "--scheduler %s --mapping %s --balance %s "
+             "--window %zu --memo %d --check %d%s",
+             ranks, (unsigned long long)seed, ranks, setup.threads, setup.scheduler, setup.mapping,
+             setup.balance, setup.window, setup.memo, setup.check, options->forced);
+    prog = prog_make(seed, ranks, options->with, options->without);
+    wrong = try_program(prog, &setup, repeat, &report);
     if (wrong)
         tell(prog, &setup, &report);
-    if (wrong && settings->one)
-        shrink(prog, setup, settings->repeat < 20 ? 20 : settings->repeat);
+    if (wrong && options->number[OPTION_SEED] >= 0)
+        shrink(prog, setup, repeat < SHRINK_REPEATS ? SHRINK_REPEATS : repeat);
     prog_free(prog);
     alarm(0);
     return wrong;
@@ -204,25 +166,28 @@ static const struct way {
 enum { SHARES = 4 * 12 + 3 * 8 + 2 * 10 + 2 * 5 + 5 };
 
 /* Adds to done[0] the programs that a group ran, to done[1] the wrong ones, on its first rank. */
-static void run_group(const struct settings *settings, unsigned group, unsigned long n,
-                      MPI_Comm comm, unsigned long *done)
+static void run_group(const struct options *options, unsigned group, unsigned long n, MPI_Comm comm,
+                      unsigned long *done)
 {
+    const uint64_t base = (uint64_t)options->number[OPTION_BASE];
     unsigned long wrong = 0;
     int member;
 
     MPI_Comm_rank(comm, &member);
-    for (unsigned long i = 0; i < n && wrong < 20; i++) {
-        wrong += (unsigned)run_seed(settings, settings->seed + group * 1000000ull + i, comm);
+    for (unsigned long i = 0; i < n && wrong < MOST_WRONG; i++) {
+        wrong += (unsigned)run_seed(options, base + group * 1000000ull + i, comm);
         done[0] += member == 0;
     }
     done[1] += member == 0 ? wrong : 0;
 }
 
 /* Four ranks are cut into groups; fewer or more are one group. */
-static void run_many(const struct settings *settings, int rank, int size, unsigned long *done)
+static void run_many(const struct options *options, int rank, int size, unsigned long *done)
 {
+    const unsigned long programs = (unsigned long)options->number[OPTION_PROGRAMS];
+
     if (size != 4) {
-        run_group(settings, 0, settings->programs, MPI_COMM_WORLD, done);
+        run_group(options, 0, programs, MPI_COMM_WORLD, done);
         return;
     }
     for (unsigned w = 0; w < sizeof WAYS / sizeof *WAYS; w++) {
@@ -230,66 +195,28 @@ static void run_many(const struct settings *settings, int rank, int size, unsign
         MPI_Comm comm;
 
         MPI_Comm_split(MPI_COMM_WORLD, (int)group, 0, &comm);
-        run_group(settings, w * 4 + group, settings->programs * WAYS[w].share / SHARES + 1, comm,
-                  done);
+        run_group(options, w * 4 + group, programs * WAYS[w].share / SHARES + 1, comm, done);
         MPI_Comm_free(&comm);
     }
 }
 
-static int read_options(int argc, char **argv, struct settings *settings)
-{
-    static const struct option OPTIONS[] = {
-        {"seed", 1, NULL, 's'},    {"base", 1, NULL, 'b'},    {"ranks", 1, NULL, 'r'},
-        {"threads", 1, NULL, 't'}, {"repeat", 1, NULL, 'n'},  {"programs", 1, NULL, 'p'},
-        {"mapping", 1, NULL, 'm'}, {"verbose", 0, NULL, 'v'}, {"scheduler", 1, NULL, 'q'},
-        {"balance", 1, NULL, 'a'}, {"window", 1, NULL, 'w'},  {NULL, 0, NULL, 0}};
-
-    for (int c; (c = getopt_long(argc, argv, "", OPTIONS, NULL)) != -1;) {
-        settings->one |= c == 's';
-        if (c == 's' || c == 'b')
-            settings->seed = strtoull(optarg, NULL, 10);
-        else if (c == 'r')
-            settings->ranks = atoi(optarg);
-        else if (c == 't')
-            settings->threads = atoi(optarg);
-        else if (c == 'w')
-            settings->window = atoi(optarg);
-        else if (c == 'n')
-            settings->repeat = strtoul(optarg, NULL, 10);
-        else if (c == 'p')
-            settings->programs = strtoul(optarg, NULL, 10);
-        else if (c == 'm')
-            settings->mapping = optarg;
-        else if (c == 'a')
-            settings->balance = optarg;
-        else if (c == 'q')
-            settings->scheduler = optarg;
-        else if (c == 'v')
-            settings->verbose = 1;
-        else
-            return 1;
-    }
-    return (settings->scheduler && !duite_scheduler_find(settings->scheduler)) ||
-           (settings->balance && !duite_balancer_find(settings->balance)) ||
-           (settings->mapping && !duite_mapping_find(settings->mapping));
-}
-
-static int run_one(const struct settings *settings, int rank)
+static int run_one(const struct options *options, int rank)
 {
     MPI_Comm comm;
     int wrong;
 
-    MPI_Comm_split(MPI_COMM_WORLD, rank < settings->ranks ? 0 : MPI_UNDEFINED, 0, &comm);
+    MPI_Comm_split(MPI_COMM_WORLD, rank < options->number[OPTION_RANKS] ? 0 : MPI_UNDEFINED, 0,
+                   &comm);
     if (comm == MPI_COMM_NULL)
         return 0;
-    wrong = run_seed(settings, settings->seed, comm);
+    wrong = run_seed(options, (uint64_t)options->number[OPTION_SEED], comm);
     MPI_Comm_free(&comm);
     return rank == 0 && wrong;
 }
 
 int main(int argc, char **argv)
 {
-    struct settings settings = {.seed = 1, .ranks = 1, .window = -1, .programs = 500, .repeat = 1};
+    struct options options;
     unsigned long mine[3] = {0, 0, 0}, sum[3];
     int rank, size, given;
 
@@ -299,21 +226,20 @@ int main(int argc, char **argv)
     MPI_Init_thread(&argc, &argv, MPI_THREAD_SERIALIZED, &given);
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
     MPI_Comm_size(MPI_COMM_WORLD, &size);
-    if (read_options(argc, argv, &settings) || settings.ranks > size || settings.ranks < 1 ||
-        (!settings.one && size > 16)) {
+    if (!options_read(&options, argc, argv, size)) {
         fprintf(
             stderr,
             "%s: --base SEED --programs N, on 1 to 16 ranks; or --seed SEED --ranks R [--threads "
-            "T] [--scheduler S] [--mapping M] [--balance B] [--window W] [--repeat N] [--verbose], "
-            "on R ranks or more\n",
+            "T] [--scheduler S] [--mapping M] [--balance B] [--window W] [--memo M] [--check C] "
+            "[--repeat N] [--verbose], on R ranks or more. Both: --with or --without FEATURE\n",
             argv[0]);
         MPI_Abort(MPI_COMM_WORLD, 2);
     }
-    if (settings.one) {
+    if (options.number[OPTION_SEED] >= 0) {
         mine[0] = rank == 0;
-        mine[1] = (unsigned)run_one(&settings, rank);
+        mine[1] = (unsigned)run_one(&options, rank);
     } else {
-        run_many(&settings, rank, size, mine);
+        run_many(&options, rank, size, mine);
     }
     mine[2] = recognised;
     MPI_Allreduce(mine, sum, 3, MPI_UNSIGNED_LONG, MPI_SUM, MPI_COMM_WORLD);

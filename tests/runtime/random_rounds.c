@@ -11,7 +11,7 @@ static int is_plain(const duite_kernel *kernel)
     int writes = 0, plain = kernel->variadic == DUITE_NONE && !kernel->replicated;
 
     for (unsigned i = 0; i < DUITE_MAX_ACCESS && kernel->access[i] != DUITE_NONE; i++) {
-        plain &= kernel->access[i] != DUITE_CW;
+        plain &= kernel->access[i] <= DUITE_RW;
         writes |= kernel->access[i] != DUITE_R;
     }
     return plain && writes;
@@ -23,8 +23,10 @@ static int draw_step(struct maker *m, struct prog_op *draft)
     for (int attempt = 0; attempt < 40; attempt++) {
         *draft = (struct prog_op){.kind = PROG_FORK};
         if (make_draft(m, draft) &&
-            (is_plain(&m->prog->kernel[draft->kernel]) || make_one_in(m, 400)))
+            (is_plain(&m->prog->kernel[draft->kernel]) || make_one_in(m, 400))) {
+            make_body(m, draft, MAX_DEPTH - 1, 0);
             return 1;
+        }
     }
     return 0;
 }
@@ -40,6 +42,17 @@ static void push_step(struct maker *m, const struct prog_op *draft)
     op->pause = op->pause && make_one_in(m, 8) ? op->pause : 0;
 }
 
+/* A task that begins at once and waits in its body for what it was lent. */
+static void push_asker(struct maker *m)
+{
+    struct prog_op draft = {.kind = PROG_FORK};
+
+    if (!make_fitting(m, &draft, make_one_in(m, 2) ? DUITE_RP : DUITE_RWP, -1))
+        return;
+    make_body(m, &draft, 1, 1);
+    make_push_fork(m, &draft);
+}
+
 /* Something else in between. */
 static void push_other(struct maker *m)
 {
@@ -51,7 +64,7 @@ static void push_other(struct maker *m)
     else if (choice == 1)
         make_push(m, PROG_WAIT, 0);
     else if (choice == 2)
-        make_set(m, PROG_SET, make_one_in(m, 2));
+        make_set(m, PROG_SET, make_draw_object(m), make_one_in(m, 2));
     else if (draw_step(m, &draft))
         push_step(m, &draft);
     if (choice < 2)
@@ -81,6 +94,9 @@ void make_rounds(struct maker *m)
             if (make_one_in(m, 8 * steady) && draw_step(m, &other))
                 round[make_below(m, n)] = other;
         }
-        push_other(m);
+        if (make_has(m, PROG_NESTS) && make_one_in(m, 2))
+            push_asker(m);
+        else
+            push_other(m);
     }
 }

@@ -1,4 +1,4 @@
-/* Runs a program on duite and compares. Nothing is decided by what the runtime answers, so that
+/* Runs a program on duite and compares. No answer of the runtime decides anything, so that
  * every rank goes through the same calls whatever it finds; the first thing found is kept. */
 
 #include "tests/runtime/random_run.h"
@@ -23,7 +23,7 @@ void prog_found(struct run *run, const char *format, ...)
     run->report->op = run->at;
 }
 
-static void expect(struct run *run, const char *call, int code, int expected)
+void prog_expect_code(struct run *run, const char *call, int code, int expected)
 {
     if (code != expected)
         prog_found(run, "%s returned %d (%s), expected %d", call, code,
@@ -38,15 +38,16 @@ static void compare(struct run *run, unsigned number, const struct prog_expect *
     size_t i = 0, different = 0, first = 0;
 
     for (; i < answer->count; i++)
-        if (memcmp(run->bytes + i * size, answer->bytes + i * size, size) != 0 && different++ == 0)
+        if (memcmp(run->main.bytes + i * size, answer->bytes + i * size, size) != 0 &&
+            different++ == 0)
             first = i;
-    for (i *= size; i < run->largest; i++)
-        if (run->bytes[i] != UNTOUCHED)
+    for (i *= size; i < run->main.largest; i++)
+        if (run->main.bytes[i] != UNTOUCHED)
             prog_found(run, "object %u: byte %zu behind its %zu elements was written", number, i,
                        answer->count);
     if (!different)
         return;
-    prog_print_element(object->type, run->bytes, first, is, sizeof is);
+    prog_print_element(object->type, run->main.bytes, first, is, sizeof is);
     prog_print_element(object->type, answer->bytes, first, should, sizeof should);
     prog_found(run, "object %u: %zu of %zu elements differ, first [%zu]: %s, expected %s", number,
                different, answer->count, first, is, should);
@@ -54,14 +55,15 @@ static void compare(struct run *run, unsigned number, const struct prog_expect *
 
 static void get(struct run *run, const struct prog_op *op, const struct prog_expect *answer)
 {
-    memset(run->bytes, UNTOUCHED, run->largest);
-    const int here = op->kind == PROG_GET || op->rank == run->rank;
-    void *values = here ? run->bytes : NULL;
+    memset(run->main.bytes, UNTOUCHED, run->main.largest);
+    const int here = op->kind == PROG_GET || op->rank == run->main.rank;
+    void *values = here ? run->main.bytes : NULL;
     const int code = op->kind == PROG_GET
-                         ? duite_get(run->rt, run->object[op->object], values)
-                         : duite_get_at(run->rt, run->object[op->object], op->rank, values);
+                         ? duite_get(run->main.rt, run->main.name[op->object], values)
+                         : duite_get_at(run->main.rt, run->main.name[op->object], op->rank, values);
 
-    expect(run, op->kind == PROG_GET ? "get" : "get_at", code, here ? answer->code : DUITE_OK);
+    prog_expect_code(run, op->kind == PROG_GET ? "get" : "get_at", code,
+                     here ? answer->code : DUITE_OK);
     if (here && answer->bytes && code == answer->code)
         compare(run, op->object, answer);
 }
@@ -71,46 +73,21 @@ static void get_count(struct run *run, const struct prog_op *op, const struct pr
     const size_t none = (size_t)-3, expected = answer->bytes ? answer->count : none;
     size_t count = none;
 
-    expect(run, "get_count", duite_get_count(run->rt, run->object[op->object], &count),
-           answer->code);
+    prog_expect_code(run, "get_count",
+                     duite_get_count(run->main.rt, run->main.name[op->object], &count),
+                     answer->code);
     if (count != expected)
         prog_found(run, "object %u has %zu elements, expected %zu", op->object, count, expected);
-}
-
-/* Priorities differ between ranks, which is nobody's business. */
-static int fork_task(struct run *run, const struct prog_op *op)
-{
-    const duite_kernel *kernel = &run->prog->kernel[op->kernel];
-    duite_task_options how = {.priority = op->priority + run->rank, .cost = op->cost};
-    duite_object objects[PROG_MAX_PARAMS];
-    struct prog_args args;
-    int rank = op->rank, code;
-
-    prog_args_fill(run->prog, op, &args);
-    for (unsigned i = 0; i < op->n; i++)
-        objects[i] = run->object[op->objects[i]];
-    if (rank >= 0)
-        how.at = &rank;
-    if (op->cost >= 0)
-        code = duite_fork_with(run->rt, &how, kernel, &args, op->n, objects);
-    else if (rank < 0)
-        code = duite_fork(run->rt, kernel, &args, op->n, objects);
-    else
-        code = duite_fork_at(run->rt, rank, kernel, &args, op->n, objects);
-    memset(&args, 0xee, sizeof args); /* the runtime has its copy */
-    memset(objects, 0xee, sizeof objects);
-    memset(&how, 0xee, sizeof how);
-    rank = -1;
-    return code;
 }
 
 /* A kernel that contributes to one object is given it twice. */
 static void wrong_fork(struct run *run, const struct prog_op *op, int expected)
 {
-    const duite_object objects[] = {run->object[op->object], run->object[op->object]};
+    const duite_object objects[] = {run->main.name[op->object], run->main.name[op->object]};
     const struct prog_args args = {0};
 
-    expect(run, "fork", duite_fork(run->rt, &run->prog->kernel[0], &args, 2, objects), expected);
+    prog_expect_code(run, "fork",
+                     duite_fork(run->main.rt, &run->prog->kernel[0], &args, 2, objects), expected);
 }
 
 static void hint(struct run *run, const struct prog_op *op)
@@ -119,17 +96,18 @@ static void hint(struct run *run, const struct prog_op *op)
     double weights[PROG_MAX_PARAMS];
 
     for (unsigned i = 0; i < op->n; i++) {
-        neighbours[i] = run->object[op->objects[i]];
+        neighbours[i] = run->main.name[op->objects[i]];
         weights[i] = i;
     }
-    expect(run, "hint",
-           duite_hint(run->rt, run->object[op->object], op->weight, op->n, neighbours, weights),
-           DUITE_OK);
+    prog_expect_code(run, "hint",
+                     duite_hint(run->main.rt, run->main.name[op->object], op->weight, op->n,
+                                neighbours, weights),
+                     DUITE_OK);
 }
 
 static void ask_home(struct run *run, unsigned number)
 {
-    const int home = duite_home(run->rt, run->object[number]);
+    const int home = duite_home(run->main.rt, run->main.name[number]);
 
     if (run->moves)
         return;
@@ -140,130 +118,23 @@ static void ask_home(struct run *run, unsigned number)
     run->home[number] = home;
 }
 
-static int set(struct run *run, const struct prog_op *op)
-{
-    const struct prog_object *object = &run->prog->objects[op->object];
-    const void *values = op->seed ? run->bytes : NULL;
-    const int whole = op->count == (object->max ? object->max : object->count);
-
-    prog_values(object->type, op->count, op->seed, run->bytes);
-    const int code = whole && op->count % 2
-                         ? duite_set(run->rt, run->object[op->object], values)
-                         : duite_set_sized(run->rt, run->object[op->object], values, op->count);
-
-    memset(run->bytes, 0xee, run->largest); /* the runtime has its copy */
-    return code;
-}
-
-static void make(struct run *run, const struct prog_op *op)
-{
-    duite_object *object = &run->object[op->object];
-
-    if (op->max)
-        expect(run, "new_sized", duite_new_sized(run->rt, op->type, op->count, op->max, object),
-               DUITE_OK);
-    else
-        expect(run, "new", duite_new(run->rt, op->type, op->count, object), DUITE_OK);
-}
-
-/* ---- Graphs ---- */
-
-static int build(duite *rt, void *context)
-{
-    struct run_graph *graph = context;
-    struct run *run = graph->run;
-    const struct prog_op *from = &run->prog->ops[graph->again];
-
-    (void)rt; /* it is the run's */
-    graph->first = graph->again;
-    for (size_t i = 1; i <= from->n; i++) {
-        const struct prog_op *op = &from[i];
-
-        if (op->kind == PROG_GRAPH_SET)
-            set(run, op);
-        else if (op->kind == PROG_GRAPH_FORK)
-            fork_task(run, op);
-    }
-    return 0;
-}
-
-static int change_args(struct run *run, struct run_graph *graph, const struct prog_op *op)
-{
-    struct prog_op target = run->prog->ops[op->count];
-    struct prog_args args;
-    size_t k = 0;
-
-    if (target.kind != PROG_GRAPH_FORK || op->count <= graph->first ||
-        op->count > graph->first + run->prog->ops[graph->first].n)
-        return DUITE_OK;
-    for (size_t i = graph->first + 1; i < op->count; i++)
-        k += run->prog->ops[i].kind == PROG_GRAPH_FORK;
-    target.seed = op->seed;
-    target.fails = op->fails;
-    prog_args_fill(run->prog, &target, &args);
-    return duite_graph_args(run->rt, graph->name, k, &args);
-}
-
-static void rounds(struct run *run, const struct run_graph *graph, uint64_t expected)
-{
-    uint64_t n = 0;
-
-    expect(run, "rounds", duite_graph_rounds(run->rt, graph->name, &n), DUITE_OK);
-    if (n != expected)
-        prog_found(run, "%llu rounds, expected %llu", (unsigned long long)n,
-                   (unsigned long long)expected);
-}
-
-static void graph_operation(struct run *run, const struct prog_op *op,
-                            const struct prog_expect *answer)
-{
-    struct run_graph *graph = &run->graph[op->graph];
-    const duite_object object = run->object[op->object];
-    int code = DUITE_OK;
-
-    if (op->kind == PROG_GRAPH) {
-        *graph = (struct run_graph){.run = run, .alive = 1, .again = (size_t)(op - run->prog->ops)};
-        code = duite_graph_new(run->rt, build, graph, &graph->name);
-    }
-    if (!graph->alive)
-        return;
-    if (op->kind == PROG_GRAPH_AGAIN) {
-        graph->again = (size_t)(op - run->prog->ops);
-    } else if (op->kind == PROG_REPLAY) {
-        code = duite_replay(run->rt, graph->name, op->count);
-    } else if (op->kind == PROG_REPLAY_WHILE) {
-        code = duite_replay_while(run->rt, graph->name, object, op->count);
-    } else if (op->kind == PROG_ROUNDS) {
-        rounds(run, graph, answer->rounds);
-    } else if (op->kind == PROG_GRAPH_ARGS) {
-        code = change_args(run, graph, op);
-    } else if (op->kind == PROG_GRAPH_BIND) {
-        graph->rebound = 1;
-        code = duite_graph_bind(run->rt, graph->name, object, run->object[op->objects[0]]);
-    } else if (op->kind == PROG_GRAPH_FREE) {
-        graph->alive = 0;
-        code = duite_graph_free(run->rt, graph->name);
-    }
-    expect(run, "a call on a graph", code, answer->code);
-}
-
 static void operation(struct run *run, const struct prog_op *op, const struct prog_expect *answer)
 {
-    duite_object *object = &run->object[op->object];
+    duite_object *object = &run->main.name[op->object];
 
     switch (op->kind) {
     case PROG_NEW:
-        make(run, op);
+        prog_expect_code(run, "new", prog_call_new(&run->main, op), DUITE_OK);
         break;
     case PROG_FREE:
         ask_home(run, op->object);
-        expect(run, "free", duite_free(run->rt, *object), DUITE_OK);
+        prog_expect_code(run, "free", duite_free(run->main.rt, *object), DUITE_OK);
         break;
     case PROG_SET:
-        expect(run, "set", set(run, op), DUITE_OK);
+        prog_expect_code(run, "set", prog_call_set(&run->main, op), DUITE_OK);
         break;
     case PROG_FORK:
-        expect(run, "fork", fork_task(run, op), DUITE_OK);
+        prog_expect_code(run, "fork", prog_call_fork(&run->main, op), DUITE_OK);
         break;
     case PROG_GET:
     case PROG_GET_AT:
@@ -273,14 +144,15 @@ static void operation(struct run *run, const struct prog_op *op, const struct pr
         get_count(run, op, answer);
         break;
     case PROG_WAIT:
-        expect(run, "wait", duite_wait(run->rt), answer->code);
+        prog_expect_code(run, "wait", duite_wait(run->main.rt), answer->code);
         break;
     case PROG_HINT:
         hint(run, op);
         break;
     case PROG_FOLLOW:
-        expect(run, "follow", duite_colocate(run->rt, *object, run->object[op->objects[0]]),
-               DUITE_OK);
+        prog_expect_code(run, "follow",
+                         duite_colocate(run->main.rt, *object, run->main.name[op->objects[0]]),
+                         DUITE_OK);
         break;
     case PROG_HOME:
         ask_home(run, op->object);
@@ -289,11 +161,12 @@ static void operation(struct run *run, const struct prog_op *op, const struct pr
         wrong_fork(run, op, answer->code);
         break;
     case PROG_SKIP:
+    case PROG_CONTRIBUTE:
     case PROG_GRAPH_FORK:
     case PROG_GRAPH_SET:
         break;
     default:
-        graph_operation(run, op, answer);
+        prog_call_graph(run, op, answer);
     }
 }
 
@@ -334,68 +207,77 @@ static void run_operations(struct run *run, const struct prog_setup *setup,
     options.spin_seconds = setup->spin;
     options.bind = 0;
     options.window = setup->window;
+    options.memo = setup->memo;
+    options.check = setup->check;
     comm_piece_bytes = piece_bytes(prog, setup->seed);
     run->moves = options.balance->migrate || options.mapping->map_tasks;
-    const int code = duite_start(&run->rt, &options);
+    const int code = duite_start(&run->main.rt, &options);
 
-    expect(run, "start", code, DUITE_OK);
+    prog_expect_code(run, "start", code, DUITE_OK);
     if (code)
         return;
     for (run->at = 0; run->at < prog->n_ops; run->at++) {
         *where = run->at;
-        if (setup->verbose && run->rank == 0)
+        if (setup->verbose && run->main.rank == 0)
             prog_print(stdout, prog, run->at);
         operation(run, &prog->ops[run->at], &run->answers->op[run->at]);
     }
     for (unsigned i = 0; i < prog->n_objects; i++)
         if (run->moves)
-            run->home[i] = duite_home(run->rt, run->object[i]);
+            run->home[i] = duite_home(run->main.rt, run->main.name[i]);
         else if (run->home[i] < 0)
             ask_home(run, i);
     duite_counters counters = {0};
 
-    expect(run, "count_all", duite_count_all(run->rt, &counters), DUITE_OK);
+    prog_expect_code(run, "count_all", duite_count_all(run->main.rt, &counters), DUITE_OK);
     run->report->recognised = counters.recognised;
+    if (counters.recognised && (!setup->memo || setup->check || prog->n_ranks > 1))
+        prog_found(run, "forks were recognised");
     if (counters.graphs_recorded != run->answers->n_recorded)
         prog_found(run, "%llu graphs recorded, expected %llu",
                    (unsigned long long)counters.graphs_recorded,
                    (unsigned long long)run->answers->n_recorded);
-    expect(run, "stop", duite_stop(&run->rt), run->answers->stop);
-    if (run->rt)
+    prog_expect_code(run, "stop", duite_stop(&run->main.rt), run->answers->stop);
+    if (run->main.rt)
         prog_found(run, "stop left *rt");
     prog_check_places(run, context, setup);
+}
+
+static size_t most_bytes(const struct prog_op *ops, size_t n, size_t most)
+{
+    for (size_t i = 0; i < n; i++) {
+        const size_t max = ops[i].max ? ops[i].max : ops[i].count;
+
+        if (ops[i].kind == PROG_NEW && max * prog_size(ops[i].type) > most)
+            most = max * prog_size(ops[i].type);
+    }
+    return most;
 }
 
 void prog_run(const struct prog *prog, const struct prog_answers *answers,
               const struct prog_setup *setup, struct prog_report *report, volatile size_t *where)
 {
-    struct run run = {.prog = prog, .answers = answers, .report = report, .largest = 1};
-    struct prog_context context = {.n_ranks = prog->n_ranks, .threads = setup->threads};
+    struct run run = {.prog = prog, .answers = answers, .report = report, .check = setup->check};
+    struct prog_context context = {.threads = setup->threads, .run = &run};
+    struct run_scope *main = &run.main;
 
     *report = (struct prog_report){0};
-    MPI_Comm_rank(setup->comm, &run.rank);
-    context.rank = run.rank;
-    for (size_t i = 0; i < prog->n_objects; i++) {
-        const struct prog_object *object = &prog->objects[i];
-        const size_t max = object->max ? object->max : object->count;
-
-        if (max * prog_size(object->type) > run.largest)
-            run.largest = max * prog_size(object->type);
-    }
-    run.object = calloc(prog->n_objects + 1, sizeof *run.object);
-    run.home = malloc((prog->n_objects + 1) * sizeof *run.home);
-    run.bytes = malloc(run.largest);
-    run.graph = calloc(prog->n_graphs + 1, sizeof *run.graph);
-    context.ran = calloc(prog->n_forks + 1, sizeof *context.ran);
-    if (run.object && run.home && run.bytes && run.graph && context.ran) {
-        memset(run.home, 0xff, (prog->n_objects + 1) * sizeof *run.home);
-        run_operations(&run, setup, &context, where);
-        if (context.wrong)
-            prog_found(&run, "a body was called wrongly: random_bodies.c:%d", context.wrong);
-    }
-    free(run.object);
-    free(run.home);
-    free(run.bytes);
+    main->prog = prog;
+    MPI_Comm_rank(setup->comm, &main->rank);
+    context.rank = main->rank;
+    memcpy(main->shape, prog->objects, sizeof main->shape);
+    main->largest = most_bytes(prog->ops, prog->n_ops, 1);
+    main->largest = most_bytes(prog->inner, prog->n_inner, main->largest);
+    main->bytes = prog_memory(main->largest, 1);
+    memset(run.home, 0xff, sizeof run.home);
+    run.graph = prog_memory(prog->n_graphs, sizeof *run.graph);
+    context.ran = prog_memory(prog->n_forks, sizeof *context.ran);
+    run_operations(&run, setup, &context, where);
+    if (context.code)
+        prog_found(&run, "a call in a body (kind %d) returned %d", context.wrong, context.code);
+    else if (context.wrong)
+        prog_found(&run, "a body was called wrongly: random_bodies.c:%d", context.wrong);
+    free(main->bytes);
     free(run.graph);
     free(context.ran);
 }

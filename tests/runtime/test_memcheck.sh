@@ -7,22 +7,18 @@ command -v valgrind > "$scratch/valgrind" || skip_all "there is no valgrind"
 test -z "${SANITIZER:-}" || skip_all "built with sanitizers, which valgrind cannot run"
 plan_later
 
-# memcheck RANKS COMMAND...
+# memcheck RANKS BASE PROGRAMS
 memcheck() {
-    n=$1
-    shift
-    ok "$* on $n ranks" ranks "$n" valgrind --quiet --leak-check=full --show-leak-kinds=all --errors-for-leak-kinds=all \
-        --num-callers=40 --keep-debuginfo=yes --error-exitcode=9 --suppressions="$srcdir/tests/support/valgrind.supp" "$@"
+    ok "$3 random programs on $1 ranks" ranks "$1" valgrind --quiet --leak-check=full --show-leak-kinds=all \
+        --errors-for-leak-kinds=all --num-callers=40 --keep-debuginfo=yes --error-exitcode=9 \
+        --suppressions="$srcdir/tests/support/valgrind.supp" tests/runtime/random_programs --base "$2" --programs "$3"
 }
 
 if test "${1:-}" = --long; then
-    for n in 1 2; do
-        memcheck $n tests/runtime/random_programs --base 4${n}000000 --programs $((1000 / n))
-        memcheck $n tests/runtime/nested_programs --seed 4${n}000000 --programs $((1000 / n))
-    done
+    memcheck 1 41000000 2000
+    memcheck 2 42000000 1000
 else
-    programs=10
-    if quick; then programs=5; fi
-    memcheck 1 tests/runtime/random_programs --base 1 --programs $programs
-    memcheck 1 tests/runtime/nested_programs --seed 1 --programs $programs
+    programs=20
+    if quick; then programs=10; fi
+    memcheck 1 1 $programs
 fi

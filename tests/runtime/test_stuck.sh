@@ -83,7 +83,7 @@ ok "tells nothing" quiet
 DUITE_STUCK_SECONDS=0.001
 programs=100
 if quick; then programs=20; fi
-ok "looked at all the time, one rank" limited tests/runtime/nested_programs --seed 400000 --programs $programs
+ok "looked at all the time, one rank" limited tests/runtime/random_programs --base 500000 --programs $programs --with nests
 ok "looked at all the time, three ranks" ranks 3 tests/runtime/random_programs --base 400000 --programs $programs
 
 DUITE_STUCK_SECONDS=soon

@@ -21,7 +21,5 @@ repeat "with window 1" --base 52000000 --programs $programs --window 1
 for scheduler in steal fifo lifo priority static shuffle; do
     repeat "by $scheduler on four threads" --base 55000000 --programs $programs --threads 4 --scheduler $scheduler
 done
-DUITE_MEMO=always
-export DUITE_MEMO
-repeat "with repeated forks" --base 57000000 --programs $programs --ranks 1
-ok "random trees of tasks" limited tests/runtime/nested_programs --seed 56000000 --programs $((100 * programs))
+repeat "with repeated forks" --base 57000000 --programs $programs --with repeats --memo 2
+ok "programs that nest" limited tests/runtime/random_programs --base 56000000 --programs $((100 * programs)) --with nests

@@ -3,6 +3,7 @@
 
 #include "runtime/base/memory.h"
 #include "runtime/data/law.h"
+#include "runtime/data/order.h"
 #include "runtime/data/packet.h"
 
 #include <stdatomic.h>
@@ -220,6 +221,38 @@ static inline struct data_waiter *data_version_release(struct data_version *vers
     if (atomic_fetch_sub_explicit(&version->holds, 1, memory_order_acq_rel) != 1)
         return NULL;
     return data_version_end(version);
+}
+
+/* ---- The order rule (order.h) ---- */
+
+/* A reader waits for the value, and the next writer for its hold. True if there is nothing to wait
+ * for. */
+static inline bool data_version_read(struct data_version *version, struct data_waiter *reader)
+{
+    if (data_order_waits(true, false))
+        data_version_hold(version);
+    if (data_order_waits(false, true))
+        return !data_version_await(version, reader);
+    reader->version = version;
+    return true;
+}
+
+/* The reader is over. Returns the heir if it waits for nothing more, as data_version_release. */
+static inline struct data_waiter *data_version_was_read(struct data_version *version)
+{
+    return data_order_waits(true, false) ? data_version_release(version) : NULL;
+}
+
+/* A writer, whose version is `out`, waits for all holds on the one before it, which loses that of
+ * its object: `old` or NULL. True if there is nothing to wait for. */
+static inline bool data_version_overwrite(struct data_version *old, struct data_version *out,
+                                          struct data_waiter *writer)
+{
+    writer->version = out;
+    if (!old)
+        return true;
+    old->heir = writer;
+    return data_version_release(old) != NULL;
 }
 
 #pragma GCC visibility pop

@@ -1,30 +1,21 @@
-/* Edges: the predecessors of each node. The pass goes through two rounds in a row with the last
- * writer of each place and the readers since. Waiting for a node of the same round gives an edge
- * within a round, waiting for a node of the previous round an edge from round to round. Each edge,
- * except those of the deciding node, joins two uses of one place, one of which writes: so conflicts
- * are symmetric. A node after T in the round that releases T of the next round runs after T; a node
- * before T runs, in the next round, after T. So no node is counted down for the next round before
- * it has begun this one. The roots of a round and the deciding node are joined both ways for the
- * same reason. */
+/* Edges: the predecessors of each node. The pass goes through two rounds in a row, and asks the
+ * order rule (data/order.h) at each use of a place. Waiting for a node of the same round gives an
+ * edge within a round, waiting for a node of the previous round an edge from round to round. Each
+ * edge, except those of the deciding node, joins two uses of one place, one of which writes: so
+ * conflicts are symmetric. A node after T in the round that releases T of the next round runs after
+ * T; a node before T runs, in the next round, after T. So no node is counted down for the next
+ * round before it has begun this one. The roots of a round and the deciding node are joined both
+ * ways for the same reason. */
 #include "runtime/plan/passes.h"
 
 #include "runtime/base/memory.h"
+#include "runtime/data/order.h"
 
-/* Nodes of two rounds: the second round's numbers follow the first one's. All are stored plus 1; 0:
- * none. */
-struct edge_place {
-    uint32_t writer; /* the last one */
-    uint32_t reader; /* the first in a list of readers since */
-};
-
-struct edge_reader {
-    uint32_t node, next;
-};
-
+/* Nodes of two rounds: the second round's numbers follow the first one's. */
 struct edges {
     struct plan_round *round;
-    struct edge_place *place;
-    struct edge_reader *reader;
+    struct data_order_chain *place;
+    struct data_order_reader *reader;
     uint32_t n_readers;
     uint32_t *mark;   /* by node: the last one that an edge from here goes to, plus 1 */
     size_t n_pending; /* places written in the first round, but not yet in the second */
@@ -47,27 +38,10 @@ static void edge_add(struct edges *e, uint32_t from, uint32_t to)
     after->cyclic += cyclic;
 }
 
-static void edge_to_reader(struct edges *e, struct edge_place *place, uint32_t node)
+static bool edge_of_order(void *edges, uint32_t from, uint32_t to)
 {
-    if (place->writer)
-        edge_add(e, place->writer - 1, node);
-    e->reader[e->n_readers] = (struct edge_reader){node, place->reader};
-    place->reader = ++e->n_readers;
-}
-
-static void edge_to_writer(struct edges *e, struct edge_place *place, uint32_t node)
-{
-    const uint32_t n = (uint32_t)e->round->n_nodes;
-    if (!place->reader && place->writer)
-        edge_add(e, place->writer - 1, node);
-    for (uint32_t i = place->reader; i; i = e->reader[i - 1].next)
-        edge_add(e, e->reader[i - 1].node, node);
-    if (node < n)
-        e->n_pending += !place->writer;
-    else
-        e->n_pending -= place->writer <= n;
-    place->reader = 0;
-    place->writer = node + 1;
+    edge_add(edges, from, to);
+    return true;
 }
 
 /* No place joins nodes of both rounds once the second has written every place of the first. */
@@ -79,11 +53,11 @@ static void edges_of_places(struct edges *e, uint32_t to)
     if (to >= n && !e->n_pending)
         return;
     for (size_t i = node->first_use; i < node->first_use + node->n_uses; i++) {
-        struct edge_place *place = &e->place[round->use[i].place];
-        if (round->use[i].writes)
-            edge_to_writer(e, place, to);
-        else
-            edge_to_reader(e, place, to);
+        struct data_order_chain *place = &e->place[round->use[i].place];
+        const bool writes = round->use[i].writes;
+        e->n_pending += writes && to < n && !place->writer;
+        e->n_pending -= writes && to >= n && place->writer <= n;
+        data_order_next(place, e->reader, &e->n_readers, to, writes, edge_of_order, e);
     }
 }
 

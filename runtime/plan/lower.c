@@ -5,6 +5,7 @@
 #include "runtime/plan/passes.h"
 
 #include "runtime/base/memory.h"
+#include "runtime/data/order.h"
 
 /* The open contributions of an object. */
 struct lower_object {
@@ -124,7 +125,7 @@ static void lower_ends(struct lowering *l, size_t i)
     const struct plan_source_fork *fork = &l->round->source->fork[i];
     const struct plan_access *access = l->round->source->access + fork->first;
     for (uint32_t k = 0; k < fork->n; k++)
-        if (access[k].mode != DUITE_CW || access[k].law != l->object[access[k].object].law)
+        if (!data_order_joins(access[k].mode, access[k].law, l->object[access[k].object].law))
             lower_sum(l, access[k].object, i);
 }
 
@@ -142,7 +143,8 @@ static void lower_fork(struct lowering *l, size_t i)
         if (mode == DUITE_CW)
             plan_round_use(round, node, lower_contribution(l, &access[k]), false, true);
         else
-            plan_round_use(round, node, access[k].object, mode != DUITE_W, mode != DUITE_R);
+            plan_round_use(round, node, access[k].object, data_order_reads(mode),
+                           data_order_writes(mode));
     }
 }
 

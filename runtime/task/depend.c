@@ -11,23 +11,19 @@
 
 void task_read(struct task *task, size_t i, struct data_version *version, uint32_t *done)
 {
-    data_version_hold(version);
-    *done += !data_version_await(version, &task->access[i].waiter);
+    *done += data_version_read(version, &task->access[i].waiter);
 }
 
 int task_overwrite(struct task_graph *graph, struct task *task, size_t i,
                    struct data_object *object, struct data_version *version, uint32_t *done)
 {
-    struct data_waiter *waiter = &task->access[i].waiter;
-    waiter->version = data_object_version(object);
-    if (!waiter->version) {
+    struct data_version *out = data_object_version(object);
+    if (!out) {
         base_no_memory("a version");
         return task_break(graph);
     }
-    object->current = waiter->version;
-    if (version)
-        version->heir = waiter;
-    *done += !version || data_version_release(version) != NULL;
+    object->current = out;
+    *done += data_version_overwrite(version, out, &task->access[i].waiter);
     return DUITE_OK;
 }
 
@@ -183,18 +179,18 @@ __attribute__((noinline)) static int access_depend(struct task_fork_call *call, 
     duite_mode mode = task_immediate(declared);
     bool everywhere = call->kernel->replicated && !call->scope->depth;
     int code = DUITE_OK;
-    if (mode == DUITE_CW)
-        return access_contribute(call, i, object, task_postponed(declared));
-    if (object->leaves)
+    if (object->leaves && !data_order_joins(mode, data_law_of(call->kernel, i), object->law))
         code = task_reduce(call->scope, call->worker, object);
-    if (!code && mode != DUITE_W && graph->n_ranks > 1)
+    if (!code && mode == DUITE_CW)
+        return access_contribute(call, i, object, task_postponed(declared));
+    if (!code && data_order_reads(mode) && graph->n_ranks > 1)
         code = access_fetch(call, object, everywhere);
     if (code)
         return code;
     struct data_version *version = object->current;
-    if (call->task && mode != DUITE_W && !(version = task_local(graph, object)))
+    if (call->task && data_order_reads(mode) && !(version = task_local(graph, object)))
         return DUITE_E_MEMORY;
-    if (mode != DUITE_R)
+    if (data_order_writes(mode))
         return access_write(call, i, object, version, declared, everywhere);
     if (call->task)
         access_read(call, i, object, version, task_postponed(declared));

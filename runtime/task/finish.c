@@ -6,7 +6,7 @@ static inline void access_release(struct task_graph *graph, struct worker *worke
                                   const struct task_access *access)
 {
     if (access->waiter.mode == DUITE_R) { /* most */
-        ready_release(graph, worker, access->waiter.version);
+        ready_wake_heir(graph, worker, data_version_was_read(access->waiter.version));
         return;
     }
     switch (access->waiter.mode) {

@@ -75,8 +75,8 @@ void task_forget(struct task_graph *graph, struct worker *worker, struct data_ob
 struct data_version *task_value_version(const struct data_object *object, const void *values,
                                         size_t bytes);
 
-/* Contributions. task_contribute adds a leaf for access i of the fork, and first closes a sum of
- * another law. task_reduce closes the sum: its contributions are combined. */
+/* Contributions. task_contribute adds a leaf for access i of the fork; a sum of another law is
+ * closed. task_reduce closes the sum: its contributions are combined. */
 int task_contribute(const struct task_fork_call *call, struct data_object *object, size_t i);
 int task_reduce(struct task_scope *scope, struct worker *worker, struct data_object *object);
 void task_run_combine(struct task *task);

@@ -94,10 +94,8 @@ PLAIN_INLINE bool plain_overwrite(const struct plain_fork *fork, struct task_acc
                                             : data_object_version(object);
     if (!out)
         return false;
-    object->current = access->waiter.version = out;
-    if (version)
-        version->heir = &access->waiter;
-    *done += !version || data_version_release(version) != NULL;
+    object->current = out;
+    *done += data_version_overwrite(version, out, &access->waiter);
     return true;
 }
 
@@ -110,9 +108,7 @@ PLAIN_INLINE uint32_t plain_depend(const struct plain_fork *fork, const struct t
     for (; access < end; access++) {
         struct data_object *object = access->object;
         if (access->waiter.mode == DUITE_R) {
-            struct data_version *version = object->current;
-            data_version_hold(version);
-            done += !data_version_await(version, &access->waiter);
+            done += data_version_read(object->current, &access->waiter);
         } else if (!plain_overwrite(fork, access, object, &done)) {
             break;
         }

@@ -14,7 +14,8 @@ static inline bool more_asks_nothing(const struct task_graph *graph, const duite
     const duite_mode mode = task_immediate(data_mode_of(kernel, i));
     const bool held = object->holder == graph->rank;
     if (mode == DUITE_CW)
-        return object->leaves && (!held || object->sum) && object->law == data_law_of(kernel, i);
+        return object->leaves && (!held || object->sum) &&
+               data_order_joins(mode, data_law_of(kernel, i), object->law);
     if (object->leaves)
         return false;
     if (mode == DUITE_R)

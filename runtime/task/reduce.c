@@ -50,12 +50,8 @@ static int leaf_add(const struct task_fork_call *call, struct data_object *objec
 
 int task_contribute(const struct task_fork_call *call, struct data_object *object, size_t i)
 {
-    const duite_law *law = data_law_of(call->kernel, i);
-    int code = DUITE_OK;
-    if (object->leaves && object->law != law)
-        code = task_reduce(call->scope, call->worker, object);
-    object->law = law;
-    return code ? code : leaf_add(call, object, i);
+    object->law = data_law_of(call->kernel, i);
+    return leaf_add(call, object, i);
 }
 
 /* ---- Contributing without a child: in a body that holds cwp ---- */

@@ -116,15 +116,15 @@ START_TEST(phases)
 }
 END_TEST
 
-/* Contributions of one round and of the next make one sum: its piece goes to the other host once.
- */
+/* Contributions of one round and of the next make one sum: five of one host go to the other in one
+ * message, as two subtrees, of four and of one. */
 START_TEST(sums_over_rounds)
 {
     static const struct trace_file_node nodes[] = {{FILE_R_CW, 1 * MS, 0, 2, {0, 3}}};
     for (uint64_t bytes = 8; bytes <= 8000; bytes *= 1000) {
         const struct predict_result r = sent(bytes, 1, nodes, 5);
         ck_assert_uint_eq(r.messages, 1);
-        ck_assert_uint_eq(r.bytes, bytes);
+        ck_assert_uint_eq(r.bytes, 2 * bytes);
     }
 }
 END_TEST

@@ -117,7 +117,7 @@ double predict_message(struct predict_network *network, double now,
     network->fabric = passes + (double)bytes / cluster->capacity;
     double comes = fmax(passes + cluster->latency, network->in[to]);
     network->in[to] = comes + takes;
-    network->messages += (uint64_t)message->priority;
+    network->messages++;
     network->bytes += bytes;
     *flight = cluster->latency;
     return comes + takes;
@@ -127,17 +127,11 @@ double predict_exchange(struct predict_network *network, double now,
                         const struct predict_node *message, double *flight)
 {
     const struct predict_cluster *cluster = network->cluster;
-    const uint64_t bytes = message->number;
-    *flight = 0;
-    if (!message->copies)
-        return now;
-    double takes = (double)(message->placed * bytes) / cluster->bandwidth;
-    const double latency = (double)message->hops * cluster->latency;
-    double fabric = (double)(message->copies * bytes) / cluster->capacity;
+    const double all = (double)message->priority * (double)message->number;
+    *flight = message->priority ? cluster->latency : 0;
     network->messages += (uint64_t)message->priority;
-    network->bytes += message->copies * bytes;
-    *flight = latency;
-    return now + latency + fmax(takes, fabric);
+    network->bytes += (uint64_t)message->priority * message->number;
+    return now + *flight + all / fmin(cluster->bandwidth, cluster->capacity);
 }
 
 /* ---- Tasks as schedulers see them ---- */

@@ -21,10 +21,13 @@ bool predict_queue_put(struct predict_queue *queue, const struct predict_node *n
 uint32_t predict_queue_take(struct predict_queue *queue, const struct predict_node *nodes,
                             duite_end end);
 
-#define PREDICT_COMES (PREDICT_NONE - 1) /* in place of a worker */
+/* In place of a worker. */
+#define PREDICT_COMES (PREDICT_NONE - 1)
+#define PREDICT_LEFT  (PREDICT_NONE - 2)
 
-/* At a time a node is over, on a worker or (NONE) on none; or a message COMES to its host. Events
- * of one time come in the order in which they were put. */
+/* At a time a node is over, on a worker or (NONE) on none; or a message has LEFT its host, which
+ * may overwrite the values; or it COMES to the other one. Events of one time come in the order in
+ * which they were put. */
 struct predict_event {
     double time;
     uint64_t order;
@@ -48,7 +51,7 @@ struct predict_network {
 /* When a message that is ready now has arrived; *flight: how much of that is latency. */
 double predict_message(struct predict_network *network, double now,
                        const struct predict_node *message, double *flight);
-/* When the hosts that need it have all that one host, or several, send. */
+/* When all hosts have what one host sends. */
 double predict_exchange(struct predict_network *network, double now,
                         const struct predict_node *message, double *flight);
 

@@ -4,7 +4,6 @@
 
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
-#include "runtime/base/rank_set.h"
 #include "runtime/task/owner.h"
 
 #include <math.h>
@@ -50,58 +49,24 @@ static void fork_fix_owner(struct predict_program *p, uint32_t own)
         p->table.object[slot].fixed = true;
 }
 
-/* A task that takes so long; `prepared` is by object. */
-static void fork_add(struct predict_program *p, const struct predict_fork *fork,
-                     const struct predict_where *where, double seconds)
+double predict_body(struct predict_program *p, const struct predict_fork *fork, uint32_t own)
 {
-    struct predict_graph *graph = p->graph;
-    const struct trace_kernel *kernel = &graph->run->kernel[fork->kernel];
-    const bool all = where->host == PREDICT_ALL, owned = where->own != PREDICT_NONE;
-    uint32_t node = predict_add(
-        graph, &(struct predict_node){
-                   .number = fork->number,
-                   .kernel = fork->kernel,
-                   .host = all ? 0 : (uint32_t)where->host,
-                   .block = owned ? graph->object[where->own].block : (uint32_t)fork->number,
-                   .priority = fork->priority,
-                   .cost = fork->cost,
-                   .path = where->path,
-                   .seconds = (float)seconds,
-                   .placed = graph->replays && owned ? where->own + 1 : 0,
-                   .kind = all && graph->cluster->hosts > 1 ? PREDICT_EVERYWHERE : PREDICT_TASK});
-    if (graph->failed)
-        return;
-    graph->linked = false;
-    for (size_t i = 0; i < fork->n; i++)
-        predict_use(graph, node, fork->object[i], trace_mode(kernel, i), p->prepared[i]);
-    predict_hold(graph, node);
-}
-
-void predict_task(struct predict_program *p, const struct predict_fork *fork,
-                  const struct predict_where *where)
-{
-    struct predict_graph *graph = p->graph;
-    const struct trace_kernel *kernel = &graph->run->kernel[fork->kernel];
+    const struct predict_cluster *cluster = p->graph->cluster;
+    const struct trace_kernel *kernel = &p->graph->run->kernel[fork->kernel];
     const bool follows =
         task_owner_decides(fork->at < 0 ? TASK_ANYWHERE : fork->at, kernel->replicated);
     double seconds;
-    if (!predict_times_find(p->times, fork->number, &seconds) || graph->cluster->steady)
+    if (!predict_times_find(p->times, fork->number, &seconds) || cluster->steady)
         seconds = predict_times_kernel(p->times, fork->kernel);
-    if (graph->cluster->bodies > 0 &&
-        (!graph->cluster->grows || graph->cluster->grows(graph->run->kernel_name[fork->kernel])))
-        seconds *= graph->cluster->bodies;
-    seconds /= graph->cluster->core_speed;
-    for (size_t i = 0; i < fork->n; i++)
-        p->prepared[i] = where->round ? predict_round_fetch(p, fork, where, i)
-                                      : predict_prepare(graph, fork->object[i],
-                                                        trace_mode(kernel, i), where->host);
-    fork_add(p, fork, where, seconds);
-    if (graph->failed)
-        return;
+    if (cluster->bodies > 0 &&
+        (!cluster->grows || cluster->grows(p->graph->run->kernel_name[fork->kernel])))
+        seconds *= cluster->bodies;
+    seconds /= cluster->core_speed;
     if (kernel->fixed && follows)
-        fork_fix_owner(p, where->own);
-    predict_spend(p, follows ? where->own : PREDICT_NONE, where->host, seconds);
+        fork_fix_owner(p, own);
+    predict_spend(p, follows ? own : PREDICT_NONE, fork_host(p->graph, fork, own), seconds);
     p->tasks++;
+    return seconds;
 }
 
 duite_mode predict_fork_mode(const struct predict_program *p, const struct predict_fork *fork,
@@ -113,9 +78,29 @@ duite_mode predict_fork_mode(const struct predict_program *p, const struct predi
 
 void predict_fork(struct predict_program *p, const struct predict_fork *fork)
 {
-    const uint32_t own = predict_owner(p->graph, fork, fork->object);
-    predict_task(p, fork,
-                 &(struct predict_where){.own = own, .host = fork_host(p->graph, fork, own)});
+    struct predict_graph *graph = p->graph;
+    const struct trace_kernel *kernel = &graph->run->kernel[fork->kernel];
+    const uint32_t own = predict_owner(graph, fork, fork->object);
+    const int host = fork_host(graph, fork, own);
+    const bool all = host == PREDICT_ALL;
+    for (size_t i = 0; i < fork->n; i++)
+        p->prepared[i] = predict_prepare(graph, fork->object[i], trace_mode(kernel, i), host);
+    uint32_t node = predict_add(
+        graph, &(struct predict_node){
+                   .number = fork->number,
+                   .kernel = fork->kernel,
+                   .host = all ? 0 : (uint32_t)host,
+                   .block = own == PREDICT_NONE ? (uint32_t)fork->number : graph->object[own].block,
+                   .priority = fork->priority,
+                   .cost = fork->cost,
+                   .seconds = (float)predict_body(p, fork, own),
+                   .kind = all && graph->cluster->hosts > 1 ? PREDICT_EVERYWHERE : PREDICT_TASK});
+    if (graph->failed)
+        return;
+    graph->linked = false;
+    for (size_t i = 0; i < fork->n; i++)
+        predict_use(graph, node, fork->object[i], trace_mode(kernel, i), p->prepared[i]);
+    predict_hold(graph, node);
 }
 
 bool predict_room(struct predict_program *p, size_t n)
@@ -194,8 +179,7 @@ static double op_busiest(struct predict_graph *graph, size_t op)
     uint32_t all = 0, most = 0;
     for (uint32_t i = begin; i < end; i++) {
         const struct predict_node *node = &graph->node[i];
-        const bool everywhere =
-            node->kind == PREDICT_EVERYWHERE || (node->kind == PREDICT_EXCHANGE && node->block);
+        const bool everywhere = node->kind == PREDICT_EVERYWHERE;
         const uint32_t n = everywhere ? 0 : ++graph->count[node->host];
         all += everywhere;
         most = n > most ? n : most;
@@ -254,7 +238,7 @@ static void lasting_find(struct predict_program *p)
     struct predict_graph *graph = p->graph;
     struct predict_cluster one = *graph->cluster;
     one.hosts = 1;
-    struct predict_graph whole = {.run = graph->run, .cluster = &one};
+    struct predict_graph whole = {.run = graph->run, .cluster = &one, .plain = true};
     p->code = predict_build(&whole);
     for (size_t i = 0; i < graph->n_objects && !p->code; i++)
         graph->object[i].lasts = !whole.object[i].written && whole.object[i].leaves == PREDICT_NONE;
@@ -310,7 +294,7 @@ static void entry_read(struct predict_program *p)
     case TRACE_SET: {
         uint32_t own = predict_object_at(p, trace_words_next(&p->words));
         if (!p->damaged)
-            predict_set(p->graph, own, p->graph->object[own].home);
+            predict_set(p->graph, own);
         break;
     }
     case TRACE_GET:
@@ -381,16 +365,12 @@ static bool program_prepare(struct predict_program *p)
     struct predict_graph *graph = p->graph;
     const uint32_t hosts = graph->cluster->hosts;
     p->times = predict_times_new(graph->run, graph->cluster->steady);
-    graph->piece = base_alloc(hosts * sizeof *graph->piece);
     graph->began = base_alloc(hosts * sizeof *graph->began);
     graph->count = base_alloc_zero(hosts * sizeof *graph->count);
-    graph->phase = base_alloc_zero(hosts * sizeof *graph->phase);
-    graph->ring = base_alloc(hosts * sizeof *graph->ring);
-    graph->among = base_alloc(base_ranks_words((int)hosts) * sizeof *graph->among);
+    graph->over = base_alloc(hosts * sizeof *graph->over);
     graph->round = PREDICT_NONE;
     graph->flag = PREDICT_NONE;
-    if (!p->times || !graph->piece || !graph->began || !graph->count || !graph->phase ||
-        !graph->among || !graph->ring ||
+    if (!p->times || !graph->began || !graph->count || !graph->over ||
         !(p->blocks_on = base_alloc_zero(hosts * sizeof *p->blocks_on)) ||
         data_table_start(&p->table, graph->cluster->mapping ? (int)hosts : 1) ||
         !predict_moves_start(p))

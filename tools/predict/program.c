@@ -4,7 +4,6 @@
 
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
-#include "runtime/task/owner.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -17,122 +16,6 @@
  * There, data about an object are never in the cache; where they always are, the ratio is a tenth.
  */
 #define FOREIGN_FORK 0.40
-
-/* ---- Tasks ---- */
-
-uint32_t predict_owner(const struct predict_graph *graph, const struct predict_fork *fork,
-                       const uint32_t *objects)
-{
-    const struct trace_kernel *kernel = &graph->run->kernel[fork->kernel];
-    duite_mode access[DUITE_MAX_ACCESS];
-    for (size_t i = 0; i < kernel->n_modes; i++)
-        access[i] = trace_mode(kernel, i);
-    if (kernel->n_modes < DUITE_MAX_ACCESS)
-        access[kernel->n_modes] = DUITE_NONE;
-    const uint32_t own = task_owner(access, trace_mode(kernel, SIZE_MAX), fork->n);
-    return own == TASK_NOBODY ? PREDICT_NONE : objects[own];
-}
-
-static int fork_host(const struct predict_graph *graph, const struct predict_fork *fork,
-                     uint32_t own)
-{
-    const int at = fork->at < 0 ? TASK_ANYWHERE : fork->at % (int)graph->cluster->hosts;
-    const int rank = task_owner_rank(at, graph->run->kernel[fork->kernel].replicated,
-                                     own == PREDICT_NONE ? -1 : graph->object[own].home);
-    return rank == TASK_EVERYWHERE ? PREDICT_ALL : rank;
-}
-
-static void fork_fix_owner(struct predict_program *p, uint32_t own)
-{
-    uint32_t slot = own == PREDICT_NONE ? 0 : p->name[own].slot;
-    if (slot)
-        p->table.object[slot].fixed = true;
-}
-
-double predict_body(struct predict_program *p, const struct predict_fork *fork, uint32_t own)
-{
-    const struct predict_cluster *cluster = p->graph->cluster;
-    const struct trace_kernel *kernel = &p->graph->run->kernel[fork->kernel];
-    const bool follows =
-        task_owner_decides(fork->at < 0 ? TASK_ANYWHERE : fork->at, kernel->replicated);
-    double seconds;
-    if (!predict_times_find(p->times, fork->number, &seconds) || cluster->steady)
-        seconds = predict_times_kernel(p->times, fork->kernel);
-    if (cluster->bodies > 0 &&
-        (!cluster->grows || cluster->grows(p->graph->run->kernel_name[fork->kernel])))
-        seconds *= cluster->bodies;
-    seconds /= cluster->core_speed;
-    if (kernel->fixed && follows)
-        fork_fix_owner(p, own);
-    predict_spend(p, follows ? own : PREDICT_NONE, fork_host(p->graph, fork, own), seconds);
-    p->tasks++;
-    return seconds;
-}
-
-duite_mode predict_fork_mode(const struct predict_program *p, const struct predict_fork *fork,
-                             size_t k)
-{
-    return fork->kernel == PREDICT_NONE ? DUITE_W
-                                        : trace_mode(&p->graph->run->kernel[fork->kernel], k);
-}
-
-void predict_fork(struct predict_program *p, const struct predict_fork *fork)
-{
-    struct predict_graph *graph = p->graph;
-    const struct trace_kernel *kernel = &graph->run->kernel[fork->kernel];
-    const uint32_t own = predict_owner(graph, fork, fork->object);
-    const int host = fork_host(graph, fork, own);
-    const bool all = host == PREDICT_ALL;
-    for (size_t i = 0; i < fork->n; i++)
-        p->prepared[i] = predict_prepare(graph, fork->object[i], trace_mode(kernel, i), host);
-    uint32_t node = predict_add(
-        graph, &(struct predict_node){
-                   .number = fork->number,
-                   .kernel = fork->kernel,
-                   .host = all ? 0 : (uint32_t)host,
-                   .block = own == PREDICT_NONE ? (uint32_t)fork->number : graph->object[own].block,
-                   .priority = fork->priority,
-                   .cost = fork->cost,
-                   .seconds = (float)predict_body(p, fork, own),
-                   .kind = all && graph->cluster->hosts > 1 ? PREDICT_EVERYWHERE : PREDICT_TASK});
-    if (graph->failed)
-        return;
-    graph->linked = false;
-    for (size_t i = 0; i < fork->n; i++)
-        predict_use(graph, node, fork->object[i], trace_mode(kernel, i), p->prepared[i]);
-    predict_hold(graph, node);
-}
-
-bool predict_room(struct predict_program *p, size_t n)
-{
-    uint32_t *prepared = base_grow(p->prepared, &p->prepared_capacity, n + 1, sizeof *p->prepared);
-    uint32_t *objects = base_grow(p->objects, &p->objects_capacity, n + 1, sizeof *p->objects);
-    if (prepared)
-        p->prepared = prepared;
-    if (objects)
-        p->objects = objects;
-    p->graph->failed |= !prepared || !objects;
-    return prepared && objects;
-}
-
-static void entry_fork(struct predict_program *p, size_t n, bool has_options)
-{
-    struct predict_fork fork = {.kernel = trace_words_next(&p->words), .n = n, .at = -1};
-    if (has_options) {
-        fork.at = (int32_t)trace_words_next(&p->words);
-        fork.priority = (int32_t)trace_words_next(&p->words);
-        fork.cost = trace_words_float(&p->words);
-    }
-    p->damaged |= fork.kernel >= p->graph->run->n_kernels;
-    if (!predict_room(p, n) || p->damaged)
-        return;
-    for (size_t i = 0; i < n; i++)
-        p->objects[i] = predict_object_at(p, trace_words_next(&p->words));
-    fork.object = p->objects;
-    fork.number = ++p->forks;
-    if (!p->damaged && !p->words.short_of)
-        predict_fork(p, &fork);
-}
 
 /* ---- The main program ---- */
 
@@ -289,7 +172,7 @@ static void entry_read(struct predict_program *p)
         break;
     case TRACE_FORK:
     case TRACE_FORKED:
-        entry_fork(p, n, (first & 0xff) == TRACE_FORKED);
+        predict_take_fork(p, n, (first & 0xff) == TRACE_FORKED);
         break;
     case TRACE_SET: {
         uint32_t own = predict_object_at(p, trace_words_next(&p->words));

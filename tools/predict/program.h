@@ -5,8 +5,8 @@
 #include "runtime/plan/passes.h"
 #include "tools/predict/graph.h"
 
-/* The main program while the predictor reads it. The files program.c, objects.c, move.c, round.c
- * and replay.c share it. */
+/* The main program while the predictor reads it. The files program.c, fork.c, objects.c, move.c,
+ * record.c, round.c, part.c and replay.c share it. */
 
 /* A fork, or (kernel NONE) a set; `object` are places in graph->object, or of a recorded graph in
  * its list of objects. */
@@ -22,7 +22,8 @@ struct predict_fork {
 struct predict_recorded {
     struct predict_fork *fork;
     uint32_t *use;
-    bool *writes; /* n_objects: true if a fork does more than read it */
+    struct plan_source source;  /* the same without bytes and flag, which rounds add */
+    struct plan_access *access; /* of source */
     size_t n_forks, n_objects, n_calls;
     uint64_t replays, map_at;    /* so far; at this many the mapping is called again */
     uint64_t rounds;             /* since the last call of the balancer */
@@ -31,16 +32,11 @@ struct predict_recorded {
     double *seconds;             /* n_forks: of the bodies of one round */
 };
 
-struct predict_source {
-    struct plan_source plain;
-    struct plan_access *access; /* of plain */
-};
-
 /* A compiled round, and its inputs: the nodes of all hosts, in an order in which no edge within the
  * round points back. What differs from round to round (numbers, seconds, objects) is added when it
  * is replayed. */
 struct predict_round {
-    struct predict_source source;
+    struct plan_source source; /* the record has its forks */
     struct plan_round lowered;
     struct plan_assignment assignment;
     int *home;      /* by object of the source */
@@ -101,6 +97,8 @@ void predict_hint(struct predict_program *p, size_t n);
 void predict_follow(struct predict_program *p);
 void predict_homes(struct predict_program *p, size_t n);
 
+/* An entry of a fork on n objects. */
+void predict_take_fork(struct predict_program *p, size_t n, bool has_options);
 /* Room for the objects of a fork. */
 bool predict_room(struct predict_program *p, size_t n);
 void predict_fork(struct predict_program *p, const struct predict_fork *fork);
@@ -142,6 +140,8 @@ bool predict_round_prepare(struct predict_program *p, struct predict_recorded *r
 bool predict_parts_make(const struct predict_program *p, const struct predict_recorded *recorded,
                         struct predict_round *round);
 void predict_parts_free(struct predict_round *round);
+/* part_order.c: puts the nodes in order, and finds those that begin and end the round. */
+bool predict_parts_sort(struct predict_round *round);
 /* NULL is fine. */
 void predict_round_free(struct predict_round *round);
 

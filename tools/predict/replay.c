@@ -8,94 +8,6 @@
 
 #include <stdlib.h>
 
-/* ---- Recorded graphs ---- */
-
-static void recorded_forget(struct predict_recorded *recorded)
-{
-    free(recorded->fork);
-    free(recorded->use);
-    free(recorded->writes);
-    free(recorded->bound);
-    free(recorded->seconds);
-    predict_round_free(recorded->round);
-    *recorded = (struct predict_recorded){0};
-}
-
-static struct predict_recorded *recorded_place(struct predict_program *p, uint32_t name)
-{
-    p->damaged |= name >= p->graph->run->n_words; /* a graph has several */
-    while (p->n_recorded <= name && !p->damaged) {
-        void *moved =
-            base_grow(p->recorded, &p->recorded_capacity, p->n_recorded + 1, sizeof *p->recorded);
-        p->graph->failed |= !moved;
-        if (!moved)
-            return NULL;
-        p->recorded = moved;
-        p->recorded[p->n_recorded++] = (struct predict_recorded){0};
-    }
-    if (p->damaged)
-        return NULL;
-    recorded_forget(&p->recorded[name]);
-    return &p->recorded[name];
-}
-
-/* The uses of all forks lie in one row, which has as many words at most as are left. */
-static bool recorded_fork(struct predict_program *p, struct predict_recorded *graph, size_t i,
-                          size_t *used)
-{
-    struct predict_fork *fork = &graph->fork[i];
-    *fork = (struct predict_fork){.kernel = trace_words_next(&p->words),
-                                  .n = trace_words_next(&p->words)};
-    fork->at = (int32_t)trace_words_next(&p->words);
-    fork->priority = (int32_t)trace_words_next(&p->words);
-    fork->cost = trace_words_float(&p->words);
-    fork->object = graph->use + *used;
-    if (fork->n > trace_words_left(&p->words) ||
-        (fork->kernel != PREDICT_NONE && fork->kernel >= p->graph->run->n_kernels))
-        p->damaged = true;
-    for (size_t k = 0; k < fork->n && !p->damaged; k++) {
-        fork->object[k] = trace_words_next(&p->words);
-        const duite_mode mode = predict_fork_mode(p, fork, k);
-        p->damaged |= fork->object[k] >= graph->n_objects;
-        p->damaged |= mode == DUITE_CW && p->graph->run->kernel[fork->kernel].replicated;
-        if (!p->damaged)
-            graph->writes[fork->object[k]] |= mode != DUITE_R;
-    }
-    p->damaged |= fork->kernel == PREDICT_NONE && fork->n != 1;
-    *used += fork->n;
-    graph->n_calls += fork->kernel != PREDICT_NONE;
-    fork->number = graph->n_calls;
-    return !p->damaged && !p->words.short_of;
-}
-
-void predict_take_graph(struct predict_program *p, size_t n_objects)
-{
-    struct predict_recorded *graph = recorded_place(p, trace_words_next(&p->words));
-    for (size_t i = 0; i < n_objects; i++)
-        trace_words_next(&p->words);
-    size_t n = trace_words_next(&p->words), used = 0, left = trace_words_left(&p->words);
-    if (!graph || n > left)
-        p->damaged = true;
-    if (p->damaged || p->words.short_of)
-        return;
-    graph->n_objects = n_objects;
-    graph->fork = malloc((n + 1) * sizeof *graph->fork);
-    graph->use = malloc((left + 1) * sizeof *graph->use);
-    graph->writes = calloc(n_objects + 1, sizeof *graph->writes);
-    graph->seconds = calloc(n + 1, sizeof *graph->seconds);
-    p->graph->failed |= !graph->fork || !graph->use || !graph->writes || !graph->seconds;
-    while (!p->graph->failed && graph->n_forks < n &&
-           recorded_fork(p, graph, graph->n_forks, &used))
-        graph->n_forks++;
-}
-
-void predict_graphs_free(struct predict_program *p)
-{
-    for (size_t i = 0; i < p->n_recorded; i++)
-        recorded_forget(&p->recorded[i]);
-    free(p->recorded);
-}
-
 /* ---- Rounds ---- */
 
 /* True if the round counts: one of its tasks ran. If none did, no later one counts either: the flag
@@ -164,7 +76,7 @@ static void round_fork_all(struct predict_program *p, const struct predict_recor
 static void round_bodies(struct predict_program *p, const struct predict_recorded *recorded,
                          uint64_t first)
 {
-    const struct plan_source *source = &recorded->round->source.plain;
+    const struct plan_source *source = &recorded->round->source;
     for (size_t i = 0; i < recorded->n_forks; i++) {
         struct predict_fork fork = recorded->fork[i];
         const uint32_t own = source->fork[i].owner;
@@ -192,7 +104,7 @@ static struct predict_node round_node(const struct predict_graph *graph,
     const uint32_t fork = recorded->round->fork[i];
     if (fork == PREDICT_NONE)
         return node;
-    const uint32_t own = recorded->round->source.plain.fork[fork].owner;
+    const uint32_t own = recorded->round->source.fork[fork].owner;
     node.number = first + recorded->fork[fork].number;
     node.seconds = (float)recorded->seconds[fork];
     node.block = (uint32_t)node.number;

@@ -7,25 +7,6 @@
 
 #include <stdlib.h>
 
-/* ---- A round as plain data ---- */
-
-static void round_fork(const struct predict_program *p, struct plan_source *source,
-                       struct plan_access *access, const struct predict_fork *fork)
-{
-    const bool set = fork->kernel == PREDICT_NONE;
-    source->fork[source->n_forks++] = (struct plan_source_fork){
-        .first = source->n_accesses,
-        .n = (uint32_t)fork->n,
-        .owner = set ? fork->object[0] : predict_owner(p->graph, fork, fork->object),
-        .rank = set || fork->at < 0 ? PLAN_BY_OWNER : fork->at % (int)p->graph->cluster->hosts,
-        .sets = set,
-        .replicated = !set && p->graph->run->kernel[fork->kernel].replicated,
-        .cost = set ? 0 : (double)fork->cost};
-    for (size_t k = 0; k < fork->n; k++)
-        access[source->n_accesses++] =
-            (struct plan_access){.object = fork->object[k], .mode = predict_fork_mode(p, fork, k)};
-}
-
 /* The bytes of a record's objects, and of a flag that is none of them. NULL without memory. */
 static size_t *round_bytes(const struct predict_program *p, const struct predict_recorded *recorded,
                            uint32_t flag, size_t *n, uint32_t *place)
@@ -47,48 +28,20 @@ static size_t *round_bytes(const struct predict_program *p, const struct predict
     return bytes;
 }
 
-/* Takes the objects. False without memory; round_source_free is due all the same. */
-static bool round_source_make(const struct predict_program *p,
-                              const struct predict_recorded *recorded,
-                              struct predict_source *source)
-{
-    size_t uses = 0;
-    for (size_t i = 0; i < recorded->n_forks; i++)
-        uses += recorded->fork[i].n;
-    struct plan_source *plain = &source->plain;
-    plain->access = source->access = base_alloc((uses + 1) * sizeof *source->access);
-    plain->fork = base_alloc((recorded->n_forks + 1) * sizeof *plain->fork);
-    if (!plain->access || !plain->fork || !plain->bytes)
-        return false;
-    for (size_t i = 0; i < recorded->n_forks; i++)
-        round_fork(p, plain, source->access, &recorded->fork[i]);
-    return true;
-}
-
-static void round_source_free(struct predict_source *source)
-{
-    base_free(source->plain.fork);
-    base_free(source->plain.bytes);
-    base_free(source->access);
-}
-
 bool predict_round_tasks(const struct predict_program *p, const struct predict_recorded *recorded,
                          const uint32_t *block, struct map_tasks *tasks)
 {
-    struct predict_source source = {0};
+    struct plan_source source = recorded->source;
     struct plan_round round = {0};
     struct plan_tasks *all = &tasks->tasks;
     *tasks = (struct map_tasks){0};
-    source.plain.bytes =
-        round_bytes(p, recorded, PREDICT_NONE, &source.plain.n_objects, &source.plain.flag);
-    bool fine = round_source_make(p, recorded, &source) && plan_lower(&round, &source.plain) &&
-                plan_tasks_find(all, &round);
-    if (fine)
-        fine = (tasks->block = base_alloc((all->n + 1) * sizeof *tasks->block)) != NULL;
+    source.bytes = round_bytes(p, recorded, PREDICT_NONE, &source.n_objects, &source.flag);
+    bool fine = source.bytes && plan_lower(&round, &source) && plan_tasks_find(all, &round) &&
+                (tasks->block = base_alloc((all->n + 1) * sizeof *tasks->block)) != NULL;
     for (size_t i = 0; i < all->n && fine; i++)
         tasks->block[i] = all->owner[i] == PLAN_NONE ? DUITE_NO_BLOCK : block[all->owner[i]];
     plan_round_free(&round);
-    round_source_free(&source);
+    base_free(source.bytes);
     return fine;
 }
 
@@ -132,7 +85,7 @@ void predict_round_free(struct predict_round *round)
     predict_parts_free(round);
     plan_assignment_free(&round->assignment);
     plan_round_free(&round->lowered);
-    round_source_free(&round->source);
+    base_free(round->source.bytes);
     base_free(round->home);
     base_free(round);
 }
@@ -140,7 +93,7 @@ void predict_round_free(struct predict_round *round)
 /* True if the round that is there is the wanted one. */
 static bool round_fits(const struct predict_round *there, const struct predict_round *wanted)
 {
-    const struct plan_source *a = &there->source.plain, *b = &wanted->source.plain;
+    const struct plan_source *a = &there->source, *b = &wanted->source;
     bool fits =
         a->n_objects == b->n_objects && a->flag == b->flag && there->n_hints == wanted->n_hints;
     for (size_t i = 0; i < b->n_objects && fits; i++)
@@ -151,9 +104,7 @@ static bool round_fits(const struct predict_round *there, const struct predict_r
 static bool round_compile(const struct predict_program *p, const struct predict_recorded *recorded,
                           struct predict_round *round)
 {
-    if (!round_source_make(p, recorded, &round->source))
-        return false;
-    const struct plan_source *source = &round->source.plain;
+    const struct plan_source *source = &round->source;
     struct round_ends *ends = base_alloc_zero((source->n_objects + 1) * sizeof *ends);
     round->forked = p->graph->plain || (ends && source_is_forked(source, ends));
     base_free(ends);
@@ -171,7 +122,8 @@ bool predict_round_prepare(struct predict_program *p, struct predict_recorded *r
     struct predict_round *round = base_alloc_zero(sizeof *round);
     bool fine = round;
     if (fine) {
-        struct plan_source *source = &round->source.plain;
+        struct plan_source *source = &round->source;
+        *source = recorded->source;
         source->bytes = round_bytes(p, recorded, flag, &source->n_objects, &source->flag);
         round->home = base_alloc((recorded->n_objects + 2) * sizeof *round->home);
         round->flag = flag;

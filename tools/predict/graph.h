@@ -6,8 +6,8 @@
 
 #include <duite.h>
 
-/* The run as a graph: nodes in an order in which no edge points back, and the main program's steps.
- * Plain data of one thread; its owner frees it by predict_graph_free. */
+/* The run as a graph: nodes, and the main program's steps. Without rounds of several hosts no edge
+ * points back. Plain data of one thread; its owner frees it by predict_graph_free. */
 
 #define PREDICT_NONE UINT32_MAX
 

@@ -196,11 +196,12 @@ static bool machine_prepare(struct predict_machine *m, bool paje)
     m->network.in = base_alloc_zero(hosts * sizeof(double));
     m->begin = base_alloc(n * sizeof *m->begin + 1);
     m->end = base_alloc(n * sizeof *m->end + 1);
+    m->path = base_alloc_zero(n * sizeof *m->path + 1);
     m->cause = base_alloc_zero(n * sizeof *m->cause + 1);
     m->runs_on = paje ? base_alloc_zero(n * sizeof *m->runs_on + 1) : NULL;
     return m->states && m->queue && m->shared && m->state && m->next && m->ran && m->affinity &&
            m->last && m->idle && m->looked && m->handler && m->handled && m->paid &&
-           m->network.out && m->network.in && m->begin && m->end && m->cause &&
+           m->network.out && m->network.in && m->begin && m->end && m->path && m->cause &&
            (m->runs_on || !paje) && machine_near(m);
 }
 
@@ -250,10 +251,11 @@ void predict_machine_stop(struct predict_machine *m)
     for (uint32_t h = 0; h < m->cluster->hosts && m->shared; h++)
         free(m->shared[h].node);
     free(m->events.event);
-    void *const all[] = {m->states,  m->queue,       m->shared,     m->state,   m->next,  m->ran,
-                         m->last,    m->network.out, m->network.in, m->begin,   m->end,   m->cause,
-                         m->idle,    m->runs_on,     m->near,       m->other,   m->level, m->looked,
-                         m->handler, m->handled,     m->paid,       m->affinity};
+    void *const all[] = {m->states, m->queue,    m->shared,      m->state,      m->next,
+                         m->ran,    m->last,     m->network.out, m->network.in, m->begin,
+                         m->end,    m->cause,    m->idle,        m->runs_on,    m->near,
+                         m->other,  m->level,    m->looked,      m->handler,    m->handled,
+                         m->paid,   m->affinity, m->path};
     for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
         base_free(all[i]);
 }

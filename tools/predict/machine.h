@@ -89,6 +89,8 @@ struct predict_machine {
     double handled_by_all;       /* of each host: to be added, */
     double *paid;                /* by host: as far as this was */
     double *begin, *end;         /* by node */
+    double *path;                /* by node: s of the longest chain of nodes before it */
+    double longest;              /* s of such a chain, its last node included */
     uint32_t *runs_on;           /* by node, for Paje; NULL: not kept */
     struct predict_cause *cause; /* by node */
     double now, main_time, busy;
@@ -112,7 +114,7 @@ static inline void *predict_worker_state(const struct predict_machine *machine, 
 /* The task as schedulers see it. */
 duite_ready predict_describe(const struct predict_machine *machine, uint32_t node);
 
-/* Sums up a run that is over. Overwrites `begin`. */
+/* Sums up a run that is over. */
 void predict_conclude(struct predict_machine *machine, struct predict_result *result,
                       double *kernels);
 int predict_write_paje(const struct predict_machine *machine, FILE *file);

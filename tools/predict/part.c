@@ -8,7 +8,6 @@
 #include "runtime/task/task.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 /* An end of a message. */
 struct part_end {
@@ -168,6 +167,22 @@ static void part_ends_join(struct parting *p)
 
 /* ---- All hosts ---- */
 
+/* Finds the nodes that begin and end the round. */
+static bool part_find_ends(struct predict_round *round)
+{
+    round->begins = base_alloc(round->n_nodes + 1);
+    round->ends = base_alloc(round->n_nodes + 1);
+    if (!round->begins || !round->ends)
+        return false;
+    for (size_t i = 0; i < round->n_nodes; i++)
+        round->begins[i] = round->ends[i] = true;
+    for (size_t i = 0; i < round->n_edges; i++) {
+        round->begins[round->edge[i].to] &= round->edge[i].cyclic;
+        round->ends[round->edge[i].from] &= round->edge[i].cyclic;
+    }
+    return true;
+}
+
 /* The scheduler's paths are those of the round of all ranks, as in a run. */
 static void part_paths(struct parting *p)
 {
@@ -194,7 +209,7 @@ bool predict_parts_make(const struct predict_program *program,
     base_free(p.path);
     free(p.end[0]);
     free(p.end[1]);
-    return !p.failed && predict_parts_sort(round);
+    return !p.failed && part_find_ends(round);
 }
 
 void predict_parts_free(struct predict_round *round)

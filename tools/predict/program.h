@@ -32,9 +32,8 @@ struct predict_recorded {
     double *seconds;             /* n_forks: of the bodies of one round */
 };
 
-/* A compiled round, and its inputs: the nodes of all hosts, in an order in which no edge within the
- * round points back. What differs from round to round (numbers, seconds, objects) is added when it
- * is replayed. */
+/* A compiled round, and its inputs: the nodes of all hosts. What differs from round to round
+ * (numbers, seconds, objects) is added when it is replayed. */
 struct predict_round {
     struct plan_source source; /* the record has its forks */
     struct plan_round lowered;
@@ -140,8 +139,6 @@ bool predict_round_prepare(struct predict_program *p, struct predict_recorded *r
 bool predict_parts_make(const struct predict_program *p, const struct predict_recorded *recorded,
                         struct predict_round *round);
 void predict_parts_free(struct predict_round *round);
-/* part_order.c: puts the nodes in order, and finds those that begin and end the round. */
-bool predict_parts_sort(struct predict_round *round);
 /* NULL is fine. */
 void predict_round_free(struct predict_round *round);
 

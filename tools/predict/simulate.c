@@ -188,6 +188,12 @@ static bool message_waits(struct predict_machine *m, uint32_t node)
     return begins > m->now;
 }
 
+/* A node is over for the one that waits for it. */
+static void path_extend(struct predict_machine *m, uint32_t node, uint32_t to)
+{
+    m->path[to] = fmax(m->path[to], m->path[node] + (double)m->graph->node[node].seconds);
+}
+
 static void node_count_down(struct predict_machine *m, uint32_t node, uint32_t by, uint32_t worker)
 {
     struct predict_node *n = &m->graph->node[node];
@@ -309,8 +315,10 @@ static void message_release(struct predict_machine *m, uint32_t node, bool left)
         const struct predict_node *to = &graph->node[graph->edge[e].to];
         const bool here =
             to->host == n->host && to->kind != PREDICT_EVERYWHERE && to->kind != PREDICT_EXCHANGE;
-        if (here == left)
-            node_count_down(m, graph->edge[e].to, left ? m->cause[node].by : node, PREDICT_NONE);
+        if (here != left)
+            continue;
+        path_extend(m, node, graph->edge[e].to);
+        node_count_down(m, graph->edge[e].to, left ? m->cause[node].by : node, PREDICT_NONE);
     }
 }
 
@@ -322,11 +330,14 @@ static void node_over(struct predict_machine *m, uint32_t node, uint32_t worker)
     m->latest = node;
     if (worker != PREDICT_NONE)
         m->last[worker / m->cluster->cores] = worker;
+    m->longest = fmax(m->longest, m->path[node] + (double)graph->node[node].seconds);
     if (graph->node[node].kind == PREDICT_MESSAGE)
         message_release(m, node, false);
     else
-        for (uint32_t e = graph->node[node].edge; e != PREDICT_NONE; e = graph->edge[e].next)
+        for (uint32_t e = graph->node[node].edge; e != PREDICT_NONE; e = graph->edge[e].next) {
+            path_extend(m, node, graph->edge[e].to);
             node_count_down(m, graph->edge[e].to, node, worker);
+        }
     if (worker != PREDICT_NONE)
         worker_free(m, worker);
     main_try(m);

@@ -9,11 +9,9 @@ uint32_t predict_owner(const struct predict_graph *graph, const struct predict_f
                        const uint32_t *objects)
 {
     const struct trace_kernel *kernel = &graph->run->kernel[fork->kernel];
-    duite_mode access[DUITE_MAX_ACCESS];
+    duite_mode access[DUITE_MAX_ACCESS] = {DUITE_NONE};
     for (size_t i = 0; i < kernel->n_modes; i++)
         access[i] = trace_mode(kernel, i);
-    if (kernel->n_modes < DUITE_MAX_ACCESS)
-        access[kernel->n_modes] = DUITE_NONE;
     const uint32_t own = task_owner(access, trace_mode(kernel, SIZE_MAX), fork->n);
     return own == TASK_NOBODY ? PREDICT_NONE : objects[own];
 }
@@ -61,29 +59,55 @@ duite_mode predict_fork_mode(const struct predict_program *p, const struct predi
                                         : trace_mode(&p->graph->run->kernel[fork->kernel], k);
 }
 
+static uint32_t fork_node(struct predict_graph *graph, const struct predict_fork *fork,
+                          uint32_t own, int host, double seconds)
+{
+    const uint32_t block = own == PREDICT_NONE ? (uint32_t)fork->number : graph->object[own].block;
+    graph->linked = false;
+    return predict_add(graph, &(struct predict_node){.number = fork->number,
+                                                     .kernel = fork->kernel,
+                                                     .host = (uint32_t)host,
+                                                     .block = block,
+                                                     .priority = fork->priority,
+                                                     .cost = fork->cost,
+                                                     .seconds = (float)seconds});
+}
+
+/* Each host runs the task, and has what it writes. */
+static void fork_everywhere(struct predict_graph *graph, const struct predict_fork *fork,
+                            uint32_t own, double seconds)
+{
+    const struct trace_kernel *kernel = &graph->run->kernel[fork->kernel];
+    for (size_t i = 0; i < fork->n; i++)
+        predict_prepare_all(graph, fork->object[i], trace_mode(kernel, i));
+    for (uint32_t host = 0; host < graph->cluster->hosts && !graph->failed; host++) {
+        const uint32_t node = graph->over[host] = fork_node(graph, fork, own, (int)host, seconds);
+        for (size_t i = 0; i < fork->n && !graph->failed; i++) {
+            const duite_mode mode = trace_mode(kernel, i);
+            predict_enter(graph, node, fork->object[i], (int)host, data_order_reads(mode),
+                          data_order_writes(mode));
+        }
+        predict_hold(graph, node);
+    }
+    for (size_t i = 0; i < fork->n && !graph->failed; i++)
+        predict_leave(graph, fork->object[i], graph->all, data_order_writes(trace_mode(kernel, i)));
+}
+
 void predict_fork(struct predict_program *p, const struct predict_fork *fork)
 {
     struct predict_graph *graph = p->graph;
     const struct trace_kernel *kernel = &graph->run->kernel[fork->kernel];
     const uint32_t own = predict_owner(graph, fork, fork->object);
     const int host = fork_host(graph, fork, own);
-    const bool all = host == PREDICT_ALL;
+    const double seconds = predict_body(p, fork, own);
+    if (host == PREDICT_ALL) {
+        fork_everywhere(graph, fork, own, seconds);
+        return;
+    }
     for (size_t i = 0; i < fork->n; i++)
         p->prepared[i] = predict_prepare(graph, fork->object[i], trace_mode(kernel, i), host);
-    uint32_t node = predict_add(
-        graph, &(struct predict_node){
-                   .number = fork->number,
-                   .kernel = fork->kernel,
-                   .host = all ? 0 : (uint32_t)host,
-                   .block = own == PREDICT_NONE ? (uint32_t)fork->number : graph->object[own].block,
-                   .priority = fork->priority,
-                   .cost = fork->cost,
-                   .seconds = (float)predict_body(p, fork, own),
-                   .kind = all && graph->cluster->hosts > 1 ? PREDICT_EVERYWHERE : PREDICT_TASK});
-    if (graph->failed)
-        return;
-    graph->linked = false;
-    for (size_t i = 0; i < fork->n; i++)
+    const uint32_t node = fork_node(graph, fork, own, host, seconds);
+    for (size_t i = 0; i < fork->n && !graph->failed; i++)
         predict_use(graph, node, fork->object[i], trace_mode(kernel, i), p->prepared[i]);
     predict_hold(graph, node);
 }

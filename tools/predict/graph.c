@@ -69,7 +69,7 @@ void predict_link_push(struct predict_graph *graph, uint32_t *list, uint32_t nod
 uint32_t predict_own_node(struct predict_graph *graph, enum predict_kind kind, uint32_t host,
                           uint32_t what, uint64_t number)
 {
-    double seconds = kind == PREDICT_TASK || kind == PREDICT_EVERYWHERE ? graph->own[what] : 0;
+    double seconds = kind == PREDICT_TASK ? graph->own[what] : 0;
     return predict_add(graph, &(struct predict_node){.number = number,
                                                      .kernel = graph->run->n_kernels + what,
                                                      .host = host,
@@ -81,8 +81,8 @@ uint32_t predict_own_node(struct predict_graph *graph, enum predict_kind kind, u
 
 void predict_hold(struct predict_graph *graph, uint32_t node)
 {
-    if (!graph->linked)
-        predict_edge_kind(graph, graph->flag, node, true);
+    if (!graph->linked && graph->decided)
+        predict_edge_kind(graph, graph->began[graph->node[node].host], node, true);
 }
 
 void predict_graph_free(struct predict_graph *graph)
@@ -98,4 +98,5 @@ void predict_graph_free(struct predict_graph *graph)
     base_free(graph->count);
     base_free(graph->began);
     base_free(graph->over);
+    base_free(graph->all);
 }

@@ -12,19 +12,16 @@
 #define PREDICT_NONE UINT32_MAX
 
 enum predict_kind {
-    PREDICT_TASK,       /* runs on a worker of its host */
-    PREDICT_EVERYWHERE, /* on several hosts at once, with the time of a worker, but on none of them
-                         */
-    PREDICT_MESSAGE,    /* from `host` to `block`; number: bytes */
-    PREDICT_EXCHANGE,   /* number bytes from `host` to all hosts that lack them */
-    PREDICT_INSTANT     /* takes no time */
+    PREDICT_TASK,    /* runs on a worker of its host */
+    PREDICT_MESSAGE, /* from `host` to `block`; number: bytes */
+    PREDICT_INSTANT  /* takes no time */
 };
 
 struct predict_node {
     uint64_t number;
     uint32_t kernel; /* of kernels; beyond them: the runtime's own, by task_type */
     uint32_t host, block;
-    int32_t priority; /* of exchanges: the messages */
+    int32_t priority;
     float seconds, cost, path;
     uint32_t pending; /* edges that end here, and 1 for the main program */
     uint32_t edge;    /* the first of those that begin here, or NONE */
@@ -46,7 +43,7 @@ struct predict_op {
 
 struct predict_object {
     int home;   /* a host */
-    int holder; /* the host that has the value; PREDICT_ALL: all */
+    int holder; /* the host that has the value; `copies`: further ones */
     uint32_t block;
     struct data_order_chain order; /* nodes that use it, on all hosts */
     uint32_t copies, leaves;       /* lists in `link` */
@@ -59,7 +56,7 @@ struct predict_object {
     bool lasts;      /* its value is of before the trace, and no task of the trace writes it */
 };
 
-enum { PREDICT_ALL = -1 }; /* holder */
+enum { PREDICT_ALL = -1 }; /* in place of a host: each */
 
 struct predict_link {
     uint32_t node, host, next;
@@ -92,12 +89,13 @@ struct predict_graph {
     struct predict_hint *hint;
     size_t n_hints, hints_capacity;
     uint32_t *began;        /* by host: the node that begins a replay there, or NONE */
-    uint32_t *over;         /* ... that ends it */
+    uint32_t *over;         /* ... that ends it, or a task that each host runs */
+    uint64_t *all;          /* the set of all hosts */
     uint32_t *count;        /* by host: zeros, but for a moment */
     double own[64];         /* by task_type: s of the runtime's own tasks, those of sums left out */
     double merges;          /* that the sums of the trace took */
     uint32_t round;         /* the first node of this forked round, or NONE */
-    uint32_t flag;          /* the node that decided on this round, or NONE */
+    bool decided;           /* on this forked round, where `began` has the flag's value */
     double overhead;        /* s between two tasks, */
     double message;         /* of a core, to send or to take one, */
     double look;            /* and to look for one, which workers do now and then; 0: no messages */
@@ -125,7 +123,7 @@ uint32_t predict_own_node(struct predict_graph *graph, enum predict_kind kind, u
 /* Puts a node on a host into a list. */
 void predict_link_push(struct predict_graph *graph, uint32_t *list, uint32_t node, uint32_t host);
 /* Called when all edges to the node are there, which began with `linked` false. A node waits for
- * the node that decided on its forked round, unless one of the round comes before it. */
+ * the flag that decided on its forked round, unless one of the round comes before it. */
 void predict_hold(struct predict_graph *graph, uint32_t node);
 
 /* ---- value.c: the order of uses, and where values are ---- */
@@ -137,14 +135,15 @@ static inline uint32_t predict_writer(const struct predict_object *object)
 }
 /* Like predict_edge_kind, for the value of an object. */
 void predict_edge_value(struct predict_graph *graph, uint32_t from, uint32_t to, uint32_t object);
-/* `node` makes the object's next value, on a host or on all. */
+/* `node` makes the object's next value, on a host. */
 void predict_overwrite(struct predict_graph *graph, uint32_t node, uint32_t object, int host);
-/* The node after which the object's value is on the host, or everywhere; NONE: it always was. */
+/* The node after which the object's value is on the host; NONE: it always was. */
 uint32_t predict_fetch(struct predict_graph *graph, uint32_t object, int host);
-/* Called before a node on `host` (PREDICT_ALL: everywhere) that uses the object is made. Makes the
- * nodes that come before it. Returns the node after which the value is there; NONE: the value
- * always was, or is not read. */
+/* Called before a node on `host` that uses the object is made. Makes the nodes that come before it.
+ * Returns the node after which the value is there; NONE: the value always was, or is not read. */
 uint32_t predict_prepare(struct predict_graph *graph, uint32_t object, duite_mode mode, int host);
+/* The same on each host; returns what it is on host 0. */
+uint32_t predict_prepare_all(struct predict_graph *graph, uint32_t object, duite_mode mode);
 /* The node uses the object; `prepared`: from predict_prepare. */
 void predict_use(struct predict_graph *graph, uint32_t node, uint32_t object, duite_mode mode,
                  uint32_t prepared);
@@ -152,11 +151,11 @@ void predict_use(struct predict_graph *graph, uint32_t node, uint32_t object, du
 void predict_set(struct predict_graph *graph, uint32_t object);
 /* The object has another home from now on: its value goes there. */
 void predict_rehome(struct predict_graph *graph, uint32_t object, int host);
-/* A replay begins on a host: it reads the object's value there (predict_fetch made it come), or
- * writes it there, or both. Other hosts' parts of the replay may do so at once. */
+/* What several hosts do at once, a replay or a task that each runs, begins on a host with `node`:
+ * it reads the object's value there (predict_fetch made it come), or writes it there, or both. */
 void predict_enter(struct predict_graph *graph, uint32_t node, uint32_t object, int host,
                    bool reads, bool writes);
-/* The replay is over on each host: it read the object on some hosts, or wrote it there. */
+/* It is over on each of these hosts, by graph->over: it read the object there, or wrote it. */
 void predict_leave(struct predict_graph *graph, uint32_t object, const uint64_t *hosts,
                    bool writes);
 /* A block's hint for mappings: the bytes that it and another one send each other. */

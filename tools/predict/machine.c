@@ -123,17 +123,6 @@ double predict_message(struct predict_network *network, double now,
     return comes + takes;
 }
 
-double predict_exchange(struct predict_network *network, double now,
-                        const struct predict_node *message, double *flight)
-{
-    const struct predict_cluster *cluster = network->cluster;
-    const double all = (double)message->priority * (double)message->number;
-    *flight = message->priority ? cluster->latency : 0;
-    network->messages += (uint64_t)message->priority;
-    network->bytes += (uint64_t)message->priority * message->number;
-    return now + *flight + all / fmin(cluster->bandwidth, cluster->capacity);
-}
-
 /* ---- Tasks as schedulers see them ---- */
 
 duite_ready predict_describe(const struct predict_machine *m, uint32_t node)
@@ -191,7 +180,6 @@ static bool machine_prepare(struct predict_machine *m, bool paje)
     m->looked = base_alloc_zero(workers * sizeof *m->looked);
     m->handler = base_alloc_zero(hosts * sizeof *m->handler);
     m->handled = base_alloc_zero(hosts * sizeof *m->handled);
-    m->paid = base_alloc_zero(hosts * sizeof *m->paid);
     m->network.out = base_alloc_zero(hosts * sizeof(double));
     m->network.in = base_alloc_zero(hosts * sizeof(double));
     m->begin = base_alloc(n * sizeof *m->begin + 1);
@@ -200,9 +188,9 @@ static bool machine_prepare(struct predict_machine *m, bool paje)
     m->cause = base_alloc_zero(n * sizeof *m->cause + 1);
     m->runs_on = paje ? base_alloc_zero(n * sizeof *m->runs_on + 1) : NULL;
     return m->states && m->queue && m->shared && m->state && m->next && m->ran && m->affinity &&
-           m->last && m->idle && m->looked && m->handler && m->handled && m->paid &&
-           m->network.out && m->network.in && m->begin && m->end && m->path && m->cause &&
-           (m->runs_on || !paje) && machine_near(m);
+           m->last && m->idle && m->looked && m->handler && m->handled && m->network.out &&
+           m->network.in && m->begin && m->end && m->path && m->cause && (m->runs_on || !paje) &&
+           machine_near(m);
 }
 
 static void machine_scheduler(struct predict_machine *m, uint32_t worker)
@@ -251,11 +239,10 @@ void predict_machine_stop(struct predict_machine *m)
     for (uint32_t h = 0; h < m->cluster->hosts && m->shared; h++)
         free(m->shared[h].node);
     free(m->events.event);
-    void *const all[] = {m->states, m->queue,    m->shared,      m->state,      m->next,
-                         m->ran,    m->last,     m->network.out, m->network.in, m->begin,
-                         m->end,    m->cause,    m->idle,        m->runs_on,    m->near,
-                         m->other,  m->level,    m->looked,      m->handler,    m->handled,
-                         m->paid,   m->affinity, m->path};
+    void *const all[] = {m->states,  m->queue,       m->shared,     m->state, m->next,  m->ran,
+                         m->last,    m->network.out, m->network.in, m->begin, m->end,   m->cause,
+                         m->idle,    m->runs_on,     m->near,       m->other, m->level, m->looked,
+                         m->handler, m->handled,     m->affinity,   m->path};
     for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
         base_free(all[i]);
 }

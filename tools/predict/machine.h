@@ -51,9 +51,6 @@ struct predict_network {
 /* When a message that is ready now has arrived; *flight: how much of that is latency. */
 double predict_message(struct predict_network *network, double now,
                        const struct predict_node *message, double *flight);
-/* When all hosts have what one host sends. */
-double predict_exchange(struct predict_network *network, double now,
-                        const struct predict_node *message, double *flight);
 
 enum { IDLE, BUSY, RESERVED }; /* of a worker; the last: it is the main program's */
 
@@ -85,9 +82,7 @@ struct predict_machine {
     struct predict_network network;
     double *looked;              /* by worker: when it looked for messages */
     double *handler;             /* by host: until when it handles messages, one after the other */
-    double *handled;             /* by host: s that messages take of its cores from now on, */
-    double handled_by_all;       /* of each host: to be added, */
-    double *paid;                /* by host: as far as this was */
+    double *handled;             /* by host: s that messages take of its cores from now on */
     double *begin, *end;         /* by node */
     double *path;                /* by node: s of the longest chain of nodes before it */
     double longest;              /* s of such a chain, its last node included */

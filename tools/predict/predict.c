@@ -99,7 +99,7 @@ static void conclude_chain(const struct predict_machine *m, double *chain, doubl
         const struct predict_node *node = &graph->node[at];
         const struct predict_cause *cause = &m->cause[at];
         double since = cause->by == PREDICT_NONE ? 0 : m->end[cause->by];
-        bool travels = node->kind == PREDICT_MESSAGE || node->kind == PREDICT_EXCHANGE;
+        bool travels = node->kind == PREDICT_MESSAGE;
         double all = m->end[at] - since;
         double own = travels ? m->end[at] - m->begin[at] : fmin(all, (double)node->seconds);
         chain[cause->kind == FORKED ? PREDICT_MAIN : PREDICT_OVERHEAD] += all - own;

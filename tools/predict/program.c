@@ -4,6 +4,7 @@
 
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
+#include "runtime/base/rank_set.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -19,7 +20,20 @@
 
 /* ---- The main program ---- */
 
-/* An op for all nodes since the last one. */
+static bool op_is_everywhere(const struct predict_graph *graph, const struct predict_node *node)
+{
+    return node->kind == PREDICT_TASK && node->kernel < graph->run->n_kernels &&
+           graph->run->kernel[node->kernel].replicated;
+}
+
+/* True if the main program takes time for the node: of a task that each host runs, for the first.
+ */
+static bool op_forks(const struct predict_graph *graph, const struct predict_node *node)
+{
+    return !node->host || !op_is_everywhere(graph, node);
+}
+
+/* An op for all nodes since the last one. Until op_end, `each` is the number of its forks. */
 static struct predict_op *op_add(struct predict_program *p, bool forked)
 {
     struct predict_graph *graph = p->graph;
@@ -31,8 +45,9 @@ static struct predict_op *op_add(struct predict_program *p, bool forked)
     size_t begin = graph->n_ops ? graph->op[graph->n_ops - 1].end : 0;
     struct predict_op *op = &graph->op[graph->n_ops++];
     *op = (struct predict_op){.end = (uint32_t)graph->n_nodes, .node = PREDICT_NONE};
-    op->each = forked ? 1 : 0;
-    p->forked += forked ? graph->n_nodes - begin : 0;
+    for (size_t i = begin; i < graph->n_nodes && forked; i++)
+        op->each += op_forks(graph, &graph->node[i]);
+    p->forked += (uint64_t)op->each;
     return op;
 }
 
@@ -54,7 +69,7 @@ static double op_share(double own, double n)
     return n > 0 ? (own + FOREIGN_FORK * (n - own)) / n : 1;
 }
 
-/* Each host forks its own nodes and passes over others'. Returns the busiest one's time for each
+/* Each host forks its own tasks and passes over others'. Returns the busiest one's time for each
  * node of an op, over that of a fork of its own. */
 static double op_busiest(struct predict_graph *graph, size_t op)
 {
@@ -62,7 +77,9 @@ static double op_busiest(struct predict_graph *graph, size_t op)
     uint32_t all = 0, most = 0;
     for (uint32_t i = begin; i < end; i++) {
         const struct predict_node *node = &graph->node[i];
-        const bool everywhere = node->kind == PREDICT_EVERYWHERE;
+        if (!op_forks(graph, node))
+            continue;
+        const bool everywhere = op_is_everywhere(graph, node);
         const uint32_t n = everywhere ? 0 : ++graph->count[node->host];
         all += everywhere;
         most = n > most ? n : most;
@@ -72,7 +89,8 @@ static double op_busiest(struct predict_graph *graph, size_t op)
             graph->count[graph->node[i].host] = 0;
     else
         memset(graph->count, 0, graph->cluster->hosts * sizeof *graph->count);
-    return op_share(all + most, end - begin);
+    const double forks = graph->op[op].each;
+    return op_share(all + most, forks) * forks / (end - begin);
 }
 
 /* The main program forked until `from`, and waits until `to`: each fork takes its share of the
@@ -103,8 +121,9 @@ static void entry_get(struct predict_program *p)
     uint64_t from = trace_words_next2(&p->words), to = trace_words_next2(&p->words);
     if (p->damaged || p->words.short_of)
         return;
-    int host = rank < 0 ? PREDICT_ALL : rank % (int)p->graph->cluster->hosts;
-    uint32_t node = predict_prepare(p->graph, own, DUITE_R, host);
+    const int host = rank % (int)p->graph->cluster->hosts;
+    const uint32_t node = rank < 0 ? predict_prepare_all(p->graph, own, DUITE_R)
+                                   : predict_prepare(p->graph, own, DUITE_R, host);
     op_end(p, from, to, node, host <= 0 && node != PREDICT_NONE);
 }
 
@@ -251,13 +270,15 @@ static bool program_prepare(struct predict_program *p)
     graph->began = base_alloc(hosts * sizeof *graph->began);
     graph->count = base_alloc_zero(hosts * sizeof *graph->count);
     graph->over = base_alloc(hosts * sizeof *graph->over);
+    graph->all = base_alloc_zero(base_ranks_words((int)hosts) * sizeof *graph->all);
     graph->round = PREDICT_NONE;
-    graph->flag = PREDICT_NONE;
-    if (!p->times || !graph->began || !graph->count || !graph->over ||
+    if (!p->times || !graph->began || !graph->count || !graph->over || !graph->all ||
         !(p->blocks_on = base_alloc_zero(hosts * sizeof *p->blocks_on)) ||
         data_table_start(&p->table, graph->cluster->mapping ? (int)hosts : 1) ||
         !predict_moves_start(p))
         return false;
+    for (uint32_t host = 0; host < hosts; host++)
+        base_ranks_add(graph->all, (int)host);
     for (uint32_t kind = 0; kind < sizeof graph->own / sizeof graph->own[0]; kind++)
         graph->own[kind] = predict_times_own(p->times, kind) / graph->cluster->core_speed;
     graph->overhead = graph->cluster->overhead < 0

@@ -35,16 +35,10 @@ static void replay_end_sums(struct predict_program *p, const struct predict_reco
 /* The flag is read where the next round begins: everywhere. */
 static void round_decide(struct predict_graph *graph, uint32_t flag)
 {
-    uint32_t value = predict_prepare(graph, flag, DUITE_R, PREDICT_ALL);
-    if (graph->plain) {
-        graph->flag = value;
-        return;
-    }
-    uint32_t node = predict_add(graph, &(struct predict_node){.kind = PREDICT_INSTANT});
-    if (graph->failed)
-        return;
-    predict_edge(graph, value, node);
-    graph->flag = node;
+    predict_prepare_all(graph, flag, DUITE_R);
+    for (uint32_t host = 0; host < graph->cluster->hosts && !graph->failed; host++)
+        graph->began[host] = predict_fetch(graph, flag, (int)host);
+    graph->decided = true;
 }
 
 /* A round that has no plan: its tasks are forked like any other. */
@@ -262,7 +256,8 @@ static void replay_simulate(struct predict_program *p, struct predict_recorded *
     if (!forked && before != PREDICT_NONE && !graph->failed)
         replay_end(p, recorded, before);
     graph->replays = false;
-    graph->round = graph->flag = PREDICT_NONE;
+    graph->round = PREDICT_NONE;
+    graph->decided = false;
     replay_end_sums(p, recorded);
     predict_op_replays(p, false);
 }

@@ -16,22 +16,12 @@
 /* A host handles one message after the other, on whichever core. The latency includes the handling
  * of a single message, so a message only waits for those before it. Returns when the host comes to
  * the present one. */
-static double message_handle(struct predict_machine *m, uint32_t host, int32_t packets)
+static double message_handle(struct predict_machine *m, uint32_t host)
 {
     const double begins = fmax(m->now, m->handler[host]);
-    m->handler[host] = begins + m->graph->message * (double)packets;
-    m->handled[host] += m->graph->message * (double)packets;
+    m->handler[host] = begins + m->graph->message;
+    m->handled[host] += m->graph->message;
     return begins;
-}
-
-/* The last message of all that a host sends at once waits for the others. */
-static double exchange_send(struct predict_machine *m, const struct predict_node *exchange,
-                            double *flight)
-{
-    const double all = m->graph->message * (double)exchange->priority;
-    const double goes = message_handle(m, exchange->host, exchange->priority);
-    m->handled_by_all += all / m->cluster->hosts;
-    return predict_exchange(&m->network, goes, exchange, flight) + fmax(0, all - m->graph->message);
 }
 
 /* A worker begins a task. Before that it does the work left for messages, if no core was idle, and
@@ -39,9 +29,8 @@ static double exchange_send(struct predict_machine *m, const struct predict_node
 static double worker_pay(struct predict_machine *m, uint32_t worker, uint32_t host)
 {
     const bool none_idle = m->state[worker] != IDLE && !m->idle[host];
-    double seconds = none_idle ? m->handled[host] + m->handled_by_all - m->paid[host] : 0;
+    double seconds = none_idle ? m->handled[host] : 0;
     m->handled[host] = 0;
-    m->paid[host] = m->handled_by_all;
     if (m->graph->look > 0 && m->now - m->looked[worker] >= PREDICT_LOOKS) {
         m->looked[worker] = m->now;
         seconds += m->graph->look;
@@ -147,7 +136,7 @@ static void node_task_ready(struct predict_machine *m, uint32_t node, uint32_t w
 static double message_send(struct predict_machine *m, uint32_t node, double *flight)
 {
     const struct predict_node *n = &m->graph->node[node];
-    const double begins = message_handle(m, n->host, 1);
+    const double begins = message_handle(m, n->host);
     m->failed |= !predict_event_put(&m->events, begins + m->graph->message, node, PREDICT_LEFT);
     return predict_message(&m->network, begins, n, flight);
 }
@@ -162,14 +151,8 @@ static void machine_ready(struct predict_machine *m, uint32_t node, uint32_t wor
     case PREDICT_TASK:
         node_task_ready(m, node, worker);
         return;
-    case PREDICT_EVERYWHERE:
-        end = m->now + m->graph->overhead + (double)n->seconds;
-        break;
     case PREDICT_MESSAGE:
         end = message_send(m, node, &flight);
-        break;
-    case PREDICT_EXCHANGE:
-        end = exchange_send(m, n, &flight);
         break;
     default:
         break;
@@ -182,7 +165,7 @@ static void machine_ready(struct predict_machine *m, uint32_t node, uint32_t wor
 static bool message_waits(struct predict_machine *m, uint32_t node)
 {
     const struct predict_node *n = &m->graph->node[node];
-    const double begins = message_handle(m, n->block, 1);
+    const double begins = message_handle(m, n->block);
     if (begins > m->now)
         m->failed |= !predict_event_put(&m->events, begins, node, PREDICT_NONE);
     return begins > m->now;
@@ -313,9 +296,7 @@ static void message_release(struct predict_machine *m, uint32_t node, bool left)
     const struct predict_node *n = &graph->node[node];
     for (uint32_t e = n->edge; e != PREDICT_NONE; e = graph->edge[e].next) {
         const struct predict_node *to = &graph->node[graph->edge[e].to];
-        const bool here =
-            to->host == n->host && to->kind != PREDICT_EVERYWHERE && to->kind != PREDICT_EXCHANGE;
-        if (here != left)
+        if ((to->host == n->host) != left)
             continue;
         path_extend(m, node, graph->edge[e].to);
         node_count_down(m, graph->edge[e].to, left ? m->cause[node].by : node, PREDICT_NONE);

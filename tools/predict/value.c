@@ -15,24 +15,12 @@ struct value_use {
     int host;
 };
 
-/* Messages use the copy where they come from. */
-static bool value_is_used_on(const struct predict_node *node, int host)
-{
-    return host == PREDICT_ALL || node->kind == PREDICT_EVERYWHERE || node->host == (uint32_t)host;
-}
-
-/* The object's value is the copy on the host. */
-static bool value_is_on(const struct predict_object *o, int host)
-{
-    return o->holder == host || o->holder == PREDICT_ALL || host == PREDICT_ALL;
-}
-
 static bool value_edge(void *context, uint32_t before, uint32_t after)
 {
     const struct value_use *use = context;
-    const bool waits = before == predict_writer(use->object)
-                           ? value_is_on(use->object, use->host)
-                           : value_is_used_on(&use->graph->node[before], use->host);
+    const int used = before == predict_writer(use->object) ? use->object->holder
+                                                           : (int)use->graph->node[before].host;
+    const bool waits = used == use->host; /* a message uses the copy where it comes from */
     if (waits)
         predict_edge(use->graph, before, after);
     return waits;
@@ -107,36 +95,11 @@ static uint32_t value_send(struct predict_graph *graph, uint32_t object, uint32_
     return message;
 }
 
-/* Adds a node after which all hosts have the object's value. */
-static uint32_t value_send_all(struct predict_graph *graph, uint32_t object)
-{
-    struct predict_object *o = &graph->object[object];
-    uint32_t exchange = predict_own_node(graph, PREDICT_EXCHANGE, (uint32_t)o->holder, 0, o->bytes);
-    if (graph->failed)
-        return PREDICT_NONE;
-    int32_t lacking = (int32_t)graph->cluster->hosts - 1;
-    graph->linked = false;
-    value_order(graph, &o->order, exchange, object, o->holder, false);
-    for (uint32_t i = o->copies; i != PREDICT_NONE; i = graph->link[i].next) {
-        predict_edge(graph, graph->link[i].node, exchange);
-        lacking -= graph->link[i].host != (uint32_t)o->holder;
-    }
-    predict_hold(graph, exchange);
-    graph->node[exchange].priority = lacking;
-    return exchange;
-}
-
 uint32_t predict_fetch(struct predict_graph *graph, uint32_t object, int host)
 {
     struct predict_object *o = &graph->object[object];
-    if (o->holder == PREDICT_ALL || o->holder == host || o->lasts ||
-        (graph->cluster->hosts == 1 && host == PREDICT_ALL))
+    if (o->holder == host || o->lasts)
         return predict_writer(o);
-    if (host == PREDICT_ALL) {
-        o->order.writer = value_send_all(graph, object) + 1;
-        o->holder = PREDICT_ALL;
-        return predict_writer(o);
-    }
     for (uint32_t i = o->copies; i != PREDICT_NONE; i = graph->link[i].next)
         if (graph->link[i].host == (uint32_t)host)
             return graph->link[i].node;
@@ -151,6 +114,14 @@ uint32_t predict_prepare(struct predict_graph *graph, uint32_t object, duite_mod
         predict_reduce(graph, object);
     return data_order_reads(mode) && !graph->failed ? predict_fetch(graph, object, host)
                                                     : PREDICT_NONE;
+}
+
+uint32_t predict_prepare_all(struct predict_graph *graph, uint32_t object, duite_mode mode)
+{
+    const uint32_t first = predict_prepare(graph, object, mode, 0);
+    for (uint32_t host = 1; host < graph->cluster->hosts; host++)
+        predict_prepare(graph, object, mode, (int)host);
+    return first;
 }
 
 /* ---- Writing ---- */
@@ -188,15 +159,14 @@ void predict_use(struct predict_graph *graph, uint32_t node, uint32_t object, du
                  uint32_t prepared)
 {
     struct predict_object *o = &graph->object[object];
-    const uint32_t at = graph->node[node].host;
-    const int host = graph->node[node].kind == PREDICT_EVERYWHERE ? PREDICT_ALL : (int)at;
+    const uint32_t host = graph->node[node].host;
     predict_edge_value(graph, prepared, node, object);
     if (data_order_joins(mode, NULL, NULL))
-        predict_link_push(graph, &o->leaves, node, at);
+        predict_link_push(graph, &o->leaves, node, host);
     else if (data_order_writes(mode))
-        predict_overwrite(graph, node, object, host);
+        predict_overwrite(graph, node, object, (int)host);
     else
-        value_order(graph, &o->order, node, object, host, false);
+        value_order(graph, &o->order, node, object, (int)host, false);
 }
 
 /* A copy stays at the old home. */
@@ -205,14 +175,14 @@ void predict_rehome(struct predict_graph *graph, uint32_t object, int host)
     struct predict_object *o = &graph->object[object];
     const uint32_t before = (uint32_t)o->holder, writer = predict_writer(o);
     o->home = host;
-    if (value_is_on(o, host))
+    if (o->holder == host)
         return;
     o->order.writer = predict_fetch(graph, object, host) + 1;
     o->holder = host;
     predict_link_push(graph, &o->copies, writer, before);
 }
 
-/* ---- Replays ---- */
+/* ---- Several hosts at once ---- */
 
 void predict_enter(struct predict_graph *graph, uint32_t node, uint32_t object, int host,
                    bool reads, bool writes)

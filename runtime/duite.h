@@ -33,8 +33,10 @@
 extern "C" {
 #endif
 
-/* Codes. Positive codes belong to the bodies of the program and are passed on unchanged. */
-enum {
+/* The codes that calls return. Positive codes belong to the bodies of the program and are passed on
+ * unchanged. Any call on a runtime may also return DUITE_E_ARGUMENT (no runtime), DUITE_E_STATE
+ * (not allowed here), the remembered error, and the code that ended the work of all ranks. */
+enum duite_code {
     DUITE_OK = 0,
     DUITE_E_ARGUMENT = -1, /* an argument that makes no sense: NULL, unknown type, too large */
     DUITE_E_MEMORY = -2,   /* out of memory */
@@ -59,10 +61,11 @@ enum {
 };
 
 /* The error message of this thread's last failed call; never NULL. Valid until the next failure.
- * Local. */
+ * Local. Returns: text of the library. */
 const char *duite_message(void);
 
-/* The meaning of a code in a few words; for codes of bodies "error of the program". Local. */
+/* The meaning of a code in a few words; for codes of bodies "error of the program". Local. Returns:
+ * constant text. */
 const char *duite_code_text(int code);
 
 typedef struct duite duite; /* a running runtime */
@@ -116,9 +119,9 @@ typedef enum duite_mode {
 
 /* ---- Laws ---- */
 
-/* How contributions (cw) to an object combine: constant, alive from start to stop, listed at start
- * in the same order on every rank. Names are unique. A law must be pure; it need be neither
- * associative nor commutative, since the tree of contributions is fixed (see duite_fork).
+/* How contributions (cw) to an object combine. A law is constant, alive from start to stop, and
+ * listed at start in the same order on every rank. Names are unique. A law must be pure; it need be
+ * neither associative nor commutative, since the tree of contributions is fixed (see duite_fork).
  *
  * A law for bytes may see structures in them: count is always that of the whole object, in bytes
  * then, and values are aligned to 16 bytes. */
@@ -138,6 +141,7 @@ extern const duite_law duite_sum, duite_min, duite_max;
 
 /* ---- Kernels ---- */
 
+/* One parameter of a body. */
 typedef struct duite_param {
     void *data;   /* 64-byte aligned; const under DUITE_R; dies with the body; NULL if postponed */
     size_t count; /* elements; the maximum for a postponed object that changes its size */
@@ -150,7 +154,7 @@ typedef struct duite_param {
 typedef struct duite_call {
     const void *args; /* the copy of the arguments made at the fork; NULL if the kernel has none */
     void *context;    /* as given at start */
-    duite *rt;        /* for the body's calls: see "Tasks that fork" */
+    duite *rt;        /* for the body's calls: see duite_body */
     const duite_param *param; /* n_params of them, in the order of the fork */
     size_t n_params;
     uint64_t round;  /* of the replay that forked the task, from 0; else 0 */
@@ -170,22 +174,52 @@ typedef struct duite_call {
  * until a w, which does not read, overwrites it. The next duite_wait, and every duite_get of a
  * poisoned object, returns the code on all ranks. A failed contribution poisons the object;
  * contributing to a poisoned object is possible and does not heal it. The calls of a body: see
- * "Tasks that fork".
+ * below.
  *
  * A body must return, since others wait for its results. If a C++ exception or the end of its
  * thread leaves it, or a law or a policy that a task calls, the process ends with a sentence. The
  * runtime does not notice a longjmp out of a body and waits for ever for its return. */
 typedef int duite_body(const duite_call *call);
 
-/* Gives the failure of a body its message (printf form, at most 200 bytes are kept). Returns code.
- */
+/* Tasks that fork. With call->rt, and on its own thread, a body may call the following. Objects:
+ * duite_new, duite_new_sized, duite_free, duite_set, duite_set_sized, duite_get, duite_get_count.
+ * Tasks: duite_fork, duite_fork_with (without a rank), duite_wait, duite_resize, duite_contribute,
+ * duite_fail. Also calls that describe the runtime (duite_rank and the like). All others are
+ * DUITE_E_STATE, as is any call from a thread of the program's own. In a body the calls are local:
+ * children run on the rank of the task, unless a balancer delegates them, and no other rank knows
+ * of them.
+ *
+ * Objects: a body names those it was given (param[i].object) and those it made. The table at
+ * duite_mode lists the modes it may fork its children with. Other modes are DUITE_E_RIGHT, as are
+ * objects of the main program that it was not given. A duite_set needs the right to w, a duite_get
+ * that to r. A task's own objects die, freed or not, when its last descendant is over.
+ *
+ * Order: a body comes first, then its children in the order of their forks, each with all of its
+ * descendants, then the next task of the one that forked it. The children's result in a parameter
+ * is passed on as soon as it is there, without waiting for the rest of them.
+ *
+ * duite_get waits for the value that the children forked so far leave, duite_wait for all of them
+ * with their descendants. The body's later work comes after them in the order. Meanwhile its thread
+ * runs other tasks that come earlier, on the same stack: a body must not wait with a lock held. A
+ * level of waiting bodies takes some 1.2 kB of it and what the bodies keep there: a stack of 8 MB
+ * (ulimit -s) has room for 5,000. Bodies that wait side by side add no levels. If three quarters of
+ * the stack are used, a wait returns DUITE_E_DEPTH without waiting. A duite_wait returns the first
+ * error, in the reference order, of the descendants since the body's last wait. The next wait of
+ * the main program returns it, too. A failed child poisons only its results: its parent fails only
+ * if it returns a code.
+ *
+ * Errors of calls that return at once are remembered for the body's next get or wait; without one,
+ * the task fails with the first error. */
+
+/* Gives the failure of a body its message (printf form, at most 200 bytes are kept). In a body;
+ * local. Returns: `code`. */
 int duite_fail(const duite_call *call, int code, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
 /* Gives parameter i, w or rw of an object made by duite_new_sized, so many elements; added ones are
  * zero. It begins with its present size (rw) or its maximum (w); readers find the size that the
  * body leaves. More than the maximum, or another parameter, is DUITE_E_SIZE: the task then fails
- * with it even if its body returns 0. */
+ * with it even if its body returns 0. In a body; local. Errors: DUITE_E_SIZE. */
 int duite_resize(const duite_call *call, size_t i, size_t count);
 
 /* Makes a contribution of the body itself to parameter i, held by cwp. It has as many elements, and
@@ -193,13 +227,14 @@ int duite_resize(const duite_call *call, size_t i, size_t count);
  * may change them until it ends. Their final values count as those of a child forked with cw at the
  * time of the call, in the same place of the tree. This child neither runs nor has a number. Each
  * call is another contribution. NULL: no memory, or another mode (DUITE_E_RIGHT): the task then
- * fails with it even if its body returns 0. Checking mode misses writes beyond the elements. */
+ * fails with it even if its body returns 0. Checking mode misses writes beyond the elements. In a
+ * body; local. Returns: the elements, or NULL. Errors: DUITE_E_RIGHT, DUITE_E_MEMORY. */
 void *duite_contribute(const duite_call *call, size_t i);
 
 enum { DUITE_MAX_ACCESS = 64 }; /* max. modes that a kernel lists */
 
-/* A kernel: constant, alive from start to stop, listed at start in the same order on every rank.
- * Names are unique. */
+/* A task's body with the access modes of its parameters. A kernel is constant, alive from start to
+ * stop, and listed at start in the same order on every rank. Names are unique. */
 typedef struct duite_kernel {
     const char *name;
     duite_body *body;
@@ -233,6 +268,7 @@ struct duite_balancer;
 
 enum { DUITE_MAX_THREADS = 4096 }; /* max. workers of a rank */
 
+/* The options of duite_start. Begin with duite_options_default. */
 typedef struct duite_options {
     MPI_Comm comm; /* the ranks that take part; duplicated. Default MPI_COMM_WORLD */
     const duite_kernel *const *kernels; /* ended by NULL; the list is copied, the kernels are not */
@@ -266,35 +302,17 @@ typedef struct duite_options {
                   the environment */
 } duite_options;
 
-/* The defaults of the fields. Options must begin with these, since zeros are no communicator and no
- * policies (DUITE_E_ARGUMENT). Fields that the program sets afterwards count first, then the
- * variables of the environment, which are read here, then the built-in defaults. A variable that
- * makes no sense (an unknown policy, text instead of a number) is an error of duite_start, which
- * names it, unless the program sets the field. Local. */
-duite_options duite_options_default(void);
-
-/* The built-in policies by name, or from a shared library if the name has a / in it
- * (duite_policy.h). NULL, and a message for duite_message, if there is none. Names: the built-in
- * ones, the default first, ended by NULL; the adversaries for tests (the scheduler shuffle, the
- * balancers scatter and wander) are found by name only. Local. */
-const struct duite_scheduler *duite_scheduler_find(const char *name);
-const struct duite_mapping *duite_mapping_find(const char *name);
-const struct duite_balancer *duite_balancer_find(const char *name);
-const char *const *duite_scheduler_names(void);
-const char *const *duite_mapping_names(void);
-const char *const *duite_balancer_names(void);
-
 /* Delegation: with the balancer `delegate` a rank that has nothing to do asks others for ready
  * tasks, one rank at a time and ever less often. It gets tasks that are expected to take longer
  * than sending their inputs there and their outputs back. It gets one task with postponed
  * parameters and unknown cost: the one that has been ready for longest. Tasks may go if their fork
- * named no rank and their kernel has no side effects and is not `fixed`; in recorded graphs, those
- * of forked rounds. A task with postponed parameters goes once all that its children may read is
- * there. Its children run on the same rank, or go on from there by the same rules, and their
- * results go home when they are over. So bodies run on any idle rank. Data that they find by their
- * context must serve on each rank. It must be there before the first such fork of any rank (set up
- * on all ranks, then a duite_wait). Results and failures are the same; a failure names the rank on
- * which the body ran. `scatter` sends tasks anywhere, for tests. */
+ * named no rank and their kernel is neither `fixed` nor replicated and has no side effects; in
+ * recorded graphs, those of forked rounds. A task with postponed parameters goes once all that its
+ * children may read is there. Its children run on the same rank, or go on from there by the same
+ * rules, and their results go home when they are over. So bodies run on any idle rank. Data that
+ * they find by their context must serve on each rank. It must be there before the first such fork
+ * of any rank (set up on all ranks, then a duite_wait). Results and failures are the same; a
+ * failure names the rank on which the body ran. `scatter` sends tasks anywhere, for tests. */
 
 /* Migration: with the balancer `migrate` objects get other homes when the bodies of one rank's
  * tasks take longer than those of the others. A leader moves with its followers and with all their
@@ -335,12 +353,67 @@ const char *const *duite_balancer_names(void);
  * is left, and MPI may not be called any more: the program saves its data and ends. Open MPI may
  * end the job first, with a message of its own. */
 
+/* The defaults of the fields. Options must begin with these, since zeros are no communicator and no
+ * policies (DUITE_E_ARGUMENT). Fields that the program sets afterwards count first, then the
+ * variables of the environment, which are read here, then the built-in defaults. A variable that
+ * makes no sense (an unknown policy, text instead of a number) is an error of duite_start, which
+ * names it, unless the program sets the field. Local. Returns: the options. */
+duite_options duite_options_default(void);
+
+/* The built-in policies by name, or from a shared library if the name has a / in it
+ * (duite_policy.h). The lists of names have the default first and end with NULL; they leave out the
+ * adversaries for tests, which are found by name only. No policy changes a result. Local.
+ *
+ *     scheduler   the next task of a worker
+ *     steal       its newest; idle ones take another's oldest; in a replay a
+ *                 task goes to the worker that ran the last one on its data
+ *     locality    as steal, but idle ones try the nearest workers first
+ *     owner       the newest of its blocks (a leader and its followers);
+ *                 idle ones take another's oldest
+ *     fifo lifo   the oldest or newest of one queue for all
+ *     priority    the largest priority of one queue for all; of equals in a
+ *                 replay the longest path to the end
+ *     static      the oldest of its blocks; nothing is stolen
+ *     shuffle     a random one (an adversary)
+ *
+ *     mapping     an object's home
+ *     metis       by a cut of the graph of hints: equal weights, few bytes
+ *                 between ranks; as block with weights alone, as cyclic
+ *                 without hints
+ *     block       contiguous ranges of equal weight, in the order of making
+ *     cyclic      object after object to rank after rank
+ *     random      a random rank, from the seed
+ *     taskgraph   METIS on the tasks of a recorded graph: their costs, and
+ *                 what they read of each other
+ *     list        where the tasks of a recorded graph end earliest (HEFT)
+ *
+ *     balancer    moves
+ *     none        nothing
+ *     delegate    ready tasks to idle ranks (duite_options)
+ *     migrate     objects between replays, to ranks with less work
+ *     scatter wander  tasks, or objects and tasks, anywhere (adversaries)
+ *
+ * taskgraph and list begin as metis. They move objects at the first replay of each graph, whose
+ * tasks are then known, and once more at the second with measured costs, unless all forks named a
+ * cost. Such a replay waits, like duite_wait; duite_home may answer differently afterwards; objects
+ * of `fixed` kernels stay.
+ *
+ * Returns: constant tables and lists, which no call frees. NULL, and a message for duite_message,
+ * if there is no such policy. */
+const struct duite_scheduler *duite_scheduler_find(const char *name);
+const struct duite_mapping *duite_mapping_find(const char *name);
+const struct duite_balancer *duite_balancer_find(const char *name);
+const char *const *duite_scheduler_names(void);
+const char *const *duite_mapping_names(void);
+const char *const *duite_balancer_names(void);
+
 /* Starts a runtime. Initialises MPI (thread support SERIALIZED) if the caller has not. On several
  * ranks its workers call MPI at any time until duite_stop: a program that calls MPI meanwhile needs
  * MPI_THREAD_MULTIPLE. A process may have one runtime at a time, more only with MPI_THREAD_MULTIPLE
  * (DUITE_E_STATE, on this rank). Collective over comm. On failure *rt is NULL on all ranks. If
  * another rank failed, the code is DUITE_E_MEMORY if it had no memory, else DUITE_E_DIFFERENT; the
- * message is that of the failed rank, with its number. */
+ * message is that of the failed rank, with its number. Errors: DUITE_E_ARGUMENT, DUITE_E_KERNEL,
+ * DUITE_E_LAW, DUITE_E_STATE, DUITE_E_MPI, DUITE_E_DIFFERENT, DUITE_E_SYSTEM, DUITE_E_MEMORY. */
 int duite_start(duite **rt, const duite_options *options);
 
 /* Waits for all tasks, ends the workers and frees everything; start and stop may repeat. If start
@@ -348,14 +421,14 @@ int duite_start(duite **rt, const duite_options *options);
  * it unfinalised, and mpirun ends the job. Returns the error that a wait would, else
  * DUITE_E_NOT_FREED if objects or graphs are left; *rt becomes NULL in any case. In a body or a
  * build function, or between duite_mpi_begin and duite_mpi_end, it does nothing and returns
- * DUITE_E_STATE. Collective. */
+ * DUITE_E_STATE. Collective. Errors: those of duite_wait, DUITE_E_NOT_FREED, DUITE_E_STATE. */
 int duite_stop(duite **rt);
 
 /* Frees the runtime without the other ranks, after DUITE_E_LOST or DUITE_E_MPI (else:
  * DUITE_E_STATE): begins no call of MPI that waits. Memory that MPI may still read or write stays
  * allocated. MPI is not finalised when the process ends, even if duite_start initialised it, so
  * mpirun ends the job. The call sets *rt to NULL. A call of duite_stop instead does the same and
- * returns the code. Local. */
+ * returns the code. Local. Errors: DUITE_E_STATE. */
 int duite_abandon(duite **rt);
 
 /* For calls of MPI by the program itself (a solver, parallel files). While a runtime exists, even
@@ -365,11 +438,12 @@ int duite_abandon(duite **rt);
  * other calls of the main program are refused and remembered (DUITE_E_STATE). So all ranks call
  * duite_wait first. Else a rank in duite_get may need a value that this rank has not sent, and a
  * call of MPI that waits for that rank never returns. Ranks outside take a rank that stays longer
- * than lost_seconds for lost. Errors: DUITE_E_STATE (begun twice, ended without begin). Local. */
+ * than lost_seconds for lost. Local. Errors: DUITE_E_STATE (begun twice, ended without begin). */
 int duite_mpi_begin(duite *rt);
 int duite_mpi_end(duite *rt);
 
-/* This rank, the number of ranks, the workers of this rank. Local. */
+/* This rank, the number of ranks, the workers of this rank. Local. Returns: -1 or 0 if `rt` is
+ * NULL. */
 int duite_rank(const duite *rt);
 int duite_ranks(const duite *rt);
 unsigned duite_threads(const duite *rt);
@@ -378,65 +452,75 @@ unsigned duite_threads(const duite *rt);
  * that the ranks of its host may use, and its share of those within a cgroup's quota or
  * SLURM_CPUS_ON_NODE. If from is not NULL, *from becomes the source as text, such as
  * "SLURM_CPUS_PER_TASK=1", valid until duite_stop. Workers are not bound if the rank has fewer
- * cores than it may use. Local. */
+ * cores than it may use. Local. Returns: 0 if `rt` is NULL. */
 unsigned duite_cores(const duite *rt, const char **from);
 
 /* 1 if the workers of this host outnumber the cores they may use, or this rank's workers its cores:
- * then they neither spin nor bind. Local. */
+ * then they neither spin nor bind. Local. Returns: 1 or 0. */
 int duite_oversubscribed(const duite *rt);
 
 /* ---- Shared objects ---- */
 
 /* Makes an object of count elements, at least 1 (DUITE_E_ARGUMENT), all zero. Collective; no
- * communication. */
+ * communication. Errors: DUITE_E_ARGUMENT (also a type that is none, or more bytes than the library
+ * can count), DUITE_E_MEMORY. */
 int duite_new(duite *rt, duite_type type, size_t count, duite_object *object);
 
 /* Makes an object whose size changes: 0 to `max` elements (at least 1), count zeros to begin with.
  * Bodies under w and rw find room for `max` and set the count (duite_resize); readers, messages and
  * gets have that many. It cannot be accumulated into (cw: DUITE_E_ACCESS). Collective; no
- * communication. */
+ * communication. Errors: as of duite_new: DUITE_E_ARGUMENT, DUITE_E_MEMORY. */
 int duite_new_sized(duite *rt, duite_type type, size_t count, size_t max, duite_object *object);
 
-/* Frees an object after the last earlier access; afterwards `object` is invalid. Collective. */
+/* Frees an object after the last earlier access; afterwards `object` is invalid. Collective.
+ * Errors: DUITE_E_OBJECT; in a body DUITE_E_RIGHT for an object that it did not make. */
 int duite_free(duite *rt, duite_object object);
 
 /* Overwrites the object, in fork order, with a copy of `values` (count elements, the same on every
- * rank), or with zeros if `values` is NULL. Collective; returns at once. */
+ * rank), or with zeros if `values` is NULL. Collective; returns at once. Errors: DUITE_E_OBJECT,
+ * DUITE_E_MEMORY; in a body DUITE_E_RIGHT. */
 int duite_set(duite *rt, duite_object object, const void *values);
 
-/* The same with count values: as many as the object has, or at most its maximum if its size changes
- * (duite_set sets the maximum); else DUITE_E_SIZE. Collective; returns at once. */
+/* duite_set with count values: as many as the object has, or at most its maximum if its size
+ * changes (duite_set sets the maximum); else DUITE_E_SIZE. Collective; returns at once. Errors:
+ * DUITE_E_OBJECT, DUITE_E_SIZE, DUITE_E_MEMORY; in a body DUITE_E_RIGHT. */
 int duite_set_sized(duite *rt, duite_object object, const void *values, size_t count);
 
 /* The number of elements that the tasks forked so far leave in the object. Waits and returns errors
- * like duite_get; a later duite_get need not wait. Collective. */
+ * like duite_get; a later duite_get need not wait. Collective. Errors: as of duite_get:
+ * DUITE_E_OBJECT, DUITE_E_ARGUMENT, DUITE_E_DIFFERENT. */
 int duite_get_count(duite *rt, duite_object object, size_t *count);
 
 /* Copies the object, as the tasks forked so far leave it, into `values` (count elements) on every
  * rank. Returns when the bytes are there; other tasks go on. A poisoned object returns the code of
  * its first cause in fork order, and `values` stays unchanged. Returns DUITE_E_DIFFERENT, like
- * duite_wait, if it waits long because the ranks did not make the same calls. Collective. */
+ * duite_wait, if it waits long because the ranks did not make the same calls. Collective. Errors:
+ * that of the failed task, DUITE_E_OBJECT, DUITE_E_ARGUMENT (nowhere to put the values),
+ * DUITE_E_DIFFERENT; in a body DUITE_E_RIGHT, DUITE_E_DEPTH. */
 int duite_get(duite *rt, duite_object object, void *values);
 
-/* The same on one rank only; the others ignore `values` and return DUITE_OK at once, even if the
- * object is poisoned, so a program may not branch on the result. Collective. */
+/* duite_get on one rank only; the others ignore `values` and return DUITE_OK at once, even if the
+ * object is poisoned, so a program may not branch on the result. Collective. Errors: as of
+ * duite_get; DUITE_E_ARGUMENT also if there is no such rank. */
 int duite_get_at(duite *rt, duite_object object, int rank, void *values);
 
 /* Tells mappings about the object: its share of work, and the bytes it exchanges with n existing
  * neighbours (edge_weights NULL: 1 each). An edge may be given from either end; weights given twice
  * add up. A second hint replaces the weight and adds edges. Hints count until the object's home is
  * settled by the next fork, set, get, free, duite_home, duite_graph_new or replay (even of an empty
- * graph); later ones have no effect. Collective. */
+ * graph); later ones have no effect. Collective. Errors: DUITE_E_OBJECT, DUITE_E_ARGUMENT (a weight
+ * that is negative or not finite), DUITE_E_MEMORY. */
 int duite_hint(duite *rt, duite_object object, double weight, size_t n,
                const duite_object *neighbours, const double *edge_weights);
 
 /* The object gets the home of `leader` (or of its leader in turn), whatever the mapping; counts
- * like a hint. A ring of leaders is DUITE_E_ARGUMENT. Collective. */
+ * like a hint. A ring of leaders is DUITE_E_ARGUMENT. Collective. Errors: DUITE_E_OBJECT,
+ * DUITE_E_ARGUMENT. */
 int duite_colocate(duite *rt, duite_object object, duite_object leader);
 
 /* Settles the homes of all objects made so far, as a fork does, and returns this one's home; -1 for
  * an invalid object. The answer holds until the next replay if options.balance moves objects, else
- * until the object is freed. Collective. */
+ * until the object is freed. Collective. Returns: a rank, or -1. */
 int duite_home(duite *rt, duite_object object);
 
 /* 1 if this rank keeps the object, or has a copy of it as the tasks forked so far leave it, or if
@@ -445,12 +529,12 @@ int duite_home(duite *rt, duite_object object);
  * NULL will do; this rank alone would refuse NULL, and the ranks would differ. Exceptions: forks
  * that name this rank, have a replicated kernel, or are in a build function. On rank 0 also tasks
  * that read and write nothing (no objects, or cw alone). Settles homes, and is collective, like
- * duite_home. */
+ * duite_home. Returns: 1 or 0. */
 int duite_is_local(duite *rt, duite_object object);
 
 /* ---- Tasks ---- */
 
-/* Prefetches into the cache what later forks on these n objects look at. For main programs that
+/* Prefetches what later forks on these n objects look at. For main programs that
  * fork tasks on tens of thousands of objects, a few tasks ahead; no other effect. Skips invalid
  * objects. Main program. Local. */
 void duite_prefetch(const duite *rt, size_t n, const duite_object *objects);
@@ -477,11 +561,15 @@ void duite_prefetch(const duite *rt, size_t n, const duite_object *objects);
  * the replay, and it begins again after two equal rounds. Bodies must have run, to be known as
  * short: on one thread with window 0 none runs before the first get or wait, and no round is
  * recognised. Rounds whose arguments come to more than 1 MiB ahead of the bodies are forked.
- * Checking mode and traces switch it off, as does options.memo. */
+ * Checking mode and traces switch it off, as does options.memo. Errors: DUITE_E_ARGUMENT,
+ * DUITE_E_KERNEL, DUITE_E_ACCESS, DUITE_E_OBJECT, DUITE_E_LAW, DUITE_E_MEMORY; in a body
+ * DUITE_E_RIGHT. */
 int duite_fork(duite *rt, const duite_kernel *kernel, const void *args, size_t n,
                const duite_object *objects);
 
-/* The same on a rank of the caller's choice: for kernels with side effects, such as files. */
+/* duite_fork on a rank of the caller's choice: for kernels with side effects, such as files.
+ * Collective. Errors: as of duite_fork; DUITE_E_ARGUMENT also if there is no such rank,
+ * DUITE_E_STATE in a body. */
 int duite_fork_at(duite *rt, int rank, const duite_kernel *kernel, const void *args, size_t n,
                   const duite_object *objects);
 
@@ -495,8 +583,8 @@ typedef struct duite_task_options {
 /* duite_fork with options (NULL: none): duite_fork_with(rt, &(duite_task_options){.priority = 3,
  * .cost = 2e-5}, ...). Schedulers see priority and cost (duite_ready), which never change results;
  * replays of a recorded fork have them, too. They may differ between ranks, as measured costs do:
- * the rank that runs the task uses its own. Errors as of duite_fork_at. Collective; returns at
- * once. */
+ * the rank that runs the task uses its own. Collective; returns at once. Errors: as of
+ * duite_fork_at; DUITE_E_STATE if a body names a rank. */
 int duite_fork_with(duite *rt, const duite_task_options *options, const duite_kernel *kernel,
                     const void *args, size_t n, const duite_object *objects);
 
@@ -531,38 +619,9 @@ extern "C" {
  * first task in the reference order (a task, then its children) that failed itself since the last
  * wait. DUITE_E_DIFFERENT on all ranks: they did not make the same calls since the last wait, and
  * only duite_stop is left. A remembered error goes first; the next wait then returns the task's.
- * Collective. */
+ * Collective. Errors: that of the first failed task, DUITE_E_DIFFERENT, DUITE_E_LOST, DUITE_E_MPI;
+ * in a body DUITE_E_DEPTH. */
 int duite_wait(duite *rt);
-
-/* ---- Tasks that fork ----
- *
- * With call->rt, and on its own thread, a body may call the following. Objects: duite_new,
- * duite_new_sized, duite_free, duite_set, duite_set_sized, duite_get, duite_get_count. Tasks:
- * duite_fork, duite_fork_with (without a rank), duite_wait, duite_resize, duite_contribute,
- * duite_fail. Also calls that describe the runtime (duite_rank and the like). All others are
- * DUITE_E_STATE, as is any call from a thread of the program's own. In a body the calls are local:
- * children run on the rank of the task, unless a balancer delegates them, and no other rank knows
- * of them.
- *
- * Objects: a body names those it was given (param[i].object) and those it made. The table at
- * duite_mode lists the modes it may fork its children with. Other modes are DUITE_E_RIGHT, as are
- * objects of the main program that it was not given. A duite_set needs the right to w, a duite_get
- * that to r. A task's own objects die, freed or not, when its last descendant is over.
- *
- * Order: a body comes first, then its children in the order of their forks, each with all of its
- * descendants, then the next task of the one that forked it. The children's result in a parameter
- * is passed on as soon as it is there, without waiting for the rest of them.
- *
- * duite_get waits for the value that the children forked so far leave, duite_wait for all of them
- * with their descendants. The body's later work comes after them in the order. Meanwhile its thread
- * runs other tasks that come earlier, on the same stack: a body must not wait with a lock held. If
- * three quarters of the stack are used, a wait returns DUITE_E_DEPTH without waiting. A duite_wait
- * returns the first error, in the reference order, of the descendants since the body's last wait.
- * The next wait of the main program returns it, too. A failed child poisons only its results: its
- * parent fails only if it returns a code.
- *
- * Errors of calls that return at once are remembered for the body's next get or wait; without one,
- * the task fails with the first error. */
 
 /* ---- Recorded graphs ---- */
 
@@ -582,7 +641,8 @@ typedef int duite_build(duite *rt, void *context);
  * duite_fork_with and duite_set are recorded, duite_home and the local calls answer; all others are
  * DUITE_E_STATE. If build or a call inside fails, it makes no graph, returns the first error, and
  * *graph is DUITE_NO_GRAPH. A graph may be replayed any number of times; duite_graph_free frees it.
- * Collective; no communication. */
+ * Collective; no communication. Errors: those of build and of the calls inside, DUITE_E_ARGUMENT,
+ * DUITE_E_MEMORY. */
 int duite_graph_new(duite *rt, duite_build *build, void *context, duite_graph *graph);
 
 /* Forks the graph's tasks `rounds` times, one round after the other: results, failures and task
@@ -599,29 +659,33 @@ int duite_graph_new(duite *rt, duite_build *build, void *context, duite_graph *g
  * Returns its errors, and DUITE_E_BINDING. `rounds` times tasks is at most 2^48. Collective.
  * Returns at once, unless a balancer may move objects or the tags of MPI are used up (after some
  * 10,000 graphs if MPI has 32,767, the least it may have). Then a replay waits for all tasks, like
- * duite_wait. */
+ * duite_wait. Errors: those of build, DUITE_E_OBJECT (no such graph), DUITE_E_BINDING,
+ * DUITE_E_ARGUMENT (too many rounds), DUITE_E_MPI (too few tags), DUITE_E_MEMORY. */
 int duite_replay(duite *rt, duite_graph graph, uint64_t rounds);
 
 /* Replays while the first element of `flag`, an object that the graph uses or any other, is not
  * zero after a round: at least one round, at most `max_rounds`. A poisoned flag ends it. Tasks
  * forked later are numbered as if there had been `max_rounds`. All ranks read the flag: it costs no
  * message if a replicated kernel writes it. Collective; returns at once, or if the rounds are
- * forked (duite_replay), once the last one is. */
+ * forked (duite_replay), once the last one is. Errors: as of duite_replay; DUITE_E_OBJECT also for
+ * the flag, DUITE_E_ARGUMENT for no rounds. */
 int duite_replay_while(duite *rt, duite_graph graph, duite_object flag, uint64_t max_rounds);
 
 /* Waits for the last replay of the graph and writes its number of rounds; 0 before the first.
- * Collective. */
+ * Collective. Errors: DUITE_E_OBJECT (no such graph), DUITE_E_ARGUMENT (nowhere to put the number).
+ */
 int duite_graph_rounds(duite *rt, duite_graph graph, uint64_t *rounds);
 
 /* Changes a graph from its next replay on. duite_graph_args: the arguments of the k-th fork of
  * build (from 0; sets do not count) are a copy of the args_size bytes at args. duite_graph_bind:
  * `object` replaces `recorded` wherever build named it, until another one is bound. It must have
  * the same type and count (DUITE_E_BINDING). Only the replay returns DUITE_E_BINDING for two
- * recorded objects bound to one, so that they may be exchanged. Collective. */
+ * recorded objects bound to one, so that they may be exchanged. Collective. Errors: DUITE_E_OBJECT,
+ * DUITE_E_ARGUMENT (no such fork, or other arguments), DUITE_E_BINDING, DUITE_E_MEMORY. */
 int duite_graph_args(duite *rt, duite_graph graph, size_t k, const void *args);
 int duite_graph_bind(duite *rt, duite_graph graph, duite_object recorded, duite_object object);
 
-/* Frees a graph; unfinished replays run to their end. Collective. */
+/* Frees a graph; unfinished replays run to their end. Collective. Errors: DUITE_E_OBJECT. */
 int duite_graph_free(duite *rt, duite_graph graph);
 
 /* ---- Traces ----
@@ -632,19 +696,20 @@ int duite_graph_free(duite *rt, duite_graph graph);
  * file cannot be made, duite_start fails. If it cannot be written later, or is removed or replaced,
  * the run goes on, the written part stays, and duite_trace_end returns the error. */
 
-/* Step `step` of the program begins, counted from 0. Writes the record so far to the file, and
+/* Begins step `step` of the program, counted from 0. Writes the record so far to the file, and
  * begins or ends recording at options.trace_first or trace_end. If it begins or ends, the call
  * waits, like duite_wait, for all tasks forked so far; the next wait returns their errors. Does
- * nothing without a trace. Collective. */
+ * nothing without a trace. Collective. Errors: DUITE_E_SYSTEM (the file). */
 int duite_trace_step(duite *rt, uint64_t step);
 
 /* Ends the trace, as duite_stop does, too. Waits for all tasks forked so far, as duite_trace_step.
- * DUITE_E_SYSTEM: this rank's file is incomplete or gone; the message gives the reason. Does
- * nothing without a trace, and the second time. Collective. */
+ * Does nothing without a trace, and the second time. Collective. Errors: DUITE_E_SYSTEM (this
+ * rank's file is incomplete or gone; the message gives the reason). */
 int duite_trace_end(duite *rt);
 
 /* ---- Counters ---- */
 
+/* Sums over all workers and ranks. */
 typedef struct duite_counters {
     uint64_t tasks;    /* bodies run, without those that poison stopped */
     uint64_t placed;   /* tasks put in a queue by the scheduler */
@@ -667,7 +732,7 @@ typedef struct duite_counters {
 } duite_counters;
 
 /* Sums over all workers and ranks since start. After a duite_wait the counts are exact. Collective.
- */
+ * Errors: DUITE_E_ARGUMENT (nowhere to put the counters), DUITE_E_MPI. */
 int duite_count_all(duite *rt, duite_counters *counters);
 
 #ifdef __cplusplus

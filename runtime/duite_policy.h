@@ -66,6 +66,7 @@ typedef struct duite_near {
                                  workers are not bound to cores */
 } duite_near;
 
+/* A scheduler decides which worker runs which task next. */
 typedef struct duite_scheduler {
     const char *name;
     const char *summary;
@@ -130,6 +131,7 @@ typedef struct duite_task_graph {
     uint64_t seed;
 } duite_task_graph;
 
+/* A mapping decides which rank keeps an object. */
 typedef struct duite_mapping {
     const char *name;
     const char *summary;
@@ -175,7 +177,7 @@ typedef struct duite_request {
 
 #define DUITE_NO_RANK (-1)
 
-/* Blocks: objects that live together, a leader and its followers (duite_colocate), with
+/* Blocks are objects that live together, a leader and its followers (duite_colocate), with
  * measurements since the balancer was last asked to move them. */
 typedef struct duite_blocks {
     /* n blocks, in the order in which they were made. weight: seconds in the bodies of tasks that
@@ -195,6 +197,7 @@ typedef struct duite_blocks {
     uint64_t seed;
 } duite_blocks;
 
+/* A balancer decides which ready tasks run on another rank, and which objects move there. */
 typedef struct duite_balancer {
     const char *name;
     const char *summary;
@@ -230,8 +233,8 @@ extern const duite_scheduler duite_own_scheduler;
 extern const duite_mapping duite_own_mapping;
 extern const duite_balancer duite_own_balancer;
 
-/* A random number and the next state (SplitMix64: Steele, Lea, Flood 2014). Any state is a good
- * seed. */
+/* A random number and the next state, by SplitMix64 (Steele, Lea, Flood 2014). Any state is a good
+ * seed. Local. Returns: the number. */
 static inline uint64_t duite_random(uint64_t *state)
 {
     uint64_t z = (*state += 0x9e3779b97f4a7c15u);

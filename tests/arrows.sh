@@ -1,5 +1,5 @@
 #!/bin/sh
-# The include arrows of docs/design.md: every #include of a header of ours, and of duite.h, is one that is allowed.
+# The include arrows of docs/design/: every #include of a header of ours, and of duite.h, is one that is allowed.
 . "${srcdir:-.}/tests/support/tap.sh"
 
 # arrows TREE: prints each include that is not allowed, fails if there is one.

@@ -53,7 +53,7 @@ ok "iterations on hosts, without ip" bench_says cg_hosts2_us cg_hosts2_twin_us c
 ok "a film, without ffmpeg" bench_says film_seconds -- output --only film --states "$scratch/states"
 ok "a sphere in Blender, without it" bench_says sphere_blender_seconds_per_frame -- contact --only frames --states "$scratch/states"
 ok "a table of runs on hosts, without ip" table_skips
-for test in runtime/test_vite runtime/test_memcheck cluster/test_hosts cluster/test_same cluster/test_slurm cloth/view/test_window whole/test_blender_long \
+for test in tools/test_vite runtime/test_memcheck cluster/test_hosts cluster/test_same cluster/test_slurm cloth/view/test_window whole/test_blender_long \
     whole/test_paraview_long; do
     ok "$test.sh" skips $test.sh
 done

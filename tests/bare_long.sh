@@ -1,6 +1,7 @@
 #!/bin/sh
 # README's two commands on a bare Debian of this machine's release, which debootstrap fetches from this machine's mirror (DUITE_MIRROR names
-# another) with nothing but what every Debian has; and on one with MPICH alone the build, README's first program and the tests of the runtime.
+# another) with nothing but what every Debian has; on one with MPICH alone the build, README's first program and the tests of the runtime; and on
+# a third libduite and its tools alone, without the packages of the cloth.
 # Half an hour on two cores, 3 GB each. What is tested is a clone: the last commit.
 . "${srcdir:-.}/tests/support/tap.sh"
 test "$(id -u)" = 0 || skip_all "only root may enter another system"
@@ -30,7 +31,8 @@ enter() {
 }
 system() {
     debootstrap --variant=minbase "$release" "$scratch/one" "$mirror" > "$scratch/said" 2>&1 || { tail -n 20 "$scratch/said" && return 1; }
-    echo "127.0.0.1 localhost" > "$scratch/one/etc/hosts" && git clone -q "$srcdir" "$scratch/one/root/duite" && cp -a "$scratch/one" "$scratch/mpich"
+    echo "127.0.0.1 localhost" > "$scratch/one/etc/hosts" && git clone -q "$srcdir" "$scratch/one/root/duite" && cp -a "$scratch/one" "$scratch/mpich" &&
+        cp -a "$scratch/one" "$scratch/alone"
 }
 command_of_readme() { grep -qxF "$1" "$srcdir/README.md" && enter one "$1"; }
 pictures() { test -s "$scratch/one/root/duite/demo/sheet-008.png" && test -s "$scratch/one/root/duite/demo/dressing.png"; }
@@ -45,6 +47,11 @@ first() {
         test "$(grep -c '^170634668000$' "$scratch/said")" = 3
 }
 runtime() { enter mpich 'make check TESTS="$(make -s --eval='\''print-list:;@echo $(filter tests/runtime/%,$(TESTS))'\'' print-list)"'; }
+without_cloth() {
+    enter alone './bootstrap --disable-cloth && make check' || return
+    enter alone 'dpkg-query -W libyaml-dev libhdf5-dev libzmq3-dev libepoxy-dev' # the names of those that are there
+    ! grep -v '^dpkg-query: no packages found' "$scratch/said"
+}
 
 ok "a bare $release" system
 ok "README: ./bootstrap && make demo" command_of_readme './bootstrap && make demo'
@@ -53,3 +60,4 @@ ok "README: ./bootstrap && make check" command_of_readme './bootstrap && make ch
 ok "MPICH alone: build" only_mpich
 ok "MPICH alone: README's first program on 1, 2 and 3 ranks" first
 ok "MPICH alone: the tests of the runtime" runtime
+ok "without the cloth: make check, and none of its packages" without_cloth

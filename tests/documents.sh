@@ -1,10 +1,11 @@
 #!/bin/sh
-# docs/runtime.md and the library's man page tell the truth: what the one quotes is in the programs that make check runs, the
-# other names everything that the headers declare, and every public function has a comment before it.
+# docs/runtime.md and the library's man pages tell the truth: the tutorial quotes the programs that make check runs, each function of the
+# headers has a comment and a page, and the overview names all pages.
 . "${srcdir:-.}/tests/support/tap.sh"
 
 document=$srcdir/docs/runtime.md
 page=$srcdir/runtime/duite.3
+pages=runtime/man
 headers="$srcdir/runtime/duite.h $srcdir/runtime/duite_policy.h"
 
 # Each block of C after a line <!-- FILE --> is a run of whole lines of this file; there is no other C.
@@ -56,15 +57,14 @@ short() { # a reader sees it on two screens
     done
 }
 
-# The functions that the headers declare, and what programs write besides: macros, codes, modes, types.
+# The functions and macros with parameters that the headers declare; then all names of macros, codes and modes, too.
 functions() {
     # shellcheck disable=SC2086 # a list of files
-    sed -n '/^typedef/d; s/^[a-z].*[ *]\(duite_[a-z_0-9]*\)(.*/\1/p' $headers | sort -u
+    sed -n '/^typedef/d; s/^[a-z].*[ *]\(duite_[a-z_0-9]*\)(.*/\1/p; s/^#define \([A-Za-z_]*\)(.*/\1/p' $headers | sort -u
 }
 names() {
     # shellcheck disable=SC2086
     { functions
-      sed -n 's/^#define \([A-Za-z_]*\)(.*/\1/p; s/^#define \(DUITE_NO_[A-Z]*\) .*/\1/p' $headers
       grep -oh '\<DUITE_[A-Z0-9_]*\>' $headers
     } | grep -v -x -e DUITE_H -e DUITE_POLICY_H | sort -u
 }
@@ -77,12 +77,50 @@ mentions() { # FILE: every line of stdin occurs in it as a word
     test ! -s "$scratch/absent"
 }
 
-page_is_whole() { names | mentions "$page"; }
+pages_name_all() {
+    cat "$page" $pages/*.3 > "$scratch/pages"
+    names | mentions "$scratch/pages"
+}
+
+# The pages of a build are those that the script makes of the headers, which are those that module.mk lists.
+pages_are_made() {
+    mkdir -p "$scratch/man"
+    # shellcheck disable=SC2086
+    ${AWK:-awk} -v out="$scratch/man" -f "$srcdir/runtime/man.awk" $headers || return
+    diff -r $pages "$scratch/man" || return
+    grep -o 'runtime/man/[A-Za-z_]*\.3' "$srcdir/runtime/module.mk" | sed 's|.*/||' | sort > "$scratch/in_build"
+    (cd "$scratch/man" && ls ./*.3) | sed 's|./||' | sort | diff "$scratch/in_build" -
+}
+
+# A page has its sections; of a function that returns something, what that is.
+pages_are_whole() {
+    functions > "$scratch/functions"
+    test -s "$scratch/functions" || return
+    while read -r name; do
+        for title in NAME SYNOPSIS DESCRIPTION 'SEE ALSO'; do
+            grep -qx ".SH $title" "$pages/$name.3" || { echo "$name has no $title" && return 1; }
+        done
+        grep -q '^\.B "\(void [^*]\|#define\)' "$pages/$name.3" || grep -qx '.SH RETURN VALUE' "$pages/$name.3" ||
+            { echo "$name does not say what it returns" && return 1; }
+    done < "$scratch/functions"
+}
+
+overview_lists() { # duite.3 names each page
+    for file in $pages/*.3; do basename "$file" .3; done | mentions "$page"
+}
+
+speechless() { # a function whose comment says neither what it returns nor its errors makes no page
+    mkdir -p "$scratch/speechless"
+    sed 's/ Errors: DUITE_E_OBJECT\. / /' "$srcdir/runtime/duite.h" > "$scratch/speechless/duite.h"
+    ! cmp -s "$srcdir/runtime/duite.h" "$scratch/speechless/duite.h" &&
+        ! ${AWK:-awk} -v out="$scratch/speechless" -f "$srcdir/runtime/man.awk" "$scratch/speechless/duite.h" 2> "$scratch/said" &&
+        cat "$scratch/said" && grep -q 'duite_graph_free' "$scratch/said"
+}
 
 page_invents_nothing() { # what it calls duite_... or DUITE_... is in the headers
     # shellcheck disable=SC2086
-    cat $headers "$srcdir/runtime/duite.c" | tr -c 'A-Za-z0-9_' '\n' | sort -u > "$scratch/known"
-    grep -o '\<\(duite\|DUITE\)_[A-Za-z0-9_]*\>' "$page" "$document" | sed 's/.*://' | sort -u > "$scratch/said"
+    cat $headers | tr -c 'A-Za-z0-9_' '\n' | sort -u > "$scratch/known"
+    grep -o '\<\(duite\|DUITE\)_[A-Za-z0-9_]*\>' "$page" "$document" $pages/*.3 | sed 's/.*://' | sort -u > "$scratch/said"
     test -s "$scratch/said" && comm -23 "$scratch/said" "$scratch/known" > "$scratch/invented"
     cat "$scratch/invented"
     test ! -s "$scratch/invented"
@@ -100,17 +138,28 @@ commented() {
     done
 }
 
-listed() { # FILE: the fields of options and counters, the modes and policies are in it
+listed() { # FILES: the fields of options and counters, the modes and policies are in them
     {
         sed -n '/^typedef struct duite_options/,/^}/p; /^typedef struct duite_counters/,/^}/p' "$srcdir/runtime/duite.h" |
             tr '\n' ' ' | sed 's|/\*|\n&|g; s|\*/|&\n|g' | grep -v '^/\*' | tr ';' '\n' | sed -n 's/.*[ *]\([a-z_]*\) *$/\1/p' | grep -v '^duite_'
         grep -oh '\.name = "[a-z]*"' "$srcdir"/runtime/sched/*.c "$srcdir"/runtime/map/*.c "$srcdir"/runtime/balance/*.c | cut -d'"' -f2
         grep -o '^ *DUITE_[RWC]*W*P*\>' "$srcdir/runtime/duite.h" | tr -d ' ' | grep -v '_$'
-    } | mentions "$1"
+    } > "$scratch/to_list"
+    cat "$@" > "$scratch/lists"
+    mentions "$scratch/lists" < "$scratch/to_list"
 }
 
-formats() { # without a word from the formatter
-    groff -man -Tutf8 -ww -z "$page" 2> "$scratch/warnings" && cat "$scratch/warnings" && test ! -s "$scratch/warnings"
+formats() { # FILE...: without a word from the formatter
+    for file in "$@"; do
+        groff -man -Tutf8 -ww -z "$file" 2>&1 || echo "$file: groff failed"
+    done > "$scratch/warnings"
+    cat "$scratch/warnings"
+    test ! -s "$scratch/warnings"
+}
+
+ill_formed() { # a fault of a page is seen
+    sed 's/^\.SH NAME$/.XX NAME/' $pages/duite_fork.3 > "$scratch/ill.3"
+    ! formats "$scratch/ill.3"
 }
 
 # argp sorts options by name: no text may lean on its place among the others.
@@ -128,16 +177,21 @@ git_sees_sources_only() { # nothing that make leaves in its folders is untracked
     test ! -s "$scratch/programs"
 }
 
-# Each function that a guided tour of docs/design.md stops at is defined in the file that the tour names.
+# Each function that a guided tour of docs/design/ stops at is defined in the file that the tour names, and each file that the page names
+# is there.
 tours() { # DOCUMENT
     sed -n 's/^| `\([a-z_/]*\.c\)` | `\([a-z_`, ]*\)` |.*/\1 \2/p' "$1" | tr -d '`,' > "$scratch/stops"
-    test "$(wc -l < "$scratch/stops")" -ge 30 || { echo "the tours have few stops" && return 1; }
+    test "$(wc -l < "$scratch/stops")" -ge 40 || { echo "the tours have few stops" && return 1; }
     while read -r file names; do
         test -e "$srcdir/$file" || file=runtime/$file
         for name in $names; do
             grep -q "^[a-z].*[ *]$name(" "$srcdir/$file" || { echo "$file has no $name" && return 1; }
         done
     done < "$scratch/stops"
+    grep -o '`[a-z_/]*/[a-z_]*\.[ch]`' "$1" | tr -d '`' | sort -u > "$scratch/files"
+    while read -r file; do
+        test -e "$srcdir/$file" || test -e "$srcdir/runtime/$file" || { echo "there is no $file" && return 1; }
+    done < "$scratch/files"
 }
 
 stages() { # the stages of a step stand in the document's table in their order
@@ -156,18 +210,26 @@ ok "a line left out is seen" sees '/DUITE_FORK(rt, &FACTOR, NULL/d'
 ok "C that nobody compiles is seen" sees '0,/^<!-- .* -->$/d'
 ok "docs/runtime.md quotes every example, and each runs" examples
 ok "examples are short" short
-ok "docs/runtime.md lists options, counters, modes and policies" listed "$document"
-ok "duite.3 lists them, too" listed "$page"
-ok "duite.3 names every function, macro, code and mode" page_is_whole
+ok "the man pages are those of the headers, and module.mk has them all" pages_are_made
+ok "each function and macro has its page, with all sections" pages_are_whole
+ok "a function whose comment says too little has none" speechless
+ok "the overview lists all pages" overview_lists
+ok "pages list options, counters, modes and policies" \
+    listed $pages/duite_options.3 $pages/duite_counters.3 $pages/duite_mode.3 $pages/duite_scheduler_find.3
+ok "pages name every function, macro, code and mode" pages_name_all
 ok "no document names what is not there" page_invents_nothing
 if command -v groff > /dev/null; then
-    ok "duite.3 formats without warnings" formats
+    ok "man pages format without warnings" formats "$page" $pages/*.3
+    ok "a fault of a page is seen" ill_formed
 else
-    skip "duite.3 formats without warnings" "no groff"
+    skip "man pages format without warnings" "no groff"
+    skip "a fault of a page is seen" "no groff"
 fi
 ok "every public function has a comment before it" commented
-ok "guided tours stop at functions that are there" tours "$srcdir/docs/design.md"
-ok "docs/design.md lists the stages of a step" stages "$srcdir/docs/design.md"
+for part in runtime cloth; do
+    ok "guided tours of the $part stop at functions that are there" tours "$srcdir/docs/design/$part.md"
+done
+ok "docs/design/cloth.md lists the stages of a step" stages "$srcdir/docs/design/cloth.md"
 for program in duite-cloth duite-garment duite-mannequin duite-view duite-trace duite-predict duite-compare duite-graph bench/duite-bench; do
     if test -x $program; then
         ok "every option in --help of $program says what it is by itself" stands_alone ./$program

@@ -41,6 +41,13 @@ complete() { # everything that duite.h and duite_policy.h declare is there
     test -s "$scratch/declared" && test ! -s "$scratch/absent"
 }
 
+pages() {
+    sed -n '/^typedef/d; s/^[a-z].*[ *]\(duite_[a-z_0-9]*\)(.*/\1/p' "$prefix/include/duite.h" "$prefix/include/duite_policy.h" > "$scratch/called"
+    test -s "$scratch/called" && while read -r name; do
+        grep -q "$name" "$prefix/share/man/man3/$name.3" || return
+    done < "$scratch/called"
+}
+
 # Names that libduite.so hides would be anybody's in a static library.
 no_static_library() {
     test -z "$(find "$prefix" -name '*.a')" || return
@@ -64,6 +71,7 @@ ok "and runs, though no other path leads to the library" limited "$scratch/three
 ok "an example compiles with them" compile_example
 ok "and runs on 2 ranks" ranks 2 "$scratch/dot"
 ok "the man page is there" test -s "$prefix/share/man/man3/duite.3"
+ok "each function has one" pages
 ok "libduite.so exports duite_* only" exports_ours_only
 ok "libduite.so has everything that its headers declare" complete
 ok "there is no static library, and configure says why" no_static_library

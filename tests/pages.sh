@@ -2,6 +2,7 @@
 # The pages of docs/ tell the truth: every command in their sh blocks runs as it is written, with the programs and scenes of an installed
 # tree, in a folder of the page's own that also has the sources. CLASS=every: those of "sh long" blocks, too.
 . "${srcdir:-.}/tests/support/tap.sh"
+skip_unless "$DUITE_CLOTH"
 test -z "${SANITIZER:-}" || skip_all "the pages do not speak of a build with sanitizers"
 . "$srcdir/tests/support/commands.sh"
 

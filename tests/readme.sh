@@ -3,6 +3,7 @@
 # blocks runs as it is written, in a folder that has the tree's sources, the build's programs and an installed duite. With LONG=1
 # those of "sh long" blocks, and all of them from the installed tree alone: without ./ and cloth/scenes/, as README says.
 . "${srcdir:-.}/tests/support/tap.sh"
+skip_unless "$DUITE_CLOTH"
 test -z "${SANITIZER:-}" || skip_all "README does not speak of a build with sanitizers"
 . "$srcdir/tests/support/commands.sh"
 readme=$srcdir/README.md

@@ -217,7 +217,7 @@ static int multiply(struct compare *compare)
 
 /* ---- The runs ---- */
 
-/* Of one subject and grain all states are the same, whatever scheduled them. */
+/* All states of one subject and grain are the same, whatever scheduled them. */
 static void check_hash(struct compare *compare, const struct compare_config *config, size_t round)
 {
     const struct compare_run *run = &config->run[round];
@@ -305,7 +305,7 @@ static void look_for_others(struct compare *compare, size_t round, double *most)
     compare_journal_warn(compare, warning);
 }
 
-/* Whether there is anything left to run. */
+/* Returns true if something is left to run. */
 static bool is_left(const struct compare *compare)
 {
     for (size_t i = 0; i < compare->n; i++)

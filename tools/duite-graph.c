@@ -86,7 +86,7 @@ static int build(duite *rt, void *context)
 
 /* ---- The run ---- */
 
-/* What the hints can say: tasks that read one another are neighbours, and weigh what they cost. */
+/* Hints: tasks that read one another are neighbours, and weigh as much as they cost. */
 static int hint(const struct command *command, duite *rt)
 {
     const struct compare_graph *graph = &command->graph;
@@ -117,7 +117,7 @@ static int follow(const struct command *command, duite *rt)
         return DUITE_E_MEMORY;
     for (size_t i = 0; i < graph->n && !code; i++) {
         uint32_t place = graph->place[i];
-        if (place == SWEEP_NO_PLACE)
+        if (place == COMPARE_NO_PLACE)
             continue;
         if (first[place])
             code = duite_colocate(rt, command->object[i], command->object[first[place] - 1]);
@@ -175,7 +175,7 @@ static int report(const struct command *command, duite *rt, double seconds, cons
     return command->report ? fclose(out) != 0 : fflush(out) != 0;
 }
 
-/* What the last task left, and all that nobody reads. */
+/* The hash of what the last task left, and of all that no task reads. */
 static int find_hash(const struct command *command, duite *rt, uint64_t *hash)
 {
     const struct compare_graph *graph = &command->graph;

@@ -3,7 +3,7 @@
 
 #include "cloth/mesh/mesh.h"
 
-/* The springs of a mesh, after the design's rules (docs/design.md). The modulus is in N/m.
+/* The springs of a mesh, after the rules of docs/physics.md. The modulus is in N/m.
  *
  * Grids: k is the modulus. Stretch springs lie along rows and columns. Shear springs lie along both
  * diagonals of each cell, or along the one that cuts it. Bend springs skip a vertex along rows and

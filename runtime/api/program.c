@@ -5,7 +5,6 @@
 
 #include "runtime/base/error.h"
 #include "runtime/map/map.h"
-#include "runtime/task/prune.h"
 
 #include <stdio.h>
 
@@ -15,8 +14,8 @@ int api_enter_any(duite *rt, const char *call)
         return base_error(DUITE_E_ARGUMENT, "%s: no runtime", call);
     if (!work_may_fork(rt->pool))
         return base_error(DUITE_E_STATE, "%s is for the main thread, outside of bodies", call);
-    if (rt->memo)
-        plan_memo_break(rt->memo);
+    if (rt->taker)
+        rt->taker->other(rt->taker);
     if (rt->graph.broken)
         return base_error(rt->graph.broken,
                           "%s: an earlier call failed beyond repair (%s); only duite_stop is left",
@@ -142,27 +141,31 @@ __attribute__((noinline)) static int fork_other(duite *rt, const duite_kernel *k
                                                 const duite_object *objects)
 {
     int code = api_enter_any(rt, "duite_fork");
-    return code ? code
-                : fork_task(rt, &(struct task_options){.at = TASK_ANYWHERE}, kernel, args, n,
-                            objects);
+    return code ? code : fork_task(rt, &task_no_options, kernel, args, n, objects);
 }
 
-/* task_prune or task_prune_more do a usual fork that needs nothing of this rank. After every so
- * many of them messages are polled, and broken communication is noticed. */
+/* A usual fork on several ranks. After every so many of those that make no task here messages are
+ * polled, and broken communication is noticed. */
 __attribute__((noinline)) static int fork_ranks(duite *rt, const duite_kernel *kernel,
                                                 const void *args, size_t n,
                                                 const duite_object *objects)
 {
     enum { FORKS_A_TICK = 32 };
-    if (!task_prune(&rt->graph, kernel, args, n, objects) &&
-        !task_prune_more(&rt->graph, kernel, args, n, objects))
+    const uint64_t tasks = rt->graph.tasks;
+    if (task_has_given_up(&rt->graph))
         return fork_other(rt, kernel, args, n, objects);
+    const int code = task_fork_ranks(&rt->graph, rt->worker, kernel, args, n, objects);
+    if (code)
+        return api_remember(rt, code);
     if (rt->trace)
-        trace_fork(rt->trace, kernel, &(struct task_options){.at = TASK_ANYWHERE}, n, objects);
-    if (rt->graph.root.forks % FORKS_A_TICK)
+        trace_fork(rt->trace, kernel, &task_no_options, n, objects);
+    if (rt->graph.tasks == tasks && rt->graph.root.forks % FORKS_A_TICK)
         return DUITE_OK;
     work_tick(rt->pool);
-    return comm_broken(rt->comm) ? api_enter_any(rt, "duite_fork") : DUITE_OK;
+    if (comm_broken(rt->comm))
+        return api_enter_any(rt, "duite_fork");
+    api_throttle(rt);
+    return DUITE_OK;
 }
 
 static inline int fork_direct(duite *rt, const duite_kernel *kernel, const void *args, size_t n,
@@ -177,11 +180,11 @@ static inline int fork_direct(duite *rt, const duite_kernel *kernel, const void 
 }
 
 /* A function apart, since it needs most registers. */
-__attribute__((noinline)) static int fork_memo(duite *rt, const duite_kernel *kernel,
-                                               const void *args, size_t n,
-                                               const duite_object *objects)
+__attribute__((noinline)) static int fork_taken(duite *rt, const duite_kernel *kernel,
+                                                const void *args, size_t n,
+                                                const duite_object *objects)
 {
-    if (!plan_memo_fork(rt->memo, kernel, args, n, objects))
+    if (!rt->taker->fork(rt->taker, kernel, args, n, objects))
         return fork_direct(rt, kernel, args, n, objects);
     if (rt->window)
         api_throttle(rt);
@@ -200,8 +203,8 @@ int duite_fork(duite *rt, const duite_kernel *kernel, const void *args, size_t n
         return fork_ranks(rt, kernel, args, n, objects);
     if (rt->trace)
         return fork_other(rt, kernel, args, n, objects);
-    return rt->memo ? fork_memo(rt, kernel, args, n, objects)
-                    : fork_direct(rt, kernel, args, n, objects);
+    return rt->taker ? fork_taken(rt, kernel, args, n, objects)
+                     : fork_direct(rt, kernel, args, n, objects);
 }
 
 int duite_fork_at(duite *rt, int rank, const duite_kernel *kernel, const void *args, size_t n,

@@ -8,6 +8,7 @@
 #include "runtime/base/memory.h"
 #include "runtime/map/map.h"
 #include "runtime/offload/offload.h"
+#include "runtime/plan/memo.h"
 #include "runtime/sched/sched.h"
 #include "runtime/workers/topology.h"
 
@@ -96,12 +97,12 @@ static int instance_start_graph(duite *rt, const duite_options *options)
 }
 
 /* Starts to recognise repeated forks, if that is wanted and possible. */
-static int instance_start_memo(duite *rt, const duite_options *options)
+static int instance_start_taker(duite *rt, const duite_options *options)
 {
     if (!options->memo || rt->comm || rt->trace || options->check)
         return DUITE_OK;
-    rt->memo = plan_memo_new(&rt->graph, rt->worker, options->memo > 1);
-    return rt->memo ? DUITE_OK : base_no_memory("the runtime");
+    rt->taker = plan_memo_new(&rt->graph, rt->worker, options->memo > 1);
+    return rt->taker ? DUITE_OK : base_no_memory("the runtime");
 }
 
 /* Collective. If other processes may use the rank's cores, its workers sleep when they are more
@@ -160,7 +161,7 @@ static int instance_start_workers(duite *rt, const duite_options *options, int c
     work_cores_free(&cores);
     rt->worker = code ? NULL : work_main(rt->pool);
     rt->thread = task_thread_mark();
-    return code ? code : instance_start_memo(rt, options);
+    return code ? code : instance_start_taker(rt, options);
 }
 
 /* ---- The end ---- */
@@ -205,7 +206,8 @@ static void instance_end(duite *rt)
         api_give_up(rt);
     work_stop(rt->pool);
     base_marks_stop(rt->marks);
-    plan_memo_free(rt->memo);
+    if (rt->taker)
+        rt->taker->stop(rt->taker);
     api_graphs_stop(rt); /* closes their channels */
     bool whole = comm_stop(rt->comm);
     trace_free(rt->trace, whole);

@@ -312,7 +312,7 @@ int duite_count_all(duite *rt, duite_counters *counters)
                                  .stolen_far = (uint64_t)sums[11],
                                  .graphs_recorded = rt->graphs_recorded,
                                  .migrated = rt->migration.objects,
-                                 .recognised = rt->memo ? rt->memo->tasks : 0,
-                                 .recognised_rounds = rt->memo ? rt->memo->rounds : 0};
+                                 .recognised = rt->taker ? rt->taker->tasks : 0,
+                                 .recognised_rounds = rt->taker ? rt->taker->rounds : 0};
     return code;
 }

@@ -10,8 +10,8 @@
  * knowledge of other ranks follows from the forks, which are the same everywhere: no rank is ever
  * asked. */
 struct data_object {
-    /* One cache line holds all that a replay, or a fork of another rank's task (task/prune.h),
-     * reads and writes. */
+    /* One cache line holds all that a replay, or a fork of another rank's task, reads and
+     * writes. */
     uint32_t generation; /* even: the slot is free */
     int home;            /* -1: not decided yet */
     int holder;          /* the rank that has the current version for certain */
@@ -98,22 +98,19 @@ int data_object_new_sized(struct data_table *table, duite_type type, size_t coun
 /* Sets the error message for a name without an object. Returns NULL. */
 struct data_object *data_object_missing(const struct data_table *table, duite_object name);
 
-/* The object of that name, or NULL. data_object_find also sets the error's message. */
-static inline struct data_object *data_object_here(struct data_table *table, duite_object name)
-{
-    struct data_object *object = &table->object[name.slot];
-    const bool here =
-        name.slot < table->n_slots && object->generation == name.generation && name.generation % 2;
-    return here ? object : NULL;
-}
-/* The same, but only if it has no contributions. */
-static inline struct data_object *data_object_usual(struct data_object *first, uint32_t n_slots,
-                                                    duite_object name)
+/* The object of that name in a table of n_slots, or NULL; `closed`: also if it has contributions.
+ * data_object_find also sets the error's message. */
+static inline struct data_object *data_object_used(struct data_object *first, uint32_t n_slots,
+                                                   duite_object name, bool closed)
 {
     struct data_object *object = &first[name.slot];
-    const bool usual =
-        name.slot < n_slots && object->generation == name.generation && !object->leaves;
-    return usual ? object : NULL;
+    const bool used = name.slot < n_slots && object->generation == name.generation &&
+                      (closed ? !object->leaves : name.generation % 2);
+    return used ? object : NULL;
+}
+static inline struct data_object *data_object_here(struct data_table *table, duite_object name)
+{
+    return data_object_used(table->object, table->n_slots, name, false);
 }
 static inline struct data_object *data_object_find(struct data_table *table, duite_object name)
 {

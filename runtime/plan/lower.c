@@ -54,28 +54,11 @@ void plan_round_free(struct plan_round *round)
     *round = (struct plan_round){0};
 }
 
-/* ---- The reduction tree ---- */
-
-void plan_reduce_merge(struct plan_round *round, uint32_t left, uint32_t right)
+void plan_merge(void *to, uint32_t left, uint32_t right)
 {
+    struct plan_round *round = to;
     round->merge[round->n_merges++] = (struct plan_merge){left, right};
     round->node[round->n_nodes - 1].n_merges++;
-}
-
-static void reduce_merge(void *round, uint32_t left, uint32_t right)
-{
-    plan_reduce_merge(round, left, right);
-}
-
-void plan_reduce_push(struct plan_round *round, struct data_subtrees *list,
-                      struct data_subtree subtree)
-{
-    data_subtrees_push(list, subtree, reduce_merge, round);
-}
-
-void plan_reduce_fold(struct plan_round *round, const struct data_subtrees *list)
-{
-    data_subtrees_fold(list, reduce_merge, round);
 }
 
 /* ---- Contributions ---- */
@@ -110,10 +93,11 @@ static void lower_sum(struct lowering *l, uint32_t name, size_t fork)
     uint32_t leaf = object->first;
     for (uint32_t i = 0; i < object->n_open; i++) {
         plan_round_use(round, node, leaf, true, false);
-        plan_reduce_push(round, &list, (struct data_subtree){.first = i, .where = i + 1});
+        data_subtrees_push(&list, (struct data_subtree){.first = i, .where = i + 1}, plan_merge,
+                           round);
         leaf = l->next[leaf - round->n_objects];
     }
-    plan_reduce_fold(round, &list);
+    data_subtrees_fold(&list, plan_merge, round);
     object->n_open = 0;
 }
 

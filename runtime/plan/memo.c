@@ -3,8 +3,6 @@
  * and a replay takes a fork only if it is the expected one. So a wrong guess costs only time.
  * Comparisons of hashes are counted: a program that only almost repeats itself is left alone for
  * ever longer times. */
-#include "runtime/plan/memo.h"
-
 #include "runtime/plan/memo_round.h"
 
 #include "runtime/base/memory.h"
@@ -22,29 +20,6 @@ enum {
 
 /* With longer bodies forks do not matter, and calls outside a replay would wait for it. */
 #define MEMO_LONG_SECONDS 10e-6
-
-struct plan_memo *plan_memo_new(struct task_graph *graph, struct worker *worker, bool always)
-{
-    struct plan_memo *memo = base_alloc_zero(sizeof *memo);
-    if (memo) {
-        memo->graph = graph;
-        memo->worker = worker;
-        memo->always = always;
-        memo->penalty = MEMO_PENALTY;
-    }
-    return memo;
-}
-
-void plan_memo_free(struct plan_memo *memo)
-{
-    for (size_t i = 0; memo && i < MEMO_PLANS; i++) {
-        memo_round_free(&memo->rounds_kept[i], NULL);
-        base_free(memo->rounds_kept[i].gate);
-    }
-    if (memo && memo->record)
-        plan_record_free(memo->record, NULL);
-    base_free(memo);
-}
 
 static uint32_t memo_hash_at(const struct plan_memo *memo, uint64_t pos)
 {
@@ -86,8 +61,8 @@ static void memo_close(struct plan_memo *memo)
     const uint64_t tasks = memo->round * memo->plan->n_calls + memo->at;
     plan_replay_close(memo->plan, memo->worker, memo->first);
     memo->step = NULL;
-    memo->tasks += tasks;
-    memo->rounds += memo->round;
+    memo->taker.tasks += tasks;
+    memo->taker.rounds += memo->round;
     if (memo->round < 4 || tasks < MEMO_REPEATED) {
         memo_punish(memo);
         return;
@@ -96,15 +71,18 @@ static void memo_close(struct plan_memo *memo)
     memo_watch(memo);
 }
 
-void plan_memo_break(struct plan_memo *memo)
+/* Another call than the expected fork: closes an open replay and begins the history again. */
+static void memo_break(struct task_taker *taker)
 {
+    struct plan_memo *memo = (struct plan_memo *)taker;
     if (memo->step)
         memo_close(memo);
     else
         memo_watch(memo);
 }
 
-void plan_memo_next_round(struct plan_memo *memo)
+/* A round was forked: makes room for the arguments of the next one, or closes the replay. */
+__attribute__((noinline)) static void memo_next_round(struct plan_memo *memo)
 {
     struct plan *plan = memo->plan;
     memo->at = 0;
@@ -117,6 +95,20 @@ void plan_memo_next_round(struct plan_memo *memo)
         memo_close(memo);
     else
         memo->args = plan->args + (memo->round & plan->ring_mask) * plan->stride;
+}
+
+/* The expected fork becomes the next run of its node. */
+static inline void memo_take(struct plan_memo *memo, const struct plan_memo_step *step,
+                             const void *args)
+{
+    const uint32_t at = memo->at;
+    if (step->bytes)
+        memcpy(memo->args + step->args, args, step->bytes);
+    plan_forked(memo->plan, memo->worker, at);
+    memo->step = step->next;
+    memo->at = at + 1;
+    if (memo->at == memo->plan->n_calls)
+        memo_next_round(memo);
 }
 
 /* ---- Periods ---- */
@@ -233,7 +225,7 @@ static bool seek_finds(const struct plan_memo *memo, const duite_kernel *kernel,
                        size_t n, const duite_object *objects)
 {
     const struct plan_memo_round *round = memo->found;
-    if (!plan_memo_is_step(round->first, kernel, args, n, objects))
+    if (!memo_is_step(round->first, kernel, args, n, objects))
         return false;
     for (size_t i = 0; i < round->n; i++)
         if (round->hash[i] != memo_hash_at(memo, memo->pos - 1 - round->n + i))
@@ -248,8 +240,10 @@ static bool memo_seek(struct plan_memo *memo, const duite_kernel *kernel, const 
     const uint64_t sought = memo->pos - memo->since;
     const bool found = seek_finds(memo, kernel, args, n, objects);
     bool fails = false, made = found && memo_round_is_made(round, &fails);
-    if (found && made && !fails && memo_round_open(memo, round))
-        return plan_memo_fork(memo, kernel, args, n, objects);
+    if (found && made && !fails && memo_round_open(memo, round)) {
+        memo_take(memo, memo->step, args);
+        return true;
+    }
     if (made || sought > MEMO_PATIENCE || (!found && sought > memo->seen + 2 * memo->period))
         memo_punish(memo);
     else if (found)
@@ -257,8 +251,9 @@ static bool memo_seek(struct plan_memo *memo, const duite_kernel *kernel, const 
     return false;
 }
 
-bool plan_memo_look(struct plan_memo *memo, uint32_t hash, const duite_kernel *kernel,
-                    const void *args, size_t n, const duite_object *objects)
+/* A fork that may end a period or is to be recorded. True: it is made. */
+static bool memo_look(struct plan_memo *memo, uint32_t hash, const duite_kernel *kernel,
+                      const void *args, size_t n, const duite_object *objects)
 {
     switch (memo->state) {
     case MEMO_RECORD:
@@ -269,4 +264,73 @@ bool plan_memo_look(struct plan_memo *memo, uint32_t hash, const duite_kernel *k
         memo_anchor(memo, hash);
         return false;
     }
+}
+
+/* ---- Every fork ---- */
+
+static inline uint32_t memo_hash(const struct plan_memo *memo, const duite_kernel *kernel, size_t n,
+                                 const duite_object *objects)
+{
+    const bool hashed = n <= MEMO_HASHED && (objects || !n);
+    return (uint32_t)((hashed ? task_fork_hash_all((uintptr_t)kernel, n, objects)
+                              : task_fork_hash(memo->pos)) >>
+                      32);
+}
+
+/* A fork that is not the expected one. True: it is made. Not inline: the usual way of a replay
+ * needs few registers. */
+__attribute__((noinline)) static bool memo_other_fork(struct plan_memo *memo,
+                                                      const duite_kernel *kernel, const void *args,
+                                                      size_t n, const duite_object *objects)
+{
+    if (memo->step)
+        memo_break(&memo->taker);
+    if (memo->skip) {
+        memo->skip--;
+        return false;
+    }
+    const uint32_t hash = memo_hash(memo, kernel, n, objects);
+    memo->hash[memo->pos++ % MEMO_HISTORY] = hash;
+    if (hash != memo->anchor && memo->pos <= memo->due)
+        return false;
+    return memo_look(memo, hash, kernel, args, n, objects);
+}
+
+/* A fork without options by the main program, outside builds and with homes settled. */
+static bool memo_fork(struct task_taker *taker, const duite_kernel *kernel, const void *args,
+                      size_t n, const duite_object *objects)
+{
+    struct plan_memo *memo = (struct plan_memo *)taker;
+    const struct plan_memo_step *step = memo->step;
+    if (!step || !memo_is_step(step, kernel, args, n, objects))
+        return memo_other_fork(memo, kernel, args, n, objects);
+    memo_take(memo, step, args);
+    return true;
+}
+
+/* ---- Start and stop ---- */
+
+static void memo_stop(struct task_taker *taker)
+{
+    struct plan_memo *memo = (struct plan_memo *)taker;
+    for (size_t i = 0; i < MEMO_PLANS; i++) {
+        memo_round_free(&memo->rounds_kept[i], NULL);
+        base_free(memo->rounds_kept[i].gate);
+    }
+    if (memo->record)
+        plan_record_free(memo->record, NULL);
+    base_free(memo);
+}
+
+struct task_taker *plan_memo_new(struct task_graph *graph, struct worker *worker, bool always)
+{
+    struct plan_memo *memo = base_alloc_zero(sizeof *memo);
+    if (!memo)
+        return NULL;
+    memo->taker = (struct task_taker){.fork = memo_fork, .other = memo_break, .stop = memo_stop};
+    memo->graph = graph;
+    memo->worker = worker;
+    memo->always = always;
+    memo->penalty = MEMO_PENALTY;
+    return &memo->taker;
 }

@@ -22,12 +22,6 @@ static uint32_t phase_later(uint32_t a, uint32_t b)
     return a > b ? a : b;
 }
 
-/* The task that fills a buffer of a sum. */
-static uint32_t message_leaf(const struct plan_messages *m, const struct plan_node_use *use)
-{
-    return m->leaf[use->place - m->assignment->round->n_objects];
-}
-
 /* Returns whether `set` has ranks that `has` lacks. Mostly the two are equal. */
 static inline bool message_is_outside(const struct plan_assignment *a, uint32_t set, uint32_t has)
 {
@@ -60,7 +54,7 @@ static uint32_t phase_of_leaves(const struct plan_messages *m, size_t n,
     const struct plan_assignment *a = m->assignment;
     uint32_t phase = 0;
     for (size_t i = node->first_use + 1; i < node->first_use + node->n_uses; i++) {
-        uint32_t leaf = message_leaf(m, &a->round->use[i]);
+        uint32_t leaf = plan_message_leaf(m, &a->round->use[i]);
         bool crosses = !m->rounds[n] && message_is_outside(a, a->set[n], a->set[leaf]);
         phase = phase_later(phase, m->phase[leaf] + crosses);
     }
@@ -123,88 +117,6 @@ static bool message_find_phases(struct plan_messages *m)
     }
     base_free(pasts);
     return true;
-}
-
-/* ---- Pieces of sums ---- */
-
-/* Returns whether the rank alone runs the sum. */
-static bool pieces_stay(const struct plan_assignment *a, size_t n, int rank)
-{
-    bool stay = true;
-    for (int other = 0; other < a->n_ranks; other++)
-        stay &= (other == rank) == plan_runs(a, n, other);
-    return stay;
-}
-
-/* A rank's pieces move once its last leaf is there. `latest` is by rank. */
-static void pieces_set_phases(const struct plan_messages *m, size_t n, size_t first,
-                              uint32_t *latest)
-{
-    const struct plan_assignment *a = m->assignment;
-    const struct plan_round_node *node = &a->round->node[n];
-    const struct plan_node_use *use = &a->round->use[node->first_use];
-    for (size_t i = 1; i < node->n_uses; i++)
-        latest[a->at[message_leaf(m, &use[i])]] = 0;
-    for (size_t i = 1; i < node->n_uses; i++) {
-        uint32_t leaf = message_leaf(m, &use[i]);
-        latest[a->at[leaf]] = phase_later(latest[a->at[leaf]], m->phase[leaf]);
-    }
-    for (size_t i = first; i < m->n_pieces; i++)
-        m->piece[i].phase = latest[m->piece[i].rank];
-}
-
-static void piece_add(struct plan_messages *m, size_t n, int rank, struct data_subtree tree)
-{
-    m->piece[m->n_pieces++] = (struct plan_piece){.node = (uint32_t)n, .tree = tree, .rank = rank};
-}
-
-/* A rank has the leaves first .. end - 1. If it has all, they become one piece, or stay as they are
- * if it alone runs the sum. */
-static void pieces_of_row(struct plan_messages *m, size_t n, int rank, uint32_t first, uint32_t end)
-{
-    const uint32_t all = m->assignment->round->node[n].n_uses - 1;
-    struct data_subtree row[DATA_SUBTREES_IN_ROW];
-    struct data_subtrees list = {.at = row};
-    if (end - first < all) {
-        data_subtrees_row(&list, first, end - first);
-        for (size_t i = 0; i < list.n; i++)
-            piece_add(m, n, rank, row[i]);
-    } else if (!pieces_stay(m->assignment, n, rank)) {
-        piece_add(m, n, rank, data_subtree_whole(all));
-    } else {
-        for (uint32_t i = first; i < end; i++)
-            piece_add(m, n, rank, (struct data_subtree){.first = i});
-    }
-}
-
-static void pieces_of_sum(struct plan_messages *m, size_t n, uint32_t *latest)
-{
-    const struct plan_assignment *a = m->assignment;
-    const struct plan_round_node *node = &a->round->node[n];
-    const struct plan_node_use *use = &a->round->use[node->first_use + 1];
-    const size_t first = m->n_pieces;
-    for (uint32_t i = 0, end; i + 1 < node->n_uses; i = end) {
-        const int rank = a->at[message_leaf(m, &use[i])];
-        for (end = i + 1; end + 1 < node->n_uses; end++)
-            if (a->at[message_leaf(m, &use[end])] != rank)
-                break;
-        pieces_of_row(m, n, rank, i, end);
-    }
-    pieces_set_phases(m, n, first, latest);
-}
-
-static bool message_find_pieces(struct plan_messages *m)
-{
-    const struct plan_assignment *a = m->assignment;
-    uint32_t *latest = base_alloc((size_t)a->n_ranks * sizeof *latest);
-    for (size_t n = 0; n < a->round->n_nodes && latest; n++) {
-        m->first_piece[n] = m->n_pieces;
-        if (a->round->node[n].kind == PLAN_SUM && !plan_is_dead(a, n))
-            pieces_of_sum(m, n, latest);
-        m->first_piece[n + 1] = m->n_pieces;
-    }
-    base_free(latest);
-    return latest != NULL;
 }
 
 /* ---- Messages ---- */
@@ -406,7 +318,7 @@ bool plan_messages_find(struct plan_messages *m, const struct plan_assignment *a
     bool fine = f.heads && f.ring && message_room(m);
     if (fine) {
         message_find_leaves(m);
-        fine = plan_relay_find(m) && message_find_phases(m) && message_find_pieces(m);
+        fine = plan_relay_find(m) && message_find_phases(m) && plan_pieces_find(m);
     }
     if (fine)
         message_find_all(&f);

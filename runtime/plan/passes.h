@@ -8,8 +8,10 @@
  *   lower    lower.c    plan_source                 -> plan_round: nodes and their uses
  *   assign   assign.c   plan_round, homes           -> plan_assignment: ranks by node and version
  *   messages messages.c plan_assignment             -> plan_messages: phases and their messages
+ *            pieces.c   plan_messages               -> the pieces of sums
  *            relay.c    plan_messages               -> the rounds of relayed sums
  *   part     part.c     plan_messages of a rank     -> plan_round: the nodes of that rank
+ *            part_sums.c                               with those of sums
  *   edges    edges.c    plan_round                  -> its edges, within a round and to the next
  *   emit     emit.c     plan_round                  -> plan: flat arrays (plan.h)
  *   run      run.c      plan                        -> replays, as replay_call.c asks for them
@@ -171,12 +173,9 @@ static inline void plan_round_use(struct plan_round *round, struct plan_round_no
 }
 uint32_t plan_round_buffer(struct plan_round *round, uint32_t object, const duite_law *law);
 
-/* The reduction of data/subtrees.h as merges of the last node; `where` is the parameter with the
- * subtree's value. */
-void plan_reduce_push(struct plan_round *round, struct data_subtrees *list,
-                      struct data_subtree subtree);
-void plan_reduce_fold(struct plan_round *round, const struct data_subtrees *list);
-void plan_reduce_merge(struct plan_round *round, uint32_t left, uint32_t right);
+/* The reduction of data/subtrees.h as merges of the round's last node (a data_combine): `where` of
+ * a subtree is the parameter with its value. */
+void plan_merge(void *round, uint32_t left, uint32_t right);
 
 /* ---- Assign: the ranks that run each node ---- */
 
@@ -352,9 +351,17 @@ bool plan_messages_find(struct plan_messages *messages, const struct plan_assign
                         int rank);
 void plan_messages_free(struct plan_messages *messages);
 
-/* Parts of plan_messages_find for relayed sums. The first finds messages->rounds once leaves are
- * known. The second visits the hops of one sum, round by round, once pieces are known. Both are
- * false without memory. */
+/* The node that fills a buffer of a sum, once leaves are known. */
+static inline uint32_t plan_message_leaf(const struct plan_messages *m,
+                                         const struct plan_node_use *use)
+{
+    return m->leaf[use->place - m->assignment->round->n_objects];
+}
+
+/* Parts of plan_messages_find, false without memory. Pieces of all sums, once phases are known. The
+ * rounds of relayed sums, once leaves are known. The hops of one such sum, round by round, once
+ * pieces are known. */
+bool plan_pieces_find(struct plan_messages *messages);
 bool plan_relay_find(struct plan_messages *messages);
 bool plan_relay_walk(const struct plan_messages *messages, size_t node, plan_relay_visit *visit,
                      void *context);

@@ -183,19 +183,21 @@ int plan_record_fork(struct plan_record *record, const struct task_options *opti
 {
     struct task_graph *graph = record->graph;
     struct task_fork_call call;
-    int code = task_check_fork(&call, &graph->root, options->at, kernel, args, n, objects);
+    task_fork_call_init(&call, &graph->root, NULL, kernel, n, objects);
+    int code = task_fork_check(&call, options->at, args);
     if (code)
         return code;
-    struct plan_recorded_fork *fork =
-        record_append(record, call.index, options, n, kernel->args_size);
+    task_fork_unmark(&call, n);
+    const uint32_t index = call.fixed->index, owner = task_fork_owner(&call);
+    struct plan_recorded_fork *fork = record_append(record, index, options, n, kernel->args_size);
     if (!fork)
         return DUITE_E_MEMORY;
     record_use_all(record, &call);
-    if (call.owner != TASK_NOBODY)
-        fork->owner = record->access[fork->first + call.owner].object;
+    if (owner != TASK_NOBODY)
+        fork->owner = record->access[fork->first + owner].object;
     if (graph->n_ranks > 1)
-        task_mix_fork(graph, task_fork_hash_all(call.index, options->at, n, objects), TASK_RECORDED,
-                      call.index);
+        task_mix_fork(graph, task_fork_hash_all(task_fork_what(index, options->at), n, objects),
+                      TASK_RECORDED, index);
     if (kernel->args_size)
         memcpy(record->args + fork->args, args, kernel->args_size);
     if (kernel->fixed)
@@ -220,7 +222,7 @@ int plan_record_set(struct plan_record *record, duite_object name, const void *v
     if (!fork)
         return DUITE_E_MEMORY;
     fork->owner = record_use(record, name, DUITE_W, NULL);
-    task_mix(record->graph, task_fork_hash_all(PLAN_SETS, TASK_ANYWHERE, 1, &name));
+    task_mix(record->graph, task_fork_hash_all(task_fork_what(PLAN_SETS, TASK_ANYWHERE), 1, &name));
     task_mix(record->graph, count);
     task_mixed(record->graph, TASK_CALLED, TASK_CALLED_SET);
     fork->zeros = !values;
@@ -341,4 +343,64 @@ int plan_record_distinct(struct plan_record *record)
         table->object[record->object[i].bound.slot].mark = 0;
     record->rebound = code != DUITE_OK;
     return code;
+}
+
+/* ---- The record as plain data: later passes know nothing of the task graph, so it has all that
+ * they need of a fork's kernel or of an object ---- */
+
+static struct plan_source_fork source_fork(const struct plan_record *record,
+                                           const struct plan_recorded_fork *fork)
+{
+    bool sets = fork->kernel == PLAN_SETS;
+    return (struct plan_source_fork){
+        .first = fork->first,
+        .n = fork->n,
+        .owner = fork->owner,
+        .rank = fork->options.at == TASK_ANYWHERE ? PLAN_BY_OWNER : fork->options.at,
+        .sets = sets,
+        .replicated = !sets && record->graph->kernels[fork->kernel]->replicated,
+        .cost = fork->options.cost};
+}
+
+uint32_t plan_record_flag(const struct plan_record *record, duite_object flag)
+{
+    uint32_t place = 0;
+    while (place < record->n_objects && (record->object[place].bound.slot != flag.slot ||
+                                         record->object[place].bound.generation != flag.generation))
+        place++;
+    return place;
+}
+
+bool plan_record_source(const struct plan_record *record, const duite_object *flag,
+                        struct plan_source *source)
+{
+    size_t n = record->n_objects;
+    struct plan_source_fork *fork = base_alloc((record->n_forks + 1) * sizeof *fork);
+    size_t *bytes = base_alloc_zero((n + 1) * sizeof *bytes);
+    *source = (struct plan_source){.fork = fork,
+                                   .access = record->access,
+                                   .bytes = bytes,
+                                   .n_forks = record->n_forks,
+                                   .n_accesses = record->n_accesses,
+                                   .n_objects = n,
+                                   .flag = flag ? plan_record_flag(record, *flag) : PLAN_NONE};
+    if (!fork || !bytes)
+        return false;
+    for (size_t i = 0; i < record->n_forks; i++)
+        fork[i] = source_fork(record, &record->fork[i]);
+    for (size_t i = 0; i < n; i++) {
+        const struct plan_recorded_object *from = &record->object[i];
+        bytes[i] = from->count * data_type_size(from->type);
+    }
+    if (flag && source->flag == n) {
+        const struct data_object *from = &record->graph->table.object[flag->slot];
+        bytes[source->n_objects++] = from->count * data_type_size(from->type);
+    }
+    return true;
+}
+
+void plan_source_free(struct plan_source *source)
+{
+    base_free(source->fork);
+    base_free(source->bytes);
 }

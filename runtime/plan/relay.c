@@ -27,7 +27,7 @@ static void relay_ring(const struct plan_messages *m, size_t n, uint64_t *set)
     base_ranks_clear(set, a->words);
     base_ranks_join(set, plan_runs_set(a, n), a->words);
     for (size_t i = node->first_use + 1; i < node->first_use + node->n_uses; i++)
-        base_ranks_add(set, a->at[m->leaf[a->round->use[i].place - a->round->n_objects]]);
+        base_ranks_add(set, a->at[plan_message_leaf(m, &a->round->use[i])]);
 }
 
 static uint8_t relay_rounds(size_t ranks)

@@ -114,19 +114,14 @@ static int replay_move_object(const struct plan *plan, struct worker *worker, si
 static int replay_use_object(struct task_graph *graph, struct task *task, size_t i, duite_mode mode,
                              struct data_object *object, uint32_t *done)
 {
-    struct data_version *version = object->current;
     task->access[i].waiter.mode = mode;
     if (mode == DUITE_NONE) {
         *done += 1;
         return DUITE_OK;
     }
-    if (mode != DUITE_W && !(version = task_local(graph, object)))
+    if (data_order_reads(mode) && !task_local(graph, object))
         return DUITE_E_MEMORY;
-    if (mode == DUITE_R) {
-        task_read(task, i, version, done);
-        return DUITE_OK;
-    }
-    return task_overwrite(graph, task, i, object, version, done);
+    return task_wait(&graph->root, task, i, object, done);
 }
 
 static int replay_use_all(struct plan_record *record, struct worker *worker, struct task *task,

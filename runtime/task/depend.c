@@ -1,31 +1,11 @@
 /* Dependences, the second stage of a task: its accesses become versions on this rank. Each access
  * becomes a hold on the version that it reads, the heir of the one that it overwrites, a leaf of a
  * sum, or a lent object. On other ranks the same call forgets stale versions, and sends or awaits
- * copies. Values that are not there yet wake the task later: ready.c. */
-#include "runtime/task/internal.h"
+ * copies. Values that are not there yet wake the task later: ready.h. */
+#include "runtime/task/access.h"
+#include "runtime/task/ready.h"
 
-#include "runtime/base/error.h"
 #include "runtime/data/law.h"
-
-/* ---- One task and one version ---- */
-
-void task_read(struct task *task, size_t i, struct data_version *version, uint32_t *done)
-{
-    *done += data_version_read(version, &task->access[i].waiter);
-}
-
-int task_overwrite(struct task_graph *graph, struct task *task, size_t i,
-                   struct data_object *object, struct data_version *version, uint32_t *done)
-{
-    struct data_version *out = data_object_version(object);
-    if (!out) {
-        base_no_memory("a version");
-        return task_break(graph);
-    }
-    object->current = out;
-    *done += data_version_overwrite(version, out, &task->access[i].waiter);
-    return DUITE_OK;
-}
 
 /* ---- Versions on this rank ---- */
 
@@ -64,10 +44,8 @@ static int copy_send(struct task_graph *graph, struct worker *worker, struct dat
     if (!task)
         return DUITE_E_MEMORY;
     *task->send = (struct task_send){.key = task_key(graph, object), .to = to};
-    uint32_t done = 0;
     task->access[0].waiter.mode = DUITE_R;
-    task_read(task, 0, version, &done);
-    task_settled(graph, worker, task, done);
+    task_settled(graph, worker, task, data_version_read(version, &task->access[0].waiter));
     return DUITE_OK;
 }
 
@@ -108,119 +86,139 @@ int task_fetch_all(struct task_graph *graph, struct worker *worker, struct data_
 
 /* ---- Accesses ---- */
 
-static void access_read(struct task_fork_call *call, size_t i, const struct data_object *object,
-                        struct data_version *version, bool postponed)
+int task_wait(struct task_scope *scope, struct task *task, size_t i, struct data_object *object,
+              uint32_t *done)
 {
-    if (!postponed) {
-        task_read(call->task, i, version, &call->done);
-        return;
-    }
-    data_version_hold(version);
-    task_lend(call->task->inner, &call->task->access[i], object, version, NULL);
-    call->done++;
+    struct task_access *access = &task->access[i];
+    const bool writes = data_order_writes((duite_mode)access->waiter.mode);
+    if (access_wait(scope, access, object, writes, scope->depth, done))
+        return DUITE_OK;
+    base_no_memory("a version");
+    return task_break(scope->graph);
 }
 
-/* The scope of the task gets the object's hold on the version; the object has from now on the one
- * that its children will leave. */
+/* The scope of the task gets a hold on the version that is read; or the object's, and then the
+ * object has from now on the version that the task's children will leave. */
 static int access_lend(struct task_fork_call *call, size_t i, struct data_object *object,
-                       struct data_version *version)
+                       struct data_version *version, bool writes)
 {
-    struct data_version *out = data_object_version(object);
-    if (!out) {
+    struct data_version *out = writes ? data_object_version(object) : NULL;
+    if (writes && !out) {
         base_no_memory("a version");
         return task_break(call->scope->graph);
     }
+    if (writes)
+        object->current = out;
+    else
+        data_version_hold(version);
     task_lend(call->task->inner, &call->task->access[i], object, version, out);
-    object->current = out;
     call->done++;
+    return DUITE_OK;
+}
+
+int task_note_everywhere(struct task_graph *graph, struct worker *worker,
+                         struct data_object *object, duite_mode mode)
+{
+    int code = data_order_reads(mode) ? task_fetch_all(graph, worker, object) : DUITE_OK;
+    if (code || !data_order_writes(mode))
+        return code;
+    task_note_version(object, object->home);
+    for (int rank = 0; rank < graph->n_ranks; rank++)
+        task_note_copy(graph, object, rank);
     return DUITE_OK;
 }
 
 static int access_contribute(struct task_fork_call *call, size_t i, struct data_object *object,
                              bool postponed)
 {
-    int code = task_contribute(call, object, i);
-    if (!code && call->task && postponed)
+    const duite_law *law = data_law_of(call->kernel, i);
+    int code = task_contribute(call->scope->graph, call->task, i, object, law, call->at);
+    if (!code && postponed)
         task_lend(call->task->inner, &call->task->access[i], object, NULL, NULL);
     call->done += !code;
     return code;
 }
 
-/* The rank that runs the task, or all of them, gets the value that the task reads. */
-static int access_fetch(struct task_fork_call *call, struct data_object *object, bool everywhere)
+static int access_depend(struct task_fork_call *call, size_t i, duite_mode declared)
 {
-    struct task_graph *graph = call->scope->graph;
-    return everywhere ? task_fetch_all(graph, call->worker, object)
-                      : task_fetch(graph, call->worker, object, call->at);
-}
-
-/* The task writes the object, which then has a new version on this rank, or none. */
-static int access_write(struct task_fork_call *call, size_t i, struct data_object *object,
-                        struct data_version *version, duite_mode declared, bool everywhere)
-{
-    struct task_graph *graph = call->scope->graph;
-    task_note_version(object, everywhere ? object->home : call->at);
-    for (int rank = 0; everywhere && rank < graph->n_ranks; rank++)
-        task_note_copy(graph, object, rank);
-    if (!call->task) {
-        task_forget(graph, call->worker, object);
-        return DUITE_OK;
-    }
-    return task_postponed(declared)
-               ? access_lend(call, i, object, version)
-               : task_overwrite(graph, call->task, i, object, version, &call->done);
-}
-
-__attribute__((noinline)) static int access_depend(struct task_fork_call *call, size_t i,
-                                                   duite_mode declared)
-{
-    struct task_graph *graph = call->scope->graph;
     struct data_object *object = task_fork_object(call, i);
-    duite_mode mode = task_immediate(declared);
-    bool everywhere = call->kernel->replicated && !call->scope->depth;
-    int code = DUITE_OK;
-    if (object->leaves && !data_order_joins(mode, data_law_of(call->kernel, i), object->law))
-        code = task_reduce(call->scope, call->worker, object);
-    if (!code && mode == DUITE_CW)
-        return access_contribute(call, i, object, task_postponed(declared));
-    if (!code && data_order_reads(mode) && graph->n_ranks > 1)
-        code = access_fetch(call, object, everywhere);
+    const duite_mode mode = task_immediate(declared);
+    int code =
+        access_note(call->scope, call->worker, call->kernel, i, object, mode, call->at, false);
     if (code)
         return code;
-    struct data_version *version = object->current;
-    if (call->task && data_order_reads(mode) && !(version = task_local(graph, object)))
+    if (mode == DUITE_CW)
+        return access_contribute(call, i, object, task_postponed(declared));
+    if (data_order_reads(mode) && !task_local(call->scope->graph, object))
         return DUITE_E_MEMORY;
-    if (data_order_writes(mode))
-        return access_write(call, i, object, version, declared, everywhere);
-    if (call->task)
-        access_read(call, i, object, version, task_postponed(declared));
-    return DUITE_OK;
+    if (task_postponed(declared))
+        return access_lend(call, i, object, object->current, data_order_writes(mode));
+    return task_wait(call->scope, call->task, i, object, &call->done);
 }
 
-/* All accesses. *made: those before the one that failed. */
-static int depend_each(struct task_fork_call *call, size_t *made)
+static int depend_here(struct task_fork_call *call)
 {
-    const size_t n_listed = call->scope->graph->fixed[call->index].n;
+    size_t made = 0;
     int code = DUITE_OK;
-    for (*made = 0; *made < call->n && !code; *made += !code) {
-        /* As data_mode_of, without a look for the end of the list. */
-        duite_mode mode = *made < n_listed ? call->kernel->access[*made] : call->kernel->variadic;
-        if (call->task)
-            call->task->access[*made].waiter.mode = mode;
-        code = access_depend(call, *made, mode);
+    for (; made < call->n && !code; made += !code) {
+        const duite_mode mode = task_mode_of(call->fixed, made);
+        call->task->access[made].waiter.mode = mode;
+        code = access_depend(call, made, mode);
     }
+    if (code)
+        task_void(call->scope->graph, call->worker, call->task, made, call->done);
+    else
+        task_settled(call->scope->graph, call->worker, call->task, call->done);
+    return code;
+}
+
+static int depend_elsewhere(struct task_fork_call *call)
+{
+    int code = DUITE_OK;
+    for (size_t i = 0; i < call->n && !code; i++)
+        code =
+            access_elsewhere(call->scope, call->worker, call->kernel, i, task_fork_object(call, i),
+                             task_immediate(task_mode_of(call->fixed, i)), call->at, false);
     return code;
 }
 
 int task_depend(struct task_fork_call *call)
 {
-    struct task *task = call->task;
-    struct task_graph *graph = call->scope->graph;
-    size_t made = 0;
-    const int code = depend_each(call, &made);
-    if (code && task)
-        task_void(graph, call->worker, task, made, call->done);
-    else if (task)
-        task_settled(graph, call->worker, task, call->done);
-    return code;
+    return call->task ? depend_here(call) : depend_elsewhere(call);
+}
+
+/* ---- ready.h, for those to whom a call more does not matter ---- */
+
+void task_settled(struct task_graph *graph, struct worker *worker, struct task *task, uint32_t done)
+{
+    ready_take(graph, worker, task, done + 1);
+}
+
+void task_wake(struct task_graph *graph, struct worker *worker, struct data_waiter *waiter)
+{
+    ready_wake(graph, worker, waiter);
+}
+
+/* The heir of the version that the value is passed on to may again be no task. */
+void task_wake_heir(struct task_graph *graph, struct worker *worker, struct data_waiter *heir)
+{
+    while (heir && !heir->back)
+        heir = task_pass(worker, heir);
+    ready_wake_heir(graph, worker, heir);
+}
+
+void task_release(struct task_graph *graph, struct worker *worker, struct data_version *version)
+{
+    ready_release(graph, worker, version);
+}
+
+struct data_waiter *task_produced(struct task_graph *graph, struct worker *worker,
+                                  struct data_version *version)
+{
+    return ready_produced(graph, worker, version);
+}
+
+void task_publish(struct task_graph *graph, struct worker *worker, struct data_version *version)
+{
+    ready_publish(graph, worker, version);
 }

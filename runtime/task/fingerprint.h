@@ -15,27 +15,35 @@
 
 static inline uint64_t task_name_bits(duite_object name)
 {
-    return (uint64_t)name.slot << 32 | name.generation;
+    return (uint64_t)name.generation << 32 | name.slot; /* as it lies in memory */
 }
 
-/* The number of a fork: it begins with the kernel and the rank, and goes on with each object. */
-static inline uint64_t task_fork_hash(uint32_t kernel, int at)
+/* The hash of a fork: it begins with what is forked, and goes on with each object. It is a sum of
+ * products: no multiplication waits for another one. */
+#define TASK_HASH_ODD UINT64_C(0x9e3779b97f4a7c15)
+
+static inline uint64_t task_fork_hash(uint64_t what)
+{
+    return what * TASK_HASH_ODD;
+}
+
+static inline uint64_t task_fork_hash_on(uint64_t hash, size_t i, duite_object name)
+{
+    return hash + task_name_bits(name) * (TASK_HASH_ODD * (2 * i + 3));
+}
+
+static inline uint64_t task_fork_hash_all(uint64_t what, size_t n, const duite_object *objects)
+{
+    uint64_t hash = task_fork_hash(what);
+    for (size_t i = 0; i < n; i++)
+        hash = task_fork_hash_on(hash, i, objects[i]);
+    return hash;
+}
+
+/* For all ranks a fork is its kernel's index and the rank that it names. */
+static inline uint64_t task_fork_what(uint32_t kernel, int at)
 {
     return (uint64_t)kernel << 32 | (uint32_t)at;
-}
-
-static inline uint64_t task_fork_hash_on(uint64_t hash, duite_object name)
-{
-    return hash * 0x9e3779b97f4a7c15u + ((uint64_t)name.generation << 32 | name.slot);
-}
-
-static inline uint64_t task_fork_hash_all(uint32_t kernel, int at, size_t n,
-                                          const duite_object *objects)
-{
-    uint64_t hash = task_fork_hash(kernel, at);
-    for (size_t i = 0; i < n; i++)
-        hash = task_fork_hash_on(hash, objects[i]);
-    return hash;
 }
 
 /* ---- The history: a ring of the last calls that are part of the fingerprint ---- */

@@ -2,213 +2,37 @@
  * program, in the same order. Each draws the same conclusions about where the task runs and which
  * versions move. A rank keeps only what it runs, sends or receives itself. A task forks by the same
  * rules in its own scope, whose objects are here and nowhere else. Errors are refused before
- * anything is changed; afterwards only memory can be missing. The next stage is depend.c; prune.h
- * is the short way for tasks of which nothing is here. */
-#include "runtime/task/scope.h"
-
-#include "runtime/base/error.h"
-#include "runtime/base/memory.h"
-#include "runtime/data/law.h"
-#include "runtime/data/object.h"
+ * anything is changed (check.c); afterwards only memory can be missing.
+ *
+ * One pass over the objects finds them, and one makes the accesses wait. There are three ways, of
+ * the same steps (access.h): a short one for plain kernels (task_fixed.plain) on one rank, a short
+ * one for tasks that other ranks run, and the general one, whose second pass is in depend.c. The
+ * short ways leave to it what they do not know, before anything is changed. */
+#include "runtime/task/access.h"
+#include "runtime/task/ready.h"
 
 #include <string.h>
 
-/* ---- The checks of a fork ---- */
-
-static int fork_kernel(const struct task_graph *graph, const duite_kernel *kernel, uint32_t *index)
-{
-    if (!kernel)
-        return base_error(DUITE_E_ARGUMENT, "duite_fork: no kernel");
-    const struct task_fixed *fixed = task_kernel_find(graph, kernel);
-    *index = fixed ? fixed->index : graph->n_kernels;
-    if (fixed)
-        return DUITE_OK;
-    return base_error(DUITE_E_KERNEL, "kernel %s was not listed at start",
-                      kernel->name ? kernel->name : "without a name");
-}
-
-static int fork_wrong_args(const duite_kernel *kernel)
-{
-    if (kernel->args_size)
-        return base_error(DUITE_E_ARGUMENT, "kernel %s needs %zu bytes of arguments", kernel->name,
-                          kernel->args_size);
-    return base_error(DUITE_E_ARGUMENT,
-                      "kernel %s has no arguments, and the fork gives some; if the body is to find "
-                      "them, the kernel says their size (args_size)",
-                      kernel->name);
-}
-
-/* Kernel, arguments and number of objects fit. */
-static int fork_check_call(const struct task_graph *graph, int at, uint32_t index, const void *args,
-                           size_t n, const duite_object *objects)
-{
-    const duite_kernel *kernel = graph->kernels[index];
-    size_t fixed = graph->fixed[index].n;
-    if (n < fixed || (n > fixed && kernel->variadic == DUITE_NONE) || n > TASK_MAX_OBJECTS)
-        return base_error(DUITE_E_ACCESS, "kernel %s takes %s%zu objects, not %zu", kernel->name,
-                          kernel->variadic == DUITE_NONE ? "" : "at least ", fixed, n);
-    if (n && !objects)
-        return base_error(DUITE_E_ARGUMENT, "kernel %s: no objects given", kernel->name);
-    if (!task_args_fit(args, kernel->args_size))
-        return fork_wrong_args(kernel);
-    if (at < TASK_ANYWHERE || at >= graph->n_ranks)
-        return base_error(DUITE_E_ARGUMENT, "kernel %s: there is no rank %d, only 0 to %d",
-                          kernel->name, at, graph->n_ranks - 1);
-    if (kernel->replicated && at != TASK_ANYWHERE)
-        return base_error(DUITE_E_ARGUMENT,
-                          "kernel %s is replicated: it runs on all ranks, and none can be named",
-                          kernel->name);
-    return DUITE_OK;
-}
-
-static int fork_check_law(const duite_kernel *kernel, size_t i, const struct data_object *object,
-                          duite_object name)
-{
-    const duite_law *law = data_law_of(kernel, i);
-    if (object->sized)
-        return base_error(DUITE_E_ACCESS,
-                          "kernel %s, parameter %zu: object %u.%u changes its size and cannot be "
-                          "accumulated into",
-                          kernel->name, i, name.slot, name.generation);
-    if (data_law_fits(law, object->type))
-        return DUITE_OK;
-    return base_error(DUITE_E_LAW,
-                      "kernel %s, parameter %zu: law %s is for %s, and object %u.%u has %s",
-                      kernel->name, i, law->name, data_type_name(law->type), name.slot,
-                      name.generation, data_type_name(object->type));
-}
-
-/* The object exists, is named once, may be used so and, under cw, can be accumulated into. */
-static int fork_check_object(struct task_fork_call *call, size_t i)
-{
-    struct task_scope *scope = call->scope;
-    const duite_kernel *kernel = call->kernel;
-    const duite_mode mode = task_immediate(data_mode_of(kernel, i));
-    const duite_object name = call->objects[i];
-    duite_mode right = DUITE_RWP;
-    struct data_object *object = scope->depth ? task_find_object(scope, name, &right)
-                                              : data_object_find(&scope->graph->table, name);
-    if (!object)
-        return base_error(DUITE_E_OBJECT, "kernel %s, parameter %zu: object %u.%u %s", kernel->name,
-                          i, name.slot, name.generation,
-                          name.slot ? "was freed or never made" : "names nothing");
-    if (object->mark == scope->forks + 1)
-        return base_error(DUITE_E_ACCESS,
-                          "kernel %s, parameter %zu: the task names object %u.%u twice",
-                          kernel->name, i, name.slot, name.generation);
-    int code = DUITE_OK;
-    if (mode == DUITE_CW)
-        code = fork_check_law(kernel, i, object, name);
-    if (!code && right == DUITE_CWP && data_law_of(kernel, i) != object->law)
-        code = task_wrong_law(scope, kernel, i, name);
-    if (code)
-        return code;
-    object->mark = scope->forks + 1;
-    if (i < TASK_FEW)
-        call->object[i] = object;
-    return DUITE_OK;
-}
-
-/* Checks a body's rights. The objects that it reads may come into its scope, whose objects then
- * move. */
-static int fork_check_rights(const struct task_fork_call *call)
-{
-    int code = DUITE_OK;
-    for (size_t i = 0; i < call->n && !code; i++)
-        code = task_check_right(call->scope, call->kernel->name, i, call->objects[i],
-                                data_mode_of(call->kernel, i));
-    return code;
-}
-
-/* True if no object needs a second look: each may be used so as it is, as in most forks. Else
- * nothing was done, and fork_check_object says what is wrong. */
-static bool fork_take_objects(struct task_fork_call *call)
-{
-    struct task_scope *const scope = call->scope;
-    struct data_table *const table = scope->depth ? NULL : &scope->graph->table;
-    const duite_mode *const mode = call->kernel->access;
-    const duite_object *const name = call->objects;
-    const uint64_t mark = scope->forks + 1;
-    const size_t n = call->plain ? call->n : 0;
-    for (size_t i = 0; i < n; i++) {
-        struct data_object *object =
-            table ? data_object_here(table, name[i]) : task_find_given(scope, name[i], mode[i]);
-        if (object && object->mark != mark) {
-            object->mark = mark;
-            call->object[i] = object;
-            continue;
-        }
-        while (i > 0)
-            call->object[--i]->mark = 0;
-        return false;
-    }
-    return call->plain;
-}
-
-/* Unmarks the first n objects: this fork does not name them after all. */
-static void fork_unmark(const struct task_fork_call *call, size_t n)
-{
-    for (size_t i = 0; i < n; i++)
-        task_fork_object(call, i)->mark = 0;
-}
-
-static int fork_check_objects(struct task_fork_call *call)
-{
-    for (size_t i = 0; i < call->n; i++) {
-        int code = fork_check_object(call, i);
-        if (code) {
-            fork_unmark(call, i);
-            return code;
-        }
-    }
-    return DUITE_OK;
-}
-
-/* `at`: the rank that the fork names, or TASK_ANYWHERE. */
-static int fork_check(struct task_fork_call *call, int at, const void *args)
-{
-    const struct task_graph *graph = call->scope->graph;
-    int code = fork_kernel(graph, call->kernel, &call->index);
-    if (!code)
-        code = fork_check_call(graph, at, call->index, args, call->n, call->objects);
-    if (code)
-        return code;
-    const struct task_fixed *fixed = &graph->fixed[call->index];
-    call->owner = fixed->owner[call->n > fixed->n];
-    call->plain = fixed->plain;
-    if (fork_take_objects(call))
-        return DUITE_OK;
-    if (call->scope->depth)
-        code = fork_check_rights(call);
-    return code ? code : fork_check_objects(call);
-}
-
-/* `object` stays unset to save time: each is looked up before it is used. */
-static void fork_call_init(struct task_fork_call *call, struct task_scope *scope,
-                           struct worker *worker, const duite_kernel *kernel, size_t n,
-                           const duite_object *objects)
-{
-    call->scope = scope;
-    call->worker = worker;
-    call->kernel = kernel;
-    call->n = n;
-    call->objects = objects;
-    call->task = NULL;
-    call->done = 0;
-}
-
-int task_check_fork(struct task_fork_call *call, struct task_scope *scope, int at,
-                    const duite_kernel *kernel, const void *args, size_t n,
-                    const duite_object *objects)
-{
-    fork_call_init(call, scope, NULL, kernel, n, objects);
-    int code = fork_check(call, at, args);
-    if (!code)
-        fork_unmark(call, n);
-    return code;
-}
-
 /* ---- The task of a fork ---- */
+
+static inline void fork_copy_args(void *to, const void *from, size_t size)
+{
+    if (!size)
+        return;
+    if (size == sizeof(uint64_t)) /* as often: without a call */
+        memcpy(to, from, sizeof(uint64_t));
+    else
+        memcpy(to, from, size);
+}
+
+/* The task counts as unfinished. */
+ACCESS_INLINE void fork_count(struct task_scope *scope, bool nested)
+{
+    if (nested)
+        atomic_fetch_add_explicit(&scope->unfinished, 1, memory_order_relaxed);
+    else
+        scope->graph->tasks++;
+}
 
 struct task *task_make(struct task_scope *scope, enum task_type type, size_t n, size_t extra)
 {
@@ -244,15 +68,10 @@ struct task *task_new(struct task_scope *scope, enum task_type type, size_t n, s
         task_break(scope->graph);
         return NULL;
     }
-    if (scope->parent)
-        atomic_fetch_add_explicit(&scope->unfinished, 1, memory_order_relaxed);
-    else
-        scope->graph->tasks++;
+    fork_count(scope, scope->parent != NULL);
     return task;
 }
 
-/* Memory ran out at access `made`: the accesses before it are kept, or others would wait for ever.
- */
 void task_void(struct task_graph *graph, struct worker *worker, struct task *task, size_t made,
                uint32_t done)
 {
@@ -273,6 +92,161 @@ uint64_t task_later_round(const struct task *task)
     return round;
 }
 
+/* ---- The short way on one rank. Compiled once for the main program and once for bodies ---- */
+
+/* A fork under way. */
+struct plain_fork {
+    struct task_scope *scope;
+    struct worker *worker;
+    const struct task_fixed *fixed;
+    struct task *task;
+    bool nested; /* a body's */
+};
+
+/* Unmarks the objects of the accesses before `end`: this fork does not name them after all. */
+static void plain_unmark(struct task *task, const struct task_access *end)
+{
+    for (struct task_access *access = task->access; access < end; access++)
+        access->object->mark = 0;
+}
+
+/* Finds the objects. False: one of them needs a second look; nothing was done. */
+ACCESS_INLINE bool plain_take_objects(const struct plain_fork *fork, const duite_object *name)
+{
+    const struct access_look look = access_look_of(fork->scope, fork->nested, true);
+    const struct task_access *like = fork->fixed->head->access;
+    struct task_access *access = fork->task->access, *const end = access + fork->fixed->n;
+    for (; access < end; access++, like++, name++) {
+        struct data_object *object = access_find(&look, *name, like->waiter.mode);
+        if (!object) {
+            plain_unmark(fork->task, access);
+            return false;
+        }
+        base_prefetch(object->current);
+        *access = *like;
+        access->object = object;
+        if (!object->current && like->waiter.mode != DUITE_W) {
+            plain_unmark(fork->task, access + 1);
+            return false;
+        }
+    }
+    return true;
+}
+
+/* Makes all of the task but its accesses. */
+ACCESS_INLINE void plain_make(const struct plain_fork *fork, const void *args)
+{
+    const struct task_fixed *fixed = fork->fixed;
+    struct task_scope *scope = fork->scope;
+    struct task *task = fork->task;
+    *task = *fixed->head;
+    task->scope = scope;
+    task->number = ++scope->forks;
+    task->block = fixed->owner[0] == TASK_NOBODY ? (uint32_t)scope->forks
+                                                 : task->access[fixed->owner[0]].object->block;
+    fork_copy_args(task_rest(task, fixed->n), args, fixed->kernel->args_size);
+    fork_count(scope, fork->nested);
+}
+
+/* The accesses wait. Returns how many have nothing to wait for; *stop: their end, or the one for
+ * which there was no memory. */
+ACCESS_INLINE uint32_t plain_depend(const struct plain_fork *fork, const struct task_access **stop)
+{
+    struct task_access *access = fork->task->access, *const end = access + fork->fixed->n;
+    uint32_t done = 0;
+    for (; access < end; access++) {
+        struct data_object *object = access->object;
+        const bool writes = access->waiter.mode != DUITE_R;
+        object->number += writes; /* it is nowhere else: its holder stays this rank */
+        if (!access_wait(fork->scope, access, object, writes, fork->nested, &done))
+            break;
+    }
+    *stop = access;
+    return done;
+}
+
+/* The objects are found. */
+ACCESS_INLINE int plain_fork(const struct plain_fork *fork, const struct task_options *options,
+                             const void *args)
+{
+    struct task_graph *graph = fork->scope->graph;
+    struct task *task = fork->task;
+    const struct task_access *stop;
+    plain_make(fork, args);
+    if (options) {
+        task->priority = options->priority;
+        task->cost = (float)options->cost;
+    }
+    const uint32_t done = plain_depend(fork, &stop);
+    if (stop == task->access + fork->fixed->n) {
+        ready_take(graph, fork->worker, task, done + 1);
+        return DUITE_OK;
+    }
+    base_no_memory("a version");
+    task_break(graph);
+    task_void(graph, fork->worker, task, (size_t)(stop - task->access), done);
+    return DUITE_E_MEMORY;
+}
+
+/* True if the fork is of this kind: then its task has memory, and its objects are found. */
+ACCESS_INLINE bool plain_fits(struct plain_fork *fork, const duite_kernel *kernel, const void *args,
+                              size_t n, const duite_object *objects)
+{
+    const struct task_fixed *fixed = fork->fixed = task_kernel_find(fork->scope->graph, kernel);
+    if (!fixed || !(fork->nested ? fixed->plain : fixed->direct) || n != fixed->n ||
+        !task_fork_fits(fixed, args, n, objects))
+        return false;
+    const size_t bytes = (size_t)fixed->grains * TASK_GRAIN;
+    fork->task = base_pool_take(bytes);
+    if (!fork->task || plain_take_objects(fork, objects))
+        return fork->task != NULL;
+    base_pool_give(fork->task, bytes);
+    return false;
+}
+
+/* The compiler knows `nested` and whether there are options. */
+ACCESS_INLINE int plain_try(struct task_scope *scope, struct worker *worker,
+                            const struct task_options *options, const duite_kernel *kernel,
+                            const void *args, size_t n, const duite_object *objects, bool nested)
+{
+    struct plain_fork fork = {.scope = scope, .worker = worker, .nested = nested};
+    if (plain_fits(&fork, kernel, args, n, objects))
+        return plain_fork(&fork, options, args);
+    return task_fork_any(scope, worker, options ? options : &task_no_options, kernel, args, n,
+                         objects);
+}
+
+/* ---- The general way ---- */
+
+const struct task_options task_no_options = {.at = TASK_ANYWHERE};
+
+/* Finds the objects of a fork whose call is right. False: one of them needs a second look; nothing
+ * was done. */
+ACCESS_INLINE bool fork_take_objects(struct task_fork_call *call, bool nested)
+{
+    const struct access_look look = access_look_of(call->scope, nested, false);
+    for (size_t i = 0; i < call->n; i++) {
+        struct data_object *object = access_find_any(&look, call->fixed, i, call->objects[i]);
+        if (!object) {
+            task_fork_unmark(call, i);
+            return false;
+        }
+        call->object[i] = object;
+    }
+    return true;
+}
+
+/* True if the fork is right; then its objects are found. Else check.c looks again. */
+static inline bool fork_take(struct task_fork_call *call, int at, const void *args)
+{
+    const struct task_fixed *fixed = call->fixed =
+        task_kernel_find(call->scope->graph, call->kernel);
+    if (!fixed || at != TASK_ANYWHERE || call->n > TASK_FEW ||
+        !task_fork_fits(fixed, args, call->n, call->objects))
+        return false;
+    return call->scope->depth ? fork_take_objects(call, true) : fork_take_objects(call, false);
+}
+
 /* NULL without memory. */
 static struct task *fork_body(const struct task_fork_call *call, const struct task_options *options,
                               const void *args)
@@ -288,16 +262,14 @@ static struct task *fork_body(const struct task_fork_call *call, const struct ta
     task->later = options->round != 0;
     if (task->later)
         memcpy((char *)task_rest(task, call->n) + round_at, &options->round, sizeof options->round);
-    task->kernel = call->index;
+    task->kernel = call->fixed->index;
     task->priority = options->priority;
     task->cost = (float)options->cost;
     task->at_rank = options->at != TASK_ANYWHERE;
-    if (kernel->args_size)
-        memcpy(task_rest(task, call->n), args, kernel->args_size);
-    const struct task_fixed *fixed = &scope->graph->fixed[call->index];
-    size_t postponed = fixed->postponed;
+    fork_copy_args(task_rest(task, call->n), args, kernel->args_size);
+    size_t postponed = call->fixed->postponed;
     if (task_postponed(kernel->variadic))
-        postponed += call->n - fixed->n;
+        postponed += call->n - call->fixed->n;
     if (!postponed || (task->inner = task_scope_new(task, postponed)))
         return task;
     base_no_memory("a task");
@@ -324,8 +296,8 @@ static int fork_checked(struct task_fork_call *call, const struct task_options *
 {
     const struct task_graph *graph = call->scope->graph;
     const bool replicated = call->kernel->replicated;
-    struct data_object *own =
-        call->owner == TASK_NOBODY ? NULL : task_fork_object(call, call->owner);
+    const uint32_t owner = task_fork_owner(call);
+    struct data_object *own = owner == TASK_NOBODY ? NULL : task_fork_object(call, owner);
     call->at = call->scope->depth ? graph->rank
                                   : task_owner_rank(options->at, replicated, own ? own->home : -1);
     if (call->at == TASK_EVERYWHERE)
@@ -342,13 +314,111 @@ int task_fork_any(struct task_scope *scope, struct worker *worker,
                   size_t n, const duite_object *objects)
 {
     struct task_fork_call call;
-    fork_call_init(&call, scope, worker, kernel, n, objects);
-    int code = fork_check(&call, options->at, args);
+    task_fork_call_init(&call, scope, worker, kernel, n, objects);
+    const int code =
+        fork_take(&call, options->at, args) ? DUITE_OK : task_fork_check(&call, options->at, args);
     if (code)
         return code;
     scope->forks++;
     if (!scope->depth && scope->graph->n_ranks > 1)
-        task_mix_fork(scope->graph, task_fork_hash_all(call.index, options->at, n, objects),
-                      TASK_FORKED, call.index);
+        task_mix_fork(
+            scope->graph,
+            task_fork_hash_all(task_fork_what(call.fixed->index, options->at), n, objects),
+            TASK_FORKED, call.fixed->index);
     return fork_checked(&call, options, args);
+}
+
+/* ---- The short way of tasks that other ranks run. Compiled for plain kernels and for others ----
+ */
+
+/* Finds the objects, and hashes their names. False: one needs a second look; nothing was done. */
+ACCESS_INLINE bool elsewhere_take(struct task_scope *scope, const struct task_fixed *fixed,
+                                  size_t n, const duite_object *name, struct data_object **object,
+                                  uint64_t *hash, bool plain)
+{
+    const struct access_look look = access_look_of(scope, false, plain);
+    for (size_t i = 0; i < n; i++) {
+        object[i] = plain ? access_find(&look, name[i], DUITE_NONE)
+                          : access_find_any(&look, fixed, i, name[i]);
+        *hash = task_fork_hash_on(*hash, i, name[i]);
+        if (object[i])
+            continue;
+        while (i > 0)
+            object[--i]->mark = 0;
+        return false;
+    }
+    return true;
+}
+
+/* Instead of a code: the fork is not of this kind, and nothing was done. */
+enum { ELSEWHERE_NOT = -1 };
+
+ACCESS_INLINE int elsewhere_try(struct task_graph *graph, struct worker *worker,
+                                const struct task_fixed *fixed, const void *args, size_t n,
+                                const duite_object *objects, bool plain)
+{
+    struct data_object *object[TASK_FEW];
+    struct task_scope *scope = &graph->root;
+    const duite_kernel *kernel = fixed->kernel;
+    if ((plain ? n != fixed->n : kernel->replicated || n > TASK_FEW) ||
+        !task_fork_fits(fixed, args, n, objects))
+        return ELSEWHERE_NOT;
+    const uint32_t own = fixed->owner[n > fixed->n];
+    const struct data_object *owner =
+        own == TASK_NOBODY ? NULL : data_object_here(&graph->table, objects[own]);
+    const int at = task_owner_rank(TASK_ANYWHERE, false, owner ? owner->home : -1);
+    uint64_t hash = task_fork_hash(task_fork_what(fixed->index, TASK_ANYWHERE));
+    if (at == graph->rank || !elsewhere_take(scope, fixed, n, objects, object, &hash, plain))
+        return ELSEWHERE_NOT;
+    scope->forks++;
+    task_mix_fork(graph, hash, TASK_FORKED, fixed->index);
+    int code = DUITE_OK;
+    for (size_t i = 0; i < n && !code; i++)
+        code = access_elsewhere(scope, worker, kernel, i, object[i],
+                                plain ? kernel->access[i] : task_immediate(task_mode_of(fixed, i)),
+                                at, plain);
+    return code;
+}
+
+/* A function apart, since each needs most registers. */
+__attribute__((noinline)) static int
+elsewhere_other(struct task_graph *graph, struct worker *worker, const struct task_fixed *fixed,
+                const void *args, size_t n, const duite_object *objects)
+{
+    return elsewhere_try(graph, worker, fixed, args, n, objects, false);
+}
+
+/* ---- The entries ---- */
+
+int task_fork_ranks(struct task_graph *graph, struct worker *worker, const duite_kernel *kernel,
+                    const void *args, size_t n, const duite_object *objects)
+{
+    const struct task_fixed *fixed = task_kernel_find(graph, kernel);
+    int code = ELSEWHERE_NOT;
+    if (fixed)
+        code = fixed->plain ? elsewhere_try(graph, worker, fixed, args, n, objects, true)
+                            : elsewhere_other(graph, worker, fixed, args, n, objects);
+    if (code != ELSEWHERE_NOT)
+        return code;
+    return task_fork_any(&graph->root, worker, &task_no_options, kernel, args, n, objects);
+}
+
+int task_fork_main(struct task_graph *graph, struct worker *worker, const duite_kernel *kernel,
+                   const void *args, size_t n, const duite_object *objects)
+{
+    return plain_try(&graph->root, worker, NULL, kernel, args, n, objects, false);
+}
+
+int task_fork_nested(struct task_scope *scope, struct worker *worker, const duite_kernel *kernel,
+                     const void *args, size_t n, const duite_object *objects)
+{
+    return plain_try(scope, worker, NULL, kernel, args, n, objects, true);
+}
+
+int task_fork(struct task_scope *scope, struct worker *worker, const struct task_options *options,
+              const duite_kernel *kernel, const void *args, size_t n, const duite_object *objects)
+{
+    if (options->at != TASK_ANYWHERE)
+        return task_fork_any(scope, worker, options, kernel, args, n, objects);
+    return plain_try(scope, worker, options, kernel, args, n, objects, scope->depth != 0);
 }

@@ -29,18 +29,6 @@ static int kernel_check_replicated(const duite_kernel *kernel)
                : DUITE_OK;
 }
 
-/* Sets the facts about the kernel that task_prune needs. */
-static void kernel_sort_objects(const duite_kernel *kernel, struct task_fixed *fixed)
-{
-    fixed->prunes = fixed->n && !kernel->replicated;
-    for (uint32_t i = 0; i < fixed->n; i++) {
-        const duite_mode mode = task_immediate(kernel->access[i]);
-        fixed->prunes &= mode != DUITE_CW;
-        fixed->reads |= (uint64_t)(mode != DUITE_W) << i;
-        fixed->writes |= (uint64_t)(mode != DUITE_R) << i;
-    }
-}
-
 static int kernel_check(const duite_kernel *kernel, uint32_t index, struct task_fixed *fixed)
 {
     if (!kernel->name || !kernel->name[0])
@@ -70,7 +58,6 @@ static int kernel_check(const duite_kernel *kernel, uint32_t index, struct task_
     fixed->grains = (uint32_t)grains;
     fixed->owner[0] = task_owner(kernel->access, kernel->variadic, fixed->n);
     fixed->owner[1] = task_owner(kernel->access, kernel->variadic, (size_t)fixed->n + 1);
-    kernel_sort_objects(kernel, fixed);
     return kernel_check_replicated(kernel);
 }
 

@@ -7,8 +7,6 @@
 
 /* Shared by the files of this folder only. */
 
-struct task_fork_call;
-
 /* A task with n accesses and `extra` bytes behind them (task_rest); pending is n + 1; counted
  * as unfinished. NULL without memory: then the graph is broken. */
 struct task *task_new(struct task_scope *scope, enum task_type type, size_t n, size_t extra);
@@ -36,11 +34,11 @@ void task_publish(struct task_graph *graph, struct worker *worker, struct data_v
 struct data_waiter *task_produced(struct task_graph *graph, struct worker *worker,
                                   struct data_version *version);
 
-/* Makes access i of the task a reader of `version` (task_read), or its heir, which writes a new
- * version (task_overwrite). Adds one to *done if there is nothing to wait for. */
-void task_read(struct task *task, size_t i, struct data_version *version, uint32_t *done);
-int task_overwrite(struct task_graph *graph, struct task *task, size_t i,
-                   struct data_object *object, struct data_version *version, uint32_t *done);
+/* Access i of the task, by its mode r, w or rw, waits for the object's current version, and leaves
+ * a new one if it writes. Adds one to *done if there is nothing to wait for. Errors: memory; the
+ * graph is broken. */
+int task_wait(struct task_scope *scope, struct task *task, size_t i, struct data_object *object,
+              uint32_t *done);
 
 /* This rank's copy of the current version, which must be here or on its way (task_fetch); zeros if
  * it was never written. NULL without memory: the graph is broken. */
@@ -68,6 +66,10 @@ int task_fetch(struct task_graph *graph, struct worker *worker, struct data_obje
 /* The same for all ranks. */
 int task_fetch_all(struct task_graph *graph, struct worker *worker, struct data_object *object);
 
+/* All ranks read the current version, and have the one that they all write. */
+int task_note_everywhere(struct task_graph *graph, struct worker *worker,
+                         struct data_object *object, duite_mode mode);
+
 /* The object has a new version on another rank: this rank's copy is stale. */
 void task_forget(struct task_graph *graph, struct worker *worker, struct data_object *object);
 /* A version of the object with these bytes (values NULL: zeros), for the object alone to hold. NULL
@@ -75,10 +77,13 @@ void task_forget(struct task_graph *graph, struct worker *worker, struct data_ob
 struct data_version *task_value_version(const struct data_object *object, const void *values,
                                         size_t bytes);
 
-/* Contributions. task_contribute adds a leaf for access i of the fork; a sum of another law is
- * closed. task_reduce closes the sum: its contributions are combined. */
-int task_contribute(const struct task_fork_call *call, struct data_object *object, size_t i);
+/* Contributions. task_contribute adds a leaf for access i of a task on rank `at` (NULL: another
+ * one); a sum of another law is closed. task_reduce closes the sum: its contributions are
+ * combined. */
+int task_contribute(struct task_graph *graph, struct task *task, size_t i,
+                    struct data_object *object, const duite_law *law, int at);
 int task_reduce(struct task_scope *scope, struct worker *worker, struct data_object *object);
+extern const struct data_failure task_sum_no_memory;
 void task_run_combine(struct task *task);
 void task_run_pieces(struct task *task);
 /* Combines the contributions of a task's children into `leaf`, which is the task's. */
@@ -164,8 +169,9 @@ static inline void task_left(struct task_graph *graph, struct task_scope *scope,
 struct data_object *task_find_object(struct task_scope *scope, duite_object name,
                                      duite_mode *right);
 
-/* A fork under way. fork.c checks it and decides where its task runs; depend.c goes through its
- * objects. It is passed by pointer, since handing data between stages is most of a fork's cost. */
+/* A fork under way. fork.c finds its objects and decides where its task runs; depend.c goes through
+ * its accesses. It is passed by pointer, since handing data between stages is most of a fork's
+ * cost. */
 enum { TASK_FEW = 16 };
 struct task_fork_call {
     struct task_scope *scope; /* where it is forked */
@@ -173,29 +179,63 @@ struct task_fork_call {
     const duite_kernel *kernel;
     size_t n;
     const duite_object *objects;
+    const struct task_fixed *fixed;       /* of the kernel */
     struct task *task;                    /* NULL: other ranks run it */
     int at;                               /* the rank that runs it */
-    uint32_t index;                       /* of the kernel, in the list given at start */
-    uint32_t owner;                       /* the parameter it runs for, or TASK_NOBODY */
     uint32_t done;                        /* accesses that have nothing to wait for, so far */
-    bool plain;                           /* its kernel is */
     struct data_object *object[TASK_FEW]; /* the first ones */
 };
 
-/* The general way of task_fork, for forks that the short one (plain.c) does not take. */
-int task_fork_any(struct task_scope *scope, struct worker *worker,
-                  const struct task_options *options, const duite_kernel *kernel, const void *args,
-                  size_t n, const duite_object *objects);
+/* `object` stays unset to save time: each is looked up before it is used. */
+static inline void task_fork_call_init(struct task_fork_call *call, struct task_scope *scope,
+                                       struct worker *worker, const duite_kernel *kernel, size_t n,
+                                       const duite_object *objects)
+{
+    call->scope = scope;
+    call->worker = worker;
+    call->kernel = kernel;
+    call->n = n;
+    call->objects = objects;
+    call->task = NULL;
+    call->done = 0;
+}
 
-/* Object i of the fork. The check of the names already looked up the first TASK_FEW. */
+/* The mode of parameter i, as data_mode_of. */
+static inline duite_mode task_mode_of(const struct task_fixed *fixed, size_t i)
+{
+    return i < fixed->n ? fixed->kernel->access[i] : fixed->kernel->variadic;
+}
+
+/* True if arguments and number of objects are right. */
+static inline bool task_fork_fits(const struct task_fixed *fixed, const void *args, size_t n,
+                                  const duite_object *objects)
+{
+    const bool n_fits = n == fixed->n || (n > fixed->n && fixed->kernel->variadic != DUITE_NONE);
+    return n_fits && (objects || !n) && task_args_fit(args, fixed->kernel->args_size);
+}
+
+/* The parameter that the task runs for, or TASK_NOBODY. */
+static inline uint32_t task_fork_owner(const struct task_fork_call *call)
+{
+    return call->fixed->owner[call->n > call->fixed->n];
+}
+
+/* Object i of the fork. The first TASK_FEW were found already. */
 static inline struct data_object *task_fork_object(const struct task_fork_call *call, size_t i)
 {
     duite_mode right;
     return i < TASK_FEW ? call->object[i] : task_find_object(call->scope, call->objects[i], &right);
 }
 
-/* Turns the task's accesses into versions on this rank. The task is ready once all its inputs are
- * there. Errors: memory, broken; the accesses before the error are kept, and the task is void. */
+/* Checks that a fork fits its kernel, arguments and objects, which are found and marked. at: the
+ * rank that it names, or TASK_ANYWHERE. */
+int task_fork_check(struct task_fork_call *call, int at, const void *args);
+/* Unmarks the first n objects: this fork does not name them after all. */
+void task_fork_unmark(const struct task_fork_call *call, size_t n);
+
+/* Turns the task's accesses into versions on this rank, which runs it or not. The task is ready
+ * once all its inputs are there. Errors: memory, broken; the accesses before the error are kept,
+ * and the task is void. */
 int task_depend(struct task_fork_call *call);
 
 /* Retires the name of an object that the task made. */
@@ -251,12 +291,6 @@ const struct data_failure *task_fail_below(struct task_graph *graph,
 /* The failure of a task for want of memory. */
 const struct data_failure *task_fail_memory(const struct task *task);
 struct data_packet *task_poison_packet(struct data_key key, const struct data_failure *failure);
-
-/* Checks that a fork fits its kernel, arguments and objects. *call then has the kernel's index, the
- * parameter that the task runs for, and the objects. */
-int task_check_fork(struct task_fork_call *call, struct task_scope *scope, int at,
-                    const duite_kernel *kernel, const void *args, size_t n,
-                    const duite_object *objects);
 
 /* Checks that the object may be set to so many elements. */
 int task_set_check(const struct data_object *object, duite_object name, size_t count);

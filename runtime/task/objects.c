@@ -50,10 +50,8 @@ int task_copy(struct task_graph *graph, struct worker *worker, duite_object name
         return DUITE_E_MEMORY;
     task->copy = copy;
     task->block = object->block;
-    uint32_t done = 0;
     task->access[0].waiter.mode = DUITE_R;
-    task_read(task, 0, version, &done);
-    task_settled(graph, worker, task, done);
+    task_settled(graph, worker, task, data_version_read(version, &task->access[0].waiter));
     return DUITE_OK;
 }
 
@@ -157,11 +155,9 @@ static int move_await(struct task_graph *graph, struct worker *worker,
     struct task *task = task_new(&graph->root, TASK_MOVE, 1, 0);
     if (!task)
         return DUITE_E_MEMORY;
-    uint32_t done = 0;
     task->block = object->block;
     task->access[0].waiter.mode = DUITE_R;
-    task_read(task, 0, object->current, &done);
-    task_settled(graph, worker, task, done);
+    task_settled(graph, worker, task, data_version_read(object->current, &task->access[0].waiter));
     return DUITE_OK;
 }
 

@@ -20,7 +20,31 @@ enum {
  * first one that it reads; TASK_NOBODY if it only accumulates. Postponed modes count like those
  * without delay. `access` has DUITE_MAX_ACCESS modes or is ended by DUITE_NONE; further parameters
  * have the mode `variadic`. */
-uint32_t task_owner(const duite_mode *access, duite_mode variadic, size_t n);
+static inline uint32_t task_owner(const duite_mode *access, duite_mode variadic, size_t n)
+{
+    uint32_t first_read = TASK_NOBODY;
+    bool ended = false;
+    for (uint32_t i = 0; i < n && i <= DUITE_MAX_ACCESS; i++) { /* further ones are like the last */
+        ended |= i == DUITE_MAX_ACCESS || access[i] == DUITE_NONE;
+        switch (ended ? variadic : access[i]) {
+        case DUITE_W:
+        case DUITE_WP:
+        case DUITE_RW:
+        case DUITE_RWP:
+            return i;
+        case DUITE_R:
+        case DUITE_RP:
+            if (first_read == TASK_NOBODY)
+                first_read = i;
+            break;
+        case DUITE_CW:
+        case DUITE_CWP:
+        case DUITE_NONE:
+            break;
+        }
+    }
+    return first_read;
+}
 
 /* True if that object's home decides where a task of the main program runs: its fork names no rank,
  * and its kernel is not replicated. */

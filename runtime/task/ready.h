@@ -7,8 +7,10 @@
 
 #pragma GCC visibility push(hidden) /* called directly: no other library can replace them */
 
-/* The functions of ready.c on versions and their waiters, inline for files that call them with
- * every access. */
+/* Ready, the third stage of a task. `pending` counts the accesses that the task waits for, and one
+ * hold of the fork itself; at 0 the task may run. The taker of the last one hands the task to the
+ * workers, which run it: run.c. A version wakes its readers when its value is there, and its heir
+ * when nobody holds it any more. Inline for files that do so with every access. */
 
 /* An heir that is no task passes the value on to the scope above. Not inline: it is rare. */
 void task_wake_heir(struct task_graph *graph, struct worker *worker, struct data_waiter *heir);

@@ -1,6 +1,6 @@
-/* Contributions. Leaves run wherever their tasks do, without waiting for one another or for the
- * object. The first access of another kind ends the run of them. Then they are reduced where the
- * object's value is (its holder). */
+/* Sums that are closed. The first access of another kind ends the run of contributions. Then they
+ * are reduced where the object's value is (its holder); other ranks send it the subtrees that they
+ * have. */
 #include "runtime/task/internal.h"
 
 #include "runtime/base/error.h"
@@ -13,84 +13,8 @@
 enum { VALUE_BYTES = 16 };
 enum value_where { VALUE_FOLLOWS, VALUE_IS_ABSENT /* though there is room for one */ };
 
-static const struct data_failure sum_no_memory = {
+const struct data_failure task_sum_no_memory = {
     .code = DUITE_E_MEMORY, .kernel = UINT32_MAX, .text = "there was no memory for contributions"};
-
-/* ---- Contributing: at forks ---- */
-
-/* Gives the object a sum. False without memory. */
-static bool sum_open(const struct task_graph *graph, struct data_object *object)
-{
-    if (!object->sum)
-        object->sum = data_sum_new(graph->n_ranks, object->law, object->type, object->count);
-    return object->sum;
-}
-
-static int leaf_add(const struct task_fork_call *call, struct data_object *object, size_t i)
-{
-    struct task_graph *graph = call->scope->graph;
-    bool adder = object->holder == graph->rank;
-    if ((adder || call->task) && !sum_open(graph, object)) {
-        base_no_memory("contributions");
-        return task_break(graph);
-    }
-    uint64_t first = object->leaves++;
-    if (adder && !call->task)
-        data_sum_sender(object->sum, call->at);
-    if (!call->task)
-        return DUITE_OK;
-    struct task_access *access = &call->task->access[i];
-    access->leaf = data_sum_leaf(object->sum, first);
-    if (access->leaf)
-        return DUITE_OK;
-    atomic_store_explicit(&object->sum->lost, &sum_no_memory, memory_order_relaxed);
-    base_no_memory("a contribution");
-    return task_break(graph);
-}
-
-int task_contribute(const struct task_fork_call *call, struct data_object *object, size_t i)
-{
-    object->law = data_law_of(call->kernel, i);
-    return leaf_add(call, object, i);
-}
-
-/* ---- Contributing without a child: in a body that holds cwp ---- */
-
-static void *contribute_refuse(const duite_call *call, size_t i, int code)
-{
-    if (code == DUITE_E_MEMORY)
-        duite_fail(call, 0, "duite_contribute: no memory for a contribution");
-    else if (i >= call->n_params)
-        duite_fail(call, 0, "duite_contribute: there is no parameter %zu, only %zu", i,
-                   call->n_params);
-    else
-        duite_fail(
-            call, 0, "duite_contribute: the task holds %s on parameter %zu, cwp is wanted",
-            task_mode_name(data_mode_of(call->own->graph->kernels[call->own->task->kernel], i)), i);
-    call->own->refused = code;
-    base_error(code, "%s", call->own->text);
-    return NULL;
-}
-
-/* The sum stays open until the body is over: under cwp the children may only contribute. So the
- * leaf is not counted among those that the sum waits for. */
-void *duite_contribute(const duite_call *call, size_t i)
-{
-    const struct duite_call_private *body = call->own;
-    const struct task *task = body->task;
-    const duite_kernel *kernel = body->graph->kernels[task->kernel];
-    if (i >= call->n_params || data_mode_of(kernel, i) != DUITE_CWP)
-        return contribute_refuse(call, i, DUITE_E_RIGHT);
-    struct data_object *object = task_lent_object(body->scope, task->access[i].lent);
-    object->law = data_law_of(kernel, i);
-    struct data_piece *leaf =
-        sum_open(body->graph, object) ? data_sum_leaf(object->sum, object->leaves++) : NULL;
-    if (leaf)
-        data_sum_release(object->sum);
-    if (!leaf || !data_sum_open(object->sum, leaf))
-        return contribute_refuse(call, i, DUITE_E_MEMORY);
-    return leaf->value;
-}
 
 /* ---- Reducing ---- */
 
@@ -121,7 +45,7 @@ static int pieces_expect(struct task_graph *graph, struct worker *worker, struct
     atomic_fetch_add_explicit(&sum->pending, sum->senders, memory_order_relaxed);
     if (!work_expect(graph->pool, worker, closing->send.key, -1, NULL, sum, sum->senders))
         return DUITE_OK;
-    atomic_store_explicit(&sum->lost, &sum_no_memory, memory_order_relaxed);
+    atomic_store_explicit(&sum->lost, &task_sum_no_memory, memory_order_relaxed);
     atomic_fetch_sub_explicit(&sum->pending, sum->senders, memory_order_relaxed);
     return task_break(graph);
 }
@@ -137,7 +61,7 @@ static int sum_combine_here(struct task_scope *scope, struct worker *worker,
         return DUITE_E_MEMORY;
     uint32_t done = 0;
     task->access[0].waiter.mode = DUITE_RW;
-    int code = task_overwrite(graph, task, 0, object, version, &done);
+    int code = task_wait(scope, task, 0, object, &done);
     if (code) { /* the contributions are dropped once they are all there */
         task->n = 0;
         done = 1;
@@ -299,7 +223,7 @@ static bool piece_add(struct task_graph *graph, struct data_sum *sum, struct dat
 {
     struct data_piece *node = data_piece_new();
     if (!node) {
-        const struct data_failure *failure = task_fail(graph, &sum_no_memory, true);
+        const struct data_failure *failure = task_fail(graph, &task_sum_no_memory, true);
         atomic_store_explicit(&sum->lost, failure, memory_order_relaxed);
         data_packet_free(piece.packet);
         return false;

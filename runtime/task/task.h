@@ -207,9 +207,7 @@ struct task_graph {
         uint32_t grains;   /* of a task with n objects */
         bool plain;        /* r, w and rw alone, few of them, no others; and it is not replicated */
         bool direct;       /* ... and there is one rank */
-        bool prunes;       /* task_prune may note its tasks */
-        uint64_t reads, writes; /* a bit an object, for task_prune alone */
-        struct task *head;      /* plain: template of a task that was just forked; owned */
+        struct task *head; /* plain: template of a task that was just forked; owned */
     } * fixed;
     uint32_t n_kernels;
     struct task_fixed **kernel_place; /* by address, open addressing */
@@ -282,13 +280,32 @@ struct task_options {
     uint64_t round; /* of the replay that forks it; task_fork_any alone looks at it */
 };
 
+extern const struct task_options task_no_options;
+
 int task_fork(struct task_scope *scope, struct worker *worker, const struct task_options *options,
               const duite_kernel *kernel, const void *args, size_t n, const duite_object *objects);
+/* The same without options, for the main program of several ranks. */
+int task_fork_ranks(struct task_graph *graph, struct worker *worker, const duite_kernel *kernel,
+                    const void *args, size_t n, const duite_object *objects);
+/* The same by the general way, for rounds of replays. */
+int task_fork_any(struct task_scope *scope, struct worker *worker,
+                  const struct task_options *options, const duite_kernel *kernel, const void *args,
+                  size_t n, const duite_object *objects);
 /* The same without options: for the main program, and for a body. */
 int task_fork_main(struct task_graph *graph, struct worker *worker, const duite_kernel *kernel,
                    const void *args, size_t n, const duite_object *objects);
 int task_fork_nested(struct task_scope *scope, struct worker *worker, const duite_kernel *kernel,
                      const void *args, size_t n, const duite_object *objects);
+/* Takes forks of the main program that need not become tasks. Main thread. */
+struct task_taker {
+    /* A usual fork without options. True: it is made. */
+    bool (*fork)(struct task_taker *taker, const duite_kernel *kernel, const void *args, size_t n,
+                 const duite_object *objects);
+    void (*other)(struct task_taker *taker); /* any other call comes */
+    void (*stop)(struct task_taker *taker);  /* no task is left: frees the taker */
+    uint64_t tasks, rounds;                  /* taken so far; in whole rounds of a plan */
+};
+
 /* Overwrites the object with a copy of *count values, or with zeros if `values` is NULL; waits for
  * nothing. `count` NULL: the object's maximum. Errors: objects, DUITE_E_SIZE, memory. */
 int task_set_object(struct task_scope *scope, struct worker *worker, duite_object object,

@@ -4,7 +4,7 @@
 #include "runtime/base/monitor.h"
 #include "runtime/base/thread.h"
 #include "runtime/data/packet.h"
-#include "runtime/plan/plan.h"
+#include "runtime/plan/node.h"
 #include "runtime/task/body.h"
 #include "runtime/workers/queue.h"
 #include "runtime/workers/topology.h"
@@ -62,7 +62,7 @@ struct work_counts {
     _Atomic uint64_t busy, idle, exposed; /* ticks; the last: idle while messages were awaited */
 };
 
-/* The node that a worker awaits, see nodes.c. */
+/* The node that a worker awaits, see await.c. */
 struct work_awaits {
     struct task *node; /* NULL: none */
     bool on;           /* it may await one */
@@ -113,8 +113,8 @@ struct work_pool {
     uint64_t poll_ticks, spin_ticks, yield_ticks, await_ticks, brief_ticks;
     uint64_t affinity_ticks; /* of a task that leaves one; never on one worker by_affinity */
     bool by_affinity; /* the scheduler's `place` and `chain` are those of sched.h by affinity */
-    bool plain;       /* there is neither another rank nor a trace: see bodies.c */
-    bool plain_nodes; /* both: see nodes.c */
+    bool plain;       /* there is neither another rank nor a trace: see run.c */
+    bool plain_nodes; /* both: see run.c */
     unsigned started; /* threads, worker 0 among them */
     pthread_t main;
     struct work_near near;
@@ -215,61 +215,39 @@ struct task *work_find(struct worker *worker);
 bool work_is_endless(struct work_pool *pool, unsigned attempt);
 /* Looks for work once; idles for a moment if there is none. */
 void work_look(struct worker *worker, const struct work_wish *wish);
-/* Runs the task and those that run inline after it. */
-void work_run(struct worker *worker, struct task *task);
-/* True if one more task may run inline after `length` of them. A chain goes on while the queues
- * have no other task, since another worker would need all its data. The queues are looked at once
- * in WORK_LONGEST_INLINE tasks. */
-enum { WORK_LONGEST_INLINE = 64 };
-bool work_has_no_other(const struct worker *worker);
-static inline bool work_goes_on(const struct worker *worker, unsigned length)
-{
-    return length % WORK_LONGEST_INLINE || work_has_no_other(worker);
-}
-/* The start of the next inline task, if the last one ended at `end`. */
-uint64_t work_inline_start(struct worker *worker, unsigned length, uint64_t end);
 /* Sends and receives. Returns whether anything happened. */
 bool work_poll(struct worker *worker);
 
-/* ---- nodes.c: nodes of a replay that have bodies. They own no versions and no memory, so most
- * steps of work_run are not needed ---- */
+/* ---- run.c ---- */
 
-/* True if the worker may run the task so. */
-static inline bool work_is_plain_node(const struct worker *worker, const struct task *task)
-{
-    return task->type == TASK_NODE && worker->pool->plain_nodes && !worker->waits;
-}
-/* Runs the node and the nodes that run inline after it; *length counts them. Returns the task of
- * another kind that runs inline next, or NULL. */
-struct task *work_run_nodes(struct worker *worker, struct task *task, unsigned *length);
-
-/* ---- bodies.c: tasks that were forked, with bodies. On one rank without a trace, most steps of
- * run_any are not needed ---- */
-
-/* True if the worker may run the task so. */
-static inline bool work_is_plain_body(const struct worker *worker, const struct task *task)
-{
-    return task->type == TASK_BODY && task->state == TASK_LOCAL && worker->pool->plain;
-}
-/* Runs the task and those inline after it; while they are brief, a few more from the queue. *length
- * counts inline tasks in turn. Returns the task of another kind that runs inline next, or NULL. */
-struct task *work_run_bodies(struct worker *worker, struct task *task, unsigned *length);
+/* Runs the task and those that run inline after it. */
+void work_run(struct worker *worker, struct task *task);
 
 /* For a scheduler by affinity: runs children of the body that waits on this worker, on top of it.
  * Takes them from the worker's own queue, newest first, until done(context) or the newest is
- * another task. Their time counts as the waiting body's, so the clock is not read. */
+ * another task. */
 void work_run_children(struct worker *worker, bool (*done)(void *context), void *context);
 
-/* Tasks since the clock was read, in these two loops. The clock is read after each task until a
- * batch of them in turn were brief; then once a batch, until one takes longer. */
+/* Tasks since the clock was read. It is read after each task until a batch of them in turn were
+ * brief; then once a batch, until one takes longer. */
 struct work_batch {
     uint64_t start;
+    uint64_t outer;  /* worker->within before it began */
     uint64_t limit;  /* ticks of a brief task; */
-    unsigned *brief; /* so many in turn were */
+    unsigned *brief; /* so many in turn were; NULL: not counted, nor is the time of bodies */
     unsigned tasks;
+    uint64_t took, own; /* of the last batch: ticks; those of its tasks alone */
 };
-/* Ends a batch: reads the clock. Returns the ticks that it took. */
-uint64_t work_batch_ends(struct worker *worker, struct work_batch *batch);
+/* Reads the clock. */
+void work_batch_end(struct worker *worker, struct work_batch *batch);
+
+/* ---- await.c: the end of a node on a worker, which may wait for a successor ---- */
+
+/* As plan_node_count_down. If none of the successors is the next node, the worker awaits one. */
+void work_count_down_awaiting(struct worker *worker, struct task *task, struct work_batch *batch);
+
+/* No node is left for the worker: it may await one after the next. */
+void work_may_await(struct worker *worker);
 
 /* ---- idle.c ---- */
 
@@ -378,6 +356,16 @@ static inline bool work_keeps(const struct worker *worker, const struct task *ta
 {
     const uint32_t affinity = plan_task_affinity(task);
     return !affinity || affinity == worker->index + 1;
+}
+
+/* The first node that becomes ready is the next one, if the scheduler need not be asked. */
+static inline void work_node_ready(struct task_graph *graph, struct worker *worker,
+                                   struct task *task)
+{
+    if (task->type == TASK_NODE && worker->may_chain && !worker->next && work_keeps(worker, task))
+        worker->next = task;
+    else
+        plan_node_ready(graph, worker, task);
 }
 
 /* Notes the affinity that a task leaves, which took so many ticks. */

@@ -52,7 +52,7 @@ static double quota_up(const char *root, const char *hierarchy, const char *grou
     return least;
 }
 
-static bool names_cpu(const char *controllers)
+static bool quota_names_cpu(const char *controllers)
 {
     for (const char *c = controllers; c; c = strchr(c, ',') ? strchr(c, ',') + 1 : NULL)
         if (!strncmp(c, "cpu", 3) && (!c[3] || c[3] == ','))
@@ -75,7 +75,7 @@ static double quota_find(const char *cgroups, const char *root)
         *group++ = 0;
         if (!*controllers)
             least = fmin(least, fmin(quota_up(root, "", group), quota_up(root, "unified", group)));
-        else if (names_cpu(controllers))
+        else if (quota_names_cpu(controllers))
             least =
                 fmin(least, fmin(quota_up(root, controllers, group), quota_up(root, "cpu", group)));
     }
@@ -88,7 +88,7 @@ static double quota_find(const char *cgroups, const char *root)
 
 /* The variable's first whole number >= 1, else UINT_MAX. OMP_NUM_THREADS may be a list for nested
  * parallel regions, the outermost first. */
-static unsigned number_of(const char *variable)
+static unsigned variable_number(const char *variable)
 {
     const char *text = getenv(variable);
     char *end;
@@ -98,16 +98,16 @@ static unsigned number_of(const char *variable)
     return value && value < UINT_MAX && (!*end || *end == ',') ? (unsigned)value : UINT_MAX;
 }
 
-static void take_variable(const char *name, unsigned *least, char *from, size_t size)
+static void variable_take(const char *name, unsigned *least, char *from, size_t size)
 {
-    const unsigned value = number_of(name);
+    const unsigned value = variable_number(name);
     if (value >= *least)
         return;
     *least = value;
     snprintf(from, size, "%s=%u", name, value);
 }
 
-static unsigned divided(unsigned cores, unsigned ranks)
+static unsigned share_divided(unsigned cores, unsigned ranks)
 {
     return cores > ranks ? cores / ranks : 1;
 }
@@ -122,14 +122,14 @@ void work_share_find(const struct work_surroundings *here, struct work_share *sh
         cores = quota > 1 ? (unsigned)quota : 1;
         snprintf(shared, sizeof shared, "cgroup quota %.3g", quota);
     }
-    take_variable("SLURM_CPUS_ON_NODE", &cores, shared, sizeof shared);
-    share->cores = divided(cores, here->ranks);
-    take_variable("SLURM_CPUS_PER_TASK", &share->cores, own, sizeof own);
-    share->limited = share->cores < divided(here->cores, here->ranks);
+    variable_take("SLURM_CPUS_ON_NODE", &cores, shared, sizeof shared);
+    share->cores = share_divided(cores, here->ranks);
+    variable_take("SLURM_CPUS_PER_TASK", &share->cores, own, sizeof own);
+    share->limited = share->cores < share_divided(here->cores, here->ranks);
     share->workers = here->asked ? here->asked : share->cores;
     if (!here->asked) {
-        take_variable("OMP_NUM_THREADS", &share->workers, omp, sizeof omp);
-        take_variable("OMP_THREAD_LIMIT", &share->workers, omp, sizeof omp);
+        variable_take("OMP_NUM_THREADS", &share->workers, omp, sizeof omp);
+        variable_take("OMP_THREAD_LIMIT", &share->workers, omp, sizeof omp);
     }
     if (here->ranks > 1)
         snprintf(ranks, sizeof ranks, " for %u ranks", here->ranks);

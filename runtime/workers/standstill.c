@@ -21,7 +21,7 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
-/* ---- What the main program waits for, and whether anything moves ---- */
+/* ---- The reason of the main program's wait; movement ---- */
 
 void work_waits(struct work_pool *pool, const struct work_why *why)
 {
@@ -136,7 +136,7 @@ static bool report_hold_workers(struct work_pool *pool)
     return !syscall(SYS_membarrier, MEMBARRIER_CMD_PRIVATE_EXPEDITED, 0, 0);
 }
 
-/* Of the tasks that wait, the program's first one in fork order, and how many more there are. */
+/* Names the program's first waiting task in fork order, and says how many more there are. */
 static struct words report_crowd(const struct report *report, const struct data_waiter *waiter)
 {
     const struct task *first = task_who_waits(waiter);
@@ -271,7 +271,7 @@ static void report_refused(struct report *report, uint64_t refused)
 
 /* ---- All of it ---- */
 
-/* Whether the main program waits in a call. */
+/* Reports the call in which the main program waits, if it does. */
 static bool report_main(struct report *report, double seconds)
 {
     struct work_waits *waits = &report->pool->standstill.waits;

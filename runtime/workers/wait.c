@@ -225,7 +225,7 @@ struct inside_look {
 };
 
 /* Sorts in a task taken from the queue. */
-static void look_at(struct inside_look *look, struct task *task)
+static void inside_look_at(struct inside_look *look, struct task *task)
 {
     struct task *other = task;
     if (task->scope == look->scope || task_descends(look->scope, task))
@@ -254,10 +254,10 @@ static struct task *inside_dig(struct work_pool *pool, struct work_queue *queue,
     for (unsigned i = 0; i < most && !look.child && !(look.best && i >= wait->look); i++) {
         if (!(task = work_queue_take(queue, DUITE_NEWEST)))
             break;
-        look_at(&look, task);
+        inside_look_at(&look, task);
     }
     if (!look.child && (task = work_queue_take(queue, DUITE_OLDEST)))
-        look_at(&look, task);
+        inside_look_at(&look, task);
     const bool hidden = look.aside;
     while (look.aside) {
         struct task *next = look.aside->next;

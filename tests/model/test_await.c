@@ -2,7 +2,7 @@
  * that awaits it waits to the end or gives it up, each node runs once, after all that it waits for.
  *
  * Each thread is a worker at the end of a node of its own, which every successor waits for. Like
- * the workers of nodes.c it awaits one successor at most, and none once another one is its next.
+ * the workers of await.c it awaits one successor at most, and none once another one is its next.
  *
  * In two cases the successors are those of a round that may not come: they wait for one node more,
  * which decides on it, and does not run. */

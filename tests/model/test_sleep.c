@@ -1,4 +1,4 @@
-/* Sleeping and waking (runtime/workers/idle.c, worker.c, wait.c and pool.c): no task waits
+/* Sleeping and waking (runtime/workers/idle.c, worker.c, run.c, wait.c and pool.c): no task waits
  * while all who could run it sleep for ever, no message while nobody polls, each task runs once,
  * and a stop ends. The workers are the real ones: thread 0 is the main thread, the others are those
  * that work_start makes. Queues are plain_queue.h's, or with REAL_QUEUES the real ones. */
@@ -111,22 +111,19 @@ bool comm_poll(struct comm *comm, struct worker *worker)
 
 /* Nobody watches for a standstill here, nothing moves between ranks, and no replay runs. */
 #include "runtime/workers/internal.h"
-#define work_balance_start(balance, pool)        nothing()
-#define work_balance_stop(pool)                  nothing()
-#define work_offloaded_came(balance, guest)      ((void)(guest))
-#define work_placed_away(worker, task)           ((void)(worker), false)
-#define work_begins(worker, task)                ((void)(task), false)
-#define work_learn(worker, task, ticks)          ((void)(task))
-#define work_grant(worker)                       ((void)(worker))
-#define work_request(worker, idle)               ((void)(idle))
-#define work_standstill_start(pool, seconds)     nothing()
-#define work_standstill_stop(pool)               nothing()
-#define work_waits(pool, why)                    ((void)(why))
-#define work_enters(worker, task)                NULL
-#define work_run_nodes(worker, task, length)     ((void)(length), task)
-#define work_run_bodies(worker, task, length)    ((void)(length), task)
-#define work_run_children(worker, done, context) ((void)(worker), (void)(done), (void)(context))
-#define work_leaves(worker, below)               ((void)(below))
+#define work_balance_start(balance, pool)    nothing()
+#define work_balance_stop(pool)              nothing()
+#define work_offloaded_came(balance, guest)  ((void)(guest))
+#define work_placed_away(worker, task)       ((void)(worker), false)
+#define work_begins(worker, task)            ((void)(task), false)
+#define work_learn(worker, task, ticks)      ((void)(task))
+#define work_grant(worker)                   ((void)(worker))
+#define work_request(worker, idle)           ((void)(idle))
+#define work_standstill_start(pool, seconds) nothing()
+#define work_standstill_stop(pool)           nothing()
+#define work_waits(pool, why)                ((void)(why))
+#define work_enters(worker, task)            NULL
+#define work_leaves(worker, below)           ((void)(below))
 
 /* No other program runs on these cores. */
 #include <sys/resource.h>
@@ -151,6 +148,7 @@ static struct task *look_last(struct worker *worker)
 #include "runtime/workers/idle.c"
 #undef work_find
 #include "runtime/workers/pool.c"
+#include "runtime/workers/run.c"
 #include "runtime/workers/wait.c"
 #include "runtime/workers/worker.c"
 

@@ -14,7 +14,6 @@ static void given(const void *memory);
 #include "runtime/data/version.c"
 #define work_ready ready
 #include "runtime/task/depend.c"
-#include "runtime/task/ready.c"
 
 enum { READERS = 2, WRITER = READERS, TASKS = READERS + 1 };
 
@@ -78,17 +77,18 @@ static struct task *new_task(int number)
 
 static void fork_reader(int i)
 {
-    uint32_t done = 0;
     struct task *task = new_task(i);
-    task_read(task, 0, its.version, &done);
-    task_settled(&its.graph, NULL, task, done);
+    task->access[0].waiter.mode = DUITE_R;
+    task_settled(&its.graph, NULL, task, data_version_read(its.version, &task->access[0].waiter));
 }
 
 static void fork_writer(void)
 {
     uint32_t done = 0;
     struct task *task = new_task(WRITER);
-    task_overwrite(&its.graph, task, 0, &its.object, its.version, &done);
+    task->access[0].waiter.mode = DUITE_W;
+    its.object.current = its.version;
+    task_wait(&its.graph.root, task, 0, &its.object, &done);
     task_settled(&its.graph, NULL, task, done);
 }
 

@@ -121,7 +121,7 @@ RUNTIME_TESTS = tests/runtime/test_late tests/runtime/test_pool tests/runtime/te
 	tests/runtime/test_laws tests/runtime/test_settle tests/runtime/test_balance tests/runtime/test_sched \
 	tests/runtime/test_sched_knowing tests/runtime/test_sched_told tests/runtime/test_makespan tests/runtime/test_monitor \
 	tests/runtime/test_check tests/runtime/test_environment \
-    tests/runtime/test_nested_tasks tests/runtime/test_stack tests/runtime/test_graphs tests/runtime/test_graphs_change \
+    tests/runtime/test_nested_tasks tests/runtime/test_stack tests/runtime/test_busy tests/runtime/test_graphs tests/runtime/test_graphs_change \
     tests/runtime/test_graphs_refused
 check_PROGRAMS += $(RUNTIME_TESTS)
 TESTS += $(RUNTIME_TESTS)
@@ -131,6 +131,8 @@ tests_runtime_test_check_SOURCES = tests/runtime/test_check.c
 tests_runtime_test_check_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_nested_tasks_SOURCES = tests/runtime/test_nested_tasks.c
 tests_runtime_test_nested_tasks_LDADD = $(DUITE_TEST_LIBS)
+tests_runtime_test_busy_SOURCES = tests/runtime/test_busy.c
+tests_runtime_test_busy_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_stack_SOURCES = tests/runtime/test_stack.c
 tests_runtime_test_stack_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_offload_names_SOURCES = tests/runtime/test_offload_names.c

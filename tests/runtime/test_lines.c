@@ -1,5 +1,5 @@
 /* Lines of a few points, of which each needs its neighbours at each step: workers await nodes of
- * each other (runtime/workers/nodes.c). All values, against a loop; of recorded graphs and of forks
+ * each other (runtime/workers/await.c). All values, against a loop; of recorded graphs and of forks
  * that are recognised, with bodies that take unequal times. And two values that change side by
  * side, of which one decides on further rounds: the other one's next node may never come. */
 #include "tests/support/unit.h"

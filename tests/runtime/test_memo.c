@@ -1,6 +1,7 @@
 /* Repeated forks are recognised, and nobody can tell but by the counters: values, failures, and
  * whatever comes in between are as of forks. */
 #include "runtime/api/instance.h"
+#include "runtime/plan/memo_round.h"
 #include "tests/negative/misuse.h"
 #include "tests/runtime/repeated.h"
 #include "tests/support/unit.h"
@@ -310,7 +311,7 @@ START_TEST(almost_a_round)
     int kept = 0, n = 0;
 
     repeated_start(&program, &options);
-    const struct plan_memo *memo = program.rt->memo;
+    const struct plan_memo *memo = (const struct plan_memo *)program.rt->taker;
 
     for (; memo->state != MEMO_RECORD && n < ROUNDS * OBJECTS; n++)
         repeated_fork(&program, &MIX, n % OBJECTS, (n + 3) % OBJECTS, 0);

@@ -9,6 +9,7 @@ tiny() {
     (export DUITE_SCHEDULER=nobody DUITE_MAPPING=nowhere DUITE_BALANCE=never DUITE_THREADS=none DUITE_SEED=no DUITE_TRACE=/no/such/folder/trace
      cd "$scratch" && PATH=${tools:-$PATH} limited "$bin/duite-compare" "$@" --tasks 40 --cost 1e-6 --steps 2 --seed 3)
 }
+of_scenes() { if test -x "$DUITE_CLOTH"; then ok "$@"; else skip "$1" "configure --disable-cloth"; fi; }
 product="stencil irregular --scheduler steal,priority --mapping block,list --ranks 1,2 --threads 1"
 
 first() { # shellcheck disable=SC2086 # a list of options
@@ -112,9 +113,9 @@ ok "runs of another build" other_build
 ok "a folder of another comparison" refused 1 "another comparison" stencil --output c
 ok "... or of other scenes" eval 'refused 1 "another comparison" $product --scheduler priority,locality,steal --set a=1 --output c'
 ok "a wrong result is told" wrong
-ok "a scene over grains" scene
+of_scenes "a scene over grains" scene
 ok "a graph from a file is the same" graph_file
-ok "... and so is that of a trace, on any number of ranks" of_a_trace
+of_scenes "... and so is that of a trace, on any number of ranks" of_a_trace
 ok "a damaged one names its line" bad_file
 ok "a full disk" full
 ok "without gnuplot" without_plots
@@ -217,7 +218,7 @@ busy() {
         sed 's/^duite-compare: warning: \(.*\)$/**Warning:** \1./' "$scratch/warned" | grep -Fxqf - "$scratch/b/compare.md"
 }
 ok "a member that fails is named with its reason, and has no figures" failed
-ok "... also if all fail" all_failed
+of_scenes "... also if all fail" all_failed
 ok "... or one takes too long" timed_out
 ok "a scheduler that never returns" hangs
 ok "... is stopped at the limit and named, and the others go on" stopped

@@ -1,7 +1,7 @@
 #!/bin/sh
 # The sheet of 22,500 vertices with the default preconditioner and with none, in one format of the matrix: at a tolerance of 1e-8
 # all vertices agree to 1e-6 m after 0.1 s, and the difference falls with the tolerance. The scene's wave of 0.1 mm matters: a quite
-# flat sheet buckles from 0.044 s on as the solves' own errors tell, which double in every step or two (docs/design.md).
+# flat sheet buckles from 0.044 s on as the solves' own errors tell, which double in every step or two (docs/design/cloth.md).
 . "${srcdir:-.}/tests/support/tap.sh"
 skip_unless "$DUITE_CLOTH"
 scene=$srcdir/cloth/scenes/sheet.yaml

@@ -9,8 +9,8 @@
 #include <stdio.h>
 
 /* A comparison: the product of some lists, each member run once a round, the members of a round in
- * an order drawn at random. What was run is in a journal (runs.csv), line by line, so that it can
- * be taken up where it was interrupted. Strings are the command line's. */
+ * an order drawn at random. Each run is a line of a journal (runs.csv), so that a comparison goes
+ * on where it was interrupted. Strings are the command line's. */
 
 enum { COMPARE_MOST = 24, COMPARE_CONFIGS = 2000, COMPARE_ROUNDS = 1000 };
 /* Rounds from which on order statistics have an interval of 95 %. */
@@ -80,7 +80,7 @@ void compare_describe(FILE *out, const char *before);
 enum { COMPARE_PROGRAM = PATH_MAX + 100 };
 const char *compare_find_program(const char *name, char path[COMPARE_PROGRAM]);
 
-/* Why StarPU's scheduler of this name cannot be run, in words written to text: NULL if it can. */
+/* NULL if StarPU's scheduler of this name can be run, else the reason, written to text. */
 const char *compare_starpu_wrong(const char *name, char *text, size_t size);
 
 /* Starts a run and reads its report; run->done is set in any case. The log of one that failed

@@ -65,7 +65,7 @@ static void add(struct compare_graph *graph, double cost, uint32_t bytes, size_t
             graph->from[graph->n_reads++] = (uint32_t)reads[k];
     }
     graph->cost[graph->n] = cost;
-    graph->place[graph->n] = SWEEP_NO_PLACE;
+    graph->place[graph->n] = COMPARE_NO_PLACE;
     graph->bytes[graph->n++] = bytes;
     graph->start[graph->n] = graph->n_reads;
 }
@@ -239,10 +239,10 @@ static bool take_cost(const char **line, double *cost)
     return fine;
 }
 
-/* What stands at the end of a line. */
+/* The end of a line: a place, or nothing. */
 static bool take_place(const char *line, uint64_t below, uint32_t *place)
 {
-    uint64_t number = SWEEP_NO_PLACE;
+    uint64_t number = COMPARE_NO_PLACE;
     line += strspn(line, " ");
     if (*line == '@' && (line++, !take_number(&line, below, &number)))
         return false;
@@ -254,7 +254,7 @@ static int read_task(struct compare_graph *graph, const char *line)
 {
     double cost;
     uint64_t bytes, n, task;
-    uint32_t place = SWEEP_NO_PLACE;
+    uint32_t place = COMPARE_NO_PLACE;
     /* A task reads each of those before it once at most. */
     if (!take_cost(&line, &cost) || !take_number(&line, (uint64_t)1 << 32, &bytes) ||
         !take_number(&line, graph->n + 1, &n))
@@ -309,7 +309,7 @@ int compare_graph_write(const struct compare_graph *graph, const char *file)
                 graph->start[i + 1] - graph->start[i]);
         for (size_t k = graph->start[i]; k < graph->start[i + 1]; k++)
             fprintf(out, " %u", (unsigned)graph->from[k]);
-        if (graph->place[i] != SWEEP_NO_PLACE)
+        if (graph->place[i] != COMPARE_NO_PLACE)
             fprintf(out, " @ %u", (unsigned)graph->place[i]);
         fputc('\n', out);
     }

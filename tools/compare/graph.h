@@ -13,11 +13,11 @@ struct compare_graph {
     uint32_t *bytes;
     size_t *start; /* n + 1 */
     uint32_t *from;
-    uint32_t *place; /* <= i, or SWEEP_NO_PLACE: tasks of one place stay on one rank */
+    uint32_t *place; /* <= i, or COMPARE_NO_PLACE: tasks of one place stay on one rank */
     size_t capacity, reads_capacity;
 };
 
-#define SWEEP_NO_PLACE UINT32_MAX
+#define COMPARE_NO_PLACE UINT32_MAX
 
 /* The most that a task reads. */
 size_t compare_graph_most_reads(const struct compare_graph *graph);
@@ -36,8 +36,8 @@ int compare_graph_make(struct compare_graph *graph, const char *kind, size_t n, 
 /* The kinds, ended by NULL. */
 extern const char *const compare_graph_kinds[];
 
-/* What is named on a command line is a file where it has a . or / in it, else a kind. Why it cannot
- * be used, in words written to text: NULL if it can. */
+/* A name on a command line is a file's if it has a . or / in it, else a kind's. NULL if it can be
+ * used, else the reason, written to text. */
 bool compare_graph_is_file(const char *what);
 const char *compare_graph_wrong(const char *what, char *text, size_t size);
 

@@ -53,7 +53,7 @@ void compare_describe(FILE *out, const char *before)
     first_line_of(out, before, "revision", command);
 }
 
-/* What makes runs comparable, and no run says itself: so lists and rounds may grow. */
+/* The settings that all runs of a comparison share; lists and rounds may grow. */
 static void print_specification(const struct compare *compare, FILE *out)
 {
     fprintf(out, "# compares:");
@@ -119,7 +119,7 @@ static void keep_warning(struct compare *compare, const char *warning)
         snprintf(compare->warnings + used, sizeof compare->warnings - used, "%s\n", warning);
 }
 
-/* What a journal has that was there. */
+/* A journal that was there. */
 struct found {
     long whole;       /* bytes up to the end of the last whole line */
     bool same;        /* it is this comparison's */

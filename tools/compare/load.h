@@ -3,8 +3,8 @@
 
 #include <stddef.h>
 
-/* What else runs on the machine: before a measurement by the load average, during it by the time
- * that others have on the cores. */
+/* Other programs on the machine: before a measurement by the load average, during it by the time
+ * that they have on the cores. */
 
 struct load {
     double cores;

@@ -1,5 +1,5 @@
-/* What the runs say: the same table on the terminal, in summary.csv and in compare.md, with plots.
- * A table has the dimensions that vary as its first columns. */
+/* The results of the runs: the same table on the terminal, in summary.csv and in compare.md, with
+ * plots. A table has the dimensions that vary as its first columns. */
 #include "tools/compare/compare.h"
 
 #include <errno.h>
@@ -281,7 +281,7 @@ static bool is_line(const struct compare *compare, int dimension)
            varies(compare, dimension);
 }
 
-/* Whether there are plots. */
+/* Writes plots.gp and has gnuplot draw it. Returns true if there are plots. */
 static bool plot(const struct compare *compare, size_t *row)
 {
     char command[PATH_MAX + 100];

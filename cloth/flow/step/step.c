@@ -88,7 +88,7 @@ struct stage {
     int (*fork)(struct flow_state *state);
 };
 
-/* In order, also of their parts; docs/design.md lists them by name. A new stage is a row. */
+/* In order, also of their parts; docs/design/cloth.md lists them by name. A new stage is a row. */
 static const struct stage stages[] = {
     {"keep", PREDICT, keeps_first, flow_keep},
     {"prescribe velocities", PREDICT, is_driven, flow_pins_prescribe_velocity},

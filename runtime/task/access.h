@@ -1,0 +1,124 @@
+#ifndef DUITE_TASK_ACCESS_H
+#define DUITE_TASK_ACCESS_H
+
+#include "runtime/task/scope.h"
+
+#include "runtime/base/error.h"
+#include "runtime/data/law.h"
+
+#pragma GCC visibility push(hidden) /* called directly: no other library can replace them */
+
+/* One access of a fork: its object is found, then the access waits for its version. The short way
+ * of most forks and the general one take these steps; each passes constants, by which the compiler
+ * leaves out the questions that it need not ask. */
+#define ACCESS_INLINE __attribute__((always_inline)) static inline
+
+/* How a fork looks for its objects. */
+struct access_look {
+    struct task_scope *scope;
+    struct data_object *first; /* of the table */
+    uint32_t n_slots;          /* of the table */
+    uint64_t mark;             /* of this fork: no object has it yet */
+    bool nested;               /* a body's fork */
+    bool closed;               /* objects with open contributions need a second look */
+};
+
+ACCESS_INLINE struct access_look access_look_of(struct task_scope *scope, bool nested, bool closed)
+{
+    const struct data_table *table = &scope->graph->table;
+    return (struct access_look){.scope = scope,
+                                .first = table->object,
+                                .n_slots = table->n_slots,
+                                .mark = scope->forks + 1,
+                                .nested = nested,
+                                .closed = closed};
+}
+
+/* The object, marked as named by this fork; NULL if it needs a second look, or was named before. */
+ACCESS_INLINE struct data_object *access_find(const struct access_look *look, duite_object name,
+                                              duite_mode mode)
+{
+    struct data_object *object;
+    if (look->nested)
+        object = task_find_given(look->scope, name, mode);
+    else
+        object = data_object_used(look->first, look->n_slots, name, look->closed);
+    if (!object || object->mark == look->mark || (look->nested && look->closed && object->leaves))
+        return NULL;
+    object->mark = look->mark;
+    return object;
+}
+
+/* The same for objects that may have open contributions, which a contribution joins. */
+ACCESS_INLINE struct data_object *access_find_any(const struct access_look *look,
+                                                  const struct task_fixed *fixed, size_t i,
+                                                  duite_object name)
+{
+    const duite_mode mode = task_mode_of(fixed, i);
+    struct data_object *object = access_find(look, name, mode);
+    if (!object || task_immediate(mode) != DUITE_CW ||
+        (object->leaves && object->law == data_law_of(fixed->kernel, i)))
+        return object;
+    object->mark = 0;
+    return NULL;
+}
+
+/* Every rank notes the access of a task on rank `at`, or of a replicated one. Open contributions
+ * that it does not join are combined; rank `at` gets the value that it reads, and has the one that
+ * it writes. `plain`: the kernel is, and there are no contributions. Errors: memory; the graph is
+ * broken. */
+ACCESS_INLINE int access_note(struct task_scope *scope, struct worker *worker,
+                              const duite_kernel *kernel, size_t i, struct data_object *object,
+                              duite_mode mode, int at, bool plain)
+{
+    int code = DUITE_OK;
+    if (!plain && object->leaves && !data_order_joins(mode, data_law_of(kernel, i), object->law))
+        code = task_reduce(scope, worker, object);
+    if (!plain && (code || mode == DUITE_CW))
+        return code;
+    if (!plain && kernel->replicated && !scope->depth)
+        return task_note_everywhere(scope->graph, worker, object, mode);
+    if (data_order_reads(mode) && object->holder != at)
+        code = task_fetch(scope->graph, worker, object, at);
+    if (!code && data_order_writes(mode))
+        task_note_version(object, at);
+    return code;
+}
+
+/* The same, and all that an access of a task that another rank runs is here. */
+ACCESS_INLINE int access_elsewhere(struct task_scope *scope, struct worker *worker,
+                                   const duite_kernel *kernel, size_t i, struct data_object *object,
+                                   duite_mode mode, int at, bool plain)
+{
+    const int code = access_note(scope, worker, kernel, i, object, mode, at, plain);
+    if (code)
+        return code;
+    if (!plain && mode == DUITE_CW)
+        return task_contribute(scope->graph, NULL, i, object, data_law_of(kernel, i), at);
+    if (data_order_writes(mode) && object->current)
+        task_forget(scope->graph, worker, object);
+    return DUITE_OK;
+}
+
+/* The access waits for the object's version, and leaves its own if it writes. Adds one to
+ * *done if there is nothing to wait for. False without memory. */
+ACCESS_INLINE bool access_wait(struct task_scope *scope, struct task_access *access,
+                               struct data_object *object, bool writes, bool nested, uint32_t *done)
+{
+    struct data_version *version = object->current;
+    if (!writes) {
+        *done += data_version_read(version, &access->waiter);
+        return true;
+    }
+    struct data_version *out =
+        nested ? task_child_version(scope, object, !version) : data_object_version(object);
+    if (!out)
+        return false;
+    object->current = out;
+    *done += data_version_overwrite(version, out, &access->waiter);
+    return true;
+}
+
+#pragma GCC visibility pop
+
+#endif

@@ -151,8 +151,8 @@ void predict_use(struct predict_graph *graph, uint32_t node, uint32_t object, du
 void predict_set(struct predict_graph *graph, uint32_t object);
 /* The object has another home from now on: its value goes there. */
 void predict_rehome(struct predict_graph *graph, uint32_t object, int host);
-/* What several hosts do at once, a replay or a task that each runs, begins on a host with `node`:
- * it reads the object's value there (predict_fetch made it come), or writes it there, or both. */
+/* A part of a replay, or of a task that each host runs, begins on a host with `node`: it reads the
+ * object's value there (predict_fetch made it come), or writes it there, or both. */
 void predict_enter(struct predict_graph *graph, uint32_t node, uint32_t object, int host,
                    bool reads, bool writes);
 /* It is over on each of these hosts, by graph->over: it read the object there, or wrote it. */

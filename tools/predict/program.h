@@ -32,8 +32,8 @@ struct predict_recorded {
     double *seconds;             /* n_forks: of the bodies of one round */
 };
 
-/* A compiled round, and its inputs: the nodes of all hosts. What differs from round to round
- * (numbers, seconds, objects) is added when it is replayed. */
+/* A compiled round, and its inputs: the nodes of all hosts. Numbers, seconds and objects are added
+ * when it is replayed. */
 struct predict_round {
     struct plan_source source; /* the record has its forks */
     struct plan_round lowered;

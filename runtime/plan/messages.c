@@ -313,14 +313,14 @@ bool plan_messages_find(struct plan_messages *m, const struct plan_assignment *a
     struct finding f = {.m = m};
     const size_t ranks = (size_t)a->n_ranks, pairs = rank == PLAN_ALL ? ranks * ranks : 2 * ranks;
     *m = (struct plan_messages){.assignment = a, .rank = rank};
-    f.heads = base_alloc_zero((rank == PLAN_NO_RANK ? 1 : pairs) * sizeof *f.heads);
+    f.heads = base_alloc_zero(pairs * sizeof *f.heads);
     f.ring = base_alloc(ranks * sizeof *f.ring);
     bool fine = f.heads && f.ring && message_room(m);
     if (fine) {
         message_find_leaves(m);
         fine = plan_relay_find(m) && message_find_phases(m) && plan_pieces_find(m);
     }
-    if (fine && rank != PLAN_NO_RANK)
+    if (fine)
         message_find_all(&f);
     base_free(f.heads);
     base_free(f.ring);

@@ -25,8 +25,8 @@
  * How the predictor uses it: it fills a plan_source with the forks of a recorded graph. Modes come
  * from the kernels in the trace, the owner from task_owner; laws are NULL, since a trace has none.
  * After plan_lower, plan_tasks_find makes the rows for mappings; or plan_assign places the nodes on
- * hosts, and plan_messages_find (PLAN_NO_RANK) finds phases and pieces. The maker of a plan_source
- * owns it and keeps it as long as its round. */
+ * hosts, and messages, part and edges give each host its nodes, as in a run. The maker of a
+ * plan_source owns it and keeps it as long as its round. */
 
 #include "runtime/base/rank_set.h"
 #include "runtime/data/subtrees.h"
@@ -40,8 +40,7 @@
 enum {
     PLAN_BY_OWNER = -1, /* instead of the rank of a fork: the home of its owner */
     PLAN_MANY = -1,     /* instead of the rank that runs a node: a set of ranks */
-    PLAN_ALL = -1,      /* instead of the rank of plan_messages_find: all messages */
-    PLAN_NO_RANK = -2   /* likewise: phases and pieces alone, no messages */
+    PLAN_ALL = -1       /* instead of the rank of plan_messages_find: all messages */
 };
 
 /* ---- A round as plain data: the input of lowering ---- */
@@ -322,7 +321,7 @@ struct plan_item {
 
 struct plan_messages {
     const struct plan_assignment *assignment;
-    int rank;                 /* of these messages, or PLAN_ALL, PLAN_NO_RANK */
+    int rank;                 /* of these messages, or PLAN_ALL */
     uint32_t *phase;          /* by node: upper bound of rank crossings on a path to it */
     uint8_t *rounds;          /* by node: rounds of a relayed sum; 0: sent directly */
     uint32_t *leaf;           /* by buffer, less n_objects: the node that fills it */
@@ -346,7 +345,7 @@ struct plan_messages {
  *   rank that runs its sum. If these are more than four ranks, and for a version more than half of
  *   all, they are relayed in rounds, one phase each (relay.c).
  * - Items are in order of `made`, the same on the sender's and the receiver's side.
- * Messages and items are those from and to `rank`, or all (PLAN_ALL), or none (PLAN_NO_RANK). False
+ * Messages and items are those from and to `rank`, or all (PLAN_ALL). False
  * without memory; plan_messages_free is due all the same. */
 bool plan_messages_find(struct plan_messages *messages, const struct plan_assignment *assignment,
                         int rank);

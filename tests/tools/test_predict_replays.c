@@ -52,6 +52,21 @@ START_TEST(replicated)
 }
 END_TEST
 
+/* A replicated task that two hosts read runs on a core of each: 1 + 1 + 1 ms a round on host 0,
+ * and 2 ms on host 1. */
+START_TEST(replicated_on_both)
+{
+    static const struct trace_file_node nodes[] = {{FILE_W, 1 * MS, 0, 1, {0}},
+                                                   {FILE_SAME, 1 * MS, 0, 2, {0, 1}},
+                                                   {FILE_R_W, 1 * MS, 0, 2, {1, 2}},
+                                                   {FILE_R_W, 1 * MS, 0, 2, {1, 0}}};
+    const struct predict_result r = sent(8, 4, nodes, 5);
+    ck_assert_uint_eq(r.bytes, 5 * 8);
+    ck_assert_msg(fabs(r.work - 5 * 5 * MS) < 1e-6, "%.9g s of work", r.work);
+    ck_assert_msg(fabs(r.makespan - 5 * 3 * MS) < 1e-5, "%.9g s", r.makespan);
+}
+END_TEST
+
 /* What rounds only read goes to another host once, in whatever replay; and not at all if it is
  * there since before the trace, which nothing of it writes. What each replay writes goes in each.
  */
@@ -116,15 +131,15 @@ START_TEST(phases)
 }
 END_TEST
 
-/* Contributions of one round and of the next make one sum: its piece goes to the other host once.
- */
+/* Contributions of one round and of the next make one sum: five of one host go to the other in one
+ * message, as two subtrees, of four and of one. */
 START_TEST(sums_over_rounds)
 {
     static const struct trace_file_node nodes[] = {{FILE_R_CW, 1 * MS, 0, 2, {0, 3}}};
     for (uint64_t bytes = 8; bytes <= 8000; bytes *= 1000) {
         const struct predict_result r = sent(bytes, 1, nodes, 5);
         ck_assert_uint_eq(r.messages, 1);
-        ck_assert_uint_eq(r.bytes, bytes);
+        ck_assert_uint_eq(r.bytes, 2 * bytes);
     }
 }
 END_TEST
@@ -265,6 +280,7 @@ int main(void)
     TCase *cases = tcase_create("replays");
     tcase_add_test(cases, packets);
     tcase_add_test(cases, replicated);
+    tcase_add_test(cases, replicated_on_both);
     tcase_add_test(cases, reads_last);
     tcase_add_test(cases, sets);
     tcase_add_test(cases, exchanges);

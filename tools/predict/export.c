@@ -25,25 +25,18 @@ static void dot_node(const struct predict_graph *graph, size_t i, FILE *file)
     fprintf(file, "  n%zu [", i);
     switch (node->kind) {
     case PREDICT_TASK:
-    case PREDICT_EVERYWHERE:
         fputs("label=\"", file);
         dot_name(file, node->kernel < run->n_kernels
                            ? run->kernel_name[node->kernel]
                            : task_own_name(node->kernel - run->n_kernels));
         if (node->number)
             fprintf(file, " %" PRIu64, node->number);
-        if (node->kind == PREDICT_TASK)
-            fprintf(file, "\\nrank %" PRIu32, node->host);
-        else
-            fputs("\\nevery rank", file);
+        fprintf(file, "\\nrank %" PRIu32, node->host);
         fprintf(file, "\\n%.3f us\"", 1e6 * (double)node->seconds);
         break;
     case PREDICT_MESSAGE:
         fprintf(file, "shape=ellipse,label=\"%" PRIu32 " to %" PRIu32 "\\n%" PRIu64 " bytes\"",
                 node->host, node->block, node->number);
-        break;
-    case PREDICT_EXCHANGE:
-        fprintf(file, "shape=ellipse,label=\"to all\\n%" PRIu64 " bytes\"", node->number);
         break;
     default:
         fputs("shape=point", file);

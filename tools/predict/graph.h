@@ -1,42 +1,31 @@
 #ifndef DUITE_TOOLS_PREDICT_GRAPH_H
 #define DUITE_TOOLS_PREDICT_GRAPH_H
 
+#include "runtime/data/order.h"
 #include "tools/predict/predict.h"
 
 #include <duite.h>
 
-/* The run as a graph: nodes in an order in which no edge points back, and the main program's steps.
- * Plain data of one thread; its owner frees it by predict_graph_free. */
+/* The run as a graph: nodes, and the main program's steps. Without rounds of several hosts no edge
+ * points back. Plain data of one thread; its owner frees it by predict_graph_free. */
 
 #define PREDICT_NONE UINT32_MAX
 
 enum predict_kind {
-    PREDICT_TASK,       /* runs on a worker of its host */
-    PREDICT_EVERYWHERE, /* on several hosts at once, with the time of a worker, but on none of them
-                         */
-    PREDICT_MESSAGE,    /* from `host` to `block`; number: bytes */
-    PREDICT_EXCHANGE,   /* number bytes from their holders to the hosts that need them */
-    PREDICT_INSTANT     /* takes no time */
+    PREDICT_TASK,    /* runs on a worker of its host */
+    PREDICT_MESSAGE, /* from `host` to `block`; number: bytes */
+    PREDICT_INSTANT  /* takes no time */
 };
 
 struct predict_node {
     uint64_t number;
     uint32_t kernel; /* of kernels; beyond them: the runtime's own, by task_type */
     uint32_t host, block;
-    int32_t priority; /* of messages: packets that it adds */
-    float seconds;
-    uint32_t hops; /* of exchanges: messages one after the other */
-    union {
-        struct {
-            float cost, path;
-        };
-        uint64_t copies; /* of exchanges: of the bytes that each sends, in all */
-    };
+    int32_t priority;
+    float seconds, cost, path;
     uint32_t pending; /* edges that end here, and 1 for the main program */
     uint32_t edge;    /* the first of those that begin here, or NONE */
-    /* Tasks of the program in a replay: 1 + the object that places it; 0: none. Exchanges: the
-     * copies that go through the busiest card. */
-    uint32_t placed;
+    uint32_t placed;  /* tasks of a round: 1 + the object that places it; else 0 */
     enum predict_kind kind;
 };
 
@@ -54,10 +43,10 @@ struct predict_op {
 
 struct predict_object {
     int home;   /* a host */
-    int holder; /* the host that has the value; PREDICT_ALL: all */
+    int holder; /* the host that has the value; `copies`: further ones */
     uint32_t block;
-    uint32_t writer;                  /* node, or NONE */
-    uint32_t readers, copies, leaves; /* lists in `link` */
+    struct data_order_chain order; /* nodes that use it, on all hosts */
+    uint32_t copies, leaves;       /* lists in `link` */
     uint64_t bytes;
     uint32_t leader; /* that it follows, or NONE */
     uint32_t hints;  /* list in `hint` */
@@ -67,7 +56,7 @@ struct predict_object {
     bool lasts;      /* its value is of before the trace, and no task of the trace writes it */
 };
 
-enum { PREDICT_ALL = -1 }; /* holder */
+enum { PREDICT_ALL = -1 }; /* in place of a host: each */
 
 struct predict_link {
     uint32_t node, host, next;
@@ -77,22 +66,6 @@ struct predict_link {
 struct predict_hint {
     uint32_t object, next;
     double bytes;
-};
-
-/* A replay's round gives this for the value, or the sum, that comes next. */
-struct predict_travel {
-    const uint64_t *need; /* the hosts that read it; NULL: outside of rounds, all */
-    const uint64_t *runs; /* of a sum: the hosts that make it */
-    uint32_t phase;       /* it moves in */
-    /* If a sum goes from host to host: n_hops in so many rounds, the first one in a phase. */
-    const struct predict_hop *hop;
-    size_t n_hops;
-    uint32_t rounds, sum_phase;
-};
-
-/* In a round of a sum's way one host sends another n subtrees. */
-struct predict_hop {
-    uint32_t round, from, to, n;
 };
 
 struct predict_graph {
@@ -110,21 +83,19 @@ struct predict_graph {
     size_t n_objects, objects_capacity;
     struct predict_link *link;
     size_t n_links, links_capacity;
+    struct data_order_reader *reader; /* of all objects */
+    uint32_t n_readers;
+    size_t readers_capacity;
     struct predict_hint *hint;
     size_t n_hints, hints_capacity;
-    uint64_t *packet; /* of this round: phase, from, to of each, plus 1; a power of two */
-    size_t n_packets, packets_capacity;
-    uint32_t *piece; /* by host: this rank's part of a sum that is being closed */
-    uint32_t *began; /* by host: the node that begins or ends a replay there */
-    uint32_t *count; /* by host: zeros, but for a moment */
-    double own[64];  /* by task_type: s of the runtime's own tasks, those of sums left out */
-    double merges;   /* that the sums of the trace took */
-    uint64_t *among; /* a set of hosts, for a moment */
-    int *ring;       /* hosts, for a moment */
-    uint32_t *phase; /* by host: that its pieces of a sum move in */
-    struct predict_travel travel;
-    uint32_t round;         /* the first node of this round of a replay, or NONE */
-    uint32_t flag;          /* the node that decided on this round, or NONE */
+    uint32_t *began;        /* by host: the node that begins a replay there, or NONE */
+    uint32_t *over;         /* ... that ends it, or a task that each host runs */
+    uint64_t *all;          /* the set of all hosts */
+    uint32_t *count;        /* by host: zeros, but for a moment */
+    double own[64];         /* by task_type: s of the runtime's own tasks, those of sums left out */
+    double merges;          /* that the sums of the trace took */
+    uint32_t round;         /* the first node of this forked round, or NONE */
+    bool decided;           /* on this forked round, where `began` has the flag's value */
     double overhead;        /* s between two tasks, */
     double message;         /* of a core, to send or to take one, */
     double look;            /* and to look for one, which workers do now and then; 0: no messages */
@@ -132,54 +103,75 @@ struct predict_graph {
     uint64_t n_tasks, migrated;
     bool plain;           /* only tasks and what they read: no edges of other kinds, no gates */
     bool replays, failed; /* failed: no memory */
-    bool linked;          /* the node that is being made has an edge from its own round */
+    bool linked;          /* the node that is being made has an edge from its own forked round */
 };
 
+/* ---- graph.c: nodes and edges ---- */
+
+/* Room for one more in an array. False without memory (and graph->failed). */
+bool predict_room_for(struct predict_graph *graph, void *array, size_t *capacity, size_t n,
+                      size_t size);
 /* A node that waits for nothing yet. 0 without memory (and graph->failed). */
 uint32_t predict_add(struct predict_graph *graph, const struct predict_node *node);
 /* `to` waits for `from`; NONE is fine. */
 void predict_edge(struct predict_graph *graph, uint32_t from, uint32_t to);
 /* The same; `reads`: `to` needs a result of `from`, which otherwise only comes before it. */
 void predict_edge_kind(struct predict_graph *graph, uint32_t from, uint32_t to, bool reads);
-/* The same, for the value of an object. */
-void predict_edge_value(struct predict_graph *graph, uint32_t from, uint32_t to, uint32_t object);
-/* A node of the runtime's own: a task_type, or a message. A round's beginning holds it back like
- * any other root. 0 without memory. */
+/* A node of the runtime's own: a task_type, or a message. 0 without memory. */
 uint32_t predict_own_node(struct predict_graph *graph, enum predict_kind kind, uint32_t host,
                           uint32_t what, uint64_t number);
-/* `node` makes the object's next value, on a host or on all. */
+/* Puts a node on a host into a list. */
+void predict_link_push(struct predict_graph *graph, uint32_t *list, uint32_t node, uint32_t host);
+/* Called when all edges to the node are there, which began with `linked` false. A node waits for
+ * the flag that decided on its forked round, unless one of the round comes before it. */
+void predict_hold(struct predict_graph *graph, uint32_t node);
+
+/* ---- value.c: the order of uses, and where values are ---- */
+
+/* The node that made the object's value, or NONE. */
+static inline uint32_t predict_writer(const struct predict_object *object)
+{
+    return object->order.writer - 1;
+}
+/* Like predict_edge_kind, for the value of an object. */
+void predict_edge_value(struct predict_graph *graph, uint32_t from, uint32_t to, uint32_t object);
+/* `node` makes the object's next value, on a host. */
 void predict_overwrite(struct predict_graph *graph, uint32_t node, uint32_t object, int host);
-/* The node after which the object's value is on the host, or everywhere; NONE: it always was. */
+/* The node after which the object's value is on the host; NONE: it always was. */
 uint32_t predict_fetch(struct predict_graph *graph, uint32_t object, int host);
-/* Called before a node on `host` (PREDICT_ALL: everywhere) that uses the object is made. Makes the
- * nodes that come before it. Returns the node after which the value is there; NONE: the value
- * always was, or is not read. */
+/* Called before a node on `host` that uses the object is made. Makes the nodes that come before it.
+ * Returns the node after which the value is there; NONE: the value always was, or is not read. */
 uint32_t predict_prepare(struct predict_graph *graph, uint32_t object, duite_mode mode, int host);
+/* The same on each host; returns what it is on host 0. */
+uint32_t predict_prepare_all(struct predict_graph *graph, uint32_t object, duite_mode mode);
 /* The node uses the object; `prepared`: from predict_prepare. */
 void predict_use(struct predict_graph *graph, uint32_t node, uint32_t object, duite_mode mode,
                  uint32_t prepared);
-/* A round adds these to its forks, on a host, or on those that the round says (PREDICT_ALL). The
- * open contributions to the object combine; there are some. The object is set. */
-void predict_reduce(struct predict_graph *graph, uint32_t object, int host);
-void predict_set(struct predict_graph *graph, uint32_t object, int host);
+/* The object is set at its home. */
+void predict_set(struct predict_graph *graph, uint32_t object);
 /* The object has another home from now on: its value goes there. */
 void predict_rehome(struct predict_graph *graph, uint32_t object, int host);
+/* A part of a replay, or of a task that each host runs, begins on a host with `node`: it reads the
+ * object's value there (predict_fetch made it come), or writes it there, or both. */
+void predict_enter(struct predict_graph *graph, uint32_t node, uint32_t object, int host,
+                   bool reads, bool writes);
+/* It is over on each of these hosts, by graph->over: it read the object there, or wrote it. */
+void predict_leave(struct predict_graph *graph, uint32_t object, const uint64_t *hosts,
+                   bool writes);
+/* A block's hint for mappings: the bytes that it and another one send each other. */
+void predict_hint_add(struct predict_graph *graph, uint32_t object, uint32_t other, double bytes);
+/* The bytes of the object that go to a host in a replay. */
+uint64_t predict_bytes_to(const struct predict_graph *graph, uint32_t object, uint32_t host);
+
+/* ---- sum.c ---- */
+
+/* The open contributions to the object combine; there are some. */
+void predict_reduce(struct predict_graph *graph, uint32_t object);
+/* A sum of so many contributions was made in the trace, on one rank or on all. */
+void predict_sum_count(struct predict_graph *graph, size_t contributions, bool all);
 /* Called when all nodes are there. The seconds of sums, numbers of merges so far, become `seconds`
  * for each merge. */
 void predict_sums_take(struct predict_graph *graph, double seconds);
-/* A block's hint for mappings: the bytes that it and another one send each other. */
-void predict_hint_add(struct predict_graph *graph, uint32_t object, uint32_t other, double bytes);
-/* Called when all edges to the node are there, which began with `linked` false. A node waits for
- * the node that decided on its round, unless one of the round comes before it. */
-void predict_hold(struct predict_graph *graph, uint32_t node);
-
-/* A round of a replay begins: no packet of it is on its way. */
-void predict_packets_clear(struct predict_graph *graph);
-/* The packets that a message from a host to another adds to a phase of this round. predict_packets:
- * one to n hosts of a set, without `from`. Outside of replays each message is one packet. */
-int32_t predict_packet(struct predict_graph *graph, uint32_t phase, uint32_t from, uint32_t to);
-int32_t predict_packets(struct predict_graph *graph, uint32_t phase, uint32_t from,
-                        const uint64_t *to, uint32_t n);
 
 /* Checks both: DUITE_OK or DUITE_E_ARGUMENT. */
 int predict_check(const struct trace_run *run, const struct predict_cluster *cluster);

@@ -117,27 +117,10 @@ double predict_message(struct predict_network *network, double now,
     network->fabric = passes + (double)bytes / cluster->capacity;
     double comes = fmax(passes + cluster->latency, network->in[to]);
     network->in[to] = comes + takes;
-    network->messages += (uint64_t)message->priority;
+    network->messages++;
     network->bytes += bytes;
     *flight = cluster->latency;
     return comes + takes;
-}
-
-double predict_exchange(struct predict_network *network, double now,
-                        const struct predict_node *message, double *flight)
-{
-    const struct predict_cluster *cluster = network->cluster;
-    const uint64_t bytes = message->number;
-    *flight = 0;
-    if (!message->copies)
-        return now;
-    double takes = (double)(message->placed * bytes) / cluster->bandwidth;
-    const double latency = (double)message->hops * cluster->latency;
-    double fabric = (double)(message->copies * bytes) / cluster->capacity;
-    network->messages += (uint64_t)message->priority;
-    network->bytes += message->copies * bytes;
-    *flight = latency;
-    return now + latency + fmax(takes, fabric);
 }
 
 /* ---- Tasks as schedulers see them ---- */
@@ -197,17 +180,17 @@ static bool machine_prepare(struct predict_machine *m, bool paje)
     m->looked = base_alloc_zero(workers * sizeof *m->looked);
     m->handler = base_alloc_zero(hosts * sizeof *m->handler);
     m->handled = base_alloc_zero(hosts * sizeof *m->handled);
-    m->paid = base_alloc_zero(hosts * sizeof *m->paid);
     m->network.out = base_alloc_zero(hosts * sizeof(double));
     m->network.in = base_alloc_zero(hosts * sizeof(double));
     m->begin = base_alloc(n * sizeof *m->begin + 1);
     m->end = base_alloc(n * sizeof *m->end + 1);
+    m->path = base_alloc_zero(n * sizeof *m->path + 1);
     m->cause = base_alloc_zero(n * sizeof *m->cause + 1);
     m->runs_on = paje ? base_alloc_zero(n * sizeof *m->runs_on + 1) : NULL;
     return m->states && m->queue && m->shared && m->state && m->next && m->ran && m->affinity &&
-           m->last && m->idle && m->looked && m->handler && m->handled && m->paid &&
-           m->network.out && m->network.in && m->begin && m->end && m->cause &&
-           (m->runs_on || !paje) && machine_near(m);
+           m->last && m->idle && m->looked && m->handler && m->handled && m->network.out &&
+           m->network.in && m->begin && m->end && m->path && m->cause && (m->runs_on || !paje) &&
+           machine_near(m);
 }
 
 static void machine_scheduler(struct predict_machine *m, uint32_t worker)
@@ -256,10 +239,10 @@ void predict_machine_stop(struct predict_machine *m)
     for (uint32_t h = 0; h < m->cluster->hosts && m->shared; h++)
         free(m->shared[h].node);
     free(m->events.event);
-    void *const all[] = {m->states,  m->queue,       m->shared,     m->state,   m->next,  m->ran,
-                         m->last,    m->network.out, m->network.in, m->begin,   m->end,   m->cause,
-                         m->idle,    m->runs_on,     m->near,       m->other,   m->level, m->looked,
-                         m->handler, m->handled,     m->paid,       m->affinity};
+    void *const all[] = {m->states,  m->queue,       m->shared,     m->state, m->next,  m->ran,
+                         m->last,    m->network.out, m->network.in, m->begin, m->end,   m->cause,
+                         m->idle,    m->runs_on,     m->near,       m->other, m->level, m->looked,
+                         m->handler, m->handled,     m->affinity,   m->path};
     for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
         base_free(all[i]);
 }

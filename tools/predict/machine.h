@@ -21,10 +21,13 @@ bool predict_queue_put(struct predict_queue *queue, const struct predict_node *n
 uint32_t predict_queue_take(struct predict_queue *queue, const struct predict_node *nodes,
                             duite_end end);
 
-#define PREDICT_COMES (PREDICT_NONE - 1) /* in place of a worker */
+/* In place of a worker. */
+#define PREDICT_COMES (PREDICT_NONE - 1)
+#define PREDICT_LEFT  (PREDICT_NONE - 2)
 
-/* At a time a node is over, on a worker or (NONE) on none; or a message COMES to its host. Events
- * of one time come in the order in which they were put. */
+/* At a time a node is over, on a worker or (NONE) on none; or a message has LEFT its host, which
+ * may overwrite the values; or it COMES to the other one. Events of one time come in the order in
+ * which they were put. */
 struct predict_event {
     double time;
     uint64_t order;
@@ -48,9 +51,6 @@ struct predict_network {
 /* When a message that is ready now has arrived; *flight: how much of that is latency. */
 double predict_message(struct predict_network *network, double now,
                        const struct predict_node *message, double *flight);
-/* When the hosts that need it have all that one host, or several, send. */
-double predict_exchange(struct predict_network *network, double now,
-                        const struct predict_node *message, double *flight);
 
 enum { IDLE, BUSY, RESERVED }; /* of a worker; the last: it is the main program's */
 
@@ -82,10 +82,10 @@ struct predict_machine {
     struct predict_network network;
     double *looked;              /* by worker: when it looked for messages */
     double *handler;             /* by host: until when it handles messages, one after the other */
-    double *handled;             /* by host: s that messages take of its cores from now on, */
-    double handled_by_all;       /* of each host: to be added, */
-    double *paid;                /* by host: as far as this was */
+    double *handled;             /* by host: s that messages take of its cores from now on */
     double *begin, *end;         /* by node */
+    double *path;                /* by node: s of the longest chain of nodes before it */
+    double longest;              /* s of such a chain, its last node included */
     uint32_t *runs_on;           /* by node, for Paje; NULL: not kept */
     struct predict_cause *cause; /* by node */
     double now, main_time, busy;
@@ -109,7 +109,7 @@ static inline void *predict_worker_state(const struct predict_machine *machine, 
 /* The task as schedulers see it. */
 duite_ready predict_describe(const struct predict_machine *machine, uint32_t node);
 
-/* Sums up a run that is over. Overwrites `begin`. */
+/* Sums up a run that is over. */
 void predict_conclude(struct predict_machine *machine, struct predict_result *result,
                       double *kernels);
 int predict_write_paje(const struct predict_machine *machine, FILE *file);

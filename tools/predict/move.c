@@ -9,7 +9,6 @@
 #include "runtime/map/blocks.h"
 #include "runtime/map/map.h"
 #include "runtime/map/tasks.h"
-#include "runtime/task/owner.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -109,22 +108,20 @@ static double move_seconds(const struct move *m)
 
 static bool move_traffic(struct move *m, const struct predict_recorded *recorded)
 {
-    const struct predict_graph *graph = m->p->graph;
+    const struct plan_source *source = &recorded->source;
     bool fine = true;
-    for (size_t i = 0; i < recorded->n_forks && recorded->bound && fine; i++) {
-        const struct predict_fork *fork = &recorded->fork[i];
-        if (fork->kernel == PREDICT_NONE)
+    for (size_t i = 0; i < source->n_forks && recorded->bound && fine; i++) {
+        const struct plan_source_fork *fork = &source->fork[i];
+        const struct plan_access *access = source->access + fork->first;
+        if (fork->owner == PLAN_NONE || fork->replicated || fork->rank != PLAN_BY_OWNER)
             continue;
-        const struct trace_kernel *kernel = &graph->run->kernel[fork->kernel];
-        if (!task_owner_decides(fork->at, kernel->replicated))
-            continue;
-        uint32_t own = predict_owner(graph, fork, fork->object);
-        for (size_t k = 0; k < fork->n && fine && own != PREDICT_NONE; k++) {
-            uint32_t object = recorded->bound[fork->object[k]];
-            if (trace_mode(kernel, k) != DUITE_W)
-                fine = map_traffic_read(
-                    &m->moves.traffic, move_block(m, recorded->bound[own]), move_block(m, object),
-                    (double)recorded->rounds * (double)graph->object[object].bytes);
+        const uint32_t own = move_block(m, recorded->bound[fork->owner]);
+        for (uint32_t k = 0; k < fork->n && fine; k++) {
+            const uint32_t object = recorded->bound[access[k].object];
+            const double bytes = (double)m->p->graph->object[object].bytes;
+            if (access[k].mode != DUITE_W)
+                fine = map_traffic_read(&m->moves.traffic, own, move_block(m, object),
+                                        (double)recorded->rounds * bytes);
         }
     }
     return fine;

@@ -55,8 +55,6 @@ void predict_make(struct predict_program *p)
         return;
     }
     struct predict_object new = {.bytes = bytes,
-                                 .writer = PREDICT_NONE,
-                                 .readers = PREDICT_NONE,
                                  .copies = PREDICT_NONE,
                                  .leaves = PREDICT_NONE,
                                  .leader = PREDICT_NONE,
@@ -131,7 +129,8 @@ static void home_give(struct predict_program *p, uint32_t own, uint32_t traced)
     struct predict_object *o = &p->graph->object[own];
     const struct data_object *settled = &p->table.object[p->name[own].slot];
     const bool maps = p->graph->cluster->mapping;
-    const bool moves = o->writer != PREDICT_NONE; /* by migration: a mapping does not see it */
+    const bool moves =
+        predict_writer(o) != PREDICT_NONE; /* by migration: a mapping does not see it */
     p->damaged |= traced >= p->graph->run->n_ranks || settled->home < 0;
     if (p->damaged || (maps && moves))
         return;

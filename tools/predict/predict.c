@@ -87,21 +87,6 @@ int predict_build_plain(struct predict_graph *graph, const struct trace_run *run
 
 /* ---- Results, when the run is over and no longer changes ---- */
 
-static double conclude_path(const struct predict_graph *graph, double *path)
-{
-    double longest = 0;
-    for (size_t i = 0; i < graph->n_nodes; i++)
-        path[i] = 0;
-    for (size_t i = 0; i < graph->n_nodes; i++) { /* no edge points back */
-        const struct predict_node *node = &graph->node[i];
-        double end = path[i] + (double)node->seconds;
-        longest = fmax(longest, end);
-        for (uint32_t e = node->edge; e != PREDICT_NONE; e = graph->edge[e].next)
-            path[graph->edge[e].to] = fmax(path[graph->edge[e].to], end);
-    }
-    return longest;
-}
-
 /* Goes back from the last node along the causes. kernels: NULL, or seconds of the chain's bodies by
  * kernel. */
 static void conclude_chain(const struct predict_machine *m, double *chain, double *kernels)
@@ -114,7 +99,7 @@ static void conclude_chain(const struct predict_machine *m, double *chain, doubl
         const struct predict_node *node = &graph->node[at];
         const struct predict_cause *cause = &m->cause[at];
         double since = cause->by == PREDICT_NONE ? 0 : m->end[cause->by];
-        bool travels = node->kind == PREDICT_MESSAGE || node->kind == PREDICT_EXCHANGE;
+        bool travels = node->kind == PREDICT_MESSAGE;
         double all = m->end[at] - since;
         double own = travels ? m->end[at] - m->begin[at] : fmin(all, (double)node->seconds);
         chain[cause->kind == FORKED ? PREDICT_MAIN : PREDICT_OVERHEAD] += all - own;
@@ -172,6 +157,7 @@ void predict_conclude(struct predict_machine *m, struct predict_result *result, 
                                       .stolen = m->stolen,
                                       .migrated = graph->migrated,
                                       .makespan = fmax(makespan, m->main_time),
+                                      .critical_path = m->longest,
                                       .overhead = graph->overhead,
                                       .message = graph->message,
                                       .look = graph->look,
@@ -181,7 +167,6 @@ void predict_conclude(struct predict_machine *m, struct predict_result *result, 
     for (size_t i = 0; i < graph->n_nodes; i++)
         result->work += (double)graph->node[i].seconds;
     conclude_chain(m, result->chain, kernels);
-    result->critical_path = conclude_path(graph, m->begin);
     result->limit = conclude_limit(result);
 }
 

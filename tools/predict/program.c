@@ -5,7 +5,6 @@
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
 #include "runtime/base/rank_set.h"
-#include "runtime/task/owner.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -19,139 +18,22 @@
  */
 #define FOREIGN_FORK 0.40
 
-/* ---- Tasks ---- */
-
-uint32_t predict_owner(const struct predict_graph *graph, const struct predict_fork *fork,
-                       const uint32_t *objects)
-{
-    const struct trace_kernel *kernel = &graph->run->kernel[fork->kernel];
-    duite_mode access[DUITE_MAX_ACCESS];
-    for (size_t i = 0; i < kernel->n_modes; i++)
-        access[i] = trace_mode(kernel, i);
-    if (kernel->n_modes < DUITE_MAX_ACCESS)
-        access[kernel->n_modes] = DUITE_NONE;
-    const uint32_t own = task_owner(access, trace_mode(kernel, SIZE_MAX), fork->n);
-    return own == TASK_NOBODY ? PREDICT_NONE : objects[own];
-}
-
-static int fork_host(const struct predict_graph *graph, const struct predict_fork *fork,
-                     uint32_t own)
-{
-    const int at = fork->at < 0 ? TASK_ANYWHERE : fork->at % (int)graph->cluster->hosts;
-    const int rank = task_owner_rank(at, graph->run->kernel[fork->kernel].replicated,
-                                     own == PREDICT_NONE ? -1 : graph->object[own].home);
-    return rank == TASK_EVERYWHERE ? PREDICT_ALL : rank;
-}
-
-static void fork_fix_owner(struct predict_program *p, uint32_t own)
-{
-    uint32_t slot = own == PREDICT_NONE ? 0 : p->name[own].slot;
-    if (slot)
-        p->table.object[slot].fixed = true;
-}
-
-/* A task that takes so long; `prepared` is by object. */
-static void fork_add(struct predict_program *p, const struct predict_fork *fork,
-                     const struct predict_where *where, double seconds)
-{
-    struct predict_graph *graph = p->graph;
-    const struct trace_kernel *kernel = &graph->run->kernel[fork->kernel];
-    const bool all = where->host == PREDICT_ALL, owned = where->own != PREDICT_NONE;
-    uint32_t node = predict_add(
-        graph, &(struct predict_node){
-                   .number = fork->number,
-                   .kernel = fork->kernel,
-                   .host = all ? 0 : (uint32_t)where->host,
-                   .block = owned ? graph->object[where->own].block : (uint32_t)fork->number,
-                   .priority = fork->priority,
-                   .cost = fork->cost,
-                   .path = where->path,
-                   .seconds = (float)seconds,
-                   .placed = graph->replays && owned ? where->own + 1 : 0,
-                   .kind = all && graph->cluster->hosts > 1 ? PREDICT_EVERYWHERE : PREDICT_TASK});
-    if (graph->failed)
-        return;
-    graph->linked = false;
-    for (size_t i = 0; i < fork->n; i++)
-        predict_use(graph, node, fork->object[i], trace_mode(kernel, i), p->prepared[i]);
-    predict_hold(graph, node);
-}
-
-void predict_task(struct predict_program *p, const struct predict_fork *fork,
-                  const struct predict_where *where)
-{
-    struct predict_graph *graph = p->graph;
-    const struct trace_kernel *kernel = &graph->run->kernel[fork->kernel];
-    const bool follows =
-        task_owner_decides(fork->at < 0 ? TASK_ANYWHERE : fork->at, kernel->replicated);
-    double seconds;
-    if (!predict_times_find(p->times, fork->number, &seconds) || graph->cluster->steady)
-        seconds = predict_times_kernel(p->times, fork->kernel);
-    if (graph->cluster->bodies > 0 &&
-        (!graph->cluster->grows || graph->cluster->grows(graph->run->kernel_name[fork->kernel])))
-        seconds *= graph->cluster->bodies;
-    seconds /= graph->cluster->core_speed;
-    for (size_t i = 0; i < fork->n; i++)
-        p->prepared[i] = where->round ? predict_round_fetch(p, fork, where, i)
-                                      : predict_prepare(graph, fork->object[i],
-                                                        trace_mode(kernel, i), where->host);
-    fork_add(p, fork, where, seconds);
-    if (graph->failed)
-        return;
-    if (kernel->fixed && follows)
-        fork_fix_owner(p, where->own);
-    predict_spend(p, follows ? where->own : PREDICT_NONE, where->host, seconds);
-    p->tasks++;
-}
-
-duite_mode predict_fork_mode(const struct predict_program *p, const struct predict_fork *fork,
-                             size_t k)
-{
-    return fork->kernel == PREDICT_NONE ? DUITE_W
-                                        : trace_mode(&p->graph->run->kernel[fork->kernel], k);
-}
-
-void predict_fork(struct predict_program *p, const struct predict_fork *fork)
-{
-    const uint32_t own = predict_owner(p->graph, fork, fork->object);
-    predict_task(p, fork,
-                 &(struct predict_where){.own = own, .host = fork_host(p->graph, fork, own)});
-}
-
-bool predict_room(struct predict_program *p, size_t n)
-{
-    uint32_t *prepared = base_grow(p->prepared, &p->prepared_capacity, n + 1, sizeof *p->prepared);
-    uint32_t *objects = base_grow(p->objects, &p->objects_capacity, n + 1, sizeof *p->objects);
-    if (prepared)
-        p->prepared = prepared;
-    if (objects)
-        p->objects = objects;
-    p->graph->failed |= !prepared || !objects;
-    return prepared && objects;
-}
-
-static void entry_fork(struct predict_program *p, size_t n, bool has_options)
-{
-    struct predict_fork fork = {.kernel = trace_words_next(&p->words), .n = n, .at = -1};
-    if (has_options) {
-        fork.at = (int32_t)trace_words_next(&p->words);
-        fork.priority = (int32_t)trace_words_next(&p->words);
-        fork.cost = trace_words_float(&p->words);
-    }
-    p->damaged |= fork.kernel >= p->graph->run->n_kernels;
-    if (!predict_room(p, n) || p->damaged)
-        return;
-    for (size_t i = 0; i < n; i++)
-        p->objects[i] = predict_object_at(p, trace_words_next(&p->words));
-    fork.object = p->objects;
-    fork.number = ++p->forks;
-    if (!p->damaged && !p->words.short_of)
-        predict_fork(p, &fork);
-}
-
 /* ---- The main program ---- */
 
-/* An op for all nodes since the last one. */
+static bool op_is_everywhere(const struct predict_graph *graph, const struct predict_node *node)
+{
+    return node->kind == PREDICT_TASK && node->kernel < graph->run->n_kernels &&
+           graph->run->kernel[node->kernel].replicated;
+}
+
+/* True if the main program takes time for the node: of a task that each host runs, for the first.
+ */
+static bool op_forks(const struct predict_graph *graph, const struct predict_node *node)
+{
+    return !node->host || !op_is_everywhere(graph, node);
+}
+
+/* An op for all nodes since the last one. Until op_end, `each` is the number of its forks. */
 static struct predict_op *op_add(struct predict_program *p, bool forked)
 {
     struct predict_graph *graph = p->graph;
@@ -163,8 +45,9 @@ static struct predict_op *op_add(struct predict_program *p, bool forked)
     size_t begin = graph->n_ops ? graph->op[graph->n_ops - 1].end : 0;
     struct predict_op *op = &graph->op[graph->n_ops++];
     *op = (struct predict_op){.end = (uint32_t)graph->n_nodes, .node = PREDICT_NONE};
-    op->each = forked ? 1 : 0;
-    p->forked += forked ? graph->n_nodes - begin : 0;
+    for (size_t i = begin; i < graph->n_nodes && forked; i++)
+        op->each += op_forks(graph, &graph->node[i]);
+    p->forked += (uint64_t)op->each;
     return op;
 }
 
@@ -186,7 +69,7 @@ static double op_share(double own, double n)
     return n > 0 ? (own + FOREIGN_FORK * (n - own)) / n : 1;
 }
 
-/* Each host forks its own nodes and passes over others'. Returns the busiest one's time for each
+/* Each host forks its own tasks and passes over others'. Returns the busiest one's time for each
  * node of an op, over that of a fork of its own. */
 static double op_busiest(struct predict_graph *graph, size_t op)
 {
@@ -194,8 +77,9 @@ static double op_busiest(struct predict_graph *graph, size_t op)
     uint32_t all = 0, most = 0;
     for (uint32_t i = begin; i < end; i++) {
         const struct predict_node *node = &graph->node[i];
-        const bool everywhere =
-            node->kind == PREDICT_EVERYWHERE || (node->kind == PREDICT_EXCHANGE && node->block);
+        if (!op_forks(graph, node))
+            continue;
+        const bool everywhere = op_is_everywhere(graph, node);
         const uint32_t n = everywhere ? 0 : ++graph->count[node->host];
         all += everywhere;
         most = n > most ? n : most;
@@ -205,7 +89,8 @@ static double op_busiest(struct predict_graph *graph, size_t op)
             graph->count[graph->node[i].host] = 0;
     else
         memset(graph->count, 0, graph->cluster->hosts * sizeof *graph->count);
-    return op_share(all + most, end - begin);
+    const double forks = graph->op[op].each;
+    return op_share(all + most, forks) * forks / (end - begin);
 }
 
 /* The main program forked until `from`, and waits until `to`: each fork takes its share of the
@@ -236,8 +121,9 @@ static void entry_get(struct predict_program *p)
     uint64_t from = trace_words_next2(&p->words), to = trace_words_next2(&p->words);
     if (p->damaged || p->words.short_of)
         return;
-    int host = rank < 0 ? PREDICT_ALL : rank % (int)p->graph->cluster->hosts;
-    uint32_t node = predict_prepare(p->graph, own, DUITE_R, host);
+    const int host = rank % (int)p->graph->cluster->hosts;
+    const uint32_t node = rank < 0 ? predict_prepare_all(p->graph, own, DUITE_R)
+                                   : predict_prepare(p->graph, own, DUITE_R, host);
     op_end(p, from, to, node, host <= 0 && node != PREDICT_NONE);
 }
 
@@ -254,7 +140,7 @@ static void lasting_find(struct predict_program *p)
     struct predict_graph *graph = p->graph;
     struct predict_cluster one = *graph->cluster;
     one.hosts = 1;
-    struct predict_graph whole = {.run = graph->run, .cluster = &one};
+    struct predict_graph whole = {.run = graph->run, .cluster = &one, .plain = true};
     p->code = predict_build(&whole);
     for (size_t i = 0; i < graph->n_objects && !p->code; i++)
         graph->object[i].lasts = !whole.object[i].written && whole.object[i].leaves == PREDICT_NONE;
@@ -305,12 +191,12 @@ static void entry_read(struct predict_program *p)
         break;
     case TRACE_FORK:
     case TRACE_FORKED:
-        entry_fork(p, n, (first & 0xff) == TRACE_FORKED);
+        predict_take_fork(p, n, (first & 0xff) == TRACE_FORKED);
         break;
     case TRACE_SET: {
         uint32_t own = predict_object_at(p, trace_words_next(&p->words));
         if (!p->damaged)
-            predict_set(p->graph, own, p->graph->object[own].home);
+            predict_set(p->graph, own);
         break;
     }
     case TRACE_GET:
@@ -381,20 +267,18 @@ static bool program_prepare(struct predict_program *p)
     struct predict_graph *graph = p->graph;
     const uint32_t hosts = graph->cluster->hosts;
     p->times = predict_times_new(graph->run, graph->cluster->steady);
-    graph->piece = base_alloc(hosts * sizeof *graph->piece);
     graph->began = base_alloc(hosts * sizeof *graph->began);
     graph->count = base_alloc_zero(hosts * sizeof *graph->count);
-    graph->phase = base_alloc_zero(hosts * sizeof *graph->phase);
-    graph->ring = base_alloc(hosts * sizeof *graph->ring);
-    graph->among = base_alloc(base_ranks_words((int)hosts) * sizeof *graph->among);
+    graph->over = base_alloc(hosts * sizeof *graph->over);
+    graph->all = base_alloc_zero(base_ranks_words((int)hosts) * sizeof *graph->all);
     graph->round = PREDICT_NONE;
-    graph->flag = PREDICT_NONE;
-    if (!p->times || !graph->piece || !graph->began || !graph->count || !graph->phase ||
-        !graph->among || !graph->ring ||
+    if (!p->times || !graph->began || !graph->count || !graph->over || !graph->all ||
         !(p->blocks_on = base_alloc_zero(hosts * sizeof *p->blocks_on)) ||
         data_table_start(&p->table, graph->cluster->mapping ? (int)hosts : 1) ||
         !predict_moves_start(p))
         return false;
+    for (uint32_t host = 0; host < hosts; host++)
+        base_ranks_add(graph->all, (int)host);
     for (uint32_t kind = 0; kind < sizeof graph->own / sizeof graph->own[0]; kind++)
         graph->own[kind] = predict_times_own(p->times, kind) / graph->cluster->core_speed;
     graph->overhead = graph->cluster->overhead < 0

@@ -5,8 +5,8 @@
 #include "runtime/plan/passes.h"
 #include "tools/predict/graph.h"
 
-/* The main program while the predictor reads it. The files program.c, objects.c, move.c, round.c
- * and replay.c share it. */
+/* The main program while the predictor reads it. The files program.c, fork.c, objects.c, move.c,
+ * record.c, round.c, part.c and replay.c share it. */
 
 /* A fork, or (kernel NONE) a set; `object` are places in graph->object, or of a recorded graph in
  * its list of objects. */
@@ -22,42 +22,32 @@ struct predict_fork {
 struct predict_recorded {
     struct predict_fork *fork;
     uint32_t *use;
-    bool *writes; /* n_objects: true if a fork does more than read it */
+    struct plan_source source;  /* the same without bytes and flag, which rounds add */
+    struct plan_access *access; /* of source */
     size_t n_forks, n_objects, n_calls;
     uint64_t replays, map_at;    /* so far; at this many the mapping is called again */
     uint64_t rounds;             /* since the last call of the balancer */
     uint32_t *bound;             /* n_objects: of the last replay, this one among them; or NULL */
     struct predict_round *round; /* of the last replay, or NULL */
+    double *seconds;             /* n_forks: of the bodies of one round */
 };
 
-struct predict_source {
-    struct plan_source plain;
-    struct plan_access *access; /* of plain */
-};
-
-/* A compiled round, and its inputs. */
+/* A compiled round, and its inputs: the nodes of all hosts. Numbers, seconds and objects are added
+ * when it is replayed. */
 struct predict_round {
-    struct predict_source source;
-    struct plan_round nodes;
+    struct plan_source source; /* the record has its forks */
+    struct plan_round lowered;
     struct plan_assignment assignment;
-    struct plan_messages messages;
-    struct predict_hop *hop; /* of all sums that go from host to host */
-    size_t n_hops, hops_capacity;
-    size_t *first_hop; /* by node, n_nodes + 1 */
-    bool hops_failed;  /* no memory */
-    float *path;       /* by fork; NULL: the scheduler does not ask */
-    int *home;         /* by object of the source */
-    uint32_t flag;     /* an object of the program, or NONE */
-    bool forked;       /* it has no plan: nothing behind `home` is there */
-};
-
-/* A task's place: the object that it runs for, or NONE, and its host, or PREDICT_ALL. */
-struct predict_where {
-    uint32_t own;
-    int host;
-    float path;                        /* see duite_ready.path */
-    const struct predict_round *round; /* that it is a node of; NULL: of none */
-    size_t node;
+    int *home;      /* by object of the source */
+    uint32_t flag;  /* an object of the program, or NONE */
+    size_t n_hints; /* of the graph, when it was compiled: messages have their bytes */
+    bool forked;    /* it has no plan: nothing that follows is there */
+    struct predict_node *node;
+    uint32_t *fork;      /* by node: in the record; NONE: the runtime's own */
+    bool *begins, *ends; /* by node: none of its round comes before it, after it */
+    size_t n_nodes, nodes_capacity, forks_capacity;
+    struct plan_round_edge *edge;
+    size_t n_edges, edges_capacity;
 };
 
 /* A balancer's data for changing homes, as in api/migrate.c. Seconds are those since its last call.
@@ -106,18 +96,17 @@ void predict_hint(struct predict_program *p, size_t n);
 void predict_follow(struct predict_program *p);
 void predict_homes(struct predict_program *p, size_t n);
 
+/* An entry of a fork on n objects. */
+void predict_take_fork(struct predict_program *p, size_t n, bool has_options);
 /* Room for the objects of a fork. */
 bool predict_room(struct predict_program *p, size_t n);
 void predict_fork(struct predict_program *p, const struct predict_fork *fork);
 /* The access of a recorded graph's fork to its object k; a set writes. */
 duite_mode predict_fork_mode(const struct predict_program *p, const struct predict_fork *fork,
                              size_t k);
-/* The same for a fork whose place is already known. */
-void predict_task(struct predict_program *p, const struct predict_fork *fork,
-                  const struct predict_where *where);
-/* In a round: the node after which the task's k-th value is on its host, or NONE. */
-uint32_t predict_round_fetch(struct predict_program *p, const struct predict_fork *fork,
-                             const struct predict_where *where, size_t k);
+/* A body is part of the run, by the fork's number: for the object that it runs for (NONE: none).
+ * Returns its seconds. */
+double predict_body(struct predict_program *p, const struct predict_fork *fork, uint32_t own);
 
 /* The object that a task runs for, by the owner rule (task/owner.h), or NONE. */
 uint32_t predict_owner(const struct predict_graph *graph, const struct predict_fork *fork,
@@ -136,10 +125,20 @@ void predict_replay(struct predict_program *p, size_t n_objects);
 struct map_tasks;
 bool predict_round_tasks(const struct predict_program *p, const struct predict_recorded *recorded,
                          const uint32_t *block, struct map_tasks *tasks);
+/* The place of a round's object in graph->object. */
+static inline uint32_t predict_round_object(const struct predict_recorded *recorded, size_t i)
+{
+    return i < recorded->n_objects ? recorded->bound[i] : recorded->round->flag;
+}
 /* The record has a compiled round for the homes and sizes of its objects, and for this flag or
  * NONE. False without memory. The record owns the round. */
 bool predict_round_prepare(struct predict_program *p, struct predict_recorded *recorded,
                            uint32_t flag);
+/* part.c: the nodes of all hosts in a round that was assigned, and their edges. False without
+ * memory; predict_parts_free is due all the same. */
+bool predict_parts_make(const struct predict_program *p, const struct predict_recorded *recorded,
+                        struct predict_round *round);
+void predict_parts_free(struct predict_round *round);
 /* NULL is fine. */
 void predict_round_free(struct predict_round *round);
 

@@ -1,99 +1,12 @@
 /* Replays. To nodes before and after it, a replay on a host is one task that reads or writes each
- * object there. Inside, a round begins where dependences allow, or when a flag was read. The
- * compiled round (round.c) says which nodes it has, where they run, and which hosts need their
- * results. */
+ * object there, as in a run (plan/ranks.c). Inside, the nodes of the compiled round (part.c) are
+ * added once for each round. */
 #include "tools/predict/program.h"
 
 #include "runtime/base/memory.h"
+#include "runtime/base/rank_set.h"
 
 #include <stdlib.h>
-
-enum { ROUND_NOWHERE = -2 }; /* in place of a host: the result is overwritten unread */
-
-/* ---- Recorded graphs ---- */
-
-static void recorded_forget(struct predict_recorded *recorded)
-{
-    free(recorded->fork);
-    free(recorded->use);
-    free(recorded->writes);
-    free(recorded->bound);
-    predict_round_free(recorded->round);
-    *recorded = (struct predict_recorded){0};
-}
-
-static struct predict_recorded *recorded_place(struct predict_program *p, uint32_t name)
-{
-    p->damaged |= name >= p->graph->run->n_words; /* a graph has several */
-    while (p->n_recorded <= name && !p->damaged) {
-        void *moved =
-            base_grow(p->recorded, &p->recorded_capacity, p->n_recorded + 1, sizeof *p->recorded);
-        p->graph->failed |= !moved;
-        if (!moved)
-            return NULL;
-        p->recorded = moved;
-        p->recorded[p->n_recorded++] = (struct predict_recorded){0};
-    }
-    if (p->damaged)
-        return NULL;
-    recorded_forget(&p->recorded[name]);
-    return &p->recorded[name];
-}
-
-/* The uses of all forks lie in one row, which has as many words at most as are left. */
-static bool recorded_fork(struct predict_program *p, struct predict_recorded *graph, size_t i,
-                          size_t *used)
-{
-    struct predict_fork *fork = &graph->fork[i];
-    *fork = (struct predict_fork){.kernel = trace_words_next(&p->words),
-                                  .n = trace_words_next(&p->words)};
-    fork->at = (int32_t)trace_words_next(&p->words);
-    fork->priority = (int32_t)trace_words_next(&p->words);
-    fork->cost = trace_words_float(&p->words);
-    fork->object = graph->use + *used;
-    if (fork->n > trace_words_left(&p->words) ||
-        (fork->kernel != PREDICT_NONE && fork->kernel >= p->graph->run->n_kernels))
-        p->damaged = true;
-    for (size_t k = 0; k < fork->n && !p->damaged; k++) {
-        fork->object[k] = trace_words_next(&p->words);
-        const duite_mode mode = predict_fork_mode(p, fork, k);
-        p->damaged |= fork->object[k] >= graph->n_objects;
-        p->damaged |= mode == DUITE_CW && p->graph->run->kernel[fork->kernel].replicated;
-        if (!p->damaged)
-            graph->writes[fork->object[k]] |= mode != DUITE_R;
-    }
-    p->damaged |= fork->kernel == PREDICT_NONE && fork->n != 1;
-    *used += fork->n;
-    graph->n_calls += fork->kernel != PREDICT_NONE;
-    return !p->damaged && !p->words.short_of;
-}
-
-void predict_take_graph(struct predict_program *p, size_t n_objects)
-{
-    struct predict_recorded *graph = recorded_place(p, trace_words_next(&p->words));
-    for (size_t i = 0; i < n_objects; i++)
-        trace_words_next(&p->words);
-    size_t n = trace_words_next(&p->words), used = 0, left = trace_words_left(&p->words);
-    if (!graph || n > left)
-        p->damaged = true;
-    if (p->damaged || p->words.short_of)
-        return;
-    graph->n_objects = n_objects;
-    graph->fork = malloc((n + 1) * sizeof *graph->fork);
-    graph->use = malloc((left + 1) * sizeof *graph->use);
-    graph->writes = calloc(n_objects + 1, sizeof *graph->writes);
-    p->graph->failed |= !graph->fork || !graph->use || !graph->writes;
-    while (!p->graph->failed && graph->n_forks < n &&
-           recorded_fork(p, graph, graph->n_forks, &used))
-        graph->n_forks++;
-}
-
-void predict_graphs_free(struct predict_program *p)
-{
-    for (size_t i = 0; i < p->n_recorded; i++)
-        recorded_forget(&p->recorded[i]);
-    free(p->recorded);
-}
 
 /* ---- Rounds ---- */
 
@@ -109,197 +22,205 @@ static bool round_ran(const struct predict_program *p, const struct predict_reco
     return found;
 }
 
-/* On each host one node that all its objects wait for, and that waits for them. */
-static void replay_gate(struct predict_program *p, const struct predict_recorded *recorded)
+/* ---- Forked rounds ---- */
+
+static void replay_end_sums(struct predict_program *p, const struct predict_recorded *recorded)
 {
     struct predict_graph *graph = p->graph;
-    const uint32_t *bound = recorded->bound;
-    const size_t n = recorded->n_objects;
-    const uint32_t hosts = graph->cluster->hosts;
-    for (uint32_t h = 0; h < hosts; h++)
-        graph->began[h] = PREDICT_NONE;
-    for (size_t i = 0; i < n && !graph->failed; i++)
-        if (graph->object[bound[i]].leaves != PREDICT_NONE)
-            predict_prepare(graph, bound[i], DUITE_R, graph->object[bound[i]].home);
-    for (size_t i = 0; i < n && !graph->failed && !graph->plain; i++) {
-        struct predict_object *o = &graph->object[bound[i]];
-        if (o->holder == PREDICT_ALL)
-            continue;
-        uint32_t host = (uint32_t)o->holder;
-        if (graph->began[host] == PREDICT_NONE)
-            graph->began[host] =
-                predict_add(graph, &(struct predict_node){.host = host, .kind = PREDICT_INSTANT});
-        if (!graph->failed)
-            predict_use(graph, graph->began[host], bound[i],
-                        recorded->writes[i] ? DUITE_RW : DUITE_R, o->writer);
-    }
+    for (size_t i = 0; i < recorded->n_objects && !graph->failed; i++)
+        if (graph->object[recorded->bound[i]].leaves != PREDICT_NONE)
+            predict_reduce(graph, recorded->bound[i]);
 }
 
 /* The flag is read where the next round begins: everywhere. */
-static void replay_decide(struct predict_graph *graph, uint32_t flag)
+static void round_decide(struct predict_graph *graph, uint32_t flag)
 {
-    uint32_t value = predict_prepare(graph, flag, DUITE_R, PREDICT_ALL);
-    if (graph->plain) {
-        graph->flag = value;
-        return;
-    }
-    uint32_t node = predict_add(graph, &(struct predict_node){.kind = PREDICT_INSTANT});
-    if (graph->failed)
-        return;
-    predict_edge(graph, value, node);
-    graph->flag = node;
+    predict_prepare_all(graph, flag, DUITE_R);
+    for (uint32_t host = 0; host < graph->cluster->hosts && !graph->failed; host++)
+        graph->began[host] = predict_fetch(graph, flag, (int)host);
+    graph->decided = true;
 }
 
-/* The next fork of a round, with its objects; false without memory. */
-static bool round_bind(struct predict_program *p, const struct predict_recorded *recorded, size_t i,
-                       struct predict_fork *fork)
-{
-    *fork = recorded->fork[i];
-    if (!predict_room(p, fork->n))
-        return false;
-    for (size_t k = 0; k < fork->n; k++)
-        p->objects[k] = recorded->bound[fork->object[k]];
-    fork->object = p->objects;
-    return true;
-}
-
-/* Forks a round: by the rules of forks, not of rounds. */
-static void round_forks(struct predict_program *p, const struct predict_recorded *recorded,
-                        uint64_t first)
+/* A round that has no plan: its tasks are forked like any other. */
+static void round_fork_all(struct predict_program *p, const struct predict_recorded *recorded,
+                           uint64_t first)
 {
     struct predict_graph *graph = p->graph;
-    struct predict_fork fork;
+    graph->round = (uint32_t)graph->n_nodes;
     for (size_t i = 0; i < recorded->n_forks && !graph->failed; i++) {
-        if (!round_bind(p, recorded, i, &fork))
+        struct predict_fork fork = recorded->fork[i];
+        if (!predict_room(p, fork.n))
             return;
-        fork.number = first + 1;
-        if (fork.kernel == PREDICT_NONE) {
-            predict_set(graph, fork.object[0], graph->object[fork.object[0]].home);
-        } else {
+        for (size_t k = 0; k < fork.n; k++)
+            p->objects[k] = recorded->bound[fork.object[k]];
+        fork.object = p->objects;
+        fork.number += first;
+        if (fork.kernel == PREDICT_NONE)
+            predict_set(graph, fork.object[0]);
+        else
             predict_fork(p, &fork);
-            first++;
-        }
+    }
+    if (recorded->round->flag != PREDICT_NONE && !graph->failed)
+        round_decide(graph, recorded->round->flag);
+}
+
+/* ---- Planned rounds ---- */
+
+/* The bodies of a round, each once, however many hosts run it. */
+static void round_bodies(struct predict_program *p, const struct predict_recorded *recorded,
+                         uint64_t first)
+{
+    const struct plan_source *source = &recorded->round->source;
+    for (size_t i = 0; i < recorded->n_forks; i++) {
+        struct predict_fork fork = recorded->fork[i];
+        const uint32_t own = source->fork[i].owner;
+        fork.number += first;
+        if (fork.kernel != PREDICT_NONE)
+            recorded->seconds[i] =
+                predict_body(p, &fork, own == PLAN_NONE ? PREDICT_NONE : recorded->bound[own]);
     }
 }
 
-/* Sets graph->travel from the round, for the value that a node reads. */
-static void round_travel(struct predict_graph *graph, const struct predict_round *round,
-                         size_t node, size_t use)
+static void round_count_sums(struct predict_graph *graph, const struct predict_round *round)
 {
     const struct plan_assignment *a = &round->assignment;
-    const uint32_t version = a->reads[use];
-    graph->travel = (struct predict_travel){.runs = plan_runs_set(a, node)};
-    if (version == PLAN_NONE)
-        return;
-    const uint32_t maker = a->version[version].maker; /* plus 1 */
-    graph->travel.need = plan_needs_set(a, version);
-    graph->travel.phase = maker ? round->messages.phase[maker - 1] : 0;
+    for (size_t n = 0; n < round->lowered.n_nodes; n++)
+        if (round->lowered.node[n].kind == PLAN_SUM && !plan_is_dead(a, n))
+            predict_sum_count(graph, round->lowered.node[n].n_uses - 1,
+                              a->set[n] > (uint32_t)a->n_ranks);
 }
 
-uint32_t predict_round_fetch(struct predict_program *p, const struct predict_fork *fork,
-                             const struct predict_where *where, size_t k)
+static struct predict_node round_node(const struct predict_graph *graph,
+                                      const struct predict_recorded *recorded, size_t i,
+                                      uint64_t first)
 {
-    struct predict_graph *graph = p->graph;
-    const struct predict_round *round = where->round;
-    const size_t use = round->nodes.node[where->node].first_use + k;
-    const duite_mode mode = trace_mode(&graph->run->kernel[fork->kernel], k);
-    if (mode == DUITE_CW)
-        return PREDICT_NONE;
-    round_travel(graph, round, where->node, use);
-    return predict_prepare(graph, fork->object[k], mode, where->host);
-}
-
-/* Contributions combine on the hosts that the round says, if any. */
-static void round_reduce(struct predict_graph *graph, const struct predict_round *round, size_t n,
-                         uint32_t object, int host)
-{
-    const struct plan_messages *m = &round->messages;
-    struct predict_travel *travel = &graph->travel;
-    travel->sum_phase = 0;
-    for (size_t i = m->first_piece[n]; i < m->first_piece[n + 1]; i++) {
-        const uint32_t phase = graph->phase[m->piece[i].rank] = m->piece[i].phase;
-        travel->sum_phase = phase > travel->sum_phase ? phase : travel->sum_phase;
+    struct predict_node node = recorded->round->node[i];
+    const uint32_t fork = recorded->round->fork[i];
+    if (fork == PREDICT_NONE)
+        return node;
+    const uint32_t own = recorded->round->source.fork[fork].owner;
+    node.number = first + recorded->fork[fork].number;
+    node.seconds = (float)recorded->seconds[fork];
+    node.block = (uint32_t)node.number;
+    if (own != PLAN_NONE) {
+        node.block = graph->object[recorded->bound[own]].block;
+        node.placed = recorded->bound[own] + 1;
     }
-    travel->n_hops = round->first_hop[n + 1] - round->first_hop[n];
-    travel->hop = travel->n_hops ? round->hop + round->first_hop[n] : NULL;
-    travel->rounds = m->rounds[n];
-    if (host == ROUND_NOWHERE)
-        graph->object[object].leaves = PREDICT_NONE;
-    else
-        predict_reduce(graph, object, host);
+    return node;
 }
 
-/* A set with a row of its own has several ranks, if there are several. */
-static int round_host(const struct predict_round *round, size_t n)
-{
-    const struct plan_assignment *a = &round->assignment;
-    const uint32_t set = a->set[n];
-    if (!set)
-        return ROUND_NOWHERE;
-    if (a->n_ranks == 1)
-        return 0;
-    return set <= (uint32_t)a->n_ranks ? (int)set - 1 : PREDICT_ALL;
-}
-
-/* Makes a node that the runtime adds to a round, or a set. */
-static void round_own(struct predict_program *p, const uint32_t *bound,
-                      const struct predict_round *round, size_t n)
-{
-    struct predict_graph *graph = p->graph;
-    const struct plan_round_node *node = &round->nodes.node[n];
-    const struct plan_node_use *use = &round->nodes.use[node->first_use];
-    const int host = round_host(round, n);
-    round_travel(graph, round, n, node->first_use);
-    if (node->kind == PLAN_SUM)
-        round_reduce(graph, round, n, bound[use->place], host);
-    else if (node->kind == PLAN_FLAG)
-        replay_decide(graph, round->flag);
-    else if (host != ROUND_NOWHERE)
-        predict_set(graph, bound[use->place], host);
-}
-
-static void round_nodes(struct predict_program *p, const struct predict_recorded *recorded,
-                        uint64_t first)
+/* Adds a round. `before`: the first node of the one before it, or NONE: it begins where its host
+ * does. Successors are in the order of a plan's, since each edge is added before those there. */
+static void round_add(struct predict_program *p, const struct predict_recorded *recorded,
+                      uint64_t first, uint32_t before)
 {
     struct predict_graph *graph = p->graph;
     const struct predict_round *round = recorded->round;
-    struct predict_fork fork;
-    for (size_t n = 0; n < round->nodes.n_nodes && !graph->failed; n++) {
-        const struct plan_round_node *node = &round->nodes.node[n];
-        if (node->kind != PLAN_TASK) {
-            round_own(p, recorded->bound, round, n);
-            continue;
-        }
-        if (!round_bind(p, recorded, node->fork, &fork))
-            return;
-        fork.number = ++first;
-        predict_task(p, &fork,
-                     &(struct predict_where){.own = node->owner == PLAN_NONE
-                                                        ? PREDICT_NONE
-                                                        : recorded->bound[node->owner],
-                                             .host = round_host(round, n),
-                                             .path = round->path ? round->path[node->fork] : 0,
-                                             .round = round,
-                                             .node = n});
+    const uint32_t base = (uint32_t)graph->n_nodes;
+    round_bodies(p, recorded, first);
+    round_count_sums(graph, round);
+    for (size_t i = 0; i < round->n_nodes && !graph->failed; i++) {
+        const struct predict_node node = round_node(graph, recorded, i, first);
+        predict_add(graph, &node);
     }
-    graph->travel = (struct predict_travel){0};
+    for (size_t i = round->n_edges; i-- > 0 && !graph->failed;) {
+        const struct plan_round_edge *edge = &round->edge[i];
+        if (!edge->cyclic)
+            predict_edge(graph, base + edge->from, base + edge->to);
+        else if (before != PREDICT_NONE)
+            predict_edge(graph, before + edge->from, base + edge->to);
+    }
+    for (size_t i = round->n_nodes; i-- > 0 && before == PREDICT_NONE && !graph->failed;)
+        if (round->begins[i])
+            predict_edge(graph, graph->began[round->node[i].host], base + (uint32_t)i);
 }
 
-static void round_add(struct predict_program *p, const struct predict_recorded *recorded,
-                      uint64_t first)
+/* ---- The beginning and the end of a replay ---- */
+
+/* The hosts on which the value of object i must be when a round begins; and where it is, if the
+ * round writes it, before and after each (plan_maker is a node then). */
+struct replay_sets {
+    const uint64_t *enter, *end; /* NULL: none */
+};
+
+static struct replay_sets replay_sets(const struct predict_round *round, uint32_t i)
 {
-    p->graph->round = (uint32_t)p->graph->n_nodes;
-    predict_packets_clear(p->graph);
-    if (!recorded->round->forked) {
-        round_nodes(p, recorded, first);
-        return;
-    }
-    p->graph->replays = false; /* the rules of forks, for its messages, too */
-    round_forks(p, recorded, first);
-    p->graph->replays = true;
-    if (recorded->round->flag != PREDICT_NONE && !p->graph->failed)
-        replay_decide(p->graph, recorded->round->flag);
+    const struct plan_assignment *a = &round->assignment;
+    const uint32_t maker = plan_maker(a, i);
+    if (maker == PLAN_NONE)
+        return (struct replay_sets){.enter = plan_needs_set(a, i)};
+    const uint64_t *end = plan_runs_set(a, maker);
+    return (struct replay_sets){.enter = a->need[i] ? end : NULL, .end = end};
 }
+
+static void hosts_have_gates(struct predict_graph *graph, uint32_t *gate, const uint64_t *hosts)
+{
+    const size_t words = base_ranks_words((int)graph->cluster->hosts);
+    for (int h = hosts ? base_ranks_next(hosts, words, 0) : -1; h >= 0;
+         h = base_ranks_next(hosts, words, h + 1))
+        if (gate[h] == PREDICT_NONE)
+            gate[h] = predict_add(graph, &(struct predict_node){.host = (uint32_t)h,
+                                                                .block = (uint32_t)h,
+                                                                .kind = PREDICT_INSTANT});
+}
+
+static void replay_gates(struct predict_graph *graph, const struct predict_round *round,
+                         uint32_t *gate)
+{
+    for (uint32_t h = 0; h < graph->cluster->hosts; h++)
+        gate[h] = PREDICT_NONE;
+    for (size_t n = 0; n < round->lowered.n_nodes && !graph->failed; n++)
+        hosts_have_gates(graph, gate, plan_runs_set(&round->assignment, n));
+}
+
+/* Values come first, since no edge points back. */
+static void replay_fetch(struct predict_graph *graph, const struct predict_recorded *recorded)
+{
+    const struct predict_round *round = recorded->round;
+    const size_t words = round->assignment.words;
+    for (uint32_t i = 0; i < round->lowered.n_objects && !graph->failed; i++) {
+        const uint64_t *enter = replay_sets(round, i).enter;
+        for (int h = enter ? base_ranks_next(enter, words, 0) : -1; h >= 0 && !graph->failed;
+             h = base_ranks_next(enter, words, h + 1))
+            predict_fetch(graph, predict_round_object(recorded, i), h);
+    }
+}
+
+static void replay_begin(struct predict_program *p, const struct predict_recorded *recorded)
+{
+    struct predict_graph *graph = p->graph;
+    const struct predict_round *round = recorded->round;
+    const size_t words = round->assignment.words;
+    replay_fetch(graph, recorded);
+    replay_gates(graph, round, graph->began);
+    for (uint32_t i = 0; i < round->lowered.n_objects && !graph->failed; i++) {
+        const struct replay_sets sets = replay_sets(round, i);
+        const uint64_t *hosts = sets.end ? sets.end : sets.enter;
+        for (int h = base_ranks_next(hosts, words, 0); h >= 0 && !graph->failed;
+             h = base_ranks_next(hosts, words, h + 1))
+            predict_enter(graph, graph->began[h], predict_round_object(recorded, i), h, sets.enter,
+                          sets.end);
+    }
+}
+
+/* `before`: the first node of the last round. */
+static void replay_end(struct predict_program *p, const struct predict_recorded *recorded,
+                       uint32_t before)
+{
+    struct predict_graph *graph = p->graph;
+    const struct predict_round *round = recorded->round;
+    replay_gates(graph, round, graph->over);
+    for (uint32_t i = 0; i < round->n_nodes && !graph->failed; i++)
+        if (round->ends[i])
+            predict_edge(graph, before + i, graph->over[round->node[i].host]);
+    for (uint32_t i = 0; i < round->lowered.n_objects && !graph->failed; i++) {
+        const struct replay_sets sets = replay_sets(round, i);
+        predict_leave(graph, predict_round_object(recorded, i), sets.end ? sets.end : sets.enter,
+                      sets.end);
+    }
+}
+
+/* ---- Replays ---- */
 
 /* More rounds than the file can have are damage. A round without tasks counts as one task. */
 static bool round_is_seen(struct predict_program *p, const struct predict_recorded *recorded)
@@ -313,19 +234,31 @@ static void replay_simulate(struct predict_program *p, struct predict_recorded *
                             uint64_t max)
 {
     struct predict_graph *graph = p->graph;
+    const bool forked = recorded->round->forked;
+    uint32_t before = PREDICT_NONE;
     predict_op_replays(p, true);
-    replay_gate(p, recorded);
-    graph->replays = true;
+    replay_end_sums(p, recorded);
+    graph->replays = !forked;
     for (uint64_t i = 0; i < max && !graph->failed; i++) {
-        uint64_t first = p->forks + i * recorded->n_calls;
+        const uint64_t first = p->forks + i * recorded->n_calls;
         if (!round_ran(p, recorded, first) || !round_is_seen(p, recorded))
             break;
-        round_add(p, recorded, first);
+        if (!i && !forked)
+            replay_begin(p, recorded);
+        const uint32_t now = (uint32_t)graph->n_nodes;
+        if (forked)
+            round_fork_all(p, recorded, first);
+        else
+            round_add(p, recorded, first, before);
+        before = now;
         recorded->rounds++;
     }
-    graph->round = graph->flag = PREDICT_NONE;
-    replay_gate(p, recorded);
+    if (!forked && before != PREDICT_NONE && !graph->failed)
+        replay_end(p, recorded, before);
     graph->replays = false;
+    graph->round = PREDICT_NONE;
+    graph->decided = false;
+    replay_end_sums(p, recorded);
     predict_op_replays(p, false);
 }
 

@@ -1,35 +1,11 @@
-/* A round of a recorded graph, compiled from the words of a trace by the passes of plan/passes.h,
- * as in a run. They say which nodes it has, which hosts run them, which hosts need their results,
- * and in which phases these move. Mappings see the same rows as in a run, too. */
+/* A round of a recorded graph as the input of the runtime's passes (plan/passes.h), from the words
+ * of a trace. Mappings see the same rows as in a run; hosts get the same nodes (part.c). */
 #include "tools/predict/program.h"
 
 #include "runtime/base/memory.h"
-#include "runtime/base/rank_set.h"
 #include "runtime/map/tasks.h"
 
 #include <stdlib.h>
-#include <string.h>
-
-enum { MAX_PAIRS = 64 }; /* hosts; with more an exchange shares no packet with other messages */
-
-/* ---- A round as plain data ---- */
-
-static void round_fork(const struct predict_program *p, struct plan_source *source,
-                       struct plan_access *access, const struct predict_fork *fork)
-{
-    const bool set = fork->kernel == PREDICT_NONE;
-    source->fork[source->n_forks++] = (struct plan_source_fork){
-        .first = source->n_accesses,
-        .n = (uint32_t)fork->n,
-        .owner = set ? fork->object[0] : predict_owner(p->graph, fork, fork->object),
-        .rank = set || fork->at < 0 ? PLAN_BY_OWNER : fork->at % (int)p->graph->cluster->hosts,
-        .sets = set,
-        .replicated = !set && p->graph->run->kernel[fork->kernel].replicated,
-        .cost = set ? 0 : (double)fork->cost};
-    for (size_t k = 0; k < fork->n; k++)
-        access[source->n_accesses++] =
-            (struct plan_access){.object = fork->object[k], .mode = predict_fork_mode(p, fork, k)};
-}
 
 /* The bytes of a record's objects, and of a flag that is none of them. NULL without memory. */
 static size_t *round_bytes(const struct predict_program *p, const struct predict_recorded *recorded,
@@ -52,48 +28,20 @@ static size_t *round_bytes(const struct predict_program *p, const struct predict
     return bytes;
 }
 
-/* Takes the objects. False without memory; round_source_free is due all the same. */
-static bool round_source_make(const struct predict_program *p,
-                              const struct predict_recorded *recorded,
-                              struct predict_source *source)
-{
-    size_t uses = 0;
-    for (size_t i = 0; i < recorded->n_forks; i++)
-        uses += recorded->fork[i].n;
-    struct plan_source *plain = &source->plain;
-    plain->access = source->access = base_alloc((uses + 1) * sizeof *source->access);
-    plain->fork = base_alloc((recorded->n_forks + 1) * sizeof *plain->fork);
-    if (!plain->access || !plain->fork || !plain->bytes)
-        return false;
-    for (size_t i = 0; i < recorded->n_forks; i++)
-        round_fork(p, plain, source->access, &recorded->fork[i]);
-    return true;
-}
-
-static void round_source_free(struct predict_source *source)
-{
-    base_free(source->plain.fork);
-    base_free(source->plain.bytes);
-    base_free(source->access);
-}
-
 bool predict_round_tasks(const struct predict_program *p, const struct predict_recorded *recorded,
                          const uint32_t *block, struct map_tasks *tasks)
 {
-    struct predict_source source = {0};
+    struct plan_source source = recorded->source;
     struct plan_round round = {0};
     struct plan_tasks *all = &tasks->tasks;
     *tasks = (struct map_tasks){0};
-    source.plain.bytes =
-        round_bytes(p, recorded, PREDICT_NONE, &source.plain.n_objects, &source.plain.flag);
-    bool fine = round_source_make(p, recorded, &source) && plan_lower(&round, &source.plain) &&
-                plan_tasks_find(all, &round);
-    if (fine)
-        fine = (tasks->block = base_alloc((all->n + 1) * sizeof *tasks->block)) != NULL;
+    source.bytes = round_bytes(p, recorded, PREDICT_NONE, &source.n_objects, &source.flag);
+    bool fine = source.bytes && plan_lower(&round, &source) && plan_tasks_find(all, &round) &&
+                (tasks->block = base_alloc((all->n + 1) * sizeof *tasks->block)) != NULL;
     for (size_t i = 0; i < all->n && fine; i++)
         tasks->block[i] = all->owner[i] == PLAN_NONE ? DUITE_NO_BLOCK : block[all->owner[i]];
     plan_round_free(&round);
-    round_source_free(&source);
+    base_free(source.bytes);
     return fine;
 }
 
@@ -134,13 +82,10 @@ void predict_round_free(struct predict_round *round)
 {
     if (!round)
         return;
-    free(round->hop);
-    base_free(round->first_hop);
-    plan_messages_free(&round->messages);
+    predict_parts_free(round);
     plan_assignment_free(&round->assignment);
-    plan_round_free(&round->nodes);
-    round_source_free(&round->source);
-    base_free(round->path);
+    plan_round_free(&round->lowered);
+    base_free(round->source.bytes);
     base_free(round->home);
     base_free(round);
 }
@@ -148,61 +93,27 @@ void predict_round_free(struct predict_round *round)
 /* True if the round that is there is the wanted one. */
 static bool round_fits(const struct predict_round *there, const struct predict_round *wanted)
 {
-    const struct plan_source *a = &there->source.plain, *b = &wanted->source.plain;
-    bool fits = a->n_objects == b->n_objects && a->flag == b->flag;
+    const struct plan_source *a = &there->source, *b = &wanted->source;
+    bool fits =
+        a->n_objects == b->n_objects && a->flag == b->flag && there->n_hints == wanted->n_hints;
     for (size_t i = 0; i < b->n_objects && fits; i++)
         fits = a->bytes[i] == b->bytes[i] && there->home[i] == wanted->home[i];
     return fits;
 }
 
-static void hops_note(void *context, const struct plan_hop *hop)
-{
-    struct predict_round *round = context;
-    void *moved =
-        base_grow(round->hop, &round->hops_capacity, round->n_hops + 1, sizeof *round->hop);
-    round->hops_failed |= !moved;
-    if (!moved)
-        return;
-    round->hop = moved;
-    round->hop[round->n_hops++] =
-        (struct predict_hop){hop->round, (uint32_t)hop->from, (uint32_t)hop->to, (uint32_t)hop->trees.n};
-}
-
-/* The ways of sums that go from host to host. */
-static bool round_hops(struct predict_round *round)
-{
-    const size_t n = round->nodes.n_nodes;
-    round->first_hop = base_alloc_zero((n + 1) * sizeof *round->first_hop);
-    bool fine = round->first_hop;
-    for (size_t i = 0; i < n && fine; i++) {
-        round->first_hop[i] = round->n_hops;
-        if (round->messages.rounds[i])
-            fine = plan_relay_walk(&round->messages, i, hops_note, round);
-        round->first_hop[i + 1] = round->n_hops;
-    }
-    return fine && !round->hops_failed;
-}
-
-/* All passes but those of one rank; edges are for paths alone. */
 static bool round_compile(const struct predict_program *p, const struct predict_recorded *recorded,
                           struct predict_round *round)
 {
-    const struct predict_cluster *cluster = p->graph->cluster;
-    if (!round_source_make(p, recorded, &round->source))
-        return false;
-    const struct plan_source *source = &round->source.plain;
+    const struct plan_source *source = &round->source;
     struct round_ends *ends = base_alloc_zero((source->n_objects + 1) * sizeof *ends);
-    round->forked = ends && source_is_forked(source, ends);
+    round->forked = p->graph->plain || (ends && source_is_forked(source, ends));
     base_free(ends);
     if (!ends || round->forked)
         return ends;
-    bool fine = plan_lower(&round->nodes, source) &&
-                plan_assign(&round->assignment, &round->nodes, round->home, (int)cluster->hosts) &&
-                plan_messages_find(&round->messages, &round->assignment, PLAN_NO_RANK) &&
-                round_hops(round);
-    if (fine && cluster->scheduler->paths)
-        fine = plan_edges(&round->nodes) && (round->path = plan_paths_find(&round->nodes));
-    return fine;
+    return plan_lower(&round->lowered, source) &&
+           plan_assign(&round->assignment, &round->lowered, round->home,
+                       (int)p->graph->cluster->hosts) &&
+           predict_parts_make(p, recorded, round);
 }
 
 bool predict_round_prepare(struct predict_program *p, struct predict_recorded *recorded,
@@ -211,10 +122,12 @@ bool predict_round_prepare(struct predict_program *p, struct predict_recorded *r
     struct predict_round *round = base_alloc_zero(sizeof *round);
     bool fine = round;
     if (fine) {
-        struct plan_source *source = &round->source.plain;
+        struct plan_source *source = &round->source;
+        *source = recorded->source;
         source->bytes = round_bytes(p, recorded, flag, &source->n_objects, &source->flag);
         round->home = base_alloc((recorded->n_objects + 2) * sizeof *round->home);
         round->flag = flag;
+        round->n_hints = p->graph->n_hints;
         fine = source->bytes && round->home;
         for (size_t i = 0; i < source->n_objects && fine; i++)
             round->home[i] =
@@ -230,75 +143,4 @@ bool predict_round_prepare(struct predict_program *p, struct predict_recorded *r
     predict_round_free(recorded->round);
     recorded->round = round;
     return fine;
-}
-
-/* ---- Packets ---- */
-
-/* In a round all values from one host to another in a phase are one message, as in plan/messages.c.
- * The set of a round's packets is an open table. Outside of replays each message is one. */
-
-void predict_packets_clear(struct predict_graph *graph)
-{
-    if (graph->n_packets)
-        memset(graph->packet, 0, graph->packets_capacity * sizeof *graph->packet);
-    graph->n_packets = 0;
-}
-
-/* The key's place in the table, or for it. */
-static uint64_t *packet_place(uint64_t *table, size_t capacity, uint64_t key)
-{
-    uint64_t state = key;
-    size_t at = (size_t)duite_random(&state) & (capacity - 1);
-    while (table[at] && table[at] != key)
-        at = (at + 1) & (capacity - 1);
-    return &table[at];
-}
-
-static bool packet_room(struct predict_graph *graph)
-{
-    const size_t more = graph->packets_capacity ? 2 * graph->packets_capacity : 64;
-    uint64_t *table = calloc(more, sizeof *table);
-    if (!table)
-        return false;
-    for (size_t i = 0; i < graph->packets_capacity; i++)
-        if (graph->packet[i])
-            *packet_place(table, more, graph->packet[i]) = graph->packet[i];
-    free(graph->packet);
-    graph->packet = table;
-    graph->packets_capacity = more;
-    return true;
-}
-
-/* True if the message is the first of its packet. */
-static bool packet_leads(struct predict_graph *graph, uint32_t phase, uint32_t from, uint32_t to)
-{
-    const uint64_t hosts = graph->cluster->hosts;
-    const uint64_t key = 1 + (uint64_t)to + hosts * (from + hosts * phase);
-    if (2 * graph->n_packets >= graph->packets_capacity && !packet_room(graph)) {
-        graph->failed = true;
-        return true;
-    }
-    uint64_t *place = packet_place(graph->packet, graph->packets_capacity, key);
-    const bool first = !*place;
-    *place = key;
-    graph->n_packets += first;
-    return first;
-}
-
-int32_t predict_packet(struct predict_graph *graph, uint32_t phase, uint32_t from, uint32_t to)
-{
-    return !graph->replays || packet_leads(graph, phase, from, to);
-}
-
-int32_t predict_packets(struct predict_graph *graph, uint32_t phase, uint32_t from,
-                        const uint64_t *to, uint32_t n)
-{
-    const uint32_t hosts = graph->cluster->hosts;
-    int32_t packets = 0;
-    if (!graph->replays || hosts > MAX_PAIRS)
-        return (int32_t)n;
-    for (uint32_t host = 0; host < hosts; host++)
-        packets +=
-            host != from && base_ranks_has(to, (int)host) && packet_leads(graph, phase, from, host);
-    return packets;
 }

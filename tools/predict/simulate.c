@@ -16,33 +16,12 @@
 /* A host handles one message after the other, on whichever core. The latency includes the handling
  * of a single message, so a message only waits for those before it. Returns when the host comes to
  * the present one. */
-static double message_handle(struct predict_machine *m, uint32_t host, int32_t packets)
+static double message_handle(struct predict_machine *m, uint32_t host)
 {
-    if (packets <= 0) /* it travels with another message */
-        return m->now;
     const double begins = fmax(m->now, m->handler[host]);
-    m->handler[host] = begins + m->graph->message * (double)packets;
-    m->handled[host] += m->graph->message * (double)packets;
+    m->handler[host] = begins + m->graph->message;
+    m->handled[host] += m->graph->message;
     return begins;
-}
-
-/* The last message of all that a host sends or takes at once waits for the others; those from host
- * to host come one at a time. */
-static double exchange_send(struct predict_machine *m, const struct predict_node *exchange,
-                            double *flight)
-{
-    const double all = m->graph->message * (double)exchange->priority;
-    const double share = all / m->cluster->hosts;
-    double own = share, goes = m->now;
-    if (exchange->block || exchange->hops > 1) {
-        m->handled_by_all += 2 * share;
-    } else {
-        goes = message_handle(m, exchange->host, exchange->priority);
-        m->handled_by_all += share;
-        own = all;
-    }
-    return predict_exchange(&m->network, goes, exchange, flight) +
-           (exchange->hops > 1 ? 0 : fmax(0, own - m->graph->message));
 }
 
 /* A worker begins a task. Before that it does the work left for messages, if no core was idle, and
@@ -50,9 +29,8 @@ static double exchange_send(struct predict_machine *m, const struct predict_node
 static double worker_pay(struct predict_machine *m, uint32_t worker, uint32_t host)
 {
     const bool none_idle = m->state[worker] != IDLE && !m->idle[host];
-    double seconds = none_idle ? m->handled[host] + m->handled_by_all - m->paid[host] : 0;
+    double seconds = none_idle ? m->handled[host] : 0;
     m->handled[host] = 0;
-    m->paid[host] = m->handled_by_all;
     if (m->graph->look > 0 && m->now - m->looked[worker] >= PREDICT_LOOKS) {
         m->looked[worker] = m->now;
         seconds += m->graph->look;
@@ -155,6 +133,14 @@ static void node_task_ready(struct predict_machine *m, uint32_t node, uint32_t w
 
 /* ---- Nodes ---- */
 
+static double message_send(struct predict_machine *m, uint32_t node, double *flight)
+{
+    const struct predict_node *n = &m->graph->node[node];
+    const double begins = message_handle(m, n->host);
+    m->failed |= !predict_event_put(&m->events, begins + m->graph->message, node, PREDICT_LEFT);
+    return predict_message(&m->network, begins, n, flight);
+}
+
 static void machine_ready(struct predict_machine *m, uint32_t node, uint32_t worker)
 {
     const struct predict_node *n = &m->graph->node[node];
@@ -165,14 +151,8 @@ static void machine_ready(struct predict_machine *m, uint32_t node, uint32_t wor
     case PREDICT_TASK:
         node_task_ready(m, node, worker);
         return;
-    case PREDICT_EVERYWHERE:
-        end = m->now + m->graph->overhead + (double)n->seconds;
-        break;
     case PREDICT_MESSAGE:
-        end = predict_message(&m->network, message_handle(m, n->host, n->priority), n, &flight);
-        break;
-    case PREDICT_EXCHANGE:
-        end = exchange_send(m, n, &flight);
+        end = message_send(m, node, &flight);
         break;
     default:
         break;
@@ -185,10 +165,16 @@ static void machine_ready(struct predict_machine *m, uint32_t node, uint32_t wor
 static bool message_waits(struct predict_machine *m, uint32_t node)
 {
     const struct predict_node *n = &m->graph->node[node];
-    const double begins = message_handle(m, n->block, n->priority);
+    const double begins = message_handle(m, n->block);
     if (begins > m->now)
         m->failed |= !predict_event_put(&m->events, begins, node, PREDICT_NONE);
     return begins > m->now;
+}
+
+/* A node is over for the one that waits for it. */
+static void path_extend(struct predict_machine *m, uint32_t node, uint32_t to)
+{
+    m->path[to] = fmax(m->path[to], m->path[node] + (double)m->graph->node[node].seconds);
 }
 
 static void node_count_down(struct predict_machine *m, uint32_t node, uint32_t by, uint32_t worker)
@@ -302,6 +288,21 @@ static void worker_free(struct predict_machine *m, uint32_t worker)
     }
 }
 
+/* Nodes on one side of a message go on: those of its host when it has left, as if the node before
+ * the message had released them, all others when it has come. */
+static void message_release(struct predict_machine *m, uint32_t node, bool left)
+{
+    const struct predict_graph *graph = m->graph;
+    const struct predict_node *n = &graph->node[node];
+    for (uint32_t e = n->edge; e != PREDICT_NONE; e = graph->edge[e].next) {
+        const struct predict_node *to = &graph->node[graph->edge[e].to];
+        if ((to->host == n->host) != left)
+            continue;
+        path_extend(m, node, graph->edge[e].to);
+        node_count_down(m, graph->edge[e].to, left ? m->cause[node].by : node, PREDICT_NONE);
+    }
+}
+
 static void node_over(struct predict_machine *m, uint32_t node, uint32_t worker)
 {
     const struct predict_graph *graph = m->graph;
@@ -310,8 +311,14 @@ static void node_over(struct predict_machine *m, uint32_t node, uint32_t worker)
     m->latest = node;
     if (worker != PREDICT_NONE)
         m->last[worker / m->cluster->cores] = worker;
-    for (uint32_t e = graph->node[node].edge; e != PREDICT_NONE; e = graph->edge[e].next)
-        node_count_down(m, graph->edge[e].to, node, worker);
+    m->longest = fmax(m->longest, m->path[node] + (double)graph->node[node].seconds);
+    if (graph->node[node].kind == PREDICT_MESSAGE)
+        message_release(m, node, false);
+    else
+        for (uint32_t e = graph->node[node].edge; e != PREDICT_NONE; e = graph->edge[e].next) {
+            path_extend(m, node, graph->edge[e].to);
+            node_count_down(m, graph->edge[e].to, node, worker);
+        }
     if (worker != PREDICT_NONE)
         worker_free(m, worker);
     main_try(m);
@@ -325,7 +332,9 @@ static int machine_run(struct predict_machine *m)
         if (m->events.n && m->events.event[0].time < next) {
             predict_event_take(&m->events, &event);
             m->now = event.time;
-            if (event.worker != PREDICT_COMES)
+            if (event.worker == PREDICT_LEFT)
+                message_release(m, event.node, true);
+            else if (event.worker != PREDICT_COMES)
                 node_over(m, event.node, event.worker);
             else if (!message_waits(m, event.node))
                 node_over(m, event.node, PREDICT_NONE);

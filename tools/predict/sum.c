@@ -1,57 +1,70 @@
-/* Sums of a predicted run: each host that contributes combines its contributions, and sends one
- * piece to the host that adds up. A replay whose result is read on several hosts exchanges pieces,
- * and each of these hosts adds. A sum's cost on a host follows from the contributions and pieces
- * that it combines, not from its cost in the trace. */
+/* Sums of forked contributions: each host that contributes combines its own as far as the reduction
+ * tree allows (data/subtrees.h), and sends its subtrees to the object's home, which adds up. A
+ * sum's cost on a host follows from the contributions and subtrees that it combines, not from its
+ * cost in the trace. Sums of rounds are those of the runtime's passes (round.c). */
 #include "tools/predict/graph.h"
 
-#include "runtime/base/rank_set.h"
+#include "runtime/base/memory.h"
+#include "runtime/data/subtrees.h"
 #include "runtime/task/task.h"
 
-/* How many contributions each host has, in graph->count; returns the most that one has. */
-static uint32_t leaves_count(struct predict_graph *graph, uint32_t object)
+#include <stdlib.h>
+
+struct sum_leaf {
+    uint32_t host, first, node; /* first: its place in the tree */
+};
+
+static int leaf_compare(const void *left, const void *right)
 {
-    const struct predict_object *o = &graph->object[object];
-    uint32_t most = 0;
-    for (uint32_t i = o->leaves; i != PREDICT_NONE; i = graph->link[i].next) {
-        const uint32_t n = ++graph->count[graph->link[i].host];
-        most = n > most ? n : most;
-    }
-    return most;
+    const struct sum_leaf *a = left, *b = right;
+    return a->host != b->host ? (a->host > b->host) - (a->host < b->host)
+                              : (a->first > b->first) - (a->first < b->first);
 }
 
-/* Zeros the counts. Adds the merges that the sum took in the trace: one for each contribution, and
- * one for each piece from a rank to another that added up. Returns how many hosts contribute. */
-static uint32_t leaves_forget(struct predict_graph *graph, uint32_t object, bool all)
+/* The contributions by host, those of a host in fork order. NULL without memory. */
+static struct sum_leaf *leaves_by_host(struct predict_graph *graph, uint32_t object, size_t *n)
 {
-    const struct predict_object *o = &graph->object[object];
-    const double ranks = graph->run->n_ranks;
-    uint32_t hosts = 0;
-    for (uint32_t i = o->leaves; i != PREDICT_NONE; i = graph->link[i].next) {
-        hosts += graph->count[graph->link[i].host] != 0;
-        graph->count[graph->link[i].host] = 0;
-        graph->merges++;
+    const uint32_t newest = graph->object[object].leaves;
+    *n = 0;
+    for (uint32_t i = newest; i != PREDICT_NONE; i = graph->link[i].next)
+        ++*n;
+    struct sum_leaf *leaf = base_alloc(*n * sizeof *leaf + 1);
+    uint32_t first = (uint32_t)*n;
+    for (uint32_t i = newest; i != PREDICT_NONE && leaf; i = graph->link[i].next) {
+        first--;
+        leaf[first] = (struct sum_leaf){graph->link[i].host, first, graph->link[i].node};
     }
-    graph->merges += (ranks - 1) * (all ? ranks : 1);
-    return hosts;
+    if (leaf)
+        qsort(leaf, *n, sizeof *leaf, leaf_compare);
+    graph->failed |= !leaf;
+    return leaf;
 }
 
-/* A piece for each other host that contributes, and its message: in graph->piece by host. */
-static void pieces_make(struct predict_graph *graph, uint32_t object, uint32_t home)
+/* How many subtrees a host's n contributions make. `list` has room for them. */
+static size_t leaves_combine(const struct sum_leaf *leaf, size_t n, struct data_subtrees *list)
+{
+    list->n = 0;
+    for (size_t i = 0; i < n; i++)
+        data_subtrees_push(list, (struct data_subtree){.first = leaf[i].first}, NULL, NULL);
+    return list->n;
+}
+
+/* A host combines its n contributions, and sends `trees` subtrees. Returns the message. */
+static uint32_t pieces_send(struct predict_graph *graph, uint32_t object,
+                            const struct sum_leaf *leaf, size_t n, size_t trees)
 {
     const struct predict_object *o = &graph->object[object];
-    for (uint32_t i = o->leaves; i != PREDICT_NONE; i = graph->link[i].next)
-        graph->piece[graph->link[i].host] = PREDICT_NONE;
-    for (uint32_t i = o->leaves; i != PREDICT_NONE && !graph->failed; i = graph->link[i].next) {
-        uint32_t host = graph->link[i].host;
-        if (host == home)
-            continue;
-        if (graph->piece[host] == PREDICT_NONE) {
-            graph->piece[host] = predict_own_node(graph, PREDICT_TASK, host, TASK_PIECES, 0);
-            if (!graph->failed)
-                graph->node[graph->piece[host]].seconds = (float)graph->count[host];
-        }
-        predict_edge(graph, graph->link[i].node, graph->piece[host]);
-    }
+    uint32_t pieces = predict_own_node(graph, PREDICT_TASK, leaf->host, TASK_PIECES, 0);
+    uint32_t message =
+        predict_own_node(graph, PREDICT_MESSAGE, leaf->host, 0, (uint64_t)trees * o->bytes);
+    if (graph->failed)
+        return PREDICT_NONE;
+    graph->node[pieces].seconds = (float)n;
+    graph->node[message].block = (uint32_t)o->home;
+    for (size_t i = 0; i < n; i++)
+        predict_edge(graph, leaf[i].node, pieces);
+    predict_edge(graph, pieces, message);
+    return message;
 }
 
 /* Each contributor has a value of its own. */
@@ -63,139 +76,69 @@ static void edge_contribution(struct predict_graph *graph, uint32_t from, uint32
         graph->shown[from] += (float)graph->object[object].bytes;
 }
 
-/* The nodes that the sum waits for where it is made: pieces of other hosts come by message. */
-static void pieces_gather(struct predict_graph *graph, uint32_t object, uint32_t home, uint32_t sum)
+/* The sum waits for the home's own contributions, and for the messages of other hosts, which stand
+ * in place of their first contributions. */
+static void sum_add(struct predict_graph *graph, uint32_t object, const struct sum_leaf *leaf,
+                    size_t n, size_t combined)
 {
-    const struct predict_object *o = &graph->object[object];
-    for (uint32_t i = o->leaves; i != PREDICT_NONE && !graph->failed; i = graph->link[i].next) {
-        uint32_t host = graph->link[i].host;
-        if (host == home)
-            edge_contribution(graph, graph->link[i].node, sum, object);
-        else if (graph->piece[host] != PREDICT_NONE)
-            predict_edge(graph, graph->piece[host], sum);
-        if (host != home)
-            graph->piece[host] = PREDICT_NONE;
-    }
-}
-
-/* The pieces' messages take their places. */
-static void pieces_send(struct predict_graph *graph, uint32_t object, uint32_t home)
-{
-    const struct predict_object *o = &graph->object[object];
-    for (uint32_t i = o->leaves; i != PREDICT_NONE && !graph->failed; i = graph->link[i].next) {
-        uint32_t host = graph->link[i].host, piece = graph->piece[host];
-        if (host == home || graph->node[piece].kind == PREDICT_MESSAGE)
-            continue;
-        uint32_t message = predict_own_node(graph, PREDICT_MESSAGE, host, 0, o->bytes);
-        graph->node[message].block = home;
-        predict_edge(graph, piece, message);
-        graph->node[message].priority = predict_packet(graph, graph->phase[host], host, home);
-        graph->piece[host] = message;
-    }
-}
-
-/* Counts the copies and packets from host to host. Returns the most subtrees that one host takes.
- */
-static uint32_t hops_count(struct predict_graph *graph, struct predict_node *node)
-{
-    const struct predict_travel *travel = &graph->travel;
-    uint32_t most = 0;
-    int32_t packets = 0;
-    node->copies = 0;
-    for (size_t i = 0; i < travel->n_hops; i++) {
-        const struct predict_hop *hop = &travel->hop[i];
-        const uint32_t n = graph->count[hop->to] += hop->n;
-        most = n > most ? n : most;
-        node->copies += hop->n;
-        packets += predict_packet(graph, travel->sum_phase + hop->round, hop->from, hop->to);
-    }
-    for (size_t i = 0; i < travel->n_hops; i++)
-        graph->count[travel->hop[i].to] = 0;
-    node->placed = most;
-    node->priority = packets;
-    node->hops = travel->rounds;
-    return most;
-}
-
-/* Counts the pieces from contributing hosts to those that add up. Returns the most that one takes.
- */
-static uint32_t exchange_count(struct predict_graph *graph, uint32_t object,
-                               struct predict_node *node)
-{
-    const struct predict_object *o = &graph->object[object];
-    const size_t words = base_ranks_words((int)graph->cluster->hosts);
-    const uint64_t *to = graph->travel.runs;
-    const uint32_t receivers = base_ranks_count(to, words);
-    uint32_t senders = 0, within = 0, packets = 0;
-    base_ranks_clear(graph->among, words);
-    for (uint32_t i = o->leaves; i != PREDICT_NONE; i = graph->link[i].next) {
-        const uint32_t host = graph->link[i].host;
-        if (base_ranks_has(graph->among, (int)host))
-            continue;
-        base_ranks_add(graph->among, (int)host);
-        const bool adds = base_ranks_has(to, (int)host);
-        senders++;
-        within += adds;
-        packets += (uint32_t)predict_packets(graph, graph->phase[host], host, to, receivers - adds);
-    }
-    const uint32_t out = receivers - (within == senders), in = senders - (within == receivers);
-    node->copies = (uint64_t)senders * receivers - within;
-    node->placed = out > in ? out : in;
-    node->priority = (int32_t)packets;
-    node->hops = 1;
-    return in;
-}
-
-/* Each host sends its pieces to all others that add up. *most: the most that one of them takes. */
-static uint32_t pieces_exchange(struct predict_graph *graph, uint32_t object, uint32_t *most)
-{
-    const struct predict_object *o = &graph->object[object];
-    uint32_t exchange = predict_own_node(graph, PREDICT_EXCHANGE, 0, 0, o->bytes);
+    const uint32_t home = (uint32_t)graph->object[object].home;
+    const uint32_t fetched = predict_fetch(graph, object, (int)home);
+    uint32_t sum = predict_own_node(graph, PREDICT_TASK, home, TASK_COMBINE, 0);
     if (graph->failed)
-        return PREDICT_NONE;
-    graph->node[exchange].block = 1; /* all send */
-    for (uint32_t i = o->leaves; i != PREDICT_NONE; i = graph->link[i].next)
-        predict_edge(graph, graph->link[i].node, exchange);
-    *most = graph->travel.n_hops ? hops_count(graph, &graph->node[exchange])
-                                 : exchange_count(graph, object, &graph->node[exchange]);
-    return exchange;
+        return;
+    graph->node[sum].seconds = (float)combined;
+    predict_edge_value(graph, fetched, sum, object);
+    for (size_t i = 0; i < n; i++) {
+        if (leaf[i].host == home)
+            edge_contribution(graph, leaf[i].node, sum, object);
+        else if (!i || leaf[i - 1].host != leaf[i].host)
+            predict_edge(graph, leaf[i].node, sum);
+    }
+    predict_overwrite(graph, sum, object, (int)home);
+}
+
+void predict_reduce(struct predict_graph *graph, uint32_t object)
+{
+    struct predict_object *o = &graph->object[object];
+    size_t n, combined = 0;
+    struct sum_leaf *leaf = leaves_by_host(graph, object, &n);
+    struct data_subtrees list = {.at = base_alloc(n * sizeof *list.at + 1)};
+    graph->failed |= !list.at;
+    for (size_t i = 0, end = 0; i < n && !graph->failed; i = end) {
+        while (end < n && leaf[end].host == leaf[i].host)
+            end++;
+        const bool away = leaf[i].host != (uint32_t)o->home;
+        const size_t trees = away ? leaves_combine(leaf + i, end - i, &list) : end - i;
+        if (away)
+            leaf[i].node = pieces_send(graph, object, leaf + i, end - i, trees);
+        combined += trees;
+    }
+    if (!graph->failed)
+        sum_add(graph, object, leaf, n, combined);
+    predict_sum_count(graph, n, false);
+    o->leaves = PREDICT_NONE;
+    base_free(leaf);
+    base_free(list.at);
+}
+
+/* ---- Seconds ---- */
+
+/* One merge for each contribution, and one for each piece from a rank to another that added up. */
+void predict_sum_count(struct predict_graph *graph, size_t contributions, bool all)
+{
+    const double ranks = graph->run->n_ranks;
+    graph->merges += (double)contributions + (ranks - 1) * (all ? ranks : 1);
 }
 
 /* The seconds of a sum are merges until all sums of the trace are counted. */
 void predict_sums_take(struct predict_graph *graph, double seconds)
 {
+    static const uint32_t sums = TASK_TYPE_BIT(TASK_COMBINE) | TASK_TYPE_BIT(TASK_PIECES) |
+                                 TASK_TYPE_BIT(TASK_NODE_SUM) | TASK_TYPE_BIT(TASK_NODE_PARTIAL);
     const uint32_t first = graph->run->n_kernels;
     for (size_t i = 0; i < graph->n_nodes; i++) {
         struct predict_node *node = &graph->node[i];
-        if (node->kernel >= first &&
-            (node->kernel - first == TASK_COMBINE || node->kernel - first == TASK_PIECES ||
-             node->kernel - first == TASK_NODE_SUM))
+        if (node->kernel >= first && sums >> (node->kernel - first) & 1)
             node->seconds *= (float)seconds;
     }
-}
-
-void predict_reduce(struct predict_graph *graph, uint32_t object, int host)
-{
-    const bool all = host == PREDICT_ALL;
-    const uint32_t home = all ? 0 : (uint32_t)host, most = leaves_count(graph, object);
-    const uint32_t own = all ? most : graph->count[home];
-    uint32_t fetched = predict_fetch(graph, object, host), exchange = PREDICT_NONE;
-    if (!all) {
-        pieces_make(graph, object, home);
-        pieces_send(graph, object, home);
-    }
-    uint32_t taken = leaves_forget(graph, object, all) - (own > 0);
-    if (all)
-        exchange = pieces_exchange(graph, object, &taken);
-    uint32_t sum = predict_own_node(graph, all ? PREDICT_EVERYWHERE : PREDICT_TASK, home,
-                                    graph->replays ? TASK_NODE_SUM : TASK_COMBINE, 0);
-    if (graph->failed)
-        return;
-    graph->node[sum].seconds = (float)(own + taken);
-    predict_edge_value(graph, fetched, sum, object);
-    predict_edge(graph, exchange, sum);
-    if (!all)
-        pieces_gather(graph, object, home, sum);
-    predict_overwrite(graph, sum, object, host);
-    graph->object[object].leaves = PREDICT_NONE;
 }

@@ -82,6 +82,7 @@ static void any_clock(struct worker *worker, const struct task *task, struct wor
                       bool body, bool inlined)
 {
     struct work_ran ran = {.start = batch->start, .body = body, .inlined = inlined};
+    batch->tasks = 1;
     work_batch_end(worker, batch);
     ran.took = batch->took;
     ran.within = batch->took - batch->own;

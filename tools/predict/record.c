@@ -54,6 +54,7 @@ static bool recorded_fork(struct predict_program *p, struct predict_recorded *gr
         fork->object[k] = trace_words_next(&p->words);
         const duite_mode mode = predict_fork_mode(p, fork, k);
         p->damaged |= fork->object[k] >= graph->n_objects;
+        p->damaged |= mode == DUITE_NONE; /* more objects than parameters */
         p->damaged |= mode == DUITE_CW && p->graph->run->kernel[fork->kernel].replicated;
     }
     p->damaged |= fork->kernel == PREDICT_NONE && fork->n != 1;

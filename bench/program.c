@@ -1,8 +1,8 @@
 /* The table of programs is constant; configure says what is missing. */
 #include "bench/program.h"
 
-#include "tools/compare/environment.h"
 #include "bench/subject.h"
+#include "tools/compare/environment.h"
 
 #include <config.h>
 

@@ -1,8 +1,8 @@
 #ifndef BENCH_REPORT_H
 #define BENCH_REPORT_H
 
-#include "tools/compare/load.h"
 #include "bench/measure.h"
+#include "tools/compare/load.h"
 
 #include <stdio.h>
 

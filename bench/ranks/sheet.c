@@ -263,8 +263,8 @@ void sheet_pass(struct sheet *s, uint32_t block, const struct solve_scalars *sca
     solve_pack(t->n_halo, t->halo, rows.q, s->halo[1 - from] + sheet_halo(s, block));
 }
 
-/* The runtime's tree over the sums of tasks first .. first + n - 1 (runtime/data/subtrees.h), left in
- * sum[first]. */
+/* The runtime's tree over the sums of tasks first .. first + n - 1 (runtime/data/subtrees.h), left
+ * in sum[first]. */
 static void add_tree(double (*sum)[SOLVE_DOTS], size_t first, size_t n)
 {
     size_t left = 1;

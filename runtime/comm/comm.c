@@ -1,6 +1,6 @@
 /* Start, stop and progress. Letters wait in a lock-free stack, linked by themselves, until a thread
- * polls. The holder of the lock calls MPI; a poll delivers its findings
- * after it has let go of the lock. */
+ * polls. The holder of the lock calls MPI; a poll delivers its findings after it has let go of the
+ * lock. */
 #include "runtime/comm/comm.h"
 
 #include "runtime/base/clock.h"
@@ -255,6 +255,6 @@ bool comm_look(struct comm *comm, const struct comm_looker *looker)
         looker->sending(looker->context, letter);
     }
     comm_channels_look(comm, looker);
-    comm_unlock(comm); /* the next poll sends the posts made meanwhile */
+    comm_let_go(comm);
     return true;
 }

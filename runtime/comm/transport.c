@@ -338,7 +338,7 @@ void comm_give_up(struct comm *comm, struct worker *worker)
     struct comm_target target;
     comm_hold(comm);
     comm_channels_give_up(comm);
-    comm_unlock(comm);
+    comm_let_go(comm);
     while (comm_arrivals_close(&comm->arrivals, &target))
         message_deliver_to(comm, worker, target, NULL);
     comm->setup.owner->lost(comm->setup.context, worker);

@@ -36,8 +36,8 @@ void task_forget(struct task_graph *graph, struct worker *worker, struct data_ob
     object->current = NULL;
 }
 
-static int copy_send(struct task_graph *graph, struct worker *worker, struct data_object *object,
-                     int to)
+static int fetch_send(struct task_graph *graph, struct worker *worker, struct data_object *object,
+                      int to)
 {
     struct data_version *version = task_local(graph, object);
     struct task *task = version ? task_new(&graph->root, TASK_SEND, 1, sizeof *task->send) : NULL;
@@ -49,7 +49,7 @@ static int copy_send(struct task_graph *graph, struct worker *worker, struct dat
     return DUITE_OK;
 }
 
-static int copy_await(struct task_graph *graph, struct worker *worker, struct data_object *object)
+static int fetch_await(struct task_graph *graph, struct worker *worker, struct data_object *object)
 {
     struct data_version *version = data_object_version(object);
     if (!version) {
@@ -71,9 +71,9 @@ int task_fetch(struct task_graph *graph, struct worker *worker, struct data_obje
     if (!task_note_copy(graph, object, to))
         return DUITE_OK;
     if (graph->rank == to)
-        return copy_await(graph, worker, object);
+        return fetch_await(graph, worker, object);
     if (graph->rank == object->holder)
-        return copy_send(graph, worker, object, to);
+        return fetch_send(graph, worker, object, to);
     return DUITE_OK;
 }
 

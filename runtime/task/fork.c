@@ -328,8 +328,7 @@ int task_fork_any(struct task_scope *scope, struct worker *worker,
     return fork_checked(&call, options, args);
 }
 
-/* ---- The short way of tasks that other ranks run. Compiled for plain kernels and for others ----
- */
+/* ---- The short way of tasks that other ranks run: once for plain kernels, once for others ---- */
 
 /* Finds the objects, and hashes their names. False: one needs a second look; nothing was done. */
 ACCESS_INLINE bool elsewhere_take(struct task_scope *scope, const struct task_fixed *fixed,

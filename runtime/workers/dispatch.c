@@ -65,7 +65,7 @@ static void message_sent(void *graph, struct worker *worker, struct comm_letter 
     work_finish(graph, worker, letter->sender);
 }
 
-static bool message_came(void *graph, struct worker *worker, struct data_packet *packet)
+static bool message_unexpected(void *graph, struct worker *worker, struct data_packet *packet)
 {
     if (packet->kind == DATA_OFFLOADED)
         return offload_arrived(graph, worker, packet);
@@ -90,7 +90,7 @@ static void message_through(void *graph, struct worker *worker, struct comm_chan
 
 const struct comm_owner work_messages = {.packet = task_send_packet,
                                          .sent = message_sent,
-                                         .came = message_came,
+                                         .came = message_unexpected,
                                          .lost = messages_lost,
                                          .broke = messages_broke,
                                          .pack = plan_channel_pack,

@@ -111,17 +111,17 @@ bool comm_poll(struct comm *comm, struct worker *worker)
 
 /* Nobody watches for a standstill here, nothing moves between ranks, and no replay runs. */
 #include "runtime/workers/internal.h"
-#define work_balance_start(balance, pool)        nothing()
-#define work_balance_stop(pool)                  nothing()
-#define work_begins(worker, task)                ((void)(task), false)
-#define work_learn(worker, task, ticks)          ((void)(task))
-#define work_grant(worker)                       ((void)(worker))
-#define work_request(worker, idle)               ((void)(idle))
-#define work_standstill_start(pool, seconds)     nothing()
-#define work_standstill_stop(pool)               nothing()
-#define work_waits(pool, why)                    ((void)(why))
-#define work_enters(worker, task)                NULL
-#define work_leaves(worker, below)               ((void)(below))
+#define work_balance_start(balance, pool)    nothing()
+#define work_balance_stop(pool)              nothing()
+#define work_begins(worker, task)            ((void)(task), false)
+#define work_learn(worker, task, ticks)      ((void)(task))
+#define work_grant(worker)                   ((void)(worker))
+#define work_request(worker, idle)           ((void)(idle))
+#define work_standstill_start(pool, seconds) nothing()
+#define work_standstill_stop(pool)           nothing()
+#define work_waits(pool, why)                ((void)(why))
+#define work_enters(worker, task)            NULL
+#define work_leaves(worker, below)           ((void)(below))
 
 /* No other program runs on these cores. */
 #include <sys/resource.h>

@@ -9,7 +9,7 @@
 #include <stdio.h>
 #include <unistd.h>
 
-static int rank, ranks, counts; /* whether MPI's calls are counted: in this case */
+static int rank, ranks, counts;         /* whether MPI's calls are counted: in this case */
 static _Atomic int control, values;     /* packets that this rank sent */
 static _Atomic long collectives, bytes; /* calls, and bytes of one rank in them */
 

@@ -25,13 +25,13 @@ struct access_look {
 
 ACCESS_INLINE struct access_look access_look_of(struct task_scope *scope, bool nested, bool closed)
 {
-    const struct data_table *table = &scope->graph->table;
-    return (struct access_look){.scope = scope,
-                                .first = table->object,
-                                .n_slots = table->n_slots,
-                                .mark = scope->forks + 1,
-                                .nested = nested,
-                                .closed = closed};
+    struct access_look look = {
+        .scope = scope, .mark = scope->forks + 1, .nested = nested, .closed = closed};
+    if (!nested) { /* a body has no look at the table, which the main program may move meanwhile */
+        look.first = scope->graph->table.object;
+        look.n_slots = scope->graph->table.n_slots;
+    }
+    return look;
 }
 
 /* The object, marked as named by this fork; NULL if it needs a second look, or was named before. */

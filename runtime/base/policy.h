@@ -8,8 +8,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* What schedulers, mappings and balancers have in common: they are found by name, and those that
- * are not built in are watched. */
+/* Schedulers, mappings and balancers alike are found by name, and watched unless they are built
+ * in. */
 
 /* ---- Policies by name ---- */
 
@@ -35,7 +35,7 @@ const void *base_policy_find(const struct base_policies *policies, const char *n
 /* The names of those for tests, ended by NULL. */
 const char *const *base_policy_test_names(const struct base_policies *policies);
 
-/* Whether the table is one of the built-in ones, those for tests among them. */
+/* True if the table is one of the built-in ones, those for tests among them. */
 bool base_policy_is_ours(const struct base_policies *policies, const void *table);
 
 /* ---- Marks ---- */

@@ -17,7 +17,7 @@
 static int comm_prepare(struct comm *comm)
 {
     if (MPI_Comm_rank(comm->mpi, &comm->rank) || MPI_Comm_size(comm->mpi, &comm->n_ranks))
-        return base_error(DUITE_E_MPI, "MPI_Comm_size failed");
+        return base_error(DUITE_E_MPI, "MPI_Comm_rank or MPI_Comm_size failed");
     comm->words = base_alloc((size_t)(comm->n_ranks + 1) * sizeof *comm->words);
     if (!comm_control_start(&comm->control, comm->n_ranks) || !comm_calls_start(&comm->calls) ||
         !comm->words)

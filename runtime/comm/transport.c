@@ -270,7 +270,8 @@ static void message_deliver_unexpected(struct comm *comm, struct worker *worker,
     if (!dropped && comm->setup.owner->came(comm->setup.context, worker, packet))
         return;
     data_packet_free(packet);
-    comm_broke_memory(comm, "a task of another rank");
+    if (!dropped)
+        comm_broke_memory(comm, "a task of another rank");
 }
 
 static void message_deliver_value(struct comm *comm, struct worker *worker,

@@ -189,7 +189,7 @@ static int migration_ask_balancer(struct migration *m, uint64_t *next)
 {
     int code = api_graphs_each(m->rt, migration_add_traffic, m);
     if (!code)
-        code = map_traffic_end(&m->moves.traffic, &m->moves.blocks);
+        code = map_traffic_end(&m->moves.traffic, m->moves.blocks.n);
     if (!code)
         *next = migration_ask(m);
     return code;

@@ -38,6 +38,26 @@ void base_free(void *memory)
     free(memory);
 }
 
+static size_t array_lines(const struct base_array *array)
+{
+    return (array->bytes + BASE_LINE - 1) / BASE_LINE * BASE_LINE;
+}
+
+void *base_arrays(const struct base_array *list)
+{
+    size_t bytes = 0;
+    for (const struct base_array *array = list; array->pointer; array++)
+        bytes += array_lines(array);
+    char *const block = base_alloc(bytes), *part = block;
+    for (const struct base_array *array = list; block && array->pointer; array++) {
+        memcpy(array->pointer, &part, sizeof part);
+        if (array->zero)
+            memset(part, 0, array->bytes);
+        part += array_lines(array);
+    }
+    return block;
+}
+
 /* The new capacity of an array; 0: it would exceed the address space. */
 static size_t grown_capacity(size_t capacity, size_t needed, size_t element, size_t factor)
 {

@@ -1,7 +1,9 @@
 #ifndef DUITE_BASE_MEMORY_H
 #define DUITE_BASE_MEMORY_H
 
+#include <stdbool.h>
 #include <stddef.h>
+#include <string.h>
 
 #pragma GCC visibility push(hidden) /* called directly: no other library can replace them */
 
@@ -26,27 +28,36 @@ static inline void *base_grow(void *array, size_t *capacity, size_t needed, size
 /* The same for an array that begins at a cache line. Freed by base_free. */
 void *base_grow_lines(void *array, size_t *capacity, size_t needed, size_t element);
 
-/* Arrays that come and go together, in one block: so most of them lie in large pages. A function
- * that takes them one after the other is called twice: with `block` NULL it adds up `bytes`; then
- * base_cut_begin gets the block, and the second call cuts it. The caller frees the block by
- * base_free. */
-struct base_cut {
-    char *block;
+/* The same for the array that a pointer points at. False without memory: nothing has changed. */
+#define BASE_GROW(array, capacity, needed)                                                         \
+    base_grow_pointer(&(array), &(capacity), needed, sizeof *(array))
+static inline bool base_grow_pointer(void *pointer, size_t *capacity, size_t needed, size_t element)
+{
+    void *array;
+    memcpy(&array, pointer, sizeof array);
+    array = base_grow(array, capacity, needed, element);
+    if (array)
+        memcpy(pointer, &array, sizeof array);
+    return array;
+}
+
+/* Arrays that come and go together, in one block: so most of them lie in large pages. The list ends
+ * with a row without a pointer. Sets each pointer; returns the block, which base_free frees, or
+ * NULL without memory. */
+struct base_array {
+    void *pointer; /* to a pointer */
     size_t bytes;
+    bool zero;
 };
-static inline void *base_cut(struct base_cut *cut, size_t n, size_t element)
-{
-    void *part = cut->block ? cut->block + cut->bytes : NULL;
-    cut->bytes += (n * element + BASE_LINE - 1) / BASE_LINE * BASE_LINE;
-    return part;
-}
-/* The block; NULL without memory. */
-static inline void *base_cut_begin(struct base_cut *cut)
-{
-    cut->block = base_alloc(cut->bytes);
-    cut->bytes = 0;
-    return cut->block;
-}
+#define BASE_ARRAY(pointer, n)                                                                     \
+    {                                                                                              \
+        &(pointer), (n) * sizeof *(pointer), false                                                 \
+    }
+#define BASE_ZEROS(pointer, n)                                                                     \
+    {                                                                                              \
+        &(pointer), (n) * sizeof *(pointer), true                                                  \
+    }
+void *base_arrays(const struct base_array *list);
 
 /* Prefetches a line that will soon be written: it becomes this core's own, so the first write, or
  * an atomic operation behind it, need not wait. */

@@ -17,7 +17,7 @@ const char *data_type_name(duite_type type)
 
 /* ---- The built-in laws ---- */
 
-/* left[i] becomes `result` of l = left[i] and r = right[i]. */
+/* left[i] becomes `result` of l = left[i] and r = right[i], of type T. */
 #define EACH(T, result)                                                                            \
     do {                                                                                           \
         T *lefts = left;                                                                           \
@@ -28,73 +28,40 @@ const char *data_type_name(duite_type type)
         }                                                                                          \
     } while (0)
 
-#define FILL(T, value)                                                                             \
-    do {                                                                                           \
-        T *elements = values;                                                                      \
-        for (size_t i = 0; i < count; i++)                                                         \
-            elements[i] = (value);                                                                 \
-    } while (0)
-
-static void law_add(void *left, const void *right, size_t count, duite_type type)
-{
-    if (type == DUITE_I32)
-        EACH(uint32_t, l + r);
-    else if (type == DUITE_I64)
-        EACH(uint64_t, l + r);
-    else if (type == DUITE_F32)
-        EACH(float, l + r);
-    else
-        EACH(double, l + r);
-}
-
+/* A law's function for the four types of numbers. */
+#define COMBINE(name, I32, I64, integers, floats)                                                  \
+    static void name(void *left, const void *right, size_t count, duite_type type)                 \
+    {                                                                                              \
+        if (type == DUITE_I32)                                                                     \
+            EACH(I32, integers);                                                                   \
+        else if (type == DUITE_I64)                                                                \
+            EACH(I64, integers);                                                                   \
+        else if (type == DUITE_F32)                                                                \
+            EACH(float, floats);                                                                   \
+        else                                                                                       \
+            EACH(double, floats);                                                                  \
+    }
+COMBINE(law_add, uint32_t, uint64_t, l + r, l + r)
 /* The left one stays unless the right one is smaller (larger), or not a number. */
-static void law_lesser(void *left, const void *right, size_t count, duite_type type)
-{
-    if (type == DUITE_I32)
-        EACH(int32_t, r < l ? r : l);
-    else if (type == DUITE_I64)
-        EACH(int64_t, r < l ? r : l);
-    else if (type == DUITE_F32)
-        EACH(float, r < l || r != r ? r : l);
-    else
-        EACH(double, r < l || r != r ? r : l);
-}
+COMBINE(law_lesser, int32_t, int64_t, r < l ? r : l, r < l || r != r ? r : l)
+COMBINE(law_greater, int32_t, int64_t, r > l ? r : l, r > l || r != r ? r : l)
 
-static void law_greater(void *left, const void *right, size_t count, duite_type type)
-{
-    if (type == DUITE_I32)
-        EACH(int32_t, r > l ? r : l);
-    else if (type == DUITE_I64)
-        EACH(int64_t, r > l ? r : l);
-    else if (type == DUITE_F32)
-        EACH(float, r > l || r != r ? r : l);
-    else
-        EACH(double, r > l || r != r ? r : l);
-}
-
-static void law_fill_largest(void *values, size_t count, duite_type type)
-{
-    if (type == DUITE_I32)
-        FILL(int32_t, INT32_MAX);
-    else if (type == DUITE_I64)
-        FILL(int64_t, INT64_MAX);
-    else if (type == DUITE_F32)
-        FILL(float, HUGE_VALF);
-    else
-        FILL(double, HUGE_VAL);
-}
-
-static void law_fill_smallest(void *values, size_t count, duite_type type)
-{
-    if (type == DUITE_I32)
-        FILL(int32_t, INT32_MIN);
-    else if (type == DUITE_I64)
-        FILL(int64_t, INT64_MIN);
-    else if (type == DUITE_F32)
-        FILL(float, -HUGE_VALF);
-    else
-        FILL(double, -HUGE_VAL);
-}
+/* Fills with the value of each type. */
+#define NEUTRAL(name, i32, i64, f32, f64)                                                          \
+    static void name(void *left, size_t count, duite_type type)                                    \
+    {                                                                                              \
+        for (size_t i = 0; i < count; i++)                                                         \
+            if (type == DUITE_I32)                                                                 \
+                ((int32_t *)left)[i] = i32;                                                        \
+            else if (type == DUITE_I64)                                                            \
+                ((int64_t *)left)[i] = i64;                                                        \
+            else if (type == DUITE_F32)                                                            \
+                ((float *)left)[i] = f32;                                                          \
+            else                                                                                   \
+                ((double *)left)[i] = f64;                                                         \
+    }
+NEUTRAL(law_fill_largest, INT32_MAX, INT64_MAX, HUGE_VALF, HUGE_VAL)
+NEUTRAL(law_fill_smallest, INT32_MIN, INT64_MIN, -HUGE_VALF, -HUGE_VAL)
 
 const duite_law duite_sum = {.name = "sum", .combine = law_add};
 const duite_law duite_min = {.name = "min", .neutral = law_fill_largest, .combine = law_lesser};

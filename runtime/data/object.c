@@ -48,27 +48,16 @@ void data_table_stop(struct data_table *table)
 /* Room for one more slot and its bookkeeping. */
 static int table_reserve(struct data_table *table)
 {
-    void *moved = base_grow_lines(table->object, &table->capacity, (size_t)table->n_slots + 1,
-                                  sizeof *table->object);
+    const size_t slots = (size_t)table->n_slots + 1;
+    void *moved = base_grow_lines(table->object, &table->capacity, slots, sizeof *table->object);
     if (!moved)
         return base_no_memory("the table of objects");
     table->object = moved;
-    moved = base_grow(table->copies, &table->copies_capacity,
-                      ((size_t)table->n_slots + 1) * table->words, sizeof *table->copies);
-    if (!moved)
-        return base_no_memory("the table of objects");
-    table->copies = moved;
-    moved = base_grow(table->vacant, &table->vacant_capacity, (size_t)table->n_slots + 1,
-                      sizeof *table->vacant);
-    if (!moved)
-        return base_no_memory("the table of objects");
-    table->vacant = moved;
-    moved = base_grow(table->unsettled, &table->unsettled_capacity, table->n_unsettled + 1,
-                      sizeof *table->unsettled);
-    if (!moved)
-        return base_no_memory("the table of objects");
-    table->unsettled = moved;
-    return DUITE_OK;
+    return BASE_GROW(table->copies, table->copies_capacity, slots * table->words) &&
+                   BASE_GROW(table->vacant, table->vacant_capacity, slots) &&
+                   BASE_GROW(table->unsettled, table->unsettled_capacity, table->n_unsettled + 1)
+               ? DUITE_OK
+               : base_no_memory("the table of objects");
 }
 
 int data_object_refuse(duite_type type, size_t count, size_t max)
@@ -88,10 +77,12 @@ int data_object_refuse(duite_type type, size_t count, size_t max)
     return DUITE_OK;
 }
 
-int data_object_new(struct data_table *table, duite_type type, size_t count, duite_object *name)
+static int object_add(struct data_table *table, duite_type type, size_t count, size_t max,
+                      bool sized, duite_object *name)
 {
+    const size_t size = data_type_size(type);
     *name = (duite_object){0, 0};
-    int code = data_object_check(type, count, count);
+    int code = data_object_check(type, count, max);
     if (!code)
         code = table_reserve(table);
     if (code)
@@ -105,10 +96,11 @@ int data_object_new(struct data_table *table, duite_type type, size_t count, dui
     uint32_t generation = object->generation + 1;
     *object = (struct data_object){.generation = generation,
                                    .type = type,
+                                   .sized = sized,
                                    .count = count,
-                                   .bytes = count * data_type_size(type),
-                                   .max = count,
-                                   .room = count * data_type_size(type),
+                                   .bytes = count * size,
+                                   .max = max,
+                                   .room = max * size,
                                    .home = -1,
                                    .hint = (uint32_t)table->n_unsettled,
                                    .holder = -1};
@@ -119,20 +111,15 @@ int data_object_new(struct data_table *table, duite_type type, size_t count, dui
     return DUITE_OK;
 }
 
+int data_object_new(struct data_table *table, duite_type type, size_t count, duite_object *name)
+{
+    return object_add(table, type, count, count, false, name);
+}
+
 int data_object_new_sized(struct data_table *table, duite_type type, size_t count, size_t max,
                           duite_object *name)
 {
-    *name = (duite_object){0, 0};
-    int code = data_object_check(type, count, max);
-    if (!code)
-        code = data_object_new(table, type, max, name);
-    if (code)
-        return code;
-    struct data_object *object = &table->object[name->slot];
-    object->sized = true;
-    object->count = count;
-    object->bytes = count * data_type_size(type);
-    return DUITE_OK;
+    return object_add(table, type, count, max, true, name);
 }
 
 struct data_object *data_object_missing(const struct data_table *table, duite_object name)

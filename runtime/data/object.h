@@ -152,12 +152,6 @@ void data_object_join(struct data_table *table, uint32_t slot, uint32_t leader);
 /* All objects have homes: forgets their hints. */
 void data_hints_forget(struct data_table *table);
 
-static inline duite_object data_object_name(const struct data_table *table,
-                                            const struct data_object *object)
-{
-    return (duite_object){(uint32_t)(object - table->object), object->generation};
-}
-
 #pragma GCC visibility pop
 
 #endif

@@ -47,7 +47,7 @@ static bool block_add(struct map_blocks *blocks, struct block_entry **table,
     return true;
 }
 
-int map_blocks_find(const struct data_table *table, struct map_blocks *blocks)
+static int blocks_find(const struct data_table *table, struct map_blocks *blocks)
 {
     struct block_entry *entries = base_alloc((table->n_alive + 1) * sizeof *entries),
                        *by_key = NULL;
@@ -64,13 +64,6 @@ int map_blocks_find(const struct data_table *table, struct map_blocks *blocks)
     return fine ? DUITE_OK : base_no_memory("the blocks of objects");
 }
 
-void map_blocks_free(struct map_blocks *blocks)
-{
-    base_free(blocks->block);
-    base_free(blocks->of);
-    *blocks = (struct map_blocks){0};
-}
-
 /* ---- Traffic ---- */
 
 /* The bytes that recorded tasks read from blocks other than their own, and that would travel from
@@ -79,11 +72,8 @@ void map_blocks_free(struct map_blocks *blocks)
 
 static bool traffic_add_edge(struct map_traffic *traffic, uint32_t from, uint32_t to, double bytes)
 {
-    void *moved =
-        base_grow(traffic->edge, &traffic->capacity, traffic->n + 1, sizeof *traffic->edge);
-    if (!moved)
+    if (!BASE_GROW(traffic->edge, traffic->capacity, traffic->n + 1))
         return false;
-    traffic->edge = moved;
     traffic->edge[traffic->n++] = (struct map_edge){from, to, bytes};
     return true;
 }
@@ -117,34 +107,39 @@ int map_traffic_add(struct map_traffic *traffic, const struct map_blocks *blocks
     return fine ? DUITE_OK : base_no_memory("the blocks of objects");
 }
 
+/* By bytes last: so the sum of equal edges has the same bits on every rank. */
 static int edge_compare(const void *a, const void *b)
 {
     const struct map_edge *x = a, *y = b;
     if (x->from != y->from)
         return x->from < y->from ? -1 : 1;
-    return x->to < y->to ? -1 : x->to > y->to;
+    if (x->to != y->to)
+        return x->to < y->to ? -1 : 1;
+    return x->bytes < y->bytes ? -1 : x->bytes > y->bytes;
 }
 
-int map_traffic_end(struct map_traffic *traffic, const struct map_blocks *blocks)
+int map_traffic_end(struct map_traffic *traffic, size_t n_blocks)
 {
-    traffic->start = base_alloc_zero((blocks->n + 1) * sizeof *traffic->start);
-    traffic->neighbour = base_alloc(traffic->n * sizeof *traffic->neighbour + 1);
-    traffic->bytes = base_alloc(traffic->n * sizeof *traffic->bytes + 1);
-    if (!traffic->start || !traffic->neighbour || !traffic->bytes)
+    const struct base_array arrays[] = {BASE_ZEROS(traffic->start, n_blocks + 1),
+                                        BASE_ARRAY(traffic->neighbour, traffic->n),
+                                        BASE_ARRAY(traffic->bytes, traffic->n),
+                                        {0}};
+    traffic->memory = base_arrays(arrays);
+    if (!traffic->memory)
         return base_no_memory("the blocks of objects");
     if (traffic->n)
         qsort(traffic->edge, traffic->n, sizeof *traffic->edge, edge_compare);
     size_t n = 0;
     for (size_t i = 0; i < traffic->n; i++) {
         const struct map_edge *edge = &traffic->edge[i];
-        if (!i || edge_compare(edge, edge - 1)) {
+        if (!i || edge->from != edge[-1].from || edge->to != edge[-1].to) {
             traffic->start[edge->from + 1]++;
             traffic->neighbour[n] = edge->to;
             traffic->bytes[n++] = 0;
         }
         traffic->bytes[n - 1] += edge->bytes;
     }
-    for (size_t i = 0; i < blocks->n; i++)
+    for (size_t i = 0; i < n_blocks; i++)
         traffic->start[i + 1] += traffic->start[i];
     return DUITE_OK;
 }
@@ -152,9 +147,7 @@ int map_traffic_end(struct map_traffic *traffic, const struct map_blocks *blocks
 void map_traffic_free(struct map_traffic *traffic)
 {
     free(traffic->edge);
-    base_free(traffic->start);
-    base_free(traffic->neighbour);
-    base_free(traffic->bytes);
+    base_free(traffic->memory);
     *traffic = (struct map_traffic){0};
 }
 
@@ -163,16 +156,18 @@ void map_traffic_free(struct map_traffic *traffic)
 int map_moves_new(const struct data_table *table, struct map_moves *moves)
 {
     *moves = (struct map_moves){0};
-    int code = map_blocks_find(table, &moves->blocks);
+    int code = blocks_find(table, &moves->blocks);
     if (code)
         return code;
     const size_t n = moves->blocks.n + 1;
-    moves->seconds = base_alloc_zero(n * sizeof *moves->seconds);
-    moves->bytes = base_alloc_zero(n * sizeof *moves->bytes);
-    moves->fixed = base_alloc_zero(n);
-    moves->home = base_alloc(n * sizeof *moves->home);
-    moves->workers = base_alloc_zero((size_t)table->n_ranks * sizeof *moves->workers);
-    if (!moves->seconds || !moves->bytes || !moves->fixed || !moves->home || !moves->workers)
+    const struct base_array arrays[] = {BASE_ZEROS(moves->seconds, n),
+                                        BASE_ZEROS(moves->bytes, n),
+                                        BASE_ZEROS(moves->fixed, n),
+                                        BASE_ARRAY(moves->home, n),
+                                        BASE_ZEROS(moves->workers, (size_t)table->n_ranks),
+                                        {0}};
+    moves->memory = base_arrays(arrays);
+    if (!moves->memory)
         return base_no_memory("blocks that move");
     for (size_t i = 0; i < moves->blocks.n; i++) {
         moves->home[i] = moves->blocks.block[i].home;
@@ -183,13 +178,10 @@ int map_moves_new(const struct data_table *table, struct map_moves *moves)
 
 void map_moves_free(struct map_moves *moves)
 {
-    map_blocks_free(&moves->blocks);
+    base_free(moves->blocks.block);
+    base_free(moves->blocks.of);
     map_traffic_free(&moves->traffic);
-    base_free(moves->seconds);
-    base_free(moves->bytes);
-    base_free(moves->fixed);
-    base_free(moves->home);
-    base_free(moves->workers);
+    base_free(moves->memory);
 }
 
 bool map_moves_is_allowed(const struct map_moves *moves, size_t block, int n_ranks)

@@ -23,10 +23,6 @@ struct map_blocks {
     uint32_t *of;            /* by slot: its block, or MAP_NO_BLOCK: the slot is free */
 };
 
-/* All objects have homes. Errors: memory; map_blocks_free is due all the same. */
-int map_blocks_find(const struct data_table *table, struct map_blocks *blocks);
-void map_blocks_free(struct map_blocks *blocks);
-
 /* The bytes that tasks running for one block read from objects of another: undirected, in
  * compressed rows. Zeroed to begin with. */
 struct map_traffic {
@@ -35,7 +31,8 @@ struct map_traffic {
         double bytes;
     } * edge;
     size_t n, capacity;
-    size_t *start; /* blocks->n + 1 */
+    void *memory;  /* of the rows */
+    size_t *start; /* n_blocks + 1 */
     uint32_t *neighbour;
     double *bytes;
 };
@@ -47,12 +44,13 @@ int map_traffic_add(struct map_traffic *traffic, const struct map_blocks *blocks
  */
 bool map_traffic_read(struct map_traffic *traffic, uint32_t own, uint32_t other, double bytes);
 /* Makes the rows, each neighbour once. Called last, after all additions. Errors: memory. */
-int map_traffic_end(struct map_traffic *traffic, const struct map_blocks *blocks);
+int map_traffic_end(struct map_traffic *traffic, size_t n_blocks);
 void map_traffic_free(struct map_traffic *traffic);
 
 /* Blocks that may move, as a policy sees them, and the homes that it wants. The runtime fills in
  * its measurements, the predictor those of a trace. */
 struct map_moves {
+    void *memory; /* of the arrays */
     struct map_blocks blocks;
     struct map_traffic traffic;
     double *seconds;      /* n: in bodies; zeros to begin with */

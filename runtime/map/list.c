@@ -13,6 +13,7 @@
 #include <stdlib.h>
 
 struct list_plan {
+    void *memory; /* of the arrays */
     const duite_task_graph *graph;
     int *home;
     bool *placed;    /* by block */
@@ -119,30 +120,19 @@ static void list_place(struct list_plan *plan, size_t task)
 static bool list_allocate(struct list_plan *plan)
 {
     const duite_task_graph *graph = plan->graph;
-    size_t n = graph->n + 1, ranks = (size_t)graph->n_ranks;
-    plan->first = base_alloc_zero((ranks + 1) * sizeof *plan->first);
-    if (!plan->first)
-        return false;
+    const size_t n = graph->n + 1, ranks = (size_t)graph->n_ranks;
+    size_t workers = 0;
     for (size_t r = 0; r < ranks; r++)
+        workers += graph->workers[r];
+    const struct base_array arrays[] = {
+        BASE_ZEROS(plan->first, ranks + 1), BASE_ZEROS(plan->placed, graph->n_blocks + 1),
+        BASE_ZEROS(plan->upward, n),        BASE_ARRAY(plan->order, n),
+        BASE_ARRAY(plan->end, n),           BASE_ARRAY(plan->rank, n),
+        BASE_ZEROS(plan->free, workers),    {0}};
+    plan->memory = base_arrays(arrays);
+    for (size_t r = 0; r < ranks && plan->memory; r++)
         plan->first[r + 1] = plan->first[r] + graph->workers[r];
-    plan->placed = base_alloc_zero((graph->n_blocks + 1) * sizeof *plan->placed);
-    plan->upward = base_alloc_zero(n * sizeof *plan->upward);
-    plan->order = base_alloc(n * sizeof *plan->order);
-    plan->end = base_alloc(n * sizeof *plan->end);
-    plan->rank = base_alloc(n * sizeof *plan->rank);
-    plan->free = base_alloc_zero(plan->first[ranks] * sizeof *plan->free);
-    return plan->placed && plan->upward && plan->order && plan->end && plan->rank && plan->free;
-}
-
-static void list_release(struct list_plan *plan)
-{
-    base_free(plan->first);
-    base_free(plan->placed);
-    base_free(plan->upward);
-    base_free(plan->order);
-    base_free(plan->end);
-    base_free(plan->rank);
-    base_free(plan->free);
+    return plan->memory;
 }
 
 static int list_map_tasks(const duite_task_graph *graph, int *home)
@@ -157,7 +147,7 @@ static int list_map_tasks(const duite_task_graph *graph, int *home)
         for (size_t i = 0; i < graph->n; i++)
             list_place(&plan, plan.order[i]);
     }
-    list_release(&plan);
+    base_free(plan.memory);
     return fine ? DUITE_OK : base_no_memory("the mapping list");
 }
 

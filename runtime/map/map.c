@@ -1,4 +1,5 @@
-/* The built-in mappings by name (the rows of map.h), and the calls of any mapping. */
+/* The built-in mappings by name (the rows of map.h), the calls of any mapping, and the mappings
+ * that look at no graph. */
 #include "runtime/map/map.h"
 
 #include "runtime/base/error.h"
@@ -51,3 +52,68 @@ int map_ask_tasks(const struct map_policy *mapping, const duite_task_graph *grap
     base_mark_end(mapping->mark);
     return code;
 }
+
+/* ---- Mappings ---- */
+
+/* block: contiguous ranges of objects, in the order they were made, of equal weight. Ignores hints;
+ * few messages if neighbours are made one after another. */
+
+/* Object i goes to the rank where the middle of its weight falls; fewer objects than ranks go
+ * round. */
+static int block_map(const duite_object_graph *graph, int n_ranks, uint64_t seed, int *home)
+{
+    (void)seed;
+    double sum = 0, before = 0;
+    for (size_t i = 0; i < graph->n; i++)
+        sum += graph->weight[i];
+    for (size_t i = 0; i < graph->n; i++) {
+        double middle = sum > 0 ? (before + 0.5 * graph->weight[i]) / sum : 0;
+        int rank = (int)(middle * n_ranks);
+        if (graph->n < (size_t)n_ranks)
+            rank = (int)((graph->before + i) % (uint64_t)n_ranks);
+        home[i] = rank < n_ranks ? rank : n_ranks - 1;
+        before += graph->weight[i];
+    }
+    return 0;
+}
+
+const duite_mapping map_block = {
+    .name = "block",
+    .summary = "contiguous ranges of equal weight, in the order the objects were made",
+    .map = block_map,
+};
+
+/* cyclic: object after object to rank after rank. Balances numbers but separates all neighbours:
+ * the worst sensible case. */
+
+static int cyclic_map(const duite_object_graph *graph, int n_ranks, uint64_t seed, int *home)
+{
+    (void)seed;
+    for (size_t i = 0; i < graph->n; i++)
+        home[i] = (int)((graph->before + i) % (uint64_t)n_ranks);
+    return 0;
+}
+
+const duite_mapping map_cyclic = {
+    .name = "cyclic",
+    .summary = "object after object to rank after rank",
+    .map = cyclic_map,
+};
+
+/* random: a random rank for each object, as by hashing. The least that a mapping with knowledge has
+ * to beat. */
+
+static int random_map(const duite_object_graph *graph, int n_ranks, uint64_t seed, int *home)
+{
+    for (size_t i = 0; i < graph->n; i++) {
+        uint64_t state = (seed << 40) ^ (graph->before + i);
+        home[i] = (int)(duite_random(&state) % (uint64_t)n_ranks);
+    }
+    return 0;
+}
+
+const duite_mapping map_random = {
+    .name = "random",
+    .summary = "each object to a random rank, from the seed",
+    .map = random_map,
+};

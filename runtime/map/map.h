@@ -6,8 +6,7 @@
 
 #include <duite_policy.h>
 
-/* The built-in mappings. A mapping is one file, which defines its table, and one row here; the
- * first is the default. */
+/* The built-in mappings. A mapping is a table and a row here; the first is the default. */
 #define MAP_ROWS(ROW)                                                                              \
     ROW(metis)                                                                                     \
     ROW(block)                                                                                     \

@@ -2,7 +2,8 @@
  * same on every rank. When homes are needed, the graph of leaders, in the order they were made,
  * goes to the mapping, and objects colocated with a leader get its home. Every rank comes to the
  * same homes; no rank asks another. All objects without a home are alive, since a free settles them
- * first. The work is proportional to these objects and their hints, not to all objects. */
+ * first. The work is that of these objects and their hints, not of all objects. */
+#include "runtime/map/blocks.h"
 #include "runtime/map/map.h"
 
 #include "runtime/base/error.h"
@@ -105,46 +106,31 @@ int map_colocate(struct data_table *table, duite_object object, duite_object lea
 
 /* ---- Homes ---- */
 
-#define NO_NODE SIZE_MAX
-
 struct nodes {
-    duite_object_graph graph; /* points into the rest */
-    size_t *node; /* by place in `unsettled`: its leader's node; NO_NODE: that is settled */
-    double *weight, *edge_weight;
-    size_t *start, *end; /* by node: its row of edges while it grows */
-    uint32_t *neighbour;
+    void *memory; /* of the arrays by place in `unsettled` */
+    size_t n;
+    uint32_t *node; /* its leader's node; MAP_NO_BLOCK: that is settled */
+    double *weight; /* by node, as is `home` */
     int *home;
+    struct map_traffic traffic; /* between nodes, as hinted */
 };
-
-static void nodes_free(struct nodes *nodes)
-{
-    base_free(nodes->node);
-    base_free(nodes->weight);
-    base_free(nodes->edge_weight);
-    base_free(nodes->start);
-    base_free(nodes->end);
-    base_free(nodes->neighbour);
-    base_free(nodes->home);
-}
 
 static int nodes_allocate(const struct data_table *table, struct nodes *nodes)
 {
-    size_t max = table->n_unsettled;
-    nodes->node = base_alloc(max * sizeof *nodes->node);
-    nodes->weight = base_alloc_zero(max * sizeof *nodes->weight);
-    nodes->home = base_alloc_zero(max * sizeof *nodes->home);
-    nodes->start = base_alloc_zero((max + 1) * sizeof *nodes->start);
-    nodes->end = base_alloc_zero((max + 1) * sizeof *nodes->end);
-    if (!nodes->node || !nodes->weight || !nodes->home || !nodes->start || !nodes->end)
-        return base_no_memory("the mapping");
-    return DUITE_OK;
+    const size_t max = table->n_unsettled;
+    const struct base_array arrays[] = {BASE_ARRAY(nodes->node, max),
+                                        BASE_ZEROS(nodes->weight, max),
+                                        BASE_ZEROS(nodes->home, max),
+                                        {0}};
+    nodes->memory = base_arrays(arrays);
+    return nodes->memory ? DUITE_OK : base_no_memory("the mapping");
 }
 
 /* The node of the object in a slot. */
-static size_t node_of(const struct data_table *table, const struct nodes *nodes, uint32_t slot)
+static uint32_t node_of(const struct data_table *table, const struct nodes *nodes, uint32_t slot)
 {
     const struct data_hint *hint = data_hint_find(table, slot);
-    return hint ? nodes->node[hint - table->unsettled] : NO_NODE;
+    return hint ? nodes->node[hint - table->unsettled] : MAP_NO_BLOCK;
 }
 
 /* Lets each object follow the end of its chain of leaders directly: an object that follows none, or
@@ -169,96 +155,40 @@ static void nodes_number(const struct data_table *table, struct nodes *nodes)
 {
     const struct data_hint *hint = table->unsettled;
     for (size_t i = 0; i < table->n_unsettled; i++)
-        nodes->node[i] = hint[i].leader == hint[i].slot ? nodes->graph.n++ : NO_NODE;
+        nodes->node[i] = hint[i].leader == hint[i].slot ? (uint32_t)nodes->n++ : MAP_NO_BLOCK;
     for (size_t i = 0; i < table->n_unsettled; i++) {
         nodes->node[i] = node_of(table, nodes, hint[i].leader);
-        if (nodes->node[i] != NO_NODE)
+        if (nodes->node[i] != MAP_NO_BLOCK)
             nodes->weight[nodes->node[i]] += hint[i].weight;
     }
 }
 
-static void nodes_count_edge(struct nodes *nodes, size_t a, size_t b, double weight)
+static int nodes_join(const struct data_table *table, struct nodes *nodes)
 {
-    (void)b;
-    (void)weight;
-    nodes->start[a + 1]++;
-}
-
-/* Adds an edge, or to one that is there. Rows are short: a block has few neighbours. */
-static void nodes_add_edge(struct nodes *nodes, size_t a, size_t b, double weight)
-{
-    size_t i = nodes->start[a];
-    while (i < nodes->end[a] && nodes->neighbour[i] != b)
-        i++;
-    if (i == nodes->end[a]) {
-        nodes->neighbour[i] = (uint32_t)b;
-        nodes->edge_weight[i] = 0;
-        nodes->end[a]++;
-    }
-    nodes->edge_weight[i] += weight;
-}
-
-/* Calls `visit` for each hinted edge between different nodes, both ways. */
-static void edges_each(const struct data_table *table, struct nodes *nodes,
-                       void (*visit)(struct nodes *, size_t, size_t, double))
-{
-    for (size_t i = 0; i < table->n_unsettled; i++) {
+    bool fine = true;
+    for (size_t i = 0; i < table->n_unsettled && fine; i++) {
         const struct data_hint *hint = &table->unsettled[i];
-        for (size_t j = 0; j < hint->n; j++) {
-            size_t a = nodes->node[i], b = node_of(table, nodes, hint->neighbour[j]);
-            if (a == NO_NODE || b == NO_NODE || a == b)
-                continue;
-            visit(nodes, a, b, hint->edge_weight[j]);
-            visit(nodes, b, a, hint->edge_weight[j]);
-        }
+        for (size_t j = 0; j < hint->n && fine; j++)
+            fine =
+                map_traffic_read(&nodes->traffic, nodes->node[i],
+                                 node_of(table, nodes, hint->neighbour[j]), hint->edge_weight[j]);
     }
-}
-
-/* Closes the gaps that repeated edges left. */
-static void edges_compress(struct nodes *nodes)
-{
-    size_t n = nodes->graph.n, to = 0;
-    for (size_t a = 0; a < n; a++) {
-        size_t from = nodes->start[a], length = nodes->end[a] - from;
-        memmove(nodes->neighbour + to, nodes->neighbour + from, length * sizeof *nodes->neighbour);
-        memmove(nodes->edge_weight + to, nodes->edge_weight + from,
-                length * sizeof *nodes->edge_weight);
-        nodes->start[a] = to;
-        to += length;
-    }
-    nodes->start[n] = to;
-}
-
-static int edges_build(const struct data_table *table, struct nodes *nodes)
-{
-    size_t n = nodes->graph.n;
-    edges_each(table, nodes, nodes_count_edge);
-    for (size_t a = 0; a < n; a++) {
-        nodes->start[a + 1] += nodes->start[a];
-        nodes->end[a] = nodes->start[a];
-    }
-    nodes->neighbour = base_alloc(nodes->start[n] * sizeof *nodes->neighbour);
-    nodes->edge_weight = base_alloc(nodes->start[n] * sizeof *nodes->edge_weight);
-    if (!nodes->neighbour || !nodes->edge_weight)
-        return base_no_memory("the mapping");
-    edges_each(table, nodes, nodes_add_edge);
-    edges_compress(nodes);
-    nodes->graph = (duite_object_graph){.n = n,
-                                        .before = table->settled,
-                                        .weight = nodes->weight,
-                                        .start = nodes->start,
-                                        .neighbour = nodes->neighbour,
-                                        .edge_weight = nodes->edge_weight};
-    return DUITE_OK;
+    return fine ? map_traffic_end(&nodes->traffic, nodes->n) : base_no_memory("the mapping");
 }
 
 static int nodes_ask(const struct data_table *table, struct nodes *nodes,
                      const struct map_policy *mapping, uint64_t seed)
 {
-    int code = map_ask(mapping, &nodes->graph, table->n_ranks, seed, nodes->home);
+    const duite_object_graph graph = {.n = nodes->n,
+                                      .before = table->settled,
+                                      .weight = nodes->weight,
+                                      .start = nodes->traffic.start,
+                                      .neighbour = nodes->traffic.neighbour,
+                                      .edge_weight = nodes->traffic.bytes};
+    const int code = map_ask(mapping, &graph, table->n_ranks, seed, nodes->home);
     if (code)
         return code;
-    for (size_t i = 0; i < nodes->graph.n; i++)
+    for (size_t i = 0; i < nodes->n; i++)
         if (nodes->home[i] < 0 || nodes->home[i] >= table->n_ranks)
             return base_error(DUITE_E_ARGUMENT, "mapping %s sends an object to rank %d of %d",
                               mapping->own->name, nodes->home[i], table->n_ranks);
@@ -279,7 +209,7 @@ static void nodes_settle(struct data_table *table, const struct nodes *nodes)
     for (size_t i = 0; i < table->n_unsettled; i++)
         data_object_join(table, table->unsettled[i].slot, table->unsettled[i].leader);
     data_hints_forget(table);
-    table->settled += nodes->graph.n;
+    table->settled += nodes->n;
 }
 
 int map_settle(struct data_table *table, const struct map_policy *mapping, uint64_t seed)
@@ -293,11 +223,12 @@ int map_settle(struct data_table *table, const struct map_policy *mapping, uint6
         nodes_number(table, &nodes);
     }
     if (!code && table->n_ranks > 1)
-        code = edges_build(table, &nodes);
+        code = nodes_join(table, &nodes);
     if (!code && table->n_ranks > 1)
         code = nodes_ask(table, &nodes, mapping, seed);
     if (!code)
         nodes_settle(table, &nodes);
-    nodes_free(&nodes);
+    map_traffic_free(&nodes.traffic);
+    base_free(nodes.memory);
     return code;
 }

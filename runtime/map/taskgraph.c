@@ -2,62 +2,30 @@
  * its tasks. Blocks are tied by the bytes that tasks of one read from tasks of the other, in a
  * round and from round to round. As in Zara's Athapascan (2001), the program unfolds the graph
  * itself and need not describe it. Until a graph is replayed, homes are those of `metis`. */
+#include "runtime/map/blocks.h"
 #include "runtime/map/map.h"
 
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
 
-#include <stdlib.h>
-
-struct tie {
-    uint32_t from, to;
-    double bytes;
-};
-
 struct taskgraph {
+    void *memory;    /* of the arrays */
     uint32_t *node;  /* by block: its vertex, or DUITE_NO_BLOCK: no task runs for it */
     uint32_t *block; /* by vertex */
-    double *weight, *tied;
-    size_t *start;
-    uint32_t *neighbour;
+    double *weight;
     int *part;
-    struct tie *tie;
-    size_t n, n_ties;
+    struct map_traffic traffic; /* between vertices */
+    size_t n;
 };
 
-static int tie_compare(const void *a, const void *b)
+static bool taskgraph_room(struct taskgraph *work, size_t n_blocks)
 {
-    const struct tie *x = a, *y = b;
-    if (x->from != y->from)
-        return x->from < y->from ? -1 : 1;
-    return x->to < y->to ? -1 : x->to > y->to;
-}
-
-static bool taskgraph_allocate(struct taskgraph *work, const duite_task_graph *graph)
-{
-    size_t blocks = graph->n_blocks + 1, ties = 2 * graph->start[graph->n] + 1;
-    work->node = base_alloc(blocks * sizeof *work->node);
-    work->block = base_alloc(blocks * sizeof *work->block);
-    work->weight = base_alloc_zero(blocks * sizeof *work->weight);
-    work->start = base_alloc_zero((blocks + 1) * sizeof *work->start);
-    work->part = base_alloc(blocks * sizeof *work->part);
-    work->tie = base_alloc(ties * sizeof *work->tie);
-    work->neighbour = base_alloc(ties * sizeof *work->neighbour);
-    work->tied = base_alloc(ties * sizeof *work->tied);
-    return work->node && work->block && work->weight && work->start && work->part && work->tie &&
-           work->neighbour && work->tied;
-}
-
-static void taskgraph_release(struct taskgraph *work)
-{
-    base_free(work->node);
-    base_free(work->block);
-    base_free(work->weight);
-    base_free(work->start);
-    base_free(work->part);
-    base_free(work->tie);
-    base_free(work->neighbour);
-    base_free(work->tied);
+    const struct base_array arrays[] = {BASE_ARRAY(work->node, n_blocks + 1),
+                                        BASE_ARRAY(work->block, n_blocks + 1),
+                                        BASE_ZEROS(work->weight, n_blocks + 1),
+                                        BASE_ARRAY(work->part, n_blocks + 1),
+                                        {0}};
+    return (work->memory = base_arrays(arrays)) != NULL;
 }
 
 /* Blocks without tasks, and fixed ones, stay where they are. */
@@ -77,52 +45,39 @@ static void taskgraph_weigh(struct taskgraph *work, const duite_task_graph *grap
     }
 }
 
-static void taskgraph_tie(struct taskgraph *work, const duite_task_graph *graph)
+static bool taskgraph_tie(struct taskgraph *work, const duite_task_graph *graph)
 {
-    for (size_t i = 0; i < graph->n; i++)
-        for (size_t e = graph->start[i]; e < graph->start[i + 1]; e++) {
-            uint32_t a = graph->block[i], b = graph->block[graph->from[e]];
-            if (a == b || a == DUITE_NO_BLOCK || b == DUITE_NO_BLOCK)
-                continue;
-            a = work->node[a], b = work->node[b];
-            if (a == DUITE_NO_BLOCK || b == DUITE_NO_BLOCK)
-                continue;
-            work->tie[work->n_ties++] = (struct tie){a, b, graph->bytes[e]};
-            work->tie[work->n_ties++] = (struct tie){b, a, graph->bytes[e]};
+    bool fine = true;
+    for (size_t i = 0; i < graph->n && fine; i++)
+        for (size_t e = graph->start[i]; e < graph->start[i + 1] && fine; e++) {
+            const uint32_t a = graph->block[i], b = graph->block[graph->from[e]];
+            if (a != b && a != DUITE_NO_BLOCK && b != DUITE_NO_BLOCK)
+                fine =
+                    map_traffic_read(&work->traffic, work->node[a], work->node[b], graph->bytes[e]);
         }
-    if (work->n_ties)
-        qsort(work->tie, work->n_ties, sizeof *work->tie, tie_compare);
-    size_t n = 0;
-    for (size_t i = 0; i < work->n_ties; i++) {
-        if (!i || tie_compare(&work->tie[i], &work->tie[i - 1])) {
-            work->start[work->tie[i].from + 1]++;
-            work->neighbour[n] = work->tie[i].to;
-            work->tied[n++] = 0;
-        }
-        work->tied[n - 1] += work->tie[i].bytes;
-    }
-    for (size_t i = 0; i < work->n; i++)
-        work->start[i + 1] += work->start[i];
+    return fine && !map_traffic_end(&work->traffic, work->n);
 }
 
 static int taskgraph_map_tasks(const duite_task_graph *graph, int *home)
 {
     struct taskgraph work = {0};
-    int code =
-        taskgraph_allocate(&work, graph) ? DUITE_OK : base_no_memory("the mapping taskgraph");
-    if (!code) {
+    int code = DUITE_OK;
+    if (taskgraph_room(&work, graph->n_blocks))
         taskgraph_weigh(&work, graph);
-        taskgraph_tie(&work, graph);
+    if (!work.memory || !taskgraph_tie(&work, graph))
+        code = base_no_memory("the mapping taskgraph");
+    if (!code) {
         const duite_object_graph blocks = {.n = work.n,
                                            .weight = work.weight,
-                                           .start = work.start,
-                                           .neighbour = work.neighbour,
-                                           .edge_weight = work.tied};
+                                           .start = work.traffic.start,
+                                           .neighbour = work.traffic.neighbour,
+                                           .edge_weight = work.traffic.bytes};
         code = map_by_metis(&blocks, graph->n_ranks, graph->seed, work.part);
     }
     for (size_t i = 0; i < work.n && !code; i++)
         home[work.block[i]] = work.part[i];
-    taskgraph_release(&work);
+    map_traffic_free(&work.traffic);
+    base_free(work.memory);
     return code;
 }
 

@@ -23,75 +23,60 @@ void plan_assignment_free(struct plan_assignment *a)
 {
     base_free(a->memory);
     base_free(a->need);
-    base_free(a->sets.few);
     free(a->sets.word);
 }
 
 /* ---- Sets of ranks ---- */
 
-/* A new row of zeros. Without memory sets sets->failed and returns 0, the row of the empty set,
- * which the caller must not change. */
-static uint32_t sets_add_row(struct plan_rank_sets *sets)
+/* A new set, empty. Without memory sets sets->failed and returns 0, the empty set, which the caller
+ * must not change. */
+static uint32_t sets_add(struct plan_rank_sets *sets)
 {
-    void *moved = base_grow(sets->word, &sets->words_capacity, (sets->n_rows + 1) * sets->words,
-                            sizeof *sets->word);
-    sets->failed |= !moved;
-    if (!moved)
+    if (!BASE_GROW(sets->word, sets->words_capacity, (sets->n + 1) * sets->words)) {
+        sets->failed = true;
         return 0;
-    sets->word = moved;
-    base_ranks_clear(sets->word + sets->n_rows * sets->words, sets->words);
-    return (uint32_t)sets->n_rows++;
+    }
+    base_ranks_clear(sets->word + sets->n * sets->words, sets->words);
+    return (uint32_t)sets->n++;
+}
+
+/* The words of a set that may grow. */
+static uint64_t *sets_words(const struct plan_rank_sets *sets, uint32_t set)
+{
+    return sets->word + set * sets->words;
 }
 
 static bool sets_begin(struct plan_rank_sets *sets, int n_ranks)
 {
-    const size_t few = (size_t)n_ranks + 1;
     *sets = (struct plan_rank_sets){.n_ranks = n_ranks, .words = base_ranks_words(n_ranks)};
-    sets->few = base_alloc(few * sizeof *sets->few);
-    for (size_t i = 0; i < few && sets->few; i++)
-        sets->few[i] = PLAN_NONE;
-    if (sets->few)
-        sets->few[0] = sets_add_row(sets);
-    return sets->few && !sets->failed;
+    sets_add(sets);
+    for (int rank = 0; rank < n_ranks && !sets->failed; rank++) {
+        const uint32_t alone = sets_add(sets);
+        if (alone)
+            base_ranks_add(sets_words(sets, alone), rank);
+    }
+    return !sets->failed;
 }
 
 /* The set of one rank. */
-static uint32_t sets_alone(struct plan_rank_sets *sets, int rank)
+static uint32_t sets_alone(int rank)
 {
-    const uint32_t set = (uint32_t)rank + 1;
-    if (sets->few[set] == PLAN_NONE) {
-        const uint32_t row = sets_add_row(sets);
-        if (sets->failed)
-            return 0;
-        base_ranks_add(sets->word + row * sets->words, rank);
-        sets->few[set] = row;
-    }
-    return set;
+    return (uint32_t)rank + 1;
 }
 
-/* A set that may grow, with the ranks of `from`; `from` itself without memory. */
-static uint32_t sets_copy(struct plan_rank_sets *sets, uint32_t from)
-{
-    const uint32_t row = sets_add_row(sets);
-    if (sets->failed)
-        return from;
-    memcpy(sets->word + row * sets->words, plan_ranks(sets, from),
-           sets->words * sizeof *sets->word);
-    return (uint32_t)sets->n_ranks + 1 + row;
-}
-
-/* Part of sets_join: compares and joins rows. */
+/* Part of sets_join: compares and joins rows. A set that is shared is copied before it grows. */
 static bool sets_join_more(struct plan_rank_sets *sets, uint32_t *to, uint32_t from)
 {
-    const uint32_t few = (uint32_t)sets->n_ranks + 1;
     if (base_ranks_within(plan_ranks(sets, from), plan_ranks(sets, *to), sets->words))
         return false;
-    if (*to < few)
-        *to = sets_copy(sets, *to);
-    if (sets->failed)
-        return false;
-    return base_ranks_join(sets->word + (*to - few) * sets->words, plan_ranks(sets, from),
-                           sets->words);
+    if (*to <= (uint32_t)sets->n_ranks) {
+        const uint32_t copy = sets_add(sets);
+        if (sets->failed)
+            return false;
+        memcpy(sets_words(sets, copy), plan_ranks(sets, *to), sets->words * sizeof *sets->word);
+        *to = copy;
+    }
+    return base_ranks_join(sets_words(sets, *to), plan_ranks(sets, from), sets->words);
 }
 
 /* Adds the ranks of `from`. Returns whether *to grew. */
@@ -107,9 +92,9 @@ static inline bool sets_join(struct plan_rank_sets *sets, uint32_t *to, uint32_t
 
 static uint32_t sets_all(struct plan_rank_sets *sets)
 {
-    const uint32_t all = sets_copy(sets, 0);
-    for (int rank = 0; rank < sets->n_ranks && !sets->failed; rank++)
-        base_ranks_add(sets->word + (all - (uint32_t)sets->n_ranks - 1) * sets->words, rank);
+    const uint32_t all = sets_add(sets);
+    for (int rank = 0; rank < sets->n_ranks && all; rank++)
+        base_ranks_add(sets_words(sets, all), rank);
     return all;
 }
 
@@ -117,20 +102,13 @@ static bool assign_room(struct plan_assignment *a)
 {
     const struct plan_round *round = a->round;
     size_t nodes = round->n_nodes + 1, uses = round->n_uses + 1, objects = round->n_objects + 1;
-    struct base_cut cut = {0};
-    for (int cuts = 0; cuts < 2; cuts++) {
-        if (cuts && !(a->memory = base_cut_begin(&cut)))
-            return false;
-        a->home = base_cut(&cut, objects, sizeof *a->home);
-        a->at = base_cut(&cut, nodes, sizeof *a->at);
-        a->set = base_cut(&cut, nodes, sizeof *a->set);
-        a->reads = base_cut(&cut, uses, sizeof *a->reads);
-        a->makes = base_cut(&cut, uses, sizeof *a->makes);
-        a->version = base_cut(&cut, uses + objects, sizeof *a->version);
-        a->last = base_cut(&cut, objects, sizeof *a->last);
-    }
-    memset(a->set, 0, nodes * sizeof *a->set);
-    return sets_begin(&a->sets, a->n_ranks);
+    const struct base_array arrays[] = {
+        BASE_ARRAY(a->home, objects), BASE_ARRAY(a->at, nodes),
+        BASE_ZEROS(a->set, nodes),    BASE_ARRAY(a->reads, uses),
+        BASE_ARRAY(a->makes, uses),   BASE_ARRAY(a->version, uses + objects),
+        BASE_ARRAY(a->last, objects), {0}};
+    a->memory = base_arrays(arrays);
+    return a->memory && sets_begin(&a->sets, a->n_ranks);
 }
 
 /* ---- Versions ---- */
@@ -200,7 +178,7 @@ static void assign_node(struct assigning *s, size_t n)
     if (at == PLAN_MANY)
         s->many[s->n_many++] = (uint32_t)n;
     else
-        a->set[n] = sets_alone(&a->sets, at);
+        a->set[n] = sets_alone(at);
     if (node->kind == PLAN_FLAG)
         a->set[n] = sets_all(&a->sets);
 }
@@ -264,7 +242,7 @@ static void assign_all(struct assigning *s)
     for (size_t k = 0; k < s->n_many; k++) { /* results that no task needs are kept at home */
         size_t n = s->many[k];
         if (plan_is_dead(a, n) && assign_keeps(a, n))
-            a->set[n] = sets_alone(&a->sets, assign_home(a, &a->round->node[n]));
+            a->set[n] = sets_alone(assign_home(a, &a->round->node[n]));
     }
     assign_settle(s);
 }

@@ -54,37 +54,26 @@ static void emit_places(struct plan *plan, const struct emit *from)
 /* Buffers for all places in use, except objects with values from outside. */
 static bool emit_buffers(struct plan *plan)
 {
-    static unsigned char used;
-    size_t bytes = 0;
     for (size_t i = 0; i < plan->n_uses; i++)
-        plan->place[plan->use[i].place].data = &used;
+        plan->place[plan->use[i].place].n_params++;
     for (int fill = 0; fill < 2; fill++) {
-        bytes = 0;
+        size_t bytes = 0;
         for (size_t i = 0; i < plan->n_places; i++) {
             struct plan_place *place = &plan->place[i];
-            if (place->mode != DUITE_NONE || !place->data)
+            if (place->mode != DUITE_NONE || !place->n_params)
                 continue;
             if (fill)
                 place->data = plan->buffers + bytes;
-            bytes += (place->bytes + 63) / 64 * 64;
+            bytes += (place->bytes + BASE_LINE - 1) / BASE_LINE * BASE_LINE;
         }
-        if (!fill && !(plan->buffers = base_alloc(bytes + 1)))
+        if (!fill && !(plan->buffers = base_alloc(bytes)))
             return false;
     }
-    for (size_t i = 0; i < plan->n_places; i++)
-        if (plan->place[i].data == &used)
-            plan->place[i].data = NULL;
     return true;
 }
 
 static void emit_params(struct plan *plan)
 {
-    for (size_t i = 0; i < plan->n_uses; i++) {
-        struct plan_place *place = &plan->place[plan->use[i].place];
-        plan->param[i] = (duite_param){
-            .data = place->data, .count = place->count, .type = place->type, .max = place->count};
-        place->n_params++;
-    }
     size_t at = 0;
     for (size_t i = 0; i < plan->n_places; i++) {
         plan->place[i].first_param = at;
@@ -93,6 +82,8 @@ static void emit_params(struct plan *plan)
     }
     for (size_t i = 0; i < plan->n_uses; i++) {
         struct plan_place *place = &plan->place[plan->use[i].place];
+        plan->param[i] = (duite_param){
+            .data = place->data, .count = place->count, .type = place->type, .max = place->count};
         plan->param_of[place->first_param + place->n_params++] = (uint32_t)i;
     }
 }
@@ -219,25 +210,22 @@ static bool emit_room(struct plan *plan, const struct emit *emit)
 {
     const struct plan_round *round = emit->round;
     const size_t nodes = plan->n_nodes + 1, uses = plan->n_uses + 1;
-    struct base_cut cut = {0};
-    for (int cuts = 0; cuts < 2; cuts++) {
-        if (cuts && !(plan->memory = base_cut_begin(&cut)))
-            return false;
-        plan->nodes = base_cut(&cut, nodes, PLAN_NODE_BYTES);
-        plan->root = base_cut(&cut, nodes, sizeof(struct task *));
-        plan->next = base_cut(&cut, round->n_edges + 1, sizeof(struct task *));
-        plan->first = base_cut(&cut, nodes, sizeof *plan->first);
-        plan->call = base_cut(&cut, nodes, sizeof *plan->call);
-        plan->owner = base_cut(&cut, nodes, sizeof *plan->owner);
-        plan->use = base_cut(&cut, uses, sizeof *plan->use);
-        plan->param = base_cut(&cut, uses, sizeof *plan->param);
-        plan->param_of = base_cut(&cut, uses, sizeof *plan->param_of);
-        plan->place = base_cut(&cut, plan->n_places + 1, sizeof *plan->place);
-        plan->merge = base_cut(&cut, round->n_merges, sizeof *plan->merge);
-        plan->tree = base_cut(&cut, emit_count_trees(round), sizeof *plan->tree);
-    }
+    const struct base_array arrays[] = {{&plan->nodes, nodes * PLAN_NODE_BYTES, false},
+                                        BASE_ARRAY(plan->root, nodes),
+                                        BASE_ARRAY(plan->next, round->n_edges + 1),
+                                        BASE_ARRAY(plan->first, nodes),
+                                        BASE_ARRAY(plan->call, nodes),
+                                        BASE_ARRAY(plan->owner, nodes),
+                                        BASE_ARRAY(plan->use, uses),
+                                        BASE_ARRAY(plan->param, uses),
+                                        BASE_ARRAY(plan->param_of, uses),
+                                        BASE_ARRAY(plan->place, plan->n_places + 1),
+                                        BASE_ARRAY(plan->merge, round->n_merges),
+                                        BASE_ARRAY(plan->tree, emit_count_trees(round)),
+                                        {0}};
+    plan->memory = base_arrays(arrays);
     plan->args = base_alloc(emit->record->args_bytes + 1); /* apart: see plan_ring */
-    return plan->args;
+    return plan->memory && plan->args;
 }
 
 static bool emit_all(struct plan *plan, const struct emit *emit)
@@ -279,12 +267,15 @@ bool plan_fits(struct plan *plan, const struct plan_record *record, const duite_
 /* All passes in order. With several ranks, those between lowering and edges make this rank's part.
  * The nodes of all ranks are freed once the paths are known, since the plan takes their memory. */
 static int plan_compile(struct plan *plan, const struct plan_record *record,
-                        const duite_object *flag, const struct plan_source *source)
+                        const duite_object *flag)
 {
     const bool several = record->graph->n_ranks > 1, paths = plan->graph->paths;
+    struct plan_source source;
     struct plan_round all = {0}, part = {0}, *own = several ? &part : &all;
     float *path = NULL;
-    bool fine = plan_lower(&all, source);
+    bool fine = plan_record_source(record, flag, &source) && plan_lower(&all, &source);
+    plan->n_objects = source.n_objects;
+    plan->flag_place = flag ? source.flag : 0;
     if (fine && several)
         fine = plan_of_ranks(plan, &all, &part, record, flag);
     if (fine && (paths || !several))
@@ -301,30 +292,23 @@ static int plan_compile(struct plan *plan, const struct plan_record *record,
         code = plan_open(plan, &part);
     base_free(path);
     plan_round_free(own);
+    plan_source_free(&source);
     return code;
 }
 
 int plan_new(struct plan **out, const struct plan_record *record, const duite_object *flag)
 {
-    struct plan *plan = base_alloc_zero(sizeof *plan);
-    struct plan_source source;
-    *out = NULL;
+    struct plan *plan = *out = base_alloc_zero(sizeof *plan);
     if (!plan)
         return base_no_memory("a recorded graph");
     atomic_init(&plan->refs, 1);
     plan->graph = record->graph;
-    int code =
-        plan_record_source(record, flag, &source) ? DUITE_OK : base_no_memory("a recorded graph");
     plan->decides = flag != NULL;
-    plan->flag_place = flag ? source.flag : 0;
-    plan->n_objects = source.n_objects;
-    if (!code)
-        code = plan_compile(plan, record, flag, &source);
-    plan_source_free(&source);
-    if (code)
+    const int code = plan_compile(plan, record, flag);
+    if (code) {
         plan_drop(plan, NULL);
-    else
-        *out = plan;
+        *out = NULL;
+    }
     return code;
 }
 
@@ -338,9 +322,7 @@ void plan_release(struct plan *plan)
     base_free(plan->args);
     base_free(plan->buffers);
     base_free(plan->channels.channel);
-    base_free(plan->enter);
-    base_free(plan->end);
-    base_free(plan->home);
+    base_free(plan->sets);
     base_free(plan);
 }
 

@@ -31,15 +31,14 @@ uint32_t plan_round_buffer(struct plan_round *round, uint32_t object, const duit
 bool plan_round_room(struct plan_round *round, size_t nodes, size_t uses, size_t places,
                      size_t merges)
 {
-    struct base_cut cut = {0};
-    for (int cuts = 0; cuts < 2; cuts++) {
-        if (cuts && !(round->memory = base_cut_begin(&cut)))
-            return false;
-        round->node = base_cut(&cut, nodes + 1, sizeof *round->node);
-        round->use = base_cut(&cut, uses + 1, sizeof *round->use);
-        round->place = base_cut(&cut, places + 1, sizeof *round->place);
-        round->merge = base_cut(&cut, merges + 1, sizeof *round->merge);
-    }
+    const struct base_array arrays[] = {BASE_ARRAY(round->node, nodes + 1),
+                                        BASE_ARRAY(round->use, uses + 1),
+                                        BASE_ARRAY(round->place, places + 1),
+                                        BASE_ARRAY(round->merge, merges + 1),
+                                        {0}};
+    round->memory = base_arrays(arrays);
+    if (!round->memory)
+        return false;
     round->n_objects = round->source->n_objects;
     for (uint32_t i = 0; i < round->n_objects; i++)
         plan_round_buffer(round, i, NULL);

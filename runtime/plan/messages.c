@@ -136,13 +136,10 @@ static uint32_t message_find(struct finding *f, int from, int to, uint32_t phase
     for (uint32_t i = *head; i; i = m->message[i - 1].next)
         if (m->message[i - 1].phase == phase)
             return i - 1;
-    void *moved =
-        base_grow(m->message, &m->messages_capacity, m->n_messages + 1, sizeof *m->message);
-    if (!moved) {
+    if (!BASE_GROW(m->message, m->messages_capacity, m->n_messages + 1)) {
         f->failed = true;
         return PLAN_NONE;
     }
-    m->message = moved;
     m->message[m->n_messages] =
         (struct plan_message){.from = from, .to = to, .phase = phase, .next = *head};
     *head = (uint32_t)++m->n_messages;
@@ -156,13 +153,9 @@ static void message_add(struct finding *f, int from, int to, uint32_t phase, str
     if (f->failed || (m->rank != PLAN_ALL && m->rank != from && m->rank != to))
         return;
     item.message = message_find(f, from, to, phase);
+    f->failed |= !BASE_GROW(m->item, m->items_capacity, m->n_items + 1);
     if (f->failed)
         return;
-    void *moved = base_grow(m->item, &m->items_capacity, m->n_items + 1, sizeof *m->item);
-    f->failed = !moved;
-    if (f->failed)
-        return;
-    m->item = moved;
     m->item[m->n_items++] = item;
     struct plan_message *message = &m->message[item.message];
     if (item.made > message->ready)
@@ -275,11 +268,7 @@ static void message_find_all(struct finding *f)
 
 void plan_messages_free(struct plan_messages *m)
 {
-    base_free(m->phase);
-    base_free(m->rounds);
-    base_free(m->leaf);
-    base_free(m->piece);
-    base_free(m->first_piece);
+    base_free(m->memory);
     free(m->message);
     free(m->item);
 }
@@ -288,12 +277,13 @@ static bool message_room(struct plan_messages *m)
 {
     const struct plan_round *round = m->assignment->round;
     size_t leaves = round->n_places - round->n_objects + 1;
-    m->phase = base_alloc((round->n_nodes + 1) * sizeof *m->phase);
-    m->rounds = base_alloc_zero(round->n_nodes + 1);
-    m->leaf = base_alloc(leaves * sizeof *m->leaf);
-    m->piece = base_alloc(leaves * sizeof *m->piece);
-    m->first_piece = base_alloc_zero((round->n_nodes + 1) * sizeof *m->first_piece);
-    return m->phase && m->rounds && m->leaf && m->piece && m->first_piece;
+    const struct base_array arrays[] = {BASE_ARRAY(m->phase, round->n_nodes + 1),
+                                        BASE_ZEROS(m->rounds, round->n_nodes + 1),
+                                        BASE_ARRAY(m->leaf, leaves),
+                                        BASE_ARRAY(m->piece, leaves),
+                                        BASE_ZEROS(m->first_piece, round->n_nodes + 1),
+                                        {0}};
+    return (m->memory = base_arrays(arrays)) != NULL;
 }
 
 static void message_find_leaves(struct plan_messages *m)

@@ -20,9 +20,6 @@ void plan_node_set_poison(struct plan *plan, const struct task *task,
                           const struct data_failure *failure);
 /* Writes the neutral elements that bodies find under cw. */
 void plan_node_clear_leaves(const struct plan *plan, const struct task *task);
-/* The body forked tasks on its own objects and on its parameters. */
-void plan_node_leave_scope(struct task_scope *scope, struct worker *worker,
-                           const struct data_failure *failure);
 /* The node's last predecessor is over. A node that a message waits for runs at once, never queued
  * behind other tasks. (It makes ready a node that sends, and tasks.) */
 void plan_node_ready(struct task_graph *graph, struct worker *worker, struct task *task);
@@ -106,8 +103,10 @@ __attribute__((always_inline)) static inline bool plan_node_run_body(struct task
         struct task_scope *scope = NULL;
         frame->call.round = plan_node_round(plan, node);
         failure = task_frame_call(frame, task, plan_node_args(plan, node), node->param, &scope);
-        if (scope)
-            plan_node_leave_scope(scope, frame->body.worker, failure);
+        if (scope) { /* it forked tasks on its own objects and on its parameters */
+            task_scope_fail(scope, failure);
+            task_scope_end(scope, frame->body.worker);
+        }
     }
     if (failure)
         plan_taint(plan, PLAN_POISONED);
@@ -165,7 +164,7 @@ plan_node_count_down(struct task_graph *graph, struct worker *worker, struct tas
     if (decides && last) /* each sink, this one included, has taken one a round until now */
         counts = PLAN_UNKNOWN - (int64_t)((round + 1) * plan->n_sinks - 1);
     if (plan->gate && task->number < atomic_load_explicit(&plan->unforked, memory_order_relaxed))
-        queue_over(graph->pool, worker, 1); /* a task that was forked */
+        queue_over(graph->pool, worker); /* a task that was forked */
     atomic_store_explicit(&node->round, round + 1, memory_order_release);
     task->number += plan->n_calls;
     for (next += last ? node->n_cyclic : 0; next < stop; next++) {

@@ -254,27 +254,23 @@ static void *part_room(struct plan_parting *p)
     const struct plan_messages *m = p->m;
     const size_t items = m->n_items, versions = p->a->n_versions;
     const size_t leaves = p->round->n_places - p->round->n_objects + 1;
-    struct base_cut cut = {0};
-    for (int cuts = 0; cuts < 2; cuts++) {
-        if (cuts && !base_cut_begin(&cut))
-            return NULL;
-        p->replica = base_cut(&cut, versions, sizeof *p->replica);
-        p->arrival = base_cut(&cut, m->n_pieces, sizeof *p->arrival);
-        p->place = base_cut(&cut, items, sizeof *p->place);
-        p->leaf = base_cut(&cut, leaves, sizeof *p->leaf);
-        p->spoilt = base_cut(&cut, versions, sizeof *p->spoilt);
-        p->own = base_cut(&cut, p->round->n_objects, sizeof *p->own);
-        p->order = base_cut(&cut, m->n_messages, sizeof *p->order);
-        p->row.at = base_cut(&cut, leaves, sizeof *p->row.at);
-        p->state.at = base_cut(&cut, leaves + items, sizeof *p->state.at);
-        p->joined.at = base_cut(&cut, leaves + items, sizeof *p->joined.at);
-        p->came.at = base_cut(&cut, items, sizeof *p->came.at);
-        p->param = base_cut(&cut, part_places(p), sizeof *p->param);
-    }
-    memset(p->leaf, 0, leaves * sizeof *p->leaf);
-    for (size_t i = 0; i < part_places(p); i++)
+    const struct base_array arrays[] = {BASE_ARRAY(p->replica, versions),
+                                        BASE_ARRAY(p->arrival, m->n_pieces),
+                                        BASE_ARRAY(p->place, items),
+                                        BASE_ZEROS(p->leaf, leaves),
+                                        BASE_ARRAY(p->spoilt, versions),
+                                        BASE_ARRAY(p->own, p->round->n_objects),
+                                        BASE_ARRAY(p->order, m->n_messages),
+                                        BASE_ARRAY(p->row.at, leaves),
+                                        BASE_ARRAY(p->state.at, leaves + items),
+                                        BASE_ARRAY(p->joined.at, leaves + items),
+                                        BASE_ARRAY(p->came.at, items),
+                                        BASE_ARRAY(p->param, part_places(p)),
+                                        {0}};
+    void *memory = base_arrays(arrays);
+    for (size_t i = 0; memory && i < part_places(p); i++)
         p->param[i] = PLAN_NONE;
-    return cut.block;
+    return memory;
 }
 
 bool plan_part(struct plan_round *part, const struct plan_messages *messages)

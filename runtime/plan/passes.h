@@ -186,16 +186,14 @@ struct plan_version {
 };
 
 /* Sets of ranks by number: 0 is empty, 1 + r has rank r alone, larger numbers belong to one node or
- * version. Only the last kind takes a row of words each. Most nodes run on one rank, so a round on
- * thousands of ranks needs few rows. */
+ * version. Most nodes run on one rank, so a round on thousands of ranks needs few sets of its own.
+ */
 struct plan_rank_sets {
     int n_ranks;
-    size_t words; /* of a row */
+    size_t words; /* of a set */
     uint64_t *word;
-    size_t n_rows, words_capacity;
-    uint32_t *few; /* n_ranks + 1: the rows of the empty set and of each rank alone; PLAN_NONE: not
-                      yet made */
-    bool failed;   /* no memory */
+    size_t n, words_capacity;
+    bool failed; /* no memory */
 };
 
 struct plan_assignment {
@@ -233,8 +231,7 @@ void plan_assignment_free(struct plan_assignment *assignment);
 /* The words of a set. They move when another set grows. */
 static inline const uint64_t *plan_ranks(const struct plan_rank_sets *sets, uint32_t set)
 {
-    const uint32_t few = (uint32_t)sets->n_ranks + 1;
-    return sets->word + (set < few ? sets->few[set] : set - few) * sets->words;
+    return sets->word + set * sets->words;
 }
 /* The ranks that run a node; that need a version. */
 static inline const uint64_t *plan_runs_set(const struct plan_assignment *a, size_t node)
@@ -247,8 +244,7 @@ static inline const uint64_t *plan_needs_set(const struct plan_assignment *a, si
 }
 static inline bool plan_runs(const struct plan_assignment *a, size_t node, int rank)
 {
-    const uint32_t set = a->set[node], few = (uint32_t)a->n_ranks + 1;
-    return set < few ? set == (uint32_t)rank + 1 : base_ranks_has(plan_ranks(&a->sets, set), rank);
+    return base_ranks_has(plan_ranks(&a->sets, a->set[node]), rank);
 }
 /* No rank runs the node: its result is overwritten unread. */
 static inline bool plan_is_dead(const struct plan_assignment *assignment, size_t node)
@@ -322,6 +318,7 @@ struct plan_item {
 struct plan_messages {
     const struct plan_assignment *assignment;
     int rank;                 /* of these messages, or PLAN_ALL */
+    void *memory;             /* of the arrays by node and buffer, and of pieces */
     uint32_t *phase;          /* by node: upper bound of rank crossings on a path to it */
     uint8_t *rounds;          /* by node: rounds of a relayed sum; 0: sent directly */
     uint32_t *leaf;           /* by buffer, less n_objects: the node that fills it */
@@ -404,6 +401,7 @@ bool plan_edges(struct plan_round *round);
 
 /* The nodes of a round in order, and the results that each reads. Independent of ranks. */
 struct plan_tasks {
+    void *memory; /* of the arrays */
     size_t n;
     bool *program;   /* n: a task of the program, not of the runtime */
     double *cost;    /* n: seconds as given at the fork; 0: not given, or not the program's */

@@ -89,6 +89,7 @@ struct plan {
     /* With several ranks. */
     struct comm_channel_set channels;
     size_t words;          /* of a set of ranks; 0: there is one rank */
+    void *sets;            /* the memory of these: */
     uint64_t *enter, *end; /* by object: ranks that have it before a round; after */
     int *home;             /* by object: when the plan was made */
     uint64_t at_home; /* main thread: table->changes, plus 1, when all objects were last found at

@@ -12,12 +12,12 @@
 
 static bool ranks_room(struct plan *plan, size_t words)
 {
-    size_t bytes = plan->n_objects * words * sizeof(uint64_t);
+    const struct base_array arrays[] = {BASE_ZEROS(plan->enter, plan->n_objects * words),
+                                        BASE_ZEROS(plan->end, plan->n_objects * words),
+                                        BASE_ARRAY(plan->home, plan->n_objects),
+                                        {0}};
     plan->words = words;
-    plan->enter = base_alloc_zero(bytes + 1);
-    plan->end = base_alloc_zero(bytes + 1);
-    plan->home = base_alloc(plan->n_objects * sizeof *plan->home + 1);
-    return plan->enter && plan->end && plan->home;
+    return (plan->sets = base_arrays(arrays)) != NULL;
 }
 
 static void ranks_take_sets(struct plan *plan, const struct plan_record *record,

@@ -60,17 +60,12 @@ static bool record_reserve(struct plan_record *record, size_t n, size_t bytes)
         record->n_slots = table->n_slots;
         record->index = base_alloc_zero(record->n_slots * sizeof *record->index);
     }
-#define ROOM(array, capacity, more)                                                                \
-    ((moved = base_grow(record->array, &record->capacity, more, sizeof *record->array)) &&         \
-     ((record->array = moved), true))
-    void *moved;
-    return record->index && ROOM(fork, forks_capacity, record->n_forks + 1) &&
-           ROOM(call, calls_capacity, record->n_calls + 1) &&
-           ROOM(access, accesses_capacity, record->n_accesses + n + 1) &&
-           ROOM(names, names_capacity, n + 1) &&
-           ROOM(object, objects_capacity, record->n_objects + n + 1) &&
-           ROOM(args, args_capacity, record->args_bytes + bytes + 1);
-#undef ROOM
+    return record->index && BASE_GROW(record->fork, record->forks_capacity, record->n_forks + 1) &&
+           BASE_GROW(record->call, record->calls_capacity, record->n_calls + 1) &&
+           BASE_GROW(record->access, record->accesses_capacity, record->n_accesses + n + 1) &&
+           BASE_GROW(record->names, record->names_capacity, n + 1) &&
+           BASE_GROW(record->object, record->objects_capacity, record->n_objects + n + 1) &&
+           BASE_GROW(record->args, record->args_capacity, record->args_bytes + bytes + 1);
 }
 
 static struct plan_recorded_object *record_find(const struct plan_record *record, duite_object name)

@@ -96,10 +96,10 @@ static int replay_move_object(const struct plan *plan, struct worker *worker, si
     int code = object->leaves ? task_reduce(&graph->root, worker, object) : DUITE_OK;
     if (!code && plan->words && i < plan->n_objects)
         code = plan_fetch(plan, worker, i, object);
+    if (!code && data_order_reads(mode) && !task_local(graph, object))
+        code = DUITE_E_MEMORY;
     if (code || mode == DUITE_R)
         return code;
-    if (mode != DUITE_W && mode != DUITE_NONE && !task_local(graph, object))
-        return DUITE_E_MEMORY;
     if (plan->words && i < plan->n_objects) {
         if (plan_moves(plan, i, object) && mode == DUITE_NONE)
             task_forget(graph, worker, object);
@@ -119,8 +119,6 @@ static int replay_use_object(struct task_graph *graph, struct task *task, size_t
         *done += 1;
         return DUITE_OK;
     }
-    if (data_order_reads(mode) && !task_local(graph, object))
-        return DUITE_E_MEMORY;
     return task_wait(&graph->root, task, i, object, done);
 }
 
@@ -151,6 +149,18 @@ static int replay_use_all(struct plan_record *record, struct worker *worker, str
     return DUITE_OK;
 }
 
+static int replay_start(struct plan_record *record, struct worker *worker,
+                        const struct plan_replay *replay, const duite_object *flag)
+{
+    const size_t n = replay->plan->n_objects;
+    struct task *task = task_new(&record->graph->root, TASK_REPLAY, n + 1,
+                                 sizeof *replay + n * sizeof replay->block[0]);
+    if (!task)
+        return DUITE_E_MEMORY;
+    *task->replay = *replay;
+    return replay_use_all(record, worker, task, flag);
+}
+
 int plan_replay_plan(struct plan_record *record, struct worker *worker, const duite_object *flag,
                      uint64_t rounds)
 {
@@ -159,42 +169,29 @@ int plan_replay_plan(struct plan_record *record, struct worker *worker, const du
     struct plan *plan = replay_plan_for(record, worker, flag, &code);
     if (code)
         return code;
-    struct task *task =
-        task_new(&graph->root, TASK_REPLAY, plan->n_objects + 1,
-                 sizeof *task->replay + plan->n_objects * sizeof task->replay->block[0]);
-    if (!task)
-        return DUITE_E_MEMORY;
-    *task->replay = (struct plan_replay){.plan = plan,
-                                         .first_round = record->rounds,
-                                         .rounds = rounds,
-                                         .number = graph->root.forks + 1,
-                                         .changes = record->changes};
+    const struct plan_replay replay = {.plan = plan,
+                                       .first_round = record->rounds,
+                                       .rounds = rounds,
+                                       .number = graph->root.forks + 1,
+                                       .changes = record->changes};
     graph->root.forks += rounds * record->n_calls;
-    return replay_use_all(record, worker, task, flag);
+    return replay_start(record, worker, &replay, flag);
 }
 
 int plan_replay_open(struct plan_record *record, struct worker *worker, struct plan_gate *gate)
 {
     struct task_graph *graph = record->graph;
-    struct plan *plan = record->plan;
-    const uint64_t first = graph->root.forks + 1;
-    struct task *task =
-        task_new(&graph->root, TASK_REPLAY, plan->n_objects + 1,
-                 sizeof *task->replay + plan->n_objects * sizeof task->replay->block[0]);
-    if (!task)
-        return DUITE_E_MEMORY;
-    *task->replay = (struct plan_replay){.plan = plan, .rounds = UINT64_MAX, .number = first};
-    plan_gate_close(plan, gate, first);
-    const int code = replay_use_all(record, worker, task, NULL);
+    const struct plan_replay replay = {
+        .plan = record->plan, .rounds = UINT64_MAX, .number = graph->root.forks + 1};
+    plan_gate_close(record->plan, gate, replay.number);
+    const int code = replay_start(record, worker, &replay, NULL);
     graph->tasks -= !code; /* until it is closed */
     return code;
 }
 
 bool plan_replay_over(const struct plan_record *record)
 {
-    const struct plan *plan = record->plan;
-    return !record->by_plan ||
-           atomic_load_explicit(&plan->over, memory_order_acquire) == plan->started;
+    return !record->by_plan || plan_is_over(record->plan);
 }
 
 uint64_t plan_replay_rounds(const struct plan_record *record)

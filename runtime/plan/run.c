@@ -190,20 +190,20 @@ void plan_node_clear_leaves(const struct plan *plan, const struct task *task)
     const struct plan_node_use *use = plan->use + task->node->first_use;
     for (uint32_t i = 0; i < task->n; i++) {
         const struct plan_place *place = &plan->place[use[i].place];
-        if (!place->law)
-            continue;
-        if (place->law->neutral)
-            place->law->neutral(place->data, place->count, place->type);
-        else
-            memset(place->data, 0, place->bytes);
+        if (place->law)
+            data_law_neutral(place->law, place->data, place->count, place->type);
     }
 }
 
-void plan_node_leave_scope(struct task_scope *scope, struct worker *worker,
-                           const struct data_failure *failure)
+/* True if it reads poison, which goes on to what it writes. */
+static bool node_is_poisoned(const struct task *task)
 {
-    task_scope_fail(scope, failure);
-    task_scope_end(scope, worker);
+    struct plan *plan = task->node->plan;
+    if (!atomic_load_explicit(&plan->tainted, memory_order_relaxed))
+        return false;
+    const struct data_failure *failure = plan_node_poison(plan, task);
+    plan_node_set_poison(plan, task, failure);
+    return failure;
 }
 
 static void node_run_set(struct task *task)
@@ -218,43 +218,25 @@ static void node_run_set(struct task *task)
         place->failure = NULL;
 }
 
-static void node_merge(const struct plan_node *node)
+/* The first parameter of a sum is the object, the others are the pieces. */
+static void node_run_sum(const struct task *task)
 {
-    const struct plan_tree *tree = node->tree;
-    const duite_param *param = node->param;
+    const struct plan_tree *tree = task->node->tree;
+    const duite_param *param = task->node->param;
+    if (node_is_poisoned(task))
+        return;
     for (size_t i = 0; i < tree->n; i++)
         tree->law->combine(param[tree->merge[i].left].data, param[tree->merge[i].right].data,
                            param->count, param->type);
-}
-
-/* The first parameter of a sum is the object, the others are the pieces. */
-static void node_run_sum(struct task *task)
-{
-    struct plan_node *node = task->node;
-    struct plan *plan = node->plan;
-    const duite_param *param = node->param;
-    bool tainted = atomic_load_explicit(&plan->tainted, memory_order_relaxed);
-    const struct data_failure *failure = tainted ? plan_node_poison(plan, task) : NULL;
-    if (failure) {
-        plan_node_set_poison(plan, task, failure);
-        return;
-    }
-    node_merge(node);
     if (task->type == TASK_NODE_SUM)
-        node->tree->law->combine(param[0].data, param[1].data, param->count, param->type);
+        tree->law->combine(param[0].data, param[1].data, param->count, param->type);
 }
 
-static void node_run_copy(struct task *task)
+static void node_run_copy(const struct task *task)
 {
-    struct plan_node *node = task->node;
-    const duite_param *param = node->param; /* from, to */
-    bool tainted = atomic_load_explicit(&node->plan->tainted, memory_order_relaxed);
-    const struct data_failure *failure = tainted ? plan_node_poison(node->plan, task) : NULL;
-    if (tainted)
-        plan_node_set_poison(node->plan, task, failure);
-    if (failure)
-        return;
-    memcpy(param[1].data, param[0].data, param->count * data_type_size(param->type));
+    const duite_param *param = task->node->param; /* from, to */
+    if (!node_is_poisoned(task))
+        memcpy(param[1].data, param[0].data, param->count * data_type_size(param->type));
 }
 
 bool plan_flag_holds(duite_type type, const void *values)

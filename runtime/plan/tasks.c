@@ -9,26 +9,21 @@
 
 void plan_tasks_free(struct plan_tasks *tasks)
 {
-    base_free(tasks->program);
-    base_free(tasks->cost);
-    base_free(tasks->owner);
-    base_free(tasks->start);
-    base_free(tasks->from);
-    base_free(tasks->bytes);
+    base_free(tasks->memory);
     *tasks = (struct plan_tasks){0};
 }
 
 static bool tasks_room(struct plan_tasks *tasks, const struct plan_round *round)
 {
-    size_t n = tasks->n = round->n_nodes;
-    tasks->program = base_alloc_zero((n + 1) * sizeof *tasks->program);
-    tasks->cost = base_alloc_zero((n + 1) * sizeof *tasks->cost);
-    tasks->owner = base_alloc((n + 1) * sizeof *tasks->owner);
-    tasks->start = base_alloc_zero((n + 1) * sizeof *tasks->start);
-    tasks->from = base_alloc((round->n_uses + 1) * sizeof *tasks->from);
-    tasks->bytes = base_alloc((round->n_uses + 1) * sizeof *tasks->bytes);
-    return tasks->program && tasks->cost && tasks->owner && tasks->start && tasks->from &&
-           tasks->bytes;
+    const size_t n = tasks->n = round->n_nodes;
+    const struct base_array arrays[] = {BASE_ZEROS(tasks->program, n + 1),
+                                        BASE_ZEROS(tasks->cost, n + 1),
+                                        BASE_ARRAY(tasks->owner, n + 1),
+                                        BASE_ZEROS(tasks->start, n + 1),
+                                        BASE_ARRAY(tasks->from, round->n_uses + 1),
+                                        BASE_ARRAY(tasks->bytes, round->n_uses + 1),
+                                        {0}};
+    return (tasks->memory = base_arrays(arrays)) != NULL;
 }
 
 static uint32_t tasks_owner(const struct plan_round *round, const struct plan_round_node *node)

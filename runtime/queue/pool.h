@@ -122,8 +122,6 @@ static inline bool queue_keeps(const struct worker *worker, uint32_t affinity)
     return !affinity || affinity == worker->index + 1;
 }
 
-/* ---- park.c ---- */
-
 bool queue_park_start(struct queue_park *park);
 void queue_park_stop(struct queue_park *park);
 
@@ -143,12 +141,9 @@ void queue_wake_one(struct queue_pool *pool, unsigned queue);
 /* Something happened that the main program may wait for. pool NULL: nobody waits any more. */
 void queue_notify(struct queue_pool *pool);
 
-/* ---- count.c ---- */
-
-/* So many more tasks of the main program are over; -1: one more is to come. queue_over_one: one is
- * over, the usual case. `worker` is the caller. */
-void queue_over(struct queue_pool *pool, struct worker *worker, int tasks);
-void queue_over_one(struct queue_pool *pool, struct worker *worker);
+/* One more task of the main program is over; one more is to come. `worker` is the caller. */
+void queue_over(struct queue_pool *pool, struct worker *worker);
+void queue_more(struct worker *worker);
 
 /* All that are over so far, less those to come. */
 uint64_t queue_all_over(const struct queue_pool *pool);

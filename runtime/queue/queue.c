@@ -28,7 +28,8 @@ static struct queue_ring *ring_new(uint64_t slots, struct queue_ring *older)
     return ring;
 }
 
-bool queue_deque_start(struct queue_deque *deque, uint64_t slots)
+/* slots: of the first ring, a power of 2. False without memory. */
+static bool queue_deque_start(struct queue_deque *deque, uint64_t slots)
 {
     struct queue_ring *ring = ring_new(slots, NULL);
     atomic_init(&deque->oldest, 0);
@@ -38,7 +39,7 @@ bool queue_deque_start(struct queue_deque *deque, uint64_t slots)
     return ring != NULL;
 }
 
-void queue_deque_stop(struct queue_deque *deque)
+static void queue_deque_stop(struct queue_deque *deque)
 {
     struct queue_ring *ring = atomic_load(&deque->ring);
     while (ring) {
@@ -91,6 +92,7 @@ static inline void deque_show(struct queue_deque *deque, int64_t newest)
     atomic_exchange_explicit(&deque->newest, newest, memory_order_seq_cst);
 }
 
+/* Owner only. False without memory: nothing was pushed. */
 static inline bool deque_push(struct queue_deque *deque, struct task *task)
 {
     int64_t newest = deque_end(deque);
@@ -100,11 +102,7 @@ static inline bool deque_push(struct queue_deque *deque, struct task *task)
     return true;
 }
 
-bool queue_deque_push(struct queue_deque *deque, struct task *task)
-{
-    return deque_push(deque, task);
-}
-
+/* Owner only. NULL if it is empty. */
 static inline struct task *deque_take_newest(struct queue_deque *deque)
 {
     int64_t newest = atomic_load_explicit(&deque->newest, memory_order_relaxed) - 1;
@@ -128,12 +126,8 @@ static inline struct task *deque_take_newest(struct queue_deque *deque)
     return task;
 }
 
-struct task *queue_deque_take_newest(struct queue_deque *deque)
-{
-    return deque_take_newest(deque);
-}
-
-struct task *queue_deque_take_oldest(struct queue_deque *deque, bool *again)
+/* Anybody. NULL if it is empty or another thief was faster (*again is set then). */
+static struct task *queue_deque_take_oldest(struct queue_deque *deque, bool *again)
 {
     int64_t oldest = atomic_load_explicit(&deque->oldest, memory_order_seq_cst);
     int64_t newest = atomic_load_explicit(&deque->newest, memory_order_seq_cst);
@@ -158,27 +152,13 @@ struct queue_ranked {
     struct queue_rank rank;
 };
 
-void queue_heap_start(struct queue_heap *heap, queue_ranks_by *rank)
-{
-    heap->rank = rank;
-    heap->entry = NULL;
-    heap->capacity = 0;
-    heap->came = 0;
-    atomic_init(&heap->n, 0);
-    atomic_flag_clear(&heap->busy);
-}
-
-void queue_heap_stop(struct queue_heap *heap)
-{
-    free(heap->entry);
-}
-
-bool queue_heap_enter(struct queue_heap *heap)
+/* Does not wait: false if another thread has entered. */
+static bool queue_heap_enter(struct queue_heap *heap)
 {
     return !atomic_flag_test_and_set_explicit(&heap->busy, memory_order_acquire);
 }
 
-void queue_heap_leave(struct queue_heap *heap)
+static void queue_heap_leave(struct queue_heap *heap)
 {
     atomic_flag_clear_explicit(&heap->busy, memory_order_release);
 }
@@ -192,20 +172,20 @@ static bool heap_before(const void *left, const void *right, const void *unused)
     return a->rank.path != b->rank.path ? a->rank.path > b->rank.path : a->came < b->came;
 }
 
-bool queue_heap_push(struct queue_heap *heap, struct task *task)
+/* After entering. False without memory: the task is not in it. */
+static bool queue_heap_push(struct queue_heap *heap, struct task *task)
 {
     size_t n = atomic_load_explicit(&heap->n, memory_order_relaxed);
-    void *moved = base_grow(heap->entry, &heap->capacity, n + 1, sizeof *heap->entry);
-    if (!moved)
+    if (!BASE_GROW(heap->entry, heap->capacity, n + 1))
         return false;
-    heap->entry = moved;
     struct queue_ranked new = {task, heap->came++, heap->rank(task)};
     atomic_store_explicit(&heap->n, n + 1, memory_order_relaxed);
     base_heap_push(heap->entry, n, &new, sizeof new, heap_before, NULL);
     return true;
 }
 
-struct task *queue_heap_pop(struct queue_heap *heap)
+/* After entering. NULL: empty. */
+static struct task *queue_heap_pop(struct queue_heap *heap)
 {
     size_t n = atomic_load_explicit(&heap->n, memory_order_relaxed);
     struct queue_ranked first;
@@ -222,14 +202,15 @@ bool queue_start(struct queue *queue, queue_ranks_by *rank)
 {
     atomic_init(&queue->inbox, NULL);
     atomic_flag_clear(&queue->token);
-    queue_heap_start(&queue->heap, rank);
+    queue->heap = (struct queue_heap){.rank = rank};
+    atomic_flag_clear(&queue->heap.busy);
     return queue_deque_start(&queue->deque, FIRST_SLOTS);
 }
 
 void queue_stop(struct queue *queue)
 {
     queue_deque_stop(&queue->deque);
-    queue_heap_stop(&queue->heap);
+    free(queue->heap.entry);
 }
 
 void queue_put(struct queue *queue, struct task *task)

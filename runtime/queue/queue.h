@@ -53,17 +53,6 @@ struct queue_deque {
     int64_t seen; /* by the owner: an earlier value of `oldest` */
 };
 
-/* slots: of the first ring, a power of 2. False without memory. */
-bool queue_deque_start(struct queue_deque *deque, uint64_t slots);
-void queue_deque_stop(struct queue_deque *deque);
-
-/* Owner only. False without memory: nothing was pushed. */
-bool queue_deque_push(struct queue_deque *deque, struct task *task);
-/* Owner only. NULL if it is empty. */
-struct task *queue_deque_take_newest(struct queue_deque *deque);
-/* Anybody. NULL if it is empty or another thief was faster (*again is set then). */
-struct task *queue_deque_take_oldest(struct queue_deque *deque, bool *again);
-
 /* ---- Heap ---- */
 
 /* Tasks by priority, then by the longest path, then by arrival. The holder of `busy` may look
@@ -76,18 +65,6 @@ struct queue_heap {
     _Atomic size_t n;
     atomic_flag busy;
 };
-
-void queue_heap_start(struct queue_heap *heap, queue_ranks_by *rank);
-void queue_heap_stop(struct queue_heap *heap);
-
-/* Does not wait: false if another thread has entered. */
-bool queue_heap_enter(struct queue_heap *heap);
-void queue_heap_leave(struct queue_heap *heap);
-
-/* After entering. False without memory: the task is not in it. */
-bool queue_heap_push(struct queue_heap *heap, struct task *task);
-/* After entering. NULL: empty. */
-struct task *queue_heap_pop(struct queue_heap *heap);
 
 /* ---- Queue ---- */
 

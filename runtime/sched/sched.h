@@ -4,8 +4,8 @@
 #include <duite_policy.h>
 #include <stdbool.h>
 
-/* The built-in schedulers, and the decisions that several of them share. A scheduler is one file,
- * which defines its table, and one row here; the first is the default. */
+/* The built-in schedulers. A scheduler is a table in sched.c and a row here; the first is the
+ * default. */
 #define SCHED_ROWS(ROW)                                                                            \
     ROW(steal)                                                                                     \
     ROW(locality)                                                                                  \
@@ -27,32 +27,9 @@ const char *const *sched_test_names(void);
 /* True if the scheduler is not built in. */
 bool sched_is_foreign(const duite_scheduler *scheduler);
 
-struct sched_state {
-    uint64_t random;
-    unsigned worker, n_workers;
-    unsigned first; /* of the victims of this round */
-};
-
-void sched_start(void *state, unsigned worker, unsigned n_workers, uint64_t seed);
-
-/* Where a ready task goes. Shared: all to one queue. Affinity: to the worker that made it ready,
- * but in a replay to the worker that ran the last task on the same data. Owner: to the worker of
- * the task's block. */
-unsigned sched_place_shared(void *state, const duite_ready *task);
+/* The decisions by affinity: a ready task stays with the worker that made it ready, but in a replay
+ * goes to the worker that ran the last task on the same data. Chained: if that is this worker. */
 unsigned sched_place_affinity(void *state, const duite_ready *task);
-unsigned sched_place_owner(void *state, const duite_ready *task);
-
-duite_end sched_serve_newest(void *state);
-duite_end sched_serve_oldest(void *state);
-duite_end sched_serve_highest(void *state);
-
-/* The victims: no worker; or each other worker once a round, from a random one on. */
-unsigned sched_no_victim(void *state, unsigned attempt);
-unsigned sched_any_victim(void *state, unsigned attempt);
-
-int sched_never_chain(void *state, const duite_ready *task);
-/* True if affinity, or the owner, would place the task on this worker. */
 int sched_chain_affinity(void *state, const duite_ready *task);
-int sched_chain_owner(void *state, const duite_ready *task);
 
 #endif

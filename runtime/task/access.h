@@ -3,7 +3,6 @@
 
 #include "runtime/task/scope.h"
 
-#include "runtime/base/error.h"
 #include "runtime/data/law.h"
 
 /* One access of a fork: its object is found, then the access waits for its version. The short ways

@@ -1,7 +1,7 @@
 #ifndef DUITE_TASK_CALL_H
 #define DUITE_TASK_CALL_H
 
-#include "runtime/task/internal.h"
+#include "runtime/task/scope.h"
 
 #pragma GCC visibility push(hidden) /* called directly: no other library can replace them */
 
@@ -14,19 +14,6 @@ const struct data_failure *task_body_failure(const struct duite_call_private *bo
 static inline const struct data_failure *task_given_up(struct task_graph *graph)
 {
     return task_has_given_up(graph) ? &task_lost_failure : NULL;
-}
-
-/* A body begins, and ends: meanwhile calls on this thread are this body's. */
-static inline void task_body_begins(struct duite_call_private *body)
-{
-    body->outer = task_innermost;
-    task_innermost = body;
-    if (body->scope)
-        task_body_enters(body);
-}
-static inline void task_body_ends(const struct duite_call_private *body)
-{
-    task_innermost = body->outer;
 }
 
 /* A body's call, and the state behind the calls that it makes. One frame may serve many bodies, one
@@ -65,11 +52,14 @@ task_frame_call(struct task_frame *frame, struct task *task, const void *args,
     frame->call.args = args;
     frame->call.param = param;
     frame->call.n_params = task->n;
-    task_body_begins(body);
+    body->outer = task_innermost;
+    task_innermost = body; /* meanwhile calls on this thread are this body's */
+    if (body->scope)
+        task_nest_of(body->scope)->body = body;
     int code = __builtin_expect(graph->check != NULL, 0)
                    ? graph->check(graph->pool, kernel, task->number, &frame->call)
                    : kernel->body(&frame->call);
-    task_body_ends(body);
+    task_innermost = body->outer;
     *scope = body->scope;
     if (!(code | body->refused | body->remembered))
         return NULL;

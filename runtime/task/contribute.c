@@ -2,8 +2,6 @@
  * another or for the object. */
 #include "runtime/task/internal.h"
 
-#include "runtime/base/error.h"
-
 /* ---- Contributing: at forks ---- */
 
 /* Gives the object a sum. False without memory. */
@@ -19,10 +17,8 @@ int task_contribute(struct task_graph *graph, struct task *task, size_t i,
 {
     bool adder = object->holder == graph->rank;
     object->law = law;
-    if ((adder || task) && !sum_open(graph, object)) {
-        base_no_memory("contributions");
-        return task_break(graph);
-    }
+    if ((adder || task) && !sum_open(graph, object))
+        return task_break(graph, "contributions");
     uint64_t first = object->leaves++;
     if (adder && !task)
         data_sum_sender(object->sum, at);
@@ -33,8 +29,7 @@ int task_contribute(struct task_graph *graph, struct task *task, size_t i,
     if (access->leaf)
         return DUITE_OK;
     atomic_store_explicit(&object->sum->lost, &task_sum_no_memory, memory_order_relaxed);
-    base_no_memory("a contribution");
-    return task_break(graph);
+    return task_break(graph, "a contribution");
 }
 
 /* ---- Contributing without a child: in a body that holds cwp ---- */

@@ -11,19 +11,11 @@ struct data_version *task_local(struct task_graph *graph, struct data_object *ob
 {
     if (object->current)
         return object->current;
-    struct data_version *version = data_object_version(object);
-    if (version)
-        version->packet = data_packet_new(object->bytes, true);
-    if (!version || !version->packet) {
-        if (version)
-            data_version_free(version);
-        base_no_memory("an object");
-        task_break(graph);
-        return NULL;
+    object->current = task_value_version(object, NULL, object->bytes);
+    if (!object->current) {
+        task_break(graph, "an object");
     }
-    data_version_produced(version);
-    data_version_release(version); /* nobody produced these zeros: the object alone holds them */
-    return object->current = version;
+    return object->current;
 }
 
 void task_forget(struct task_graph *graph, struct worker *worker, struct data_object *object)
@@ -43,8 +35,7 @@ int task_wait(struct task_scope *scope, struct task *task, size_t i, struct data
     const bool writes = data_order_writes((duite_mode)access->waiter.mode);
     if (access_wait(scope, access, object, writes, scope->depth, done))
         return DUITE_OK;
-    base_no_memory("a version");
-    return task_break(scope->graph);
+    return task_break(scope->graph, "a version");
 }
 
 /* The scope of the task gets a hold on the version that is read; or the object's, and then the
@@ -53,10 +44,8 @@ static int access_lend(struct task_fork_call *call, size_t i, struct data_object
                        struct data_version *version, bool writes)
 {
     struct data_version *out = writes ? data_object_version(object) : NULL;
-    if (writes && !out) {
-        base_no_memory("a version");
-        return task_break(call->scope->graph);
-    }
+    if (writes && !out)
+        return task_break(call->scope->graph, "a version");
     if (writes)
         object->current = out;
     else

@@ -64,8 +64,7 @@ struct task *task_new(struct task_scope *scope, enum task_type type, size_t n, s
 {
     struct task *task = task_make(scope, type, n, extra);
     if (!task) {
-        base_no_memory("a task");
-        task_break(scope->graph);
+        task_break(scope->graph, "a task");
         return NULL;
     }
     fork_count(scope, scope->parent != NULL);
@@ -94,126 +93,105 @@ uint64_t task_later_round(const struct task *task)
 
 /* ---- The short way on one rank. Compiled once for the main program and once for bodies ---- */
 
-/* A fork under way. */
-struct plain_fork {
-    struct task_scope *scope;
-    struct worker *worker;
-    const struct task_fixed *fixed;
-    struct task *task;
-    bool nested; /* a body's */
-};
-
-/* Unmarks the objects of the accesses before `end`: this fork does not name them after all. */
-static void plain_unmark(struct task *task, const struct task_access *end)
+/* This fork names none of the objects of the accesses before `end` after all. Returns false. */
+__attribute__((noinline)) static bool plain_unmark(struct task *task, const struct task_access *end)
 {
     for (struct task_access *access = task->access; access < end; access++)
         access->object->mark = 0;
+    return false;
 }
 
 /* Finds the objects. False: one of them needs a second look; nothing was done. */
-ACCESS_INLINE bool plain_take_objects(const struct plain_fork *fork, const duite_object *name)
+ACCESS_INLINE bool plain_take_objects(const struct task_fork_call *call, bool nested)
 {
-    const struct access_look look = access_look_of(fork->scope, fork->nested, true);
-    const struct task_access *like = fork->fixed->head->access;
-    struct task_access *access = fork->task->access, *const end = access + fork->fixed->n;
-    for (; access < end; access++, like++, name++) {
+    const struct access_look look = access_look_of(call->scope, nested, true);
+    const struct task_access *like = call->fixed->head->access;
+    struct task_access *access = call->task->access, *const end = access + call->fixed->n;
+    for (const duite_object *name = call->objects; access < end; access++, like++, name++) {
         struct data_object *object = access_find(&look, *name, like->waiter.mode);
-        if (!object) {
-            plain_unmark(fork->task, access);
-            return false;
-        }
+        if (!object)
+            return plain_unmark(call->task, access);
         base_prefetch(object->current);
         *access = *like;
         access->object = object;
-        if (!object->current && like->waiter.mode != DUITE_W) {
-            plain_unmark(fork->task, access + 1);
-            return false;
-        }
+        if (!object->current && like->waiter.mode != DUITE_W)
+            return plain_unmark(call->task, access + 1);
     }
     return true;
 }
 
 /* Makes all of the task but its accesses. */
-ACCESS_INLINE void plain_make(const struct plain_fork *fork, const void *args)
+ACCESS_INLINE void plain_make(const struct task_fork_call *call, const void *args, bool nested)
 {
-    const struct task_fixed *fixed = fork->fixed;
-    struct task_scope *scope = fork->scope;
-    struct task *task = fork->task;
+    const struct task_fixed *fixed = call->fixed;
+    struct task_scope *scope = call->scope;
+    struct task *task = call->task;
     *task = *fixed->head;
     task->scope = scope;
     task->number = ++scope->forks;
     task->block = fixed->owner[0] == TASK_NOBODY ? (uint32_t)scope->forks
                                                  : task->access[fixed->owner[0]].object->block;
     fork_copy_args(task_rest(task, fixed->n), args, fixed->kernel->args_size);
-    fork_count(scope, fork->nested);
+    fork_count(scope, nested);
 }
 
 /* The accesses wait. Returns how many have nothing to wait for; *stop: their end, or the one for
  * which there was no memory. */
-ACCESS_INLINE uint32_t plain_depend(const struct plain_fork *fork, const struct task_access **stop)
+ACCESS_INLINE uint32_t plain_depend(const struct task_fork_call *call,
+                                    const struct task_access **stop, bool nested)
 {
-    struct task_access *access = fork->task->access, *const end = access + fork->fixed->n;
+    struct task_access *access = call->task->access, *const end = access + call->fixed->n;
     uint32_t done = 0;
     for (; access < end; access++) {
         struct data_object *object = access->object;
         const bool writes = access->waiter.mode != DUITE_R;
         object->number += writes; /* it is nowhere else: its holder stays this rank */
-        if (!access_wait(fork->scope, access, object, writes, fork->nested, &done))
+        if (!access_wait(call->scope, access, object, writes, nested, &done))
             break;
     }
     *stop = access;
     return done;
 }
 
-/* The objects are found. */
-ACCESS_INLINE int plain_fork(const struct plain_fork *fork, const struct task_options *options,
-                             const void *args)
-{
-    struct task_graph *graph = fork->scope->graph;
-    struct task *task = fork->task;
-    const struct task_access *stop;
-    plain_make(fork, args);
-    if (options) {
-        task->priority = options->priority;
-        task->cost = (float)options->cost;
-    }
-    const uint32_t done = plain_depend(fork, &stop);
-    if (stop == task->access + fork->fixed->n) {
-        ready_take(graph, fork->worker, task, done + 1);
-        return DUITE_OK;
-    }
-    base_no_memory("a version");
-    task_break(graph);
-    task_void(graph, fork->worker, task, (size_t)(stop - task->access), done);
-    return DUITE_E_MEMORY;
-}
-
 /* True if the fork is of this kind: then its task has memory, and its objects are found. */
-ACCESS_INLINE bool plain_fits(struct plain_fork *fork, const duite_kernel *kernel, const void *args,
-                              size_t n, const duite_object *objects)
+ACCESS_INLINE bool plain_fits(struct task_fork_call *call, const void *args, bool nested)
 {
-    const struct task_fixed *fixed = fork->fixed = task_kernel_find(fork->scope->graph, kernel);
-    if (!fixed || !(fork->nested ? fixed->plain : fixed->direct) || n != fixed->n ||
-        !task_fork_fits(fixed, args, n, objects))
+    const struct task_fixed *fixed = call->fixed =
+        task_kernel_find(call->scope->graph, call->kernel);
+    if (!fixed || !(nested ? fixed->plain : fixed->direct) || call->n != fixed->n ||
+        !task_fork_fits(fixed, args, call->n, call->objects))
         return false;
     const size_t bytes = (size_t)fixed->grains * TASK_GRAIN;
-    fork->task = base_pool_take(bytes);
-    if (!fork->task || plain_take_objects(fork, objects))
-        return fork->task != NULL;
-    base_pool_give(fork->task, bytes);
+    call->task = base_pool_take(bytes);
+    if (!call->task || plain_take_objects(call, nested))
+        return call->task != NULL;
+    base_pool_give(call->task, bytes);
     return false;
 }
 
 /* The compiler knows `nested` and whether there are options. */
-ACCESS_INLINE int plain_try(struct task_scope *scope, struct worker *worker,
-                            const struct task_options *options, const duite_kernel *kernel,
-                            const void *args, size_t n, const duite_object *objects, bool nested)
+ACCESS_INLINE int plain_fork(struct task_scope *scope, struct worker *worker,
+                             const struct task_options *options, const duite_kernel *kernel,
+                             const void *args, size_t n, const duite_object *objects, bool nested)
 {
-    struct plain_fork fork = {.scope = scope, .worker = worker, .nested = nested};
-    if (plain_fits(&fork, kernel, args, n, objects))
-        return plain_fork(&fork, options, args);
-    return task_fork_any(scope, worker, options ? options : &task_no_options, kernel, args, n,
-                         objects);
+    struct task_fork_call call;
+    const struct task_access *stop;
+    task_fork_call_init(&call, scope, worker, kernel, n, objects);
+    if (!plain_fits(&call, args, nested))
+        return task_fork_any(scope, worker, options ? options : &task_no_options, kernel, args, n,
+                             objects);
+    plain_make(&call, args, nested);
+    if (options) {
+        call.task->priority = options->priority;
+        call.task->cost = (float)options->cost;
+    }
+    const uint32_t done = plain_depend(&call, &stop, nested);
+    if (stop == call.task->access + call.fixed->n) {
+        ready_take(scope->graph, worker, call.task, done + 1);
+        return DUITE_OK;
+    }
+    task_void(scope->graph, worker, call.task, (size_t)(stop - call.task->access), done);
+    return task_break(scope->graph, "a version");
 }
 
 /* ---- The general way ---- */
@@ -271,8 +249,7 @@ static struct task *fork_body(const struct task_fork_call *call, const struct ta
         postponed += call->n - call->fixed->n;
     if (!postponed || (task->inner = task_scope_new(task, postponed)))
         return task;
-    base_no_memory("a task");
-    task_break(scope->graph);
+    task_break(scope->graph, "a task");
     task_void(scope->graph, call->worker, task, 0, 0);
     return NULL;
 }
@@ -416,13 +393,13 @@ int task_fork_ranks(struct task_graph *graph, struct worker *worker, const duite
 int task_fork_main(struct task_graph *graph, struct worker *worker, const duite_kernel *kernel,
                    const void *args, size_t n, const duite_object *objects)
 {
-    return plain_try(&graph->root, worker, NULL, kernel, args, n, objects, false);
+    return plain_fork(&graph->root, worker, NULL, kernel, args, n, objects, false);
 }
 
 int task_fork_nested(struct task_scope *scope, struct worker *worker, const duite_kernel *kernel,
                      const void *args, size_t n, const duite_object *objects)
 {
-    return plain_try(scope, worker, NULL, kernel, args, n, objects, true);
+    return plain_fork(scope, worker, NULL, kernel, args, n, objects, true);
 }
 
 int task_fork(struct task_scope *scope, struct worker *worker, const struct task_options *options,
@@ -430,5 +407,5 @@ int task_fork(struct task_scope *scope, struct worker *worker, const struct task
 {
     if (options->at != TASK_ANYWHERE)
         return task_fork_any(scope, worker, options, kernel, args, n, objects);
-    return plain_try(scope, worker, options, kernel, args, n, objects, scope->depth != 0);
+    return plain_fork(scope, worker, options, kernel, args, n, objects, scope->depth != 0);
 }

@@ -3,6 +3,8 @@
 
 #include "runtime/task/body.h"
 
+#include "runtime/base/error.h"
+
 #pragma GCC visibility push(hidden) /* called directly: no other library can replace them */
 
 /* Shared by the files of this folder only. */
@@ -147,7 +149,7 @@ static inline void task_left(struct task_graph *graph, struct task_scope *scope,
 {
     /* No look into the root: the main thread writes its line with every fork. */
     if (scope == &graph->root)
-        queue_over_one(graph->pool, worker);
+        queue_over(graph->pool, worker);
     else if (!scope->parent ||
              atomic_fetch_sub_explicit(&scope->unfinished, 1, memory_order_acq_rel) == 1)
         task_left_last(graph, scope, worker);
@@ -248,8 +250,6 @@ int task_check_right(struct task_scope *scope, const char *call, size_t i, duite
 /* DUITE_E_RIGHT: a child contributes by another law than that of the contribution it is part of. */
 int task_wrong_law(const struct task_scope *scope, const duite_kernel *kernel, size_t i,
                    duite_object name);
-/* A body begins that has a scope already: notes the body in it. */
-void task_body_enters(struct duite_call_private *body);
 
 /* ---- Failures ---- */
 
@@ -294,15 +294,15 @@ extern const struct data_failure task_lost_failure;
 static inline struct data_key task_key(const struct task_graph *graph,
                                        const struct data_object *object)
 {
-    duite_object name = data_object_name(&graph->table, object);
-    return (struct data_key){name.slot, name.generation, object->number};
+    const uint32_t slot = (uint32_t)(object - graph->table.object);
+    return (struct data_key){slot, object->generation, object->number};
 }
 
-/* Out of memory in the middle of a fork: the ranks no longer agree on what was forked. */
-static inline int task_break(struct task_graph *graph)
+/* There is no memory for `what` in the middle of a fork: the ranks no longer agree on what was
+ * forked. */
+static inline int task_break(struct task_graph *graph, const char *what)
 {
-    graph->broken = DUITE_E_MEMORY;
-    return DUITE_E_MEMORY;
+    return graph->broken = base_no_memory(what);
 }
 
 #pragma GCC visibility pop

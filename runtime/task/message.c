@@ -3,8 +3,6 @@
  * task had written them here. */
 #include "runtime/task/ready.h"
 
-#include "runtime/base/error.h"
-
 /* ---- At the fork ---- */
 
 static int fetch_send(struct task_graph *graph, struct worker *worker, struct data_object *object,
@@ -20,21 +18,35 @@ static int fetch_send(struct task_graph *graph, struct worker *worker, struct da
     return DUITE_OK;
 }
 
+/* The packet came for an expected version. NULL: it will not come. */
+static void fetch_arrived(void *graph, struct worker *worker, void *what,
+                          struct data_packet *packet)
+{
+    struct data_version *version = what;
+    if (!packet) {
+        data_version_poison(version, &task_lost_failure);
+    } else if (packet->kind == DATA_POISON) {
+        data_version_poison(version, task_fail(graph, data_payload(packet), false));
+        data_packet_free(packet);
+    } else {
+        version->packet = packet;
+    }
+    ready_publish(graph, worker, version);
+}
+
 static int fetch_await(struct task_graph *graph, struct worker *worker, struct data_object *object)
 {
     struct data_version *version = data_object_version(object);
-    if (!version) {
-        base_no_memory("a version");
-        return task_break(graph);
-    }
+    if (!version)
+        return task_break(graph, "a version");
     object->current = version;
     const struct comm_target target = {
-        .arrived = task_arrived, .what = version, .from = object->holder};
+        .arrived = fetch_arrived, .what = version, .from = object->holder};
     if (!comm_expect(graph->comm, worker, task_key(graph, object), target, 1))
         return DUITE_OK;
     object->current = NULL;
     data_version_free(version);
-    return task_break(graph);
+    return task_break(graph, "messages to come");
 }
 
 int task_fetch(struct task_graph *graph, struct worker *worker, struct data_object *object, int to)
@@ -90,18 +102,4 @@ struct data_packet *task_send_packet(struct comm_letter *send)
         packet->key = key;
     }
     return packet;
-}
-
-void task_arrived(void *graph, struct worker *worker, void *what, struct data_packet *packet)
-{
-    struct data_version *version = what;
-    if (!packet) {
-        data_version_poison(version, &task_lost_failure);
-    } else if (packet->kind == DATA_POISON) {
-        data_version_poison(version, task_fail(graph, data_payload(packet), false));
-        data_packet_free(packet);
-    } else {
-        version->packet = packet;
-    }
-    ready_publish(graph, worker, version);
 }

@@ -4,7 +4,6 @@
 #include "runtime/task/ready.h"
 #include "runtime/task/scope.h"
 
-#include "runtime/base/error.h"
 #include "runtime/data/object.h"
 
 #include <string.h>
@@ -29,6 +28,22 @@ int task_free_object(struct task_scope *scope, struct worker *worker, duite_obje
     return code;
 }
 
+/* A task of the runtime waits for the object's value. */
+static int object_read(struct task_graph *graph, struct worker *worker,
+                       const struct data_object *object, enum task_type type,
+                       struct task_copy *copy)
+{
+    struct task *task = task_new(&graph->root, type, 1, 0);
+    if (!task)
+        return DUITE_E_MEMORY;
+    task->copy = copy;
+    task->block = object->block;
+    task->access[0].waiter.mode = DUITE_R;
+    ready_take(graph, worker, task,
+               1 + data_version_read(object->current, &task->access[0].waiter));
+    return DUITE_OK;
+}
+
 int task_copy(struct task_graph *graph, struct worker *worker, duite_object name, int to,
               struct task_copy *copy)
 {
@@ -45,15 +60,8 @@ int task_copy(struct task_graph *graph, struct worker *worker, duite_object name
                                    : task_fetch(graph, worker, object, to);
     if (code || (to != TASK_ANYWHERE && to != graph->rank))
         return code;
-    struct data_version *version = task_local(graph, object);
-    struct task *task = version ? task_new(&graph->root, TASK_COPY, 1, 0) : NULL;
-    if (!task)
-        return DUITE_E_MEMORY;
-    task->copy = copy;
-    task->block = object->block;
-    task->access[0].waiter.mode = DUITE_R;
-    ready_take(graph, worker, task, 1 + data_version_read(version, &task->access[0].waiter));
-    return DUITE_OK;
+    return task_local(graph, object) ? object_read(graph, worker, object, TASK_COPY, copy)
+                                     : DUITE_E_MEMORY;
 }
 
 int task_see(struct duite_call_private *body, const char *call, duite_object name,
@@ -92,16 +100,16 @@ struct data_version *task_value_version(const struct data_object *object, const 
 {
     struct data_version *version = data_object_version(object);
     struct data_packet *packet = version ? data_packet_new(bytes, !values) : NULL;
-    if (!packet) {
-        if (version)
-            data_version_free(version);
-        return NULL;
+    if (packet) {
+        if (values)
+            memcpy(data_payload(packet), values, bytes);
+        version->packet = packet;
+        data_version_produced(version);
+        data_version_release(version); /* nobody produces it: the object alone holds it */
+    } else if (version) {
+        data_version_free(version);
+        version = NULL;
     }
-    if (values)
-        memcpy(data_payload(packet), values, bytes);
-    version->packet = packet;
-    data_version_produced(version);
-    data_version_release(version);
     return version;
 }
 
@@ -134,10 +142,8 @@ int task_set_object(struct task_scope *scope, struct worker *worker, duite_objec
     }
     struct data_version *version = NULL;
     const size_t bytes = count * data_type_size(object->type);
-    if (object->home == graph->rank && !(version = task_value_version(object, values, bytes))) {
-        base_no_memory("the values of duite_set");
-        return task_break(graph);
-    }
+    if (object->home == graph->rank && !(version = task_value_version(object, values, bytes)))
+        return task_break(graph, "the values of duite_set");
     code = object->leaves ? task_reduce(scope, worker, object) : DUITE_OK;
     task_note_version(object, object->home);
     task_forget(graph, worker, object);
@@ -148,20 +154,6 @@ int task_set_object(struct task_scope *scope, struct worker *worker, duite_objec
 /* ---- Homes that change: a value is not tied to its object's home, since readers find its holder.
  * So a move is one more copy, whose holder is then the new home; copies on other ranks stay good
  * ---- */
-
-/* A task waits for the value that comes: messages belong to tasks, and none may be left at stop. */
-static int move_await(struct task_graph *graph, struct worker *worker,
-                      const struct data_object *object)
-{
-    struct task *task = task_new(&graph->root, TASK_MOVE, 1, 0);
-    if (!task)
-        return DUITE_E_MEMORY;
-    task->block = object->block;
-    task->access[0].waiter.mode = DUITE_R;
-    ready_take(graph, worker, task,
-               1 + data_version_read(object->current, &task->access[0].waiter));
-    return DUITE_OK;
-}
 
 /* Zeros, as at the beginning, need no message. */
 static void move_zeros(struct task_graph *graph, struct worker *worker, struct data_object *object,
@@ -178,8 +170,8 @@ static int move_value(struct task_graph *graph, struct worker *worker, struct da
     bool sent = !data_object_has_copy(&graph->table, object, to);
     bool held = graph->rank == object->holder;
     int code = sent ? task_fetch(graph, worker, object, to) : DUITE_OK;
-    if (!code && sent && graph->rank == to)
-        code = move_await(graph, worker, object);
+    if (!code && sent && graph->rank == to) /* messages belong to tasks: none may be left at stop */
+        code = object_read(graph, worker, object, TASK_MOVE, NULL);
     if (code)
         return code;
     data_object_hand_on(&graph->table, object, to);

@@ -60,6 +60,15 @@ static inline bool place_fits(const struct worker *worker, const struct task *ta
            (queue_nests_freely(worker) && task_may_run_other(worker->waits, task));
 }
 
+/* Next, unless a body waits below and the task may not run on top: then it goes to a queue. */
+__attribute__((noinline)) static void place_on_top(struct worker *worker, struct task *task)
+{
+    if (place_fits(worker, task))
+        worker->next = task;
+    else
+        place_put(worker, task, worker->index);
+}
+
 /* Apart from the rest, since most tasks stay and need no description. */
 __attribute__((noinline)) static void place_ask(const struct task_graph *graph,
                                                 struct worker *worker, struct task *task,
@@ -85,17 +94,8 @@ __attribute__((noinline)) void task_place(struct task_graph *graph, struct worke
     const bool may_run = worker->may_chain && !worker->next;
     if (!pool->by_affinity || !queue_keeps(worker, affinity))
         place_ask(graph, worker, task, may_run, affinity);
-    else if (may_run && place_fits(worker, task))
-        worker->next = task;
-    else
-        place_put(worker, task, worker->index);
-}
-
-/* A body waits below: the task goes to a queue if it may not run on top. */
-__attribute__((noinline)) static void place_on_top(struct worker *worker, struct task *task)
-{
-    if (place_fits(worker, task))
-        worker->next = task;
+    else if (may_run)
+        place_on_top(worker, task);
     else
         place_put(worker, task, worker->index);
 }

@@ -3,7 +3,6 @@
  * have. */
 #include "runtime/task/ready.h"
 
-#include "runtime/base/error.h"
 #include "runtime/base/memory.h"
 
 #include <string.h>
@@ -15,6 +14,55 @@ enum value_where { VALUE_FOLLOWS, VALUE_IS_ABSENT /* though there is room for on
 
 const struct data_failure task_sum_no_memory = {
     .code = DUITE_E_MEMORY, .kernel = UINT32_MAX, .text = "there was no memory for contributions"};
+
+/* ---- Pieces of other ranks ---- */
+
+/* Takes over the piece and its packet. Without memory the sum is marked lost, or it would count as
+ * complete. */
+static bool piece_add(struct task_graph *graph, struct data_sum *sum, struct data_piece piece)
+{
+    struct data_piece *node = data_piece_new();
+    if (!node) {
+        const struct data_failure *failure = task_fail(graph, &task_sum_no_memory, true);
+        atomic_store_explicit(&sum->lost, failure, memory_order_relaxed);
+        data_packet_free(piece.packet);
+        return false;
+    }
+    *node = piece;
+    data_sum_arrive(sum, node);
+    return true;
+}
+
+/* The first piece owns the packet, whose bytes all of them share. */
+static void pieces_add(struct task_graph *graph, struct data_sum *sum, struct data_packet *packet)
+{
+    uint32_t n = packet->pieces;
+    struct data_subtree *trees = data_payload(packet);
+    char *values = (char *)(trees + n);
+    size_t stride = packet->bytes / n - sizeof *trees;
+    for (uint32_t i = 0; i < n; i++)
+        if (!piece_add(graph, sum,
+                       (struct data_piece){
+                           .tree = trees[i],
+                           .packet = i ? NULL : packet,
+                           .value = trees[i].where == VALUE_FOLLOWS ? values + i * stride : NULL}))
+            return;
+}
+
+void task_pieces_arrived(void *graph, struct worker *worker, void *what, struct data_packet *packet)
+{
+    struct data_sum *sum = what;
+    if (!packet) {
+        atomic_store_explicit(&sum->lost, &task_lost_failure, memory_order_relaxed);
+    } else if (packet->kind == DATA_POISON) {
+        const struct data_failure *failure = task_fail(graph, data_payload(packet), false);
+        piece_add(graph, sum, (struct data_piece){.failure = failure});
+        data_packet_free(packet);
+    } else {
+        pieces_add(graph, sum, packet);
+    }
+    ready_wake(graph, worker, data_sum_release(sum));
+}
 
 /* ---- Reducing ---- */
 
@@ -48,7 +96,7 @@ static int pieces_expect(struct task_graph *graph, struct worker *worker, struct
         return DUITE_OK;
     atomic_store_explicit(&sum->lost, &task_sum_no_memory, memory_order_relaxed);
     atomic_fetch_sub_explicit(&sum->pending, sum->senders, memory_order_relaxed);
-    return task_break(graph);
+    return task_break(graph, "messages to come");
 }
 
 static int sum_combine_here(struct task_scope *scope, struct worker *worker,
@@ -214,53 +262,4 @@ void task_run_pieces(struct task *task)
     sum->send.packet = packet; /* the sender notices NULL */
     task->state = TASK_LEAVES;
     task->send = &sum->send;
-}
-
-/* ---- Pieces of other ranks ---- */
-
-/* Takes over the piece and its packet. Without memory the sum is marked lost, or it would count as
- * complete. */
-static bool piece_add(struct task_graph *graph, struct data_sum *sum, struct data_piece piece)
-{
-    struct data_piece *node = data_piece_new();
-    if (!node) {
-        const struct data_failure *failure = task_fail(graph, &task_sum_no_memory, true);
-        atomic_store_explicit(&sum->lost, failure, memory_order_relaxed);
-        data_packet_free(piece.packet);
-        return false;
-    }
-    *node = piece;
-    data_sum_arrive(sum, node);
-    return true;
-}
-
-/* The first piece owns the packet, whose bytes all of them share. */
-static void pieces_add(struct task_graph *graph, struct data_sum *sum, struct data_packet *packet)
-{
-    uint32_t n = packet->pieces;
-    struct data_subtree *trees = data_payload(packet);
-    char *values = (char *)(trees + n);
-    size_t stride = packet->bytes / n - sizeof *trees;
-    for (uint32_t i = 0; i < n; i++)
-        if (!piece_add(graph, sum,
-                       (struct data_piece){
-                           .tree = trees[i],
-                           .packet = i ? NULL : packet,
-                           .value = trees[i].where == VALUE_FOLLOWS ? values + i * stride : NULL}))
-            return;
-}
-
-void task_pieces_arrived(void *graph, struct worker *worker, void *what, struct data_packet *packet)
-{
-    struct data_sum *sum = what;
-    if (!packet) {
-        atomic_store_explicit(&sum->lost, &task_lost_failure, memory_order_relaxed);
-    } else if (packet->kind == DATA_POISON) {
-        const struct data_failure *failure = task_fail(graph, data_payload(packet), false);
-        piece_add(graph, sum, (struct data_piece){.failure = failure});
-        data_packet_free(packet);
-    } else {
-        pieces_add(graph, sum, packet);
-    }
-    ready_wake(graph, worker, data_sum_release(sum));
 }

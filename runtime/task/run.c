@@ -206,13 +206,14 @@ __attribute__((always_inline)) static inline bool body_run(struct task_graph *gr
 static bool body_run_any(struct task_graph *graph, struct task_frame *frame, struct task *task,
                          const struct body_elsewhere *elsewhere)
 {
-    duite_param *param = base_pool_take((task->n ? task->n : 1) * sizeof *param);
+    const size_t bytes = (task->n ? task->n : 1) * sizeof(duite_param);
+    duite_param *param = base_pool_take(bytes);
     if (!param) {
         outputs_poison(task, task_fail_memory(task));
         return false;
     }
     bool ran = body_run(graph, frame, task, param, elsewhere);
-    base_pool_give(param, (task->n ? task->n : 1) * sizeof *param);
+    base_pool_give(param, bytes);
     return ran;
 }
 

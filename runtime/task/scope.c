@@ -9,7 +9,6 @@
  * While the body runs, only its worker uses the objects. */
 #include "runtime/task/scope.h"
 
-#include "runtime/base/error.h"
 #include "runtime/base/memory.h"
 #include "runtime/data/law.h"
 
@@ -18,11 +17,6 @@
 /* With the initial-exec model, also in this file, a thread reaches these without a call. */
 #define THREAD_OWN _Thread_local __attribute__((tls_model("initial-exec")))
 THREAD_OWN struct duite_call_private *task_innermost;
-
-void task_body_enters(struct duite_call_private *body)
-{
-    task_nest_of(body->scope)->body = body;
-}
 
 /* ---- Names ---- */
 
@@ -116,8 +110,23 @@ struct task_scope *task_scope_begin(struct duite_call_private *body)
     }
     task_nest_of(body->scope)->body = body;
     if (task->type == TASK_NODE) /* the main program waits for what it forks, too */
-        queue_over(body->graph->pool, body->worker, -1);
+        queue_more(body->worker);
     return body->scope;
+}
+
+/* An object of the scope, without a name and a version. */
+static inline void nest_object(const struct task_nest *nest, struct data_object *object,
+                               duite_type type, size_t count, size_t max, uint32_t block)
+{
+    const size_t size = data_type_size(type);
+    data_object_clear(object);
+    object->type = type;
+    object->count = count;
+    object->bytes = count * size;
+    object->max = max;
+    object->room = max * size;
+    object->home = object->holder = nest->scope.graph->rank;
+    object->block = block;
 }
 
 void task_lend(struct task_scope *inner, struct task_access *access,
@@ -134,18 +143,11 @@ void task_lend(struct task_scope *inner, struct task_access *access,
         exit->sum = access->leaf->sum;
         exit->leaf = access->leaf;
     }
-    int rank = nest->scope.graph->rank;
-    nest->local[nest->n_lent] = (struct data_object){.type = object->type,
-                                                     .sized = object->sized,
-                                                     .count = object->count,
-                                                     .bytes = object->bytes,
-                                                     .max = object->max,
-                                                     .room = object->room,
-                                                     .home = rank,
-                                                     .holder = rank,
-                                                     .block = object->block,
-                                                     .law = object->law,
-                                                     .current = version};
+    struct data_object *local = &nest->local[nest->n_lent];
+    nest_object(nest, local, object->type, object->count, object->max, object->block);
+    local->sized = object->sized;
+    local->law = object->law;
+    local->current = version;
     access->lent = nest->n_lent;
     nest->n_local = ++nest->n_lent;
     nest->scope.outward |= access->waiter.mode != DUITE_CWP;
@@ -205,19 +207,10 @@ int task_make_object(struct duite_call_private *body, duite_type type, size_t co
         if (at < CELLS && nest->cells && !sized)
             cell = nest->cells + at * (uint32_t)sizeof(struct task_cell);
     }
-    size_t size = data_type_size(type);
-    int rank = scope->graph->rank;
     struct data_object *object = &nest->local[at];
-    data_object_clear(object);
+    nest_object(nest, object, type, count, max, (uint32_t)scope->forks);
     object->generation = task_new_stamp();
-    object->type = type;
     object->sized = sized;
-    object->count = count;
-    object->bytes = count * size;
-    object->max = max;
-    object->room = max * size;
-    object->home = object->holder = rank;
-    object->block = (uint32_t)scope->forks;
     object->hint = object->room <= BASE_LINE ? cell : 0;
     uint32_t slot = TASK_LOCAL_NAME | (body->task->n + at - nest->n_lent);
     *name = (duite_object){slot, object->generation};
@@ -225,32 +218,21 @@ int task_make_object(struct duite_call_private *body, duite_type type, size_t co
 }
 
 /* The version that the body reads: of a forked task the version itself, in a replay a copy of the
- * bytes in place. */
-static struct data_version *read_version(const struct duite_call_private *body, uint32_t i)
+ * bytes in place. NULL without memory. */
+static struct data_version *read_version(const struct duite_call_private *body, uint32_t i,
+                                         const struct data_object *object)
 {
     const struct task *task = body->task;
-    if (task->type == TASK_BODY) {
-        data_version_hold(task->access[i].waiter.version);
-        return task->access[i].waiter.version;
-    }
     const duite_param *param = &body->param[i];
-    size_t bytes = param->count * data_type_size(param->type);
-    struct data_version *version =
-        data_version_new(param->type, param->max, param->count != param->max);
-    if (version)
-        version->packet = data_packet_new(bytes, false);
-    if (!version || !version->packet) {
-        if (version)
-            data_version_free(version);
-        return NULL;
-    }
-    memcpy(data_payload(version->packet), param->data, bytes);
-    data_version_produced(version);
-    data_version_release(version); /* the object alone holds it */
-    return version;
+    if (task->type != TASK_BODY)
+        return task_value_version(object, param->data, param->count * data_type_size(param->type));
+    data_version_hold(task->access[i].waiter.version);
+    return task->access[i].waiter.version;
 }
 
-int task_lend_reads(struct task_scope *scope)
+/* Adds the objects that the body reads to its scope, so that children may read them. Errors:
+ * memory. */
+static int nest_lend_reads(struct task_scope *scope)
 {
     struct task_nest *nest = task_nest_of(scope);
     const struct task *task = nest->body->task;
@@ -261,24 +243,16 @@ int task_lend_reads(struct task_scope *scope)
         return DUITE_E_MEMORY;
     memset(&nest->local[first], 0, task->n * sizeof *nest->local);
     nest->first_read = first + 1;
-    int rank = scope->graph->rank;
     for (uint32_t i = 0; i < task->n; i++) {
         const duite_param *param = &nest->body->param[i];
         struct data_object *object = &nest->local[first + i];
         if (data_mode_of(scope->graph->kernels[task->kernel], i) != DUITE_R)
             continue;
-        *object = (struct data_object){.type = param->type,
-                                       .sized = param->count != param->max,
-                                       .max = param->max,
-                                       .room = param->max * data_type_size(param->type),
-                                       .home = rank,
-                                       .holder = rank,
-                                       .block = task->block,
-                                       .current = read_version(nest->body, i)};
-        if (!object->current) {
-            base_no_memory("what a task reads");
-            return task_break(scope->graph);
-        }
+        nest_object(nest, object, param->type, param->count, param->max, task->block);
+        object->sized = param->count != param->max;
+        object->current = read_version(nest->body, i, object);
+        if (!object->current)
+            return task_break(scope->graph, "what a task reads");
     }
     return DUITE_OK;
 }
@@ -319,7 +293,7 @@ int task_check_right(struct task_scope *scope, const char *call, size_t i, duite
                           name.slot ? "was freed, or is another task's" : "names nothing", forker);
     }
     if (task_right_gives(held, wanted))
-        return local ? DUITE_OK : task_lend_reads(scope);
+        return local ? DUITE_OK : nest_lend_reads(scope);
     return base_error(DUITE_E_RIGHT,
                       "%s, parameter %zu: the task holds %s on object %u.%u, parameter %u of its "
                       "kernel %s, and %s is wanted",

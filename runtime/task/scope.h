@@ -117,10 +117,6 @@ static inline struct data_object *task_find_given(struct task_scope *scope, duit
                                                                                          : NULL;
 }
 
-/* Adds the objects that the body reads to its scope, so that children may read them. Errors:
- * memory. */
-int task_lend_reads(struct task_scope *scope);
-
 /* The failure of a task's results for lack of memory. */
 extern const struct data_failure task_scope_no_memory;
 

@@ -22,7 +22,7 @@ void task_left_last(struct task_graph *graph, struct task_scope *scope, struct w
         base_pool_give(nest, nest->size);
         scope = parent;
         if (scope == &graph->root) {
-            queue_over(graph->pool, worker, 1);
+            queue_over(graph->pool, worker);
             return;
         }
         if (scope->parent &&

@@ -407,9 +407,9 @@ static inline bool task_has_body(const struct task *task)
     return task->state == TASK_LOCAL && TASK_IS(task, TASK_TYPES_WITH_BODY);
 }
 
-/* A packet came for an expected version, or for an expected sum: pieces of it. NULL: it will not
- * come, and poison takes its place. The context of comm is the graph. */
-comm_arrived task_arrived, task_pieces_arrived;
+/* A packet of pieces came for an expected sum. NULL: it will not come. The context of comm is the
+ * graph. */
+comm_arrived task_pieces_arrived;
 
 /* The bytes that a ready task sends, under their key: letter->packet, or the version that a SEND
  * reads, as it lies. NULL without memory. */

@@ -8,25 +8,14 @@
 bool work_run_task(struct task_graph *graph, struct worker *worker, struct task *task,
                    const duite_call *call)
 {
-    if (task->type == TASK_NODE)
+    if (task_is_node(task))
         return plan_node_run(graph, worker, task, call);
-    if (task->state == TASK_VOID)
-        return task_run(graph, worker, task, call);
-    switch (task->type) {
-    case TASK_REPLAY:
-        plan_replay_run(task);
-        return false;
-    case TASK_NODE_SET:
-    case TASK_NODE_SUM:
-    case TASK_NODE_PARTIAL:
-    case TASK_NODE_COPY:
-    case TASK_NODE_FLAG:
-        return plan_node_run(graph, worker, task, call);
-    case TASK_OFFLOADED:
+    if (task->state != TASK_VOID && task->type == TASK_OFFLOADED)
         return offload_run(graph, worker, task, call);
-    default:
+    if (task->state == TASK_VOID || task->type != TASK_REPLAY)
         return task_run(graph, worker, task, call);
-    }
+    plan_replay_run(task);
+    return false;
 }
 
 /* Ends a task whose state or type changed. */
@@ -44,12 +33,10 @@ void work_finish(struct task_graph *graph, struct worker *worker, struct task *t
 {
     if (task->type == TASK_BODY && task->state == TASK_LOCAL)
         task_finish(graph, worker, task);
-    else if (task->type == TASK_NODE)
+    else if (task_is_node(task))
         plan_node_finish(graph, worker, task);
     else if (task->state != TASK_LOCAL)
         finish_changed(graph, worker, task);
-    else if (task_is_node(task))
-        plan_node_finish(graph, worker, task);
     else if (task->type == TASK_REPLAY)
         plan_replay_start(graph, worker, task);
     else if (task->type == TASK_OFFLOADED)

@@ -45,6 +45,13 @@ void *base_grow_lines(void *array, size_t *capacity, size_t needed, size_t eleme
     return base_grow(array, capacity, needed, element);
 }
 
+/* No model compiles a plan. */
+void *base_arrays(const struct base_array *list)
+{
+    (void)list;
+    return NULL;
+}
+
 /* What of the library is linked as it is finds nothing at hand. */
 static struct base_shelf no_shelves[BASE_POOL_LARGEST / BASE_POOL_GRAIN + 1];
 _Thread_local struct base_shelf *base_shelves = no_shelves;

@@ -41,9 +41,9 @@ static void run(void)
     bool again;
     for (const char *letter = play->script[explore_self()]; *letter; letter++) {
         if (*letter == 'P')
-            its.pushed += queue_deque_push(&its.deque, its.task[its.pushed]);
+            its.pushed += deque_push(&its.deque, its.task[its.pushed]);
         else if (*letter == 'T')
-            got(queue_deque_take_newest(&its.deque));
+            got(deque_take_newest(&its.deque));
         else
             got(queue_deque_take_oldest(&its.deque, &again));
     }
@@ -57,14 +57,14 @@ static void start(void)
         its.task[i] = explore_alloc(sizeof *its.task[i]);
     queue_deque_start(&its.deque, play->slots);
     for (int i = 0; i < play->there; i++)
-        queue_deque_push(&its.deque, its.task[its.pushed++]);
+        deque_push(&its.deque, its.task[its.pushed++]);
 }
 
 /* What nobody took is still there, and nothing else. */
 static void end(void)
 {
     struct task *task;
-    while ((task = queue_deque_take_newest(&its.deque)))
+    while ((task = deque_take_newest(&its.deque)))
         got(task);
     for (int i = 0; i < TASKS; i++)
         explore_check(its.taken[i] == (i < its.pushed));

@@ -76,7 +76,7 @@ static void finish_task(struct worker *worker, const struct task *task)
     atomic_store(&its.over[task->number], 1);
     if (atomic_fetch_add(&its.n_over, 1) + 1 == (int)its.graph.tasks)
         atomic_store(&its.done, 1);
-    queue_over(its.graph.pool, worker, 1);
+    queue_over(its.graph.pool, worker);
 }
 
 #define TASK_IN(...)                                                                               \
@@ -145,8 +145,7 @@ static struct task *look_last(struct worker *worker)
 #define work_find look_last
 #include "runtime/workers/idle.c"
 #undef work_find
-#include "runtime/queue/count.c"
-#include "runtime/queue/park.c"
+#include "runtime/queue/pool.c"
 #include "runtime/task/place.c"
 #include "runtime/workers/pool.c"
 #include "runtime/workers/run.c"

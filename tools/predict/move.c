@@ -137,7 +137,7 @@ static int move_call_balancer(struct move *m)
     bool fine = true;
     for (size_t i = 0; i < p->n_recorded && fine; i++)
         fine = move_traffic(m, &p->recorded[i]);
-    int code = fine ? map_traffic_end(&m->moves.traffic, &m->moves.blocks)
+    int code = fine ? map_traffic_end(&m->moves.traffic, m->moves.blocks.n)
                     : base_no_memory("the blocks of objects");
     if (code)
         return code;

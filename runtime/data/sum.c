@@ -61,17 +61,12 @@ struct data_piece *data_piece_new(void)
     return piece;
 }
 
-static void piece_free(struct data_piece *piece)
-{
-    base_pool_give(piece, sizeof *piece);
-}
-
 static void pieces_free(struct data_piece *piece)
 {
     while (piece) {
         struct data_piece *next = piece->next;
         data_packet_free(piece->packet);
-        piece_free(piece);
+        base_pool_give(piece, sizeof *piece);
         piece = next;
     }
 }
@@ -188,8 +183,8 @@ static void pieces_reduce(struct data_sum *sum, bool fold, struct data_pieces *p
     pieces->n = list.n;
 }
 
-static const struct data_failure *sum_reduce(struct data_sum *sum, bool fold,
-                                             struct data_pieces *pieces, int *code)
+const struct data_failure *data_sum_reduce(struct data_sum *sum, bool fold,
+                                           struct data_pieces *pieces, int *code)
 {
     const struct data_failure *failure = atomic_load_explicit(&sum->lost, memory_order_relaxed);
     const bool fine = pieces_collect(sum, pieces);
@@ -206,16 +201,10 @@ static const struct data_failure *sum_reduce(struct data_sum *sum, bool fold,
     return *code ? NULL : failure;
 }
 
-const struct data_failure *data_sum_reduce(struct data_sum *sum, struct data_pieces *pieces,
-                                           int *code)
-{
-    return sum_reduce(sum, false, pieces, code);
-}
-
 const struct data_failure *data_sum_fold(struct data_sum *sum, struct data_piece **whole, int *code)
 {
     struct data_pieces pieces;
-    const struct data_failure *failure = sum_reduce(sum, true, &pieces, code);
+    const struct data_failure *failure = data_sum_reduce(sum, true, &pieces, code);
     *whole = pieces.n && pieces.piece[0]->value ? pieces.piece[0] : NULL;
     data_pieces_free(&pieces);
     return failure;

@@ -74,11 +74,11 @@ struct data_pieces {
 };
 void data_pieces_free(struct data_pieces *pieces);
 
-/* Combines the pieces (pending is 0) as far as complete subtrees go, in place. Writes them into
- * *pieces, which data_pieces_free ends in any case. Returns the first failure among them, which
- * poisons the whole; DUITE_E_MEMORY in *code without memory. */
-const struct data_failure *data_sum_reduce(struct data_sum *sum, struct data_pieces *pieces,
-                                           int *code);
+/* Combines the pieces (pending is 0) as far as complete subtrees go, or into the first one
+ * (`fold`), in place. Writes them into *pieces, which data_pieces_free ends in any case. Returns
+ * the first failure among them, which poisons the whole; DUITE_E_MEMORY in *code without memory. */
+const struct data_failure *data_sum_reduce(struct data_sum *sum, bool fold,
+                                           struct data_pieces *pieces, int *code);
 
 /* Combines the pieces of a whole sum (pending is 0) into one of them, in place: *whole; NULL: all
  * are absent. Failures and *code as of data_sum_reduce; *whole is NULL then. */

@@ -206,9 +206,9 @@ static const struct data_failure *result_unpack_failure(const struct task *task,
     const size_t bytes = message_lines(sizeof(struct data_failure));
     const bool ran = packet->pieces & MESSAGE_RAN;
     const char *last = (const char *)data_payload(packet) + (ran ? packet->bytes - bytes : 0);
-    const struct data_failure *failure = task_fail(graph, (const void *)last, false);
+    const struct data_failure *failure = task_fail(graph, (const void *)last, NULL);
     if (!ran && packet->pieces & MESSAGE_FAILED_BELOW)
-        task_fail_below(graph, failure, task->scope);
+        task_fail(graph, failure, task->scope);
     return failure;
 }
 
@@ -239,7 +239,7 @@ static struct task_left_value left_unpack(struct task_graph *graph, const struct
     if (left->what == LEFT_NOTHING)
         return (struct task_left_value){0};
     if (left->what == LEFT_POISON)
-        return (struct task_left_value){.failure = task_fail(graph, (const void *)from, false)};
+        return (struct task_left_value){.failure = task_fail(graph, (const void *)from, NULL)};
     return (struct task_left_value){.values = from, .bytes = left->bytes};
 }
 
@@ -262,7 +262,7 @@ static void result_unpack_below(struct task *task, struct worker *worker,
         from += message_lines(answer[i].bytes);
     }
     if (packet->pieces & MESSAGE_FAILED_BELOW)
-        task_fail_below(graph, (const void *)from, task->scope);
+        task_fail(graph, (const void *)from, task->scope);
 }
 
 static const struct data_failure *result_take(const struct task *task, duite_param *param,

@@ -104,7 +104,7 @@ static void channel_unpack_failures(struct plan *plan, const struct task *task,
     for (uint32_t i = 0; i < message->failures; i++) {
         struct message_failure failed;
         memcpy(&failed, at + i * sizeof failed, sizeof failed);
-        plan->place[use[failed.use].place].failure = task_fail(plan->graph, &failed.failure, false);
+        plan->place[use[failed.use].place].failure = task_fail(plan->graph, &failed.failure, NULL);
     }
     if (message->failures)
         atomic_store_explicit(&plan->tainted, PLAN_POISONED, memory_order_relaxed);

@@ -20,6 +20,9 @@ void plan_node_set_poison(struct plan *plan, const struct task *task,
                           const struct data_failure *failure);
 /* Writes the neutral elements that bodies find under cw. */
 void plan_node_clear_leaves(const struct plan *plan, const struct task *task);
+/* The body forked tasks on its own objects and on its parameters. Not inline: it is rare. */
+void plan_node_leave_scope(struct task_scope *scope, struct worker *worker,
+                           const struct data_failure *failure);
 /* The node's last predecessor is over. A node that a message waits for runs at once, never queued
  * behind other tasks. (It makes ready a node that sends, and tasks.) */
 void plan_node_ready(struct task_graph *graph, struct worker *worker, struct task *task);
@@ -90,12 +93,15 @@ __attribute__((always_inline)) static inline bool plan_node_run_body(struct task
     struct plan *plan = node->plan;
     atomic_store_explicit(&task->pending, node->steady, memory_order_relaxed);
     const uint32_t taint = atomic_load_explicit(&plan->tainted, memory_order_relaxed);
-    if (taint > PLAN_POISONED && plan_node_is_void(plan, task, taint))
-        return false;
-    const bool tainted = taint & PLAN_POISONED;
-    const struct data_failure *failure = tainted ? plan_node_poison(plan, task) : NULL;
-    if (!failure)
-        failure = task_given_up(frame->body.graph);
+    const struct data_failure *failure = NULL;
+    if (__builtin_expect(taint || task_has_given_up(frame->body.graph), 0)) {
+        if (taint > PLAN_POISONED && plan_node_is_void(plan, task, taint))
+            return false;
+        if (taint & PLAN_POISONED)
+            failure = plan_node_poison(plan, task);
+        if (!failure)
+            failure = task_given_up(frame->body.graph);
+    }
     const bool runs = !failure;
     if (runs) {
         if (node->n_leaves)
@@ -103,14 +109,12 @@ __attribute__((always_inline)) static inline bool plan_node_run_body(struct task
         struct task_scope *scope = NULL;
         frame->call.round = plan_node_round(plan, node);
         failure = task_frame_call(frame, task, plan_node_args(plan, node), node->param, &scope);
-        if (scope) { /* it forked tasks on its own objects and on its parameters */
-            task_scope_fail(scope, failure);
-            task_scope_end(scope, frame->body.worker);
-        }
+        if (scope)
+            plan_node_leave_scope(scope, frame->body.worker, failure);
     }
     if (failure)
         plan_taint(plan, PLAN_POISONED);
-    if (tainted || failure)
+    if (taint & PLAN_POISONED || failure)
         plan_node_set_poison(plan, task, failure);
     return runs;
 }

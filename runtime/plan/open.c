@@ -16,12 +16,6 @@
 
 #include "runtime/base/memory.h"
 
-/* Nodes are in the order of forks. */
-static uint32_t gate_index(const struct plan *plan, const struct task *task)
-{
-    return (uint32_t)((size_t)((const unsigned char *)task - plan->nodes) / PLAN_NODE_BYTES);
-}
-
 bool plan_passes(struct plan *plan, struct task *task)
 {
     struct plan_gate *gate = plan->gate;
@@ -30,7 +24,7 @@ bool plan_passes(struct plan *plan, struct task *task)
     atomic_store_explicit(&gate->seen, forked, memory_order_release);
     if (number < forked)
         return true;
-    _Atomic uint64_t *place = &gate->parked[gate_index(plan, task)];
+    _Atomic uint64_t *place = &gate->parked[plan_node_number(task)];
     atomic_store_explicit(place, number, memory_order_seq_cst);
     return number < atomic_load_explicit(&gate->forked, memory_order_seq_cst) &&
            atomic_compare_exchange_strong_explicit(place, &number, 0, memory_order_acq_rel,

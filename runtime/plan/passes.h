@@ -20,13 +20,8 @@
  *
  * Everything in this header is plain data: its passes need no task graph, table of objects or
  * worker, call no body and touch no value. So a round in any form can be compiled: by the plan from
- * a record, by the mappings (tasks.c), and by the predictor from a trace.
- *
- * How the predictor uses it: it fills a plan_source with the forks of a recorded graph. Modes come
- * from the kernels in the trace, the owner from task_owner; laws are NULL, since a trace has none.
- * After plan_lower, plan_tasks_find makes the rows for mappings; or plan_assign places the nodes on
- * hosts, and messages, part and edges give each host its nodes, as in a run. The maker of a
- * plan_source owns it and keeps it as long as its round. */
+ * a record, by the mappings (tasks.c), and by the predictor from a trace, where laws are NULL. The
+ * maker of a plan_source owns it and keeps it as long as its round. */
 
 #include "runtime/base/rank_set.h"
 #include "runtime/data/subtrees.h"

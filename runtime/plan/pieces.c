@@ -7,10 +7,7 @@
 /* Returns whether the rank alone runs the sum. */
 static bool pieces_stay(const struct plan_assignment *a, size_t n, int rank)
 {
-    bool stay = true;
-    for (int other = 0; other < a->n_ranks; other++)
-        stay &= (other == rank) == plan_runs(a, n, other);
-    return stay;
+    return plan_runs(a, n, rank) && base_ranks_count(plan_runs_set(a, n), a->words) == 1;
 }
 
 /* A rank's pieces move once its last leaf is there. `latest` is by rank. */

@@ -132,11 +132,17 @@ static inline struct task *plan_task(const struct plan *plan, size_t i)
     return (struct task *)(void *)(plan->nodes + i * PLAN_NODE_BYTES);
 }
 
+/* The number of a node: nodes are in the order of forks. */
+static inline size_t plan_node_number(const struct task *task)
+{
+    return (size_t)((const unsigned char *)task - task->node->plan->nodes) / PLAN_NODE_BYTES;
+}
+
 /* The place that a node runs for, by the owner rule; NULL: none. */
 static inline struct plan_place *plan_node_place(const struct task *task)
 {
     const struct plan *plan = task->node->plan;
-    const size_t at = (size_t)((const unsigned char *)task - plan->nodes) / PLAN_NODE_BYTES;
+    const size_t at = plan_node_number(task);
     return plan->owner[at] == PLAN_NONE ? NULL : &plan->place[plan->owner[at]];
 }
 

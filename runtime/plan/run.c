@@ -51,17 +51,9 @@ static bool place_bind(struct plan *plan, const struct task_access *access,
     return true;
 }
 
-static void run_change_args(struct plan *plan, struct plan_change *change)
+static void run_change_args(struct plan *plan, struct plan_change *oldest)
 {
-    if (!change)
-        return;
-    struct plan_change *oldest = NULL;
-    while (change) {
-        struct plan_change *next = change->next;
-        change->next = oldest;
-        oldest = change;
-        change = next;
-    }
+    BASE_LIST_REVERSE(oldest);
     while (oldest) {
         struct plan_change *next = oldest->next;
         memcpy(plan->args + oldest->at, oldest->args, oldest->bytes);
@@ -81,13 +73,6 @@ static void run_reset_nodes(struct plan *plan, const struct plan_replay *replay)
         atomic_store_explicit(&task->node->round, 0, memory_order_relaxed);
     }
     atomic_fetch_add_explicit(&plan->begun, 1, memory_order_release);
-}
-
-/* The main thread sets these itself for an open replay. */
-static void run_reset_bounds(struct plan *plan, uint64_t rounds)
-{
-    atomic_store_explicit(&plan->last, rounds - 1, memory_order_relaxed);
-    atomic_store_explicit(&plan->tainted, 0, memory_order_relaxed);
 }
 
 /* There is no memory: no task runs. */
@@ -111,8 +96,10 @@ void plan_replay_run(struct task *task)
     plan->replay = task;
     plan->first_round = replay->first_round;
     plan->stop = false;
-    if (!plan->gate)
-        run_reset_bounds(plan, replay->rounds);
+    if (!plan->gate) { /* the main thread sets these itself for an open replay */
+        atomic_store_explicit(&plan->last, replay->rounds - 1, memory_order_relaxed);
+        atomic_store_explicit(&plan->tainted, 0, memory_order_relaxed);
+    }
     atomic_store_explicit(&plan->left, plan->decides ? PLAN_UNKNOWN : (int64_t)plan->n_sinks,
                           memory_order_relaxed);
     run_change_args(plan, replay->changes);
@@ -193,6 +180,13 @@ void plan_node_clear_leaves(const struct plan *plan, const struct task *task)
         if (place->law)
             data_law_neutral(place->law, place->data, place->count, place->type);
     }
+}
+
+void plan_node_leave_scope(struct task_scope *scope, struct worker *worker,
+                           const struct data_failure *failure)
+{
+    task_scope_fail(scope, failure);
+    task_scope_end(scope, worker);
 }
 
 /* True if it reads poison, which goes on to what it writes. */

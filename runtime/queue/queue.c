@@ -127,7 +127,8 @@ static inline struct task *deque_take_newest(struct queue_deque *deque)
 }
 
 /* Anybody. NULL if it is empty or another thief was faster (*again is set then). */
-static struct task *queue_deque_take_oldest(struct queue_deque *deque, bool *again)
+__attribute__((noinline)) static struct task *queue_deque_take_oldest(struct queue_deque *deque,
+                                                                      bool *again)
 {
     int64_t oldest = atomic_load_explicit(&deque->oldest, memory_order_seq_cst);
     int64_t newest = atomic_load_explicit(&deque->newest, memory_order_seq_cst);
@@ -173,7 +174,7 @@ static bool heap_before(const void *left, const void *right, const void *unused)
 }
 
 /* After entering. False without memory: the task is not in it. */
-static bool queue_heap_push(struct queue_heap *heap, struct task *task)
+__attribute__((noinline)) static bool queue_heap_push(struct queue_heap *heap, struct task *task)
 {
     size_t n = atomic_load_explicit(&heap->n, memory_order_relaxed);
     if (!BASE_GROW(heap->entry, heap->capacity, n + 1))
@@ -185,7 +186,7 @@ static bool queue_heap_push(struct queue_heap *heap, struct task *task)
 }
 
 /* After entering. NULL: empty. */
-static struct task *queue_heap_pop(struct queue_heap *heap)
+__attribute__((noinline)) static struct task *queue_heap_pop(struct queue_heap *heap)
 {
     size_t n = atomic_load_explicit(&heap->n, memory_order_relaxed);
     struct queue_ranked first;

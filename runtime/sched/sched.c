@@ -72,23 +72,15 @@ static unsigned sched_place_owner(void *state, const duite_ready *task)
     return task->block % ((const struct sched_state *)state)->n_workers;
 }
 
-static duite_end sched_serve_newest(void *state)
-{
-    (void)state;
-    return DUITE_NEWEST;
-}
-
-static duite_end sched_serve_oldest(void *state)
-{
-    (void)state;
-    return DUITE_OLDEST;
-}
-
-static duite_end sched_serve_highest(void *state)
-{
-    (void)state;
-    return DUITE_HIGHEST;
-}
+#define SERVE(name, end)                                                                           \
+    static duite_end name(void *state)                                                             \
+    {                                                                                              \
+        (void)state;                                                                               \
+        return end;                                                                                \
+    }
+SERVE(sched_serve_newest, DUITE_NEWEST)
+SERVE(sched_serve_oldest, DUITE_OLDEST)
+SERVE(sched_serve_highest, DUITE_HIGHEST)
 
 static unsigned sched_no_victim(void *state, unsigned attempt)
 {

@@ -189,9 +189,8 @@ void task_graph_stop(struct task_graph *graph)
     pthread_mutex_destroy(&graph->lock);
 }
 
-/* Keeps a failure and reports it to the scope, unless that is NULL, and to all above. */
-static const struct data_failure *
-failure_keep(struct task_graph *graph, const struct data_failure *failure, struct task_scope *scope)
+const struct data_failure *task_fail(struct task_graph *graph, const struct data_failure *failure,
+                                     struct task_scope *scope)
 {
     static const struct data_failure unrecorded = {
         .code = DUITE_E_MEMORY, .text = "and there was no memory to record which task failed"};
@@ -208,19 +207,6 @@ failure_keep(struct task_graph *graph, const struct data_failure *failure, struc
         scope->failure = data_failure_first(scope->failure, kept);
     pthread_mutex_unlock(&graph->lock);
     return kept;
-}
-
-const struct data_failure *task_fail_below(struct task_graph *graph,
-                                           const struct data_failure *failure,
-                                           struct task_scope *scope)
-{
-    return failure_keep(graph, failure, scope);
-}
-
-const struct data_failure *task_fail(struct task_graph *graph, const struct data_failure *failure,
-                                     bool report)
-{
-    return failure_keep(graph, failure, report ? &graph->root : NULL);
 }
 
 /* The place at home of the offloaded task that a task of this scope is or descends from; NULL: it
@@ -265,7 +251,7 @@ const struct data_failure *task_fail_task(const struct task *task, const struct 
     failure->rank = graph->rank;
     failure->kernel = task->kernel;
     task_failure_place(failure, task, inner);
-    return failure_keep(graph, failure, task->scope);
+    return task_fail(graph, failure, task->scope);
 }
 
 const struct data_failure *task_fail_memory(const struct task *task)

@@ -7,7 +7,7 @@
 
 #pragma GCC visibility push(hidden) /* called directly: no other library can replace them */
 
-/* Shared by the files of this folder only. */
+/* Shared by this folder and those that make tasks: plan/ and offload/. */
 
 /* A task with n accesses and `extra` bytes behind them (task_rest); pending is n + 1; counted
  * as unfinished. NULL without memory: then the graph is broken. */
@@ -260,9 +260,10 @@ static inline struct data_version *task_written(const struct task_access *access
     return mode == DUITE_W || mode == DUITE_RW ? access->waiter.version : NULL;
 }
 
-/* Keeps a failure until stop; `report`: the next wait returns it. Never NULL. */
+/* Keeps a failure, its place filled in, until stop; the waits of `scope` (NULL: of none) and of all
+ * scopes above return it. Never NULL. */
 const struct data_failure *task_fail(struct task_graph *graph, const struct data_failure *failure,
-                                     bool report);
+                                     struct task_scope *scope);
 /* The same for a task, with its scope or NULL. Fills in the failure's place; the waits of all
  * scopes above return it, too. */
 const struct data_failure *task_fail_task(const struct task *task, const struct task_scope *inner,
@@ -270,11 +271,6 @@ const struct data_failure *task_fail_task(const struct task *task, const struct 
 /* Its place: number and path. */
 void task_failure_place(struct data_failure *failure, const struct task *task,
                         const struct task_scope *inner);
-/* The same for a descendant of this scope, with the place filled in: the waits of the scope and of
- * all above return it. */
-const struct data_failure *task_fail_below(struct task_graph *graph,
-                                           const struct data_failure *failure,
-                                           struct task_scope *scope);
 /* The failure of a task for want of memory. */
 const struct data_failure *task_fail_memory(const struct task *task);
 struct data_packet *task_poison_packet(struct data_key key, const struct data_failure *failure);
@@ -302,7 +298,8 @@ static inline struct data_key task_key(const struct task_graph *graph,
  * forked. */
 static inline int task_break(struct task_graph *graph, const char *what)
 {
-    return graph->broken = base_no_memory(what);
+    graph->broken = DUITE_E_MEMORY;
+    return base_no_memory(what);
 }
 
 #pragma GCC visibility pop

@@ -26,7 +26,7 @@ static void fetch_arrived(void *graph, struct worker *worker, void *what,
     if (!packet) {
         data_version_poison(version, &task_lost_failure);
     } else if (packet->kind == DATA_POISON) {
-        data_version_poison(version, task_fail(graph, data_payload(packet), false));
+        data_version_poison(version, task_fail(graph, data_payload(packet), NULL));
         data_packet_free(packet);
     } else {
         version->packet = packet;

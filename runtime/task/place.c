@@ -4,20 +4,6 @@
 #include "runtime/task/body.h"
 #include "runtime/task/internal.h"
 
-static duite_ready place_describe(const struct task_graph *graph, const struct task *task,
-                                  uint32_t affinity)
-{
-    const char *name = task_has_body(task) ? graph->kernels[task->kernel]->name
-                                           : task_own_name(task_own_number(task));
-    return (duite_ready){.kernel = name,
-                         .number = task->number,
-                         .block = task->block,
-                         .priority = task->priority,
-                         .cost = task->cost,
-                         .path = task_path(task),
-                         .affinity = affinity};
-}
-
 __attribute__((noinline)) static void place_put(struct worker *worker, struct task *task,
                                                 unsigned queue)
 {
@@ -74,7 +60,14 @@ __attribute__((noinline)) static void place_ask(const struct task_graph *graph,
                                                 struct worker *worker, struct task *task,
                                                 bool may_run, uint32_t affinity)
 {
-    const duite_ready ready = place_describe(graph, task, affinity);
+    const duite_ready ready = {.kernel = task_has_body(task) ? graph->kernels[task->kernel]->name
+                                                             : task_own_name(task_own_number(task)),
+                               .number = task->number,
+                               .block = task->block,
+                               .priority = task->priority,
+                               .cost = task->cost,
+                               .path = task_path(task),
+                               .affinity = affinity};
     if (may_run && place_is_inline(worker, &ready) && place_fits(worker, task))
         worker->next = task;
     else

@@ -23,7 +23,7 @@ static bool piece_add(struct task_graph *graph, struct data_sum *sum, struct dat
 {
     struct data_piece *node = data_piece_new();
     if (!node) {
-        const struct data_failure *failure = task_fail(graph, &task_sum_no_memory, true);
+        const struct data_failure *failure = task_fail(graph, &task_sum_no_memory, &graph->root);
         atomic_store_explicit(&sum->lost, failure, memory_order_relaxed);
         data_packet_free(piece.packet);
         return false;
@@ -55,7 +55,7 @@ void task_pieces_arrived(void *graph, struct worker *worker, void *what, struct 
     if (!packet) {
         atomic_store_explicit(&sum->lost, &task_lost_failure, memory_order_relaxed);
     } else if (packet->kind == DATA_POISON) {
-        const struct data_failure *failure = task_fail(graph, data_payload(packet), false);
+        const struct data_failure *failure = task_fail(graph, data_payload(packet), NULL);
         piece_add(graph, sum, (struct data_piece){.failure = failure});
         data_packet_free(packet);
     } else {
@@ -252,7 +252,7 @@ void task_run_pieces(struct task *task)
     struct data_pieces pieces;
     struct data_packet *packet = NULL;
     int code;
-    const struct data_failure *failure = data_sum_reduce(sum->sum, &pieces, &code);
+    const struct data_failure *failure = data_sum_reduce(sum->sum, false, &pieces, &code);
     if (!code && !failure)
         packet = pieces_pack(sum, &pieces);
     if (!packet)

@@ -69,11 +69,6 @@ param_prepare_version(const struct task *task, const struct task_access *access,
     return NULL;
 }
 
-static void param_describe_lent(duite_param *param, const struct data_object *object)
-{
-    *param = (duite_param){.count = object->max, .type = object->type, .max = object->max};
-}
-
 static const struct data_failure *leaf_open(const struct task *task,
                                             const struct task_access *access, duite_param *param)
 {
@@ -96,7 +91,8 @@ param_prepare_other(const struct task *task, const struct task_access *access, d
         return param_prepare_version(task, access, param);
     if (access->waiter.mode == DUITE_CW)
         return leaf_open(task, access, param);
-    param_describe_lent(param, task_lent_object(task->inner, access->lent));
+    const struct data_object *lent = task_lent_object(task->inner, access->lent);
+    *param = (duite_param){.count = lent->max, .type = lent->type, .max = lent->max};
     return NULL;
 }
 

@@ -43,7 +43,8 @@ static void exit_give_zeros(const struct task_exit *exit)
         data_packet_free(out->packet);
     out->packet = data_packet_new(exit->bytes, true);
     if (!out->packet)
-        data_version_poison(out, task_fail(exit->scope->graph, &task_scope_no_memory, true));
+        data_version_poison(
+            out, task_fail(exit->scope->graph, &task_scope_no_memory, &exit->scope->graph->root));
 }
 
 struct data_waiter *task_pass(struct worker *worker, struct data_waiter *waiter)

@@ -21,6 +21,7 @@ static uint64_t forks;
 static struct {
     struct task_graph graph;
     struct plan plan;
+    struct plan_node node; /* of all tasks */
     struct plan_gate gate;
     _Atomic int argument[TASKS]; /* what the main program leaves for a body */
     int ran[TASKS], voids[NODES];
@@ -56,7 +57,7 @@ void made_ready(struct task_graph *graph, struct worker *worker, struct task *ta
 {
     (void)graph;
     (void)worker;
-    go_on(gate_index(&its.plan, task), task);
+    go_on((uint32_t)plan_node_number(task), task);
 }
 
 static void start(void)
@@ -65,8 +66,11 @@ static void start(void)
     its.plan.graph = &its.graph;
     its.plan.n_nodes = its.plan.n_calls = NODES;
     its.plan.nodes = explore_alloc(NODES * PLAN_NODE_BYTES);
-    for (uint32_t i = 0; i < NODES; i++)
+    its.node.plan = &its.plan;
+    for (uint32_t i = 0; i < NODES; i++) {
         plan_task(&its.plan, i)->number = i + 1;
+        plan_task(&its.plan, i)->node = &its.node;
+    }
     plan_gate_close(&its.plan, &its.gate, 1);
 }
 

@@ -43,6 +43,13 @@ ACCESS_INLINE struct access_look access_look_of(struct task_scope *scope, bool n
     return look;
 }
 
+/* This fork names none of the first n objects after all. */
+ACCESS_INLINE void access_unmark(struct data_object *const *object, size_t n)
+{
+    while (n > 0)
+        object[--n]->mark = 0;
+}
+
 /* The object, marked as named by this fork; NULL if it needs a second look, or was named before. */
 ACCESS_INLINE struct data_object *access_find(const struct access_look *look, duite_object name,
                                               duite_mode mode)
@@ -56,13 +63,6 @@ ACCESS_INLINE struct data_object *access_find(const struct access_look *look, du
         return NULL;
     object->mark = look->mark;
     return object;
-}
-
-/* This fork names none of the first n objects after all. */
-ACCESS_INLINE void access_unmark(struct data_object *const *object, size_t n)
-{
-    while (n > 0)
-        object[--n]->mark = 0;
 }
 
 /* The same for objects that may have open contributions, which a contribution joins. */

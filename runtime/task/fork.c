@@ -5,9 +5,9 @@
  * anything is changed (check.c); afterwards only memory can be missing.
  *
  * One pass over the objects finds them, and one makes the accesses wait. There are three ways, of
- * the same steps (access.h): a short one for plain kernels (task_fixed.plain) on one rank, a short
- * one for tasks that other ranks run, and the general one, whose second pass is in depend.c. The
- * short ways leave to it what they do not know, before anything is changed. */
+ * the same steps (access.h): a short one on one rank, for plain kernels; a short one on several,
+ * for kernels with few accesses (task_fixed); and the general one, whose second pass is in
+ * depend.c. The short ways leave to it what they do not know, before anything is changed. */
 #include "runtime/task/access.h"
 #include "runtime/task/ready.h"
 
@@ -361,7 +361,8 @@ ACCESS_INLINE int ranks_fork(struct task_graph *graph, struct worker *worker,
         return task_fork_any(root, worker, &task_no_options, fixed->kernel, args, n, objects);
     root->forks++;
     task_mix_fork(graph, hash, COMM_FORKED, fixed->index);
-    call.at = fixed->owner[0] == TASK_NOBODY ? 0 : object[fixed->owner[0]]->home;
+    const uint32_t own = fixed->owner[0];
+    call.at = task_owner_rank(TASK_ANYWHERE, false, own == TASK_NOBODY ? -1 : object[own]->home);
     if (call.at == graph->rank)
         return ranks_here(fixed, root, worker, args, objects, object);
     int code = DUITE_OK;

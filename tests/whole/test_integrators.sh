@@ -1,11 +1,26 @@
 #!/bin/sh
 # Integrators as a user meets them: free fall of each by its own formula, read from probes; Newton steps, energies and warnings.
 . "${srcdir:-.}/tests/support/tap.sh"
+. "$srcdir/tests/support/table.sh"
 skip_unless "$DUITE_CLOTH"
 plan_later
 cd "$scratch" || exit 99
 
+exec 3>&1
+build=$OLDPWD
+
 run() { limited "$DUITE_CLOTH" "$@" --quiet; }
+
+# ---- Rows of the tables that the unit tests print
+
+printed() { # PROGRAM: its rows; a case that fails is of its own test
+    test -x "$build/$1" || { echo "$1 is not built" && return 1; }
+    limited "$build/$1" > printed || true
+    sed -n 's/e-0\([1-9]\)/e-\1/g; s/0e+00/0/; s/^# |/|/p' printed >> table
+    sed -n '/^# |/p' printed >&3
+}
+ok "orders of convergence" printed tests/cloth/flow/test_integrators
+ok "order and energy of a chain" printed tests/cloth/flow/test_newton
 
 cat > fall.yaml << 'END'
 schema: 1
@@ -71,13 +86,13 @@ energies: steps
 newton: {tolerance: 1.0e-8}
 solver: {stop: {relative: 1.0e-11}}
 END
-exec 3>&1
 gains() { # MOST, MATERIAL, H, SETTING...
     most=$1 material=$2 h=$3
     shift 3
     run swing.yaml --report report.json --set "cloths[0].material=$material" --set time.h="$h" "$@" || return 1
     awk -v what="$material, h = $h s, $*" -v most="$most" -v gained="$(value energy_gained)" -v lowest="$(value energy_lowest)" -v left="$(value newton_unconverged)" \
-        'BEGIN { fall = 0.2 * 9.81 / 2; printf "# %s: gains %.1e of its fall, loses %.2f\n", what, gained / fall, -lowest / fall; exit !(gained ~ /^[0-9]/ && lowest < -fall / 1e3 && gained / fall <= most && !left) }' >&3
+        'BEGIN { fall = 0.2 * 9.81 / 2; printf "# %s: gains %.1e of its fall, loses %.2f\n", what, gained / fall, -lowest / fall; exit !(gained ~ /^[0-9]/ && lowest < -fall / 1e3 && gained / fall <= most && !left) }' >&3 || return 1
+    row "$material, h = $h s${*:+, \`$(echo "$*" | sed 's/--set //g; s/materials[^}]*}/5000 N\/m/; s/ cloths[^}]*}//; s/ time.halving=on//')\`}" "$(digit "$(value energy_gained | awk '{ print $1 / 0.981 }')")" "$(value energy_lowest | awk '{ printf "%.2g", -$1 / 0.981 }')"
 }
 gains_more() { gains 1 "$@" && awk -v gained="$(value energy_gained)" 'BEGIN { exit !(gained > 0.02 * 0.981) }'; }
 for material in silk net; do
@@ -148,3 +163,4 @@ ok "explicit_euler without damping has none" warns 'no step is short enough for 
 ok "midpoint without damping has none" warns 'no step is short enough for midpoint' --set integrator=midpoint \
     --set materials.cotton.damping.stiffness=0
 ok "implicit steps are not warned of" eval '! warns . --set materials.cotton.stretch=100000'
+ok "docs/accuracy.md has these rows" table

@@ -130,4 +130,6 @@ ok "a sheet's spin falls by 1 / sqrt(1 + 2 h w^2 t), h = 1 ms" spins '`implicit_
 ok "h = 10 ms" spins '`implicit_euler`, Newton converged' 0.01 0.7465 0.7495 "$(of_rigid 0.01)" --set newton.steps=30
 ok "one linear step loses more" spins '`implicit_euler`, one linear step' 0.01 0.1 0.7 ""
 ok "bdf2 keeps it, h = 1 ms" spins '`bdf2`, one linear step' 0.001 0.9999 1 0 --set integrator=bdf2
+ok "h = 10 ms" spins '`bdf2`, one linear step' 0.01 0.95 1 0 --set integrator=bdf2
+ok "h = 10 ms, converged" spins '`bdf2`, Newton converged' 0.01 0.99 1 0 --set integrator=bdf2 --set newton.steps=30
 ok "docs/accuracy.md has these rows" table

@@ -192,7 +192,7 @@ START_TEST(order)
     const double measured = log2(coarse / fine);
     printf("# %s: error %.3e m at h = %g s, %.3e at half of it: order %.3f\n", scheme.name, coarse,
            h, fine, measured);
-    printf("# | a weight on a damped spring, `%s` | %d | %.2f |\n", scheme.name, scheme.order,
+    printf("# | a weight on a damped spring, `%s` | order %d | %.2f |\n", scheme.name, scheme.order,
            measured);
     ck_assert_double_eq_tol(measured, scheme.order, 0.1);
 }

@@ -38,6 +38,8 @@ table() {
     table_line="\`tests/whole/$(basename "$0")\` prints${1:+, $1}:"
     test "${DUITE_TABLES:-}" != write || table_write "$table_line" || return
     awk -v line="$table_line" 'inside && /^\|/ && ++n > 2; inside && n && !/^\|/ { exit } $0 == line { inside = 1 }' "$srcdir/docs/accuracy.md" > "$scratch/shown"
-    diff "$scratch/shown" "$scratch/table" || return
+    table_status=0
+    diff "$scratch/shown" "$scratch/table" || table_status=$?
     rm -f "$scratch/table"
+    return $table_status
 }

@@ -18,8 +18,9 @@ struct value {
     const char *key, *yaml;
 };
 
-/* Measured ones are of Wang, O'Brien & Ramamoorthi 2011, as the files of their simulator ARCSim have
- * them at the least strain and curvature. C11, C22, C12, C33 of the first row of `stretching` are
+/* Measured ones are of Wang, O'Brien & Ramamoorthi 2011, as the files of their simulator ARCSim
+ * have them at the least strain and curvature. C11, C22, C12, C33 of the first row of `stretching`
+ * are
  *
  *     ivory rib knit       42.87    65.17  -0.23   83.18
  *     11 oz black denim   205.35  1013.89  10.23   53.39

@@ -156,8 +156,8 @@ START_TEST(order_of_a_swing)
     for (int i = 0; i < 2; i++)
         change[i] = hypot(x[i + 1][0] - x[i][0], x[i + 1][1] - x[i][1]);
     const double measured = log2(change[0] / change[1]);
-    printf("# | a chain of five links falls, %s | order %.0f | %.2f |\n", rows[_i].name, rows[_i].order,
-           measured);
+    printf("# | a chain of five links falls, %s | order %.0f | %.2f |\n", rows[_i].name,
+           rows[_i].order, measured);
     ck_assert_double_eq_tol(measured, rows[_i].order, 0.15);
 }
 END_TEST

@@ -49,7 +49,6 @@ ok "resonance, explicit_euler" resonance explicit_euler 2e-4 1
 # The positions of this scheme are those of Verlet where a run begins at rest and without force.
 ok "resonance, symplectic_euler" resonance symplectic_euler 2e-3 2
 ok "resonance, verlet" resonance verlet 2e-3 2
-ok "resonance, midpoint" resonance midpoint 1e-3 2
 ok "resonance, rk4" resonance rk4 4e-3 4
 ok "resonance, implicit_euler" resonance implicit_euler 2e-4 1
 ok "resonance, bdf2" resonance bdf2 1e-3 2

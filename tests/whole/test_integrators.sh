@@ -33,7 +33,6 @@ falls() { # INTEGRATOR, by awk: what it falls more than g t^2 / 2, in g h^2, aft
 ok "explicit_euler falls" falls explicit_euler '-n / 2' --set 'materials.cotton={density: 0.2, stretch: 1, damping: {stiffness: 0.01}}'
 ok "symplectic_euler falls" falls symplectic_euler 'n / 2'
 ok "verlet falls" falls verlet 0
-ok "midpoint falls" falls midpoint 0
 ok "rk4 falls" falls rk4 0
 ok "implicit_euler falls" falls implicit_euler 'n / 2'
 ok "bdf2 falls" falls bdf2 '0.75 * (1 - exp(-n * log(3)))'
@@ -144,7 +143,5 @@ warns() { # LIMIT, ARGUMENT...
 ok "verlet is told its limit" warns 'steps of 0.001 s are beyond the limit of verlet, ' --set integrator=verlet \
     --set 'materials.cotton.stretch=100000'
 ok "explicit_euler without damping has none" warns 'no step is short enough for explicit_euler' --set integrator=explicit_euler \
-    --set materials.cotton.damping.stiffness=0
-ok "midpoint without damping has none" warns 'no step is short enough for midpoint' --set integrator=midpoint \
     --set materials.cotton.damping.stiffness=0
 ok "implicit steps are not warned of" eval '! warns . --set materials.cotton.stretch=100000'

@@ -95,7 +95,6 @@ libduite_cloth_a_SOURCES += \
     cloth/flow/integrators/limit.c \
     cloth/flow/integrators/long_steps.c \
     cloth/flow/integrators/long_steps.h \
-    cloth/flow/integrators/midpoint.c \
     cloth/flow/integrators/runge.c \
     cloth/flow/integrators/verlet.c \
     cloth/flow/solver/cg.c \

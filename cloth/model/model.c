@@ -141,7 +141,6 @@ const struct model_word model_integrators[] = {{"implicit_euler", MODEL_IMPLICIT
                                                {"explicit_euler", MODEL_EXPLICIT_EULER},
                                                {"symplectic_euler", MODEL_SYMPLECTIC_EULER},
                                                {"verlet", MODEL_VERLET},
-                                               {"midpoint", MODEL_MIDPOINT},
                                                {"rk4", MODEL_RK4},
                                                {"bdf2", MODEL_BDF2},
                                                {0}};
@@ -321,7 +320,7 @@ bool model_is_guarded(const struct model *model)
     const double *wind = model->air.wind;
     const bool blown = model_has_air(model) && (wind[0] != 0 || wind[1] != 0 || wind[2] != 0);
     return model_is_implicit(model) && model->energy_growth > 0 && !blown && !model->n_motions &&
-           !model->n_curves && !model->own_filter && !model_obstacles_move(model);
+           !model->n_curves && !model_obstacles_move(model);
 }
 
 bool model_is_coarse(const struct model *model)

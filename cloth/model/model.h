@@ -37,7 +37,6 @@ enum model_integrator {
     MODEL_EXPLICIT_EULER,   /* x by the velocity before the step */
     MODEL_SYMPLECTIC_EULER, /* x by the velocity after it */
     MODEL_VERLET,           /* velocity Verlet, drag solved for in the first half step */
-    MODEL_MIDPOINT,         /* the explicit midpoint method */
     MODEL_RK4,              /* the classical Runge-Kutta method */
     MODEL_IMPLICIT_EULER,
     MODEL_BDF2 /* begins with implicit Euler, also after contact or a change of h */
@@ -156,7 +155,6 @@ struct model {
     uint32_t patches;  /* of a block, for the coarse space, at most 4; 0: as model_patches finds */
     bool exact_coarse; /* one factor of it, however many patches there are: not in scenes */
     enum solve_format format; /* of the matrix; springs alone can be SOLVE_SPRINGS */
-    int own_filter;           /* solves are filtered by the program's flow_filter, too */
     int full_slope; /* enum phys_slope, of the matrix; only springs know PHYS_ABSOLUTE, which is
                        PHYS_DEFINITE to all else */
 
@@ -222,10 +220,10 @@ static inline bool model_seeks(const struct model *model)
     return model_certifies(model) || model_repels(model);
 }
 
-/* True if its solves are filtered by more than points: by sliders or the program. */
+/* True if its solves are filtered by more than points: by sliders. */
 static inline int model_is_filtered(const struct model *model)
 {
-    return model_is_implicit(model) && (model->n_sliders || model->own_filter);
+    return model_is_implicit(model) && model->n_sliders;
 }
 
 static inline bool model_follows(const struct model *model)

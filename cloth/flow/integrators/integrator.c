@@ -9,7 +9,6 @@ const struct flow_integrator flow_integrators[] = {
     [MODEL_EXPLICIT_EULER] = {NULL, flow_euler_end, flow_euler_keeps, flow_euler_restore},
     [MODEL_SYMPLECTIC_EULER] = {NULL, flow_euler_end, flow_euler_keeps, flow_euler_restore},
     [MODEL_VERLET] = {flow_verlet_begin, flow_verlet_end, NULL, NULL},
-    [MODEL_MIDPOINT] = {NULL, flow_midpoint_end, NULL, NULL},
     [MODEL_RK4] = {NULL, flow_runge_end, NULL, NULL},
 };
 

@@ -19,7 +19,7 @@ struct flow_integrator {
 extern const struct flow_integrator flow_integrators[];
 
 /* Both ends of a step by implicit Euler or BDF2 (implicit.c), by either explicit Euler (euler.c),
- * velocity Verlet (verlet.c), the explicit midpoint method (midpoint.c), RK4 (runge.c). They return
+ * velocity Verlet (verlet.c), RK4 (runge.c). They return
  * what the runtime does. */
 int flow_implicit_euler_begin(struct flow_state *state);
 int flow_implicit_euler_end(struct flow_state *state);
@@ -30,7 +30,6 @@ bool flow_euler_keeps(const struct model *model);
 void flow_euler_restore(struct flow_state *state);
 int flow_verlet_begin(struct flow_state *state);
 int flow_verlet_end(struct flow_state *state);
-int flow_midpoint_end(struct flow_state *state);
 int flow_runge_end(struct flow_state *state);
 
 /* True if steps of a model keep the state before them (keeps). Local. */

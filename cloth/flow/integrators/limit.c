@@ -205,8 +205,6 @@ double flow_limit_of(const struct flow_limit *limit, enum model_integrator integ
         return phys_limit_symplectic(limit->omega, limit->drag + limit->along);
     case MODEL_VERLET:
         return phys_limit_verlet(limit->omega, limit->along);
-    case MODEL_MIDPOINT:
-        return phys_limit_midpoint(limit->omega, limit->drag + limit->along);
     default:
         return phys_limit_rk4(limit->omega, limit->drag + limit->along);
     }

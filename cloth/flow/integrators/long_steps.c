@@ -18,13 +18,10 @@ static const char *place_of(const struct model *model)
     return model->h_place ? model->h_place : "h";
 }
 
-/* The part that a step of explicit Euler or the midpoint method adds to an undamped vibration.
- * turn: h w. */
-static double growth_of(enum model_integrator integrator, double turn)
+/* The part that a step of explicit Euler adds to an undamped vibration. turn: h w. */
+static double growth_of(double turn)
 {
-    const double squared = turn * turn;
-    const double more = integrator == MODEL_MIDPOINT ? squared * squared / 4 : squared;
-    return more / (1 + sqrt(1 + more));
+    return turn * turn / (1 + sqrt(1 + turn * turn));
 }
 
 /* An explicit step that lets vibrations grow is made all the same. */
@@ -40,7 +37,7 @@ static void warn_explicit(struct flow *flow, const struct flow_limit *limit)
                  "(up to %g rad/s, at vertex %u of cloth '%.60s', counted from 1) can grow by %g "
                  "%% in each of %g s",
                  place, name, limit->omega, limit->vertex + 1, limit->cloth->name,
-                 100 * growth_of(model->integrator, turn), model->h);
+                 100 * growth_of(turn), model->h);
     else if (model->h > max)
         snprintf(
             flow->warning[4], size,

@@ -304,14 +304,9 @@ static bool runge(const struct flow_state *state, uint32_t block)
     return state->flow->model->integrator == MODEL_RK4;
 }
 
-static bool multistage(const struct flow_state *state, uint32_t block)
-{
-    return runge(state, block) || state->flow->model->integrator == MODEL_MIDPOINT;
-}
-
 static bool staged(const struct flow_state *state, uint32_t block)
 {
-    return multistage(state, block) || state->flow->model->integrator == MODEL_VERLET;
+    return runge(state, block) || state->flow->model->integrator == MODEL_VERLET;
 }
 
 static bool bdf2(const struct flow_state *state, uint32_t block)

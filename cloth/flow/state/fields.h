@@ -72,7 +72,7 @@ enum {
     X(spare_halo_x, ONE,     phys_vec,      4, halo,          explicit_run, is_work)               \
     X(spare_halo_v, ONE,     phys_vec,      4, halo,          explicit_run, is_work)               \
     X(v0,           ONE,     phys_vec,      4, rows,          staged,       is_work)               \
-    X(x0,           ONE,     phys_vec,      4, rows,          multistage,   is_work)               \
+    X(x0,           ONE,     phys_vec,      4, rows,          runge,        is_work)               \
     X(sum_x,        ONE,     phys_vec,      4, rows,          runge,        is_work)               \
     X(sum_v,        ONE,     phys_vec,      4, rows,          runge,        is_work)               \
     /* implicit integrators: struct phys_states */                                                 \

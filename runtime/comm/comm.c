@@ -19,8 +19,7 @@ static int comm_prepare(struct comm *comm)
     if (MPI_Comm_rank(comm->mpi, &comm->rank) || MPI_Comm_size(comm->mpi, &comm->n_ranks))
         return base_error(DUITE_E_MPI, "MPI_Comm_rank or MPI_Comm_size failed");
     comm->words = base_alloc((size_t)(comm->n_ranks + 1) * sizeof *comm->words);
-    if (!comm_control_start(&comm->control, comm->n_ranks) || !comm_calls_start(&comm->calls) ||
-        !comm->words)
+    if (!comm_control_start(comm) || !comm_calls_start(&comm->calls) || !comm->words)
         return base_no_memory("communication");
     if (MPI_Type_contiguous(sizeof(struct data_packet), MPI_BYTE, &comm->line) ||
         MPI_Type_commit(&comm->line))
@@ -69,9 +68,9 @@ void comm_open(struct comm *comm, bool requests)
 /* True once no message is on its way, at a good stop or after communication broke. */
 static bool comm_is_over(struct comm *comm)
 {
-    if (comm_is_broken(comm))
-        return comm_is_lost(comm) || comm_is_quiet(comm);
-    return !comm->open || comm_control_over(comm);
+    if (comm_is_broken(comm) ? comm_is_lost(comm) : !comm->open)
+        return true;
+    return comm_control_over(comm);
 }
 
 bool comm_stop(struct comm *comm)
@@ -93,8 +92,7 @@ bool comm_stop(struct comm *comm)
     if (comm->line != MPI_DATATYPE_NULL)
         MPI_Type_free(&comm->line);
     comm_collective_stop(comm);
-    comm_requests_free(&comm->sends);
-    comm_requests_free(&comm->receives);
+    comm_requests_free(&comm->requests);
     comm_control_stop(&comm->control);
     comm_calls_stop(&comm->calls);
     comm_difference_stop(&comm->difference);
@@ -149,11 +147,30 @@ enum { SELDOM = 8 };
 
 static void comm_receive_seldom(struct comm *comm, struct comm_found *found)
 {
-    if (comm->channels.awaited.n && ++comm->channels.looks % SELDOM)
+    if (comm->channels.awaited && ++comm->channels.looks % SELDOM)
         return;
     comm_transport_receive(comm, found);
     if (comm_control_is_due(comm))
         comm_control_pass(comm);
+}
+
+/* One round under the lock. */
+static inline void comm_pass_locked(struct comm *comm, struct comm_found *found, bool looks)
+{
+    const int before = comm->channels.awaited;
+    if (comm->stalled || !BASE_STACK_IS_EMPTY(&comm->posts))
+        comm_transport_send(comm, found);
+    comm_channels_pass(comm, found);
+    if (looks)
+        comm_receive_seldom(comm, found);
+    if (comm->requests.n)
+        comm_requests_pass(comm, found);
+    if (comm->channels.awaited != before) {
+        comm_arrivals_also(&comm->arrivals, comm->channels.awaited - before);
+        atomic_store_explicit(&comm->channels.awaits, comm->channels.awaited > 0,
+                              memory_order_relaxed);
+    }
+    comm_heartbeat_pass(comm);
 }
 
 static inline bool comm_pass(struct comm *comm, struct worker *worker, bool looks)
@@ -166,12 +183,7 @@ static inline bool comm_pass(struct comm *comm, struct worker *worker, bool look
         if (!comm_try_lock(comm))
             break;
         comm->worker = worker;
-        if (comm->sends.n || comm->stalled || !BASE_STACK_IS_EMPTY(&comm->posts))
-            comm_transport_send(comm, &found);
-        comm_channels_pass(comm, &found);
-        if (looks)
-            comm_receive_seldom(comm, &found);
-        comm_heartbeat_pass(comm);
+        comm_pass_locked(comm, &found, looks);
         comm_unlock(comm);
         any |= found.any;
         more = found.more;
@@ -250,11 +262,15 @@ bool comm_look(struct comm *comm, const struct comm_looker *looker)
     comm_arrivals_look(&comm->arrivals, looker->awaited, looker->context);
     if (!comm_lock_soon(comm))
         return false;
-    for (int i = 0; i < comm->sends.n; i++) {
-        const struct comm_letter *letter = comm->sends.what[i];
-        looker->sending(looker->context, letter);
+    for (int i = 0; i < comm->requests.n; i++) {
+        const struct comm_request *of = &comm->requests.of[i];
+        if (of->over == comm_letter_sent)
+            looker->sending(looker->context, of->what);
+        else if (of->over == comm_channel_came)
+            looker->channel(looker->context, of->what);
     }
-    comm_channels_look(comm, looker);
+    for (const struct comm_channel *one = comm->channels.stalled; one; one = one->next)
+        looker->channel(looker->context, one);
     comm_let_go(comm);
     return true;
 }

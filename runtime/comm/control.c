@@ -1,6 +1,6 @@
 /* A control message is sent once and freed when MPI has sent it. Abort messages and last messages
- * are made at the start and sent at most once to each rank; the set of requests always has room for
- * them. */
+ * are made at the start and sent at most once to each rank; there is always room for their
+ * requests. */
 #include "runtime/base/clock.h"
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
@@ -11,27 +11,23 @@
 
 /* ---- Start and stop ---- */
 
-/* Requests for the messages that must go without further memory (abort, loss and last message to
- * each rank), and for one message more. */
-static size_t control_reserve(int n_ranks)
+bool comm_control_start(struct comm *comm)
 {
-    return 3 * (size_t)n_ranks + 1;
-}
-
-bool comm_control_start(struct comm_control *control, int n_ranks)
-{
+    struct comm_control *control = &comm->control;
+    const size_t n_ranks = (size_t)comm->n_ranks;
+    /* The messages that must go without further memory: abort, loss and last message to each. */
+    comm->requests.reserved = 3 * n_ranks;
     control->abort = data_packet_new(sizeof(struct comm_abort), true);
     control->loss = data_packet_new(sizeof(struct comm_abort), true);
     control->last = data_packet_new(0, true);
     control->spare = data_packet_new(sizeof(struct comm_abort), true);
-    control->standing = base_alloc_zero((size_t)n_ranks * sizeof *control->standing);
+    control->standing = base_alloc_zero(n_ranks * sizeof *control->standing);
     return control->abort && control->loss && control->last && control->spare &&
-           control->standing && comm_requests_room(&control->sends, control_reserve(n_ranks));
+           control->standing && comm_requests_room(comm, 1);
 }
 
 void comm_control_stop(struct comm_control *control)
 {
-    comm_requests_free(&control->sends);
     data_packet_free(control->abort);
     data_packet_free(control->loss);
     data_packet_free(control->last);
@@ -41,40 +37,30 @@ void comm_control_stop(struct comm_control *control)
 
 /* ---- Sending ---- */
 
+static void control_sent(struct comm *comm, struct comm_found *found, void *packet)
+{
+    (void)comm, (void)found;
+    data_packet_free(packet);
+}
+
 static int control_isend(struct comm *comm, int to, struct data_packet *packet, bool own)
 {
-    struct comm_requests *sends = &comm->control.sends;
     int mpi = MPI_Isend(packet, (int)data_packet_lines(packet->bytes), comm->line, to, COMM_PACKETS,
-                        comm->mpi, &sends->request[sends->n]);
+                        comm->mpi, comm_request_next(comm));
     if (mpi == MPI_SUCCESS)
-        comm_requests_started(sends, own ? NULL : packet);
+        comm_request_add(comm, control_sent, own ? NULL : packet);
     return mpi;
 }
 
 bool comm_control_send(struct comm *comm, int to, struct data_packet *packet)
 {
-    struct comm_requests *sends = &comm->control.sends;
     packet->key.slot = (uint32_t)comm->rank;
-    if (!comm_requests_room(sends, (size_t)sends->n + control_reserve(comm->n_ranks))) {
+    if (!comm_requests_room(comm, 1))
         comm_broke_memory(comm, "a control message");
-    } else {
-        int mpi = control_isend(comm, to, packet, false);
-        if (comm_mpi_ok(comm, mpi, "MPI_Isend"))
-            return true;
-    }
+    else if (comm_mpi_ok(comm, control_isend(comm, to, packet, false), "MPI_Isend"))
+        return true;
     data_packet_free(packet);
     return false;
-}
-
-/* Frees the packets that MPI has sent. True: none is left. */
-static bool control_sent(struct comm *comm)
-{
-    struct comm_requests *sends = &comm->control.sends;
-    int done;
-    if (sends->n && comm_mpi_ok(comm, comm_requests_test(sends, &done), "MPI_Testsome"))
-        for (int i = 0; i < done; i++)
-            data_packet_free(sends->what[sends->n + i]);
-    return !sends->n;
 }
 
 /* ---- Abort ---- */
@@ -104,16 +90,35 @@ void comm_broke_memory(struct comm *comm, const char *what)
     comm_broke(comm, DUITE_E_MEMORY, message);
 }
 
-bool comm_mpi_ok(struct comm *comm, int mpi, const char *what)
+int comm_mpi_class(int mpi)
 {
-    if (mpi == MPI_SUCCESS)
-        return true;
+    int class = mpi;
+    return MPI_Error_class(mpi, &class) == MPI_SUCCESS ? class : mpi;
+}
+
+/* Messages of channels alone may come into too little room. */
+bool comm_mpi_ok(struct comm *comm, int mpi, const char *call)
+{
     char reason[MPI_MAX_ERROR_STRING] = "", message[MPI_MAX_ERROR_STRING + 64];
     int length = 0;
+    if (mpi == MPI_SUCCESS)
+        return true;
+    if (comm_mpi_class(mpi) == MPI_ERR_TRUNCATE) {
+        comm_broke(comm, DUITE_E_DIFFERENT,
+                   "a message of a recorded graph does not fit: the ranks recorded different "
+                   "graphs");
+        return false;
+    }
     MPI_Error_string(mpi, reason, &length);
-    snprintf(message, sizeof message, "%s: %s", what, reason);
+    snprintf(message, sizeof message, "%s: %s", call, reason);
     comm_broke(comm, DUITE_E_MPI, message);
     return false;
+}
+
+bool comm_mpi_cut(struct comm *comm, int mpi, const char *call)
+{
+    return mpi == MPI_SUCCESS || comm_mpi_class(mpi) == MPI_ERR_TRUNCATE ||
+           comm_mpi_ok(comm, mpi, call);
 }
 
 int comm_broken(struct comm *comm)
@@ -177,16 +182,6 @@ static void loss_hear(struct comm *comm, struct data_packet *packet)
 {
     (void)packet; /* it follows an abort message, whose reason stands */
     atomic_store(&comm->lost, true);
-}
-
-bool comm_is_quiet(struct comm *comm)
-{
-    if (!comm_try_lock(comm))
-        return false;
-    bool quiet = comm->control.aborts && comm->control.heard == comm->n_ranks - 1 &&
-                 !comm->sends.n && !comm->receives.n && control_sent(comm);
-    comm_unlock(comm);
-    return quiet;
 }
 
 /* ---- Requests for tasks ---- */
@@ -288,13 +283,15 @@ static void last_hear(struct comm *comm, struct data_packet *packet)
 
 bool comm_control_over(struct comm *comm)
 {
+    const struct comm_control *control = &comm->control;
     int expected = 0;
     for (int from = 0; from < comm->n_ranks; from++)
         expected += last_is_for(comm, from);
     if (!comm_try_lock(comm))
         return false;
-    bool over = comm->control.last_heard == expected && !comm->sends.n && !comm->receives.n &&
-                control_sent(comm);
+    const bool heard = comm_is_broken(comm) ? control->aborts && control->heard == comm->n_ranks - 1
+                                            : control->last_heard == expected;
+    const bool over = heard && !comm->requests.n;
     comm_unlock(comm);
     return over;
 }
@@ -332,7 +329,6 @@ bool comm_control_hear(struct comm *comm, struct data_packet *packet)
 
 void comm_control_pass(struct comm *comm)
 {
-    control_sent(comm);
     if (!comm_is_broken(comm))
         comm_check_pass(comm);
     if (!comm_is_broken(comm))

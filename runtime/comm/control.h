@@ -2,7 +2,6 @@
 #define DUITE_COMM_CONTROL_H
 
 #include "runtime/comm/comm.h"
-#include "runtime/comm/requests.h"
 
 /* Messages between ranks beside values and tasks, for this folder only: control messages, the
  * divergence check, and the search for the first difference. Everything here is under the lock of
@@ -11,7 +10,7 @@
 /* ---- Control messages (control.c) ---- */
 
 /* Kinds of control messages. Each is a packet and travels like a value, so that messages between
- * two ranks keep their order. All of them share one set of MPI requests. */
+ * two ranks keep their order. */
 enum comm_kind {
     COMM_ABORT = 64, /* communication is broken on the sender: struct comm_abort */
     COMM_LOSS,    /* a rank is lost, which was found after the sender's abort message: the same */
@@ -42,7 +41,6 @@ struct comm_standing {
 };
 
 struct comm_control {
-    struct comm_requests sends; /* under way; what: the packet, freed then, or NULL: one of these */
     struct data_packet *abort, *loss, *last;
     struct data_packet *spare; /* for a control message that comes when there is no memory */
     bool aborts, loss_sent;    /* the abort messages are sent; and those of a loss */
@@ -58,7 +56,7 @@ struct comm_control {
 
 /* Takes memory ahead, so that abort messages and last messages need none later. False without
  * memory. */
-bool comm_control_start(struct comm_control *control, int n_ranks);
+bool comm_control_start(struct comm *comm);
 void comm_control_stop(struct comm_control *control);
 
 /* Sends the packet, which is the control's from now on. False: it is freed, and communication is
@@ -77,13 +75,9 @@ void comm_control_pass(struct comm *comm);
  * heartbeats go on. */
 void comm_control_end(struct comm *comm);
 
-/* While communication is whole: true if no message is on its way to or from this rank, nor will be.
- * Takes the lock. */
+/* True if no message is on its way to or from this rank, nor will be: all sent their last message
+ * or, if communication broke, their abort message. Takes the lock. */
 bool comm_control_over(struct comm *comm);
-
-/* After communication broke: true if no message at all is on its way to or from this rank, nor will
- * be. Takes the lock. */
-bool comm_is_quiet(struct comm *comm);
 
 /* ---- The divergence check (divergence.c) ---- */
 

@@ -15,8 +15,6 @@
 enum { COMM_PIECE_TAGS = 16 };
 enum { COMM_PACKETS, COMM_HEARTBEATS, COMM_PIECES, COMM_CHANNELS = COMM_PIECES + COMM_PIECE_TAGS };
 
-/* ---- Transport: packets between ranks (transport.c) ---- */
-
 /* The findings of one poll, delivered after the lock is let go. */
 struct comm_found {
     struct data_packet *packets;
@@ -27,14 +25,45 @@ struct comm_found {
     bool more; /* so much came that the lock is let go before the rest is received */
 };
 
-/* Under the lock: sends posted letters; receives messages. */
-void comm_transport_send(struct comm *comm, struct comm_found *found);
-void comm_transport_receive(struct comm *comm, struct comm_found *found);
+/* ---- Requests (requests.c); all of it under the lock ---- */
 
-/* Without the lock: delivers the findings. */
-void comm_transport_deliver(struct comm *comm, struct worker *worker, struct comm_found *found);
+/* A request is over: a letter is sent, a packet came, and so on. It may add others. */
+typedef void comm_over(struct comm *comm, struct comm_found *found, void *what);
 
-/* ---- Pieces (pieces.c) ---- */
+struct comm_request {
+    comm_over *over;
+    void *what;
+    bool failed;
+    char *into; /* of a large message: where the rest of it is received, and from whom */
+    size_t left;
+    int from, tag;
+};
+
+struct comm_requests {
+    MPI_Request *request;
+    struct comm_request *of;
+    int *index; /* this and the next for MPI_Testsome */
+    MPI_Status *status;
+    int n;
+    size_t capacity[4];
+    size_t reserved; /* more of them that must find room: of control messages and channels */
+};
+
+/* Room for n more beside those reserved. False without memory. */
+bool comm_requests_room(struct comm *comm, size_t n);
+
+/* A request is added in two steps, if there is room: MPI writes it to the next place; then it
+ * counts. */
+MPI_Request *comm_request_next(struct comm *comm);
+void comm_request_add(struct comm *comm, comm_over *over, void *what);
+
+/* Takes the request at place i out of the table; the last one gets its place. */
+struct comm_request comm_request_take(struct comm *comm, int i);
+
+/* Tests all, and ends those that are over. */
+void comm_requests_pass(struct comm *comm, struct comm_found *found);
+
+void comm_requests_free(struct comm_requests *requests);
 
 /* A message of more bytes than this is sent in pieces of so many. MPI may copy a whole message in
  * one call, seconds long if it is large, and the lock is held meanwhile; it is let go between two
@@ -47,24 +76,28 @@ static inline bool comm_is_large(size_t bytes)
     return bytes > comm_piece_bytes;
 }
 
-/* True if the piece that begins at `at` is the last one of a message of so many bytes. */
-static inline bool comm_is_last_piece(size_t bytes, size_t at)
-{
-    return bytes - at <= comm_piece_bytes;
-}
-
-/* The next three are under the lock; their codes are MPI's. Sends all pieces; the request is over
- * when the receiver has all but the last, which it is receiving. */
+/* Sends all pieces; the request is over when the receiver has all but the last, which it is
+ * receiving. Returns MPI's code. */
 int comm_pieces_send(struct comm *comm, const void *from, size_t bytes, int to, int tag,
                      MPI_Request *request);
 
-/* Posts the receive of the piece that begins at `at`, when the one before is over. A message that
- * is not large is its only piece. */
-int comm_piece_receive(struct comm *comm, void *into, size_t bytes, size_t at, int from, int tag,
-                       MPI_Request *request);
+/* Adds the request of all pieces, if there is room. False: MPI failed, which is told. */
+bool comm_pieces_receive(struct comm *comm, struct comm_request of);
 
 /* Receives all pieces, which are on their way, and forgets them. */
 void comm_pieces_forget(struct comm *comm, size_t bytes, int from, int tag);
+
+/* ---- Transport: packets between ranks (transport.c) ---- */
+
+/* Under the lock: sends posted letters; receives messages. */
+void comm_transport_send(struct comm *comm, struct comm_found *found);
+void comm_transport_receive(struct comm *comm, struct comm_found *found);
+
+/* A letter's request is over. */
+comm_over comm_letter_sent;
+
+/* Without the lock: delivers the findings. */
+void comm_transport_deliver(struct comm *comm, struct worker *worker, struct comm_found *found);
 
 /* ---- Tags of channels (tags.c) ---- */
 
@@ -106,14 +139,12 @@ struct comm_group; /* the channels of one set */
 
 struct comm_channels {
     _Atomic(struct comm_channel *) ready; /* linked by next */
-    struct comm_requests awaited;         /* under the lock: receives of channels that were ready */
+    int awaited;                          /* under the lock: requests of channels */
     struct comm_channel *stalled;         /* under the lock: their buffers are still sent */
     struct comm_group *open, *closed;     /* under the lock; closed: some messages are still sent */
-    size_t room;                          /* of `awaited`: receives of the open ones */
     unsigned looks;
     struct comm_tags tags;
     _Atomic bool awaits; /* there are some */
-    bool lost;           /* messages no longer come */
 };
 
 /* Starts the channels: asks MPI for its largest tag. False if that fails. Before the lock is used.
@@ -126,8 +157,11 @@ bool comm_channels_stop(struct comm *comm);
  * thread. */
 void comm_channel_post(struct comm *comm, struct comm_channel *channel);
 
-/* Under the lock: sends and receives what can be, and finds channels. */
+/* Under the lock: sends what can be, and awaits what is to come. */
 void comm_channels_pass(struct comm *comm, struct comm_found *found);
+
+/* The receive of a channel's message is over. */
+comm_over comm_channel_came;
 
 /* Without the lock, for one of `copies`: writes its message, which is posted then, or reads the one
  * that came. True: it is through. */
@@ -135,10 +169,6 @@ bool comm_channel_copy(struct comm *comm, struct comm_channel *channel);
 
 /* Under the lock: communication is broken, and nothing is awaited any more. */
 void comm_channels_give_up(struct comm *comm);
-
-/* Shows messages that have not come, and those that cannot be sent yet. Under the lock. */
-struct comm_looker;
-void comm_channels_look(struct comm *comm, const struct comm_looker *looker);
 
 /* ---- Heartbeats (heartbeat.c) ---- */
 
@@ -212,7 +242,7 @@ struct comm {
     int rank, n_ranks;
     atomic_flag lock;
     _Atomic(struct comm_letter *) posts;
-    struct comm_requests sends, receives; /* touched by the holder of `lock` only, like: */
+    struct comm_requests requests; /* touched by the holder of `lock` only, like: */
     struct comm_letter *stalled; /* large ones that wait for others, in the order of their posts */
     struct comm_arrivals arrivals;
     struct comm_channels channels;
@@ -245,8 +275,12 @@ void comm_collective_stop(struct comm *comm);
  * their end. */
 void comm_catch_up(struct comm *comm);
 
-/* True for MPI_SUCCESS; else communication is broken. */
-bool comm_mpi_ok(struct comm *comm, int mpi, const char *what);
+/* True for MPI_SUCCESS; else communication is broken. cut: true even if a message was longer than
+ * what it was received into. */
+bool comm_mpi_ok(struct comm *comm, int mpi, const char *call);
+bool comm_mpi_cut(struct comm *comm, int mpi, const char *call);
+/* The class of MPI's code: MPI_ERR_TRUNCATE and so on. */
+int comm_mpi_class(int mpi);
 
 /* Reports a message, if there is a report: before it is sent, so that it never comes before it was
  * sent, and after it came. Under the lock. */
@@ -292,12 +326,12 @@ static inline bool comm_left_to_us(struct comm *comm)
     return comm_has_posts(comm);
 }
 
-/* True if comm_control_pass has work. Most polls have none, so this looks at five numbers instead
+/* True if comm_control_pass has work. Most polls have none, so this looks at four numbers instead
  * of making five calls. Under the lock. */
 static inline bool comm_control_is_due(struct comm *comm)
 {
     const struct comm_calls *calls = &comm->calls;
-    return comm->control.sends.n || comm_is_broken(comm) || comm->difference.until > 0 ||
+    return comm_is_broken(comm) || comm->difference.until > 0 ||
            atomic_load_explicit(&calls->waits, memory_order_relaxed) ||
            atomic_load_explicit(&calls->made, memory_order_relaxed) != calls->compared;
 }

@@ -298,7 +298,7 @@ static int replay_fork_while(duite *rt, struct plan_record *record, duite_object
             holds = !api_get(rt, flag, TASK_ANYWHERE, values, &count, "duite_replay_while") &&
                     count && plan_flag_holds(type, values);
         if (!code && api_is_broken(rt))
-            code = rt->comm ? comm_broken(rt->comm) : rt->graph.broken;
+            code = rt->comm ? comm_error(rt->comm) : rt->graph.broken;
     }
     rt->graph.root.forks = forks + max * record->n_calls;
     base_free(values);
@@ -358,7 +358,7 @@ int duite_graph_rounds(duite *rt, duite_graph graph, uint64_t *rounds)
     trace_wait(rt->trace, from);
     if (!plan_replay_over(found->record)) {
         api_give_up(rt);
-        return comm_broken(rt->comm);
+        return comm_error(rt->comm);
     }
     *rounds = plan_replay_rounds(found->record);
     return DUITE_OK;

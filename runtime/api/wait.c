@@ -7,6 +7,7 @@
 #include "runtime/base/error.h"
 
 #include <stdio.h>
+#include <string.h>
 
 /* Returns the remembered error, once. */
 static int wait_recall(duite *rt)
@@ -120,8 +121,8 @@ int api_get(duite *rt, duite_object object, int rank, void *values, size_t *coun
         return code;
     const struct data_key key = task_version_of(&rt->graph, object);
     wait_for_copy(rt, &(struct work_why){call, NULL, &key}, &copy);
-    if (rt->comm && comm_broken(rt->comm))
-        return comm_broken(rt->comm);
+    if (rt->comm && comm_is_broken(rt->comm))
+        return comm_error(rt->comm);
     if (!values && !count) /* checked only now: the other ranks count on this one */
         return base_error(DUITE_E_ARGUMENT, "%s: nowhere to put the answer", call);
     if (copy.failure)
@@ -271,7 +272,43 @@ int duite_wait(duite *rt)
 
 /* ---- Counters ---- */
 
-enum { COUNTER_SUMS = 12 }; /* over all ranks */
+static void counters_add(duite_counters *sum, const duite_counters *own)
+{
+    sum->tasks += own->tasks;
+    sum->placed += own->placed;
+    sum->stolen += own->stolen;
+    sum->stolen_far += own->stolen_far;
+    sum->chained += own->chained;
+    sum->delegated += own->delegated;
+    sum->messages += own->messages;
+    sum->bytes += own->bytes;
+    sum->busy += own->busy;
+    sum->idle += own->idle;
+    sum->awaited += own->awaited;
+    sum->exposed += own->exposed;
+}
+
+/* The counters of this rank become the sums of those of all ranks. */
+static int counters_gather(duite *rt, duite_counters *counters)
+{
+    const struct work_why why = {"duite_count_all", "the other ranks", NULL};
+    struct comm_word own = {0}, *words;
+    duite_counters sum = {0}, of;
+    _Static_assert(sizeof of <= sizeof own.number, "a word has room for the counters of a rank");
+    int code = wait_enter(rt, why.call, why.call);
+    if (!rt->comm || code)
+        return code;
+    code = api_agree(rt, &why, &own);
+    memcpy(own.number, counters, sizeof *counters);
+    if (!code)
+        code = api_gather(rt, &why, &own, &words);
+    for (int r = 0; r < rt->graph.n_ranks && !code; r++) {
+        memcpy(&of, words[r].number, sizeof of);
+        counters_add(&sum, &of);
+    }
+    *counters = sum;
+    return code;
+}
 
 int duite_count_all(duite *rt, duite_counters *counters)
 {
@@ -279,40 +316,14 @@ int duite_count_all(duite *rt, duite_counters *counters)
     if (code || !counters)
         return code ? code
                     : base_error(DUITE_E_ARGUMENT, "duite_count_all: nowhere to put the counters");
-    duite_counters own = {0};
-    work_count(rt->pool, &own);
+    *counters = (duite_counters){0};
+    work_count(rt->pool, counters);
     if (rt->comm)
-        comm_count(rt->comm, &own.messages, &own.bytes);
-    double sums[COUNTER_SUMS] = {
-        (double)own.tasks,     (double)own.placed, (double)own.stolen, (double)own.chained,
-        (double)own.messages,  (double)own.bytes,  own.busy,           own.idle,
-        (double)own.delegated, own.awaited,        own.exposed,        (double)own.stolen_far};
-    code = wait_enter(rt, "duite_count_all", "duite_count_all");
-    struct comm_word agreed = {.fingerprint = rt->graph.fingerprint};
-    work_waits(rt->pool, &(struct work_why){"duite_count_all", "the other ranks", NULL});
-    if (rt->comm && !code)
-        code = comm_agree(rt->comm, &agreed, wait_work_once, rt->pool);
-    if (rt->comm && !code)
-        code = comm_sum(rt->comm, sums, COUNTER_SUMS, wait_work_once, rt->pool);
-    work_waits(rt->pool, NULL);
-    work_idle_ends(rt->pool);
-    if (code)
-        api_give_up(rt);
-    *counters = (duite_counters){.tasks = (uint64_t)sums[0],
-                                 .placed = (uint64_t)sums[1],
-                                 .stolen = (uint64_t)sums[2],
-                                 .chained = (uint64_t)sums[3],
-                                 .messages = (uint64_t)sums[4],
-                                 .bytes = (uint64_t)sums[5],
-                                 .busy = sums[6],
-                                 .idle = sums[7],
-                                 .delegated = (uint64_t)sums[8],
-                                 .awaited = sums[9],
-                                 .exposed = sums[10],
-                                 .stolen_far = (uint64_t)sums[11],
-                                 .graphs_recorded = rt->graphs_recorded,
-                                 .migrated = rt->migration.objects,
-                                 .recognised = rt->taker ? rt->taker->tasks : 0,
-                                 .recognised_rounds = rt->taker ? rt->taker->rounds : 0};
+        comm_count(rt->comm, &counters->messages, &counters->bytes);
+    code = counters_gather(rt, counters);
+    counters->graphs_recorded = rt->graphs_recorded;
+    counters->migrated = rt->migration.objects;
+    counters->recognised = rt->taker ? rt->taker->tasks : 0;
+    counters->recognised_rounds = rt->taker ? rt->taker->rounds : 0;
     return code;
 }

@@ -1,7 +1,6 @@
 #ifndef DUITE_COMM_ARRIVALS_H
 #define DUITE_COMM_ARRIVALS_H
 
-#include "runtime/base/clock.h"
 #include "runtime/comm/comm.h"
 
 #include <pthread.h>
@@ -15,26 +14,6 @@ struct comm_gauge {
     uint64_t awaited; /* messages */
     _Atomic uint64_t clock;
 };
-
-/* Ticks, up to now, in which messages were awaited. Any thread. */
-static inline uint64_t comm_gauge_ticks(const struct comm_gauge *gauge)
-{
-    uint64_t clock = atomic_load_explicit(&gauge->clock, memory_order_relaxed);
-    return clock & 1 ? clock - 1 + base_ticks() : clock;
-}
-
-/* Adds `messages`, which may be negative, to those awaited. Under the lock. */
-static inline void comm_gauge_add(struct comm_gauge *gauge, int64_t messages)
-{
-    uint64_t before = gauge->awaited;
-    gauge->awaited += (uint64_t)messages;
-    if (!before == !gauge->awaited)
-        return;
-    uint64_t clock = atomic_load_explicit(&gauge->clock, memory_order_relaxed);
-    clock = before ? clock - 1 + base_ticks() : clock - base_ticks();
-    clock = (clock & ~UINT64_C(1)) | (gauge->awaited > 0);
-    atomic_store_explicit(&gauge->clock, clock, memory_order_relaxed);
-}
 
 /* Matches packets that arrive with their targets, whichever comes first. Safe from any thread. */
 struct comm_arrivals {

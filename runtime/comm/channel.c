@@ -160,7 +160,7 @@ static void group_close(struct comm_channel_set *set)
     comm->channels.closed = group;
     if (!comm_is_lost(comm))
         quiet = channels_sweep(comm);
-    comm_unlock(comm);
+    comm_let_go(comm);
     groups_free(quiet);
 }
 
@@ -203,7 +203,7 @@ int comm_channels_open(struct comm *comm, struct comm_channel_set *set)
     comm_hold(comm);
     struct comm_group *quiet = channels_sweep(comm);
     int code = group_open(comm, group, set);
-    comm_unlock(comm);
+    comm_let_go(comm);
     groups_free(quiet);
     if (!set->close)
         group_free(group);
@@ -227,11 +227,11 @@ int comm_channels_settle(struct comm *comm)
         comm_hold(comm);
         struct comm_group *quiet = channels_sweep(comm);
         lingers = channels_linger(comm);
-        comm_unlock(comm);
+        comm_let_go(comm);
         groups_free(quiet);
         sched_yield();
     }
-    return comm_broken(comm);
+    return comm_error(comm);
 }
 
 void comm_channels_met(struct comm *comm)

@@ -16,16 +16,20 @@
 
 static int comm_prepare(struct comm *comm)
 {
-    if (MPI_Comm_rank(comm->mpi, &comm->rank) || MPI_Comm_size(comm->mpi, &comm->n_ranks))
-        return base_error(DUITE_E_MPI, "MPI_Comm_rank or MPI_Comm_size failed");
+    if (MPI_Comm_rank(comm->mpi, &comm->rank))
+        return base_error(DUITE_E_MPI, "MPI_Comm_rank failed");
+    if (MPI_Comm_size(comm->mpi, &comm->n_ranks))
+        return base_error(DUITE_E_MPI, "MPI_Comm_size failed");
     comm->words = base_alloc((size_t)(comm->n_ranks + 1) * sizeof *comm->words);
     if (!comm_control_start(comm) || !comm_calls_start(&comm->calls) || !comm->words)
         return base_no_memory("communication");
     if (MPI_Type_contiguous(sizeof(struct data_packet), MPI_BYTE, &comm->line) ||
         MPI_Type_commit(&comm->line))
         return base_error(DUITE_E_MPI, "MPI_Type_contiguous failed");
-    if (!comm_channels_start(comm) || !comm_collective_start(comm))
-        return base_error(DUITE_E_MPI, "MPI_Comm_get_attr or MPI_Op_create failed");
+    if (!comm_channels_start(comm))
+        return base_error(DUITE_E_MPI, "MPI_Comm_get_attr failed");
+    if (!comm_collective_start(comm))
+        return base_error(DUITE_E_MPI, "MPI_Op_create failed");
     return comm_heartbeat_start(comm, comm->setup.monitor);
 }
 
@@ -62,7 +66,7 @@ void comm_open(struct comm *comm, bool requests)
         return;
     comm->open = true;
     comm->may_request = requests;
-    comm_unlock(comm);
+    comm_let_go(comm);
 }
 
 /* True once no message is on its way, at a good stop or after communication broke. */
@@ -112,9 +116,9 @@ void comm_send(struct comm *comm, struct comm_letter *letter)
     atomic_thread_fence(memory_order_seq_cst);
 }
 
-bool comm_posted(struct comm *comm)
+bool comm_has_posts(struct comm *comm)
 {
-    return comm_has_posts(comm);
+    return !BASE_STACK_IS_EMPTY(&comm->posts) || !BASE_STACK_IS_EMPTY(&comm->channels.ready);
 }
 
 void comm_hold(struct comm *comm)
@@ -125,7 +129,7 @@ void comm_hold(struct comm *comm)
 
 void comm_let_go(struct comm *comm)
 {
-    comm_unlock(comm); /* the next poll sends the posts made meanwhile */
+    atomic_flag_clear_explicit(&comm->lock, memory_order_release);
 }
 
 void comm_workers_end(struct comm *comm)
@@ -145,24 +149,16 @@ static _Thread_local bool passing __attribute__((tls_model("initial-exec")));
 /* Other messages are looked for less often while a recorded graph waits for its own. */
 enum { SELDOM = 8 };
 
-static void comm_receive_seldom(struct comm *comm, struct comm_found *found)
-{
-    if (comm->channels.awaited && ++comm->channels.looks % SELDOM)
-        return;
-    comm_transport_receive(comm, found);
-    if (comm_control_is_due(comm))
-        comm_control_pass(comm);
-}
-
-/* One round under the lock. */
+/* One round under the lock. Control messages come last: an abort message goes out in the round that
+ * broke communication, since the main thread may not poll again. */
 static inline void comm_pass_locked(struct comm *comm, struct comm_found *found, bool looks)
 {
     const int before = comm->channels.awaited;
     if (comm->stalled || !BASE_STACK_IS_EMPTY(&comm->posts))
         comm_transport_send(comm, found);
     comm_channels_pass(comm, found);
-    if (looks)
-        comm_receive_seldom(comm, found);
+    if (looks && !(comm->channels.awaited && ++comm->channels.looks % SELDOM))
+        comm_transport_receive(comm, found);
     if (comm->requests.n)
         comm_requests_pass(comm, found);
     if (comm->channels.awaited != before) {
@@ -170,6 +166,8 @@ static inline void comm_pass_locked(struct comm *comm, struct comm_found *found,
         atomic_store_explicit(&comm->channels.awaits, comm->channels.awaited > 0,
                               memory_order_relaxed);
     }
+    if (looks && comm_control_is_due(comm))
+        comm_control_pass(comm);
     comm_heartbeat_pass(comm);
 }
 
@@ -184,7 +182,7 @@ static inline bool comm_pass(struct comm *comm, struct worker *worker, bool look
             break;
         comm->worker = worker;
         comm_pass_locked(comm, &found, looks);
-        comm_unlock(comm);
+        comm_let_go(comm);
         any |= found.any;
         more = found.more;
         if (found.packets || found.sent || found.through || found.copies) {
@@ -220,11 +218,6 @@ void comm_part(struct comm *comm, struct worker *worker)
     const double moment = 0.1;
     for (double since = base_seconds(); base_seconds() - since < moment; sched_yield())
         comm_poll(comm, worker);
-}
-
-uint64_t comm_awaited_ticks(const struct comm *comm)
-{
-    return comm_gauge_ticks(&comm->arrivals.gauge);
 }
 
 void comm_count(struct comm *comm, uint64_t *messages, uint64_t *bytes)

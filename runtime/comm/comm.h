@@ -154,7 +154,7 @@ bool comm_call(struct comm *comm, const char *name, uint64_t fingerprint);
  * while it waits, communication breaks. Main thread. */
 void comm_waits(struct comm *comm, bool waits);
 
-enum { COMM_SUMMED = 16, COMM_WORD_NUMBERS = sizeof(struct data_failure) / sizeof(double) };
+enum { COMM_WORD_NUMBERS = sizeof(struct data_failure) / sizeof(double) };
 
 /* A rank's contribution to a collective call. */
 struct comm_word {
@@ -183,24 +183,21 @@ int comm_gather(struct comm *comm, const struct comm_word *own, struct comm_word
 int comm_first(struct comm *comm, struct comm_word *own, void (*between)(void *context),
                void *context);
 
-/* Sums n <= COMM_SUMMED numbers over all ranks, in place: one reduction. As comm_gather. */
-int comm_sum(struct comm *comm, double *numbers, int n, void (*between)(void *context),
-             void *context);
-
 /* ---- When it breaks ----
  *
  * A rank that lost a message, or cannot go on for another reason, breaks. From then on it sends
  * only an abort message with the reason to all others, which break in turn. Blocking calls return
  * the code; the main thread gives up everything still expected; only stop is left. */
 
-/* The code with the message set once communication is broken, else 0. */
-int comm_broken(struct comm *comm);
+/* True once communication is broken. comm_error: its code, with the message set; else 0. */
+bool comm_is_broken(struct comm *comm);
+int comm_error(struct comm *comm);
 
-/* True if it broke because MPI failed or a rank was lost: then MPI must not be relied on, nor
- * finalised. */
-bool comm_is_cut(struct comm *comm);
+/* True if MPI failed or a rank is lost, even if it broke for another reason: messages may stay on
+ * their way for ever, and MPI must not be relied on, nor finalised. */
+bool comm_is_lost(struct comm *comm);
 
-/* After comm_is_cut: polls for a moment, so that the abort messages go out. Main thread. */
+/* After comm_is_lost: polls for a moment, so that the abort messages go out. Main thread. */
 void comm_part(struct comm *comm, struct worker *worker);
 
 /* Between hold and let_go the caller alone calls MPI: nothing is sent or received. Main thread. */

@@ -56,7 +56,7 @@ bool comm_control_send(struct comm *comm, int to, struct data_packet *packet)
 {
     packet->key.slot = (uint32_t)comm->rank;
     if (!comm_requests_room(comm, 1))
-        comm_broke_memory(comm, "a control message");
+        comm_break_memory(comm, "a control message");
     else if (comm_mpi_ok(comm, control_isend(comm, to, packet, false), "MPI_Isend"))
         return true;
     data_packet_free(packet);
@@ -70,7 +70,7 @@ static bool code_is_loss(int code)
     return code == DUITE_E_LOST || code == DUITE_E_MPI;
 }
 
-void comm_broke(struct comm *comm, int code, const char *message)
+void comm_break(struct comm *comm, int code, const char *message)
 {
     if (code_is_loss(code))
         atomic_store(&comm->lost, true);
@@ -83,11 +83,11 @@ void comm_broke(struct comm *comm, int code, const char *message)
         comm->setup.owner->broke(comm->setup.context);
 }
 
-void comm_broke_memory(struct comm *comm, const char *what)
+void comm_break_memory(struct comm *comm, const char *what)
 {
     char message[100];
     snprintf(message, sizeof message, "out of memory for %s", what);
-    comm_broke(comm, DUITE_E_MEMORY, message);
+    comm_break(comm, DUITE_E_MEMORY, message);
 }
 
 int comm_mpi_class(int mpi)
@@ -104,14 +104,14 @@ bool comm_mpi_ok(struct comm *comm, int mpi, const char *call)
     if (mpi == MPI_SUCCESS)
         return true;
     if (comm_mpi_class(mpi) == MPI_ERR_TRUNCATE) {
-        comm_broke(comm, DUITE_E_DIFFERENT,
+        comm_break(comm, DUITE_E_DIFFERENT,
                    "a message of a recorded graph does not fit: the ranks recorded different "
                    "graphs");
         return false;
     }
     MPI_Error_string(mpi, reason, &length);
     snprintf(message, sizeof message, "%s: %s", call, reason);
-    comm_broke(comm, DUITE_E_MPI, message);
+    comm_break(comm, DUITE_E_MPI, message);
     return false;
 }
 
@@ -121,15 +121,20 @@ bool comm_mpi_cut(struct comm *comm, int mpi, const char *call)
            comm_mpi_ok(comm, mpi, call);
 }
 
-int comm_broken(struct comm *comm)
+bool comm_is_broken(struct comm *comm)
+{
+    return atomic_load_explicit(&comm->broken, memory_order_acquire) != 0;
+}
+
+bool comm_is_lost(struct comm *comm)
+{
+    return atomic_load_explicit(&comm->lost, memory_order_acquire);
+}
+
+int comm_error(struct comm *comm)
 {
     int code = atomic_load_explicit(&comm->broken, memory_order_acquire);
     return code ? base_error(code, "%s", comm->reason.message) : DUITE_OK;
-}
-
-bool comm_is_cut(struct comm *comm)
-{
-    return comm_is_lost(comm);
 }
 
 /* A send that fails here is not reported: MPI itself failed, and no rank can be reached. */
@@ -175,7 +180,7 @@ static void abort_hear(struct comm *comm, struct data_packet *packet)
         comm->control.entered = abort->entered;
         comm->control.kind = abort->kind;
     }
-    comm_broke(comm, abort->code, message);
+    comm_break(comm, abort->code, message);
 }
 
 static void loss_hear(struct comm *comm, struct data_packet *packet)
@@ -204,7 +209,7 @@ bool comm_request(struct comm *comm, struct worker *worker, int rank, unsigned i
         comm_note(comm, true, rank, sizeof *packet);
         sent = comm_control_send(comm, rank, packet);
     }
-    comm_unlock(comm); /* the caller's next poll sends the posts made meanwhile */
+    comm_let_go(comm); /* the caller's next poll sends the posts made meanwhile */
     atomic_fetch_add_explicit(&comm->control.requested, sent, memory_order_relaxed);
     return sent;
 }
@@ -239,7 +244,7 @@ bool comm_take_request(struct comm *comm, struct comm_requester *requester)
     }
     if (!found)
         atomic_store_explicit(&control->standing_any, 0, memory_order_relaxed);
-    comm_unlock(comm);
+    comm_let_go(comm);
     return found;
 }
 
@@ -251,7 +256,7 @@ void comm_return_request(struct comm *comm, const struct comm_requester *request
     if (standing->until < requester->until)
         *standing = (struct comm_standing){requester->until, requester->idle};
     atomic_store_explicit(&comm->control.standing_any, 1, memory_order_relaxed);
-    comm_unlock(comm);
+    comm_let_go(comm);
 }
 
 /* ---- The end ---- */
@@ -272,7 +277,7 @@ void comm_control_end(struct comm *comm)
     for (int to = 0; to < comm->n_ranks && !comm_is_broken(comm); to++)
         if (last_is_for(comm, to))
             comm_mpi_ok(comm, control_isend(comm, to, control->last, true), "MPI_Isend");
-    comm_unlock(comm);
+    comm_let_go(comm);
 }
 
 static void last_hear(struct comm *comm, struct data_packet *packet)
@@ -292,7 +297,7 @@ bool comm_control_over(struct comm *comm)
     const bool heard = comm_is_broken(comm) ? control->aborts && control->heard == comm->n_ranks - 1
                                             : control->last_heard == expected;
     const bool over = heard && !comm->requests.n;
-    comm_unlock(comm);
+    comm_let_go(comm);
     return over;
 }
 

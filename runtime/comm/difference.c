@@ -36,7 +36,7 @@ static void difference_conclude(struct comm *comm)
     struct comm_verdict verdict = {0};
     comm->difference.until = 0;
     comm_verdict_find(comm, &verdict);
-    comm_broke(comm, DUITE_E_DIFFERENT, verdict.text);
+    comm_break(comm, DUITE_E_DIFFERENT, verdict.text);
 }
 
 /* From now on it waits for as long as a rank may be silent; other ranks than 0 twice as long. */
@@ -116,9 +116,9 @@ static struct data_packet *difference_packet(struct comm *comm, enum comm_kind k
     if (packet)
         packet->kind = kind;
     else if (comm->difference.found)
-        comm_broke(comm, DUITE_E_DIFFERENT, comm->difference.message);
+        comm_break(comm, DUITE_E_DIFFERENT, comm->difference.message);
     else
-        comm_broke_memory(comm, "a control message");
+        comm_break_memory(comm, "a control message");
     return packet;
 }
 

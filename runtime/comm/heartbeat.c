@@ -22,7 +22,7 @@ static void heartbeat_lost(struct comm *comm)
     snprintf(message, sizeof message,
              "rank %d on host %s is lost: nothing was heard of it for %g s", rank_before(comm),
              comm->heartbeat.host, comm->heartbeat.seconds);
-    comm_broke(comm, DUITE_E_LOST, message);
+    comm_break(comm, DUITE_E_LOST, message);
 }
 
 /* Posts the receive of the next heartbeat. */
@@ -102,7 +102,7 @@ static bool heartbeat_look(void *context)
     const bool made = locked || before == COMM_LOOK_MADE;
     atomic_store_explicit(state, made ? COMM_LOOK_NOT_DUE : COMM_LOOK_DUE, memory_order_relaxed);
     if (locked)
-        comm_unlock(comm); /* the next poll sends the posts made meanwhile */
+        comm_let_go(comm); /* the next poll sends the posts made meanwhile */
     return made;
 }
 

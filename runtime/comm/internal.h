@@ -229,7 +229,7 @@ struct comm_reduced {
 enum { COMM_REDUCED = sizeof(struct comm_reduced) / sizeof(uint64_t) };
 
 /* The kinds of collective calls. */
-enum comm_collective { COMM_AGREES, COMM_GATHERS, COMM_SUMS, COMM_FIRSTS };
+enum comm_collective { COMM_AGREES, COMM_GATHERS, COMM_FIRSTS };
 
 /* ---- The comm ---- */
 
@@ -254,15 +254,14 @@ struct comm {
     struct comm_heartbeat heartbeat;
     struct comm_calls calls;
     struct comm_difference difference;
-    const struct comm_report *report;              /* NULL: nobody */
-    struct worker *worker;                         /* under the lock: the one that passes */
-    bool open, may_request;                        /* comm_open was called; with requests */
-    bool silent;                                   /* the owner is not told that it broke */
-    double latency, per_byte;                      /* seconds: of the slowest link measured */
-    uint64_t entered;                              /* collective calls */
-    enum comm_collective kind;                     /* of the last of them */
-    struct comm_reduced own, max;                  /* of the last agreement */
-    double addend[COMM_SUMMED], sums[COMM_SUMMED]; /* of the last sum */
+    const struct comm_report *report;       /* NULL: nobody */
+    struct worker *worker;                  /* under the lock: the one that passes */
+    bool open, may_request;                 /* comm_open was called; with requests */
+    bool silent;                            /* the owner is not told that it broke */
+    double latency, per_byte;               /* seconds: of the slowest link measured */
+    uint64_t entered;                       /* collective calls */
+    enum comm_collective kind;              /* of the last of them */
+    struct comm_reduced own, max;           /* of the last agreement */
     MPI_Request request;                    /* of the last one; MPI_REQUEST_NULL once it is over */
     struct comm_word *words;                /* one a rank, and this rank's own */
     _Atomic uint64_t messages, bytes, came; /* sent, and of these the bytes; received */
@@ -290,34 +289,12 @@ static inline void comm_note(const struct comm *comm, bool sends, int peer, size
         comm->report->message(comm->worker, sends, peer, bytes);
 }
 
-static inline bool comm_is_broken(struct comm *comm)
-{
-    return atomic_load_explicit(&comm->broken, memory_order_acquire) != 0;
-}
-
-/* True if MPI itself failed, or a rank is lost: messages may stay on their way for ever. */
-static inline bool comm_is_lost(struct comm *comm)
-{
-    return atomic_load_explicit(&comm->lost, memory_order_acquire);
-}
-
 static inline bool comm_try_lock(struct comm *comm)
 {
     return !atomic_flag_test_and_set_explicit(&comm->lock, memory_order_acquire);
 }
 
-static inline void comm_unlock(struct comm *comm)
-{
-    atomic_flag_clear_explicit(&comm->lock, memory_order_release);
-}
-
-/* True if something posted is not sent yet. Any thread. */
-static inline bool comm_has_posts(struct comm *comm)
-{
-    return !BASE_STACK_IS_EMPTY(&comm->posts) || !BASE_STACK_IS_EMPTY(&comm->channels.ready);
-}
-
-/* Ask after comm_unlock: letters posted meanwhile, by threads that did not get the lock, must not
+/* Ask after comm_let_go: letters posted meanwhile, by threads that did not get the lock, must not
  * wait for the next poll. Pairs with comm_send: it tries the lock after this look, or this look
  * sees its post. */
 static inline bool comm_left_to_us(struct comm *comm)

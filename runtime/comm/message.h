@@ -33,10 +33,10 @@ struct comm_target {
     int from;
 };
 
-/* Posts a letter, which the next poll sends. comm_posted: whether there is something to send. Any
- * thread. */
+/* Posts a letter, which the next poll sends. comm_has_posts: whether there is something to send, a
+ * letter or a channel's message. Any thread. */
 void comm_send(struct comm *comm, struct comm_letter *letter);
-bool comm_posted(struct comm *comm);
+bool comm_has_posts(struct comm *comm);
 
 /* Sets the target of the packets of that key; those that came already are delivered. Main thread.
  */
@@ -52,9 +52,9 @@ int comm_channels_open(struct comm *comm, struct comm_channel_set *set);
 void comm_channel_ready(struct comm *comm, struct worker *worker, struct comm_channel *channel);
 
 /* Breaks; the first reason counts. Any thread. */
-void comm_broke(struct comm *comm, int code, const char *message);
+void comm_break(struct comm *comm, int code, const char *message);
 /* The same, for want of memory for `what`. */
-void comm_broke_memory(struct comm *comm, const char *what);
+void comm_break_memory(struct comm *comm, const char *what);
 
 #pragma GCC visibility pop
 

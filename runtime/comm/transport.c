@@ -66,7 +66,7 @@ static bool message_send(struct comm *comm, struct comm_letter *letter)
         return false;
     struct data_packet *packet = letter_packet(comm, letter);
     if (!packet || !comm_requests_room(comm, 1)) {
-        comm_broke_memory(comm, "a message");
+        comm_break_memory(comm, "a message");
         return false;
     }
     size_t lines = data_packet_lines(packet->bytes);
@@ -121,14 +121,14 @@ static void message_receive_scarce(struct comm *comm, MPI_Message *message, int 
 {
     struct data_packet *spare = comm->control.spare;
     if (lines > (int)data_packet_lines(sizeof(struct comm_abort))) {
-        comm_broke_memory(comm, "a message");
+        comm_break_memory(comm, "a message");
         comm_mpi_cut(comm, MPI_Mrecv(NULL, 0, comm->line, message, MPI_STATUS_IGNORE), "MPI_Mrecv");
         return;
     }
     int mpi = MPI_Mrecv(spare, lines, comm->line, message, MPI_STATUS_IGNORE);
     if (!comm_mpi_ok(comm, mpi, "MPI_Mrecv") || comm_control_hear(comm, spare))
         return;
-    comm_broke_memory(comm, "a message");
+    comm_break_memory(comm, "a message");
     if (packet_is_large(spare))
         comm_pieces_forget(comm, spare->bytes, from, pieces_tag(spare));
 }
@@ -161,7 +161,7 @@ static void large_begin(struct comm *comm, struct data_packet *header, int from)
                                                         .from = from,
                                                         .tag = pieces_tag(packet)});
     } else {
-        comm_broke_memory(comm, "a message");
+        comm_break_memory(comm, "a message");
         comm_pieces_forget(comm, header->bytes, from, pieces_tag(header));
     }
     header->lines = 1;
@@ -240,7 +240,7 @@ static void message_deliver_unexpected(struct comm *comm, struct worker *worker,
         return;
     data_packet_free(packet);
     if (!dropped)
-        comm_broke_memory(comm, "a task of another rank");
+        comm_break_memory(comm, "a task of another rank");
 }
 
 static void message_deliver_value(struct comm *comm, struct worker *worker,
@@ -255,7 +255,7 @@ static void message_deliver_value(struct comm *comm, struct worker *worker,
         break;
     case COMM_LOST:
         data_packet_free(packet);
-        comm_broke_memory(comm, "a message that came early");
+        comm_break_memory(comm, "a message that came early");
     }
 }
 

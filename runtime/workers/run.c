@@ -111,7 +111,7 @@ static bool any_between(struct worker *worker, uint64_t now)
 {
     const struct work_pool *pool = worker->pool;
     struct comm *comm = pool->setup.comm;
-    if (comm && (comm_posted(comm) || now - worker->polled > pool->poll_ticks)) {
+    if (comm && (comm_has_posts(comm) || now - worker->polled > pool->poll_ticks)) {
         worker->polled = now;
         work_poll(worker);
         if (pool->balance)

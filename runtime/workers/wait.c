@@ -65,14 +65,14 @@ struct main_until {
 static bool main_is_done(void *context)
 {
     const struct main_until *until = context;
-    return until->done(until->context) || (until->comm && comm_broken(until->comm));
+    return until->done(until->context) || (until->comm && comm_is_broken(until->comm));
 }
 
 void work_until(struct work_pool *pool, const struct work_why *why, bool (*done)(void *),
                 void *context)
 {
     struct main_until until = {done, context, pool->setup.comm};
-    if (until.comm && comm_posted(until.comm))
+    if (until.comm && comm_has_posts(until.comm))
         work_poll(&pool->queues.worker[0]);
     work_waits(pool, why);
     main_drain(pool, &(struct work_wish){.done = main_is_done, .context = &until});
@@ -121,7 +121,7 @@ void work_tick(struct work_pool *pool)
     if (!comm)
         return;
     uint64_t now = base_ticks();
-    if (!comm_posted(comm) && now - worker->polled < pool->poll_ticks)
+    if (!comm_has_posts(comm) && now - worker->polled < pool->poll_ticks)
         return;
     worker->polled = now;
     work_poll(worker);
@@ -332,7 +332,7 @@ __attribute__((noinline)) static void inside_wait(struct worker *worker,
                                       .barren = NOT_BARREN,
                                       .look = queue_nests_freely(worker) ? LOOKED_AT : UINT32_MAX};
     struct inside_wait wait = begin;
-    while (!done(context) && !(comm && comm_broken(comm))) {
+    while (!done(context) && !(comm && comm_is_broken(comm))) {
         struct task *task = inside_find(worker, &wait);
         if (task) {
             work_busy_again(worker);

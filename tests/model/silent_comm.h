@@ -5,16 +5,16 @@
  * (comm_poll is its own). Included once in a program. */
 #include "runtime/workers/workers.h"
 
-bool comm_posted(struct comm *comm)
+bool comm_has_posts(struct comm *comm)
 {
     (void)comm;
     return false;
 }
 
-int comm_broken(struct comm *comm)
+bool comm_is_broken(struct comm *comm)
 {
     (void)comm;
-    return 0;
+    return false;
 }
 
 void comm_workers_end(struct comm *comm)
@@ -48,7 +48,7 @@ bool comm_awaits(struct comm *comm)
     return false;
 }
 
-void comm_broke_memory(struct comm *comm, const char *what)
+void comm_break_memory(struct comm *comm, const char *what)
 {
     (void)comm;
     (void)what;

@@ -78,7 +78,7 @@ static void migration_fill_own(struct migration *m)
     struct work_pool *pool = m->rt->pool;
     const size_t *first = m->first + m->rt->graph.rank;
     m->values[REPORT_WORKERS] = m->rt->share.workers;
-    m->values[REPORT_OTHER] = work_other_seconds(pool);
+    m->values[REPORT_OTHER] = work_block_seconds(pool, DUITE_NO_BLOCK);
     for (size_t i = first[0]; i < first[1]; i++) {
         const struct map_block *block = &m->moves.blocks.block[m->row[i]];
         double seconds = work_block_seconds(pool, block->number);

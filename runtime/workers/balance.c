@@ -135,12 +135,7 @@ void work_learn(struct worker *worker, const struct task *task, uint64_t ticks)
 
 double work_block_seconds(struct work_pool *pool, uint32_t block)
 {
-    return pool->queues.tick * (double)work_cost_take_block(&pool->balance->cost, block);
-}
-
-double work_other_seconds(struct work_pool *pool)
-{
-    return pool->queues.tick * (double)work_cost_take_other(&pool->balance->cost);
+    return pool->queues.tick * (double)work_cost_take(&pool->balance->cost, block);
 }
 
 /* ---- Tasks that may go ---- */

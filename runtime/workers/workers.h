@@ -107,11 +107,10 @@ void work_throttle(struct work_pool *pool, uint64_t max);
 /* Counts of all workers of this rank. Exact when no task is left. */
 void work_count(struct work_pool *pool, duite_counters *counters);
 
-/* For a balancer that moves homes, on several ranks. The first two: seconds since the last call in
- * bodies of tasks that run for a block of this rank, and in all others. The third: the balancer's
- * answer, see duite_balancer.migrate. Main thread. */
+/* For a balancer that moves homes, on several ranks. The first: seconds since the last call in
+ * bodies of tasks that run for a block of this rank, or for DUITE_NO_BLOCK. The second: the
+ * balancer's answer, see duite_balancer.migrate. Main thread. */
 double work_block_seconds(struct work_pool *pool, uint32_t block);
-double work_other_seconds(struct work_pool *pool);
 uint64_t work_migrate(struct work_pool *pool, const duite_blocks *blocks, int *home);
 
 /* For the trace: an event of worker 0; the counts of each worker of this rank. Main thread. */

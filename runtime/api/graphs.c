@@ -227,11 +227,11 @@ static int replay_fork_rounds(duite *rt, struct plan_record *record, uint64_t fi
 /* All tags are handed out to plans: reuses those of plans that are over on all ranks. */
 static int replay_make_tags(duite *rt)
 {
-    int code = api_meet(rt, "duite_replay");
+    int code = api_meet(rt, "duite_replay", NULL);
     if (!code)
         code = comm_channels_settle(rt->comm);
     if (!code)
-        code = api_meet(rt, "duite_replay");
+        code = api_meet(rt, "duite_replay", NULL);
     if (!code)
         comm_channels_met(rt->comm);
     return code;

@@ -109,10 +109,10 @@ static size_t migration_part_end(size_t all, size_t at)
     return all > at + COMM_WORD_NUMBERS ? at + COMM_WORD_NUMBERS : all;
 }
 
-static int migration_exchange(struct migration *m, struct comm_word *own, struct comm_word **words)
+static int migration_exchange(struct migration *m, struct comm_word *own)
 {
     static const struct work_why why = {"duite_replay", "the other ranks to move blocks", NULL};
-    return api_gather(m->rt, &why, own, words);
+    return api_collective(m->rt, &why, COMM_GATHERS, own);
 }
 
 static int migration_gather(struct migration *m)
@@ -124,10 +124,11 @@ static int migration_gather(struct migration *m)
         longest = migration_length(m, r) > longest ? migration_length(m, r) : longest;
     migration_fill_own(m);
     for (size_t at = 0; at < longest && !code; at += COMM_WORD_NUMBERS) {
-        struct comm_word own = {0}, *words;
+        const struct comm_word *words = comm_words(m->rt->comm);
+        struct comm_word own = {0};
         for (size_t i = at; i < migration_part_end(migration_length(m, graph->rank), at); i++)
             own.number[i - at] = m->values[i];
-        code = migration_exchange(m, &own, &words);
+        code = migration_exchange(m, &own);
         for (int r = 0; r < graph->n_ranks && !graph->rank && !code; r++)
             for (size_t i = at; i < migration_part_end(migration_length(m, r), at); i++)
                 migration_take(m, r, i, words[r].number[i - at]);
@@ -227,12 +228,13 @@ static int migration_announce(struct migration *m)
     size_t all = ANSWER_BLOCKS;
     int code = DUITE_OK;
     for (size_t at = 0; at < all && !code; at += COMM_WORD_NUMBERS) {
-        struct comm_word own = {0}, *words;
+        const struct comm_word *words = comm_words(m->rt->comm);
+        struct comm_word own = {0};
         if (!m->rt->graph.rank)
             all = ANSWER_BLOCKS + (size_t)m->values[ANSWER_MOVES];
         for (size_t i = at; i < migration_part_end(all, at) && !m->rt->graph.rank; i++)
             own.number[i - at] = m->values[i];
-        code = migration_exchange(m, &own, &words);
+        code = migration_exchange(m, &own);
         if (!code && !at)
             all = ANSWER_BLOCKS + (size_t)words[0].number[ANSWER_MOVES];
         for (size_t i = at; i < migration_part_end(all, at) && !code; i++)
@@ -300,7 +302,7 @@ static int migration_refused(const struct migration *m)
 static int migration_run(struct migration *m, uint64_t replay, uint64_t *map_at)
 {
     duite *rt = m->rt;
-    int code = api_meet(rt, "duite_replay");
+    int code = api_meet(rt, "duite_replay", NULL);
     if (!code)
         code = migration_begin(m);
     if (!code)

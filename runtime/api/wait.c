@@ -22,11 +22,6 @@ static bool copy_is_done(void *context)
     return atomic_load_explicit(&((struct task_copy *)context)->done, memory_order_acquire);
 }
 
-static void wait_work_once(void *context)
-{
-    work_once(context);
-}
-
 /* This rank's report to the others: the hash of its forks, and its first failure. */
 static struct comm_word wait_own_word(const struct task_graph *graph)
 {
@@ -39,43 +34,19 @@ static struct comm_word wait_own_word(const struct task_graph *graph)
     return own;
 }
 
-/* A collective call begins. The divergence check finds ranks that do not come to it. */
-static void collective_begin(duite *rt, const struct work_why *why, struct comm_word *own)
+int api_collective(duite *rt, const struct work_why *why, enum comm_collective kind,
+                   struct comm_word *own)
 {
     own->fingerprint = rt->graph.fingerprint;
     work_waits(rt->pool, why);
-    comm_waits(rt->comm, true);
-}
-
-/* Returns the code. */
-static int collective_end(duite *rt, int code)
-{
+    comm_waits(rt->comm, true); /* the divergence check finds ranks that do not come to it */
+    comm_enter(rt->comm, kind, own);
+    work_drain(rt->pool, comm_is_entered, rt->comm);
     comm_waits(rt->comm, false);
     work_waits(rt->pool, NULL);
-    work_idle_ends(rt->pool);
-    if (code)
+    if (comm_is_broken(rt->comm))
         api_give_up(rt);
-    return code;
-}
-
-int api_agree(duite *rt, const struct work_why *why, struct comm_word *own)
-{
-    collective_begin(rt, why, own);
-    return collective_end(rt, comm_agree(rt->comm, own, wait_work_once, rt->pool));
-}
-
-int api_gather(duite *rt, const struct work_why *why, struct comm_word *own,
-               struct comm_word **words)
-{
-    collective_begin(rt, why, own);
-    return collective_end(rt, comm_gather(rt->comm, own, words, wait_work_once, rt->pool));
-}
-
-/* Finds the word of the first failure of all ranks; some rank has one. */
-static int wait_find_first(duite *rt, const struct work_why *why, struct comm_word *own)
-{
-    collective_begin(rt, why, own);
-    return collective_end(rt, comm_first(rt->comm, own, wait_work_once, rt->pool));
+    return comm_error(rt->comm);
 }
 
 /* This rank makes a call that blocks, as all do; `kind` must be the same on all. */
@@ -88,7 +59,9 @@ static int wait_enter(duite *rt, const char *kind, const char *call)
         task_mix(&rt->graph, (unsigned char)*c);
     task_mixed(&rt->graph, COMM_CALLED, comm_function_find(call));
     const struct work_why why = {call, "the other ranks to come to it", NULL};
-    return comm_call(rt->comm, call, rt->graph.fingerprint) ? api_agree(rt, &why, &own) : DUITE_OK;
+    return comm_call(rt->comm, call, rt->graph.fingerprint)
+               ? api_collective(rt, &why, COMM_AGREES, &own)
+               : DUITE_OK;
 }
 
 /* Works until the copy is there. */
@@ -209,30 +182,22 @@ static int wait_for_own_tasks(duite *rt, const char *call)
     return DUITE_OK;
 }
 
-int api_meet(duite *rt, const char *call)
-{
-    struct comm_word own = {0};
-    const struct work_why why = {call, "the tasks of other ranks", NULL};
-    const int code = wait_for_own_tasks(rt, call);
-    return code || !rt->comm ? code : api_agree(rt, &why, &own);
-}
-
-/* Waits until all ranks have ended their tasks. *word: the first failure of all ranks, searched for
- * only if there is one. */
-static int wait_meet(duite *rt, const char *call, struct comm_word *word)
+int api_meet(duite *rt, const char *call, struct comm_word *first)
 {
     const struct work_why why = {call, "the tasks of other ranks", NULL};
     int code = wait_for_own_tasks(rt, call);
     if (code)
         return code;
-    *word = wait_last_word(rt);
-    if (!rt->comm)
-        return DUITE_OK;
-    struct comm_word first = *word;
-    code = api_agree(rt, &why, &first);
-    if (code || !first.failed)
-        return code;
-    return wait_find_first(rt, &why, word);
+    struct comm_word own = wait_last_word(rt);
+    if (rt->comm)
+        code = api_collective(rt, &why, COMM_AGREES, &own);
+    if (rt->comm && !code && first && comm_words(rt->comm)->failed) {
+        code = api_collective(rt, &why, COMM_FIRSTS, &own);
+        own = *comm_words(rt->comm);
+    }
+    if (first)
+        *first = own;
+    return code;
 }
 
 int api_wait(duite *rt, const char *call)
@@ -244,10 +209,9 @@ int api_wait(duite *rt, const char *call)
     if (code)
         return code;
     struct comm_word first;
-    code = wait_meet(rt, call, &first);
+    code = api_meet(rt, call, &first);
     if (code)
         return code;
-    work_idle_ends(rt->pool);
     code = wait_recall(rt);
     const struct data_failure *failure = &first.failure;
     if (code || !first.failed)
@@ -292,18 +256,18 @@ static void counters_add(duite_counters *sum, const duite_counters *own)
 static int counters_gather(duite *rt, duite_counters *counters)
 {
     const struct work_why why = {"duite_count_all", "the other ranks", NULL};
-    struct comm_word own = {0}, *words;
+    struct comm_word own = {0};
     duite_counters sum = {0}, of;
     _Static_assert(sizeof of <= sizeof own.number, "a word has room for the counters of a rank");
     int code = wait_enter(rt, why.call, why.call);
     if (!rt->comm || code)
         return code;
-    code = api_agree(rt, &why, &own);
+    code = api_collective(rt, &why, COMM_AGREES, &own);
     memcpy(own.number, counters, sizeof *counters);
     if (!code)
-        code = api_gather(rt, &why, &own, &words);
+        code = api_collective(rt, &why, COMM_GATHERS, &own);
     for (int r = 0; r < rt->graph.n_ranks && !code; r++) {
-        memcpy(&of, words[r].number, sizeof of);
+        memcpy(&of, comm_words(rt->comm)[r].number, sizeof of);
         counters_add(&sum, &of);
     }
     *counters = sum;

@@ -62,104 +62,64 @@ static bool collective_enter(struct comm *comm, enum comm_collective kind)
     return comm_mpi_ok(comm, mpi, kind == COMM_GATHERS ? "MPI_Iallgather" : "MPI_Iallreduce");
 }
 
-/* Takes the lock, or false if communication broke meanwhile. */
-static bool collective_lock(struct comm *comm, void (*between)(void *), void *context)
-{
-    while (!comm_try_lock(comm))
-        between(context);
-    if (!comm_is_broken(comm))
-        return true;
-    comm_let_go(comm);
-    return false;
-}
-
-/* Enters, and runs `between` until the call is over; then `settle`, unless it is NULL. The lock is
- * held, and let go. */
-static int collective_run(struct comm *comm, enum comm_collective kind,
-                          void (*settle)(struct comm *), void (*between)(void *), void *context)
-{
-    int done = 0;
-    bool fine = collective_enter(comm, kind);
-    comm_let_go(comm);
-    while (fine && !done && !comm_is_broken(comm)) {
-        if (comm_try_lock(comm)) {
-            fine =
-                comm_mpi_ok(comm, MPI_Test(&comm->request, &done, MPI_STATUS_IGNORE), "MPI_Test");
-            if (fine && done && settle)
-                settle(comm);
-            comm_let_go(comm);
-        }
-        if (!done || comm_left_to_us(comm))
-            between(context);
-    }
-    return comm_error(comm);
-}
-
-/* ---- Gathering ---- */
-
-int comm_gather(struct comm *comm, const struct comm_word *own, struct comm_word **all,
-                void (*between)(void *context), void *context)
-{
-    *all = comm->words;
-    if (!collective_lock(comm, between, context))
-        return comm_error(comm);
-    comm->words[comm->n_ranks] = *own;
-    return collective_run(comm, COMM_GATHERS, NULL, between, context);
-}
-
-int comm_first(struct comm *comm, struct comm_word *own, void (*between)(void *context),
-               void *context)
-{
-    if (!collective_lock(comm, between, context))
-        return comm_error(comm);
-    comm->words[comm->n_ranks] = *own;
-    const int code = collective_run(comm, COMM_FIRSTS, NULL, between, context);
-    if (!code)
-        *own = comm->words[0];
-    return code;
-}
-
-/* ---- Agreeing ---- */
-
-/* True if all ranks have the same: the largest is the smallest. */
-static bool reduced_are_same(const struct comm *comm)
+/* Under the lock: all ranks came to the agreement. True if they have the same: the largest is the
+ * smallest. Else rank 0 asks for the difference, and breaks. */
+static bool collective_agrees(struct comm *comm)
 {
     const struct comm_reduced *max = &comm->max;
-    return max->fingerprint == ~max->not_fingerprint && max->homes == ~max->not_homes;
-}
-
-/* Under the lock. */
-static void reduced_settle(struct comm *comm)
-{
-    if (reduced_are_same(comm))
+    const bool same = max->fingerprint == ~max->not_fingerprint && max->homes == ~max->not_homes;
+    comm->words[0].failed = max->failed;
+    if (same)
         comm_calls_agreed(comm);
     else if (!comm->rank)
         comm_difference_found(comm, atomic_load_explicit(&comm->calls.made, memory_order_relaxed),
                               "ranks forked different tasks, made different objects or other "
                               "calls, or have different homes");
+    return same;
 }
 
-int comm_agree(struct comm *comm, struct comm_word *own, void (*between)(void *context),
-               void *context)
+void comm_enter(struct comm *comm, enum comm_collective kind, const struct comm_word *own)
 {
-    const uint64_t homes = comm->setup.table->homes;
-    if (!collective_lock(comm, between, context))
-        return comm_error(comm);
+    if (comm_is_broken(comm)) /* MPI may still read these */
+        return;
+    comm->next = kind;
+    comm->enters = true;
+    comm->words[comm->n_ranks] = *own;
+    const uint64_t homes = kind == COMM_AGREES ? comm->setup.table->homes : 0;
     comm->own = (struct comm_reduced){.fingerprint = own->fingerprint,
                                       .not_fingerprint = ~own->fingerprint,
                                       .homes = homes,
                                       .not_homes = ~homes,
                                       .failed = own->failed != 0};
-    int code = collective_run(comm, COMM_AGREES, reduced_settle, between, context);
-    if (code)
-        return code;
-    if (!reduced_are_same(comm)) { /* rank 0 asks, and breaks */
-        while (!comm_is_broken(comm))
-            between(context);
-        return comm_error(comm);
-    }
-    own->failed = comm->max.failed;
-    return DUITE_OK;
+}
+
+/* Under the lock. */
+static bool collective_test(struct comm *comm)
+{
+    int done = 0;
+    if (comm_is_broken(comm))
+        return true;
+    if (comm->enters && !collective_enter(comm, comm->next))
+        return true;
+    comm->enters = false;
+    if (!comm_mpi_ok(comm, MPI_Test(&comm->request, &done, MPI_STATUS_IGNORE), "MPI_Test"))
+        return true;
+    return done && (comm->kind != COMM_AGREES || collective_agrees(comm));
+}
+
+bool comm_is_entered(void *context)
+{
+    struct comm *comm = context;
+    if (!comm_try_lock(comm))
+        return comm_is_broken(comm);
+    const bool done = collective_test(comm);
+    comm_let_go(comm);
+    return done && !comm_left_to_us(comm);
+}
+
+const struct comm_word *comm_words(const struct comm *comm)
+{
+    return comm->words;
 }
 
 static bool collective_wait(struct comm *comm)

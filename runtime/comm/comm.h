@@ -70,8 +70,8 @@ void comm_set_report(struct comm *comm, const struct comm_report *report);
 void comm_open(struct comm *comm, bool requests);
 
 /* Frees everything; no other thread and no task is left. Collective: all ranks have agreed
- * (comm_agree) that nothing is on its way; or communication is broken, and this waits until that is
- * so. False if MPI may still use its communicator, which then must not be freed. */
+ * (COMM_AGREES) that nothing is on its way; or communication is broken, and this waits until that
+ * is so. False if MPI may still use its communicator, which then must not be freed. */
 bool comm_stop(struct comm *comm);
 
 /* After COMM_NEEDS_TAGS: settling waits until the channels that the program dropped on this rank
@@ -166,22 +166,25 @@ struct comm_word {
     };
 };
 
-/* One small reduction, which compares own->fingerprint (the forks) and the homes of all ranks.
- * own->failed becomes 1 if a task failed on any rank, else 0. Calls between(context) while it
- * waits, so that others get on; it must poll. DUITE_E_DIFFERENT if ranks differ: then
- * communication is broken, and the message names the first difference. Collective, main thread. */
-int comm_agree(struct comm *comm, struct comm_word *own, void (*between)(void *context),
-               void *context);
+/* The kinds of collective calls. */
+enum comm_collective {
+    /* Compares own->fingerprint (the forks) and the homes of all ranks; words[0].failed becomes 1
+     * if a task failed on any rank, else 0. One small reduction. If ranks differ communication
+     * breaks, with DUITE_E_DIFFERENT and a message that names the first difference. */
+    COMM_AGREES,
+    /* Gathers the words of all ranks. All ranks agreed on this call before, as on the next. */
+    COMM_GATHERS,
+    /* words[0] becomes the word whose failed task is first in fork order. Some rank has one. One
+     * reduction. */
+    COMM_FIRSTS
+};
 
-/* Gathers words; *all, one a rank, is the comm's and good until the next call. All ranks agreed on
- * this call before (comm_agree). As comm_agree. */
-int comm_gather(struct comm *comm, const struct comm_word *own, struct comm_word **all,
-                void (*between)(void *context), void *context);
-
-/* *own becomes, on all ranks alike, the word whose failed task is first in fork order. Some rank
- * has one: comm_agree said so. As comm_gather, by one reduction. */
-int comm_first(struct comm *comm, struct comm_word *own, void (*between)(void *context),
-               void *context);
+/* A collective call: enters it, then asks again and again, and works meanwhile. comm_is_entered:
+ * true once the call is over, or communication broke. The words are the comm's, and good until the
+ * next call. Main thread. */
+void comm_enter(struct comm *comm, enum comm_collective kind, const struct comm_word *own);
+bool comm_is_entered(void *comm);
+const struct comm_word *comm_words(const struct comm *comm);
 
 /* ---- When it breaks ----
  *

@@ -228,9 +228,6 @@ struct comm_reduced {
 };
 enum { COMM_REDUCED = sizeof(struct comm_reduced) / sizeof(uint64_t) };
 
-/* The kinds of collective calls. */
-enum comm_collective { COMM_AGREES, COMM_GATHERS, COMM_FIRSTS };
-
 /* ---- The comm ---- */
 
 struct comm {
@@ -254,13 +251,15 @@ struct comm {
     struct comm_heartbeat heartbeat;
     struct comm_calls calls;
     struct comm_difference difference;
-    const struct comm_report *report;       /* NULL: nobody */
-    struct worker *worker;                  /* under the lock: the one that passes */
-    bool open, may_request;                 /* comm_open was called; with requests */
-    bool silent;                            /* the owner is not told that it broke */
-    double latency, per_byte;               /* seconds: of the slowest link measured */
-    uint64_t entered;                       /* collective calls */
-    enum comm_collective kind;              /* of the last of them */
+    const struct comm_report *report; /* NULL: nobody */
+    struct worker *worker;            /* under the lock: the one that passes */
+    bool open, may_request;           /* comm_open was called; with requests */
+    bool silent;                      /* the owner is not told that it broke */
+    double latency, per_byte;         /* seconds: of the slowest link measured */
+    uint64_t entered;                 /* collective calls */
+    enum comm_collective kind;        /* of the last of them */
+    enum comm_collective next;        /* the one to enter, if `enters`, once the lock can be had */
+    bool enters;
     struct comm_reduced own, max;           /* of the last agreement */
     MPI_Request request;                    /* of the last one; MPI_REQUEST_NULL once it is over */
     struct comm_word *words;                /* one a rank, and this rank's own */

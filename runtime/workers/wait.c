@@ -104,16 +104,6 @@ void work_throttle(struct work_pool *pool, uint64_t max)
 
 /* ---- Calls that do not wait ---- */
 
-void work_once(struct work_pool *pool)
-{
-    work_look(&pool->queues.worker[0], &(struct work_wish){.unheard = true});
-}
-
-void work_idle_ends(struct work_pool *pool)
-{
-    work_busy_again(&pool->queues.worker[0]);
-}
-
 void work_tick(struct work_pool *pool)
 {
     struct worker *worker = &pool->queues.worker[0];

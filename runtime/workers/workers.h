@@ -82,12 +82,6 @@ bool work_stands_still(struct work_pool *pool, struct work_stillness *still);
 int work_inside(struct worker *worker, const struct task_scope *scope, bool (*done)(void *context),
                 void *context);
 
-/* One look around by the main thread: a task or a poll; idles a moment if there is nothing. */
-void work_once(struct work_pool *pool);
-
-/* The main thread has done with work_once: its idle time ends. */
-void work_idle_ends(struct work_pool *pool);
-
 /* Sends what was posted and, now and then, polls: the main thread calls it as it forks. */
 void work_tick(struct work_pool *pool);
 

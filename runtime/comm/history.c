@@ -4,25 +4,8 @@
 
 #include <string.h>
 
-static const char *const CALLED_NAMES[COMM_N_CALLED] = {
-    [COMM_CALLED_OTHER] = "a function of duite",
-    [COMM_CALLED_NEW] = "duite_new",
-    [COMM_CALLED_NEW_SIZED] = "duite_new_sized",
-    [COMM_CALLED_HINT] = "duite_hint",
-    [COMM_CALLED_COLOCATE] = "duite_colocate",
-    [COMM_CALLED_SET] = "duite_set",
-    [COMM_CALLED_FREE] = "duite_free",
-    [COMM_CALLED_GRAPH_BIND] = "duite_graph_bind",
-    [COMM_CALLED_GRAPH_FREE] = "duite_graph_free",
-    [COMM_CALLED_REPLAY] = "duite_replay",
-    [COMM_CALLED_REPLAY_WHILE] = "duite_replay_while",
-    [COMM_CALLED_GET] = "duite_get",
-    [COMM_CALLED_GET_AT] = "duite_get_at",
-    [COMM_CALLED_GET_COUNT] = "duite_get_count",
-    [COMM_CALLED_WAIT] = "duite_wait",
-    [COMM_CALLED_STOP] = "duite_stop",
-    [COMM_CALLED_COUNT_ALL] = "duite_count_all",
-};
+#define FUNCTION_NAME(value, name) name,
+static const char *const CALLED_NAMES[COMM_N_CALLED] = {COMM_FUNCTIONS(FUNCTION_NAME)};
 
 enum comm_function comm_function_find(const char *name)
 {

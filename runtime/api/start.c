@@ -99,7 +99,8 @@ static int instance_start_graph(duite *rt, const duite_options *options)
                                                .table = &rt->graph.table,
                                                .kernels = rt->graph.kernels,
                                                .n_kernels = rt->graph.n_kernels,
-                                               .monitor = &rt->monitor});
+                                               .monitor = &rt->monitor,
+                                               .report = options->trace ? &work_report : NULL});
     return code;
 }
 

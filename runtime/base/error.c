@@ -44,48 +44,31 @@ const char *duite_message(void)
     return message;
 }
 
+static const char *const TEXTS[] = {
+    [DUITE_OK] = "success",
+    [-DUITE_E_ARGUMENT] = "bad argument",
+    [-DUITE_E_MEMORY] = "out of memory",
+    [-DUITE_E_OBJECT] = "no such object",
+    [-DUITE_E_KERNEL] = "bad kernel",
+    [-DUITE_E_ACCESS] = "accesses do not fit the kernel",
+    [-DUITE_E_MPI] = "MPI failed",
+    [-DUITE_E_DIFFERENT] = "ranks run different programs",
+    [-DUITE_E_STATE] = "call not allowed here",
+    [-DUITE_E_NOT_FREED] = "objects or graphs were not freed",
+    [-DUITE_E_CHECK] = "a body does not keep to what its kernel declares",
+    [-DUITE_E_SYSTEM] = "the operating system refused",
+    [-DUITE_E_RIGHT] = "a right the task does not hold",
+    [-DUITE_E_LAW] = "law does not fit",
+    [-DUITE_E_SIZE] = "size out of bounds",
+    [-DUITE_E_LOST] = "a rank is lost",
+    [-DUITE_E_DEPTH] = "bodies that wait are nested too deeply for the stack",
+    [-DUITE_E_BINDING] = "an object does not fit the one it is bound to",
+};
+
 const char *duite_code_text(int code)
 {
     if (code > 0)
         return "error of the program";
-    switch (code) {
-    case DUITE_OK:
-        return "success";
-    case DUITE_E_ARGUMENT:
-        return "bad argument";
-    case DUITE_E_MEMORY:
-        return "out of memory";
-    case DUITE_E_OBJECT:
-        return "no such object";
-    case DUITE_E_KERNEL:
-        return "bad kernel";
-    case DUITE_E_ACCESS:
-        return "accesses do not fit the kernel";
-    case DUITE_E_MPI:
-        return "MPI failed";
-    case DUITE_E_DIFFERENT:
-        return "ranks run different programs";
-    case DUITE_E_STATE:
-        return "call not allowed here";
-    case DUITE_E_NOT_FREED:
-        return "objects or graphs were not freed";
-    case DUITE_E_CHECK:
-        return "a body does not keep to what its kernel declares";
-    case DUITE_E_SYSTEM:
-        return "the operating system refused";
-    case DUITE_E_RIGHT:
-        return "a right the task does not hold";
-    case DUITE_E_LAW:
-        return "law does not fit";
-    case DUITE_E_SIZE:
-        return "size out of bounds";
-    case DUITE_E_LOST:
-        return "a rank is lost";
-    case DUITE_E_DEPTH:
-        return "bodies that wait are nested too deeply for the stack";
-    case DUITE_E_BINDING:
-        return "an object does not fit the one it is bound to";
-    default:
-        return "unknown code";
-    }
+    const size_t i = -(size_t)code;
+    return i < sizeof TEXTS / sizeof *TEXTS && TEXTS[i] ? TEXTS[i] : "unknown code";
 }

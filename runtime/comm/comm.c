@@ -49,17 +49,6 @@ int comm_start(struct comm **out, MPI_Comm mpi, const struct comm_setup *setup)
     return comm_prepare(comm);
 }
 
-void comm_ring(struct comm *comm, double seconds, const char *host)
-{
-    if (comm)
-        comm_heartbeat_open(comm, seconds, host);
-}
-
-void comm_set_report(struct comm *comm, const struct comm_report *report)
-{
-    comm->report = report;
-}
-
 void comm_open(struct comm *comm, bool requests)
 {
     if (!comm)
@@ -173,7 +162,7 @@ static inline void comm_pass_locked(struct comm *comm, struct comm_found *found,
 
 static inline bool comm_pass(struct comm *comm, struct worker *worker, bool looks)
 {
-    const bool outer = passing, noted = comm->report && comm->report->begins(worker);
+    const bool outer = passing, noted = comm->setup.report && comm->setup.report->begins(worker);
     bool any = false, more;
     passing = true;
     do {
@@ -192,7 +181,7 @@ static inline bool comm_pass(struct comm *comm, struct worker *worker, bool look
     } while (more || comm_left_to_us(comm));
     passing = outer;
     if (noted)
-        comm->report->ends(worker, noted);
+        comm->setup.report->ends(worker, noted);
     return any;
 }
 

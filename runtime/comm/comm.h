@@ -34,6 +34,15 @@ struct comm_owner {
     void (*through)(void *context, struct worker *worker, struct comm_channel *channel);
 };
 
+/* A trace. `message` is called for each message that is sent or received, with its bytes; `begins`
+ * and `ends` around the work on messages, in which tasks may run that a message made ready. `ends`
+ * gets what `begins` returned. */
+struct comm_report {
+    void (*message)(struct worker *worker, bool sends, int peer, size_t bytes);
+    bool (*begins)(struct worker *worker);
+    void (*ends)(struct worker *worker, bool begun);
+};
+
 /* What a comm knows of its program. The ranks compare history and homes; a sentence about a
  * difference names kernels. */
 struct comm_setup {
@@ -43,7 +52,8 @@ struct comm_setup {
     const struct data_table *table;
     const duite_kernel *const *kernels;
     uint32_t n_kernels;
-    struct base_monitor *monitor; /* gives heartbeats */
+    struct base_monitor *monitor;     /* gives heartbeats */
+    const struct comm_report *report; /* NULL: there is no trace */
 };
 
 /* Starts on mpi, which stays the caller's and is for these messages only. Local. Errors:
@@ -53,16 +63,6 @@ int comm_start(struct comm **comm, MPI_Comm mpi, const struct comm_setup *setup)
 /* Before comm_open, on all ranks alike. A rank that sends no heartbeat for so many seconds is lost
  * (0: never). `host`: of the rank before this one in the ring. NULL is fine. */
 void comm_ring(struct comm *comm, double seconds, const char *host);
-
-/* Before comm_open: a trace. `message` is called for each message that is sent or received, with
- * its bytes; `begins` and `ends` around the work on messages, in which tasks may run that a message
- * made ready. `ends` gets what `begins` returned. */
-struct comm_report {
-    void (*message)(struct worker *worker, bool sends, int peer, size_t bytes);
-    bool (*begins)(struct worker *worker);
-    void (*ends)(struct worker *worker, bool begun);
-};
-void comm_set_report(struct comm *comm, const struct comm_report *report);
 
 /* Messages are sent and received from now on. `requests`, the same on all ranks: ranks may request
  * tasks of others. Until then the lock keeps workers out of MPI, so that the main thread may call
@@ -127,8 +127,9 @@ double comm_transfer(const struct comm *comm, size_t bytes);
 
 /* ---- Idle ranks ---- */
 
-/* Requests tasks of a rank, for so many idle workers; the request stands for so many seconds.
- * False: not now. */
+/* Requests tasks of a rank, for so many idle workers. The request stands there for so many seconds,
+ * or until a task is granted or the next one comes. No rank waits for a grant, and requests do not
+ * count as movement of the program. False: not now. */
 bool comm_request(struct comm *comm, struct worker *worker, int rank, unsigned idle,
                   double seconds);
 
@@ -136,7 +137,7 @@ bool comm_request(struct comm *comm, struct worker *worker, int rank, unsigned i
 struct comm_requester {
     int rank;
     unsigned idle;
-    double until;
+    double until; /* 0: none */
 };
 
 /* True if there may be a request; takes one (false: none now); puts back one that got no grant. */

@@ -183,12 +183,6 @@ static void abort_hear(struct comm *comm, struct data_packet *packet)
     comm_break(comm, abort->code, message);
 }
 
-static void loss_hear(struct comm *comm, struct data_packet *packet)
-{
-    (void)packet; /* it follows an abort message, whose reason stands */
-    atomic_store(&comm->lost, true);
-}
-
 /* ---- Requests for tasks ---- */
 
 bool comm_request(struct comm *comm, struct worker *worker, int rank, unsigned idle, double seconds)
@@ -217,8 +211,10 @@ bool comm_request(struct comm *comm, struct worker *worker, int rank, unsigned i
 static void request_hear(struct comm *comm, struct data_packet *packet)
 {
     struct comm_control *control = &comm->control;
-    control->standing[packet->key.slot] = (struct comm_standing){
-        .until = base_seconds() + 1e-9 * (double)packet->key.number, .idle = packet->pieces};
+    control->standing[packet->key.slot] =
+        (struct comm_requester){.rank = (int)packet->key.slot,
+                                .idle = packet->pieces,
+                                .until = base_seconds() + 1e-9 * (double)packet->key.number};
     atomic_store_explicit(&control->standing_any, 1, memory_order_relaxed);
 }
 
@@ -235,11 +231,11 @@ bool comm_take_request(struct comm *comm, struct comm_requester *requester)
     if (!comm_try_lock(comm))
         return false;
     for (int i = 0; i < comm->n_ranks && !found; i++) {
-        int rank = control->turn = (control->turn + 1) % comm->n_ranks;
-        struct comm_standing *standing = &control->standing[rank];
+        control->turn = (control->turn + 1) % comm->n_ranks;
+        struct comm_requester *standing = &control->standing[control->turn];
         found = standing->until > now;
         if (found)
-            *requester = (struct comm_requester){rank, standing->idle, standing->until};
+            *requester = *standing;
         standing->until = 0;
     }
     if (!found)
@@ -250,11 +246,11 @@ bool comm_take_request(struct comm *comm, struct comm_requester *requester)
 
 void comm_return_request(struct comm *comm, const struct comm_requester *requester)
 {
-    struct comm_standing *standing = &comm->control.standing[requester->rank];
+    struct comm_requester *standing = &comm->control.standing[requester->rank];
     if (!comm_try_lock(comm))
         return; /* that rank will request again */
     if (standing->until < requester->until)
-        *standing = (struct comm_standing){requester->until, requester->idle};
+        *standing = *requester;
     atomic_store_explicit(&comm->control.standing_any, 1, memory_order_relaxed);
     comm_let_go(comm);
 }
@@ -280,12 +276,6 @@ void comm_control_end(struct comm *comm)
     comm_let_go(comm);
 }
 
-static void last_hear(struct comm *comm, struct data_packet *packet)
-{
-    (void)packet;
-    comm->control.last_heard++;
-}
-
 bool comm_control_over(struct comm *comm)
 {
     const struct comm_control *control = &comm->control;
@@ -303,33 +293,32 @@ bool comm_control_over(struct comm *comm)
 
 /* ---- All kinds ---- */
 
-static void check_hear(struct comm *comm, struct data_packet *packet)
-{
-    comm_check_hear(comm, (int)packet->key.slot, data_payload(packet));
-}
-
-static const struct control_kind {
-    uint32_t kind;
-    void (*hear)(struct comm *comm, struct data_packet *packet);
-} CONTROL_KINDS[] = {
-    {COMM_ABORT, abort_hear},
-    {COMM_LOSS, loss_hear},
-    {COMM_CHECK, check_hear},
-    {COMM_DIFFERS, comm_difference_hear},
-    {COMM_INQUIRY, comm_difference_hear},
-    {COMM_ANSWER, comm_difference_hear},
-    {COMM_REQUEST, request_hear},
-    {COMM_LAST, last_hear},
-};
-
 bool comm_control_hear(struct comm *comm, struct data_packet *packet)
 {
-    for (size_t i = 0; i < sizeof CONTROL_KINDS / sizeof *CONTROL_KINDS; i++)
-        if (packet->kind == CONTROL_KINDS[i].kind) {
-            CONTROL_KINDS[i].hear(comm, packet);
-            return true;
-        }
-    return false;
+    switch (packet->kind) {
+    case COMM_ABORT:
+        abort_hear(comm, packet);
+        return true;
+    case COMM_LOSS: /* it follows an abort message, whose reason stands */
+        atomic_store(&comm->lost, true);
+        return true;
+    case COMM_CHECK:
+        comm_check_hear(comm, (int)packet->key.slot, data_payload(packet));
+        return true;
+    case COMM_DIFFERS:
+    case COMM_INQUIRY:
+    case COMM_ANSWER:
+        comm_difference_hear(comm, packet);
+        return true;
+    case COMM_REQUEST:
+        request_hear(comm, packet);
+        return true;
+    case COMM_LAST:
+        comm->control.last_heard++;
+        return true;
+    default:
+        return false;
+    }
 }
 
 void comm_control_pass(struct comm *comm)

@@ -32,14 +32,6 @@ struct comm_abort {
     char message[1008];
 };
 
-/* A request for tasks stands at its receiver until a task is granted or its time is over; a newer
- * one of the same rank replaces it. No rank waits for a grant, and requests do not count as
- * movement of the program. */
-struct comm_standing {
-    double until; /* 0: none */
-    unsigned idle;
-};
-
 struct comm_control {
     struct data_packet *abort, *loss, *last;
     struct data_packet *spare; /* for a control message that comes when there is no memory */
@@ -48,10 +40,10 @@ struct comm_control {
     uint64_t entered;          /* the most collective calls that an abort message told of */
     int32_t kind;              /* of the last of these */
     int last_heard;
-    struct comm_standing *standing; /* by rank */
-    int turn;                       /* the rank whose request was looked at last */
-    _Atomic int standing_any;       /* there may be some; any thread */
-    _Atomic uint64_t requested;     /* requests sent; any thread */
+    struct comm_requester *standing; /* by rank; a newer request replaces an older one */
+    int turn;                        /* the rank whose request was looked at last */
+    _Atomic int standing_any;        /* there may be some; any thread */
+    _Atomic uint64_t requested;      /* requests sent; any thread */
 };
 
 /* Takes memory ahead, so that abort messages and last messages need none later. False without

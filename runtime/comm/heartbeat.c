@@ -118,8 +118,10 @@ int comm_heartbeat_start(struct comm *comm, struct base_monitor *monitor)
     return base_monitor_add(monitor, &heartbeat->look);
 }
 
-void comm_heartbeat_open(struct comm *comm, double seconds, const char *host)
+void comm_ring(struct comm *comm, double seconds, const char *host)
 {
+    if (!comm)
+        return;
     struct comm_heartbeat *heartbeat = &comm->heartbeat;
     snprintf(heartbeat->host, sizeof heartbeat->host, "%s", host);
     if (seconds <= 0) {

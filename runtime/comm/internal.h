@@ -202,16 +202,12 @@ struct comm_heartbeat {
     MPI_Request sent, heard;
 };
 
-/* Registers with the monitor, which does nothing before comm_heartbeat_open. comm_heartbeat_stop is
+/* Registers with the monitor, which does nothing before comm_ring. comm_heartbeat_stop is
  * due all the same. Errors: DUITE_E_SYSTEM, memory. */
 int comm_heartbeat_start(struct comm *comm, struct base_monitor *monitor);
 
 /* Under the lock of the comm: makes the look if one is due. */
 void comm_heartbeat_pass(struct comm *comm);
-
-/* Under the lock of the comm: heartbeats begin, if `seconds`, the same on all ranks, is > 0.
- * `host`: of the rank before this one. */
-void comm_heartbeat_open(struct comm *comm, double seconds, const char *host);
 
 /* Ends the monitor's looks; no other thread but the monitor is left. All ranks are at their end.
  * Unless communication is lost, takes leave of both neighbours, so that no heartbeat is on its way
@@ -251,14 +247,13 @@ struct comm {
     struct comm_heartbeat heartbeat;
     struct comm_calls calls;
     struct comm_difference difference;
-    const struct comm_report *report; /* NULL: nobody */
-    struct worker *worker;            /* under the lock: the one that passes */
-    bool open, may_request;           /* comm_open was called; with requests */
-    bool silent;                      /* the owner is not told that it broke */
-    double latency, per_byte;         /* seconds: of the slowest link measured */
-    uint64_t entered;                 /* collective calls */
-    enum comm_collective kind;        /* of the last of them */
-    enum comm_collective next;        /* the one to enter, if `enters`, once the lock can be had */
+    struct worker *worker;     /* under the lock: the one that passes */
+    bool open, may_request;    /* comm_open was called; with requests */
+    bool silent;               /* the owner is not told that it broke */
+    double latency, per_byte;  /* seconds: of the slowest link measured */
+    uint64_t entered;          /* collective calls */
+    enum comm_collective kind; /* of the last of them */
+    enum comm_collective next; /* the one to enter, if `enters`, once the lock can be had */
     bool enters;
     struct comm_reduced own, max;           /* of the last agreement */
     MPI_Request request;                    /* of the last one; MPI_REQUEST_NULL once it is over */
@@ -284,8 +279,8 @@ int comm_mpi_class(int mpi);
  * sent, and after it came. Under the lock. */
 static inline void comm_note(const struct comm *comm, bool sends, int peer, size_t bytes)
 {
-    if (comm->report)
-        comm->report->message(comm->worker, sends, peer, bytes);
+    if (comm->setup.report)
+        comm->setup.report->message(comm->worker, sends, peer, bytes);
 }
 
 static inline bool comm_try_lock(struct comm *comm)

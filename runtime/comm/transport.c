@@ -23,22 +23,18 @@ static int pieces_tag(const struct data_packet *packet)
     return COMM_PIECES + (int)((packet->key.slot + packet->key.number) % COMM_PIECE_TAGS);
 }
 
-static struct data_packet *letter_packet(const struct comm *comm, struct comm_letter *letter)
-{
-    return comm->setup.owner->packet(letter);
-}
-
 /* True if a large message must wait for another one. */
 static bool message_stalls(struct comm *comm, struct comm_letter *letter)
 {
-    const struct data_packet *packet = comm_is_broken(comm) ? NULL : letter_packet(comm, letter);
+    const struct data_packet *packet =
+        comm_is_broken(comm) ? NULL : comm->setup.owner->packet(letter);
     if (!packet || !packet_is_large(packet))
         return false;
     for (int i = 0; i < comm->requests.n; i++) {
         if (comm->requests.of[i].over != comm_letter_sent)
             continue;
         struct comm_letter *other = comm->requests.of[i].what;
-        const struct data_packet *sent = letter_packet(comm, other);
+        const struct data_packet *sent = comm->setup.owner->packet(other);
         if (other->to == letter->to && packet_is_large(sent) &&
             pieces_tag(sent) == pieces_tag(packet))
             return true;
@@ -64,7 +60,7 @@ static bool message_send(struct comm *comm, struct comm_letter *letter)
 {
     if (comm_is_broken(comm))
         return false;
-    struct data_packet *packet = letter_packet(comm, letter);
+    struct data_packet *packet = comm->setup.owner->packet(letter);
     if (!packet || !comm_requests_room(comm, 1)) {
         comm_break_memory(comm, "a message");
         return false;

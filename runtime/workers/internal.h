@@ -204,10 +204,6 @@ void work_note_task(struct worker *worker, const struct task *task, const struct
 bool work_note_relieve(struct worker *worker);
 /* The worker idled for so many ticks since idle_since. */
 void work_note_idle(struct worker *worker, uint64_t idle, uint64_t exposed);
-/* Messages, and the work of a busy worker on them: looking for them, sending, taking them. A begin
- * within another one does not count. Times below a microsecond are not noted. */
-extern const struct comm_report work_note_messages;
-
 /* ---- balance.c: the workers' part of a balancer. They measure bodies, request tasks of other
  * ranks when they have none, and grant tasks that are requested. A pool has none (NULL) without a
  * balancer, with one that moves nothing, or on one rank ---- */

@@ -127,8 +127,6 @@ int work_start(struct work_pool **out, const struct work_setup *setup)
     setup->graph->comm = setup->comm;
     setup->graph->check = setup->check ? pool_check_body : NULL;
     setup->graph->offloaded_over = offload_over;
-    if (setup->trace && setup->comm)
-        comm_set_report(setup->comm, &work_note_messages);
     int code = fine ? pool_start_threads(pool) : base_no_memory("the workers");
     return code ? code : watched;
 }
@@ -264,7 +262,7 @@ static void note_message(struct worker *worker, bool sends, int peer, size_t byt
         trace_mark(worker->ring, sends ? TRACE_SEND : TRACE_RECEIVE, (uint32_t)peer, bytes);
 }
 
-const struct comm_report work_note_messages = {
+const struct comm_report work_report = {
     .message = note_message, .begins = note_messages_begin, .ends = note_messages_end};
 
 void work_note(struct work_pool *pool, const struct trace_event *event)

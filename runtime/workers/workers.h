@@ -38,8 +38,11 @@ struct work_setup {
                          binding */
 };
 
-/* For comm_start, whose context is the task graph. */
+/* For comm_start, whose context is the task graph; the second with a trace. It notes messages, and
+ * the work of a busy worker on them: looking for them, sending, taking them. A begin within another
+ * one does not count. Times below a microsecond are not noted. */
 extern const struct comm_owner work_messages;
+extern const struct comm_report work_report;
 
 /* Errors: memory, DUITE_E_SYSTEM. The calling thread becomes worker 0. */
 int work_start(struct work_pool **pool, const struct work_setup *setup);

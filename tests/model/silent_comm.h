@@ -59,11 +59,6 @@ void comm_count(struct comm *comm, uint64_t *messages, uint64_t *bytes)
     *messages = *bytes = comm != NULL;
 }
 
-void comm_set_report(struct comm *comm, const struct comm_report *report)
-{
-    (void)comm, (void)report;
-}
-
 uint64_t comm_awaited_ticks(const struct comm *comm)
 {
     (void)comm;

@@ -1,7 +1,7 @@
 /* Standard error may be a pipe that nobody reads: a write to it would block, and with it the
  * monitor and its heartbeats. So a pipe or terminal is opened once more, non-blocking; the flag
  * holds for this opening alone, not for other programs that write there. */
-#include "runtime/base/report.h"
+#include "runtime/base/error.h"
 
 #include "runtime/base/clock.h"
 

@@ -10,7 +10,6 @@
 #include "runtime/base/clock.h"
 #include "runtime/base/memory.h"
 #include "runtime/comm/internal.h"
-#include "runtime/comm/verdict.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -3,7 +3,7 @@
  * is the worker's alone until it is finished. The counters of tasks are exact after each task, the
  * time in bodies after each batch. */
 #include "runtime/base/clock.h"
-#include "runtime/base/report.h"
+#include "runtime/base/error.h"
 #include "runtime/task/call.h"
 #include "runtime/workers/internal.h"
 

@@ -10,7 +10,6 @@
 #include "runtime/base/clock.h"
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
-#include "runtime/base/report.h"
 #include "runtime/offload/offload.h"
 #include "runtime/workers/internal.h"
 

@@ -72,7 +72,7 @@ static bool collective_agrees(struct comm *comm)
     if (same)
         comm_calls_agreed(comm);
     else if (!comm->rank)
-        comm_difference_found(comm, atomic_load_explicit(&comm->calls.made, memory_order_relaxed),
+        comm_difference_found(comm, atomic_load(&comm->calls.made),
                               "ranks forked different tasks, made different objects or other "
                               "calls, or have different homes");
     return same;

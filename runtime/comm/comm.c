@@ -211,18 +211,16 @@ void comm_part(struct comm *comm, struct worker *worker)
 
 void comm_count(struct comm *comm, uint64_t *messages, uint64_t *bytes)
 {
-    uint64_t requested = atomic_load_explicit(&comm->control.requested, memory_order_relaxed);
-    *messages = atomic_load_explicit(&comm->messages, memory_order_relaxed) + requested;
-    *bytes = atomic_load_explicit(&comm->bytes, memory_order_relaxed) +
-             requested * sizeof(struct data_packet);
+    uint64_t requested = atomic_load(&comm->control.requested);
+    *messages = atomic_load(&comm->messages) + requested;
+    *bytes = atomic_load(&comm->bytes) + requested * sizeof(struct data_packet);
 }
 
 /* ---- Looks from outside: nothing is sent, received or changed ---- */
 
 uint64_t comm_movement(struct comm *comm)
 {
-    return atomic_load_explicit(&comm->messages, memory_order_relaxed) +
-           atomic_load_explicit(&comm->came, memory_order_relaxed);
+    return atomic_load(&comm->messages) + atomic_load(&comm->came);
 }
 
 /* A poll holds the lock for microseconds, or as long as its thread has no core. A thread that

@@ -123,17 +123,17 @@ bool comm_mpi_cut(struct comm *comm, int mpi, const char *call)
 
 bool comm_is_broken(struct comm *comm)
 {
-    return atomic_load_explicit(&comm->broken, memory_order_acquire) != 0;
+    return atomic_load(&comm->broken) != 0;
 }
 
 bool comm_is_lost(struct comm *comm)
 {
-    return atomic_load_explicit(&comm->lost, memory_order_acquire);
+    return atomic_load(&comm->lost);
 }
 
 int comm_error(struct comm *comm)
 {
-    int code = atomic_load_explicit(&comm->broken, memory_order_acquire);
+    int code = atomic_load(&comm->broken);
     return code ? base_error(code, "%s", comm->reason.message) : DUITE_OK;
 }
 
@@ -215,12 +215,12 @@ static void request_hear(struct comm *comm, struct data_packet *packet)
         (struct comm_requester){.rank = (int)packet->key.slot,
                                 .idle = packet->pieces,
                                 .until = base_seconds() + 1e-9 * (double)packet->key.number};
-    atomic_store_explicit(&control->standing_any, 1, memory_order_relaxed);
+    atomic_store(&control->standing_any, 1);
 }
 
 bool comm_has_requests(struct comm *comm)
 {
-    return atomic_load_explicit(&comm->control.standing_any, memory_order_relaxed);
+    return atomic_load(&comm->control.standing_any);
 }
 
 bool comm_take_request(struct comm *comm, struct comm_requester *requester)
@@ -239,7 +239,7 @@ bool comm_take_request(struct comm *comm, struct comm_requester *requester)
         standing->until = 0;
     }
     if (!found)
-        atomic_store_explicit(&control->standing_any, 0, memory_order_relaxed);
+        atomic_store(&control->standing_any, 0);
     comm_let_go(comm);
     return found;
 }
@@ -251,7 +251,7 @@ void comm_return_request(struct comm *comm, const struct comm_requester *request
         return; /* that rank will request again */
     if (standing->until < requester->until)
         *standing = *requester;
-    atomic_store_explicit(&comm->control.standing_any, 1, memory_order_relaxed);
+    atomic_store(&comm->control.standing_any, 1);
     comm_let_go(comm);
 }
 

@@ -142,11 +142,6 @@ int duite_get_at(duite *rt, duite_object object, int rank, void *values)
     return get_and_recall(rt, object, rank, values, NULL, "duite_get_at");
 }
 
-static bool wait_is_drained(void *context)
-{
-    return work_is_drained(context);
-}
-
 /* No task's number: after all of those. */
 #define POLICY_FAILED UINT64_MAX
 
@@ -175,7 +170,7 @@ static int wait_for_own_tasks(duite *rt, const char *call)
         return code;
     if (rt->comm)
         comm_waits(rt->comm, true);
-    work_until(rt->pool, &(struct work_why){call, "all tasks of this rank", NULL}, wait_is_drained,
+    work_until(rt->pool, &(struct work_why){call, "all tasks of this rank", NULL}, work_is_drained,
                rt->pool);
     if (rt->comm)
         comm_waits(rt->comm, false);

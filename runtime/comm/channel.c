@@ -37,7 +37,8 @@ bool comm_channels_start(struct comm *comm)
     int *max = NULL, known = 0;
     if (MPI_Comm_get_attr(comm->mpi, MPI_TAG_UB, &max, &known))
         return false;
-    comm_tags_start(&comm->channels.tags, known ? *max : 32767); /* guaranteed by MPI */
+    comm->channels.tags.next = COMM_CHANNELS;
+    comm->channels.tags.last = known ? *max : 32767; /* guaranteed by MPI */
     return true;
 }
 
@@ -97,7 +98,7 @@ bool comm_channels_stop(struct comm *comm)
         sched_yield();
         groups_free(channels_sweep(comm));
     }
-    comm_tags_stop(&comm->channels.tags);
+    base_free(comm->channels.tags.range);
     return !comm->channels.closed;
 }
 
@@ -232,11 +233,6 @@ int comm_channels_settle(struct comm *comm)
         sched_yield();
     }
     return comm_error(comm);
-}
-
-void comm_channels_met(struct comm *comm)
-{
-    comm_tags_met(&comm->channels.tags);
 }
 
 /* ---- Messages ---- */

@@ -70,7 +70,7 @@ static bool collective_agrees(struct comm *comm)
     const bool same = max->fingerprint == ~max->not_fingerprint && max->homes == ~max->not_homes;
     comm->words[0].failed = max->failed;
     if (same)
-        comm_calls_agreed(comm);
+        atomic_store(&comm->calls.agreed, atomic_load(&comm->calls.made));
     else if (!comm->rank)
         comm_difference_found(comm, atomic_load(&comm->calls.made),
                               "ranks forked different tasks, made different objects or other "

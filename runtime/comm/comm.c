@@ -58,21 +58,13 @@ void comm_open(struct comm *comm, bool requests)
     comm_let_go(comm);
 }
 
-/* True once no message is on its way, at a good stop or after communication broke. */
-static bool comm_is_over(struct comm *comm)
-{
-    if (comm_is_broken(comm) ? comm_is_lost(comm) : !comm->open)
-        return true;
-    return comm_control_over(comm);
-}
-
 bool comm_stop(struct comm *comm)
 {
     if (!comm)
         return true;
     if (comm->open)
         comm_control_end(comm);
-    while (!comm_is_over(comm)) {
+    while (!comm_control_over(comm)) {
         comm_poll(comm, NULL);
         sched_yield();
     }
@@ -85,10 +77,14 @@ bool comm_stop(struct comm *comm)
     if (comm->line != MPI_DATATYPE_NULL)
         MPI_Type_free(&comm->line);
     comm_collective_stop(comm);
-    comm_requests_free(&comm->requests);
+    base_free(comm->requests.request);
+    base_free(comm->requests.of);
+    base_free(comm->requests.index);
+    base_free(comm->requests.status);
     comm_control_stop(&comm->control);
-    comm_calls_stop(&comm->calls);
-    comm_difference_stop(&comm->difference);
+    base_free(comm->calls.log);
+    base_free(comm->calls.seen);
+    base_free(comm->difference.inquiry);
     comm_arrivals_stop(&comm->arrivals);
     base_free(comm->words);
     base_free(comm);

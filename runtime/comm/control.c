@@ -280,6 +280,8 @@ bool comm_control_over(struct comm *comm)
 {
     const struct comm_control *control = &comm->control;
     int expected = 0;
+    if (comm_is_broken(comm) ? comm_is_lost(comm) : !comm->open)
+        return true;
     for (int from = 0; from < comm->n_ranks; from++)
         expected += last_is_for(comm, from);
     if (!comm_try_lock(comm))
@@ -303,7 +305,7 @@ bool comm_control_hear(struct comm *comm, struct data_packet *packet)
         atomic_store(&comm->lost, true);
         return true;
     case COMM_CHECK:
-        comm_check_hear(comm, (int)packet->key.slot, data_payload(packet));
+        comm_check_see(comm, (int)packet->key.slot, data_payload(packet));
         return true;
     case COMM_DIFFERS:
     case COMM_INQUIRY:

@@ -68,7 +68,8 @@ void comm_control_pass(struct comm *comm);
 void comm_control_end(struct comm *comm);
 
 /* True if no message is on its way to or from this rank, nor will be: all sent their last message
- * or, if communication broke, their abort message. Takes the lock. */
+ * or, if communication broke, their abort message; or nothing can be awaited, as a rank is lost.
+ * Takes the lock. */
 bool comm_control_over(struct comm *comm);
 
 /* ---- The divergence check (divergence.c) ---- */
@@ -111,7 +112,6 @@ struct comm_calls {
 
 /* False without memory. */
 bool comm_calls_start(struct comm_calls *calls);
-void comm_calls_stop(struct comm_calls *calls);
 
 /* True if two ranks are neighbours in the tree. */
 bool comm_check_joins(int a, int b);
@@ -119,11 +119,8 @@ bool comm_check_joins(int a, int b);
 /* Under the lock: compares this rank's new calls, and begins a check when one is due. */
 void comm_check_pass(struct comm *comm);
 
-/* Under the lock: a neighbour sent, or passed on, an entry. */
-void comm_check_hear(struct comm *comm, int from, const struct comm_called *theirs);
-
-/* Under the lock: all ranks agreed on all calls so far. */
-void comm_calls_agreed(struct comm *comm);
+/* Under the lock: takes an entry of this rank itself, or one that a neighbour sent or passed on. */
+void comm_check_see(struct comm *comm, int from, const struct comm_called *call);
 
 /* Under the lock: this rank's call of that number, or NULL: it is not in the log. */
 const struct comm_called *comm_calls_logged(struct comm_calls *calls, uint64_t number);
@@ -148,8 +145,6 @@ void comm_difference_hear(struct comm *comm, struct data_packet *packet);
 
 /* Under the lock: breaks if the time is over. */
 void comm_difference_pass(struct comm *comm);
-
-void comm_difference_stop(struct comm_difference *difference);
 
 /* ---- Rank 0's conclusion from the histories of all ranks (verdict.c) ---- */
 

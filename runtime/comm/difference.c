@@ -199,8 +199,3 @@ void comm_difference_pass(struct comm *comm)
     if (comm->difference.until > 0 && base_seconds() > comm->difference.until)
         difference_conclude(comm);
 }
-
-void comm_difference_stop(struct comm_difference *difference)
-{
-    base_free(difference->inquiry);
-}

@@ -19,12 +19,6 @@ bool comm_calls_start(struct comm_calls *calls)
     return calls->log && calls->seen;
 }
 
-void comm_calls_stop(struct comm_calls *calls)
-{
-    base_free(calls->log);
-    base_free(calls->seen);
-}
-
 /* ---- The log ---- */
 
 static struct comm_called *call_logged(struct comm_calls *calls, uint64_t number)
@@ -51,11 +45,6 @@ bool comm_call(struct comm *comm, const char *name, uint64_t fingerprint)
     snprintf(call->name, sizeof call->name, "%s", name);
     atomic_store(&calls->made, number);
     return number - atomic_load(&calls->agreed) == COMM_LOGGED_CALLS;
-}
-
-void comm_calls_agreed(struct comm *comm)
-{
-    atomic_store(&comm->calls.agreed, atomic_load(&comm->calls.made));
 }
 
 void comm_waits(struct comm *comm, bool waits)
@@ -115,12 +104,11 @@ static void call_compare(struct comm *comm, const struct comm_called *a,
     comm_difference_found(comm, a->number, message);
 }
 
-/* Takes an entry of this rank itself, or one that `from` sent. */
-static void check_see(struct comm *comm, int from, const struct comm_called *call)
+void comm_check_see(struct comm *comm, int from, const struct comm_called *call)
 {
     struct comm_calls *calls = &comm->calls;
     struct comm_called *seen = &calls->seen[call->number % SEEN_CALLS];
-    if (call->number <= atomic_load(&calls->agreed))
+    if (comm_is_broken(comm) || call->number <= atomic_load(&calls->agreed))
         return;
     if (seen->number == call->number) {
         call_compare(comm, seen, call);
@@ -132,12 +120,6 @@ static void check_see(struct comm *comm, int from, const struct comm_called *cal
     if (call->number <= calls->compared)
         call_compare(comm, call_logged(calls, call->number), call);
     check_pass_on(comm, from, call);
-}
-
-void comm_check_hear(struct comm *comm, int from, const struct comm_called *theirs)
-{
-    if (!comm_is_broken(comm))
-        check_see(comm, from, theirs);
 }
 
 /* Calls that this rank made since the last time. */
@@ -165,6 +147,6 @@ void comm_check_pass(struct comm *comm)
         calls->waited = number;
         calls->since = now;
     } else if (now - calls->since > PATIENCE_SECONDS) {
-        check_see(comm, comm->rank, call_logged(calls, number));
+        comm_check_see(comm, comm->rank, call_logged(calls, number));
     }
 }

@@ -64,8 +64,6 @@ struct comm_request comm_request_take(struct comm *comm, int i);
 /* Tests all, and ends those that are over. */
 void comm_requests_pass(struct comm *comm, struct comm_found *found);
 
-void comm_requests_free(struct comm_requests *requests);
-
 /* A message of more bytes than this is sent in pieces of so many. MPI may copy a whole message in
  * one call, seconds long if it is large, and the lock is held meanwhile; it is let go between two
  * pieces. A piece takes some 10 ms. Tests make pieces smaller, alike on all ranks. */
@@ -166,18 +164,12 @@ struct comm_tags {
     int next, last; /* last: the largest that MPI has */
 };
 
-void comm_tags_start(struct comm_tags *tags, int last);
-void comm_tags_stop(struct comm_tags *tags);
-
 /* n tags for a plan, the same on all ranks. COMM_NEEDS_TAGS: there are none before the ranks meet.
  * Errors: memory. */
 int comm_tags_take(struct comm_tags *tags, int n, int *first);
 
 /* The program drops the plan whose tags begin here. */
 void comm_tags_drop(struct comm_tags *tags, int first);
-
-/* All ranks met, and have closed the channels of the plans that the program dropped. */
-void comm_tags_met(struct comm_tags *tags);
 
 /* Plans that the program holds. */
 size_t comm_tags_held(const struct comm_tags *tags);

@@ -35,14 +35,6 @@ void comm_request_add(struct comm *comm, comm_over *over, void *what)
     comm->requests.of[comm->requests.n++] = (struct comm_request){.over = over, .what = what};
 }
 
-void comm_requests_free(struct comm_requests *requests)
-{
-    base_free(requests->request);
-    base_free(requests->of);
-    base_free(requests->index);
-    base_free(requests->status);
-}
-
 /* ---- Pieces ---- */
 
 static int piece_bytes(size_t left)

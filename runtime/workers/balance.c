@@ -305,14 +305,14 @@ void work_grant(struct worker *worker)
 /* ---- Requesting ---- */
 
 /* Unless the last request still stands. */
-static void request_send(struct worker *worker)
+void work_request(struct worker *worker, uint64_t idled)
 {
     struct work_pool *pool = worker->pool;
     struct work_balance *balance = pool->balance;
     uint64_t now = base_ticks();
     double seconds = 0;
-    if (!balance->balancer->victim || task_has_given_up(pool->setup.graph) ||
-        now < atomic_load(&balance->next))
+    if (idled < balance->first_request || !balance->balancer->victim ||
+        task_has_given_up(pool->setup.graph) || now < atomic_load(&balance->next))
         return;
     unsigned attempt = atomic_load(&balance->attempt);
     int giver = atomic_load(&balance->giver);
@@ -329,12 +329,6 @@ static void request_send(struct worker *worker)
         work_stir(worker);
 }
 
-void work_request(struct worker *worker, uint64_t idle)
-{
-    if (idle >= worker->pool->balance->first_request)
-        request_send(worker);
-}
-
 bool work_begins(struct worker *worker, const struct task *task)
 {
     const struct work_pool *pool = worker->pool;
@@ -344,6 +338,6 @@ bool work_begins(struct worker *worker, const struct task *task)
     size_t ready = queue_size(&worker->queue) + queue_size(&pool->queues.shared);
     bool last = offloaded <= STOCK * pool->setup.threads && ready < offloaded;
     if (last)
-        request_send(worker);
+        work_request(worker, UINT64_MAX);
     return last;
 }

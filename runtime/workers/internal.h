@@ -108,8 +108,10 @@ static inline void work_pause_core(void)
 struct work_wish {
     bool (*done)(void *context); /* NULL: nothing */
     void *context;
-    bool unheard; /* nobody wakes the worker for it: sleep for a pause at most */
+    bool unheard; /* nobody wakes the worker for it: sleep for a pause at most. Else it is true,
+                     too, once communication broke */
 };
+bool work_wish_is_true(const struct work_pool *pool, const struct work_wish *wish);
 
 /* A task that ran, and how. */
 struct work_ran {
@@ -222,8 +224,8 @@ void work_learn(struct worker *worker, const struct task *task, uint64_t ticks);
 /* Between tasks: grants tasks to the ranks that request some. */
 void work_grant(struct worker *worker);
 
-/* The poller has idled for so many ticks: requests tasks. */
-void work_request(struct worker *worker, uint64_t idle);
+/* The poller has idled for so many ticks: requests tasks if that is long. */
+void work_request(struct worker *worker, uint64_t idled);
 
 /* ---- standstill.c: the monitor looks, eight times in so many seconds, whether the main program
  * waits, or is in a function of a policy, and nothing of this rank moves. Then it reports on

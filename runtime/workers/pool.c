@@ -41,7 +41,7 @@ static void worker_start_scheduler(struct worker *worker)
     base_mark_end(worker->mark);
     base_mark_begin(worker->mark, BASE_SCHEDULER_LOCATE);
     if (scheduler->locate)
-        scheduler->locate(worker->state, work_near_of(&worker->pool->near, worker->index));
+        scheduler->locate(worker->state, &worker->pool->near.of[worker->index]);
     base_mark_end(worker->mark);
 }
 

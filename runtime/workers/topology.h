@@ -34,11 +34,6 @@ struct work_near {
 bool work_near_start(struct work_near *near, unsigned n, const int *cores);
 void work_near_stop(struct work_near *near);
 
-static inline const duite_near *work_near_of(const struct work_near *near, unsigned worker)
-{
-    return &near->of[worker];
-}
-
 /* True if another worker is nearer than `other`. */
 static inline bool work_near_is_far(const struct work_near *near, unsigned worker, unsigned other)
 {

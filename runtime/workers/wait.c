@@ -23,8 +23,9 @@ uint64_t work_unfinished(const struct work_pool *pool)
     return pool->setup.graph->tasks - queue_all_over(&pool->queues);
 }
 
-bool work_is_drained(struct work_pool *pool)
+bool work_is_drained(void *context)
 {
+    const struct work_pool *pool = context;
     /* A task in its own queue is not over: no need to read the others' counters. */
     return queue_is_empty(&pool->queues.worker[0].queue) && !work_unfinished(pool);
 }
@@ -42,10 +43,16 @@ void work_ran_out(struct worker *worker)
 
 /* ---- Waiting ---- */
 
+bool work_wish_is_true(const struct work_pool *pool, const struct work_wish *wish)
+{
+    struct comm *comm = wish->unheard ? NULL : pool->setup.comm;
+    return wish->done && (wish->done(wish->context) || (comm && comm_is_broken(comm)));
+}
+
 static void main_drain(struct work_pool *pool, const struct work_wish *wish)
 {
     atomic_store(&pool->queues.awaited, pool->setup.graph->tasks);
-    while (!wish->done(wish->context))
+    while (!work_wish_is_true(pool, wish))
         work_look(&pool->queues.worker[0], wish);
     atomic_store_explicit(&pool->queues.awaited, 0, memory_order_relaxed);
     work_busy_again(&pool->queues.worker[0]);
@@ -56,26 +63,13 @@ void work_drain(struct work_pool *pool, bool (*done)(void *), void *context)
     main_drain(pool, &(struct work_wish){.done = done, .context = context, .unheard = true});
 }
 
-struct main_until {
-    bool (*done)(void *context);
-    void *context;
-    struct comm *comm;
-};
-
-static bool main_is_done(void *context)
-{
-    const struct main_until *until = context;
-    return until->done(until->context) || (until->comm && comm_is_broken(until->comm));
-}
-
 void work_until(struct work_pool *pool, const struct work_why *why, bool (*done)(void *),
                 void *context)
 {
-    struct main_until until = {done, context, pool->setup.comm};
-    if (until.comm && comm_has_posts(until.comm))
+    if (pool->setup.comm && comm_has_posts(pool->setup.comm))
         work_poll(&pool->queues.worker[0]);
     work_waits(pool, why);
-    main_drain(pool, &(struct work_wish){.done = main_is_done, .context = &until});
+    main_drain(pool, &(struct work_wish){.done = done, .context = context});
     work_waits(pool, NULL);
 }
 

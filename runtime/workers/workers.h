@@ -91,8 +91,8 @@ void work_tick(struct work_pool *pool);
 /* Tasks of this rank that are not over. Main thread. */
 uint64_t work_unfinished(const struct work_pool *pool);
 
-/* True if there are none. Cheap: the main thread asks after each task. */
-bool work_is_drained(struct work_pool *pool);
+/* True if the pool has none. Cheap: the main thread asks after each task. */
+bool work_is_drained(void *pool);
 
 /* The name of the scheduler if it named victims without an end, which is an error; else NULL. */
 const char *work_endless(const struct work_pool *pool);

@@ -15,7 +15,6 @@ enum { CHECKED_TURN = 16 };
 
 struct channel_side {
     struct comm_channel *channel;
-    struct comm_group *group;
     char *buffer[2];
     MPI_Request request[2];
     uint64_t turn;
@@ -43,20 +42,15 @@ bool comm_channels_start(struct comm *comm)
 }
 
 /* Without the lock: freeing large buffers takes long. */
-static void group_free(struct comm_group *group)
-{
-    for (size_t i = 0; i < group->n; i++) {
-        base_free(group->side[i].buffer[0]);
-        base_free(group->side[i].buffer[1]);
-    }
-    base_free(group);
-}
-
 static void groups_free(struct comm_group *group)
 {
     while (group) {
         struct comm_group *next = group->next;
-        group_free(group);
+        for (size_t i = 0; i < group->n; i++) {
+            base_free(group->side[i].buffer[0]);
+            base_free(group->side[i].buffer[1]);
+        }
+        base_free(group);
         group = next;
     }
 }
@@ -89,6 +83,14 @@ static struct comm_group *channels_sweep(struct comm *comm)
         }
     }
     return quiet;
+}
+
+/* Lets go of the lock, and frees what MPI is done with. */
+static void channels_let_go(struct comm *comm)
+{
+    struct comm_group *quiet = comm_is_lost(comm) ? NULL : channels_sweep(comm);
+    comm_let_go(comm);
+    groups_free(quiet);
 }
 
 bool comm_channels_stop(struct comm *comm)
@@ -128,7 +130,6 @@ static struct comm_group *group_new(struct comm *comm, struct comm_channel_set *
     for (size_t i = 0; i < set->n; i++) {
         struct channel_side *side = &group->side[i];
         side->channel = &set->channel[i];
-        side->group = group;
         for (int k = 0; k < 2; k++) {
             side->request[k] = MPI_REQUEST_NULL;
             side->buffer[k] = base_alloc(side->channel->bytes);
@@ -138,14 +139,14 @@ static struct comm_group *group_new(struct comm *comm, struct comm_channel_set *
     }
     if (fine)
         return group;
-    group_free(group);
+    groups_free(group);
     return NULL;
 }
 
 /* A plan is freed: no message comes for the receives that were posted for another round. */
 static void group_close(struct comm_channel_set *set)
 {
-    struct comm_group *group = set->own, **link, *quiet = NULL;
+    struct comm_group *group = set->own, **link;
     struct comm *comm = group->comm;
     comm_hold(comm);
     for (link = &comm->channels.open; *link != group; link = &(*link)->next)
@@ -159,10 +160,7 @@ static void group_close(struct comm_channel_set *set)
     }
     group->next = comm->channels.closed;
     comm->channels.closed = group;
-    if (!comm_is_lost(comm))
-        quiet = channels_sweep(comm);
-    comm_let_go(comm);
-    groups_free(quiet);
+    channels_let_go(comm);
 }
 
 static void group_drop(struct comm_channel_set *set)
@@ -202,12 +200,10 @@ int comm_channels_open(struct comm *comm, struct comm_channel_set *set)
     if (!group)
         return base_no_memory("the messages of a recorded graph");
     comm_hold(comm);
-    struct comm_group *quiet = channels_sweep(comm);
     int code = group_open(comm, group, set);
-    comm_let_go(comm);
-    groups_free(quiet);
+    channels_let_go(comm);
     if (!set->close)
-        group_free(group);
+        groups_free(group);
     return code;
 }
 
@@ -226,10 +222,8 @@ int comm_channels_settle(struct comm *comm)
     bool lingers = true;
     while (lingers && !comm_is_broken(comm)) {
         comm_hold(comm);
-        struct comm_group *quiet = channels_sweep(comm);
         lingers = channels_linger(comm);
-        comm_let_go(comm);
-        groups_free(quiet);
+        channels_let_go(comm);
         sched_yield();
     }
     return comm_error(comm);
@@ -274,17 +268,16 @@ static void channel_send(struct comm *comm, struct channel_side *side, struct co
 {
     MPI_Request *request = &side->request[side->turn % 2];
     int free = 1;
-    if (!comm_is_broken(comm) && *request != MPI_REQUEST_NULL &&
-        !comm_mpi_ok(comm, MPI_Test(request, &free, MPI_STATUS_IGNORE), "MPI_Test"))
-        free = 1;
-    if (!free) {
-        channel_push(&comm->channels.stalled, side->channel);
-        return;
-    }
-    if (comm_is_broken(comm)) {
+    if (comm_is_broken(comm) ||
+        (*request != MPI_REQUEST_NULL &&
+         !comm_mpi_ok(comm, MPI_Test(request, &free, MPI_STATUS_IGNORE), "MPI_Test"))) {
         if (!side->written)
             comm->setup.owner->lose(side->channel);
         channel_push(&found->through, side->channel);
+        return;
+    }
+    if (!free) {
+        channel_push(&comm->channels.stalled, side->channel);
         return;
     }
     if (side_is_large(side) && !side->written) {

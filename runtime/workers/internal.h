@@ -137,6 +137,8 @@ struct task *work_find(struct worker *worker);
 /* True if a scheduler names victims without end in one round; the next duite_wait then returns an
  * error. */
 bool work_is_endless(struct work_pool *pool, unsigned attempt);
+/* Counts a task stolen from a victim. */
+void work_count_stolen(struct worker *worker, unsigned victim);
 /* Looks for work once; idles for a moment if there is none. */
 void work_look(struct worker *worker, const struct work_wish *wish);
 /* Sends and receives. Returns whether anything happened. */
@@ -194,6 +196,9 @@ static inline void work_busy_again(struct worker *worker)
 bool work_is_crowded(struct worker *worker, uint64_t now);
 
 /* ---- wait.c ---- */
+
+/* Sends what was posted and, now and then, receives and grants tasks. There are several ranks. */
+void work_serve(struct worker *worker, uint64_t now);
 
 /* The worker finds no task: wakes the main thread if it waits and enough tasks are over. */
 void work_ran_out(struct worker *worker);

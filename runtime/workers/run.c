@@ -109,14 +109,8 @@ static void any_finish(struct worker *worker, struct task *task)
  * to its file if its ring is full. Returns whether that took time beside the messages. */
 static bool any_between(struct worker *worker, uint64_t now)
 {
-    const struct work_pool *pool = worker->pool;
-    struct comm *comm = pool->setup.comm;
-    if (comm && (comm_has_posts(comm) || now - worker->polled > pool->poll_ticks)) {
-        worker->polled = now;
-        work_poll(worker);
-        if (pool->balance)
-            work_grant(worker);
-    }
+    if (worker->pool->setup.comm)
+        work_serve(worker, now);
     return worker->ring && work_note_relieve(worker);
 }
 

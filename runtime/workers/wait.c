@@ -98,19 +98,21 @@ void work_throttle(struct work_pool *pool, uint64_t max)
 
 /* ---- Calls that do not wait ---- */
 
-void work_tick(struct work_pool *pool)
+void work_serve(struct worker *worker, uint64_t now)
 {
-    struct worker *worker = &pool->queues.worker[0];
-    struct comm *comm = pool->setup.comm;
-    if (!comm)
-        return;
-    uint64_t now = base_ticks();
-    if (!comm_has_posts(comm) && now - worker->polled < pool->poll_ticks)
+    const struct work_pool *pool = worker->pool;
+    if (now - worker->polled < pool->poll_ticks && !comm_has_posts(pool->setup.comm))
         return;
     worker->polled = now;
     work_poll(worker);
     if (pool->balance)
         work_grant(worker);
+}
+
+void work_tick(struct work_pool *pool)
+{
+    if (pool->setup.comm)
+        work_serve(&pool->queues.worker[0], base_ticks());
 }
 
 struct worker *work_main(struct work_pool *pool)
@@ -238,8 +240,7 @@ static struct task *inside_steal_from(struct worker *worker, unsigned victim,
     struct task *task = queue_steal(&pool->queues.worker[victim].queue, &worker->queue);
     if (!task)
         return NULL;
-    queue_bump(&worker->counts.stolen, 1);
-    trace_mark(worker->ring, TRACE_STEAL, victim, 0);
+    work_count_stolen(worker, victim);
     if (task_may_run(wait->scope, task))
         return task;
     wait->refused++;

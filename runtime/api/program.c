@@ -24,10 +24,10 @@ int api_enter_any(duite *rt, const char *call)
         return api_remember(
             rt,
             base_error(DUITE_E_STATE, "%s: not between duite_mpi_begin and duite_mpi_end", call));
-    if (!rt->comm || !comm_broken(rt->comm))
+    if (!rt->comm || !comm_is_broken(rt->comm))
         return DUITE_OK;
     api_give_up(rt); /* before the program knows: then no body finds its context gone */
-    return comm_broken(rt->comm);
+    return comm_error(rt->comm);
 }
 
 int api_enter(duite *rt, const char *call)
@@ -63,7 +63,7 @@ int api_settle(duite *rt)
     if (!code)
         trace_settled(rt->trace, table);
     else if (rt->comm && code != DUITE_E_MEMORY)     /* api_remember handles that */
-        comm_broke(rt->comm, code, duite_message()); /* other ranks may have homes now */
+        comm_break(rt->comm, code, duite_message()); /* other ranks may have homes now */
     return code;
 }
 
@@ -162,7 +162,7 @@ __attribute__((noinline)) static int fork_ranks(duite *rt, const duite_kernel *k
     if (rt->graph.tasks == tasks && rt->graph.root.forks % FORKS_A_TICK)
         return DUITE_OK;
     work_tick(rt->pool);
-    if (comm_broken(rt->comm))
+    if (comm_is_broken(rt->comm))
         return api_enter_any(rt, "duite_fork");
     api_throttle(rt);
     return DUITE_OK;

@@ -99,7 +99,8 @@ static int instance_start_graph(duite *rt, const duite_options *options)
                                                .table = &rt->graph.table,
                                                .kernels = rt->graph.kernels,
                                                .n_kernels = rt->graph.n_kernels,
-                                               .monitor = &rt->monitor});
+                                               .monitor = &rt->monitor,
+                                               .report = options->trace ? &work_report : NULL});
     return code;
 }
 
@@ -175,7 +176,7 @@ static int instance_start_workers(duite *rt, const duite_options *options, int c
 
 bool api_is_broken(const duite *rt)
 {
-    return rt->graph.broken || (rt->comm && comm_broken(rt->comm));
+    return rt->graph.broken || (rt->comm && comm_is_broken(rt->comm));
 }
 
 struct instance_leftovers {
@@ -191,7 +192,7 @@ static bool instance_has_nothing_left(void *context)
     const duite *rt = leftovers->rt;
     if (!work_unfinished(rt->pool) && !offload_count(&rt->graph))
         return true;
-    return rt->comm && comm_is_cut(rt->comm) && work_stands_still(rt->pool, &leftovers->still);
+    return rt->comm && comm_is_lost(rt->comm) && work_stands_still(rt->pool, &leftovers->still);
 }
 
 void api_give_up(duite *rt)
@@ -199,11 +200,11 @@ void api_give_up(duite *rt)
     if (atomic_exchange(&rt->graph.given_up, 1))
         return;
     if (rt->comm && rt->graph.broken)
-        comm_broke(rt->comm, rt->graph.broken, duite_message());
+        comm_break(rt->comm, rt->graph.broken, duite_message());
     if (rt->comm)
         comm_give_up(rt->comm, work_main(rt->pool));
     work_drain(rt->pool, instance_has_nothing_left, &(struct instance_leftovers){.rt = rt});
-    if (rt->comm && comm_is_cut(rt->comm))
+    if (rt->comm && comm_is_lost(rt->comm))
         comm_part(rt->comm, work_main(rt->pool));
 }
 
@@ -220,7 +221,7 @@ static void instance_end(duite *rt)
     trace_free(rt->trace, whole);
     if (whole)
         MPI_Comm_free(&rt->mpi);
-    if (whole || !comm_is_cut(rt->comm)) /* else MPI_Finalize would wait for the lost rank */
+    if (whole || !comm_is_lost(rt->comm)) /* else MPI_Finalize would wait for the lost rank */
         atomic_fetch_sub(&alive, 1);
     offload_stop(&rt->graph);
     task_graph_stop(&rt->graph);
@@ -318,7 +319,7 @@ int duite_abandon(duite **out)
     duite *rt = *out;
     if (!work_may_fork(rt->pool))
         return base_error(DUITE_E_STATE, "duite_abandon is for the main thread, outside of bodies");
-    if (!rt->comm || !comm_is_cut(rt->comm))
+    if (!rt->comm || !comm_is_lost(rt->comm))
         return base_error(
             DUITE_E_STATE,
             "duite_abandon: no rank is lost and MPI did not fail; duite_stop ends it");

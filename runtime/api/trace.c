@@ -30,7 +30,7 @@ void api_trace_begin(duite *rt)
 static int step_meet(duite *rt, const char *call)
 {
     const uint64_t from = base_ticks();
-    const int code = api_meet(rt, call);
+    const int code = api_meet(rt, call, NULL);
     trace_wait(rt->trace, from);
     return code;
 }

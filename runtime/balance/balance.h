@@ -19,6 +19,16 @@
 BALANCE_ROWS(BALANCE_DECLARE)
 BALANCE_TEST_ROWS(BALANCE_DECLARE)
 
+/* The state of those that choose at random: numbers of its own for each worker. */
+struct balance_chance {
+    uint64_t random;
+    int rank, n_ranks;
+};
+void balance_start_chance(void *state, int rank, int n_ranks, unsigned worker, uint64_t seed);
+
+/* A rank from 0 to n - 1. */
+int balance_draw(struct balance_chance *own, int n);
+
 /* The names of those for tests, ended by NULL. */
 const char *const *balance_test_names(void);
 

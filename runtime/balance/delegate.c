@@ -11,22 +11,9 @@
 #define FIRST_SECONDS   5e-4
 #define LONGEST_SECONDS 5e-2
 
-struct delegate_state {
-    uint64_t random;
-    int rank, n_ranks;
-};
-
-static void delegate_start(void *state, int rank, int n_ranks, unsigned worker, uint64_t seed)
-{
-    struct delegate_state *own = state;
-    *own = (struct delegate_state){.random = (seed * 1000003 + (uint64_t)rank) * 4099 + worker,
-                                   .rank = rank,
-                                   .n_ranks = n_ranks};
-}
-
 static int delegate_victim(void *state, unsigned attempt, int granter, double *seconds)
 {
-    struct delegate_state *own = state;
+    struct balance_chance *own = state;
     double pause = FIRST_SECONDS;
     for (unsigned i = 0; i < attempt && pause < LONGEST_SECONDS; i++)
         pause *= 2;
@@ -35,8 +22,7 @@ static int delegate_victim(void *state, unsigned attempt, int granter, double *s
         return DUITE_NO_RANK;
     if (!attempt && granter != DUITE_NO_RANK)
         return granter;
-    int others = own->n_ranks - 1;
-    return (own->rank + 1 + (int)(duite_random(&own->random) % (uint64_t)others)) % own->n_ranks;
+    return (own->rank + 1 + balance_draw(own, own->n_ranks - 1)) % own->n_ranks;
 }
 
 static int delegate_grant(void *state, const duite_request *request, const duite_leaf *leaf)
@@ -51,8 +37,8 @@ static int delegate_grant(void *state, const duite_request *request, const duite
 const duite_balancer balance_delegate = {
     .name = "delegate",
     .summary = "idle ranks get ready tasks that cost more than their transfer",
-    .state_size = sizeof(struct delegate_state),
-    .start = delegate_start,
+    .state_size = sizeof(struct balance_chance),
+    .start = balance_start_chance,
     .victim = delegate_victim,
     .grant = delegate_grant,
 };

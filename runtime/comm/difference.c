@@ -10,11 +10,46 @@
 #include "runtime/base/clock.h"
 #include "runtime/base/memory.h"
 #include "runtime/comm/internal.h"
-#include "runtime/comm/verdict.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+
+/* ---- The history ---- */
+
+#define FUNCTION_NAME(value, name) name,
+static const char *const CALLED_NAMES[COMM_N_CALLED] = {COMM_FUNCTIONS(FUNCTION_NAME)};
+
+enum comm_function comm_function_find(const char *name)
+{
+    for (int i = 0; i < COMM_N_CALLED; i++)
+        if (!strcmp(CALLED_NAMES[i], name))
+            return (enum comm_function)i;
+    return COMM_CALLED_OTHER;
+}
+
+const char *comm_function_name(uint32_t called)
+{
+    return CALLED_NAMES[called < COMM_N_CALLED ? called : COMM_CALLED_OTHER];
+}
+
+/* The ring is read while the main thread writes it: the copy leaves out entries that may have been
+ * overwritten meanwhile. */
+void comm_history_read(struct comm_history *history, struct comm_history_copy *copy)
+{
+    copy->last = atomic_load_explicit(&history->calls, memory_order_acquire);
+    for (size_t i = 0; i < COMM_HISTORY_CALLS; i++) {
+        struct comm_history_entry *entry = &history->entry[i];
+        copy->entry[i].fingerprint =
+            atomic_load_explicit(&entry->fingerprint, memory_order_acquire);
+        copy->entry[i].call = atomic_load_explicit(&entry->call, memory_order_acquire);
+    }
+    /* The call after the last one counted may be in the middle of being written. */
+    const uint64_t begun = atomic_load_explicit(&history->calls, memory_order_acquire) + 1;
+    copy->first = begun >= COMM_HISTORY_CALLS ? begun - COMM_HISTORY_CALLS + 1 : 1;
+}
+
+/* ---- Waiting for answers ---- */
 
 /* COMM_DIFFERS: a rank found a difference at its blocking call of that number. COMM_INQUIRY: only
  * the number. */
@@ -36,7 +71,7 @@ static void difference_conclude(struct comm *comm)
     struct comm_verdict verdict = {0};
     comm->difference.until = 0;
     comm_verdict_find(comm, &verdict);
-    comm_broke(comm, DUITE_E_DIFFERENT, verdict.text);
+    comm_break(comm, DUITE_E_DIFFERENT, verdict.text);
 }
 
 /* From now on it waits for as long as a rank may be silent; other ranks than 0 twice as long. */
@@ -116,9 +151,9 @@ static struct data_packet *difference_packet(struct comm *comm, enum comm_kind k
     if (packet)
         packet->kind = kind;
     else if (comm->difference.found)
-        comm_broke(comm, DUITE_E_DIFFERENT, comm->difference.message);
+        comm_break(comm, DUITE_E_DIFFERENT, comm->difference.message);
     else
-        comm_broke_memory(comm, "a control message");
+        comm_break_memory(comm, "a control message");
     return packet;
 }
 
@@ -199,9 +234,4 @@ void comm_difference_pass(struct comm *comm)
 {
     if (comm->difference.until > 0 && base_seconds() > comm->difference.until)
         difference_conclude(comm);
-}
-
-void comm_difference_stop(struct comm_difference *difference)
-{
-    base_free(difference->inquiry);
 }

@@ -19,12 +19,6 @@ bool comm_calls_start(struct comm_calls *calls)
     return calls->log && calls->seen;
 }
 
-void comm_calls_stop(struct comm_calls *calls)
-{
-    base_free(calls->log);
-    base_free(calls->seen);
-}
-
 /* ---- The log ---- */
 
 static struct comm_called *call_logged(struct comm_calls *calls, uint64_t number)
@@ -35,36 +29,29 @@ static struct comm_called *call_logged(struct comm_calls *calls, uint64_t number
 const struct comm_called *comm_calls_logged(struct comm_calls *calls, uint64_t number)
 {
     const struct comm_called *call = call_logged(calls, number);
-    const uint64_t made = atomic_load_explicit(&calls->made, memory_order_acquire);
+    const uint64_t made = atomic_load(&calls->made);
     return number && number <= made && call->number == number ? call : NULL;
 }
 
 bool comm_call(struct comm *comm, const char *name, uint64_t fingerprint)
 {
     struct comm_calls *calls = &comm->calls;
-    uint64_t number = atomic_load_explicit(&calls->made, memory_order_relaxed) + 1;
+    uint64_t number = atomic_load(&calls->made) + 1;
     struct comm_called *call = call_logged(calls, number);
     *call = (struct comm_called){.number = number,
                                  .fingerprint = fingerprint,
                                  .homes = comm->setup.table->homes,
                                  .rank = comm->rank};
     snprintf(call->name, sizeof call->name, "%s", name);
-    atomic_store_explicit(&calls->made, number, memory_order_release);
-    return number - atomic_load_explicit(&calls->agreed, memory_order_relaxed) == COMM_LOGGED_CALLS;
-}
-
-void comm_calls_agreed(struct comm *comm)
-{
-    atomic_store_explicit(&comm->calls.agreed,
-                          atomic_load_explicit(&comm->calls.made, memory_order_relaxed),
-                          memory_order_relaxed);
+    atomic_store(&calls->made, number);
+    return number - atomic_load(&calls->agreed) == COMM_LOGGED_CALLS;
 }
 
 void comm_waits(struct comm *comm, bool waits)
 {
     struct comm_calls *calls = &comm->calls;
-    uint64_t number = waits ? atomic_load_explicit(&calls->made, memory_order_relaxed) : 0;
-    atomic_store_explicit(&calls->waits, number, memory_order_release);
+    uint64_t number = waits ? atomic_load(&calls->made) : 0;
+    atomic_store(&calls->waits, number);
 }
 
 /* ---- The tree ---- */
@@ -117,12 +104,11 @@ static void call_compare(struct comm *comm, const struct comm_called *a,
     comm_difference_found(comm, a->number, message);
 }
 
-/* Takes an entry of this rank itself, or one that `from` sent. */
-static void check_see(struct comm *comm, int from, const struct comm_called *call)
+void comm_check_see(struct comm *comm, int from, const struct comm_called *call)
 {
     struct comm_calls *calls = &comm->calls;
     struct comm_called *seen = &calls->seen[call->number % SEEN_CALLS];
-    if (call->number <= atomic_load_explicit(&calls->agreed, memory_order_relaxed))
+    if (comm_is_broken(comm) || call->number <= atomic_load(&calls->agreed))
         return;
     if (seen->number == call->number) {
         call_compare(comm, seen, call);
@@ -136,18 +122,12 @@ static void check_see(struct comm *comm, int from, const struct comm_called *cal
     check_pass_on(comm, from, call);
 }
 
-void comm_check_hear(struct comm *comm, int from, const struct comm_called *theirs)
-{
-    if (!comm_is_broken(comm))
-        check_see(comm, from, theirs);
-}
-
 /* Calls that this rank made since the last time. */
 static void check_new_calls(struct comm *comm)
 {
     struct comm_calls *calls = &comm->calls;
-    uint64_t made = atomic_load_explicit(&calls->made, memory_order_acquire);
-    uint64_t agreed = atomic_load_explicit(&calls->agreed, memory_order_relaxed);
+    uint64_t made = atomic_load(&calls->made);
+    uint64_t agreed = atomic_load(&calls->agreed);
     uint64_t last = calls->last_seen < made ? calls->last_seen : made;
     for (uint64_t n = 1 + (agreed > calls->compared ? agreed : calls->compared); n <= last; n++)
         if (calls->seen[n % SEEN_CALLS].number == n)
@@ -158,7 +138,7 @@ static void check_new_calls(struct comm *comm)
 void comm_check_pass(struct comm *comm)
 {
     struct comm_calls *calls = &comm->calls;
-    uint64_t number = atomic_load_explicit(&calls->waits, memory_order_acquire);
+    uint64_t number = atomic_load(&calls->waits);
     check_new_calls(comm);
     if (!number || calls->seen[number % SEEN_CALLS].number == number)
         return;
@@ -167,6 +147,6 @@ void comm_check_pass(struct comm *comm)
         calls->waited = number;
         calls->since = now;
     } else if (now - calls->since > PATIENCE_SECONDS) {
-        check_see(comm, comm->rank, call_logged(calls, number));
+        comm_check_see(comm, comm->rank, call_logged(calls, number));
     }
 }

@@ -3,7 +3,7 @@
  * is the worker's alone until it is finished. The counters of tasks are exact after each task, the
  * time in bodies after each batch. */
 #include "runtime/base/clock.h"
-#include "runtime/base/report.h"
+#include "runtime/base/error.h"
 #include "runtime/task/call.h"
 #include "runtime/workers/internal.h"
 
@@ -109,14 +109,8 @@ static void any_finish(struct worker *worker, struct task *task)
  * to its file if its ring is full. Returns whether that took time beside the messages. */
 static bool any_between(struct worker *worker, uint64_t now)
 {
-    const struct work_pool *pool = worker->pool;
-    struct comm *comm = pool->setup.comm;
-    if (comm && (comm_posted(comm) || now - worker->polled > pool->poll_ticks)) {
-        worker->polled = now;
-        work_poll(worker);
-        if (pool->balance)
-            work_grant(worker);
-    }
+    if (worker->pool->setup.comm)
+        work_serve(worker, now);
     return worker->ring && work_note_relieve(worker);
 }
 

@@ -13,8 +13,15 @@ libduite_cloth_a_SOURCES += \
 	cloth/scene/schema/rules.h \
 	cloth/scene/schema/rules.c \
 	cloth/scene/schema/rules_cloth.c \
+	cloth/scene/schema/rules_contact.c \
+	cloth/scene/schema/rules_joints.c \
 	cloth/scene/schema/rules_mannequin.c \
-	cloth/scene/schema/rules_output.c \
+	cloth/scene/schema/rules_material.c \
+	cloth/scene/schema/rules_obstacle.c \
+	cloth/scene/schema/rules_run.c \
+	cloth/scene/schema/rules_vertices.c \
+	cloth/scene/schema/needs.h \
+	cloth/scene/schema/page.c \
 	cloth/scene/schema/tables.h \
 	cloth/scene/schema/store.h \
 	cloth/scene/schema/store.c \
@@ -57,4 +64,9 @@ libduite_cloth_a_SOURCES += \
 	cloth/scene/build/phases.c \
 	cloth/scene/build/pieces.c \
 	cloth/scene/build/probe.c
-EXTRA_DIST += docs/scene.md
+EXTRA_DIST += cloth/scene/schema/opening.md docs/scene.md
+
+# docs/scene.md is made from the tables of keys; tests/whole/test_options.sh compares.
+scene-page: duite-cloth$(EXEEXT)
+	{ cat $(srcdir)/cloth/scene/schema/opening.md && ./duite-cloth$(EXEEXT) --keys=markdown; } > scene-page.new
+	mv scene-page.new $(srcdir)/docs/scene.md

@@ -45,7 +45,7 @@ libduite_cloth_a_SOURCES += \
 	cloth/scene/build/fold.c \
 	cloth/scene/build/frames.c \
 	cloth/scene/build/hdf5.c \
-	cloth/scene/build/idle.c \
+	cloth/scene/build/needs.c \
 	cloth/scene/build/unusual.c \
 	cloth/scene/build/joint.c \
 	cloth/scene/build/load.c \

@@ -57,11 +57,11 @@ static int read_tree(struct model *model, struct scene_tree *tree, uint32_t phas
     if (!code)
         code = scene_build_warn_seams(model, tree, error);
     if (!code)
-        code = scene_build_idle(model, tree, error);
-    if (!code)
         code = scene_build_unusual(model, tree, error);
     if (!code)
         code = scene_build_settings(model, tree, error);
+    if (!code)
+        code = scene_build_needs(model, tree, error);
     return code;
 }
 

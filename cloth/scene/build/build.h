@@ -91,8 +91,8 @@ int scene_read_seams(struct model_seams *seams, const struct mesh *mesh, const c
 int scene_build_cloth_of(uint32_t *cloth, const char *what, const struct model *model,
                          const struct scene_tree *tree, int node, struct cloth_error *error);
 
-/* Warnings of keys that do nothing in this scene; after all others. */
-int scene_build_idle(struct model *model, const struct scene_tree *tree, struct cloth_error *error);
+/* Warnings of keys that do nothing in this scene; after all others, as the tree gets a default. */
+int scene_build_needs(struct model *model, struct scene_tree *tree, struct cloth_error *error);
 
 /* Warnings of values that are hardly ever meant. */
 int scene_build_unusual(struct model *model, const struct scene_tree *tree,

@@ -4,6 +4,7 @@
 #include "cloth/physics/triangle.h"
 
 #include <math.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -39,6 +40,29 @@ char *scene_build_place(const struct scene_tree *tree, int node, struct cloth_er
     if (!place)
         out_of_memory(error);
     return place;
+}
+
+int scene_build_warn(struct model *model, const struct scene_tree *tree, int node,
+                     struct cloth_error *error, const char *format, ...)
+{
+    char text[500], *place = scene_build_place(tree, node, error);
+    va_list list;
+    va_start(list, format);
+    vsnprintf(text, sizeof text, format, list);
+    va_end(list);
+    const size_t size = place ? strlen(place) + strlen(text) + 3 : 0;
+    char *warning = place ? scene_build_array(size, 1, error) : NULL;
+    char **all = realloc(model->warnings, (model->n_warnings + 1) * sizeof *all);
+    model->warnings = all ? all : model->warnings;
+    if (warning && all) {
+        snprintf(warning, size, "%s: %s", place, text);
+        all[model->n_warnings++] = warning;
+    } else {
+        cloth_fail(error, CLOTH_E_MEMORY, "out of memory while the scene is read");
+        free(warning);
+    }
+    free(place);
+    return error->code;
 }
 
 /* The scene's name, else the file's without folder and ending. */

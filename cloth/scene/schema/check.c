@@ -10,27 +10,19 @@
 #include <stdio.h>
 #include <string.h>
 
-/* The place of the walk: a chain up to the root, for the names of keys in sentences. */
-struct place {
-    const struct place *up;
-    const char *key; /* NULL: entry `index` of a list */
-    size_t index;
-};
-
 struct walk {
     struct scene_tree *tree;
     struct cloth_error *error;
 };
 
-static int check(struct walk *walk, const struct place *at, const struct scene_rule *rule, int node,
-                 void *base);
+static int check(struct walk *walk, const struct scene_place *at, const struct scene_rule *rule,
+                 int node, void *base);
 
-/* Writes "cloths[0].mesh"; the root is "the scene". */
-static size_t path_of(const struct place *at, char *text, size_t size)
+size_t scene_place_path(const struct scene_place *at, char *text, size_t size)
 {
     if (!at->up)
         return (size_t)snprintf(text, size, "the scene");
-    size_t used = at->up->up ? path_of(at->up, text, size) : 0;
+    size_t used = at->up->up ? scene_place_path(at->up, text, size) : 0;
     if (used >= size)
         return used;
     if (at->key)
@@ -67,7 +59,7 @@ static const struct {
     {"contact", "filter", "it is gone; contact: {mode: certified} or {mode: project} is there"},
     {"mode", "filter", "it is gone; certified knows of contact in the solve, too"}};
 
-static const char *more_of(const struct walk *walk, const struct place *at, int node)
+static const char *more_of(const struct walk *walk, const struct scene_place *at, int node)
 {
     const char *value = scene_tree_scalar(walk->tree, node);
     for (size_t i = 0; at->key && value && i < sizeof outdated / sizeof *outdated; i++)
@@ -76,18 +68,19 @@ static const char *more_of(const struct walk *walk, const struct place *at, int 
     return value && scene_scalar_has_comma(value) ? SCENE_NO_COMMA : NULL;
 }
 
-static int wrong(struct walk *walk, const struct place *at, const struct scene_rule *rule, int node)
+static int wrong(struct walk *walk, const struct scene_place *at, const struct scene_rule *rule,
+                 int node)
 {
     char path[200], is[100], expected[300];
     const char *now = more_of(walk, at, node);
-    path_of(at, path, sizeof path);
+    scene_place_path(at, path, sizeof path);
     return scene_tree_fail(walk->tree, node, walk->error, "%s is %s; %s is expected%s%s", path,
                            found(walk, node, is, sizeof is),
                            scene_rule_expected(rule, expected, sizeof expected), now ? ": " : "",
                            now ? now : "");
 }
 
-static const struct scene_rule *rule_of(const struct scene_rule *keys, const char *name)
+const struct scene_rule *scene_rule_of(const struct scene_rule *keys, const char *name)
 {
     for (const struct scene_rule *key = keys; key->key; key++)
         if (!strcmp(key->key, name))
@@ -109,7 +102,7 @@ static const struct {
              "(irregular)"}};
 
 /* NULL: the key never was. */
-static const char *gone_of(const struct place *at, const char *key)
+static const char *gone_of(const struct scene_place *at, const char *key)
 {
     const char *map = at->key || !at->up ? at->key : at->up->key;
     for (size_t i = 0; map && i < sizeof gone / sizeof *gone; i++)
@@ -118,7 +111,7 @@ static const char *gone_of(const struct place *at, const char *key)
     return NULL;
 }
 
-static int unknown(struct walk *walk, const struct place *at, const struct scene_rule *keys,
+static int unknown(struct walk *walk, const struct scene_place *at, const struct scene_rule *keys,
                    int node)
 {
     const char *names[MAX_KEYS];
@@ -126,7 +119,7 @@ static int unknown(struct walk *walk, const struct place *at, const struct scene
     for (const struct scene_rule *key = keys; key->key && n < MAX_KEYS; key++)
         names[n++] = key->key;
     char path[200], is[100], allowed[400];
-    path_of(at, path, sizeof path);
+    scene_place_path(at, path, sizeof path);
     const char *word = scene_tree_scalar(walk->tree, node);
     const char *now = word ? gone_of(at, word) : NULL;
     if (now)
@@ -143,7 +136,7 @@ static bool is_default(const struct walk *walk, int node)
 }
 
 /* {density: 0,2} is {density: 0, 2: } to YAML. Pair i is the second of these. */
-static int check_comma(struct walk *walk, const struct place *at, int map, size_t i)
+static int check_comma(struct walk *walk, const struct scene_place *at, int map, size_t i)
 {
     char path[200], number[100];
     const struct scene_tree *tree = walk->tree;
@@ -154,19 +147,20 @@ static int check_comma(struct walk *walk, const struct place *at, int map, size_
              scene_tree_scalar(tree, pair.key));
     if (!scene_tree_empty(tree, pair.value) || !scene_scalar_has_comma(number))
         return CLOTH_OK;
-    path_of(&(struct place){at, scene_tree_scalar(tree, before.key), 0}, path, sizeof path);
+    scene_place_path(&(struct scene_place){at, scene_tree_scalar(tree, before.key), 0}, path,
+                     sizeof path);
     return scene_tree_fail(walk->tree, before.value, walk->error, "%s is %s; %s", path, number,
                            SCENE_NO_COMMA);
 }
 
 /* Keys of a map are texts, each there once. */
-static int check_names(struct walk *walk, const struct place *at, int map)
+static int check_names(struct walk *walk, const struct scene_place *at, int map)
 {
     char path[200], is[100];
     for (size_t i = 0; i < scene_tree_length(walk->tree, map); i++) {
         int key = scene_tree_pair(walk->tree, map, i).key;
         const char *name = scene_tree_scalar(walk->tree, key);
-        path_of(at, path, sizeof path);
+        scene_place_path(at, path, sizeof path);
         if (!name || !*name)
             return scene_tree_fail(walk->tree, key, walk->error,
                                    "a key of %s is %s; a text is expected", path,
@@ -182,17 +176,18 @@ static int check_names(struct walk *walk, const struct place *at, int map)
 }
 
 /* Checks the values of a map whose keys are the rules `keys`. */
-static int check_values(struct walk *walk, const struct place *at, const struct scene_rule *keys,
-                        int map, void *base)
+static int check_values(struct walk *walk, const struct scene_place *at,
+                        const struct scene_rule *keys, int map, void *base)
 {
     for (size_t i = 0; i < scene_tree_length(walk->tree, map); i++) {
         yaml_node_pair_t pair = scene_tree_pair(walk->tree, map, i);
-        const struct scene_rule *rule = rule_of(keys, scene_tree_scalar(walk->tree, pair.key));
+        const struct scene_rule *rule =
+            scene_rule_of(keys, scene_tree_scalar(walk->tree, pair.key));
         if (!rule && is_default(walk, pair.key))
             continue; /* of another key that shares this map by an alias */
         if (!rule)
             return unknown(walk, at, keys, pair.key);
-        int code = check(walk, &(struct place){at, rule->key, 0}, rule, pair.value, base);
+        int code = check(walk, &(struct scene_place){at, rule->key, 0}, rule, pair.value, base);
         if (code)
             return code;
     }
@@ -200,22 +195,22 @@ static int check_values(struct walk *walk, const struct place *at, const struct 
 }
 
 /* A default is walked like a value of the file, since a map may have defaults of its own. */
-static int add_default(struct walk *walk, const struct place *here, const struct scene_rule *rule,
-                       int map, void *base)
+static int add_default(struct walk *walk, const struct scene_place *here,
+                       const struct scene_rule *rule, int map, void *base)
 {
     int code = scene_edit_default(walk->tree, map, rule->key, rule->fallback, walk->error);
     return code ? code : check(walk, here, rule, scene_tree_get(walk->tree, map, rule->key), base);
 }
 
-static int add_missing(struct walk *walk, const struct place *at, const struct scene_rule *keys,
-                       int map, void *base)
+static int add_missing(struct walk *walk, const struct scene_place *at,
+                       const struct scene_rule *keys, int map, void *base)
 {
     char path[200], expected[300];
     for (const struct scene_rule *rule = keys; rule->key; rule++) {
-        struct place here = {at, rule->key, 0};
+        struct scene_place here = {at, rule->key, 0};
         if (scene_tree_get(walk->tree, map, rule->key))
             continue;
-        path_of(&here, path, sizeof path);
+        scene_place_path(&here, path, sizeof path);
         if (rule->required)
             return scene_tree_fail(walk->tree, map, walk->error, "%s is missing; %s is expected",
                                    path, scene_rule_expected(rule, expected, sizeof expected));
@@ -227,8 +222,8 @@ static int add_missing(struct walk *walk, const struct place *at, const struct s
 }
 
 /* Exactly one of a map's keys that are choices must be there. */
-static int check_choice(struct walk *walk, const struct place *at, const struct scene_rule *keys,
-                        int map)
+static int check_choice(struct walk *walk, const struct scene_place *at,
+                        const struct scene_rule *keys, int map)
 {
     const char *names[MAX_KEYS], *first = NULL;
     size_t n = 0;
@@ -240,11 +235,11 @@ static int check_choice(struct walk *walk, const struct place *at, const struct 
         const size_t used = strlen(allowed);
         snprintf(allowed + used, sizeof allowed - used, "%s%s", i ? " or " : "", names[i]);
     }
-    path_of(at, path, sizeof path);
+    scene_place_path(at, path, sizeof path);
     for (size_t i = 0; i < scene_tree_length(walk->tree, map); i++) {
         const int key = scene_tree_pair(walk->tree, map, i).key;
         const char *name = scene_tree_scalar(walk->tree, key);
-        const struct scene_rule *rule = rule_of(keys, name);
+        const struct scene_rule *rule = scene_rule_of(keys, name);
         if (!rule || !rule->choice)
             continue;
         if (first)
@@ -260,7 +255,7 @@ static int check_choice(struct walk *walk, const struct place *at, const struct 
 }
 
 /* base: the structure that the map fills, here and in the next one. */
-static int check_map(struct walk *walk, const struct place *at, const struct scene_rule *rule,
+static int check_map(struct walk *walk, const struct scene_place *at, const struct scene_rule *rule,
                      int node, void *base)
 {
     int code = check_names(walk, at, node);
@@ -274,8 +269,8 @@ static int check_map(struct walk *walk, const struct place *at, const struct sce
     return code ? code : add_missing(walk, at, rule->inside, node, base);
 }
 
-static int check_one_of(struct walk *walk, const struct place *at, const struct scene_rule *rule,
-                        int node, void *base)
+static int check_one_of(struct walk *walk, const struct scene_place *at,
+                        const struct scene_rule *rule, int node, void *base)
 {
     int code = check_names(walk, at, node);
     scene_choice_settle(walk->tree, node, rule->inside, true);
@@ -285,7 +280,7 @@ static int check_one_of(struct walk *walk, const struct place *at, const struct 
     if (code || n == 1)
         return code;
     char path[200], expected[300];
-    path_of(at, path, sizeof path);
+    scene_place_path(at, path, sizeof path);
     int where = n ? scene_tree_pair(walk->tree, node, 1).key : node;
     return scene_tree_fail(walk->tree, where, walk->error, "%s has %zu keys; %s is expected", path,
                            n, scene_rule_expected(rule, expected, sizeof expected));
@@ -300,8 +295,8 @@ static char *items_of(struct walk *walk, const struct scene_rule *rule, int node
     return base ? scene_store_items(base, rule, n, step, walk->error) : NULL;
 }
 
-static int check_named(struct walk *walk, const struct place *at, const struct scene_rule *rule,
-                       int node, void *base)
+static int check_named(struct walk *walk, const struct scene_place *at,
+                       const struct scene_rule *rule, int node, void *base)
 {
     int code = check_names(walk, at, node);
     if (!code && !scene_tree_length(walk->tree, node))
@@ -315,13 +310,13 @@ static int check_named(struct walk *walk, const struct place *at, const struct s
         void *item = items ? items + i * step : NULL;
         code = item ? scene_store_name(item, rule, name, walk->error) : CLOTH_OK;
         if (!code)
-            code = check(walk, &(struct place){at, name, 0}, rule->inside, pair.value, item);
+            code = check(walk, &(struct scene_place){at, name, 0}, rule->inside, pair.value, item);
     }
     return code;
 }
 
-static int check_list(struct walk *walk, const struct place *at, const struct scene_rule *rule,
-                      int node, void *base)
+static int check_list(struct walk *walk, const struct scene_place *at,
+                      const struct scene_rule *rule, int node, void *base)
 {
     size_t n = scene_tree_length(walk->tree, node), step;
     if ((rule->length && n != rule->length) || (rule->filled && !n) ||
@@ -332,7 +327,7 @@ static int check_list(struct walk *walk, const struct place *at, const struct sc
     struct scene_rule inside = *rule->inside;
     inside.unit = rule->unit; /* the unit of a list is that of its numbers */
     for (size_t i = 0; !code && i < n; i++)
-        code = check(walk, &(struct place){at, NULL, i}, &inside,
+        code = check(walk, &(struct scene_place){at, NULL, i}, &inside,
                      scene_tree_item(walk->tree, node, i), items ? items + i * step : NULL);
     return code;
 }
@@ -364,8 +359,8 @@ static bool is_word(const struct scene_rule *rule, const char *text)
     return known;
 }
 
-static int check_scalar(struct walk *walk, const struct place *at, const struct scene_rule *rule,
-                        int node, void *base)
+static int check_scalar(struct walk *walk, const struct scene_place *at,
+                        const struct scene_rule *rule, int node, void *base)
 {
     const yaml_node_t *scalar = scene_tree_node(walk->tree, node);
     const char *text = scene_tree_scalar(walk->tree, node);
@@ -399,14 +394,14 @@ static void *structure_of(const struct scene_rule *rule, void *base)
     return base && !rule->apart ? (char *)base + rule->field.offset : NULL;
 }
 
-static int check(struct walk *walk, const struct place *at, const struct scene_rule *rule, int node,
-                 void *base)
+static int check(struct walk *walk, const struct scene_place *at, const struct scene_rule *rule,
+                 int node, void *base)
 {
     char path[200];
     const yaml_node_t *here = scene_tree_node(walk->tree, node);
     bool list = here->type == YAML_SEQUENCE_NODE, map = here->type == YAML_MAPPING_NODE;
     if (has_own_tag(here)) {
-        path_of(at, path, sizeof path);
+        scene_place_path(at, path, sizeof path);
         return scene_tree_fail(walk->tree, node, walk->error,
                                "%s has the tag %.60s; a value without a tag is expected", path,
                                (const char *)here->tag);
@@ -434,16 +429,16 @@ int scene_fill(void *structure, const struct scene_rule *rule, struct scene_tree
                struct cloth_error *error)
 {
     struct walk walk = {tree, error};
-    return check(&walk, &(struct place){0}, rule, node, structure);
+    return check(&walk, &(struct scene_place){0}, rule, node, structure);
 }
 
 int scene_check(struct model *model, struct scene_tree *tree, struct cloth_error *error)
 {
     struct walk walk = {tree, error};
-    const struct place root = {0}, schema = {&root, "schema", 0};
+    const struct scene_place root = {0}, schema = {&root, "schema", 0};
     /* Another schema is reported before its keys are called unknown. */
     int node = scene_tree_get(tree, 1, "schema");
-    int code =
-        node ? check(&walk, &schema, rule_of(scene_root.inside, "schema"), node, NULL) : CLOTH_OK;
+    int code = node ? check(&walk, &schema, scene_rule_of(scene_root.inside, "schema"), node, NULL)
+                    : CLOTH_OK;
     return code ? code : check(&walk, &root, &scene_root, 1, model);
 }

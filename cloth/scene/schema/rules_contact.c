@@ -143,7 +143,7 @@ const struct scene_rule scene_contact_keys[] = {
      ARRAY(struct model_contact, pairs, n_pairs),
      .about = "two sides with a friction of their own, in place of sqrt(a b)", .needs = NEEDS_MET},
     {"ignore", SCENE_LIST, .fallback = "[]", .max = SCENE_MOST_NAMED, .inside = &ignored,
-     .about = "[A, B]: cloths, obstacles or groups that do not meet", .needs = NEEDS_MEETING,
+     .about = "[A, B]: cloths, obstacles or groups that do not meet", .needs = NEEDS_MEETINGS,
      SECTION("What does not meet", "A and B are each the name of a cloth, of an obstacle or of a "
      "group (`groups` of cloths and obstacles); a name that several have means all of them. A "
      "cloth that is named twice does not meet itself. Such pairs are left out in all modes: by "

@@ -129,7 +129,7 @@ const struct scene_rule scene_solver_keys[] = {
      .about = "how the matrix is kept: four numbers a spring, or nine a pair of vertices, in "
      "double or float; what is more than springs takes half for springs",
      .more = "With `half_float` vectors and the diagonal are in double.",
-     .needs = "springs: " NEEDS_ALL_SPRINGS},
+     .needs = "springs: " NEEDS_ONLY_SPRINGS},
     {"jacobian", SCENE_CHOICE, .fallback = "definite", INTO(struct model, full_slope),
      WORDS({"definite", PHYS_DEFINITE}, {"full", PHYS_FULL}, {"absolute", PHYS_ABSOLUTE}),
      .about = "definite: without what could make the matrix indefinite; full: the whole slope; "
@@ -139,7 +139,7 @@ const struct scene_rule scene_solver_keys[] = {
      "in long steps.", .needs = "absolute: " NEEDS_SPRINGS},
     {"max_iterations", SCENE_INTEGER, .fallback = "10000", .min = 1,
      INTO(struct model, max_iterations),
-     .about = "a solve that needs more fails", .needs = "not stop.count"},
+     .about = "a solve that needs more fails", .needs = "no stop.count"},
     {0}};
 const struct scene_section scene_newton_section = {"Newton steps", "An implicit step makes at "
     "most `steps` Newton steps, each with a line search. A single one is the linear step, "
@@ -152,7 +152,7 @@ const struct scene_rule scene_newton_keys[] = {
     {"tolerance", SCENE_NUMBER, .fallback = "1e-4", .range = SCENE_FRACTION,
      INTO(struct model, newton_tolerance),
      .about = "the step ends when a Newton step changed the velocity by at most so much of the "
-     "change in the whole step, by mass", .needs = "not steps = 1"},
+     "change in the whole step, by mass", .needs = "steps > 1"},
     {0}};
 
 const struct model_word scene_hdf5_fields[] = {

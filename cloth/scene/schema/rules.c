@@ -49,7 +49,8 @@ static const struct scene_rule phase_keys[] = {
     {"name", SCENE_TEXT, .required = true, INTO(struct model_phase, name),
      .about = "of the phase, in messages and in the report; no other phase has it"},
     {"set", SCENE_EDITS, .fallback = "{}",
-     .about = "keys of the scene that are others in it, KEY: VALUE as of `--set`"},
+     .about = "keys of the scene that are others from it on, KEY: VALUE as of `--set`; null: the "
+     "default again"},
     {0}};
 static const struct scene_rule phase = {
     .type = SCENE_MAP, .inside = phase_keys, PLACE(struct model_phase, place)};
@@ -136,11 +137,11 @@ static const struct scene_rule scene_keys[] = {
      ARRAY(struct model, phases, n_phases),
      .about = "runs of the scene, each from where the one before ended; else it is one run",
      SECTION("Phases",
-     "A garment is first sewn, then dropped: one command runs the phases of a scene one after "
-     "the other. Each phase is a run of the scene with the changes of its `set`. First comes "
-     "what the file says, then the phase's `set`, then `--set` of the command line, which so "
-     "holds in every phase. `--set phases[0].set={...}` changes a phase itself, and `--set "
-     "phases[0].set.time.end=0.2` one KEY of its set.\n\n"
+     "A garment is first sewn, then dropped: one command runs the phases of a scene one "
+     "after the other. A phase changes the scene by its `set`, and the change stays until "
+     "another phase sets that key; `KEY: null` gives the key its default again. `--set` of "
+     "the command line comes last, and holds in every phase. `--set phases[0].set={...}` "
+     "changes a phase itself, and `--set phases[0].set.time.end=0.2` one KEY of its set.\n\n"
      "A phase starts where the one before ended: all vertices have the same positions and "
      "velocities, to the last bit. Shapes at rest are those of the meshes. `start`, `from` and "
      "`velocity` are of the first phase alone. A pin holds a vertex where the phase starts, and "

@@ -172,9 +172,9 @@ const struct scene_section scene_seams_section = {"Seams",
     "['*sleeve*', '*torso'], state: open}]}\n"
     "phases:\n"
     "  - {name: sleeves, set: {time.sewn: {}}}\n"
-    "  - {name: body, set: {'cloths[0].seams.state': pulled, time.sewn: {}}}\n"
-    "  - {name: armholes, set: {'cloths[0].seams': {state: pulled}, time.sewn: {}}}\n"
-    "  - {name: wear, set: {'cloths[0].seams': {state: welded}}}\n"};
+    "  - {name: body, set: {'cloths[0].seams.state': pulled}}\n"
+    "  - {name: armholes, set: {'cloths[0].seams': {state: pulled}}}\n"
+    "  - {name: wear, set: {'cloths[0].seams': {state: welded}, time.sewn: null}}\n"};
 const struct scene_rule scene_seams_keys[] = {
     SEWING(struct model_seams, "pulled", "200", "0.002"),
     {"some", SCENE_LIST, .fallback = "[]", .inside = &some,

@@ -1,8 +1,8 @@
 /* The skins of a run: every triangle is in the skin of the block of its lowest place, every vertex
  * and every edge is the feature of one skin, points are where the block finds them, also where a
  * cloth has no springs between the corners of its triangles, and across welds. */
+#include "cloth/flow/contact/skin.h"
 #include "cloth/flow/state/flow.h"
-#include "cloth/flow/state/skin.h"
 #include "tests/cloth/flow/models.h"
 #include "tests/support/unit.h"
 

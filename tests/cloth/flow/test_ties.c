@@ -1,7 +1,7 @@
 /* Ties of up to four weighted corners in up to four blocks: records and tables against the list
  * that they are made of, and what blocks make of them against a dense matrix. */
-#include "cloth/flow/bodies.h"
-#include "cloth/flow/kernels.h"
+#include "cloth/flow/state/bodies.h"
+#include "cloth/flow/state/kernels.h"
 #include "cloth/solve/coarse.h"
 #include "cloth/solve/local.h"
 #include "tests/cloth/flow/models.h"

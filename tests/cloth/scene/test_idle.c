@@ -9,6 +9,12 @@
 
 enum { MAX_SETS = 4 };
 
+/* Three vertices, two of which may be joined, in place of the sheet. */
+#define MESH(elements)                                                                             \
+    "cloths[0]={mesh: {inline: {vertices: [[0, 0, 0], [1, 0, 0], [0, 0, 1]], " elements            \
+    "}}, material: cotton, mass_per_vertex: 1}"
+#define TRIANGLE  "triangles: [[0, 1, 2]]"
+#define JOINT     "joints=[{from: {vertex: 0}, to: {vertex: 1}, stiffness: 5}]"
 #define TRIANGLES "materials.cotton={density: 0.2, stretch: 50, shear: 9, model: triangles}"
 
 /* Sets, of which the last one but for NULLs is that of the idle key, and what it is told; NULL:
@@ -122,6 +128,51 @@ static const struct {
      "obstacles[0].plane.motion means nothing: it needs translate or rotate"},
     {{"obstacles[0].plane.motion={times: [0], translate: [[0, 1, 0]], about: [1, 0, 0]}"},
      "obstacles[0].plane.motion.about means nothing: it needs rotate"},
+    {{"materials.cotton.poisson=0.3"},
+     "materials.cotton.poisson means nothing: it needs model = triangles"},
+    {{TRIANGLES, "materials.cotton.poisson=0.3"}, NULL},
+    {{"materials.cotton.poisson=0"}, NULL},
+    {{"materials.unused={density: 1, ea: 1, shear: 1, strain_limit: {at: 0.1, stiffness: 5}}"},
+     NULL},
+    {{"materials.cotton.forces=uncorrected"},
+     "materials.cotton.forces uncorrected means nothing: it needs model = triangles"},
+    {{"materials.cotton.forces=exact"}, NULL},
+    {{TRIANGLES, "materials.cotton.bend=1"},
+     "materials.cotton.bend means nothing: it needs model = springs and a cloth of"},
+    {{"materials.cotton.bend=1"}, NULL},
+    {{"materials.cotton.shear=1"}, NULL},
+    {{MESH(TRIANGLE), "materials.cotton.shear=1"},
+     "materials.cotton.shear means nothing: it needs a grid, or model = triangles"},
+    {{"materials.cotton.ea=1"},
+     "materials.cotton.ea means nothing: it needs a cloth of the material with edges without"},
+    {{MESH("edges: [[0, 1]], " TRIANGLE), "materials.cotton.ea=1"},
+     "materials.cotton.ea means nothing: it needs a cloth of"},
+    {{MESH("edges: [[0, 1]]"),
+      "materials.cotton={density: 0.2, ea: 1, strain_limit: {at: 0.1, stiffness: 5}}"},
+     NULL},
+    {{MESH("edges: []"), JOINT, "materials.cotton={strain_limit: {at: 0.1, stiffness: 5}}"},
+     "materials.cotton.strain_limit means nothing: it needs a cloth of the material with edges"},
+    {{MESH("edges: []"), JOINT, "materials.cotton={velocity_correction: {}}"},
+     "materials.cotton.velocity_correction means nothing: it needs a cloth of the material with "
+     "edges"},
+    {{MESH("edges: [[0, 1]]"), "materials.cotton={ea: 1, bend: 1}"},
+     "materials.cotton.bend means nothing: it needs model = springs and a cloth of the material "
+     "with triangles"},
+    {{MESH("edges: [[0, 1]]"), "materials.cotton={ea: 1, bending: {rigidity: 1e-3}}"},
+     "materials.cotton.bending means nothing: it needs a cloth of the material with triangles"},
+    {{MESH("edges: [[0, 1]]"), "materials.cotton={ea: 1, stretch: 1}"},
+     "materials.cotton.stretch means nothing: it needs a cloth of the material with triangles"},
+    {{"materials.cotton.damping.bending=1"},
+     "materials.cotton.damping.bending means nothing: it needs bend or bending"},
+    {{"materials.cotton={density: 0.2, stretch: 5, bend: 1, damping: {bending: 1}}"}, NULL},
+    {{"materials.cotton={density: 0.2, stretch: 5, bend: 0, damping: {bending: 1}}"},
+     "materials.cotton.damping.bending means nothing"},
+    {{"materials.cotton={density: 0.2, stretch: 5, bending: {rigidity: 1e-6}, damping: {bending: "
+      "1}}"},
+     NULL},
+    {{"materials.cotton={like: denim, model: springs}"}, NULL},
+    {{"materials.cotton={density: 0.2, stretch: 50, model: triangles}"},
+     "materials.cotton.shear is 0: nothing resists its triangles' being sheared"},
     {{"materials.cotton.density=0.005"}, NULL},
     {{"materials.cotton.density=5"}, NULL},
     {{"materials.cotton.density=0.004"},

@@ -40,11 +40,8 @@ libduite_cloth_a_SOURCES += \
 	cloth/scene/build/contact.c \
 	cloth/scene/build/crossed.c \
 	cloth/scene/build/girth.c \
-	cloth/scene/build/curve.c \
-	cloth/scene/build/drape.c \
 	cloth/scene/build/fold.c \
 	cloth/scene/build/frames.c \
-	cloth/scene/build/hdf5.c \
 	cloth/scene/build/needs.c \
 	cloth/scene/build/unusual.c \
 	cloth/scene/build/joint.c \
@@ -54,7 +51,6 @@ libduite_cloth_a_SOURCES += \
 	cloth/scene/build/mannequin.c \
 	cloth/scene/build/region.c \
 	cloth/scene/build/settings.c \
-	cloth/scene/build/settled.c \
 	cloth/scene/build/seams.c \
 	cloth/scene/build/short.c \
 	cloth/scene/build/seams_file.c \
@@ -63,9 +59,8 @@ libduite_cloth_a_SOURCES += \
 	cloth/scene/build/motion.c \
 	cloth/scene/build/obstacle.c \
 	cloth/scene/build/pattern.c \
-	cloth/scene/build/phases.c \
 	cloth/scene/build/pieces.c \
-	cloth/scene/build/probe.c
+	cloth/scene/build/report.c
 EXTRA_DIST += cloth/scene/schema/opening.md docs/scene.md
 
 # docs/scene.md is made from the tables of keys; tests/whole/test_options.sh compares.

@@ -103,7 +103,7 @@ static int build_folds(struct model *model, struct model_cloth *cloth,
     return code ? code : warn_of_open(model, cloth, tree, list, error);
 }
 
-int scene_build_folds(struct model *model, const struct scene_tree *tree, struct cloth_error *error)
+int scene_build_folds(struct model *model, struct scene_tree *tree, struct cloth_error *error)
 {
     const int list = scene_tree_get(tree, 1, "cloths");
     int code = CLOTH_OK;

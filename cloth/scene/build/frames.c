@@ -17,7 +17,7 @@ struct reading {
 };
 
 /* The error of a file, at the node that names it. */
-static int blame(const struct reading *r, int node, const struct cloth_error *inner)
+static int blame_file(const struct reading *r, int node, const struct cloth_error *inner)
 {
     if (inner->code == CLOTH_E_MEMORY)
         return cloth_fail(r->error, inner->code, "%s: %s", r->tree->path, inner->text);
@@ -31,11 +31,11 @@ static int read_pc2(const struct reading *r, int node, uint32_t *n, double **pla
     const int code =
         path ? mesh_read_pc2(path, r->mesh->n_vertices, n, place, &inner) : r->error->code;
     free(path);
-    return inner.code ? blame(r, node, &inner) : code;
+    return inner.code ? blame_file(r, node, &inner) : code;
 }
 
 /* Checks that a frame's mesh has the vertices and faces of the body's. */
-static int check_frame(const struct reading *r, int node, const struct mesh *frame)
+static int check_body_frame(const struct reading *r, int node, const struct mesh *frame)
 {
     const struct mesh *mesh = r->mesh;
     const char *name = scene_tree_scalar(r->tree, node);
@@ -63,9 +63,9 @@ static int read_obj(const struct reading *r, int node, double *place)
     int code =
         scene_build_obj(r->model, &frame, mesh_read_surface, r->tree, node, r->error, &inner);
     if (inner.code)
-        code = blame(r, node, &inner);
+        code = blame_file(r, node, &inner);
     if (!code)
-        code = check_frame(r, node, &frame);
+        code = check_body_frame(r, node, &frame);
     if (!code)
         memcpy(place, frame.position, 3 * (size_t)frame.n_vertices * sizeof *place);
     mesh_free(&frame);

@@ -12,7 +12,7 @@
 
 /* ---- Facts ---- */
 
-static bool has_triangles(const struct model *model, uint32_t entry)
+static bool has_any_triangles(const struct model *model, uint32_t entry)
 {
     bool has = false;
     (void)entry;
@@ -113,7 +113,7 @@ static const struct {
     const char *text;
     bool (*holds)(const struct model *model, uint32_t entry);
 } facts[] = {
-    {NEEDS_TRIANGLES, has_triangles},
+    {NEEDS_TRIANGLES, has_any_triangles},
     {NEEDS_WIND, has_wind},
     {NEEDS_NO_SINE, has_no_sine},
     {NEEDS_SPRINGS, has_springs},
@@ -196,8 +196,8 @@ static const char *compared(const struct needs_walk *walk, const struct needs_sc
 }
 
 /* True if a term that is no fact holds; its text is changed. */
-static bool holds(const struct needs_walk *walk, const struct needs_scope *scope,
-                  const struct scene_rule *rule, char *term)
+static bool term_holds(const struct needs_walk *walk, const struct needs_scope *scope,
+                       const struct scene_rule *rule, char *term)
 {
     const bool is_no = !strncmp(term, "no ", 3);
     char *rest = is_no ? term + 3 : term, *equal = strstr(term, " = "), *more = strstr(term, " > ");
@@ -247,7 +247,7 @@ static bool are_met(const struct needs_walk *walk, const struct needs_scope *sco
             end = strstr(needs, and);
             end = end ? end : needs + strlen(needs);
             snprintf(term, sizeof term, "%.*s", (int)(end - needs), needs);
-            met = holds(walk, scope, rule, term);
+            met = term_holds(walk, scope, rule, term);
         }
         needs = *end ? end + strlen(and) : NULL;
     }

@@ -1,4 +1,4 @@
-/* Checks of materials, time, air and solver beyond the rule of one key. */
+/* Checks of materials, time, air, solver and phases beyond the rule of one key. */
 #include "cloth/scene/build/build.h"
 
 #include "cloth/physics/triangle.h"
@@ -23,6 +23,17 @@ void *scene_build_array(size_t n, size_t size, struct cloth_error *error)
     if (!array)
         out_of_memory(error);
     return array;
+}
+
+void *scene_build_grow(void *list, size_t n, size_t more, size_t size, struct cloth_error *error)
+{
+    char *grown = realloc(list, (n + more) * size);
+    if (!grown) {
+        out_of_memory(error);
+        return NULL;
+    }
+    memset(grown + n * size, 0, more * size);
+    return grown;
 }
 
 char *scene_build_copy(const char *text, struct cloth_error *error)
@@ -52,21 +63,19 @@ int scene_build_warn(struct model *model, const struct scene_tree *tree, int nod
     va_end(list);
     const size_t size = place ? strlen(place) + strlen(text) + 3 : 0;
     char *warning = place ? scene_build_array(size, 1, error) : NULL;
-    char **all = realloc(model->warnings, (model->n_warnings + 1) * sizeof *all);
+    char **all = scene_build_grow(model->warnings, model->n_warnings, 1, sizeof *all, error);
     model->warnings = all ? all : model->warnings;
     if (warning && all) {
         snprintf(warning, size, "%s: %s", place, text);
         all[model->n_warnings++] = warning;
-    } else {
-        cloth_fail(error, CLOTH_E_MEMORY, "out of memory while the scene is read");
+    } else
         free(warning);
-    }
     free(place);
     return error->code;
 }
 
 /* The scene's name, else the file's without folder and ending. */
-static int build_name(struct model *model, const struct scene_tree *tree, struct cloth_error *error)
+static int name_scene(struct model *model, const struct scene_tree *tree, struct cloth_error *error)
 {
     const char *slash = strrchr(tree->path, '/');
     if (model->name)
@@ -181,7 +190,7 @@ static void build_count(struct model *model, const struct scene_tree *tree)
 int scene_build_world(struct model *model, struct scene_tree *tree, struct cloth_error *error)
 {
     build_count(model, tree);
-    int code = build_name(model, tree, error);
+    int code = name_scene(model, tree, error);
     if (!code)
         code = build_time(model, tree, error);
     if (!code)
@@ -189,4 +198,18 @@ int scene_build_world(struct model *model, struct scene_tree *tree, struct cloth
     if (!code)
         code = build_materials(model, tree, error);
     return code ? code : scene_build_obstacles(model, tree, error);
+}
+
+/* Messages and reports know phases by their names. */
+int scene_build_phases(struct model *model, struct scene_tree *tree, struct cloth_error *error)
+{
+    (void)tree;
+    for (uint32_t i = 0; i < model->n_phases; i++)
+        for (uint32_t k = 0; k < i; k++)
+            if (!strcmp(model->phases[i].name, model->phases[k].name))
+                return model_fail(model->phases[i].place, error,
+                                  "phases[%u].name is '%.60s', as that of phases[%u]; each phase "
+                                  "has a name of its own",
+                                  i, model->phases[i].name, k);
+    return CLOTH_OK;
 }

@@ -2,7 +2,7 @@ libduite_cloth_a_SOURCES += \
 	cloth/scene/scene.h \
 	cloth/scene/scene.c \
 	cloth/scene/pattern.h cloth/scene/pattern/reader.h \
-	cloth/scene/pattern/panels.c cloth/scene/pattern/pattern.c cloth/scene/pattern/stitches.c cloth/scene/pattern/values.c \
+	cloth/scene/pattern/panels.c cloth/scene/pattern/pattern.c cloth/scene/pattern/values.c \
 	cloth/scene/yaml/tree.h \
 	cloth/scene/yaml/tree.c \
 	cloth/scene/yaml/load.c \
@@ -28,8 +28,8 @@ libduite_cloth_a_SOURCES += \
 	cloth/scene/schema/words.c \
 	cloth/scene/schema/fabrics.h \
 	cloth/scene/schema/fabrics.c \
-	cloth/scene/schema/choice.h \
-	cloth/scene/schema/choice.c \
+	cloth/scene/schema/faults.h \
+	cloth/scene/schema/faults.c \
 	cloth/scene/schema/check.h \
 	cloth/scene/schema/check.c \
 	cloth/scene/build/build.h \

@@ -3,7 +3,7 @@
  * value of 0 or `off`, which asks for nothing. */
 #include "cloth/scene/schema/needs.h"
 #include "cloth/scene/build/build.h"
-#include "cloth/scene/schema/check.h"
+#include "cloth/scene/schema/faults.h"
 #include "cloth/scene/yaml/edit.h"
 #include "cloth/scene/yaml/scalar.h"
 
@@ -144,11 +144,6 @@ struct needs_scope {
     uint32_t entry; /* of the list or named map that it stands in */
 };
 
-static bool is_given(const struct scene_tree *tree, int node)
-{
-    return node && scene_tree_node(tree, node)->start_mark.index != SCENE_BY_DEFAULT;
-}
-
 static bool asks_for_anything(const struct scene_tree *tree, int node)
 {
     const char *text = scene_tree_scalar(tree, node);
@@ -216,7 +211,7 @@ static bool term_holds(const struct needs_walk *walk, const struct needs_scope *
     }
     while (rest) {
         const int node = find_key(walk, scope, rule, next_word(&rest));
-        any = any || (is_given(walk->tree, node) && asks_for_anything(walk->tree, node));
+        any = any || (scene_tree_is_given(walk->tree, node) && asks_for_anything(walk->tree, node));
     }
     return any != is_no;
 }
@@ -286,7 +281,7 @@ static int check_needs(const struct needs_walk *walk, const struct needs_scope *
     const bool is_map = rule->type == SCENE_MAP || rule->type == SCENE_ONE_OF;
     bool idle = false;
     int code = CLOTH_OK;
-    if (!is_given(walk->tree, node))
+    if (!scene_tree_is_given(walk->tree, node))
         return CLOTH_OK;
     if (rule->needs)
         code = warn_of_needs(walk, is_map ? &scope : up, at, rule, node, &idle);

@@ -99,7 +99,7 @@ static int build_obstacle(const struct model *model, struct model_probe *probe,
         return error->code;
     for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
         const int at = scene_tree_get(tree, node, others[i]);
-        if (at && scene_tree_node(tree, at)->start_mark.index != SCENE_BY_DEFAULT)
+        if (scene_tree_is_given(tree, at))
             return scene_tree_fail(tree, at, error,
                                    "probe '%.60s' is of an obstacle: its force on all cloth is "
                                    "reported, and %s means nothing",

@@ -144,7 +144,7 @@ static int build_time(struct model *model, const struct scene_tree *tree, struct
 {
     const int time = scene_tree_get(tree, 1, "time"), end = scene_tree_get(tree, time, "end");
     int fps = scene_tree_get(tree, time, "fps");
-    if (scene_tree_node(tree, fps)->start_mark.index == SCENE_BY_DEFAULT) {
+    if (!scene_tree_is_given(tree, fps)) {
         fps = end;
         free(model->fps_place);
         model->fps_place = scene_build_place(tree, fps, error);

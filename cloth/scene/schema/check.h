@@ -4,19 +4,6 @@
 #include "cloth/scene/schema/rules.h"
 #include "cloth/scene/yaml/tree.h"
 
-/* A place in a scene: a chain up to the root, for the names of keys in sentences. */
-struct scene_place {
-    const struct scene_place *up;
-    const char *key; /* NULL: entry `index` of a list */
-    size_t index;
-};
-
-/* Writes "cloths[0].mesh"; the root is "the scene". Returns its length, as snprintf does. */
-size_t scene_place_path(const struct scene_place *at, char *text, size_t size);
-
-/* The rule of a key among those of a map; NULL: there is none. */
-const struct scene_rule *scene_rule_of(const struct scene_rule *keys, const char *name);
-
 /* Checks a tree against the schema, adds the defaults and fills a zeroed model. Afterwards every
  * key that has a default is there. Every value is of its type and in its range, and stands in the
  * field that its rule names. Allocations belong to the model, also after an error. Errors name the

@@ -1,6 +1,6 @@
-/* The page of all keys in Markdown, behind its opening (opening.md): a table for each map
- * that has a section. Maps without one are rows of the table around them. A section that several
- * keys have is printed at the first of them; the others link to it. */
+/* The list of all keys, and their page in Markdown, behind its opening (opening.md): a table for
+ * each map that has a section. Maps without one are rows of the table around them. A section that
+ * several keys have is printed at the first of them; the others link to it. */
 #include "cloth/scene/scene.h"
 #include "cloth/scene/schema/rules.h"
 
@@ -238,4 +238,30 @@ void scene_print_page(FILE *file)
     fputs("\n## Keys\n", file);
     print_table(file, &scene_root, NULL);
     print_sections(&page, &scene_root, "", 2);
+}
+
+/* ---- The list ---- */
+
+static void list_keys(FILE *file, const struct scene_rule *of, const char *path)
+{
+    for (const struct scene_rule *key = of->inside; key->key; key++) {
+        char expected[200];
+        fprintf(file, "%s: %s; ", path_of(path, key).text,
+                scene_rule_expected(key, expected, sizeof expected));
+        if (key->fallback)
+            fprintf(file, "default %s\n", key->fallback);
+        else
+            fprintf(file, "%s\n",
+                    of->type == SCENE_ONE_OF || key->choice ? "a choice"
+                    : key->required                         ? "required"
+                                                            : "optional");
+        fprintf(file, "    %s\n", key->about);
+        if (map_of(key))
+            list_keys(file, map_of(key), path_inside(path, key).text);
+    }
+}
+
+void scene_print_keys(FILE *file)
+{
+    list_keys(file, &scene_root, "");
 }

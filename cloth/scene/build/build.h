@@ -97,6 +97,16 @@ int scene_build_pick_once(struct model_pick *pick, const struct scene_tree *tree
                           const struct model_cloth *cloth, const char *what,
                           struct cloth_error *error);
 
+/* The error `inner` of a file or part, at the node that names it: "what: sentence". Without one:
+ * code. */
+int scene_build_blame(int code, const struct cloth_error *inner, const char *what,
+                      const struct scene_tree *tree, int node, struct cloth_error *error);
+
+/* Checks n numbers of vertices, which the list at a node has. */
+int scene_build_check_vertices(const uint32_t *vertices, uint32_t n,
+                               const struct model_cloth *cloth, const struct scene_tree *tree,
+                               int list, struct cloth_error *error);
+
 /* The error that the mesh of the cloth has no vertex of this number. */
 int scene_build_no_vertex(uint32_t vertex, const struct model_cloth *cloth,
                           const struct scene_tree *tree, int node, struct cloth_error *error);

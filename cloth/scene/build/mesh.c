@@ -204,10 +204,7 @@ int scene_build_mesh(struct model *model, struct model_cloth *cloth, struct scen
         code = scene_build_pattern(model, cloth, tree, kind.value, error, &inner);
     else
         code = build_inline(mesh, tree, kind.value, error, &inner);
-    if (inner.code == CLOTH_E_MEMORY)
-        return cloth_fail(error, inner.code, "%s: %s", tree->path, inner.text);
-    if (inner.code)
-        return scene_tree_fail(tree, kind.value, error, "mesh: %s", inner.text);
+    code = scene_build_blame(code, &inner, "mesh", tree, kind.value, error);
     if (code)
         return code;
     mesh_apply(mesh, &transform);

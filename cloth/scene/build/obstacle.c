@@ -91,11 +91,8 @@ static int build_body_file(struct model *model, struct mesh *mesh,
 {
     struct cloth_error inner = {0};
     const int file = scene_tree_get(tree, node, "obj");
-    const int code = scene_build_obj(model, mesh, mesh_read_surface, tree, file, error, &inner);
-    if (inner.code == CLOTH_E_MEMORY)
-        return cloth_fail(error, inner.code, "%s: %s", tree->path, inner.text);
-    if (inner.code)
-        return scene_tree_fail(tree, file, error, "body: %s", inner.text);
+    int code = scene_build_obj(model, mesh, mesh_read_surface, tree, file, error, &inner);
+    code = scene_build_blame(code, &inner, "body", tree, file, error);
     if (code)
         return code;
     mesh_apply(mesh, transform);
@@ -161,17 +158,15 @@ static int build_body(struct model *model, struct contact_shape *shape, struct s
     struct mesh mesh = {0};
     struct contact_frames frames;
     double *place = NULL;
+    char what[220];
     const int source = source_of(tree, node);
     bool turned = false;
     int code = build_body_mesh(model, &mesh, &frames, &place, tree, node, error);
     if (!code)
         code = contact_bodies_add_frames(&model->bodies, &mesh, frames.n ? &frames : NULL, &turned,
                                          &inner);
-    if (inner.code)
-        code = inner.code == CLOTH_E_MEMORY
-                   ? cloth_fail(error, inner.code, "%s: %s", tree->path, inner.text)
-                   : scene_tree_fail(tree, source, error, "body: %.200s: %s",
-                                     source_name(tree, node), inner.text);
+    snprintf(what, sizeof what, "body: %.200s", source_name(tree, node));
+    code = scene_build_blame(code, &inner, what, tree, source, error);
     if (!code)
         code = warn_of_body(model, tree, source, turned, error);
     if (!code)

@@ -318,9 +318,7 @@ static int read_seams_file(struct model *model, struct model_cloth *cloth,
     const int code =
         path ? scene_read_seams(&cloth->seams, &cloth->mesh, path, &inner) : error->code;
     free(path);
-    if (inner.code == CLOTH_E_MEMORY)
-        return cloth_fail(error, inner.code, "%s: %s", tree->path, inner.text);
-    return inner.code ? scene_tree_fail(tree, node, error, "seams: %s", inner.text) : code;
+    return scene_build_blame(code, &inner, "seams", tree, node, error);
 }
 
 static int find_seams(struct model *model, struct model_cloth *cloth, const struct scene_tree *tree,

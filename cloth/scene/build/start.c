@@ -125,12 +125,10 @@ static int take_frame(struct model_cloth *cloth, const struct scene_settled *fro
     double *places = NULL;
     int code =
         mesh_read_pc2_frame(folder->pc2, folder->n_all, frame_of(from), &n_frames, &places, &inner);
-    if (code == CLOTH_E_MEMORY)
-        return cloth_fail(error, code, "%s: %s", tree->path, inner.text);
-    if (code)
-        return scene_tree_fail(tree, scene_tree_get(tree, node, "frames"), error, "from: %s",
-                               inner.text);
-    code = check_from_frame(from, n_frames, folder, tree, node, error);
+    code =
+        scene_build_blame(code, &inner, "from", tree, scene_tree_get(tree, node, "frames"), error);
+    if (!code)
+        code = check_from_frame(from, n_frames, folder, tree, node, error);
     if (!code)
         code = take_places(cloth, folder, places, tree, node, error);
     free(places);

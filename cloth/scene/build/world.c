@@ -74,6 +74,14 @@ int scene_build_warn(struct model *model, const struct scene_tree *tree, int nod
     return error->code;
 }
 
+int scene_build_blame(int code, const struct cloth_error *inner, const char *what,
+                      const struct scene_tree *tree, int node, struct cloth_error *error)
+{
+    if (inner->code == CLOTH_E_MEMORY)
+        return cloth_fail(error, inner->code, "%s: %s", tree->path, inner->text);
+    return inner->code ? scene_tree_fail(tree, node, error, "%s: %s", what, inner->text) : code;
+}
+
 /* The scene's name, else the file's without folder and ending. */
 static int name_scene(struct model *model, const struct scene_tree *tree, struct cloth_error *error)
 {

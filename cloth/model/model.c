@@ -201,7 +201,7 @@ double model_friction(const struct model *model, uint32_t cloth, uint32_t other)
     return friction;
 }
 
-static bool has_material(const struct model_cloth *cloth, uint32_t material)
+bool model_has_material(const struct model_cloth *cloth, uint32_t material)
 {
     bool found = cloth->material == material;
     for (uint32_t i = 0; i < cloth->n_regions; i++)
@@ -214,7 +214,7 @@ void model_parts(const struct model *model, uint32_t material, bool *triangles, 
     *triangles = *edges = false;
     for (uint32_t c = 0; c < model->n_cloths; c++) {
         const struct model_cloth *cloth = model->cloths + c;
-        const bool has = has_material(cloth, material);
+        const bool has = model_has_material(cloth, material);
         *triangles = *triangles || (has && cloth->mesh.n_triangles);
         *edges = *edges || (has && cloth->mesh.n_bare_edges);
     }
@@ -234,7 +234,7 @@ struct mesh_elastic model_elastic(const struct model *model, uint32_t material)
     if (m->model == MODEL_TRIANGLES)
         return (struct mesh_elastic){m->stretch, model_weft(m), m->shear, m->poisson};
     for (uint32_t c = 0; c < model->n_cloths; c++) {
-        if (!has_material(model->cloths + c, material) || !model->cloths[c].mesh.n_triangles)
+        if (!model_has_material(model->cloths + c, material) || !model->cloths[c].mesh.n_triangles)
             continue;
         const struct mesh_moduli moduli = model_moduli(m);
         const struct mesh_elastic one = mesh_elastic_of(model_rest(model->cloths + c), &moduli);

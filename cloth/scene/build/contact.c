@@ -47,15 +47,17 @@ static bool has_edges_to_stop(const struct model *model)
     return has && model->n_obstacles;
 }
 
-void scene_build_contact(struct model *model, const struct scene_tree *tree)
+int scene_build_contact(struct model *model, struct scene_tree *tree, struct cloth_error *error)
 {
     const int contact = scene_tree_get(tree, 1, "contact");
+    (void)error;
     if (scene_tree_get(tree, contact, "mode"))
-        return;
+        return CLOTH_OK;
     model->contact.assumed = true;
     if (model_is_implicit(model) && has_surfaces(model) && !has_edges_to_stop(model) &&
         !has_maps(model))
         model->contact.mode = MODEL_CONTACT_CERTIFIED;
+    return CLOTH_OK;
 }
 
 /* ---- Scenes without contact ---- */
@@ -70,9 +72,12 @@ static bool meets_anything(const struct model *model, uint32_t cloth)
     return meets;
 }
 
-void scene_build_contact_idle(struct model *model)
+int scene_build_contact_idle(struct model *model, struct scene_tree *tree,
+                             struct cloth_error *error)
 {
     bool idle = true;
+    (void)tree;
+    (void)error;
     for (uint32_t c = 0; c < model->n_cloths; c++)
         idle = idle && !meets_anything(model, c);
     for (uint32_t i = 0; i < model->n_probes; i++) {
@@ -80,12 +85,13 @@ void scene_build_contact_idle(struct model *model)
         idle = idle && !probe->by_obstacle && !probe->contact && !probe->contact_total;
     }
     model->contact.idle = idle;
+    return CLOTH_OK;
 }
 
 /* ---- Its needs ---- */
 
 /* The largest coordinate of a vertex where it starts, m. */
-static double farthest(const struct model *model)
+static double farthest_coordinate(const struct model *model)
 {
     double far = 0;
     for (uint32_t c = 0; c < model->n_cloths; c++) {
@@ -102,7 +108,7 @@ static double farthest(const struct model *model)
 static int check_thickness(const struct model *model, const struct scene_tree *tree, int node,
                            struct cloth_error *error)
 {
-    const double far = farthest(model);
+    const double far = farthest_coordinate(model);
     const double least = (MARGIN + 2 * sqrt(3) * far / 16777216) / OPEN;
     if (model->contact.thickness >= least)
         return CLOTH_OK;
@@ -134,7 +140,7 @@ static int check_bodies(const struct model *model, const struct scene_tree *tree
                            "them; meet: bvh, or contact: {mode: project}, is expected");
 }
 
-int scene_build_check_contact(const struct model *model, const struct scene_tree *tree,
+int scene_build_check_contact(struct model *model, struct scene_tree *tree,
                               struct cloth_error *error)
 {
     const int contact = scene_tree_get(tree, 1, "contact");

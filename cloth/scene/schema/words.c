@@ -1,9 +1,8 @@
-/* Words for people: the values that a rule allows, guesses for a wrong word, and the list of all
- * keys. */
-#include "cloth/scene/scene.h"
+/* Words for people: the values that a rule allows, and guesses for a wrong word. */
 #include "cloth/scene/schema/rules.h"
 
 #include <stdint.h>
+#include <stdio.h>
 #include <string.h>
 
 enum { LONGEST = 31 }; /* words beyond this length are not guessed at */
@@ -188,44 +187,4 @@ char *scene_rule_expected(const struct scene_rule *rule, char *text, size_t size
     }
     append_unit(rule, text, size);
     return text;
-}
-
-static void print_keys(FILE *file, const struct scene_rule *of, const char *path);
-
-static void print_inside(FILE *file, const struct scene_rule *rule, const char *path)
-{
-    char deeper[160];
-    if (rule->type == SCENE_MAP || rule->type == SCENE_ONE_OF) {
-        print_keys(file, rule, path);
-    } else if (rule->type == SCENE_NAMED) {
-        snprintf(deeper, sizeof deeper, "%s.NAME", path);
-        print_inside(file, rule->inside, deeper);
-    } else if (rule->type == SCENE_LIST) {
-        snprintf(deeper, sizeof deeper, "%s[]", path);
-        print_inside(file, rule->inside, deeper);
-    }
-}
-
-static void print_keys(FILE *file, const struct scene_rule *of, const char *path)
-{
-    for (const struct scene_rule *key = of->inside; key->key; key++) {
-        char here[160], expected[200];
-        snprintf(here, sizeof here, "%s%s%s", path, *path ? "." : "", key->key);
-        scene_rule_expected(key, expected, sizeof expected);
-        fprintf(file, "%s: %s; ", here, expected);
-        if (key->fallback)
-            fprintf(file, "default %s\n", key->fallback);
-        else
-            fprintf(file, "%s\n",
-                    of->type == SCENE_ONE_OF || key->choice ? "a choice"
-                    : key->required                         ? "required"
-                                                            : "optional");
-        fprintf(file, "    %s\n", key->about);
-        print_inside(file, key, here);
-    }
-}
-
-void scene_print_keys(FILE *file)
-{
-    print_keys(file, &scene_root, "");
 }

@@ -1,5 +1,7 @@
-/* Every rule fits the field that it fills: fields are found by offset, so no compiler looks. */
-#include "cloth/scene/schema/rules.h"
+/* Every rule fits the field that it fills: fields are found by offset, so no compiler looks. The
+ * examples of the page of all keys are what the rules allow. */
+#include "cloth/scene/schema/check.h"
+#include "tests/cloth/scene/scene_file.h"
 #include "tests/support/unit.h"
 
 #include <stdio.h>
@@ -148,12 +150,71 @@ START_TEST(words_mean_one_thing)
 }
 END_TEST
 
+/* The map of a rule, and the maps around it. */
+struct scope {
+    const struct scope *up;
+    const struct scene_rule *map;
+};
+
+static unsigned n_examples;
+
+static const struct scene_rule *rule_in(const struct scope *scope, const char *name)
+{
+    for (; scope; scope = scope->up)
+        for (const struct scene_rule *key = scope->map->inside; key->key; key++)
+            if (!strcmp(key->key, name))
+                return key;
+    return NULL;
+}
+
+/* Whole scenes run in tests/whole/test_options.sh. */
+static void check_example(const struct scope *scope, const char *example)
+{
+    struct cloth_error error = {0};
+    struct scene_tree tree;
+    if (!example || !strncmp(example, "schema:", 7))
+        return;
+    scene_write_file("scene.yaml", example, strlen(example));
+    int code = scene_tree_load(&tree, scene_path(), &scene_words, &error);
+    for (size_t i = 0; !code && i < scene_tree_length(&tree, 1); i++) {
+        const char *name = scene_tree_scalar(&tree, scene_tree_pair(&tree, 1, i).key);
+        const struct scene_rule *rule = rule_in(scope, name);
+        ck_assert_msg(rule, "%s is no key", name);
+        code = scene_fill(NULL, rule, &tree, scene_tree_pair(&tree, 1, i).value, &error);
+    }
+    ck_assert_msg(!code, "%s in the example\n%s", error.text, example);
+    scene_tree_free(&tree);
+    n_examples++;
+}
+
+static void check_examples(const struct scene_rule *map, const struct scope *up)
+{
+    const struct scope scope = {up, map};
+    for (const struct scene_rule *key = map->inside; key->key; key++) {
+        const struct scene_rule *inside = key;
+        if (key->section)
+            check_example(&scope, key->section->example);
+        while (inside->type == SCENE_LIST || inside->type == SCENE_NAMED)
+            inside = inside->inside;
+        if (inside->type == SCENE_MAP || inside->type == SCENE_ONE_OF)
+            check_examples(inside, &scope);
+    }
+}
+
+START_TEST(examples_are_allowed)
+{
+    check_examples(&scene_root, NULL);
+    ck_assert_uint_ge(n_examples, 25);
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("scene rules");
     TCase *cases = tcase_create("rules");
     tcase_add_test(cases, rules_fit_their_fields);
     tcase_add_test(cases, words_mean_one_thing);
+    tcase_add_test(cases, examples_are_allowed);
     suite_add_tcase(suite, cases);
     return unit_run(suite);
 }

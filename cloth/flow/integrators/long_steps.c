@@ -1,5 +1,5 @@
 /* A warned run is made all the same: the estimate is of the start alone. */
-#include "cloth/flow/integrators/long_steps.h"
+#include "cloth/flow/integrators/integrator.h"
 
 #include "cloth/base/memory.h"
 #include "cloth/flow/contact/repel.h"
@@ -28,7 +28,7 @@ static double growth_of(double turn)
 static void warn_explicit(struct flow *flow, const struct flow_limit *limit)
 {
     const struct model *model = flow->model;
-    const char *name = model_integrator_name(model->integrator), *place = place_of(model);
+    const char *name = model_scheme(model)->name, *place = place_of(model);
     const double max = flow_limit_of(limit, model->integrator), turn = model->h * limit->omega;
     const size_t size = sizeof flow->warning[4];
     if (!(max > 0))
@@ -60,7 +60,7 @@ static void warn_of_contacts(struct flow *flow)
                  "%.200s: steps of %g s are beyond what contacts of stiffness %g N/m and damping "
                  "%g allow %s, %g s: what they push can bounce ever harder",
                  place_of(model), model->h, spring.stiffness, model->contact.damping,
-                 model_integrator_name(model->integrator), max);
+                 model_scheme(model)->name, max);
 }
 
 static void warn_implicit(struct flow *flow, const struct flow_limit *limit)

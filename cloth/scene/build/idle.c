@@ -94,8 +94,8 @@ static bool takes_one_newton_step(const struct model *model)
 
 static bool guesses_nothing(const struct model *model)
 {
-    const bool knows = model->integrator == MODEL_IMPLICIT_EULER && model->newton_steps == 1;
-    return model_is_implicit(model) && model->guess == MODEL_GUESS_PREVIOUS && !knows;
+    return model_is_implicit(model) && model->guess == MODEL_GUESS_PREVIOUS &&
+           !model_is_linear(model);
 }
 
 static bool counts_iterations(const struct model *model)

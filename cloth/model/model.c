@@ -3,6 +3,7 @@
 
 #include "cloth/base/memory.h"
 #include "cloth/base/sets.h"
+#include "cloth/physics/limit.h"
 #include "cloth/solve/patches.h"
 
 #include <math.h>
@@ -137,31 +138,24 @@ void model_free(struct model *model)
     *model = (struct model){0};
 }
 
-const struct model_word model_integrators[] = {{"implicit_euler", MODEL_IMPLICIT_EULER},
-                                               {"explicit_euler", MODEL_EXPLICIT_EULER},
-                                               {"symplectic_euler", MODEL_SYMPLECTIC_EULER},
-                                               {"verlet", MODEL_VERLET},
-                                               {"midpoint", MODEL_MIDPOINT},
-                                               {"rk4", MODEL_RK4},
-                                               {"bdf2", MODEL_BDF2},
-                                               {0}};
+/* In the order of sentences that list them. */
+#define INTEGRATORS(X)                                                                             \
+    X(MODEL_IMPLICIT_EULER, "implicit_euler", .linear = true)                                      \
+    X(MODEL_EXPLICIT_EULER, "explicit_euler", .limit = phys_limit_euler)                           \
+    X(MODEL_SYMPLECTIC_EULER, "symplectic_euler", .limit = phys_limit_symplectic,                  \
+      .staggered = true)                                                                           \
+    X(MODEL_VERLET, "verlet", .limit = phys_limit_verlet, .drag_free = true)                       \
+    X(MODEL_RK4, "rk4", .limit = phys_limit_rk4)                                                   \
+    X(MODEL_BDF2, "bdf2", .falls_back = true)
+#define WORD_OF(number, word, ...) {word, number},
+#define ROW_OF(number, word, ...)  [number] = {.name = word, __VA_ARGS__},
+const struct model_word model_integrators[] = {INTEGRATORS(WORD_OF){0}};
+const struct model_scheme model_schemes[] = {INTEGRATORS(ROW_OF)};
 
 const struct model_word model_contact_modes[] = {{"certified", MODEL_CONTACT_CERTIFIED},
                                                  {"repulsion", MODEL_CONTACT_REPULSION},
                                                  {"project", MODEL_CONTACT_PROJECT},
                                                  {0}};
-
-static const char *word_of(const struct model_word *word, int value)
-{
-    while (word->word && word->value != value)
-        word++;
-    return word->word;
-}
-
-const char *model_integrator_name(enum model_integrator integrator)
-{
-    return word_of(model_integrators, (int)integrator);
-}
 
 bool model_feels_contact(const struct model *model)
 {
@@ -175,7 +169,10 @@ bool model_feels_contact(const struct model *model)
 
 const char *model_contact_name(const struct model *model)
 {
-    return word_of(model_contact_modes, (int)model->contact.mode);
+    const struct model_word *word = model_contact_modes;
+    while (word->word && word->value != (int)model->contact.mode)
+        word++;
+    return word->word;
 }
 
 bool model_meets(const struct model *model, uint32_t cloth, uint32_t other)
@@ -321,7 +318,7 @@ bool model_is_guarded(const struct model *model)
     const double *wind = model->air.wind;
     const bool blown = model_has_air(model) && (wind[0] != 0 || wind[1] != 0 || wind[2] != 0);
     return model_is_implicit(model) && model->energy_growth > 0 && !blown && !model->n_motions &&
-           !model->n_curves && !model->own_filter && !model_obstacles_move(model);
+           !model->n_curves && !model_obstacles_move(model);
 }
 
 bool model_is_coarse(const struct model *model)

@@ -32,17 +32,30 @@ struct model_phase {
     char *name, *place;
 };
 
-/* Explicit ones come first. docs/physics.md has their formulas. */
+/* docs/physics.md has their formulas. */
 enum model_integrator {
     MODEL_EXPLICIT_EULER,   /* x by the velocity before the step */
     MODEL_SYMPLECTIC_EULER, /* x by the velocity after it */
     MODEL_VERLET,           /* velocity Verlet, drag solved for in the first half step */
-    MODEL_MIDPOINT,         /* the explicit midpoint method */
     MODEL_RK4,              /* the classical Runge-Kutta method */
     MODEL_IMPLICIT_EULER,
     MODEL_BDF2 /* begins with implicit Euler, also after contact or a change of h */
 };
 enum { MODEL_INTEGRATORS = MODEL_BDF2 + 1 };
+
+/* What the rest asks of an integrator: a row of model_schemes (model.c). Its part of a step is a
+ * row of flow_integrators. */
+struct model_scheme {
+    const char *name; /* in scenes */
+    /* The longest step, s, that lets no vibration of omega, rad/s, with damping, 1/s, grow
+     * (cloth/physics/limit.h). NULL: it is implicit, as no step is too long for it. */
+    double (*limit)(double omega, double damping);
+    bool drag_free;  /* the drag is solved for: it does not shorten the limit */
+    bool staggered;  /* x moves by the new v: v is that of half a step before x */
+    bool linear;     /* its step has one system, of the state that it begins with, if it takes one
+                      * Newton step: dv of the step before is a guess of its dv */
+    bool falls_back; /* a step that gained energy is made again by implicit Euler */
+};
 enum model_contact_mode {
     MODEL_CONTACT_PROJECT,   /* vertices in an obstacle are put onto it after the step */
     MODEL_CONTACT_REPULSION, /* springs push apart near features when a step begins */
@@ -156,7 +169,6 @@ struct model {
     uint32_t patches;  /* of a block, for the coarse space, at most 4; 0: as model_patches finds */
     bool exact_coarse; /* one factor of it, however many patches there are: not in scenes */
     enum solve_format format; /* of the matrix; springs alone can be SOLVE_SPRINGS */
-    int own_filter;           /* solves are filtered by the program's flow_filter, too */
     int full_slope; /* enum phys_slope, of the matrix; only springs know PHYS_ABSOLUTE, which is
                        PHYS_DEFINITE to all else */
 
@@ -172,9 +184,20 @@ struct model {
     char *settings;  /* a line `key: value` of each that the state depends on, sorted */
 };
 
-static inline int model_is_implicit(const struct model *model)
+extern const struct model_scheme model_schemes[MODEL_INTEGRATORS];
+static inline const struct model_scheme *model_scheme(const struct model *model)
 {
-    return model->integrator >= MODEL_IMPLICIT_EULER;
+    return model_schemes + model->integrator;
+}
+static inline bool model_is_implicit(const struct model *model)
+{
+    return !model_scheme(model)->limit;
+}
+
+/* True if each step solves one system, of the state that it begins with. */
+static inline bool model_is_linear(const struct model *model)
+{
+    return model_scheme(model)->linear && model->newton_steps <= 1;
 }
 
 /* True if its steps end where all contacts are certified. False if nothing can touch. */
@@ -222,10 +245,10 @@ static inline bool model_seeks(const struct model *model)
     return model_certifies(model) || model_repels(model);
 }
 
-/* True if its solves are filtered by more than points: by sliders or the program. */
+/* True if its solves are filtered by more than points: by sliders. */
 static inline int model_is_filtered(const struct model *model)
 {
-    return model_is_implicit(model) && (model->n_sliders || model->own_filter);
+    return model_is_implicit(model) && model->n_sliders;
 }
 
 static inline bool model_follows(const struct model *model)
@@ -261,7 +284,7 @@ bool model_is_guarded(const struct model *model);
 static inline bool model_keeps(const struct model *model)
 {
     return model->halving || model->correction_rounds || model_certifies(model) ||
-           (model->integrator == MODEL_BDF2 && model_is_guarded(model));
+           (model_scheme(model)->falls_back && model_is_guarded(model));
 }
 
 /* True if x and v stay as an explicit integrator ended a step: no contact, pin or correction
@@ -287,7 +310,6 @@ uint32_t model_patches(const struct model *model, uint32_t n_blocks);
 
 /* Their names in scenes. */
 extern const struct model_word model_integrators[];
-const char *model_integrator_name(enum model_integrator integrator);
 extern const struct model_word model_contact_modes[];
 const char *model_contact_name(const struct model *model);
 

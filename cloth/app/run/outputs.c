@@ -40,7 +40,7 @@ static int open_system(struct outputs *to, const struct model *model, struct clo
     if (!model_is_implicit(model))
         return cloth_fail(error, CLOTH_E_INPUT,
                           "--save-system: an explicit integrator solves no system");
-    if (model->integrator != MODEL_IMPLICIT_EULER || model->newton_steps > 1)
+    if (!model_is_linear(model))
         return cloth_fail(error, CLOTH_E_INPUT,
                           "--save-system: a step has one system of its own by implicit_euler with "
                           "newton.steps 1 only");

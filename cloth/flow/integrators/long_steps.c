@@ -1,5 +1,5 @@
 /* A warned run is made all the same: the estimate is of the start alone. */
-#include "cloth/flow/integrators/long_steps.h"
+#include "cloth/flow/integrators/integrator.h"
 
 #include "cloth/base/memory.h"
 #include "cloth/flow/contact/repel.h"
@@ -18,20 +18,17 @@ static const char *place_of(const struct model *model)
     return model->h_place ? model->h_place : "h";
 }
 
-/* The part that a step of explicit Euler or the midpoint method adds to an undamped vibration.
- * turn: h w. */
-static double growth_of(enum model_integrator integrator, double turn)
+/* The part that a step of explicit Euler adds to an undamped vibration. turn: h w. */
+static double growth_of(double turn)
 {
-    const double squared = turn * turn;
-    const double more = integrator == MODEL_MIDPOINT ? squared * squared / 4 : squared;
-    return more / (1 + sqrt(1 + more));
+    return turn * turn / (1 + sqrt(1 + turn * turn));
 }
 
 /* An explicit step that lets vibrations grow is made all the same. */
 static void warn_explicit(struct flow *flow, const struct flow_limit *limit)
 {
     const struct model *model = flow->model;
-    const char *name = model_integrator_name(model->integrator), *place = place_of(model);
+    const char *name = model_scheme(model)->name, *place = place_of(model);
     const double max = flow_limit_of(limit, model->integrator), turn = model->h * limit->omega;
     const size_t size = sizeof flow->warning[FLOW_WARN_STEP];
     if (!(max > 0))
@@ -40,7 +37,7 @@ static void warn_explicit(struct flow *flow, const struct flow_limit *limit)
                  "(up to %g rad/s, at vertex %u of cloth '%.60s', counted from 1) can grow by %g "
                  "%% in each of %g s",
                  place, name, limit->omega, limit->vertex + 1, limit->cloth->name,
-                 100 * growth_of(model->integrator, turn), model->h);
+                 100 * growth_of(turn), model->h);
     else if (model->h > max)
         snprintf(
             flow->warning[FLOW_WARN_STEP], size,
@@ -63,7 +60,7 @@ static void warn_of_contacts(struct flow *flow)
                  "%.200s: steps of %g s are beyond what contacts of stiffness %g N/m and damping "
                  "%g allow %s, %g s: what they push can bounce ever harder",
                  place_of(model), model->h, spring.stiffness, model->contact.damping,
-                 model_integrator_name(model->integrator), max);
+                 model_scheme(model)->name, max);
 }
 
 static void warn_implicit(struct flow *flow, const struct flow_limit *limit)

@@ -1,5 +1,5 @@
 /* Warnings about a model. Each kind has its place in flow->warning, and says at most one thing. */
-#include "cloth/flow/integrators/long_steps.h"
+#include "cloth/flow/integrators/integrator.h"
 #include "cloth/flow/run/setup.h"
 #include "cloth/flow/state/state.h"
 

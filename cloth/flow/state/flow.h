@@ -42,7 +42,6 @@ enum {
     FLOW_NO_MEMORY,
     FLOW_NOT_CONVERGED,
     FLOW_STRETCHED,
-    FLOW_NO_FILTER,
     FLOW_TANGLED,
     FLOW_PINCHED,
     FLOW_UNSEWN,
@@ -112,7 +111,6 @@ struct flow {
     struct flow_watched watched;
     char *header; /* of the table of probes; NULL: none */
 
-    struct flow_filter filter;   /* the program's; rows NULL: none */
     struct flow_checkpoint from; /* that the run goes on from; bytes NULL: none */
 
     /* The run under way. */

@@ -154,7 +154,7 @@ int scene_build_check_contact(struct model *model, struct scene_tree *tree,
                                "contact.mode is certified, which implicit_euler and bdf2 can do: "
                                "explicit steps (integrator: %s) solve no system that knows of "
                                "contact; repulsion or project is expected",
-                               model_integrator_name(model->integrator));
+                               model_scheme(model)->name);
     const int code = check_bodies(model, tree, error);
     return code ? code
                 : check_thickness(model, tree, scene_tree_get(tree, contact, "thickness"), error);

@@ -25,7 +25,8 @@ static const struct {
 } outdated[] = {
     {"contact", "project", "write contact: {mode: project}"},
     {"contact", "filter", "it is gone; contact: {mode: certified} or {mode: project} is there"},
-    {"mode", "filter", "it is gone; certified knows of contact in the solve, too"}};
+    {"mode", "filter", "it is gone; certified knows of contact in the solve, too"},
+    {"integrator", "midpoint", "use verlet, which has its order at half the work"}};
 
 static const char *more_of(const struct scene_walk *walk, const struct scene_place *at, int node)
 {

@@ -94,7 +94,11 @@ START_TEST(wrong_kinds)
             .error = ":4:11: cloths[0].name has the tag !mine; a value without a tag is expected"},
            {"gravity: [0, -9.81, 0]", "integrator: rk5",
             .error = ":2:13: integrator is rk5; implicit_euler or explicit_euler or "
-                     "symplectic_euler or verlet or midpoint or rk4 or bdf2 is expected"});
+                     "symplectic_euler or verlet or rk4 or bdf2 is expected"},
+           {"gravity: [0, -9.81, 0]", "integrator: midpoint",
+            .error = ":2:13: integrator is midpoint; implicit_euler or explicit_euler or "
+                     "symplectic_euler or verlet or rk4 or bdf2 is expected: use verlet, which has "
+                     "its order at half the work"});
 }
 END_TEST
 

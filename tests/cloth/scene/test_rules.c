@@ -143,7 +143,7 @@ START_TEST(words_mean_one_thing)
     check_all_words(&scene_root);
     for (int i = 0; i < MODEL_INTEGRATORS; i++) {
         bool known;
-        const char *name = model_integrator_name((enum model_integrator)i);
+        const char *name = model_schemes[i].name;
         ck_assert_int_eq(scene_word_value(model_integrators, name, &known), i);
         ck_assert(known);
     }

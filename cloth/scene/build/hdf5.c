@@ -20,7 +20,7 @@ static int check(const struct model *model, const struct scene_tree *tree, int i
                                "output.hdf5 has the field %s, which materials with model: "
                                "triangles have; no cloth has one",
                                word);
-    if (model->hdf5.contact_force && !(model->contact.force && model_certifies(model)))
+    if (model->hdf5.contact_force && !model_shows_contact(model))
         return scene_tree_fail(tree, item, error,
                                "output.hdf5 has the field %s, which contact: {mode: certified, "
                                "force: on} knows, where there is anything to touch",

@@ -64,7 +64,7 @@ static bool is_explicit(const struct model *model)
 
 static bool certifies_nothing(const struct model *model)
 {
-    return !model_is_implicit(model) || model->contact.mode != MODEL_CONTACT_CERTIFIED;
+    return !model_promise_of_mode(model).apart;
 }
 
 static bool meets_nothing(const struct model *model)
@@ -74,7 +74,7 @@ static bool meets_nothing(const struct model *model)
 
 static bool repels_nothing(const struct model *model)
 {
-    return !model_repels(model);
+    return !model_promise(model).springs;
 }
 
 /* True under project if cloths meet all obstacles: there cloths never meet each other. */
@@ -321,7 +321,7 @@ static int warn_of_layer(const struct idle_scene *scene, int cloth)
 {
     const int node = scene_tree_get(scene->tree, cloth, "layer");
     const struct model *model = scene->model;
-    if (!is_given(scene->tree, node) || (model_certifies(model) && model->contact.untangle))
+    if (!is_given(scene->tree, node) || (model_promise(model).apart && model->contact.untangle))
         return CLOTH_OK;
     return warn(scene, node, "layer means nothing: it is of contact.untangle");
 }

@@ -63,7 +63,7 @@ static int check_contact(const struct model *model, const struct model_probe *pr
                          const struct scene_tree *tree, int node, struct cloth_error *error)
 {
     const int at = contact_at(probe, tree, node);
-    if (!at || model_certifies(model))
+    if (!at || model_promise(model).force)
         return CLOTH_OK;
     return scene_tree_fail(tree, at, error,
                            "probe '%.60s' reports the force of contact, which contact.mode "

@@ -2,7 +2,7 @@
 #include "cloth/flow/integrators/integrator.h"
 
 #include "cloth/base/memory.h"
-#include "cloth/flow/contact/repel.h"
+#include "cloth/flow/contact/mode.h"
 #include "cloth/flow/state/state.h"
 
 #include <math.h>
@@ -50,7 +50,7 @@ static void warn_explicit(struct flow *flow, const struct flow_limit *limit)
 static void warn_of_contacts(struct flow *flow)
 {
     const struct model *model = flow->model;
-    const struct contact_spring spring = flow_repulsion_of(flow, model->h);
+    const struct contact_spring spring = flow_contact_mode(model)->spring(flow, model->h);
     const double rate = FLOW_REPULSION_MOST / flow->vertex_mass;
     const struct flow_limit limit = {.omega = sqrt(rate * spring.stiffness),
                                      .along = rate * spring.damping};
@@ -137,7 +137,7 @@ int flow_warn_of_steps(struct flow *flow, struct cloth_error *error)
         warn_implicit(flow, &limit);
     else
         warn_explicit(flow, &limit);
-    if (!model_is_implicit(flow->model) && model_repels(flow->model))
+    if (!model_is_implicit(flow->model) && flow_contact_mode(flow->model)->spring)
         warn_of_contacts(flow);
     return warn_of_elements(flow, error);
 }

@@ -97,7 +97,7 @@ static void warn_of_inside(struct flow *flow)
                          cloth->place ? cloth->place : "", cloth->place ? ": " : "",
                          cloth->name ? cloth->name : "", i,
                          contact_kinds[model->obstacles[i].kind]->name, deepest + 1, -gap,
-                         model_certifies(model)
+                         model_promise(model).apart
                              ? ""
                              : "; the first step puts it out by the nearest way");
         }

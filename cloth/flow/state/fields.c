@@ -2,7 +2,8 @@
 #include "cloth/flow/state/bodies.h"
 
 #include "cloth/flow/contact/body.h"
-#include "cloth/flow/contact/maps.h"
+#include "cloth/flow/contact/image.h"
+#include "cloth/flow/contact/mode.h"
 #include "cloth/flow/contact/skin.h"
 #include "cloth/flow/integrators/integrator.h"
 #include "cloth/flow/observe/observe.h"
@@ -253,10 +254,10 @@ static bool implicit_run(const struct flow_state *state, uint32_t block)
     return model_is_implicit(state->flow->model);
 }
 
-static bool certified(const struct flow_state *state, uint32_t block)
+static bool sweeps(const struct flow_state *state, uint32_t block)
 {
     (void)block;
-    return model_certifies(state->flow->model);
+    return flow_contact_mode(state->flow->model)->sweeps;
 }
 
 static bool feels(const struct flow_state *state, uint32_t block)

@@ -50,15 +50,15 @@ enum {
     /* before a step that may be given up */                                                       \
     X(kept_x,       ONE,     phys_vec,      4, rows,          kept,         is_work)               \
     X(kept_v,       ONE,     phys_vec,      4, rows,          kept,         is_work)               \
-    /* contact: skins (skin.h); before a certified step, and x of skins before and after            \
+    /* contact: skins (skin.h); before a step, and x of skins before and after            \
      * it, and their boxes */                                                                      \
     X(skin,         ONE,     unsigned char, 1, skin_bytes,    meets,        is_derived)            \
-    X(kept_halo_x,  ONE,     phys_vec,      4, halo,          certified,    is_work)               \
+    X(kept_halo_x,  ONE,     phys_vec,      4, halo,          sweeps,       is_work)               \
     X(skin_x,       ONE,     phys_vec,      4, skin_points,   meets,        is_work)               \
     X(skin_boxes,   ONE,     unsigned char, 1, skin_boxes,    meets,        is_work)               \
     /* of each row: struct flow_cut_run (contact/cut.c) */                                         \
-    X(cut_runs,     ONE,     uint32_t,      4, rows,          certified,    is_state)              \
-    /* its strip of the maps of bodies (contact/maps.h) */                                         \
+    X(cut_runs,     ONE,     uint32_t,      4, rows,          sweeps,       is_state)              \
+    /* its strip of the maps of bodies (contact/image.h) */                                         \
     X(maps,         ONE,     unsigned char, 1, map_bytes,     mapped,       is_derived)            \
     /* velocity correction (springs/correct.c). X with 1 / m in the fourth lane; moves of x since the \
      * solve of the step. Rows that others need: X and 1 / m, x at the step's begin, S; x as it is. \
@@ -133,11 +133,11 @@ enum {
     X(slope,        ONE,     double,        1, one,           implicit_run, is_work)               \
     X(roots,        ONE,     double,        FLOW_ROOT, sides,     meets,        is_work)               \
     X(tie_said,     SIZED,   unsigned char, 1, records_bytes, meets,        is_work)               \
-    X(cut_counts,   ONE,     double,        FLOW_CUT_COUNTS, one, certified,    is_work)               \
-    X(cut_longest,  ONE,     double,        1, one,           certified,    is_work)               \
+    X(cut_counts,   ONE,     double,        FLOW_CUT_COUNTS, one, sweeps,       is_work)               \
+    X(cut_longest,  ONE,     double,        1, one,           sweeps,       is_work)               \
     X(obstacle_force, ONE,   phys_vec,      4, obstacles,     feels,        is_work)               \
     X(contact_energy, ONE,   double,        FLOW_HELD, one, meets,        is_work)                   \
-    /* bodies that certified contact is with (contact/body.h) */                                   \
+    /* bodies by their skins (contact/body.h) */                                   \
     X(body_skins,   ONE,     unsigned char, 1, body_skins,   meets_bodies, is_derived)             \
     X(body_fans,    ONE,     uint32_t,      1, body_fans,    meets_bodies, is_derived)             \
     X(body_points,  ONE,     phys_vec,      4, body_points,  meets_bodies, is_derived_of_bodies)   \

@@ -66,7 +66,7 @@ static int check_contact(const struct model *model, const struct model_probe *pr
                          const struct scene_tree *tree, int node, struct cloth_error *error)
 {
     const int at = contact_at(probe, tree, node);
-    if (!at || model_certifies(model))
+    if (!at || model_promise(model).force)
         return CLOTH_OK;
     return scene_tree_fail(tree, at, error,
                            "probe '%.60s' reports the force of contact, which contact.mode "
@@ -148,7 +148,7 @@ static int check_field(const struct model *model, const struct scene_tree *tree,
                                "output.hdf5 has the field %s, which materials with model: "
                                "triangles have; no cloth has one",
                                word);
-    if (!strcmp(word, "contact_force") && !(model->contact.force && model_certifies(model)))
+    if (!strcmp(word, "contact_force") && !model_shows_contact(model))
         return scene_tree_fail(tree, item, error,
                                "output.hdf5 has the field %s, which contact: {mode: certified, "
                                "force: on} knows, where there is anything to touch",

@@ -1,8 +1,8 @@
 /* Maps of rigid bodies are drawn once, in the body's own axes. Maps of a body with frames are drawn
  * again in each step until its last frame is over. */
-#include "cloth/flow/contact/maps.h"
+#include "cloth/flow/contact/image.h"
 
-#include "cloth/flow/state/bodies.h"
+#include "cloth/flow/contact/mode.h"
 
 #include <math.h>
 
@@ -127,7 +127,8 @@ static int map_draw_again_body(const duite_call *call, const struct map_draw_aga
     return 0;
 }
 
-int flow_maps_draw(struct flow_state *state, double from)
+/* Draws the maps, if bodies have changed. from: s, the begin of the step that ends now. */
+static int draw_maps(struct flow_state *state, double from)
 {
     struct flow_maps_now *now = &state->maps;
     struct flow_block_args args;
@@ -141,3 +142,11 @@ int flow_maps_draw(struct flow_state *state, double from)
         code = flow_fork_one(state, kernel, &args);
     return code;
 }
+
+static int settle_image(struct flow_state *state)
+{
+    const int code = draw_maps(state, flow_project_move(state));
+    return code ? code : flow_project(state);
+}
+
+const struct flow_contact_mode flow_contact_image = {.is = model_has_maps, .settle = settle_image};

@@ -1,5 +1,5 @@
-#ifndef CLOTH_FLOW_CONTACT_MAPS_H
-#define CLOTH_FLOW_CONTACT_MAPS_H
+#ifndef CLOTH_FLOW_CONTACT_IMAGE_H
+#define CLOTH_FLOW_CONTACT_IMAGE_H
 
 #include "cloth/flow/state/state.h"
 
@@ -18,8 +18,10 @@ size_t flow_map_bytes(const struct flow *flow, uint32_t block);
 void flow_map_open(const struct flow *flow, uint32_t obstacle, const duite_param *maps,
                    struct contact_image *image);
 
-/* Forks the drawing of the maps, if bodies (contact_bodies_move) have changed. from: s, the begin
- * of the step that ends now. Collective; returns what the runtime does. */
-int flow_maps_draw(struct flow_state *state, double from);
+/* What the mode project does when x and v have moved. Bodies with frames move in the first, which
+ * returns when the step began, s: tasks of the step before are done, since it has been settled. The
+ * second forks the tasks that put vertices out of obstacles. (project.c) */
+double flow_project_move(struct flow_state *state);
+int flow_project(struct flow_state *state);
 
 #endif

@@ -3,9 +3,9 @@
  * and the step is solved again from where it began. Pairs that still fail after a few solves are
  * cut, so every pair of an accepted state is certified. Decisions use only counts that are equal on
  * all ranks. */
-#include "cloth/flow/contact/certify.h"
 #include "cloth/flow/contact/body.h"
 #include "cloth/flow/contact/contact.h"
+#include "cloth/flow/contact/mode.h"
 #include "cloth/flow/contact/skins.h"
 #include "cloth/flow/run/setup.h"
 #include "cloth/flow/run/step.h"
@@ -29,16 +29,11 @@ double flow_contact_stiffness(const struct flow *flow, double h)
     return flow->contact_stiffness > inertia ? flow->contact_stiffness : inertia;
 }
 
-bool flow_contact_is_last(const struct flow_state *state)
-{
-    return state->attempt.length == 1 || !state->flow->model->halving;
-}
-
 /* ---- Pairs that cannot be kept apart ---- */
 
 /* Appends to a text as far as it has room. */
-__attribute__((format(printf, 3, 4))) static void append(char *text, size_t size,
-                                                         const char *format, ...)
+__attribute__((format(printf, 3, 4))) static void append_text(char *text, size_t size,
+                                                              const char *format, ...)
 {
     const size_t used = strlen(text);
     va_list list;
@@ -58,8 +53,8 @@ static uint32_t cloth_of(const struct flow *flow, uint32_t vertex)
 
 /* Writes the parts of a pair: vertices as their meshes count them, from 1, and the obstacle. Only
  * rank 0 knows them. */
-static void describe(const struct flow_state *state, const struct flow_near *near, size_t size,
-                     char *text)
+static void describe_pair(const struct flow_state *state, const struct flow_near *near, size_t size,
+                          char *text)
 {
     const struct flow *flow = state->flow;
     const struct flow_tie_corners *at = &near->contact.at;
@@ -68,26 +63,26 @@ static void describe(const struct flow_state *state, const struct flow_near *nea
     text[0] = 0;
     if (!flow->vertex)
         return;
-    append(text, size, "vertices");
+    append_text(text, size, "vertices");
     for (uint32_t k = 0; k < at->n; k++) {
         const uint32_t place = flow->tables.block[at->block[k]].first + at->row[k];
         const uint32_t vertex = flow->vertex[place], c = cloth_of(flow, vertex);
         if (k && c != last)
-            append(text, size, " of '%.40s' and", flow->model->cloths[last].name);
-        append(text, size, " %" PRIu32 "%s", vertex - flow->cloth_first[c] + 1,
-               at->held >> k & 1 ? " (pinned)" : "");
+            append_text(text, size, " of '%.40s' and", flow->model->cloths[last].name);
+        append_text(text, size, " %" PRIu32 "%s", vertex - flow->cloth_first[c] + 1,
+                    at->held >> k & 1 ? " (pinned)" : "");
         last = c;
     }
     if (at->n)
-        append(text, size, " of '%.40s'", flow->model->cloths[last].name);
+        append_text(text, size, " of '%.40s'", flow->model->cloths[last].name);
     if (other >= n_blocks)
-        append(text, size, " and obstacles[%" PRIu32 "], a %s", other - n_blocks,
-               contact_kinds[flow->model->obstacles[other - n_blocks].kind]->name);
+        append_text(text, size, " and obstacles[%" PRIu32 "], a %s", other - n_blocks,
+                    contact_kinds[flow->model->obstacles[other - n_blocks].kind]->name);
 }
 
 /* Finds the first pair of a list that fails, and describes it. */
-static int describe_first(struct flow_state *state, const struct flow_meeting *meeting, size_t size,
-                          char *text)
+static int describe_first_of(struct flow_state *state, const struct flow_meeting *meeting,
+                             size_t size, char *text)
 {
     size_t bytes;
     int code = duite_get_count(state->rt, meeting->near, &bytes);
@@ -104,7 +99,7 @@ static int describe_first(struct flow_state *state, const struct flow_meeting *m
     while (!code && i < list->n && !near[i].fails)
         i++;
     if (!code && i < list->n)
-        describe(state, near + i, size, text);
+        describe_pair(state, near + i, size, text);
     free(list);
     return code;
 }
@@ -117,7 +112,7 @@ static int describe_failing(struct flow_state *state, size_t size, char *text)
     text[0] = 0;
     while (i < meetings->n && !(meetings->count[FLOW_COUNTS * (size_t)i + FLOW_COUNT_FAILS] > 0))
         i++;
-    return i < meetings->n ? describe_first(state, meetings->all + i, size, text) : DUITE_OK;
+    return i < meetings->n ? describe_first_of(state, meetings->all + i, size, text) : DUITE_OK;
 }
 
 /* The reason of a failure. what: the fault of n pairs; cure: its remedy. */
@@ -138,7 +133,7 @@ static int note_pinch(struct flow_state *state, uint64_t fails)
     const bool first = !report->contact_pinches;
     char pair[200] = "";
     report->contact_pinches += fails;
-    if (flow_contact_is_last(state))
+    if (flow_attempt_is_last(state))
         return say_why(state, fails,
                        "pairs of features cannot be kept apart: obstacles or pins pinch the cloth, "
                        "or are too fast",
@@ -153,7 +148,7 @@ static int note_pinch(struct flow_state *state, uint64_t fails)
 /* ---- The begin of a step ---- */
 
 /* again: this step was looked at before. */
-static int look(struct flow_state *state, bool again, struct flow_seen *seen)
+static int look_at_step(struct flow_state *state, bool again, struct flow_seen *seen)
 {
     struct flow_report *report = state->report;
     const int code = flow_contact_look(state, seen);
@@ -163,7 +158,7 @@ static int look(struct flow_state *state, bool again, struct flow_seen *seen)
     return code;
 }
 
-int flow_contact_start(struct flow_state *state)
+static int start_certified(struct flow_state *state)
 {
     struct flow_seen seen;
     int code = flow_keep(state);
@@ -176,7 +171,7 @@ int flow_contact_start(struct flow_state *state)
     if (!code)
         code = flow_contact_cut_none(state);
     if (!code)
-        code = look(state, false, &seen);
+        code = look_at_step(state, false, &seen);
     if (!code && seen.fails) {
         char cure[128];
         snprintf(cure, sizeof cure, ": %s", model_start_cure(state->flow->model));
@@ -192,7 +187,7 @@ int flow_contact_start(struct flow_state *state)
     return code;
 }
 
-int flow_contact_begin(struct flow_state *state)
+static int begin_certified(struct flow_state *state)
 {
     state->contact.now = state->contact.begin;
     state->contact.failed = false;
@@ -208,7 +203,7 @@ int flow_contact_begin(struct flow_state *state)
 
 /* Returns to the step's begin and makes it again with the present contacts. Adds up the cost of its
  * solves. */
-static int again(struct flow_state *state, const double status[FLOW_STATUS])
+static int make_again(struct flow_state *state, const double status[FLOW_STATUS])
 {
     const double nothing[FLOW_STATUS] = {0};
     state->contact.iterations += status[FLOW_ITERATIONS];
@@ -226,7 +221,7 @@ static int again(struct flow_state *state, const double status[FLOW_STATUS])
 }
 
 /* Cuts until no pair fails, or no row can be cut: another look would then find the same. */
-static int cut(struct flow_state *state, struct flow_seen *seen)
+static int cut_failing(struct flow_state *state, struct flow_seen *seen)
 {
     struct flow_report *report = state->report;
     int code = DUITE_OK;
@@ -240,9 +235,9 @@ static int cut(struct flow_state *state, struct flow_seen *seen)
         state->contact.cut += cut.rows;
         if (cut.run > state->contact.cut_run)
             state->contact.cut_run = cut.run;
-        if (!flow_contact_is_last(state) && (double)cut.halved > TOO_MANY * (double)seen->contacts)
+        if (!flow_attempt_is_last(state) && (double)cut.halved > TOO_MANY * (double)seen->contacts)
             state->contact.failed = true;
-        code = look(state, true, seen);
+        code = look_at_step(state, true, seen);
     }
     state->contact.failed = state->contact.failed || seen->fails;
     return !code && seen->fails ? note_pinch(state, seen->fails) : code;
@@ -254,7 +249,7 @@ static bool is_solved(const double status[FLOW_STATUS])
     return !(status[FLOW_FAILED] + status[FLOW_BEYOND] > 0);
 }
 
-int flow_contact_settle(struct flow_state *state)
+static int settle_certified(struct flow_state *state)
 {
     const unsigned parity = state->attempt.parity;
     double status[FLOW_STATUS];
@@ -264,27 +259,27 @@ int flow_contact_settle(struct flow_state *state)
         code = duite_get(state->rt, state->run.status[parity], status);
         if (code || !is_solved(status))
             return code;
-        code = look(state, solve > 1, &seen);
+        code = look_at_step(state, solve > 1, &seen);
         if (code || solve == MAX_SOLVES || !((double)seen.fails > FEW * (double)seen.contacts))
             break;
-        code = again(state, status);
+        code = make_again(state, status);
     }
     if (!code && seen.fails)
-        code = cut(state, &seen);
+        code = cut_failing(state, &seen);
     if (seen.contacts > state->report->contacts)
         state->report->contacts = seen.contacts;
     state->contact.near = seen.contacts;
     return code || state->contact.failed ? code : flow_contact_accept(state);
 }
 
-void flow_contact_status(const struct flow_state *state, double status[FLOW_STATUS])
+static void add_solves(const struct flow_state *state, double status[FLOW_STATUS])
 {
     status[FLOW_ITERATIONS] += state->contact.iterations;
     status[FLOW_RESTARTS] += state->contact.restarts;
-    status[FLOW_TOUCHED] += (double)(state->contact.cut + state->contact.pushed);
+    status[FLOW_TOUCHED] += (double)state->contact.cut;
 }
 
-void flow_contact_settled(struct flow_state *state, bool accepted)
+static void note_settled(struct flow_state *state, bool accepted)
 {
     if (!accepted)
         return;
@@ -295,3 +290,38 @@ void flow_contact_settled(struct flow_state *state, bool accepted)
         state->report->contact_cut_run = state->contact.cut_run;
     state->report->contact_cut_momentum += state->contact.cut_momentum;
 }
+
+/* ---- In tasks ---- */
+
+static bool is_certified(const struct model *model)
+{
+    return model_promise(model).apart;
+}
+
+static void make_row(const struct flow *flow, const struct flow_step_args *step,
+                     const struct flow_contact *contact, struct contact_row *row)
+{
+    contact_row_begin(row, flow_contact_stiffness(flow, step->h), step->h);
+    flow_contact_ahead(flow, step->time - step->h, step->time, contact, row);
+}
+
+static void press_row(const struct flow *flow, const struct flow_ties *ties,
+                      const struct flow_view *view, double h, double left, uint32_t i,
+                      const phys_vec *point, struct flow_pressed *to)
+{
+    (void)flow, (void)ties, (void)h, (void)left;
+    contact_row_linearise(view->contact_rows + i, point, &to->force, &to->value);
+    to->against = to->value;
+}
+
+const struct flow_contact_mode flow_contact_certified = {.is = is_certified,
+                                                         .start = start_certified,
+                                                         .resume = flow_bodies_make,
+                                                         .begin = begin_certified,
+                                                         .settle = settle_certified,
+                                                         .status = add_solves,
+                                                         .settled = note_settled,
+                                                         .sweeps = true,
+                                                         .carries = true,
+                                                         .row = make_row,
+                                                         .press = press_row};

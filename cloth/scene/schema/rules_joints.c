@@ -135,7 +135,7 @@ static const struct scene_rule some_keys[] = {
      ARRAY(struct model_some_seams, number, n),
      .about = "of the seams, from 0"},
     {"of", SCENE_LIST, .choice = true, .length = 2, .inside = &scene_text,
-     .about = "names of the two panels; * stands for any characters"},
+     .about = "all seams between two panels, by their names; * stands for any characters"},
     SEWING(struct model_some_seams, NULL, NULL, NULL),
     {0}};
 static const struct scene_rule some = {.type = SCENE_MAP, .inside = some_keys};

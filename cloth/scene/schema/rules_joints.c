@@ -44,7 +44,8 @@ const struct scene_section scene_welds_section = {"Welds",
     "uses. A weld may not make one vertex of two corners of a triangle, of the two ends of an "
     "edge, or of the two vertices opposite an edge of a cloth that bends.",
     "welds:\n"
-    "  - {from: {cloth: front, vertices: [56, 57, 58]}, to: {cloth: back, vertices: [0, 1, 2]}}\n"};
+    "  - {from: {cloth: front, vertices: [56, 57, 58]}, to: {cloth: back, vertices: [0, 1, "
+    "2]}}\n"};
 static const struct scene_rule weld_keys[] = {
     {"from", SCENE_MAP, .required = true, .inside = end_keys,
      INTO(struct model_weld, pairs.end[0]),

@@ -181,8 +181,8 @@ static char *next_word(char **text)
 
 /* The value of a key that a term compares, which is cut before the comparison. *rest: behind it.
  * NULL: the key is not there. */
-static const char *compared(const struct needs_walk *walk, const struct needs_scope *scope,
-                            const struct scene_rule *rule, char *term, char *at, char **rest)
+static const char *compared_value(const struct needs_walk *walk, const struct needs_scope *scope,
+                                  const struct scene_rule *rule, char *term, char *at, char **rest)
 {
     *at = 0;
     *rest = at + strlen(" = ");
@@ -199,12 +199,12 @@ static bool term_holds(const struct needs_walk *walk, const struct needs_scope *
     double value = 0, least = 0;
     bool any = false;
     if (more) {
-        const char *text = compared(walk, scope, rule, term, more, &rest);
+        const char *text = compared_value(walk, scope, rule, term, more, &rest);
         return text && scene_scalar_number(text, &value) && scene_scalar_number(rest, &least) &&
                value > least;
     }
     if (equal) {
-        const char *text = compared(walk, scope, rule, term, equal, &rest);
+        const char *text = compared_value(walk, scope, rule, term, equal, &rest);
         while (rest && text)
             any = !strcmp(next_word(&rest), text) || any;
         return any;

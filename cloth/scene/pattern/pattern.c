@@ -157,7 +157,7 @@ static int read_properties(struct pattern_reader *reader, int node)
     return code;
 }
 
-static int read_pattern_file(struct pattern_reader *reader)
+static int read_pattern_tree(struct pattern_reader *reader)
 {
     int file[PATTERN_KEYS], pattern[PATTERN_KEYS];
     int code = pattern_map(reader, 1, "the file", FILE_KEYS, file);
@@ -181,7 +181,7 @@ int scene_read_pattern(struct garment_pattern *pattern, const char *path, struct
         .tree = &tree, .pattern = pattern, .error = &own, .edge = -1, .stitch = -1};
     *pattern = (struct garment_pattern){0};
     int code = scene_tree_load(&tree, path, &WORDS, &own);
-    code = code ? code : read_pattern_file(&reader);
+    code = code ? code : read_pattern_tree(&reader);
     scene_tree_free(&tree);
     if (code)
         return cloth_fail(error, code, "%s", own.text);

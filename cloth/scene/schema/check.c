@@ -11,8 +11,8 @@
 #include <stdio.h>
 #include <string.h>
 
-static int check(struct scene_walk *walk, const struct scene_place *at,
-                 const struct scene_rule *rule, int node, void *base);
+static int check_node(struct scene_walk *walk, const struct scene_place *at,
+                      const struct scene_rule *rule, int node, void *base);
 
 /* ---- Choices ---- */
 
@@ -92,7 +92,8 @@ static int check_values(struct scene_walk *walk, const struct scene_place *at,
             continue; /* of another key that shares this map by an alias */
         if (!rule)
             return scene_fault_key(walk, at, keys, pair.key);
-        int code = check(walk, &(struct scene_place){at, rule->key, 0}, rule, pair.value, base);
+        int code =
+            check_node(walk, &(struct scene_place){at, rule->key, 0}, rule, pair.value, base);
         if (code)
             return code;
     }
@@ -104,7 +105,8 @@ static int add_default(struct scene_walk *walk, const struct scene_place *here,
                        const struct scene_rule *rule, int map, void *base)
 {
     int code = scene_edit_default(walk->tree, map, rule->key, rule->fallback, walk->error);
-    return code ? code : check(walk, here, rule, scene_tree_get(walk->tree, map, rule->key), base);
+    return code ? code
+                : check_node(walk, here, rule, scene_tree_get(walk->tree, map, rule->key), base);
 }
 
 static int add_missing(struct scene_walk *walk, const struct scene_place *at,
@@ -215,7 +217,8 @@ static int check_named(struct scene_walk *walk, const struct scene_place *at,
         void *item = items ? items + i * step : NULL;
         code = item ? scene_store_name(item, rule, name, walk->error) : CLOTH_OK;
         if (!code)
-            code = check(walk, &(struct scene_place){at, name, 0}, rule->inside, pair.value, item);
+            code = check_node(walk, &(struct scene_place){at, name, 0}, rule->inside, pair.value,
+                              item);
     }
     return code;
 }
@@ -232,8 +235,8 @@ static int check_list(struct scene_walk *walk, const struct scene_place *at,
     struct scene_rule inside = *rule->inside;
     inside.unit = rule->unit; /* the unit of a list is that of its numbers */
     for (size_t i = 0; !code && i < n; i++)
-        code = check(walk, &(struct scene_place){at, NULL, i}, &inside,
-                     scene_tree_item(walk->tree, node, i), items ? items + i * step : NULL);
+        code = check_node(walk, &(struct scene_place){at, NULL, i}, &inside,
+                          scene_tree_item(walk->tree, node, i), items ? items + i * step : NULL);
     return code;
 }
 
@@ -299,8 +302,8 @@ static void *structure_of(const struct scene_rule *rule, void *base)
     return base && !rule->apart ? (char *)base + rule->field.offset : NULL;
 }
 
-static int check(struct scene_walk *walk, const struct scene_place *at,
-                 const struct scene_rule *rule, int node, void *base)
+static int check_node(struct scene_walk *walk, const struct scene_place *at,
+                      const struct scene_rule *rule, int node, void *base)
 {
     char path[200];
     const yaml_node_t *here = scene_tree_node(walk->tree, node);
@@ -334,7 +337,7 @@ int scene_fill(void *structure, const struct scene_rule *rule, struct scene_tree
                struct cloth_error *error)
 {
     struct scene_walk walk = {tree, error};
-    return check(&walk, &(struct scene_place){0}, rule, node, structure);
+    return check_node(&walk, &(struct scene_place){0}, rule, node, structure);
 }
 
 int scene_check(struct model *model, struct scene_tree *tree, struct cloth_error *error)
@@ -343,7 +346,8 @@ int scene_check(struct model *model, struct scene_tree *tree, struct cloth_error
     const struct scene_place root = {0}, schema = {&root, "schema", 0};
     /* Another schema is reported before its keys are called unknown. */
     int node = scene_tree_get(tree, 1, "schema");
-    int code = node ? check(&walk, &schema, scene_rule_of(scene_root.inside, "schema"), node, NULL)
-                    : CLOTH_OK;
-    return code ? code : check(&walk, &root, &scene_root, 1, model);
+    int code =
+        node ? check_node(&walk, &schema, scene_rule_of(scene_root.inside, "schema"), node, NULL)
+             : CLOTH_OK;
+    return code ? code : check_node(&walk, &root, &scene_root, 1, model);
 }

@@ -87,6 +87,16 @@ static void print_default(FILE *file, const struct scene_rule *of, const struct 
               file);
 }
 
+static void print_needs(FILE *file, const struct scene_rule *key)
+{
+    const char *end = strstr(key->needs, ": ");
+    fputs(key->more ? " " : ". ", file);
+    if (end)
+        fprintf(file, "*%.*s needs %s.*", (int)(end - key->needs), key->needs, end + 2);
+    else
+        fprintf(file, "*Needs %s.*", key->needs);
+}
+
 static void print_row(FILE *file, const struct scene_rule *of, const struct scene_rule *key,
                       const char *path)
 {
@@ -96,7 +106,7 @@ static void print_row(FILE *file, const struct scene_rule *of, const struct scen
     print_default(file, of, key);
     fprintf(file, " | %s%s%s", key->about, key->more ? ". " : "", key->more ? key->more : "");
     if (key->needs)
-        fprintf(file, "%s *Needs %s.*", key->more ? "" : ".", key->needs);
+        print_needs(file, key);
     if (key->section && !map_of(key)) {
         fputs(key->more || key->needs ? " " : ". ", file);
         print_link(file, "More", key->section);

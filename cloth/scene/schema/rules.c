@@ -137,11 +137,11 @@ static const struct scene_rule scene_keys[] = {
      ARRAY(struct model, phases, n_phases),
      .about = "runs of the scene, each from where the one before ended; else it is one run",
      SECTION("Phases",
-     "A garment is first sewn, then dropped: one command runs the phases of a scene one "
-     "after the other. A phase changes the scene by its `set`, and the change stays until "
-     "another phase sets that key; `KEY: null` gives the key its default again. `--set` of "
-     "the command line comes last, and holds in every phase. `--set phases[0].set={...}` "
-     "changes a phase itself, and `--set phases[0].set.time.end=0.2` one KEY of its set.\n\n"
+     "A garment is first sewn, then dropped: one command runs the phases of a scene one after "
+     "the other. A phase changes the scene by its `set`, and the change stays until another "
+     "phase sets that key; `KEY: null` gives the key its default again. `--set` of the command "
+     "line comes last, and holds in every phase. `--set phases[0].set={...}` changes a phase "
+     "itself, and `--set phases[0].set.time.end=0.2` one KEY of its set.\n\n"
      "A phase starts where the one before ended: all vertices have the same positions and "
      "velocities, to the last bit. Shapes at rest are those of the meshes. `start`, `from` and "
      "`velocity` are of the first phase alone. A pin holds a vertex where the phase starts, and "
@@ -156,9 +156,9 @@ static const struct scene_rule scene_keys[] = {
      "one phase and stand still in another, about one point. `scene.json` in the folder of "
      "frames has its motion over the time of all phases; it is written again when a phase "
      "begins.\n\n"
-     "All scenes are read and checked before the first phase runs. What depends on where a phase "
-     "starts is checked when it begins. If a phase fails, the frames up to then stay, and the "
-     "message names the phase. SIGUSR1 and SIGTERM end the whole run. The report has a list "
+     "All scenes are read and checked before the first phase runs. Checks that depend on where a "
+     "phase starts are made when it begins. If a phase fails, the frames up to then stay, and "
+     "the message names the phase. SIGUSR1 and SIGTERM end the whole run. The report has a list "
      "`phases`; duite-cloth(1) says which of its other keys are of all phases and which of the "
      "last. The drape test, `--save-system` and the trace are of the last phase that runs.",
      "phases:\n"

@@ -199,8 +199,8 @@ static const struct scene_rule cloth_keys[] = {
      .about = "groups of other materials or directions of threads; the last one counts",
      SECTION("Panels", "An entry has a `material`, a `grain` or both. The grain turns warp and "
      "weft of `model: triangles`, of springs and of `bending`; in a pattern, and wherever uv "
-     "shows the front, it is counterclockwise as seen from the front. Of a triangle its three "
-     "corners lie in the group, of a spring and of a hinge both ends. A grain is an error where "
+     "shows the front, it is counterclockwise as seen from the front. The three corners of a "
+     "triangle lie in the group, and both ends of a spring or hinge. A grain is an error where "
      "the mesh has no uv, and a warning where no material has two numbers for warp and weft. A "
      "triangle outside the group whose corners all lie on its border counts as the group's own, "
      "which draws a warning.",

@@ -44,7 +44,8 @@ const struct scene_section scene_welds_section = {"Welds",
     "uses. A weld may not make one vertex of two corners of a triangle, of the two ends of an "
     "edge, or of the two vertices opposite an edge of a cloth that bends.",
     "welds:\n"
-    "  - {from: {cloth: front, vertices: [56, 57, 58]}, to: {cloth: back, vertices: [0, 1, 2]}}\n"};
+    "  - {from: {cloth: front, vertices: [56, 57, 58]}, to: {cloth: back, vertices: [0, 1, "
+    "2]}}\n"};
 static const struct scene_rule weld_keys[] = {
     {"from", SCENE_MAP, .required = true, .inside = end_keys,
      INTO(struct model_weld, pairs.end[0]),
@@ -135,7 +136,7 @@ static const struct scene_rule some_keys[] = {
      ARRAY(struct model_some_seams, number, n),
      .about = "of the seams, from 0"},
     {"of", SCENE_LIST, .choice = true, .length = 2, .inside = &scene_text,
-     .about = "names of the two panels; * stands for any characters"},
+     .about = "all seams between two panels, by their names; * stands for any characters"},
     SEWING(struct model_some_seams, NULL, NULL, NULL),
     {0}};
 static const struct scene_rule some = {.type = SCENE_MAP, .inside = some_keys};

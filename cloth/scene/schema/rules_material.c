@@ -60,10 +60,10 @@ static const struct scene_rule correction_keys[] = {
 _Static_assert(offsetof(struct model_material, weft_excess) ==
                offsetof(struct model_material, stretch) + sizeof(double), "weft after warp");
 const struct scene_section scene_materials_section = {"Materials",
-    "[physics.md](physics.md#fabrics) "
-    "has the values of the four fabrics that every scene knows. Triangles whose `shear` is 0 "
-    "draw a warning, as nothing resists their being sheared; so do a `density` outside 0.005 to "
-    "5 kg/m^2, a `bending.rigidity` above 0.01 N m, and a `stretch` of 0 that triangles have.",
+    "[physics.md](physics.md#fabrics) has the values of the four fabrics that every scene knows. "
+    "Triangles whose `shear` is 0 draw a warning, as nothing resists their being sheared; so do "
+    "a `density` outside 0.005 to 5 kg/m^2, a `bending.rigidity` above 0.01 N m, and a `stretch` "
+    "of 0 that triangles have.",
     "materials:\n"
     "  cotton: {density: 0.2, stretch: 5000, shear: 2500, bend: 10, damping: {viscous: 0.0001, "
     "mass: 0.1, stiffness: 0.01}}\n"

@@ -14,7 +14,7 @@ static unsigned least_of(unsigned a, unsigned b)
 
 /* Insertions, deletions, changes and swaps of neighbours that lead from a to b (optimal string
  * alignment). */
-static unsigned distance(const char *a, const char *b)
+static unsigned word_distance(const char *a, const char *b)
 {
     size_t n = strlen(a), m = strlen(b);
     unsigned d[LONGEST + 1][LONGEST + 1];
@@ -42,7 +42,7 @@ const char *scene_nearest_word(const char *word, const char *const *candidates, 
         size_t other = strlen(candidates[i]);
         if (other > LONGEST)
             continue;
-        unsigned far = distance(word, candidates[i]);
+        unsigned far = word_distance(word, candidates[i]);
         if (far <= limit && far < (length > other ? length : other)) {
             nearest = candidates[i];
             limit = far ? far - 1 : 0;
@@ -60,7 +60,7 @@ int scene_word_value(const struct model_word *words, const char *word, bool *kno
     return words->value;
 }
 
-static void append(char *text, size_t size, const char *more)
+static void append_text(char *text, size_t size, const char *more)
 {
     size_t used = strlen(text);
     snprintf(text + used, size - used, "%s", more);
@@ -74,10 +74,10 @@ char *scene_allowed_words(const char *word, const char *const *candidates, size_
     if (nearest)
         snprintf(text, size, "; did you mean '%s'? Allowed: ", nearest);
     else
-        append(text, size, "; allowed: ");
+        append_text(text, size, "; allowed: ");
     for (size_t i = 0; i < n; i++) {
-        append(text, size, i ? ", " : "");
-        append(text, size, candidates[i]);
+        append_text(text, size, i ? ", " : "");
+        append_text(text, size, candidates[i]);
     }
     return text;
 }
@@ -85,8 +85,8 @@ char *scene_allowed_words(const char *word, const char *const *candidates, size_
 static void append_keys(char *text, size_t size, const struct scene_rule *keys)
 {
     for (const struct scene_rule *key = keys; key->key; key++) {
-        append(text, size, key == keys ? "" : ", ");
-        append(text, size, key->key);
+        append_text(text, size, key == keys ? "" : ", ");
+        append_text(text, size, key->key);
     }
 }
 
@@ -131,8 +131,8 @@ static void number_expected(const struct scene_rule *rule, char *text, size_t si
 static void append_words(const struct scene_rule *rule, char *text, size_t size)
 {
     for (const struct model_word *word = rule->words; word->word; word++) {
-        append(text, size, *text ? " or " : "");
-        append(text, size, word->word);
+        append_text(text, size, *text ? " or " : "");
+        append_text(text, size, word->word);
     }
 }
 
@@ -140,9 +140,9 @@ static void append_unit(const struct scene_rule *rule, char *text, size_t size)
 {
     if (!rule->unit)
         return;
-    append(text, size, " (");
-    append(text, size, rule->unit);
-    append(text, size, ")");
+    append_text(text, size, " (");
+    append_text(text, size, rule->unit);
+    append_text(text, size, ")");
 }
 
 char *scene_rule_expected(const struct scene_rule *rule, char *text, size_t size)
@@ -150,18 +150,18 @@ char *scene_rule_expected(const struct scene_rule *rule, char *text, size_t size
     *text = 0;
     switch (rule->type) {
     case SCENE_MAP:
-        append(text, size, "a map of ");
+        append_text(text, size, "a map of ");
         append_keys(text, size, rule->inside);
         break;
     case SCENE_ONE_OF:
-        append(text, size, "a map with exactly one of ");
+        append_text(text, size, "a map with exactly one of ");
         append_keys(text, size, rule->inside);
         break;
     case SCENE_NAMED:
-        append(text, size, "a non-empty map of names");
+        append_text(text, size, "a non-empty map of names");
         break;
     case SCENE_EDITS:
-        append(text, size, "a map KEY: VALUE, such as time.h: 0.002");
+        append_text(text, size, "a map KEY: VALUE, such as time.h: 0.002");
         break;
     case SCENE_LIST:
         list_expected(rule, text, size);
@@ -179,7 +179,7 @@ char *scene_rule_expected(const struct scene_rule *rule, char *text, size_t size
         append_words(rule, text, size);
         return text;
     case SCENE_TEXT:
-        append(text, size, "a text");
+        append_text(text, size, "a text");
         break;
     case SCENE_CHOICE:
         append_words(rule, text, size);

@@ -1,6 +1,8 @@
 /* Every rule fits the field that it fills: fields are found by offset, so no compiler looks. The
  * examples of the page of all keys are what the rules allow. */
 #include "cloth/scene/schema/check.h"
+#include "cloth/scene/schema/faults.h"
+#include "cloth/scene/schema/needs.h"
 #include "tests/cloth/scene/scene_file.h"
 #include "tests/support/unit.h"
 
@@ -160,11 +162,10 @@ static unsigned n_examples;
 
 static const struct scene_rule *rule_in(const struct scope *scope, const char *name)
 {
-    for (; scope; scope = scope->up)
-        for (const struct scene_rule *key = scope->map->inside; key->key; key++)
-            if (!strcmp(key->key, name))
-                return key;
-    return NULL;
+    const struct scene_rule *rule = NULL;
+    for (; scope && !rule; scope = scope->up)
+        rule = scene_rule_of(scope->map->inside, name);
+    return rule;
 }
 
 /* Whole scenes run in tests/whole/test_options.sh. */
@@ -208,6 +209,81 @@ START_TEST(examples_are_allowed)
 }
 END_TEST
 
+static unsigned n_terms;
+
+/* Cuts a text where another one begins in it. Returns what stands behind that; NULL: nothing does.
+ */
+static char *cut(char *text, const char *at)
+{
+    char *found = strstr(text, at);
+    if (!found)
+        return NULL;
+    *found = 0;
+    return found + strlen(at);
+}
+
+/* A term of needs.h that is no fact: its keys are there, and its words are theirs. */
+static void check_term(const struct scope *scope, char *term)
+{
+    char *rest = !strncmp(term, "no ", 3) ? term + 3 : term, *value = strpbrk(rest, "=>");
+    char *next, *more, *key;
+    if (value)
+        value[-1] = 0;
+    for (; rest; rest = next) {
+        const struct scene_rule *rule = NULL;
+        next = cut(rest, " or ");
+        for (bool first = true; (key = strsep(&rest, ".")); first = false) {
+            rule = first ? rule_in(scope, key) : scene_rule_of(rule->inside, key);
+            ck_assert_msg(rule, "%s is no key", key);
+        }
+        for (char *word = value ? value + 2 : NULL; word && rule->words; word = more) {
+            bool known;
+            more = cut(word, " or ");
+            scene_word_value(rule->words, word, &known);
+            ck_assert_msg(known, "%s is no word of %s", word, rule->key);
+        }
+    }
+    n_terms++;
+}
+
+static void check_needs(const struct scope *scope, const struct scene_rule *rule)
+{
+    static const char *const facts[] = {NEEDS_TRIANGLES, NEEDS_WIND,          NEEDS_NO_SINE,
+                                        NEEDS_SPRINGS,   NEEDS_ONLY_SPRINGS,  NEEDS_MEETINGS,
+                                        NEEDS_GUARDED,   NEEDS_OWN_TRIANGLES, NEEDS_OWN_LINKS,
+                                        NEEDS_OWN_EDGES, NEEDS_DIAGONALS};
+    char text[200], *rest = text, *value = rule->needs ? strstr(rule->needs, ": ") : NULL;
+    snprintf(text, sizeof text, "%s", !rule->needs ? "" : value ? value + 2 : rule->needs);
+    while (rest && *rest) {
+        char *term = rest;
+        size_t i = 0;
+        while (i < sizeof facts / sizeof *facts && strncmp(term, facts[i], strlen(facts[i])))
+            i++;
+        const bool is_fact = i < sizeof facts / sizeof *facts;
+        rest = cut(is_fact ? term + strlen(facts[i]) : term, " and ");
+        if (!is_fact)
+            check_term(scope, term);
+    }
+}
+
+static void check_all_needs(const struct scene_rule *rule, const struct scope *up)
+{
+    const bool map = rule->type == SCENE_MAP || rule->type == SCENE_ONE_OF;
+    const struct scope own = {up, rule}, *scope = map ? &own : up;
+    check_needs(scope, rule);
+    for (const struct scene_rule *key = rule->inside; map && key->key; key++)
+        check_all_needs(key, scope);
+    if (!map && rule->inside)
+        check_all_needs(rule->inside, scope);
+}
+
+START_TEST(needs_are_keys_or_facts)
+{
+    check_all_needs(&scene_root, NULL);
+    ck_assert_uint_ge(n_terms, 25);
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("scene rules");
@@ -215,6 +291,7 @@ int main(void)
     tcase_add_test(cases, rules_fit_their_fields);
     tcase_add_test(cases, words_mean_one_thing);
     tcase_add_test(cases, examples_are_allowed);
+    tcase_add_test(cases, needs_are_keys_or_facts);
     suite_add_tcase(suite, cases);
     return unit_run(suite);
 }

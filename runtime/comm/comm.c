@@ -1,6 +1,6 @@
-/* Start, stop and progress. Letters wait in a lock-free stack, linked by themselves, until a thread
- * polls. The holder of the lock calls MPI; a poll delivers its findings after it has let go of the
- * lock. */
+/* Start, stop and progress. Letters and channels wait in a lock-free stack, linked by themselves,
+ * until a thread polls. The holder of the lock calls MPI; a poll delivers its findings after it has
+ * let go of the lock. */
 #include "runtime/comm/comm.h"
 
 #include "runtime/base/clock.h"
@@ -93,17 +93,23 @@ bool comm_stop(struct comm *comm)
 
 /* ---- Posts and the lock ---- */
 
+void comm_post(struct comm *comm, struct comm_post *post)
+{
+    BASE_STACK_PUSH(&comm->posts, post, memory_order_release);
+    /* Pairs with comm_left_to_us: either the next try for the lock succeeds, or its holder sees
+     * this post. */
+    atomic_thread_fence(memory_order_seq_cst);
+}
+
 void comm_send(struct comm *comm, struct comm_letter *letter)
 {
-    BASE_STACK_PUSH(&comm->posts, letter, memory_order_release);
-    /* Pairs with comm_left_to_us: either the next try for the lock succeeds, or its holder sees
-     * this letter. */
-    atomic_thread_fence(memory_order_seq_cst);
+    letter->post.is_channel = false;
+    comm_post(comm, &letter->post);
 }
 
 bool comm_has_posts(struct comm *comm)
 {
-    return !BASE_STACK_IS_EMPTY(&comm->posts) || !BASE_STACK_IS_EMPTY(&comm->channels.ready);
+    return !BASE_STACK_IS_EMPTY(&comm->posts);
 }
 
 void comm_hold(struct comm *comm)
@@ -140,8 +146,7 @@ static inline void comm_pass_locked(struct comm *comm, struct comm_found *found,
 {
     const int before = comm->channels.awaited;
     if (comm->stalled || !BASE_STACK_IS_EMPTY(&comm->posts))
-        comm_transport_send(comm, found);
-    comm_channels_pass(comm, found);
+        comm_transport_begin(comm, found);
     if (looks && !(comm->channels.awaited && ++comm->channels.looks % SELDOM))
         comm_transport_receive(comm, found);
     if (comm->requests.n)
@@ -170,7 +175,7 @@ static inline bool comm_pass(struct comm *comm, struct worker *worker, bool look
         comm_let_go(comm);
         any |= found.any;
         more = found.more;
-        if (found.packets || found.sent || found.through || found.copies) {
+        if (found.packets || found.over) {
             any = true;
             comm_transport_deliver(comm, worker, &found);
         }
@@ -193,7 +198,8 @@ bool comm_awaits(struct comm *comm)
 
 void comm_channel_ready(struct comm *comm, struct worker *worker, struct comm_channel *channel)
 {
-    comm_channel_post(comm, channel);
+    channel->post.is_channel = true;
+    comm_post(comm, &channel->post);
     if (!passing)
         comm_pass(comm, worker, false);
 }
@@ -245,8 +251,9 @@ bool comm_look(struct comm *comm, const struct comm_looker *looker)
         else if (of->over == comm_channel_came)
             looker->channel(looker->context, of->what);
     }
-    for (const struct comm_channel *one = comm->channels.stalled; one; one = one->next)
-        looker->channel(looker->context, one);
+    for (const struct comm_post *post = comm->stalled; post; post = post->next)
+        if (post->is_channel)
+            looker->channel(looker->context, (const struct comm_channel *)post);
     comm_let_go(comm);
     return true;
 }

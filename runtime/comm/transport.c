@@ -76,34 +76,40 @@ static bool message_send(struct comm *comm, struct comm_letter *letter)
     return true;
 }
 
-void comm_letter_sent(struct comm *comm, struct comm_found *found, void *what)
+void comm_letter_sent(struct comm *comm, struct comm_found *found, void *letter)
 {
-    struct comm_letter *letter = what;
     (void)comm;
-    letter->next = found->sent;
-    found->sent = letter;
+    comm_found_over(found, &((struct comm_letter *)letter)->post);
 }
 
-void comm_transport_send(struct comm *comm, struct comm_found *found)
+/* False: it must wait for another one. */
+static bool letter_begin(struct comm *comm, struct comm_found *found, struct comm_letter *letter)
 {
-    struct comm_letter *posts = BASE_STACK_TAKE(&comm->posts), *in_order = comm->stalled;
-    struct comm_letter **end = &in_order;
+    if (message_stalls(comm, letter))
+        return false;
+    found->any = true;
+    if (!message_send(comm, letter))
+        comm_letter_sent(comm, found, letter);
+    return true;
+}
+
+void comm_transport_begin(struct comm *comm, struct comm_found *found)
+{
+    struct comm_post *posts = BASE_STACK_TAKE(&comm->posts), *in_order = comm->stalled;
+    struct comm_post **end = &in_order;
     BASE_LIST_REVERSE(posts);
     while (*end)
         end = &(*end)->next;
     *end = posts;
     end = &comm->stalled;
     while (in_order) {
-        struct comm_letter *letter = in_order;
-        in_order = letter->next;
-        if (message_stalls(comm, letter)) {
-            *end = letter;
-            end = &letter->next;
+        struct comm_post *post = in_order;
+        in_order = post->next;
+        if (post->is_channel ? comm_channel_begin(comm, found, (struct comm_channel *)post)
+                             : letter_begin(comm, found, (struct comm_letter *)post))
             continue;
-        }
-        found->any = true;
-        if (!message_send(comm, letter))
-            comm_letter_sent(comm, found, letter);
+        *end = post;
+        end = &post->next;
     }
     *end = NULL;
 }
@@ -266,22 +272,17 @@ void comm_transport_deliver(struct comm *comm, struct worker *worker, struct com
         else
             message_deliver_value(comm, worker, packet);
     }
-    while (found->copies) {
-        struct comm_channel *channel = found->copies;
-        found->copies = channel->next;
-        if (comm_channel_copy(comm, channel))
+    while (found->over) {
+        struct comm_post *post = found->over;
+        struct comm_letter *letter = (struct comm_letter *)post;
+        struct comm_channel *channel = (struct comm_channel *)post;
+        found->over = post->next;
+        if (!post->is_channel) {
+            data_packet_free(letter->packet);
+            owner->sent(comm->setup.context, worker, letter);
+        } else if (comm_channel_copy(comm, channel)) {
             owner->through(comm->setup.context, worker, channel);
-    }
-    while (found->through) {
-        struct comm_channel *channel = found->through;
-        found->through = channel->next;
-        owner->through(comm->setup.context, worker, channel);
-    }
-    while (found->sent) {
-        struct comm_letter *letter = found->sent;
-        found->sent = letter->next;
-        data_packet_free(letter->packet);
-        owner->sent(comm->setup.context, worker, letter);
+        }
     }
 }
 

@@ -82,15 +82,10 @@ bool comm_channels_stop(struct comm *comm)
     return true;
 }
 
-void comm_channel_post(struct comm *comm, struct comm_channel *channel)
+bool comm_channel_begin(struct comm *comm, struct comm_found *found, struct comm_channel *channel)
 {
-    (void)comm;
-    (void)channel;
-}
-
-void comm_channels_pass(struct comm *comm, struct comm_found *found)
-{
-    (void)comm, (void)found;
+    (void)comm, (void)found, (void)channel;
+    return true;
 }
 
 bool comm_channel_copy(struct comm *comm, struct comm_channel *channel)

@@ -146,7 +146,13 @@ static int instance_start_workers(duite *rt, const duite_options *options, int c
     if (!code)
         code = api_mark_policies(rt, options);
     if (!code && options->trace)
-        code = api_trace_open(rt, options);
+        code = trace_open(&rt->trace, &(struct trace_setup){.file = options->trace,
+                                                            .first = options->trace_first,
+                                                            .end = options->trace_end,
+                                                            .rank = rt->graph.rank,
+                                                            .n_ranks = rt->graph.n_ranks,
+                                                            .workers = rt->share.workers,
+                                                            .graph = &rt->graph});
     if (!code)
         code = work_start(
             &rt->pool,

@@ -182,7 +182,7 @@ static inline bool comm_pass(struct comm *comm, struct worker *worker, bool look
     } while (more || comm_left_to_us(comm));
     passing = outer;
     if (noted)
-        comm->setup.report->ends(worker, noted);
+        comm->setup.report->ends(worker);
     return any;
 }
 

@@ -35,12 +35,12 @@ struct comm_owner {
 };
 
 /* A trace. `message` is called for each message that is sent or received, with its bytes; `begins`
- * and `ends` around the work on messages, in which tasks may run that a message made ready. `ends`
- * gets what `begins` returned. */
+ * and, if that returned true, `ends` around the work on messages, in which tasks may run that a
+ * message made ready. */
 struct comm_report {
     void (*message)(struct worker *worker, bool sends, int peer, size_t bytes);
     bool (*begins)(struct worker *worker);
-    void (*ends)(struct worker *worker, bool begun);
+    void (*ends)(struct worker *worker);
 };
 
 /* What a comm knows of its program. The ranks compare history and homes; a sentence about a

@@ -173,7 +173,7 @@ static int instance_start_workers(duite *rt, const duite_options *options, int c
                                  .spin_seconds = rt->oversubscribed ? 0 : options->spin_seconds,
                                  .cores = bind ? cores.unit + host.before : NULL});
     work_cores_free(&cores);
-    rt->worker = code ? NULL : work_main(rt->pool);
+    rt->worker = rt->pool ? work_main(rt->pool) : NULL;
     rt->thread = task_thread_mark();
     return code ? code : instance_start_taker(rt, options);
 }
@@ -182,7 +182,7 @@ static int instance_start_workers(duite *rt, const duite_options *options, int c
 
 bool api_is_broken(const duite *rt)
 {
-    return rt->graph.broken || (rt->comm && comm_is_broken(rt->comm));
+    return rt->graph.broken || comm_is_broken(rt->comm);
 }
 
 struct instance_leftovers {
@@ -198,7 +198,7 @@ static bool instance_has_nothing_left(void *context)
     const duite *rt = leftovers->rt;
     if (!work_unfinished(rt->pool) && !offload_count(&rt->graph))
         return true;
-    return rt->comm && comm_is_lost(rt->comm) && work_stands_still(rt->pool, &leftovers->still);
+    return comm_is_lost(rt->comm) && work_stands_still(rt->pool, &leftovers->still);
 }
 
 void api_give_up(duite *rt)
@@ -208,10 +208,10 @@ void api_give_up(duite *rt)
     if (rt->comm && rt->graph.broken)
         comm_break(rt->comm, rt->graph.broken, duite_message());
     if (rt->comm)
-        comm_give_up(rt->comm, work_main(rt->pool));
+        comm_give_up(rt->comm, rt->worker);
     work_drain(rt->pool, instance_has_nothing_left, &(struct instance_leftovers){.rt = rt});
-    if (rt->comm && comm_is_lost(rt->comm))
-        comm_part(rt->comm, work_main(rt->pool));
+    if (comm_is_lost(rt->comm))
+        comm_part(rt->comm, rt->worker);
 }
 
 static void instance_end(duite *rt)
@@ -325,7 +325,7 @@ int duite_abandon(duite **out)
     duite *rt = *out;
     if (!work_may_fork(rt->pool))
         return base_error(DUITE_E_STATE, "duite_abandon is for the main thread, outside of bodies");
-    if (!rt->comm || !comm_is_lost(rt->comm))
+    if (!comm_is_lost(rt->comm))
         return base_error(
             DUITE_E_STATE,
             "duite_abandon: no rank is lost and MPI did not fail; duite_stop ends it");

@@ -114,13 +114,14 @@ bool comm_has_posts(struct comm *comm)
 
 void comm_hold(struct comm *comm)
 {
-    while (!comm_try_lock(comm))
+    while (comm && !comm_try_lock(comm))
         sched_yield();
 }
 
 void comm_let_go(struct comm *comm)
 {
-    atomic_flag_clear_explicit(&comm->lock, memory_order_release);
+    if (comm)
+        atomic_flag_clear_explicit(&comm->lock, memory_order_release);
 }
 
 void comm_workers_end(struct comm *comm)

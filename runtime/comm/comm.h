@@ -151,8 +151,8 @@ void comm_return_request(struct comm *comm, const struct comm_requester *request
  * full: all ranks must agree now. Main thread. */
 bool comm_call(struct comm *comm, const char *name, uint64_t fingerprint);
 
-/* This rank waits for data in the call, or no longer waits. If a difference between ranks is found
- * while it waits, communication breaks. Main thread. */
+/* This rank waits for data in the call, or no longer waits; NULL is fine. If a difference between
+ * ranks is found while it waits, communication breaks. Main thread. */
 void comm_waits(struct comm *comm, bool waits);
 
 enum { COMM_WORD_NUMBERS = sizeof(struct data_failure) / sizeof(double) };
@@ -193,7 +193,8 @@ const struct comm_word *comm_words(const struct comm *comm);
  * only an abort message with the reason to all others, which break in turn. Blocking calls return
  * the code; the main thread gives up everything still expected; only stop is left. */
 
-/* True once communication is broken. comm_error: its code, with the message set; else 0. */
+/* True once communication is broken; NULL is fine. comm_error: its code, with the message set; else
+ * 0. */
 bool comm_is_broken(struct comm *comm);
 int comm_error(struct comm *comm);
 
@@ -204,7 +205,8 @@ bool comm_is_lost(struct comm *comm);
 /* After comm_is_lost: polls for a moment, so that the abort messages go out. Main thread. */
 void comm_part(struct comm *comm, struct worker *worker);
 
-/* Between hold and let_go the caller alone calls MPI: nothing is sent or received. Main thread. */
+/* Between hold and let_go the caller alone calls MPI: nothing is sent or received. NULL is fine.
+ * Main thread. */
 void comm_hold(struct comm *comm);
 void comm_let_go(struct comm *comm);
 

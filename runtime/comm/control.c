@@ -123,17 +123,17 @@ bool comm_mpi_cut(struct comm *comm, int mpi, const char *call)
 
 bool comm_is_broken(struct comm *comm)
 {
-    return atomic_load(&comm->broken) != 0;
+    return comm && atomic_load(&comm->broken) != 0;
 }
 
 bool comm_is_lost(struct comm *comm)
 {
-    return atomic_load(&comm->lost);
+    return comm && atomic_load(&comm->lost);
 }
 
 int comm_error(struct comm *comm)
 {
-    int code = atomic_load(&comm->broken);
+    int code = comm ? atomic_load(&comm->broken) : 0;
     return code ? base_error(code, "%s", comm->reason.message) : DUITE_OK;
 }
 

@@ -49,6 +49,8 @@ bool comm_call(struct comm *comm, const char *name, uint64_t fingerprint)
 
 void comm_waits(struct comm *comm, bool waits)
 {
+    if (!comm)
+        return;
     struct comm_calls *calls = &comm->calls;
     uint64_t number = waits ? atomic_load(&calls->made) : 0;
     atomic_store(&calls->waits, number);

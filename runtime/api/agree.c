@@ -73,9 +73,8 @@ int api_agree_on_code(MPI_Comm mpi, int code)
         int code, rank;
     } own = {.code = code > 0 ? 0 : code}, worst = {0};
     char why[1024] = "";
-    MPI_Comm_rank(mpi, &own.rank);
-    if (MPI_Allreduce(&own, &worst, 1, MPI_2INT, MPI_MINLOC, mpi))
-        return base_error(DUITE_E_MPI, "MPI_Allreduce failed");
+    if (MPI_Comm_rank(mpi, &own.rank) || MPI_Allreduce(&own, &worst, 1, MPI_2INT, MPI_MINLOC, mpi))
+        return base_error(DUITE_E_MPI, "MPI_Comm_rank or MPI_Allreduce failed");
     if (!worst.code)
         return code;
     if (own.rank == worst.rank)

@@ -65,9 +65,8 @@ static int instance_dup(MPI_Comm comm, MPI_Comm *mpi)
         return base_error(DUITE_E_ARGUMENT,
                           "duite_start: the communicator (comm) is between two groups; "
                           "MPI_Intercomm_merge makes one group of them");
-    if (MPI_Comm_dup(comm, mpi))
-        return base_error(DUITE_E_MPI, "MPI_Comm_dup failed");
-    MPI_Comm_set_errhandler(*mpi, MPI_ERRORS_RETURN);
+    if (MPI_Comm_dup(comm, mpi) || MPI_Comm_set_errhandler(*mpi, MPI_ERRORS_RETURN))
+        return base_error(DUITE_E_MPI, "MPI_Comm_dup or MPI_Comm_set_errhandler failed");
     return DUITE_OK;
 }
 

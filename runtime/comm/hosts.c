@@ -11,29 +11,29 @@
 int comm_host_find(struct comm_host *host, MPI_Comm mpi, uint64_t hash)
 {
     MPI_Comm local;
-    int n, code = DUITE_OK;
+    int n;
     if (MPI_Comm_split_type(mpi, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &local))
         return base_error(DUITE_E_MPI, "MPI_Comm_split_type failed");
-    if (MPI_Comm_split(local, (int)(hash & 0x7fffffff), 0, &host->sharers) ||
-        MPI_Comm_size(host->sharers, &n))
-        code = base_error(DUITE_E_MPI, "MPI_Comm_split failed");
-    MPI_Comm_free(&local);
-    if (!code)
-        host->ranks = (unsigned)n;
-    return code;
+    const int failed = MPI_Comm_split(local, (int)(hash & 0x7fffffff), 0, &host->sharers) ||
+                       MPI_Comm_size(host->sharers, &n);
+    if (MPI_Comm_free(&local) || failed)
+        return base_error(DUITE_E_MPI, "MPI_Comm_split failed");
+    host->ranks = (unsigned)n;
+    return DUITE_OK;
 }
 
 int comm_host_count(struct comm_host *host, unsigned threads)
 {
-    int self, code = DUITE_OK;
-    if (MPI_Comm_rank(host->sharers, &self) ||
+    int self;
+    const int failed =
+        MPI_Comm_rank(host->sharers, &self) ||
         MPI_Exscan(&threads, &host->before, 1, MPI_UNSIGNED, MPI_SUM, host->sharers) ||
-        MPI_Allreduce(&threads, &host->total, 1, MPI_UNSIGNED, MPI_SUM, host->sharers))
-        code = base_error(DUITE_E_MPI, "MPI_Allreduce failed");
-    else if (!self)
+        MPI_Allreduce(&threads, &host->total, 1, MPI_UNSIGNED, MPI_SUM, host->sharers);
+    if (MPI_Comm_free(&host->sharers) || failed)
+        return base_error(DUITE_E_MPI, "MPI_Allreduce failed");
+    if (!self)
         host->before = 0; /* MPI_Exscan leaves it undefined there */
-    MPI_Comm_free(&host->sharers);
-    return code;
+    return DUITE_OK;
 }
 
 /* ---- The cost of a message ---- */

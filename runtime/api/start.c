@@ -34,7 +34,7 @@ static void mpi_finalise_at_exit(void)
 static int instance_start_mpi(void)
 {
     int running = 0, over = 0, level = 0;
-    if (MPI_Initialized(&running) || MPI_Finalized(&over))
+    if (MPI_Initialized(&running) || MPI_Finalized(&over)) /* MPI may not yet tell reasons */
         return base_error(DUITE_E_MPI, "MPI_Initialized failed");
     if (over)
         return base_error(DUITE_E_MPI, "MPI was finalised before duite_start");
@@ -59,15 +59,14 @@ static int instance_start_mpi(void)
 static int instance_dup(MPI_Comm comm, MPI_Comm *mpi)
 {
     int between;
-    if (MPI_Comm_test_inter(comm, &between))
-        return base_error(DUITE_E_MPI, "MPI_Comm_test_inter failed");
+    if (COMM_MPI(MPI_Comm_test_inter, comm, &between))
+        return DUITE_E_MPI;
     if (between)
         return base_error(DUITE_E_ARGUMENT,
                           "duite_start: the communicator (comm) is between two groups; "
                           "MPI_Intercomm_merge makes one group of them");
-    if (MPI_Comm_dup(comm, mpi) || MPI_Comm_set_errhandler(*mpi, MPI_ERRORS_RETURN))
-        return base_error(DUITE_E_MPI, "MPI_Comm_dup or MPI_Comm_set_errhandler failed");
-    return DUITE_OK;
+    const int code = COMM_MPI(MPI_Comm_dup, comm, mpi);
+    return code ? code : COMM_MPI(MPI_Comm_set_errhandler, *mpi, MPI_ERRORS_RETURN);
 }
 
 /* ---- Start ---- */
@@ -75,8 +74,8 @@ static int instance_dup(MPI_Comm comm, MPI_Comm *mpi)
 static int instance_start_graph(duite *rt, const duite_options *options)
 {
     int rank, n;
-    if (MPI_Comm_rank(rt->mpi, &rank) || MPI_Comm_size(rt->mpi, &n))
-        return base_error(DUITE_E_MPI, "MPI_Comm_rank failed");
+    if (COMM_MPI(MPI_Comm_rank, rt->mpi, &rank) || COMM_MPI(MPI_Comm_size, rt->mpi, &n))
+        return DUITE_E_MPI;
     rt->mapping.own = options->mapping;
     rt->balance = options->balance;
     rt->migration.due = 1;

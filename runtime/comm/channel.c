@@ -32,14 +32,13 @@ struct comm_group {
 
 /* ---- Start and stop ---- */
 
-bool comm_channels_start(struct comm *comm)
+int comm_channels_start(struct comm *comm)
 {
     int *max = NULL, known = 0;
-    if (MPI_Comm_get_attr(comm->mpi, MPI_TAG_UB, &max, &known))
-        return false;
+    const int code = COMM_MPI(MPI_Comm_get_attr, comm->mpi, MPI_TAG_UB, &max, &known);
     comm->channels.tags.next = COMM_CHANNELS;
     comm->channels.tags.last = known ? *max : 32767; /* guaranteed by MPI */
-    return true;
+    return code;
 }
 
 /* Without the lock: freeing large buffers takes long. */

@@ -27,10 +27,10 @@ static void word_first(void *from, void *to, int *n, MPI_Datatype *type)
     }
 }
 
-bool comm_collective_start(struct comm *comm)
+int comm_collective_start(struct comm *comm)
 {
-    return !MPI_Type_contiguous(sizeof(struct comm_word), MPI_BYTE, &comm->word) &&
-           !MPI_Type_commit(&comm->word) && !MPI_Op_create(word_first, 1, &comm->first);
+    const int code = comm_bytes_type(sizeof(struct comm_word), &comm->word);
+    return code ? code : COMM_MPI(MPI_Op_create, word_first, 1, &comm->first);
 }
 
 void comm_collective_stop(struct comm *comm)

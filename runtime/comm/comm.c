@@ -14,22 +14,23 @@
 
 /* ---- Start and stop ---- */
 
+int comm_bytes_type(size_t bytes, MPI_Datatype *type)
+{
+    const int code = COMM_MPI(MPI_Type_contiguous, (int)bytes, MPI_BYTE, type);
+    return code ? code : COMM_MPI(MPI_Type_commit, type);
+}
+
 static int comm_prepare(struct comm *comm)
 {
-    if (MPI_Comm_rank(comm->mpi, &comm->rank))
-        return base_error(DUITE_E_MPI, "MPI_Comm_rank failed");
-    if (MPI_Comm_size(comm->mpi, &comm->n_ranks))
-        return base_error(DUITE_E_MPI, "MPI_Comm_size failed");
+    if (COMM_MPI(MPI_Comm_rank, comm->mpi, &comm->rank) ||
+        COMM_MPI(MPI_Comm_size, comm->mpi, &comm->n_ranks))
+        return DUITE_E_MPI;
     comm->words = base_alloc((size_t)(comm->n_ranks + 1) * sizeof *comm->words);
     if (!comm_control_start(comm) || !comm_calls_start(&comm->calls) || !comm->words)
         return base_no_memory("communication");
-    if (MPI_Type_contiguous(sizeof(struct data_packet), MPI_BYTE, &comm->line) ||
-        MPI_Type_commit(&comm->line))
-        return base_error(DUITE_E_MPI, "MPI_Type_contiguous failed");
-    if (!comm_channels_start(comm))
-        return base_error(DUITE_E_MPI, "MPI_Comm_get_attr failed");
-    if (!comm_collective_start(comm))
-        return base_error(DUITE_E_MPI, "MPI_Op_create failed");
+    if (comm_bytes_type(sizeof(struct data_packet), &comm->line) || comm_channels_start(comm) ||
+        comm_collective_start(comm))
+        return DUITE_E_MPI;
     return comm_heartbeat_start(comm, comm->setup.monitor);
 }
 

@@ -56,6 +56,11 @@ struct comm_setup {
     const struct comm_report *report; /* NULL: there is no trace */
 };
 
+/* Calls MPI: COMM_MPI(MPI_Comm_rank, comm, &rank). DUITE_OK; or DUITE_E_MPI, with the call and
+ * MPI's reason as the message. */
+#define COMM_MPI(call, ...) comm_mpi(call(__VA_ARGS__), #call)
+int comm_mpi(int mpi, const char *call);
+
 /* Starts on mpi, which stays the caller's and is for these messages only. Local. Errors:
  * DUITE_E_MPI, memory; comm_stop is due even then. */
 int comm_start(struct comm **comm, MPI_Comm mpi, const struct comm_setup *setup);

@@ -96,22 +96,27 @@ int comm_mpi_class(int mpi)
     return MPI_Error_class(mpi, &class) == MPI_SUCCESS ? class : mpi;
 }
 
+int comm_mpi(int mpi, const char *call)
+{
+    char reason[MPI_MAX_ERROR_STRING] = "unknown";
+    int length = 0;
+    if (mpi == MPI_SUCCESS)
+        return DUITE_OK;
+    MPI_Error_string(mpi, reason, &length);
+    return base_error(DUITE_E_MPI, "%s: %s", call, reason);
+}
+
 /* Messages of channels alone may come into too little room. */
 bool comm_mpi_ok(struct comm *comm, int mpi, const char *call)
 {
-    char reason[MPI_MAX_ERROR_STRING] = "", message[MPI_MAX_ERROR_STRING + 64];
-    int length = 0;
     if (mpi == MPI_SUCCESS)
         return true;
-    if (comm_mpi_class(mpi) == MPI_ERR_TRUNCATE) {
+    if (comm_mpi_class(mpi) == MPI_ERR_TRUNCATE)
         comm_break(comm, DUITE_E_DIFFERENT,
                    "a message of a recorded graph does not fit: the ranks recorded different "
                    "graphs");
-        return false;
-    }
-    MPI_Error_string(mpi, reason, &length);
-    snprintf(message, sizeof message, "%s: %s", call, reason);
-    comm_break(comm, DUITE_E_MPI, message);
+    else
+        comm_break(comm, comm_mpi(mpi, call), duite_message());
     return false;
 }
 

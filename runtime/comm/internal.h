@@ -187,9 +187,8 @@ struct comm_channels {
     _Atomic bool awaits; /* there are some */
 };
 
-/* Starts the channels: asks MPI for its largest tag. False if that fails. Before the lock is used.
- */
-bool comm_channels_start(struct comm *comm);
+/* Starts the channels: asks MPI for its largest tag. Before the lock is used. Errors: MPI's. */
+int comm_channels_start(struct comm *comm);
 /* Under the lock, at the end: false if MPI may still read or write memory, which then stays. */
 bool comm_channels_stop(struct comm *comm);
 
@@ -306,8 +305,10 @@ static inline void comm_found_over(struct comm_found *found, struct comm_post *p
     found->over = post;
 }
 
-/* Makes and frees the MPI objects of collective calls. False: MPI failed. */
-bool comm_collective_start(struct comm *comm);
+/* A type of so many bytes. */
+int comm_bytes_type(size_t bytes, MPI_Datatype *type);
+/* Makes and frees the MPI objects of collective calls. Errors: MPI's. */
+int comm_collective_start(struct comm *comm);
 void comm_collective_stop(struct comm *comm);
 /* Joins the collective calls that other ranks entered before communication broke. All ranks are at
  * their end. */

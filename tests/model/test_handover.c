@@ -70,10 +70,10 @@ static int success(int n, ...)
 }
 
 /* No recorded graph has channels here. */
-bool comm_channels_start(struct comm *comm)
+int comm_channels_start(struct comm *comm)
 {
     (void)comm;
-    return true;
+    return 0;
 }
 
 bool comm_channels_stop(struct comm *comm)
@@ -120,7 +120,7 @@ void comm_channel_came(struct comm *comm, struct comm_found *found, void *channe
 #define MPI_Iallgather(...)                                    success(0, __VA_ARGS__)
 #define MPI_Iallreduce(...)                                    success(0, __VA_ARGS__)
 #define MPI_Test(request, done, status)                        done_at_once(done)
-#define MPI_Type_contiguous(n, type, new_type)                 success(0, new_type)
+#define MPI_Type_contiguous(n, type, new_type)                 ((void)(n), success(0, new_type))
 #define MPI_Type_commit(type)                                  success(0, type)
 #define MPI_Type_free(type)                                    success(0)
 #define MPI_Op_create(function, commutes, op)                  success(0, function, op)

@@ -115,9 +115,8 @@ static bool side_is_large(const struct channel_side *side)
 static bool channel_post_receive(struct comm *comm, struct channel_side *side, size_t turn)
 {
     const struct comm_channel *channel = side->channel;
-    int mpi = MPI_Irecv(side->buffer[turn % 2], (int)channel->bytes, MPI_BYTE, channel->peer,
-                        channel->tag, comm->mpi, &side->request[turn % 2]);
-    return comm_mpi_ok(comm, mpi, "MPI_Irecv");
+    return COMM_OK(comm, MPI_Irecv, side->buffer[turn % 2], (int)channel->bytes, MPI_BYTE,
+                   channel->peer, channel->tag, comm->mpi, &side->request[turn % 2]);
 }
 
 static struct comm_group *group_new(struct comm *comm, struct comm_channel_set *set)
@@ -157,7 +156,7 @@ static void group_close(struct comm_channel_set *set)
         comm->requests.reserved -= !group->side[i].channel->sends;
         for (int k = 0; k < 2 && !group->side[i].channel->sends; k++)
             if (group->side[i].request[k] != MPI_REQUEST_NULL)
-                comm_mpi_ok(comm, MPI_Cancel(&group->side[i].request[k]), "MPI_Cancel");
+                COMM_OK(comm, MPI_Cancel, &group->side[i].request[k]);
     }
     group->next = comm->channels.closed;
     comm->channels.closed = group;
@@ -268,7 +267,7 @@ static bool channel_send(struct comm *comm, struct comm_found *found, struct com
     MPI_Request *request = &side->request[side->turn % 2];
     int free = 1;
     if (*request != MPI_REQUEST_NULL && !comm_is_broken(comm))
-        comm_mpi_ok(comm, MPI_Test(request, &free, MPI_STATUS_IGNORE), "MPI_Test");
+        COMM_OK(comm, MPI_Test, request, &free, MPI_STATUS_IGNORE);
     if (comm_is_broken(comm)) {
         channel_lose(comm, found, channel);
         return true;

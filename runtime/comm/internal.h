@@ -316,6 +316,7 @@ void comm_catch_up(struct comm *comm);
 
 /* True for MPI_SUCCESS; else communication is broken. cut: true even if a message was longer than
  * what it was received into. */
+#define COMM_OK(comm, call, ...) comm_mpi_ok(comm, call(__VA_ARGS__), #call)
 bool comm_mpi_ok(struct comm *comm, int mpi, const char *call);
 bool comm_mpi_cut(struct comm *comm, int mpi, const char *call);
 /* The class of MPI's code: MPI_ERR_TRUNCATE and so on. */

@@ -127,8 +127,8 @@ static void message_receive_scarce(struct comm *comm, MPI_Message *message, int 
         comm_mpi_cut(comm, MPI_Mrecv(NULL, 0, comm->line, message, MPI_STATUS_IGNORE), "MPI_Mrecv");
         return;
     }
-    int mpi = MPI_Mrecv(spare, lines, comm->line, message, MPI_STATUS_IGNORE);
-    if (!comm_mpi_ok(comm, mpi, "MPI_Mrecv") || comm_control_hear(comm, spare))
+    if (!COMM_OK(comm, MPI_Mrecv, spare, lines, comm->line, message, MPI_STATUS_IGNORE) ||
+        comm_control_hear(comm, spare))
         return;
     comm_break_memory(comm, "a message");
     if (packet_is_large(spare))
@@ -174,8 +174,7 @@ static void large_begin(struct comm *comm, struct data_packet *header, int from)
 static void message_receive_line(struct comm *comm, struct comm_found *found, MPI_Message *message,
                                  struct data_packet *packet, int from)
 {
-    int mpi = MPI_Mrecv(packet, 1, comm->line, message, MPI_STATUS_IGNORE);
-    if (!comm_mpi_ok(comm, mpi, "MPI_Mrecv"))
+    if (!COMM_OK(comm, MPI_Mrecv, packet, 1, comm->line, message, MPI_STATUS_IGNORE))
         data_packet_free(packet);
     else if (packet_is_large(packet))
         large_begin(comm, packet, from);
@@ -188,11 +187,11 @@ static bool message_receive(struct comm *comm, struct comm_found *found, size_t 
     int there = 0, lines = 0;
     MPI_Message message;
     MPI_Status status;
-    int mpi = MPI_Improbe(MPI_ANY_SOURCE, COMM_PACKETS, comm->mpi, &there, &message, &status);
-    if (!comm_mpi_ok(comm, mpi, "MPI_Improbe") || !there)
+    if (!COMM_OK(comm, MPI_Improbe, MPI_ANY_SOURCE, COMM_PACKETS, comm->mpi, &there, &message,
+                 &status) ||
+        !there)
         return false;
-    mpi = MPI_Get_count(&status, comm->line, &lines);
-    if (!comm_mpi_ok(comm, mpi, "MPI_Get_count") || lines < 1)
+    if (!COMM_OK(comm, MPI_Get_count, &status, comm->line, &lines) || lines < 1)
         return false;
     size_t bytes = ((size_t)lines - 1) * sizeof(struct data_packet);
     *received += bytes;
@@ -207,8 +206,7 @@ static bool message_receive(struct comm *comm, struct comm_found *found, size_t 
         message_receive_line(comm, found, &message, packet, status.MPI_SOURCE);
         return true;
     }
-    mpi = MPI_Imrecv(packet, lines, comm->line, &message, comm_request_next(comm));
-    if (!comm_mpi_ok(comm, mpi, "MPI_Imrecv")) {
+    if (!COMM_OK(comm, MPI_Imrecv, packet, lines, comm->line, &message, comm_request_next(comm))) {
         data_packet_free(packet);
         return false;
     }

@@ -63,6 +63,18 @@ bool comm_control_send(struct comm *comm, int to, struct data_packet *packet)
     return false;
 }
 
+bool comm_control_tell(struct comm *comm, int to, enum comm_kind kind, const void *what,
+                       size_t bytes)
+{
+    struct data_packet *packet = data_packet_new(bytes, true);
+    if (!packet)
+        return false;
+    packet->kind = kind;
+    memcpy(data_payload(packet), what, bytes);
+    comm_control_send(comm, to, packet);
+    return true;
+}
+
 /* ---- Abort ---- */
 
 static bool code_is_loss(int code)
@@ -192,15 +204,12 @@ static void abort_hear(struct comm *comm, struct data_packet *packet)
 
 bool comm_request(struct comm *comm, struct worker *worker, int rank, unsigned idle, double seconds)
 {
-    struct data_packet *packet = comm_is_broken(comm) ? NULL : data_packet_new(0, true);
     bool sent = false;
-    if (!packet || !comm_try_lock(comm)) {
-        data_packet_free(packet);
+    if (!comm_try_lock(comm))
         return false;
-    }
-    if (comm_is_broken(comm)) { /* meanwhile: nothing follows the abort message */
-        data_packet_free(packet);
-    } else {
+    /* Nothing follows the abort message. */
+    struct data_packet *packet = comm_is_broken(comm) ? NULL : data_packet_new(0, true);
+    if (packet) {
         packet->kind = COMM_REQUEST;
         packet->pieces = idle;
         packet->key.number = (uint64_t)(1e9 * seconds);

@@ -136,7 +136,7 @@ void comm_workers_end(struct comm *comm)
 
 /* ---- Progress ---- */
 
-/* What is through makes other channels ready; the pass that found it takes those. */
+/* A channel that is through makes others ready; the pass that found it takes those. */
 static _Thread_local bool passing __attribute__((tls_model("initial-exec")));
 
 /* Other messages are looked for less often while a recorded graph waits for its own. */

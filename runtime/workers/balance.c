@@ -264,8 +264,8 @@ static void grant_from(struct grant *grant, struct queue *queue)
     grant_or_keep(grant, queue, taken);
 }
 
-static void grant_queues(struct worker *worker, const struct comm_requester *requester,
-                         unsigned *given)
+/* Returns how many tasks were granted. */
+static unsigned grant_queues(struct worker *worker, const struct comm_requester *requester)
 {
     struct work_pool *pool = worker->pool;
     struct grant grant = {.worker = worker,
@@ -279,7 +279,7 @@ static void grant_queues(struct worker *worker, const struct comm_requester *req
     atomic_thread_fence(memory_order_seq_cst);
     if (grant.asked.ready > grant.asked.granted)
         queue_wake_one(&pool->queues, DUITE_NO_QUEUE);
-    *given = grant.asked.granted;
+    return grant.asked.granted;
 }
 
 void work_grant(struct worker *worker)
@@ -291,9 +291,8 @@ void work_grant(struct worker *worker)
     if (!comm_has_requests(comm) || now - atomic_load(&balance->granted) < balance->grant_ticks)
         return;
     atomic_store(&balance->granted, now);
-    unsigned given = 1;
-    while (given && comm_take_request(comm, &requester)) {
-        grant_queues(worker, &requester, &given);
+    for (unsigned given = 1; given && comm_take_request(comm, &requester);) {
+        given = grant_queues(worker, &requester);
         if (!given)
             comm_return_request(comm, &requester);
     }

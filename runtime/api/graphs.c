@@ -88,7 +88,7 @@ static uint32_t graph_take_slot(duite *rt)
 
 static void graph_free_slot(duite *rt, struct recorded_graph *slot)
 {
-    plan_record_free(slot->record, work_main(rt->pool));
+    plan_record_free(slot->record, rt->worker);
     slot->record = NULL;
     slot->generation++;
 }
@@ -97,7 +97,7 @@ static void graph_free_slot(duite *rt, struct recorded_graph *slot)
 static int graph_record(duite *rt, struct recorded_graph *slot)
 {
     struct plan_record *record = slot->record;
-    plan_record_clear(record, work_main(rt->pool));
+    plan_record_clear(record, rt->worker);
     rt->building = record;
     rt->graphs_recorded++;
     int code = slot->build(rt, slot->context);
@@ -107,7 +107,7 @@ static int graph_record(duite *rt, struct recorded_graph *slot)
     else if (code)
         base_error(code, "the build function of a graph returned %d", code);
     if (code)
-        plan_record_clear(record, work_main(rt->pool));
+        plan_record_clear(record, rt->worker);
     else
         plan_record_end(record);
     if (!code)
@@ -214,7 +214,7 @@ static int replay_fork_rounds(duite *rt, struct plan_record *record, uint64_t fi
 {
     int code = DUITE_OK;
     for (uint64_t i = 0; i < rounds && !code; i++) {
-        code = plan_replay_fork(record, work_main(rt->pool), first + i);
+        code = plan_replay_fork(record, rt->worker, first + i);
         record->rounds += !code;
         work_tick(rt->pool);
         if (!code)
@@ -239,11 +239,11 @@ static int replay_make_tags(duite *rt)
 static int replay_by_plan(duite *rt, struct plan_record *record, const duite_object *flag,
                           uint64_t rounds)
 {
-    int code = plan_replay_plan(record, work_main(rt->pool), flag, rounds);
+    int code = plan_replay_plan(record, rt->worker, flag, rounds);
     if (code == COMM_NEEDS_TAGS) {
         code = replay_make_tags(rt);
         if (!code)
-            code = plan_replay_plan(record, work_main(rt->pool), flag, rounds);
+            code = plan_replay_plan(record, rt->worker, flag, rounds);
         if (code == COMM_NEEDS_TAGS)
             code = base_error(DUITE_E_MPI, "MPI has too few tags for the messages of all recorded "
                                            "graphs: free some, or fork their tasks");

@@ -116,8 +116,6 @@ int api_wait(duite *rt, const char *call);
 int api_trace_end(duite *rt, const char *call);
 /* Begins to record. All ranks have started. */
 void api_trace_begin(duite *rt);
-/* Opens the trace that the options want. Local. */
-int api_trace_open(duite *rt, const duite_options *options);
 
 /* Copies the bytes to `values`, or the number of elements to `count`, if not NULL, on the ranks
  * that want it. */

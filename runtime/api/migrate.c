@@ -258,7 +258,7 @@ static int migration_move(struct migration *m)
         if (block == MAP_NO_BLOCK || m->moves.home[block] == object->home)
             continue;
         object->block = m->moves.blocks.block[block].number;
-        code = task_move_object(graph, work_main(m->rt->pool), object, m->moves.home[block]);
+        code = task_move_object(graph, m->rt->worker, object, m->moves.home[block]);
         trace_moved(m->rt->trace, table, &slot, 1);
         m->rt->migration.objects++;
     }

@@ -145,7 +145,7 @@ int duite_free(duite *rt, duite_object object)
     if (!code)
         code = api_remember(rt, api_settle(rt));
     if (!code)
-        code = api_remember(rt, task_free_object(&rt->graph.root, work_main(rt->pool), object));
+        code = api_remember(rt, task_free_object(&rt->graph.root, rt->worker, object));
     if (!code)
         trace_freed(rt->trace, object);
     return code;

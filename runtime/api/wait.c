@@ -67,11 +67,9 @@ static int wait_enter(duite *rt, const char *kind, const char *call)
 /* Works until the copy is there. */
 static void wait_for_copy(duite *rt, const struct work_why *why, struct task_copy *copy)
 {
-    if (rt->comm)
-        comm_waits(rt->comm, true);
+    comm_waits(rt->comm, true);
     work_until(rt->pool, why, copy_is_done, copy);
-    if (rt->comm)
-        comm_waits(rt->comm, false);
+    comm_waits(rt->comm, false);
     if (!copy_is_done(copy))
         api_give_up(rt); /* afterwards the task that would have copied is over */
 }
@@ -84,7 +82,7 @@ int api_get(duite *rt, duite_object object, int rank, void *values, size_t *coun
     struct task_copy copy = {.values = values};
     int code = api_settle(rt);
     if (!code)
-        code = task_copy(&rt->graph, work_main(rt->pool), object, rank, &copy);
+        code = task_copy(&rt->graph, rt->worker, object, rank, &copy);
     work_tick(rt->pool);
     if (code == DUITE_E_MEMORY)
         return api_remember(rt, code);
@@ -94,7 +92,7 @@ int api_get(duite *rt, duite_object object, int rank, void *values, size_t *coun
         return code;
     const struct data_key key = task_version_of(&rt->graph, object);
     wait_for_copy(rt, &(struct work_why){call, NULL, &key}, &copy);
-    if (rt->comm && comm_is_broken(rt->comm))
+    if (comm_is_broken(rt->comm))
         return comm_error(rt->comm);
     if (!values && !count) /* checked only now: the other ranks count on this one */
         return base_error(DUITE_E_ARGUMENT, "%s: nowhere to put the answer", call);
@@ -168,12 +166,10 @@ static int wait_for_own_tasks(duite *rt, const char *call)
     int code = wait_enter(rt, "duite_wait", call);
     if (code)
         return code;
-    if (rt->comm)
-        comm_waits(rt->comm, true);
+    comm_waits(rt->comm, true);
     work_until(rt->pool, &(struct work_why){call, "all tasks of this rank", NULL}, work_is_drained,
                rt->pool);
-    if (rt->comm)
-        comm_waits(rt->comm, false);
+    comm_waits(rt->comm, false);
     return DUITE_OK;
 }
 

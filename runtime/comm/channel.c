@@ -19,6 +19,7 @@ struct channel_side {
     MPI_Request request[2];
     uint64_t turn;
     size_t written; /* bytes of a large message that is to be sent; or 0 */
+    bool copies;    /* a large message is to be written or read next, without the lock */
 };
 
 struct comm_group {
@@ -31,14 +32,13 @@ struct comm_group {
 
 /* ---- Start and stop ---- */
 
-bool comm_channels_start(struct comm *comm)
+int comm_channels_start(struct comm *comm)
 {
     int *max = NULL, known = 0;
-    if (MPI_Comm_get_attr(comm->mpi, MPI_TAG_UB, &max, &known))
-        return false;
+    const int code = COMM_MPI(MPI_Comm_get_attr, comm->mpi, MPI_TAG_UB, &max, &known);
     comm->channels.tags.next = COMM_CHANNELS;
     comm->channels.tags.last = known ? *max : 32767; /* guaranteed by MPI */
-    return true;
+    return code;
 }
 
 /* Without the lock: freeing large buffers takes long. */
@@ -55,14 +55,15 @@ static void groups_free(struct comm_group *group)
     }
 }
 
-/* True if MPI is done with the group's memory. */
+/* True if MPI is done with the group's memory. A message that no longer matters may have been too
+ * long. */
 static bool group_is_quiet(struct comm_group *group)
 {
-    for (size_t i = 0; i < group->n; i++) {
-        MPI_Status status[2];
-        int done = 0;
-        const int mpi = MPI_Testall(2, group->side[i].request, &done, status);
-        if (!comm_mpi_ok(group->comm, mpi, "MPI_Testall") || !done)
+    for (size_t i = 0; i < 2 * group->n; i++) {
+        MPI_Request *request = &group->side[i / 2].request[i % 2];
+        int done;
+        comm_mpi_cut(group->comm, MPI_Test(request, &done, MPI_STATUS_IGNORE), "MPI_Test");
+        if (*request != MPI_REQUEST_NULL)
             return false;
     }
     return true;
@@ -114,9 +115,8 @@ static bool side_is_large(const struct channel_side *side)
 static bool channel_post_receive(struct comm *comm, struct channel_side *side, size_t turn)
 {
     const struct comm_channel *channel = side->channel;
-    int mpi = MPI_Irecv(side->buffer[turn % 2], (int)channel->bytes, MPI_BYTE, channel->peer,
-                        channel->tag, comm->mpi, &side->request[turn % 2]);
-    return comm_mpi_ok(comm, mpi, "MPI_Irecv");
+    return COMM_OK(comm, MPI_Irecv, side->buffer[turn % 2], (int)channel->bytes, MPI_BYTE,
+                   channel->peer, channel->tag, comm->mpi, &side->request[turn % 2]);
 }
 
 static struct comm_group *group_new(struct comm *comm, struct comm_channel_set *set)
@@ -156,7 +156,7 @@ static void group_close(struct comm_channel_set *set)
         comm->requests.reserved -= !group->side[i].channel->sends;
         for (int k = 0; k < 2 && !group->side[i].channel->sends; k++)
             if (group->side[i].request[k] != MPI_REQUEST_NULL)
-                comm_mpi_ok(comm, MPI_Cancel(&group->side[i].request[k]), "MPI_Cancel");
+                COMM_OK(comm, MPI_Cancel, &group->side[i].request[k]);
     }
     group->next = comm->channels.closed;
     comm->channels.closed = group;
@@ -231,18 +231,6 @@ int comm_channels_settle(struct comm *comm)
 
 /* ---- Messages ---- */
 
-void comm_channel_post(struct comm *comm, struct comm_channel *channel)
-{
-    BASE_STACK_PUSH(&comm->channels.ready, channel, memory_order_release);
-    atomic_thread_fence(memory_order_seq_cst); /* as in comm_send */
-}
-
-static void channel_push(struct comm_channel **list, struct comm_channel *channel)
-{
-    channel->next = *list;
-    *list = channel;
-}
-
 /* Sends the message; a large one is already written. Returns its bytes. */
 static size_t channel_isend(struct comm *comm, struct channel_side *side)
 {
@@ -263,46 +251,43 @@ static size_t channel_isend(struct comm *comm, struct channel_side *side)
     return comm_mpi_ok(comm, mpi, "MPI_Isend") ? bytes : 0;
 }
 
-/* Once communication is broken, a message ends as if it had been sent. */
-static void channel_send(struct comm *comm, struct channel_side *side, struct comm_found *found)
+/* No message is sent or comes, since communication is broken. */
+static void channel_lose(struct comm *comm, struct comm_found *found, struct comm_channel *channel)
 {
+    const struct channel_side *side = channel->own;
+    if (!side->written)
+        comm->setup.owner->lose(channel);
+    comm_found_over(found, &channel->post);
+}
+
+/* False: the buffer is still sent. */
+static bool channel_send(struct comm *comm, struct comm_found *found, struct comm_channel *channel)
+{
+    struct channel_side *side = channel->own;
     MPI_Request *request = &side->request[side->turn % 2];
     int free = 1;
-    if (comm_is_broken(comm) ||
-        (*request != MPI_REQUEST_NULL &&
-         !comm_mpi_ok(comm, MPI_Test(request, &free, MPI_STATUS_IGNORE), "MPI_Test"))) {
-        if (!side->written)
-            comm->setup.owner->lose(side->channel);
-        channel_push(&found->through, side->channel);
-        return;
+    if (*request != MPI_REQUEST_NULL && !comm_is_broken(comm))
+        COMM_OK(comm, MPI_Test, request, &free, MPI_STATUS_IGNORE);
+    if (comm_is_broken(comm)) {
+        channel_lose(comm, found, channel);
+        return true;
     }
-    if (!free) {
-        channel_push(&comm->channels.stalled, side->channel);
-        return;
-    }
-    if (side_is_large(side) && !side->written) {
-        channel_push(&found->copies, side->channel);
-        return;
-    }
-    const size_t bytes = channel_isend(comm, side);
+    if (!free)
+        return false;
+    side->copies = side_is_large(side) && !side->written;
+    const size_t bytes = side->copies ? 0 : channel_isend(comm, side);
     if (bytes) {
         atomic_fetch_add_explicit(&comm->messages, 1, memory_order_relaxed);
         atomic_fetch_add_explicit(&comm->bytes, bytes, memory_order_relaxed);
     }
-    channel_push(&found->through, side->channel);
-}
-
-/* No message comes, or it is of no use. */
-static void channel_lose(struct comm *comm, struct comm_found *found, struct comm_channel *channel)
-{
-    comm->setup.owner->lose(channel);
-    channel_push(&found->through, channel);
+    comm_found_over(found, &channel->post);
+    return true;
 }
 
 /* A receive that was posted becomes a request; that of a large message is posted now. */
-static void channel_await(struct comm *comm, struct channel_side *side, struct comm_found *found)
+static void channel_await(struct comm *comm, struct comm_found *found, struct comm_channel *channel)
 {
-    struct comm_channel *channel = side->channel;
+    struct channel_side *side = channel->own;
     MPI_Request *posted = &side->request[side->turn % 2];
     if (comm_is_broken(comm) ||
         (side_is_large(side) &&
@@ -323,16 +308,12 @@ static void channel_await(struct comm *comm, struct channel_side *side, struct c
     *posted = MPI_REQUEST_NULL;
 }
 
-static void channels_begin(struct comm *comm, struct comm_channel *ready, struct comm_found *found)
+bool comm_channel_begin(struct comm *comm, struct comm_found *found, struct comm_channel *channel)
 {
-    while (ready) {
-        struct comm_channel *channel = ready;
-        ready = channel->next;
-        if (channel->sends)
-            channel_send(comm, channel->own, found);
-        else
-            channel_await(comm, channel->own, found);
-    }
+    if (channel->sends)
+        return channel_send(comm, found, channel);
+    channel_await(comm, found, channel);
+    return true;
 }
 
 void comm_channel_came(struct comm *comm, struct comm_found *found, void *what)
@@ -342,35 +323,27 @@ void comm_channel_came(struct comm *comm, struct comm_found *found, void *what)
     comm->channels.awaited--;
     atomic_fetch_add_explicit(&comm->came, 1, memory_order_relaxed);
     comm_note(comm, false, channel->peer, channel->bytes);
-    if (side_is_large(side)) {
-        channel_push(&found->copies, channel);
-        return;
+    side->copies = side_is_large(side);
+    if (!side->copies) {
+        comm->setup.owner->unpack(channel, side->buffer[side->turn % 2]);
+        channel_post_receive(comm, side, side->turn++);
     }
-    comm->setup.owner->unpack(channel, side->buffer[side->turn % 2]);
-    channel_post_receive(comm, side, side->turn++);
-    channel_push(&found->through, channel);
-}
-
-void comm_channels_pass(struct comm *comm, struct comm_found *found)
-{
-    struct comm_channel *stalled = comm->channels.stalled;
-    comm->channels.stalled = NULL;
-    if (!BASE_STACK_IS_EMPTY(&comm->channels.ready))
-        channels_begin(comm, BASE_STACK_TAKE(&comm->channels.ready), found);
-    channels_begin(comm, stalled, found);
+    comm_found_over(found, &channel->post);
 }
 
 bool comm_channel_copy(struct comm *comm, struct comm_channel *channel)
 {
     struct channel_side *side = channel->own;
     void *buffer = side->buffer[side->turn % 2];
-    if (side->channel->sends) {
-        side->written = comm->setup.owner->pack(side->channel, buffer);
-        comm_channel_post(comm, channel);
+    if (!side->copies)
+        return true;
+    side->copies = false;
+    if (channel->sends) {
+        side->written = comm->setup.owner->pack(channel, buffer);
+        comm_post(comm, &channel->post);
         return false;
     }
-    comm->setup.owner->unpack(side->channel, buffer);
-    side->written = 0;
+    comm->setup.owner->unpack(channel, buffer);
     side->turn++;
     return true;
 }
@@ -386,6 +359,6 @@ void comm_channels_give_up(struct comm *comm)
         struct comm_channel *channel = comm_request_take(comm, i).what;
         struct channel_side *side = channel->own;
         side->request[side->turn % 2] = posted;
-        comm_channel_post(comm, channel);
+        comm_post(comm, &channel->post);
     }
 }

@@ -27,10 +27,10 @@ static void word_first(void *from, void *to, int *n, MPI_Datatype *type)
     }
 }
 
-bool comm_collective_start(struct comm *comm)
+int comm_collective_start(struct comm *comm)
 {
-    return !MPI_Type_contiguous(sizeof(struct comm_word), MPI_BYTE, &comm->word) &&
-           !MPI_Type_commit(&comm->word) && !MPI_Op_create(word_first, 1, &comm->first);
+    const int code = comm_bytes_type(sizeof(struct comm_word), &comm->word);
+    return code ? code : COMM_MPI(MPI_Op_create, word_first, 1, &comm->first);
 }
 
 void comm_collective_stop(struct comm *comm)
@@ -102,7 +102,7 @@ static bool collective_test(struct comm *comm)
     if (comm->enters && !collective_enter(comm, comm->next))
         return true;
     comm->enters = false;
-    if (!comm_mpi_ok(comm, MPI_Test(&comm->request, &done, MPI_STATUS_IGNORE), "MPI_Test"))
+    if (!COMM_OK(comm, MPI_Test, &comm->request, &done, MPI_STATUS_IGNORE))
         return true;
     return done && (comm->kind != COMM_AGREES || collective_agrees(comm));
 }
@@ -124,7 +124,7 @@ const struct comm_word *comm_words(const struct comm *comm)
 
 static bool collective_wait(struct comm *comm)
 {
-    return comm_mpi_ok(comm, MPI_Wait(&comm->request, MPI_STATUS_IGNORE), "MPI_Wait");
+    return COMM_OK(comm, MPI_Wait, &comm->request, MPI_STATUS_IGNORE);
 }
 
 void comm_catch_up(struct comm *comm)

@@ -1,6 +1,6 @@
-/* Start, stop and progress. Letters wait in a lock-free stack, linked by themselves, until a thread
- * polls. The holder of the lock calls MPI; a poll delivers its findings after it has let go of the
- * lock. */
+/* Start, stop and progress. Letters and channels wait in a lock-free stack, linked by themselves,
+ * until a thread polls. The holder of the lock calls MPI; a poll delivers its findings after it has
+ * let go of the lock. */
 #include "runtime/comm/comm.h"
 
 #include "runtime/base/clock.h"
@@ -14,22 +14,23 @@
 
 /* ---- Start and stop ---- */
 
+int comm_bytes_type(size_t bytes, MPI_Datatype *type)
+{
+    const int code = COMM_MPI(MPI_Type_contiguous, (int)bytes, MPI_BYTE, type);
+    return code ? code : COMM_MPI(MPI_Type_commit, type);
+}
+
 static int comm_prepare(struct comm *comm)
 {
-    if (MPI_Comm_rank(comm->mpi, &comm->rank))
-        return base_error(DUITE_E_MPI, "MPI_Comm_rank failed");
-    if (MPI_Comm_size(comm->mpi, &comm->n_ranks))
-        return base_error(DUITE_E_MPI, "MPI_Comm_size failed");
+    if (COMM_MPI(MPI_Comm_rank, comm->mpi, &comm->rank) ||
+        COMM_MPI(MPI_Comm_size, comm->mpi, &comm->n_ranks))
+        return DUITE_E_MPI;
     comm->words = base_alloc((size_t)(comm->n_ranks + 1) * sizeof *comm->words);
     if (!comm_control_start(comm) || !comm_calls_start(&comm->calls) || !comm->words)
         return base_no_memory("communication");
-    if (MPI_Type_contiguous(sizeof(struct data_packet), MPI_BYTE, &comm->line) ||
-        MPI_Type_commit(&comm->line))
-        return base_error(DUITE_E_MPI, "MPI_Type_contiguous failed");
-    if (!comm_channels_start(comm))
-        return base_error(DUITE_E_MPI, "MPI_Comm_get_attr failed");
-    if (!comm_collective_start(comm))
-        return base_error(DUITE_E_MPI, "MPI_Op_create failed");
+    if (comm_bytes_type(sizeof(struct data_packet), &comm->line) || comm_channels_start(comm) ||
+        comm_collective_start(comm))
+        return DUITE_E_MPI;
     return comm_heartbeat_start(comm, comm->setup.monitor);
 }
 
@@ -93,28 +94,35 @@ bool comm_stop(struct comm *comm)
 
 /* ---- Posts and the lock ---- */
 
+void comm_post(struct comm *comm, struct comm_post *post)
+{
+    BASE_STACK_PUSH(&comm->posts, post, memory_order_release);
+    /* Pairs with comm_left_to_us: either the next try for the lock succeeds, or its holder sees
+     * this post. */
+    atomic_thread_fence(memory_order_seq_cst);
+}
+
 void comm_send(struct comm *comm, struct comm_letter *letter)
 {
-    BASE_STACK_PUSH(&comm->posts, letter, memory_order_release);
-    /* Pairs with comm_left_to_us: either the next try for the lock succeeds, or its holder sees
-     * this letter. */
-    atomic_thread_fence(memory_order_seq_cst);
+    letter->post.is_channel = false;
+    comm_post(comm, &letter->post);
 }
 
 bool comm_has_posts(struct comm *comm)
 {
-    return !BASE_STACK_IS_EMPTY(&comm->posts) || !BASE_STACK_IS_EMPTY(&comm->channels.ready);
+    return !BASE_STACK_IS_EMPTY(&comm->posts);
 }
 
 void comm_hold(struct comm *comm)
 {
-    while (!comm_try_lock(comm))
+    while (comm && !comm_try_lock(comm))
         sched_yield();
 }
 
 void comm_let_go(struct comm *comm)
 {
-    atomic_flag_clear_explicit(&comm->lock, memory_order_release);
+    if (comm)
+        atomic_flag_clear_explicit(&comm->lock, memory_order_release);
 }
 
 void comm_workers_end(struct comm *comm)
@@ -128,7 +136,7 @@ void comm_workers_end(struct comm *comm)
 
 /* ---- Progress ---- */
 
-/* What is through makes other channels ready; the pass that found it takes those. */
+/* A channel that is through makes others ready; the pass that found it takes those. */
 static _Thread_local bool passing __attribute__((tls_model("initial-exec")));
 
 /* Other messages are looked for less often while a recorded graph waits for its own. */
@@ -140,8 +148,7 @@ static inline void comm_pass_locked(struct comm *comm, struct comm_found *found,
 {
     const int before = comm->channels.awaited;
     if (comm->stalled || !BASE_STACK_IS_EMPTY(&comm->posts))
-        comm_transport_send(comm, found);
-    comm_channels_pass(comm, found);
+        comm_transport_begin(comm, found);
     if (looks && !(comm->channels.awaited && ++comm->channels.looks % SELDOM))
         comm_transport_receive(comm, found);
     if (comm->requests.n)
@@ -170,14 +177,14 @@ static inline bool comm_pass(struct comm *comm, struct worker *worker, bool look
         comm_let_go(comm);
         any |= found.any;
         more = found.more;
-        if (found.packets || found.sent || found.through || found.copies) {
+        if (found.packets || found.over) {
             any = true;
             comm_transport_deliver(comm, worker, &found);
         }
     } while (more || comm_left_to_us(comm));
     passing = outer;
     if (noted)
-        comm->setup.report->ends(worker, noted);
+        comm->setup.report->ends(worker);
     return any;
 }
 
@@ -193,7 +200,8 @@ bool comm_awaits(struct comm *comm)
 
 void comm_channel_ready(struct comm *comm, struct worker *worker, struct comm_channel *channel)
 {
-    comm_channel_post(comm, channel);
+    channel->post.is_channel = true;
+    comm_post(comm, &channel->post);
     if (!passing)
         comm_pass(comm, worker, false);
 }
@@ -245,8 +253,9 @@ bool comm_look(struct comm *comm, const struct comm_looker *looker)
         else if (of->over == comm_channel_came)
             looker->channel(looker->context, of->what);
     }
-    for (const struct comm_channel *one = comm->channels.stalled; one; one = one->next)
-        looker->channel(looker->context, one);
+    for (const struct comm_post *post = comm->stalled; post; post = post->next)
+        if (post->is_channel)
+            looker->channel(looker->context, (const struct comm_channel *)post);
     comm_let_go(comm);
     return true;
 }

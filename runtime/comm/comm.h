@@ -35,12 +35,12 @@ struct comm_owner {
 };
 
 /* A trace. `message` is called for each message that is sent or received, with its bytes; `begins`
- * and `ends` around the work on messages, in which tasks may run that a message made ready. `ends`
- * gets what `begins` returned. */
+ * and, if that returned true, `ends` around the work on messages, in which tasks may run that a
+ * message made ready. */
 struct comm_report {
     void (*message)(struct worker *worker, bool sends, int peer, size_t bytes);
     bool (*begins)(struct worker *worker);
-    void (*ends)(struct worker *worker, bool begun);
+    void (*ends)(struct worker *worker);
 };
 
 /* What a comm knows of its program. The ranks compare history and homes; a sentence about a
@@ -55,6 +55,11 @@ struct comm_setup {
     struct base_monitor *monitor;     /* gives heartbeats */
     const struct comm_report *report; /* NULL: there is no trace */
 };
+
+/* Calls MPI: COMM_MPI(MPI_Comm_rank, comm, &rank). DUITE_OK; or DUITE_E_MPI, with the call and
+ * MPI's reason as the message. */
+#define COMM_MPI(call, ...) comm_mpi(call(__VA_ARGS__), #call)
+int comm_mpi(int mpi, const char *call);
 
 /* Starts on mpi, which stays the caller's and is for these messages only. Local. Errors:
  * DUITE_E_MPI, memory; comm_stop is due even then. */
@@ -151,8 +156,8 @@ void comm_return_request(struct comm *comm, const struct comm_requester *request
  * full: all ranks must agree now. Main thread. */
 bool comm_call(struct comm *comm, const char *name, uint64_t fingerprint);
 
-/* This rank waits for data in the call, or no longer waits. If a difference between ranks is found
- * while it waits, communication breaks. Main thread. */
+/* This rank waits for data in the call, or no longer waits; NULL is fine. If a difference between
+ * ranks is found while it waits, communication breaks. Main thread. */
 void comm_waits(struct comm *comm, bool waits);
 
 enum { COMM_WORD_NUMBERS = sizeof(struct data_failure) / sizeof(double) };
@@ -193,7 +198,8 @@ const struct comm_word *comm_words(const struct comm *comm);
  * only an abort message with the reason to all others, which break in turn. Blocking calls return
  * the code; the main thread gives up everything still expected; only stop is left. */
 
-/* True once communication is broken. comm_error: its code, with the message set; else 0. */
+/* True once communication is broken; NULL is fine. comm_error: its code, with the message set; else
+ * 0. */
 bool comm_is_broken(struct comm *comm);
 int comm_error(struct comm *comm);
 
@@ -204,7 +210,8 @@ bool comm_is_lost(struct comm *comm);
 /* After comm_is_lost: polls for a moment, so that the abort messages go out. Main thread. */
 void comm_part(struct comm *comm, struct worker *worker);
 
-/* Between hold and let_go the caller alone calls MPI: nothing is sent or received. Main thread. */
+/* Between hold and let_go the caller alone calls MPI: nothing is sent or received. NULL is fine.
+ * Main thread. */
 void comm_hold(struct comm *comm);
 void comm_let_go(struct comm *comm);
 

@@ -63,6 +63,18 @@ bool comm_control_send(struct comm *comm, int to, struct data_packet *packet)
     return false;
 }
 
+bool comm_control_tell(struct comm *comm, int to, enum comm_kind kind, const void *what,
+                       size_t bytes)
+{
+    struct data_packet *packet = data_packet_new(bytes, true);
+    if (!packet)
+        return false;
+    packet->kind = kind;
+    memcpy(data_payload(packet), what, bytes);
+    comm_control_send(comm, to, packet);
+    return true;
+}
+
 /* ---- Abort ---- */
 
 static bool code_is_loss(int code)
@@ -96,22 +108,27 @@ int comm_mpi_class(int mpi)
     return MPI_Error_class(mpi, &class) == MPI_SUCCESS ? class : mpi;
 }
 
+int comm_mpi(int mpi, const char *call)
+{
+    char reason[MPI_MAX_ERROR_STRING] = "unknown";
+    int length = 0;
+    if (mpi == MPI_SUCCESS)
+        return DUITE_OK;
+    MPI_Error_string(mpi, reason, &length);
+    return base_error(DUITE_E_MPI, "%s: %s", call, reason);
+}
+
 /* Messages of channels alone may come into too little room. */
 bool comm_mpi_ok(struct comm *comm, int mpi, const char *call)
 {
-    char reason[MPI_MAX_ERROR_STRING] = "", message[MPI_MAX_ERROR_STRING + 64];
-    int length = 0;
     if (mpi == MPI_SUCCESS)
         return true;
-    if (comm_mpi_class(mpi) == MPI_ERR_TRUNCATE) {
+    if (comm_mpi_class(mpi) == MPI_ERR_TRUNCATE)
         comm_break(comm, DUITE_E_DIFFERENT,
                    "a message of a recorded graph does not fit: the ranks recorded different "
                    "graphs");
-        return false;
-    }
-    MPI_Error_string(mpi, reason, &length);
-    snprintf(message, sizeof message, "%s: %s", call, reason);
-    comm_break(comm, DUITE_E_MPI, message);
+    else
+        comm_break(comm, comm_mpi(mpi, call), duite_message());
     return false;
 }
 
@@ -123,17 +140,17 @@ bool comm_mpi_cut(struct comm *comm, int mpi, const char *call)
 
 bool comm_is_broken(struct comm *comm)
 {
-    return atomic_load(&comm->broken) != 0;
+    return comm && atomic_load(&comm->broken) != 0;
 }
 
 bool comm_is_lost(struct comm *comm)
 {
-    return atomic_load(&comm->lost);
+    return comm && atomic_load(&comm->lost);
 }
 
 int comm_error(struct comm *comm)
 {
-    int code = atomic_load(&comm->broken);
+    int code = comm ? atomic_load(&comm->broken) : 0;
     return code ? base_error(code, "%s", comm->reason.message) : DUITE_OK;
 }
 
@@ -187,15 +204,12 @@ static void abort_hear(struct comm *comm, struct data_packet *packet)
 
 bool comm_request(struct comm *comm, struct worker *worker, int rank, unsigned idle, double seconds)
 {
-    struct data_packet *packet = comm_is_broken(comm) ? NULL : data_packet_new(0, true);
     bool sent = false;
-    if (!packet || !comm_try_lock(comm)) {
-        data_packet_free(packet);
+    if (!comm_try_lock(comm))
         return false;
-    }
-    if (comm_is_broken(comm)) { /* meanwhile: nothing follows the abort message */
-        data_packet_free(packet);
-    } else {
+    /* Nothing follows the abort message. */
+    struct data_packet *packet = comm_is_broken(comm) ? NULL : data_packet_new(0, true);
+    if (packet) {
         packet->kind = COMM_REQUEST;
         packet->pieces = idle;
         packet->key.number = (uint64_t)(1e9 * seconds);

@@ -55,6 +55,10 @@ void comm_control_stop(struct comm_control *control);
  * broken. */
 bool comm_control_send(struct comm *comm, int to, struct data_packet *packet);
 
+/* Sends a control message of so many bytes. False without memory. */
+bool comm_control_tell(struct comm *comm, int to, enum comm_kind kind, const void *what,
+                       size_t bytes);
+
 /* A packet came. True: it was a control message, which is done with; the packet stays the caller's.
  */
 bool comm_control_hear(struct comm *comm, struct data_packet *packet);

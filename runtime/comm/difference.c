@@ -145,16 +145,12 @@ static void difference_answer(struct comm *comm, uint64_t number, struct differe
 
 /* ---- Messages; under the lock ---- */
 
-static struct data_packet *difference_packet(struct comm *comm, enum comm_kind kind, size_t bytes)
+static void difference_break(struct comm *comm)
 {
-    struct data_packet *packet = data_packet_new(bytes, true);
-    if (packet)
-        packet->kind = kind;
-    else if (comm->difference.found)
+    if (comm->difference.found)
         comm_break(comm, DUITE_E_DIFFERENT, comm->difference.message);
     else
         comm_break_memory(comm, "a control message");
-    return packet;
 }
 
 static void difference_inquire(struct comm *comm)
@@ -173,26 +169,18 @@ static void difference_inquire(struct comm *comm)
     difference->inquiry->reference = own->history;
     difference_take(comm, comm->rank, own);
     base_free(own);
-    for (int to = 0; to < comm->n_ranks && !comm_is_broken(comm); to++) {
-        struct data_packet *packet =
-            to == comm->rank ? NULL : difference_packet(comm, COMM_INQUIRY, sizeof(uint64_t));
-        if (!packet)
-            continue;
-        memcpy(data_payload(packet), &difference->number, sizeof difference->number);
-        comm_control_send(comm, to, packet);
-    }
+    for (int to = 0; to < comm->n_ranks && !comm_is_broken(comm); to++)
+        if (to != comm->rank && !comm_control_tell(comm, to, COMM_INQUIRY, &difference->number,
+                                                   sizeof difference->number))
+            difference_break(comm);
 }
 
 static void difference_report(struct comm *comm)
 {
-    struct comm_difference *difference = &comm->difference;
-    struct difference_found found = {.number = difference->number};
-    struct data_packet *packet = difference_packet(comm, COMM_DIFFERS, sizeof found);
-    if (!packet)
-        return;
-    snprintf(found.message, sizeof found.message, "%s", difference->message);
-    memcpy(data_payload(packet), &found, sizeof found);
-    comm_control_send(comm, 0, packet);
+    struct difference_found found = {.number = comm->difference.number};
+    snprintf(found.message, sizeof found.message, "%s", comm->difference.message);
+    if (!comm_control_tell(comm, 0, COMM_DIFFERS, &found, sizeof found))
+        difference_break(comm);
 }
 
 void comm_difference_found(struct comm *comm, uint64_t number, const char *message)
@@ -221,10 +209,12 @@ void comm_difference_hear(struct comm *comm, struct data_packet *packet)
         comm_difference_found(comm, found->number, found->message);
     } else {
         const uint64_t *number = data_payload(packet);
-        struct data_packet *answer =
-            difference_packet(comm, COMM_ANSWER, sizeof(struct difference_answer));
-        if (!answer)
+        struct data_packet *answer = data_packet_new(sizeof(struct difference_answer), true);
+        if (!answer) {
+            difference_break(comm);
             return;
+        }
+        answer->kind = COMM_ANSWER;
         difference_answer(comm, *number, data_payload(answer));
         comm_control_send(comm, 0, answer);
     }

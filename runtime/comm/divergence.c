@@ -49,6 +49,8 @@ bool comm_call(struct comm *comm, const char *name, uint64_t fingerprint)
 
 void comm_waits(struct comm *comm, bool waits)
 {
+    if (!comm)
+        return;
     struct comm_calls *calls = &comm->calls;
     uint64_t number = waits ? atomic_load(&calls->made) : 0;
     atomic_store(&calls->waits, number);
@@ -66,25 +68,16 @@ bool comm_check_joins(int a, int b)
     return a != b && (a < b ? tree_parent(b) == a : tree_parent(a) == b);
 }
 
-static void check_send(struct comm *comm, int to, const struct comm_called *call)
-{
-    struct data_packet *packet = data_packet_new(sizeof *call, true);
-    if (!packet)
-        return; /* the run goes on: a wait finds the difference, only later */
-    packet->kind = COMM_CHECK;
-    memcpy(data_payload(packet), call, sizeof *call);
-    comm_control_send(comm, to, packet);
-}
-
-/* To all neighbours but one. */
+/* Sends the entry to all neighbours but one. Without memory the run goes on: a wait finds the
+ * difference, only later. */
 static void check_pass_on(struct comm *comm, int from, const struct comm_called *call)
 {
     int rank = comm->rank;
     if (rank && tree_parent(rank) != from)
-        check_send(comm, tree_parent(rank), call);
+        comm_control_tell(comm, tree_parent(rank), COMM_CHECK, call, sizeof *call);
     for (int bit = 1; rank + bit < comm->n_ranks && !(rank & bit); bit <<= 1)
         if (rank + bit != from)
-            check_send(comm, rank + bit, call);
+            comm_control_tell(comm, rank + bit, COMM_CHECK, call, sizeof *call);
 }
 
 /* ---- Comparing ---- */

@@ -19,9 +19,7 @@ enum { COMM_PACKETS, COMM_HEARTBEATS, COMM_PIECES, COMM_CHANNELS = COMM_PIECES +
 /* The findings of one poll, delivered after the lock is let go. */
 struct comm_found {
     struct data_packet *packets;
-    struct comm_letter *sent;
-    struct comm_channel *through; /* their message is */
-    struct comm_channel *copies;  /* their message is large: see comm_channel_copy */
+    struct comm_post *over; /* letters that are sent, channels that are through or to be copied */
     bool any;
     bool more; /* so much came that the lock is let go before the rest is received */
 };
@@ -88,8 +86,8 @@ void comm_pieces_forget(struct comm *comm, size_t bytes, int from, int tag);
 
 /* ---- Transport: packets between ranks (transport.c) ---- */
 
-/* Under the lock: sends posted letters; receives messages. */
-void comm_transport_send(struct comm *comm, struct comm_found *found);
+/* Under the lock: begins what was posted; receives messages. */
+void comm_transport_begin(struct comm *comm, struct comm_found *found);
 void comm_transport_receive(struct comm *comm, struct comm_found *found);
 
 /* A letter's request is over. */
@@ -182,33 +180,26 @@ size_t comm_tags_held(const struct comm_tags *tags);
 struct comm_group; /* the channels of one set */
 
 struct comm_channels {
-    _Atomic(struct comm_channel *) ready; /* linked by next */
-    int awaited;                          /* under the lock: requests of channels */
-    struct comm_channel *stalled;         /* under the lock: their buffers are still sent */
-    struct comm_group *open, *closed;     /* under the lock; closed: some messages are still sent */
+    int awaited;                      /* under the lock: requests of channels */
+    struct comm_group *open, *closed; /* under the lock; closed: some messages are still sent */
     unsigned looks;
     struct comm_tags tags;
     _Atomic bool awaits; /* there are some */
 };
 
-/* Starts the channels: asks MPI for its largest tag. False if that fails. Before the lock is used.
- */
-bool comm_channels_start(struct comm *comm);
+/* Starts the channels: asks MPI for its largest tag. Before the lock is used. Errors: MPI's. */
+int comm_channels_start(struct comm *comm);
 /* Under the lock, at the end: false if MPI may still read or write memory, which then stays. */
 bool comm_channels_stop(struct comm *comm);
 
-/* Posts a channel that is ready; the caller makes sure that a worker polls afterwards. Any
- * thread. */
-void comm_channel_post(struct comm *comm, struct comm_channel *channel);
-
-/* Under the lock: sends what can be, and awaits what is to come. */
-void comm_channels_pass(struct comm *comm, struct comm_found *found);
+/* Under the lock: sends a channel's message, or awaits it. False: its buffer is still sent. */
+bool comm_channel_begin(struct comm *comm, struct comm_found *found, struct comm_channel *channel);
 
 /* The receive of a channel's message is over. */
 comm_over comm_channel_came;
 
-/* Without the lock, for one of `copies`: writes its message, which is posted then, or reads the one
- * that came. True: it is through. */
+/* Without the lock, for a channel that is over. One whose message is large writes it, and is posted
+ * again; or reads the one that came. True: it is through. */
 bool comm_channel_copy(struct comm *comm, struct comm_channel *channel);
 
 /* Under the lock: communication is broken, and nothing is awaited any more. */
@@ -278,9 +269,9 @@ struct comm {
     struct comm_setup setup;
     int rank, n_ranks;
     atomic_flag lock;
-    _Atomic(struct comm_letter *) posts;
+    _Atomic(struct comm_post *) posts;
     struct comm_requests requests; /* touched by the holder of `lock` only, like: */
-    struct comm_letter *stalled; /* large ones that wait for others, in the order of their posts */
+    struct comm_post *stalled;     /* wait for others, in the order of their posts */
     struct comm_arrivals arrivals;
     struct comm_channels channels;
     _Atomic int broken;
@@ -305,8 +296,19 @@ struct comm {
     _Atomic uint64_t messages, bytes, came; /* sent, and of these the bytes; received */
 };
 
-/* Makes and frees the MPI objects of collective calls. False: MPI failed. */
-bool comm_collective_start(struct comm *comm);
+/* Posts; the caller makes sure that a worker polls afterwards. Any thread. */
+void comm_post(struct comm *comm, struct comm_post *post);
+
+static inline void comm_found_over(struct comm_found *found, struct comm_post *post)
+{
+    post->next = found->over;
+    found->over = post;
+}
+
+/* A type of so many bytes. */
+int comm_bytes_type(size_t bytes, MPI_Datatype *type);
+/* Makes and frees the MPI objects of collective calls. Errors: MPI's. */
+int comm_collective_start(struct comm *comm);
 void comm_collective_stop(struct comm *comm);
 /* Joins the collective calls that other ranks entered before communication broke. All ranks are at
  * their end. */
@@ -314,6 +316,7 @@ void comm_catch_up(struct comm *comm);
 
 /* True for MPI_SUCCESS; else communication is broken. cut: true even if a message was longer than
  * what it was received into. */
+#define COMM_OK(comm, call, ...) comm_mpi_ok(comm, call(__VA_ARGS__), #call)
 bool comm_mpi_ok(struct comm *comm, int mpi, const char *call);
 bool comm_mpi_cut(struct comm *comm, int mpi, const char *call);
 /* The class of MPI's code: MPI_ERR_TRUNCATE and so on. */

@@ -14,9 +14,15 @@
 struct comm;
 struct worker; /* the caller, for those who are called back; NULL: no worker */
 
+/* A letter or a channel that is posted. The comm's, from then until it is over. */
+struct comm_post {
+    struct comm_post *next;
+    bool is_channel;
+};
+
 /* A packet on its way to a rank, from comm_send until it is sent. The sender keeps it. */
 struct comm_letter {
-    struct comm_letter *next; /* the comm's */
+    struct comm_post post; /* first */
     struct data_key key;
     struct data_packet *packet; /* freed once it is sent; NULL: the sender's, see comm_owner */
     void *sender;
@@ -43,8 +49,8 @@ struct comm_target {
 /* A message of each round to or from another rank. Size and order are fixed, so tag and turn
  * identify it. */
 struct comm_channel {
-    struct comm_channel *next; /* the comm's, from comm_channel_ready until it is through */
-    void *node;                /* the owner's: what sends it or waits for it */
+    struct comm_post post; /* first */
+    void *node;            /* the owner's: what sends it or waits for it */
     int peer;
     int tag; /* first the phase; opening the channels adds a number */
     bool sends;

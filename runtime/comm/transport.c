@@ -76,34 +76,40 @@ static bool message_send(struct comm *comm, struct comm_letter *letter)
     return true;
 }
 
-void comm_letter_sent(struct comm *comm, struct comm_found *found, void *what)
+void comm_letter_sent(struct comm *comm, struct comm_found *found, void *letter)
 {
-    struct comm_letter *letter = what;
     (void)comm;
-    letter->next = found->sent;
-    found->sent = letter;
+    comm_found_over(found, &((struct comm_letter *)letter)->post);
 }
 
-void comm_transport_send(struct comm *comm, struct comm_found *found)
+/* False: it must wait for another one. */
+static bool letter_begin(struct comm *comm, struct comm_found *found, struct comm_letter *letter)
 {
-    struct comm_letter *posts = BASE_STACK_TAKE(&comm->posts), *in_order = comm->stalled;
-    struct comm_letter **end = &in_order;
+    if (message_stalls(comm, letter))
+        return false;
+    found->any = true;
+    if (!message_send(comm, letter))
+        comm_letter_sent(comm, found, letter);
+    return true;
+}
+
+void comm_transport_begin(struct comm *comm, struct comm_found *found)
+{
+    struct comm_post *posts = BASE_STACK_TAKE(&comm->posts), *in_order = comm->stalled;
+    struct comm_post **end = &in_order;
     BASE_LIST_REVERSE(posts);
     while (*end)
         end = &(*end)->next;
     *end = posts;
     end = &comm->stalled;
     while (in_order) {
-        struct comm_letter *letter = in_order;
-        in_order = letter->next;
-        if (message_stalls(comm, letter)) {
-            *end = letter;
-            end = &letter->next;
+        struct comm_post *post = in_order;
+        in_order = post->next;
+        if (post->is_channel ? comm_channel_begin(comm, found, (struct comm_channel *)post)
+                             : letter_begin(comm, found, (struct comm_letter *)post))
             continue;
-        }
-        found->any = true;
-        if (!message_send(comm, letter))
-            comm_letter_sent(comm, found, letter);
+        *end = post;
+        end = &post->next;
     }
     *end = NULL;
 }
@@ -121,8 +127,8 @@ static void message_receive_scarce(struct comm *comm, MPI_Message *message, int 
         comm_mpi_cut(comm, MPI_Mrecv(NULL, 0, comm->line, message, MPI_STATUS_IGNORE), "MPI_Mrecv");
         return;
     }
-    int mpi = MPI_Mrecv(spare, lines, comm->line, message, MPI_STATUS_IGNORE);
-    if (!comm_mpi_ok(comm, mpi, "MPI_Mrecv") || comm_control_hear(comm, spare))
+    if (!COMM_OK(comm, MPI_Mrecv, spare, lines, comm->line, message, MPI_STATUS_IGNORE) ||
+        comm_control_hear(comm, spare))
         return;
     comm_break_memory(comm, "a message");
     if (packet_is_large(spare))
@@ -168,8 +174,7 @@ static void large_begin(struct comm *comm, struct data_packet *header, int from)
 static void message_receive_line(struct comm *comm, struct comm_found *found, MPI_Message *message,
                                  struct data_packet *packet, int from)
 {
-    int mpi = MPI_Mrecv(packet, 1, comm->line, message, MPI_STATUS_IGNORE);
-    if (!comm_mpi_ok(comm, mpi, "MPI_Mrecv"))
+    if (!COMM_OK(comm, MPI_Mrecv, packet, 1, comm->line, message, MPI_STATUS_IGNORE))
         data_packet_free(packet);
     else if (packet_is_large(packet))
         large_begin(comm, packet, from);
@@ -182,11 +187,11 @@ static bool message_receive(struct comm *comm, struct comm_found *found, size_t 
     int there = 0, lines = 0;
     MPI_Message message;
     MPI_Status status;
-    int mpi = MPI_Improbe(MPI_ANY_SOURCE, COMM_PACKETS, comm->mpi, &there, &message, &status);
-    if (!comm_mpi_ok(comm, mpi, "MPI_Improbe") || !there)
+    if (!COMM_OK(comm, MPI_Improbe, MPI_ANY_SOURCE, COMM_PACKETS, comm->mpi, &there, &message,
+                 &status) ||
+        !there)
         return false;
-    mpi = MPI_Get_count(&status, comm->line, &lines);
-    if (!comm_mpi_ok(comm, mpi, "MPI_Get_count") || lines < 1)
+    if (!COMM_OK(comm, MPI_Get_count, &status, comm->line, &lines) || lines < 1)
         return false;
     size_t bytes = ((size_t)lines - 1) * sizeof(struct data_packet);
     *received += bytes;
@@ -201,8 +206,7 @@ static bool message_receive(struct comm *comm, struct comm_found *found, size_t 
         message_receive_line(comm, found, &message, packet, status.MPI_SOURCE);
         return true;
     }
-    mpi = MPI_Imrecv(packet, lines, comm->line, &message, comm_request_next(comm));
-    if (!comm_mpi_ok(comm, mpi, "MPI_Imrecv")) {
+    if (!COMM_OK(comm, MPI_Imrecv, packet, lines, comm->line, &message, comm_request_next(comm))) {
         data_packet_free(packet);
         return false;
     }
@@ -266,22 +270,17 @@ void comm_transport_deliver(struct comm *comm, struct worker *worker, struct com
         else
             message_deliver_value(comm, worker, packet);
     }
-    while (found->copies) {
-        struct comm_channel *channel = found->copies;
-        found->copies = channel->next;
-        if (comm_channel_copy(comm, channel))
+    while (found->over) {
+        struct comm_post *post = found->over;
+        struct comm_letter *letter = (struct comm_letter *)post;
+        struct comm_channel *channel = (struct comm_channel *)post;
+        found->over = post->next;
+        if (!post->is_channel) {
+            data_packet_free(letter->packet);
+            owner->sent(comm->setup.context, worker, letter);
+        } else if (comm_channel_copy(comm, channel)) {
             owner->through(comm->setup.context, worker, channel);
-    }
-    while (found->through) {
-        struct comm_channel *channel = found->through;
-        found->through = channel->next;
-        owner->through(comm->setup.context, worker, channel);
-    }
-    while (found->sent) {
-        struct comm_letter *letter = found->sent;
-        found->sent = letter->next;
-        data_packet_free(letter->packet);
-        owner->sent(comm->setup.context, worker, letter);
+        }
     }
 }
 

@@ -368,8 +368,8 @@ void offload_lost(struct task_graph *graph, struct worker *worker)
     base_free(names);
 }
 
-void offload_look(struct task_graph *graph,
-                  void (*look)(void *context, const struct task *task, int rank), void *context)
+uint64_t offload_look(struct task_graph *graph,
+                      void (*look)(void *context, const struct task *task, int rank), void *context)
 {
     pthread_mutex_lock(&graph->lock);
     for (uint32_t i = 0; graph->offload_names && i < graph->offload_names->n; i++) {
@@ -377,13 +377,7 @@ void offload_look(struct task_graph *graph,
         if (pending)
             look(context, pending->task, pending->send.to);
     }
-    pthread_mutex_unlock(&graph->lock);
-}
-
-uint64_t offload_refused(struct task_graph *graph)
-{
-    pthread_mutex_lock(&graph->lock);
-    uint64_t refused = graph->offload_names ? graph->offload_names->refused : 0;
+    const uint64_t refused = graph->offload_names ? graph->offload_names->refused : 0;
     pthread_mutex_unlock(&graph->lock);
     return refused;
 }

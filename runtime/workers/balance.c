@@ -23,7 +23,6 @@ struct work_balance {
     const duite_balancer *balancer;
     unsigned char *states; /* one a worker, lines apart */
     size_t stride;
-    double tick;
     uint64_t first_request, grant_ticks;
     struct work_cost cost;
     _Atomic uint64_t next, granted; /* ticks: when to request, when it was granted last */
@@ -48,7 +47,6 @@ int work_balance_start(struct work_balance **out, struct work_pool *pool)
     balance->balancer = balancer;
     pool->queues.goes_away = balance_goes_away;
     pool->queues.straight = false;
-    balance->tick = pool->queues.tick;
     balance->first_request = (uint64_t)(FIRST_REQUEST_SECONDS / pool->queues.tick);
     balance->grant_ticks = (uint64_t)(GRANT_SECONDS / pool->queues.tick);
     balance->giver = DUITE_NO_RANK;
@@ -266,8 +264,8 @@ static void grant_from(struct grant *grant, struct queue *queue)
     grant_or_keep(grant, queue, taken);
 }
 
-static void grant_queues(struct worker *worker, const struct comm_requester *requester,
-                         unsigned *given)
+/* Returns how many tasks were granted. */
+static unsigned grant_queues(struct worker *worker, const struct comm_requester *requester)
 {
     struct work_pool *pool = worker->pool;
     struct grant grant = {.worker = worker,
@@ -281,7 +279,7 @@ static void grant_queues(struct worker *worker, const struct comm_requester *req
     atomic_thread_fence(memory_order_seq_cst);
     if (grant.asked.ready > grant.asked.granted)
         queue_wake_one(&pool->queues, DUITE_NO_QUEUE);
-    *given = grant.asked.granted;
+    return grant.asked.granted;
 }
 
 void work_grant(struct worker *worker)
@@ -293,9 +291,8 @@ void work_grant(struct worker *worker)
     if (!comm_has_requests(comm) || now - atomic_load(&balance->granted) < balance->grant_ticks)
         return;
     atomic_store(&balance->granted, now);
-    unsigned given = 1;
-    while (given && comm_take_request(comm, &requester)) {
-        grant_queues(worker, &requester, &given);
+    for (unsigned given = 1; given && comm_take_request(comm, &requester);) {
+        given = grant_queues(worker, &requester);
         if (!given)
             comm_return_request(comm, &requester);
     }
@@ -322,7 +319,7 @@ void work_request(struct worker *worker, uint64_t idled)
     bool other = rank >= 0 && rank < pool->setup.graph->n_ranks && rank != pool->setup.graph->rank;
     if (other && !comm_request(pool->setup.comm, worker, rank, idle, seconds))
         return;
-    atomic_store(&balance->next, now + (uint64_t)(seconds / balance->tick));
+    atomic_store(&balance->next, now + (uint64_t)(seconds / pool->queues.tick));
     atomic_store(&balance->attempt, attempt + 1);
     /* A message may have ended the last task: running out of work again tells the main thread. */
     if (work_poll(worker))

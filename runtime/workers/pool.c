@@ -238,11 +238,9 @@ static bool note_messages_begin(struct worker *worker)
     return true;
 }
 
-static void note_messages_end(struct worker *worker, bool begun)
+static void note_messages_end(struct worker *worker)
 {
     const double least = 1e-6; /* s: to note each look would cost as much as the look */
-    if (!begun)
-        return;
     const uint64_t took = base_ticks() - worker->messaging;
     if (worker->pool->queues.tick * (double)took >= least) {
         worker->within += took;

@@ -28,12 +28,6 @@ enum {
     IN_TURN = 16         /* tasks from the queue before the worker looks around again */
 };
 
-/* The condition on which a waiting body goes on. */
-struct run_until {
-    bool (*done)(void *context);
-    void *context;
-};
-
 /* ---- Batches ---- */
 
 static inline unsigned *batch_brief(struct worker *worker, enum run_form form)
@@ -211,7 +205,7 @@ STEP void run_finish(struct task_graph *graph, struct worker *worker, struct tas
 }
 
 STEP struct task *run_next(struct worker *worker, unsigned *length, unsigned *in_turn,
-                           const struct run_until *until, enum run_form form)
+                           const struct work_wish *until, enum run_form form)
 {
     struct task *task = work_take_next(worker);
     if (task || form == RUN_ANY || form == RUN_NODE)
@@ -228,7 +222,7 @@ STEP struct task *run_next(struct worker *worker, unsigned *length, unsigned *in
 /* Runs the task and those of its form that come next; *length counts inline tasks in turn. Returns
  * the task of another form that comes next, or NULL. */
 STEP struct task *run_in_turn(struct worker *worker, struct task *task, unsigned *length,
-                              const struct run_until *until, enum run_form form)
+                              const struct work_wish *until, enum run_form form)
 {
     const struct work_pool *pool = worker->pool;
     const bool any = form == RUN_ANY, timed = form != RUN_CHILD;
@@ -325,7 +319,7 @@ void work_run(struct worker *worker, struct task *task)
 
 void work_run_children(struct worker *worker, bool (*done)(void *context), void *context)
 {
-    const struct run_until until = {done, context};
+    const struct work_wish until = {.done = done, .context = context};
     struct task *task = run_next_child(worker);
     unsigned length = 1;
     if (task && run_fits(worker, task, RUN_CHILD))

@@ -263,13 +263,6 @@ static void report_away(void *context, const struct task *task, int rank)
         report_waiters(report, task, i);
 }
 
-static void report_refused(struct report *report, uint64_t refused)
-{
-    if (refused)
-        report_line(report, "%llu results of tasks on other ranks named no delegated task",
-                    (unsigned long long)refused);
-}
-
 /* ---- All of it ---- */
 
 /* Reports the call in which the main program waits, if it does. */
@@ -315,8 +308,10 @@ static void standstill_report(struct work_pool *pool, double seconds)
     const unsigned bodies = policies + report_bodies(&report, report_hold_workers(pool));
     const unsigned before = report.lines;
     const bool looked = !pool->setup.comm || comm_look(pool->setup.comm, &looker);
-    offload_look(pool->setup.graph, report_away, &report);
-    report_refused(&report, offload_refused(pool->setup.graph));
+    const uint64_t refused = offload_look(pool->setup.graph, report_away, &report);
+    if (refused)
+        report_line(&report, "%llu results of tasks on other ranks named no delegated task",
+                    (unsigned long long)refused);
     const uint64_t left = waits ? report_unfinished(pool) : 0;
     if (waits)
         report_line(&report, "unfinished tasks of this rank: %llu", (unsigned long long)left);

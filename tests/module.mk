@@ -71,7 +71,7 @@ EXTRA_DIST += tests/arrows.txt tests/support/policies.h tests/support/tap.sh tes
     tests/support/lsan.supp tests/support/tsan.supp tests/support/valgrind.supp
 ASAN_SH += tests/support/test_tap.sh tests/arrows.sh tests/documents.sh tests/completion.sh tests/bootstrap.sh
 PLAIN_SH += tests/install.sh tests/bare.sh tests/two_mpis.sh
-LONG_SH += tests/readme.sh tests/pages.sh tests/bare_long.sh
+LONG_SH += tests/pages.sh tests/bare_long.sh
 
 if HAVE_CHECK
 check_LIBRARIES += tests/support/libunit.a

@@ -323,7 +323,7 @@ START_TEST(energy_wavers_in_a_band)
     static const enum model_integrator all[] = {MODEL_VERLET, MODEL_SYMPLECTIC_EULER};
     const double wide = band(all[_i], 0.01), narrow = band(all[_i], 0.005);
     printf("# %s: energy wavers by %.3e J at h = 0.01 s, %.3e at half of it: order %.3f\n",
-           model_integrator_name(all[_i]), wide, narrow, log2(wide / narrow));
+           model_schemes[all[_i]].name, wide, narrow, log2(wide / narrow));
     ck_assert_double_eq_tol(log2(wide / narrow), 2, 0.1);
 }
 END_TEST

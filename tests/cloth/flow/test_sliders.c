@@ -91,7 +91,7 @@ static void check_fall(const struct sliding *g, const struct record *r, const do
 static void fall(int kind)
 {
     for (int i = 0; i < MODEL_INTEGRATORS; i++)
-        for (int way = 0; way < (i < MODEL_IMPLICIT_EULER ? 1 : 6); way++) {
+        for (int way = 0; way < (model_schemes[i].limit ? 1 : 6); way++) {
             static const double none[3] = {0};
             struct sliding g;
             struct record record = {0};

@@ -5,12 +5,12 @@
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
 
-void api_trace_begin(duite *rt)
+void api_trace_begin(duite *rt, const duite_options *options)
 {
     if (!rt->trace)
         return;
     trace_align(rt->trace, rt->mpi);
-    if (trace_wants_all(rt->trace))
+    if (options->trace_first == 0 && options->trace_end == UINT64_MAX)
         trace_switch(rt->trace, true, 0, 0);
 }
 

@@ -35,7 +35,7 @@ int duite_trace_step(duite *rt, uint64_t step)
         trace_flush(rt->trace);
         trace_switch(rt->trace, wants, step, rt->graph.root.forks);
     }
-    work_note(rt->pool,
+    trace_put(rt->worker->ring,
               &(struct trace_event){.begin = base_ticks(), .number = step, .kind = TRACE_STEP});
     trace_flush(rt->trace);
     return code;

@@ -310,7 +310,7 @@ static void result_unpack_below(struct task *task, struct worker *worker,
 static const struct data_failure *result_take(const struct task *task, duite_param *param,
                                               struct data_packet *result)
 {
-    return result ? result_unpack(task, param, result) : task_lost_failure();
+    return result ? result_unpack(task, param, result) : &task_lost_failure;
 }
 
 /* One of two things happened; `pending` may be gone afterwards, and the task. */

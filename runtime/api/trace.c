@@ -5,23 +5,12 @@
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
 
-int api_trace_open(duite *rt, const duite_options *options)
-{
-    return trace_open(&rt->trace, &(struct trace_setup){.file = options->trace,
-                                                        .first = options->trace_first,
-                                                        .end = options->trace_end,
-                                                        .rank = rt->graph.rank,
-                                                        .n_ranks = rt->graph.n_ranks,
-                                                        .workers = rt->share.workers,
-                                                        .graph = &rt->graph});
-}
-
-void api_trace_begin(duite *rt)
+void api_trace_begin(duite *rt, const duite_options *options)
 {
     if (!rt->trace)
         return;
     trace_align(rt->trace, rt->mpi);
-    if (trace_wants_all(rt->trace))
+    if (options->trace_first == 0 && options->trace_end == UINT64_MAX)
         trace_switch(rt->trace, true, 0, 0);
 }
 
@@ -30,7 +19,7 @@ void api_trace_begin(duite *rt)
 static int step_meet(duite *rt, const char *call)
 {
     const uint64_t from = base_ticks();
-    const int code = api_meet(rt, call);
+    const int code = api_meet(rt, call, NULL);
     trace_wait(rt->trace, from);
     return code;
 }
@@ -46,7 +35,7 @@ int duite_trace_step(duite *rt, uint64_t step)
         trace_flush(rt->trace);
         trace_switch(rt->trace, wants, step, rt->graph.root.forks);
     }
-    work_note(rt->pool,
+    trace_put(rt->worker->ring,
               &(struct trace_event){.begin = base_ticks(), .number = step, .kind = TRACE_STEP});
     trace_flush(rt->trace);
     return code;

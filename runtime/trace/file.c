@@ -302,7 +302,7 @@ void trace_free(struct trace *trace, bool mpi)
     pthread_mutex_destroy(&trace->lock);
     base_free(trace->ring);
     base_free(trace->word);
-    free(trace->slot);
+    base_free(trace->slot);
     free(trace->path);
     base_free(trace);
 }
@@ -312,11 +312,6 @@ void trace_free(struct trace *trace, bool mpi)
 bool trace_wants(const struct trace *trace, uint64_t step)
 {
     return step >= trace->header.first && step < trace->header.end;
-}
-
-bool trace_wants_all(const struct trace *trace)
-{
-    return trace->header.first == 0 && trace->header.end == UINT64_MAX;
 }
 
 bool trace_is_on(const struct trace *trace)

@@ -4,7 +4,7 @@
 /* The compiler of recorded graphs. Its passes in order, with input and output:
  *
  *   record   record.c   calls of a build function   -> plan_record: forks, objects, arguments
- *            source.c   plan_record                 -> plan_source: the same as plain data
+ *                       plan_record                 -> plan_source: the same as plain data
  *   lower    lower.c    plan_source                 -> plan_round: nodes and their uses
  *   assign   assign.c   plan_round, homes           -> plan_assignment: ranks by node and version
  *   messages messages.c plan_assignment             -> plan_messages: phases and their messages

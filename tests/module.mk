@@ -75,7 +75,7 @@ LONG_SH += tests/readme.sh tests/pages.sh tests/bare_long.sh
 
 if HAVE_CHECK
 check_LIBRARIES += tests/support/libunit.a
-tests_support_libunit_a_SOURCES = tests/support/unit.c tests/support/unit.h
+tests_support_libunit_a_SOURCES = tests/support/unit.c tests/support/unit_main.c tests/support/unit.h
 TSAN_TESTS += tests/support/test_unit
 tests_support_test_unit_LDADD = $(DUITE_TEST_LIBS)
 endif

@@ -63,7 +63,9 @@ static void graphs_without_runtime(void)
     ck_assert_int_eq(duite_graph_free(NULL, graph), DUITE_E_ARGUMENT);
 }
 
-START_TEST(no_runtime)
+UNIT_FIXTURE(begin, end)
+
+UNIT_TEST(no_runtime)
 {
     duite *none = NULL;
     duite_object object;
@@ -97,10 +99,9 @@ START_TEST(no_runtime)
     graphs_without_runtime();
     ck_assert_int_eq(duite_wait(rt), DUITE_OK);
 }
-END_TEST
 
 /* What stop leaves behind is no runtime. */
-START_TEST(after_stop)
+UNIT_TEST(after_stop)
 {
     duite_free(rt, a);
     duite_free(rt, b);
@@ -111,9 +112,8 @@ START_TEST(after_stop)
     ck_assert_int_eq(duite_stop(&rt), DUITE_E_ARGUMENT);
     begin();
 }
-END_TEST
 
-START_TEST(null_pointers)
+UNIT_TEST(null_pointers)
 {
     int32_t value[4];
 
@@ -128,7 +128,6 @@ START_TEST(null_pointers)
     ck_assert_int_eq(duite_get(rt, a, value), DUITE_OK);
     ck_assert_int_eq(duite_fork(rt, &EMPTY, NULL, 0, NULL), DUITE_OK);
 }
-END_TEST
 
 static int build_copy(duite *runtime, void *args)
 {
@@ -136,7 +135,7 @@ static int build_copy(duite *runtime, void *args)
 }
 
 /* The body would find NULL. */
-START_TEST(arguments_for_a_kernel_that_has_none)
+UNIT_TEST(arguments_for_a_kernel_that_has_none)
 {
     const duite_object both[] = {a, b};
     int32_t seven = SEVEN;
@@ -155,9 +154,8 @@ START_TEST(arguments_for_a_kernel_that_has_none)
     ck_assert_int_eq(duite_graph_args(rt, graph, 0, NULL), DUITE_OK);
     ck_assert_int_eq(duite_graph_free(rt, graph), DUITE_OK);
 }
-END_TEST
 
-START_TEST(types_and_sizes)
+UNIT_TEST(types_and_sizes)
 {
     duite_object object = a;
 
@@ -169,9 +167,8 @@ START_TEST(types_and_sizes)
     refused(duite_new(rt, DUITE_BYTE, SIZE_MAX, &object), DUITE_E_ARGUMENT);
     ck_assert(object.slot == 0 && object.generation == 0);
 }
-END_TEST
 
-START_TEST(ranks_outside)
+UNIT_TEST(ranks_outside)
 {
     int32_t value[4];
 
@@ -186,9 +183,8 @@ START_TEST(ranks_outside)
     ck_assert_int_eq(duite_get_at(rt, a, 1, value), DUITE_E_ARGUMENT);
     ck_assert_int_eq(duite_get_at(rt, a, -1, value), DUITE_E_ARGUMENT);
 }
-END_TEST
 
-START_TEST(hints_and_leaders)
+UNIT_TEST(hints_and_leaders)
 {
     refused(duite_hint(rt, a, -1, 0, NULL, NULL), DUITE_E_ARGUMENT);
     refused(duite_hint(rt, a, 1, 1, &b, &(double){-1}), DUITE_E_ARGUMENT);
@@ -204,11 +200,10 @@ START_TEST(hints_and_leaders)
     ck_assert_int_eq(duite_hint(rt, b, 1, 1, &a, NULL), DUITE_OK);
     ck_assert_int_eq(duite_home(rt, DUITE_NO_OBJECT), -1);
 }
-END_TEST
 
 /* The first of several refusals comes back, with a get or a stop as well, and the get has done its
  * work. */
-START_TEST(refused_once_more)
+UNIT_TEST(refused_once_more)
 {
     int32_t value[4] = {0};
 
@@ -227,9 +222,8 @@ START_TEST(refused_once_more)
     ck_assert_ptr_null(rt);
     begin();
 }
-END_TEST
 
-START_TEST(words)
+UNIT_TEST(words)
 {
     static const int CODES[] = {DUITE_OK,        DUITE_E_ARGUMENT,  DUITE_E_MEMORY,
                                 DUITE_E_OBJECT,  DUITE_E_KERNEL,    DUITE_E_ACCESS,
@@ -252,24 +246,4 @@ START_TEST(words)
     ck_assert_ptr_null(duite_scheduler_find(NULL));
     ck_assert_ptr_null(duite_mapping_find(NULL));
     ck_assert_ptr_null(duite_balancer_find(NULL));
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("arguments");
-    TCase *cases = tcase_create("arguments");
-
-    tcase_add_checked_fixture(cases, begin, end);
-    tcase_add_test(cases, no_runtime);
-    tcase_add_test(cases, after_stop);
-    tcase_add_test(cases, null_pointers);
-    tcase_add_test(cases, arguments_for_a_kernel_that_has_none);
-    tcase_add_test(cases, types_and_sizes);
-    tcase_add_test(cases, ranks_outside);
-    tcase_add_test(cases, hints_and_leaders);
-    tcase_add_test(cases, refused_once_more);
-    tcase_add_test(cases, words);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

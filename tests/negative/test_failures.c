@@ -44,7 +44,9 @@ static int get(duite_object object)
     return code;
 }
 
-START_TEST(the_code_and_the_sentence)
+UNIT_FIXTURE(begin, end)
+
+UNIT_TEST(the_code_and_the_sentence)
 {
     DUITE_FORK(rt, &FAIL, &SEVEN, a);
     ck_assert_int_eq(duite_wait(rt), 7);
@@ -55,9 +57,8 @@ START_TEST(the_code_and_the_sentence)
     ck_assert_int_eq(get(a), 7);
     ck_assert_int_eq(duite_get_at(rt, a, 0, &(int32_t){0}), 7);
 }
-END_TEST
 
-START_TEST(first_in_fork_order)
+UNIT_TEST(first_in_fork_order)
 {
     const duite_object objects[] = {a, b, c};
 
@@ -69,11 +70,10 @@ START_TEST(first_in_fork_order)
     ck_assert_int_eq(get(b), 19);
     ck_assert_int_eq(get(a), 20);
 }
-END_TEST
 
 /* A reader of poison does not run: what it would write is poisoned with the same failure, and
  * nothing else. */
-START_TEST(poison_travels)
+UNIT_TEST(poison_travels)
 {
     duite_counters counters;
 
@@ -89,9 +89,8 @@ START_TEST(poison_travels)
     ck_assert_int_eq(duite_count_all(rt, &counters), DUITE_OK);
     ck_assert_uint_eq(counters.tasks, 1);
 }
-END_TEST
 
-START_TEST(writing_cures)
+UNIT_TEST(writing_cures)
 {
     DUITE_FORK(rt, &FAIL, &SEVEN, a);
     DUITE_FORK(rt, &COPY, NULL, a, b);
@@ -103,10 +102,9 @@ START_TEST(writing_cures)
     ck_assert_int_eq(value_of(b), 8);
     ck_assert_int_eq(duite_wait(rt), 7);
 }
-END_TEST
 
 /* Contributions do not read: they run, but the sum stays poisoned by the old value. */
-START_TEST(adding_does_not_cure)
+UNIT_TEST(adding_does_not_cure)
 {
     duite_counters counters;
 
@@ -118,11 +116,10 @@ START_TEST(adding_does_not_cure)
     ck_assert_int_eq(duite_count_all(rt, &counters), DUITE_OK);
     ck_assert_uint_eq(counters.tasks, 3);
 }
-END_TEST
 
 /* The runtime's own errors and those of bodies: the refused fork first, the failure with the next
  * wait. */
-START_TEST(refused_and_failed)
+UNIT_TEST(refused_and_failed)
 {
     DUITE_FORK(rt, &FAIL, &SEVEN, a);
     ck_assert_int_eq(DUITE_FORK(rt, &ADD, NULL, a, b), DUITE_E_ACCESS);
@@ -130,9 +127,8 @@ START_TEST(refused_and_failed)
     ck_assert_int_eq(duite_wait(rt), 7);
     ck_assert_int_eq(duite_wait(rt), DUITE_OK);
 }
-END_TEST
 
-START_TEST(stop_tells)
+UNIT_TEST(stop_tells)
 {
     DUITE_FORK(rt, &FAIL, &SEVEN, a);
     ck_assert_int_eq(duite_free(rt, a), DUITE_OK);
@@ -140,9 +136,8 @@ START_TEST(stop_tells)
     ck_assert_ptr_null(rt);
     begin();
 }
-END_TEST
 
-START_TEST(each_its_sentence)
+UNIT_TEST(each_its_sentence)
 {
     DUITE_FORK(rt, &FAIL, &EIGHT, a);
     DUITE_FORK(rt, &FAIL, &SEVEN, b);
@@ -151,23 +146,4 @@ START_TEST(each_its_sentence)
     ck_assert_int_eq(get(a), 8);
     ck_assert_msg(strstr(duite_message(), "sentence 8 of a body") != NULL, "%s", duite_message());
     ck_assert_int_eq(duite_wait(rt), 8);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("failures");
-    TCase *cases = tcase_create("failures");
-
-    tcase_add_checked_fixture(cases, begin, end);
-    tcase_add_test(cases, the_code_and_the_sentence);
-    tcase_add_test(cases, first_in_fork_order);
-    tcase_add_test(cases, poison_travels);
-    tcase_add_test(cases, writing_cures);
-    tcase_add_test(cases, adding_does_not_cure);
-    tcase_add_test(cases, refused_and_failed);
-    tcase_add_test(cases, stop_tells);
-    tcase_add_test(cases, each_its_sentence);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

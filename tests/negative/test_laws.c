@@ -55,7 +55,7 @@ static void refuses(duite_kernel kernel, const duite_law *const *laws, const cha
     says(sentence);
 }
 
-START_TEST(not_listed)
+UNIT_TEST(not_listed)
 {
     const duite_law copy = DOUBLES;
 
@@ -64,9 +64,8 @@ START_TEST(not_listed)
     refuses(BY_BYTES, (const duite_law *[]){&DOUBLES, NULL},
             "kernel by bytes, `variadic`: law of bytes was not listed");
 }
-END_TEST
 
-START_TEST(no_cw)
+UNIT_TEST(no_cw)
 {
     duite_kernel kernel = BY_SUM;
 
@@ -80,9 +79,8 @@ START_TEST(no_cw)
     kernel.variadic_law = &duite_sum;
     refuses(kernel, NULL, "`variadic`: law sum for a parameter that is not cw");
 }
-END_TEST
 
-START_TEST(malformed)
+UNIT_TEST(malformed)
 {
     duite_law law = DOUBLES;
     const duite_law *const laws[] = {&BYTES, &law, NULL};
@@ -101,7 +99,6 @@ START_TEST(malformed)
     law.name = "sum";
     refuses(BY_SUM, laws, "two laws have the name sum");
 }
-END_TEST
 
 static duite *rt;
 
@@ -116,7 +113,7 @@ static void refused(const duite_kernel *kernel, size_t n, const duite_object *ob
 }
 
 /* An object of each type; those of one that do not fit are named. */
-START_TEST(another_type)
+UNIT_TEST(another_type)
 {
     static const duite_kernel *const KERNELS[] = {&BY_DOUBLES, &BY_BYTES, &BY_SUM, NULL};
     duite_object object[DUITE_F64 + 1], read;
@@ -145,18 +142,4 @@ START_TEST(another_type)
         duite_free(rt, object[type]);
     duite_free(rt, read);
     ck_assert_int_eq(duite_stop(&rt), DUITE_OK);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("laws that do not fit");
-    TCase *cases = tcase_create("laws that do not fit");
-
-    tcase_add_test(cases, not_listed);
-    tcase_add_test(cases, no_cw);
-    tcase_add_test(cases, malformed);
-    tcase_add_test(cases, another_type);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

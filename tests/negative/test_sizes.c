@@ -81,39 +81,37 @@ static void refused(struct wish wish, int code, const char *sentence)
     ck_assert_uint_eq(count, MOST);
 }
 
-START_TEST(beyond_the_maximum)
+UNIT_FIXTURE(begin, end)
+
+UNIT_TEST(beyond_the_maximum)
 {
     refused((struct wish){.parameter = 0, .count = MOST + 1}, DUITE_E_SIZE,
             "parameter 0: 11 elements are more than 10 at most");
     refused((struct wish){.parameter = 0, .count = SIZE_MAX}, DUITE_E_SIZE, "at most");
 }
-END_TEST
 
-START_TEST(not_changeable)
+UNIT_TEST(not_changeable)
 {
     refused((struct wish){.parameter = 1, .count = 3}, DUITE_E_SIZE,
             "the object of parameter 1 has a fixed size");
     refused((struct wish){.parameter = 2, .count = 2}, DUITE_E_SIZE, "parameter 2 is only read");
     refused((struct wish){.parameter = 3, .count = 2}, DUITE_E_SIZE, "there is no parameter 3");
 }
-END_TEST
 
 /* What the body says goes before. */
-START_TEST(code_of_the_body)
+UNIT_TEST(code_of_the_body)
 {
     refused((struct wish){.count = MOST + 1, .code = 5}, 5, "code 5: duite_resize: parameter 0");
     refused((struct wish){.count = MOST + 1, .code = 6, .speaks = 1}, 6,
             "code 6: the body's own sentence");
 }
-END_TEST
 
-START_TEST(no_accumulation)
+UNIT_TEST(no_accumulation)
 {
     ck_assert_int_eq(duite_fork(rt, &ADD, NULL, 1, &sized), DUITE_E_ACCESS);
     says("changes its size and cannot be accumulated");
     ck_assert_int_eq(duite_wait(rt), DUITE_E_ACCESS);
 }
-END_TEST
 
 static void makes(duite_type type, size_t count, size_t max, int code, const char *sentence)
 {
@@ -125,7 +123,7 @@ static void makes(duite_type type, size_t count, size_t max, int code, const cha
     ck_assert_int_eq(duite_wait(rt), code);
 }
 
-START_TEST(making)
+UNIT_TEST(making)
 {
     makes(DUITE_I32, 11, 10, DUITE_E_ARGUMENT, "11 elements are more than 10 at most");
     makes(DUITE_I32, 0, 0, DUITE_E_ARGUMENT, "at least one element");
@@ -135,9 +133,8 @@ START_TEST(making)
     ck_assert_int_eq(duite_wait(rt), DUITE_E_ARGUMENT);
     ck_assert_int_eq(duite_new_sized(NULL, DUITE_I32, 1, 1, NULL), DUITE_E_ARGUMENT);
 }
-END_TEST
 
-START_TEST(setting)
+UNIT_TEST(setting)
 {
     const int32_t values[MOST + 1] = {0};
 
@@ -155,9 +152,8 @@ START_TEST(setting)
     ck_assert_int_eq(duite_set_sized(rt, DUITE_NO_OBJECT, values, 4), DUITE_E_OBJECT);
     ck_assert_int_eq(duite_wait(rt), DUITE_E_OBJECT);
 }
-END_TEST
 
-START_TEST(counting)
+UNIT_TEST(counting)
 {
     size_t count = 0;
 
@@ -166,22 +162,4 @@ START_TEST(counting)
     ck_assert_int_eq(duite_get_count(NULL, sized, &count), DUITE_E_ARGUMENT);
     ck_assert_int_eq(duite_get_count(rt, sized, &count), DUITE_OK);
     ck_assert_uint_eq(count, 3);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("sizes that cannot be");
-    TCase *cases = tcase_create("sizes that cannot be");
-
-    tcase_add_checked_fixture(cases, begin, end);
-    tcase_add_test(cases, beyond_the_maximum);
-    tcase_add_test(cases, not_changeable);
-    tcase_add_test(cases, code_of_the_body);
-    tcase_add_test(cases, no_accumulation);
-    tcase_add_test(cases, making);
-    tcase_add_test(cases, setting);
-    tcase_add_test(cases, counting);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

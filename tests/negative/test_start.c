@@ -24,7 +24,7 @@ static void refuses(duite_kernel kernel, const char *word)
                   word);
 }
 
-START_TEST(malformed_kernels)
+UNIT_TEST(malformed_kernels)
 {
     duite_kernel kernel = ADD;
 
@@ -43,10 +43,9 @@ START_TEST(malformed_kernels)
     kernel.variadic = (duite_mode)-1;
     refuses(kernel, "many");
 }
-END_TEST
 
 /* What runs on several ranks must leave the same everywhere. */
-START_TEST(replicated_kernels)
+UNIT_TEST(replicated_kernels)
 {
     duite_kernel kernel = EVERYWHERE;
 
@@ -67,9 +66,8 @@ START_TEST(replicated_kernels)
     kernel.access[1] = DUITE_RWP;
     refuses(kernel, "postponed");
 }
-END_TEST
 
-START_TEST(kernel_twice)
+UNIT_TEST(kernel_twice)
 {
     const duite_kernel *list[] = {&SET, &ADD, &SET, NULL};
     duite_options options = misuse_options(MPI_COMM_WORLD);
@@ -81,9 +79,8 @@ START_TEST(kernel_twice)
     ck_assert_ptr_null(rt);
     refuses((duite_kernel){.name = "set", .body = ADD.body}, "set");
 }
-END_TEST
 
-START_TEST(malformed_options)
+UNIT_TEST(malformed_options)
 {
     duite_options options = misuse_options(MPI_COMM_WORLD);
     duite *rt = (duite *)&options;
@@ -113,7 +110,6 @@ START_TEST(malformed_options)
     ck_assert_int_ne(duite_start(&rt, &options), DUITE_OK);
     ck_assert_ptr_null(rt);
 }
-END_TEST
 
 static void refuses_options(const duite_options *options, const char *sentence)
 {
@@ -126,7 +122,7 @@ static void refuses_options(const duite_options *options, const char *sentence)
 }
 
 /* Filled by hand and in part: each is refused by its name, or means what duite.h says of 0. */
-START_TEST(options_left_at_zero)
+UNIT_TEST(options_left_at_zero)
 {
     const duite_options whole = misuse_options(MPI_COMM_WORLD);
     duite_options options = {0};
@@ -153,9 +149,8 @@ START_TEST(options_left_at_zero)
     memset(&options.comm, 0, sizeof options.comm);
     refuses_options(&options, "no communicator (comm)");
 }
-END_TEST
 
-START_TEST(malformed_policies)
+UNIT_TEST(malformed_policies)
 {
     duite_options options = misuse_options(MPI_COMM_WORLD);
     duite_scheduler scheduler = *options.scheduler;
@@ -195,7 +190,6 @@ START_TEST(malformed_policies)
     balance.name = NULL;
     refuses_options(&options, "balancer");
 }
-END_TEST
 
 /* After refusals a start works. */
 static void one_life(MPI_Comm comm, unsigned threads)
@@ -223,7 +217,7 @@ static void one_life(MPI_Comm comm, unsigned threads)
     ck_assert_ptr_null(rt);
 }
 
-START_TEST(fifty_lives)
+UNIT_TEST(fifty_lives)
 {
     for (unsigned i = 0; i < 50; i++) {
         one_life(MPI_COMM_WORLD, 1 + i % 4);
@@ -231,16 +225,14 @@ START_TEST(fifty_lives)
             refuses((duite_kernel){.name = "nothing"}, "nothing");
     }
 }
-END_TEST
 
-START_TEST(threads_by_default)
+UNIT_TEST(threads_by_default)
 {
     one_life(MPI_COMM_WORLD, 0);
     one_life(MPI_COMM_SELF, 0);
 }
-END_TEST
 
-START_TEST(every_policy)
+UNIT_TEST(every_policy)
 {
     for (const char *const *scheduler = duite_scheduler_names(); *scheduler; scheduler++)
         for (const char *const *mapping = duite_mapping_names(); *mapping; mapping++) {
@@ -256,10 +248,9 @@ START_TEST(every_policy)
             ck_assert_int_eq(duite_stop(&rt), DUITE_OK);
         }
 }
-END_TEST
 
 /* MPI is initialised by start if nobody else has, and lasts for further starts. */
-START_TEST(mpi_of_our_own)
+UNIT_TEST(mpi_of_our_own)
 {
     duite_options options = misuse_options(MPI_COMM_WORLD);
     int is = 0;
@@ -274,9 +265,8 @@ START_TEST(mpi_of_our_own)
         ck_assert(!is);
     }
 }
-END_TEST
 
-START_TEST(mpi_is_over)
+UNIT_TEST(mpi_is_over)
 {
     duite_options options = misuse_options(MPI_COMM_WORLD);
     duite *rt = (duite *)&options;
@@ -286,10 +276,9 @@ START_TEST(mpi_is_over)
     ck_assert_int_eq(duite_start(&rt, &options), DUITE_E_MPI);
     ck_assert_ptr_null(rt);
 }
-END_TEST
 
 /* Workers call MPI, whichever thread they are. */
-START_TEST(mpi_for_one_thread)
+UNIT_TEST(mpi_for_one_thread)
 {
     duite_options options = misuse_options(MPI_COMM_WORLD);
     duite *rt = (duite *)&options;
@@ -303,10 +292,9 @@ START_TEST(mpi_for_one_thread)
     }
     MPI_Finalize();
 }
-END_TEST
 
 /* The workers of both would call MPI at the same time. */
-START_TEST(two_at_a_time)
+UNIT_LOOP(two_at_a_time, 0, 2)
 {
     const int levels[] = {MPI_THREAD_SERIALIZED, MPI_THREAD_MULTIPLE};
     duite *first, *second = (duite *)&first;
@@ -329,9 +317,8 @@ START_TEST(two_at_a_time)
     ck_assert_int_eq(duite_stop(&first), DUITE_OK);
     one_life(MPI_COMM_SELF, 2);
 }
-END_TEST
 
-START_TEST(not_freed)
+UNIT_TEST(not_freed)
 {
     duite *rt = misuse_start(MPI_COMM_WORLD, 2);
     const duite_object a = misuse_new(rt, 1);
@@ -343,28 +330,4 @@ START_TEST(not_freed)
     ck_assert_ptr_null(rt);
     ck_assert_msg(strstr(duite_message(), "2") != NULL, "'%s' does not say how many",
                   duite_message());
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("start and stop");
-    TCase *cases = tcase_create("start and stop");
-
-    tcase_add_test(cases, malformed_kernels);
-    tcase_add_test(cases, replicated_kernels);
-    tcase_add_test(cases, kernel_twice);
-    tcase_add_test(cases, malformed_options);
-    tcase_add_test(cases, options_left_at_zero);
-    tcase_add_test(cases, malformed_policies);
-    tcase_add_test(cases, fifty_lives);
-    tcase_add_test(cases, threads_by_default);
-    tcase_add_test(cases, every_policy);
-    tcase_add_test(cases, mpi_of_our_own);
-    tcase_add_test(cases, mpi_is_over);
-    tcase_add_test(cases, mpi_for_one_thread);
-    tcase_add_loop_test(cases, two_at_a_time, 0, 2);
-    tcase_add_test(cases, not_freed);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

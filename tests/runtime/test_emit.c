@@ -66,7 +66,7 @@ static void make(struct made *made)
                                         .whole = true};
 }
 
-START_TEST(source)
+UNIT_TEST(source)
 {
     struct made made;
     struct plan_source plain;
@@ -85,7 +85,6 @@ START_TEST(source)
     ck_assert_double_eq(plain.fork[0].cost, 0.5);
     plan_source_free(&plain);
 }
-END_TEST
 
 /* Nodes: 0 fill, 1 and 2 give, 3 the sum, 4 read. Its successors in a node's row begin with those
  * of the next round. */
@@ -102,7 +101,7 @@ static void next_is(const struct plan *plan, size_t node, uint32_t cyclic, const
     ck_assert_int_eq(from->sink, from->n_next == cyclic);
 }
 
-START_TEST(nodes)
+UNIT_TEST(nodes)
 {
     static const enum task_type type[] = {TASK_NODE, TASK_NODE, TASK_NODE, TASK_NODE_SUM,
                                           TASK_NODE};
@@ -130,9 +129,8 @@ START_TEST(nodes)
     next_is(plan, 4, 1, "3");
     plan_drop(plan, NULL);
 }
-END_TEST
 
-START_TEST(calls)
+UNIT_TEST(calls)
 {
     struct made made;
     make(&made);
@@ -147,10 +145,9 @@ START_TEST(calls)
     ck_assert(plan->place[0].mode == DUITE_W && plan->place[1].mode == DUITE_RW);
     plan_drop(plan, NULL);
 }
-END_TEST
 
 /* Contributions have buffers of their own, as large as their object; the tree names the law. */
-START_TEST(places)
+UNIT_TEST(places)
 {
     struct made made;
     make(&made);
@@ -169,17 +166,4 @@ START_TEST(places)
     ck_assert(tree->law == &SUM && tree->n == 1);
     ck_assert(tree->merge[0].left == 1 && tree->merge[0].right == 2);
     plan_drop(plan, NULL);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("emit");
-    TCase *test = tcase_create("emit");
-    tcase_add_test(test, source);
-    tcase_add_test(test, nodes);
-    tcase_add_test(test, calls);
-    tcase_add_test(test, places);
-    suite_add_tcase(suite, test);
-    return unit_run(suite);
 }

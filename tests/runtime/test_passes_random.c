@@ -274,7 +274,7 @@ static void random_passes(struct run *run, uint64_t seed, bool wide)
     plan_round_free(&round);
 }
 
-START_TEST(random_rounds)
+UNIT_TEST(random_rounds)
 {
     struct run *run = calloc(1, sizeof *run);
     ck_assert_ptr_nonnull(run);
@@ -291,14 +291,4 @@ START_TEST(random_rounds)
         for (int to = 0; to < MAX_RANKS; to++)
             free(run->queue[from][to]);
     free(run);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("random passes");
-    TCase *test = tcase_create("random passes");
-    tcase_add_test(test, random_rounds);
-    suite_add_tcase(suite, test);
-    return unit_run(suite);
 }

@@ -38,7 +38,9 @@ static void swap(uint32_t *a, uint32_t *b)
     *b = c;
 }
 
-START_TEST(refused)
+UNIT_FIXTURE(start, end)
+
+UNIT_TEST(refused)
 {
     surface_box(&made, 1, 1, 1);
     made.n_triangles--;
@@ -62,9 +64,8 @@ START_TEST(refused)
     surface_mesh(&made, &mesh);
     expect("the mesh has no triangles");
 }
-END_TEST
 
-START_TEST(both_sides_of_one_triangle)
+UNIT_TEST(both_sides_of_one_triangle)
 {
     made = (struct surface){.n = 3, .x = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}};
     surface_add(&made, 0, 1, 2);
@@ -72,9 +73,8 @@ START_TEST(both_sides_of_one_triangle)
     surface_mesh(&made, &mesh);
     expect("triangles 1 and 2 lie on each other, at the edge between vertices 1 and 2");
 }
-END_TEST
 
-START_TEST(turned_round)
+UNIT_TEST(turned_round)
 {
     struct cloth_error error = {0};
     bool turned = false;
@@ -87,7 +87,6 @@ START_TEST(turned_round)
     body_check_normal(contact_bodies_at(&bodies, 1), 1, 1, 1, 1, 1, 1);
     body_check_normal(contact_bodies_at(&bodies, 1), 1, 1, 0.2, 1, 1, 0);
 }
-END_TEST
 
 /* A box of edge 2, and a smaller one that is so far away along x, inside out. */
 static void make_two(double away, double half)
@@ -106,7 +105,7 @@ static void make_two(double away, double half)
 }
 
 /* A part that is inside out is a hole, or an error; both ways round. */
-START_TEST(parts)
+UNIT_TEST(parts)
 {
     static const phys_vec inside[] = {{0}, {0.9, 0, 0}, {2, 0, 0}};
     struct cloth_error error = {0};
@@ -129,18 +128,4 @@ START_TEST(parts)
     ck_assert(turned);
     contact_body_kind.closest(NULL, contact_bodies_at(&bodies, 2), 3, inside, hit);
     ck_assert(hit[0].gap > 0 && hit[1].gap < 0 && hit[2].gap > 0);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("refused bodies");
-    TCase *cases = tcase_create("refused");
-    tcase_add_checked_fixture(cases, start, end);
-    tcase_add_test(cases, refused);
-    tcase_add_test(cases, both_sides_of_one_triangle);
-    tcase_add_test(cases, turned_round);
-    tcase_add_test(cases, parts);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

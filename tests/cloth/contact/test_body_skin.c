@@ -54,7 +54,9 @@ static int by_value(const void *a, const void *b)
     return memcmp(a, b, sizeof(uint64_t));
 }
 
-START_TEST(all_features_once)
+UNIT_FIXTURE(start, end)
+
+UNIT_TEST(all_features_once)
 {
     void *table = make_table(0), *other = make_table(255);
     const struct contact_skin skin = contact_skin_open(table);
@@ -82,7 +84,6 @@ START_TEST(all_features_once)
     free(table);
     free(other);
 }
-END_TEST
 
 static const struct phys_key keys[2] = {{0, {0, 0, 0}, {1, 0, 0, 0}},
                                         {2, {0.2, -0.3, 0.1}, {0.96, 0, 0.28, 0}}};
@@ -96,7 +97,7 @@ static void step(double from, double to, phys_vec *x, phys_vec *y, phys_vec *way
 }
 
 /* The end of a step is the begin of the next one, to the bit; the middle's way is near to all. */
-START_TEST(steps_join)
+UNIT_TEST(steps_join)
 {
     const size_t bytes = body->n_vertices * sizeof(phys_vec);
     phys_vec *x = take(4 * bytes, 0), *y = x + body->n_vertices, *next = y + body->n_vertices;
@@ -114,7 +115,6 @@ START_TEST(steps_join)
     ck_assert_double_eq(phys_dot(&still, &still), 0);
     free(x);
 }
-END_TEST
 
 /* ---- With a cloth: triangles that share nothing ---- */
 
@@ -192,7 +192,7 @@ static uint32_t check_kind(const struct contact_side side[2], uint32_t kind, uin
     return n;
 }
 
-START_TEST(pairs_with_a_cloth)
+UNIT_TEST(pairs_with_a_cloth)
 {
     static uint32_t corner[CLOTH][3], id[3 * CLOTH];
     static unsigned char stands[CLOTH];
@@ -239,7 +239,6 @@ START_TEST(pairs_with_a_cloth)
         free(table[i]);
     }
 }
-END_TEST
 
 /* A bit along n from a point of the surface: how far the nearest of all facets is, of how far the
  * point is. */
@@ -261,7 +260,7 @@ static void any_direction(const phys_vec *edge, phys_vec *n)
 }
 
 /* On vertices and in the middle of edges: outside and inside of the ring, where edges go in. */
-START_TEST(opens_where_it_is_nearest)
+UNIT_TEST(opens_where_it_is_nearest)
 {
     const phys_vec *x = contact_body_vertices(body);
     const struct contact_facet *facet = contact_body_facets(body);
@@ -285,18 +284,4 @@ START_TEST(opens_where_it_is_nearest)
     ck_assert_int_gt(opened[0], 20);
     ck_assert_int_gt(opened[1], 50);
     free(fan);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("body_skin");
-    TCase *cases = tcase_create("body_skin");
-    tcase_add_checked_fixture(cases, start, end);
-    tcase_add_test(cases, all_features_once);
-    tcase_add_test(cases, steps_join);
-    tcase_add_test(cases, pairs_with_a_cloth);
-    tcase_add_test(cases, opens_where_it_is_nearest);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

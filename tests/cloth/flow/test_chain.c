@@ -104,7 +104,7 @@ static double frequency_seen(const struct record *r)
     return acos(-1) * (crossings - 1) / (last - first);
 }
 
-START_TEST(frequencies)
+UNIT_LOOP(frequencies, 0, 4)
 {
     static const struct {
         enum model_integrator integrator;
@@ -138,14 +138,4 @@ START_TEST(frequencies)
     record_free(&r);
     free(setup.cloth.start);
     setup_free(&setup);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("chain");
-    TCase *cases = tcase_create("chain");
-    tcase_add_loop_test(cases, frequencies, 0, 4);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

@@ -31,7 +31,7 @@ static bool is_in(const struct flow_tie_corners *at, uint32_t block)
     return in;
 }
 
-START_TEST(each_block_finds_its_contacts)
+UNIT_LOOP(each_block_finds_its_contacts, 0, 5)
 {
     srand((unsigned)_i);
     const unsigned n = (unsigned)_i * MOST / 4;
@@ -54,17 +54,15 @@ START_TEST(each_block_finds_its_contacts)
     }
     free(list);
 }
-END_TEST
 
 /* A run begins with lists that end with their head. */
-START_TEST(nothing_is_behind_an_empty_list)
+UNIT_TEST(nothing_is_behind_an_empty_list)
 {
     const struct flow_list none = {0};
     size_t found = 1;
     ck_assert_ptr_null(flow_contact_of(&none, 0, BLOCKS, &found));
     ck_assert_uint_eq(found, 0);
 }
-END_TEST
 
 /* A vertex of the block, 2 mm off in a direction along y. */
 static struct flow_contact drawn(uint32_t kind, uint32_t vertex, double along)
@@ -77,7 +75,7 @@ static struct flow_contact drawn(uint32_t kind, uint32_t vertex, double along)
 
 /* Triangles with a common edge or corner have the nearest point of a vertex in common: it is one
  * contact. Where the vertex lies between two layers there are two. */
-START_TEST(a_point_is_met_once)
+UNIT_TEST(a_point_is_met_once)
 {
     struct flow_contact list[] = {
         drawn(CONTACT_VT, 5, 1), drawn(CONTACT_VT, 5, 1), drawn(CONTACT_VT, 5, -1),
@@ -91,16 +89,4 @@ START_TEST(a_point_is_met_once)
         ck_assert_uint_eq(list[i].feature[0], vertex[i]);
         ck_assert(list[i].row.normal[1] * along[i] > 0);
     }
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("contact_index");
-    TCase *lists = tcase_create("lists");
-    tcase_add_loop_test(lists, each_block_finds_its_contacts, 0, 5);
-    tcase_add_test(lists, a_point_is_met_once);
-    tcase_add_test(lists, nothing_is_behind_an_empty_list);
-    suite_add_tcase(suite, lists);
-    return unit_run(suite);
 }

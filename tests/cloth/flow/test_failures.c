@@ -22,7 +22,7 @@ static void begins(const struct record *record, const char *text)
                   text, record->error.text);
 }
 
-START_TEST(divergence_names_step_block_and_frame)
+UNIT_TEST(divergence_names_step_block_and_frame)
 {
     struct setup setup;
     struct record record = {0};
@@ -46,10 +46,9 @@ START_TEST(divergence_names_step_block_and_frame)
     record_free(&record);
     setup_free(&setup);
 }
-END_TEST
 
 /* Slow enough in each step, too far after the second. */
-START_TEST(a_run_that_leaves_the_world)
+UNIT_TEST(a_run_that_leaves_the_world)
 {
     for (int explicit = 0; explicit < 2; explicit ++) {
         struct setup setup;
@@ -68,10 +67,9 @@ START_TEST(a_run_that_leaves_the_world)
         setup_free(&setup);
     }
 }
-END_TEST
 
 /* The square of the right-hand side is infinite: no residual may pass for small. */
-START_TEST(a_load_beyond_all_measure)
+UNIT_TEST(a_load_beyond_all_measure)
 {
     struct setup setup;
     struct record record = {0};
@@ -83,9 +81,8 @@ START_TEST(a_load_beyond_all_measure)
     record_free(&record);
     setup_free(&setup);
 }
-END_TEST
 
-START_TEST(a_solve_that_does_not_converge)
+UNIT_TEST(a_solve_that_does_not_converge)
 {
     struct setup setup;
     struct record record = {0};
@@ -100,9 +97,8 @@ START_TEST(a_solve_that_does_not_converge)
     record_free(&record);
     setup_free(&setup);
 }
-END_TEST
 
-START_TEST(a_thickness_beyond_edges)
+UNIT_TEST(a_thickness_beyond_edges)
 {
     struct setup setup;
     struct record record = {0};
@@ -115,9 +111,8 @@ START_TEST(a_thickness_beyond_edges)
     record_free(&record);
     setup_free(&setup);
 }
-END_TEST
 
-START_TEST(a_frame_that_cannot_be_written)
+UNIT_TEST(a_frame_that_cannot_be_written)
 {
     struct setup setup;
     int rank, ranks;
@@ -135,9 +130,8 @@ START_TEST(a_frame_that_cannot_be_written)
     record_free(&record);
     setup_free(&setup);
 }
-END_TEST
 
-START_TEST(pins_and_loads_outside)
+UNIT_TEST(pins_and_loads_outside)
 {
     struct setup setup;
     struct record record = {0};
@@ -162,9 +156,8 @@ START_TEST(pins_and_loads_outside)
     record_free(&record);
     setup_free(&setup);
 }
-END_TEST
 
-START_TEST(pins_by_place)
+UNIT_TEST(pins_by_place)
 {
     struct setup setup;
     struct record record = {0};
@@ -191,9 +184,8 @@ START_TEST(pins_by_place)
     setup.cloth.pins = &setup.pin;
     setup_free(&setup);
 }
-END_TEST
 
-START_TEST(no_mass)
+UNIT_TEST(no_mass)
 {
     struct setup setup;
     struct record record = {0};
@@ -221,9 +213,8 @@ START_TEST(no_mass)
     record_free(&record);
     setup_free(&setup);
 }
-END_TEST
 
-START_TEST(masses_beyond_measure)
+UNIT_TEST(masses_beyond_measure)
 {
     static const double masses[] = {1e-31, 1e31, INFINITY};
     struct setup setup;
@@ -239,10 +230,9 @@ START_TEST(masses_beyond_measure)
     }
     setup_free(&setup);
 }
-END_TEST
 
 /* It lifts the cloth there in one step. */
-START_TEST(a_plane_beyond_the_world)
+UNIT_TEST(a_plane_beyond_the_world)
 {
     struct setup setup;
     struct record record = {0};
@@ -254,9 +244,8 @@ START_TEST(a_plane_beyond_the_world)
     record_free(&record);
     setup_free(&setup);
 }
-END_TEST
 
-START_TEST(springs_of_no_length)
+UNIT_TEST(springs_of_no_length)
 {
     struct setup setup;
     struct record record = {0};
@@ -269,10 +258,9 @@ START_TEST(springs_of_no_length)
     record_free(&record);
     setup_free(&setup);
 }
-END_TEST
 
 /* Vertices 4, 5 and 8 of the 3 x 3 sheet on a line. */
-START_TEST(elements_of_no_area)
+UNIT_TEST(elements_of_no_area)
 {
     for (int bends = 0; bends < 2; bends++) {
         struct setup setup;
@@ -295,9 +283,8 @@ START_TEST(elements_of_no_area)
         setup_free(&setup);
     }
 }
-END_TEST
 
-START_TEST(bending_that_does_not_suit)
+UNIT_TEST(bending_that_does_not_suit)
 {
     struct setup setup;
     struct record record = {0};
@@ -316,9 +303,8 @@ START_TEST(bending_that_does_not_suit)
     record_free(&record);
     setup_free(&setup);
 }
-END_TEST
 
-START_TEST(starts_out_of_bounds)
+UNIT_TEST(starts_out_of_bounds)
 {
     struct setup setup;
     struct record record = {0};
@@ -356,9 +342,8 @@ START_TEST(starts_out_of_bounds)
     record_free(&record);
     setup_free(&setup);
 }
-END_TEST
 
-START_TEST(more_ranks_than_blocks)
+UNIT_TEST(more_ranks_than_blocks)
 {
     struct setup setup;
     struct cloth_error error = {0};
@@ -372,29 +357,4 @@ START_TEST(more_ranks_than_blocks)
     ck_assert_msg(strstr(error.text, "4 ranks") && strstr(error.text, "blocks (3)"), "%s",
                   error.text);
     setup_free(&setup);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("failures");
-    TCase *cases = tcase_create("failures");
-    tcase_add_test(cases, divergence_names_step_block_and_frame);
-    tcase_add_test(cases, a_run_that_leaves_the_world);
-    tcase_add_test(cases, a_load_beyond_all_measure);
-    tcase_add_test(cases, a_solve_that_does_not_converge);
-    tcase_add_test(cases, a_thickness_beyond_edges);
-    tcase_add_test(cases, a_frame_that_cannot_be_written);
-    tcase_add_test(cases, pins_and_loads_outside);
-    tcase_add_test(cases, pins_by_place);
-    tcase_add_test(cases, no_mass);
-    tcase_add_test(cases, masses_beyond_measure);
-    tcase_add_test(cases, a_plane_beyond_the_world);
-    tcase_add_test(cases, springs_of_no_length);
-    tcase_add_test(cases, elements_of_no_area);
-    tcase_add_test(cases, bending_that_does_not_suit);
-    tcase_add_test(cases, starts_out_of_bounds);
-    tcase_add_test(cases, more_ranks_than_blocks);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

@@ -22,7 +22,7 @@ static void constrain_three(void *context, const struct flow_rows *rows)
 }
 
 /* With every preconditioner: what the program holds stays, the rest falls. */
-START_TEST(a_program_filters)
+UNIT_LOOP(a_program_filters, MODEL_PLAIN, MODEL_IC0_COARSE + 1)
 {
     struct setup setup;
     struct record record = {.threads = 2, .filter = {&mark, constrain_three}};
@@ -50,9 +50,8 @@ START_TEST(a_program_filters)
     record_free(&record);
     setup_free(&setup);
 }
-END_TEST
 
-START_TEST(a_filter_is_given_on_every_rank)
+UNIT_TEST(a_filter_is_given_on_every_rank)
 {
     struct setup setup;
     struct record record = {0};
@@ -63,15 +62,4 @@ START_TEST(a_filter_is_given_on_every_rank)
     ck_assert_ptr_nonnull(strstr(record.error.text, "call flow_filter_by on every rank"));
     record_free(&record);
     setup_free(&setup);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("filter");
-    TCase *cases = tcase_create("filter");
-    tcase_add_loop_test(cases, a_program_filters, MODEL_PLAIN, MODEL_IC0_COARSE + 1);
-    tcase_add_test(cases, a_filter_is_given_on_every_rank);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

@@ -27,7 +27,7 @@ static void setup_jerk(struct setup *setup)
 
 /* Nothing is wrong: the same bits as without, also in frames, some of which show the begin of the
  * step that was accepted last. */
-START_TEST(steps_that_are_fine)
+UNIT_LOOP(steps_that_are_fine, 0, MODEL_INTEGRATORS)
 {
     struct setup setup;
     struct record plain = {0}, halving = {0};
@@ -52,11 +52,10 @@ START_TEST(steps_that_are_fine)
     record_free(&halving);
     setup_free(&setup);
 }
-END_TEST
 
 /* All steps are of the same length h / 2^k in the end, and the result is bit for bit that of a run
  * with this h: a step that was given up has left nothing. */
-START_TEST(a_halved_run_is_one_with_a_smaller_h)
+UNIT_TEST(a_halved_run_is_one_with_a_smaller_h)
 {
     for (int i = 0; i <= MODEL_INTEGRATORS; i++) { /* the last: Newton steps */
         struct setup setup;
@@ -90,7 +89,6 @@ START_TEST(a_halved_run_is_one_with_a_smaller_h)
         setup_free(&setup);
     }
 }
-END_TEST
 
 /* In frame 1. */
 static double distance(const struct record *a, const struct record *b)
@@ -100,7 +98,7 @@ static double distance(const struct record *a, const struct record *b)
 
 /* Steps are short while the edge is jerked, and long again afterwards; until then the
  * run is nearer to one of short steps than one of long steps is. */
-START_TEST(an_edge_that_is_jerked)
+UNIT_TEST(an_edge_that_is_jerked)
 {
     struct setup setup;
     struct record plain = {0}, halved = {0}, small = {0};
@@ -124,10 +122,9 @@ START_TEST(an_edge_that_is_jerked)
     record_free(&small);
     setup_free(&setup);
 }
-END_TEST
 
 /* Frame k is shown after the step whose end is nearest to k / fps, whatever the steps are. */
-START_TEST(frames_between_shorter_steps)
+UNIT_TEST(frames_between_shorter_steps)
 {
     struct setup setup;
     struct record record = {0};
@@ -150,10 +147,9 @@ START_TEST(frames_between_shorter_steps)
     record_free(&record);
     setup_free(&setup);
 }
-END_TEST
 
 /* The solve needs fewer iterations in a shorter step. */
-START_TEST(a_solve_that_converges_in_a_shorter_step)
+UNIT_TEST(a_solve_that_converges_in_a_shorter_step)
 {
     struct setup setup;
     struct record record = {0};
@@ -173,7 +169,6 @@ START_TEST(a_solve_that_converges_in_a_shorter_step)
     record_free(&record);
     setup_free(&setup);
 }
-END_TEST
 
 /* One cause alone. */
 static void halved_by(const struct record *record, enum flow_cause cause)
@@ -197,7 +192,7 @@ static void fails(struct record *record, const struct model *model, const char *
 }
 
 /* At h / 1024 it stops, and says why. */
-START_TEST(no_step_is_short_enough)
+UNIT_TEST(no_step_is_short_enough)
 {
     struct setup setup;
     struct record record = {0};
@@ -229,10 +224,9 @@ START_TEST(no_step_is_short_enough)
     record_free(&record);
     setup_free(&setup);
 }
-END_TEST
 
 /* Explicit Euler is unstable at this h; it goes on with shorter steps, however small. */
-START_TEST(an_explicit_run_that_is_unstable)
+UNIT_TEST(an_explicit_run_that_is_unstable)
 {
     struct setup setup;
     struct record record = {0};
@@ -250,12 +244,11 @@ START_TEST(an_explicit_run_that_is_unstable)
     record_free(&record);
     setup_free(&setup);
 }
-END_TEST
 
 /* Two weights fly apart until their spring holds them, in steps of several lengths, while others
  * fall freely. BDF2 has the right velocity after any of them, which the step before would spoil if
  * it were taken for one of the same length. */
-START_TEST(bdf2_begins_anew_after_another_length)
+UNIT_TEST(bdf2_begins_anew_after_another_length)
 {
     static const double vertices[] = {0, 0, 0, 1, 0, 0, 0, 0, 1, 1, 0, 1};
     static const uint32_t edges[] = {0, 1, 2, 3};
@@ -292,10 +285,9 @@ START_TEST(bdf2_begins_anew_after_another_length)
     record_free(&r);
     setup_free(&setup);
 }
-END_TEST
 
 /* A weight that falls into its spring and comes back up: the spring is longest on the way. */
-START_TEST(the_largest_stretch_of_a_run)
+UNIT_TEST(the_largest_stretch_of_a_run)
 {
     for (int judged = 0; judged < 2; judged++) {
         struct setup setup;
@@ -314,22 +306,4 @@ START_TEST(the_largest_stretch_of_a_run)
         record_free(&record);
         setup_free(&setup);
     }
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("halving");
-    TCase *cases = tcase_create("halving");
-    tcase_add_loop_test(cases, steps_that_are_fine, 0, MODEL_INTEGRATORS);
-    tcase_add_test(cases, a_halved_run_is_one_with_a_smaller_h);
-    tcase_add_test(cases, an_edge_that_is_jerked);
-    tcase_add_test(cases, frames_between_shorter_steps);
-    tcase_add_test(cases, a_solve_that_converges_in_a_shorter_step);
-    tcase_add_test(cases, no_step_is_short_enough);
-    tcase_add_test(cases, an_explicit_run_that_is_unstable);
-    tcase_add_test(cases, bdf2_begins_anew_after_another_length);
-    tcase_add_test(cases, the_largest_stretch_of_a_run);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

@@ -38,7 +38,7 @@ static void run(struct record *record, struct setup *setup, const struct scheme 
     ck_assert_msg(record->code == 0, "%s: %s", scheme->name, record->error.text);
 }
 
-START_TEST(free_fall)
+UNIT_LOOP(free_fall, 0, N_SCHEMES)
 {
     const struct scheme *scheme = SCHEMES + _i;
     struct setup setup;
@@ -56,7 +56,6 @@ START_TEST(free_fall)
     record_free(&record);
     setup_free(&setup);
 }
-END_TEST
 
 /* ---- A weight on a spring ---- */
 
@@ -145,7 +144,7 @@ static double frequency(const struct map *map, double h)
     return acos(map->trace / (2 * sqrt(map->determinant))) / h;
 }
 
-START_TEST(decay_and_frequency)
+UNIT_LOOP(decay_and_frequency, 0, N_SCHEMES)
 {
     const struct scheme *scheme = SCHEMES + _i;
     struct setup setup;
@@ -165,7 +164,6 @@ START_TEST(decay_and_frequency)
     record_free(&record);
     setup_free(&setup);
 }
-END_TEST
 
 /* The error after 0.4 s, two thirds of a swing, against the equation of motion. */
 static double error_at(const struct scheme *scheme, double h)
@@ -182,7 +180,7 @@ static double error_at(const struct scheme *scheme, double h)
     return error;
 }
 
-START_TEST(order)
+UNIT_LOOP(order, 0, unit_alone() ? N_SCHEMES : 0)
 {
     struct scheme scheme = SCHEMES[_i];
     scheme.along = 0.002; /* forces that depend on the velocity count, too */
@@ -193,12 +191,11 @@ START_TEST(order)
            h, fine, measured);
     ck_assert_double_eq_tol(measured, scheme.order, 0.1);
 }
-END_TEST
 
 /* ---- Blocks and the floor ---- */
 
 /* A pinned, loaded and damped cloth in many blocks moves as in one. */
-START_TEST(blocks_make_no_difference)
+UNIT_LOOP(blocks_make_no_difference, 0, unit_alone() ? N_SCHEMES : 0)
 {
     const struct scheme *scheme = SCHEMES + _i;
     struct setup setup;
@@ -223,11 +220,10 @@ START_TEST(blocks_make_no_difference)
     record_free(&many);
     setup_free(&setup);
 }
-END_TEST
 
 /* The weight of setup_weight above a floor that its spring would go through: forces from before
  * contact are not used after it. Here is the same by hand. */
-START_TEST(verlet_after_contact)
+UNIT_TEST(verlet_after_contact)
 {
     const double h = 0.01, floor = -1.02;
     struct setup setup;
@@ -259,12 +255,11 @@ START_TEST(verlet_after_contact)
     record_free(&record);
     setup_free(&setup);
 }
-END_TEST
 
 /* ---- Energies ---- */
 
 /* Of the weight, by the last three positions: v is the mean of two steps. */
-START_TEST(energies)
+UNIT_LOOP(energies, 0, N_SCHEMES)
 {
     const double h = 1e-4, load = 0.3;
     struct setup setup;
@@ -290,21 +285,4 @@ START_TEST(energies)
     ck_assert_double_eq_tol(end->loads, -load * y, 1e-14);
     record_free(&record);
     setup_free(&setup);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("integrators");
-    TCase *cases = tcase_create("integrators");
-    tcase_add_loop_test(cases, free_fall, 0, N_SCHEMES);
-    tcase_add_loop_test(cases, decay_and_frequency, 0, N_SCHEMES);
-    tcase_add_test(cases, verlet_after_contact);
-    tcase_add_loop_test(cases, energies, 0, N_SCHEMES);
-    suite_add_tcase(suite, cases);
-    TCase *alone = tcase_create("alone"); /* one block is no work for several ranks */
-    tcase_add_loop_test(alone, order, 0, N_SCHEMES);
-    tcase_add_loop_test(alone, blocks_make_no_difference, 0, N_SCHEMES);
-    suite_add_tcase(suite, alone);
-    return unit_run(suite);
 }

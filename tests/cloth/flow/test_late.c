@@ -30,7 +30,7 @@ static uint64_t hash_of(const struct model *model, const char *balance)
     return hash;
 }
 
-START_TEST(late_ranks_run_what_they_are_sent)
+UNIT_LOOP(late_ranks_run_what_they_are_sent, 0, 2)
 {
     static const enum model_preconditioner KINDS[] = {MODEL_PLAIN, MODEL_COARSE};
     struct setup setup;
@@ -41,14 +41,4 @@ START_TEST(late_ranks_run_what_they_are_sent)
     for (int i = 0; i < 3; i++)
         ck_assert_uint_eq(hash_of(&setup.model, "scatter"), hash);
     setup_free(&setup);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("late");
-    TCase *cases = tcase_create("late");
-    tcase_add_loop_test(cases, late_ranks_run_what_they_are_sent, 0, 2);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

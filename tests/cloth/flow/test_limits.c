@@ -66,7 +66,7 @@ static struct flow_limit limit_of(const struct setup *s)
     return limit;
 }
 
-START_TEST(bound_of_a_chain)
+UNIT_TEST(bound_of_a_chain)
 {
     struct setup setup;
     chain(&setup, 0);
@@ -82,11 +82,10 @@ START_TEST(bound_of_a_chain)
     ck_assert_str_eq(limit.cloth->name, "test");
     chain_free(&setup);
 }
-END_TEST
 
 /* Turned and at another place, and with masses that differ, it is the same kind of bound: never
  * below what the chain can do, here by its two-body vibrations. */
-START_TEST(bound_of_a_sheet)
+UNIT_TEST(bound_of_a_sheet)
 {
     struct setup setup;
     setup_sheet(&setup, 12);
@@ -97,7 +96,6 @@ START_TEST(bound_of_a_sheet)
     ck_assert_double_le(limit.omega * limit.omega, 2 * (2 * 50 + 4 * 25) * 1.3 / inner);
     setup_free(&setup);
 }
-END_TEST
 
 /* How far anything has moved along the chain after 4000 steps. */
 static double moved(enum model_integrator integrator, double stiffness, double h)
@@ -121,7 +119,7 @@ static double moved(enum model_integrator integrator, double stiffness, double h
     return max;
 }
 
-START_TEST(limits_are_where_runs_break)
+UNIT_LOOP(limits_are_where_runs_break, 0, 4)
 {
     static const struct {
         enum model_integrator integrator;
@@ -141,7 +139,6 @@ START_TEST(limits_are_where_runs_break)
     ck_assert_double_gt(moved(rows[_i].integrator, stiffness, 1.02 * h), 1e-3);
     chain_free(&setup);
 }
-END_TEST
 
 /* The warning of a model, or the empty text. */
 static void warning(const struct setup *s, char *text, size_t size)
@@ -154,7 +151,7 @@ static void warning(const struct setup *s, char *text, size_t size)
     flow_free(flow);
 }
 
-START_TEST(warnings)
+UNIT_TEST(warnings)
 {
     struct setup setup;
     char text[600], place[] = "scene.yaml:9:12";
@@ -193,10 +190,9 @@ START_TEST(warnings)
     ck_assert_ptr_nonnull(strstr(text, "limit of explicit_euler, 0.0009 s"));
     chain_free(&setup);
 }
-END_TEST
 
 /* All vertices of a cloth are other names of a sheet's, which has their masses. */
-START_TEST(a_doubled_layer_has_a_scale_of_energy)
+UNIT_TEST(a_doubled_layer_has_a_scale_of_energy)
 {
     static const uint32_t edge[] = {0, 1};
     uint32_t names[] = {0, 1};
@@ -225,18 +221,4 @@ START_TEST(a_doubled_layer_has_a_scale_of_energy)
     ck_assert_double_eq_tol(release[1], release[0], 1e-9 * release[0]);
     mesh_free(&cloths[1].mesh);
     setup_free(&setup);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("limits");
-    TCase *cases = tcase_create("limits");
-    tcase_add_test(cases, bound_of_a_chain);
-    tcase_add_test(cases, bound_of_a_sheet);
-    tcase_add_test(cases, warnings);
-    tcase_add_test(cases, a_doubled_layer_has_a_scale_of_energy);
-    tcase_add_loop_test(cases, limits_are_where_runs_break, 0, 4);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

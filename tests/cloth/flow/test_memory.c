@@ -65,7 +65,7 @@ static long prepare_all(const struct model *model)
     }
 }
 
-START_TEST(each_fails_once_in_prepare)
+UNIT_TEST(each_fails_once_in_prepare)
 {
     struct setup setup;
     setup_sheet(&setup, 3);
@@ -73,10 +73,9 @@ START_TEST(each_fails_once_in_prepare)
     ck_assert_int_gt(prepare_all(&setup.model), 20);
     setup_free(&setup);
 }
-END_TEST
 
 /* A sheet that bends, two of whose border edges are welded, with a joint across and a timed one. */
-START_TEST(each_fails_once_with_welds)
+UNIT_TEST(each_fails_once_with_welds)
 {
     struct setup setup;
     uint32_t from[] = {0, 1}, to[] = {20, 21}, ends[] = {7, 17};
@@ -104,7 +103,6 @@ START_TEST(each_fails_once_with_welds)
     ck_assert_int_gt(prepare_all(&setup.model), without + 10);
     setup_free(&setup);
 }
-END_TEST
 
 /* Memory that a run takes before its first object: on every rank, and on rank 0, which gathers. */
 enum { OF_A_RANK = 15, OF_RANK_0 = 17 };
@@ -156,7 +154,7 @@ static void runs(const struct setup *setup)
     record_free(&record);
 }
 
-START_TEST(each_fails_once_in_a_run)
+UNIT_TEST(each_fails_once_in_a_run)
 {
     int rank, ranks;
     struct setup setup;
@@ -172,10 +170,9 @@ START_TEST(each_fails_once_in_a_run)
     runs(&setup);
     setup_free(&setup);
 }
-END_TEST
 
 /* Rank 0 has no room to gather what tables are made of. */
-START_TEST(each_fails_once_in_distributing)
+UNIT_TEST(each_fails_once_in_distributing)
 {
     struct setup setup;
     setup_sheet(&setup, 6);
@@ -184,17 +181,4 @@ START_TEST(each_fails_once_in_distributing)
     next_sides = -1;
     runs(&setup);
     setup_free(&setup);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("memory");
-    TCase *cases = tcase_create("memory");
-    tcase_add_test(cases, each_fails_once_in_prepare);
-    tcase_add_test(cases, each_fails_once_with_welds);
-    tcase_add_test(cases, each_fails_once_in_a_run);
-    tcase_add_test(cases, each_fails_once_in_distributing);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

@@ -31,17 +31,15 @@ static void fall(enum model_integrator integrator, double drop)
     setup_free(&setup);
 }
 
-START_TEST(free_fall_implicit)
+UNIT_TEST(free_fall_implicit)
 {
     fall(MODEL_IMPLICIT_EULER, 1.1324664);
 }
-END_TEST
 
-START_TEST(free_fall_explicit)
+UNIT_TEST(free_fall_explicit)
 {
     fall(MODEL_EXPLICIT_EULER, 1.1277576);
 }
-END_TEST
 
 /* A weight on a spring, from its rest length: with s the stretch less that of balance, m the mass,
  * k, c, d = drag + mass damping, each step is linear in (s, v), and s_n = r^n (s_0 cos n a + w sin
@@ -83,17 +81,15 @@ static void swing(enum model_integrator integrator, double h)
     setup_free(&setup);
 }
 
-START_TEST(damped_spring_implicit)
+UNIT_TEST(damped_spring_implicit)
 {
     swing(MODEL_IMPLICIT_EULER, 0.01);
 }
-END_TEST
 
-START_TEST(damped_spring_explicit)
+UNIT_TEST(damped_spring_explicit)
 {
     swing(MODEL_EXPLICIT_EULER, 0.001);
 }
-END_TEST
 
 /* Momentum of a step from the positions of its frame and the one before. */
 static void momentum(const struct record *r, size_t step, const double *mass, double h,
@@ -108,7 +104,7 @@ static void momentum(const struct record *r, size_t step, const double *mass, do
 
 /* A coarse solve leaves a residual, but no momentum of a sheet that nothing holds; the report says
  * so, to roundoff. */
-START_TEST(momentum_changes_by_forces_alone)
+UNIT_TEST(momentum_changes_by_forces_alone)
 {
     const double h = 0.01;
     struct setup setup;
@@ -141,9 +137,8 @@ START_TEST(momentum_changes_by_forces_alone)
     record_free(&record);
     setup_free(&setup);
 }
-END_TEST
 
-START_TEST(no_momentum_is_lost_by_an_exact_solve)
+UNIT_TEST(no_momentum_is_lost_by_an_exact_solve)
 {
     struct setup setup;
     struct record record = {0};
@@ -156,7 +151,6 @@ START_TEST(no_momentum_is_lost_by_an_exact_solve)
     record_free(&record);
     setup_free(&setup);
 }
-END_TEST
 
 /* A pinned cloth in many blocks moves as the same cloth in one: halos and cut springs are complete.
  */
@@ -192,7 +186,7 @@ static void compare_grains(enum model_integrator integrator)
 
 /* What a coarse solve with pins loses, by one block and by many whose borders run through springs
  * to pins. */
-START_TEST(blocks_lose_the_same_momentum)
+UNIT_LOOP(blocks_lose_the_same_momentum, 0, unit_alone())
 {
     struct setup setup;
     struct record one = {0}, many = {0};
@@ -210,21 +204,18 @@ START_TEST(blocks_lose_the_same_momentum)
     record_free(&many);
     setup_free(&setup);
 }
-END_TEST
 
-START_TEST(blocks_make_no_difference_implicit)
+UNIT_LOOP(blocks_make_no_difference_implicit, 0, unit_alone())
 {
     compare_grains(MODEL_IMPLICIT_EULER);
 }
-END_TEST
 
-START_TEST(blocks_make_no_difference_explicit)
+UNIT_LOOP(blocks_make_no_difference_explicit, 0, unit_alone())
 {
     compare_grains(MODEL_EXPLICIT_EULER);
 }
-END_TEST
 
-START_TEST(a_sheet_lands_on_the_floor)
+UNIT_TEST(a_sheet_lands_on_the_floor)
 {
     struct setup setup;
     struct record record = {0};
@@ -247,25 +238,4 @@ START_TEST(a_sheet_lands_on_the_floor)
                             record_at(&record, 0, 0, c));
     record_free(&record);
     setup_free(&setup);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("motion");
-    TCase *cases = tcase_create("motion");
-    tcase_add_test(cases, free_fall_implicit);
-    tcase_add_test(cases, free_fall_explicit);
-    tcase_add_test(cases, damped_spring_implicit);
-    tcase_add_test(cases, damped_spring_explicit);
-    tcase_add_test(cases, momentum_changes_by_forces_alone);
-    tcase_add_test(cases, no_momentum_is_lost_by_an_exact_solve);
-    tcase_add_test(cases, a_sheet_lands_on_the_floor);
-    suite_add_tcase(suite, cases);
-    TCase *alone = tcase_create("alone"); /* one block is no work for several ranks */
-    tcase_add_test(alone, blocks_lose_the_same_momentum);
-    tcase_add_test(alone, blocks_make_no_difference_implicit);
-    tcase_add_test(alone, blocks_make_no_difference_explicit);
-    suite_add_tcase(suite, alone);
-    return unit_run(suite);
 }

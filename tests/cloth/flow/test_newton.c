@@ -65,7 +65,7 @@ static double missing_euler(const struct record *r, double h)
     return max;
 }
 
-START_TEST(euler_solves_its_equations)
+UNIT_TEST(euler_solves_its_equations)
 {
     const double h = 0.02;
     struct setup setup;
@@ -88,10 +88,9 @@ START_TEST(euler_solves_its_equations)
     record_free(&many);
     setup_free(&setup);
 }
-END_TEST
 
 /* BDF2 of positions, where v by them is (3 x2 - 4 x1 + x0) / 2 h: from its second step on. */
-START_TEST(bdf2_solves_its_equations)
+UNIT_TEST(bdf2_solves_its_equations)
 {
     const double h = 0.02;
     struct setup setup;
@@ -117,7 +116,6 @@ START_TEST(bdf2_solves_its_equations)
     record_free(&r);
     setup_free(&setup);
 }
-END_TEST
 
 /* Where the last vertex is after 0.24 s. */
 static void end_of(struct record *r, enum model_integrator integrator, uint32_t newton, double h,
@@ -137,7 +135,7 @@ static void end_of(struct record *r, enum model_integrator integrator, uint32_t 
 }
 
 /* By Richardson: of three lengths of steps. */
-START_TEST(order_of_a_swing)
+UNIT_LOOP(order_of_a_swing, 0, unit_alone() ? 4 : 0)
 {
     static const struct {
         const char *name;
@@ -158,12 +156,11 @@ START_TEST(order_of_a_swing)
     printf("# chain, %s: order %.3f\n", rows[_i].name, measured);
     ck_assert_double_eq_tol(measured, rows[_i].order, 0.15);
 }
-END_TEST
 
 /* A weight in the middle of a wire without tension, which feels nothing of the wire where the step
  * is linearised: a whole Newton step takes it to where the wire holds it with a thousand times its
  * weight. Two Newton steps get near the solution because the first is cut. */
-START_TEST(line_search)
+UNIT_TEST(line_search)
 {
     const double h = 0.2, half = 0.5, k = 3e5, m = 0.02;
     static const double vertices[] = {-0.5, 0, 0, 0, 0, 0, 0.5, 0, 0};
@@ -196,11 +193,10 @@ START_TEST(line_search)
     record_free(&r);
     setup_free(&setup);
 }
-END_TEST
 
 /* Contact and BDF2: the chain falls on a floor and never through it; the step after a touch is the
  * same as of a run by implicit Euler that begins there, so it has no memory of the fall. */
-START_TEST(bdf2_after_contact)
+UNIT_TEST(bdf2_after_contact)
 {
     const double h = 0.01, floor = -0.1;
     struct setup setup;
@@ -245,7 +241,6 @@ START_TEST(bdf2_after_contact)
     record_free(&r);
     setup_free(&setup);
 }
-END_TEST
 
 /* ---- Energies ---- */
 
@@ -259,7 +254,7 @@ static double fall(void)
 }
 
 /* Undriven and without damping: what a run of the chain gains. */
-START_TEST(energy_is_not_gained)
+UNIT_LOOP(energy_is_not_gained, 0, 8)
 {
     static const struct {
         const char *name;
@@ -294,7 +289,6 @@ START_TEST(energy_is_not_gained)
     record_free(&r);
     setup_free(&setup);
 }
-END_TEST
 
 /* The weight on its spring without damping: how far the energy wavers in 2 s. */
 static double band(enum model_integrator integrator, double h)
@@ -316,7 +310,7 @@ static double band(enum model_integrator integrator, double h)
     return wide;
 }
 
-START_TEST(energy_wavers_in_a_band)
+UNIT_LOOP(energy_wavers_in_a_band, 0, 2)
 {
     static const enum model_integrator all[] = {MODEL_VERLET, MODEL_SYMPLECTIC_EULER};
     const double wide = band(all[_i], 0.01), narrow = band(all[_i], 0.005);
@@ -324,9 +318,8 @@ START_TEST(energy_wavers_in_a_band)
            model_integrator_name(all[_i]), wide, narrow, log2(wide / narrow));
     ck_assert_double_eq_tol(log2(wide / narrow), 2, 0.1);
 }
-END_TEST
 
-START_TEST(energies_are_reported_when_asked)
+UNIT_TEST(energies_are_reported_when_asked)
 {
     struct setup setup;
     struct record r = {0};
@@ -337,23 +330,4 @@ START_TEST(energies_are_reported_when_asked)
     ck_assert_double_nan(r.report.energy_gained);
     record_free(&r);
     setup_free(&setup);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("newton");
-    TCase *cases = tcase_create("newton");
-    tcase_add_test(cases, euler_solves_its_equations);
-    tcase_add_test(cases, bdf2_solves_its_equations);
-    tcase_add_test(cases, line_search);
-    tcase_add_test(cases, bdf2_after_contact);
-    tcase_add_loop_test(cases, energy_is_not_gained, 0, 8);
-    tcase_add_loop_test(cases, energy_wavers_in_a_band, 0, 2);
-    tcase_add_test(cases, energies_are_reported_when_asked);
-    suite_add_tcase(suite, cases);
-    TCase *alone = tcase_create("alone");
-    tcase_add_loop_test(alone, order_of_a_swing, 0, 4);
-    suite_add_tcase(suite, alone);
-    return unit_run(suite);
 }

@@ -111,7 +111,7 @@ enum { N_WAYS = sizeof WAYS / sizeof *WAYS };
  * contact, n m g lets the lowest mass sink by s = n g h^2 in each step before it is put back, and
  * the spring above it carries (k + c / h) s more. By the midpoint method the next one carries k c
  * s h / 8 m more: less than the slack at the h here. */
-START_TEST(carries_a_row)
+UNIT_LOOP(carries_a_row, 0, N_WAYS *N_SHAPES)
 {
     const struct way *way = WAYS + _i / N_SHAPES;
     struct row row;
@@ -145,10 +145,9 @@ START_TEST(carries_a_row)
     record_free(&record);
     free_all(&row.setup);
 }
-END_TEST
 
 /* Without weight and springs the step in which the shape comes gives the lowest mass m v. */
-START_TEST(gives_momentum)
+UNIT_LOOP(gives_momentum, 0, N_SHAPES)
 {
     struct row row;
     struct record record = {0};
@@ -171,11 +170,10 @@ START_TEST(gives_momentum)
     record_free(&record);
     free_all(&row.setup);
 }
-END_TEST
 
 /* A step that is given up and made in parts sees the shape where it is at the end of each part: the
  * mass on it is exactly there at every time. */
-START_TEST(halved_steps_see_their_time)
+UNIT_TEST(halved_steps_see_their_time)
 {
     struct row row;
     struct record record = {0};
@@ -196,10 +194,9 @@ START_TEST(halved_steps_see_their_time)
     record_free(&record);
     free_all(&row.setup);
 }
-END_TEST
 
 /* What rests while a shape has yet to move does not end the run. */
-START_TEST(waits_for_a_shape)
+UNIT_TEST(waits_for_a_shape)
 {
     struct row row;
     struct record record = {0};
@@ -220,10 +217,9 @@ START_TEST(waits_for_a_shape)
     record_free(&record);
     free_all(&row.setup);
 }
-END_TEST
 
 /* A ball goes through where a sheet hangs: no vertex is in it, and the sheet is out of its way. */
-START_TEST(pushes_a_sheet)
+UNIT_TEST(pushes_a_sheet)
 {
     static struct phys_key keys[2] = {{0, {0, 0, 0}, {1, 0, 0, 0}}, {1, {0, 0, 0.6}, {1, 0, 0, 0}}};
     const double radius = 0.15;
@@ -261,7 +257,6 @@ START_TEST(pushes_a_sheet)
     record_free(&record);
     free_all(&s);
 }
-END_TEST
 
 /* A sheet of n x n vertices that falls onto something, 0.2 s in 50 steps. */
 static void sheet_make(struct setup *s, uint32_t n, const struct contact_shape *shape)
@@ -279,7 +274,7 @@ static void sheet_make(struct setup *s, uint32_t n, const struct contact_shape *
 
 /* A ball of 1,280 triangles is a ball but for what its triangles are less: a sheet lies as on the
  * other, so much nearer to its middle. */
-START_TEST(a_ball_of_triangles)
+UNIT_TEST(a_ball_of_triangles)
 {
     static struct surface ball;
     const double radius = 0.3, less = 0.003;
@@ -325,11 +320,10 @@ START_TEST(a_ball_of_triangles)
     record_free(on);
     record_free(on + 1);
 }
-END_TEST
 
 /* What crumples on the floor is thrown about less where compressed springs resist being turned: it
  * gains less energy, and its systems are easier. */
-START_TEST(crumples_by_absolute_slopes)
+UNIT_TEST(crumples_by_absolute_slopes)
 {
     struct flow_report report[2];
     for (int absolute = 0; absolute < 2; absolute++) {
@@ -357,11 +351,10 @@ START_TEST(crumples_by_absolute_slopes)
     ck_assert_double_lt(2 * report[1].energy_gained, report[0].energy_gained);
     ck_assert_uint_lt(report[1].cg_iterations_total, report[0].cg_iterations_total);
 }
-END_TEST
 
 /* No vertex of a sheet that falls onto the head and the shoulders of a body is in it after any
  * step. */
-START_TEST(a_real_body)
+UNIT_LOOP(a_real_body, 0, access(real_body_path(), R_OK) == 0)
 {
     struct cloth_error error = {0};
     struct setup s;
@@ -388,22 +381,4 @@ START_TEST(a_real_body)
     ck_assert_uint_gt(touched, 100);
     record_free(&record);
     free_all(&s);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("obstacles");
-    TCase *cases = tcase_create("obstacles");
-    tcase_add_loop_test(cases, carries_a_row, 0, N_WAYS * N_SHAPES);
-    tcase_add_loop_test(cases, gives_momentum, 0, N_SHAPES);
-    tcase_add_test(cases, halved_steps_see_their_time);
-    tcase_add_test(cases, waits_for_a_shape);
-    tcase_add_test(cases, pushes_a_sheet);
-    tcase_add_test(cases, a_ball_of_triangles);
-    tcase_add_test(cases, crumples_by_absolute_slopes);
-    if (access(real_body_path(), R_OK) == 0)
-        tcase_add_test(cases, a_real_body);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

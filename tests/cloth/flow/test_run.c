@@ -9,7 +9,7 @@
 #include <xxhash.h>
 
 /* Frame k after the step nearest to k / fps; h and fps that do not divide each other. */
-START_TEST(frames_at_their_steps)
+UNIT_TEST(frames_at_their_steps)
 {
     struct setup setup;
     struct record record = {0};
@@ -37,11 +37,10 @@ START_TEST(frames_at_their_steps)
     record_free(&record);
     setup_free(&setup);
 }
-END_TEST
 
 /* No step at all: the hash is that of the start, which is known. Vertex 2 is held, vertex 1 not
  * used. */
-START_TEST(hash_of_positions_then_velocities)
+UNIT_TEST(hash_of_positions_then_velocities)
 {
     static const double vertices[5][3] = {{0, 0, 0.5}, {9, 8, 7}, {1, 0, 0}, {0, 0, 1}, {1, 2, 1}};
     static const uint32_t triangles[] = {0, 2, 3, 2, 4, 3};
@@ -71,9 +70,8 @@ START_TEST(hash_of_positions_then_velocities)
     record_free(&record);
     setup_free(&setup);
 }
-END_TEST
 
-START_TEST(count_makes_exactly_so_many_iterations)
+UNIT_TEST(count_makes_exactly_so_many_iterations)
 {
     struct setup setup;
     struct record record = {0};
@@ -87,11 +85,10 @@ START_TEST(count_makes_exactly_so_many_iterations)
     record_free(&record);
     setup_free(&setup);
 }
-END_TEST
 
 /* Without forces the right-hand side is zero: no iteration is made, and where a count asks for them
  * they change nothing. */
-START_TEST(nothing_to_do)
+UNIT_TEST(nothing_to_do)
 {
     for (int count = 0; count < 2; count++) {
         struct setup setup;
@@ -111,10 +108,9 @@ START_TEST(nothing_to_do)
         setup_free(&setup);
     }
 }
-END_TEST
 
 /* From rest b = h (m g + load): an absolute tolerance of 0.01 |b| is a relative one of 0.01. */
-START_TEST(absolute_tolerance)
+UNIT_TEST(absolute_tolerance)
 {
     struct setup setup;
     struct record record[2] = {{0}};
@@ -139,11 +135,10 @@ START_TEST(absolute_tolerance)
     record_free(record + 1);
     setup_free(&setup);
 }
-END_TEST
 
 /* Asked for after step 1, when step 2 has begun, the stop is noted at the end of step 2; step 3 has
  * begun by then. Frames are 1000 steps apart: the last one shows where the run stops. */
-START_TEST(stop_finishes_the_step)
+UNIT_TEST(stop_finishes_the_step)
 {
     struct setup setup;
     struct record record = {.stop_after = 1};
@@ -161,9 +156,8 @@ START_TEST(stop_finishes_the_step)
     record_free(&record);
     setup_free(&setup);
 }
-END_TEST
 
-START_TEST(unused_vertices_stay)
+UNIT_TEST(unused_vertices_stay)
 {
     static const double vertices[] = {0, 0, 0, 9, 8, 7, 1, 0, 0, 0, 0, 1};
     static const uint32_t triangle[] = {0, 2, 3};
@@ -184,11 +178,10 @@ START_TEST(unused_vertices_stay)
     record_free(&record);
     setup_free(&setup);
 }
-END_TEST
 
 /* Two cloths in one run know nothing of each other; vertices are numbered one cloth after the
  * other. */
-START_TEST(two_cloths)
+UNIT_TEST(two_cloths)
 {
     struct setup setup, other;
     struct record record = {0};
@@ -213,10 +206,9 @@ START_TEST(two_cloths)
     setup_free(&setup);
     setup_free(&other);
 }
-END_TEST
 
 /* The same bits for any threads and schedulers; other bits where something else is computed. */
-START_TEST(threads_and_schedulers_change_no_bit)
+UNIT_TEST(threads_and_schedulers_change_no_bit)
 {
     static const char *const schedulers[] = {"steal", "fifo", "shuffle"};
     struct setup setup;
@@ -237,22 +229,4 @@ START_TEST(threads_and_schedulers_change_no_bit)
     ck_assert_uint_ne(other.report.state_hash, hash);
     record_free(&other);
     setup_free(&setup);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("run");
-    TCase *cases = tcase_create("run");
-    tcase_add_test(cases, frames_at_their_steps);
-    tcase_add_test(cases, hash_of_positions_then_velocities);
-    tcase_add_test(cases, count_makes_exactly_so_many_iterations);
-    tcase_add_test(cases, nothing_to_do);
-    tcase_add_test(cases, absolute_tolerance);
-    tcase_add_test(cases, stop_finishes_the_step);
-    tcase_add_test(cases, unused_vertices_stay);
-    tcase_add_test(cases, two_cloths);
-    tcase_add_test(cases, threads_and_schedulers_change_no_bit);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

@@ -26,7 +26,7 @@ static void pin_rows(struct setup *setup, uint32_t n)
 }
 
 /* Blocks without a free vertex, all of them, or one block of everything. */
-START_TEST(held_blocks)
+UNIT_LOOP(held_blocks, MODEL_PLAIN, MODEL_IC0_COARSE + 1)
 {
     const uint32_t held[] = {64, 24, 1}, grain[] = {8, 8, 1000};
     for (int i = 0; i < 3; i++) {
@@ -46,10 +46,9 @@ START_TEST(held_blocks)
         setup_free(&setup);
     }
 }
-END_TEST
 
 /* Nothing is held, and nothing but mass is in the way: all falls, however many pieces it is. */
-START_TEST(pieces_that_fall)
+UNIT_LOOP(pieces_that_fall, MODEL_PLAIN, MODEL_IC0_COARSE + 1)
 {
     static const double vertices[] = {0, 0, 0, 1, 0, 0, 0, 0, 1, 5, 0, 0, 6, 0, 0, 5, 0, 1};
     static const uint32_t triangles[] = {0, 1, 2, 3, 4, 5};
@@ -67,10 +66,9 @@ START_TEST(pieces_that_fall)
     record_free(&record);
     setup_free(&setup);
 }
-END_TEST
 
 /* Moduli of 1e12 beside 1e-3. */
-START_TEST(stiff_beside_soft)
+UNIT_LOOP(stiff_beside_soft, MODEL_PLAIN, MODEL_IC0_COARSE + 1)
 {
     struct setup setup;
     struct record record = {0};
@@ -87,11 +85,10 @@ START_TEST(stiff_beside_soft)
     record_free(&record);
     setup_free(&setup);
 }
-END_TEST
 
 /* A matrix so stiff that rounding takes the recurrence away from the residual: the solve begins
  * again and gets what was asked for, or says that no solve can. */
-START_TEST(rounding_is_noticed)
+UNIT_LOOP(rounding_is_noticed, MODEL_PLAIN, MODEL_IC0_COARSE + 1)
 {
     static const double tolerance[] = {3e-6, 1e-9};
     for (int i = 0; i < 2; i++) {
@@ -122,11 +119,10 @@ START_TEST(rounding_is_noticed)
         setup_free(&setup);
     }
 }
-END_TEST
 
 /* The whole slope of springs in compression: the matrix is indefinite. That is said, or a shorter
  * step, in which the masses prevail, goes on. */
-START_TEST(compressed_and_not_clamped)
+UNIT_LOOP(compressed_and_not_clamped, MODEL_PLAIN, MODEL_IC0_COARSE + 1)
 {
     for (int halving = 0; halving < 2; halving++) {
         struct setup setup;
@@ -161,18 +157,4 @@ START_TEST(compressed_and_not_clamped)
         free(start);
         setup_free(&setup);
     }
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("singular");
-    TCase *cases = tcase_create("singular");
-    tcase_add_loop_test(cases, held_blocks, MODEL_PLAIN, MODEL_IC0_COARSE + 1);
-    tcase_add_loop_test(cases, pieces_that_fall, MODEL_PLAIN, MODEL_IC0_COARSE + 1);
-    tcase_add_loop_test(cases, stiff_beside_soft, MODEL_PLAIN, MODEL_IC0_COARSE + 1);
-    tcase_add_loop_test(cases, rounding_is_noticed, MODEL_PLAIN, MODEL_IC0_COARSE + 1);
-    tcase_add_loop_test(cases, compressed_and_not_clamped, MODEL_PLAIN, MODEL_IC0_COARSE + 1);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

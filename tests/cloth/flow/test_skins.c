@@ -167,52 +167,37 @@ static void check_all(uint32_t borders)
 
 /* ---- Tests ---- */
 
-START_TEST(springs)
+UNIT_FIXTURE(start, end)
+
+UNIT_TEST(springs)
 {
     setup_pin(&setup, 2, (const uint32_t[]){0, SIDE - 1});
     make();
     check_all(4 * (SIDE - 1));
 }
-END_TEST
 
 /* Without shear springs nothing else joins the ends of diagonals. */
-START_TEST(no_shear)
+UNIT_TEST(no_shear)
 {
     setup.material.shear = setup.material.bend = 0;
     make();
     check_all(4 * (SIDE - 1));
 }
-END_TEST
 
-START_TEST(welded_sides)
+UNIT_TEST(welded_sides)
 {
     weld_sides();
     make();
     check_all(2 * (SIDE - 1));
     ck_assert_uint_eq(flow->source.blocks.n_places, SIDE * SIDE - SIDE);
 }
-END_TEST
 
 /* Other contact has no skins. */
-START_TEST(none)
+UNIT_TEST(none)
 {
     struct cloth_error error = {0};
     setup.model.contact.mode = MODEL_CONTACT_PROJECT;
     ck_assert_int_eq(flow_prepare(&flow, &setup.model, 1, &error), 0);
     ck_assert_ptr_null(flow->source.skins.start);
     ck_assert_uint_eq(flow->source.shape[0].skin.n_points, 0);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("skins");
-    TCase *cases = tcase_create("skins");
-    tcase_add_checked_fixture(cases, start, end);
-    tcase_add_test(cases, springs);
-    tcase_add_test(cases, no_shear);
-    tcase_add_test(cases, welded_sides);
-    tcase_add_test(cases, none);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

@@ -109,20 +109,18 @@ static void fall(int kind)
         }
 }
 
-START_TEST(falls_along_a_line)
+UNIT_TEST(falls_along_a_line)
 {
     fall(MODEL_LINE);
 }
-END_TEST
 
-START_TEST(falls_in_a_plane)
+UNIT_TEST(falls_in_a_plane)
 {
     fall(MODEL_PLANE);
 }
-END_TEST
 
 /* Sliders that move by 0.3 m/s across themselves take their vertices along and do not slow them. */
-START_TEST(sliders_that_move)
+UNIT_TEST(sliders_that_move)
 {
     for (int i = 0; i < 2 * MODEL_INTEGRATORS; i++) {
         static struct phys_key keys[] = {{.rotate = {1}},
@@ -147,10 +145,9 @@ START_TEST(sliders_that_move)
         setup_free(&g.setup);
     }
 }
-END_TEST
 
 /* The side of the sheet that is on the floor cannot go on along its lines, the others do. */
-START_TEST(sliders_meet_the_floor)
+UNIT_TEST(sliders_meet_the_floor)
 {
     for (int i = 0; i < MODEL_INTEGRATORS; i++) {
         struct sliding g;
@@ -176,10 +173,9 @@ START_TEST(sliders_meet_the_floor)
         setup_free(&g.setup);
     }
 }
-END_TEST
 
 /* Two pins may say the same of a vertex, and not two things. */
-START_TEST(two_pins_on_a_vertex)
+UNIT_TEST(two_pins_on_a_vertex)
 {
     for (int i = 0; i < 4; i++) {
         struct sliding g;
@@ -204,18 +200,4 @@ START_TEST(two_pins_on_a_vertex)
         record_free(&record);
         setup_free(&g.setup);
     }
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("sliders");
-    TCase *cases = tcase_create("sliders");
-    tcase_add_test(cases, falls_along_a_line);
-    tcase_add_test(cases, falls_in_a_plane);
-    tcase_add_test(cases, sliders_that_move);
-    tcase_add_test(cases, sliders_meet_the_floor);
-    tcase_add_test(cases, two_pins_on_a_vertex);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

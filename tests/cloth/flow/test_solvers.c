@@ -61,7 +61,7 @@ static void check(struct setup *setup)
     compare(setup, iterations);
 }
 
-START_TEST(a_sheet_moves_alike)
+UNIT_TEST(a_sheet_moves_alike)
 {
     struct setup setup;
     uint64_t iterations[KINDS];
@@ -73,10 +73,9 @@ START_TEST(a_sheet_moves_alike)
     ck_assert_uint_lt(iterations[3], iterations[2]);
     ck_assert_uint_lt(3 * iterations[3], alone);
 }
-END_TEST
 
 /* Whatever patches blocks are cut into, also where these have fewer rows than motions, or none. */
-START_TEST(patches_move_alike)
+UNIT_LOOP(patches_move_alike, 0, 2)
 {
     struct record none = {0};
     struct setup setup;
@@ -102,11 +101,10 @@ START_TEST(patches_move_alike)
     record_free(&none);
     setup_free(&setup);
 }
-END_TEST
 
 /* In half storage, too, with every preconditioner, of a sheet whose bend springs join vertices that
  * have others between them, and some twice. */
-START_TEST(formats_move_alike)
+UNIT_TEST(formats_move_alike)
 {
     struct record springs = {0};
     struct setup setup;
@@ -129,7 +127,6 @@ START_TEST(formats_move_alike)
     record_free(&springs);
     setup_free(&setup);
 }
-END_TEST
 
 static uint64_t iterations_of(struct setup *setup, enum model_guess guess, double h,
                               struct record *record)
@@ -145,7 +142,7 @@ static uint64_t iterations_of(struct setup *setup, enum model_guess guess, doubl
 
 /* A solve that begins where the last one ended moves alike in fewer iterations, held and driven
  * rows included; where steps are long it begins from nothing. */
-START_TEST(starts_move_alike)
+UNIT_LOOP(starts_move_alike, MODEL_PLAIN, MODEL_IC0_COARSE + 1)
 {
     struct setup setup;
     struct record zero, previous, automatic;
@@ -168,12 +165,11 @@ START_TEST(starts_move_alike)
     record_free(&automatic);
     setup_free(&setup);
 }
-END_TEST
 
 /* By hand: flat and at rest all have b = h m g, so the residual is h g all over before the first
  * iteration and moves all by h h g, while neighbours along rows and columns are 0.25 m apart; a
  * vertex that is held has no part in it. */
-START_TEST(normalised_by_hand)
+UNIT_TEST(normalised_by_hand)
 {
     const double first = 0.001 * 0.001 * 9.81 / 0.25;
     for (int i = 0; i < 4; i++) {
@@ -194,7 +190,6 @@ START_TEST(normalised_by_hand)
         setup_free(&setup);
     }
 }
-END_TEST
 
 /* A stiff sheet in units of mass, time and length that are so many times smaller. */
 static void run_in_units(double mass, double time, double length, double tolerance,
@@ -227,7 +222,7 @@ static void run_in_units(double mass, double time, double length, double toleran
 
 /* By powers of two, of masses by powers of four, since matrices hold roots, every number is the
  * same but for its exponent. */
-START_TEST(normalised_in_any_units)
+UNIT_TEST(normalised_in_any_units)
 {
     static const double units[][3] = {{16, 1, 1}, {1, 4, 1}, {1, 1, 2}, {0.25, 8, 0.5}};
     struct record record = {0}, closer = {0};
@@ -245,9 +240,8 @@ START_TEST(normalised_in_any_units)
     record_free(&record);
     record_free(&closer);
 }
-END_TEST
 
-START_TEST(one_block)
+UNIT_TEST(one_block)
 {
     struct setup setup;
     int rank, ranks;
@@ -258,7 +252,6 @@ START_TEST(one_block)
     setup.model.grain = 1000;
     check(&setup);
 }
-END_TEST
 
 /* A sheet in blocks of four vertices, the first of which are held. */
 static void check_held(uint32_t side, uint32_t n_held)
@@ -274,29 +267,26 @@ static void check_held(uint32_t side, uint32_t n_held)
 }
 
 /* Some blocks have no vertex that is free. */
-START_TEST(held_blocks)
+UNIT_TEST(held_blocks)
 {
     check_held(10, 40);
 }
-END_TEST
 
 /* Nothing is free at all. */
-START_TEST(all_held)
+UNIT_TEST(all_held)
 {
     check_held(4, 16);
 }
-END_TEST
 
-START_TEST(a_chain)
+UNIT_TEST(a_chain)
 {
     struct setup setup;
     setup_weight(&setup);
     check(&setup);
 }
-END_TEST
 
 /* Two sheets that nothing joins, each cut into blocks. */
-START_TEST(several_pieces)
+UNIT_TEST(several_pieces)
 {
     struct setup setup;
     struct model_cloth cloths[2];
@@ -311,10 +301,9 @@ START_TEST(several_pieces)
     compare(&setup, iterations);
     mesh_free(&cloths[1].mesh);
 }
-END_TEST
 
 /* A sheet that is thrown into itself: springs in compression everywhere, stiff ones. */
-START_TEST(compressed_springs)
+UNIT_TEST(compressed_springs)
 {
     struct setup setup;
     setup_sheet(&setup, 12);
@@ -325,10 +314,9 @@ START_TEST(compressed_springs)
     setup_load(&setup, 140, 0, -1, -20);
     check(&setup);
 }
-END_TEST
 
 /* Whether the largest error of the run was told and kept. */
-START_TEST(stop_in_the_mass_norm)
+UNIT_TEST(stop_in_the_mass_norm)
 {
     struct setup setup;
     for (int i = -1; i < KINDS; i++) {
@@ -351,9 +339,8 @@ START_TEST(stop_in_the_mass_norm)
         setup_free(&setup);
     }
 }
-END_TEST
 
-START_TEST(too_few_iterations)
+UNIT_TEST(too_few_iterations)
 {
     struct setup setup;
     struct record record = {0};
@@ -368,10 +355,9 @@ START_TEST(too_few_iterations)
     record_free(&record);
     setup_free(&setup);
 }
-END_TEST
 
 /* Exactly so many iterations, under a preconditioner too. */
-START_TEST(count)
+UNIT_TEST(count)
 {
     struct setup setup;
     struct record record = {0};
@@ -384,28 +370,4 @@ START_TEST(count)
     ck_assert_uint_eq(record.report.cg_iterations_total, 70);
     record_free(&record);
     setup_free(&setup);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("solvers");
-    TCase *cases = tcase_create("solvers");
-    tcase_add_test(cases, a_sheet_moves_alike);
-    tcase_add_loop_test(cases, patches_move_alike, 0, 2);
-    tcase_add_test(cases, formats_move_alike);
-    tcase_add_loop_test(cases, starts_move_alike, MODEL_PLAIN, MODEL_IC0_COARSE + 1);
-    tcase_add_test(cases, normalised_by_hand);
-    tcase_add_test(cases, normalised_in_any_units);
-    tcase_add_test(cases, one_block);
-    tcase_add_test(cases, held_blocks);
-    tcase_add_test(cases, all_held);
-    tcase_add_test(cases, a_chain);
-    tcase_add_test(cases, several_pieces);
-    tcase_add_test(cases, compressed_springs);
-    tcase_add_test(cases, stop_in_the_mass_norm);
-    tcase_add_test(cases, too_few_iterations);
-    tcase_add_test(cases, count);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

@@ -31,7 +31,7 @@ static double elongation(double tension)
 }
 
 /* _i: linear steps, Newton steps, Newton steps of BDF2. */
-START_TEST(a_chain_hangs_as_far_as_both_springs_let_it)
+UNIT_LOOP(a_chain_hangs_as_far_as_both_springs_let_it, 0, 3)
 {
     struct setup setup;
     struct record record = {0};
@@ -60,10 +60,9 @@ START_TEST(a_chain_hangs_as_far_as_both_springs_let_it)
     record_free(&record);
     setup_free(&setup);
 }
-END_TEST
 
 /* What is not reached changes no bit. */
-START_TEST(below_its_limit_an_edge_is_free)
+UNIT_TEST(below_its_limit_an_edge_is_free)
 {
     struct setup setup;
     struct record record[2] = {{0}};
@@ -81,9 +80,8 @@ START_TEST(below_its_limit_an_edge_is_free)
         record_free(record + i);
     setup_free(&setup);
 }
-END_TEST
 
-START_TEST(a_free_chain_keeps_its_momentum)
+UNIT_TEST(a_free_chain_keeps_its_momentum)
 {
     struct setup setup;
     struct record record = {0};
@@ -113,11 +111,10 @@ START_TEST(a_free_chain_keeps_its_momentum)
     record_free(&record);
     setup_free(&setup);
 }
-END_TEST
 
 /* Explicit steps are told of limits as if they were reached: K + LIMIT of one link, one end of
  * which is held. */
-START_TEST(the_longest_step_counts_limits)
+UNIT_TEST(the_longest_step_counts_limits)
 {
     struct setup setup;
     struct flow_source source;
@@ -133,11 +130,10 @@ START_TEST(the_longest_step_counts_limits)
     flow_source_free(&source);
     setup_free(&setup);
 }
-END_TEST
 
 /* Thrown down at 5 m/s, the weight comes in one step of 20 ms far over a limit that the matrix of
  * this step has not: 100 times its energy. The step is made again until the matrix has it. */
-START_TEST(steps_far_over_a_limit_are_halved)
+UNIT_TEST(steps_far_over_a_limit_are_halved)
 {
     struct setup setup;
     struct record record = {0};
@@ -165,7 +161,6 @@ START_TEST(steps_far_over_a_limit_are_halved)
     record_free(&record);
     setup_free(&setup);
 }
-END_TEST
 
 static void count(void *to, const struct element *element)
 {
@@ -174,7 +169,7 @@ static void count(void *to, const struct element *element)
 }
 
 /* Those along its threads: diagonals of cells are no edges of the cloth. */
-START_TEST(edges_of_a_grid)
+UNIT_TEST(edges_of_a_grid)
 {
     for (int triangles = 0; triangles < 2; triangles++) {
         struct setup setup;
@@ -191,19 +186,4 @@ START_TEST(edges_of_a_grid)
         element_cloths_free(&cloths);
         setup_free(&setup);
     }
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("strain_limit");
-    TCase *cases = tcase_create("limits");
-    tcase_add_loop_test(cases, a_chain_hangs_as_far_as_both_springs_let_it, 0, 3);
-    tcase_add_test(cases, below_its_limit_an_edge_is_free);
-    tcase_add_test(cases, a_free_chain_keeps_its_momentum);
-    tcase_add_test(cases, the_longest_step_counts_limits);
-    tcase_add_test(cases, steps_far_over_a_limit_are_halved);
-    tcase_add_test(cases, edges_of_a_grid);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

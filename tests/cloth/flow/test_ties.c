@@ -107,7 +107,7 @@ static void check_halo(const struct flow_ties *t)
     ck_assert_uint_eq(t->n_halo, n);
 }
 
-START_TEST(tables_have_the_ties_of_their_blocks)
+UNIT_LOOP(tables_have_the_ties_of_their_blocks, 0, 8)
 {
     make_all((unsigned)_i + 1);
     for (uint32_t b = 0; b < BLOCKS; b++) {
@@ -119,9 +119,8 @@ START_TEST(tables_have_the_ties_of_their_blocks)
     ck_assert_uint_eq(record[BLOCKS - 1].n_ties, 0);
     free_all();
 }
-END_TEST
 
-START_TEST(room_that_does_not_do)
+UNIT_TEST(room_that_does_not_do)
 {
     uint32_t others[BLOCKS][2];
     make_all(1);
@@ -139,10 +138,9 @@ START_TEST(room_that_does_not_do)
     }
     free_all();
 }
-END_TEST
 
 /* Blocks may be among the others of each other though they share no tie. */
-START_TEST(others_that_show_nothing)
+UNIT_TEST(others_that_show_nothing)
 {
     uint32_t others[BLOCKS][2];
     make_all(2);
@@ -158,7 +156,6 @@ START_TEST(others_that_show_nothing)
     free(memory);
     free_all();
 }
-END_TEST
 
 /* ---- What a block makes of them ---- */
 
@@ -200,7 +197,7 @@ static double dense_times(uint32_t b, uint32_t row, int c)
     return y;
 }
 
-START_TEST(product)
+UNIT_LOOP(product, 0, 6)
 {
     static const phys_vec none[2 * ROWS]; /* turns, too */
     repeats = _i > 2;
@@ -220,9 +217,8 @@ START_TEST(product)
     }
     free_all();
 }
-END_TEST
 
-START_TEST(local_preconditioners_have_the_diagonal)
+UNIT_LOOP(local_preconditioners_have_the_diagonal, 0, 4)
 {
     static const phys_vec none[2 * ROWS];
     static _Alignas(32) double factor[8 * ROWS];
@@ -244,9 +240,8 @@ START_TEST(local_preconditioners_have_the_diagonal)
     }
     free_all();
 }
-END_TEST
 
-START_TEST(a_solve_sees_what_adds_something)
+UNIT_TEST(a_solve_sees_what_adds_something)
 {
     make_all(1);
     for (uint32_t b = 0; b < BLOCKS; b++) {
@@ -266,10 +261,9 @@ START_TEST(a_solve_sees_what_adds_something)
     }
     free_all();
 }
-END_TEST
 
 /* P' N P of rows with weights, some without axes. */
-START_TEST(coarse_block)
+UNIT_TEST(coarse_block)
 {
     enum { N = 4 };
     srand(5);
@@ -296,21 +290,4 @@ START_TEST(coarse_block)
             ck_assert_double_eq_tol(block[at], sum, 1e-13);
         }
     }
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("ties");
-    TCase *tables = tcase_create("tables"), *blocks = tcase_create("blocks");
-    tcase_add_loop_test(tables, tables_have_the_ties_of_their_blocks, 0, 8);
-    tcase_add_test(tables, room_that_does_not_do);
-    tcase_add_test(tables, others_that_show_nothing);
-    tcase_add_loop_test(blocks, product, 0, 6);
-    tcase_add_test(blocks, a_solve_sees_what_adds_something);
-    tcase_add_loop_test(blocks, local_preconditioners_have_the_diagonal, 0, 4);
-    tcase_add_test(blocks, coarse_block);
-    suite_add_tcase(suite, tables);
-    suite_add_tcase(suite, blocks);
-    return unit_run(suite);
 }

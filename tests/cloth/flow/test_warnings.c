@@ -12,7 +12,7 @@ static void warns(const struct flow *flow, size_t i, const char *text)
                   warning ? warning : "no warning");
 }
 
-START_TEST(vertices_without_faces)
+UNIT_TEST(vertices_without_faces)
 {
     static const double vertices[4][3] = {{0, 0, 0}, {1, 0, 0}, {0, 0, 1}, {5, 5, 5}};
     static const uint32_t triangle[] = {0, 1, 2};
@@ -45,9 +45,8 @@ START_TEST(vertices_without_faces)
         setup_free(&setup);
     }
 }
-END_TEST
 
-START_TEST(pins_and_loads_that_move_nothing)
+UNIT_TEST(pins_and_loads_that_move_nothing)
 {
     static const double vertices[5][3] = {{0, 0, 0}, {1, 0, 0}, {0, 0, 1}, {5, 5, 5}, {6, 6, 6}};
     static const uint32_t triangle[] = {0, 1, 2};
@@ -75,10 +74,9 @@ START_TEST(pins_and_loads_that_move_nothing)
     flow_free(flow);
     setup_free(&setup);
 }
-END_TEST
 
 /* The deepest vertex that no pin holds. */
-START_TEST(a_start_inside_an_obstacle)
+UNIT_TEST(a_start_inside_an_obstacle)
 {
     static const struct phys_key keys[] = {{.translate = {0, 9, 0}, .rotate = {1, 0, 0, 0}}};
     struct contact_shape shapes[] = {{.value = {0, 0, 0, 0, 1, 0}},
@@ -108,10 +106,9 @@ START_TEST(a_start_inside_an_obstacle)
         setup_free(&setup);
     }
 }
-END_TEST
 
 /* Two triangles of a square, the second one turned round. */
-START_TEST(windings_that_disagree)
+UNIT_LOOP(windings_that_disagree, 0, 2)
 {
     static const double place[] = {0, 0, 0, 1, 0, 0, 1, 0, 1, 0, 0, 1};
     static const uint32_t triangles[2][6] = {{0, 2, 1, 0, 3, 2}, {0, 2, 1, 0, 2, 3}};
@@ -134,17 +131,4 @@ START_TEST(windings_that_disagree)
         ck_assert_ptr_null(flow_warning(flow, 0));
     flow_free(flow);
     setup_free(&setup);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("warnings");
-    TCase *cases = tcase_create("warnings");
-    tcase_add_test(cases, vertices_without_faces);
-    tcase_add_test(cases, pins_and_loads_that_move_nothing);
-    tcase_add_test(cases, a_start_inside_an_obstacle);
-    tcase_add_loop_test(cases, windings_that_disagree, 0, 2);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

@@ -17,7 +17,7 @@ static double parabola(double chord, double height)
     return chord * 0.5 * (sqrt(1 + m * m) + asinh(m) / m);
 }
 
-START_TEST(straight_edges)
+UNIT_TEST(straight_edges)
 {
     struct garment_pattern pattern;
     read_pattern(&pattern, "straight");
@@ -26,10 +26,9 @@ START_TEST(straight_edges)
     expect(garment_edge_length(&pattern.panel[0], 3), 0.3, 1e-14);
     garment_pattern_free(&pattern);
 }
-END_TEST
 
 /* Under a parabola are two thirds of its height, which is half that of the control point. */
-START_TEST(quadratic_edges)
+UNIT_TEST(quadratic_edges)
 {
     struct garment_pattern pattern;
     read_pattern(&pattern, "quadratic");
@@ -38,11 +37,10 @@ START_TEST(quadratic_edges)
     expect(garment_edge_length(&pattern.panel[0], 2), parabola(0.6, 0.1), 1e-13);
     garment_pattern_free(&pattern);
 }
-END_TEST
 
 /* A cubic curve whose controls are two thirds on the way to that of a quadratic one is that one:
  * the controls are at 8 cm and 4 cm, those of the parabolas at 12 and 6. */
-START_TEST(cubic_edges)
+UNIT_TEST(cubic_edges)
 {
     struct garment_pattern pattern;
     read_pattern(&pattern, "cubic");
@@ -51,11 +49,10 @@ START_TEST(cubic_edges)
     expect(garment_edge_length(&pattern.panel[0], 2), parabola(0.6, 0.1), 1e-13);
     garment_pattern_free(&pattern);
 }
-END_TEST
 
 /* The radius of the disc's other half is a rounded one, less than half its chord: a half circle,
  * too. */
-START_TEST(circular_edges)
+UNIT_TEST(circular_edges)
 {
     struct garment_pattern pattern;
     read_pattern(&pattern, "circle");
@@ -69,11 +66,10 @@ START_TEST(circular_edges)
     ck_assert_str_eq(pattern.panel[1].name, "three_quarters");
     garment_pattern_free(&pattern);
 }
-END_TEST
 
 /* Places at equal parts of the length: of an arc the chords between them are equal, and all are as
  * far from the centre; of a parabola the length up to each is its part of the whole. */
-START_TEST(equal_parts)
+UNIT_TEST(equal_parts)
 {
     struct garment_pattern pattern;
     struct curve curve;
@@ -95,18 +91,4 @@ START_TEST(equal_parts)
         expect(0.5 - 0.5 * (u * sqrt(1 + u * u) + asinh(u)) / whole, k / 10.0, 1e-12);
     }
     garment_pattern_free(&pattern);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("curves");
-    TCase *forms = tcase_create("closed forms");
-    tcase_add_test(forms, straight_edges);
-    tcase_add_test(forms, quadratic_edges);
-    tcase_add_test(forms, cubic_edges);
-    tcase_add_test(forms, circular_edges);
-    tcase_add_test(forms, equal_parts);
-    suite_add_tcase(suite, forms);
-    return unit_run(suite);
 }

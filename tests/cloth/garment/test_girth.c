@@ -75,7 +75,7 @@ static void tube(struct garment_pattern *pattern, struct garment_panel panel[2],
     *pattern = (struct garment_pattern){2, 2, panel, stitch};
 }
 
-START_TEST(a_tube_around_a_prism)
+UNIT_TEST(a_tube_around_a_prism)
 {
     struct garment_pattern pattern;
     struct garment_panel panel[2];
@@ -94,10 +94,9 @@ START_TEST(a_tube_around_a_prism)
         ck_assert_int_eq(girth_too_small(&worst), radius > 0.162);
     }
 }
-END_TEST
 
 /* The hull around two prisms has straight ways between them. */
-START_TEST(a_tube_around_two_legs)
+UNIT_TEST(a_tube_around_two_legs)
 {
     struct garment_pattern pattern;
     struct garment_panel panel[2];
@@ -121,10 +120,9 @@ START_TEST(a_tube_around_two_legs)
     ck_assert(worst.found);
     ck_assert_double_eq_tol(worst.body, around(0.08) + 2 * 0.24, 1e-12);
 }
-END_TEST
 
 /* What is not surrounded, or only partly, is not compared; nor is a cut that does not close. */
-START_TEST(nothing_to_compare)
+UNIT_TEST(nothing_to_compare)
 {
     struct garment_pattern pattern;
     struct garment_panel panel[2];
@@ -145,10 +143,9 @@ START_TEST(nothing_to_compare)
     body.n_triangles = 0;
     ck_assert(!compare(&pattern, 2, &body).found);
 }
-END_TEST
 
 /* A skirt is narrowest at its waistband. */
-START_TEST(skirts_of_random_waists)
+UNIT_TEST(skirts_of_random_waists)
 {
     const struct garment_own *own = garment_own_find("skirt");
     const int waist = garment_own_measure(own, "waist");
@@ -170,17 +167,4 @@ START_TEST(skirts_of_random_waists)
         ck_assert_int_eq(girth_too_small(&worst), around(radius) > 1.02 * (value[waist] + 0.02));
         garment_pattern_free(&pattern);
     }
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("girths");
-    TCase *all = tcase_create("girths");
-    tcase_add_test(all, a_tube_around_a_prism);
-    tcase_add_test(all, a_tube_around_two_legs);
-    tcase_add_test(all, nothing_to_compare);
-    tcase_add_test(all, skirts_of_random_waists);
-    suite_add_tcase(suite, all);
-    return unit_run(suite);
 }

@@ -113,7 +113,7 @@ static void check_piece(const struct garment *garment, const struct garment_patt
 
 /* "steep" gathers by 4, around a ring of stitches, and beside its partner: its triangles are not as
  * good. */
-START_TEST(panels_are_whole)
+UNIT_LOOP(panels_are_whole, 0, N_PATTERNS *N_EDGES)
 {
     struct garment_pattern pattern;
     struct garment garment;
@@ -134,9 +134,8 @@ START_TEST(panels_are_whole)
     garment_free(&garment);
     garment_pattern_free(&pattern);
 }
-END_TEST
 
-START_TEST(as_many_as_wanted)
+UNIT_LOOP(as_many_as_wanted, 0, N_PATTERNS * 3)
 {
     static const uint32_t wanted[] = {500, 3000, 20000};
     static const double off[] = {0.05, 0.01, 0.01}; /* boundaries have whole divisions */
@@ -150,7 +149,6 @@ START_TEST(as_many_as_wanted)
     garment_free(&garment);
     garment_pattern_free(&pattern);
 }
-END_TEST
 
 /* On straight edges every part has the same length: each side has that of its own edge. */
 static void check_seam(const struct garment *garment, const struct garment_pattern *pattern,
@@ -169,7 +167,7 @@ static void check_seam(const struct garment *garment, const struct garment_patte
     }
 }
 
-START_TEST(seams_have_equal_sides)
+UNIT_LOOP(seams_have_equal_sides, 0, 3)
 {
     static const char *const sewn[3] = {"dart", "gather", "fold"};
     struct garment_pattern pattern;
@@ -181,10 +179,9 @@ START_TEST(seams_have_equal_sides)
     garment_free(&garment);
     garment_pattern_free(&pattern);
 }
-END_TEST
 
 /* A dart closes at the vertex that its edges share: edge 3 ends there, edge 4 begins there. */
-START_TEST(darts_close_at_their_tip)
+UNIT_TEST(darts_close_at_their_tip)
 {
     struct garment_pattern pattern;
     struct garment garment;
@@ -198,12 +195,11 @@ START_TEST(darts_close_at_their_tip)
     garment_free(&garment);
     garment_pattern_free(&pattern);
 }
-END_TEST
 
 /* Panels that meet at a right angle along their seam: partners are at one place. The side's loop is
  * clockwise, so its front is on the side of its -z, which the rotation takes to the room's -x, and
  * its u is -x. */
-START_TEST(folds_meet)
+UNIT_TEST(folds_meet)
 {
     struct garment_pattern pattern;
     struct garment garment;
@@ -227,7 +223,6 @@ START_TEST(folds_meet)
     garment_free(&garment);
     garment_pattern_free(&pattern);
 }
-END_TEST
 
 /* A front, a back, and beside their necks a panel of a hood, by its lower edge. */
 struct hood {
@@ -259,7 +254,7 @@ static void place_hood(struct garment_pattern *pattern, const struct hood *hood)
     stitch[1].right_wrong = hood->right_wrong;
 }
 
-START_TEST(fronts_are_on_one_side)
+UNIT_LOOP(fronts_are_on_one_side, 0, sizeof HOODS / sizeof *HOODS)
 {
     const struct hood *hood = HOODS + _i;
     struct garment_pattern pattern;
@@ -278,10 +273,9 @@ START_TEST(fronts_are_on_one_side)
     garment_free(&garment);
     garment_pattern_free(&pattern);
 }
-END_TEST
 
 /* About x first, then y: 90 and 90 degrees take (x, y) to (y, 0, -x). */
-START_TEST(rotations_are_in_order)
+UNIT_TEST(rotations_are_in_order)
 {
     struct garment_pattern pattern;
     struct garment garment;
@@ -295,10 +289,9 @@ START_TEST(rotations_are_in_order)
     garment_free(&garment);
     garment_pattern_free(&pattern);
 }
-END_TEST
 
 /* Twice the same bits, whatever lay in memory before. */
-START_TEST(the_same_again)
+UNIT_TEST(the_same_again)
 {
     struct garment_pattern pattern;
     struct garment one, two;
@@ -312,21 +305,4 @@ START_TEST(the_same_again)
     garment_free(&one);
     garment_free(&two);
     garment_pattern_free(&pattern);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("meshes of panels");
-    TCase *mesh = tcase_create("mesh");
-    tcase_add_loop_test(mesh, panels_are_whole, 0, N_PATTERNS * N_EDGES);
-    tcase_add_loop_test(mesh, as_many_as_wanted, 0, N_PATTERNS * 3);
-    tcase_add_loop_test(mesh, seams_have_equal_sides, 0, 3);
-    tcase_add_test(mesh, darts_close_at_their_tip);
-    tcase_add_test(mesh, folds_meet);
-    tcase_add_loop_test(mesh, fronts_are_on_one_side, 0, sizeof HOODS / sizeof *HOODS);
-    tcase_add_test(mesh, rotations_are_in_order);
-    tcase_add_test(mesh, the_same_again);
-    suite_add_tcase(suite, mesh);
-    return unit_run(suite);
 }

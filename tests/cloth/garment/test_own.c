@@ -122,7 +122,12 @@ static void check_mesh(const struct garment_pattern *pattern, int which, double 
     garment_free(&garment);
 }
 
-START_TEST(sizes)
+UNIT_CASES(patience, cases)
+{
+    tcase_set_timeout(cases, 0);
+}
+
+UNIT_LOOP(sizes, 0, GARMENTS)
 {
     struct garment_pattern pattern;
     for (int size = 0; size < SIZES; size++) {
@@ -132,10 +137,9 @@ START_TEST(sizes)
         garment_pattern_free(&pattern);
     }
 }
-END_TEST
 
 /* Corners of all panels in space, those of the right mirrored: each corner has its image. */
-START_TEST(left_is_right)
+UNIT_LOOP(left_is_right, 0, GARMENTS)
 {
     struct garment_pattern pattern;
     struct garment garment;
@@ -153,7 +157,6 @@ START_TEST(left_is_right)
     garment_free(&garment);
     garment_pattern_free(&pattern);
 }
-END_TEST
 
 static double part(uint64_t *state)
 {
@@ -162,7 +165,7 @@ static double part(uint64_t *state)
 }
 
 /* Measures anywhere in their ranges: what is not refused can be sewn. */
-START_TEST(random_measures)
+UNIT_LOOP(random_measures, 0, GARMENTS)
 {
     const struct garment_own *own = garment_own_find(SHAPES[_i].name);
     uint64_t state = 19;
@@ -189,10 +192,9 @@ START_TEST(random_measures)
     }
     ck_assert_msg(made == wanted, "%s: of %d only %d can be sewn", own->name, tried, made);
 }
-END_TEST
 
 /* Girths are what the measures say. */
-START_TEST(widths)
+UNIT_TEST(widths)
 {
     struct garment_pattern pattern;
     double value[GARMENT_MEASURES];
@@ -213,7 +215,6 @@ START_TEST(widths)
     ck_assert_double_eq_tol(waist, 0.862, 0.001); /* the back's rise makes it a little longer */
     garment_pattern_free(&pattern);
 }
-END_TEST
 
 static void refuse(int which, const char *measure, double value, const char *sentence)
 {
@@ -228,7 +229,7 @@ static void refuse(int which, const char *measure, double value, const char *sen
     garment_pattern_free(&pattern);
 }
 
-START_TEST(refused)
+UNIT_TEST(refused)
 {
     refuse(TSHIRT, "chest", 3, "tshirt: the measure chest is 3; it has to be 0.5 to 1.8");
     refuse(TSHIRT, "chest", NAN, "it has to be 0.5 to 1.8");
@@ -250,19 +251,4 @@ START_TEST(refused)
     ck_assert_int_eq(garment_size_find("XXL"), -1);
     ck_assert_int_eq(garment_size_find("XL"), 4);
     ck_assert_int_eq(garment_own_measure(garment_own_find("skirt"), "sleeve"), -1);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("own garments");
-    TCase *all = tcase_create("all");
-    tcase_set_timeout(all, 0);
-    tcase_add_loop_test(all, sizes, 0, GARMENTS);
-    tcase_add_loop_test(all, left_is_right, 0, GARMENTS);
-    tcase_add_loop_test(all, random_measures, 0, GARMENTS);
-    tcase_add_test(all, widths);
-    tcase_add_test(all, refused);
-    suite_add_tcase(suite, all);
-    return unit_run(suite);
 }

@@ -78,7 +78,9 @@ static void expect_state(const char *wanted, bool waiting)
     ck_assert_int_eq(waits, waiting);
 }
 
-START_TEST(the_newest_frame)
+UNIT_FIXTURE(start, end)
+
+UNIT_TEST(the_newest_frame)
 {
     expect_state("waits for a run at 127.0.0.1:", true);
     expect_state("connected to 127.0.0.1:", true);
@@ -91,9 +93,8 @@ START_TEST(the_newest_frame)
     expect(LIVE_NOTHING, 0);
     expect_state("frame 3, 0.12 s, live from ", false);
 }
-END_TEST
 
-START_TEST(another_scene_of_the_run)
+UNIT_TEST(another_scene_of_the_run)
 {
     publish(0);
     expect(LIVE_NEW_SCENE, 0);
@@ -104,9 +105,8 @@ START_TEST(another_scene_of_the_run)
     expect(LIVE_NEW_SCENE, 1);
     ck_assert_uint_eq(live_follow_cache(follower)->n_obstacles, 1);
 }
-END_TEST
 
-START_TEST(the_end_and_another_run)
+UNIT_TEST(the_end_and_another_run)
 {
     char address[100];
     publish(7);
@@ -118,10 +118,9 @@ START_TEST(the_end_and_another_run)
     publish(2);
     expect(LIVE_NEW_SCENE, 2);
 }
-END_TEST
 
 /* Frames of a slow run come more than 2 s apart, and a viewer waits for each as long. */
-START_TEST(the_last_frame_of_a_slow_run)
+UNIT_TEST(the_last_frame_of_a_slow_run)
 {
     publish(0);
     expect(LIVE_NEW_SCENE, 0);
@@ -132,9 +131,8 @@ START_TEST(the_last_frame_of_a_slow_run)
     expect(LIVE_NEW_FRAME, 1);
     expect_state("the run has ended at frame 1; ", true);
 }
-END_TEST
 
-START_TEST(a_frame_that_is_not_finite)
+UNIT_TEST(a_frame_that_is_not_finite)
 {
     double x[3 * SAMPLE_POINTS];
     sample_positions(1, 1, x);
@@ -144,9 +142,8 @@ START_TEST(a_frame_that_is_not_finite)
     expect(LIVE_NEW_SCENE, 0);
     expect(LIVE_NOTHING, 0);
 }
-END_TEST
 
-START_TEST(an_address_that_is_taken)
+UNIT_TEST(an_address_that_is_taken)
 {
     struct live_publisher *other;
     ck_assert_int_eq(live_publish_open(&other, live_publish_address(publisher), warn, &error),
@@ -154,10 +151,9 @@ START_TEST(an_address_that_is_taken)
     ck_assert_msg(strstr(error.text, "the port is in use"), "%s", error.text);
     ck_assert_ptr_null(other);
 }
-END_TEST
 
 /* Any program can ask by a REQ socket, whose messages begin with an empty part. */
-START_TEST(a_viewer_of_another_kind)
+UNIT_TEST(a_viewer_of_another_kind)
 {
     static unsigned char bytes[10000];
     char endpoint[120];
@@ -180,21 +176,4 @@ START_TEST(a_viewer_of_another_kind)
     zmq_close(socket);
     zmq_ctx_term(zmq);
     ck_assert_int_eq(warnings, 0);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("live runs");
-    TCase *c = tcase_create("runs");
-    tcase_add_checked_fixture(c, start, end);
-    tcase_add_test(c, the_newest_frame);
-    tcase_add_test(c, another_scene_of_the_run);
-    tcase_add_test(c, the_end_and_another_run);
-    tcase_add_test(c, the_last_frame_of_a_slow_run);
-    tcase_add_test(c, a_frame_that_is_not_finite);
-    tcase_add_test(c, an_address_that_is_taken);
-    tcase_add_test(c, a_viewer_of_another_kind);
-    suite_add_tcase(suite, c);
-    return unit_run(suite);
 }

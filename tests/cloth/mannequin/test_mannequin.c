@@ -272,7 +272,7 @@ static void check_all(const struct mannequin *mannequin)
     mesh_free(&mesh);
 }
 
-START_TEST(default_figure)
+UNIT_TEST(default_figure)
 {
     struct mannequin mannequin = {0};
     struct mesh mesh;
@@ -281,16 +281,14 @@ START_TEST(default_figure)
     mesh_free(&mesh);
     check_all(&mannequin);
 }
-END_TEST
 
-START_TEST(other_sizes)
+UNIT_TEST(other_sizes)
 {
     check_all(&(struct mannequin){.edge = unit_quick() ? 0.02 : 0.012});
     check_all(&(struct mannequin){.edge = 0.025});
     check_all(&(struct mannequin){.height = 1.2, .edge = 0.015});
     check_all(&(struct mannequin){.height = 2.0});
 }
-END_TEST
 
 static double random_part(uint64_t *state)
 {
@@ -299,7 +297,7 @@ static double random_part(uint64_t *state)
 }
 
 /* Measures that do not go together are refused before anything is made. */
-START_TEST(random_measures)
+UNIT_TEST(random_measures)
 {
     const int wanted = unit_quick() ? 5 : 50;
     uint64_t state = 1;
@@ -322,7 +320,6 @@ START_TEST(random_measures)
         mesh_free(&mesh);
     }
 }
-END_TEST
 
 static void check_refused(const struct mannequin *mannequin, const char *sentence)
 {
@@ -333,7 +330,7 @@ static void check_refused(const struct mannequin *mannequin, const char *sentenc
     ck_assert_ptr_null(mesh.position);
 }
 
-START_TEST(refused)
+UNIT_TEST(refused)
 {
     check_refused(&(struct mannequin){.height = 3}, "height is 3 m; figures have 1 to 2.3 m");
     check_refused(&(struct mannequin){.height = NAN}, "height is nan m");
@@ -346,25 +343,10 @@ START_TEST(refused)
                   "a hip of 0.85 m does not go with a thigh of 0.57 m");
     check_refused(&(struct mannequin){.girth[MANNEQUIN_WRIST] = -1}, "wrist is -1 m");
 }
-END_TEST
 
-START_TEST(names)
+UNIT_TEST(names)
 {
     for (uint32_t i = 0; i < MANNEQUIN_GIRTHS; i++)
         ck_assert_uint_eq(mannequin_find(mannequin_measures[i].name), i);
     ck_assert_uint_eq(mannequin_find("nose"), MANNEQUIN_GIRTHS);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("mannequin");
-    TCase *tcase = tcase_create("figures");
-    tcase_add_test(tcase, default_figure);
-    tcase_add_test(tcase, other_sizes);
-    tcase_add_test(tcase, random_measures);
-    tcase_add_test(tcase, refused);
-    tcase_add_test(tcase, names);
-    suite_add_tcase(suite, tcase);
-    return unit_run(suite);
 }

@@ -100,7 +100,7 @@ static uint32_t n_cut(const struct mesh_blocks *blocks, const struct graph *grap
 
 /* As many as the grain asks for; from 16 on a multiple of four, where there is a vertex for each.
  */
-START_TEST(number_of_blocks)
+UNIT_TEST(number_of_blocks)
 {
     static const uint32_t wanted[][3] = {
         /* vertices, grain, blocks */
@@ -117,9 +117,8 @@ START_TEST(number_of_blocks)
         graph_free(&graph);
     }
 }
-END_TEST
 
-START_TEST(balance_of_the_sheet)
+UNIT_TEST(balance_of_the_sheet)
 {
     const uint32_t grains[] = {1000, 500, 250};
     struct graph graph = sheet(150, 150, 0);
@@ -137,9 +136,8 @@ START_TEST(balance_of_the_sheet)
     }
     graph_free(&graph);
 }
-END_TEST
 
-START_TEST(near_numbers_are_near)
+UNIT_TEST(near_numbers_are_near)
 {
     uint32_t smallest, largest;
     struct graph graph = sheet(64, 64, 0);
@@ -152,9 +150,8 @@ START_TEST(near_numbers_are_near)
     mesh_blocks_free(&blocks);
     graph_free(&graph);
 }
-END_TEST
 
-START_TEST(every_grain)
+UNIT_TEST(every_grain)
 {
     struct graph graph = sheet(23, 17, 0);
     uint32_t smallest, largest;
@@ -169,9 +166,8 @@ START_TEST(every_grain)
     mesh_blocks_free(&blocks);
     graph_free(&graph);
 }
-END_TEST
 
-START_TEST(same_every_time)
+UNIT_TEST(same_every_time)
 {
     struct graph graph = sheet(40, 40, 0);
     const uint32_t grains[] = {1, 7, 100, 1600};
@@ -200,9 +196,8 @@ START_TEST(same_every_time)
     }
     graph_free(&graph);
 }
-END_TEST
 
-START_TEST(halves_of_a_chain)
+UNIT_TEST(halves_of_a_chain)
 {
     struct graph graph = graph_new(100, 99);
     for (uint32_t i = 0; i < 99; i++) { /* 37 and 100 share no factor: a chain in a wild order */
@@ -222,12 +217,11 @@ START_TEST(halves_of_a_chain)
     mesh_blocks_free(&blocks);
     graph_free(&graph);
 }
-END_TEST
 
 /* Reverse Cuthill-McKee of a 3 x 30 grid with diagonals and bends knows to walk along it: no pair
  * is farther apart than three levels of three. Two components follow each other by their lowest
  * vertex, each turned round by itself. */
-START_TEST(order_inside_a_block)
+UNIT_TEST(order_inside_a_block)
 {
     struct graph graph = sheet(30, 3, 0);
     uint32_t smallest, largest;
@@ -261,9 +255,8 @@ START_TEST(order_inside_a_block)
     mesh_blocks_free(&blocks);
     graph_free(&tree);
 }
-END_TEST
 
-START_TEST(free_particles)
+UNIT_TEST(free_particles)
 {
     struct graph graph = graph_new(103, 0);
     uint32_t smallest, largest;
@@ -275,9 +268,8 @@ START_TEST(free_particles)
     mesh_blocks_free(&blocks);
     graph_free(&graph);
 }
-END_TEST
 
-START_TEST(isolated_vertices)
+UNIT_TEST(isolated_vertices)
 {
     const uint32_t more[] = {1, 50, 1000, 20000}, grains[] = {1, 3, 10, 100, 1000};
     for (size_t m = 0; m < 4; m++) {
@@ -291,9 +283,8 @@ START_TEST(isolated_vertices)
         graph_free(&graph);
     }
 }
-END_TEST
 
-START_TEST(unused_vertices)
+UNIT_TEST(unused_vertices)
 {
     struct graph graph = sheet(10, 10, 30);
     uint32_t smallest, largest;
@@ -312,9 +303,8 @@ START_TEST(unused_vertices)
     mesh_blocks_free(&blocks);
     graph_free(&graph);
 }
-END_TEST
 
-START_TEST(wrong_input)
+UNIT_TEST(wrong_input)
 {
     struct graph graph = sheet(3, 3, 0);
     struct mesh_blocks blocks;
@@ -333,9 +323,8 @@ START_TEST(wrong_input)
     ck_assert(!blocks.start && !blocks.vertex && !blocks.place);
     graph_free(&graph);
 }
-END_TEST
 
-START_TEST(pieces_of_full_parts)
+UNIT_TEST(pieces_of_full_parts)
 {
     const struct {
         uint32_t n, size[8], pieces[8];
@@ -353,8 +342,3 @@ START_TEST(pieces_of_full_parts)
         ck_assert_mem_eq(pieces, cases[i].pieces, cases[i].n * sizeof *pieces);
     }
 }
-END_TEST
-
-RUN("blocks", number_of_blocks, balance_of_the_sheet, near_numbers_are_near, every_grain,
-    same_every_time, halves_of_a_chain, order_inside_a_block, free_particles, isolated_vertices,
-    unused_vertices, wrong_input, pieces_of_full_parts)

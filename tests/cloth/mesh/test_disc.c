@@ -21,7 +21,7 @@ static const double *place_of(const struct mesh *mesh, uint32_t ring, uint32_t j
 }
 
 /* Within rounding where the angle says, by the functions of the C library. */
-START_TEST(places)
+UNIT_TEST(places)
 {
     struct mesh mesh = disc(0.15, RINGS);
     ck_assert_uint_eq(mesh.n_vertices, N);
@@ -40,9 +40,8 @@ START_TEST(places)
         }
     mesh_free(&mesh);
 }
-END_TEST
 
-START_TEST(mirror_images)
+UNIT_TEST(mirror_images)
 {
     struct mesh mesh = disc(0.15, RINGS);
     for (uint32_t ring = 1; ring <= RINGS; ring++)
@@ -55,11 +54,10 @@ START_TEST(mirror_images)
         }
     mesh_free(&mesh);
 }
-END_TEST
 
 /* As mesh.h says; no triangle has less than three quarters of the area of another, and their sum is
  * that of a polygon of 6 rings corners. */
-START_TEST(almost_equal_triangles)
+UNIT_TEST(almost_equal_triangles)
 {
     for (uint32_t rings = 1; rings <= RINGS; rings += 3) {
         struct mesh mesh = disc(rings, rings);
@@ -93,9 +91,8 @@ START_TEST(almost_equal_triangles)
         mesh_free(&mesh);
     }
 }
-END_TEST
 
-START_TEST(wrong_sizes)
+UNIT_TEST(wrong_sizes)
 {
     const struct {
         double radius;
@@ -109,6 +106,3 @@ START_TEST(wrong_sizes)
         ck_assert_ptr_nonnull(strstr(error.text, "a disc has 1 to 10000 rings"));
     }
 }
-END_TEST
-
-RUN("disc", places, mirror_images, almost_equal_triangles, wrong_sizes)

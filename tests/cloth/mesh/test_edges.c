@@ -26,7 +26,7 @@ static const struct mesh_edge *find(const struct mesh_edges *edges, uint32_t a, 
     return NULL;
 }
 
-START_TEST(of_a_grid)
+UNIT_TEST(of_a_grid)
 {
     struct mesh mesh = grid(2, 3, 3, 4);
     struct mesh_edges edges = edges_of(&mesh);
@@ -45,9 +45,8 @@ START_TEST(of_a_grid)
     mesh_edges_free(&edges);
     mesh_free(&mesh);
 }
-END_TEST
 
-START_TEST(area_as_positioned)
+UNIT_TEST(area_as_positioned)
 {
     struct mesh mesh = grid(1, 1, 2, 2);
     struct mesh_transform larger = {{2, 7, 3}, {1, 1, 0, 0}, {1, 2, 3}};
@@ -57,9 +56,8 @@ START_TEST(area_as_positioned)
     mesh_edges_free(&edges);
     mesh_free(&mesh);
 }
-END_TEST
 
-START_TEST(lone_edges_join)
+UNIT_TEST(lone_edges_join)
 {
     struct mesh mesh = read_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 5 0 0\nv 6 0 0\n"
                                  "f 1 2 3\nl 5 4\nl 4 2\nl 2 1\n");
@@ -73,9 +71,8 @@ START_TEST(lone_edges_join)
     mesh_edges_free(&edges);
     mesh_free(&mesh);
 }
-END_TEST
 
-START_TEST(either_winding_and_pillow)
+UNIT_TEST(either_winding_and_pillow)
 {
     /* two triangles over the same three vertices, and a neighbour wound the other way */
     struct mesh mesh = read_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 5 0 0\nv 5 1 0\nv 6 0 0\nv 6 1 0\n"
@@ -89,9 +86,8 @@ START_TEST(either_winding_and_pillow)
     mesh_edges_free(&edges);
     mesh_free(&mesh);
 }
-END_TEST
 
-START_TEST(none_at_all)
+UNIT_TEST(none_at_all)
 {
     struct mesh mesh = read_text("v 0 0 0\nv 1 0 0\n");
     struct mesh_edges edges = edges_of(&mesh);
@@ -99,9 +95,8 @@ START_TEST(none_at_all)
     mesh_edges_free(&edges);
     mesh_free(&mesh);
 }
-END_TEST
 
-START_TEST(non_manifold)
+UNIT_TEST(non_manifold)
 {
     double x[15] = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 5, 5, 5};
     uint32_t triangles[] = {0, 1, 2, 2, 3, 0, 0, 2, 4};
@@ -112,10 +107,9 @@ START_TEST(non_manifold)
     ck_assert_ptr_nonnull(strstr(error.text, "triangle 3 is the third"));
     ck_assert_ptr_null(edges.edge);
 }
-END_TEST
 
 /* A hub with many spokes, and many vertices: counted by Euler's formula. */
-START_TEST(a_large_fan)
+UNIT_TEST(a_large_fan)
 {
     enum { N = 20000 };
     static double x[3 * (N + 1)];
@@ -134,7 +128,3 @@ START_TEST(a_large_fan)
     mesh_edges_free(&edges);
     mesh_free(&mesh);
 }
-END_TEST
-
-RUN("edges", of_a_grid, area_as_positioned, lone_edges_join, either_winding_and_pillow, none_at_all,
-    non_manifold, a_large_fan)

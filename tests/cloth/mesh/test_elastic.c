@@ -74,7 +74,7 @@ static void holds(double stretch, double weft, double shear, double bend, int bo
     mesh_free(&mesh);
 }
 
-START_TEST(every_lattice)
+UNIT_TEST(every_lattice)
 {
     for (int both = 0; both < 2; both++) {
         holds(1000, 1000, 500, 0, both, 0.1, 0.1);
@@ -84,11 +84,10 @@ START_TEST(every_lattice)
         holds(1000, 300, 400, 60, both, 0.1, 0.25);
     }
 }
-END_TEST
 
 /* Cells by turns: half of the vertices have four diagonals, the others none; a pair of neighbours
  * has two cells. */
-START_TEST(cells_by_turns)
+UNIT_TEST(cells_by_turns)
 {
     const struct mesh_moduli moduli = {1000, 400, 60, 0, -700, NULL, 0};
     struct cloth_error error = {0};
@@ -104,10 +103,9 @@ START_TEST(cells_by_turns)
     is_inverse(&found, c);
     mesh_free(&mesh);
 }
-END_TEST
 
 /* Mirrored ones with one diagonal are no uniform lattice; with both, or without any, they are. */
-START_TEST(mirrored_cells)
+UNIT_TEST(mirrored_cells)
 {
     struct mesh_moduli moduli = {1000, 400, 0, 0, 0, NULL, 0};
     struct cloth_error error = {0};
@@ -122,7 +120,6 @@ START_TEST(mirrored_cells)
     near(mesh_elastic_of(&mesh, &moduli).shear, 0);
     mesh_free(&mesh);
 }
-END_TEST
 
 static struct mesh_elastic of(double stretch, double shear, int both)
 {
@@ -134,7 +131,7 @@ static struct mesh_elastic of(double stretch, double shear, int both)
 }
 
 /* What docs/physics.md says of a mesh of equilateral triangles, threads of 1000 and 300 N/m. */
-START_TEST(equilateral_triangles)
+UNIT_TEST(equilateral_triangles)
 {
     char text[1024];
     size_t used = (size_t)snprintf(text, sizeof text, "v 0 0 0\nvt 0 0\n");
@@ -156,9 +153,8 @@ START_TEST(equilateral_triangles)
     is_inverse(&expected, c);
     mesh_free(&mesh);
 }
-END_TEST
 
-START_TEST(square_cells)
+UNIT_TEST(square_cells)
 {
     const struct mesh_elastic isotropic = of(900, 450, 1); /* shear half of stretch */
     near(isotropic.warp, 1200);
@@ -171,18 +167,16 @@ START_TEST(square_cells)
     near(one.shear, 1000 / 7.0); /* 1 / G = 2 / kd + 2 / ks */
     near(one.poisson, 0);
 }
-END_TEST
 
-START_TEST(no_grid)
+UNIT_TEST(no_grid)
 {
     struct mesh mesh = read_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     const struct mesh_elastic found = mesh_elastic_of(&mesh, &(struct mesh_moduli){.stretch = 1});
     ck_assert(isnan(found.warp) && isnan(found.weft) && isnan(found.shear) && isnan(found.poisson));
     mesh_free(&mesh);
 }
-END_TEST
 
-START_TEST(without_shear_or_stretch)
+UNIT_TEST(without_shear_or_stretch)
 {
     for (int both = 0; both < 2; both++) {
         const struct mesh_elastic threads = of(1000, 0, both);
@@ -197,7 +191,3 @@ START_TEST(without_shear_or_stretch)
     near(of(0, 100, 1).warp, 0);
     near(of(0, 100, 1).poisson, 1);
 }
-END_TEST
-
-RUN("elastic", every_lattice, cells_by_turns, mirrored_cells, equilateral_triangles, square_cells,
-    no_grid, without_shear_or_stretch)

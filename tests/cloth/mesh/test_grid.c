@@ -5,7 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-START_TEST(numbering)
+UNIT_TEST(numbering)
 {
     struct mesh mesh = grid(2, 3, 3, 4);
     ck_assert_uint_eq(mesh.n_vertices, 12);
@@ -35,7 +35,6 @@ START_TEST(numbering)
     }
     mesh_free(&mesh);
 }
-END_TEST
 
 /* Cells that are turned, row after row. */
 static void turns_are(enum mesh_cells cells, uint32_t nx, uint32_t ny, const char *turns)
@@ -47,7 +46,7 @@ static void turns_are(enum mesh_cells cells, uint32_t nx, uint32_t ny, const cha
     mesh_free(&mesh);
 }
 
-START_TEST(diagonals)
+UNIT_TEST(diagonals)
 {
     turns_are(MESH_SAME, 4, 3, "\\\\\\\\\\\\");
     turns_are(MESH_ALTERNATE, 4, 3, "\\/\\/\\/");
@@ -56,10 +55,9 @@ START_TEST(diagonals)
     turns_are(MESH_MIRRORED, 5, 2, "\\/\\/");             /* the only row, too, from either end */
     turns_are(MESH_MIRRORED, 2, 2, "\\");
 }
-END_TEST
 
 /* Where counts of cells are even, the mirror image of a cell is turned the other way. */
-START_TEST(mirror_images)
+UNIT_TEST(mirror_images)
 {
     const enum mesh_cells symmetric[] = {MESH_ALTERNATE, MESH_MIRRORED};
     for (size_t k = 0; k < 2; k++) {
@@ -73,9 +71,8 @@ START_TEST(mirror_images)
         mesh_free(&mesh);
     }
 }
-END_TEST
 
-START_TEST(turned_triangles)
+UNIT_TEST(turned_triangles)
 {
     struct mesh mesh = grid_of(1, 1, 3, 2, MESH_ALTERNATE);
     const uint32_t expected[][3] = {{0, 3, 4}, {0, 4, 1}, {2, 1, 4}, {2, 4, 5}};
@@ -86,7 +83,6 @@ START_TEST(turned_triangles)
     }
     mesh_free(&mesh);
 }
-END_TEST
 
 static void triangles_of(enum mesh_cells cells)
 {
@@ -107,15 +103,14 @@ static void triangles_of(enum mesh_cells cells)
     mesh_free(&mesh);
 }
 
-START_TEST(triangles)
+UNIT_TEST(triangles)
 {
     triangles_of(MESH_SAME);
     triangles_of(MESH_ALTERNATE);
     triangles_of(MESH_MIRRORED);
 }
-END_TEST
 
-START_TEST(centred_to_the_bit)
+UNIT_TEST(centred_to_the_bit)
 {
     struct mesh mesh = grid(0.7, 1.3, 37, 8);
     uint32_t n = mesh.n_vertices;
@@ -126,9 +121,8 @@ START_TEST(centred_to_the_bit)
     ck_assert(mesh.position[0] == -0.35);
     mesh_free(&mesh);
 }
-END_TEST
 
-START_TEST(wrong_sizes)
+UNIT_TEST(wrong_sizes)
 {
     const struct {
         double width, height;
@@ -155,9 +149,8 @@ START_TEST(wrong_sizes)
         ck_assert_ptr_null(mesh.position);
     }
 }
-END_TEST
 
-START_TEST(mass_of_vertices)
+UNIT_TEST(mass_of_vertices)
 {
     struct mesh mesh = grid(1.5, 0.8, 41, 23);
     double *mass = calloc(mesh.n_vertices, sizeof *mass), sum = 0;
@@ -174,9 +167,8 @@ START_TEST(mass_of_vertices)
     free(mass);
     mesh_free(&mesh);
 }
-END_TEST
 
-START_TEST(equilateral)
+UNIT_TEST(equilateral)
 {
     struct mesh mesh = grid_of(2, 0, 5, 4, MESH_EQUILATERAL);
     double mass[18] = {0}, uv[2];
@@ -208,9 +200,8 @@ START_TEST(equilateral)
     ck_assert_uint_eq(mesh.n_triangles, 1);
     mesh_free(&mesh);
 }
-END_TEST
 
-START_TEST(mass_of_cells)
+UNIT_TEST(mass_of_cells)
 {
     const enum mesh_cells all[] = {MESH_SAME, MESH_ALTERNATE, MESH_MIRRORED};
     for (size_t k = 0; k < 3; k++) {
@@ -232,9 +223,8 @@ START_TEST(mass_of_cells)
     ck_assert_double_eq_tol(third[0], 1, 1e-15);
     mesh_free(&one);
 }
-END_TEST
 
-START_TEST(identity_keeps_bits)
+UNIT_TEST(identity_keeps_bits)
 {
     double x[6] = {-0.0, 5e-324, 0.1, -1e308, 3.0, -0.0}, before[6];
     struct mesh mesh = {.n_vertices = 2, .position = x};
@@ -250,9 +240,8 @@ START_TEST(identity_keeps_bits)
     mesh_apply(&mesh, &same);
     ck_assert_mem_eq(x, before, sizeof x);
 }
-END_TEST
 
-START_TEST(scale_then_rotate_then_translate)
+UNIT_TEST(scale_then_rotate_then_translate)
 {
     double x[6] = {1, 2, 3, 0, 0, 1};
     struct mesh mesh = {.n_vertices = 2, .position = x};
@@ -270,18 +259,16 @@ START_TEST(scale_then_rotate_then_translate)
     ck_assert_double_eq_tol(y[1], 0.5, 1e-15);
     ck_assert_double_eq_tol(y[2], sqrt(0.75), 1e-15);
 }
-END_TEST
 
-START_TEST(areas)
+UNIT_TEST(areas)
 {
     const double x[9] = {0, 0, 0, 3, 0, 0, 0, 0, 4};
     const uint32_t corner[3] = {0, 1, 2};
     ck_assert_double_eq(mesh_area(x, corner), 6);
     ck_assert_double_eq(mesh_distance(x, 1, 2), 5);
 }
-END_TEST
 
-START_TEST(free_twice)
+UNIT_TEST(free_twice)
 {
     struct mesh mesh = {0};
     mesh_free(&mesh);
@@ -290,8 +277,3 @@ START_TEST(free_twice)
     mesh_free(&mesh);
     ck_assert_uint_eq(mesh.n_vertices, 0);
 }
-END_TEST
-
-RUN("grid", numbering, equilateral, diagonals, mirror_images, turned_triangles, triangles,
-    mass_of_cells, centred_to_the_bit, wrong_sizes, mass_of_vertices, identity_keeps_bits,
-    scale_then_rotate_then_translate, areas, free_twice)

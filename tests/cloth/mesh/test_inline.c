@@ -5,7 +5,7 @@
 
 static const double SQUARE[12] = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
 
-START_TEST(copies)
+UNIT_TEST(copies)
 {
     double x[12];
     uint32_t edges[4] = {3, 1, 1, 0}, triangles[6] = {0, 1, 2, 2, 3, 0};
@@ -28,9 +28,8 @@ START_TEST(copies)
     ck_assert_uint_eq(mesh.grid_nx, 0);
     mesh_free(&mesh);
 }
-END_TEST
 
-START_TEST(a_chain_and_a_point)
+UNIT_TEST(a_chain_and_a_point)
 {
     const uint32_t edges[6] = {0, 1, 1, 2, 2, 3};
     struct mesh mesh;
@@ -44,7 +43,6 @@ START_TEST(a_chain_and_a_point)
     ck_assert_uint_eq(used, 0);
     mesh_free(&mesh);
 }
-END_TEST
 
 static void fails(uint32_t n_vertices, const double *x, uint32_t n_edges, const uint32_t *edges,
                   uint32_t n_triangles, const uint32_t *triangles, const char *says)
@@ -57,7 +55,7 @@ static void fails(uint32_t n_vertices, const double *x, uint32_t n_edges, const 
     ck_assert_ptr_null(mesh.position);
 }
 
-START_TEST(wrong_entries)
+UNIT_TEST(wrong_entries)
 {
     double x[12];
     memcpy(x, SQUARE, sizeof x);
@@ -76,9 +74,8 @@ START_TEST(wrong_entries)
     fails(4, SQUARE, 0, NULL, 2, (uint32_t[]){0, 1, 2, 3, 0, 3},
           "triangles[1]: the face has vertex 3 at two corners; corners must differ");
 }
-END_TEST
 
-START_TEST(edges_that_stand_twice)
+UNIT_TEST(edges_that_stand_twice)
 {
     fails(4, SQUARE, 3, (uint32_t[]){0, 1, 1, 2, 1, 0}, 0, NULL,
           "edges[2]: the edge between vertices 0 and 1 stands here again, after entry 0; give it "
@@ -87,17 +84,15 @@ START_TEST(edges_that_stand_twice)
           "edges[2]: the edge between vertices 1 and 2 stands here again, after entry 1; give it "
           "once");
 }
-END_TEST
 
-START_TEST(too_large)
+UNIT_TEST(too_large)
 {
     fails(2147483649u, SQUARE, 0, NULL, 0, NULL,
           "the mesh is too large: at most 2147483648 vertices, 715827882 triangles and 1073741824 "
           "edges");
 }
-END_TEST
 
-START_TEST(non_manifold)
+UNIT_TEST(non_manifold)
 {
     double x[15] = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 5, 5, 5};
     const uint32_t triangles[] = {0, 1, 2, 2, 3, 0, 0, 2, 4};
@@ -110,10 +105,9 @@ START_TEST(non_manifold)
     ck_assert_int_eq(mesh_inline(&mesh, 5, x, 1, edge, 2, triangles, NULL), CLOTH_OK);
     mesh_free(&mesh);
 }
-END_TEST
 
 /* A chain of vertices each near the next: those that stand for others are not near each other. */
-START_TEST(vertices_on_one_place)
+UNIT_TEST(vertices_on_one_place)
 {
     const double x[] = {-1e-5, 0, 0,       5e-6, 0, 0,    1.2e-5, 0, 0, 1,     1, 1,
                         1,     1, 1.00001, 1,    1, 0.99, -1e-5,  0, 0, 1e300, 0, 0};
@@ -130,7 +124,3 @@ START_TEST(vertices_on_one_place)
         ck_assert_uint_eq(same[v], v);
     mesh_free(&mesh);
 }
-END_TEST
-
-RUN("inline", copies, a_chain_and_a_point, wrong_entries, edges_that_stand_twice, too_large,
-    non_manifold, vertices_on_one_place)

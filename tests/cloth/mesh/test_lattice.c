@@ -53,7 +53,7 @@ static void spring_is(const struct mesh_lattice *lattice, uint32_t a, uint32_t b
     ck_assert_double_eq_tol(spring->length, length, 1e-14);
 }
 
-START_TEST(grid_with_both_diagonals)
+UNIT_TEST(grid_with_both_diagonals)
 {
     struct mesh mesh = grid(4, 6, 5, 4); /* cells of 1 x 2 m */
     struct mesh_lattice lattice = lattice_of(&mesh, 100, 10, 1, 1);
@@ -77,9 +77,8 @@ START_TEST(grid_with_both_diagonals)
     mesh_lattice_free(&lattice);
     mesh_free(&mesh);
 }
-END_TEST
 
-START_TEST(grid_with_one_diagonal)
+UNIT_TEST(grid_with_one_diagonal)
 {
     struct mesh mesh = grid(4, 6, 5, 4);
     struct mesh_lattice lattice = lattice_of(&mesh, 100, 10, 1, 0);
@@ -90,10 +89,9 @@ START_TEST(grid_with_one_diagonal)
     mesh_lattice_free(&lattice);
     mesh_free(&mesh);
 }
-END_TEST
 
 /* The springs of a grid with one diagonal are the edges of its triangles. */
-START_TEST(one_diagonal_is_that_of_the_triangles)
+UNIT_TEST(one_diagonal_is_that_of_the_triangles)
 {
     const enum mesh_cells all[] = {MESH_SAME, MESH_ALTERNATE, MESH_MIRRORED};
     for (size_t k = 0; k < 3; k++) {
@@ -115,10 +113,9 @@ START_TEST(one_diagonal_is_that_of_the_triangles)
         mesh_free(&mesh);
     }
 }
-END_TEST
 
 /* All springs alike, but half of it at the border: E = 2 / sqrt(3) k is the modulus. */
-START_TEST(equilateral_springs)
+UNIT_TEST(equilateral_springs)
 {
     struct cloth_error error = {0};
     struct mesh mesh = grid_of(1, 0, 9, 8, MESH_EQUILATERAL);
@@ -135,9 +132,8 @@ START_TEST(equilateral_springs)
     mesh_lattice_free(&lattice);
     mesh_free(&mesh);
 }
-END_TEST
 
-START_TEST(the_sheet)
+UNIT_TEST(the_sheet)
 {
     struct mesh mesh = grid(1, 1, 150, 150);
     struct mesh_lattice lattice = lattice_of(&mesh, 1, 1, 1, 1);
@@ -150,9 +146,8 @@ START_TEST(the_sheet)
     mesh_lattice_free(&lattice);
     mesh_free(&mesh);
 }
-END_TEST
 
-START_TEST(small_grids)
+UNIT_TEST(small_grids)
 {
     const uint32_t sizes[][3] = {{2, 2, 6}, {2, 3, 11 + 2}, {3, 2, 11 + 2}, {3, 3, 20 + 6}};
     for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
@@ -163,9 +158,8 @@ START_TEST(small_grids)
         mesh_free(&mesh);
     }
 }
-END_TEST
 
-START_TEST(without_stiffness_no_spring)
+UNIT_TEST(without_stiffness_no_spring)
 {
     struct mesh mesh = grid(4, 6, 5, 4);
     struct mesh_lattice lattice = lattice_of(&mesh, 0, 10, 0, 1);
@@ -176,9 +170,8 @@ START_TEST(without_stiffness_no_spring)
     mesh_lattice_free(&lattice);
     mesh_free(&mesh);
 }
-END_TEST
 
-START_TEST(lengths_as_positioned)
+UNIT_TEST(lengths_as_positioned)
 {
     struct mesh mesh = grid(4, 6, 5, 4);
     struct mesh_transform transform = {{3, 1, 0.5}, {1, 0, 0, 2}, {7, 8, 9}};
@@ -190,9 +183,8 @@ START_TEST(lengths_as_positioned)
     mesh_lattice_free(&lattice);
     mesh_free(&mesh);
 }
-END_TEST
 
-START_TEST(triangle_meshes)
+UNIT_TEST(triangle_meshes)
 {
     /* two triangles with the legs 3 and 4, joined at the long side 1-2; a chain; a lone edge on a
      * side */
@@ -212,9 +204,8 @@ START_TEST(triangle_meshes)
     mesh_lattice_free(&lattice);
     mesh_free(&mesh);
 }
-END_TEST
 
-START_TEST(stretch_and_bend_of_the_same_vertices)
+UNIT_TEST(stretch_and_bend_of_the_same_vertices)
 {
     /* a tetrahedron: opposite vertices of each edge are joined by an edge, too; and a pillow: they
      * are one */
@@ -232,7 +223,6 @@ START_TEST(stretch_and_bend_of_the_same_vertices)
     mesh_lattice_free(&lattice);
     mesh_free(&mesh);
 }
-END_TEST
 
 static void fails(const struct mesh *mesh, double bend, const char *says)
 {
@@ -244,7 +234,7 @@ static void fails(const struct mesh *mesh, double bend, const char *says)
     ck_assert(lattice.n == 0 && !lattice.spring);
 }
 
-START_TEST(no_length)
+UNIT_TEST(no_length)
 {
     struct mesh mesh = read_text("v 0 0 0\nv 1 0 0\nv 1 0 0\nf 1 2 3\n");
     fails(&mesh, 0, "vertices 2 and 3 (counted from 1) are 0 m apart");
@@ -265,9 +255,8 @@ START_TEST(no_length)
     fails(&mesh, 1, "vertices 1 and 2 (counted from 1) are 0 m apart");
     mesh_free(&mesh);
 }
-END_TEST
 
-START_TEST(no_area)
+UNIT_TEST(no_area)
 {
     struct mesh mesh =
         read_text("v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n"); /* a needle: no stiffness */
@@ -276,9 +265,3 @@ START_TEST(no_area)
     mesh_lattice_free(&lattice);
     mesh_free(&mesh);
 }
-END_TEST
-
-RUN("lattice", grid_with_both_diagonals, grid_with_one_diagonal,
-    one_diagonal_is_that_of_the_triangles, equilateral_springs, the_sheet, small_grids,
-    without_stiffness_no_spring, lengths_as_positioned, triangle_meshes,
-    stretch_and_bend_of_the_same_vertices, no_length, no_area)

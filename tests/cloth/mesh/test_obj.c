@@ -13,7 +13,7 @@ static void corners_are(const struct mesh *mesh, size_t n, const uint32_t *corne
     ck_assert_mem_eq(mesh->triangle, corners, n * sizeof *corners);
 }
 
-START_TEST(polygons_are_fanned)
+UNIT_TEST(polygons_are_fanned)
 {
     struct mesh mesh =
         read_text(SQUARE "v 1 -1 0\nv 2 0 0\nv 0 -1 0\nf 3 4 1 2\nf 2 5 6\nf 6 5 7 4 3\n");
@@ -27,9 +27,8 @@ START_TEST(polygons_are_fanned)
     ck_assert_ptr_null(mesh.uv);
     mesh_free(&mesh);
 }
-END_TEST
 
-START_TEST(every_way_to_write_a_corner)
+UNIT_TEST(every_way_to_write_a_corner)
 {
     const uint32_t same[] = {0, 1, 2, 0, 2, 3};
     const char *faces[] = {
@@ -56,9 +55,8 @@ START_TEST(every_way_to_write_a_corner)
         mesh_free(&mesh);
     }
 }
-END_TEST
 
-START_TEST(numbers)
+UNIT_TEST(numbers)
 {
     struct mesh mesh = read_text("\xef\xbb\xbfv 1e-3 -.5 +2. 0.1 0.2 0.3\n"
                                  "v 1 2 3 1.0\nv 4 5 6 red\nv 0.1 1E2 5e-324\n");
@@ -69,18 +67,16 @@ START_TEST(numbers)
     ck_assert_uint_eq(mesh.face_start[0], 0);
     mesh_free(&mesh);
 }
-END_TEST
 
-START_TEST(the_locale_does_not_matter)
+UNIT_TEST(the_locale_does_not_matter)
 {
     setlocale(LC_ALL, "de_DE.UTF-8"); /* where it exists, strtod wants commas */
     struct mesh mesh = read_text("v 1.5 0 0\n");
     ck_assert_double_eq(mesh.position[0], 1.5);
     mesh_free(&mesh);
 }
-END_TEST
 
-START_TEST(all_else_is_skipped)
+UNIT_TEST(all_else_is_skipped)
 {
     struct mesh mesh = read_text("# a comment that ends with C:\\\n" SQUARE
                                  "mtllib a.mtl\no thing\n\n   \ng a b\nusemtl x\ns off\n"
@@ -89,9 +85,8 @@ START_TEST(all_else_is_skipped)
     ck_assert_uint_eq(mesh.n_triangles, 1);
     mesh_free(&mesh);
 }
-END_TEST
 
-START_TEST(faces_may_come_first)
+UNIT_TEST(faces_may_come_first)
 {
     struct mesh mesh = read_text("f 1/1 2/2 3/3\nvt 0 0\nvt 1 0\nvt 0 1\n" SQUARE);
     const uint32_t corner[] = {0, 1, 2};
@@ -99,9 +94,8 @@ START_TEST(faces_may_come_first)
     ck_assert_double_eq(mesh.uv[2], 1);
     mesh_free(&mesh);
 }
-END_TEST
 
-START_TEST(lone_edges)
+UNIT_TEST(lone_edges)
 {
     struct mesh mesh = read_text(SQUARE "l 1 2 3\nl -1/7 -4\nvt 0 0\nvt 0 0\nvt 0 0\nvt 0 0\n"
                                         "vt 0 0\nvt 0 0\nvt 0 0\n");
@@ -111,9 +105,8 @@ START_TEST(lone_edges)
     ck_assert_uint_eq(mesh.n_triangles, 0);
     mesh_free(&mesh);
 }
-END_TEST
 
-START_TEST(unused_vertices_are_kept)
+UNIT_TEST(unused_vertices_are_kept)
 {
     struct mesh mesh = read_text("v 9 9 9\n" SQUARE "v 8 8 8\nv 7 7 7\nf 2 3 4\nl 5 6\n");
     unsigned char used[7] = {5, 5, 5, 5, 5, 5, 5};
@@ -123,9 +116,8 @@ START_TEST(unused_vertices_are_kept)
     ck_assert_mem_eq(used, expected, 7);
     mesh_free(&mesh);
 }
-END_TEST
 
-START_TEST(uv_of_vertices)
+UNIT_TEST(uv_of_vertices)
 {
     const struct {
         const char *text;
@@ -150,12 +142,11 @@ START_TEST(uv_of_vertices)
         mesh_free(&mesh);
     }
 }
-END_TEST
 
 /* Vertex 1 has three uv, one of them under two numbers; vertex 3 has two in one polygon and
  * another.
  */
-START_TEST(uv_of_corners)
+UNIT_TEST(uv_of_corners)
 {
     struct mesh mesh = read_text(SQUARE "v 2 0 0\nv 2 1 0\nv -1 0 0\n"
                                         "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nvt 7 7\nvt 5 5\nvt 7 7\n"
@@ -175,9 +166,8 @@ START_TEST(uv_of_corners)
     ck_assert(mesh_uv(&mesh, 9, uv) && uv[0] == 7 && uv[1] == 7);
     mesh_free(&mesh);
 }
-END_TEST
 
-START_TEST(very_long_lines)
+UNIT_TEST(very_long_lines)
 {
     enum { N = 300000 }; /* corners of one face, over several of the reader's chunks */
     size_t room = (size_t)N * 80, n = 0;
@@ -196,10 +186,9 @@ START_TEST(very_long_lines)
     mesh_free(&mesh);
     free(text);
 }
-END_TEST
 
 /* Chunks of the reader end anywhere, also between CR and LF and inside numbers. */
-START_TEST(lines_across_chunks)
+UNIT_TEST(lines_across_chunks)
 {
     enum { N = 40000 };
     char *text = malloc((size_t)N * 32);
@@ -215,7 +204,6 @@ START_TEST(lines_across_chunks)
     }
     free(text);
 }
-END_TEST
 
 /* The bytes of what a group has: "0110". */
 static void group_is(const struct mesh *mesh, const char *name, const char *vertices,
@@ -233,7 +221,7 @@ static void group_is(const struct mesh *mesh, const char *name, const char *vert
         ck_assert_msg(triangle[t] == triangles[t] - '0', "triangle %u of %s", t, name);
 }
 
-START_TEST(groups_of_faces)
+UNIT_TEST(groups_of_faces)
 {
     struct mesh mesh =
         read_text(SQUARE "v 2 0 0\nv 2 1 0\nv 9 9 9\n"
@@ -256,9 +244,8 @@ START_TEST(groups_of_faces)
     group_is(&mesh, "last", "1011", "01");
     mesh_free(&mesh);
 }
-END_TEST
 
-START_TEST(materials_of_faces)
+UNIT_TEST(materials_of_faces)
 {
     struct mesh mesh = read_text(SQUARE "mtllib gone.mtl  other.mtl\nmtllib other.mtl\n"
                                         "usemtl unused\nusemtl dark red\nf 1 2 3\nusemtl blue\n"
@@ -275,8 +262,3 @@ START_TEST(materials_of_faces)
     ck_assert_uint_eq(mesh.material_run[2].first, 2);
     mesh_free(&mesh);
 }
-END_TEST
-
-RUN("obj", polygons_are_fanned, every_way_to_write_a_corner, numbers, the_locale_does_not_matter,
-    all_else_is_skipped, faces_may_come_first, lone_edges, unused_vertices_are_kept, uv_of_vertices,
-    uv_of_corners, very_long_lines, lines_across_chunks, groups_of_faces, materials_of_faces)

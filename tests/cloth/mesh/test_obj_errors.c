@@ -26,7 +26,7 @@ static void fails(const char *text, const char *says)
     fails_bytes(text, strlen(text), says);
 }
 
-START_TEST(numbers)
+UNIT_TEST(numbers)
 {
     fails("v 0 0 0\nv 1 2\n", "2: there are 2 numbers; at least 3 are needed");
     fails("v 0 0 0\n\nv 1 2 # 3\n", "3: there are 2 numbers");
@@ -45,9 +45,8 @@ START_TEST(numbers)
           "123456789012345678901234567890123456789012345678901234567890e\n",
           "1: '12345678901234567890123456789012345678901234...' is not");
 }
-END_TEST
 
-START_TEST(corners)
+UNIT_TEST(corners)
 {
     fails(SQUARE "f 1 2 x\n", "5: 'x' is not a corner; it is v, v/vt, v//vn or v/vt/vn");
     fails(SQUARE "f 1 2 3.5\n", "5: '3.5' is not a corner");
@@ -68,9 +67,8 @@ START_TEST(corners)
     fails(SQUARE "f 1/1 2/1 3/1\n", "5: there is no texture coordinate 1; the file has 0");
     fails("f 1 2 3\nf -1 2 3\n" SQUARE, "2: there is no vertex -1; 0 come before this line");
 }
-END_TEST
 
-START_TEST(faces)
+UNIT_TEST(faces)
 {
     fails(SQUARE "f 1 2\n", "5: the face has 2 corners; it needs at least 3");
     fails(SQUARE "f\n", "5: the face has 0 corners");
@@ -80,9 +78,8 @@ START_TEST(faces)
     fails(SQUARE "f 1 2 \\\n\n", "5: the face has 2 corners");
     fails(SQUARE "# \\\nf 1 2 \\\n3\nf 1 2\n", "8: the face has 2 corners");
 }
-END_TEST
 
-START_TEST(lone_edges)
+UNIT_TEST(lone_edges)
 {
     fails(SQUARE "l 1\n", "5: the line has 1 vertices; it needs at least 2");
     fails(SQUARE "l 1 2 2\n", "5: the edge joins vertex 2 to itself; its ends must differ");
@@ -93,9 +90,8 @@ START_TEST(lone_edges)
     fails(SQUARE "f 1 2 3\nl 1 4\nl 1 2\n\nl 3 1 4\nl 4 3 2 1\n",
           "9: the edge between vertices 1 and 4 stands here again, after line 6; give it once");
 }
-END_TEST
 
-START_TEST(non_manifold)
+UNIT_TEST(non_manifold)
 {
     fails(SQUARE "v 5 5 5\n\nf 1 2 3\nf 2 1 4\n\nf 5 2 1\n",
           "10: this face is the third at the edge between vertices 1 and 2 (non-manifold); "
@@ -105,9 +101,8 @@ START_TEST(non_manifold)
     fails(SQUARE "v 5 5 5\nv 6 6 6\nf 3 4 5 6\nf 3 4 1\nf 1 2 3\nf 4 3 2\nf 2 1 4\nf 1 2 5\n",
           "10: this face is the third at the edge between vertices 3 and 4");
 }
-END_TEST
 
-START_TEST(not_a_mesh)
+UNIT_TEST(not_a_mesh)
 {
     fails("", " the file has no vertices (lines `v x y z`): it is empty or not OBJ");
     fails("\n\n\n", " the file has no vertices");
@@ -119,9 +114,8 @@ START_TEST(not_a_mesh)
                 "ELF\0\0\0",
                 7, "1: the line has a zero byte");
 }
-END_TEST
 
-START_TEST(unreadable)
+UNIT_TEST(unreadable)
 {
     struct cloth_error error = {0};
     struct mesh mesh;
@@ -136,9 +130,8 @@ START_TEST(unreadable)
     ck_assert_str_eq(error.text, "/dev/zero: cannot be opened: it is no plain file, but a pipe, a "
                                  "device or the like");
 }
-END_TEST
 
-START_TEST(long_paths_keep_the_reason)
+UNIT_TEST(long_paths_keep_the_reason)
 {
     struct cloth_error error = {0};
     struct mesh mesh;
@@ -150,10 +143,9 @@ START_TEST(long_paths_keep_the_reason)
     ck_assert_int_eq(mesh_read_obj(&mesh, path, &error), CLOTH_E_IO);
     ck_assert_ptr_nonnull(strstr(error.text, "No such file"));
 }
-END_TEST
 
 /* A file cut anywhere is read or refused. */
-START_TEST(truncated)
+UNIT_TEST(truncated)
 {
     const char text[] = "v 0 0 0\r\nv 1.25 0 0\nv 1 1e1 0\nvt 0 0\nvt 1 0\n"
                         "f 1/1 2/2 \\\n 3/1\nl 1 2\n# end \\\n";
@@ -168,7 +160,3 @@ START_TEST(truncated)
         close(file.descriptor);
     }
 }
-END_TEST
-
-RUN("obj errors", numbers, corners, faces, lone_edges, non_manifold, not_a_mesh, unreadable,
-    long_paths_keep_the_reason, truncated)

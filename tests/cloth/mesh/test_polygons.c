@@ -132,11 +132,10 @@ static void tiles_everywhere(const struct polygon *p)
                 tiles(p, PLANES[plane][0], PLANES[plane][1], first, backwards);
 }
 
-START_TEST(concave_ones_are_tiled)
+UNIT_LOOP(concave_ones_are_tiled, 0, sizeof POLYGONS / sizeof *POLYGONS)
 {
     tiles_everywhere(&POLYGONS[_i]);
 }
-END_TEST
 
 static double draw(uint64_t *state)
 {
@@ -145,7 +144,7 @@ static double draw(uint64_t *state)
 }
 
 /* Corners around a point, at any distance of it: simple, and mostly with many reflex corners. */
-START_TEST(random_ones_are_tiled)
+UNIT_TEST(random_ones_are_tiled)
 {
     uint64_t state = 1;
     for (int round = 0; round < 40; round++) {
@@ -159,10 +158,9 @@ START_TEST(random_ones_are_tiled)
         tiles_everywhere(&p);
     }
 }
-END_TEST
 
 /* A comb of many teeth, whose ears are far from the corners where the search begins. */
-START_TEST(a_large_one_is_tiled)
+UNIT_TEST(a_large_one_is_tiled)
 {
     struct polygon p = {.n = MAX};
     for (size_t i = 0; i < MAX - 2; i++) {
@@ -176,9 +174,8 @@ START_TEST(a_large_one_is_tiled)
     tiles(&p, PLANES[3][0], PLANES[3][1], 0, false);
     tiles(&p, PLANES[4][0], PLANES[4][1], 77, true);
 }
-END_TEST
 
-START_TEST(convex_ones_are_fans)
+UNIT_TEST(convex_ones_are_fans)
 {
     struct polygon p = {.n = 17};
     for (size_t i = 0; i < p.n; i++) {
@@ -195,17 +192,15 @@ START_TEST(convex_ones_are_fans)
         mesh_free(&mesh);
     }
 }
-END_TEST
 
 /* A quad whose corners are not in one plane. */
-START_TEST(a_bent_quad_is_a_fan)
+UNIT_TEST(a_bent_quad_is_a_fan)
 {
     struct mesh mesh = read_text("v 0 0 0\nv 1 0.1 0\nv 1 0 1\nv 0 0.2 1\nf 2 3 4 1\n");
     const uint32_t fan[] = {1, 2, 3, 1, 3, 0};
     ck_assert_mem_eq(mesh.triangle, fan, sizeof fan);
     mesh_free(&mesh);
 }
-END_TEST
 
 static void fails(const char *text, const char *says)
 {
@@ -220,7 +215,7 @@ static void fails(const char *text, const char *says)
     close(file.descriptor);
 }
 
-START_TEST(faulty_ones_are_refused)
+UNIT_TEST(faulty_ones_are_refused)
 {
     fails("v 0 0 0\nv 2 0 0\nv 0 1 0\nv 3 3 0\nf 1 2 3\nf 1 2 3 4\n",
           "6: the face crosses or touches itself where its sides between vertices 2 and 3 and "
@@ -241,9 +236,8 @@ START_TEST(faulty_ones_are_refused)
     fails("v 0 1 0\nv -0.59 -0.81 0\nv 0.95 0.31 0\nv -0.95 0.31 0\nv 0.59 -0.81 0\nf 1 2 3 4 5\n",
           "6: the face crosses or touches itself");
 }
-END_TEST
 
-START_TEST(too_many_corners)
+UNIT_TEST(too_many_corners)
 {
     enum { N = 10001 };
     char *text = malloc(N * 60);
@@ -258,19 +252,4 @@ START_TEST(too_many_corners)
           "10002: the face is not convex and has 10001 corners; at most 10000 can be cut into "
           "triangles");
     free(text);
-}
-END_TEST
-
-int main(void)
-{
-    const TTest *const tests[] = {random_ones_are_tiled,   a_large_one_is_tiled,
-                                  convex_ones_are_fans,    a_bent_quad_is_a_fan,
-                                  faulty_ones_are_refused, too_many_corners};
-    Suite *suite = suite_create("polygons");
-    TCase *cases = tcase_create("polygons");
-    tcase_add_loop_test(cases, concave_ones_are_tiled, 0, sizeof POLYGONS / sizeof *POLYGONS);
-    for (size_t i = 0; i < sizeof tests / sizeof *tests; i++)
-        tcase_add_test(cases, tests[i]);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

@@ -114,7 +114,7 @@ static void check_garment(const struct garment *garment, const char *path)
     mesh_free(&mesh);
 }
 
-START_TEST(a_dress_that_is_made)
+UNIT_LOOP(a_dress_that_is_made, 0, sizeof MADE / sizeof *MADE)
 {
     char command[4400];
     const char *top = getenv("srcdir");
@@ -125,22 +125,9 @@ START_TEST(a_dress_that_is_made)
     check_garment(&MADE[_i], file.path);
     close(file.descriptor);
 }
-END_TEST
 
-START_TEST(a_garment_of_others)
+UNIT_LOOP(a_garment_of_others, 0, sizeof GARMENTS / sizeof *GARMENTS)
 {
-    check_garment(&GARMENTS[_i], path_of(GARMENTS[_i].name));
-}
-END_TEST
-
-int main(void)
-{
-    TCase *cases = tcase_create("garments");
-    tcase_add_loop_test(cases, a_dress_that_is_made, 0, sizeof MADE / sizeof *MADE);
-    for (int i = 0; i < (int)(sizeof GARMENTS / sizeof *GARMENTS); i++)
-        if (access(path_of(GARMENTS[i].name), R_OK) == 0)
-            tcase_add_loop_test(cases, a_garment_of_others, i, i + 1);
-    Suite *suite = suite_create("garments");
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
+    if (access(path_of(GARMENTS[_i].name), R_OK) == 0)
+        check_garment(&GARMENTS[_i], path_of(GARMENTS[_i].name));
 }

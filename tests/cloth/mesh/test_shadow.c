@@ -47,7 +47,7 @@ static void hang(struct mesh *mesh, double angle)
 }
 
 /* 100 % of the border where it stands out, 0 % where it hangs straight down. */
-START_TEST(drape_coefficients)
+UNIT_TEST(drape_coefficients)
 {
     const double carried = acos(-1) * 0.09 * 0.09, quarter = acos(0);
     for (int i = 0; i <= 3; i++) {
@@ -64,11 +64,10 @@ START_TEST(drape_coefficients)
         mesh_free(&mesh);
     }
 }
-END_TEST
 
 /* Folded in two it shades half as much, but for triangles that lie across the fold, and nothing if
  * the fold points at the light. */
-START_TEST(folded)
+UNIT_TEST(folded)
 {
     struct mesh mesh = disc();
     double *x = mesh.position;
@@ -83,10 +82,9 @@ START_TEST(folded)
     ck_assert_double_lt(shadow_of(&mesh, x, up), 1e-12);
     mesh_free(&mesh);
 }
-END_TEST
 
 /* Any axis, of any length: turned with the cloth it shows the same, aslant the cosine of it. */
-START_TEST(any_axis)
+UNIT_TEST(any_axis)
 {
     static const double axes[][3] = {{2, 0, 0}, {0, -3, 0}, {0, 0, 1e-3}, {1, 2, 3}, {-3, 1, 1e-9}};
     struct mesh mesh = disc();
@@ -98,10 +96,9 @@ START_TEST(any_axis)
     }
     mesh_free(&mesh);
 }
-END_TEST
 
 /* What lies above one another counts once, holes and single points count nothing. */
-START_TEST(stacked)
+UNIT_TEST(stacked)
 {
     struct mesh mesh =
         read_text("v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nv 0.5 1 0.5\nv 1.5 1 0.5\nv 1.5 1 1.5\n"
@@ -112,6 +109,3 @@ START_TEST(stacked)
     ck_assert_double_eq(shadow_of(&mesh, mesh.position, up), 0);
     mesh_free(&mesh);
 }
-END_TEST
-
-RUN("shadow", drape_coefficients, folded, any_axis, stacked)

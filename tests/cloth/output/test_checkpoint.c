@@ -74,15 +74,16 @@ static void check_mark(unsigned char mark)
     ck_assert_uint_eq(*(const uint64_t *)read_back.part[2].bytes, mark);
 }
 
-START_TEST(reads_back)
+UNIT_FIXTURE(start, end)
+
+UNIT_TEST(reads_back)
 {
     write_one(7);
     check_mark(7);
     ck_assert_int_eq(note.code, 0);
 }
-END_TEST
 
-START_TEST(three_are_kept)
+UNIT_TEST(three_are_kept)
 {
     for (unsigned char i = 1; i <= 5; i++)
         write_one(i);
@@ -90,10 +91,9 @@ START_TEST(three_are_kept)
         ck_assert_int_eq(is_there(number), number > 2);
     check_mark(5);
 }
-END_TEST
 
 /* That is killed when the next one is there, and the oldest is not gone yet. */
-START_TEST(three_are_kept_after_a_run_that_was_killed)
+UNIT_TEST(three_are_kept_after_a_run_that_was_killed)
 {
     char first[160], second[160];
     for (unsigned char i = 1; i <= 4; i++)
@@ -110,7 +110,6 @@ START_TEST(three_are_kept_after_a_run_that_was_killed)
         ck_assert_int_eq(is_there(number), number > 2);
     check_mark(5);
 }
-END_TEST
 
 static void part_of(unsigned number, char path[160])
 {
@@ -137,7 +136,7 @@ static void write_long(size_t length)
 }
 
 /* Longer or shorter, whichever was there; and nothing is left of it at the end. */
-START_TEST(the_oldest_gives_its_room)
+UNIT_TEST(the_oldest_gives_its_room)
 {
     char path[160], part[160], fifth[160];
     write_long(4000);
@@ -157,9 +156,8 @@ START_TEST(the_oldest_gives_its_room)
     output_checkpoints_close(&checkpoints);
     ck_assert_int_ne(access(part, F_OK), 0);
 }
-END_TEST
 
-START_TEST(what_has_another_name_stays)
+UNIT_TEST(what_has_another_name_stays)
 {
     char path[160], other[160];
     write_one(1);
@@ -173,10 +171,9 @@ START_TEST(what_has_another_name_stays)
     ck_assert_uint_eq(*(const uint64_t *)read_back.part[2].bytes, 1);
     ck_assert_int_eq(unlink(other), 0);
 }
-END_TEST
 
 /* A run that goes on counts on, and still three are kept. */
-START_TEST(counts_on)
+UNIT_TEST(counts_on)
 {
     for (unsigned char i = 1; i <= 3; i++)
         write_one(i);
@@ -186,10 +183,9 @@ START_TEST(counts_on)
     ck_assert(!is_there(1) && is_there(2) && is_there(4));
     check_mark(4);
 }
-END_TEST
 
 /* A file that a run would not have named so is none of its. */
-START_TEST(other_numbers_are_nobodys)
+UNIT_TEST(other_numbers_are_nobodys)
 {
     static const char *const names[] = {"0000009", "9", "18446744073709551616", "+00009", "000000"};
     char path[160];
@@ -209,10 +205,9 @@ START_TEST(other_numbers_are_nobodys)
         ck_assert_int_eq(unlink(path), 0);
     }
 }
-END_TEST
 
 /* Numbers end somewhere: a run that could not count on does not begin. */
-START_TEST(the_last_number)
+UNIT_TEST(the_last_number)
 {
     char path[160];
     write_one(1);
@@ -225,10 +220,9 @@ START_TEST(the_last_number)
     ck_assert_ptr_nonnull(strstr(note.text, "is no checkpoint of duite-cloth"));
     ck_assert_int_eq(unlink(path), 0);
 }
-END_TEST
 
 /* A pipe has nobody at its other end, and is not waited for. */
-START_TEST(only_plain_files_are_read)
+UNIT_TEST(only_plain_files_are_read)
 {
     char path[160];
     write_one(1);
@@ -237,7 +231,6 @@ START_TEST(only_plain_files_are_read)
     check_mark(1);
     ck_assert_ptr_nonnull(strstr(note.text, "000002.checkpoint: it is no plain file"));
 }
-END_TEST
 
 /* ---- Damage ---- */
 
@@ -276,7 +269,7 @@ static void falls_back(const char *what, size_t at)
     ck_assert_uint_eq(*(const uint64_t *)read_back.part[2].bytes, 1);
 }
 
-START_TEST(every_length)
+UNIT_TEST(every_length)
 {
     unsigned char bytes[512];
     write_one(1);
@@ -293,9 +286,8 @@ START_TEST(every_length)
     put_file(2, bytes, n + 1); /* a byte of what lies behind it in memory */
     falls_back("length", n + 1);
 }
-END_TEST
 
-START_TEST(every_bit)
+UNIT_TEST(every_bit)
 {
     unsigned char bytes[512];
     write_one(1);
@@ -308,9 +300,8 @@ START_TEST(every_bit)
         bytes[bit / 8] ^= (unsigned char)(1 << bit % 8);
     }
 }
-END_TEST
 
-START_TEST(none_is_said)
+UNIT_TEST(none_is_said)
 {
     ck_assert_int_eq(read_newest(), CLOTH_E_INPUT);
     ck_assert_ptr_nonnull(strstr(error.text, "holds no checkpoint: a run writes them"));
@@ -319,11 +310,10 @@ START_TEST(none_is_said)
     ck_assert_int_eq(read_newest(), CLOTH_E_INPUT);
     ck_assert_ptr_nonnull(strstr(error.text, "no checkpoint that is whole"));
 }
-END_TEST
 
 /* ---- What is in the way ---- */
 
-START_TEST(failed_write_keeps_others)
+UNIT_TEST(failed_write_keeps_others)
 {
     char path[200];
     write_one(1);
@@ -338,10 +328,9 @@ START_TEST(failed_write_keeps_others)
     write_one(2);
     check_mark(2);
 }
-END_TEST
 
 /* Half a file of a run that was killed goes, what is not ours stays. */
-START_TEST(cleans_up)
+UNIT_TEST(cleans_up)
 {
     char half[200], other[200];
     write_one(1);
@@ -359,28 +348,4 @@ START_TEST(cleans_up)
     ck_assert_int_eq(output_checkpoints_forget(sample.folder, &error), 0);
     ck_assert(!is_there(1) && access(other, F_OK) == 0);
     ck_assert_int_eq(unlink(other), 0);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("checkpoint");
-    TCase *tcase = tcase_create("checkpoint");
-    tcase_add_checked_fixture(tcase, start, end);
-    tcase_add_test(tcase, reads_back);
-    tcase_add_test(tcase, three_are_kept);
-    tcase_add_test(tcase, three_are_kept_after_a_run_that_was_killed);
-    tcase_add_test(tcase, the_oldest_gives_its_room);
-    tcase_add_test(tcase, what_has_another_name_stays);
-    tcase_add_test(tcase, counts_on);
-    tcase_add_test(tcase, other_numbers_are_nobodys);
-    tcase_add_test(tcase, the_last_number);
-    tcase_add_test(tcase, only_plain_files_are_read);
-    tcase_add_test(tcase, every_length);
-    tcase_add_test(tcase, every_bit);
-    tcase_add_test(tcase, none_is_said);
-    tcase_add_test(tcase, failed_write_keeps_others);
-    tcase_add_test(tcase, cleans_up);
-    suite_add_tcase(suite, tcase);
-    return unit_run(suite);
 }

@@ -73,7 +73,9 @@ static void has_ranks(uint64_t frame, int32_t first, int32_t second)
     ck_assert_mem_eq(rank, expected, sizeof rank);
 }
 
-START_TEST(places_are_read_again)
+UNIT_FIXTURE(make, end)
+
+UNIT_TEST(places_are_read_again)
 {
     int32_t block[N];
     begins(NULL);
@@ -85,9 +87,8 @@ START_TEST(places_are_read_again)
     has_ranks(0, 0, 3);
     has_ranks(7, 0, 3);
 }
-END_TEST
 
-START_TEST(only_what_changes_is_written_again)
+UNIT_TEST(only_what_changes_is_written_again)
 {
     begins(NULL);
     places(0, 0, 1);
@@ -102,9 +103,8 @@ START_TEST(only_what_changes_is_written_again)
     has_ranks(2, 1, 1);
     has_ranks(1, 0, 1);
 }
-END_TEST
 
-START_TEST(a_run_that_goes_on_keeps_what_came_before)
+UNIT_TEST(a_run_that_goes_on_keeps_what_came_before)
 {
     const uint64_t two = 2;
     begins(NULL);
@@ -121,9 +121,8 @@ START_TEST(a_run_that_goes_on_keeps_what_came_before)
     ends();
     ck_assert_int_eq(size_of(), 16);
 }
-END_TEST
 
-START_TEST(what_is_not_whole_was_not_written)
+UNIT_TEST(what_is_not_whole_was_not_written)
 {
     begins(NULL);
     places(0, 0, 1);
@@ -141,7 +140,6 @@ START_TEST(what_is_not_whole_was_not_written)
     ck_assert_int_eq(output_colours_blocks(reader, 0, block, &error), CLOTH_E_INPUT);
     ck_assert_ptr_nonnull(strstr(error.text, "does not say the blocks of frame 0"));
 }
-END_TEST
 
 /* A triangle, an edge, two materials. */
 static void fill(struct output_rest *rest)
@@ -165,7 +163,7 @@ static void write_rest(uint64_t frame)
     output_rest_free(&rest);
 }
 
-START_TEST(the_size_is_known_before)
+UNIT_TEST(the_size_is_known_before)
 {
     struct output_rest rest;
     begins(NULL);
@@ -176,9 +174,8 @@ START_TEST(the_size_is_known_before)
     ck_assert_int_eq(size_of(), (long)output_colours_bytes(N, BLOCKS, &rest));
     output_rest_free(&rest);
 }
-END_TEST
 
-START_TEST(shapes_are_read_again)
+UNIT_TEST(shapes_are_read_again)
 {
     struct output_rest rest, read;
     begins(NULL);
@@ -201,7 +198,6 @@ START_TEST(shapes_are_read_again)
     output_rest_free(&rest);
     output_rest_free(&read);
 }
-END_TEST
 
 static void put(long at, unsigned char byte)
 {
@@ -213,7 +209,7 @@ static void put(long at, unsigned char byte)
 }
 
 /* Any byte may be any other: what is read then is in range, or refused. */
-START_TEST(damage_does_no_harm)
+UNIT_TEST(damage_does_no_harm)
 {
     begins(NULL);
     places(0, 0, 1);
@@ -250,9 +246,8 @@ START_TEST(damage_does_no_harm)
     ck_assert_int_eq(output_colours_load(&reader, sample.folder, N + 1, &error), CLOTH_E_INPUT);
     ck_assert_ptr_nonnull(strstr(error.text, "of another mesh than cloth.obj"));
 }
-END_TEST
 
-START_TEST(a_file_of_somebody_else_stays)
+UNIT_TEST(a_file_of_somebody_else_stays)
 {
     FILE *file = fopen(path, "w");
     ck_assert_ptr_nonnull(file);
@@ -263,29 +258,9 @@ START_TEST(a_file_of_somebody_else_stays)
     output_colours_close(&writer, &error);
     ck_assert_int_eq(size_of(), 5);
 }
-END_TEST
 
-START_TEST(without_a_file_it_says_who_writes_it)
+UNIT_TEST(without_a_file_it_says_who_writes_it)
 {
     ck_assert_int_eq(output_colours_load(&reader, sample.folder, N, &error), CLOTH_E_INPUT);
     ck_assert_ptr_nonnull(strstr(error.text, "duite-cloth --output writes it"));
-}
-END_TEST
-
-int main(void)
-{
-    TCase *tests = tcase_create("colours");
-    tcase_add_checked_fixture(tests, make, end);
-    tcase_add_test(tests, places_are_read_again);
-    tcase_add_test(tests, only_what_changes_is_written_again);
-    tcase_add_test(tests, a_run_that_goes_on_keeps_what_came_before);
-    tcase_add_test(tests, what_is_not_whole_was_not_written);
-    tcase_add_test(tests, the_size_is_known_before);
-    tcase_add_test(tests, shapes_are_read_again);
-    tcase_add_test(tests, damage_does_no_harm);
-    tcase_add_test(tests, a_file_of_somebody_else_stays);
-    tcase_add_test(tests, without_a_file_it_says_who_writes_it);
-    Suite *suite = suite_create("colours");
-    suite_add_tcase(suite, tests);
-    return unit_run(suite);
 }

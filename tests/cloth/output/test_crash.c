@@ -109,7 +109,9 @@ static int check_folder(void)
     return n;
 }
 
-START_TEST(dies_anywhere)
+UNIT_FIXTURE(start, end)
+
+UNIT_TEST(dies_anywhere)
 {
     int seen[6] = {0}, through = 0;
     for (long n = 0; !through; n++) {
@@ -121,9 +123,8 @@ START_TEST(dies_anywhere)
     for (int i = 0; i < 6; i++) /* none, 0 .. 3 of the new run, 4 of the old one */
         ck_assert_msg(seen[i] > 0, "never ended with %d frames", i - 1);
 }
-END_TEST
 
-START_TEST(dies_anywhere_with_a_thread)
+UNIT_TEST(dies_anywhere_with_a_thread)
 {
     int through = 0;
     for (long n = 0; !through; n++) {
@@ -134,9 +135,8 @@ START_TEST(dies_anywhere_with_a_thread)
     }
     ck_assert_int_eq(check_folder(), 3);
 }
-END_TEST
 
-START_TEST(fails_to_open_whole)
+UNIT_TEST(fails_to_open_whole)
 {
     int opened = 0;
     for (long n = 0; !opened; n++) {
@@ -157,10 +157,9 @@ START_TEST(fails_to_open_whole)
         ck_assert_int_ne(access(sample_path(&sample, "cloth.pc2.part"), F_OK), 0);
     }
 }
-END_TEST
 
 /* A disk that fails is no mistake of the user; a folder that may not be written to is. */
-START_TEST(tells_whose_fault)
+UNIT_TEST(tells_whose_fault)
 {
     static const struct {
         int reason, code;
@@ -181,10 +180,9 @@ START_TEST(tells_whose_fault)
     }
     reason = ENOSPC;
 }
-END_TEST
 
 /* A frame that fails takes its own bytes away, and the next try succeeds. */
-START_TEST(full_disk_keeps_whole_frames)
+UNIT_TEST(full_disk_keeps_whole_frames)
 {
     int through = 0;
     for (long n = 0; !through; n++) {
@@ -217,10 +215,9 @@ START_TEST(full_disk_keeps_whole_frames)
         output_close(&frames, &error);
     }
 }
-END_TEST
 
 /* What a thread cannot bring to the disk is said by what follows, which is taken away, too. */
-START_TEST(full_disk_is_said_later)
+UNIT_TEST(full_disk_is_said_later)
 {
     int through = 0;
     for (long n = 0; !through; n++) {
@@ -256,9 +253,8 @@ START_TEST(full_disk_is_said_later)
         ck_assert_int_eq(check_folder(), through ? 2 : 1);
     }
 }
-END_TEST
 
-START_TEST(report_is_whole_or_not_at_all)
+UNIT_TEST(report_is_whole_or_not_at_all)
 {
     char path[96], part[144], text[64];
     snprintf(path, sizeof path, "%s/report.json", sample.folder);
@@ -282,21 +278,4 @@ START_TEST(report_is_whole_or_not_at_all)
         ck_assert_int_ne(access(part, F_OK), 0);
         ck_assert_str_eq(text, through ? "{\n  \"steps\": 3\n}\n" : "old");
     }
-}
-END_TEST
-
-int main(void)
-{
-    TCase *c = tcase_create("crash");
-    tcase_add_checked_fixture(c, start, end);
-    tcase_add_test(c, dies_anywhere);
-    tcase_add_test(c, dies_anywhere_with_a_thread);
-    tcase_add_test(c, full_disk_is_said_later);
-    tcase_add_test(c, fails_to_open_whole);
-    tcase_add_test(c, tells_whose_fault);
-    tcase_add_test(c, full_disk_keeps_whole_frames);
-    tcase_add_test(c, report_is_whole_or_not_at_all);
-    Suite *s = suite_create("output_crash");
-    suite_add_tcase(s, c);
-    return unit_run(s);
 }

@@ -18,7 +18,9 @@ static void end(void)
     sample_free(&sample);
 }
 
-START_TEST(comes_back)
+UNIT_FIXTURE(start, end)
+
+UNIT_TEST(comes_back)
 {
     struct cloth_error error = {0};
     struct output_cache cache;
@@ -43,9 +45,8 @@ START_TEST(comes_back)
     ck_assert_ptr_nonnull(strstr(error.text, "3 frames"));
     output_cache_close(&cache);
 }
-END_TEST
 
-START_TEST(header_is_exact)
+UNIT_TEST(header_is_exact)
 {
     static const char WANT[36] = "POINTCACHE2\0"
                                  "\1\0\0\0"
@@ -60,9 +61,8 @@ START_TEST(header_is_exact)
     ck_assert_uint_eq(n, 32 + 2 * 12 * SAMPLE_POINTS);
     ck_assert_mem_eq(got, WANT, 36);
 }
-END_TEST
 
-START_TEST(obj_keeps_faces)
+UNIT_TEST(obj_keeps_faces)
 {
     char text[4096];
     sample_run(&sample, 1, 0);
@@ -74,18 +74,16 @@ START_TEST(obj_keeps_faces)
     sample_read(sample_path(&sample, "frames.csv"), text, sizeof text);
     ck_assert_str_eq(text, "frame,time\n");
 }
-END_TEST
 
-START_TEST(index_tells_time)
+UNIT_TEST(index_tells_time)
 {
     char text[256];
     sample_run(&sample, 1, 3);
     sample_read(sample_path(&sample, "frames.csv"), text, sizeof text);
     ck_assert_str_eq(text, "frame,time\n0,0\n1,0.040000000000000001\n2,0.080000000000000002\n");
 }
-END_TEST
 
-START_TEST(replaces_an_earlier_run)
+UNIT_TEST(replaces_an_earlier_run)
 {
     struct cloth_error error = {0};
     struct output_cache cache;
@@ -95,10 +93,9 @@ START_TEST(replaces_an_earlier_run)
     ck_assert_uint_eq(cache.n_frames, 1);
     output_cache_close(&cache);
 }
-END_TEST
 
 /* The bytes of a frame and its line are there, but the count was not rewritten. */
-START_TEST(interrupted_frame_is_ignored)
+UNIT_TEST(interrupted_frame_is_ignored)
 {
     struct cloth_error error = {0};
     struct output_cache cache;
@@ -113,9 +110,8 @@ START_TEST(interrupted_frame_is_ignored)
     ck_assert_uint_eq(cache.n_frames, 2);
     output_cache_close(&cache);
 }
-END_TEST
 
-START_TEST(refuses_bad_frames)
+UNIT_TEST(refuses_bad_frames)
 {
     struct cloth_error error = {0};
     struct output_frames *frames = NULL;
@@ -132,9 +128,8 @@ START_TEST(refuses_bad_frames)
     ck_assert_int_eq(output_frame(frames, 0, 0, position, &error), 0);
     ck_assert_int_eq(output_close(&frames, &error), 0);
 }
-END_TEST
 
-START_TEST(taken_away_while_it_runs)
+UNIT_TEST(taken_away_while_it_runs)
 {
     static const char *const name[] = {"cloth.pc2", "frames.csv"};
     for (int i = 0; i < 3; i++) {
@@ -157,16 +152,14 @@ START_TEST(taken_away_while_it_runs)
         ck_assert_int_eq(output_close(&other, &error), 0);
     }
 }
-END_TEST
 
-START_TEST(makes_parents)
+UNIT_TEST(makes_parents)
 {
     char deep[128];
     snprintf(deep, sizeof deep, "%s/a/b/c/", sample.folder);
     sample.setup.folder = deep;
     sample_run(&sample, 1, 1);
 }
-END_TEST
 
 #define MOVES(keys)                                                                                \
     "{\"fps\": 25, \"obstacles\": [{\"sphere\": {\"centre\": [0, 0, 0], \"radius\": 1}, "          \
@@ -211,7 +204,7 @@ static const struct damage {
     {"cloth.obj", -1, "v 0 0\n", "cloth.obj"},
 };
 
-START_TEST(refuses_damage)
+UNIT_LOOP(refuses_damage, 0, sizeof DAMAGES / sizeof *DAMAGES)
 {
     const struct damage *damage = &DAMAGES[_i];
     struct cloth_error error = {0};
@@ -224,33 +217,11 @@ START_TEST(refuses_damage)
     ck_assert_int_eq(output_cache_open(&cache, sample.frames, &error), CLOTH_E_INPUT);
     ck_assert_msg(strstr(error.text, damage->says) != NULL, "%s", error.text);
 }
-END_TEST
 
-START_TEST(refuses_no_folder)
+UNIT_TEST(refuses_no_folder)
 {
     struct cloth_error error = {0};
     struct output_cache cache;
     ck_assert_int_eq(output_cache_open(&cache, sample.frames, &error), CLOTH_E_INPUT);
     ck_assert_ptr_nonnull(strstr(error.text, "No such file"));
-}
-END_TEST
-
-int main(void)
-{
-    TCase *c = tcase_create("frames");
-    tcase_add_checked_fixture(c, start, end);
-    tcase_add_test(c, comes_back);
-    tcase_add_test(c, header_is_exact);
-    tcase_add_test(c, obj_keeps_faces);
-    tcase_add_test(c, index_tells_time);
-    tcase_add_test(c, replaces_an_earlier_run);
-    tcase_add_test(c, interrupted_frame_is_ignored);
-    tcase_add_test(c, refuses_bad_frames);
-    tcase_add_test(c, taken_away_while_it_runs);
-    tcase_add_test(c, makes_parents);
-    tcase_add_loop_test(c, refuses_damage, 0, sizeof DAMAGES / sizeof *DAMAGES);
-    tcase_add_test(c, refuses_no_folder);
-    Suite *s = suite_create("output");
-    suite_add_tcase(s, c);
-    return unit_run(s);
 }

@@ -92,7 +92,9 @@ static void read_array(const char *name, double *value)
     fclose(file);
 }
 
-START_TEST(the_matrix_is_the_product)
+UNIT_FIXTURE(make, end)
+
+UNIT_TEST(the_matrix_is_the_product)
 {
     struct cloth_error error = {0};
     double p[ROWS], y[ROWS];
@@ -108,9 +110,8 @@ START_TEST(the_matrix_is_the_product)
         ck_assert_double_eq_tol(sum, system_.free[i / 3] > 0 ? y[i] : p[i], 1e-14);
     }
 }
-END_TEST
 
-START_TEST(vectors_are_filtered)
+UNIT_TEST(vectors_are_filtered)
 {
     struct cloth_error error = {0};
     double value[ROWS];
@@ -125,9 +126,8 @@ START_TEST(vectors_are_filtered)
     for (size_t i = 0; i < ROWS; i++)
         ck_assert_double_eq(value[i], system_.free[i / 3] * system_.mass[i / 3]);
 }
-END_TEST
 
-START_TEST(springs_are_in_order)
+UNIT_TEST(springs_are_in_order)
 {
     for (size_t i = 0; i < system_.n_pairs; i++) {
         ck_assert_uint_lt(system_.end[i][0], system_.end[i][1]);
@@ -140,9 +140,8 @@ START_TEST(springs_are_in_order)
     ck_assert_double_eq(system_.value[3][0], 1);
     ck_assert_double_eq(system_.value[4][0], 1.0 / 7);
 }
-END_TEST
 
-START_TEST(what_cannot_be_written)
+UNIT_TEST(what_cannot_be_written)
 {
     struct cloth_error error = {0};
     char path[120];
@@ -154,18 +153,4 @@ START_TEST(what_cannot_be_written)
     ck_assert_int_eq(output_system(sample.folder, &system_, &error), CLOTH_E_INPUT);
     ck_assert_ptr_nonnull(strstr(error.text, "rhs.mtx"));
     ck_assert_int_eq(rmdir(path), 0);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("output/market");
-    TCase *one = tcase_create("files");
-    tcase_add_checked_fixture(one, make, end);
-    tcase_add_test(one, the_matrix_is_the_product);
-    tcase_add_test(one, vectors_are_filtered);
-    tcase_add_test(one, springs_are_in_order);
-    tcase_add_test(one, what_cannot_be_written);
-    suite_add_tcase(suite, one);
-    return unit_run(suite);
 }

@@ -20,7 +20,9 @@ static void end(void)
     sample_free(&sample);
 }
 
-START_TEST(folder_in_the_way)
+UNIT_FIXTURE(start, end)
+
+UNIT_TEST(folder_in_the_way)
 {
     struct cloth_error error = {0};
     struct output_frames *frames = NULL;
@@ -41,10 +43,9 @@ START_TEST(folder_in_the_way)
     sample_read(file, text, sizeof text);
     ck_assert_str_eq(text, "mine");
 }
-END_TEST
 
 /* Something else stands where a file of the folder goes. */
-START_TEST(file_in_the_way)
+UNIT_TEST(file_in_the_way)
 {
     static const char *const name[] = {"cloth.obj", "cloth.pc2", "frames.csv.part"};
     for (size_t i = 0; i < sizeof name / sizeof *name; i++) {
@@ -59,10 +60,9 @@ START_TEST(file_in_the_way)
         ck_assert_int_eq(rmdir(sample_path(&sample, name[i])), 0);
     }
 }
-END_TEST
 
 /* A mesh that the user keeps in the folder stays; what an earlier run left goes. */
-START_TEST(mesh_of_the_user)
+UNIT_TEST(mesh_of_the_user)
 {
     struct cloth_error error = {0};
     struct output_frames *frames = NULL;
@@ -76,7 +76,6 @@ START_TEST(mesh_of_the_user)
     ck_assert_str_eq(text, "mine");
     ck_assert_int_ne(access(sample_path(&sample, "cloth.obj.part"), F_OK), 0);
 }
-END_TEST
 
 /* Of so many boxes; the caller frees their memory. */
 static struct contact_bodies boxes_make(uint32_t n)
@@ -119,7 +118,7 @@ enum { N_FILES = sizeof FILES / sizeof *FILES };
 
 /* What the run reads, by another path: a file of an earlier run, also the second body, which would
  * go without a successor; and what files are written to first. */
-START_TEST(would_replace_an_input)
+UNIT_TEST(would_replace_an_input)
 {
     struct contact_bodies two = boxes_make(2), one = boxes_make(1);
     char link[128], want[300];
@@ -152,10 +151,9 @@ START_TEST(would_replace_an_input)
     free(one.memory);
     free(two.memory);
 }
-END_TEST
 
 /* Bodies of an earlier run that had more; what no run made stays. */
-START_TEST(bodies_of_an_earlier_run)
+UNIT_TEST(bodies_of_an_earlier_run)
 {
     struct contact_bodies two = boxes_make(2), one = boxes_make(1);
     for (uint32_t n = 3; n-- > 0;) {
@@ -171,10 +169,9 @@ START_TEST(bodies_of_an_earlier_run)
     free(one.memory);
     free(two.memory);
 }
-END_TEST
 
 /* Found before the frames of an earlier run go. */
-START_TEST(folder_where_a_file_goes)
+UNIT_TEST(folder_where_a_file_goes)
 {
     struct contact_bodies one = boxes_make(1);
     sample.setup.n_obstacles = 0;
@@ -193,20 +190,4 @@ START_TEST(folder_where_a_file_goes)
         check_untouched(FILES, N_FILES, 3);
     }
     free(one.memory);
-}
-END_TEST
-
-int main(void)
-{
-    TCase *c = tcase_create("replace");
-    tcase_add_checked_fixture(c, start, end);
-    tcase_add_test(c, folder_in_the_way);
-    tcase_add_test(c, file_in_the_way);
-    tcase_add_test(c, mesh_of_the_user);
-    tcase_add_test(c, would_replace_an_input);
-    tcase_add_test(c, bodies_of_an_earlier_run);
-    tcase_add_test(c, folder_where_a_file_goes);
-    Suite *s = suite_create("output");
-    suite_add_tcase(s, c);
-    return unit_run(s);
 }

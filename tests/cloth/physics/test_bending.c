@@ -22,7 +22,7 @@ static void quadratic(double theta, double x[12])
     }
 }
 
-START_TEST(s_is_twice_the_sine_of_half_the_angle)
+UNIT_TEST(s_is_twice_the_sine_of_half_the_angle)
 {
     for (double theta = -3.1; theta < 3.14; theta += 0.1) {
         double x[12];
@@ -36,25 +36,22 @@ START_TEST(s_is_twice_the_sine_of_half_the_angle)
         ck_assert_double_eq_tol(rest.weight[1], 0.4 / 1.3 / 0.7 + 0.9 / 1.3 / 1.1, 1e-14);
     }
 }
-END_TEST
 
-START_TEST(rigidity_is_that_of_the_threads_across)
+UNIT_TEST(rigidity_is_that_of_the_threads_across)
 {
     ck_assert_double_eq(phys_bend_rigidity(3, 5, (double[]){0, 2}), 3);
     ck_assert_double_eq(phys_bend_rigidity(3, 5, (double[]){-7, 0}), 5);
     ck_assert_double_eq(phys_bend_rigidity(3, 5, (double[]){1, -1}), 4);
     ck_assert_double_eq(phys_bend_rigidity(3, 5, (double[]){0, 0}), 4);
 }
-END_TEST
 
-START_TEST(rest_shapes_without_area_are_refused)
+UNIT_TEST(rest_shapes_without_area_are_refused)
 {
     const double line[12] = {0, 0, 0, 1, 0, 0, 2, 0, 0, 0, 1, 0}, point[12] = {0};
     struct phys_bend_rest rest;
     ck_assert_int_eq(phys_bend_rest(line, &rest), -1);
     ck_assert_int_eq(phys_bend_rest(point, &rest), -1);
 }
-END_TEST
 
 /* ---- A strip ---- */
 
@@ -151,7 +148,7 @@ static struct elements model_of(const struct strip *s, int quadratic)
 }
 
 /* _i: 0 hinges, 1 quadratic bending. */
-START_TEST(force_is_the_slope_of_the_energy)
+UNIT_LOOP(force_is_the_slope_of_the_energy, 0, 2)
 {
     struct elements_state state;
     struct strip s;
@@ -178,9 +175,8 @@ START_TEST(force_is_the_slope_of_the_energy)
     }
     elements_check_force(&model, &state, 1e-7);
 }
-END_TEST
 
-START_TEST(matrix_is_the_slope_of_the_force)
+UNIT_LOOP(matrix_is_the_slope_of_the_force, 0, 2)
 {
     for (int damped = 0; damped < 2; damped++) {
         struct elements_state state;
@@ -193,9 +189,8 @@ START_TEST(matrix_is_the_slope_of_the_force)
         elements_check_matrix(&model, &state, 1e-6);
     }
 }
-END_TEST
 
-START_TEST(momentum_is_kept)
+UNIT_LOOP(momentum_is_kept, 0, 2)
 {
     struct elements_state state;
     struct strip s;
@@ -205,9 +200,8 @@ START_TEST(momentum_is_kept)
     const struct elements model = model_of(&s, _i);
     elements_check_momentum(&model, &state, 1e-12);
 }
-END_TEST
 
-START_TEST(rigid_motion_gives_no_force)
+UNIT_LOOP(rigid_motion_gives_no_force, 0, 2)
 {
     struct elements_state state;
     struct strip s;
@@ -217,9 +211,8 @@ START_TEST(rigid_motion_gives_no_force)
     const struct elements model = model_of(&s, _i);
     elements_check_rigid(&model, &state, 1e-12);
 }
-END_TEST
 
-START_TEST(blocks_find_the_same_bits)
+UNIT_LOOP(blocks_find_the_same_bits, 0, 2)
 {
     struct elements_state state;
     struct strip s;
@@ -229,10 +222,9 @@ START_TEST(blocks_find_the_same_bits)
     const struct elements model = model_of(&s, _i);
     elements_check_split(&model, &state, 4);
 }
-END_TEST
 
 /* Folded nearly shut, one way and the other, forces still open it. */
-START_TEST(angles_up_to_half_a_turn)
+UNIT_TEST(angles_up_to_half_a_turn)
 {
     const uint32_t one[1][4] = {{0, 1, 2, 3}};
     const double k = 1, damping = 0, rest = 0;
@@ -252,9 +244,8 @@ START_TEST(angles_up_to_half_a_turn)
         ck_assert_double_gt(side * phys_dot(f + 2, &normal), 0);
     }
 }
-END_TEST
 
-START_TEST(collapsed_hinges_stay_finite)
+UNIT_TEST(collapsed_hinges_stay_finite)
 {
     const uint32_t one[1][4] = {{0, 1, 2, 3}};
     const double k = 1, damping = 1, rest = 0.5;
@@ -274,7 +265,6 @@ START_TEST(collapsed_hinges_stay_finite)
             ck_assert(isfinite(pair[c / 12].cyclic[c / 4 % 3][c % 4]));
     }
 }
-END_TEST
 
 /* ---- A cylinder ---- */
 
@@ -309,7 +299,7 @@ static double cylinder(const double a[2], const double b[2], double along)
 }
 
 /* What docs/physics.md says of the mesh's direction. */
-START_TEST(bias_of_the_mesh)
+UNIT_TEST(bias_of_the_mesh)
 {
     const double right[2][2] = {{1, 0}, {0, 1}}, equal[2][2] = {{1, 0}, {-0.5, sqrt(0.75)}};
     for (int i = 0; i < 12; i++) {
@@ -318,25 +308,4 @@ START_TEST(bias_of_the_mesh)
         const double w = s * c, expected = 1 + 2 * w + 4 * w * w;
         ck_assert_double_eq_tol(cylinder(right[0], right[1], angle), expected, 1e-5);
     }
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("bending");
-    TCase *angles = tcase_create("angles"), *slopes = tcase_create("slopes");
-    tcase_add_test(angles, s_is_twice_the_sine_of_half_the_angle);
-    tcase_add_test(angles, rigidity_is_that_of_the_threads_across);
-    tcase_add_test(angles, rest_shapes_without_area_are_refused);
-    tcase_add_test(angles, angles_up_to_half_a_turn);
-    tcase_add_test(angles, collapsed_hinges_stay_finite);
-    tcase_add_test(angles, bias_of_the_mesh);
-    tcase_add_loop_test(slopes, force_is_the_slope_of_the_energy, 0, 2);
-    tcase_add_loop_test(slopes, matrix_is_the_slope_of_the_force, 0, 2);
-    tcase_add_loop_test(slopes, momentum_is_kept, 0, 2);
-    tcase_add_loop_test(slopes, rigid_motion_gives_no_force, 0, 2);
-    tcase_add_loop_test(slopes, blocks_find_the_same_bits, 0, 2);
-    suite_add_tcase(suite, angles);
-    suite_add_tcase(suite, slopes);
-    return unit_run(suite);
 }

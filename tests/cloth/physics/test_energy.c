@@ -7,15 +7,14 @@
 static const phys_vec X[3] = {{1, 2, 3, 0}, {4, 6, 3, 0}, {0, 0, 0, 0}};
 static const double MASS[3] = {2, 3, 4}, GRAVITY[3] = {0, -10, 1};
 
-START_TEST(particles)
+UNIT_TEST(particles)
 {
     const phys_vec load[3] = {{5, -20, 2, 0}, {0, -30, 3, 0}, {0, -40, 4, 0}};
     ck_assert_double_eq(phys_energy_weight(3, MASS, GRAVITY, X), 40 - 6 + 180 - 9);
     ck_assert_double_eq(phys_energy_load(3, MASS, GRAVITY, load, X), -5);
 }
-END_TEST
 
-START_TEST(springs)
+UNIT_TEST(springs)
 {
     const uint32_t end[2][2] = {{0, 1}, {2, 0}};
     const double stiffness[2] = {10, 1}, damping[2] = {0}, length[2] = {3, 0.5};
@@ -25,15 +24,4 @@ START_TEST(springs)
     ck_assert_double_eq_tol(phys_energy_springs(&both, X, X), 0.5 * 10 * 4 + second, 1e-14);
     const phys_vec other[2] = {{0}, {1, 2, 4.5, 0}};
     ck_assert_double_eq(phys_energy_springs(&one, X, other), 0.5 * 10 * 2.25);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("energy");
-    TCase *cases = tcase_create("energy");
-    tcase_add_test(cases, particles);
-    tcase_add_test(cases, springs);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

@@ -12,7 +12,7 @@ static void same(const phys_vec *a, double x, double y, double z)
     ck_assert_double_eq((*a)[3], 0);
 }
 
-START_TEST(outside_and_acceleration)
+UNIT_TEST(outside_and_acceleration)
 {
     const phys_vec load[2] = {{0, -8, 0, 0}, {1, 0, 0, 0}}, v[2] = {{4, 2, -6, 0}, {1, 1, 1, 0}};
     const double drag[2] = {0.5, 0.25}, mass[2] = {2, 4}, loose[2] = {1, 0};
@@ -24,18 +24,16 @@ START_TEST(outside_and_acceleration)
     same(f, -1, -4.5, 1.5);
     same(f + 1, 0, 0, 0);
 }
-END_TEST
 
-START_TEST(advance)
+UNIT_TEST(advance)
 {
     const phys_vec d[1] = {{1, 2, 3, 0}};
     phys_vec y[1] = {{10, 20, 30, 0}};
     phys_advance(1, 0.5, d, y);
     same(y, 10.5, 21, 31.5);
 }
-END_TEST
 
-START_TEST(diverged_finds_the_first_row)
+UNIT_TEST(diverged_finds_the_first_row)
 {
     phys_vec y[4] = {{1, 2, 3, 0}, {-9, 9, 9, 0}, {1, 1, 1, 0}, {NAN, 0, 0, 0}};
     ck_assert_uint_eq(phys_diverged(4, 10, y), 3);
@@ -43,16 +41,4 @@ START_TEST(diverged_finds_the_first_row)
     ck_assert_uint_eq(phys_diverged(4, 9, y), 1);
     y[2][2] = -INFINITY;
     ck_assert_uint_eq(phys_diverged(4, 10, y), 2);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("particle");
-    TCase *cases = tcase_create("particle");
-    tcase_add_test(cases, outside_and_acceleration);
-    tcase_add_test(cases, advance);
-    tcase_add_test(cases, diverged_finds_the_first_row);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

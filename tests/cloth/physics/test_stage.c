@@ -13,7 +13,7 @@ static void same(const phys_vec *a, double x, double y, double z)
 }
 
 /* By the old v, and by the new one; what is held stays. */
-START_TEST(euler)
+UNIT_TEST(euler)
 {
     const phys_vec f[2] = {{6, -3, 0, 0}, {1, 1, 1, 0}};
     const double mass[2] = {2, 4}, loose[2] = {1, 0};
@@ -33,9 +33,8 @@ START_TEST(euler)
         ck_assert_int_eq(phys_euler(2, 0, ahead, 6, mass, loose, f, x, v, x, v), 1);
     }
 }
-END_TEST
 
-START_TEST(kicks)
+UNIT_TEST(kicks)
 {
     const phys_vec f[2] = {{6, -3, 0, 0}, {1, 1, 1, 0}}, v[2] = {{4, 2, -6, 0}, {0, 0, 0, 0}};
     const double mass[2] = {2, 4}, drag[2] = {0.5, 0.25}, loose[2] = {1, 0};
@@ -47,10 +46,9 @@ START_TEST(kicks)
     same(w, 8, -2, -3);
     same(w + 1, 0, 0, 0);
 }
-END_TEST
 
 /* The half steps in turn: implicit, then explicit, is v (1 - a) / (1 + a), a = t drag / mass. */
-START_TEST(kicks_together)
+UNIT_TEST(kicks_together)
 {
     const phys_vec f[1] = {{0, 0, 0, 0}};
     const double mass[1] = {1}, drag[1] = {3}, loose[1] = {1};
@@ -59,10 +57,9 @@ START_TEST(kicks_together)
     phys_kick(1, 1, 0, mass, drag, loose, f, v, v);
     same(v, -2, 4, -1);
 }
-END_TEST
 
 /* A step of 1 s of x' = v, v' = -x: x and v by the fourth-order series of cosine and sine. */
-START_TEST(runge_step)
+UNIT_TEST(runge_step)
 {
     phys_vec x[2] = {{24, 0, 48, 0}, {1, 2, 3, 0}}, v[2] = {{0, 24, 0, 0}, {0, 0, 0, 0}};
     phys_vec x0[2], v0[2], sum_x[2], sum_v[2], a[2] = {{0}, {0}};
@@ -75,17 +72,4 @@ START_TEST(runge_step)
     same(v, -20, 13, -40);
     same(x + 1, 1, 2, 3);
     same(v + 1, 0, 0, 0);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("stage");
-    TCase *cases = tcase_create("stage");
-    tcase_add_test(cases, euler);
-    tcase_add_test(cases, kicks);
-    tcase_add_test(cases, kicks_together);
-    tcase_add_test(cases, runge_step);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

@@ -8,7 +8,7 @@
 #include <string.h>
 #include <unistd.h>
 
-START_TEST(values_out_of_range)
+UNIT_TEST(values_out_of_range)
 {
     EXPECT(
         {"density: 0.2", "density: 0",
@@ -52,9 +52,8 @@ START_TEST(values_out_of_range)
         {"material: cotton", "material: cotton\n    mass_per_vertex: 0",
          .error = ":7:22: cloths[0].mass_per_vertex is 0; a finite number > 0 (kg) is expected"});
 }
-END_TEST
 
-START_TEST(triangles_out_of_range)
+UNIT_TEST(triangles_out_of_range)
 {
     EXPECT(
         {"stretch: 50", "stretch: [50, -1], model: triangles",
@@ -95,9 +94,8 @@ START_TEST(triangles_out_of_range)
          .error = ":5:11: rest is uv, but the mesh of cloth 'sheet' has none; a grid, an OBJ file "
                   "with vt, or rest: position is expected"});
 }
-END_TEST
 
-START_TEST(grids_larger_than_the_machine)
+UNIT_TEST(grids_larger_than_the_machine)
 {
     const double memory = (double)sysconf(_SC_PHYS_PAGES) * (double)sysconf(_SC_PAGESIZE);
     if (memory > 4.8e10)
@@ -110,9 +108,8 @@ START_TEST(grids_larger_than_the_machine)
     scene_expect_errors(&(struct scene_wrong){"nx: 4, ny: 3", "nx: 18000, ny: 18000", NULL, error},
                         1);
 }
-END_TEST
 
-START_TEST(discs)
+UNIT_TEST(discs)
 {
     EXPECT(
         {"grid: {width: 1, height: 2, nx: 4, ny: 3}", "disc: {radius: 1, rings: 0}",
@@ -120,9 +117,8 @@ START_TEST(discs)
         {"grid: {width: 1, height: 2, nx: 4, ny: 3}", "disc: {radius: 1}",
          .error = ":5:18: cloths[0].mesh.disc.rings is missing; a whole number ..."});
 }
-END_TEST
 
-START_TEST(names_and_indices)
+UNIT_TEST(names_and_indices)
 {
     EXPECT(
         {"material: cotton", "material: coton",
@@ -163,11 +159,10 @@ START_TEST(names_and_indices)
          .error = ":7:18: the box holds no vertex of cloth 'sheet'; it is meant for positions "
                   "after the transform"});
 }
-END_TEST
 
 #define MORE(text) "material: cotton", "material: cotton\n    " text
 
-START_TEST(regions_that_cannot_be_made)
+UNIT_TEST(regions_that_cannot_be_made)
 {
     EXPECT({MORE("regions: [{vertices: [0, 1], material: wool}]"),
             .error = ":7:44: there is no material 'wool'; allowed: cotton, rib_knit, silk, denim, "
@@ -189,9 +184,8 @@ START_TEST(regions_that_cannot_be_made)
            {MORE("regions: [{vertices: [0, 1], material: [1]}]"),
             .error = ":7:44: cloths[0].regions[0].material is a list of 1; a text is expected"});
 }
-END_TEST
 
-START_TEST(starts_and_masses_that_cannot_be_made)
+UNIT_TEST(starts_and_masses_that_cannot_be_made)
 {
     EXPECT(
         {MORE("masses: [{vertices: [1], mass: 0}]"),
@@ -223,11 +217,10 @@ START_TEST(starts_and_masses_that_cannot_be_made)
          .error =
              ":7:39: cloths[0].start[0].spin[1] is .nan; a finite number (rad/s) is expected"});
 }
-END_TEST
 
 #define DRAPE(text) "\ntime: {h", "\ndrape: " text "\ntime: {h"
 
-START_TEST(drape_tests_without_a_border)
+UNIT_TEST(drape_tests_without_a_border)
 {
     EXPECT({DRAPE("{}"),
             .error = ":12:8: drape.radius is missing; a finite number > 0 (m) is expected"},
@@ -241,11 +234,10 @@ START_TEST(drape_tests_without_a_border)
            {DRAPE("{radius: 0.1, cloth: shet}"),
             .error = ":12:29: there is no cloth 'shet'; did you mean 'sheet'? Allowed: sheet"});
 }
-END_TEST
 
 #define PROBE(text) "\ntime: {h", "\nprobes: [" text "]\ntime: {h"
 
-START_TEST(probes_that_tell_nothing)
+UNIT_TEST(probes_that_tell_nothing)
 {
     EXPECT(
         {PROBE("{name: a}"),
@@ -292,9 +284,8 @@ START_TEST(probes_that_tell_nothing)
         {"end: 0.1", "end: 0.1, rest: {speed: 0}",
          .error = ":12:42: time.rest.speed is 0; a finite number > 0 (m/s) is expected"});
 }
-END_TEST
 
-START_TEST(meshes_that_cannot_be_used)
+UNIT_TEST(meshes_that_cannot_be_used)
 {
     struct model model;
     struct cloth_error error = {0};
@@ -318,23 +309,4 @@ START_TEST(meshes_that_cannot_be_used)
     ck_assert_ptr_nonnull(strstr(error.text, "scene.yaml:5:20: mesh: "));
     model_free(&model);
     free(text);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("cloth errors");
-    TCase *cases = tcase_create("errors");
-    tcase_add_test(cases, values_out_of_range);
-    tcase_add_test(cases, triangles_out_of_range);
-    tcase_add_test(cases, grids_larger_than_the_machine);
-    tcase_add_test(cases, discs);
-    tcase_add_test(cases, names_and_indices);
-    tcase_add_test(cases, regions_that_cannot_be_made);
-    tcase_add_test(cases, starts_and_masses_that_cannot_be_made);
-    tcase_add_test(cases, drape_tests_without_a_border);
-    tcase_add_test(cases, probes_that_tell_nothing);
-    tcase_add_test(cases, meshes_that_cannot_be_used);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

@@ -13,7 +13,7 @@ static void same_vector(const double *a, double x, double y, double z)
 
 /* Parameters in the order of their kind, directions and rotations made of length 1; keys of
  * obstacles come before those of pins. */
-START_TEST(obstacles)
+UNIT_TEST(obstacles)
 {
     struct model model = scene_read_set(
         "obstacles=[{box: {centre: [1, 2, 3], size: [4, 5, 6], rotate: [3, 0, 4, 0]}}, {sphere: "
@@ -39,10 +39,9 @@ START_TEST(obstacles)
     ck_assert(model_moves_after(&model, 1.5) && !model_moves_after(&model, 2));
     model_free(&model);
 }
-END_TEST
 
 /* Key frames that are all the same move nothing, so that the energy is guarded. */
-START_TEST(still_motions)
+UNIT_TEST(still_motions)
 {
     static const char *const sets[] = {
         "obstacles[0].plane.motion={times: [0, 2], translate: [[0, 1, 0], [0, 1, 0]]}",
@@ -62,7 +61,6 @@ START_TEST(still_motions)
     ck_assert(model_moves_after(&model, 0.5) && !model_moves_after(&model, 1));
     model_free(&model);
 }
-END_TEST
 
 #define SECOND "cloths[1]={mesh: {grid: {width: 1, height: 1, nx: 3, ny: 3}}, material: cotton}"
 #define CHAIN                                                                                      \
@@ -87,7 +85,7 @@ static const struct {
     {{CHAIN, "materials.wire={ea: 1}", "contact.self=on"}, MODEL_CONTACT_PROJECT},
 };
 
-START_TEST(contact_modes)
+UNIT_LOOP(contact_modes, 0, sizeof modes / sizeof *modes)
 {
     struct scene_set sets[4] = {{.text = "contact.thickness=0.01"}};
     size_t n = 1;
@@ -102,7 +100,6 @@ START_TEST(contact_modes)
     ck_assert(!model.contact.assumed && !model_contact_cure(&model)[0]);
     model_free(&model);
 }
-END_TEST
 
 /* Steps look for contact where something can touch, or where it is reported. */
 static const struct {
@@ -115,7 +112,7 @@ static const struct {
     {{"obstacles=[]", "probes=[{cloth: sheet, vertices: [1], values: [contact], name: p}]"}, true},
 };
 
-START_TEST(contact_with_nothing)
+UNIT_LOOP(contact_with_nothing, 0, sizeof idle_scenes / sizeof *idle_scenes)
 {
     struct scene_set sets[3] = {{.text = "contact.mode=certified"}};
     size_t n = 1;
@@ -126,10 +123,9 @@ START_TEST(contact_with_nothing)
     ck_assert_int_eq((int)model.contact.mode, MODEL_CONTACT_CERTIFIED);
     model_free(&model);
 }
-END_TEST
 
 /* What gives no coefficient has that of contact. */
-START_TEST(frictions)
+UNIT_TEST(frictions)
 {
     struct model model =
         scene_read_changed("  cotton: {density: 0.2, stretch: 50, damping: {mass: 0.1}}\n",
@@ -147,9 +143,8 @@ START_TEST(frictions)
     ck_assert_double_eq(model.materials[0].friction, 0);
     model_free(&model);
 }
-END_TEST
 
-START_TEST(probes_of_contact)
+UNIT_TEST(probes_of_contact)
 {
     struct model model = scene_read_changed(
         "\ntime: {h",
@@ -163,9 +158,8 @@ START_TEST(probes_of_contact)
     ck_assert(model_feels_contact(&model));
     model_free(&model);
 }
-END_TEST
 
-START_TEST(huge_and_tiny_normals)
+UNIT_TEST(huge_and_tiny_normals)
 {
     struct model model = scene_read_changed("normal: [0, 3, 4]", "normal: [0, 3e300, 4e300]");
     ck_assert_double_eq_tol(model.obstacles[0].value[4], 0.6, 1e-15);
@@ -173,20 +167,4 @@ START_TEST(huge_and_tiny_normals)
     model = scene_read_changed("normal: [0, 3, 4]", "normal: [0, 3e-300, 4e-300]");
     ck_assert_double_eq_tol(model.obstacles[0].value[5], 0.8, 1e-15);
     model_free(&model);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("scene values of contact");
-    TCase *cases = tcase_create("values");
-    tcase_add_test(cases, obstacles);
-    tcase_add_loop_test(cases, contact_modes, 0, sizeof modes / sizeof *modes);
-    tcase_add_loop_test(cases, contact_with_nothing, 0, sizeof idle_scenes / sizeof *idle_scenes);
-    tcase_add_test(cases, still_motions);
-    tcase_add_test(cases, frictions);
-    tcase_add_test(cases, probes_of_contact);
-    tcase_add_test(cases, huge_and_tiny_normals);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

@@ -5,7 +5,7 @@
 #define JOINT(to)                                                                                  \
     "schema: 1\n", "schema: 1\njoints: [{from: {vertex: 1}, to: {" to "}, stiffness: 1}]\n"
 
-START_TEST(joints_that_end_nowhere)
+UNIT_TEST(joints_that_end_nowhere)
 {
     EXPECT(
         {JOINT("edge: [4, 5]"),
@@ -51,11 +51,10 @@ START_TEST(joints_that_end_nowhere)
         {"schema: 1\n", "schema: 1\nwelds: [{from: {vertex: 1}, to: {edge: [1, 2], at: 0}}]\n",
          .error = ":2:34: edge is not a key of welds[0].to; allowed: cloth, vertex, vertices"});
 }
-END_TEST
 
 #define FOLD(text) "material: cotton", "material: cotton\n    folds: [{" text "}]"
 
-START_TEST(folds_that_cannot_be_made)
+UNIT_TEST(folds_that_cannot_be_made)
 {
     EXPECT({FOLD("vertices: [4, 5]"),
             .error = ":7:13: cloths[0].folds[0].angle is missing; a finite number (degrees) is "
@@ -86,15 +85,4 @@ START_TEST(folds_that_cannot_be_made)
            {FOLD("edge: {panel: front, edge: 1}, angle: 90"),
             .error = ":7:20: no seam of cloth 'sheet' has edge 1 of a panel 'front', so nothing "
                      "folds there; an edge that is sewn is expected"});
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("edge errors");
-    TCase *cases = tcase_create("errors");
-    tcase_add_test(cases, joints_that_end_nowhere);
-    tcase_add_test(cases, folds_that_cannot_be_made);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-START_TEST(times_out_of_range)
+UNIT_TEST(times_out_of_range)
 {
     EXPECT(
         {"h: 0.001", "h: 0", .error = ":12:11: time.h is 0; a finite number > 0 (s) is expected"},
@@ -23,9 +23,8 @@ START_TEST(times_out_of_range)
         {"end: 0.1", "end: 0.1, fps: 0",
          .error = ":12:33: time.fps is 0; a finite number > 0 (1/s) is expected"});
 }
-END_TEST
 
-START_TEST(what_is_no_number)
+UNIT_TEST(what_is_no_number)
 {
     static const char *const not_numbers[] = {".nan",  "nan", "NaN",   ".inf", "-inf", "0x10",
                                               "1_000", "1e",  "1e+",   ".",    "-",    "1.2.3",
@@ -57,10 +56,9 @@ START_TEST(what_is_no_number)
                 ":7:27: cloths[0].pins[0].vertices[1] is -1; a whole number from 0 to 4294967295 "
                 "is expected"});
 }
-END_TEST
 
 /* In a map without line breaks the comma begins a key. */
-START_TEST(decimal_commas)
+UNIT_TEST(decimal_commas)
 {
     EXPECT({"density: 0.2", "density: 0,2",
             .error = ":10:21: materials.cotton.density is 0,2; a number has no comma: its decimals "
@@ -75,9 +73,8 @@ START_TEST(decimal_commas)
             .error = "--set time.h=0,001: time.h is 0,001; a finite number > 0 (s) is expected: a "
                      "number has no comma: its decimals follow a point, as in 0.2"});
 }
-END_TEST
 
-START_TEST(wrong_kinds)
+UNIT_TEST(wrong_kinds)
 {
     EXPECT({"gravity: [0, -9.81, 0]", "gravity: 9.81",
             .error = ":2:10: gravity is 9.81; a list of 3 numbers (m/s^2) is expected"},
@@ -96,9 +93,8 @@ START_TEST(wrong_kinds)
             .error = ":2:13: integrator is rk5; implicit_euler or explicit_euler or "
                      "symplectic_euler or verlet or midpoint or rk4 or bdf2 is expected"});
 }
-END_TEST
 
-START_TEST(wrong_contact)
+UNIT_TEST(wrong_contact)
 {
     EXPECT(
         {"gravity: [0, -9.81, 0]", "contact: {mode: projekt}",
@@ -139,9 +135,8 @@ START_TEST(wrong_contact)
                   "is certified by default in this scene, contact: {mode: project} is the way "
                   "without"});
 }
-END_TEST
 
-START_TEST(wrong_pins)
+UNIT_TEST(wrong_pins)
 {
     EXPECT(
         {"pins: [{vertices: [0, 3]}]",
@@ -162,9 +157,8 @@ START_TEST(wrong_pins)
          .error = ":7:23: cloths[0].pins[0].vertices is an empty list; a non-empty list of "
                   "whole numbers is expected"});
 }
-END_TEST
 
-START_TEST(wrong_names)
+UNIT_TEST(wrong_names)
 {
     EXPECT(
         {"gravity: [0, -9.81, 0]", "contact: {pairs: [{of: [coton, sheet], friction: 1}]}",
@@ -192,9 +186,8 @@ START_TEST(wrong_names)
         {"pins: [{vertices: [0, 3]}]", "pins: [{vertices: [0, 3], follow: flor}]",
          .error = ":7:39: there is no obstacle 'flor': none has a name"});
 }
-END_TEST
 
-START_TEST(unknown_and_missing_keys)
+UNIT_TEST(unknown_and_missing_keys)
 {
     EXPECT({"time:", "tiem:",
             .error =
@@ -227,9 +220,8 @@ START_TEST(unknown_and_missing_keys)
            {"  cotton: {", "  cotton: {}\n  cotton: {",
             .error = ":11:3: cotton is twice in materials; each key is allowed once"});
 }
-END_TEST
 
-START_TEST(files_that_are_no_scenes)
+UNIT_TEST(files_that_are_no_scenes)
 {
     scene_expect_error("", NULL, ":1:1: the file is empty; a scene starts with 'schema: 1'");
     scene_expect_error("# nothing\n", NULL,
@@ -260,9 +252,8 @@ START_TEST(files_that_are_no_scenes)
                        "line 4; an alias may stand "
                        "only behind what its anchor is of");
 }
-END_TEST
 
-START_TEST(files_that_cannot_be_read)
+UNIT_TEST(files_that_cannot_be_read)
 {
     struct model model;
     struct cloth_error error = {0};
@@ -277,9 +268,8 @@ START_TEST(files_that_cannot_be_read)
     ck_assert_int_eq(scene_read(&model, "/tmp", 0, NULL, NULL), CLOTH_E_INPUT);
     model_free(&model);
 }
-END_TEST
 
-START_TEST(sets_that_are_wrong)
+UNIT_TEST(sets_that_are_wrong)
 {
     static const struct {
         const char *set, *error;
@@ -325,9 +315,8 @@ START_TEST(sets_that_are_wrong)
         scene_expect_error(scene_right, all[i].set, error);
     }
 }
-END_TEST
 
-START_TEST(sets_of_other_options)
+UNIT_TEST(sets_of_other_options)
 {
     struct model model;
     struct cloth_error error = {0};
@@ -341,25 +330,4 @@ START_TEST(sets_of_other_options)
     ck_assert_int_eq(scene_read_text(&model, scene_right, 1, open, &error), CLOTH_E_INPUT);
     ck_assert_ptr_eq(strstr(error.text, "--end [: the value is not YAML: "), error.text);
     model_free(&model);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("scene errors");
-    TCase *cases = tcase_create("errors");
-    tcase_add_test(cases, times_out_of_range);
-    tcase_add_test(cases, what_is_no_number);
-    tcase_add_test(cases, decimal_commas);
-    tcase_add_test(cases, wrong_kinds);
-    tcase_add_test(cases, wrong_contact);
-    tcase_add_test(cases, wrong_pins);
-    tcase_add_test(cases, wrong_names);
-    tcase_add_test(cases, unknown_and_missing_keys);
-    tcase_add_test(cases, files_that_are_no_scenes);
-    tcase_add_test(cases, files_that_cannot_be_read);
-    tcase_add_test(cases, sets_that_are_wrong);
-    tcase_add_test(cases, sets_of_other_options);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

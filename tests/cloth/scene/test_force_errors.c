@@ -3,7 +3,7 @@
 #include "tests/cloth/scene/scene_file.h"
 #include "tests/support/unit.h"
 
-START_TEST(pins_that_hold_to_nothing)
+UNIT_TEST(pins_that_hold_to_nothing)
 {
     EXPECT({"{vertices: [0, 3]}", "{vertices: [0, 3], to: lines}",
             .error = ":7:35: cloths[0].pins[0].to is lines; point or line or plane is expected"},
@@ -21,11 +21,10 @@ START_TEST(pins_that_hold_to_nothing)
             .error = ":7:50: cloths[0].pins[0].normal is a list of 2; a list of 3 numbers is "
                      "expected"});
 }
-END_TEST
 
 #define MOTION(text) "{vertices: [0, 3]}", "{vertices: [0, 3], motion: {" text "}}"
 
-START_TEST(loads_that_cannot_be_made)
+UNIT_TEST(loads_that_cannot_be_made)
 {
     EXPECT({"vertices: [11]", "edges: [[0, 99]]",
             .error = ":8:26: vertex 99 is outside the mesh of cloth 'sheet', which has 12 "
@@ -41,11 +40,10 @@ START_TEST(loads_that_cannot_be_made)
                      "edges; one of "
                      "them is expected"});
 }
-END_TEST
 
 #define CURVE(text) "force: [0, 1, 0]", "force: [0, 1, 0], curve: {" text "}"
 
-START_TEST(curves_that_cannot_be_made)
+UNIT_TEST(curves_that_cannot_be_made)
 {
     EXPECT(
         {CURVE("keys: [[0, 1], [2, 1], [2, 0]]"),
@@ -79,9 +77,8 @@ START_TEST(curves_that_cannot_be_made)
          .error = ":2:31: the time of curve.keys[1] is 0, which does not come after 0, that of "
                   "the one before it; times in ascending order are expected"});
 }
-END_TEST
 
-START_TEST(motions_that_cannot_be_made)
+UNIT_TEST(motions_that_cannot_be_made)
 {
     EXPECT(
         {MOTION("times: [0, 1, 1], translate: [[0, 0, 0], [1, 0, 0], [2, 0, 0]]"),
@@ -104,11 +101,10 @@ START_TEST(motions_that_cannot_be_made)
          .error = ":7:47: cloths[0].pins[0].motion.times is an empty list; a non-empty list of "
                   "numbers (s) is expected"});
 }
-END_TEST
 
 #define JOINT(text) "\ntime: {h", "\njoints: [{" text "}]\ntime: {h"
 
-START_TEST(joints_that_cannot_be_made)
+UNIT_TEST(joints_that_cannot_be_made)
 {
     EXPECT(
         {JOINT("from: {vertex: 1}, to: {vertex: 2}"),
@@ -147,11 +143,10 @@ START_TEST(joints_that_cannot_be_made)
          .error = ":12:61: until is not a key of joints[0]; allowed: from, to, stiffness, damping, "
                   "length, begin, end"});
 }
-END_TEST
 
 #define WELD(text) "\ntime: {h", "\nwelds: [{" text "}]\ntime: {h"
 
-START_TEST(welds_that_cannot_be_made)
+UNIT_TEST(welds_that_cannot_be_made)
 {
     EXPECT({WELD("from: {vertex: 1}"),
             .error = ":12:9: welds[0].to is missing; a map of cloth, vertex, vertices is expected"},
@@ -165,19 +160,4 @@ START_TEST(welds_that_cannot_be_made)
             .error = ":12:35: there is no cloth 'shet'; did you mean 'sheet'? Allowed: sheet"},
            {WELD("from: {vertex: 1}, to: {vertex: 3}, tolerance: -1"),
             .error = ":12:57: welds[0].tolerance is -1; a finite number >= 0 (m) is expected"});
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("force errors");
-    TCase *cases = tcase_create("errors");
-    tcase_add_test(cases, loads_that_cannot_be_made);
-    tcase_add_test(cases, curves_that_cannot_be_made);
-    tcase_add_test(cases, motions_that_cannot_be_made);
-    tcase_add_test(cases, pins_that_hold_to_nothing);
-    tcase_add_test(cases, joints_that_cannot_be_made);
-    tcase_add_test(cases, welds_that_cannot_be_made);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

@@ -38,7 +38,7 @@ static void expect(const char *file, const struct scene_wrong *wrong, size_t n)
         expect(file, all, sizeof all / sizeof all[0]);                                             \
     } while (0)
 
-START_TEST(groups_that_are_not_there)
+UNIT_TEST(groups_that_are_not_there)
 {
     EXPECT({"pins: [{vertices: [0, 3]}]", "pins: [{group: left}]",
             .error = ":7:20: the mesh of cloth 'sheet' has no groups; an OBJ file with lines "
@@ -60,9 +60,8 @@ START_TEST(groups_that_are_not_there)
               {MORE("panels: [{group: top, grain: 1}]"),
                .error = ":7:22: there is no group of faces 'top'; allowed: left, right"});
 }
-END_TEST
 
-START_TEST(panels_that_cannot_be_made)
+UNIT_TEST(panels_that_cannot_be_made)
 {
     EXPECT_OF(
         "fan.obj",
@@ -88,9 +87,8 @@ START_TEST(panels_that_cannot_be_made)
                .error = ":7:35: the grain of a panel is measured from u, but the mesh of cloth "
                         "'sheet' has no uv; an OBJ file with vt, or a pattern, is expected"});
 }
-END_TEST
 
-START_TEST(more_panels_than_there_is_room_for)
+UNIT_TEST(more_panels_than_there_is_room_for)
 {
     char panels[4000] = "panels: [{group: left, grain: 1}", expected[200];
     for (int i = 0; i < 64; i++)
@@ -102,16 +100,4 @@ START_TEST(more_panels_than_there_is_room_for)
     snprintf(text, sizeof text, "material: cotton\n    %s", panels);
     const struct scene_wrong wrong = {"material: cotton", text, .error = expected};
     expect("fan.obj", &wrong, 1);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("group errors");
-    TCase *cases = tcase_create("errors");
-    tcase_add_test(cases, groups_that_are_not_there);
-    tcase_add_test(cases, panels_that_cannot_be_made);
-    tcase_add_test(cases, more_panels_than_there_is_room_for);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

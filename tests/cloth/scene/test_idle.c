@@ -134,7 +134,7 @@ static const struct {
      "rotate is a quaternion of length 9"},
 };
 
-START_TEST(idle_keys_are_warned_of)
+UNIT_LOOP(idle_keys_are_warned_of, 0, sizeof cases / sizeof *cases)
 {
     struct scene_set sets[MAX_SETS];
     size_t n = 0;
@@ -153,10 +153,9 @@ START_TEST(idle_keys_are_warned_of)
                       model.warnings[0], begin);
     model_free(&model);
 }
-END_TEST
 
 /* In the file the place is that of the value. */
-START_TEST(places_in_files)
+UNIT_TEST(places_in_files)
 {
     char *text = scene_changed(scene_right, "gravity:", "contact: {friction: 1}\ngravity:");
     struct model model = scene_read_right(text, 0, NULL);
@@ -167,15 +166,4 @@ START_TEST(places_in_files)
                   model.warnings[0]);
     model_free(&model);
     free(text);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("idle keys");
-    TCase *all = tcase_create("keys");
-    tcase_add_loop_test(all, idle_keys_are_warned_of, 0, sizeof cases / sizeof *cases);
-    tcase_add_test(all, places_in_files);
-    suite_add_tcase(suite, all);
-    return unit_run(suite);
 }

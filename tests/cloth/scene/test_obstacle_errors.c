@@ -11,7 +11,7 @@
 /* What the scene that is right has, and the tests replace. */
 #define PLANE "plane: {point: [0, -1, 0], normal: [0, 3, 4]}"
 
-START_TEST(shapes)
+UNIT_TEST(shapes)
 {
     EXPECT(
         {PLANE, "sphere: {centre: [0, -1, 0], radius: 0}",
@@ -37,10 +37,9 @@ START_TEST(shapes)
          .error = ":11:51: the radius of a sphere is 1e+06 m; a magnitude of less than 1e+06 m is "
                   "expected"});
 }
-END_TEST
 
 #define SPHERE "sphere: {centre: [0, -1, 0], radius: 0.5, motion: "
-START_TEST(motions)
+UNIT_TEST(motions)
 {
     EXPECT(
         {PLANE, SPHERE "{times: [0, 1], translate: [[0, 0, 0], [0, 1e99, 0]]}}",
@@ -60,7 +59,6 @@ START_TEST(motions)
              ":11:86: a rotation of a motion is zero; a quaternion [w, x, y, z] that is not is "
              "expected"});
 }
-END_TEST
 
 /* Corners and faces of a tetrahedron. */
 #define CORNERS "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n"
@@ -72,7 +70,7 @@ static void write_body(const char *name, const char *faces)
     scene_write_file(name, text, strlen(text));
 }
 
-START_TEST(bodies)
+UNIT_TEST(bodies)
 {
     write_body("whole.obj", WHOLE);
     write_body("open.obj", "f 1 3 2\nf 1 2 4\nf 1 4 3\n");
@@ -110,9 +108,8 @@ START_TEST(bodies)
         {PLANE, "body: {obj: whole.obj, size: 1}",
          .error = ":11:37: size is not a key of obstacles[0].body; allowed: obj, ..."});
 }
-END_TEST
 
-START_TEST(bodies_that_cannot_be_read)
+UNIT_TEST(bodies_that_cannot_be_read)
 {
     struct cloth_error error = {0};
     struct model model;
@@ -132,7 +129,6 @@ START_TEST(bodies_that_cannot_be_read)
         free(text);
     }
 }
-END_TEST
 
 /* A PC2 file of so many frames of n vertices, all at x = y = z = 1 but for those of the
  * last frame. */
@@ -149,7 +145,7 @@ static void write_pc2(const char *name, uint32_t n, uint32_t frames, size_t less
     scene_write_file(name, bytes, 32 + 12 * (size_t)n * frames - less);
 }
 
-START_TEST(frames_that_are_wrong)
+UNIT_TEST(frames_that_are_wrong)
 {
     write_body("whole.obj", WHOLE);
     write_body("turned.obj", "f 3 2 1\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
@@ -194,10 +190,9 @@ START_TEST(frames_that_are_wrong)
         free(text);
     }
 }
-END_TEST
 
 /* Twice as large, 1 m up; the second frame is 3.5 m away. */
-START_TEST(frames_that_jump)
+UNIT_TEST(frames_that_jump)
 {
     write_body("whole.obj", WHOLE);
     write_pc2("jumps.pc2", 4, 2, 0, 3);
@@ -219,9 +214,8 @@ START_TEST(frames_that_jump)
     model_free(&model);
     free(text);
 }
-END_TEST
 
-START_TEST(a_body_in_centimetres)
+UNIT_TEST(a_body_in_centimetres)
 {
     write_body("whole.obj", WHOLE);
     char *large = scene_changed(scene_right, PLANE, "body: {obj: whole.obj, scale: 12.5}");
@@ -233,9 +227,8 @@ START_TEST(a_body_in_centimetres)
     model_free(&model);
     free(large);
 }
-END_TEST
 
-START_TEST(a_body_that_is_inside_out)
+UNIT_TEST(a_body_that_is_inside_out)
 {
     write_body("whole.obj", WHOLE);
     write_body("out.obj", "f 1 2 3\nf 1 4 2\nf 1 3 4\nf 2 4 3\n");
@@ -258,10 +251,9 @@ START_TEST(a_body_that_is_inside_out)
         free(text);
     }
 }
-END_TEST
 
 /* A second tetrahedron, in a corner of the first or away from it. */
-START_TEST(a_body_that_goes_through_itself)
+UNIT_TEST(a_body_that_goes_through_itself)
 {
     const char *const at[] = {"0.1", "3"};
     for (int i = 0; i < 2; i++) {
@@ -281,10 +273,9 @@ START_TEST(a_body_that_goes_through_itself)
         free(text);
     }
 }
-END_TEST
 
 #define MAPS "body: {obj: whole.obj, "
-START_TEST(maps_that_are_wrong)
+UNIT_TEST(maps_that_are_wrong)
 {
     write_body("whole.obj", WHOLE);
     EXPECT({PLANE, MAPS "meet: images}",
@@ -306,10 +297,9 @@ START_TEST(maps_that_are_wrong)
         "nearest points of bodies; meet: bvh, or contact: {mode: project}, is expected");
     free(text);
 }
-END_TEST
 
 /* Along which axis, in how many pixels; what is of maps says nothing where there are none. */
-START_TEST(maps)
+UNIT_TEST(maps)
 {
     static const struct {
         const char *keys;
@@ -338,24 +328,4 @@ START_TEST(maps)
         model_free(&model);
         free(text);
     }
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("obstacle errors");
-    TCase *cases = tcase_create("errors");
-    tcase_add_test(cases, shapes);
-    tcase_add_test(cases, motions);
-    tcase_add_test(cases, bodies);
-    tcase_add_test(cases, bodies_that_cannot_be_read);
-    tcase_add_test(cases, frames_that_are_wrong);
-    tcase_add_test(cases, frames_that_jump);
-    tcase_add_test(cases, maps_that_are_wrong);
-    tcase_add_test(cases, maps);
-    tcase_add_test(cases, a_body_in_centimetres);
-    tcase_add_test(cases, a_body_that_is_inside_out);
-    tcase_add_test(cases, a_body_that_goes_through_itself);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

@@ -34,7 +34,7 @@ static char *scene_of(const char *mesh)
 }
 
 /* Areas and places are those of the panels, and lengths in uv those in space. */
-START_TEST(panels_as_a_mesh)
+UNIT_TEST(panels_as_a_mesh)
 {
     char *text = scene_of("{pattern: {file: pillow.json, edge: 0.03}}");
     struct model model = scene_read_right(text, 0, NULL);
@@ -69,9 +69,8 @@ START_TEST(panels_as_a_mesh)
     model_free(&model);
     free(text);
 }
-END_TEST
 
-START_TEST(panels_by_count)
+UNIT_TEST(panels_by_count)
 {
     char *text = scene_of("{pattern: {file: pillow.json, vertices: 4000}}");
     struct model model = scene_read_right(text, 0, NULL);
@@ -79,7 +78,6 @@ START_TEST(panels_by_count)
     model_free(&model);
     free(text);
 }
-END_TEST
 
 static double width_of(const struct model *model)
 {
@@ -89,7 +87,7 @@ static double width_of(const struct model *model)
 }
 
 /* A skirt's panels are half as wide as its hem; a transform scales and shifts all. */
-START_TEST(own_garments)
+UNIT_TEST(own_garments)
 {
     char *text = scene_of("{pattern: {garment: skirt, edge: 0.1}}");
     struct model model = scene_read_right(text, 0, NULL);
@@ -111,7 +109,6 @@ START_TEST(own_garments)
     model_free(&model);
     free(text);
 }
-END_TEST
 
 /* A skirt around a box of 0.2 x 0.2 m; *warning: the one that says too small, or NULL. */
 static struct model worn(const char *waist, const char *state, const char **warning)
@@ -136,7 +133,7 @@ static struct model worn(const char *waist, const char *state, const char **warn
     return model;
 }
 
-START_TEST(garments_that_are_too_small)
+UNIT_TEST(garments_that_are_too_small)
 {
     const char *warning;
     struct model model = worn("0.7", "pulled", &warning);
@@ -152,7 +149,6 @@ START_TEST(garments_that_are_too_small)
     ck_assert_ptr_null(warning);
     model_free(&model);
 }
-END_TEST
 
 static void refused(const char *mesh, const char *error)
 {
@@ -161,7 +157,7 @@ static void refused(const char *mesh, const char *error)
     free(text);
 }
 
-START_TEST(patterns_that_cannot_be_used)
+UNIT_TEST(patterns_that_cannot_be_used)
 {
     refused("{pattern: {edge: 0.1}}",
             ":5:21: cloths[0].mesh.pattern has no file or garment; one of them is expected");
@@ -189,18 +185,4 @@ START_TEST(patterns_that_cannot_be_used)
             "file");
     refused("{pattern: {file: none.json, edge: 0.1}}", ":5:21: mesh: ...");
     refused("{pattern: {file: scene.yaml, edge: 0.1}}", ":5:21: mesh: ...");
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("meshes of patterns");
-    TCase *cases = tcase_create("patterns");
-    tcase_add_test(cases, panels_as_a_mesh);
-    tcase_add_test(cases, panels_by_count);
-    tcase_add_test(cases, own_garments);
-    tcase_add_test(cases, garments_that_are_too_small);
-    tcase_add_test(cases, patterns_that_cannot_be_used);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

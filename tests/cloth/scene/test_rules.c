@@ -103,7 +103,7 @@ static void check_rule(const struct scene_rule *rule, struct structure *in)
         check_items(key, rule, in);
 }
 
-START_TEST(rules_fit_their_fields)
+UNIT_TEST(rules_fit_their_fields)
 {
     struct structure model = {NULL, sizeof(struct model)}, pick = {NULL, sizeof(struct model_pick)};
     check_rule(&scene_root, &model);
@@ -113,7 +113,6 @@ START_TEST(rules_fit_their_fields)
     ck_assert_uint_ge(n_fields, 90);
     ck_assert_uint_ge(n_places, 8);
 }
-END_TEST
 
 /* A word that means two things, or two words for one thing. */
 static void check_words(const struct model_word *words)
@@ -136,7 +135,7 @@ static void check_all_words(const struct scene_rule *rule)
         check_all_words(rule->inside);
 }
 
-START_TEST(words_mean_one_thing)
+UNIT_TEST(words_mean_one_thing)
 {
     check_all_words(&scene_root);
     for (int i = 0; i < MODEL_INTEGRATORS; i++) {
@@ -145,15 +144,4 @@ START_TEST(words_mean_one_thing)
         ck_assert_int_eq(scene_word_value(model_integrators, name, &known), i);
         ck_assert(known);
     }
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("scene rules");
-    TCase *cases = tcase_create("rules");
-    tcase_add_test(cases, rules_fit_their_fields);
-    tcase_add_test(cases, words_mean_one_thing);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

@@ -57,7 +57,7 @@ static struct model read_scene(const char *stitches, const char *keys)
 
 /* The sides of the front sewn to the same sides of the back, which faces the other way: the threads
  * go across the bag, and through each other. */
-START_TEST(seams_that_cross)
+UNIT_LOOP(seams_that_cross, 0, 2)
 {
     static const char *const stitches[] = {SIDES_OF, STITCH(1, 1) ", " STITCH(3, 3)};
     struct model model = read_scene(stitches[_i], "{state: pulled}");
@@ -71,10 +71,9 @@ START_TEST(seams_that_cross)
             "%s", model.warnings[0]);
     model_free(&model);
 }
-END_TEST
 
 /* A bag's corner at the bottom is in two seams: the second has one pair less. */
-START_TEST(joints_of_seams)
+UNIT_TEST(joints_of_seams)
 {
     struct model model = read_scene(BAG_OF, "{state: pulled}");
     ck_assert_uint_eq(model.n_joints, 3);
@@ -99,9 +98,8 @@ START_TEST(joints_of_seams)
     }
     model_free(&model);
 }
-END_TEST
 
-START_TEST(keys_of_seams)
+UNIT_TEST(keys_of_seams)
 {
     struct model model = read_scene(SIDES_OF, "{stiffness: 50, damping: 3, reversed: [1]}");
     ck_assert_double_eq(model.joints[0].stiffness, 50);
@@ -120,7 +118,6 @@ START_TEST(keys_of_seams)
     ck_assert_ptr_null(model.contact.apart.joined);
     model_free(&model);
 }
-END_TEST
 
 /* ---- Some seams that are sewn otherwise than the cloth ---- */
 
@@ -149,7 +146,7 @@ static const struct some SOME[] = {
      7},
     {"{state: welded, some: []}", {0}, {1, 2, 3}, 0, 0}};
 
-START_TEST(some_seams)
+UNIT_LOOP(some_seams, 0, sizeof SOME / sizeof *SOME)
 {
     const struct some *some = SOME + _i;
     struct model model = read_scene(BAG_OF, some->keys);
@@ -164,10 +161,9 @@ START_TEST(some_seams)
     }
     model_free(&model);
 }
-END_TEST
 
 /* The bottom, which is pulled, ends in both sides, which are welded: their pairs stand first. */
-START_TEST(welds_come_before_joints)
+UNIT_TEST(welds_come_before_joints)
 {
     struct model model =
         read_scene(BAG_OF, "{tolerance: 0.031, some: [{numbers: [1, 2], state: welded}]}");
@@ -185,11 +181,10 @@ START_TEST(welds_come_before_joints)
     flow_free(flow);
     model_free(&model);
 }
-END_TEST
 
 /* Three seams that meet at a corner, as of a box: where two are welded its three vertices are one,
  * and the third has no pair there. */
-START_TEST(corners_of_three_seams)
+UNIT_TEST(corners_of_three_seams)
 {
     static const char *const stitches =
         STITCH(0, 3) ", [{\"panel\": \"back\", \"edge\": 0}, {\"panel\": \"top\", \"edge\": 3}], "
@@ -207,7 +202,6 @@ START_TEST(corners_of_three_seams)
     flow_free(flow);
     model_free(&model);
 }
-END_TEST
 
 /* Sewn: what the pattern says of it. */
 struct sewn {
@@ -261,7 +255,7 @@ static uint32_t count_edges(const struct mesh *mesh, const uint32_t *root, doubl
 
 static const struct sewn GARMENTS[] = {{SIDES_OF, 0, 0.8}, {BAG_OF, 1, 0.4}, {PILLOW_OF, 2, 0}};
 
-START_TEST(what_is_sewn)
+UNIT_LOOP(what_is_sewn, 0, sizeof GARMENTS / sizeof *GARMENTS)
 {
     const struct sewn *sewn = GARMENTS + _i;
     struct model model = read_scene(sewn->stitches, "{state: welded, tolerance: 0.031}");
@@ -289,7 +283,6 @@ START_TEST(what_is_sewn)
     flow_free(flow);
     model_free(&model);
 }
-END_TEST
 
 struct hinges {
     uint32_t n;
@@ -311,7 +304,7 @@ static void take_hinge(void *to, const struct element *element)
 }
 
 /* They are flat at rest, though the panels lie face to face, and as stiff as the key says. */
-START_TEST(hinges_of_seams)
+UNIT_TEST(hinges_of_seams)
 {
     double stiffness[4];
     static const char *const keys[4] = {"{state: welded, tolerance: 0.031}",
@@ -339,7 +332,6 @@ START_TEST(hinges_of_seams)
                         1.9 * stiffness[0]); /* one of two sides, whose meshes differ */
     ck_assert_double_lt(stiffness[3], 2.1 * stiffness[0]);
 }
-END_TEST
 
 static void refused(const char *stitches, const char *keys, const char *error)
 {
@@ -348,7 +340,7 @@ static void refused(const char *stitches, const char *keys, const char *error)
     free(text);
 }
 
-START_TEST(seams_that_cannot_be_sewn)
+UNIT_TEST(seams_that_cannot_be_sewn)
 {
     refused(SIDES_OF, "{reversed: [2]}",
             ":6:24: seam 2 is none of cloth 'bag', which has 2 seams, counted from 0");
@@ -373,7 +365,6 @@ START_TEST(seams_that_cannot_be_sewn)
                        "seams.file is expected");
     free(text);
 }
-END_TEST
 
 /* What flow_prepare finds. */
 static void not_prepared(const char *keys, const char *more, const char *error)
@@ -393,7 +384,7 @@ static void not_prepared(const char *keys, const char *more, const char *error)
     model_free(&model);
 }
 
-START_TEST(seams_that_cannot_be_closed)
+UNIT_TEST(seams_that_cannot_be_closed)
 {
     not_prepared(
         "{state: welded}", NULL,
@@ -403,23 +394,4 @@ START_TEST(seams_that_cannot_be_closed)
                  "which start 0.03 m from each other; at most 0.002 m are expected (tolerance)");
     not_prepared("{state: pulled}", "pinned",
                  "both of which pins hold: nothing can bring them together");
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("seams");
-    TCase *cases = tcase_create("seams");
-    tcase_add_loop_test(cases, seams_that_cross, 0, 2);
-    tcase_add_test(cases, joints_of_seams);
-    tcase_add_test(cases, keys_of_seams);
-    tcase_add_loop_test(cases, some_seams, 0, sizeof SOME / sizeof *SOME);
-    tcase_add_test(cases, welds_come_before_joints);
-    tcase_add_test(cases, corners_of_three_seams);
-    tcase_add_loop_test(cases, what_is_sewn, 0, sizeof GARMENTS / sizeof *GARMENTS);
-    tcase_add_test(cases, hinges_of_seams);
-    tcase_add_test(cases, seams_that_cannot_be_sewn);
-    tcase_add_test(cases, seams_that_cannot_be_closed);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-START_TEST(sets_change_values)
+UNIT_TEST(sets_change_values)
 {
     struct model model = scene_read_set("time.h=0.002");
     ck_assert_double_eq(model.h, 0.002);
@@ -49,9 +49,8 @@ START_TEST(sets_change_values)
     ck_assert_str_eq(model.name, "a=b");
     model_free(&model);
 }
-END_TEST
 
-START_TEST(sets_make_and_append)
+UNIT_TEST(sets_make_and_append)
 {
     struct model model = scene_read_set("materials.cotton.damping.viscous=2");
     ck_assert_double_eq(model.materials[0].damping_viscous, 2);
@@ -76,10 +75,9 @@ START_TEST(sets_make_and_append)
     ck_assert_double_eq(model.materials[model.cloths[0].material].density, 3);
     model_free(&model);
 }
-END_TEST
 
 /* The last one of those that exclude each other; what an alias shares has its own. */
-START_TEST(a_choice_replaces_a_choice)
+UNIT_TEST(a_choice_replaces_a_choice)
 {
     char *text = scene_changed(scene_right, "time:", "solver: {stop: {relative: 0.1}}\ntime:");
     const struct scene_set sets[] = {{.text = "solver.stop.mass_norm=0.2"},
@@ -107,10 +105,9 @@ START_TEST(a_choice_replaces_a_choice)
     model_free(&model);
     free(text);
 }
-END_TEST
 
 /* Also one inside what the file or an earlier set has. */
-START_TEST(the_last_choice_is_inside)
+UNIT_TEST(the_last_choice_is_inside)
 {
     char *text = scene_changed(scene_right, "plane: {point: [0, -1, 0], normal: [0, 3, 4]}",
                                "sphere: {centre: [0, -1, 0], radius: 0.5}");
@@ -127,9 +124,8 @@ START_TEST(the_last_choice_is_inside)
     }
     free(text);
 }
-END_TEST
 
-START_TEST(sets_leave_aliases_alone)
+UNIT_TEST(sets_leave_aliases_alone)
 {
     char *text =
         scene_changed(scene_right, "  cotton: {density: 0.2, stretch: 50, damping: {mass: 0.1}}",
@@ -144,18 +140,4 @@ START_TEST(sets_leave_aliases_alone)
     ck_assert_double_eq(model.materials[1].stretch, 50);
     model_free(&model);
     free(text);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("scene sets");
-    TCase *cases = tcase_create("sets");
-    tcase_add_test(cases, sets_change_values);
-    tcase_add_test(cases, sets_make_and_append);
-    tcase_add_test(cases, a_choice_replaces_a_choice);
-    tcase_add_test(cases, the_last_choice_is_inside);
-    tcase_add_test(cases, sets_leave_aliases_alone);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

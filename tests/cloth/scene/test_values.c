@@ -23,7 +23,7 @@ static void same_vector(const double *a, double x, double y, double z)
     ck_assert_double_eq(a[2], z);
 }
 
-START_TEST(world_and_time)
+UNIT_TEST(world_and_time)
 {
     struct model model = scene_read_right(scene_right, 0, NULL);
     ck_assert_str_eq(model.name, "scene");
@@ -45,9 +45,8 @@ START_TEST(world_and_time)
     same_vector(model.obstacles[0].value + 3, 0, 3. / 4 / 1.25, 1 / 1.25);
     model_free(&model);
 }
-END_TEST
 
-START_TEST(cloth_and_material)
+UNIT_TEST(cloth_and_material)
 {
     struct model model = scene_read_right(scene_right, 0, NULL);
     ck_assert_uint_eq(model.n_cloths, 1);
@@ -83,7 +82,6 @@ START_TEST(cloth_and_material)
     ck_assert_int_eq(material->both_diagonals, 1);
     model_free(&model);
 }
-END_TEST
 
 static void same_fabric(const struct model_material *m, double density, double warp, double weft,
                         double shear, double rigidity)
@@ -100,7 +98,7 @@ static void same_fabric(const struct model_material *m, double density, double w
 
 /* Those that no scene need write, with some of their values changed, and one of the scene's own of
  * the same name. */
-START_TEST(named_fabrics)
+UNIT_TEST(named_fabrics)
 {
     static const char *const sets[] = {
         "cloths[0].material=denim", "cloths[0].material=silk",
@@ -131,10 +129,9 @@ START_TEST(named_fabrics)
     ck_assert_double_eq(model.materials[0].density, 0.5);
     model_free(&model);
 }
-END_TEST
 
 /* A density is wanted only where it is needed. */
-START_TEST(mass_without_density)
+UNIT_TEST(mass_without_density)
 {
     const struct scene_set set[] = {{.text = "materials={cotton: {stretch: 50}}"},
                                     {.text = "cloths[0].mass_per_vertex=0.1"}};
@@ -142,9 +139,8 @@ START_TEST(mass_without_density)
     ck_assert_double_eq(model.materials[0].density, 0);
     model_free(&model);
 }
-END_TEST
 
-START_TEST(every_other_key)
+UNIT_TEST(every_other_key)
 {
     struct model model = scene_read_changed(
         "  cotton: {density: 0.2, stretch: 50, damping: {mass: 0.1}}\n",
@@ -181,9 +177,8 @@ START_TEST(every_other_key)
     }
     model_free(&model);
 }
-END_TEST
 
-START_TEST(slopes)
+UNIT_TEST(slopes)
 {
     static const char *const words[] = {"definite", "full", "absolute"};
     static const int kind[] = {PHYS_DEFINITE, PHYS_FULL, PHYS_ABSOLUTE};
@@ -195,9 +190,8 @@ START_TEST(slopes)
         model_free(&model);
     }
 }
-END_TEST
 
-START_TEST(triangles_and_bending)
+UNIT_TEST(triangles_and_bending)
 {
     struct model model = scene_read_changed(
         "  cotton: {density: 0.2, stretch: 50, damping: {mass: 0.1}}\n",
@@ -236,9 +230,8 @@ START_TEST(triangles_and_bending)
     ck_assert_double_eq(model.cloths[0].mesh.position[3 * 11], 1.5);
     model_free(&model);
 }
-END_TEST
 
-START_TEST(cloths_of_every_mesh)
+UNIT_TEST(cloths_of_every_mesh)
 {
     const char *triangle = "v 0 0 0\nv 1 0 0\nv 0 0 1\nf 1 2 3\n";
     char *text = scene_changed(
@@ -276,9 +269,8 @@ START_TEST(cloths_of_every_mesh)
     model_free(&model);
     free(text);
 }
-END_TEST
 
-START_TEST(starts_and_masses)
+UNIT_TEST(starts_and_masses)
 {
     struct model model = scene_read_changed(
         "material: cotton",
@@ -312,9 +304,8 @@ START_TEST(starts_and_masses)
     same_vector(full->wave.velocity, 4, 5, 6);
     model_free(&model);
 }
-END_TEST
 
-START_TEST(probes_and_rest)
+UNIT_TEST(probes_and_rest)
 {
     struct model model;
     char *text = scene_changed(
@@ -337,9 +328,8 @@ START_TEST(probes_and_rest)
     model_free(&model);
     free(text);
 }
-END_TEST
 
-START_TEST(drape_test)
+UNIT_TEST(drape_test)
 {
     struct model model = scene_read_changed("\ntime: {h", "\ndrape: {radius: 0.5}\ntime: {h");
     ck_assert_double_eq(model.drape.radius, 0.5);
@@ -356,9 +346,8 @@ START_TEST(drape_test)
     ck_assert_double_eq(model.drape.radius, 0);
     model_free(&model);
 }
-END_TEST
 
-START_TEST(numbers_of_every_form)
+UNIT_TEST(numbers_of_every_form)
 {
     static const struct {
         const char *text;
@@ -373,9 +362,8 @@ START_TEST(numbers_of_every_form)
         model_free(&model);
     }
 }
-END_TEST
 
-START_TEST(shared_empty_map_takes_defaults)
+UNIT_TEST(shared_empty_map_takes_defaults)
 {
     char *text = scene_changed(scene_right, "    material: cotton",
                                "    transform: &e {}\n    material: cotton");
@@ -386,26 +374,4 @@ START_TEST(shared_empty_map_takes_defaults)
     model_free(&model);
     free(text);
     free(more);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("scene values");
-    TCase *cases = tcase_create("values");
-    tcase_add_test(cases, world_and_time);
-    tcase_add_test(cases, cloth_and_material);
-    tcase_add_test(cases, named_fabrics);
-    tcase_add_test(cases, mass_without_density);
-    tcase_add_test(cases, every_other_key);
-    tcase_add_test(cases, slopes);
-    tcase_add_test(cases, triangles_and_bending);
-    tcase_add_test(cases, cloths_of_every_mesh);
-    tcase_add_test(cases, starts_and_masses);
-    tcase_add_test(cases, probes_and_rest);
-    tcase_add_test(cases, drape_test);
-    tcase_add_test(cases, numbers_of_every_form);
-    tcase_add_test(cases, shared_empty_map_takes_defaults);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

@@ -173,7 +173,7 @@ static void random_vector(phys_vec *p)
         p[i] = (phys_vec){draw(), draw(), draw(), 0} * is_free(3 * i);
 }
 
-START_TEST(matvec_is_the_dense_product)
+UNIT_TEST(matvec_is_the_dense_product)
 {
     phys_vec p[N], r[N], q[N];
     double dots[SOLVE_DOTS];
@@ -201,9 +201,8 @@ START_TEST(matvec_is_the_dense_product)
             ck_assert_double_eq(q[i][3], 0);
     }
 }
-END_TEST
 
-START_TEST(matvec_is_symmetric)
+UNIT_TEST(matvec_is_symmetric)
 {
     phys_vec p[N], q[N], ap[N], aq[N];
     double dots[SOLVE_DOTS];
@@ -219,10 +218,9 @@ START_TEST(matvec_is_symmetric)
     }
     ck_assert_double_eq_tol(one, other, 1e-12);
 }
-END_TEST
 
 /* Without pins, what moves as a whole feels its diagonal and nothing else, to the last bit. */
-START_TEST(rigid_motion_feels_the_mass_alone)
+UNIT_TEST(rigid_motion_feels_the_mass_alone)
 {
     phys_vec p[N], q[N];
     double dots[SOLVE_DOTS];
@@ -236,7 +234,6 @@ START_TEST(rigid_motion_feels_the_mass_alone)
         for (int c = 0; c < 3; c++)
             ck_assert_double_eq(q[i][c], half[i / ROWS].diagonal[i % ROWS] * p[i][c]);
 }
-END_TEST
 
 /* x of the free rows and columns of A x = S b, by elimination with row exchange; zero elsewhere. */
 static void eliminate(const phys_vec *b, double *x)
@@ -288,7 +285,7 @@ static double iterate(const phys_vec *b, phys_vec *dv, uint32_t count)
     return scalars.square;
 }
 
-START_TEST(cg_solves)
+UNIT_TEST(cg_solves)
 {
     phys_vec b[N], dv[N];
     double x[DOFS];
@@ -302,10 +299,9 @@ START_TEST(cg_solves)
     ck_assert_double_eq(dv[1][0], 0);
     ck_assert_double_eq(dv[8][2], 0);
 }
-END_TEST
 
 /* An unfinished solve: the momentum it lost is the sum of b - A dv, with A applied in full. */
-START_TEST(lost_is_the_sum_of_the_residual)
+UNIT_TEST(lost_is_the_sum_of_the_residual)
 {
     phys_vec b[N], dv[N], q[N];
     build();
@@ -324,18 +320,4 @@ START_TEST(lost_is_the_sum_of_the_residual)
         ck_assert_double_gt(fabs(sum[c]), 1e-3);
         ck_assert_double_eq_tol(lost[c], sum[c], 1e-13);
     }
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("block");
-    TCase *cases = tcase_create("block");
-    tcase_add_test(cases, matvec_is_the_dense_product);
-    tcase_add_test(cases, matvec_is_symmetric);
-    tcase_add_test(cases, rigid_motion_feels_the_mass_alone);
-    tcase_add_test(cases, cg_solves);
-    tcase_add_test(cases, lost_is_the_sum_of_the_residual);
-    suite_add_tcase(suite, cases);
-    return unit_run(suite);
 }

@@ -176,7 +176,7 @@ static int seeds(void)
     return unit_quick() ? 3 : 12;
 }
 
-START_TEST(sheets_through_each_other)
+UNIT_TEST(sheets_through_each_other)
 {
     make_sheets(2);
     for (int seed = 1; seed <= seeds(); seed++) {
@@ -188,9 +188,8 @@ START_TEST(sheets_through_each_other)
         expect_free(seed, &result);
     }
 }
-END_TEST
 
-START_TEST(a_sheet_through_itself)
+UNIT_TEST(a_sheet_through_itself)
 {
     make_sheets(1);
     for (int seed = 1; seed <= seeds(); seed++) {
@@ -201,11 +200,10 @@ START_TEST(a_sheet_through_itself)
         expect_free(seed, &result);
     }
 }
-END_TEST
 
 /* The upper sheet is the inner one, all of it or part. The outer one goes down through it: up is
  * where triangles face. */
-START_TEST(layers)
+UNIT_TEST(layers)
 {
     make_sheets(2);
     for (int seed = 1; seed <= seeds(); seed++) {
@@ -222,10 +220,9 @@ START_TEST(layers)
         ck_assert(!memcmp(x + POINTS, start + POINTS, sizeof x / 2) || result.moved > 0);
     }
 }
-END_TEST
 
 /* Every fifth vertex of the first sheet. */
-START_TEST(what_is_held_stays)
+UNIT_TEST(what_is_held_stays)
 {
     make_sheets(2);
     for (uint32_t p = 0; p < POINTS; p += 5)
@@ -237,9 +234,8 @@ START_TEST(what_is_held_stays)
     for (uint32_t p = 0; p < POINTS; p += 5)
         ck_assert(!memcmp(x + p, start + p, sizeof *x));
 }
-END_TEST
 
-START_TEST(the_same_bits)
+UNIT_TEST(the_same_bits)
 {
     static phys_vec first[SHEETS * POINTS];
     make_sheets(2);
@@ -250,9 +246,8 @@ START_TEST(the_same_bits)
     run();
     ck_assert(!memcmp(first, x, sizeof x));
 }
-END_TEST
 
-START_TEST(a_free_start_stays)
+UNIT_TEST(a_free_start_stays)
 {
     make_sheets(2);
     random_seed = 3;
@@ -262,9 +257,8 @@ START_TEST(a_free_start_stays)
     ck_assert_uint_eq(result.moved, 0);
     ck_assert(!memcmp(x, start, sizeof x));
 }
-END_TEST
 
-START_TEST(what_does_not_meet_stays)
+UNIT_TEST(what_does_not_meet_stays)
 {
     static unsigned char table[SHEETS * SHEETS] = {0, 1, 1, 0};
     const struct contact_apart all = {.n_cloths = SHEETS, .apart = table};
@@ -276,11 +270,10 @@ START_TEST(what_does_not_meet_stays)
     ignored = NULL;
     ck_assert_uint_eq(result.moved, 0);
 }
-END_TEST
 
 /* Sheets that cut into each other from their borders, upright ones: nothing is cut off, and the
  * contour tells the way. */
-START_TEST(borders_that_cut_each_other)
+UNIT_TEST(borders_that_cut_each_other)
 {
     make_sheets(2);
     for (uint32_t s = 0; s < 2; s++)
@@ -293,21 +286,4 @@ START_TEST(borders_that_cut_each_other)
     ck_assert(count_pairs(start) > 0);
     const struct untangle_result result = run();
     expect_free(0, &result);
-}
-END_TEST
-
-int main(void)
-{
-    Suite *suite = suite_create("untangle");
-    TCase *all = tcase_create("starts");
-    tcase_add_test(all, sheets_through_each_other);
-    tcase_add_test(all, a_sheet_through_itself);
-    tcase_add_test(all, layers);
-    tcase_add_test(all, what_is_held_stays);
-    tcase_add_test(all, the_same_bits);
-    tcase_add_test(all, a_free_start_stays);
-    tcase_add_test(all, what_does_not_meet_stays);
-    tcase_add_test(all, borders_that_cut_each_other);
-    suite_add_tcase(suite, all);
-    return unit_run(suite);
 }

@@ -63,7 +63,7 @@ check-threads:
 check-threads-long:
 	$(MAKE) $(AM_MAKEFLAGS) check DUITE_QUICK=0 TESTS=tests/runtime/test_threads_long.sh TEST_SUITE_LOG=test-suite-long.log
 check-programs: $(check_PROGRAMS)
-.PHONY: check-long check-threads check-threads-long check-programs
+.PHONY: check-long check-threads check-threads-long check-programs golden-sentences
 
 EXTRA_DIST += tests/arrows.txt tests/support/policies.h tests/support/tap.sh tests/support/predicted.sh tests/support/commands.sh \
 	tests/support/bodies.sh tests/support/probes.sh tests/support/dress.awk tests/support/mpi.sh tests/support/rank.h tests/support/run.sh tests/support/screen.sh \

@@ -333,39 +333,6 @@ UNIT_TEST(hinges_of_seams)
     ck_assert_double_lt(stiffness[3], 2.1 * stiffness[0]);
 }
 
-static void refused(const char *stitches, const char *keys, const char *error)
-{
-    char *text = scene_of(stitches, keys);
-    scene_expect_error(text, NULL, error);
-    free(text);
-}
-
-UNIT_TEST(seams_that_cannot_be_sewn)
-{
-    refused(SIDES_OF, "{reversed: [2]}",
-            ":6:24: seam 2 is none of cloth 'bag', which has 2 seams, counted from 0");
-    refused(SIDES_OF, "{reversed: [1, 1]}", ":6:27: seam 1 stands twice in seams.reversed");
-    refused(SIDES_OF, "{file: panels.json}",
-            ":6:19: seams.file is of OBJ meshes; the seams of a pattern are its stitches");
-    refused(SIDES_OF, "{some: [{numbers: [0, 2], state: open}]}",
-            ":6:34: seam 2 is none of cloth 'bag', which has 2 seams, counted from 0");
-    refused(
-        SIDES_OF, "{some: [{of: [front, 'b*'], state: open}, {of: [front, 'f*'], state: open}]}",
-        ":6:59: no seam of cloth 'bag' is between a panel 'front' and one 'f*'; a panel's name is "
-        "expected, in which * stands for any characters");
-    refused(SIDES_OF, "{some: [{state: open}]}",
-            ":6:20: cloths[0].seams.some[0] has no numbers or of; one of them is expected");
-    refused(SIDES_OF, "{state: sewn}",
-            ":6:20: cloths[0].seams.state is sewn; pulled or welded or open is expected");
-    refused(SIDES_OF, "{stiffness: 0}",
-            ":6:24: cloths[0].seams.stiffness is 0; a finite number > 0 (N/m) is expected");
-    char *text = scene_changed(scene_right, "material: cotton", "seams: {}\n    material: cotton");
-    scene_expect_error(text, NULL,
-                       ":6:12: the mesh of cloth 'sheet' has no seams; a mesh.pattern, or "
-                       "seams.file is expected");
-    free(text);
-}
-
 /* What flow_prepare finds. */
 static void not_prepared(const char *keys, const char *more, const char *error)
 {

@@ -1,0 +1,245 @@
+/* What is said of scenes that are wrong, or have a key that does nothing, stands in sentences.txt,
+ * with the place in the file or the set: this compares. `make golden-sentences` writes the
+ * sentences again where they are said in other words, of the same places:
+ *
+ *     [NAME]           a section: a test of its own, of the scene that is right (scene_file.c)
+ *     file NAME TEXT   a file beside the scene
+ *     scene TEXT       the section's scene is this text
+ *     base FROM        and
+ *     with TO          the section's scene has TO in place of FROM
+ *     - FROM           and
+ *     + TO             a case: TO in place of FROM, which stays for the next cases
+ *     set SET          further settings of the case, as of --set
+ *     = SENTENCE       ends a case: reading it fails with this, scene.yaml in front of the place
+ * left out ~ SENTENCE       ends a case: it is read, with this one warning ok               ends a
+ * case: it is read, and draws no warning
+ *
+ * In texts \n is a line's end, \t a tab, and \xHH a byte. */
+#include "tests/cloth/scene/scene_file.h"
+#include "tests/support/unit.h"
+
+#include <libgen.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MAX_SETS = 4, MAX_LINE = 8192 };
+
+/* The state of the section that is read. */
+struct section {
+    char *scene, *base, *from, *to;
+    char set[MAX_SETS][1024];
+    uint32_t n_sets;
+    char said[2048];
+};
+
+static FILE *open_list(void)
+{
+    const char *top = getenv("srcdir");
+    char path[4096];
+    snprintf(path, sizeof path, "%s/tests/cloth/scene/sentences.txt", top ? top : ".");
+    return fopen(path, "r");
+}
+
+/* Called where check knows of no test: a list that cannot be opened has one section, which says it.
+ */
+static int count_sections(void)
+{
+    static char line[MAX_LINE];
+    FILE *list = open_list();
+    int n = 0;
+    while (list && fgets(line, sizeof line, list))
+        n += line[0] == '[';
+    if (list)
+        fclose(list);
+    return n ? n : 1;
+}
+
+/* The text with its escapes replaced; the caller frees it. */
+static char *plain(const char *text)
+{
+    char *copy = malloc(strlen(text) + 1), *to = copy;
+    ck_assert_ptr_nonnull(copy);
+    while (*text) {
+        if (text[0] != '\\') {
+            *to++ = *text++;
+        } else if (text[1] == 'x') {
+            *to++ = (char)strtol((char[]){text[2], text[3], 0}, NULL, 16);
+            text += 4;
+        } else {
+            *to++ = text[1] == 'n' ? '\n' : '\t';
+            text += 2;
+        }
+    }
+    *to = 0;
+    return copy;
+}
+
+static void replace(char **owned, char *text)
+{
+    free(*owned);
+    *owned = text;
+}
+
+/* The sentence without the folder of the scene, and without its name in front. */
+static void keep_sentence(struct section *section, const char *sentence)
+{
+    char folder[128];
+    snprintf(folder, sizeof folder, "%s", scene_path());
+    const size_t n = strlen(dirname(folder)) + 1, name = strlen("scene.yaml");
+    folder[n - 1] = '/';
+    char *to = section->said;
+    for (const char *at = sentence; *at;)
+        if (!strncmp(at, folder, n))
+            at += n + (at == sentence && !strncmp(at + n, "scene.yaml", name) ? name : 0);
+        else
+            *to++ = *at++;
+    *to = 0;
+}
+
+/* Reads the section's scene with the case's change: leaves what is said of it. Returns how the line
+ * begins that says it. */
+static const char *read_case(struct section *section)
+{
+    struct scene_set sets[MAX_SETS];
+    struct cloth_error error = {0};
+    struct model model;
+    for (uint32_t i = 0; i < section->n_sets; i++)
+        sets[i] = (struct scene_set){.text = section->set[i]};
+    char *text = section->to ? scene_changed(section->scene, section->from, section->to)
+                             : strdup(section->scene);
+    const int code = scene_read_text(&model, text, section->n_sets, sets, &error);
+    ck_assert(code == CLOTH_OK || code == CLOTH_E_INPUT);
+    ck_assert_uint_le(model.n_warnings, 1);
+    keep_sentence(section, code ? error.text : model.n_warnings ? model.warnings[0] : "");
+    const char *kind = code ? "= " : model.n_warnings ? "~ " : "ok";
+    model_free(&model);
+    free(text);
+    replace(&section->to, NULL);
+    section->n_sets = 0;
+    return kind;
+}
+
+/* What stands behind the word with which the line begins, or NULL. */
+static const char *after(const char *line, const char *word)
+{
+    const size_t n = strlen(word);
+    if (strncmp(line, word, n) != 0 || (line[n] && line[n] != ' '))
+        return NULL;
+    return line + n + (line[n] == ' ');
+}
+
+/* Takes a line that ends no case. */
+static void take_line(struct section *section, const char *line)
+{
+    const char *text;
+    char name[64] = "";
+    int at = 0;
+    if (line[0] == '[') {
+        replace(&section->scene, strdup(scene_right));
+    } else if ((text = after(line, "file")) && sscanf(text, "%63s %n", name, &at) == 1) {
+        char *bytes = plain(text + at);
+        scene_write_file(name, bytes, strlen(bytes));
+        free(bytes);
+    } else if ((text = after(line, "scene"))) {
+        replace(&section->scene, plain(text));
+    } else if ((text = after(line, "base"))) {
+        replace(&section->base, plain(text));
+    } else if ((text = after(line, "with"))) {
+        char *to = plain(text);
+        replace(&section->scene, scene_changed(section->scene, section->base, to));
+        free(to);
+    } else if ((text = after(line, "-"))) {
+        replace(&section->from, plain(text));
+    } else if ((text = after(line, "+"))) {
+        replace(&section->to, plain(text));
+    } else if ((text = after(line, "set"))) {
+        ck_assert_uint_lt(section->n_sets, MAX_SETS);
+        snprintf(section->set[section->n_sets++], sizeof *section->set, "%s", text);
+    } else {
+        ck_assert_msg(!line[0] || line[0] == '#', "a line of sentences.txt means nothing: %s",
+                      line);
+    }
+}
+
+static bool ends_case(const char *line)
+{
+    return after(line, "=") || after(line, "~") || after(line, "ok");
+}
+
+/* How long the place is with which a sentence begins: that of the file, or the set. */
+static size_t place_of(const char *sentence)
+{
+    const char *end = sentence;
+    const bool set = after(sentence, "--set") != NULL;
+    for (int i = 0; !set && end && i < 3; i++)
+        end = strchr(end + (i > 0), ':');
+    if (set)
+        end = strstr(sentence, ": ");
+    return end ? (size_t)(end - sentence) : 0;
+}
+
+/* Reads the case that the line ends. Returns whether its sentence is this one, and says it if not;
+ * with a file, whether the place is the same, and writes the sentence. */
+static bool check_case(struct section *section, unsigned number, const char *line, FILE *again)
+{
+    const char *kind = read_case(section), *expected = line[0] == 'o' ? "" : line + 2;
+    const bool same_kind = !strncmp(line, kind, 2);
+    if (again)
+        fprintf(again, "%s%s\n", kind, section->said);
+    if (same_kind && (again ? !strncmp(section->said, expected, place_of(expected) + 1)
+                            : !strcmp(section->said, expected)))
+        return true;
+    fprintf(stderr, "sentences.txt:%u: not \"%s\", but:\n%s%s\n", number, line, kind,
+            section->said);
+    return false;
+}
+
+enum { ALL = -1 };
+
+/* Reads the section of this number (from 0 on), or ALL; with a file it writes the list again. */
+static void read_sections(int wanted, FILE *again)
+{
+    struct section section = {0};
+    static char line[MAX_LINE];
+    FILE *list = open_list();
+    int at = -1, wrong = 0;
+    ck_assert_ptr_nonnull(list);
+    for (unsigned number = 1; fgets(line, sizeof line, list); number++) {
+        line[strcspn(line, "\n")] = 0;
+        at += line[0] == '[';
+        if (wanted != ALL && at >= 0 && at != wanted)
+            continue;
+        if (ends_case(line)) {
+            wrong += !check_case(&section, number, line, again);
+            continue;
+        }
+        take_line(&section, line);
+        if (again)
+            fprintf(again, "%s\n", line);
+    }
+    ck_assert_int_eq(fclose(list), 0);
+    ck_assert_msg(!wrong, "%d cases end otherwise than sentences.txt says", wrong);
+    free(section.scene);
+    free(section.base);
+    free(section.from);
+}
+
+/* Where the list is written again in place of comparing with it, or NULL. */
+static const char *again_path(void)
+{
+    return getenv("DUITE_SENTENCES");
+}
+
+UNIT_LOOP(sections, 0, again_path() ? 0 : count_sections())
+{
+    read_sections(_i, NULL);
+}
+
+UNIT_LOOP(all_are_written, 0, again_path() != NULL)
+{
+    FILE *again = fopen(again_path(), "w");
+    ck_assert_ptr_nonnull(again);
+    read_sections(ALL, again);
+    ck_assert_int_eq(fclose(again), 0);
+}

@@ -2,7 +2,7 @@ if HAVE_CHECK
 FLOW_TEST_MODELS = tests/cloth/flow/models.c tests/cloth/flow/models.h
 LEAK_TESTS += tests/cloth/flow/test_failures tests/cloth/flow/test_run tests/cloth/flow/test_memory
 TSAN_TESTS += tests/cloth/flow/test_grid tests/cloth/flow/test_filter tests/cloth/flow/test_cut_run tests/cloth/flow/test_skins \
-    tests/cloth/flow/test_sliders tests/cloth/flow/test_contact_index tests/cloth/flow/test_warnings tests/cloth/flow/test_ties \
+    tests/cloth/flow/test_sliders tests/cloth/flow/test_warnings tests/cloth/flow/test_ties \
     tests/cloth/flow/test_ties_runs tests/cloth/flow/test_levels
 ASAN_TESTS += tests/cloth/flow/test_motion tests/cloth/flow/test_halving tests/cloth/flow/test_limits tests/cloth/flow/test_strain_limit \
     tests/cloth/flow/test_checked tests/cloth/flow/test_fields

@@ -1,6 +1,8 @@
 /* The skins of a run: every triangle is in the skin of the block of its lowest place, every vertex
  * and every edge is the feature of one skin, points are where the block finds them, also where a
- * cloth has no springs between the corners of its triangles, and across welds. */
+ * cloth has no springs between the corners of its triangles, and across welds. Of what skins find a
+ * contact stands once. */
+#include "cloth/flow/contact/contact.h"
 #include "cloth/flow/state/flow.h"
 #include "cloth/flow/state/skin.h"
 #include "tests/cloth/flow/models.h"
@@ -200,4 +202,31 @@ UNIT_TEST(none)
     ck_assert_int_eq(flow_prepare(&flow, &setup.model, 1, &error), 0);
     ck_assert_ptr_null(flow->source.skins.start);
     ck_assert_uint_eq(flow->source.shape[0].skin.n_points, 0);
+}
+
+/* A vertex of the block, 2 mm off in a direction along y. */
+static struct flow_contact drawn(uint32_t kind, uint32_t vertex, double along)
+{
+    return (struct flow_contact){
+        .kind = kind,
+        .feature = {vertex},
+        .row = {.normal = {0, along, 0, 0}, .gap = 0.002, .thickness = 0.002}};
+}
+
+/* Triangles with a common edge or corner have the nearest point of a vertex in common: it is one
+ * contact. Where the vertex lies between two layers there are two. */
+UNIT_TEST(a_point_is_met_once)
+{
+    struct flow_contact list[] = {
+        drawn(CONTACT_VT, 5, 1), drawn(CONTACT_VT, 5, 1), drawn(CONTACT_VT, 5, -1),
+        drawn(CONTACT_VT, 5, 1), drawn(CONTACT_VT, 6, 1), drawn(CONTACT_EE, 6, 1),
+        drawn(CONTACT_EE, 6, 1),
+    };
+    static const double along[] = {1, -1, 1, 1, 1};
+    static const uint32_t vertex[] = {5, 5, 6, 6, 6};
+    ck_assert_uint_eq(flow_contact_drop_repeated(list, sizeof list / sizeof *list), 5);
+    for (int i = 0; i < 5; i++) {
+        ck_assert_uint_eq(list[i].feature[0], vertex[i]);
+        ck_assert(list[i].row.normal[1] * along[i] > 0);
+    }
 }

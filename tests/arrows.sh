@@ -3,11 +3,13 @@
 # an object uses of another one, is allowed.
 . "${srcdir:-.}/tests/support/tap.sh"
 
-# The rules, and the layer of a file, header or object: its two first folders, or what a program or a header for users is.
+# The rules, and the layer of a file, header or object: its two first folders (in cloth/app three), a program, or a header for
+# users.
 rules='
     function layer(path,    part, n) {
         n = split(path, part, "/")
         if (path ~ /^runtime\/(duite|duite_policy)\.h$/) return "users"
+        if (path ~ /^cloth\/app\//) return n > 3 ? part[1] "/" part[2] "/" part[3] : "cloth/programs"
         if (n > 2) return part[1] "/" part[2]
         return part[1] "/programs"
     }
@@ -144,7 +146,7 @@ ok "finds duite.h below flow" plant cloth/solve/planted.c '<duite.h>'
 ok "finds duite.h below flow, quoted" plant cloth/mesh/planted.c '"runtime/duite.h"'
 ok "finds physics including mesh" plant cloth/physics/planted.c '"cloth/mesh/mesh.h"'
 ok "finds an upward include in the cloth" plant cloth/flow/planted.c '"cloth/scene/scene.h"'
-ok "finds a program's use of the runtime's inside" plant cloth/planted.c '"runtime/base/error.h"'
+ok "finds a program's use of the runtime's inside" plant cloth/app/planted.c '"runtime/base/error.h"'
 ok "finds an include relative to its folder" plant cloth/mesh/planted.c '"mesh.h"'
 ok "every call points downwards" symbols .
 ok "finds an upward call that no header declares" plant_call task_ready

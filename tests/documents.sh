@@ -195,7 +195,7 @@ tours() { # DOCUMENT
 }
 
 stages() { # the stages of a step stand in the document's table in their order
-    sed -n 's/^    {"\([^"]*\)", [A-Z]*,.*/\1/p' "$srcdir/cloth/flow/step/step.c" | tr '\n' ',' > "$scratch/stages"
+    sed -n 's/^    {"\([^"]*\)", [A-Z]*,.*/\1/p' "$srcdir/cloth/flow/run/step.c" | tr '\n' ',' > "$scratch/stages"
     sed -n '/^| part | stage | it |/,/^$/p' "$1" | awk -F '|' 'NR > 2 && NF { gsub(/^ +| +$/, "", $3); gsub(/, /, ",", $3); printf "%s,", $3 }' \
         > "$scratch/listed"
     echo "step.c: $(cat "$scratch/stages")"

@@ -6,9 +6,9 @@
 #include "bench/tasks/tasks.h"
 #include "cloth/flow/contact/certify.h"
 #include "cloth/flow/contact/contact.h"
-#include "cloth/flow/setup/setup.h"
+#include "cloth/flow/run/setup.h"
+#include "cloth/flow/run/step.h"
 #include "cloth/flow/solver/solve.h"
-#include "cloth/flow/step/step.h"
 #include "tests/support/rank.h"
 
 #include <math.h>

@@ -3,7 +3,7 @@
 #include "bench/cg/cg.h"
 
 #include "bench/tasks/tasks.h"
-#include "cloth/flow/bodies.h"
+#include "cloth/flow/state/bodies.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -3,7 +3,7 @@
  * Blender runs. */
 #include "bench/contact/contact.h"
 
-#include "cloth/intersections.h"
+#include "cloth/app/check/intersections.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -6,8 +6,8 @@
 
 #include "cloth/contact/body.h"
 #include "cloth/contact/pair.h"
+#include "cloth/flow/contact/skin.h"
 #include "cloth/flow/state/flow.h"
-#include "cloth/flow/state/skin.h"
 
 #include <math.h>
 #include <pthread.h>

@@ -6,9 +6,9 @@
 #include "bench/ranks/sheet.h"
 
 #include "cloth/flow/contact/certify.h"
-#include "cloth/flow/setup/setup.h"
+#include "cloth/flow/run/setup.h"
+#include "cloth/flow/run/step.h"
 #include "cloth/flow/solver/solve.h"
-#include "cloth/flow/step/step.h"
 #include "cloth/scene/scene.h"
 #include "tools/predict/predict.h"
 

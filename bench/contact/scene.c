@@ -6,7 +6,7 @@
 #include "bench/cg/cg.h"
 #include "bench/sets.h"
 #include "bench/tasks/tasks.h"
-#include "cloth/intersections.h"
+#include "cloth/app/check/intersections.h"
 #include "cloth/scene/scene.h"
 
 #include <inttypes.h>

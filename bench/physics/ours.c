@@ -5,10 +5,10 @@
 
 #include "bench/cg/cg.h"
 #include "bench/tasks/tasks.h"
-#include "cloth/flow/bodies.h"
-#include "cloth/flow/setup/setup.h"
+#include "cloth/flow/run/setup.h"
+#include "cloth/flow/run/step.h"
 #include "cloth/flow/solver/solve.h"
-#include "cloth/flow/step/step.h"
+#include "cloth/flow/state/bodies.h"
 #include "cloth/scene/scene.h"
 
 #include <math.h>

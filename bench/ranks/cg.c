@@ -1,9 +1,9 @@
 /* An iteration of conjugate gradients on a sheet: the cloth's own tasks on one system, solved again
  * and again, against the twin. The answer is compared with plain loops: ours to the last bit. */
 #include "bench/ranks/ranks.h"
-#include "cloth/flow/setup/setup.h"
+#include "cloth/flow/run/setup.h"
+#include "cloth/flow/run/step.h"
 #include "cloth/flow/solver/solve.h"
-#include "cloth/flow/step/step.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -1,12 +1,64 @@
-# The only folder of the cloth that includes duite.h. In reading order: what a run is made of, its state, a step, the solver of a step, what is
-# seen of it.
+# The only folder of the cloth that includes duite.h: a topic a folder, each with its set-up, kernels and report. run has a run and
+# its steps, state the fields and kernels of all.
 libduite_cloth_a_SOURCES += \
-    cloth/flow/bodies.h \
-    cloth/flow/checkpoint/check.c \
-    cloth/flow/checkpoint/checkpoint.h \
-    cloth/flow/checkpoint/resume.c \
-    cloth/flow/checkpoint/save.c \
-    cloth/flow/checkpoint/saved.c \
+    cloth/flow/run.h \
+    cloth/flow/run/distribute.c \
+    cloth/flow/run/forces.c \
+    cloth/flow/run/grid.c \
+    cloth/flow/run/grid.h \
+    cloth/flow/run/loads.c \
+    cloth/flow/run/memory.c \
+    cloth/flow/run/neighbours.c \
+    cloth/flow/run/particles.c \
+    cloth/flow/run/picks.c \
+    cloth/flow/run/pieces.c \
+    cloth/flow/run/run.c \
+    cloth/flow/run/settle.c \
+    cloth/flow/run/setup.h \
+    cloth/flow/run/source.c \
+    cloth/flow/run/source.h \
+    cloth/flow/run/starts.c \
+    cloth/flow/run/status.c \
+    cloth/flow/run/step.c \
+    cloth/flow/run/step.h \
+    cloth/flow/run/varying.c \
+    cloth/flow/run/warn.c \
+    cloth/flow/state/bodies.h \
+    cloth/flow/state/fields.c \
+    cloth/flow/state/fields.h \
+    cloth/flow/state/flow.h \
+    cloth/flow/state/forks.c \
+    cloth/flow/state/kernel.h \
+    cloth/flow/state/kernels.h \
+    cloth/flow/state/life.c \
+    cloth/flow/state/life.h \
+    cloth/flow/state/objects.c \
+    cloth/flow/state/room.h \
+    cloth/flow/state/state.c \
+    cloth/flow/state/state.h \
+    cloth/flow/state/tables.c \
+    cloth/flow/state/tables.h \
+    cloth/flow/springs/correct.c \
+    cloth/flow/springs/sides.c \
+    cloth/flow/springs/springs.c \
+    cloth/flow/springs/stretch.c \
+    cloth/flow/elements/elements.c \
+    cloth/flow/elements/members.c \
+    cloth/flow/joints/adopted.c \
+    cloth/flow/joints/chosen.c \
+    cloth/flow/joints/joints.c \
+    cloth/flow/joints/partners.c \
+    cloth/flow/joints/seam_distance.c \
+    cloth/flow/joints/tie_forces.c \
+    cloth/flow/joints/ties.c \
+    cloth/flow/joints/ties.h \
+    cloth/flow/joints/weld_hinges.c \
+    cloth/flow/joints/welds.c \
+    cloth/flow/pins/anchor.c \
+    cloth/flow/pins/anchor.h \
+    cloth/flow/pins/follow.c \
+    cloth/flow/pins/pins.c \
+    cloth/flow/pins/sliders.h \
     cloth/flow/contact/body.c \
     cloth/flow/contact/body.h \
     cloth/flow/contact/certify.c \
@@ -14,113 +66,63 @@ libduite_cloth_a_SOURCES += \
     cloth/flow/contact/contact.h \
     cloth/flow/contact/cut.c \
     cloth/flow/contact/cut_run.h \
+    cloth/flow/contact/force.c \
+    cloth/flow/contact/index.c \
     cloth/flow/contact/maps.c \
     cloth/flow/contact/maps.h \
     cloth/flow/contact/meet.c \
     cloth/flow/contact/meet_shape.c \
     cloth/flow/contact/memory.c \
     cloth/flow/contact/pairs.c \
-    cloth/flow/contact/index.c \
     cloth/flow/contact/pick.c \
+    cloth/flow/contact/project.c \
     cloth/flow/contact/repel.c \
     cloth/flow/contact/repel.h \
     cloth/flow/contact/rows.c \
+    cloth/flow/contact/skin.c \
+    cloth/flow/contact/skin.h \
+    cloth/flow/contact/skin_tables.c \
     cloth/flow/contact/skins.c \
     cloth/flow/contact/skins.h \
+    cloth/flow/contact/stiffness.c \
+    cloth/flow/contact/thickness.c \
     cloth/flow/contact/touch.c \
-    cloth/flow/kernels.h \
-    cloth/flow/run.c \
-    cloth/flow/run.h \
-    cloth/flow/setup/distribute.c \
-    cloth/flow/setup/joints.c \
-    cloth/flow/setup/limit.c \
-    cloth/flow/setup/loads.c \
-    cloth/flow/setup/long_steps.c \
-    cloth/flow/setup/long_steps.h \
-    cloth/flow/setup/members.c \
-    cloth/flow/setup/memory.c \
-    cloth/flow/setup/neighbours.c \
-    cloth/flow/setup/particles.c \
-    cloth/flow/setup/pairs.c \
-    cloth/flow/setup/picks.c \
-    cloth/flow/setup/pieces.c \
-    cloth/flow/setup/setup.h \
-    cloth/flow/setup/seams.c \
-    cloth/flow/setup/sides.c \
-    cloth/flow/setup/skins.c \
-    cloth/flow/setup/source.c \
-    cloth/flow/setup/thickness.c \
-    cloth/flow/setup/source.h \
-    cloth/flow/setup/springs.c \
-    cloth/flow/setup/follow.c \
-    cloth/flow/setup/starts.c \
-    cloth/flow/setup/stiffness.c \
-    cloth/flow/setup/warn.c \
-    cloth/flow/setup/watched.c \
-    cloth/flow/setup/welds.c \
-    cloth/flow/state/adopted.c \
-    cloth/flow/state/chosen.c \
-    cloth/flow/state/fields.c \
-    cloth/flow/state/fields.h \
-    cloth/flow/state/flow.h \
-    cloth/flow/state/life.c \
-    cloth/flow/state/life.h \
-    cloth/flow/state/forks.c \
-    cloth/flow/state/kernel.h \
-    cloth/flow/state/anchor.c cloth/flow/state/anchor.h \
-    cloth/flow/state/objects.c \
-    cloth/flow/state/room.h \
-    cloth/flow/state/skin.c \
-    cloth/flow/state/skin.h \
-    cloth/flow/state/state.c \
-    cloth/flow/state/state.h \
-    cloth/flow/state/tables.c \
-    cloth/flow/state/tables.h \
-    cloth/flow/state/ties.c \
-    cloth/flow/state/ties.h \
-    cloth/flow/step/elements.c \
-    cloth/flow/step/energy.c \
-    cloth/flow/step/energy.h \
-    cloth/flow/step/forces.c \
-    cloth/flow/step/grid.c \
-    cloth/flow/step/grid.h \
-    cloth/flow/step/sliders.h \
-    cloth/flow/step/contact.c \
-    cloth/flow/step/correct.c \
-    cloth/flow/step/pins.c \
-    cloth/flow/step/status.c \
-    cloth/flow/step/settle.c \
-    cloth/flow/step/step.c \
-    cloth/flow/step/step.h \
-    cloth/flow/step/ties.c \
-    cloth/flow/step/varying.c \
     cloth/flow/integrators/euler.c \
     cloth/flow/integrators/explicit.h \
     cloth/flow/integrators/implicit.c \
     cloth/flow/integrators/integrator.c \
     cloth/flow/integrators/integrator.h \
+    cloth/flow/integrators/limit.c \
+    cloth/flow/integrators/long_steps.c \
+    cloth/flow/integrators/long_steps.h \
     cloth/flow/integrators/midpoint.c \
     cloth/flow/integrators/runge.c \
     cloth/flow/integrators/verlet.c \
-    cloth/flow/solver/solve.h \
-    cloth/flow/solver/solver.h \
-    cloth/flow/solver/ties.c \
-    cloth/flow/solver/system.c \
     cloth/flow/solver/cg.c \
-    cloth/flow/solver/pass.c \
-    cloth/flow/solver/preconditioner.c \
     cloth/flow/solver/coarse.c \
     cloth/flow/solver/groups.c \
+    cloth/flow/solver/halo.c \
     cloth/flow/solver/levels.c \
     cloth/flow/solver/levels.h \
+    cloth/flow/solver/pass.c \
     cloth/flow/solver/pattern.c \
-    cloth/flow/solver/halo.c \
     cloth/flow/solver/pieces.c \
-    cloth/flow/observe/contact.c \
+    cloth/flow/solver/preconditioner.c \
+    cloth/flow/solver/solve.h \
+    cloth/flow/solver/solver.h \
+    cloth/flow/solver/system.c \
+    cloth/flow/solver/ties.c \
+    cloth/flow/checkpoint/check.c \
+    cloth/flow/checkpoint/checkpoint.h \
+    cloth/flow/checkpoint/resume.c \
+    cloth/flow/checkpoint/save.c \
+    cloth/flow/checkpoint/saved.c \
+    cloth/flow/observe/energy.c \
+    cloth/flow/observe/energy.h \
     cloth/flow/observe/finish.c \
     cloth/flow/observe/frames.c \
     cloth/flow/observe/observe.h \
     cloth/flow/observe/probes.c \
-    cloth/flow/observe/stretch.c \
     cloth/flow/observe/system.c \
-    cloth/flow/observe/seams.c cloth/flow/observe/watch.c
+    cloth/flow/observe/watch.c \
+    cloth/flow/observe/watched.c

@@ -33,12 +33,4 @@ endif
 libduite_view_a_CPPFLAGS = $(AM_CPPFLAGS) $(EPOXY_CFLAGS) $(EGL_CFLAGS) $(PNG_CFLAGS) $(GLFW_CFLAGS) $(CAIRO_CFLAGS)
 # epoxy opens libEGL and libGL itself, so that their absence can be told.
 VIEW_LIBS = libduite_view.a $(EPOXY_LIBS) $(PNG_LIBS) $(GLFW_LIBS) $(CAIRO_LIBS) -ldl $(CLOTH_LIBS)
-
-bin_PROGRAMS += duite-view
-dist_man_MANS += cloth/duite-view.1
-duite_view_SOURCES = cloth/duite-view.c cloth/view_frames.c cloth/view_frames.h cloth/view_live.c cloth/view_live.h cloth/view_trace.c \
-	cloth/view_trace.h cloth/intersections.h cloth/intersections.c cloth/intersections_folder.c cloth/intersections_parts.h \
-	cloth/intersections_parts.c cloth/intersections_soup.h cloth/intersections_soup.c
-duite_view_LDADD = $(CHART_LIBS) $(VIEW_LIBS)
 endif
-EXTRA_DIST += cloth/duite-view.1

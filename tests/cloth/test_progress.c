@@ -1,5 +1,5 @@
 /* The line of progress says all that there is, and is cut where the terminal ends. */
-#include "cloth/progress.h"
+#include "cloth/app/run/progress.h"
 
 #include "tests/support/unit.h"
 

@@ -1,5 +1,5 @@
 /* What limited a run, of reports that are made here: the largest share of its time decides. */
-#include "cloth/summary_time.h"
+#include "cloth/app/report/summary_time.h"
 
 #include "tests/support/unit.h"
 

@@ -12,7 +12,7 @@ table=$srcdir/tests/whole/garment_golden.txt
 fresh=${DUITE_GOLDEN:-$scratch/fresh}
 case $fresh in /*) ;; *) fresh=$PWD/$fresh ;; esac
 shared=$srcdir/../shared/data/patterns
-page=$srcdir/cloth/duite-garment.1
+page=$srcdir/cloth/app/duite-garment.1
 cd "$scratch" || exit 99
 
 run() { limited "$garment" "$@"; }

@@ -10,7 +10,7 @@ plan_later
 table=$srcdir/tests/whole/mannequin_golden.txt
 fresh=${DUITE_GOLDEN:-$scratch/fresh}
 case $fresh in /*) ;; *) fresh=$PWD/$fresh ;; esac
-page=$srcdir/cloth/duite-mannequin.1
+page=$srcdir/cloth/app/duite-mannequin.1
 document=$srcdir/docs/garments.md
 cd "$scratch" || exit 99
 

@@ -40,7 +40,7 @@ documented() { # every option of --help stands in the manual page
     run --help | grep -o -e '--[a-z]*' | sort -u > options
     test "$(wc -l < options)" -gt 10 || return 1
     while read -r option; do
-        grep -q -e "$option" "$top/cloth/duite-cloth.1" || { echo "$option is not in the page" && return 1; }
+        grep -q -e "$option" "$top/cloth/app/duite-cloth.1" || { echo "$option is not in the page" && return 1; }
     done < options
 }
 ok "the manual page has all options" documented
@@ -91,7 +91,7 @@ ok "the report says what was run" eval 'is scene handkerchief && is vertices 64 
 ok "hashes have 16 digits" eval 'echo "$hash $(value partition_hash)" | grep -cxE "[0-9a-f]{16} [0-9a-f]{16}"'
 
 all_keys() { # exactly the keys of the manual page, in its order
-    sed -n '/^\.SH REPORT/,/^\.SH SIGNALS/s/^\.B //p' "$top/cloth/duite-cloth.1" | tr -d ' ' | tr ',' '\n' > documented
+    sed -n '/^\.SH REPORT/,/^\.SH SIGNALS/s/^\.B //p' "$top/cloth/app/duite-cloth.1" | tr -d ' ' | tr ',' '\n' > documented
     sed -n 's/^ *"\([A-Za-z0-9_]*\)":.*/\1/p' report.json | sed 's/^material_cotton_/material_NAME_/' > reported
     sort documented > documented.sorted
     sort reported | diff documented.sorted - && test "$(wc -l < reported)" -gt 40

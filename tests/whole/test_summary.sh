@@ -18,7 +18,7 @@ names() { # FILE: the limits that it knows
     grep -o '{"\(work\|critical path\|messages\|too few ready tasks\|runtime and main program\)"' "$1" | sort -u
 }
 same_names() {
-    names "$srcdir/cloth/summary_time.c" > ours && names "$sums" > theirs && cat ours && test "$(wc -l < ours)" = 5 && cmp ours theirs
+    names "$srcdir/cloth/app/report/summary_time.c" > ours && names "$sums" > theirs && cat ours && test "$(wc -l < ours)" = 5 && cmp ours theirs
 }
 documented() { names "$sums" | tr -d '{"' | while read -r name; do grep -qF "| $name |" "$page" || { echo "$name" && return 1; }; done; }
 

@@ -3,13 +3,13 @@
  * again. */
 #include "cloth/flow/checkpoint/checkpoint.h"
 
-#include "cloth/flow/bodies.h"
 #include "cloth/flow/contact/body.h"
 #include "cloth/flow/contact/contact.h"
 #include "cloth/flow/contact/repel.h"
-#include "cloth/flow/setup/setup.h"
+#include "cloth/flow/run/setup.h"
 #include "cloth/flow/solver/levels.h"
 #include "cloth/flow/solver/solve.h"
+#include "cloth/flow/state/bodies.h"
 
 #include "cloth/base/memory.h"
 

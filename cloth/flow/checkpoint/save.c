@@ -3,7 +3,7 @@
  * all earlier frames and rows are written when the program gets the checkpoint. */
 #include "cloth/flow/checkpoint/checkpoint.h"
 
-#include "cloth/flow/bodies.h"
+#include "cloth/flow/state/bodies.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -2,8 +2,8 @@
  * boxes of bodies that stand still are made once. */
 #include "cloth/flow/contact/body.h"
 
-#include "cloth/flow/bodies.h"
-#include "cloth/flow/step/step.h"
+#include "cloth/flow/run/step.h"
+#include "cloth/flow/state/bodies.h"
 
 static const struct contact_body *body_of(const struct model *model, uint32_t obstacle)
 {

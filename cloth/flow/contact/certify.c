@@ -7,9 +7,9 @@
 #include "cloth/flow/contact/body.h"
 #include "cloth/flow/contact/contact.h"
 #include "cloth/flow/contact/skins.h"
-#include "cloth/flow/setup/setup.h"
+#include "cloth/flow/run/setup.h"
+#include "cloth/flow/run/step.h"
 #include "cloth/flow/state/room.h"
-#include "cloth/flow/step/step.h"
 
 #include <inttypes.h>
 #include <stdarg.h>

@@ -1,7 +1,7 @@
 #ifndef CLOTH_FLOW_CONTACT_CONTACT_H
 #define CLOTH_FLOW_CONTACT_CONTACT_H
 
-#include "cloth/flow/bodies.h"
+#include "cloth/flow/state/bodies.h"
 
 #include "cloth/contact/row.h"
 #include "cloth/contact/skin.h"

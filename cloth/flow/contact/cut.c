@@ -4,7 +4,7 @@
  * for steps that are given up. */
 #include "cloth/flow/contact/contact.h"
 #include "cloth/flow/contact/cut_run.h"
-#include "cloth/flow/step/step.h"
+#include "cloth/flow/run/step.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -2,7 +2,7 @@
  * again in each step until its last frame is over. */
 #include "cloth/flow/contact/maps.h"
 
-#include "cloth/flow/bodies.h"
+#include "cloth/flow/state/bodies.h"
 
 #include <math.h>
 

@@ -4,7 +4,7 @@
  * the same for every mapping. */
 #include "cloth/flow/contact/body.h"
 #include "cloth/flow/contact/contact.h"
-#include "cloth/flow/state/skin.h"
+#include "cloth/flow/contact/skin.h"
 
 #include "cloth/contact/certificate.h"
 

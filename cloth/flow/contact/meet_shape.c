@@ -5,7 +5,7 @@
  * box. */
 #include "cloth/flow/contact/body.h"
 #include "cloth/flow/contact/contact.h"
-#include "cloth/flow/state/skin.h"
+#include "cloth/flow/contact/skin.h"
 
 #include "cloth/contact/solid.h"
 

@@ -2,7 +2,7 @@
  * during the run. */
 #include "cloth/flow/contact/certify.h"
 #include "cloth/flow/contact/contact.h"
-#include "cloth/flow/setup/setup.h"
+#include "cloth/flow/run/setup.h"
 
 #include "cloth/base/memory.h"
 #include "cloth/contact/solid.h"

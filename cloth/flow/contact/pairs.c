@@ -8,7 +8,7 @@
 #include "cloth/flow/contact/body.h"
 #include "cloth/flow/contact/contact.h"
 #include "cloth/flow/contact/skins.h"
-#include "cloth/flow/step/step.h"
+#include "cloth/flow/run/step.h"
 
 #include "cloth/contact/solid.h"
 

@@ -3,7 +3,7 @@
  * state, so a step that is given up leaves no trace. */
 #include "cloth/flow/contact/repel.h"
 #include "cloth/flow/contact/contact.h"
-#include "cloth/flow/step/step.h"
+#include "cloth/flow/run/step.h"
 
 #include <math.h>
 

@@ -1,4 +1,4 @@
-/* Contacts become ties of the blocks that have their corners (cloth/flow/state/ties.h). Each of
+/* Contacts become ties of the blocks that have their corners (cloth/flow/joints/ties.h). Each of
  * these blocks computes a whole contact from its own rows and the rows that others show, as with
  * elements. A block finds its contacts in the lists of blocks that may keep one. First its record
  * gives their number and the blocks that share them. It makes its table when all ranks know the
@@ -8,8 +8,8 @@
 #include "cloth/contact/repulse.h"
 #include "cloth/flow/contact/contact.h"
 #include "cloth/flow/contact/repel.h"
+#include "cloth/flow/run/step.h"
 #include "cloth/flow/solver/solve.h"
-#include "cloth/flow/step/step.h"
 
 #include <stdlib.h>
 

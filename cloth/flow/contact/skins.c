@@ -2,8 +2,8 @@
  * x. The frame of the boxes moves as the mean of the points does, added up in their order. */
 #include "cloth/flow/contact/skins.h"
 
-#include "cloth/flow/bodies.h"
-#include "cloth/flow/state/skin.h"
+#include "cloth/flow/contact/skin.h"
+#include "cloth/flow/state/bodies.h"
 
 FLOW_KERNEL(keep_halo, FLOW_COLLIDE, struct flow_block_args, (R(halo_x), W(kept_halo_x)))
 static int keep_halo_body(const duite_call *call, const struct keep_halo_fields *on)

@@ -3,7 +3,7 @@
 
 #include "cloth/flow/state/state.h"
 
-/* The skins of all blocks in a step (cloth/flow/state/skin.h), of runs that find contacts.
+/* The skins of all blocks in a step (cloth/flow/contact/skin.h), of runs that find contacts.
  * Functions of the main program. Collective; they return what the runtime does. */
 
 /* Forks the keeping of the halos of x, beside flow_keep: kept_halo_x becomes halo_x. */

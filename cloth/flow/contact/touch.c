@@ -2,7 +2,7 @@
  * hands load and slip over to the pair of features that follows. A list is sorted by its keys, so
  * that it does not depend on the order of finding. */
 #include "cloth/flow/contact/contact.h"
-#include "cloth/flow/step/step.h"
+#include "cloth/flow/run/step.h"
 
 #include <float.h>
 #include <stdlib.h>

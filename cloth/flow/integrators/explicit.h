@@ -2,8 +2,8 @@
 #define CLOTH_FLOW_INTEGRATORS_EXPLICIT_H
 
 #include "cloth/flow/integrators/integrator.h"
-#include "cloth/flow/step/sliders.h"
-#include "cloth/flow/step/step.h"
+#include "cloth/flow/pins/sliders.h"
+#include "cloth/flow/run/step.h"
 #include "cloth/physics/particle.h"
 #include "cloth/physics/stage.h"
 

@@ -3,9 +3,9 @@
  * know how the step before ended, so all of its step comes after that. The recorded round of
  * conjugate gradients serves all solves. */
 #include "cloth/flow/integrators/integrator.h"
+#include "cloth/flow/pins/sliders.h"
+#include "cloth/flow/run/step.h"
 #include "cloth/flow/solver/solve.h"
-#include "cloth/flow/step/sliders.h"
-#include "cloth/flow/step/step.h"
 
 #include "cloth/physics/implicit.h"
 #include "cloth/physics/particle.h"

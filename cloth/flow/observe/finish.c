@@ -1,8 +1,8 @@
 /* Gathers the whole state's part of the report when the last step is done. The hash is made on rank
  * 0 and broadcast to all. */
-#include "cloth/flow/bodies.h"
 #include "cloth/flow/observe/observe.h"
-#include "cloth/flow/setup/setup.h"
+#include "cloth/flow/run/setup.h"
+#include "cloth/flow/state/bodies.h"
 
 #include <math.h>
 #include <string.h>

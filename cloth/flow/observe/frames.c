@@ -3,8 +3,8 @@
  * accepted: then the frame shows this step's end or its begin, which is kept. The frame before must
  * be written by then: rank 0 writes frames one after the other, and each frame's task holds the
  * token. The last frame of a stopped run shows its final state. */
-#include "cloth/flow/bodies.h"
 #include "cloth/flow/observe/observe.h"
+#include "cloth/flow/state/bodies.h"
 
 /* The tick that a frame shows; rounding errors of whole ticks are removed. */
 static double frame_tick(const struct flow_state *state, uint64_t frame)

@@ -2,7 +2,7 @@
  * their rows and report the values. Rank 0 writes one row after the other, as it does frames: each
  * row's task holds the token. */
 #include "cloth/flow/observe/observe.h"
-#include "cloth/flow/step/sliders.h"
+#include "cloth/flow/pins/sliders.h"
 
 /* ---- A block's values ---- */
 

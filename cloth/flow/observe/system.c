@@ -1,10 +1,10 @@
 /* The system of the last step, gathered on rank 0. Each block reports its part in numbers; one task
  * on rank 0 makes plain arrays of all parts. An entry between two blocks is reported by both; the
- * report of the lower block counts. Ties (cloth/flow/state/ties.h) are reported by all blocks that
+ * report of the lower block counts. Ties (cloth/flow/joints/ties.h) are reported by all blocks that
  * they have corners in, and become a pair for each two corners. */
-#include "cloth/flow/bodies.h"
 #include "cloth/flow/observe/observe.h"
-#include "cloth/flow/step/step.h"
+#include "cloth/flow/run/step.h"
+#include "cloth/flow/state/bodies.h"
 
 #include "cloth/solve/system.h"
 

@@ -2,9 +2,9 @@
  * report it, and the main program may find that the run rests. The watched values alternate between
  * two objects, like a step's status. Watching leaves the state as it is and is forked only for runs
  * with probes or rest. */
-#include "cloth/flow/bodies.h"
 #include "cloth/flow/observe/observe.h"
-#include "cloth/flow/step/step.h"
+#include "cloth/flow/run/step.h"
+#include "cloth/flow/state/bodies.h"
 
 #include "cloth/physics/particle.h"
 

@@ -6,10 +6,10 @@
  * second does nothing.
  *
  * In reading order: a solve, its recorded round, the scalars. */
+#include "cloth/flow/run/step.h"
 #include "cloth/flow/solver/levels.h"
 #include "cloth/flow/solver/solve.h"
 #include "cloth/flow/solver/solver.h"
-#include "cloth/flow/step/step.h"
 
 #include <math.h>
 

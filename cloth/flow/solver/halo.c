@@ -3,8 +3,8 @@
  * separate task packs the halo, since the neighbours' passes still read its other half. The choice
  * between the two halos depends on the blocks' homes at the run's begin and changes no result. All
  * ranks know the rows of all packed halos. */
-#include "cloth/flow/bodies.h"
 #include "cloth/flow/solver/solve.h"
+#include "cloth/flow/state/bodies.h"
 
 #include "cloth/base/memory.h"
 

@@ -1,8 +1,8 @@
 #ifndef CLOTH_FLOW_SOLVER_LEVELS_H
 #define CLOTH_FLOW_SOLVER_LEVELS_H
 
-#include "cloth/flow/bodies.h"
 #include "cloth/flow/solver/solver.h"
+#include "cloth/flow/state/bodies.h"
 
 /* The coarse part by groups (cloth/solve/levels.h), on flow->n_levels levels. Without levels these
  * functions do nothing. Collective unless they say local; they return the runtime's code. */

@@ -1,6 +1,6 @@
 /* The pattern of the coarse matrix (coarse.c): the patches that anything joins, later ties too. It
  * is the same on every rank, and is made once a run. */
-#include "cloth/flow/setup/setup.h"
+#include "cloth/flow/run/setup.h"
 #include "cloth/flow/solver/levels.h"
 #include "cloth/flow/solver/solver.h"
 

@@ -3,8 +3,8 @@
  * cancel in that sum. It has only terms of rows: b - D dv - w x dv, D the diagonal besides entries,
  * w the antisymmetric part (cloth/solve/format.h). On a uniform motion c a row of A gives D c - w x
  * c, and w cancels over a piece. So the c that removes the sum is exact, and needs no iteration. */
+#include "cloth/flow/run/step.h"
 #include "cloth/flow/solver/solver.h"
-#include "cloth/flow/step/step.h"
 
 /* Sums over a piece: the lost momentum, the antisymmetric part, D, kg, and the number of rows that
  * a slider or the program's filter holds. */

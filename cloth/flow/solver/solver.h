@@ -1,7 +1,7 @@
 #ifndef CLOTH_FLOW_SOLVER_SOLVER_H
 #define CLOTH_FLOW_SOLVER_SOLVER_H
 
-#include "cloth/flow/bodies.h"
+#include "cloth/flow/state/bodies.h"
 
 /* Shared by the files of the solver. In reading order: system.c makes the system of a step. cg.c
  * solves it, in rounds of passes (pass.c), with a preconditioner (preconditioner.c, coarse.c) or

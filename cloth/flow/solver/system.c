@@ -1,7 +1,7 @@
 /* The system of an implicit step, block by block: the right side b = h (f - h K v) and the matrix
  * (Baraff & Witkin 1998, equation 16). Elements and springs are computed once for both. In half
  * storage each worker sums entries up in room of its own, which stays in its cache. */
-#include "cloth/flow/bodies.h"
+#include "cloth/flow/state/bodies.h"
 
 #include "cloth/physics/particle.h"
 #include "cloth/solve/assemble.h"

@@ -1,4 +1,4 @@
-/* Ties in a solve (cloth/flow/state/ties.h): the ties that every pass reads, and the corners that
+/* Ties in a solve (cloth/flow/joints/ties.h): the ties that every pass reads, and the corners that
  * blocks show each other: rows of s after each pass, coarse functions once a solve. */
 #include "cloth/flow/solver/solver.h"
 

@@ -1,12 +1,12 @@
 /* The table of fields: the columns of the list in fields.h as functions, and the list by number. */
-#include "cloth/flow/bodies.h"
+#include "cloth/flow/state/bodies.h"
 
 #include "cloth/flow/contact/body.h"
 #include "cloth/flow/contact/maps.h"
+#include "cloth/flow/contact/skin.h"
 #include "cloth/flow/observe/observe.h"
 #include "cloth/flow/solver/solver.h"
 #include "cloth/flow/state/life.h"
-#include "cloth/flow/state/skin.h"
 
 /* ---- How many rows ---- */
 

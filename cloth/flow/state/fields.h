@@ -60,7 +60,7 @@ enum {
     X(cut_runs,     ONE,     uint32_t,      4, rows,          certified,    is_state)              \
     /* its strip of the maps of bodies (contact/maps.h) */                                         \
     X(maps,         ONE,     unsigned char, 1, map_bytes,     mapped,       is_derived)            \
-    /* velocity correction (step/correct.c). X with 1 / m in the fourth lane; moves of x since the \
+    /* velocity correction (springs/correct.c). X with 1 / m in the fourth lane; moves of x since the \
      * solve of the step. Rows that others need: X and 1 / m, x at the step's begin, S; x as it is. \
      * 1 if no inner edge needs a correction, and the largest excess of these */                   \
     X(edge_base,    ONE,     phys_vec,      4, rows,          corrected,    is_work)               \

@@ -1,11 +1,11 @@
 #ifndef CLOTH_FLOW_STATE_FLOW_H
 #define CLOTH_FLOW_STATE_FLOW_H
 
+#include "cloth/flow/joints/ties.h"
 #include "cloth/flow/run.h"
-#include "cloth/flow/setup/source.h"
+#include "cloth/flow/run/source.h"
 #include "cloth/flow/state/fields.h"
 #include "cloth/flow/state/tables.h"
-#include "cloth/flow/state/ties.h"
 #include "cloth/solve/frame.h"
 #include "cloth/solve/levels.h"
 #include "cloth/solve/local.h"

@@ -1,6 +1,6 @@
 /* Forks of kernels that declare their fields (kernel.h): the objects follow from the declaration.
  */
-#include "cloth/flow/bodies.h"
+#include "cloth/flow/state/bodies.h"
 
 /* The field that the fork gives for a declared one. */
 static enum flow_field_id given_for(const struct flow_as *as, enum flow_field_id declared)

@@ -1,7 +1,7 @@
 /* Loops over the table of fields (fields.h) make, free, find and swap their objects. A block's
  * objects live where its positions live. Mappings see the graph of the blocks: a block weighs its
  * vertices, and two blocks exchange the ghosts of each. */
-#include "cloth/flow/bodies.h"
+#include "cloth/flow/state/bodies.h"
 
 #include <stddef.h>
 

@@ -1,10 +1,10 @@
 /* The state of a run, x and v with their halos: its start, and the copy that is kept of it until a
  * step is accepted. Restoring the copy makes the step undone. */
-#include "cloth/flow/bodies.h"
 #include "cloth/flow/integrators/integrator.h"
+#include "cloth/flow/run/step.h"
 #include "cloth/flow/solver/levels.h"
 #include "cloth/flow/solver/solve.h"
-#include "cloth/flow/step/step.h"
+#include "cloth/flow/state/bodies.h"
 
 FLOW_KERNEL(initial, FLOW_NO_PART, struct flow_block_args,
             (R(table), W(x), W(v), W(halo_x), W(halo_v)))

@@ -1,10 +1,10 @@
 #ifndef CLOTH_FLOW_STATE_STATE_H
 #define CLOTH_FLOW_STATE_STATE_H
 
-#include "cloth/flow/kernels.h"
+#include "cloth/flow/observe/energy.h"
+#include "cloth/flow/run/grid.h"
 #include "cloth/flow/state/flow.h"
-#include "cloth/flow/step/energy.h"
-#include "cloth/flow/step/grid.h"
+#include "cloth/flow/state/kernels.h"
 
 #include <xxhash.h>
 
@@ -63,7 +63,7 @@ enum { FLOW_PEAK_SPEED, FLOW_PEAK_LONGEST, FLOW_PEAK_SHORTEST, FLOW_PEAKS };
 /* Numbers of a watched vertex: position, velocity, reaction, force of contact; sums of a free
  * piece. */
 enum { FLOW_PROBE_VALUES = 12, FLOW_PIECE_SUMS = 8 };
-/* Energies, J, and after them the torque that uncorrected triangles leave, N m (step/energy.c).
+/* Energies, J, and after them the torque that uncorrected triangles leave, N m (observe/energy.c).
  */
 enum {
     FLOW_ENERGY_MOTION,

@@ -1,6 +1,6 @@
 /* What holds of every kind of the table, also of the next one: its descriptor is whole, its parts
  * belong together, and elements do not know which others they stand with. */
-#include "cloth/flow/setup/source.h"
+#include "cloth/flow/run/source.h"
 #include "tests/cloth/element/samples.h"
 
 #include <stdio.h>

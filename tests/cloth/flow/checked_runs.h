@@ -1,7 +1,7 @@
 #ifndef TESTS_CLOTH_FLOW_CHECKED_RUNS_H
 #define TESTS_CLOTH_FLOW_CHECKED_RUNS_H
 
-#include "cloth/flow/kernels.h"
+#include "cloth/flow/state/kernels.h"
 #include "tests/cloth/flow/models.h"
 #include "tests/cloth/scene/scene_file.h"
 #include "tests/support/unit.h"

@@ -1,6 +1,6 @@
 /* Kernels as they must not be declared: test_kernels.sh compiles this with each number of WRONG.
  * 0: right. */
-#include "cloth/flow/bodies.h"
+#include "cloth/flow/state/bodies.h"
 
 #if WRONG == 1 /* a misspelt field */
 FLOW_KERNEL(implicit, FLOW_POSITION, struct flow_step_args, (R(table), R(v), RW(x), W(halo_y)))

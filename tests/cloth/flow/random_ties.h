@@ -1,9 +1,9 @@
 #ifndef TESTS_CLOTH_FLOW_RANDOM_TIES_H
 #define TESTS_CLOTH_FLOW_RANDOM_TIES_H
 
-#include "cloth/flow/setup/setup.h"
+#include "cloth/flow/run/setup.h"
+#include "cloth/flow/run/step.h"
 #include "cloth/flow/solver/solve.h"
-#include "cloth/flow/step/step.h"
 #include "tests/support/unit.h"
 
 #include <math.h>

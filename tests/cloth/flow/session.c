@@ -1,8 +1,8 @@
 #include "tests/cloth/flow/session.h"
 
 #include "cloth/flow/contact/certify.h"
-#include "cloth/flow/kernels.h"
-#include "cloth/flow/setup/setup.h"
+#include "cloth/flow/run/setup.h"
+#include "cloth/flow/state/kernels.h"
 #include "tests/support/unit.h"
 
 static int take_row(void *context, uint64_t step, double time, size_t n, const double *values,

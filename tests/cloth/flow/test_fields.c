@@ -4,9 +4,9 @@
 #include "cloth/flow/checkpoint/checkpoint.h"
 #include "cloth/flow/contact/certify.h"
 #include "cloth/flow/contact/repel.h"
-#include "cloth/flow/setup/setup.h"
+#include "cloth/flow/run/setup.h"
+#include "cloth/flow/run/step.h"
 #include "cloth/flow/solver/solve.h"
-#include "cloth/flow/step/step.h"
 #include "tests/cloth/flow/kinds.h"
 #include "tests/support/unit.h"
 

@@ -1,5 +1,5 @@
 /* The time grid and what steps are refused for, without a run. */
-#include "cloth/flow/step/grid.h"
+#include "cloth/flow/run/grid.h"
 #include "tests/support/unit.h"
 
 #include <math.h>

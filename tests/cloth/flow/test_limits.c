@@ -1,7 +1,7 @@
 /* The bound of the fastest vibration against a chain's, whose frequencies are known; what a run
  * says of a step that is too long; and that such a step is, on the chain, just too long. The scale
  * of energies that steps may gain. */
-#include "cloth/flow/setup/source.h"
+#include "cloth/flow/run/source.h"
 #include "tests/cloth/flow/models.h"
 #include "tests/support/unit.h"
 

@@ -3,8 +3,8 @@
  * cloth has no springs between the corners of its triangles, and across welds. Of what skins find a
  * contact stands once. */
 #include "cloth/flow/contact/contact.h"
+#include "cloth/flow/contact/skin.h"
 #include "cloth/flow/state/flow.h"
-#include "cloth/flow/state/skin.h"
 #include "tests/cloth/flow/models.h"
 #include "tests/support/unit.h"
 

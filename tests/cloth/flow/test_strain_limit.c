@@ -1,6 +1,6 @@
 /* Limits of strain in runs, against closed forms: how far a chain hangs, the fastest vibration, and
  * that a step that goes far over a limit is made again. */
-#include "cloth/flow/setup/source.h"
+#include "cloth/flow/run/source.h"
 #include "tests/cloth/flow/models.h"
 #include "tests/support/unit.h"
 

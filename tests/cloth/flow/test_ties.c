@@ -1,7 +1,7 @@
 /* Ties of up to four weighted corners in up to four blocks: what blocks make of them, through their
  * tables, against the dense matrix that the list of ties is. */
-#include "cloth/flow/bodies.h"
-#include "cloth/flow/kernels.h"
+#include "cloth/flow/state/bodies.h"
+#include "cloth/flow/state/kernels.h"
 #include "cloth/solve/coarse.h"
 #include "cloth/solve/local.h"
 #include "tests/cloth/flow/models.h"

@@ -1,7 +1,7 @@
 /* Ties in runs: joints between up to four weighted points, and rooms for ties from step to step. */
-#include "cloth/flow/bodies.h"
+#include "cloth/flow/run/step.h"
 #include "cloth/flow/solver/solve.h"
-#include "cloth/flow/step/step.h"
+#include "cloth/flow/state/bodies.h"
 #include "tests/cloth/flow/session.h"
 #include "tests/support/unit.h"
 

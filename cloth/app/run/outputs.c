@@ -1,0 +1,341 @@
+/* The outputs and checks of a run, from the first frame to the last. Folders are locked before the
+ * first write, and stay locked. */
+#include "cloth/app/run/outputs.h"
+
+#include "cloth/app/run/keeper.h"
+#include "cloth/app/run/outputs_setup.h"
+#include "cloth/app/run/restart.h"
+#include "cloth/base/memory.h"
+#include "cloth/output/output.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+/* Another run may write into the same folder. */
+static int lock_folder(struct output_lock **lock, const char *folder, struct cloth_error *error)
+{
+    struct cloth_error note = {0};
+    const int code = output_lock_take(lock, folder, &note, error);
+    if (note.code && !code)
+        fprintf(stderr, "duite-cloth: warning: %s\n", note.text);
+    return code;
+}
+
+/* The live view's thread calls it, too. */
+static void warn(const char *text)
+{
+    fprintf(stderr, "duite-cloth: warning: %s\n", text);
+}
+
+/* Port 0. */
+static bool is_any_port(const char *address)
+{
+    const char *colon = strrchr(address, ':');
+    return strtoul(colon ? colon + 1 : address, NULL, 10) == 0;
+}
+
+static int open_system(struct outputs *to, const struct model *model, struct cloth_error *error)
+{
+    if (!model_is_implicit(model))
+        return cloth_fail(error, CLOTH_E_INPUT,
+                          "--save-system: an explicit integrator solves no system");
+    if (model->integrator != MODEL_IMPLICIT_EULER || model->newton_steps > 1)
+        return cloth_fail(error, CLOTH_E_INPUT,
+                          "--save-system: a step has one system of its own by implicit_euler with "
+                          "newton.steps 1 only");
+    if (model_is_filtered(model))
+        return cloth_fail(
+            error, CLOTH_E_INPUT,
+            "--save-system: the files know held vertices only, no pins to lines or planes");
+    if (model->end / model->h + 0.5 < 1)
+        return cloth_fail(error, CLOTH_E_INPUT,
+                          "--save-system: the scene ends before its first step");
+    return lock_folder(to->locks + 1, to->options->save_system, error);
+}
+
+/* Opens the probes in the folder of frames, which exists. */
+static int open_probes(struct outputs *to, const struct flow *flow, const uint64_t *n_rows,
+                       struct cloth_error *error)
+{
+    const char *header = flow_header(flow);
+    return header ? output_probes_open(&to->probes, to->options->output, header, n_rows, error)
+                  : output_probes_forget(to->options->output, error);
+}
+
+/* The shapes of a later phase follow when it begins. */
+static int open_colours(struct outputs *to, const struct phases *phases, const struct flow *flow,
+                        const uint64_t *n_frames, struct cloth_error *error)
+{
+    const int code = output_colours_open(&to->colours, to->options->output,
+                                         (uint32_t)flow_vertices(flow), n_frames, error);
+    return code || phases->now ? code
+                               : outputs_colours_rest(&to->colours, phases_model(phases),
+                                                      n_frames ? *n_frames : 0, error);
+}
+
+static int open_forces(struct outputs *to, const struct model *model, const struct flow *flow,
+                       const uint64_t *n_frames, struct cloth_error *error)
+{
+    const char *folder = to->options->output;
+    return model->contact.force && model_certifies(model)
+               ? output_forces_open(&to->forces, folder, (uint32_t)flow_vertices(flow), n_frames,
+                                    to->settler, error)
+               : output_forces_forget(folder, error);
+}
+
+/* Frames and rows of an earlier run that stay, over all its phases. */
+struct stays {
+    uint64_t frames, rows;
+};
+
+static int open_output(struct outputs *to, const struct phases *phases, const struct flow *flow,
+                       struct output_setup *setup, const struct stays *stays,
+                       struct cloth_error *error)
+{
+    const struct model *model = phases_model(phases);
+    const uint64_t *n_frames = stays ? &stays->frames : NULL;
+    setup->n_frames = n_frames;
+    int code = output_settler_open(&to->settler, error);
+    setup->settler = to->settler;
+    code = code ? code : output_open(&to->frames, setup, error);
+    code = code ? code : open_colours(to, phases, flow, n_frames, error);
+    code = code ? code : outputs_hdf5_open(&to->hdf5, model, to->options->output, n_frames, error);
+    code = code ? code : open_forces(to, model, flow, n_frames, error);
+    return code ? code : open_probes(to, flow, stays ? &stays->rows : NULL, error);
+}
+
+int outputs_lock(struct outputs *to, const struct simulate_options *options,
+                 struct cloth_error *error)
+{
+    if (!options->output || to->locks[0])
+        return CLOTH_OK;
+    return lock_folder(to->locks, options->output, error);
+}
+
+/* Deletes an earlier run's checkpoints unless this run resumes it. */
+static int open_keeper(struct outputs *to, const struct phases *phases, bool resumed,
+                       struct cloth_error *error)
+{
+    const struct simulate_options *options = to->options;
+    if (!resumed && output_checkpoints_forget(options->output, error))
+        return error->code;
+    to->phases = phases;
+    if (!(options->checkpoint > 0))
+        return CLOTH_OK;
+    to->settings = restart_settings(phases, error);
+    return to->settings ? keeper_open(&to->keeper, options->output, options->checkpoint,
+                                      to->settings, to->settler, to->hdf5.frames, error)
+                        : error->code;
+}
+
+/* Checks, before the first write, that the live view can listen. */
+static int open_live(struct outputs *to, struct cloth_error *error)
+{
+    const char *address = to->options->live;
+    char host[65] = "";
+    const int code = live_publish_open(&to->live, address, warn, error);
+    gethostname(host, sizeof host - 1);
+    if (!code && (!to->options->quiet || is_any_port(address)))
+        fprintf(stderr, "duite-cloth: live view: duite-view --connect %s on %s\n",
+                live_publish_address(to->live), host);
+    return code;
+}
+
+/* Files, and the scene of the live view, of the first phase of this run. */
+static int open_frames(struct outputs *to, const struct phases *phases, const struct flow *flow,
+                       const struct contact_apart *apart, const struct flow_resumed *resumed,
+                       struct cloth_error *error)
+{
+    const struct flow_before before = phases_before(phases);
+    const struct stays stays = {.frames = resumed ? resumed->frames : 0,
+                                .rows = before.steps + (resumed ? resumed->steps : 0) + 1};
+    struct outputs_setup made;
+    int code = outputs_setup_make(&made, to->options, phases, apart, error);
+    if (!code && to->options->output)
+        code = open_output(to, phases, flow, &made.setup, resumed ? &stays : NULL, error);
+    if (!code && to->live)
+        code = live_publish_scene(to->live, &made.setup, phases->total.simulated_seconds, error);
+    outputs_setup_free(&made);
+    return code;
+}
+
+int outputs_open(struct outputs *to, const struct simulate_options *options,
+                 const struct phases *phases, const struct flow *flow,
+                 const struct contact_apart *apart, const struct flow_resumed *resumed,
+                 struct cloth_error *error)
+{
+    const struct model *model = phases_model(phases), *last = phases->models + phases->n - 1;
+    to->options = options;
+    int code = CLOTH_OK;
+    if (options->check_intersections)
+        code = intersections_of(&to->intersections, model, apart, "duite-cloth", false, error);
+    if (!code)
+        code = drape_of(&to->drape, last, error);
+    if (!code && options->live)
+        code = open_live(to, error);
+    if (!code && options->save_system)
+        code = open_system(to, last, error);
+    if (!code)
+        code = outputs_lock(to, options, error);
+    if (!code && (options->output || options->live))
+        code = open_frames(to, phases, flow, apart, resumed, error);
+    if (!code && options->output)
+        code = open_keeper(to, phases, resumed, error);
+    return code || !phases->now ? code : outputs_go_on(to, phases, apart, error);
+}
+
+/* Writes places of obstacles and seams for the frames of all phases up to this one. */
+static int write_scene(const struct outputs *of, const struct phases *phases,
+                       const struct contact_apart *apart, struct cloth_error *error)
+{
+    const double begin = phases->total.simulated_seconds;
+    struct outputs_setup made;
+    int code = outputs_setup_make(&made, of->options, phases, apart, error);
+    if (!code && of->frames)
+        code = output_scene(of->frames, &made.setup, error);
+    if (!code && of->frames)
+        output_bodies_go_on(of->frames, made.setup.bodies, begin);
+    if (!code && of->live)
+        code = live_publish_scene(of->live, &made.setup, begin, error);
+    outputs_setup_free(&made);
+    return code;
+}
+
+int outputs_go_on(struct outputs *to, const struct phases *phases,
+                  const struct contact_apart *apart, struct cloth_error *error)
+{
+    int code = CLOTH_OK;
+    outputs_count(to);
+    if (to->options->check_intersections)
+        code = intersections_of(&to->intersections, phases_model(phases), apart, "duite-cloth",
+                                false, error);
+    if (to->intersections)
+        intersections_begin(to->intersections, phases->total.simulated_seconds);
+    if (!code)
+        code = outputs_colours_rest(&to->colours, phases_model(phases),
+                                    phases_before(phases).frames, error);
+    if (!code)
+        code = outputs_hdf5_go_on(&to->hdf5, phases_model(phases), error);
+    return code || !(to->frames || to->live) ? code : write_scene(to, phases, apart, error);
+}
+
+struct intersections_found outputs_found(const struct outputs *of)
+{
+    struct intersections_found all = of->found;
+    if (!of->intersections)
+        return all;
+    const struct intersections_found last = intersections_found(of->intersections);
+    if (!all.bad)
+        all.first = last.first;
+    all.frames = last.frames > all.frames ? last.frames : all.frames; /* up to its last */
+    all.bad += last.bad;
+    all.pairs = last.pairs > all.pairs ? last.pairs : all.pairs;
+    all.with_shapes = last.with_shapes > all.with_shapes ? last.with_shapes : all.with_shapes;
+    return all;
+}
+
+void outputs_count(struct outputs *of)
+{
+    of->found = outputs_found(of);
+    intersections_close(&of->intersections);
+}
+
+void outputs_close(struct outputs *of, struct cloth_error *error)
+{
+    keeper_close(&of->keeper);
+    output_settler_close(&of->settler, error);
+    output_probes_close(&of->probes, error);
+    output_forces_close(&of->forces, error);
+    output_colours_close(&of->colours, error);
+    output_close(&of->frames, error);
+    outputs_hdf5_close(&of->hdf5);
+    live_publish_close(&of->live);
+}
+
+void outputs_free(struct outputs *of)
+{
+    intersections_close(&of->intersections);
+    drape_close(&of->drape);
+    free(of->settings);
+    of->settings = NULL;
+    output_lock_free(of->locks);
+    output_lock_free(of->locks + 1);
+}
+
+/* ---- Calls from the run ---- */
+
+int outputs_system(void *context, const struct solve_system *system, struct cloth_error *error)
+{
+    const struct outputs *of = context;
+    return output_system(of->options->save_system, system, error);
+}
+
+/* Checks the state, then, if frames are written, their floats. */
+static int check_frame(const struct outputs *of, uint64_t frame, double time,
+                       const double *position, struct cloth_error *error)
+{
+    const int code = intersections_frame(of->intersections, frame, time, position, false, error);
+    if (code || !of->frames)
+        return code;
+    return intersections_frame(of->intersections, frame, time, position, true, error);
+}
+
+int outputs_frame(void *context, uint64_t frame, double time, const double *position,
+                  struct cloth_error *error)
+{
+    struct outputs *of = context;
+    int code = CLOTH_OK;
+    if (of->frames) {
+        code = output_frame(of->frames, frame, time, position, error);
+        of->frames_written = frame + (code ? 0 : 1);
+    }
+    if (!code)
+        outputs_hdf5_position(&of->hdf5, frame, time, position);
+    if (!code && of->live)
+        live_publish_frame(of->live, frame, time, position);
+    if (!code && of->intersections)
+        code = check_frame(of, frame, time, position, error);
+    if (of->drape)
+        drape_frame(of->drape, position);
+    return code;
+}
+
+/* Waits first: frames before one that failed may still be on their way to the disk. */
+uint64_t outputs_written(void *context)
+{
+    const struct outputs *of = context;
+    struct cloth_error said = {0};
+    output_settler_wait(of->settler, &said);
+    return of->frames ? output_frames_settled(of->frames) : of->frames_written;
+}
+
+int outputs_places(void *context, uint64_t frame, const struct flow_places *places,
+                   struct cloth_error *error)
+{
+    struct outputs *of = context;
+    return outputs_colours_places(&of->colours, frame, places, error);
+}
+
+int outputs_beside(void *context, const struct flow_beside *beside, struct cloth_error *error)
+{
+    struct outputs *of = context;
+    (void)error;
+    outputs_hdf5_beside(&of->hdf5, beside);
+    return CLOTH_OK;
+}
+
+int outputs_force(void *context, uint64_t frame, const double *force, struct cloth_error *error)
+{
+    struct outputs *of = context;
+    outputs_hdf5_force(&of->hdf5, force);
+    return output_forces_frame(of->forces, frame, force, error);
+}
+
+int outputs_row(void *context, uint64_t step, double time, size_t n, const double *values,
+                struct cloth_error *error)
+{
+    const struct outputs *of = context;
+    return output_probes_row(of->probes, step, time, n, values, error);
+}

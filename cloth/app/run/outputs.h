@@ -1,0 +1,69 @@
+#ifndef CLOTH_APP_RUN_OUTPUTS_H
+#define CLOTH_APP_RUN_OUTPUTS_H
+
+#include "cloth/app/check/drape.h"
+#include "cloth/app/check/intersections.h"
+#include "cloth/app/run/options.h"
+#include "cloth/app/run/outputs_colours.h"
+#include "cloth/app/run/outputs_hdf5.h"
+#include "cloth/app/run/phases.h"
+#include "cloth/flow/run.h"
+#include "cloth/live/live.h"
+
+/* The outputs and checks of a run: frames, probes, forces, systems, intersections, the drape test.
+ * They are on rank 0 alone, and begin as zero. All functions are local. */
+struct untangle_result;
+struct outputs {
+    const struct simulate_options *options;
+    struct output_lock *locks[2];        /* of the folders of frames and of the system */
+    struct output_frames *frames;        /* if they are wanted; */
+    struct output_settler *settler;      /* brings them to the disk */
+    _Atomic uint64_t frames_written;     /* with those of runs before; any thread may read it */
+    struct output_probes *probes;        /* if the scene has any */
+    struct outputs_hdf5 hdf5;            /* if the scene asks for them */
+    struct live_publisher *live;         /* if they are to be seen live */
+    struct output_colours *colours;      /* as the frames */
+    struct output_forces *forces;        /* of frames; NULL: none */
+    struct intersections *intersections; /* if they are looked for */
+    struct intersections_found found;    /* then, at the end; before it of the phases so far */
+    struct drape *drape;                 /* if the scene has that test */
+    struct drape_found drapes;           /* then, at the end */
+    struct keeper *keeper;               /* of checkpoints, if they are wanted; then also: */
+    char *settings;                      /* restart_settings */
+    const struct phases *phases;
+    const struct untangle_result *untangled;
+};
+
+/* The folder of frames is this run's, before anything else of it is looked at. */
+int outputs_lock(struct outputs *to, const struct simulate_options *options,
+                 struct cloth_error *error);
+/* Checks and opens the outputs that options and model ask for. resumed: of a run that goes on with
+ * an earlier run's files; else NULL. outputs_close and outputs_free follow, also after an error.
+ * Returns a cloth_code. */
+int outputs_open(struct outputs *to, const struct simulate_options *options,
+                 const struct phases *phases, const struct flow *flow,
+                 const struct contact_apart *apart, const struct flow_resumed *resumed,
+                 struct cloth_error *error);
+/* The same when a further phase begins: the frames go on. Returns a cloth_code. */
+int outputs_go_on(struct outputs *to, const struct phases *phases,
+                  const struct contact_apart *apart, struct cloth_error *error);
+/* Intersections in all frames so far, of all phases; outputs_count ends the count of a phase. */
+void outputs_count(struct outputs *of);
+struct intersections_found outputs_found(const struct outputs *of);
+/* The files are whole. */
+void outputs_close(struct outputs *of, struct cloth_error *error);
+void outputs_free(struct outputs *of);
+
+/* Functions of a struct flow_output whose context is a struct outputs. */
+int outputs_frame(void *context, uint64_t frame, double time, const double *position,
+                  struct cloth_error *error);
+uint64_t outputs_written(void *context);
+int outputs_places(void *context, uint64_t frame, const struct flow_places *places,
+                   struct cloth_error *error);
+int outputs_beside(void *context, const struct flow_beside *beside, struct cloth_error *error);
+int outputs_force(void *context, uint64_t frame, const double *force, struct cloth_error *error);
+int outputs_row(void *context, uint64_t step, double time, size_t n, const double *values,
+                struct cloth_error *error);
+int outputs_system(void *context, const struct solve_system *system, struct cloth_error *error);
+
+#endif

@@ -1,0 +1,39 @@
+#ifndef CLOTH_APP_RUN_OUTPUTS_HDF5_H
+#define CLOTH_APP_RUN_OUTPUTS_HDF5_H
+
+#include "cloth/element/strain.h"
+#include "cloth/flow/run.h"
+#include "cloth/output/hdf5.h"
+
+/* The scientific frames of a run. Their parts come from tasks one after the other, in any order;
+ * the last one sends the frame off. Rank 0 alone has any; it begins as zero. Functions are local.
+ */
+struct outputs_hdf5 {
+    struct output_hdf5 *frames; /* NULL: none are wanted */
+    struct output_state *state; /* the frame whose parts are coming; NULL: none */
+    unsigned parts, have;       /* bits: that a frame has; that came */
+    struct element_strains strains;
+    struct cloth_error unwritten; /* then, at the end: frames that were not written */
+};
+
+/* Size of a model's frames on the disk, bytes a frame; 0: it has none. */
+double outputs_hdf5_bytes(const struct model *model);
+
+/* Begins them in a folder of frames, while there are meshes, or removes those of an earlier run.
+ * n_frames: the first *n_frames of the earlier run stay, which this one resumes; NULL: the run is
+ * new. Returns a cloth_code. */
+int outputs_hdf5_open(struct outputs_hdf5 *to, const struct model *model, const char *folder,
+                      const uint64_t *n_frames, struct cloth_error *error);
+/* Goes on with another model of the same cloths, while there are meshes. Returns a cloth_code. */
+int outputs_hdf5_go_on(struct outputs_hdf5 *to, const struct model *model,
+                       struct cloth_error *error);
+/* The files are whole; fills `unwritten`. */
+void outputs_hdf5_close(struct outputs_hdf5 *of);
+
+/* The parts of a frame, by vertex. Frames that are not taken are ignored. */
+void outputs_hdf5_position(struct outputs_hdf5 *of, uint64_t frame, double time,
+                           const double *position);
+void outputs_hdf5_beside(struct outputs_hdf5 *of, const struct flow_beside *beside);
+void outputs_hdf5_force(struct outputs_hdf5 *of, const double *force);
+
+#endif

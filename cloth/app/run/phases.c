@@ -1,0 +1,271 @@
+/* A phase leaves only its final state to the next one; in everything else it is a run of its own.
+ */
+#include "cloth/app/run/phases.h"
+
+#include "cloth/app/run/phases_check.h"
+#include "cloth/base/memory.h"
+#include "cloth/base/sets.h"
+
+#include <math.h>
+#include <mpi.h>
+#include <stdlib.h>
+#include <string.h>
+
+static int make_room(struct phases *phases, uint32_t n, struct cloth_error *error)
+{
+    phases->n = n;
+    phases->models = calloc(n, sizeof *phases->models);
+    phases->done = calloc(n, sizeof *phases->done);
+    return phases->models && phases->done
+               ? CLOTH_OK
+               : cloth_fail(error, CLOTH_E_MEMORY, "no memory for the phases");
+}
+
+int phases_read(struct phases *phases, const char *path, size_t n_sets,
+                const struct scene_set *sets, struct cloth_error *error)
+{
+    struct model first;
+    int code = scene_read(&first, path, n_sets, sets, error);
+    phases->named = first.n_phases > 0;
+    if (!code)
+        code = make_room(phases, first.n_phases ? first.n_phases : 1, error);
+    if (code) {
+        model_free(&first);
+        return code;
+    }
+    phases->models[0] = first;
+    phases->n_vertices = model_first(&first, first.n_cloths);
+    for (uint32_t i = 1; i < phases->n && !code; i++) {
+        code = scene_read_phase(phases->models + i, path, i, n_sets, sets, error);
+        if (!code)
+            code = phases_check(&phases->models[0], phases->models + i, i, error);
+    }
+    for (uint32_t i = 0; i < phases->n && phases->named && !code; i++)
+        phases->done[i].name = phases->models[i].phases[i].name;
+    if (!code && phases->n > 1)
+        phases->end = cloth_alloc(model_first(&first, first.n_cloths), sizeof *phases->end, error);
+    return code ? code : error->code;
+}
+
+int phases_share(struct phases *phases, struct cloth_error *error)
+{
+    uint32_t of[3] = {phases->n, phases->named, phases->now};
+    MPI_Bcast(of, 3, MPI_UINT32_T, 0, MPI_COMM_WORLD);
+    MPI_Bcast(&phases->total, sizeof phases->total, MPI_BYTE, 0, MPI_COMM_WORLD);
+    phases->named = of[1];
+    phases->now = of[2];
+    return of[0] && !phases->models ? make_room(phases, of[0], error) : CLOTH_OK;
+}
+
+struct flow_before phases_before(const struct phases *phases)
+{
+    const struct flow_report *total = &phases->total;
+    return (struct flow_before){.goes_on = phases->now > 0,
+                                .frames = total->frames,
+                                .steps = total->steps,
+                                .time = total->simulated_seconds};
+}
+
+size_t phases_numbers(const struct phases *phases)
+{
+    return 6 * (size_t)phases->n_vertices;
+}
+
+/* The cloths of the phase of now. */
+static int start_at(struct phases *phases, double (*from)[6], struct cloth_error *error)
+{
+    uint32_t first = 0;
+    struct model *model = phases_model(phases);
+    for (uint32_t c = 0; c < model->n_cloths; c++) {
+        const uint32_t n = model->cloths[c].mesh.n_vertices;
+        double(*start)[6] = cloth_alloc(n, sizeof *start, error);
+        if (!start)
+            return CLOTH_E_MEMORY;
+        memcpy(start, from + first, n * sizeof *start);
+        model_start_at(model->cloths + c, *start);
+        first += n;
+    }
+    return CLOTH_OK;
+}
+
+int phases_start(struct phases *phases, const double *numbers, struct cloth_error *error)
+{
+    const size_t n = phases_numbers(phases);
+    phases->keeps_start = true;
+    if (!phases->start)
+        phases->start = cloth_alloc(n, sizeof *numbers, error);
+    if (!phases->start)
+        return CLOTH_E_MEMORY;
+    memcpy(phases->start, numbers, n * sizeof *numbers);
+    return start_at(phases, phases->start, error);
+}
+
+int phases_next(struct phases *phases, struct cloth_error *error)
+{
+    phases->now++;
+    return phases->keeps_start ? phases_start(phases, *phases->end, error)
+                               : start_at(phases, phases->end, error);
+}
+
+int phases_joined(const struct phases *phases, uint32_t n, uint32_t **joined,
+                  struct cloth_error *error)
+{
+    *joined = NULL;
+    for (uint32_t i = 0; i <= phases->now; i++) {
+        const uint32_t *of = phases->models[i].contact.apart.joined;
+        if (of && !*joined) {
+            *joined = cloth_alloc(n, sizeof **joined, error);
+            if (!*joined)
+                return CLOTH_E_MEMORY;
+            cloth_sets_start(*joined, n);
+        }
+        for (uint32_t v = 0; v < n && of; v++)
+            cloth_sets_join(*joined, v, of[v]);
+    }
+    for (uint32_t v = 0; v < n && *joined; v++)
+        (*joined)[v] = cloth_sets_root(*joined, v);
+    return CLOTH_OK;
+}
+
+/* ---- The report of all phases ---- */
+
+/* The sum of the numbers; NaN if neither is one. */
+static double sum(double a, double b)
+{
+    return isnan(a) ? b : isnan(b) ? a : a + b;
+}
+
+static void add_counts(struct flow_report *to, const struct flow_report *of)
+{
+    to->steps += of->steps;
+    to->newton_steps += of->newton_steps;
+    to->newton_unconverged += of->newton_unconverged;
+    to->steps_halved += of->steps_halved;
+    for (int i = 0; i < FLOW_CAUSES; i++)
+        to->halved_by[i] += of->halved_by[i];
+    to->contact_pairs += of->contact_pairs;
+    to->contact_solves += of->contact_solves;
+    to->contact_cuts += of->contact_cuts;
+    to->contact_queries += of->contact_queries;
+    to->contact_queries_again += of->contact_queries_again;
+    to->contact_graphs += of->contact_graphs;
+    to->contact_pinches += of->contact_pinches;
+    to->steps_retaken += of->steps_retaken;
+    to->cg_iterations_total += of->cg_iterations_total;
+    to->cg_restarts += of->cg_restarts;
+    to->factors_shifted += of->factors_shifted;
+    to->correction_rounds += of->correction_rounds;
+    to->corrections_unmet += of->corrections_unmet;
+    to->contact_cut_momentum += of->contact_cut_momentum;
+}
+
+static void add_seconds(struct flow_report *to, const struct flow_report *of)
+{
+    to->simulated_seconds += of->simulated_seconds;
+    to->wall_seconds += of->wall_seconds;
+    to->seconds_force = sum(to->seconds_force, of->seconds_force);
+    to->seconds_acceleration = sum(to->seconds_acceleration, of->seconds_acceleration);
+    to->seconds_matrix = sum(to->seconds_matrix, of->seconds_matrix);
+    to->seconds_cg = sum(to->seconds_cg, of->seconds_cg);
+    to->seconds_velocity = sum(to->seconds_velocity, of->seconds_velocity);
+    to->seconds_position = sum(to->seconds_position, of->seconds_position);
+    to->seconds_collide = sum(to->seconds_collide, of->seconds_collide);
+    to->seconds_correction = sum(to->seconds_correction, of->seconds_correction);
+    to->seconds_output = sum(to->seconds_output, of->seconds_output);
+}
+
+static void add_counters(duite_counters *to, const duite_counters *of)
+{
+    to->tasks += of->tasks;
+    to->placed += of->placed;
+    to->stolen += of->stolen;
+    to->chained += of->chained;
+    to->messages += of->messages;
+    to->bytes += of->bytes;
+    to->busy += of->busy;
+    to->idle += of->idle;
+    to->graphs_recorded += of->graphs_recorded;
+    to->delegated += of->delegated;
+    to->awaited += of->awaited;
+    to->exposed += of->exposed;
+    to->migrated += of->migrated;
+    to->stolen_far += of->stolen_far;
+}
+
+static uint64_t larger(uint64_t a, uint64_t b)
+{
+    return a > b ? a : b;
+}
+
+static void take_peaks(struct flow_report *to, const struct flow_report *of)
+{
+    to->contacts = larger(to->contacts, of->contacts);
+    to->contact_cut_run = larger(to->contact_cut_run, of->contact_cut_run);
+    to->cg_iterations_max = larger(to->cg_iterations_max, of->cg_iterations_max);
+    to->momentum_lost = fmax(to->momentum_lost, of->momentum_lost);
+    to->mass_norm_error = fmax(to->mass_norm_error, of->mass_norm_error);
+    to->correction_excess = fmax(to->correction_excess, of->correction_excess);
+    to->stretch_highest = fmax(to->stretch_highest, of->stretch_highest);
+}
+
+/* sewn: it ended where it did since all seams were closed. */
+static const char *ended(const struct flow_report *report, bool sewn)
+{
+    if (report->stopped)
+        return "stopped";
+    if (sewn)
+        return "sewn";
+    return isnan(report->rest_seconds) ? "end" : "rest";
+}
+
+void phases_add(struct phases *phases, const struct flow_report *report)
+{
+    const struct flow_report before = phases->total;
+    struct flow_report *total = &phases->total;
+    struct phase_done *done = phases->done + phases->now;
+    done->steps = report->steps;
+    done->cg_iterations_mean = model_is_implicit(phases_model(phases))
+                                   ? (double)report->cg_iterations_total / (double)report->steps
+                                   : NAN;
+    done->simulated_seconds = report->simulated_seconds;
+    done->wall_seconds = report->wall_seconds;
+    done->ended = ended(report, phases_model(phases)->sewn > 0);
+    *total = *report;
+    if (!phases->now)
+        return;
+    add_counts(total, &before);
+    add_seconds(total, &before);
+    add_counters(&total->counters, &before.counters);
+    take_peaks(total, &before);
+    if (before.contact_pinch[0])
+        memcpy(total->contact_pinch, before.contact_pinch, sizeof total->contact_pinch);
+    total->rest_seconds += before.simulated_seconds;
+    total->sewn_seconds += before.simulated_seconds;
+    if (report->seams)
+        return;
+    total->seams = before.seams;
+    total->seams_open = before.seams_open;
+    total->seam_distance = before.seam_distance;
+    total->sewn_seconds = before.sewn_seconds;
+}
+
+void phases_name(const struct phases *phases, struct cloth_error *error)
+{
+    const char *name = phases->done ? phases->done[phases->now].name : NULL;
+    struct cloth_error named = {0};
+    if (!name || !error->code)
+        return;
+    cloth_fail(&named, error->code, "phase '%.60s': %.900s", name, error->text);
+    *error = named;
+}
+
+void phases_free(struct phases *phases)
+{
+    for (uint32_t i = 0; i < phases->n && phases->models; i++)
+        model_free(phases->models + i);
+    free(phases->models);
+    free(phases->done);
+    free(phases->end);
+    free(phases->start);
+    *phases = (struct phases){0};
+}

@@ -1,0 +1,87 @@
+#ifndef CLOTH_APP_RUN_PHASES_H
+#define CLOTH_APP_RUN_PHASES_H
+
+#include "cloth/flow/run.h"
+#include "cloth/scene/scene.h"
+
+/* The phases of a scene: runs one after the other, each from the positions and velocities where the
+ * one before ended. A scene without phases is one of them. All begins as zero; on other ranks than
+ * 0 the models stay so. */
+
+/* The results of a phase. */
+struct phase_done {
+    const char *name; /* the model's; NULL on other ranks */
+    uint64_t steps;
+    double cg_iterations_mean; /* a step; NaN: of an explicit phase */
+    double simulated_seconds, wall_seconds;
+    const char *ended; /* a word for the report; NULL: it did not begin, or it failed */
+};
+
+struct phases {
+    uint32_t n, now; /* at least 1; the one that is next, or runs */
+    bool named;      /* the scene has phases */
+    struct model *models;
+    struct phase_done *done;
+    double (*end)[6];         /* rank 0, of several: of each vertex, as model_cloth.start has it */
+    uint32_t n_vertices;      /* rank 0: of all cloths; meshes are forgotten when a phase runs */
+    bool keeps_start;         /* where the phase of now started is kept, too, for checkpoints: */
+    double (*start)[6];       /* then: alike; NULL in the first one */
+    struct flow_report total; /* of those that are over, as phases_add says */
+};
+
+/* On rank 0: reads the models of all phases and compares the parts that phases share. Errors:
+ * CLOTH_E_INPUT with the place of the phase; CLOTH_E_MEMORY. Local. */
+int phases_read(struct phases *phases, const char *path, size_t n_sets,
+                const struct scene_set *sets, struct cloth_error *error);
+
+/* Sends the number of phases, the next one, and the results of earlier ones from rank 0 to all.
+ * Error: CLOTH_E_MEMORY. Collective; it is not agreed on errors yet. */
+int phases_share(struct phases *phases, struct cloth_error *error);
+
+/* The model of the next phase; NULL if the scene could not be read. */
+static inline struct model *phases_model(const struct phases *phases)
+{
+    return phases->models ? phases->models + phases->now : NULL;
+}
+static inline bool phases_is_last(const struct phases *phases)
+{
+    return phases->now + 1 == phases->n;
+}
+/* The state that the next phase starts from. The same on all ranks. */
+struct flow_before phases_before(const struct phases *phases);
+
+/* Goes on to the next phase, whose cloths start where the last one ended, on rank 0. Error:
+ * CLOTH_E_MEMORY. Local. */
+int phases_next(struct phases *phases, struct cloth_error *error);
+
+/* Numbers of where a phase starts. The cloths of the phase of now, a later one, start there, as
+ * when the phase before it ended. Error: CLOTH_E_MEMORY. On rank 0. Local. */
+size_t phases_numbers(const struct phases *phases);
+int phases_start(struct phases *phases, const double *numbers, struct cloth_error *error);
+
+/* Adds the report of the phase that is over. Counts and seconds are added; peaks are the largest;
+ * energies, the hash and other final values are those of this phase. Local. */
+void phases_add(struct phases *phases, const struct flow_report *report);
+
+/* The obstacles of the phase that runs, with motions over all phases so far, for viewers of all
+ * frames. */
+struct phases_motions {
+    struct contact_shape *obstacles;
+    struct phys_key *keys;
+};
+/* Error: CLOTH_E_MEMORY. In any case phases_motions_free follows. On rank 0. Local. */
+int phases_motions(const struct phases *phases, struct phases_motions *motions,
+                   struct cloth_error *error);
+void phases_motions_free(struct phases_motions *motions);
+
+/* Joins n vertices that seams pulled in any phase so far, as contact_apart.joined has it; NULL:
+ * none did. *joined: to be freed in any case. Error: CLOTH_E_MEMORY. On rank 0. Local. */
+int phases_joined(const struct phases *phases, uint32_t n, uint32_t **joined,
+                  struct cloth_error *error);
+
+/* Puts the name of the phase that runs before an error, if the scene has phases. */
+void phases_name(const struct phases *phases, struct cloth_error *error);
+
+void phases_free(struct phases *phases);
+
+#endif

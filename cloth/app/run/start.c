@@ -1,0 +1,259 @@
+/* Welded vertices are one point for untangling, and move together. */
+#include "cloth/app/run/start.h"
+
+#include "cloth/app/check/intersections.h"
+#include "cloth/base/memory.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+/* The cloths as they are untangled; all by vertex of all cloths, or by triangle. */
+struct tangle {
+    uint32_t n, n_triangles;
+    uint32_t *same;
+    double (*start)[6];
+    phys_vec *x;
+    unsigned char *held, *held_point; /* by name; by the lowest name */
+    uint32_t (*corner)[3], *cloth, *layer;
+    struct contact_apart apart; /* as of the model and the flow */
+};
+
+static void free_tangle(struct tangle *tangle)
+{
+    free(tangle->same);
+    free(tangle->start);
+    free(tangle->x);
+    free(tangle->held);
+    free(tangle->held_point);
+    free(tangle->corner);
+    free(tangle->cloth);
+    free(tangle->layer);
+}
+
+static int make_room(struct tangle *to, const struct model *model, struct cloth_error *error)
+{
+    to->n = model_first(model, model->n_cloths);
+    for (uint32_t c = 0; c < model->n_cloths; c++)
+        to->n_triangles += model->cloths[c].mesh.n_triangles;
+    to->start = cloth_alloc(to->n, sizeof *to->start, error);
+    to->x = aligned_alloc(sizeof *to->x, ((size_t)to->n + 1) * sizeof *to->x);
+    to->held = cloth_alloc(to->n, 1, error);
+    to->held_point = cloth_alloc(to->n, 1, error);
+    to->corner = cloth_alloc(to->n_triangles, sizeof *to->corner, error);
+    to->cloth = cloth_alloc(to->n_triangles, sizeof *to->cloth, error);
+    to->layer = cloth_alloc(model->n_cloths, sizeof *to->layer, error);
+    if (!to->x)
+        cloth_fail(error, CLOTH_E_MEMORY, "out of memory for where the run starts");
+    return error->code ? error->code : intersections_same(model, &to->same, error);
+}
+
+static void take_cloths(const struct model *model, const struct flow *flow, struct tangle *to)
+{
+    uint32_t n = 0;
+    flow_starts(flow, to->start, to->held);
+    to->apart = model->contact.apart;
+    to->apart.attached = flow_attached(flow);
+    to->apart.n_vertices = to->n;
+    for (uint32_t v = 0; v < to->n; v++) {
+        const double *start = to->start[to->same[v]];
+        to->x[v] = (phys_vec){start[0], start[1], start[2], 0};
+        to->held_point[to->same[v]] |= to->held[v];
+    }
+    for (uint32_t c = 0; c < model->n_cloths; c++) {
+        const uint32_t first = model_first(model, c);
+        to->layer[c] = model->cloths[c].layer;
+        for (uint32_t t = 0; t < model->cloths[c].mesh.n_triangles; t++, n++) {
+            mesh_corners(&model->cloths[c].mesh, t, to->corner[n]);
+            to->cloth[n] = c;
+            for (int k = 0; k < 3; k++)
+                to->corner[n][k] = to->same[first + to->corner[n][k]];
+        }
+    }
+}
+
+/* ---- Progress ---- */
+
+static void say_round(void *context, uint32_t round, const struct untangle_count *count)
+{
+    const bool *says = context;
+    const bool terminal = isatty(STDERR_FILENO) == 1;
+    if (!*says || (!terminal && round % 10))
+        return;
+    fprintf(stderr,
+            "%sduite-cloth: untangling, round %" PRIu32 ": %" PRIu64 " pairs intersect, %" PRIu64
+            " are too near, %" PRIu64 " places in obstacles, %" PRIu64 " in the wrong layer%s",
+            terminal ? "\r\033[K" : "", round, count->pairs, count->near, count->entered,
+            count->layers, terminal ? "" : "\n");
+}
+
+static void say_result(const struct untangle_result *result)
+{
+    const bool terminal = isatty(STDERR_FILENO) == 1;
+    fprintf(stderr,
+            "%sduite-cloth: the start is untangled: %" PRIu32 " rounds moved %" PRIu64
+            " vertices, by %.3g m at most\n",
+            terminal ? "\r\033[K" : "", result->rounds, result->moved, result->largest);
+}
+
+/* ---- Results ---- */
+
+/* New starts for all cloths that have a vertex that moved. */
+static int put_starts(struct model *model, struct tangle *of, struct cloth_error *error)
+{
+    for (uint32_t c = 0; c < model->n_cloths; c++) {
+        struct model_cloth *cloth = model->cloths + c;
+        const uint32_t n = cloth->mesh.n_vertices, first = model_first(model, c);
+        double(*start)[6] = cloth_alloc(n, sizeof *start, error);
+        if (!start)
+            return CLOTH_E_MEMORY;
+        memcpy(start, of->start + first, n * sizeof *start);
+        for (uint32_t v = 0; v < n; v++)
+            for (int k = 0; k < 3; k++)
+                start[v][k] = of->x[of->same[first + v]][k];
+        model_start_at(cloth, *start);
+    }
+    return CLOTH_OK;
+}
+
+/* A point of those that are untangled; those of bodies follow the cloths' vertices. */
+static void name_point(const struct model *model, uint32_t n, uint32_t point, char *text,
+                       size_t size)
+{
+    uint32_t c = 0;
+    if (point >= n) {
+        snprintf(text, size, " one of a body");
+        return;
+    }
+    while (point - model_first(model, c) >= model->cloths[c].mesh.n_vertices)
+        c++;
+    snprintf(text, size, " %" PRIu32 " of '%.40s'", point - model_first(model, c) + 1,
+             model->cloths[c].name);
+}
+
+/* Pairs that intersect start_check names. */
+static int refuse(const struct model *model, const struct untangle_result *result,
+                  struct cloth_error *error)
+{
+    const struct untangle_count *left = &result->left;
+    char near[4][80] = {""};
+    for (int k = 0; k < 4 && left->near; k++)
+        name_point(model, model_first(model, model->n_cloths), result->near[k], near[k],
+                   sizeof near[k]);
+    return cloth_fail(error, CLOTH_E_INPUT,
+                      "contact.untangle: after %" PRIu32 " rounds %" PRIu64
+                      " pairs of triangles still go through each other, %" PRIu64
+                      " places are in obstacles, %" PRIu64 " in the wrong layer, and %" PRIu64
+                      " pairs of features are nearer than a tenth of the thickness%s%s%s%s%s: "
+                      "move them apart where the scene has them",
+                      result->rounds, left->pairs, left->entered, left->layers, left->near,
+                      left->near ? ", the first of them at vertices" : "", near[0], near[1],
+                      near[2], near[3]);
+}
+
+static bool is_free(const struct untangle_count *left)
+{
+    return !(left->pairs + left->entered + left->near + left->layers);
+}
+
+static int check(const struct model *model, const struct contact_apart *apart,
+                 const double *position, struct intersections_found *found,
+                 struct cloth_error *error)
+{
+    struct intersections *intersections = NULL;
+    int code =
+        intersections_of(&intersections, model, apart, "duite-cloth", !model->contact.self, error);
+    code = code ? code : intersections_frame(intersections, 0, 0, position, false, error);
+    if (!code)
+        *found = intersections_found(intersections);
+    intersections_close(&intersections);
+    return code;
+}
+
+/* Names the first pairs of where it got to. */
+static int name_pairs(const struct model *model, const struct tangle *of, struct cloth_error *error)
+{
+    struct intersections_found found;
+    double *position = cloth_alloc(of->n, 3 * sizeof *position, error);
+    if (!position)
+        return CLOTH_E_MEMORY;
+    for (uint32_t v = 0; v < of->n; v++)
+        for (size_t k = 0; k < 3; k++)
+            position[3 * (size_t)v + k] = of->x[of->same[v]][k];
+    const int code = check(model, &of->apart, position, &found, error);
+    free(position);
+    return code;
+}
+
+static int make_free(struct model *model, struct flow **flow, int ranks, bool says,
+                     struct tangle *tangle, struct untangle_result *result,
+                     struct cloth_error *error)
+{
+    const struct untangle_cloths cloths = {.n_points = tangle->n,
+                                           .n_triangles = tangle->n_triangles,
+                                           .n_cloths = model->n_cloths,
+                                           .corner = (const uint32_t(*)[3])tangle->corner,
+                                           .cloth = tangle->cloth,
+                                           .layer = tangle->layer,
+                                           .held = tangle->held_point,
+                                           .apart = &tangle->apart,
+                                           .self_off = !model->contact.self,
+                                           .thickness = model->contact.thickness,
+                                           .n_obstacles = model->n_obstacles,
+                                           .obstacles = model->obstacles,
+                                           .keys = model->keys,
+                                           .bodies = &model->bodies};
+    const struct untangle_listener listener = {&says, say_round};
+    int code = untangle(&cloths, tangle->x, &listener, result, error);
+    if (!code && !is_free(&result->left)) {
+        code = name_pairs(model, tangle, error);
+        return code ? code : refuse(model, result, error);
+    }
+    if (code || !result->moved)
+        return code;
+    if (says)
+        say_result(result);
+    code = put_starts(model, tangle, error);
+    flow_free(*flow);
+    *flow = NULL;
+    return code ? code : flow_prepare(flow, model, ranks, error);
+}
+
+int start_untangle(struct model *model, struct flow **flow, int ranks, bool says,
+                   struct untangle_result *result, struct cloth_error *error)
+{
+    struct tangle tangle = {0};
+    *result = (struct untangle_result){0};
+    if (!model_certifies(model) || !model->contact.untangle)
+        return CLOTH_OK;
+    int code = make_room(&tangle, model, error);
+    if (!code) {
+        take_cloths(model, *flow, &tangle);
+        code = make_free(model, flow, ranks, says, &tangle, result, error);
+    }
+    free_tangle(&tangle);
+    return code;
+}
+
+int start_check(const struct model *model, const struct flow *flow,
+                const struct contact_apart *apart, const char *scene, struct cloth_error *error)
+{
+    struct intersections_found found;
+    double *position = cloth_alloc(flow_vertices(flow), 3 * sizeof *position, error);
+    if (!position)
+        return CLOTH_E_MEMORY;
+    flow_start(flow, position);
+    int code = check(model, apart, position, &found, error);
+    if (!code && found.bad)
+        code = cloth_fail(error, CLOTH_E_INPUT,
+                          "%s: where the run starts %" PRIu64
+                          " pairs of triangles go through each other and %" PRIu64
+                          " through obstacles; contact.mode certified needs a start where none "
+                          "does: %s%s",
+                          scene, found.pairs, found.with_shapes, model_start_cure(model),
+                          model_contact_cure(model));
+    free(position);
+    return code;
+}

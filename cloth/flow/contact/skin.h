@@ -1,0 +1,34 @@
+#ifndef CLOTH_FLOW_CONTACT_SKIN_H
+#define CLOTH_FLOW_CONTACT_SKIN_H
+
+#include "cloth/contact/skin.h"
+#include "cloth/flow/state/tables.h"
+
+/* The skin of a block, the field `skin`: its contact_skin, with which the object begins, and the
+ * places of its points. A triangle of the whole cloth belongs to the block of its corner with the
+ * lowest place; ids are places. Points are in the order of their places, so the block's own rows
+ * come first; others are in the halo of a neighbour. */
+struct flow_skin {
+    struct contact_skin skin;
+    const uint32_t
+        *from;          /* n_points: the number of the neighbour; n_neighbours: the block itself */
+    const uint32_t *at; /* n_points: place in its halo; row */
+    const uint32_t *attached; /* n_points: the obstacle, from 1, that its pin follows, or 0 */
+};
+
+/* Bytes of the object, which follow of the block's shape. */
+size_t flow_skin_bytes(const struct flow_table *table);
+
+/* memory: aligned to 64 bytes. */
+struct flow_skin flow_skin_open(const void *memory);
+
+/* Arrays that do not change in a run, to be written. from, at: as above. */
+struct flow_skin_arrays {
+    uint32_t *from, *at, *attached;
+};
+struct flow_skin_arrays flow_skin_places(const struct flow_table *table, void *memory);
+
+/* A block's skin by its shape, with counts alone, to measure by. */
+struct contact_skin flow_skin_counts(const struct flow_table *table);
+
+#endif

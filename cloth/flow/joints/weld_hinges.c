@@ -1,0 +1,206 @@
+/* Welds may join the borders of two cloths, or two parts of the border of one. The edge that both
+ * share is then a hinge as inner edges are. */
+#include "cloth/flow/run/source.h"
+
+#include "cloth/base/memory.h"
+#include "cloth/base/order.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* An edge at the border of its mesh with two welded ends. */
+struct border {
+    uint32_t root[2]; /* ascending */
+    uint32_t cloth, edge;
+    uint32_t corner[3]; /* of the mesh: ends, in the order of their roots; the vertex opposite */
+    uint32_t triangle;  /* that has these */
+};
+
+static int compare_borders(const void *va, const void *vb)
+{
+    const struct border *a = va, *b = vb;
+    int order = cloth_compare_u32(a->root[0], b->root[0]);
+    if (!order)
+        order = cloth_compare_u32(a->root[1], b->root[1]);
+    if (!order)
+        order = cloth_compare_u32(a->cloth, b->cloth);
+    return order ? order : cloth_compare_u32(a->edge, b->edge);
+}
+
+/* True if a root has several names. */
+static bool is_welded(const struct flow_welds *welds, uint32_t root)
+{
+    uint32_t low = 0, high = welds->n;
+    while (low < high) {
+        const uint32_t middle = low + (high - low) / 2;
+        if (welds->name[middle][0] < root)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < welds->n && welds->name[low][0] == root;
+}
+
+/* Finds the borders of a cloth, the first vertex of which is `first`. */
+static int find_borders(struct cloth_list *list, const struct element_cloths *elements,
+                        const struct flow_welds *welds, uint32_t cloth, uint32_t first,
+                        struct cloth_error *error)
+{
+    const struct mesh_edges *edges = elements->edges + cloth;
+    for (uint32_t e = 0; e < edges->n; e++) {
+        const struct mesh_edge *edge = edges->edge + e;
+        const uint32_t a = welds->root[first + edge->a], b = welds->root[first + edge->b];
+        const bool turned = b < a;
+        if (edge->opposite[0] == UINT32_MAX || edge->opposite[1] != UINT32_MAX ||
+            !is_welded(welds, a) || !is_welded(welds, b))
+            continue;
+        struct border *border = cloth_list_add(list, sizeof *border, 1, error);
+        if (!border)
+            return CLOTH_E_MEMORY;
+        *border = (struct border){
+            .root = {turned ? b : a, turned ? a : b},
+            .cloth = cloth,
+            .edge = e,
+            .corner = {turned ? edge->b : edge->a, turned ? edge->a : edge->b, edge->opposite[0]},
+            .triangle = edge->triangle[0]};
+    }
+    return CLOTH_OK;
+}
+
+static bool is_shared(const struct border *a, const struct border *b)
+{
+    return a->root[0] == b->root[0] && a->root[1] == b->root[1];
+}
+
+/* The welds of a root. */
+struct welded {
+    double tolerance; /* m: the largest */
+    bool sewn;        /* a weld of it is a seam's */
+};
+
+/* The welds of all roots, by root. The caller frees it; NULL: no memory. */
+static struct welded *find_welded(const struct model *model, const struct flow_welds *welds,
+                                  struct cloth_error *error)
+{
+    const uint32_t n = model_first(model, model->n_cloths);
+    struct welded *all = cloth_alloc(n, sizeof *all, error);
+    for (uint32_t w = 0; w < model->n_welds && all; w++) {
+        const struct model_pairs *pairs = &model->welds[w].pairs;
+        const uint32_t *root = welds->root + model_first(model, pairs->end[0].cloth);
+        for (uint32_t i = 0; i < pairs->end[0].n; i++) {
+            struct welded *at = all + root[pairs->end[0].vertices[i]];
+            at->tolerance = fmax(at->tolerance, model->welds[w].tolerance);
+            at->sewn = at->sewn || pairs->seam;
+        }
+    }
+    return all;
+}
+
+/* ---- How seams bend ---- */
+
+/* A part of a seam that is welded. */
+struct stitch {
+    uint32_t root[2]; /* ascending */
+    double bending;   /* as of model_sewing */
+};
+
+static int compare_stitches(const void *va, const void *vb)
+{
+    const struct stitch *a = va, *b = vb;
+    const int order = cloth_compare_u32(a->root[0], b->root[0]);
+    return order ? order : cloth_compare_u32(a->root[1], b->root[1]);
+}
+
+static int list_stitches(struct cloth_list *list, const struct model *model,
+                         const struct flow_welds *welds, struct cloth_error *error)
+{
+    for (uint32_t w = 0; w < model->n_welds; w++) {
+        const struct model_pairs *pairs = &model->welds[w].pairs;
+        const uint32_t cloth = pairs->end[0].cloth;
+        const uint32_t *root = welds->root + model_first(model, cloth);
+        if (!pairs->seam)
+            continue;
+        const struct model_seam *seam = model->cloths[cloth].seams.seam + pairs->seam - 1;
+        struct stitch *stitch = cloth_list_add(list, sizeof *stitch, seam->n_pairs - 1, error);
+        if (!stitch)
+            return CLOTH_E_MEMORY;
+        for (uint32_t i = 0; i + 1 < seam->n_pairs; i++) {
+            const uint32_t a = root[seam->pair[i][0]], b = root[seam->pair[i + 1][0]];
+            stitch[i] = (struct stitch){{a < b ? a : b, a < b ? b : a}, seam->sewing.bending};
+        }
+    }
+    if (list->n)
+        qsort(list->items, list->n, sizeof(struct stitch), compare_stitches);
+    return CLOTH_OK;
+}
+
+/* The bending of the edge between two roots; < 0: as the materials. */
+static double bending_of(const struct cloth_list *stitches, const uint32_t root[2])
+{
+    const struct stitch key = {{root[0], root[1]}, 0};
+    const struct stitch *found = stitches->n ? bsearch(&key, stitches->items, stitches->n,
+                                                       sizeof(struct stitch), compare_stitches)
+                                             : NULL;
+    return found ? found->bending : -1;
+}
+
+/* ---- Hinges ---- */
+
+/* welded: by root. */
+static void add_seam(struct element_cloths *elements, const struct flow_welds *welds,
+                     const struct welded *welded, const struct cloth_list *stitches,
+                     const struct border *border)
+{
+    const struct welded *ends[2] = {welded + border->root[0], welded + border->root[1]};
+    struct element_seam *seam = elements->seam + elements->n_seams;
+    uint32_t opposite[2];
+    for (int k = 0; k < 2; k++) {
+        seam->side[k].cloth = border[k].cloth;
+        seam->side[k].triangle = border[k].triangle;
+        for (int i = 0; i < 3; i++)
+            seam->side[k].corner[i] = border[k].corner[i];
+        seam->side[k].first = model_first(elements->model, border[k].cloth);
+        opposite[k] = welds->root[seam->side[k].first + border[k].corner[2]];
+    }
+    seam->tolerance = fmax(ends[0]->tolerance, ends[1]->tolerance);
+    seam->flat = ends[0]->sewn && ends[1]->sewn;
+    seam->rigidity = bending_of(stitches, border->root);
+    elements->n_seams += opposite[0] != opposite[1]; /* else one lies on the other */
+}
+
+static int make_seams(struct element_cloths *elements, const struct flow_welds *welds,
+                      struct cloth_list *list, struct cloth_error *error)
+{
+    const struct border *border = list->items;
+    struct cloth_list stitches = {0};
+    if (!list->n)
+        return CLOTH_OK;
+    qsort(list->items, list->n, sizeof *border, compare_borders);
+    elements->seam = cloth_alloc(list->n, sizeof *elements->seam, error);
+    struct welded *welded = elements->seam ? find_welded(elements->model, welds, error) : NULL;
+    int code = welded ? list_stitches(&stitches, elements->model, welds, error) : CLOTH_E_MEMORY;
+    for (size_t i = 0, end; i < list->n && !code; i = end) {
+        for (end = i + 1; end < list->n && is_shared(border + i, border + end);)
+            end++;
+        if (end == i + 2)
+            add_seam(elements, welds, welded, &stitches, border + i);
+    }
+    free(welded);
+    free(stitches.items);
+    return code ? code : element_seams_check(elements, error);
+}
+
+int flow_seams_make(struct element_cloths *elements, const struct flow_welds *welds,
+                    struct cloth_error *error)
+{
+    const struct model *model = elements->model;
+    struct cloth_list list = {0};
+    int code = CLOTH_OK;
+    for (uint32_t c = 0; c < model->n_cloths && welds->n && !code; c++)
+        if (element_parts(model, model->cloths + c) & 1u << ELEMENT_HINGES)
+            code = find_borders(&list, elements, welds, c, model_first(model, c), error);
+    if (!code)
+        code = make_seams(elements, welds, &list, error);
+    free(list.items);
+    return code;
+}

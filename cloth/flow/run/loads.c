@@ -1,0 +1,153 @@
+/* Loads add up vertex by vertex, with the weights. Loads that vary in time are kept one by one, in
+ * the order of the scene. So each vertex has the same sums for any blocks. */
+#include "cloth/flow/run/source.h"
+
+#include "cloth/base/memory.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* A load and its addition to a vertex. */
+struct loader {
+    struct flow_particles *particles;
+    uint32_t first; /* vertex of the cloth */
+    const struct model_cloth *cloth;
+    const char *place;
+    uint32_t curve;
+    phys_vec force; /* N */
+    bool failed;    /* there was no memory */
+};
+
+static const uint32_t NO_TRIANGLES[2] = {UINT32_MAX, UINT32_MAX};
+
+static void to_vector(const double *x, phys_vec *y)
+{
+    *y = (phys_vec){x[0], x[1], x[2], 0};
+}
+
+/* Doubles the room where it is full. */
+static bool has_room(struct flow_particles *p)
+{
+    const uint32_t n = p->n_varying;
+    if (n & (n - 1))
+        return true;
+    struct flow_varying *more =
+        n < UINT32_MAX / 4 ? realloc(p->varying, (n ? 2 * (size_t)n : 1) * sizeof *more) : NULL;
+    p->varying = more ? more : p->varying;
+    return more;
+}
+
+static void add_varying(struct loader *loader, uint32_t vertex)
+{
+    struct flow_particles *p = loader->particles;
+    if (loader->failed || !has_room(p)) {
+        loader->failed = true;
+        return;
+    }
+    struct flow_varying *to = p->varying + p->n_varying;
+    *to = (struct flow_varying){.at = vertex, .curve = loader->curve, .number = p->n_varying};
+    for (int c = 0; c < 3; c++)
+        to->force[c] = loader->force[c];
+    p->n_varying++;
+}
+
+static void add_load(void *to, uint32_t vertex)
+{
+    struct loader *loader = to;
+    struct flow_particles *p = loader->particles;
+    const uint32_t v = loader->first + vertex;
+    if (!p->used[v])
+        flow_unusual_note(&p->loaded, loader->cloth, vertex, loader->place);
+    if (loader->curve)
+        add_varying(loader, v);
+    else
+        p->load[flow_root(&p->welds, v)] += loader->force;
+}
+
+static int load_edges(struct loader *loader, const struct model_load *load,
+                      struct cloth_error *error)
+{
+    const struct mesh *mesh = model_rest(loader->cloth);
+    struct mesh_edges edges = {0}; /* found where ends alone do not say the length */
+    int code =
+        mesh->placed_by_uv && mesh->triangle_uv ? mesh_edges_find(&edges, mesh, error) : CLOTH_OK;
+    phys_vec force;
+    to_vector(load->force, &force);
+    for (uint32_t i = 0; i < load->n_edges && !code; i++) {
+        const uint32_t *end = load->edges[i];
+        for (int k = 0; k < 2 && !code; k++)
+            if (end[k] >= mesh->n_vertices)
+                code = flow_no_vertex(loader->cloth, "a load", end[k], loader->place, error);
+        if (code)
+            break;
+        const struct mesh_edge *edge = mesh_edges_get(&edges, end[0], end[1]);
+        const double length =
+            mesh_length(mesh, edge ? edge->triangle : NO_TRIANGLES, end[0], end[1]);
+        loader->force = 0.5 * length * force;
+        add_load(loader, end[0]);
+        add_load(loader, end[1]);
+    }
+    mesh_edges_free(&edges);
+    return code;
+}
+
+int flow_loads_make(struct flow_particles *p, uint32_t first, const struct model_cloth *cloth,
+                    struct cloth_error *error)
+{
+    int code = CLOTH_OK;
+    for (uint32_t i = 0; i < cloth->n_loads && !code; i++) {
+        const struct model_load *load = cloth->loads + i;
+        struct loader loader = {.particles = p,
+                                .first = first,
+                                .cloth = cloth,
+                                .place = load->pick.place,
+                                .curve = load->curve};
+        const struct flow_picking picking = {.pick = &load->pick,
+                                             .cloth = cloth,
+                                             .used = p->used + first,
+                                             .what = "a load",
+                                             .visit = add_load,
+                                             .to = &loader};
+        to_vector(load->force, &loader.force);
+        code = load->n_edges ? load_edges(&loader, load, error) : flow_pick(&picking, error);
+        if (!code && loader.failed)
+            code = cloth_fail(error, CLOTH_E_MEMORY, "out of memory for loads that vary");
+    }
+    return code;
+}
+
+static int compare(const void *va, const void *vb)
+{
+    const struct flow_varying *a = va, *b = vb;
+    const int order = (a->at > b->at) - (a->at < b->at);
+    return order ? order : (a->number > b->number) - (a->number < b->number);
+}
+
+void flow_varying_settle(struct flow_source *source)
+{
+    struct flow_particles *p = &source->particles;
+    uint32_t n = 0;
+    for (uint32_t i = 0; i < p->n_varying; i++) {
+        struct flow_varying load = p->varying[i];
+        load.at = source->blocks.place[load.at];
+        if (load.at != MESH_NO_PLACE)
+            p->varying[n++] = load;
+    }
+    p->n_varying = n;
+    if (n)
+        qsort(p->varying, n, sizeof *p->varying, compare);
+}
+
+uint32_t flow_varying_from(const struct flow_source *source, uint32_t place)
+{
+    const struct flow_particles *p = &source->particles;
+    uint32_t low = 0, high = p->n_varying;
+    while (low < high) {
+        const uint32_t middle = low + (high - low) / 2;
+        if (p->varying[middle].at < place)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}

@@ -1,0 +1,229 @@
+/* A spring between two blocks makes each read the other's row. These rows, sorted by reader, block
+ * and row, each once, are the ghosts; their blocks are the neighbours. */
+#include "cloth/flow/run/source.h"
+
+#include "cloth/base/memory.h"
+
+#include <stdlib.h>
+
+/* Block `reader` needs a place of block `other`; patches: of the reader, as bits. */
+struct need {
+    uint32_t reader, other, place, patches;
+};
+
+struct finder {
+    struct flow_source *source;
+    uint32_t block; /* of the last spring's lower end: the next one's is often the same */
+    struct cloth_list needs;
+    struct cloth_error *error;
+    int code;
+};
+
+/* The patch of a place. */
+static uint32_t patch_of(const struct flow_source *source, uint32_t block, uint32_t place)
+{
+    const uint32_t first = source->blocks.start[block];
+    const struct solve_patches patches =
+        solve_patches_of(source->blocks.start[block + 1] - first, source->patches);
+    return solve_patch_of(&patches, place - first);
+}
+
+static void add_need(struct finder *finder, uint32_t reader, uint32_t other, uint32_t place,
+                     uint32_t patch)
+{
+    struct need *need = cloth_list_add(&finder->needs, sizeof *need, 1, finder->error);
+    finder->source->halo[place] = 1;
+    if (need)
+        *need = (struct need){reader, other, place, UINT32_C(1) << patch};
+    else
+        finder->code = CLOTH_E_MEMORY;
+}
+
+/* Counts an entry between vertices a and b that something joins; that they have one already does
+ * no harm. Returns the blocks of both. */
+static void join(struct finder *finder, uint32_t a, uint32_t b, struct flow_table *block[2])
+{
+    const struct flow_source *source = finder->source;
+    const uint32_t p = source->blocks.place[a], q = source->blocks.place[b];
+    const uint32_t bp = flow_source_block(&source->blocks, p, finder->block);
+    const uint32_t bq = flow_source_block(&source->blocks, q, bp);
+    const uint32_t kp = patch_of(source, bp, p), kq = patch_of(source, bq, q);
+    const unsigned char *free = source->particles.free;
+    const bool free_p = free[source->blocks.vertex[p]], free_q = free[source->blocks.vertex[q]];
+    finder->block = bp;
+    block[0] = source->shape + bp;
+    block[1] = source->shape + bq;
+    if (free_p != free_q)
+        block[free_q]->n_held++;
+    if (bp == bq) {
+        block[0]->n_entries++;
+        block[0]->joined |= solve_patch_bit(kp, kq) | solve_patch_bit(kq, kp);
+        return;
+    }
+    block[0]->n_cut_entries++;
+    block[1]->n_cut_entries++;
+    if (finder->code)
+        return;
+    add_need(finder, bp, bq, q, kp);
+    add_need(finder, bq, bp, p, kq);
+}
+
+/* Counts an edge whose velocities are corrected. */
+static void count_corrected(struct flow_source *source, const struct flow_spring *spring,
+                            struct flow_table *const block[2])
+{
+    if (block[0] == block[1]) {
+        block[0]->n_corrected++;
+        return;
+    }
+    block[0]->n_corrected_cut++;
+    block[1]->n_corrected_cut++;
+    source->cut[source->blocks.place[spring->a]]++;
+    source->cut[source->blocks.place[spring->b]]++;
+}
+
+static void find(void *to, const struct flow_spring *spring)
+{
+    struct finder *finder = to;
+    struct flow_table *block[2];
+    join(to, spring->a, spring->b, block);
+    if (spring->correction)
+        count_corrected(finder->source, spring, block);
+    block[0]->n_stiff += spring->stiffness > 0;
+    block[0]->n_pulled += spring->seam != 0;
+    if (block[0] == block[1]) {
+        block[0]->n_inner++;
+        return;
+    }
+    block[1]->n_stiff += spring->stiffness > 0;
+    block[1]->n_pulled += spring->seam != 0;
+    block[0]->n_cut++;
+    block[1]->n_cut++;
+}
+
+/* Numbers the rows that other blocks need, which are marked. */
+static void number_halo(const struct flow_source *source, struct flow_table *shape)
+{
+    uint32_t *halo = source->halo + shape->first;
+    const struct solve_patches patches = solve_patches_of(shape->n, source->patches);
+    for (uint32_t k = 0; k < SOLVE_MAX_PATCHES; k++) {
+        shape->halo_start[k] = shape->n_halo;
+        for (uint32_t i = patches.start[k]; i < patches.start[k + 1]; i++)
+            halo[i] = halo[i] ? shape->n_halo++ : MESH_NO_PLACE;
+    }
+    shape->halo_start[SOLVE_MAX_PATCHES] = shape->n_halo;
+}
+
+static int compare_u32(uint32_t a, uint32_t b)
+{
+    return (a > b) - (a < b);
+}
+
+static int compare_needs(const void *va, const void *vb)
+{
+    const struct need *a = va, *b = vb;
+    int order = compare_u32(a->reader, b->reader);
+    if (!order)
+        order = compare_u32(a->other, b->other);
+    return order ? order : compare_u32(a->place, b->place);
+}
+
+/* Keeps each of the sorted needs once, and counts neighbours and ghosts. Returns how many are left.
+ */
+static size_t count(struct flow_source *source, struct need *need, size_t n)
+{
+    size_t kept = 0;
+    for (size_t i = 0; i < n; i++) {
+        struct need *last = kept ? need + kept - 1 : NULL;
+        if (last && compare_needs(last, need + i) == 0) {
+            last->patches |= need[i].patches;
+            continue;
+        }
+        struct flow_table *shape = source->shape + need[i].reader;
+        if (!last || last->reader != need[i].reader || last->other != need[i].other)
+            shape->n_neighbours++;
+        shape->n_ghosts++;
+        need[kept++] = need[i];
+    }
+    return kept;
+}
+
+/* The patches of a reader that are joined with the patch of a place. */
+static uint32_t joins_of(const struct flow_source *source, const struct need *need)
+{
+    const uint32_t there = patch_of(source, need->other, need->place);
+    uint32_t joins = 0;
+    for (uint32_t k = 0; k < source->patches; k++)
+        joins |= need->patches >> k & 1 ? solve_patch_bit(k, there) : 0;
+    return joins;
+}
+
+/* Fills the arrays, and lets the shapes point into them. */
+static void fill(struct flow_source *source, const struct need *need)
+{
+    uint32_t *neighbour = source->neighbours.neighbour,
+             *ghost_start = source->neighbours.ghost_start;
+    uint32_t *ghost = source->neighbours.ghost, *joins = source->neighbours.joins;
+    size_t first = 0; /* of the block's needs; there may be none at all */
+    for (uint32_t b = 0; b < source->blocks.n_blocks; b++) {
+        struct flow_table *shape = source->shape + b;
+        uint32_t s = 0;
+        shape->neighbour = neighbour;
+        shape->ghost_start = ghost_start;
+        shape->ghost = ghost;
+        shape->joins = joins;
+        for (uint32_t i = 0; i < shape->n_ghosts; i++) {
+            const struct need *one = &need[first + i];
+            if (i == 0 || one->other != one[-1].other) {
+                ghost_start[s] = i;
+                joins[s] = 0;
+                neighbour[s++] = one->other;
+            }
+            joins[s - 1] |= joins_of(source, one);
+            ghost[i] = source->halo[one->place];
+        }
+        ghost_start[s] = shape->n_ghosts;
+        neighbour += s;
+        joins += s;
+        ghost_start += s + 1;
+        ghost += shape->n_ghosts;
+        first += shape->n_ghosts;
+    }
+}
+
+static int make(struct flow_source *source, struct cloth_list *needs, struct cloth_error *error)
+{
+    struct flow_neighbours *all = &source->neighbours;
+    const uint32_t n_blocks = source->blocks.n_blocks;
+    if (needs->n)
+        qsort(needs->items, needs->n, sizeof(struct need), compare_needs);
+    all->n_ghosts = (uint32_t)count(source, needs->items, needs->n);
+    for (uint32_t b = 0; b < n_blocks; b++)
+        all->n_neighbours += source->shape[b].n_neighbours;
+    all->neighbour = cloth_alloc(all->n_neighbours, sizeof *all->neighbour, error);
+    all->ghost_start =
+        cloth_alloc((size_t)all->n_neighbours + n_blocks, sizeof *all->ghost_start, error);
+    all->ghost = cloth_alloc(all->n_ghosts, sizeof *all->ghost, error);
+    all->joins = cloth_alloc(all->n_neighbours, sizeof *all->joins, error);
+    if (!all->neighbour || !all->joins || !all->ghost_start || !all->ghost)
+        return CLOTH_E_MEMORY;
+    fill(source, needs->items);
+    return CLOTH_OK;
+}
+
+int flow_source_meet(struct flow_source *source, struct cloth_error *error)
+{
+    struct finder finder = {.source = source, .error = error};
+    source->patches = model_patches(source->model, source->blocks.n_blocks);
+    if (source->model->correction_rounds)
+        source->cut = cloth_alloc(source->particles.n, sizeof *source->cut, error);
+    if (source->model->correction_rounds && !source->cut)
+        return CLOTH_E_MEMORY;
+    flow_springs_each(&source->springs, find, &finder);
+    for (uint32_t b = 0; b < source->blocks.n_blocks; b++)
+        number_halo(source, source->shape + b);
+    if (!finder.code)
+        finder.code = make(source, &finder.needs, error);
+    free(finder.needs.items);
+    return finder.code;
+}

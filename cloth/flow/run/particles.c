@@ -1,0 +1,411 @@
+/* Particles carry the data of a vertex on its own: mass, drag, load, whether a pin holds it.
+ * Vertices that no face, edge or joint uses stay where they are, at rest, and need no mass. */
+#include "cloth/flow/run/source.h"
+
+#include "cloth/base/memory.h"
+#include "cloth/physics/particle.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* kg of a vertex: squares of momenta beyond these would vanish or be infinite. */
+static const double MIN_MASS = 1e-30, MAX_MASS = 1e30;
+
+PHYS_INLINE void to_vector(const double *x, phys_vec *y)
+{
+    *y = (phys_vec){x[0], x[1], x[2], 0};
+}
+
+/* A pin and whom it holds. */
+struct holder {
+    struct flow_particles *particles;
+    uint32_t first; /* vertex of the cloth */
+    const struct model *model;
+    const struct model_cloth *cloth;
+    const struct model_pin *pin;
+    uint32_t torn; /* a vertex that another pin moves in another way, or holds; UINT32_MAX: none */
+};
+
+/* True if two sliders, by number, hold alike; both may be none. */
+static bool alike(const struct model_slider *sliders, uint32_t a, uint32_t b)
+{
+    if (a == b || !a || !b)
+        return a == b;
+    const struct model_slider *one = sliders + a - 1, *other = sliders + b - 1;
+    bool same = one->kind == other->kind && one->motion == other->motion;
+    for (int i = 0; i < 3; i++)
+        same = same && one->direction[i] - other->direction[i] == 0;
+    return same;
+}
+
+static void hold(void *to, uint32_t vertex)
+{
+    struct holder *holder = to;
+    struct flow_particles *p = holder->particles;
+    const uint32_t v = flow_root(&p->welds, holder->first + vertex), motion = holder->pin->motion;
+    const uint32_t slider = holder->pin->slider, sliding = p->slider ? p->slider[v] : 0;
+    const bool held = p->free[v] == 0 || sliding;
+    if (!p->used[v] && !held)
+        flow_unusual_note(&p->pinned, holder->cloth, vertex, holder->pin->pick.place);
+    if (held &&
+        ((p->motion && p->motion[v] != motion) || !alike(holder->model->sliders, sliding, slider)))
+        holder->torn = vertex;
+    if (p->motion)
+        p->motion[v] = motion;
+    if (p->slider)
+        p->slider[v] = slider;
+    p->free[v] = slider ? 1 : 0;
+}
+
+static int pins(struct flow_particles *p, uint32_t first, const struct model *model,
+                const struct model_cloth *cloth, struct cloth_error *error)
+{
+    int code = CLOTH_OK;
+    for (uint32_t i = 0; i < cloth->n_pins && !code; i++) {
+        struct holder holder = {p, first, model, cloth, cloth->pins + i, UINT32_MAX};
+        const struct flow_picking picking = {.pick = &cloth->pins[i].pick,
+                                             .cloth = cloth,
+                                             .used = p->used + first,
+                                             .what = "a pin",
+                                             .visit = hold,
+                                             .to = &holder};
+        code = flow_pick(&picking, error);
+        if (!code && holder.torn != UINT32_MAX)
+            code = model_fail(cloth->pins[i].pick.place, error,
+                              "vertex %u of cloth '%.60s' is held by two pins that do not hold "
+                              "and move alike; one is expected (vertices count from 1)",
+                              holder.torn + 1, cloth->name);
+    }
+    return code;
+}
+
+/* A mass and the vertices that it is added to. */
+struct weigher {
+    struct flow_particles *particles;
+    uint32_t first; /* vertex of the cloth */
+    double mass;
+};
+
+/* Adds a mass to a vertex of all cloths: a name's mass goes to its root. */
+static void weigh(struct flow_particles *p, uint32_t vertex, double mass)
+{
+    p->mass[flow_root(&p->welds, vertex)] += mass;
+    if (p->own)
+        p->own[vertex] += mass;
+}
+
+static void add_mass(void *to, uint32_t vertex)
+{
+    const struct weigher *weigher = to;
+    weigh(weigher->particles, weigher->first + vertex, weigher->mass);
+}
+
+static int more_masses(struct flow_particles *p, uint32_t first, const struct model_cloth *cloth,
+                       struct cloth_error *error)
+{
+    int code = CLOTH_OK;
+    for (uint32_t i = 0; i < cloth->n_masses && !code; i++) {
+        struct weigher weigher = {p, first, cloth->masses[i].mass};
+        const struct flow_picking picking = {.pick = &cloth->masses[i].pick,
+                                             .cloth = cloth,
+                                             .used = p->used + first,
+                                             .what = "a mass",
+                                             .visit = add_mass,
+                                             .to = &weigher};
+        code = flow_pick(&picking, error);
+    }
+    return code;
+}
+
+/* Fails: no triangle of the vertex, if it has any, gives it a mass. */
+static int no_mass(const struct model_cloth *cloth, uint32_t vertex, struct cloth_error *error)
+{
+    for (uint32_t t = 0; t < cloth->mesh.n_triangles; t++) {
+        uint32_t corner[3];
+        mesh_corners(&cloth->mesh, t, corner);
+        if (corner[0] == vertex || corner[1] == vertex || corner[2] == vertex)
+            return model_fail(cloth->mesh_place, error,
+                              "mesh: triangle %u of cloth '%.60s' (vertices %u, %u and %u, all "
+                              "counted from 1) has no area at rest, so that vertex %u has no mass; "
+                              "an area above 0 is expected, or mass_per_vertex",
+                              t + 1, cloth->name, corner[0] + 1, corner[1] + 1, corner[2] + 1,
+                              vertex + 1);
+    }
+    return model_fail(
+        cloth->place, error,
+        "mass_per_vertex is missing: only edges or joints use vertex %u of cloth '%.60s', which "
+        "have no area to take a mass from; a finite number > 0 (kg) is expected (vertices count "
+        "from 1)",
+        vertex + 1, cloth->name);
+}
+
+static int masses(struct flow_particles *p, uint32_t first, const struct model *model,
+                  const struct model_cloth *cloth, struct cloth_error *error)
+{
+    for (uint32_t t = 0; t < cloth->mesh.n_triangles && !(cloth->mass_per_vertex > 0); t++) {
+        struct mesh_share share; /* of a linear element its lumped mass */
+        uint32_t corner[3];
+        mesh_corners(&cloth->mesh, t, corner);
+        mesh_share_of(model_rest(cloth), t,
+                      model->materials[model_material_of(cloth, 3, corner)].density,
+                      model_has_cells(model, cloth), &share);
+        for (uint32_t i = 0; i < share.n; i++)
+            weigh(p, first + share.vertex[i], share.mass);
+    }
+    for (uint32_t i = 0; i < cloth->mesh.n_vertices && cloth->mass_per_vertex > 0; i++)
+        weigh(p, first + i, cloth->mass_per_vertex);
+    return more_masses(p, first, cloth, error);
+}
+
+/* Checks that all masses of a cloth are there and in bounds; sets their weights. */
+static int weights(struct flow_particles *p, uint32_t first, const struct model *model,
+                   const struct model_cloth *cloth, struct cloth_error *error)
+{
+    phys_vec gravity;
+    to_vector(model->gravity, &gravity);
+    for (uint32_t i = 0; i < cloth->mesh.n_vertices; i++) {
+        const uint32_t v = first + i;
+        const double mass = p->mass[flow_root(&p->welds, v)];
+        if (p->used[v] && mass > 0 && !(mass >= MIN_MASS && mass <= MAX_MASS))
+            return model_fail(cloth->place, error,
+                              "vertex %u of cloth '%.60s' has a mass of %g kg; %g to %g is "
+                              "expected (vertices count "
+                              "from 1)",
+                              i + 1, cloth->name, mass, MIN_MASS, MAX_MASS);
+        if (p->used[v] && !(mass > 0))
+            return no_mass(cloth, i, error);
+        if (p->load)
+            p->load[v] = p->mass[v] * gravity;
+    }
+    return CLOTH_OK;
+}
+
+/* A start that a run would take for divergence. */
+static int check_start(const struct model_cloth *cloth, struct cloth_error *error)
+{
+    for (uint32_t i = 0; i < cloth->mesh.n_vertices; i++) {
+        phys_vec x;
+        to_vector(cloth->mesh.position + 3 * (size_t)i, &x);
+        if (phys_diverged(1, FLOW_BOUND, &x) == 0)
+            return model_fail(cloth->mesh_place, error,
+                              "vertex %u of cloth '%.60s' starts at (%g, %g, %g) m, after the "
+                              "transform; less than %g m from the origin along each axis is "
+                              "expected (vertices count from 1)",
+                              i + 1, cloth->name, x[0], x[1], x[2], FLOW_BOUND);
+    }
+    phys_vec v;
+    to_vector(cloth->velocity, &v);
+    if (phys_diverged(1, FLOW_BOUND, &v) == 0)
+        return model_fail(cloth->velocity_place, error,
+                          "cloth '%.60s' starts with the velocity (%g, %g, %g) m/s; less than %g "
+                          "m/s along each axis is expected",
+                          cloth->name, v[0], v[1], v[2], FLOW_BOUND);
+    return CLOTH_OK;
+}
+
+static int cloth_particles(struct flow_particles *p, uint32_t first, const struct model *model,
+                           const struct model_cloth *cloth, struct cloth_error *error)
+{
+    for (uint32_t i = 0; i < cloth->mesh.n_vertices; i++) {
+        p->free[first + i] = 1;
+        if (!p->used[first + i])
+            flow_unusual_note(&p->unused, cloth, i, cloth->mesh_place);
+    }
+    int code = check_start(cloth, error);
+    if (!code)
+        code = flow_starts_make(p, first, cloth, error);
+    return code ? code : masses(p, first, model, cloth, error);
+}
+
+/* Sets weights, loads and pins, when the masses of all cloths are there: a welded vertex has
+ * several. */
+static int cloth_forces(struct flow_particles *p, uint32_t first, const struct model *model,
+                        const struct model_cloth *cloth, struct cloth_error *error)
+{
+    int code = weights(p, first, model, cloth, error);
+    if (!code)
+        code = flow_loads_make(p, first, cloth, error);
+    if (!code)
+        code = pins(p, first, model, cloth, error);
+    return code;
+}
+
+/* Does it for all cloths, one after the other. */
+static int each_cloth(struct flow_particles *p, const struct model *model,
+                      int (*make)(struct flow_particles *p, uint32_t first,
+                                  const struct model *model, const struct model_cloth *cloth,
+                                  struct cloth_error *error),
+                      struct cloth_error *error)
+{
+    int code = CLOTH_OK;
+    for (uint32_t c = 0, first = 0; c < model->n_cloths && !code; c++) {
+        code = make(p, first, model, model->cloths + c, error);
+        first += model->cloths[c].mesh.n_vertices;
+    }
+    return code;
+}
+
+static int allocate(struct flow_particles *p, uint32_t n, bool loaded, const struct model *model,
+                    struct cloth_error *error)
+{
+    const bool moved = model->n_motions, sliding = model->n_sliders;
+    p->n = n;
+    p->used = cloth_alloc(n, 1, error);
+    p->free = cloth_alloc(n, 1, error);
+    p->mass = cloth_alloc(n, sizeof *p->mass, error);
+    p->motion = moved ? cloth_alloc(n, sizeof *p->motion, error) : NULL;
+    p->slider = sliding ? cloth_alloc(n, sizeof *p->slider, error) : NULL;
+    p->own = model->n_welds ? cloth_alloc(n, sizeof *p->own, error) : NULL;
+    p->drag = model->n_welds ? cloth_alloc(n, sizeof *p->drag, error) : NULL;
+    if (!p->used || !p->free || !p->mass || (moved && !p->motion) || (sliding && !p->slider) ||
+        (model->n_welds && (!p->own || !p->drag)))
+        return CLOTH_E_MEMORY;
+    if (!loaded)
+        return CLOTH_OK;
+    p->load = aligned_alloc(sizeof *p->load, ((size_t)n + 1) * sizeof *p->load);
+    return p->load ? CLOTH_OK
+                   : cloth_fail(error, CLOTH_E_MEMORY, "out of memory for %u vertices", n);
+}
+
+static int find_used(struct flow_particles *p, const struct model *model, struct cloth_error *error)
+{
+    uint32_t first = 0;
+    for (uint32_t c = 0; c < model->n_cloths; c++) {
+        mesh_used(&model->cloths[c].mesh, p->used + first);
+        first += model->cloths[c].mesh.n_vertices;
+    }
+    return flow_joints_use(model, p->used, error);
+}
+
+int flow_particles_make(struct flow_particles *particles, const struct model *model,
+                        struct cloth_error *error)
+{
+    *particles = (struct flow_particles){0};
+    size_t n = 0;
+    bool loaded = false, starts = model->n_welds; /* which may move vertices a little */
+    for (uint32_t c = 0; c < model->n_cloths; c++) {
+        n += model->cloths[c].mesh.n_vertices;
+        loaded = loaded || model->cloths[c].n_loads;
+        starts = starts || model->cloths[c].start || model->cloths[c].n_starts;
+    }
+    if (n >= UINT32_MAX)
+        return cloth_fail(error, CLOTH_E_INPUT,
+                          "%zu vertices are too many; at most 4294967294 are possible", n);
+    int code = allocate(particles, (uint32_t)n, loaded, model, error);
+    if (!code && starts) {
+        particles->start = cloth_alloc(n, sizeof *particles->start, error);
+        code = particles->start ? CLOTH_OK : CLOTH_E_MEMORY;
+    }
+    if (!code)
+        code = find_used(particles, model, error);
+    if (!code)
+        code = flow_welds_make(&particles->welds, model, particles->n, particles->used, error);
+    if (!code)
+        code = each_cloth(particles, model, cloth_particles, error);
+    if (!code)
+        code = flow_welds_settle(particles, model, error);
+    if (!code)
+        code = each_cloth(particles, model, cloth_forces, error);
+    if (!code)
+        code = flow_follow_make(particles, model, error);
+    if (!code && particles->unused.n == particles->n)
+        code = model_fail(model->n_cloths ? model->cloths[0].mesh_place : NULL, error,
+                          "nothing to simulate: no face, edge or joint uses a vertex");
+    if (code)
+        flow_particles_free(particles);
+    return code;
+}
+
+/* Takes out of a velocity what a slider forbids. */
+static void constrain_velocity(const struct model_slider *slider, phys_vec *v)
+{
+    phys_vec filter;
+    to_vector(slider->direction, &filter);
+    filter[3] = slider->kind == MODEL_PLANE;
+    solve_filter(&filter, v);
+}
+
+void flow_particle_of(const struct flow_particles *particles, const struct model *model,
+                      const struct model_cloth *cloth, uint32_t first, uint32_t vertex,
+                      struct flow_particle *particle)
+{
+    const uint32_t own = vertex - first;
+    const struct model_material *material = model->materials + model_material_of(cloth, 1, &own);
+    const bool moves = particles->free[vertex];
+    particle->mass = particles->mass[vertex];
+    particle->drag = particles->drag
+                         ? particles->drag[vertex]
+                         : material->damping_viscous + material->damping_mass * particle->mass;
+    particle->free = moves ? 1 : 0;
+    to_vector(cloth->mesh.position + 3 * (size_t)(vertex - first), &particle->position);
+    to_vector(moves ? cloth->velocity : (const double[3]){0}, &particle->velocity);
+    if (particles->start) {
+        const double *start = particles->start[vertex];
+        to_vector(start, &particle->position);
+        to_vector(moves ? start + 3 : (const double[3]){0}, &particle->velocity);
+    }
+    if (particles->slider && particles->slider[vertex])
+        constrain_velocity(model->sliders + particles->slider[vertex] - 1, &particle->velocity);
+    to_vector(model->gravity, &particle->load);
+    particle->load *= particle->mass;
+    if (particles->load)
+        particle->load = particles->load[vertex];
+}
+
+/* The release of the vertices of one cloth, the first of which is `first`. */
+static double release(const struct flow_particles *p, const struct model *model,
+                      const struct model_cloth *cloth, uint32_t first)
+{
+    struct flow_particle at;
+    phys_vec centre = {0};
+    double mass = 0, sum = 0;
+    for (uint32_t v = first; v < first + cloth->mesh.n_vertices; v++) {
+        if (!p->used[v])
+            continue;
+        flow_particle_of(p, model, cloth, first, v, &at);
+        centre += at.mass * at.position;
+        mass += at.mass;
+    }
+    if (!(mass > 0)) /* all are other names of welded vertices, which have it */
+        return 0;
+    for (uint32_t v = first; v < first + cloth->mesh.n_vertices; v++) {
+        if (!p->used[v] || !p->free[v])
+            continue;
+        flow_particle_of(p, model, cloth, first, v, &at);
+        const phys_vec away = at.position - centre / mass;
+        sum += 2 * sqrt(phys_dot(&at.load, &at.load) * phys_dot(&away, &away));
+    }
+    return sum;
+}
+
+double flow_source_release(const struct flow_source *source)
+{
+    double sum = 0;
+    uint32_t first = 0;
+    for (uint32_t c = 0; c < source->model->n_cloths; c++) {
+        sum += release(&source->particles, source->model, source->model->cloths + c, first);
+        first += source->model->cloths[c].mesh.n_vertices;
+    }
+    return sum;
+}
+
+void flow_particles_free(struct flow_particles *particles)
+{
+    free(particles->used);
+    free(particles->free);
+    free(particles->mass);
+    free(particles->unwelded);
+    free(particles->own);
+    free(particles->drag);
+    flow_welds_free(&particles->welds);
+    free(particles->motion);
+    free(particles->anchor);
+    free(particles->attached);
+    free(particles->varying);
+    free(particles->slider);
+    free(particles->piece);
+    free(particles->load);
+    free(particles->start);
+    *particles = (struct flow_particles){0};
+}

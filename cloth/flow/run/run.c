@@ -1,0 +1,385 @@
+/* Tasks only read a flow, except what state/flow.h names. The main program decides only by values
+ * that all ranks get alike. */
+#include "cloth/flow/run.h"
+
+#include "cloth/base/memory.h"
+#include "cloth/flow/checkpoint/checkpoint.h"
+#include "cloth/flow/contact/certify.h"
+#include "cloth/flow/contact/repel.h"
+#include "cloth/flow/observe/observe.h"
+#include "cloth/flow/run/setup.h"
+#include "cloth/flow/run/step.h"
+#include "cloth/flow/solver/levels.h"
+#include "cloth/flow/solver/solve.h"
+#include "cloth/flow/state/state.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+double flow_now(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+const duite_kernel *const *flow_kernels(void)
+{
+#define TASK(name) &flow_kernel_##name.task,
+    static const duite_kernel *const all[FLOW_KERNELS_LISTED + 1] = {FLOW_KERNELS(TASK) &
+                                                                         flow_broadcast_head,
+                                                                     &flow_broadcast_shared,
+                                                                     &flow_ready,
+                                                                     &flow_pack,
+                                                                     &flow_group_factor,
+                                                                     &flow_group_start,
+                                                                     &flow_group_solve,
+                                                                     &flow_meet,
+                                                                     &flow_meet_shape,
+                                                                     &flow_touch,
+                                                                     &flow_cut_ways,
+                                                                     &flow_count_ties,
+                                                                     &flow_tie_contacts,
+                                                                     &flow_save_block,
+                                                                     &flow_send_main,
+                                                                     &flow_load_block,
+                                                                     NULL};
+    return all;
+}
+
+/* ---- Preparing ---- */
+
+/* Keeps where the vertices are that no block has. */
+static int keep_unused(struct flow *flow, const struct flow_particles *particles,
+                       struct cloth_error *error)
+{
+    struct flow_unused *unused = &flow->unused;
+    const struct model *model = flow->model;
+    unused->vertex = cloth_alloc(particles->unused.n, sizeof *unused->vertex, error);
+    unused->position = cloth_alloc(particles->unused.n, sizeof *unused->position, error);
+    if (!unused->vertex || !unused->position)
+        return CLOTH_E_MEMORY;
+    uint32_t first = 0;
+    for (uint32_t c = 0; c < model->n_cloths; c++) {
+        const struct mesh *mesh = &model->cloths[c].mesh;
+        for (uint32_t v = 0; v < mesh->n_vertices; v++) {
+            if (particles->used[first + v])
+                continue;
+            unused->vertex[unused->n] = first + v;
+            memcpy(unused->position[unused->n++], mesh->position + 3 * (size_t)v,
+                   sizeof *unused->position);
+        }
+        first += mesh->n_vertices;
+    }
+    return CLOTH_OK;
+}
+
+static int build(struct flow *flow, int ranks, struct cloth_error *error)
+{
+    const int code = flow_source_make(&flow->source, flow->model, ranks, error);
+    if (code)
+        return code;
+    flow->n_vertices = flow->source.particles.n;
+    flow->partition_hash = flow->source.blocks.hash;
+    flow->inertia = flow_source_inertia(&flow->source);
+    flow->release = flow_source_release(&flow->source);
+    flow->contact_stiffness = flow_source_stiffness(&flow->source);
+    flow->vertex_mass = flow_source_mass(&flow->source);
+    flow->feels_contact = model_feels_contact(flow->model);
+    flow_preconditioner_choose(flow, flow->source.blocks.n_blocks);
+    if (flow_watched_header(&flow->source.watched, flow->model, &flow->header, error) ||
+        flow_warn(flow, error))
+        return CLOTH_E_MEMORY;
+    return keep_unused(flow, &flow->source.particles, error);
+}
+
+int flow_join(struct flow **flow, struct cloth_error *error)
+{
+    *flow = calloc(1, sizeof **flow);
+    return *flow ? CLOTH_OK : cloth_fail(error, CLOTH_E_MEMORY, "out of memory");
+}
+
+int flow_prepare(struct flow **flow, const struct model *model, int ranks,
+                 struct cloth_error *error)
+{
+    int code = flow_join(flow, error);
+    if (code)
+        return code;
+    (*flow)->model = model;
+    (*flow)->n_steps = (uint64_t)(model->end / model->h + 0.5);
+    (*flow)->cloth_first = cloth_alloc(model->n_cloths, sizeof *(*flow)->cloth_first, error);
+    if (!(*flow)->cloth_first)
+        code = CLOTH_E_MEMORY;
+    for (uint32_t c = 0; c < model->n_cloths && !code; c++) {
+        (*flow)->n_triangles += model->cloths[c].mesh.n_triangles;
+        (*flow)->cloth_first[c] = model_first(model, c);
+    }
+    if (!code && (*flow)->n_steps >= UINT32_MAX)
+        code = cloth_fail(error, CLOTH_E_INPUT,
+                          "end / h makes %g steps; at most 4294967294 are possible",
+                          model->end / model->h);
+    if (!code)
+        code = build(*flow, ranks, error);
+    if (code) {
+        flow_free(*flow);
+        *flow = NULL;
+    }
+    return code;
+}
+
+void flow_free(struct flow *flow)
+{
+    if (!flow)
+        return;
+    flow_source_free(&flow->source);
+    free(flow->tables.block);
+    free(flow->shared);
+    free(flow->vertex);
+    free(flow->cloth_first);
+    free(flow->names.name);
+    free(flow->unused.vertex);
+    free(flow->unused.position);
+    free(flow->attached);
+    flow_watched_free(&flow->watched);
+    free(flow->header);
+    free(flow);
+}
+
+void flow_filter_by(struct flow *flow, struct flow_filter filter)
+{
+    flow->filter = filter;
+}
+
+void flow_start(const struct flow *flow, double *position)
+{
+    const struct flow_particles *particles = &flow->source.particles;
+    uint32_t first = 0;
+    for (uint32_t c = 0; c < flow->model->n_cloths; c++) {
+        const struct model_cloth *cloth = flow->model->cloths + c;
+        for (uint32_t v = first; v < first + cloth->mesh.n_vertices; v++) {
+            struct flow_particle at;
+            flow_particle_of(particles, flow->model, cloth, first, v, &at);
+            for (int k = 0; k < 3; k++)
+                position[3 * (size_t)v + (size_t)k] = at.position[k];
+        }
+        first += cloth->mesh.n_vertices;
+    }
+}
+
+const double (*flow_unwelded(const struct flow *flow))[3]
+{
+    return (const double(*)[3])flow->source.particles.unwelded;
+}
+
+void flow_starts(const struct flow *flow, double (*start)[6], unsigned char *held)
+{
+    const struct flow_particles *particles = &flow->source.particles;
+    flow_starts_take(particles, flow->model, start);
+    for (uint32_t v = 0; v < particles->n; v++)
+        held[v] = !particles->free[v] || (particles->slider && particles->slider[v]);
+}
+
+uint64_t flow_vertices(const struct flow *flow)
+{
+    return flow->n_vertices;
+}
+
+const uint32_t *flow_attached(const struct flow *flow)
+{
+    return flow->attached ? flow->attached : flow->source.particles.attached;
+}
+
+const char *flow_header(const struct flow *flow)
+{
+    return flow->header;
+}
+
+const char *flow_warning(const struct flow *flow, size_t i)
+{
+    for (size_t k = 0; k < sizeof flow->warning / sizeof *flow->warning; k++)
+        if (flow->warning[k][0] && i-- == 0)
+            return flow->warning[k];
+    return NULL;
+}
+
+/* ---- Running ---- */
+
+static void describe(const struct flow_state *state)
+{
+    const struct flow *flow = state->flow;
+    *state->report = (struct flow_report){.vertices = flow->n_vertices,
+                                          .triangles = flow->n_triangles,
+                                          .blocks = state->head.n_blocks,
+                                          .grain = flow->model->grain,
+                                          .partition_hash = flow->partition_hash};
+}
+
+/* Makes objects, then tables, which go to the ranks of their objects. Everything that bodies find
+ * by their context is made before waiting for the tables. A rank that is ahead may send tasks here
+ * that this rank's main program has not reached. */
+static int make(struct flow_state *state)
+{
+    flow_objects_make(state);
+    if (model_is_implicit(state->flow->model))
+        flow_halo_make(state);
+    flow_levels_make(state);
+    int code = flow_distribute(state);
+    if (!code)
+        code = duite_count_all(state->rt, &state->before);
+    return code;
+}
+
+int flow_run_begin(struct flow_state *state)
+{
+    struct flow *flow = state->flow;
+    flow->trouble = (struct cloth_error){0};
+    flow->output = state->output;
+    flow->frames = flow_before(state).frames;
+    flow->hash = 0;
+    int code = flow_share_head(state);
+    if (code)
+        return code;
+    describe(state);
+    state->report->rest_seconds = state->report->sewn_seconds = NAN;
+    state->report->seams = flow->model->n_pulled;
+    state->report->correction_excess = flow->model->correction_rounds ? 0 : NAN;
+    code = flow_memory_take(state);
+    if (!code)
+        code = flow_share(state);
+    if (!code)
+        code = flow_preconditioner_prepare(state);
+    if (!code)
+        code = make(state);
+    for (uint32_t i = 0; flow->room && i < flow->unused.n; i++)
+        memcpy(flow->room + 3 * (size_t)flow->unused.vertex[i], flow->unused.position[i],
+               sizeof flow->unused.position[i]);
+    state->begun = !code;
+    return code;
+}
+
+/* Starts a run that does not go on from a checkpoint. */
+static int start(struct flow_state *state)
+{
+    int code = flow_initialise(state);
+    if (!code && model_certifies(state->flow->model))
+        code = flow_contact_start(state);
+    if (!code && model_repels(state->flow->model))
+        code = flow_repulsion_start(state);
+    return code;
+}
+
+/* All steps, or until a stop that was asked for. */
+static int run_steps(struct flow_state *state)
+{
+    const bool implicit = model_is_implicit(state->flow->model);
+    int code = state->head.resumed_bytes ? flow_resume_main(state) : DUITE_OK;
+    if (!code)
+        code = flow_ties_choose(state);
+    if (!code && implicit && !state->solve.generation)
+        code = flow_cg_record(state);
+    if (!code)
+        code = state->head.resumed_bytes ? flow_resume_blocks(state) : start(state);
+    if (!code && !state->complete)
+        code = flow_steps(state);
+    if (!code && implicit && state->report->steps && state->output && state->output->system)
+        code = flow_system(state);
+    return code;
+}
+
+static int code_of_cloth(int code)
+{
+    if (code == FLOW_NOT_WRITTEN)
+        return CLOTH_E_IO;
+    if (code == FLOW_NO_MEMORY || code == DUITE_E_MEMORY)
+        return CLOTH_E_MEMORY;
+    if (code == DUITE_E_LOST || code == DUITE_E_MPI)
+        return CLOTH_E_LOST;
+    if (code == FLOW_TANGLED || code == FLOW_UNFIT)
+        return CLOTH_E_INPUT;
+    return code > 0 ? CLOTH_E_RUN : CLOTH_E_LIBRARY;
+}
+
+/* A body's own failure sentence, without the runtime's words about the task before it. */
+static const char *own_sentence(const char *message, int code)
+{
+    char before[32];
+    snprintf(before, sizeof before, " with code %d: ", code);
+    const char *found = strstr(message, before);
+    return found ? found + strlen(before) : message;
+}
+
+/* Why the run failed. Rank 0 knows a write error in full; the others know the part that travels
+ * with a failure. */
+static const char *reason(const struct flow_state *state, int code)
+{
+    if (code == FLOW_NOT_WRITTEN && state->flow->trouble.code)
+        return state->flow->trouble.text;
+    if (code == FLOW_STRETCHED || code == FLOW_TANGLED || code == FLOW_PINCHED ||
+        code == FLOW_UNSEWN)
+        return state->reason;
+    return code > 0 ? own_sentence(duite_message(), code) : duite_message();
+}
+
+/* Turns a failure into a sentence with the frame that was written last. Waits until nothing runs.
+ */
+static int explain(struct flow_state *state, int code)
+{
+    struct cloth_error why = {0};
+    cloth_fail(&why, code_of_cloth(code), "%.900s%s", reason(state, code),
+               code >= FLOW_DIVERGED && code != FLOW_UNSEWN && code_of_cloth(code) == CLOTH_E_RUN &&
+                       state->attempt.length == 1
+                   ? "; the step had been halved down to h/1024"
+                   : "");
+    if (code < 0) /* the runtime itself failed: no more is asked of it */
+        return cloth_fail(state->error, why.code, "%s", why.text);
+    duite_wait(state->rt); /* its error is the one in hand */
+    if (!flow_shows(state))
+        return cloth_fail(state->error, why.code, "%s", why.text);
+    if (!state->begun || flow_last_frame(state) || !state->report->frames)
+        return cloth_fail(state->error, why.code, "%.900s; no frame was written", why.text);
+    return cloth_fail(state->error, why.code, "%.900s; the last frame is %llu", why.text,
+                      (unsigned long long)state->report->last_frame);
+}
+
+int flow_run(struct flow *flow, duite *rt, const struct flow_output *output,
+             const struct flow_progress *progress, struct flow_report *report,
+             struct cloth_error *error)
+{
+    struct flow_state state = {
+        .flow = flow, .rt = rt, .output = output, .report = report, .error = error};
+    *report = (struct flow_report){0};
+    flow->progress = progress;
+    int code = flow_run_begin(&state);
+    state.from = flow_now();
+    if (!code)
+        code = run_steps(&state);
+    if (!code)
+        code = duite_wait(rt); /* the last frame is written, too */
+    report->wall_seconds = state.saved_wall + flow_now() - state.from;
+    if (!code)
+        code = flow_finish(&state);
+    if (!code && !report->stopped && !state.complete)
+        code = flow_save(&state, true);
+    if (!code)
+        code = duite_wait(rt);
+    int failed = code ? explain(&state, code) : CLOTH_OK;
+    const int contacts = flow_contact_free_objects(&state);
+    const int objects = flow_objects_free(&state);
+    if (!failed && (objects || contacts))
+        failed = cloth_fail(error, CLOTH_E_LIBRARY, "%s", duite_message());
+    duite_wait(rt);
+    if (flow->model) {
+        report->simulated_seconds = (double)state.grid.now * flow->model->h / FLOW_TICKS;
+        report->shortest_step = state.grid.least_done * flow->model->h / FLOW_TICKS;
+        report->steps_halved = state.grid.refused;
+    }
+    if (flow->model && !model_is_implicit(flow->model))
+        report->momentum_lost = report->mass_norm_error = NAN;
+    flow_memory_free(&state);
+    flow->output = NULL;
+    flow->progress = NULL;
+    return failed;
+}

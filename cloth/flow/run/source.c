@@ -1,0 +1,203 @@
+/* Springs are not kept; only the blocks that they join, and where, are. */
+#include "cloth/flow/run/source.h"
+
+#include "cloth/base/memory.h"
+
+#include <stdlib.h>
+
+uint32_t flow_source_block(const struct mesh_blocks *blocks, uint32_t place, uint32_t guess)
+{
+    if (blocks->start[guess] <= place && place < blocks->start[guess + 1])
+        return guess;
+    uint32_t low = 0, high = blocks->n_blocks;
+    while (high - low > 1) {
+        const uint32_t middle = low + (high - low) / 2;
+        if (blocks->start[middle] <= place)
+            low = middle;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+void flow_source_cloth(struct flow_cloths *at, const struct model *model, uint32_t vertex)
+{
+    if (vertex < at->first)
+        *at = (struct flow_cloths){0};
+    while (vertex - at->first >= model->cloths[at->cloth].mesh.n_vertices)
+        at->first += model->cloths[at->cloth++].mesh.n_vertices;
+}
+
+/* ---- Cutting ---- */
+
+struct pair_visitor {
+    const struct flow_welds *welds;
+    void (*visit)(void *to, uint32_t a, uint32_t b);
+    void *to;
+};
+
+static void visit_pair(void *to, const struct flow_spring *spring)
+{
+    const struct pair_visitor *visitor = to;
+    visitor->visit(visitor->to, flow_root(visitor->welds, spring->a),
+                   flow_root(visitor->welds, spring->b));
+}
+
+static void each_pair(const void *context, void (*visit)(void *to, uint32_t a, uint32_t b),
+                      void *to)
+{
+    const struct flow_springs *springs = context;
+    struct pair_visitor visitor = {springs->welds, visit, to};
+    flow_springs_each(springs, visit_pair, &visitor);
+}
+
+/* Cuts the used vertices, of welded ones their roots. */
+static int cut_roots(struct flow_source *source, const struct mesh_pairs *pairs,
+                     struct cloth_error *error)
+{
+    const struct flow_particles *p = &source->particles;
+    unsigned char *used = p->welds.n ? cloth_alloc(p->n, 1, error) : p->used;
+    if (!used)
+        return CLOTH_E_MEMORY;
+    for (uint32_t v = 0; v < p->n && p->welds.n; v++)
+        used[v] = p->used[v] && p->welds.root[v] == v;
+    int code = mesh_blocks_cut(&source->blocks, p->n, used, pairs, source->model->grain, error);
+    if (used != p->used)
+        free(used);
+    return code ? code : flow_names_make(&source->names, &p->welds, &source->blocks, error);
+}
+
+static int cut(struct flow_source *source, int ranks, struct cloth_error *error)
+{
+    const struct mesh_pairs pairs = {&source->springs, each_pair};
+    const struct mesh_blocks *blocks = &source->blocks;
+    const uint32_t grain = source->model->grain;
+    const int code = cut_roots(source, &pairs, error);
+    if (code || (uint32_t)ranks <= blocks->n_blocks)
+        return code;
+    return cloth_fail(error, CLOTH_E_INPUT,
+                      "%d ranks are more than there are blocks (%u): %u vertices at a grain of "
+                      "%u; start fewer ranks or give a smaller grain",
+                      ranks, blocks->n_blocks, blocks->n_places, grain);
+}
+
+/* ---- Shapes ---- */
+
+static void widen(struct flow_table *shape, uint32_t v)
+{
+    shape->lowest = v < shape->lowest ? v : shape->lowest;
+    shape->highest = v > shape->highest ? v : shape->highest;
+}
+
+static void find_range(const struct flow_source *source, struct flow_table *shape)
+{
+    const struct flow_names *names = &source->names;
+    const uint32_t end = flow_names_from(names, shape->first + shape->n);
+    shape->lowest = UINT32_MAX;
+    for (uint32_t i = 0; i < shape->n; i++)
+        widen(shape, source->blocks.vertex[shape->first + i]);
+    for (uint32_t i = flow_names_from(names, shape->first); i < end; i++)
+        widen(shape, names->name[i][1]);
+}
+
+/* Counts the watched vertices of each block. */
+static void count_watched(struct flow_source *source)
+{
+    uint32_t block = 0;
+    for (uint32_t i = 0; i < source->watched.n; i++) {
+        block = flow_source_block(&source->blocks, source->watched.place[i], block);
+        source->shape[block].n_watched++;
+    }
+}
+
+/* Counts the vertices of a block that have a number: that of a motion, or of a slider. */
+static uint32_t count_numbered(const struct flow_source *source, const struct flow_table *shape,
+                               const uint32_t *number)
+{
+    uint32_t n = 0;
+    for (uint32_t i = 0; number && i < shape->n; i++)
+        n += number[source->blocks.vertex[shape->first + i]] != 0;
+    return n;
+}
+
+static int find_shapes(struct flow_source *source, struct cloth_error *error)
+{
+    const struct mesh_blocks *blocks = &source->blocks;
+    source->halo = cloth_alloc(blocks->n_places, sizeof *source->halo, error);
+    source->shape = cloth_alloc(blocks->n_blocks, sizeof *source->shape, error);
+    if (!source->halo || !source->shape)
+        return CLOTH_E_MEMORY;
+    flow_varying_settle(source);
+    for (uint32_t b = 0; b < blocks->n_blocks; b++) {
+        struct flow_table *shape = source->shape + b;
+        shape->format = source->model->format;
+        shape->first = blocks->start[b];
+        shape->n = blocks->start[b + 1] - blocks->start[b];
+        find_range(source, shape);
+        shape->n_moved = count_numbered(source, shape, source->particles.motion);
+        shape->n_sliding = count_numbered(source, shape, source->particles.slider);
+        shape->n_loose = count_numbered(source, shape, source->particles.piece);
+        shape->n_varying = flow_varying_from(source, shape->first + shape->n) -
+                           flow_varying_from(source, shape->first);
+    }
+    count_watched(source);
+    flow_source_count(source);
+    return flow_source_meet(source, error);
+}
+
+int flow_source_make(struct flow_source *source, const struct model *model, int ranks,
+                     struct cloth_error *error)
+{
+    *source = (struct flow_source){.model = model};
+    int code = model_seeks(model) ? flow_thickness_check(model, error) : CLOTH_OK;
+    if (!code)
+        code = flow_particles_make(&source->particles, model, error);
+    if (!code)
+        code = element_cloths_make(&source->elements, model, error);
+    if (!code)
+        code = flow_welds_check(&source->particles.welds, &source->elements, error);
+    if (!code)
+        code = flow_seams_make(&source->elements, &source->particles.welds, error);
+    if (!code)
+        code = element_folds_check(&source->elements, error);
+    if (!code)
+        code = flow_springs_make(&source->springs, model, &source->particles.welds,
+                                 &source->elements, error);
+    if (!code)
+        code = flow_springs_merge(&source->springs, source->particles.n, error);
+    if (!code)
+        code = flow_joints_make(&source->springs, &source->particles, error);
+    if (!code && model_is_implicit(model))
+        code = flow_pieces_make(source, error);
+    if (!code)
+        code = cut(source, ranks, error);
+    if (!code)
+        code = flow_watched_make(&source->watched, source, error);
+    if (!code)
+        code = find_shapes(source, error);
+    if (!code && model_seeks(model))
+        code = flow_skins_make(source, error);
+    if (code)
+        flow_source_free(source);
+    return code;
+}
+
+void flow_source_free(struct flow_source *source)
+{
+    flow_source_forget(source);
+    free(source->neighbours.neighbour);
+    free(source->neighbours.ghost_start);
+    free(source->neighbours.ghost);
+    free(source->neighbours.joins);
+    flow_watched_free(&source->watched);
+    flow_skins_free(&source->skins);
+    free(source->names.name);
+    free(source->shape);
+    free(source->halo);
+    free(source->cut);
+    mesh_blocks_free(&source->blocks);
+    flow_springs_free(&source->springs);
+    element_cloths_free(&source->elements);
+    flow_particles_free(&source->particles);
+    *source = (struct flow_source){0};
+}

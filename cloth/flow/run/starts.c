@@ -1,0 +1,112 @@
+/* Places and velocities at the start, if the scene says more than the shape of the mesh and one
+ * velocity. Rest shapes and masses do not change with them. */
+#include "cloth/flow/run/source.h"
+
+#include "cloth/physics/curve.h"
+#include "cloth/physics/particle.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* A start and the vertices that it moves. */
+struct starter {
+    double (*start)[6]; /* of the cloth's first vertex */
+    const double *mesh; /* where the mesh has them */
+    const struct model_start *how;
+    uint32_t lost; /* one that it takes beyond all bounds; UINT32_MAX: none */
+};
+
+static bool is_bounded(const double start[6])
+{
+    const phys_vec x = {start[0], start[1], start[2], 0}, v = {start[3], start[4], start[5], 0};
+    return phys_diverged(1, FLOW_BOUND, &x) != 0 && phys_diverged(1, FLOW_BOUND, &v) != 0;
+}
+
+static int refuse(const struct model_cloth *cloth, uint32_t vertex, double (*start)[6],
+                  const char *place, struct cloth_error *error)
+{
+    const double *x = start[vertex], *v = x + 3;
+    return model_fail(
+        place, error,
+        "vertex %u of cloth '%.60s' starts at (%g, %g, %g) m with the velocity (%g, "
+        "%g, %g) m/s; less than %g along each axis is expected (vertices count from 1)",
+        vertex + 1, cloth->name, x[0], x[1], x[2], v[0], v[1], v[2], FLOW_BOUND);
+}
+
+static double wave_at(const struct model_start *how, const double mesh[3])
+{
+    double cycles = how->wave.phase;
+    for (int c = 0; c < 3; c++)
+        cycles += how->wave.vector[c] * (mesh[c] - how->about[c]);
+    return phys_sine(cycles);
+}
+
+static void move(void *to, uint32_t vertex)
+{
+    struct starter *starter = to;
+    const struct model_start *how = starter->how;
+    double *x = starter->start[vertex], *v = x + 3, arm[3];
+    const double sine = wave_at(how, starter->mesh + 3 * (size_t)vertex);
+    struct mesh one = {.n_vertices = 1, .position = arm};
+    for (int c = 0; c < 3; c++)
+        arm[c] = x[c] - how->about[c];
+    mesh_apply(&one, &how->transform);
+    for (int c = 0; c < 3; c++) {
+        const int a = (c + 1) % 3, b = (c + 2) % 3;
+        const double before = how->has_velocity ? how->velocity[c] : v[c];
+        v[c] =
+            before + (how->spin[a] * arm[b] - how->spin[b] * arm[a]) + how->wave.velocity[c] * sine;
+        x[c] = how->about[c] + arm[c] + how->wave.translate[c] * sine;
+    }
+    if (!is_bounded(x))
+        starter->lost = vertex;
+}
+
+static void at_mesh(const struct model_cloth *cloth, double (*start)[6])
+{
+    const uint32_t n = cloth->mesh.n_vertices;
+    if (cloth->start)
+        memcpy(start, cloth->start, n * sizeof *start);
+    for (size_t i = 0; i < n && !cloth->start; i++) {
+        memcpy(start[i], cloth->mesh.position + 3 * i, 3 * sizeof(double));
+        memcpy(start[i] + 3, cloth->velocity, 3 * sizeof(double));
+    }
+}
+
+int flow_starts_make(struct flow_particles *particles, uint32_t first,
+                     const struct model_cloth *cloth, struct cloth_error *error)
+{
+    if (!particles->start)
+        return CLOTH_OK;
+    double(*start)[6] = particles->start + first;
+    at_mesh(cloth, start);
+    int code = CLOTH_OK;
+    for (uint32_t i = 0; i < cloth->mesh.n_vertices && !code; i++)
+        code = is_bounded(start[i]) ? CLOTH_OK : refuse(cloth, i, start, cloth->place, error);
+    for (uint32_t i = 0; i < cloth->n_starts && !code; i++) {
+        const struct model_pick *pick = &cloth->starts[i].pick;
+        struct starter starter = {start, cloth->mesh.position, cloth->starts + i, UINT32_MAX};
+        const struct flow_picking picking = {.pick = pick,
+                                             .cloth = cloth,
+                                             .used = particles->used + first,
+                                             .what = "a start",
+                                             .visit = move,
+                                             .to = &starter};
+        code = flow_pick(&picking, error);
+        if (!code && starter.lost != UINT32_MAX)
+            code = refuse(cloth, starter.lost, start, pick->place, error);
+    }
+    return code;
+}
+
+void flow_starts_take(const struct flow_particles *particles, const struct model *model,
+                      double (*start)[6])
+{
+    uint32_t first = 0;
+    if (particles->start)
+        memcpy(start, particles->start, particles->n * sizeof *start);
+    for (uint32_t c = 0; c < model->n_cloths && !particles->start; c++) {
+        at_mesh(model->cloths + c, start + first);
+        first += model->cloths[c].mesh.n_vertices;
+    }
+}

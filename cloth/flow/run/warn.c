@@ -1,0 +1,308 @@
+/* Warnings about a model. Each kind has its place in flow->warning, and says at most one thing. */
+#include "cloth/flow/integrators/long_steps.h"
+#include "cloth/flow/run/setup.h"
+#include "cloth/flow/state/state.h"
+
+#include <math.h>
+#include <stdio.h>
+
+static const double LEAST_EXTENT = 0.01, MAX_EXTENT = 10; /* m: of a garment */
+static const double DEEP = 1e-6; /* m: a point on a surface is less deep in it */
+
+static void describe_unusual(char *text, size_t size, const char *what,
+                             const struct flow_unusual *unusual, const char *effect)
+{
+    if (unusual->n)
+        snprintf(text, size,
+                 "%.200s%s%s that no face, edge or joint uses: %u, the first is vertex %u of cloth "
+                 "'%.60s' (vertices count from 1); %s",
+                 unusual->place ? unusual->place : "", unusual->place ? ": " : "", what, unusual->n,
+                 unusual->vertex + 1, unusual->cloth->name, effect);
+}
+
+static void warn(struct flow *flow, const struct flow_particles *particles)
+{
+    const size_t size = sizeof flow->warning[0];
+    describe_unusual(flow->warning[0], size, "vertices", &particles->unused,
+                     "they are kept and stay where they are");
+    describe_unusual(flow->warning[1], size, "pinned vertices", &particles->pinned,
+                     "they stay where they are without a pin");
+    describe_unusual(flow->warning[2], size, "loads on vertices", &particles->loaded,
+                     "they move nothing");
+}
+
+/* Names a key of a material that its cloth has no use for; NULL: there is none. A chain beside a
+ * grid may share a material that shears. */
+static const char *idle_key(const struct model *model, const struct model_material *material,
+                            const struct model_cloth *cloth)
+{
+    bool triangles, edges;
+    model_parts(model, (uint32_t)(material - model->materials), &triangles, &edges);
+    if (material->ea > 0 && !edges)
+        return "ea is of edges without triangles";
+    if (material->limit_stiffness > 0 && !triangles && !edges)
+        return "strain_limit is of edges, and it has none";
+    if (material->correction.rounds && !triangles && !edges)
+        return "velocity_correction is of edges, and it has none";
+    if (material->stretch > 0 && !triangles)
+        return "stretch is of triangles and threads; edges without triangles have ea";
+    if ((material->bend > 0 || material->bending != MODEL_NO_BENDING) && !triangles)
+        return "bend and bending are of triangles and threads, which edges without triangles lack";
+    if (model_damping_bending(material) != material->damping_stiffness && material->bend <= 0 &&
+        material->bending == MODEL_NO_BENDING)
+        return "damping.bending is of bending and of bend springs, and it has neither";
+    if (material->model == MODEL_TRIANGLES)
+        return material->bend > 0 ? "bend is of springs; triangles have bending" : NULL;
+    if (material->poisson < 0 || material->poisson > 0)
+        return "poisson is of triangles; springs have no such ratio of their own";
+    if (material->uncorrected)
+        return "forces is of triangles";
+    return material->shear > 0 && !cloth->mesh.grid_nx && cloth->mesh.n_triangles
+               ? "shear is of the springs of grids, and of "
+                 "triangles; other meshes have no diagonals"
+               : NULL;
+}
+
+/* Diagonals that only such triangles hold fold without a force. */
+static void warn_of_shear(struct flow *flow)
+{
+    const struct model *model = flow->model;
+    for (uint32_t c = 0; c < model->n_cloths; c++)
+        for (uint32_t i = 0; i <= model->cloths[c].n_regions && !flow->warning[8][0]; i++) {
+            const struct model_cloth *cloth = model->cloths + c;
+            const struct model_material *material = model_material(model, cloth, i);
+            if (material->model == MODEL_TRIANGLES && !(material->shear > 0) &&
+                cloth->mesh.n_triangles)
+                snprintf(flow->warning[8], sizeof flow->warning[8],
+                         "%.200s%smaterial '%.60s' makes triangles of cloth '%.60s' that do not "
+                         "resist being sheared: its shear is 0",
+                         cloth->place ? cloth->place : "", cloth->place ? ": " : "",
+                         material->name ? material->name : "", cloth->name ? cloth->name : "");
+        }
+}
+
+static void warn_of_moduli(struct flow *flow)
+{
+    const struct model *model = flow->model;
+    for (uint32_t c = 0; c < model->n_cloths; c++)
+        for (uint32_t i = 0; i <= model->cloths[c].n_regions; i++) {
+            const struct model_cloth *cloth = model->cloths + c;
+            const struct model_material *material = model_material(model, cloth, i);
+            const char *key = idle_key(model, material, cloth);
+            if (key && !flow->warning[6][0])
+                snprintf(flow->warning[6], sizeof flow->warning[6],
+                         "%.200s%smaterial '%.60s' says what means nothing to cloth '%.60s': %s",
+                         cloth->place ? cloth->place : "", cloth->place ? ": " : "",
+                         material->name ? material->name : "", cloth->name ? cloth->name : "", key);
+        }
+}
+
+/* Files are often in centimetres or millimetres. Chains, which no garment is, may have any length.
+ */
+static void warn_of_extent(struct flow *flow)
+{
+    const struct model *model = flow->model;
+    for (uint32_t c = 0; c < model->n_cloths && !flow->warning[7][0]; c++) {
+        const struct model_cloth *cloth = model->cloths + c;
+        double low[3], high[3];
+        const double extent = mesh_box(&cloth->mesh, low, high);
+        if (!cloth->mesh.n_triangles || (extent >= LEAST_EXTENT && extent <= MAX_EXTENT))
+            continue;
+        snprintf(flow->warning[7], sizeof flow->warning[7],
+                 "%.200s%scloth '%.60s' is %g m long in its largest extent, %s than %g m: is its "
+                 "mesh in metres? transform.scale changes that (0.01 for centimetres)",
+                 cloth->mesh_place ? cloth->mesh_place : "", cloth->mesh_place ? ": " : "",
+                 cloth->name ? cloth->name : "", extent, extent > MAX_EXTENT ? "more" : "less",
+                 extent > MAX_EXTENT ? MAX_EXTENT : LEAST_EXTENT);
+    }
+}
+
+/* The vertex of a cloth that starts deepest in a shape, of those that are free. first: the number
+ * of the cloth's first vertex. Returns its gap, m; infinite: none is free. */
+static double find_deepest(const struct flow *flow, const struct contact_shape *shape,
+                           const struct model_cloth *cloth, uint32_t first, uint32_t *deepest)
+{
+    const struct flow_particles *particles = &flow->source.particles;
+    struct contact_pose pose;
+    double gap = INFINITY;
+    contact_pose_over(shape, flow->model->keys, &flow->model->bodies, 0, 0, &pose);
+    for (uint32_t i = 0; i < cloth->mesh.n_vertices; i++) {
+        const double *start =
+            particles->start ? particles->start[first + i] : cloth->mesh.position + 3 * (size_t)i;
+        const phys_vec x = {start[0], start[1], start[2], 0};
+        struct contact_hit hit;
+        if (!particles->used[first + i] || !particles->free[first + i])
+            continue;
+        contact_closest(shape, &pose, 1, &x, &hit);
+        if (hit.gap < gap) {
+            gap = hit.gap;
+            *deepest = i;
+        }
+    }
+    return gap;
+}
+
+/* The first step puts it out at once, by the nearest way, which may be none that was meant. A start
+ * of certified contact is refused, and this says where. */
+static void warn_of_inside(struct flow *flow)
+{
+    const struct model *model = flow->model;
+    const size_t size = sizeof flow->warning[9];
+    uint32_t first = 0;
+    for (uint32_t c = 0; c < model->n_cloths; first += model->cloths[c++].mesh.n_vertices)
+        for (uint32_t i = 0; i < model->n_obstacles && !flow->warning[9][0]; i++) {
+            const struct model_cloth *cloth = model->cloths + c;
+            uint32_t deepest = 0;
+            if (!model_meets(model, c, model->n_cloths + i))
+                continue;
+            const double gap = find_deepest(flow, model->obstacles + i, cloth, first, &deepest);
+            if (gap < -DEEP)
+                snprintf(flow->warning[9], size,
+                         "%.200s%scloth '%.60s' starts inside obstacles[%u], a %s: vertex %u is %g "
+                         "m deep in it (vertices count from 1)%s",
+                         cloth->place ? cloth->place : "", cloth->place ? ": " : "",
+                         cloth->name ? cloth->name : "", i,
+                         contact_kinds[model->obstacles[i].kind]->name, deepest + 1, -gap,
+                         model_certifies(model)
+                             ? ""
+                             : "; the first step puts it out by the nearest way");
+        }
+}
+
+/* Warns of the first cloth that has such edges. */
+static void warn_of_windings(struct flow *flow, const struct model_cloth *cloth,
+                             const struct mesh_edges *edges)
+{
+    const struct mesh_edge *first = NULL;
+    uint32_t n = 0;
+    for (uint32_t e = edges->n; e-- > 0;)
+        if (edges->edge[e].against) {
+            first = edges->edge + e;
+            n++;
+        }
+    if (first && !flow->warning[10][0])
+        snprintf(flow->warning[10], sizeof flow->warning[10],
+                 "%.200s%scloth '%.60s' has %u edges whose two triangles are wound against each "
+                 "other, the first is between vertices %u and %u (counted from 1): which side is "
+                 "its outside differs there; turn the faces of one side round",
+                 cloth->mesh_place ? cloth->mesh_place : "", cloth->mesh_place ? ": " : "",
+                 cloth->name ? cloth->name : "", n, first->a + 1, first->b + 1);
+}
+
+/* The place of a vertex that follows an obstacle, at a time, s; x: its start. */
+static void follow(const struct flow *flow, uint32_t motion, double time, phys_vec *x)
+{
+    const struct model *model = flow->model;
+    if (motion > model->n_motions) {
+        flow_anchor_place(model, flow->source.particles.anchor + (motion - model->n_motions - 1),
+                          time, x);
+        return;
+    }
+    const struct model_motion *m = model->motions + motion - 1;
+    struct phys_pose begin, pose;
+    if (!m->n)
+        return; /* the obstacle stands still */
+    phys_pose_at(m->n, model->keys + m->first, m->about, 0, &begin);
+    phys_pose_at(m->n, model->keys + m->first, m->about, time, &pose);
+    phys_pose_back(&begin, x, x);
+    phys_pose_point(&pose, x, x);
+}
+
+static double distance(const double *a, const double *b)
+{
+    const phys_vec way = {b[0] - a[0], b[1] - a[1], b[2] - a[2], 0};
+    return sqrt(phys_dot(&way, &way));
+}
+
+/* The distance of two ends of an edge that follow obstacles at a time, m. */
+static double length_at(const struct flow *flow, uint32_t first, const struct model_cloth *cloth,
+                        const struct mesh_edge *edge, double time)
+{
+    const struct flow_particles *p = &flow->source.particles;
+    const uint32_t end[2] = {edge->a, edge->b};
+    phys_vec x[2];
+    for (int k = 0; k < 2; k++) {
+        const double *at =
+            p->start ? p->start[first + end[k]] : cloth->mesh.position + 3 * (size_t)end[k];
+        x[k] = (phys_vec){at[0], at[1], at[2], 0};
+        follow(flow, p->motion[flow_root(&p->welds, first + end[k])], time, x + k);
+    }
+    const phys_vec way = x[1] - x[0];
+    return sqrt(phys_dot(&way, &way));
+}
+
+/* The most that an edge of one cloth gets longer than at the start, or at rest; and when. */
+struct stretched {
+    double by, time;
+    const struct mesh_edge *edge;
+};
+
+static void find_stretched(const struct flow *flow, const struct model_cloth *cloth, uint32_t first,
+                           const struct mesh_edges *edges, struct stretched *most)
+{
+    enum { TIMES = 50 };
+    const uint32_t *attached = flow->source.particles.attached + first;
+    const double *position = model_rest(cloth)->position;
+    for (uint32_t e = 0; e < edges->n; e++) {
+        const struct mesh_edge *edge = edges->edge + e;
+        if (!attached[edge->a] || !attached[edge->b])
+            continue;
+        const double rest =
+            distance(position + 3 * (size_t)edge->a, position + 3 * (size_t)edge->b);
+        const double length = fmax(rest, length_at(flow, first, cloth, edge, 0));
+        for (int i = 1; i <= TIMES; i++) {
+            const double time = flow->model->end * i / TIMES;
+            const double by = length_at(flow, first, cloth, edge, time) / length - 1;
+            if (by > most->by)
+                *most = (struct stretched){by, time, edge};
+        }
+    }
+}
+
+/* first: the number of the cloth's first vertex. */
+static void warn_of_follow(struct flow *flow, const struct model_cloth *cloth, uint32_t first,
+                           const struct mesh_edges *edges)
+{
+    struct stretched most = {.by = 0.2}; /* a body's skin stretches by so much at its joints */
+    find_stretched(flow, cloth, first, edges, &most);
+    if (most.edge && !flow->warning[11][0])
+        snprintf(flow->warning[11], sizeof flow->warning[11],
+                 "%.200s%spins that follow obstacles stretch cloth '%.60s' by %.0f %% at %.3g s: "
+                 "the edge between vertices %u and %u (counted from 1); pin fewer of its vertices",
+                 cloth->place ? cloth->place : "", cloth->place ? ": " : "",
+                 cloth->name ? cloth->name : "", 100 * most.by, most.time, most.edge->a + 1,
+                 most.edge->b + 1);
+}
+
+/* Grids are wound in one direction. Cloths without elements have no edges of their own. */
+static void warn_of_edges(struct flow *flow)
+{
+    const struct model *model = flow->model;
+    const bool attached = flow->source.particles.attached != NULL;
+    uint32_t first = 0;
+    for (uint32_t c = 0; c < model->n_cloths; first += model->cloths[c++].mesh.n_vertices) {
+        const struct model_cloth *cloth = model->cloths + c;
+        const struct mesh_edges *edges = flow->source.elements.edges + c;
+        struct mesh_edges found = {0};
+        struct cloth_error ignored = {0}; /* without edges there are no warnings */
+        if (!attached && cloth->mesh.grid_nx)
+            continue;
+        if (!edges->n && !mesh_edges_find(&found, &cloth->mesh, &ignored))
+            edges = &found;
+        warn_of_windings(flow, cloth, edges);
+        if (attached)
+            warn_of_follow(flow, cloth, first, edges);
+        mesh_edges_free(&found);
+    }
+}
+
+int flow_warn(struct flow *flow, struct cloth_error *error)
+{
+    warn_of_edges(flow);
+    warn(flow, &flow->source.particles);
+    warn_of_moduli(flow);
+    warn_of_shear(flow);
+    warn_of_extent(flow);
+    warn_of_inside(flow);
+    return flow_warn_of_steps(flow, error);
+}

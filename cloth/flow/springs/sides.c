@@ -1,0 +1,309 @@
+/* A spring has one side where both ends lie in one block, and two where they do not. Sorting the
+ * sides of a block by neighbour and rows gives every array of its table as a contiguous part. */
+#include "cloth/flow/run/source.h"
+
+#include "cloth/base/memory.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* One side of a spring, seen from the block that it is kept in. */
+struct flow_side {
+    uint32_t other;       /* the neighbour plus one, 0 for inner springs */
+    uint32_t here, there; /* places; inner: the lower is here */
+    uint32_t spring;      /* its number: springs that join the same rows keep their order */
+    double stiffness, damping, length;
+    unsigned char stretch;
+    uint32_t seam;
+    const struct model_correction *correction;
+};
+
+static int compare_u32(uint32_t a, uint32_t b)
+{
+    return (a > b) - (a < b);
+}
+
+static int compare_sides(const void *va, const void *vb)
+{
+    const struct flow_side *a = va, *b = vb;
+    int order = compare_u32(a->other, b->other);
+    if (!order)
+        order = compare_u32(a->here, b->here);
+    if (!order)
+        order = compare_u32(a->there, b->there);
+    return order ? order : compare_u32(a->spring, b->spring);
+}
+
+/* The sides of the group: counted from the shapes, then put where their block's part goes on. */
+struct gatherer {
+    struct flow_source *source;
+    uint32_t first, end; /* places of the group */
+    uint32_t spring;
+    uint32_t block; /* of the last spring's lower end: the next one's is often the same */
+};
+
+static void put_side(struct gatherer *gatherer, uint32_t block, uint32_t other, uint32_t here,
+                     uint32_t there, const struct flow_spring *s)
+{
+    struct flow_source *source = gatherer->source;
+    source->side[source->start[block - source->from]++] =
+        (struct flow_side){other,      here,      there,      gatherer->spring, s->stiffness,
+                           s->damping, s->length, s->stretch, s->seam,          s->correction};
+}
+
+static void gather_spring(void *to, const struct flow_spring *s)
+{
+    struct gatherer *gatherer = to;
+    const struct mesh_blocks *blocks = &gatherer->source->blocks;
+    uint32_t p = blocks->place[s->a], q = blocks->place[s->b];
+    gatherer->spring++;
+    const bool own_p = p >= gatherer->first && p < gatherer->end;
+    const bool own_q = q >= gatherer->first && q < gatherer->end;
+    if (!own_p && !own_q)
+        return;
+    const uint32_t bp = flow_source_block(blocks, p, gatherer->block);
+    const uint32_t bq = flow_source_block(blocks, q, bp);
+    gatherer->block = bp;
+    if (bp == bq) {
+        put_side(gatherer, bp, 0, p < q ? p : q, p < q ? q : p, s);
+        return;
+    }
+    if (own_p)
+        put_side(gatherer, bp, bq + 1, p, q, s);
+    if (own_q)
+        put_side(gatherer, bq, bp + 1, q, p, s);
+}
+
+void flow_source_forget(struct flow_source *source)
+{
+    free(source->side);
+    free(source->start);
+    free(source->member);
+    free(source->member_start);
+    source->side = NULL;
+    source->start = NULL;
+    source->member = NULL;
+    source->member_start = NULL;
+}
+
+int flow_source_gather(struct flow_source *source, uint32_t from, uint32_t to,
+                       struct cloth_error *error)
+{
+    struct gatherer gatherer = {
+        .source = source, .first = source->blocks.start[from], .end = source->blocks.start[to]};
+    flow_source_forget(source);
+    source->start = cloth_alloc((size_t)(to - from) + 1, sizeof *source->start, error);
+    if (!source->start)
+        return CLOTH_E_MEMORY;
+    size_t n = 0;
+    for (uint32_t b = from; b < to; b++) {
+        source->start[b - from] = n;
+        n += (size_t)source->shape[b].n_inner + source->shape[b].n_cut;
+    }
+    source->side = cloth_alloc(n, sizeof *source->side, error);
+    if (!source->side)
+        return CLOTH_E_MEMORY;
+    source->from = from;
+    flow_springs_each(&source->springs, gather_spring, &gatherer);
+    for (uint32_t i = to - from; i > 0; i--) /* each was moved on to the next one's */
+        source->start[i] = source->start[i - 1];
+    source->start[0] = 0;
+    const int code = flow_source_collect(source, from, to, error);
+    if (code)
+        flow_source_forget(source);
+    return code;
+}
+
+/* Fills the data of each vertex, and the rows that other blocks need. */
+static void fill_rows(const struct flow_source *source, const struct flow_table *t,
+                      const struct flow_layout *layout)
+{
+    const struct model *model = source->model;
+    struct flow_cloths at = {0};
+    for (uint32_t i = 0; i < t->n; i++) {
+        const uint32_t v = source->blocks.vertex[t->first + i], halo = source->halo[t->first + i];
+        struct flow_particle p;
+        flow_source_cloth(&at, model, v);
+        flow_particle_of(&source->particles, model, model->cloths + at.cloth, at.first, v, &p);
+        layout->vertex[i] = v;
+        layout->mass[i] = p.mass;
+        layout->drag[i] = p.drag;
+        layout->free[i] = p.free;
+        layout->load[i] = p.load;
+        layout->position[i] = p.position;
+        layout->velocity[i] = p.velocity;
+        if (halo != MESH_NO_PLACE)
+            layout->halo[halo] = i;
+    }
+}
+
+/* The n rows of a block that have a number, and these. */
+static void fill_numbered(const struct flow_source *source, const struct flow_table *t,
+                          const uint32_t *number, uint32_t n, uint32_t (*to)[2])
+{
+    for (uint32_t i = 0, k = 0; k < n; i++) {
+        const uint32_t here = number[source->blocks.vertex[t->first + i]];
+        if (!here)
+            continue;
+        to[k][0] = i;
+        to[k++][1] = here;
+    }
+}
+
+static void fill_watched(const struct flow_source *source, const struct flow_table *t,
+                         const struct flow_layout *layout)
+{
+    const struct flow_watched *watched = &source->watched;
+    uint32_t low = 0, high = watched->n; /* the first at or after the block's first place */
+    while (t->n_watched && low < high) {
+        const uint32_t middle = low + (high - low) / 2;
+        if (watched->place[middle] < t->first)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    for (uint32_t i = 0; i < t->n_watched; i++)
+        layout->watched[i] = watched->place[low + i] - t->first;
+}
+
+static void fill_varying(const struct flow_source *source, const struct flow_table *t,
+                         const struct flow_layout *layout)
+{
+    if (!t->n_varying)
+        return;
+    const struct flow_varying *load =
+        source->particles.varying + flow_varying_from(source, t->first);
+    for (uint32_t i = 0; i < t->n_varying; i++, load++) {
+        layout->varying[i][0] = load->at - t->first;
+        layout->varying[i][1] = load->curve;
+        layout->varying_force[i] = (phys_vec){load->force[0], load->force[1], load->force[2], 0};
+    }
+}
+
+/* True if side i is the first of its entry. */
+static bool opens(const struct flow_table *t, const struct flow_side *side, uint32_t i)
+{
+    if (t->format == SOLVE_SPRINGS || i == 0)
+        return true;
+    const struct flow_side *before = side + i - 1;
+    return side[i].other != before->other || side[i].here != before->here ||
+           side[i].there != before->there;
+}
+
+/* The inner entries come first, in order: rows of the matrix. Returns how many they are. */
+static uint32_t fill_inner(const struct flow_table *t, const struct flow_side *side,
+                           const struct flow_layout *layout)
+{
+    uint32_t i = 0, entries = 0;
+    for (uint32_t a = 0; a < t->n; a++) {
+        layout->row[a] = entries;
+        for (; i < t->n_inner && side[i].here - t->first == a; i++)
+            if (opens(t, side, i))
+                layout->column[entries++] = side[i].there - t->first;
+    }
+    layout->row[t->n] = entries;
+    return entries;
+}
+
+/* The cut springs and entries follow, neighbour after neighbour. */
+static void fill_cut(const struct flow_source *source, const struct flow_table *t,
+                     const struct flow_side *side, const struct flow_layout *layout)
+{
+    uint32_t neighbours = 0, entries = 0;
+    for (uint32_t i = 0; i < t->n_cut; i++) {
+        if (i == 0 || side[i].other != side[i - 1].other) {
+            layout->cut[neighbours] = i;
+            layout->cut_entry[neighbours++] = entries;
+        }
+        if (!opens(t, side, i))
+            continue;
+        layout->ghost_end[entries][0] = side[i].here - t->first;
+        layout->ghost_end[entries++][1] =
+            flow_table_ghost(t, neighbours - 1, source->halo[side[i].there]);
+    }
+    layout->cut[neighbours] = t->n_cut;
+    layout->cut_entry[neighbours] = entries;
+}
+
+static void fill_sides(const struct flow_source *source, const struct flow_table *t,
+                       const struct flow_side *side, const struct flow_layout *layout)
+{
+    const uint32_t *vertex = source->blocks.vertex;
+    uint32_t held = 0, entries = 0, pulled = 0;
+    for (uint32_t i = 0; i < t->n_inner + t->n_cut; i++) {
+        const bool first = opens(t, side, i);
+        entries += first;
+        if (t->format != SOLVE_SPRINGS)
+            layout->at[i] = entries - 1;
+        const uint32_t here = side[i].here - t->first;
+        const uint32_t there =
+            side[i].other ? source->halo[side[i].there] : side[i].there - t->first;
+        const bool free_here = source->particles.free[vertex[side[i].here]];
+        const bool free_there = source->particles.free[vertex[side[i].there]];
+        layout->end[i][0] = here;
+        layout->end[i][1] = there;
+        layout->stiffness[i] = side[i].stiffness;
+        layout->damping[i] = side[i].damping;
+        layout->length[i] = side[i].length;
+        layout->stretch[i] = side[i].stretch;
+        if (side[i].seam) {
+            layout->pulled[pulled][0] = i;
+            layout->pulled[pulled++][1] = side[i].seam;
+        }
+        if (!first || free_here == free_there || (side[i].other && !free_here))
+            continue; /* neither end is held, or the free row is the neighbour's */
+        layout->held[held][0] = free_here ? here : there;
+        layout->held[held++][1] = entries - 1;
+    }
+    *layout->n_held = held;
+}
+
+/* The limits of a block's edges. An edge between blocks makes the share of its correction that lets
+ * all those of a vertex be made at once. */
+static void fill_corrected(const struct flow_source *source, const struct flow_table *t,
+                           const struct flow_side *side, const struct flow_layout *layout)
+{
+    struct solve_edge *inner = layout->corrected;
+    struct flow_cut_edge *cut = layout->corrected_cut;
+    uint32_t s = 0;
+    for (uint32_t i = 0; i < t->n_inner + t->n_cut; i++) {
+        const struct model_correction *correction = side[i].correction;
+        s += i > t->n_inner && side[i].other != side[i - 1].other;
+        if (!correction)
+            continue;
+        const struct solve_edge edge = {.end = {layout->end[i][0], layout->end[i][1]},
+                                        .length = side[i].length,
+                                        .most = (1 + correction->at) * side[i].length,
+                                        .slack = correction->tolerance * side[i].length};
+        if (!side[i].other) {
+            *inner++ = edge;
+            continue;
+        }
+        const uint32_t here = source->cut[side[i].here], there = source->cut[side[i].there];
+        *cut = (struct flow_cut_edge){.edge = edge,
+                                      .row = edge.end[0],
+                                      .neighbour = s,
+                                      .share = 1.0 / (here > there ? here : there)};
+        cut++->edge.end[0] = source->halo[side[i].here];
+    }
+}
+
+void flow_source_table(const struct flow_source *source, uint32_t block, void *memory)
+{
+    const struct flow_table *t = source->shape + block;
+    struct flow_side *side = source->side + source->start[block - source->from];
+    const struct flow_layout arrays = flow_table_layout(t, memory);
+    memset(memory, 0, flow_table_bytes(t));
+    qsort(side, (size_t)t->n_inner + t->n_cut, sizeof *side, compare_sides);
+    fill_rows(source, t, &arrays);
+    fill_watched(source, t, &arrays);
+    fill_numbered(source, t, source->particles.motion, t->n_moved, arrays.moved);
+    fill_numbered(source, t, source->particles.slider, t->n_sliding, arrays.sliding);
+    fill_numbered(source, t, source->particles.piece, t->n_loose, arrays.loose);
+    fill_varying(source, t, &arrays);
+    fill_inner(t, side, &arrays);
+    fill_cut(source, t, side + t->n_inner, &arrays);
+    fill_sides(source, t, side, &arrays);
+    fill_corrected(source, t, side, &arrays);
+    flow_source_members(source, block, &arrays);
+}

@@ -77,3 +77,42 @@ UNIT_TEST(more_panels_than_there_is_room_for)
     expect_error("mesh: {grid: {width: 1, height: 2, nx: 4, ny: 3}}", mesh,
                  ":6:13: cloth 'sheet' has 65 panels and regions; at most 64 are possible");
 }
+
+/* Scenes that are made to take all memory, or all time. */
+UNIT_TEST(scenes_without_end)
+{
+    static const struct {
+        const char *head, *more, *tail;
+        int n;
+        const char *expected;
+    } cases[] = {
+        {"schema: 1\na: ", "[", "", 100000,
+         ":2: more than 1000 brackets [ and { are open here; a scene needs a few"},
+        {"schema: 1\nphases:\n  - name: one\n    set:\n      ? ", "a.", "b\n      : 1", 200000,
+         ":5:9: phases[0].set: a key of more than 100 parts; no scene is as deep"},
+        {"schema: 1\n", "k%d: 1\n", "", 4096,
+         ":1:1: a map of 4097 keys; a scene has at most 4096 in one map"},
+        {"schema: 1\na:\n", "  - &a%d 1\n", "", 1001,
+         ":1003: more than 1000 anchors, such as &name, are in the file; a scene needs a few"},
+        {"schema: 1\nprobes:\n  - &p {vertices: [0]}\n", "  - *p\n", "", 200000,
+         ":3:3: probes is a list of 200001; a list of at most 4096 maps is expected"},
+        {"schema: 1\nphases:\n", "  - {name: p%d}\n", "", 1000,
+         ":3:3: phases is a list of 1000; a list of 1 to 100 maps is expected"}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        struct model model;
+        struct cloth_error error = {0};
+        char *text = NULL;
+        size_t size;
+        FILE *to = open_memstream(&text, &size);
+        ck_assert_ptr_nonnull(to);
+        fputs(cases[i].head, to);
+        for (int k = 0; k < cases[i].n; k++)
+            fprintf(to, cases[i].more, k);
+        fputs(cases[i].tail, to);
+        ck_assert_int_eq(fclose(to), 0);
+        ck_assert_int_eq(scene_read_text(&model, text, 0, NULL, &error), CLOTH_E_INPUT);
+        ck_assert_msg(strstr(error.text, cases[i].expected), "%s", error.text);
+        model_free(&model);
+        free(text);
+    }
+}

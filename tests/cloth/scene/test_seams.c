@@ -332,33 +332,3 @@ UNIT_TEST(hinges_of_seams)
                         1.9 * stiffness[0]); /* one of two sides, whose meshes differ */
     ck_assert_double_lt(stiffness[3], 2.1 * stiffness[0]);
 }
-
-/* What flow_prepare finds. */
-static void not_prepared(const char *keys, const char *more, const char *error)
-{
-    struct model model = read_scene(SIDES_OF, keys);
-    struct cloth_error got = {0};
-    struct flow *flow;
-    struct model_pin pin = {.pick = {.kind = MODEL_PICK_BOX, .box = {{-1, -1, -1}, {1, 1, 1}}}};
-    if (more) {
-        free(model.cloths[0].pins);
-        model.cloths[0].pins = malloc(sizeof pin);
-        ck_assert_ptr_nonnull(model.cloths[0].pins);
-        model.cloths[0].pins[model.cloths[0].n_pins++] = pin;
-    }
-    ck_assert_int_eq(flow_prepare(&flow, &model, 1, &got), CLOTH_E_INPUT);
-    ck_assert_msg(strstr(got.text, error), "%s", got.text);
-    model_free(&model);
-}
-
-UNIT_TEST(seams_that_cannot_be_closed)
-{
-    not_prepared(
-        "{state: welded}", NULL,
-        ":6:12: seam 0 of cloth 'bag' (edge 1 of panel 'front', edge 3 of panel 'back') is "
-        "between vertex ");
-    not_prepared("{state: welded}", NULL,
-                 "which start 0.03 m from each other; at most 0.002 m are expected (tolerance)");
-    not_prepared("{state: pulled}", "pinned",
-                 "both of which pins hold: nothing can bring them together");
-}

@@ -9,12 +9,14 @@
  *     with TO          the section's scene has TO in place of FROM
  *     - FROM           and
  *     + TO             a case: TO in place of FROM, which stays for the next cases
+ *     prepare          the section's cases are prepared for their run, too
  *     set SET          further settings of the case, as of --set
  *     = SENTENCE       ends a case: reading it fails with this, scene.yaml in front of the place
  * left out ~ SENTENCE       ends a case: it is read, with this one warning ok               ends a
  * case: it is read, and draws no warning
  *
  * In texts \n is a line's end, \t a tab, and \xHH a byte. */
+#include "cloth/flow/run.h"
 #include "tests/cloth/scene/scene_file.h"
 #include "tests/support/unit.h"
 
@@ -30,7 +32,8 @@ struct section {
     char *scene, *base, *from, *to;
     char set[MAX_SETS][1024];
     uint32_t n_sets;
-    char said[2048];
+    bool prepares;
+    char said[MAX_LINE];
 };
 
 static FILE *open_list(void)
@@ -97,27 +100,49 @@ static void keep_sentence(struct section *section, const char *sentence)
     *to = 0;
 }
 
-/* Reads the section's scene with the case's change: leaves what is said of it. Returns how the line
- * begins that says it. */
+static void append(char *list, size_t size, const char *warning)
+{
+    const size_t n = strlen(list);
+    snprintf(list + n, size - n, "%s%s", n ? " | " : "", warning);
+}
+
+/* Warnings of the scene and of its run, one behind the other. Returns whether there are any. */
+static bool join_warnings(const struct model *model, const struct flow *flow, char *to, size_t size)
+{
+    to[0] = 0;
+    for (uint32_t i = 0; i < model->n_warnings; i++)
+        append(to, size, model->warnings[i]);
+    const char *warning = flow ? flow_warning(flow, 0) : NULL;
+    for (size_t i = 1; warning; warning = flow_warning(flow, i++))
+        append(to, size, warning);
+    return to[0];
+}
+
+/* Reads the section's scene with the case's change, and prepares its run where the section says so:
+ * leaves what is said. Returns how the line begins that says it. */
 static const char *read_case(struct section *section)
 {
     struct scene_set sets[MAX_SETS];
     struct cloth_error error = {0};
     struct model model;
+    struct flow *flow = NULL;
+    static char warnings[MAX_LINE];
     for (uint32_t i = 0; i < section->n_sets; i++)
         sets[i] = (struct scene_set){.text = section->set[i]};
     char *text = section->to ? scene_changed(section->scene, section->from, section->to)
                              : strdup(section->scene);
-    const int code = scene_read_text(&model, text, section->n_sets, sets, &error);
+    int code = scene_read_text(&model, text, section->n_sets, sets, &error);
+    if (!code && section->prepares)
+        code = flow_prepare(&flow, &model, 1, &error);
     ck_assert(code == CLOTH_OK || code == CLOTH_E_INPUT);
-    ck_assert_uint_le(model.n_warnings, 1);
-    keep_sentence(section, code ? error.text : model.n_warnings ? model.warnings[0] : "");
-    const char *kind = code ? "= " : model.n_warnings ? "~ " : "ok";
+    const bool warned = join_warnings(&model, flow, warnings, sizeof warnings);
+    keep_sentence(section, code ? error.text : warnings);
+    flow_free(flow);
     model_free(&model);
     free(text);
     replace(&section->to, NULL);
     section->n_sets = 0;
-    return kind;
+    return code ? "= " : warned ? "~ " : "ok";
 }
 
 /* What stands behind the word with which the line begins, or NULL. */
@@ -137,10 +162,13 @@ static void take_line(struct section *section, const char *line)
     int at = 0;
     if (line[0] == '[') {
         replace(&section->scene, strdup(scene_right));
+        section->prepares = false;
     } else if ((text = after(line, "file")) && sscanf(text, "%63s %n", name, &at) == 1) {
         char *bytes = plain(text + at);
         scene_write_file(name, bytes, strlen(bytes));
         free(bytes);
+    } else if (after(line, "prepare")) {
+        section->prepares = true;
     } else if ((text = after(line, "scene"))) {
         replace(&section->scene, plain(text));
     } else if ((text = after(line, "base"))) {

@@ -167,25 +167,7 @@ timed_out() {
     grep -q "failed; stopped after 1 s (--timeout)" "$scratch/said"
 }
 # A member whose policy never returns beside one that does: stopped, named, not tried again; the other has all its figures.
-hangs() {
-    cat > "$scratch/hangs.c" << 'EOF'
-#include <duite_policy.h>
-#include <unistd.h>
-static unsigned place(void *state, const duite_ready *task)
-{
-    (void)task;
-    while (++*(int *)state > 20)
-        sleep(1);
-    return DUITE_SHARED_QUEUE;
-}
-static duite_end serve(void *state) { (void)state; return DUITE_OLDEST; }
-static unsigned victim(void *state, unsigned attempt) { (void)state, (void)attempt; return DUITE_NO_QUEUE; }
-static int chain(void *state, const duite_ready *task) { (void)state, (void)task; return 0; }
-const duite_scheduler duite_own_scheduler = {
-    .name = "hangs", .summary = "", .state_size = sizeof(int), .place = place, .serve = serve, .victim = victim, .chain = chain};
-EOF
-    ${CC:-cc} -Wall -Wextra -Werror -shared -fPIC -I"$top/runtime" -o "$scratch/hangs.so" "$scratch/hangs.c"
-}
+hangs() { ${CC:-cc} -Wall -Wextra -Werror -shared -fPIC -I"$top/runtime" -o "$scratch/hangs.so" "$top/tests/support/hangs.c"; }
 stopped() { # RANKS...
     members=$#
     refused 1 "duite-compare: $((3 * members)) runs failed: h/compare.md" tree --scheduler steal,./hangs.so --ranks "$(echo "$*" | tr ' ' ,)" \

@@ -81,10 +81,6 @@ carried() { # 64 g
 }
 ok "the force of contact of a sheet at rest is its weight" carried
 
-ok "no field of that name" refused 'output.hdf5.fields[0] is speed; velocity or block' pull.yaml --set 'output.hdf5.fields=[speed]'
-ok "a field that stands twice" refused 'strain stands twice in the fields of output.hdf5' pull.yaml --set 'output.hdf5.fields=[strain, strain]'
-ok "the stress of springs" refused 'output.hdf5 has the field stress, which materials with model: triangles have' lie.yaml --set 'output.hdf5.fields=[stress]'
-ok "the force of contact that nobody asked for" refused 'output.hdf5 has the field contact_force, which contact:' lie.yaml --set contact.force=off
 foreign() { mkdir mine && echo mine > mine/cloth.xmf && refused 'cloth.xmf is in the way' pull.yaml --output mine && test "$(cat mine/cloth.xmf)" = mine; }
 ok "an index that is not ours stays" foreign
 aside() { run pull.yaml 2> said && grep -qF 'output.hdf5, whose frames are written into the folder of --output; there is none' said; }

@@ -117,23 +117,6 @@ same() {
         ! grep -i warning said
 }
 ok "a scene's figure is that of the program" same
-scene_refused() { # SENTENCE BODY
-    scene bad.yaml "$2"
-    limited "$cloth" bad.yaml > said 2>&1
-    test $? = 2 && cat said && grep -qF -e "$1" said
-}
-ok "a scene's figure that is impossible" scene_refused "bad.yaml:6:32: mannequin: hip is 3 m" '{mannequin: {measures: {hip: 3}}}'
-ok "a measure that a scene cannot have" scene_refused "nose" '{mannequin: {measures: {nose: 0.1}}}'
-ok "a body that has neither" scene_refused "mannequin" '{scale: 1}'
-ok "a body that has both" scene_refused "mannequin" '{mannequin: {}, obj: alone.obj}'
-ok "a walk that is too fast" scene_refused "the speed of a walk is 4 steps a second; at most 3 are expected" '{mannequin: {walk: {speed: 4}}}'
-ok "a walk and poses" scene_refused "both walk and poses" '{mannequin: {walk: {}, poses: [{time: 0}]}}'
-ok "a walk and a motion" scene_refused "a figure with a walk has no motion" '{mannequin: {walk: {}}, motion: {times: [0, 1], translate: [[0, 0, 0], [0, 1, 0]]}}'
-ok "poses and frames" scene_refused "a figure with poses has no frames" '{mannequin: {poses: [{time: 0}]}, frames: {pc2: a.pc2}}'
-ok "an angle out of range" scene_refused "right_knee_bend is 100 degrees; 0 to 80 are expected" '{mannequin: {poses: [{time: 0}, {time: 1, right_knee_bend: 100}]}}'
-ok "an angle of the spine" scene_refused "spine_turn is 90 degrees; -30 to 30 are expected" '{mannequin: {poses: [{time: 0, spine_turn: 90}]}}'
-ok "poses that go back in time" scene_refused "the time of a pose is 1 s, after one of 1 s" '{mannequin: {poses: [{time: 1}, {time: 1}]}}'
-ok "too many frames" scene_refused "use a lower fps" '{mannequin: {walk: {}, fps: 1.0e8}}'
 listed() { # the document's table of angles is that of the program
     limited "$cloth" --keys | sed -n 's/^.*mannequin.poses\[\]\.left_\([a-z_]*\): .*default \([0-9]*\).*/\1 \2/p' > angles
     cat angles

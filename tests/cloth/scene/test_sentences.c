@@ -5,17 +5,19 @@
  *     [NAME]           a section: a test of its own, of the scene that is right (scene_file.c)
  *     file NAME TEXT   a file beside the scene
  *     scene TEXT       the section's scene is this text
+ *     | LINE           ends the text of the scene or file that is named last
  *     base FROM        and
  *     with TO          the section's scene has TO in place of FROM
+ *     changes          cases change the file that is named last in place of the scene
+ *     prepare          cases are prepared for their run, too
  *     - FROM           and
  *     + TO             a case: TO in place of FROM, which stays for the next cases
- *     prepare          the section's cases are prepared for their run, too
  *     set SET          further settings of the case, as of --set
  *     = SENTENCE       ends a case: reading it fails with this, scene.yaml in front of the place
- * left out ~ SENTENCE       ends a case: it is read, with this one warning ok               ends a
- * case: it is read, and draws no warning
+ * left out ~ SENTENCE       ends a case: it is read, with this warning, or several with | between
+ *     ok               ends a case: it is read, and draws no warning
  *
- * In texts \n is a line's end, \t a tab, and \xHH a byte. */
+ * In texts \n is a line's end, \t a tab, \xHH a byte, and \\ one of these. */
 #include "cloth/flow/run.h"
 #include "tests/cloth/scene/scene_file.h"
 #include "tests/support/unit.h"
@@ -29,7 +31,10 @@ enum { MAX_SETS = 4, MAX_LINE = 8192 };
 
 /* The state of the section that is read. */
 struct section {
-    char *scene, *base, *from, *to;
+    char *scene, *file, *base, *from;
+    char *changed; /* by the case: the scene, or the file; NULL: not at all */
+    char file_name[64];
+    bool extends_file, changes_file;
     char set[MAX_SETS][1024];
     uint32_t n_sets;
     bool prepares;
@@ -70,7 +75,7 @@ static char *plain(const char *text)
             *to++ = (char)strtol((char[]){text[2], text[3], 0}, NULL, 16);
             text += 4;
         } else {
-            *to++ = text[1] == 'n' ? '\n' : '\t';
+            *to++ = text[1] == 'n' ? '\n' : text[1] == 't' ? '\t' : text[1];
             text += 2;
         }
     }
@@ -82,6 +87,11 @@ static void replace(char **owned, char *text)
 {
     free(*owned);
     *owned = text;
+}
+
+static void write_file(const struct section *section, const char *text)
+{
+    scene_write_file(section->file_name, text, strlen(text));
 }
 
 /* The sentence without the folder of the scene, and without its name in front. */
@@ -129,8 +139,11 @@ static const char *read_case(struct section *section)
     static char warnings[MAX_LINE];
     for (uint32_t i = 0; i < section->n_sets; i++)
         sets[i] = (struct scene_set){.text = section->set[i]};
-    char *text = section->to ? scene_changed(section->scene, section->from, section->to)
-                             : strdup(section->scene);
+    const char *text = section->scene;
+    if (section->changes_file)
+        write_file(section, section->changed ? section->changed : section->file);
+    else if (section->changed)
+        text = section->changed;
     int code = scene_read_text(&model, text, section->n_sets, sets, &error);
     if (!code && section->prepares)
         code = flow_prepare(&flow, &model, 1, &error);
@@ -139,8 +152,7 @@ static const char *read_case(struct section *section)
     keep_sentence(section, code ? error.text : warnings);
     flow_free(flow);
     model_free(&model);
-    free(text);
-    replace(&section->to, NULL);
+    replace(&section->changed, NULL);
     section->n_sets = 0;
     return code ? "= " : warned ? "~ " : "ok";
 }
@@ -154,33 +166,65 @@ static const char *after(const char *line, const char *word)
     return line + n + (line[n] == ' ');
 }
 
+/* A line behind the text of the scene or the file that is named last. */
+static void extend(struct section *section, const char *line)
+{
+    char **text = section->extends_file ? &section->file : &section->scene, *more = plain(line),
+         *longer;
+    ck_assert_int_ge(asprintf(&longer, "%s%s\n", *text, more), 0);
+    replace(text, longer);
+    free(more);
+    if (section->extends_file)
+        write_file(section, section->file);
+}
+
+/* TO in place of FROM: of the case, or of the section's scene. */
+static void change(struct section *section, bool of_case, const char *line)
+{
+    char *to = plain(line), *of = section->changes_file ? section->file : section->scene;
+    if (of_case)
+        replace(&section->changed,
+                scene_changed(section->changed ? section->changed : of, section->from, to));
+    else
+        replace(&section->scene, scene_changed(section->scene, section->base, to));
+    free(to);
+}
+
+static void begin_section(struct section *section)
+{
+    replace(&section->scene, strdup(scene_right));
+    section->prepares = section->changes_file = false;
+}
+
 /* Takes a line that ends no case. */
 static void take_line(struct section *section, const char *line)
 {
     const char *text;
-    char name[64] = "";
     int at = 0;
     if (line[0] == '[') {
-        replace(&section->scene, strdup(scene_right));
-        section->prepares = false;
-    } else if ((text = after(line, "file")) && sscanf(text, "%63s %n", name, &at) == 1) {
-        char *bytes = plain(text + at);
-        scene_write_file(name, bytes, strlen(bytes));
-        free(bytes);
-    } else if (after(line, "prepare")) {
-        section->prepares = true;
+        begin_section(section);
+    } else if ((text = after(line, "file")) &&
+               sscanf(text, "%63s %n", section->file_name, &at) == 1) {
+        replace(&section->file, plain(text + at));
+        write_file(section, section->file);
+        section->extends_file = true;
     } else if ((text = after(line, "scene"))) {
         replace(&section->scene, plain(text));
+        section->extends_file = false;
+    } else if ((text = after(line, "|"))) {
+        extend(section, text);
+    } else if (after(line, "changes")) {
+        section->changes_file = true;
+    } else if (after(line, "prepare")) {
+        section->prepares = true;
     } else if ((text = after(line, "base"))) {
         replace(&section->base, plain(text));
     } else if ((text = after(line, "with"))) {
-        char *to = plain(text);
-        replace(&section->scene, scene_changed(section->scene, section->base, to));
-        free(to);
+        change(section, false, text);
     } else if ((text = after(line, "-"))) {
         replace(&section->from, plain(text));
     } else if ((text = after(line, "+"))) {
-        replace(&section->to, plain(text));
+        change(section, true, text);
     } else if ((text = after(line, "set"))) {
         ck_assert_uint_lt(section->n_sets, MAX_SETS);
         snprintf(section->set[section->n_sets++], sizeof *section->set, "%s", text);
@@ -215,7 +259,7 @@ static bool check_case(struct section *section, unsigned number, const char *lin
     const bool same_kind = !strncmp(line, kind, 2);
     if (again)
         fprintf(again, "%s%s\n", kind, section->said);
-    if (same_kind && (again ? !strncmp(section->said, expected, place_of(expected) + 1)
+    if (same_kind && (again ? !strncmp(section->said, expected, place_of(expected))
                             : !strcmp(section->said, expected)))
         return true;
     fprintf(stderr, "sentences.txt:%u: not \"%s\", but:\n%s%s\n", number, line, kind,
@@ -249,6 +293,7 @@ static void read_sections(int wanted, FILE *again)
     ck_assert_int_eq(fclose(list), 0);
     ck_assert_msg(!wrong, "%d cases end otherwise than sentences.txt says", wrong);
     free(section.scene);
+    free(section.file);
     free(section.base);
     free(section.from);
 }

@@ -1,61 +1,5 @@
-/* Triangles against what they are derived from. */
+/* What triangles have beyond what tests/cloth/element says of every kind. */
 #include "tests/cloth/physics/triangle_sheet.h"
-
-#include <stdio.h>
-
-UNIT_TEST(force_is_the_slope_of_the_energy)
-{
-    struct sheet s;
-    struct elements_state state;
-    make_sheet(&s, 0);
-    shaken(&s, 0.05, &state);
-    const struct elements model = model_of(&s);
-    elements_check_force(&model, &state, 1e-6);
-}
-
-UNIT_TEST(matrix_is_the_slope_of_the_force)
-{
-    struct sheet s;
-    struct elements_state state;
-    for (int damped = 0; damped < 2; damped++) {
-        make_sheet(&s, 0.1 * damped);
-        shaken(&s, 0.05, &state);
-        const struct elements model = model_of(&s);
-        elements_check_matrix(&model, &state, 1e-6);
-    }
-}
-
-UNIT_TEST(momentum_is_kept)
-{
-    struct sheet s;
-    struct elements_state state;
-    make_sheet(&s, 0.1);
-    shaken(&s, 0.1, &state);
-    const struct elements model = model_of(&s);
-    elements_check_momentum(&model, &state, 1e-12);
-}
-
-UNIT_TEST(rigid_motion_gives_no_force)
-{
-    const phys_vec fu = {1, 0, 0, 0}, fv = {0, 0, 1, 0};
-    struct sheet s;
-    struct elements_state state;
-    make_sheet(&s, 0.1);
-    place(&s, &fu, &fv, &state);
-    const struct elements model = model_of(&s);
-    elements_check_rigid(&model, &state, 1e-11);
-}
-
-UNIT_TEST(blocks_find_the_same_bits)
-{
-    struct sheet s;
-    struct elements_state state;
-    make_sheet(&s, 0.1);
-    shaken(&s, 0.05, &state);
-    const struct elements model = model_of(&s);
-    elements_check_split(&model, &state, 5);
-    elements_check_split(&model, &state, 10);
-}
 
 /* All of it at once, in two parts: the matrix to the bit, push times the force, h^2 K v; pairs
  * turned where that is wanted. */
@@ -148,4 +92,3 @@ UNIT_TEST(moves_across_the_sheet)
         ck_assert_double_gt(part, 1 + across(&s, mixed, mixed + 1, 1, seed));
     }
 }
-END_TEST

@@ -181,4 +181,3 @@ UNIT_TEST(impossible_values_are_refused)
     ck_assert_int_eq(phys_triangle_rest(line, gradient, &area), -1);
     ck_assert_int_eq(phys_triangle_rest(point, gradient, &area), -1);
 }
-END_TEST

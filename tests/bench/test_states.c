@@ -57,36 +57,33 @@ UNIT_CASES(states, cases)
 /* The cloth's own step, which nobody keeps whole, is halved: the case is one. */
 UNIT_TEST(the_step_would_be_halved)
 {
-    struct states_plan plan;
+    UNIT_OWNED(states_plan_free) struct states_plan plan;
     struct flow_report report = {0};
     plan_hard(&plan);
     ck_assert_msg(!cg_run(&plan.model, &request, NULL, NULL, &report), "%s", serve_failure());
     ck_assert_uint_gt(report.steps_halved, 0);
-    states_plan_free(&plan);
 }
 
 UNIT_TEST(the_step_is_whole)
 {
-    struct states_plan plan;
+    UNIT_OWNED(states_plan_free) struct states_plan plan;
     struct solve_system system = {0};
     plan_hard(&plan);
     ck_assert_msg(!cg_make_system(&plan, &request, &system), "%s", serve_failure());
     ck_assert_double_eq_tol(system.h, 0.02, 1e-12);
     solve_system_free(&system);
-    states_plan_free(&plan);
 }
 
 /* What is no number cannot be a step. */
 UNIT_TEST(a_step_that_fails_is_told)
 {
-    struct states_plan plan;
+    UNIT_OWNED(states_plan_free) struct states_plan plan;
     struct solve_system system = {0};
     plan_hard(&plan);
     plan.model.cloths->start[3] = 1e200;
     ck_assert_int_ne(cg_make_system(&plan, &request, &system), 0);
     ck_assert_str_ne(serve_failure(), "");
     solve_system_free(&system);
-    states_plan_free(&plan);
 }
 
 UNIT_TEST(another_step_is_refused)

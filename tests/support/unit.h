@@ -55,6 +55,9 @@ void unit_register(struct unit_cases *cases);
         tcase_add_checked_fixture(unit_tcase, SETUP, TEARDOWN);                                    \
     }
 
+/* Before a variable of a test: FREE(&variable) at the end of its scope. */
+#define UNIT_OWNED(FREE) __attribute__((cleanup(FREE)))
+
 /* The main() of a program that has none of its own: runs what is registered. Returns the exit
  * status: 0 if all passed, else 1. Under mpirun rank 0 prints; a failure on another rank goes to
  * its standard error and its status. */

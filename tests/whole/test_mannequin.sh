@@ -2,14 +2,13 @@
 # duite-mannequin: what it prints and writes, the bits of its meshes, each error; the same figure as a body of a scene.
 # A change that moves bits for a good reason writes the table again: DUITE_GOLDEN=FILE sh tests/whole/test_mannequin.sh
 . "${srcdir:-.}/tests/support/tap.sh"
+. "$srcdir/tests/whole/golden.sh"
 mannequin=${DUITE_MANNEQUIN:-$PWD/duite-mannequin}
 cloth=${DUITE_CLOTH:-$PWD/duite-cloth}
 skip_unless "$mannequin"
 skip_unless "$cloth"
 plan_later
-table=$srcdir/tests/whole/mannequin_golden.txt
-fresh=${DUITE_GOLDEN:-$scratch/fresh}
-case $fresh in /*) ;; *) fresh=$PWD/$fresh ;; esac
+golden_of mannequin_golden.txt
 page=$srcdir/cloth/app/duite-mannequin.1
 document=$srcdir/docs/garments.md
 cd "$scratch" || exit 99
@@ -84,18 +83,14 @@ ok "girths that do not go together" refused "a hip of 0.85 m does not go with a 
 
 # ---- Bits, the same with any compiler and optimisation
 
-golden() { # NAME ARGUMENT...
-    golden_name=$1
+bits() { # NAME ARGUMENT...
+    bits_name=$1
     shift
-    if ! run "$@" -o golden.obj -q > output 2>&1; then tap_result 1 "$golden_name" && return; fi
-    printf '%s %s\n' "$(cksum < golden.obj | tr ' ' '-')" "$golden_name" >> "$fresh"
-    echo "mannequin_golden.txt does not have: $(tail -n 1 "$fresh")" > output
-    grep -qxF "$(tail -n 1 "$fresh")" "$table"
-    tap_result $? "$golden_name"
+    if run "$@" -o golden.obj -q > output 2>&1; then golden "$bits_name" "$(cksum < golden.obj | tr ' ' '-')"; else tap_result 1 "$bits_name"; fi
 }
-golden "the figure"
-golden "finer" -e 0.012
-golden "a small one" --height 1.3 -e 0.014 -m waist=0.6 -m calf=0.29
+bits "the figure"
+bits "finer" -e 0.012
+bits "a small one" --height 1.3 -e 0.014 -m waist=0.6 -m calf=0.29
 
 # ---- Scenes
 

@@ -18,7 +18,7 @@ static void start(void)
 {
     static struct surface ring;
     struct cloth_error error = {0};
-    struct mesh mesh = {0};
+    UNIT_OWNED(mesh_free) struct mesh mesh = {0};
     bool turned;
     surface_torus(&ring, 0.5, 0.2, 24, 12);
     ring.x[ring.n++][0] = 3;
@@ -26,7 +26,6 @@ static void start(void)
     bodies = (struct contact_bodies){0};
     ck_assert_msg(contact_bodies_add(&bodies, &mesh, &turned, &error) == 0, "%s", error.text);
     body = contact_bodies_at(&bodies, 1);
-    mesh_free(&mesh);
 }
 
 static void end(void)

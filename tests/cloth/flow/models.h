@@ -62,6 +62,8 @@ struct record {
 /* Prepares, runs and frees; every rank has the whole record then. Starts MPI if it is not; it ends
  * with the process. Collective. */
 void record_run(struct record *record, const struct model *model);
+/* The same of a run that must not fail. */
+void record_fine(struct record *record, const struct model *model);
 /* Which rank this is, of how many. Starts MPI like record_run. */
 void record_mpi(int *rank, int *ranks);
 /* Component c of a vertex in a frame. */

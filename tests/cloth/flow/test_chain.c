@@ -117,7 +117,7 @@ UNIT_LOOP(frequencies, 0, 4)
                 {MODEL_BDF2, 0.002, 1.5, 1, 1e-3}};
     static const double zero[] = {2.404825557695773, 5.520078110286311}; /* of J0 */
     double modes[2][LINKS + 1], omega[2];
-    struct setup setup;
+    UNIT_OWNED(setup_free) struct setup setup;
     struct record r = {0};
     for (size_t n = 0; n < 2; n++)
         omega[n] = mode(n, modes);
@@ -137,5 +137,4 @@ UNIT_LOOP(frequencies, 0, 4)
     ck_assert_double_eq_tol(now, rope, 0.06 * rope);
     record_free(&r);
     free(setup.cloth.start);
-    setup_free(&setup);
 }

@@ -29,7 +29,7 @@ static void setup_jerk(struct setup *setup)
  * step that was accepted last. */
 UNIT_LOOP(steps_that_are_fine, 0, MODEL_INTEGRATORS)
 {
-    struct setup setup;
+    UNIT_OWNED(setup_free) struct setup setup;
     struct record plain = {0}, halving = {0};
     setup_sheet(&setup, 8);
     setup_pin(&setup, 1, (const uint32_t[]){0});
@@ -50,7 +50,6 @@ UNIT_LOOP(steps_that_are_fine, 0, MODEL_INTEGRATORS)
                      3 * plain.vertices * plain.frames * sizeof(double));
     record_free(&plain);
     record_free(&halving);
-    setup_free(&setup);
 }
 
 /* All steps are of the same length h / 2^k in the end, and the result is bit for bit that of a run
@@ -58,7 +57,7 @@ UNIT_LOOP(steps_that_are_fine, 0, MODEL_INTEGRATORS)
 UNIT_TEST(a_halved_run_is_one_with_a_smaller_h)
 {
     for (int i = 0; i <= MODEL_INTEGRATORS; i++) { /* the last: Newton steps */
-        struct setup setup;
+        UNIT_OWNED(setup_free) struct setup setup;
         struct record halved = {0}, small = {0};
         setup_sheet(&setup, 8);
         setup.cloth.velocity[0] = 0.5;
@@ -86,7 +85,6 @@ UNIT_TEST(a_halved_run_is_one_with_a_smaller_h)
             ck_assert_double_eq_tol(record_at(&halved, 1, 9, c), record_at(&small, 1, 9, c), 1e-5);
         record_free(&halved);
         record_free(&small);
-        setup_free(&setup);
     }
 }
 
@@ -100,7 +98,7 @@ static double distance(const struct record *a, const struct record *b)
  * run is nearer to one of short steps than one of long steps is. */
 UNIT_TEST(an_edge_that_is_jerked)
 {
-    struct setup setup;
+    UNIT_OWNED(setup_free) struct setup setup;
     struct record plain = {0}, halved = {0}, small = {0};
     setup_jerk(&setup);
     setup.model.halving = false;
@@ -120,14 +118,13 @@ UNIT_TEST(an_edge_that_is_jerked)
     record_free(&plain);
     record_free(&halved);
     record_free(&small);
-    setup_free(&setup);
 }
 
 /* Frame k is shown after the step whose end is nearest to k / fps, whatever the steps are. */
 UNIT_TEST(frames_between_shorter_steps)
 {
-    struct setup setup;
-    struct record record = {0};
+    UNIT_OWNED(setup_free) struct setup setup;
+    UNIT_OWNED(record_free) struct record record = {0};
     setup_jerk(&setup);
     setup.model.stretch_growth = 0.02;
     setup.model.fps = 23;
@@ -144,15 +141,13 @@ UNIT_TEST(frames_between_shorter_steps)
     /* The first jerk is at once: frame 1 lies among steps of less than h / 4. */
     ck_assert_double_le(fabs(record.time[1] - 1.0 / 23), setup.model.h / 8);
     ck_assert_double_gt(fabs(record.time[1] - setup.model.h), setup.model.h / 8);
-    record_free(&record);
-    setup_free(&setup);
 }
 
 /* The solve needs fewer iterations in a shorter step. */
 UNIT_TEST(a_solve_that_converges_in_a_shorter_step)
 {
-    struct setup setup;
-    struct record record = {0};
+    UNIT_OWNED(setup_free) struct setup setup;
+    UNIT_OWNED(record_free) struct record record = {0};
     setup_sheet(&setup, 10);
     setup.model.h = 0.02;
     setup.model.end = 0.1;
@@ -166,8 +161,6 @@ UNIT_TEST(a_solve_that_converges_in_a_shorter_step)
     ck_assert_uint_le(record.report.cg_iterations_max, 6);
     ck_assert_uint_eq(record.report.halved_by[FLOW_CAUSE_SOLVE], record.report.steps_halved);
     ck_assert_uint_eq(record.frames, 6);
-    record_free(&record);
-    setup_free(&setup);
 }
 
 /* One cause alone. */
@@ -194,8 +187,8 @@ static void fails(struct record *record, const struct model *model, const char *
 /* At h / 1024 it stops, and says why. */
 UNIT_TEST(no_step_is_short_enough)
 {
-    struct setup setup;
-    struct record record = {0};
+    UNIT_OWNED(setup_free) struct setup setup;
+    UNIT_OWNED(record_free) struct record record = {0};
     setup_sheet(&setup, 4);
     setup.model.halving = true;
     setup_load(&setup, 3, 1e200, 0, 0);
@@ -221,15 +214,13 @@ UNIT_TEST(no_step_is_short_enough)
     fails(&record, &setup.model, "step 1: the velocity of vertex 4, counted from 1,",
           "the run diverged");
     halved_by(&record, FLOW_CAUSE_BOUNDS);
-    record_free(&record);
-    setup_free(&setup);
 }
 
 /* Explicit Euler is unstable at this h; it goes on with shorter steps, however small. */
 UNIT_TEST(an_explicit_run_that_is_unstable)
 {
-    struct setup setup;
-    struct record record = {0};
+    UNIT_OWNED(setup_free) struct setup setup;
+    UNIT_OWNED(record_free) struct record record = {0};
     setup_sheet(&setup, 6);
     setup.model.integrator = MODEL_EXPLICIT_EULER;
     setup.model.h = 0.05;
@@ -241,8 +232,6 @@ UNIT_TEST(an_explicit_run_that_is_unstable)
     runs(&record, &setup.model);
     ck_assert_uint_gt(record.report.steps_halved, 0);
     ck_assert_double_lt(record.report.max_stretch, 3);
-    record_free(&record);
-    setup_free(&setup);
 }
 
 /* Two weights fly apart until their spring holds them, in steps of several lengths, while others
@@ -254,8 +243,8 @@ UNIT_TEST(bdf2_begins_anew_after_another_length)
     static const uint32_t edges[] = {0, 1, 2, 3};
     const double h = 0.01;
     double start[24] = {0};
-    struct setup setup;
-    struct record r = {0};
+    UNIT_OWNED(setup_free) struct setup setup;
+    UNIT_OWNED(record_free) struct record r = {0};
     struct cloth_error error = {0};
     setup_weight(&setup);
     mesh_free(&setup.cloth.mesh);
@@ -282,16 +271,14 @@ UNIT_TEST(bdf2_begins_anew_after_another_length)
     printf("# BDF2 in steps of %g to %g s: velocity of what falls off by %.2g m/s\n",
            r.report.shortest_step, h, v + 9.81 * 99.5 * h);
     ck_assert_double_eq_tol(v, -9.81 * 99.5 * h, 1e-9);
-    record_free(&r);
-    setup_free(&setup);
 }
 
 /* A weight that falls into its spring and comes back up: the spring is longest on the way. */
 UNIT_TEST(the_largest_stretch_of_a_run)
 {
     for (int judged = 0; judged < 2; judged++) {
-        struct setup setup;
-        struct record record = {0};
+        UNIT_OWNED(setup_free) struct setup setup;
+        UNIT_OWNED(record_free) struct record record = {0};
         setup_weight(&setup);
         setup.material.damping_stiffness = 0;
         setup.model.integrator = MODEL_VERLET;
@@ -303,7 +290,5 @@ UNIT_TEST(the_largest_stretch_of_a_run)
             ck_assert_double_eq_tol(record.report.stretch_highest, 1 + 2 * 0.981 / 40, 1e-5);
         else
             ck_assert_double_nan(record.report.stretch_highest);
-        record_free(&record);
-        setup_free(&setup);
     }
 }

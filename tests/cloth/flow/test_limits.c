@@ -68,7 +68,7 @@ static struct flow_limit limit_of(const struct setup *s)
 
 UNIT_TEST(bound_of_a_chain)
 {
-    struct setup setup;
+    UNIT_OWNED(chain_free) struct setup setup;
     chain(&setup, 0);
     setup.material.damping_stiffness = 0.003;
     setup.material.damping_viscous = 0.02;
@@ -80,21 +80,19 @@ UNIT_TEST(bound_of_a_chain)
     ck_assert_double_eq_tol(limit.drag, 0.02 / M + 0.5, 1e-12);
     ck_assert_double_eq_tol(limit.along, 0.003 * limit.omega * limit.omega, 1e-6);
     ck_assert_str_eq(limit.cloth->name, "test");
-    chain_free(&setup);
 }
 
 /* Turned and at another place, and with masses that differ, it is the same kind of bound: never
  * below what the chain can do, here by its two-body vibrations. */
 UNIT_TEST(bound_of_a_sheet)
 {
-    struct setup setup;
+    UNIT_OWNED(setup_free) struct setup setup;
     setup_sheet(&setup, 12);
     const struct flow_limit limit = limit_of(&setup);
     const double inner = 0.2 / (11 * 11); /* kg; a vertex on a border has half of it */
     /* Along x: 2 springs of 50, 4 diagonals of 25 by half. */
     ck_assert_double_ge(limit.omega * limit.omega, 4 * 50 / inner);
     ck_assert_double_le(limit.omega * limit.omega, 2 * (2 * 50 + 4 * 25) * 1.3 / inner);
-    setup_free(&setup);
 }
 
 /* How far anything has moved along the chain after 4000 steps. */
@@ -128,7 +126,7 @@ UNIT_LOOP(limits_are_where_runs_break, 0, 4)
                 {MODEL_VERLET, 0, 2},
                 {MODEL_MIDPOINT, 0.08856217223385233, 1}, /* (3 - sqrt 7) / 4 */
                 {MODEL_RK4, 0, 2.8284271247461903}};
-    struct setup setup;
+    UNIT_OWNED(chain_free) struct setup setup;
     chain(&setup, 0);
     const double stiffness = 2 * rows[_i].zeta / limit_of(&setup).omega;
     setup.material.damping_stiffness = stiffness;
@@ -137,7 +135,6 @@ UNIT_LOOP(limits_are_where_runs_break, 0, 4)
     ck_assert_double_eq_tol(h, rows[_i].number / limit.omega, 1e-12);
     ck_assert_double_lt(moved(rows[_i].integrator, stiffness, 0.99 * h), 1e-6);
     ck_assert_double_gt(moved(rows[_i].integrator, stiffness, 1.02 * h), 1e-3);
-    chain_free(&setup);
 }
 
 /* The warning of a model, or the empty text. */
@@ -153,7 +150,7 @@ static void warning(const struct setup *s, char *text, size_t size)
 
 UNIT_TEST(warnings)
 {
-    struct setup setup;
+    UNIT_OWNED(chain_free) struct setup setup;
     char text[600], place[] = "scene.yaml:9:12";
     chain(&setup, 0);
     setup.model.h = 0.01;
@@ -188,7 +185,6 @@ UNIT_TEST(warnings)
     setup.material.damping_stiffness = 0.0009;
     warning(&setup, text, sizeof text);
     ck_assert_ptr_nonnull(strstr(text, "limit of explicit_euler, 0.0009 s"));
-    chain_free(&setup);
 }
 
 /* All vertices of a cloth are other names of a sheet's, which has their masses. */
@@ -199,7 +195,7 @@ UNIT_TEST(a_doubled_layer_has_a_scale_of_energy)
     struct model_weld weld = {.pairs = {.end = {{.cloth = 0, .n = 2, .vertices = names},
                                                 {.cloth = 1, .n = 2, .vertices = names}}},
                               .tolerance = 1e-6};
-    struct setup setup;
+    UNIT_OWNED(setup_free) struct setup setup;
     struct flow_source source;
     struct cloth_error error = {0};
     double release[2];
@@ -220,5 +216,4 @@ UNIT_TEST(a_doubled_layer_has_a_scale_of_energy)
     ck_assert_double_gt(release[0], 0);
     ck_assert_double_eq_tol(release[1], release[0], 1e-9 * release[0]);
     mesh_free(&cloths[1].mesh);
-    setup_free(&setup);
 }

@@ -67,17 +67,16 @@ static long prepare_all(const struct model *model)
 
 UNIT_TEST(each_fails_once_in_prepare)
 {
-    struct setup setup;
+    UNIT_OWNED(setup_free) struct setup setup;
     setup_sheet(&setup, 3);
     setup_pin(&setup, 1, (const uint32_t[]){0});
     ck_assert_int_gt(prepare_all(&setup.model), 20);
-    setup_free(&setup);
 }
 
 /* A sheet that bends, two of whose border edges are welded, with a joint across and a timed one. */
 UNIT_TEST(each_fails_once_with_welds)
 {
-    struct setup setup;
+    UNIT_OWNED(setup_free) struct setup setup;
     uint32_t from[] = {0, 1}, to[] = {20, 21}, ends[] = {7, 17};
     struct model_weld weld = {.pairs = {.end = {{.cloth = 0, .n = 2, .vertices = from},
                                                 {.cloth = 0, .n = 2, .vertices = to}}},
@@ -101,7 +100,6 @@ UNIT_TEST(each_fails_once_with_welds)
     setup.model.welds = &weld;
     setup.model.joints = joints;
     ck_assert_int_gt(prepare_all(&setup.model), without + 10);
-    setup_free(&setup);
 }
 
 /* Memory that a run takes before its first object: on every rank, and on rank 0, which gathers. */
@@ -135,7 +133,7 @@ int __wrap_flow_source_gather(struct flow_source *source, uint32_t from, uint32_
 
 static void ends_everywhere(const struct setup *setup, int where)
 {
-    struct record record = {0};
+    UNIT_OWNED(record_free) struct record record = {0};
     char text[64];
     record_run(&record, &setup->model);
     left = -1;
@@ -143,21 +141,19 @@ static void ends_everywhere(const struct setup *setup, int where)
     ck_assert_msg(record.code == CLOTH_E_MEMORY && strstr(record.error.text, text) &&
                       strstr(record.error.text, "; no frame was written"),
                   "%s", record.error.text);
-    record_free(&record);
 }
 
 static void runs(const struct setup *setup)
 {
-    struct record record = {0};
+    UNIT_OWNED(record_free) struct record record = {0};
     record_run(&record, &setup->model);
     ck_assert_msg(record.code == 0, "%s", record.error.text);
-    record_free(&record);
 }
 
 UNIT_TEST(each_fails_once_in_a_run)
 {
     int rank, ranks;
-    struct setup setup;
+    UNIT_OWNED(setup_free) struct setup setup;
     setup_sheet(&setup, 6);
     record_mpi(&rank, &ranks);
     for (int where = 0; where < ranks && where < 2; where++) {
@@ -168,17 +164,15 @@ UNIT_TEST(each_fails_once_in_a_run)
     }
     next_run = -1;
     runs(&setup);
-    setup_free(&setup);
 }
 
 /* Rank 0 has no room to gather what tables are made of. */
 UNIT_TEST(each_fails_once_in_distributing)
 {
-    struct setup setup;
+    UNIT_OWNED(setup_free) struct setup setup;
     setup_sheet(&setup, 6);
     for (next_sides = 0; next_sides < 2; next_sides++)
         ends_everywhere(&setup, 0);
     next_sides = -1;
     runs(&setup);
-    setup_free(&setup);
 }

@@ -224,7 +224,7 @@ UNIT_TEST(pushes_a_sheet)
     static struct phys_key keys[2] = {{0, {0, 0, 0}, {1, 0, 0, 0}}, {1, {0, 0, 0.6}, {1, 0, 0, 0}}};
     const double radius = 0.15;
     struct setup s;
-    struct record record = {0};
+    UNIT_OWNED(record_free) struct record record = {0};
     setup_sheet(&s, 21); /* in the x-z plane: its weight hangs along x */
     s.model.gravity[0] = -9.81;
     s.model.gravity[1] = 0;
@@ -254,7 +254,6 @@ UNIT_TEST(pushes_a_sheet)
         }
     const size_t middle = 220;
     ck_assert_double_gt(record_at(&record, record.frames - 1, middle, 1), 0.3);
-    record_free(&record);
     free_all(&s);
 }
 
@@ -328,7 +327,7 @@ UNIT_TEST(crumples_by_absolute_slopes)
     struct flow_report report[2];
     for (int absolute = 0; absolute < 2; absolute++) {
         struct setup s;
-        struct record record = {0};
+        UNIT_OWNED(record_free) struct record record = {0};
         sheet_make(&s, 24, &PLANE(0, 0, 0, 0, 1, 0));
         for (size_t v = 0; v < s.cloth.mesh.n_vertices; v++) {
             double *p = s.cloth.mesh.position + 3 * v, x = p[0];
@@ -345,7 +344,6 @@ UNIT_TEST(crumples_by_absolute_slopes)
         s.model.energy_steps = true;
         runs(&record, &s.model);
         report[absolute] = record.report;
-        record_free(&record);
         free_all(&s);
     }
     ck_assert_double_lt(2 * report[1].energy_gained, report[0].energy_gained);
@@ -358,7 +356,7 @@ UNIT_LOOP(a_real_body, 0, access(real_body_path(), R_OK) == 0)
 {
     struct cloth_error error = {0};
     struct setup s;
-    struct record record = {0};
+    UNIT_OWNED(record_free) struct record record = {0};
     struct mesh mesh;
     sheet_make(&s, 41, &(const struct contact_shape){.kind = 5, .body = 1});
     struct mesh_transform place = {{0.1, 0.1, 0.1}, {1, 0, 0, 0}, {0, -0.8, 0}};
@@ -379,6 +377,5 @@ UNIT_LOOP(a_real_body, 0, access(real_body_path(), R_OK) == 0)
             touched += hit.gap < 1e-7;
         }
     ck_assert_uint_gt(touched, 100);
-    record_free(&record);
     free_all(&s);
 }

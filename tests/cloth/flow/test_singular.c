@@ -30,8 +30,8 @@ UNIT_LOOP(held_blocks, MODEL_PLAIN, MODEL_IC0_COARSE + 1)
 {
     const uint32_t held[] = {64, 24, 1}, grain[] = {8, 8, 1000};
     for (int i = 0; i < 3; i++) {
-        struct setup setup;
-        struct record record = {0};
+        UNIT_OWNED(setup_free) struct setup setup;
+        UNIT_OWNED(record_free) struct record record = {0};
         setup_sheet(&setup, 8);
         setup.model.preconditioner = (enum model_preconditioner)_i;
         setup.model.grain = grain[i];
@@ -42,8 +42,6 @@ UNIT_LOOP(held_blocks, MODEL_PLAIN, MODEL_IC0_COARSE + 1)
         if (held[i] < 64)
             ck_assert_double_lt(record_at(&record, 10, 63, 1), -0.5 * FALL);
         ck_assert_double_ge(record_at(&record, 10, 63, 1), -1.01 * FALL);
-        record_free(&record);
-        setup_free(&setup);
     }
 }
 
@@ -53,8 +51,8 @@ UNIT_LOOP(pieces_that_fall, MODEL_PLAIN, MODEL_IC0_COARSE + 1)
     static const double vertices[] = {0, 0, 0, 1, 0, 0, 0, 0, 1, 5, 0, 0, 6, 0, 0, 5, 0, 1};
     static const uint32_t triangles[] = {0, 1, 2, 3, 4, 5};
     struct cloth_error error = {0};
-    struct setup setup;
-    struct record record = {0};
+    UNIT_OWNED(setup_free) struct setup setup;
+    UNIT_OWNED(record_free) struct record record = {0};
     setup_sheet(&setup, 2);
     mesh_free(&setup.cloth.mesh);
     ck_assert_int_eq(mesh_inline(&setup.cloth.mesh, 6, vertices, 0, NULL, 2, triangles, &error), 0);
@@ -63,15 +61,13 @@ UNIT_LOOP(pieces_that_fall, MODEL_PLAIN, MODEL_IC0_COARSE + 1)
     runs(&record, &setup.model);
     for (size_t v = 0; v < 6; v++)
         ck_assert_double_eq_tol(record_at(&record, 10, v, 1), -FALL, 1e-9);
-    record_free(&record);
-    setup_free(&setup);
 }
 
 /* Moduli of 1e12 beside 1e-3. */
 UNIT_LOOP(stiff_beside_soft, MODEL_PLAIN, MODEL_IC0_COARSE + 1)
 {
-    struct setup setup;
-    struct record record = {0};
+    UNIT_OWNED(setup_free) struct setup setup;
+    UNIT_OWNED(record_free) struct record record = {0};
     setup_sheet(&setup, 8);
     setup.material.stretch = 1e12;
     setup.material.shear = setup.material.bend = 1e-3;
@@ -82,8 +78,6 @@ UNIT_LOOP(stiff_beside_soft, MODEL_PLAIN, MODEL_IC0_COARSE + 1)
     runs(&record, &setup.model);
     ck_assert_double_eq_tol(record.report.max_stretch, 1, 1e-3);
     ck_assert_double_lt(record_at(&record, 10, 63, 1), -0.4 * FALL);
-    record_free(&record);
-    setup_free(&setup);
 }
 
 /* A matrix so stiff that rounding takes the recurrence away from the residual: the solve begins
@@ -92,8 +86,8 @@ UNIT_LOOP(rounding_is_noticed, MODEL_PLAIN, MODEL_IC0_COARSE + 1)
 {
     static const double tolerance[] = {3e-6, 1e-9};
     for (int i = 0; i < 2; i++) {
-        struct setup setup;
-        struct record record = {.threads = 2};
+        UNIT_OWNED(setup_free) struct setup setup;
+        UNIT_OWNED(record_free) struct record record = {.threads = 2};
         setup_sheet(&setup, 8);
         setup.material.stretch = 1e12;
         setup.material.shear = 2500;
@@ -115,8 +109,6 @@ UNIT_LOOP(rounding_is_noticed, MODEL_PLAIN, MODEL_IC0_COARSE + 1)
             ck_assert_msg(strstr(record.error.text, "what rounding leaves") != NULL, "%s",
                           record.error.text);
         }
-        record_free(&record);
-        setup_free(&setup);
     }
 }
 
@@ -125,7 +117,7 @@ UNIT_LOOP(rounding_is_noticed, MODEL_PLAIN, MODEL_IC0_COARSE + 1)
 UNIT_LOOP(compressed_and_not_clamped, MODEL_PLAIN, MODEL_IC0_COARSE + 1)
 {
     for (int halving = 0; halving < 2; halving++) {
-        struct setup setup;
+        UNIT_OWNED(setup_free) struct setup setup;
         struct record record = {0};
         setup_sheet(&setup, 6);
         double *start = calloc(36, 6 * sizeof *start);
@@ -155,6 +147,5 @@ UNIT_LOOP(compressed_and_not_clamped, MODEL_PLAIN, MODEL_IC0_COARSE + 1)
         record_free(&record);
         setup.cloth.start = NULL;
         free(start);
-        setup_free(&setup);
     }
 }

@@ -29,12 +29,6 @@ static void setup_sliding(struct sliding *g, int kind, double x, double y, doubl
     g->setup.model.tolerance = 1e-13;
 }
 
-static void runs(struct record *record, const struct model *model)
-{
-    record_run(record, model);
-    ck_assert_msg(record->code == 0, "%s", record->error.text);
-}
-
 /* How far a unit of acceleration leads in n steps, in h^2. */
 static double way(enum model_integrator integrator, double n)
 {
@@ -102,7 +96,7 @@ static void fall(int kind)
             g.setup.model.newton_steps = way == 5 ? 20 : 1;
             g.setup.model.newton_tolerance = 1e-10;
             setup_load(&g.setup, 5, 0.1, 0.05, 0); /* of 0.2 kg */
-            runs(&record, &g.setup.model);
+            record_fine(&record, &g.setup.model);
             check_fall(&g, &record, none);
             record_free(&record);
             setup_free(&g.setup);
@@ -139,7 +133,7 @@ UNIT_TEST(sliders_that_move)
         g.setup.model.n_keys = 2;
         g.setup.model.keys = keys;
         g.slider.motion = 1;
-        runs(&record, &g.setup.model);
+        record_fine(&record, &g.setup.model);
         check_fall(&g, &record, shift);
         record_free(&record);
         setup_free(&g.setup);
@@ -157,7 +151,7 @@ UNIT_TEST(sliders_meet_the_floor)
         g.setup.model.n_obstacles = 1;
         g.setup.plane = PLANE(0.5, 0, 0, -0.8, 0.6, 0);
         g.setup.cloth.velocity[1] = -1; /* of which the lines leave 0.8 m/s */
-        runs(&record, &g.setup.model);
+        record_fine(&record, &g.setup.model);
         for (size_t v = 0; v < VERTICES; v++) {
             const double dx = record_at(&record, STEPS, v, 0) - record_at(&record, 0, v, 0);
             const double dy = record_at(&record, STEPS, v, 1) - record_at(&record, 0, v, 1);

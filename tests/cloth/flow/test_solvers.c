@@ -42,13 +42,12 @@ static uint64_t compare(struct setup *setup, uint64_t iterations[KINDS])
     ck_assert_msg(plain.code == 0, "%s", plain.error.text);
     const uint64_t alone = plain.report.cg_iterations_total;
     for (int i = 0; i < KINDS; i++) {
-        struct record record = {.threads = 1 + (unsigned)i % 2};
+        UNIT_OWNED(record_free) struct record record = {.threads = 1 + (unsigned)i % 2};
         setup->model.preconditioner = kinds[i];
         record_run(&record, &setup->model);
         ck_assert_msg(record.code == 0, "%s", record.error.text);
         ck_assert_double_le(farthest(&plain, &record), 1e-6);
         iterations[i] = record.report.cg_iterations_total;
-        record_free(&record);
     }
     record_free(&plain);
     setup_free(setup);
@@ -77,8 +76,8 @@ UNIT_TEST(a_sheet_moves_alike)
 /* Whatever patches blocks are cut into, also where these have fewer rows than motions, or none. */
 UNIT_LOOP(patches_move_alike, 0, 2)
 {
-    struct record none = {0};
-    struct setup setup;
+    UNIT_OWNED(record_free) struct record none = {0};
+    UNIT_OWNED(setup_free) struct setup setup;
     uint64_t before = UINT64_MAX;
     setup_stiff(&setup, 20);
     setup.model.tolerance = 1e-10;
@@ -88,26 +87,22 @@ UNIT_LOOP(patches_move_alike, 0, 2)
     ck_assert_msg(none.code == 0, "%s", none.error.text);
     setup.model.preconditioner = MODEL_IC0_COARSE;
     for (uint32_t patches = 1; patches <= 4; patches++) {
-        struct record record = {.threads = 1 + patches % 2};
+        UNIT_OWNED(record_free) struct record record = {.threads = 1 + patches % 2};
         setup.model.patches = patches;
-        record_run(&record, &setup.model);
-        ck_assert_msg(record.code == 0, "%s", record.error.text);
+        record_fine(&record, &setup.model);
         ck_assert_double_le(farthest(&none, &record), 1e-6);
         if (!_i)
             ck_assert_uint_lt(record.report.cg_iterations_total, before);
         before = record.report.cg_iterations_total;
-        record_free(&record);
     }
-    record_free(&none);
-    setup_free(&setup);
 }
 
 /* In half storage, too, with every preconditioner, of a sheet whose bend springs join vertices that
  * have others between them, and some twice. */
 UNIT_TEST(formats_move_alike)
 {
-    struct record springs = {0};
-    struct setup setup;
+    UNIT_OWNED(record_free) struct record springs = {0};
+    UNIT_OWNED(setup_free) struct setup setup;
     setup_stiff(&setup, 14);
     setup.material.bend = 50;
     setup.model.grain = 30;
@@ -115,17 +110,13 @@ UNIT_TEST(formats_move_alike)
     record_run(&springs, &setup.model);
     ck_assert_msg(springs.code == 0, "%s", springs.error.text);
     for (int i = 0; i < 2 * KINDS; i++) {
-        struct record record = {.threads = 1 + (unsigned)i % 2};
+        UNIT_OWNED(record_free) struct record record = {.threads = 1 + (unsigned)i % 2};
         setup.model.preconditioner = kinds[i / 2];
         setup.model.format = i % 2 ? SOLVE_HALF_FLOAT : SOLVE_HALF;
-        record_run(&record, &setup.model);
-        ck_assert_msg(record.code == 0, "%s", record.error.text);
+        record_fine(&record, &setup.model);
         ck_assert_double_le(farthest(&springs, &record), 1e-6);
         ck_assert_double_le(record.report.momentum_lost, 1e-9);
-        record_free(&record);
     }
-    record_free(&springs);
-    setup_free(&setup);
 }
 
 static uint64_t iterations_of(struct setup *setup, enum model_guess guess, double h,
@@ -144,7 +135,7 @@ static uint64_t iterations_of(struct setup *setup, enum model_guess guess, doubl
  * rows included; where steps are long it begins from nothing. */
 UNIT_LOOP(starts_move_alike, MODEL_PLAIN, MODEL_IC0_COARSE + 1)
 {
-    struct setup setup;
+    UNIT_OWNED(setup_free) struct setup setup;
     struct record zero, previous, automatic;
     setup_stiff(&setup, 14);
     setup.model.preconditioner = (enum model_preconditioner)_i;
@@ -163,7 +154,6 @@ UNIT_LOOP(starts_move_alike, MODEL_PLAIN, MODEL_IC0_COARSE + 1)
     ck_assert_uint_eq(automatic.report.state_hash, zero.report.state_hash);
     record_free(&zero);
     record_free(&automatic);
-    setup_free(&setup);
 }
 
 /* By hand: flat and at rest all have b = h m g, so the residual is h g all over before the first
@@ -173,21 +163,18 @@ UNIT_TEST(normalised_by_hand)
 {
     const double first = 0.001 * 0.001 * 9.81 / 0.25;
     for (int i = 0; i < 4; i++) {
-        struct setup setup;
-        struct record record = {0};
+        UNIT_OWNED(setup_free) struct setup setup;
+        UNIT_OWNED(record_free) struct record record = {0};
         setup_sheet(&setup, 5);
         setup.model.end = setup.model.h;
         setup.model.stop = MODEL_STOP_NORMALISED;
         setup.model.tolerance = first * (i % 2 ? 1 + 1e-12 : 1 - 1e-12);
         setup_pin(&setup, i < 2 ? 1 : 3, (const uint32_t[]){0, 7, 12});
-        record_run(&record, &setup.model);
-        ck_assert_msg(record.code == 0, "%s", record.error.text);
+        record_fine(&record, &setup.model);
         if (i % 2)
             ck_assert_uint_eq(record.report.cg_iterations_total, 0);
         else
             ck_assert_uint_gt(record.report.cg_iterations_total, 0);
-        record_free(&record);
-        setup_free(&setup);
     }
 }
 
@@ -195,7 +182,7 @@ UNIT_TEST(normalised_by_hand)
 static void run_in_units(double mass, double time, double length, double tolerance,
                          struct record *record)
 {
-    struct setup setup;
+    UNIT_OWNED(setup_free) struct setup setup;
     struct cloth_error error = {0};
     setup_stiff(&setup, 12);
     mesh_free(&setup.cloth.mesh);
@@ -217,7 +204,6 @@ static void run_in_units(double mass, double time, double length, double toleran
     setup.model.preconditioner = MODEL_IC0_COARSE;
     record_run(record, &setup.model);
     ck_assert_msg(record->code == 0, "%s", record->error.text);
-    setup_free(&setup);
 }
 
 /* By powers of two, of masses by powers of four, since matrices hold roots, every number is the
@@ -230,12 +216,11 @@ UNIT_TEST(normalised_in_any_units)
     run_in_units(1, 1, 1, 1e-7, &closer);
     ck_assert_uint_gt(closer.report.cg_iterations_total, record.report.cg_iterations_total);
     for (int i = 0; i < 4; i++) {
-        struct record other = {0};
+        UNIT_OWNED(record_free) struct record other = {0};
         run_in_units(units[i][0], units[i][1], units[i][2], 1e-6, &other);
         ck_assert_uint_eq(other.report.cg_iterations_total, record.report.cg_iterations_total);
         for (size_t k = 0; k < 3 * record.frames * record.vertices; k++)
             ck_assert_double_eq(other.position[k], units[i][2] * record.position[k]);
-        record_free(&other);
     }
     record_free(&record);
     record_free(&closer);
@@ -342,8 +327,8 @@ UNIT_TEST(stop_in_the_mass_norm)
 
 UNIT_TEST(too_few_iterations)
 {
-    struct setup setup;
-    struct record record = {0};
+    UNIT_OWNED(setup_free) struct setup setup;
+    UNIT_OWNED(record_free) struct record record = {0};
     setup_stiff(&setup, 20);
     setup.model.preconditioner = MODEL_IC0_COARSE;
     setup.model.stop = MODEL_STOP_MASS_NORM;
@@ -352,22 +337,17 @@ UNIT_TEST(too_few_iterations)
     record_run(&record, &setup.model);
     ck_assert_int_eq(record.code, CLOTH_E_RUN);
     ck_assert_ptr_nonnull(strstr(record.error.text, "step 1: conjugate gradients stopped at"));
-    record_free(&record);
-    setup_free(&setup);
 }
 
 /* Exactly so many iterations, under a preconditioner too. */
 UNIT_TEST(count)
 {
-    struct setup setup;
-    struct record record = {0};
+    UNIT_OWNED(setup_free) struct setup setup;
+    UNIT_OWNED(record_free) struct record record = {0};
     setup_sheet(&setup, 10);
     setup.model.preconditioner = MODEL_IC0_COARSE;
     setup.model.stop = MODEL_STOP_COUNT;
     setup.model.max_iterations = 7;
-    record_run(&record, &setup.model);
-    ck_assert_msg(record.code == 0, "%s", record.error.text);
+    record_fine(&record, &setup.model);
     ck_assert_uint_eq(record.report.cg_iterations_total, 70);
-    record_free(&record);
-    setup_free(&setup);
 }

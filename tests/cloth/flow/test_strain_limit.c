@@ -33,8 +33,8 @@ static double elongation(double tension)
 /* _i: linear steps, Newton steps, Newton steps of BDF2. */
 UNIT_LOOP(a_chain_hangs_as_far_as_both_springs_let_it, 0, 3)
 {
-    struct setup setup;
-    struct record record = {0};
+    UNIT_OWNED(setup_free) struct setup setup;
+    UNIT_OWNED(record_free) struct record record = {0};
     double worst = 0;
     int beyond = 0;
     chain(&setup);
@@ -57,14 +57,12 @@ UNIT_LOOP(a_chain_hangs_as_far_as_both_springs_let_it, 0, 3)
     ck_assert_int_gt(beyond, 2);
     ck_assert_int_lt(beyond, LINKS - 1);
     ck_assert_double_le(worst, 1e-9);
-    record_free(&record);
-    setup_free(&setup);
 }
 
 /* What is not reached changes no bit. */
 UNIT_TEST(below_its_limit_an_edge_is_free)
 {
-    struct setup setup;
+    UNIT_OWNED(setup_free) struct setup setup;
     struct record record[2] = {{0}};
     setup_weight(&setup);
     setup.model.format = SOLVE_HALF;
@@ -78,13 +76,12 @@ UNIT_TEST(below_its_limit_an_edge_is_free)
     ck_assert_uint_eq(record[0].report.state_hash, record[1].report.state_hash);
     for (int i = 0; i < 2; i++)
         record_free(record + i);
-    setup_free(&setup);
 }
 
 UNIT_TEST(a_free_chain_keeps_its_momentum)
 {
-    struct setup setup;
-    struct record record = {0};
+    UNIT_OWNED(setup_free) struct setup setup;
+    UNIT_OWNED(record_free) struct record record = {0};
     double before = 0, after = 0, longest = 0;
     chain(&setup);
     setup.cloth.n_pins = 0;
@@ -108,15 +105,13 @@ UNIT_TEST(a_free_chain_keeps_its_momentum)
     ck_assert_double_le(fabs(after - before) / (LINKS + 1), 1e-14);
     ck_assert_double_le(record.report.momentum_lost, 1e-14);
     free(setup.cloth.start);
-    record_free(&record);
-    setup_free(&setup);
 }
 
 /* Explicit steps are told of limits as if they were reached: K + LIMIT of one link, one end of
  * which is held. */
 UNIT_TEST(the_longest_step_counts_limits)
 {
-    struct setup setup;
+    UNIT_OWNED(setup_free) struct setup setup;
     struct flow_source source;
     struct flow_limit limit;
     struct cloth_error error = {0};
@@ -128,15 +123,14 @@ UNIT_TEST(the_longest_step_counts_limits)
     ck_assert_int_eq(flow_limit_find(&source, &limit, &error), 0);
     ck_assert_double_eq_tol(limit.omega, sqrt((40 + LIMIT) / 0.1), 1e-9);
     flow_source_free(&source);
-    setup_free(&setup);
 }
 
 /* Thrown down at 5 m/s, the weight comes in one step of 20 ms far over a limit that the matrix of
  * this step has not: 100 times its energy. The step is made again until the matrix has it. */
 UNIT_TEST(steps_far_over_a_limit_are_halved)
 {
-    struct setup setup;
-    struct record record = {0};
+    UNIT_OWNED(setup_free) struct setup setup;
+    UNIT_OWNED(record_free) struct record record = {0};
     setup_weight(&setup);
     setup.model.format = SOLVE_HALF;
     setup.model.h = 0.02;
@@ -158,8 +152,6 @@ UNIT_TEST(steps_far_over_a_limit_are_halved)
     ck_assert_uint_gt(record.report.halved_by[FLOW_CAUSE_ENERGY], 0);
     ck_assert_double_gt(record.report.stretch_highest, 1.05);
     ck_assert_double_le(record.report.stretch_highest, 1 + 1.01 * max);
-    record_free(&record);
-    setup_free(&setup);
 }
 
 static void count(void *to, const struct element *element)
@@ -172,7 +164,7 @@ static void count(void *to, const struct element *element)
 UNIT_TEST(edges_of_a_grid)
 {
     for (int triangles = 0; triangles < 2; triangles++) {
-        struct setup setup;
+        UNIT_OWNED(setup_free) struct setup setup;
         struct element_cloths cloths;
         struct cloth_error error = {0};
         uint32_t n = 0;
@@ -184,6 +176,5 @@ UNIT_TEST(edges_of_a_grid)
         element_each(&cloths, count, &n);
         ck_assert_uint_eq(n, 2 * 5 * 4 + (triangles ? 4 * 4 : 0));
         element_cloths_free(&cloths);
-        setup_free(&setup);
     }
 }

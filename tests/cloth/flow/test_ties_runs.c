@@ -134,8 +134,8 @@ UNIT_LOOP(corners_in_four_blocks, 0, sizeof preconditioners / sizeof *preconditi
 /* Momentum of cloth that touches nothing is exact to rounding, however the solve stops. */
 UNIT_TEST(free_until_it_touches)
 {
-    struct setup setup;
-    struct record made = {0};
+    UNIT_OWNED(setup_free) struct setup setup;
+    UNIT_OWNED(record_free) struct record made = {0};
     setup_sheet(&setup, SIDE);
     setup_load(&setup, 3, 0.1, 0.2, -0.3);
     setup.model.contact.mode = MODEL_CONTACT_CERTIFIED;
@@ -146,8 +146,6 @@ UNIT_TEST(free_until_it_touches)
     record_run(&made, &setup.model);
     ck_assert_msg(!made.code, "%s", made.error.text);
     ck_assert_double_le(made.report.momentum_lost, 1e-15);
-    record_free(&made);
-    setup_free(&setup);
 }
 
 /* ---- Rooms ---- */

@@ -19,42 +19,39 @@ static double parabola(double chord, double height)
 
 UNIT_TEST(straight_edges)
 {
-    struct garment_pattern pattern;
+    UNIT_OWNED(garment_pattern_free) struct garment_pattern pattern;
     read_pattern(&pattern, "straight");
     expect(garment_panel_area(&pattern.panel[0]), 0.12, 1e-14);
     expect(garment_edge_length(&pattern.panel[0], 0), 0.4, 1e-14);
     expect(garment_edge_length(&pattern.panel[0], 3), 0.3, 1e-14);
-    garment_pattern_free(&pattern);
 }
 
 /* Under a parabola are two thirds of its height, which is half that of the control point. */
 UNIT_TEST(quadratic_edges)
 {
-    struct garment_pattern pattern;
+    UNIT_OWNED(garment_pattern_free) struct garment_pattern pattern;
     read_pattern(&pattern, "quadratic");
     expect(garment_panel_area(&pattern.panel[0]), 0.24 + 0.36 * (0.2 - 0.1) / 3, 1e-13);
     expect(garment_edge_length(&pattern.panel[0], 0), parabola(0.6, 0.2), 1e-13);
     expect(garment_edge_length(&pattern.panel[0], 2), parabola(0.6, 0.1), 1e-13);
-    garment_pattern_free(&pattern);
 }
 
 /* A cubic curve whose controls are two thirds on the way to that of a quadratic one is that one:
  * the controls are at 8 cm and 4 cm, those of the parabolas at 12 and 6. */
 UNIT_TEST(cubic_edges)
 {
-    struct garment_pattern pattern;
+    UNIT_OWNED(garment_pattern_free) struct garment_pattern pattern;
     read_pattern(&pattern, "cubic");
     expect(garment_panel_area(&pattern.panel[0]), 0.24 + 0.36 * (0.2 - 0.1) / 3, 1e-13);
     expect(garment_edge_length(&pattern.panel[0], 0), parabola(0.6, 0.2), 1e-13);
     expect(garment_edge_length(&pattern.panel[0], 2), parabola(0.6, 0.1), 1e-13);
-    garment_pattern_free(&pattern);
 }
 
 /* The radius of the disc's other half is a rounded one, less than half its chord: a half circle,
  * too. */
 UNIT_TEST(circular_edges)
 {
-    struct garment_pattern pattern;
+    UNIT_OWNED(garment_pattern_free) struct garment_pattern pattern;
     read_pattern(&pattern, "circle");
     expect(garment_panel_area(&pattern.panel[0]), PI * 0.04, 1e-13);
     expect(garment_edge_length(&pattern.panel[0], 0), PI * 0.2, 1e-13);
@@ -64,14 +61,13 @@ UNIT_TEST(circular_edges)
     expect(garment_panel_area(&pattern.panel[2]), 0.04 - 0.01 * (PI / 2 - 1), 1e-13);
     expect(garment_edge_length(&pattern.panel[2], 3), sqrt(0.02) * PI / 2, 1e-13);
     ck_assert_str_eq(pattern.panel[1].name, "three_quarters");
-    garment_pattern_free(&pattern);
 }
 
 /* Places at equal parts of the length: of an arc the chords between them are equal, and all are as
  * far from the centre; of a parabola the length up to each is its part of the whole. */
 UNIT_TEST(equal_parts)
 {
-    struct garment_pattern pattern;
+    UNIT_OWNED(garment_pattern_free) struct garment_pattern pattern;
     struct curve curve;
     double last[2] = {-0.2, 0}, now[2];
     read_pattern(&pattern, "circle");
@@ -90,5 +86,4 @@ UNIT_TEST(equal_parts)
         const double u = 0.4 * (1 - 2 * now[0] / 0.6), whole = 0.4 * sqrt(1.16) + asinh(0.4);
         expect(0.5 - 0.5 * (u * sqrt(1 + u * u) + asinh(u)) / whole, k / 10.0, 1e-12);
     }
-    garment_pattern_free(&pattern);
 }

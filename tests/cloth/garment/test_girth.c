@@ -150,7 +150,7 @@ UNIT_TEST(skirts_of_random_waists)
     const struct garment_own *own = garment_own_find("skirt");
     const int waist = garment_own_measure(own, "waist");
     for (int i = 0; i < 20; i++) {
-        struct garment_pattern pattern;
+        UNIT_OWNED(garment_pattern_free) struct garment_pattern pattern;
         struct cloth_error error = {0};
         struct prism prism;
         double value[GARMENT_MEASURES];
@@ -165,6 +165,5 @@ UNIT_TEST(skirts_of_random_waists)
         ck_assert_double_eq_tol(worst.garment, value[waist] + 0.02, 1e-12);
         ck_assert_double_eq_tol(worst.body, around(radius), 1e-12);
         ck_assert_int_eq(girth_too_small(&worst), around(radius) > 1.02 * (value[waist] + 0.02));
-        garment_pattern_free(&pattern);
     }
 }

@@ -115,8 +115,8 @@ static void check_piece(const struct garment *garment, const struct garment_patt
  * good. */
 UNIT_LOOP(panels_are_whole, 0, N_PATTERNS *N_EDGES)
 {
-    struct garment_pattern pattern;
-    struct garment garment;
+    UNIT_OWNED(garment_pattern_free) struct garment_pattern pattern;
+    UNIT_OWNED(garment_free) struct garment garment;
     read_pattern(&pattern, PATTERNS[_i / N_EDGES]);
     make_garment(&garment, &pattern, EDGES[_i % N_EDGES], 0);
     uint32_t n = 0, below;
@@ -131,23 +131,19 @@ UNIT_LOOP(panels_are_whole, 0, N_PATTERNS *N_EDGES)
            PATTERNS[_i / N_EDGES], EDGES[_i % N_EDGES], n, garment.n_triangles, least);
     ck_assert(least >= (pattern.n_stitches > 1 ? 20 : 28));
     ck_assert_uint_le(below, pattern.n_stitches > 1 ? 10 : 2);
-    garment_free(&garment);
-    garment_pattern_free(&pattern);
 }
 
 UNIT_LOOP(as_many_as_wanted, 0, N_PATTERNS * 3)
 {
     static const uint32_t wanted[] = {500, 3000, 20000};
     static const double off[] = {0.05, 0.01, 0.01}; /* boundaries have whole divisions */
-    struct garment_pattern pattern;
-    struct garment garment;
+    UNIT_OWNED(garment_pattern_free) struct garment_pattern pattern;
+    UNIT_OWNED(garment_free) struct garment garment;
     const uint32_t n = wanted[_i % 3];
     read_pattern(&pattern, PATTERNS[_i / 3]);
     make_garment(&garment, &pattern, 0, n);
     ck_assert_msg(fabs((double)garment.n_vertices - n) <= off[_i % 3] * n, "%s: %u, not %u",
                   PATTERNS[_i / 3], garment.n_vertices, n);
-    garment_free(&garment);
-    garment_pattern_free(&pattern);
 }
 
 /* On straight edges every part has the same length: each side has that of its own edge. */
@@ -170,21 +166,19 @@ static void check_seam(const struct garment *garment, const struct garment_patte
 UNIT_LOOP(seams_have_equal_sides, 0, 3)
 {
     static const char *const sewn[3] = {"dart", "gather", "fold"};
-    struct garment_pattern pattern;
-    struct garment garment;
+    UNIT_OWNED(garment_pattern_free) struct garment_pattern pattern;
+    UNIT_OWNED(garment_free) struct garment garment;
     read_pattern(&pattern, sewn[_i]);
     make_garment(&garment, &pattern, 0.007, 0);
     ck_assert_uint_eq(garment.n_seams, 1);
     check_seam(&garment, &pattern, 0);
-    garment_free(&garment);
-    garment_pattern_free(&pattern);
 }
 
 /* A dart closes at the vertex that its edges share: edge 3 ends there, edge 4 begins there. */
 UNIT_TEST(darts_close_at_their_tip)
 {
-    struct garment_pattern pattern;
-    struct garment garment;
+    UNIT_OWNED(garment_pattern_free) struct garment_pattern pattern;
+    UNIT_OWNED(garment_free) struct garment garment;
     read_pattern(&pattern, "dart");
     make_garment(&garment, &pattern, 0.01, 0);
     const struct garment_seam *seam = &garment.seam[0];
@@ -192,8 +186,6 @@ UNIT_TEST(darts_close_at_their_tip)
     ck_assert(seam->reversed);
     ck_assert_uint_eq(tip[0], tip[1]);
     ck_assert_uint_eq(tip[0], garment.piece[0].start[4]);
-    garment_free(&garment);
-    garment_pattern_free(&pattern);
 }
 
 /* Panels that meet at a right angle along their seam: partners are at one place. The side's loop is
@@ -201,8 +193,8 @@ UNIT_TEST(darts_close_at_their_tip)
  * its u is -x. */
 UNIT_TEST(folds_meet)
 {
-    struct garment_pattern pattern;
-    struct garment garment;
+    UNIT_OWNED(garment_pattern_free) struct garment_pattern pattern;
+    UNIT_OWNED(garment_free) struct garment garment;
     read_pattern(&pattern, "fold");
     make_garment(&garment, &pattern, 0.01, 0);
     const struct garment_seam *seam = &garment.seam[0];
@@ -220,8 +212,6 @@ UNIT_TEST(folds_meet)
     const double *a = garment.position[t[0]], *b = garment.position[t[1]],
                  *c = garment.position[t[2]];
     ck_assert((b[1] - a[1]) * (c[2] - a[2]) - (b[2] - a[2]) * (c[1] - a[1]) < 0);
-    garment_free(&garment);
-    garment_pattern_free(&pattern);
 }
 
 /* A front, a back, and beside their necks a panel of a hood, by its lower edge. */
@@ -257,8 +247,8 @@ static void place_hood(struct garment_pattern *pattern, const struct hood *hood)
 UNIT_LOOP(fronts_are_on_one_side, 0, sizeof HOODS / sizeof *HOODS)
 {
     const struct hood *hood = HOODS + _i;
-    struct garment_pattern pattern;
-    struct garment garment;
+    UNIT_OWNED(garment_pattern_free) struct garment_pattern pattern;
+    UNIT_OWNED(garment_free) struct garment garment;
     read_pattern(&pattern, "hood");
     place_hood(&pattern, hood);
     make_garment(&garment, &pattern, 0.02, 0);
@@ -270,15 +260,13 @@ UNIT_LOOP(fronts_are_on_one_side, 0, sizeof HOODS / sizeof *HOODS)
         ck_assert_int_eq(seam[2 + k].reversed, hood->reversed[k]);
         ck_assert_int_eq(seam[2 + k].unsure, hood->unsure[k]);
     }
-    garment_free(&garment);
-    garment_pattern_free(&pattern);
 }
 
 /* About x first, then y: 90 and 90 degrees take (x, y) to (y, 0, -x). */
 UNIT_TEST(rotations_are_in_order)
 {
-    struct garment_pattern pattern;
-    struct garment garment;
+    UNIT_OWNED(garment_pattern_free) struct garment_pattern pattern;
+    UNIT_OWNED(garment_free) struct garment garment;
     read_pattern(&pattern, "straight");
     make_garment(&garment, &pattern, 0.05, 0);
     for (uint32_t v = 0; v < garment.n_vertices; v++) {
@@ -286,14 +274,12 @@ UNIT_TEST(rotations_are_in_order)
         ck_assert(fabs(x[0] - (uv[1] + 0.1)) < 1e-15 && fabs(x[1] - 1) < 1e-15 &&
                   fabs(x[2] - (-uv[0] - 0.2)) < 1e-15);
     }
-    garment_free(&garment);
-    garment_pattern_free(&pattern);
 }
 
 /* Twice the same bits, whatever lay in memory before. */
 UNIT_TEST(the_same_again)
 {
-    struct garment_pattern pattern;
+    UNIT_OWNED(garment_pattern_free) struct garment_pattern pattern;
     struct garment one, two;
     read_pattern(&pattern, "circle");
     make_garment(&one, &pattern, 0.011, 0);
@@ -304,5 +290,4 @@ UNIT_TEST(the_same_again)
     ck_assert(memcmp(one.triangle, two.triangle, one.n_triangles * sizeof *one.triangle) == 0);
     garment_free(&one);
     garment_free(&two);
-    garment_pattern_free(&pattern);
 }

@@ -110,7 +110,7 @@ static int surface_of(const struct garment *garment, uint32_t *loops)
 
 static void check_mesh(const struct garment_pattern *pattern, int which, double fineness)
 {
-    struct garment garment;
+    UNIT_OWNED(garment_free) struct garment garment;
     uint32_t below, loops;
     make_garment(&garment, pattern, fineness, 0);
     ck_assert_double_ge(garment_least_angle(&garment, &below), 20);
@@ -119,7 +119,6 @@ static void check_mesh(const struct garment_pattern *pattern, int which, double 
                       SHAPES[which].name, s);
     ck_assert_int_eq(surface_of(&garment, &loops), SHAPES[which].euler);
     ck_assert_uint_eq(loops, SHAPES[which].loops);
-    garment_free(&garment);
 }
 
 UNIT_CASES(patience, cases)
@@ -141,8 +140,8 @@ UNIT_LOOP(sizes, 0, GARMENTS)
 /* Corners of all panels in space, those of the right mirrored: each corner has its image. */
 UNIT_LOOP(left_is_right, 0, GARMENTS)
 {
-    struct garment_pattern pattern;
-    struct garment garment;
+    UNIT_OWNED(garment_pattern_free) struct garment_pattern pattern;
+    UNIT_OWNED(garment_free) struct garment garment;
     size_of(&pattern, _i, MIDDLE);
     make_garment(&garment, &pattern, 0.03, 0);
     for (uint32_t p = 0; p < garment.n_pieces; p++)
@@ -154,8 +153,6 @@ UNIT_LOOP(left_is_right, 0, GARMENTS)
                 nearest = fmin(nearest, distance_of(garment.position[v], image, 3));
             ck_assert_double_le(nearest, 1e-12);
         }
-    garment_free(&garment);
-    garment_pattern_free(&pattern);
 }
 
 static double part(uint64_t *state)
@@ -172,7 +169,7 @@ UNIT_LOOP(random_measures, 0, GARMENTS)
     const int wanted = unit_quick() ? RANDOM / 10 : RANDOM;
     int made = 0, tried = 0;
     for (; made < wanted && tried < 100 * RANDOM; tried++) {
-        struct garment_pattern pattern;
+        UNIT_OWNED(garment_pattern_free) struct garment_pattern pattern;
         struct cloth_error error = {0};
         double value[GARMENT_MEASURES] = {0};
         for (int k = 0; own->measure[k].name; k++)
@@ -188,7 +185,6 @@ UNIT_LOOP(random_measures, 0, GARMENTS)
             check_mesh(&pattern, _i, 0.03);
             made++;
         }
-        garment_pattern_free(&pattern);
     }
     ck_assert_msg(made == wanted, "%s: of %d only %d can be sewn", own->name, tried, made);
 }
@@ -196,7 +192,7 @@ UNIT_LOOP(random_measures, 0, GARMENTS)
 /* Girths are what the measures say. */
 UNIT_TEST(widths)
 {
-    struct garment_pattern pattern;
+    UNIT_OWNED(garment_pattern_free) struct garment_pattern pattern;
     double value[GARMENT_MEASURES];
     const struct garment_own *own = garment_own_find("tshirt");
     garment_own_size(own, MIDDLE, value);
@@ -213,20 +209,18 @@ UNIT_TEST(widths)
         waist += !strncmp(name, "band", 4) && length > 0.1 ? length : 0;
     }
     ck_assert_double_eq_tol(waist, 0.862, 0.001); /* the back's rise makes it a little longer */
-    garment_pattern_free(&pattern);
 }
 
 static void refuse(int which, const char *measure, double value, const char *sentence)
 {
     const struct garment_own *own = garment_own_find(SHAPES[which].name);
     double values[GARMENT_MEASURES];
-    struct garment_pattern pattern;
+    UNIT_OWNED(garment_pattern_free) struct garment_pattern pattern;
     struct cloth_error error = {0};
     garment_own_size(own, MIDDLE, values);
     values[garment_own_measure(own, measure)] = value;
     ck_assert_int_eq(garment_own_make(&pattern, own, values, &error), CLOTH_E_INPUT);
     ck_assert_msg(strstr(error.text, sentence) != NULL, "%s", error.text);
-    garment_pattern_free(&pattern);
 }
 
 UNIT_TEST(refused)

@@ -22,12 +22,11 @@ static void start(void)
     static struct surface box;
     sample_make(&sample);
     for (uint32_t i = 0; i < 2; i++) {
-        struct mesh mesh;
+        UNIT_OWNED(mesh_free) struct mesh mesh;
         bool turned;
         surface_box(&box, 1, 2, 3 + i);
         surface_mesh(&box, &mesh);
         ck_assert_int_eq(contact_bodies_add(&bodies, &mesh, &turned, &error), 0);
-        mesh_free(&mesh);
     }
     uint32_t kind = 0;
     while (contact_kinds[kind] != &contact_body_kind)

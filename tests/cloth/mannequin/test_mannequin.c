@@ -263,22 +263,20 @@ static void check_girths(const struct mesh *mesh, const struct mannequin *asked)
 
 static void check_all(const struct mannequin *mannequin)
 {
-    struct mesh mesh;
+    UNIT_OWNED(mesh_free) struct mesh mesh;
     make_mannequin(&mesh, mannequin);
     check_surface(&mesh);
     check_triangles(&mesh, mannequin->edge > 0 ? mannequin->edge : MANNEQUIN_EDGE);
     check_mirror(&mesh);
     check_girths(&mesh, mannequin);
-    mesh_free(&mesh);
 }
 
 UNIT_TEST(default_figure)
 {
     struct mannequin mannequin = {0};
-    struct mesh mesh;
+    UNIT_OWNED(mesh_free) struct mesh mesh;
     make_mannequin(&mesh, &mannequin);
     ck_assert(mesh.n_triangles >= 8000 && mesh.n_triangles <= 15000);
-    mesh_free(&mesh);
     check_all(&mannequin);
 }
 

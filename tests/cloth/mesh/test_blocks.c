@@ -110,10 +110,10 @@ UNIT_TEST(number_of_blocks)
     for (size_t i = 0; i < sizeof wanted / sizeof *wanted; i++) {
         struct graph graph = graph_new(wanted[i][0], 0);
         uint32_t smallest, largest;
+        UNIT_OWNED(mesh_blocks_free)
         struct mesh_blocks blocks = cut(&graph, wanted[i][1], &smallest, &largest);
         ck_assert_msg(blocks.n_blocks == wanted[i][2], "%u blocks of %u vertices by %u",
                       blocks.n_blocks, wanted[i][0], wanted[i][1]);
-        mesh_blocks_free(&blocks);
         graph_free(&graph);
     }
 }
@@ -124,6 +124,7 @@ UNIT_TEST(balance_of_the_sheet)
     struct graph graph = sheet(150, 150, 0);
     for (size_t i = 0; i < 3; i++) {
         uint32_t smallest, largest;
+        UNIT_OWNED(mesh_blocks_free)
         struct mesh_blocks blocks = cut(&graph, grains[i], &smallest, &largest);
         double mean = 22500.0 / blocks.n_blocks;
         ck_assert_double_lt(largest, 1.02 * mean);
@@ -132,7 +133,6 @@ UNIT_TEST(balance_of_the_sheet)
          * again */
         double sides = 2 * 150 * sqrt(blocks.n_blocks);
         ck_assert_double_lt(n_cut(&blocks, &graph), 1.5 * 5 * sides);
-        mesh_blocks_free(&blocks);
     }
     graph_free(&graph);
 }
@@ -141,13 +141,12 @@ UNIT_TEST(near_numbers_are_near)
 {
     uint32_t smallest, largest;
     struct graph graph = sheet(64, 64, 0);
-    struct mesh_blocks blocks = cut(&graph, 64, &smallest, &largest);
+    UNIT_OWNED(mesh_blocks_free) struct mesh_blocks blocks = cut(&graph, 64, &smallest, &largest);
     uint32_t crossing = 0;
     for (size_t i = 0; i < graph.n_pairs; i++) /* between the two halves of the numbers */
         crossing += (blocks.place[graph.pairs[2 * i]] < 2048) !=
                     (blocks.place[graph.pairs[2 * i + 1]] < 2048);
     ck_assert_uint_lt(crossing, 64 * 5 * 3 / 2);
-    mesh_blocks_free(&blocks);
     graph_free(&graph);
 }
 
@@ -156,14 +155,14 @@ UNIT_TEST(every_grain)
     struct graph graph = sheet(23, 17, 0);
     uint32_t smallest, largest;
     for (uint32_t grain = 1; grain < 450; grain = grain < 30 ? grain + 1 : grain * 5 / 4) {
+        UNIT_OWNED(mesh_blocks_free)
         struct mesh_blocks blocks = cut(&graph, grain, &smallest, &largest);
         ck_assert(grain > 1 || largest == 1);
         ck_assert_uint_le(largest, 2 * grain + 2);
-        mesh_blocks_free(&blocks);
     }
+    UNIT_OWNED(mesh_blocks_free)
     struct mesh_blocks blocks = cut(&graph, UINT32_MAX, &smallest, &largest);
     ck_assert_uint_eq(blocks.n_blocks, 1);
-    mesh_blocks_free(&blocks);
     graph_free(&graph);
 }
 
@@ -173,9 +172,11 @@ UNIT_TEST(same_every_time)
     const uint32_t grains[] = {1, 7, 100, 1600};
     for (size_t g = 0; g < 4; g++) {
         uint32_t smallest, largest;
+        UNIT_OWNED(mesh_blocks_free)
         struct mesh_blocks first = cut(&graph, grains[g], &smallest, &largest);
         srand(12345 + (unsigned)g); /* METIS draws from the same numbers */
         (void)rand();
+        UNIT_OWNED(mesh_blocks_free)
         struct mesh_blocks again = cut(&graph, grains[g], &smallest, &largest);
         ck_assert(first.hash == again.hash);
         mesh_blocks_free(&again);
@@ -190,8 +191,6 @@ UNIT_TEST(same_every_time)
         other.pairs[4 * graph.n_pairs] = other.pairs[4 * graph.n_pairs + 1] = 5;
         again = cut(&other, grains[g], &smallest, &largest);
         ck_assert(first.hash == again.hash);
-        mesh_blocks_free(&again);
-        mesh_blocks_free(&first);
         graph_free(&other);
     }
     graph_free(&graph);
@@ -205,7 +204,7 @@ UNIT_TEST(halves_of_a_chain)
         graph.pairs[2 * i + 1] = (i + 1) * 37 % 100;
     }
     uint32_t smallest, largest;
-    struct mesh_blocks blocks = cut(&graph, 50, &smallest, &largest);
+    UNIT_OWNED(mesh_blocks_free) struct mesh_blocks blocks = cut(&graph, 50, &smallest, &largest);
     ck_assert_uint_eq(smallest, 50);
     ck_assert_uint_eq(n_cut(&blocks, &graph), 1); /* both halves in one piece */
     mesh_blocks_free(&blocks);
@@ -214,7 +213,6 @@ UNIT_TEST(halves_of_a_chain)
         ck_assert_int_eq(
             abs((int)blocks.place[graph.pairs[2 * i]] - (int)blocks.place[graph.pairs[2 * i + 1]]),
             1);
-    mesh_blocks_free(&blocks);
     graph_free(&graph);
 }
 
@@ -225,7 +223,7 @@ UNIT_TEST(order_inside_a_block)
 {
     struct graph graph = sheet(30, 3, 0);
     uint32_t smallest, largest;
-    struct mesh_blocks blocks = cut(&graph, 90, &smallest, &largest);
+    UNIT_OWNED(mesh_blocks_free) struct mesh_blocks blocks = cut(&graph, 90, &smallest, &largest);
     for (size_t i = 0; i < graph.n_pairs; i++)
         ck_assert_int_lt(
             abs((int)blocks.place[graph.pairs[2 * i]] - (int)blocks.place[graph.pairs[2 * i + 1]]),
@@ -252,7 +250,6 @@ UNIT_TEST(order_inside_a_block)
     memcpy(tree.pairs, branches, sizeof branches);
     blocks = cut(&tree, 6, &smallest, &largest);
     ck_assert_mem_eq(blocks.vertex, turned, sizeof turned);
-    mesh_blocks_free(&blocks);
     graph_free(&tree);
 }
 
@@ -260,12 +257,11 @@ UNIT_TEST(free_particles)
 {
     struct graph graph = graph_new(103, 0);
     uint32_t smallest, largest;
-    struct mesh_blocks blocks = cut(&graph, 10, &smallest, &largest);
+    UNIT_OWNED(mesh_blocks_free) struct mesh_blocks blocks = cut(&graph, 10, &smallest, &largest);
     ck_assert_uint_ge(smallest, 9);
     ck_assert_uint_le(largest, 10);
     for (uint32_t v = 0; v < 103; v++)
         ck_assert_uint_eq(blocks.vertex[v], v);
-    mesh_blocks_free(&blocks);
     graph_free(&graph);
 }
 
@@ -276,9 +272,9 @@ UNIT_TEST(isolated_vertices)
         struct graph graph = sheet(8, 8, more[m]);
         for (size_t g = 0; g < 5; g++) {
             uint32_t smallest, largest;
+            UNIT_OWNED(mesh_blocks_free)
             struct mesh_blocks blocks = cut(&graph, grains[g], &smallest, &largest);
             ck_assert_uint_le(largest, 2 * grains[g] + 2);
-            mesh_blocks_free(&blocks);
         }
         graph_free(&graph);
     }
@@ -289,7 +285,7 @@ UNIT_TEST(unused_vertices)
     struct graph graph = sheet(10, 10, 30);
     uint32_t smallest, largest;
     memset(graph.used + 100, 0, 30);
-    struct mesh_blocks blocks = cut(&graph, 25, &smallest, &largest);
+    UNIT_OWNED(mesh_blocks_free) struct mesh_blocks blocks = cut(&graph, 25, &smallest, &largest);
     ck_assert_uint_eq(blocks.n_blocks, 4);
     mesh_blocks_free(&blocks);
     graph.n_pairs = 0;
@@ -299,7 +295,6 @@ UNIT_TEST(unused_vertices)
     mesh_blocks_free(&blocks);
     graph.n_vertices = 0;
     blocks = cut(&graph, 1, &smallest, &largest);
-    mesh_blocks_free(&blocks);
     mesh_blocks_free(&blocks);
     graph_free(&graph);
 }

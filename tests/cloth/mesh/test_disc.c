@@ -23,7 +23,7 @@ static const double *place_of(const struct mesh *mesh, uint32_t ring, uint32_t j
 /* Within rounding where the angle says, by the functions of the C library. */
 UNIT_TEST(places)
 {
-    struct mesh mesh = disc(0.15, RINGS);
+    UNIT_OWNED(mesh_free) struct mesh mesh = disc(0.15, RINGS);
     ck_assert_uint_eq(mesh.n_vertices, N);
     ck_assert_uint_eq(mesh.grid_nx, 0);
     for (uint32_t ring = 0; ring <= RINGS; ring++)
@@ -38,12 +38,11 @@ UNIT_TEST(places)
             ck_assert_double_eq(uv[0], x[0] + 0.15);
             ck_assert_double_eq(uv[1], x[2] + 0.15);
         }
-    mesh_free(&mesh);
 }
 
 UNIT_TEST(mirror_images)
 {
-    struct mesh mesh = disc(0.15, RINGS);
+    UNIT_OWNED(mesh_free) struct mesh mesh = disc(0.15, RINGS);
     for (uint32_t ring = 1; ring <= RINGS; ring++)
         for (uint32_t j = 0; j < 6 * ring; j++) {
             const double *x = place_of(&mesh, ring, j);
@@ -52,7 +51,6 @@ UNIT_TEST(mirror_images)
             ck_assert(x[0] == down[0] && x[2] == -down[2]);
             ck_assert(x[0] == -left[0] && x[2] == left[2]);
         }
-    mesh_free(&mesh);
 }
 
 /* As mesh.h says; no triangle has less than three quarters of the area of another, and their sum is
@@ -60,7 +58,7 @@ UNIT_TEST(mirror_images)
 UNIT_TEST(almost_equal_triangles)
 {
     for (uint32_t rings = 1; rings <= RINGS; rings += 3) {
-        struct mesh mesh = disc(rings, rings);
+        UNIT_OWNED(mesh_free) struct mesh mesh = disc(rings, rings);
         double shortest = INFINITY, longest = 0, least = INFINITY, most = 0, sum = 0;
         ck_assert_uint_eq(mesh.n_triangles, 6 * rings * rings);
         for (uint32_t t = 0; t < mesh.n_triangles; t++) {
@@ -88,7 +86,6 @@ UNIT_TEST(almost_equal_triangles)
         ck_assert_double_ge(least, 0.75 * most);
         const double n = 6 * rings;
         ck_assert_double_eq_tol(sum, n / 2 * rings * rings * sin(2 * acos(-1) / n), 1e-9);
-        mesh_free(&mesh);
     }
 }
 

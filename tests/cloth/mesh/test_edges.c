@@ -28,8 +28,8 @@ static const struct mesh_edge *find(const struct mesh_edges *edges, uint32_t a, 
 
 UNIT_TEST(of_a_grid)
 {
-    struct mesh mesh = grid(2, 3, 3, 4);
-    struct mesh_edges edges = edges_of(&mesh);
+    UNIT_OWNED(mesh_free) struct mesh mesh = grid(2, 3, 3, 4);
+    UNIT_OWNED(mesh_edges_free) struct mesh_edges edges = edges_of(&mesh);
     uint32_t border = 0;
     ck_assert_uint_eq(edges.n, 2 * 4 + 3 * 3 + 2 * 3); /* rows, columns, diagonals */
     for (uint32_t e = 0; e < edges.n; e++)
@@ -42,58 +42,50 @@ UNIT_TEST(of_a_grid)
     ck_assert_uint_eq(top->opposite[0], 4);
     ck_assert_uint_eq(top->opposite[1], UINT32_MAX);
     ck_assert_double_eq_tol(top->area, 0.5, 1e-15);
-    mesh_edges_free(&edges);
-    mesh_free(&mesh);
 }
 
 UNIT_TEST(area_as_positioned)
 {
-    struct mesh mesh = grid(1, 1, 2, 2);
+    UNIT_OWNED(mesh_free) struct mesh mesh = grid(1, 1, 2, 2);
     struct mesh_transform larger = {{2, 7, 3}, {1, 1, 0, 0}, {1, 2, 3}};
     mesh_apply(&mesh, &larger);
-    struct mesh_edges edges = edges_of(&mesh);
+    UNIT_OWNED(mesh_edges_free) struct mesh_edges edges = edges_of(&mesh);
     ck_assert_double_eq_tol(find(&edges, 0, 3)->area, 6, 1e-14);
-    mesh_edges_free(&edges);
-    mesh_free(&mesh);
 }
 
 UNIT_TEST(lone_edges_join)
 {
+    UNIT_OWNED(mesh_free)
     struct mesh mesh = read_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 5 0 0\nv 6 0 0\n"
                                  "f 1 2 3\nl 5 4\nl 4 2\nl 2 1\n");
-    struct mesh_edges edges = edges_of(&mesh);
+    UNIT_OWNED(mesh_edges_free) struct mesh_edges edges = edges_of(&mesh);
     ck_assert_uint_eq(edges.n, 5); /* three sides, 3-4 once, 1-3 */
     const struct mesh_edge *lone = find(&edges, 3, 4), *shared = find(&edges, 0, 1);
     ck_assert_uint_eq(lone->opposite[0], UINT32_MAX);
     ck_assert(lone->area == 0);
     ck_assert_uint_eq(shared->opposite[0], 2); /* the triangle's, once */
     ck_assert_double_eq(shared->area, 0.5);
-    mesh_edges_free(&edges);
-    mesh_free(&mesh);
 }
 
 UNIT_TEST(either_winding_and_pillow)
 {
     /* two triangles over the same three vertices, and a neighbour wound the other way */
+    UNIT_OWNED(mesh_free)
     struct mesh mesh = read_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 5 0 0\nv 5 1 0\nv 6 0 0\nv 6 1 0\n"
                                  "f 1 2 3\nf 1 3 2\nf 4 5 6\nf 5 6 7\n");
-    struct mesh_edges edges = edges_of(&mesh);
+    UNIT_OWNED(mesh_edges_free) struct mesh_edges edges = edges_of(&mesh);
     ck_assert_uint_eq(edges.n, 3 + 5);
     ck_assert_uint_eq(find(&edges, 0, 1)->opposite[0], 2);
     ck_assert_uint_eq(find(&edges, 0, 1)->opposite[1], 2);
     ck_assert_uint_eq(find(&edges, 4, 5)->opposite[0], 3);
     ck_assert_uint_eq(find(&edges, 4, 5)->opposite[1], 6);
-    mesh_edges_free(&edges);
-    mesh_free(&mesh);
 }
 
 UNIT_TEST(none_at_all)
 {
-    struct mesh mesh = read_text("v 0 0 0\nv 1 0 0\n");
-    struct mesh_edges edges = edges_of(&mesh);
+    UNIT_OWNED(mesh_free) struct mesh mesh = read_text("v 0 0 0\nv 1 0 0\n");
+    UNIT_OWNED(mesh_edges_free) struct mesh_edges edges = edges_of(&mesh);
     ck_assert_uint_eq(edges.n, 0);
-    mesh_edges_free(&edges);
-    mesh_free(&mesh);
 }
 
 UNIT_TEST(non_manifold)
@@ -121,10 +113,8 @@ UNIT_TEST(a_large_fan)
         triangles[3 * i + 1] = (i + 1) % N;
         triangles[3 * i + 2] = i;
     }
-    struct mesh mesh;
+    UNIT_OWNED(mesh_free) struct mesh mesh;
     ck_assert_int_eq(mesh_inline(&mesh, N + 1, x, 0, NULL, N, triangles, NULL), CLOTH_OK);
-    struct mesh_edges edges = edges_of(&mesh);
+    UNIT_OWNED(mesh_edges_free) struct mesh_edges edges = edges_of(&mesh);
     ck_assert_int_eq((int)mesh.n_vertices - (int)edges.n + (int)mesh.n_triangles, 1); /* a disc */
-    mesh_edges_free(&edges);
-    mesh_free(&mesh);
 }

@@ -66,12 +66,11 @@ static void holds(double stretch, double weft, double shear, double bend, int bo
                   double b)
 {
     const struct mesh_moduli moduli = {stretch, shear, bend, both, weft - stretch, NULL, 0};
-    struct mesh mesh = elastic_grid(a, b);
+    UNIT_OWNED(mesh_free) struct mesh mesh = elastic_grid(a, b);
     const struct mesh_elastic found = mesh_elastic_of(&mesh, &moduli);
     double c[3][3];
     stiffness(&mesh, &moduli, MIDDLE, a * b, c);
     is_inverse(&found, c);
-    mesh_free(&mesh);
 }
 
 UNIT_TEST(every_lattice)
@@ -91,7 +90,7 @@ UNIT_TEST(cells_by_turns)
 {
     const struct mesh_moduli moduli = {1000, 400, 60, 0, -700, NULL, 0};
     struct cloth_error error = {0};
-    struct mesh mesh;
+    UNIT_OWNED(mesh_free) struct mesh mesh;
     ck_assert_int_eq(mesh_grid(&mesh, 0.6, 1.5, SIDE, SIDE, MESH_ALTERNATE, &error), CLOTH_OK);
     const struct mesh_elastic found = mesh_elastic_of(&mesh, &moduli);
     double c[3][3], other[3][3];
@@ -101,7 +100,6 @@ UNIT_TEST(cells_by_turns)
         for (int j = 0; j < 3; j++)
             c[i][j] += other[i][j];
     is_inverse(&found, c);
-    mesh_free(&mesh);
 }
 
 /* Mirrored ones with one diagonal are no uniform lattice; with both, or without any, they are. */
@@ -109,7 +107,7 @@ UNIT_TEST(mirrored_cells)
 {
     struct mesh_moduli moduli = {1000, 400, 0, 0, 0, NULL, 0};
     struct cloth_error error = {0};
-    struct mesh mesh;
+    UNIT_OWNED(mesh_free) struct mesh mesh;
     ck_assert_int_eq(mesh_grid(&mesh, 1, 1, SIDE, SIDE, MESH_MIRRORED, &error), CLOTH_OK);
     ck_assert(isnan(mesh_elastic_of(&mesh, &moduli).warp));
     moduli.both_diagonals = 1;
@@ -118,7 +116,6 @@ UNIT_TEST(mirrored_cells)
     moduli.shear = 0;
     near(mesh_elastic_of(&mesh, &moduli).warp, 1000);
     near(mesh_elastic_of(&mesh, &moduli).shear, 0);
-    mesh_free(&mesh);
 }
 
 static struct mesh_elastic of(double stretch, double shear, int both)
@@ -143,7 +140,7 @@ UNIT_TEST(equilateral_triangles)
     for (int i = 0; i < 6; i++)
         used += (size_t)snprintf(text + used, sizeof text - used, "f 1/1 %d/%d %d/%d\n", i + 2,
                                  i + 2, (i + 1) % 6 + 2, (i + 1) % 6 + 2);
-    struct mesh mesh = read_text(text);
+    UNIT_OWNED(mesh_free) struct mesh mesh = read_text(text);
     const double side = 1000 / 4.0 + 300 * 3 / 4.0;
     const struct mesh_elastic expected = {1000, 9 * 1000 * side / (8 * 1000 + side), 3 * side / 8,
                                           1.0 / 3};
@@ -151,7 +148,6 @@ UNIT_TEST(equilateral_triangles)
     stiffness(&mesh, &(struct mesh_moduli){.stretch = 1000, .weft_excess = -700}, 0, sqrt(3) / 2,
               c);
     is_inverse(&expected, c);
-    mesh_free(&mesh);
 }
 
 UNIT_TEST(square_cells)
@@ -170,10 +166,9 @@ UNIT_TEST(square_cells)
 
 UNIT_TEST(no_grid)
 {
-    struct mesh mesh = read_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    UNIT_OWNED(mesh_free) struct mesh mesh = read_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     const struct mesh_elastic found = mesh_elastic_of(&mesh, &(struct mesh_moduli){.stretch = 1});
     ck_assert(isnan(found.warp) && isnan(found.weft) && isnan(found.shear) && isnan(found.poisson));
-    mesh_free(&mesh);
 }
 
 UNIT_TEST(without_shear_or_stretch)

@@ -10,7 +10,7 @@ UNIT_TEST(copies)
     double x[12];
     uint32_t edges[4] = {3, 1, 1, 0}, triangles[6] = {0, 1, 2, 2, 3, 0};
     struct cloth_error error = {0};
-    struct mesh mesh;
+    UNIT_OWNED(mesh_free) struct mesh mesh;
     memcpy(x, SQUARE, sizeof x);
     ck_assert_int_eq(mesh_inline(&mesh, 4, x, 2, edges, 2, triangles, &error), CLOTH_OK);
     memset(x, 0, sizeof x);
@@ -26,13 +26,12 @@ UNIT_TEST(copies)
     ck_assert_uint_eq(mesh.n_triangles, 2);
     ck_assert_ptr_null(mesh.uv);
     ck_assert_uint_eq(mesh.grid_nx, 0);
-    mesh_free(&mesh);
 }
 
 UNIT_TEST(a_chain_and_a_point)
 {
     const uint32_t edges[6] = {0, 1, 1, 2, 2, 3};
-    struct mesh mesh;
+    UNIT_OWNED(mesh_free) struct mesh mesh;
     ck_assert_int_eq(mesh_inline(&mesh, 4, SQUARE, 3, edges, 0, NULL, NULL), CLOTH_OK);
     ck_assert_uint_eq(mesh.n_triangles, 0);
     ck_assert_uint_eq(mesh.n_lone_edges, 3);
@@ -41,7 +40,6 @@ UNIT_TEST(a_chain_and_a_point)
     unsigned char used = 1;
     mesh_used(&mesh, &used);
     ck_assert_uint_eq(used, 0);
-    mesh_free(&mesh);
 }
 
 static void fails(uint32_t n_vertices, const double *x, uint32_t n_edges, const uint32_t *edges,
@@ -100,10 +98,9 @@ UNIT_TEST(non_manifold)
           "triangles[2]: this face is the third at the edge between vertices 0 and 2 "
           "(non-manifold); an edge may have at most two triangles");
     /* a lone edge there is no third use */
-    struct mesh mesh;
+    UNIT_OWNED(mesh_free) struct mesh mesh;
     const uint32_t edge[] = {2, 0};
     ck_assert_int_eq(mesh_inline(&mesh, 5, x, 1, edge, 2, triangles, NULL), CLOTH_OK);
-    mesh_free(&mesh);
 }
 
 /* A chain of vertices each near the next: those that stand for others are not near each other. */
@@ -113,7 +110,7 @@ UNIT_TEST(vertices_on_one_place)
                         1,     1, 1.00001, 1,    1, 0.99, -1e-5,  0, 0, 1e300, 0, 0};
     const uint32_t edges[] = {0, 3, 1, 4, 2, 5, 3, 5, 5, 7};
     struct cloth_error error = {0};
-    struct mesh mesh;
+    UNIT_OWNED(mesh_free) struct mesh mesh;
     uint32_t same[8];
     ck_assert_int_eq(mesh_inline(&mesh, 8, x, 5, edges, 0, NULL, &error), CLOTH_OK);
     ck_assert_int_eq(mesh_coincide(&mesh, 2e-5, same, &error), CLOTH_OK);
@@ -122,5 +119,4 @@ UNIT_TEST(vertices_on_one_place)
     ck_assert_int_eq(mesh_coincide(&mesh, 1e-300, same, &error), CLOTH_OK);
     for (uint32_t v = 0; v < 8; v++)
         ck_assert_uint_eq(same[v], v);
-    mesh_free(&mesh);
 }

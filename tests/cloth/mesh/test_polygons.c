@@ -102,7 +102,7 @@ static double area_of(const struct mesh *mesh, uint32_t t, const double u[3], co
 static void tiles(const struct polygon *p, const double u[3], const double v[3], size_t first,
                   bool backwards)
 {
-    struct mesh mesh = read_polygon(p, u, v, first, backwards);
+    UNIT_OWNED(mesh_free) struct mesh mesh = read_polygon(p, u, v, first, backwards);
     const double sense = shoelace(p) > 0 ? 1 : -1;
     double sum = 0;
     ck_assert_uint_eq(mesh.n_faces, 1);
@@ -115,7 +115,6 @@ static void tiles(const struct polygon *p, const double u[3], const double v[3],
         sum += area;
     }
     ck_assert_double_eq_tol(sum, fabs(shoelace(p)), 1e-9);
-    mesh_free(&mesh);
 }
 
 static const double PLANES[][2][3] = {{{1, 0, 0}, {0, 1, 0}},
@@ -183,23 +182,23 @@ UNIT_TEST(convex_ones_are_fans)
         p.x[i][1] = sin(2 * M_PI * (double)i / 17);
     }
     for (size_t first = 0; first < p.n; first++) {
+        UNIT_OWNED(mesh_free)
         struct mesh mesh = read_polygon(&p, PLANES[4][0], PLANES[4][1], first, false);
         for (uint32_t t = 0; t < 15; t++) {
             const uint32_t fan[3] = {(uint32_t)first, (uint32_t)(first + t + 1) % 17,
                                      (uint32_t)(first + t + 2) % 17};
             ck_assert_mem_eq(mesh.triangle + 3 * t, fan, sizeof fan);
         }
-        mesh_free(&mesh);
     }
 }
 
 /* A quad whose corners are not in one plane. */
 UNIT_TEST(a_bent_quad_is_a_fan)
 {
+    UNIT_OWNED(mesh_free)
     struct mesh mesh = read_text("v 0 0 0\nv 1 0.1 0\nv 1 0 1\nv 0 0.2 1\nf 2 3 4 1\n");
     const uint32_t fan[] = {1, 2, 3, 1, 3, 0};
     ck_assert_mem_eq(mesh.triangle, fan, sizeof fan);
-    mesh_free(&mesh);
 }
 
 static void fails(const char *text, const char *says)

@@ -51,7 +51,7 @@ UNIT_TEST(drape_coefficients)
 {
     const double carried = acos(-1) * 0.09 * 0.09, quarter = acos(0);
     for (int i = 0; i <= 3; i++) {
-        struct mesh mesh = disc();
+        UNIT_OWNED(mesh_free) struct mesh mesh = disc();
         const double flat = mesh_surface(&mesh), part = cos(i * quarter / 3);
         ck_assert_double_eq_tol(flat, polygon(0.15, RINGS), 1e-15);
         hang(&mesh, i * quarter / 3);
@@ -61,7 +61,6 @@ UNIT_TEST(drape_coefficients)
         ck_assert_double_eq_tol(coefficient, fmax(cone - carried, 0) / (flat - carried), 1e-5);
         if (i == 0 || i == 3)
             ck_assert_double_eq_tol(coefficient, i == 0, 1e-5);
-        mesh_free(&mesh);
     }
 }
 
@@ -69,7 +68,7 @@ UNIT_TEST(drape_coefficients)
  * the fold points at the light. */
 UNIT_TEST(folded)
 {
-    struct mesh mesh = disc();
+    UNIT_OWNED(mesh_free) struct mesh mesh = disc();
     double *x = mesh.position;
     const double whole = mesh_surface(&mesh);
     for (uint32_t v = 0; v < mesh.n_vertices; v++)
@@ -80,26 +79,25 @@ UNIT_TEST(folded)
         x[3 * v] = 0.3 * x[3 * v + 2];
     }
     ck_assert_double_lt(shadow_of(&mesh, x, up), 1e-12);
-    mesh_free(&mesh);
 }
 
 /* Any axis, of any length: turned with the cloth it shows the same, aslant the cosine of it. */
 UNIT_TEST(any_axis)
 {
     static const double axes[][3] = {{2, 0, 0}, {0, -3, 0}, {0, 0, 1e-3}, {1, 2, 3}, {-3, 1, 1e-9}};
-    struct mesh mesh = disc();
+    UNIT_OWNED(mesh_free) struct mesh mesh = disc();
     const double whole = mesh_surface(&mesh);
     for (size_t i = 0; i < sizeof axes / sizeof *axes; i++) {
         const double *a = axes[i], size = sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
         ck_assert_double_eq_tol(shadow_of(&mesh, mesh.position, a), whole * fabs(a[1]) / size,
                                 1e-5 * whole);
     }
-    mesh_free(&mesh);
 }
 
 /* What lies above one another counts once, holes and single points count nothing. */
 UNIT_TEST(stacked)
 {
+    UNIT_OWNED(mesh_free)
     struct mesh mesh =
         read_text("v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nv 0.5 1 0.5\nv 1.5 1 0.5\nv 1.5 1 1.5\n"
                   "v 0.5 1 1.5\nv 5 0 5\nv 6 0 5\nv 5 0 6\nv 9 9 9\n"
@@ -107,5 +105,4 @@ UNIT_TEST(stacked)
     ck_assert_double_eq_tol(shadow_of(&mesh, mesh.position, up), 1.75 + 0.5, 0.01);
     mesh.n_triangles = 0;
     ck_assert_double_eq(shadow_of(&mesh, mesh.position, up), 0);
-    mesh_free(&mesh);
 }

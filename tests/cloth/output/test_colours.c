@@ -157,22 +157,20 @@ static void fill(struct output_rest *rest)
 
 static void write_rest(uint64_t frame)
 {
-    struct output_rest rest;
+    UNIT_OWNED(output_rest_free) struct output_rest rest;
     fill(&rest);
     ck_assert_int_eq(output_colours_rest(writer, frame, &rest, &error), 0);
-    output_rest_free(&rest);
 }
 
 UNIT_TEST(the_size_is_known_before)
 {
-    struct output_rest rest;
+    UNIT_OWNED(output_rest_free) struct output_rest rest;
     begins(NULL);
     write_rest(0);
     places(0, 0, 1);
     ends();
     fill(&rest);
     ck_assert_int_eq(size_of(), (long)output_colours_bytes(N, BLOCKS, &rest));
-    output_rest_free(&rest);
 }
 
 UNIT_TEST(shapes_are_read_again)

@@ -85,12 +85,11 @@ static struct contact_bodies boxes_make(uint32_t n)
     struct contact_bodies bodies = {0};
     for (uint32_t i = 0; i < n; i++) {
         struct cloth_error error = {0};
-        struct mesh mesh;
+        UNIT_OWNED(mesh_free) struct mesh mesh;
         bool turned;
         surface_box(&box, 1 + i, 1, 1);
         surface_mesh(&box, &mesh);
         ck_assert_int_eq(contact_bodies_add(&bodies, &mesh, &turned, &error), 0);
-        mesh_free(&mesh);
     }
     sample.setup.n_obstacles = n;
     sample.setup.obstacles = shape;

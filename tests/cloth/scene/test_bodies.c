@@ -54,14 +54,13 @@ UNIT_TEST(frames_that_are_wrong)
         {"nowhere.pc2", "nowhere.pc2: cannot be read: No such file"}};
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
         struct cloth_error error = {0};
-        struct model model;
+        UNIT_OWNED(model_free) struct model model;
         char body[120];
         snprintf(body, sizeof body, FRAMES "{pc2: %s}}", wrong[i][0]);
         char *text = scene_changed(scene_right, PLANE, body);
         ck_assert_int_eq(scene_read_text(&model, text, 0, NULL, &error), CLOTH_E_INPUT);
         ck_assert_ptr_nonnull(strstr(error.text, ":11:51: frames: "));
         ck_assert_msg(strstr(error.text, wrong[i][1]) != NULL, "%s", error.text);
-        model_free(&model);
         free(text);
     }
 }
@@ -74,7 +73,7 @@ UNIT_TEST(frames_that_jump)
     char *text = scene_changed(scene_right, PLANE,
                                FRAMES "{pc2: jumps.pc2, fps: 2, start: 1}, scale: 2, translate: "
                                       "[0, 1, 0]}");
-    struct model model = scene_read_right(text, 0, NULL);
+    UNIT_OWNED(model_free) struct model model = scene_read_right(text, 0, NULL);
     ck_assert_uint_eq(model.n_warnings, 2); /* it is a point, too */
     ck_assert_msg(strstr(model.warnings[0], ":11:45: vertex 1 of the body jumps by 6.9282 m from "
                                             "frame 1 to the next, by more than a quarter") != NULL,
@@ -86,7 +85,6 @@ UNIT_TEST(frames_that_jump)
     ck_assert(x[3][0] == 4 && x[3][1] == 5 && x[3][2] == 4);
     ck_assert(model_obstacles_move(&model) && model_moves_after(&model, 1.4));
     ck_assert(!model_moves_after(&model, 1.5));
-    model_free(&model);
     free(text);
 }
 
@@ -100,7 +98,7 @@ UNIT_TEST(a_body_that_is_inside_out)
                           i ? "body: {obj: out.obj, scale: [1, 2, 3], translate: [5, 0, 0], "
                               "motion: {times: [1], translate: [[0, 1, 0]]}}"
                             : "body: {obj: whole.obj}");
-        struct model model = scene_read_right(text, 0, NULL);
+        UNIT_OWNED(model_free) struct model model = scene_read_right(text, 0, NULL);
         ck_assert_uint_eq(model.n_warnings, (uint32_t)i);
         const char *warning = ":11:26: the mesh of a body is inside out: its triangles are "
                               "clockwise as seen from outside; they are turned round";
@@ -109,7 +107,6 @@ UNIT_TEST(a_body_that_is_inside_out)
         ck_assert(body->n_triangles == 4 && model.obstacles->n == (uint32_t)i);
         ck_assert(body->low[0] == 5 * i && body->high[0] == 5 * i + 1);
         ck_assert(body->high[1] == 1 + i && body->high[2] == 1 + 2 * i);
-        model_free(&model);
         free(text);
     }
 }
@@ -132,7 +129,7 @@ UNIT_TEST(maps)
         char body[200];
         snprintf(body, sizeof body, MAPS "scale: [4, 2, 3], %s}", cases[i].keys);
         char *text = scene_changed(scene_right, PLANE, body);
-        struct model model = scene_read_right(text, 0, NULL);
+        UNIT_OWNED(model_free) struct model model = scene_read_right(text, 0, NULL);
         const struct contact_view *view = &model.obstacles->view;
         ck_assert_uint_eq(view->axis, cases[i].axis);
         ck_assert_uint_eq(view->width, cases[i].width);
@@ -143,7 +140,6 @@ UNIT_TEST(maps)
         if (cases[i].warnings)
             ck_assert_ptr_nonnull(
                 strstr(model.warnings[0], "resolution means nothing: it is of meet: image"));
-        model_free(&model);
         free(text);
     }
 }

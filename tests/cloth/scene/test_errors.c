@@ -11,7 +11,7 @@
 
 UNIT_TEST(files_that_cannot_be_read)
 {
-    struct model model;
+    UNIT_OWNED(model_free) struct model model;
     struct cloth_error error = {0};
     ck_assert_int_eq(scene_read(&model, "/nowhere/x.yaml", 0, NULL, &error), CLOTH_E_INPUT);
     ck_assert_str_eq(error.text,
@@ -22,12 +22,11 @@ UNIT_TEST(files_that_cannot_be_read)
     ck_assert_str_eq(error.text, "/tmp: cannot read the scene file: Is a directory");
     model_free(&model);
     ck_assert_int_eq(scene_read(&model, "/tmp", 0, NULL, NULL), CLOTH_E_INPUT);
-    model_free(&model);
 }
 
 UNIT_TEST(sets_of_other_options)
 {
-    struct model model;
+    UNIT_OWNED(model_free) struct model model;
     struct cloth_error error = {0};
     const struct scene_set sets[] = {{"time.h=1e-3", NULL}, {"grain=0", "--grain 0"}};
     ck_assert_int_eq(scene_read_text(&model, scene_right, 2, sets, &error), CLOTH_E_INPUT);
@@ -38,17 +37,15 @@ UNIT_TEST(sets_of_other_options)
     const struct scene_set open[] = {{"time.end=[", "--end ["}};
     ck_assert_int_eq(scene_read_text(&model, scene_right, 1, open, &error), CLOTH_E_INPUT);
     ck_assert_ptr_eq(strstr(error.text, "--end [: the value is not YAML: "), error.text);
-    model_free(&model);
 }
 
 static void expect_error(const char *from, const char *to, const char *expected)
 {
-    struct model model;
+    UNIT_OWNED(model_free) struct model model;
     struct cloth_error error = {0};
     char *text = scene_changed(scene_right, from, to);
     ck_assert_int_eq(scene_read_text(&model, text, 0, NULL, &error), CLOTH_E_INPUT);
     ck_assert_msg(strstr(error.text, expected), "%s", error.text);
-    model_free(&model);
     free(text);
 }
 
@@ -99,7 +96,7 @@ UNIT_TEST(scenes_without_end)
         {"schema: 1\nphases:\n", "  - {name: p%d}\n", "", 1000,
          ":3:3: phases is a list of 1000; a list of 1 to 100 maps is expected"}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        struct model model;
+        UNIT_OWNED(model_free) struct model model;
         struct cloth_error error = {0};
         char *text = NULL;
         size_t size;
@@ -112,7 +109,6 @@ UNIT_TEST(scenes_without_end)
         ck_assert_int_eq(fclose(to), 0);
         ck_assert_int_eq(scene_read_text(&model, text, 0, NULL, &error), CLOTH_E_INPUT);
         ck_assert_msg(strstr(error.text, cases[i].expected), "%s", error.text);
-        model_free(&model);
         free(text);
     }
 }

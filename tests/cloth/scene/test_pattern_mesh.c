@@ -37,7 +37,7 @@ static char *scene_of(const char *mesh)
 UNIT_TEST(panels_as_a_mesh)
 {
     char *text = scene_of("{pattern: {file: pillow.json, edge: 0.03}}");
-    struct model model = scene_read_right(text, 0, NULL);
+    UNIT_OWNED(model_free) struct model model = scene_read_right(text, 0, NULL);
     const struct mesh *mesh = &model.cloths[0].mesh;
     double low[3], high[3];
     ck_assert_ptr_nonnull(mesh->uv);
@@ -66,16 +66,14 @@ UNIT_TEST(panels_as_a_mesh)
     free(front);
     ck_assert_uint_eq(model.n_files, 2);
     ck_assert_ptr_nonnull(strstr(model.files[1], "/pillow.json"));
-    model_free(&model);
     free(text);
 }
 
 UNIT_TEST(panels_by_count)
 {
     char *text = scene_of("{pattern: {file: pillow.json, vertices: 4000}}");
-    struct model model = scene_read_right(text, 0, NULL);
+    UNIT_OWNED(model_free) struct model model = scene_read_right(text, 0, NULL);
     ck_assert_double_eq_tol(model.cloths[0].mesh.n_vertices, 4000, 40);
-    model_free(&model);
     free(text);
 }
 
@@ -90,7 +88,7 @@ static double width_of(const struct model *model)
 UNIT_TEST(own_garments)
 {
     char *text = scene_of("{pattern: {garment: skirt, edge: 0.1}}");
-    struct model model = scene_read_right(text, 0, NULL);
+    UNIT_OWNED(model_free) struct model model = scene_read_right(text, 0, NULL);
     ck_assert_double_eq_tol(width_of(&model), 0.8, 1e-12);
     ck_assert_uint_eq(model.cloths[0].mesh.n_groups, 4);
     ck_assert_uint_eq(model.cloths[0].seams.n, 8);
@@ -106,7 +104,6 @@ UNIT_TEST(own_garments)
                     "    transform: {scale: 2}");
     model = scene_read_right(text, 0, NULL);
     ck_assert_double_eq_tol(width_of(&model), 1.2, 1e-12);
-    model_free(&model);
     free(text);
 }
 
@@ -136,7 +133,7 @@ static struct model worn(const char *waist, const char *state, const char **warn
 UNIT_TEST(garments_that_are_too_small)
 {
     const char *warning;
-    struct model model = worn("0.7", "pulled", &warning);
+    UNIT_OWNED(model_free) struct model model = worn("0.7", "pulled", &warning);
     ck_assert_ptr_nonnull(warning);
     ck_assert_msg(strstr(warning, "the garment is too small for the body figure: at y = 1.1 m") &&
                       strstr(warning, " its girth is 0.72 m, the body's 0.8 m"),
@@ -147,5 +144,4 @@ UNIT_TEST(garments_that_are_too_small)
     model_free(&model);
     model = worn("0.7", "open", &warning);
     ck_assert_ptr_null(warning);
-    model_free(&model);
 }

@@ -60,7 +60,7 @@ static struct model read_scene(const char *stitches, const char *keys)
 UNIT_LOOP(seams_that_cross, 0, 2)
 {
     static const char *const stitches[] = {SIDES_OF, STITCH(1, 1) ", " STITCH(3, 3)};
-    struct model model = read_scene(stitches[_i], "{state: pulled}");
+    UNIT_OWNED(model_free) struct model model = read_scene(stitches[_i], "{state: pulled}");
     ck_assert_uint_eq(model.n_warnings, (uint32_t)_i);
     if (_i)
         ck_assert_msg(
@@ -69,13 +69,12 @@ UNIT_LOOP(seams_that_cross, 0, 2)
                    "'back') and seam 1 of cloth 'bag' (edge 3 of panel 'front', edge 3 of panel "
                    "'back') cross where the run starts: what they pull goes through each other"),
             "%s", model.warnings[0]);
-    model_free(&model);
 }
 
 /* A bag's corner at the bottom is in two seams: the second has one pair less. */
 UNIT_TEST(joints_of_seams)
 {
-    struct model model = read_scene(BAG_OF, "{state: pulled}");
+    UNIT_OWNED(model_free) struct model model = read_scene(BAG_OF, "{state: pulled}");
     ck_assert_uint_eq(model.n_joints, 3);
     ck_assert_uint_eq(model.n_pulled, 3);
     const struct model_seam *seam = model.cloths[0].seams.seam;
@@ -96,11 +95,11 @@ UNIT_TEST(joints_of_seams)
                               joint->pairs.end[0].vertices[i]);
         }
     }
-    model_free(&model);
 }
 
 UNIT_TEST(keys_of_seams)
 {
+    UNIT_OWNED(model_free)
     struct model model = read_scene(SIDES_OF, "{stiffness: 50, damping: 3, reversed: [1]}");
     ck_assert_double_eq(model.joints[0].stiffness, 50);
     ck_assert_double_eq(model.joints[0].damping, 3);
@@ -116,7 +115,6 @@ UNIT_TEST(keys_of_seams)
     model = read_scene(SIDES_OF, "{state: open}");
     ck_assert_uint_eq(model.n_joints + model.n_welds + model.n_pulled, 0);
     ck_assert_ptr_null(model.contact.apart.joined);
-    model_free(&model);
 }
 
 /* ---- Some seams that are sewn otherwise than the cloth ---- */
@@ -149,7 +147,7 @@ static const struct some SOME[] = {
 UNIT_LOOP(some_seams, 0, sizeof SOME / sizeof *SOME)
 {
     const struct some *some = SOME + _i;
-    struct model model = read_scene(BAG_OF, some->keys);
+    UNIT_OWNED(model_free) struct model model = read_scene(BAG_OF, some->keys);
     for (uint32_t i = 0; i < 3; i++) {
         ck_assert_uint_eq(i < model.n_joints ? model.joints[i].pairs.seam : 0, some->joint[i]);
         ck_assert_uint_eq(i < model.n_welds ? model.welds[i].pairs.seam : 0, some->weld[i]);
@@ -159,12 +157,12 @@ UNIT_LOOP(some_seams, 0, sizeof SOME / sizeof *SOME)
         ck_assert_double_eq(model.joints[0].stiffness, some->stiffness);
         ck_assert_double_eq_tol(model.joints[0].damping, some->damping, 1e-12);
     }
-    model_free(&model);
 }
 
 /* The bottom, which is pulled, ends in both sides, which are welded: their pairs stand first. */
 UNIT_TEST(welds_come_before_joints)
 {
+    UNIT_OWNED(model_free)
     struct model model =
         read_scene(BAG_OF, "{tolerance: 0.031, some: [{numbers: [1, 2], state: welded}]}");
     struct cloth_error error = {0};
@@ -179,7 +177,6 @@ UNIT_TEST(welds_come_before_joints)
             ck_assert_uint_eq(vertex[seam[s].pair[i][0]], vertex[seam[s].pair[i][1]]);
     ck_assert_msg(!flow_prepare(&flow, &model, 1, &error), "%s", error.text);
     flow_free(flow);
-    model_free(&model);
 }
 
 /* Three seams that meet at a corner, as of a box: where two are welded its three vertices are one,
@@ -189,6 +186,7 @@ UNIT_TEST(corners_of_three_seams)
     static const char *const stitches =
         STITCH(0, 3) ", [{\"panel\": \"back\", \"edge\": 0}, {\"panel\": \"top\", \"edge\": 3}], "
                      "[{\"panel\": \"top\", \"edge\": 0}, {\"panel\": \"front\", \"edge\": 3}]";
+    UNIT_OWNED(model_free)
     struct model model = read_scene(
         stitches, "{tolerance: 4, reversed: [0, 2], some: [{numbers: [0, 1], state: welded}]}");
     struct cloth_error error = {0};
@@ -200,7 +198,6 @@ UNIT_TEST(corners_of_three_seams)
     ck_assert_uint_eq(model.joints[0].pairs.end[0].n, model.cloths[0].seams.seam[2].n_pairs - 1);
     ck_assert_msg(!flow_prepare(&flow, &model, 1, &error), "%s", error.text);
     flow_free(flow);
-    model_free(&model);
 }
 
 /* Sewn: what the pattern says of it. */
@@ -258,6 +255,7 @@ static const struct sewn GARMENTS[] = {{SIDES_OF, 0, 0.8}, {BAG_OF, 1, 0.4}, {PI
 UNIT_LOOP(what_is_sewn, 0, sizeof GARMENTS / sizeof *GARMENTS)
 {
     const struct sewn *sewn = GARMENTS + _i;
+    UNIT_OWNED(model_free)
     struct model model = read_scene(sewn->stitches, "{state: welded, tolerance: 0.031}");
     struct cloth_error error = {0};
     struct flow *flow;
@@ -281,7 +279,6 @@ UNIT_LOOP(what_is_sewn, 0, sizeof GARMENTS / sizeof *GARMENTS)
         mass += source->particles.mass[v];
     ck_assert_double_eq_tol(mass, 0.25 * 2 * 0.2 * 0.3, 1e-12);
     flow_free(flow);
-    model_free(&model);
 }
 
 struct hinges {
@@ -313,7 +310,7 @@ UNIT_TEST(hinges_of_seams)
                                         ("{state: welded, tolerance: 0.031, bending: 2.0e-5, some: "
                                          "[{numbers: [1], bending: 6e-5}]}")};
     for (int i = 0; i < 4; i++) {
-        struct model model = read_scene(SIDES_OF, keys[i]);
+        UNIT_OWNED(model_free) struct model model = read_scene(SIDES_OF, keys[i]);
         struct cloth_error error = {0};
         struct flow *flow;
         ck_assert_msg(!flow_prepare(&flow, &model, 1, &error), "%s", error.text);
@@ -323,7 +320,6 @@ UNIT_TEST(hinges_of_seams)
         ck_assert_double_eq(hinges.rest, 0);
         stiffness[i] = hinges.stiffness;
         flow_free(flow);
-        model_free(&model);
     }
     ck_assert_double_gt(stiffness[0], 0);
     ck_assert_double_eq_tol(stiffness[1], stiffness[0], 1e-12 * stiffness[0]);

@@ -41,7 +41,7 @@ static void check_exact(enum solve_local kind, double tolerance)
 }
 
 /* A chain has no fill, with held rows anywhere. */
-UNIT_LOOP(ic0_of_a_chain_is_exact, SOLVE_SPRINGS, SOLVE_HALF_FLOAT + 1)
+UNIT_LOOP(ic0_of_a_chain_is_exact, SOLVE_SPRINGS, SOLVE_HALF + 1)
 {
     srand(1);
     sys.format = (enum solve_format)_i;
@@ -77,7 +77,7 @@ UNIT_LOOP(ic0_of_a_triangle_is_exact, SOLVE_SPRINGS, SOLVE_HALF_FLOAT + 1)
     check_exact(SOLVE_IC0, FLOAT);
 }
 
-UNIT_LOOP(jacobi_inverts_the_diagonal, SOLVE_SPRINGS, SOLVE_HALF_FLOAT + 1)
+UNIT_LOOP(jacobi_inverts_the_diagonal, SOLVE_SPRINGS, SOLVE_HALF + 1)
 {
     srand(3);
     sys.format = (enum solve_format)_i;
@@ -94,7 +94,7 @@ UNIT_LOOP(jacobi_inverts_the_diagonal, SOLVE_SPRINGS, SOLVE_HALF_FLOAT + 1)
 
 /* Springs into other blocks belong to the diagonal: block 0 of two is the dense matrix of its rows.
  */
-UNIT_LOOP(cut_springs_are_on_the_diagonal, SOLVE_SPRINGS, SOLVE_HALF_FLOAT + 1)
+UNIT_LOOP(cut_springs_are_on_the_diagonal, SOLVE_SPRINGS, SOLVE_HALF + 1)
 {
     srand(4);
     sys.format = (enum solve_format)_i;
@@ -231,7 +231,7 @@ static void over_relaxed(const phys_vec *s, phys_vec *q)
 
 /* Springs of less than no stiffness: each row's own block is small beside the others, and all
  * pivots of IC(0) fail. */
-UNIT_LOOP(ssor_is_the_last_resort, SOLVE_SPRINGS, SOLVE_HALF_FLOAT + 1)
+UNIT_LOOP(ssor_is_the_last_resort, SOLVE_SPRINGS, SOLVE_HALF + 1)
 {
     phys_vec x[SYSTEM_ROWS], s[SYSTEM_ROWS], q[SYSTEM_ROWS];
     srand(10);

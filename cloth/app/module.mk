@@ -5,8 +5,7 @@ dist_man_MANS += cloth/app/duite-cloth.1 cloth/app/duite-garment.1 cloth/app/dui
 duite_cloth_SOURCES = \
     cloth/app/duite-cloth.c cloth/app/simulate.c cloth/app/simulate.h cloth/app/simulate_begin.c cloth/app/simulate_run.h \
     cloth/app/stops.c cloth/app/check/drape.c cloth/app/check/drape.h cloth/app/check/intersections.c \
-    cloth/app/check/intersections.h cloth/app/check/intersections_model.c cloth/app/check/intersections_parts.c \
-    cloth/app/check/intersections_parts.h cloth/app/check/intersections_soup.c cloth/app/check/intersections_soup.h \
+    cloth/app/check/intersections.h cloth/app/check/intersections_open.c cloth/app/check/intersections_state.h \
     cloth/app/run/environment.c cloth/app/run/environment.h cloth/app/run/keeper.c cloth/app/run/keeper.h \
     cloth/app/run/options.h cloth/app/run/outputs.c cloth/app/run/outputs.h cloth/app/run/outputs_colours.c \
     cloth/app/run/outputs_colours.h cloth/app/run/outputs_hdf5.c cloth/app/run/outputs_hdf5.h cloth/app/run/outputs_setup.c \
@@ -30,8 +29,7 @@ dist_man_MANS += cloth/app/duite-view.1
 duite_view_SOURCES = \
     cloth/app/duite-view.c cloth/app/view/frames.c cloth/app/view/frames.h cloth/app/view/live.c cloth/app/view/live.h \
     cloth/app/view/trace.c cloth/app/view/trace.h cloth/app/check/intersections.c cloth/app/check/intersections.h \
-    cloth/app/check/intersections_folder.c cloth/app/check/intersections_parts.c cloth/app/check/intersections_parts.h \
-    cloth/app/check/intersections_soup.c cloth/app/check/intersections_soup.h
+    cloth/app/check/intersections_folder.c cloth/app/check/intersections_open.c cloth/app/check/intersections_state.h
 duite_view_LDADD = $(CHART_LIBS) $(VIEW_LIBS)
 endif
 EXTRA_DIST += cloth/app/duite-view.1 cloth/app/demo.sh
